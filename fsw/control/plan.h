@@ -1,0 +1,51 @@
+#pragma once
+// What every control solver takes and gives.
+//
+// All algebra is in dimensionless mean ROE of the target (deputy) with respect to the servicer (chief). The solvers think of a
+// manoeuvring deputy; a plan's burns are already those of the servicer: dv_servicer = -dv_deputy, in the servicer's RTN.
+
+#include <array>
+#include <cstddef>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/result.h"
+#include "fsw/core/types.h"
+#include "fsw/orbit/elements.h"
+
+namespace vbar::fsw::control {
+
+inline constexpr std::size_t kMaxBurns = 32;
+
+/// Which solver made a plan; the number stands in packets.
+enum class Solver : signed char { kNone = -1, kClosedForm = 0, kKoenigDamico = 1, kLeastSquares = 2 };
+
+/// An impulse of the servicer, m/s in its RTN frame at `time`.
+struct Burn {
+  GpsTime time;
+  Vector3 dv_rtn = Vector3::Zero();
+};
+
+/// Burns in order of time.
+struct Plan {
+  std::array<Burn, kMaxBurns> burns{};
+  std::size_t count = 0;
+  Solver solver = Solver::kNone;
+
+  /// Sum of the burns' norms, m/s.
+  [[nodiscard]] double total_dv() const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < count; ++k) sum += burns[k].dv_rtn.norm();
+    return sum;
+  }
+};
+
+/// Bring the ROE from their free drift to where they shall be, by impulses in [start, arrival].
+struct ControlProblem {
+  GpsTime start;                      ///< earliest burn, epoch of servicer_mean
+  GpsTime arrival;                    ///< waypoint time
+  orbit::QnsElements servicer_mean;   ///< mean elements of the servicer at `start`
+  /// Change of the mean ROE wanted at `arrival` beyond the free drift (the pseudo-state w of the paper), dimensionless.
+  Vector6 pseudo_state = Vector6::Zero();
+};
+
+}  // namespace vbar::fsw::control

@@ -1,0 +1,54 @@
+/* The test article, as C: what a board or a simulation needs of a flight software, and all it may use.
+ *
+ * vbar's own GNC implements it (fsw/gnc). So can another stack in C, C++, Rust or generated code: as a shared library that
+ * `flight_computer.library` names on the host, or linked into a board image instead of vbar's.
+ *
+ * Rules for an implementation: its whole state is one plain object of vbar_gnc_state_size() bytes in memory the caller owns;
+ * no heap, no clock, no threads, no I/O; what it does with a packet depends on the packet's time tag and the step it was
+ * delivered in, not on the order of arrival within the step. */
+#ifndef VBAR_FSW_GNC_VBAR_GNC_H
+#define VBAR_FSW_GNC_VBAR_GNC_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Version of this header. A caller refuses another one. */
+#define VBAR_GNC_ABI_VERSION 1
+
+/* 0: done. Otherwise the reason, as in fsw/core/result.h (`Status`). */
+typedef int32_t vbar_status;
+
+/* Takes one outgoing space packet of `size` bytes; the bytes are the caller's only during the call. */
+typedef void (*vbar_packet_sink)(void* context, const uint8_t* packet, size_t size);
+
+/* VBAR_GNC_ABI_VERSION that the implementation was built with. */
+int32_t vbar_gnc_abi_version(void);
+
+/* Name and version for reports; a string constant. */
+const char* vbar_gnc_name(void);
+
+/* Size and alignment (bytes) of the state object. */
+size_t vbar_gnc_state_size(void);
+size_t vbar_gnc_state_alignment(void);
+
+/* Makes a new flight software for spacecraft number `spacecraft` in `state`; packets go to `sink`. */
+vbar_status vbar_gnc_init(void* state, uint8_t spacecraft, vbar_packet_sink sink, void* sink_context);
+
+/* Gives another sink to a state that was restored from a copy of its bytes. */
+void vbar_gnc_set_sink(void* state, vbar_packet_sink sink, void* sink_context);
+
+/* Delivers one space packet. A refused packet (status not 0) has changed nothing but a counter. */
+vbar_status vbar_gnc_receive(void* state, const uint8_t* packet, size_t size);
+
+/* Runs the step at `gps_time_ns` on the packets received since the last one. */
+vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,69 @@
+#pragma once
+// Link frames between a host and a flight computer. They carry space packets through a step barrier: the packets of step N
+// go out as one numbered batch, the answer to step N comes back as one numbered batch, and whatever is lost, broken,
+// duplicated or delayed on the way is sent again, so a line's faults never become the experiment's.
+//
+//   byte  0      protocol version (kProtocolVersion)
+//   byte  1      FrameType
+//   bytes 2-5    session, a number the host draws at each start: frames of an older run are refused
+//   bytes 6-9    step
+//   bytes 10-11  index: kData, place of this packet in its batch; kAck and kPoll, number of packets held without a gap
+//   byte  12     flags: bit 0, last packet of the batch; bit 1, answer with kAck at once
+//   byte  13     0
+//   14 ...       kData: one space packet; kHelloAck: the board's name in ASCII
+//   last 4       CRC-32 (IEEE 802.3, little-endian) over everything before it
+//
+// All but the CRC big-endian. Over a byte stream a frame is COBS-coded and ends with a zero byte; over UDP a datagram is a frame.
+//
+// The exchange (go-back-N, window kWindow, both ways):
+//   host  kHello (repeated until answered)         board  resets the flight software, kHelloAck
+//   host  kData 0..n-1 of step N, the last one flagged; after kWindow unacknowledged ones it waits for kAck
+//   board takes kData only in order (others are counted and dropped; every kWindow/2 taken, or on demand, kAck);
+//         once the flagged one is in: runs the step, keeps its answer, sends it as kData 0..m-1 of step N, last flagged
+//   host  acknowledges the answer the same way; nothing heard for a while: kPoll(N, packets of the answer held).
+//   board on kPoll: if its inputs of N are incomplete, kAck with what it holds; else its answer again from that index on
+//   board on kData of a step already run: it is a duplicate; the answer is on its way or will be polled for
+//   host  kGoodbye ends the run: the board stops.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "fsw/core/result.h"
+#include "fsw/packets/packet.h"
+
+namespace vbar::fsw::link {
+
+inline constexpr std::uint8_t kProtocolVersion = 1;
+inline constexpr std::size_t kFrameHeaderBytes = 14;
+inline constexpr std::size_t kFrameCrcBytes = 4;
+inline constexpr std::size_t kMaxFrameBytes = 1400;
+/// COBS adds one byte in 254 and a leading code byte, plus the final zero.
+inline constexpr std::size_t kMaxCobsFrameBytes = kMaxFrameBytes + kMaxFrameBytes / 254 + 2;
+inline constexpr std::uint16_t kWindow = 32;
+static_assert(packets::kMaxPacketBytes + kFrameHeaderBytes + kFrameCrcBytes <= kMaxFrameBytes);
+
+enum class FrameType : std::uint8_t { kHello = 1, kHelloAck = 2, kData = 3, kAck = 4, kPoll = 5, kGoodbye = 6 };
+
+struct FrameHeader {
+  FrameType type = FrameType::kHello;
+  std::uint32_t session = 0;
+  std::uint32_t step = 0;
+  std::uint16_t index = 0;
+  bool last = false;
+  bool acknowledge_now = false;
+};
+
+struct FrameView {
+  FrameHeader header;
+  std::span<const std::uint8_t> payload;
+};
+
+/// Writes a frame (not COBS-coded); returns its length. kTooLong.
+Result<std::size_t> write_frame(const FrameHeader& header, std::span<const std::uint8_t> payload,
+                                std::span<std::uint8_t> out);
+
+/// Checks length, CRC, version, type. kTooShort, kTooLong, kBadChecksum, kWrongType.
+Result<FrameView> parse_frame(std::span<const std::uint8_t> bytes);
+
+}  // namespace vbar::fsw::link

@@ -1,0 +1,81 @@
+# How a library, a program and a test of this project are declared, and the compiler flags they get.
+#
+# One rule stands behind the flags: flight code must give the same bits on every target, and in_process runs link flight
+# and host code into one program. Both therefore share everything that can change a bit or an inline function of Eigen:
+# no contraction of a*b+c, no vectorised Eigen.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1")
+set(CMAKE_C_FLAGS_RELEASE "-O2 -g1")
+
+find_program(VBAR_CCACHE ccache)
+if(VBAR_CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER ${VBAR_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${VBAR_CCACHE})
+endif()
+
+find_path(VBAR_EIGEN_INCLUDE Eigen/Core PATHS /usr/include/eigen3 NO_CMAKE_FIND_ROOT_PATH REQUIRED)
+
+# Flags of all code of the project.
+add_library(vbar_options INTERFACE)
+target_include_directories(vbar_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(vbar_options SYSTEM INTERFACE ${VBAR_EIGEN_INCLUDE})
+target_compile_definitions(vbar_options INTERFACE EIGEN_MPL2_ONLY EIGEN_DONT_VECTORIZE EIGEN_DONT_PARALLELIZE)
+target_compile_options(vbar_options INTERFACE
+  -ffp-contract=off -fno-math-errno
+  -Wall -Wextra -Wpedantic -Wshadow -Wcast-align -Wformat=2 -Wimplicit-fallthrough -Werror
+  $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual>)
+set(VBAR_SANITIZE "" CACHE STRING "sanitizers, e.g. address,undefined")
+if(VBAR_SANITIZE)
+  target_compile_options(vbar_options INTERFACE -fsanitize=${VBAR_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(vbar_options INTERFACE -fsanitize=${VBAR_SANITIZE})
+endif()
+
+# Flight code besides: no exceptions, no run-time types, no implicit conversion that can lose a value.
+add_library(vbar_flight_options INTERFACE)
+target_link_libraries(vbar_flight_options INTERFACE vbar_options)
+target_compile_options(vbar_flight_options INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>
+  -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Wswitch-enum)
+
+# vbar_fsw_library(name SOURCES ... DEPENDS ...): a static library of flight code.
+function(vbar_fsw_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  if(NOT VBAR_TARGET STREQUAL "zynq7000")
+    set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # a shared library may be made of it
+  endif()
+  target_link_libraries(${name} PRIVATE vbar_flight_options PUBLIC ${ARG_DEPENDS})
+  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+endfunction()
+
+# vbar_host_library(name SOURCES ... DEPENDS ...): a static library of host code.
+function(vbar_host_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC vbar_options ${ARG_DEPENDS})
+endfunction()
+
+# vbar_test(name SOURCES ... DEPENDS ... [LABELS ...]): a googletest program, one ctest entry a test case.
+function(vbar_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE vbar_options ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
+  target_compile_definitions(${name} PRIVATE VBAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" VBAR_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
+endfunction()
+
+# vbar_add_rooms(): every folder below this one that has a CMakeLists.txt.
+function(vbar_add_rooms)
+  file(GLOB rooms RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS */CMakeLists.txt)
+  foreach(room ${rooms})
+    get_filename_component(room ${room} DIRECTORY)
+    add_subdirectory(${room})
+  endforeach()
+endfunction()
