@@ -20,6 +20,7 @@ double exp(double x);
 double log(double x);
 double pow(double x, double y);
 double erf(double x);
+double erfc(double x);
 double fmod(double x, double y);
 double floor(double x);
 
