@@ -24,6 +24,7 @@ struct GuidanceReport {
   Status least_squares = Status::kNotReady;
   Status safety = Status::kNotReady;
   std::int32_t waypoint_index = -1;
+  Vector6 roe = Vector6::Zero();                  ///< estimated mean ROE now, dimensionless
   Vector6 roe_desired = Vector6::Zero();          ///< dimensionless mean ROE of the waypoint ahead
   Vector6 predicted_roe_error = Vector6::Zero();  ///< at the waypoint, remaining burns flown; dimensionless
   double passive_safety_distance = 0.0;           ///< m
@@ -44,6 +45,9 @@ class Guidance {
  public:
   static constexpr std::size_t kMaxCommandsPerStep = 16;
 
+  /// Mean orbits of both spacecraft and the passive safety of the drift if nothing more is commanded.
+  void assess(GpsTime now, const Navigation& navigation, const Management& management);
+
   /// One step: drops what is past, replans if it is due and needed, and collects the burns to command. `period` is the time to
   /// the next step.
   void update(GpsTime now, Duration period, const Navigation& navigation, const Management& management);
@@ -56,27 +60,25 @@ class Guidance {
   [[nodiscard]] std::int32_t commanded_maneuvers() const { return next_maneuver_id_; }
 
  private:
-  /// Everything a decision of this step looks at.
-  struct Situation {
-    GpsTime now;
-    GpsTime earliest_burn;
-    orbit::QnsElements servicer_mean;
-    orbit::QnsElements target_mean;
-    Vector6 sigma_a_roe_m = Vector6::Zero();
-    const gnc_configuration* configuration = nullptr;
-    double reference_semi_major_axis = 0.0;
-  };
-
-  Result<Situation> assess_situation(GpsTime now, const Navigation& navigation, const Management& management) const;
-  bool select_goal(const Situation& situation, const Management& management);
-  bool decision_is_due(GpsTime now, const Situation& situation);
-  void decide(const Situation& situation);
-  bool keeps(const Situation& situation);
-  bool adopt_if_flyable(const Situation& situation, const Result<control::Plan>& candidate);
-  Result<control::Plan> solve(control::Solver solver, const Situation& situation);
-  bool is_safe(const Situation& situation, const control::Plan& candidate);
+  bool select_goal(GpsTime now, const Management& management);
+  bool decision_is_due(GpsTime now, const gnc_configuration& configuration);
+  void decide(const gnc_configuration& configuration);
+  bool keeps_plan(const gnc_configuration& configuration);
+  bool adopt_if_flyable(control::Solver solver, const Result<control::Plan>& candidate,
+                        const gnc_configuration& configuration);
+  Result<control::Plan> solve(control::Solver solver, const gnc_configuration& configuration);
+  Result<control::Plan> correct(const gnc_configuration& configuration);
+  Status& status_of(control::Solver solver);
+  safety::PlanSafety safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
   void forget_past_burns(GpsTime now);
   void commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration);
+
+  // What assess() found; the rest of the step builds on it.
+  bool situation_known_ = false;
+  GpsTime earliest_burn_;
+  control::MeanOrbits orbits_;
+  Vector6 sigma_a_roe_m_ = Vector6::Zero();
+  double sigma_position_ = 0.0;  ///< 1 sigma of the relative position, the largest of R, T, N, m
 
   Waypoint goal_;
   bool has_goal_ = false;
