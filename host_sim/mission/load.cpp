@@ -33,7 +33,8 @@ std::string read_text(const std::filesystem::path& file) {
 
 }  // namespace
 
-Mission parse_mission(std::string_view text, const std::filesystem::path& file, std::span<const std::string> overrides) {
+Mission parse_mission(std::string_view text, const std::filesystem::path& file,
+                      std::span<const std::string> overrides) {
   toml::table table = parse_document(text, file.string());
   for (const std::string& assignment : overrides) apply_override(table, assignment);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "host_sim/mission/names.h"
+
 namespace vbar::mission {
 
 const Spacecraft* Mission::find_spacecraft(std::string_view spacecraft_name) const {
@@ -17,39 +19,13 @@ const Waypoint* Mission::find_waypoint(int index) const {
 }
 
 std::string_view name_of(FlightTarget target) {
-  switch (target) {
-    case FlightTarget::kInProcess:
-      return "in_process";
-    case FlightTarget::kHostProcess:
-      return "host_process";
-    case FlightTarget::kZynqQemu:
-      return "zynq_qemu";
-    case FlightTarget::kZynqLinuxQemu:
-      return "zynq_linux_qemu";
-    case FlightTarget::kBoard:
-      return "board";
-  }
-  return "";
+  return name_in(kFlightTargets, target);
 }
-
 std::string_view name_of(FlightLink link) {
-  switch (link) {
-    case FlightLink::kSerial:
-      return "serial";
-    case FlightLink::kUdp:
-      return "udp";
-  }
-  return "";
+  return name_in(kFlightLinks, link);
 }
-
 std::string_view name_of(NavigationSource source) {
-  switch (source) {
-    case NavigationSource::kIdeal:
-      return "ideal";
-    case NavigationSource::kRecorded:
-      return "recorded";
-  }
-  return "";
+  return name_in(kNavigationSources, source);
 }
 
 }  // namespace vbar::mission

@@ -1,6 +1,6 @@
 #pragma once
-// A mission file's content, checked and in SI units: plain structs. What each key means, its default and its range stand with
-// the functions that read it (read_*.cpp) and, by example, in missions/ideal_navigation.toml.
+// A mission file's content, checked and in SI units: plain structs. What each key means, its default and its range
+// stand with the functions that read it (read_*.cpp) and, by example, in missions/ideal_navigation.toml.
 
 #include <array>
 #include <cstdint>
@@ -55,12 +55,12 @@ enum class FlightLink { kSerial, kUdp };
 struct FlightComputer {
   FlightTarget target = FlightTarget::kInProcess;
   FlightLink link = FlightLink::kSerial;
-  std::string library;              ///< shared library of another test article; empty: vbar's own
-  fsw::Duration compute_latency;    ///< from a step to the moment its outputs take effect
-  std::string device;               ///< board on a serial link: the tty
-  int baud = 921600;                ///< board on a serial link
-  std::string address;              ///< board on UDP
-  int port = 0;                     ///< board on UDP
+  std::string library;            ///< shared library of another test article; empty: vbar's own
+  fsw::Duration compute_latency;  ///< from a step to the moment its outputs take effect
+  std::string device;             ///< board on a serial link: the tty
+  int baud = 921600;              ///< board on a serial link
+  std::string address;            ///< board on UDP
+  int port = 0;                   ///< board on UDP
 };
 
 enum class NavigationSource { kIdeal, kRecorded };
@@ -68,15 +68,15 @@ enum class NavigationSource { kIdeal, kRecorded };
 /// sensors.navigation: states that need no estimating.
 struct NavigationSensor {
   NavigationSource source = NavigationSource::kIdeal;
-  std::string target;               ///< the spacecraft it observes
+  std::string target;  ///< the spacecraft it observes
   fsw::Duration period;
-  std::filesystem::path log;        ///< recorded only: the packet log it plays
+  std::filesystem::path log;  ///< recorded only: the packet log it plays
 };
 
 /// actuators.thruster; 1-sigma errors of each burn.
 struct Thruster {
-  double magnitude_error = 0.0;      ///< relative
-  double pointing_error_rad = 0.0;   ///< about each of two axes across the burn
+  double magnitude_error = 0.0;     ///< relative
+  double pointing_error_rad = 0.0;  ///< about each of two axes across the burn
 };
 
 struct Spacecraft {
@@ -95,7 +95,8 @@ enum class Solver : std::int8_t { kClosedForm = 0, kKoenigDamico = 1, kLeastSqua
 struct Waypoint {
   int index = 0;
   fsw::GpsTime time;
-  fsw::Vector6 a_roe_m = fsw::Vector6::Zero();  ///< mean ROE of the target with respect to the servicer, times the reference a
+  fsw::Vector6 a_roe_m =
+      fsw::Vector6::Zero();  ///< mean ROE of the target with respect to the servicer, times the reference a
   Solver solver = Solver::kClosedForm;
 };
 
@@ -131,17 +132,18 @@ struct Mission {
   std::filesystem::path file;
   std::string name;
   std::string description;
-  fsw::GpsTime epoch;          ///< of the orbital elements and of waypoint times
-  fsw::Duration start;         ///< first step, after the epoch
-  fsw::Duration duration;      ///< from the first step to the end of the run
-  fsw::Duration step;          ///< between flight steps
+  fsw::GpsTime epoch;      ///< of the orbital elements and of waypoint times
+  fsw::Duration start;     ///< first step, after the epoch
+  fsw::Duration duration;  ///< from the first step to the end of the run
+  fsw::Duration step;      ///< between flight steps
   std::uint64_t seed = 1;
   TruthSettings truth;
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
   std::vector<Waypoint> waypoints;  ///< in order of time
   engine::ClockSettings clock;
-  engine::LinkSettings board_link;  ///< the simulated link between a spacecraft's sensors or actuators and its flight computer
+  engine::LinkSettings
+      board_link;  ///< the simulated link between a spacecraft's sensors or actuators and its flight computer
   LcmMirror lcm;
 
   [[nodiscard]] fsw::GpsTime start_time() const { return epoch + start; }
@@ -152,7 +154,7 @@ struct Mission {
   [[nodiscard]] const Waypoint* find_waypoint(int index) const;
 };
 
-/// The names that mission files and summaries use.
+/// The names that mission files and summaries use (names.h has them all).
 [[nodiscard]] std::string_view name_of(FlightTarget target);
 [[nodiscard]] std::string_view name_of(FlightLink link);
 [[nodiscard]] std::string_view name_of(NavigationSource source);

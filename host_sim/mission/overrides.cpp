@@ -50,8 +50,8 @@ std::string label_of(const toml::table& element, const std::string& key) {
 }
 
 // The element of array-of-tables `array` whose `key` is `label`.
-toml::table& element_by_label(toml::table& document, const Override& set, const std::string& array, const std::string& key,
-                              const std::string& label) {
+toml::table& element_by_label(toml::table& document, const Override& set, const std::string& array,
+                              const std::string& key, const std::string& label) {
   std::vector<std::string> labels;
   if (toml::array* elements = document[array].as_array()) {
     for (toml::node& element : *elements) {
@@ -103,7 +103,8 @@ void apply_override(toml::table& document, const std::string& assignment) {
   toml::table* table = &document;
   std::size_t next = 0;
   if (path.front() == "spacecraft" || path.front() == "waypoint") {
-    if (path.size() < 3) set.refuse("a path that ends too early", "spacecraft.NAME.KEY=value or waypoint.INDEX.KEY=value");
+    if (path.size() < 3)
+      set.refuse("a path that ends too early", "spacecraft.NAME.KEY=value or waypoint.INDEX.KEY=value");
     table = &element_by_label(document, set, path[0], path[0] == "spacecraft" ? "name" : "index", path[1]);
     next = 2;
   }

@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "host_sim/mission/names.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
@@ -12,8 +15,8 @@ fsw::Duration longest_compute_latency(const Mission& mission) {
 
 }  // namespace
 
-// Periods of the control loop are the paper's (its table of control solvers). Where the paper gives none, the defaults are those
-// the flight software starts with (fsw/gnc/management.cpp).
+// Periods of the control loop are the paper's (its table of control solvers). Where the paper gives none, the defaults
+// are those the flight software starts with (fsw/gnc/management.cpp).
 void read_guidance(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("guidance");
   section.accept_only({"mode", "reference_semi_major_axis_km", "compute_latency_s", "closed_form_period_s",
@@ -22,12 +25,7 @@ void read_guidance(const TableReader& document, Mission& mission) {
                        "safety_horizon_s", "station_keeping_deadband_m", "navigation_timeout_s"});
   constexpr Range kPeriod_s = from_to(1e-3, 1e6);
   Guidance& guidance = mission.guidance;
-  guidance.mode = section.choice<Mode>("mode",
-                                       {{"idle", Mode::kIdle},
-                                        {"approach", Mode::kApproach},
-                                        {"station_keeping", Mode::kStationKeeping},
-                                        {"hold", Mode::kHold}},
-                                       Mode::kApproach);
+  guidance.mode = section.choice<Mode>("mode", kModes, Mode::kApproach);
   // PRISMA's mean semi-major axis, the mean of the paper's osculating elements by first-order Brouwer theory.
   guidance.reference_semi_major_axis_m =
       1e3 * section.number("reference_semi_major_axis_km", from_to(6400.0, 1e6), 7078.138944);
@@ -35,7 +33,8 @@ void read_guidance(const TableReader& document, Mission& mission) {
   const fsw::Duration latency = longest_compute_latency(mission);
   guidance.compute_latency = section.span("compute_latency_s", 1.0, from_to(0.0, 3600.0), fsw::seconds(latency));
   if (guidance.compute_latency < latency)
-    section.refuse_value("compute_latency_s", "at least the flight computer's compute_latency_s, or its burns come too late");
+    section.refuse_value("compute_latency_s",
+                         "at least the flight computer's compute_latency_s, or its burns come too late");
   guidance.closed_form_period = section.span("closed_form_period_s", 1.0, kPeriod_s, 300.0);
   guidance.koenig_damico_period = section.span("koenig_damico_period_s", 1.0, kPeriod_s, 60.0);
   guidance.koenig_damico_grid = section.span("koenig_damico_grid_s", 1.0, kPeriod_s, 30.0);

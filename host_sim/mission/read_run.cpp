@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "host_sim/mission/names.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
@@ -11,12 +14,7 @@ constexpr double kLongestLatency_s = 3600.0;
 
 LatencyDistribution read_latency(const TableReader& section) {
   LatencyDistribution latency;
-  latency.kind = section.choice<LatencyKind>("distribution",
-                                             {{"constant", LatencyKind::kConstant},
-                                              {"uniform", LatencyKind::kUniform},
-                                              {"normal", LatencyKind::kNormal},
-                                              {"exponential", LatencyKind::kExponential}},
-                                             LatencyKind::kConstant);
+  latency.kind = section.choice<LatencyKind>("distribution", kLatencyKinds, LatencyKind::kConstant);
   const auto read_limits = [&] {
     latency.minimum_s = section.number("minimum_s", from_to(0.0, kLongestLatency_s), 0.0);
     latency.maximum_s = section.number("maximum_s", above_to(0.0, kLongestLatency_s));
@@ -53,9 +51,7 @@ void read_clock(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("clock");
   section.accept_only({"mode", "speed_factor", "compute_budget_s", "link_budget_s", "wake_tolerance_ms"});
   engine::ClockSettings& clock = mission.clock;
-  clock.mode = section.choice<engine::ClockMode>(
-      "mode", {{"lock_step", engine::ClockMode::kLockStep}, {"real_time", engine::ClockMode::kRealTime}},
-      engine::ClockMode::kLockStep);
+  clock.mode = section.choice<engine::ClockMode>("mode", kClockModes, engine::ClockMode::kLockStep);
   clock.speed_factor = section.number("speed_factor", from_to(1e-3, 1e6), 1.0);
   // What the run assumes: outputs take effect after the compute latency, and a step is over before the next one.
   clock.compute_budget = section.span("compute_budget_s", 1.0, above_to(0.0, 3600.0),
@@ -80,7 +76,8 @@ void read_lcm(const TableReader& document, Mission& mission) {
   mission.lcm.mirror = section.flag("mirror", false);
   // Time to live 0: the packets do not leave this computer.
   mission.lcm.url = section.text("url", "udpm://239.255.76.67:7667?ttl=0");
-  if (mission.lcm.url.find("://") == std::string::npos) section.refuse_value("url", "an LCM provider, e.g. udpm://239.255.76.67:7667?ttl=0");
+  if (mission.lcm.url.find("://") == std::string::npos)
+    section.refuse_value("url", "an LCM provider, e.g. udpm://239.255.76.67:7667?ttl=0");
 }
 
 }  // namespace vbar::mission

@@ -1,6 +1,6 @@
 #pragma once
-// One function a section of a mission file: takes the document, checks, fills its part of the mission. In this order, because
-// later ones look at what earlier ones filled. All throw MissionError.
+// One function a section of a mission file: takes the document, checks, fills its part of the mission. In this order,
+// because later ones look at what earlier ones filled. All throw MissionError.
 
 #include "host_sim/mission/mission.h"
 #include "host_sim/mission/table_reader.h"

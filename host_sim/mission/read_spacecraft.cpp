@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "fsw/math/math.h"
+#include "host_sim/mission/names.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
@@ -19,15 +20,16 @@ SurfaceProperties read_surface(const TableReader& section, const std::string& na
   surface.drag_area_m2 = section.number("drag_area_m2", from_to(0.0, 1e4), usual.drag_area_m2);
   surface.drag_coefficient = section.number("drag_coefficient", from_to(0.0, 10.0), usual.drag_coefficient);
   surface.radiation_area_m2 = section.number("radiation_area_m2", from_to(0.0, 1e4), usual.radiation_area_m2);
-  surface.radiation_coefficient = section.number("radiation_coefficient", from_to(0.0, 10.0), usual.radiation_coefficient);
+  surface.radiation_coefficient =
+      section.number("radiation_coefficient", from_to(0.0, 10.0), usual.radiation_coefficient);
   return surface;
 }
 
 OrbitByElements read_elements(const TableReader& section) {
-  section.accept_only({"kind", "semi_major_axis_km", "ex", "ey", "inclination_deg", "raan_deg",
-                       "mean_argument_of_latitude_deg"});
+  section.accept_only(
+      {"kind", "semi_major_axis_km", "ex", "ey", "inclination_deg", "raan_deg", "mean_argument_of_latitude_deg"});
   OrbitByElements orbit;
-  orbit.kind = section.choice<ElementsKind>("kind", {{"osculating", ElementsKind::kOsculating}, {"mean", ElementsKind::kMean}});
+  orbit.kind = section.choice<ElementsKind>("kind", kElementsKinds);
   fsw::orbit::QnsElements& elements = orbit.elements;
   elements.a = 1e3 * section.number("semi_major_axis_km", from_to(6400.0, 1e6));
   elements.ex = section.number("ex", from_to(-0.9, 0.9));
@@ -46,9 +48,11 @@ OrbitByWaypoint read_relative(const TableReader& section, const Mission& mission
   OrbitByWaypoint orbit;
   orbit.to = section.name("to");
   // Only one that stands above, so that the orbits can be made in order.
-  if (mission.find_spacecraft(orbit.to) == nullptr) section.refuse_value("to", "the name of a spacecraft further up in the file");
+  if (mission.find_spacecraft(orbit.to) == nullptr)
+    section.refuse_value("to", "the name of a spacecraft further up in the file");
   orbit.waypoint_index = static_cast<int>(section.integer("waypoint", 0, 9999));
-  if (mission.find_waypoint(orbit.waypoint_index) == nullptr) section.refuse_value("waypoint", "the index of a waypoint");
+  if (mission.find_waypoint(orbit.waypoint_index) == nullptr)
+    section.refuse_value("waypoint", "the index of a waypoint");
   return orbit;
 }
 
@@ -63,15 +67,8 @@ std::variant<OrbitByElements, OrbitByWaypoint> read_orbit(const TableReader& sec
 FlightComputer read_flight_computer(const TableReader& section) {
   section.accept_only({"target", "link", "library", "compute_latency_s", "device", "baud", "address", "port"});
   FlightComputer computer;
-  computer.target = section.choice<FlightTarget>("target",
-                                                 {{"in_process", FlightTarget::kInProcess},
-                                                  {"host_process", FlightTarget::kHostProcess},
-                                                  {"zynq_qemu", FlightTarget::kZynqQemu},
-                                                  {"zynq_linux_qemu", FlightTarget::kZynqLinuxQemu},
-                                                  {"board", FlightTarget::kBoard}},
-                                                 FlightTarget::kInProcess);
-  computer.link = section.choice<FlightLink>("link", {{"serial", FlightLink::kSerial}, {"udp", FlightLink::kUdp}},
-                                             FlightLink::kSerial);
+  computer.target = section.choice<FlightTarget>("target", kFlightTargets, FlightTarget::kInProcess);
+  computer.link = section.choice<FlightLink>("link", kFlightLinks, FlightLink::kSerial);
   computer.library = section.text("library", "");
   if (!computer.library.empty() && computer.target != FlightTarget::kInProcess)
     section.refuse_value("library", "nothing, unless target is in_process");
@@ -85,7 +82,8 @@ FlightComputer read_flight_computer(const TableReader& section) {
       section.refuse("device", "nothing", "the tty of the board, e.g. /dev/ttyUSB0");
     if (computer.link == FlightLink::kUdp && computer.address.empty())
       section.refuse("address", "nothing", "the address of the board, e.g. 127.0.0.1");
-    if (computer.link == FlightLink::kUdp && computer.port == 0) section.refuse("port", "nothing", "the UDP port of the board");
+    if (computer.link == FlightLink::kUdp && computer.port == 0)
+      section.refuse("port", "nothing", "the UDP port of the board");
   }
   return computer;
 }
@@ -94,8 +92,7 @@ NavigationSensor read_navigation(const TableReader& section, const std::vector<s
                                  const Mission& mission) {
   section.accept_only({"source", "target", "period_s", "log"});
   NavigationSensor sensor;
-  sensor.source = section.choice<NavigationSource>(
-      "source", {{"ideal", NavigationSource::kIdeal}, {"recorded", NavigationSource::kRecorded}}, NavigationSource::kIdeal);
+  sensor.source = section.choice<NavigationSource>("source", kNavigationSources, NavigationSource::kIdeal);
   sensor.target = section.name("target", "target");
   if (std::find(spacecraft_names.begin(), spacecraft_names.end(), sensor.target) == spacecraft_names.end())
     section.refuse("target", "the spacecraft \"" + sensor.target + "\"",
@@ -122,17 +119,18 @@ Spacecraft read_one(TableReader& section, const std::vector<std::string>& names,
                        "radiation_coefficient", "elements", "relative", "flight_computer", "sensors", "actuators"});
   Spacecraft spacecraft;
   spacecraft.name = section.name("name");
-  if (mission.find_spacecraft(spacecraft.name) != nullptr)
-    section.refuse("name", "a second spacecraft \"" + spacecraft.name + "\"", "a name used once");
   section.rename("spacecraft." + spacecraft.name);
   const auto usual_number = static_cast<std::int64_t>(mission.spacecraft.size()) + 1;
-  spacecraft.number = static_cast<std::uint8_t>(section.integer("number", 1, 255, std::min<std::int64_t>(usual_number, 255)));
+  spacecraft.number =
+      static_cast<std::uint8_t>(section.integer("number", 1, 255, std::min<std::int64_t>(usual_number, 255)));
   for (const Spacecraft& other : mission.spacecraft)
     if (other.number == spacecraft.number)
-      section.refuse("number", "the number " + std::to_string(other.number) + " of " + other.name, "a number used once");
+      section.refuse("number", "the number " + std::to_string(other.number) + " of " + other.name,
+                     "a number used once");
   spacecraft.surface = read_surface(section, spacecraft.name);
   spacecraft.orbit = read_orbit(section, mission);
-  if (section.has("flight_computer")) spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
+  if (section.has("flight_computer"))
+    spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
 
   const TableReader sensors = section.table("sensors");
   sensors.accept_only({"navigation"});
@@ -143,13 +141,24 @@ Spacecraft read_one(TableReader& section, const std::vector<std::string>& names,
   return spacecraft;
 }
 
+// All names, before anything else: a sensor may look at a spacecraft further down.
+std::vector<std::string> read_names(const std::vector<TableReader>& sections) {
+  std::vector<std::string> names;
+  for (const TableReader& section : sections) {
+    const std::string name = section.name("name");
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      section.refuse("name", "a second spacecraft \"" + name + "\"", "a name used once");
+    names.push_back(name);
+  }
+  return names;
+}
+
 }  // namespace
 
 void read_spacecraft(const TableReader& document, Mission& mission) {
   std::vector<TableReader> sections = document.tables("spacecraft");
   if (sections.empty()) document.refuse("spacecraft", "nothing", "at least one [[spacecraft]]");
-  std::vector<std::string> names;  // a sensor may look at a spacecraft further down
-  for (const TableReader& section : sections) names.push_back(section.name("name"));
+  const std::vector<std::string> names = read_names(sections);
   for (TableReader& section : sections) mission.spacecraft.push_back(read_one(section, names, mission));
 }
 

@@ -1,3 +1,4 @@
+#include "host_sim/mission/names.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
@@ -12,11 +13,7 @@ Waypoint read_waypoint(const TableReader& section, const Mission& mission) {
   waypoint.time = mission.epoch + section.span("time_h", kHour_s, from_to(0.0, kLongestMission_h));
   const auto a_roe_m = section.six_numbers("a_roe_m", from_to(-kLargestARoe_m, kLargestARoe_m));
   waypoint.a_roe_m = Eigen::Map<const fsw::Vector6>(a_roe_m.data());
-  waypoint.solver = section.choice<Solver>("solver",
-                                           {{"closed_form", Solver::kClosedForm},
-                                            {"koenig_damico", Solver::kKoenigDamico},
-                                            {"least_squares", Solver::kLeastSquares}},
-                                           Solver::kClosedForm);
+  waypoint.solver = section.choice<Solver>("solver", kSolvers, Solver::kClosedForm);
   return waypoint;
 }
 
@@ -34,8 +31,8 @@ void read_waypoints(const TableReader& document, Mission& mission) {
       section.refuse("index", "a second waypoint " + std::to_string(waypoint.index), "an index used once");
     if (!mission.waypoints.empty() && waypoint.time <= mission.waypoints.back().time) {
       const Waypoint& before = mission.waypoints.back();
-      section.refuse_value("time_h", "a time after that of waypoint " + std::to_string(before.index) +
-                                         ", which stands before it");
+      section.refuse_value(
+          "time_h", "a time after that of waypoint " + std::to_string(before.index) + ", which stands before it");
     }
     mission.waypoints.push_back(waypoint);
   }

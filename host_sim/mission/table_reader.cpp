@@ -20,7 +20,8 @@ std::string text_of(double number) {
 }
 
 std::string text_of(Range range) {
-  return (range.above ? "above " : "from ") + text_of(range.low) + (range.above ? ", up to " : " to ") + text_of(range.high);
+  return (range.above ? "above " : "from ") + text_of(range.low) + (range.above ? ", up to " : " to ") +
+         text_of(range.high);
 }
 
 template <class Value>
@@ -30,7 +31,9 @@ std::string streamed(const Value& value) {
   return out.str();
 }
 
-bool is_control_character(char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }
+bool is_control_character(char c) {
+  return static_cast<unsigned char>(c) < 0x20U || c == 0x7F;
+}
 
 bool is_name_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
@@ -187,19 +190,21 @@ std::array<double, 6> TableReader::six_numbers(std::string_view key, Range range
   return numbers;
 }
 
-fsw::Duration TableReader::span(std::string_view key, double unit_s, Range range, std::optional<double> otherwise) const {
+fsw::Duration TableReader::span(std::string_view key, double unit_s, Range range,
+                                std::optional<double> otherwise) const {
   return fsw::nearest_duration(number(key, range, otherwise) * unit_s);
 }
 
-std::string TableReader::chosen(std::string_view key, const std::vector<std::string_view>& accepted) const {
+std::size_t TableReader::chosen(std::string_view key, const std::vector<std::string_view>& accepted) const {
   const auto* value = required(key, listing_of(accepted)).as_string();
   if (value == nullptr) refuse_value(key, listing_of(accepted));
-  if (std::find(accepted.begin(), accepted.end(), value->get()) == accepted.end()) {
+  const auto found = std::find(accepted.begin(), accepted.end(), value->get());
+  if (found == accepted.end()) {
     const auto nearest = nearest_name(value->get(), accepted);
     refuse(key, description_of(*value) + (nearest ? " (did you mean " + std::string(*nearest) + "?)" : std::string()),
            listing_of(accepted));
   }
-  return value->get();
+  return static_cast<std::size_t>(found - accepted.begin());
 }
 
 TableReader TableReader::table(std::string_view key) const {

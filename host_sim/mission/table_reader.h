@@ -4,17 +4,15 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
-#include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "fsw/core/gps_time.h"
-
 #include <toml++/toml.h>
+
+#include "fsw/core/gps_time.h"
 
 namespace vbar::mission {
 
@@ -24,20 +22,21 @@ struct Range {
   double high = 0.0;
   bool above = false;
 };
-constexpr Range from_to(double low, double high) { return {low, high, false}; }
-constexpr Range above_to(double low, double high) { return {low, high, true}; }
-
-/// An enumeration's names in a file.
-template <class Enum>
-using Names = std::initializer_list<std::pair<std::string_view, Enum>>;
+constexpr Range from_to(double low, double high) {
+  return {low, high, false};
+}
+constexpr Range above_to(double low, double high) {
+  return {low, high, true};
+}
 
 class TableReader {
  public:
-  /// Reads `table`, which must outlive the reader. `path` is its dotted path, empty for the document; `file` the file's name.
+  /// Reads `table`, which must outlive the reader. `path` is its dotted path, empty for the document; `file` the file's
+  /// name.
   TableReader(const toml::table& table, std::string path, std::string file);
 
-  /// Refuses every key of the table that is not listed. To be called before a value is read, except the one value on which
-  /// the list depends.
+  /// Refuses every key of the table that is not listed. To be called before a value is read, except the one value on
+  /// which the list depends.
   void accept_only(std::initializer_list<std::string_view> keys) const;
 
   [[nodiscard]] bool has(std::string_view key) const { return table_->contains(key); }
@@ -54,17 +53,17 @@ class TableReader {
   /// Six numbers.
   std::array<double, 6> six_numbers(std::string_view key, Range range) const;
   /// A span given in units of `unit_s` seconds, rounded to a nanosecond; range and `otherwise` in the same units.
-  fsw::Duration span(std::string_view key, double unit_s, Range range, std::optional<double> otherwise = std::nullopt) const;
+  fsw::Duration span(std::string_view key, double unit_s, Range range,
+                     std::optional<double> otherwise = std::nullopt) const;
 
-  template <class Enum>
-  Enum choice(std::string_view key, Names<Enum> names, std::optional<Enum> otherwise = std::nullopt) const {
+  /// The enumerator whose name is the value.
+  template <class Enum, std::size_t N>
+  Enum choice(std::string_view key, const std::array<std::pair<std::string_view, Enum>, N>& names,
+              std::optional<Enum> otherwise = std::nullopt) const {
     if (!has(key) && otherwise) return *otherwise;
     std::vector<std::string_view> accepted;
-    for (const auto& [label, value] : names) accepted.push_back(label);
-    const std::string found = chosen(key, accepted);
-    for (const auto& [label, value] : names)
-      if (found == label) return value;
-    throw std::logic_error("a checked choice is not in its list");
+    for (const auto& [name, value] : names) accepted.push_back(name);
+    return names[chosen(key, accepted)].second;
   }
 
   /// A table inside this one; an empty one if it is missing.
@@ -82,7 +81,7 @@ class TableReader {
  private:
   [[nodiscard]] std::string path_of(std::string_view key) const;
   [[nodiscard]] const toml::node& required(std::string_view key, const std::string& accepted) const;
-  [[nodiscard]] std::string chosen(std::string_view key, const std::vector<std::string_view>& accepted) const;
+  [[nodiscard]] std::size_t chosen(std::string_view key, const std::vector<std::string_view>& accepted) const;
   double checked_number(const toml::node& node, std::string_view key, Range range) const;
 
   const toml::table* table_;
