@@ -8,7 +8,8 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <regex>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -27,29 +28,47 @@ struct Field {
 };
 using Layout = std::vector<Field>;
 
+/// A line "  type name[copies];" of a definition file, or nothing if the line is something else.
+struct Declaration {
+  std::string type;
+  std::string name;
+  int copies = 1;
+};
+std::optional<Declaration> declaration_in(const std::string& line) {
+  const std::size_t end = line.find(';');
+  if (!line.starts_with("  ") || end == std::string::npos) return std::nullopt;
+  std::istringstream words(line.substr(0, end));
+  Declaration declaration;
+  words >> declaration.type >> declaration.name;
+  const std::size_t bracket = declaration.name.find('[');
+  if (bracket != std::string::npos) {
+    declaration.copies = std::stoi(declaration.name.substr(bracket + 1));
+    declaration.name.resize(bracket);
+  }
+  return declaration;
+}
+
 /// Scalars of every struct of vbar.lcm, in order; offsets without the type hash.
 std::map<std::string, Layout> layouts_of(const std::string& path) {
   std::ifstream file(path);
   EXPECT_TRUE(file) << path;
   const std::map<std::string, std::size_t> sizes{{"int8_t", 1}, {"int32_t", 4}, {"int64_t", 8}, {"double", 8}};
-  const std::regex field_pattern(R"(^\s+(\w+) (\w+)(\[(\d+)\])?;)");
   std::map<std::string, Layout> layouts;
   std::string line;
   std::string name;
   while (std::getline(file, line)) {
-    std::smatch match;
     if (line.starts_with("struct ")) name = line.substr(7, line.find(' ', 7) - 7);
-    if (!std::regex_search(line, match, field_pattern)) continue;
+    const std::optional<Declaration> declaration = declaration_in(line);
+    if (!declaration) continue;
     Layout& layout = layouts[name];
-    const int copies = match[4].matched ? std::stoi(match[4]) : 1;
-    for (int i = 0; i < copies; ++i) {
+    for (int i = 0; i < declaration->copies; ++i) {
       const std::size_t offset = layout.empty() ? 0 : layout.back().offset + layout.back().size;
-      const auto scalar = sizes.find(match[1]);
+      const auto scalar = sizes.find(declaration->type);
       if (scalar != sizes.end()) {
-        layout.push_back({match[2], match[1], offset, scalar->second});
+        layout.push_back({declaration->name, declaration->type, offset, scalar->second});
         continue;
       }
-      for (const Field& inner : layouts.at(match[1])) {
+      for (const Field& inner : layouts.at(declaration->type)) {
         layout.push_back({inner.name, inner.type, offset + inner.offset, inner.size});
       }
     }
