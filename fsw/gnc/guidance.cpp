@@ -1,0 +1,1 @@
+#include "fsw/gnc/guidance.h"
