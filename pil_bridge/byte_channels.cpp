@@ -1,11 +1,10 @@
 #include "pil_bridge/byte_channels.h"
 
-#include <fcntl.h>
-#include <stdlib.h>
-#include <sys/socket.h>
-#include <termios.h>
-
 #include <array>
+#include <optional>
+#include <thread>
+#include <vector>
+
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -13,9 +12,10 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/serial_port.hpp>
 #include <boost/asio/write.hpp>
-#include <optional>
-#include <thread>
-#include <vector>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <termios.h>
 
 namespace vbar::pil {
 namespace {
@@ -31,7 +31,9 @@ constexpr std::chrono::milliseconds kConnectRetryPeriod{5};
   throw LinkError(what + ": " + error.message());
 }
 
-[[noreturn]] void fail_errno(const std::string& what) { fail(what, error_code(errno, boost::system::system_category())); }
+[[noreturn]] void fail_errno(const std::string& what) {
+  fail(what, error_code(errno, boost::system::system_category()));
+}
 
 /// Any Asio stream. Reading goes on while a write is under way, so that the two ends can never wait for each other.
 template <class Stream>
@@ -69,8 +71,8 @@ class AsioChannel final : public ByteChannel {
   [[nodiscard]] std::string description() const override { return description_; }
 
  private:
-  /// Runs one completion handler; false if none was ready by `deadline`. What is ready when the deadline has passed already
-  /// (this program was stopped for a while, say) still counts.
+  /// Runs one completion handler; false if none was ready by `deadline`. What is ready when the deadline has passed
+  /// already (this program was stopped for a while, say) still counts.
   bool run_one(Clock::time_point deadline) {
     if (context_->stopped()) context_->restart();
     return context_->run_one_until(deadline) != 0 || context_->poll_one() != 0;
@@ -98,7 +100,8 @@ class AsioChannel final : public ByteChannel {
 };
 
 template <class Stream>
-std::unique_ptr<ByteChannel> make_channel(std::unique_ptr<asio::io_context> context, Stream stream, std::string description) {
+std::unique_ptr<ByteChannel> make_channel(std::unique_ptr<asio::io_context> context, Stream stream,
+                                          std::string description) {
   return std::make_unique<AsioChannel<Stream>>(std::move(context), std::move(stream), std::move(description));
 }
 
@@ -108,8 +111,8 @@ void connect_patiently(const std::string& description, Clock::time_point deadlin
   for (;;) {
     const error_code error = attempt();
     if (!error) return;
-    const bool nobody_there = error == asio::error::connection_refused ||
-                              error == boost::system::errc::no_such_file_or_directory;
+    const bool nobody_there =
+        error == asio::error::connection_refused || error == boost::system::errc::no_such_file_or_directory;
     if (!nobody_there || Clock::now() >= deadline) fail(description, error);
     std::this_thread::sleep_for(kConnectRetryPeriod);
   }

@@ -1,9 +1,9 @@
 #pragma once
 // Ownership of a POSIX file descriptor.
 
-#include <unistd.h>
-
 #include <utility>
+
+#include <unistd.h>
 
 namespace vbar::pil {
 

@@ -1,6 +1,6 @@
 #pragma once
-// A flight computer as a simulation sees it, wherever the flight software runs: packets of a step in, packets of the step
-// out. Nothing else passes between the two.
+// A flight computer as a simulation sees it, wherever the flight software runs: packets of a step in, packets of the
+// step out. Nothing else passes between the two.
 
 #include <cstdint>
 #include <span>
@@ -51,8 +51,8 @@ class FlightComputer {
   FlightComputer& operator=(const FlightComputer&) = delete;
   virtual ~FlightComputer() = default;
 
-  /// Hands over the packets of `step`, the last of them the tick, and returns when the answer is complete. Steps are numbered
-  /// upwards from any start. Throws FlightComputerError.
+  /// Hands over the packets of `step`, the last of them the tick, and returns when the answer is complete. Steps are
+  /// numbered upwards from any start. Throws FlightComputerError.
   virtual StepResult step(std::uint32_t step, std::span<const Packet> packets) = 0;
 
   [[nodiscard]] virtual LinkStatistics statistics() const = 0;

@@ -18,10 +18,10 @@ namespace vbar::pil {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, Target>, 5> kTargets{{{"in_process", Target::kInProcess},
-                                                                      {"host_process", Target::kHostProcess},
-                                                                      {"zynq_qemu", Target::kZynqQemu},
-                                                                      {"zynq_linux_qemu", Target::kZynqLinuxQemu},
-                                                                      {"board", Target::kBoard}}};
+                                                                       {"host_process", Target::kHostProcess},
+                                                                       {"zynq_qemu", Target::kZynqQemu},
+                                                                       {"zynq_linux_qemu", Target::kZynqLinuxQemu},
+                                                                       {"board", Target::kBoard}}};
 constexpr std::array<std::pair<std::string_view, LinkKind>, 3> kLinks{
     {{"serial", LinkKind::kSerial}, {"pty", LinkKind::kPty}, {"udp", LinkKind::kUdp}}};
 
@@ -54,7 +54,8 @@ struct ChildLink {
   std::vector<std::string> flight_arguments;  ///< how vbar_flight is told to use its end
 };
 
-std::unique_ptr<FrameTransport> finish(std::unique_ptr<FrameTransport> transport, const FlightComputerOptions& options) {
+std::unique_ptr<FrameTransport> finish(std::unique_ptr<FrameTransport> transport,
+                                       const FlightComputerOptions& options) {
   if (!options.faults.any_frame_fault()) return transport;
   return with_frame_faults(std::move(transport), options.faults);
 }
@@ -100,7 +101,8 @@ RemoteParts parts_for(const FlightComputerOptions& options) {
   return parts;
 }
 
-std::unique_ptr<ChildProcess> start(const std::vector<std::string>& arguments, std::vector<FileDescriptor> inherited = {}) {
+std::unique_ptr<ChildProcess> start(const std::vector<std::string>& arguments,
+                                    std::vector<FileDescriptor> inherited = {}) {
   try {
     return std::make_unique<ChildProcess>(arguments, std::move(inherited));
   } catch (const std::system_error& error) {
@@ -118,8 +120,8 @@ std::vector<FileDescriptor> only(FileDescriptor descriptor) {
 std::string find_image(const FlightComputerOptions& options, const std::string& beside, const std::string& preset) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path image =
-      options.image.empty() ? fs::read_symlink("/proc/self/exe", error).parent_path() / beside : fs::path(options.image);
+  const fs::path image = options.image.empty() ? fs::read_symlink("/proc/self/exe", error).parent_path() / beside
+                                               : fs::path(options.image);
   if (!fs::is_regular_file(image, error)) {
     throw FlightComputerError("flight computer " + std::string(name_of(options.target)) + ": there is no image '" +
                               image.lexically_normal().string() + "' (built by the CMake preset '" + preset + "')");
@@ -147,7 +149,8 @@ std::unique_ptr<FlightComputer> make_zynq_linux_qemu(const FlightComputerOptions
   return std::make_unique<RemoteComputer>(std::move(parts));
 }
 
-std::unique_ptr<FlightComputer> make_zynq_qemu_over_udp(const FlightComputerOptions& options, const std::string& image) {
+std::unique_ptr<FlightComputer> make_zynq_qemu_over_udp(const FlightComputerOptions& options,
+                                                        const std::string& image) {
   for (int attempt = 1;; ++attempt) {
     // Found free, given back, and taken by the emulator: in between another program may take it, so try again then.
     const std::uint16_t port = bind_udp_loopback().port;
@@ -231,10 +234,18 @@ std::unique_ptr<FlightComputer> make_linked_or_loaded(const FlightComputerOption
 
 }  // namespace
 
-Target target_from_name(std::string_view name) { return look_up(kTargets, name, "flight_computer.target"); }
-LinkKind link_from_name(std::string_view name) { return look_up(kLinks, name, "flight_computer.link"); }
-std::string_view name_of(Target target) { return name_in(kTargets, target); }
-std::string_view name_of(LinkKind link) { return name_in(kLinks, link); }
+Target target_from_name(std::string_view name) {
+  return look_up(kTargets, name, "flight_computer.target");
+}
+LinkKind link_from_name(std::string_view name) {
+  return look_up(kLinks, name, "flight_computer.link");
+}
+std::string_view name_of(Target target) {
+  return name_in(kTargets, target);
+}
+std::string_view name_of(LinkKind link) {
+  return name_in(kLinks, link);
+}
 
 std::unique_ptr<FlightComputer> make_flight_computer(const FlightComputerOptions& options) {
   try {

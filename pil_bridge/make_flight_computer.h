@@ -43,14 +43,14 @@ struct FlightComputerOptions {
   std::shared_ptr<const TestArticle> article;
   std::string library;
 
-  /// host_process, zynq_qemu, zynq_linux_qemu: the program or image to run. Empty: the one that the build put beside the
-  /// running program (`vbar_flight`, `../zynq/vbar_zynq7000.elf`, `../zynq-linux/vbar_flight`).
+  /// host_process, zynq_qemu, zynq_linux_qemu: the program or image to run. Empty: the one that the build put beside
+  /// the running program (`vbar_flight`, `../zynq/vbar_zynq7000.elf`, `../zynq-linux/vbar_flight`).
   std::string image;
   int icount_shift = kDefaultIcountShift;  ///< zynq_qemu
 
   /// board. Serial: a device ("/dev/ttyUSB1"), "unix:PATH" or "tcp:HOST:PORT". UDP: "ADDRESS:PORT".
   std::string endpoint;
-  unsigned baud = 921600;           ///< board, serial device
+  unsigned baud = 921600;            ///< board, serial device
   std::uint16_t local_udp_port = 0;  ///< board; 0: any
 
   double paced_bits_per_s = 0.0;  ///< serial and pty: slow the line down to this; 0: as fast as it goes

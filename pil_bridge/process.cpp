@@ -1,5 +1,12 @@
 #include "pil_bridge/process.h"
 
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+
 #include <fcntl.h>
 #include <linux/close_range.h>
 #include <signal.h>
@@ -8,13 +15,6 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <stdexcept>
-#include <system_error>
-#include <thread>
 
 namespace vbar::pil {
 namespace {
@@ -26,7 +26,8 @@ constexpr std::chrono::milliseconds kExitPollPeriod{2};
   throw std::system_error(error, std::generic_category(), what);
 }
 
-/// What the child needs between fork and exec, prepared before the fork: only async-signal-safe calls are allowed there.
+/// What the child needs between fork and exec, prepared before the fork: only async-signal-safe calls are allowed
+/// there.
 struct ExecPlan {
   std::vector<char*> arguments;
   std::vector<int> descriptors;  ///< to become 0, 1, 2, 3, ...
@@ -34,7 +35,8 @@ struct ExecPlan {
   pid_t parent = -1;
 };
 
-/// Moves the planned descriptors to 0, 1, 2, ... and closes the rest, except the one that reports errors (close-on-exec).
+/// Moves the planned descriptors to 0, 1, 2, ... and closes the rest, except the one that reports errors
+/// (close-on-exec).
 bool arrange_descriptors(ExecPlan& plan) {
   const int count = static_cast<int>(plan.descriptors.size());
   // First out of the way of the numbers they may still occupy, then into place; dup2 clears close-on-exec.
@@ -76,7 +78,8 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments, std::vecto
   output_ = FileDescriptor(::memfd_create("vbar child output", MFD_CLOEXEC));
   FileDescriptor null(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   int pipe_ends[2];
-  if (output_.get() < 0 || null.get() < 0 || ::pipe2(pipe_ends, O_CLOEXEC) != 0) throw_errno("starting " + program_, errno);
+  if (output_.get() < 0 || null.get() < 0 || ::pipe2(pipe_ends, O_CLOEXEC) != 0)
+    throw_errno("starting " + program_, errno);
   FileDescriptor error_reader(pipe_ends[0]);
   FileDescriptor error_writer(pipe_ends[1]);
 
@@ -109,7 +112,9 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments, std::vecto
   }
 }
 
-ChildProcess::~ChildProcess() { terminate(std::chrono::milliseconds(500)); }
+ChildProcess::~ChildProcess() {
+  terminate(std::chrono::milliseconds(500));
+}
 
 bool ChildProcess::has_ended() {
   if (wait_status_) return true;

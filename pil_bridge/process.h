@@ -2,12 +2,12 @@
 // A child process that cannot be left behind: it is ended and reaped by its owner's destructor, also while an exception
 // unwinds, and by the kernel if this program dies first.
 
-#include <sys/types.h>
-
 #include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <sys/types.h>
 
 #include "pil_bridge/file_descriptor.h"
 
@@ -15,9 +15,9 @@ namespace vbar::pil {
 
 class ChildProcess {
  public:
-  /// Starts `arguments[0]` (looked up in PATH if it has no slash) without a shell, in a process group of its own. It finds
-  /// `inherited[i]` as file descriptor 3 + i, nothing on its standard input, and no other descriptor of this program; what it
-  /// writes to standard output and error is kept for `output_tail`.
+  /// Starts `arguments[0]` (looked up in PATH if it has no slash) without a shell, in a process group of its own. It
+  /// finds `inherited[i]` as file descriptor 3 + i, nothing on its standard input, and no other descriptor of this
+  /// program; what it writes to standard output and error is kept for `output_tail`.
   ///
   /// The kernel kills the child when the thread that called this ends: call it from a thread that outlives the child.
   /// Throws std::system_error if the program cannot be started.
@@ -32,7 +32,8 @@ class ChildProcess {
   /// Waits for the child to end by itself; true if it did.
   bool wait_for_end(std::chrono::milliseconds patience);
 
-  /// Ends the child's process group: SIGTERM first, SIGKILL for what is still there after `patience`. Returns when it is reaped.
+  /// Ends the child's process group: SIGTERM first, SIGKILL for what is still there after `patience`. Returns when it
+  /// is reaped.
   void terminate(std::chrono::milliseconds patience);
 
   /// "exit status 3", "killed by signal 9 (Killed)"; "running".

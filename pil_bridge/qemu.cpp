@@ -9,15 +9,13 @@ constexpr std::uint64_t kNanosecondsPerTick = 10;
 constexpr const char* kBoardAddressAndPort = "10.0.2.15:5000";
 
 std::vector<std::string> zynq_machine(const std::string& elf, int icount_shift) {
-  return {"qemu-system-arm", "-M", "xilinx-zynq-a9", "-m", "256M", "-display", "none", "-monitor", "none",
-          "-no-reboot",
+  return {"qemu-system-arm", "-M", "xilinx-zynq-a9", "-m", "256M", "-display", "none", "-monitor", "none", "-no-reboot",
           // A small translation buffer: the default one is a gigabyte a machine.
           "-accel", "tcg,tb-size=64",
           // sleep=off: emulated time jumps while the board waits; align=off: it does not follow the wall clock.
           "-icount", "shift=" + std::to_string(icount_shift) + ",sleep=off,align=off",
           // The board ends the emulator when the run is over.
-          "-semihosting-config", "enable=on,target=native",
-          "-chardev", "stdio,id=console,signal=off", "-kernel", elf};
+          "-semihosting-config", "enable=on,target=native", "-chardev", "stdio,id=console,signal=off", "-kernel", elf};
 }
 
 void append(std::vector<std::string>& arguments, std::initializer_list<std::string> more) {

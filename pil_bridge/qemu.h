@@ -13,8 +13,8 @@ inline constexpr int kLeastIcountShift = 5;
 inline constexpr int kGreatestIcountShift = 8;
 inline constexpr int kDefaultIcountShift = 6;
 
-/// `xilinx-zynq-a9` running `elf`, its frame link (UART0) on the connected stream socket that the emulator finds as file
-/// descriptor `link_fd`, its console (UART1) on standard output.
+/// `xilinx-zynq-a9` running `elf`, its frame link (UART0) on the connected stream socket that the emulator finds as
+/// file descriptor `link_fd`, its console (UART1) on standard output.
 std::vector<std::string> zynq_qemu_over_serial(const std::string& elf, int icount_shift, int link_fd);
 
 /// The same with the frame link on Ethernet: UDP port `host_port` of 127.0.0.1 is forwarded to the board's.

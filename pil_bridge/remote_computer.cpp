@@ -4,7 +4,7 @@
 #include <random>
 #include <utility>
 
-#include "boards/common/counter_unit.h"
+#include "boards/common/flight_executive.h"
 #include "fsw/packets/messages.h"
 #include "pil_bridge/qemu.h"
 
@@ -24,7 +24,9 @@ std::uint32_t draw_session() {
   return device();
 }
 
-std::uint64_t counter(std::int64_t value) { return value > 0 ? static_cast<std::uint64_t>(value) : 0; }
+std::uint64_t counter(std::int64_t value) {
+  return value > 0 ? static_cast<std::uint64_t>(value) : 0;
+}
 
 /// Many lines as one, for an error message.
 std::string on_one_line(std::string text) {

@@ -14,8 +14,8 @@
 namespace vbar::pil {
 
 struct RemoteParts {
-  std::string name;                         ///< "zynq_qemu over serial", for messages
-  std::unique_ptr<ChildProcess> process;    ///< what runs the flight computer, if this program started it
+  std::string name;                       ///< "zynq_qemu over serial", for messages
+  std::unique_ptr<ChildProcess> process;  ///< what runs the flight computer, if this program started it
   std::unique_ptr<FrameTransport> transport;
   BarrierTiming timing;
   std::uint8_t spacecraft = 0;
@@ -47,9 +47,9 @@ class RemoteComputer final : public FlightComputer {
   RemoteParts parts_;
   StepBarrier barrier_;
   std::string board_name_;
-  std::string failure_;             ///< why this computer cannot be used any more; empty while it can
+  std::string failure_;  ///< why this computer cannot be used any more; empty while it can
   bool closed_ = false;
-  LinkStatistics board_counters_;   ///< the board's share, from its last step report
+  LinkStatistics board_counters_;  ///< the board's share, from its last step report
 };
 
 }  // namespace vbar::pil

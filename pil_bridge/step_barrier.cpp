@@ -51,7 +51,9 @@ std::vector<Packet> StepBarrier::exchange(std::uint32_t step, std::span<const Pa
   if (packets.empty() || packets.size() > std::numeric_limits<std::uint16_t>::max()) {
     throw LinkError("a step takes 1 to 65535 packets, not " + std::to_string(packets.size()));
   }
-  Exchange exchange{.step = step, .packets = packets};
+  Exchange exchange;
+  exchange.step = step;
+  exchange.packets = packets;
   inputs_.open(session_, step, static_cast<std::uint16_t>(packets.size()));
   outputs_.open(session_, step);
   auto last_progress = Clock::now();
@@ -77,7 +79,9 @@ std::vector<Packet> StepBarrier::exchange(std::uint32_t step, std::span<const Pa
   return std::move(exchange.answer);
 }
 
-void StepBarrier::goodbye() { send({.type = FrameType::kGoodbye, .session = session_}); }
+void StepBarrier::goodbye() {
+  send({.type = FrameType::kGoodbye, .session = session_});
+}
 
 BarrierCounters StepBarrier::counters() const {
   BarrierCounters counters = counters_;

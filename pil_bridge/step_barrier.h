@@ -1,6 +1,7 @@
 #pragma once
 // The host's side of the step barrier (fsw/link/frame.h): go-back-N both ways, with polls for what is overdue. Whatever
-// the line loses, breaks, repeats or delays, `exchange` returns the flight computer's one answer to the step, or throws.
+// the line loses, breaks, repeats or delays, `exchange` returns the flight computer's one answer to the step, or
+// throws.
 
 #include <array>
 #include <chrono>

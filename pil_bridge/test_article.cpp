@@ -1,8 +1,8 @@
 #include "pil_bridge/test_article.h"
 
-#include <dlfcn.h>
-
 #include <filesystem>
+
+#include <dlfcn.h>
 
 #include "pil_bridge/flight_computer.h"
 
@@ -50,9 +50,9 @@ std::shared_ptr<const TestArticle> load_test_article(const std::string& path) {
   resolve(path, handle, "vbar_gnc_receive", functions.receive);
   resolve(path, handle, "vbar_gnc_step", functions.step);
   if (functions.abi_version() != VBAR_GNC_ABI_VERSION) {
-    throw FlightComputerError("flight_computer.library '" + path + "' was built for version " +
-                              std::to_string(functions.abi_version()) + " of the test-article interface, this program for " +
-                              std::to_string(VBAR_GNC_ABI_VERSION));
+    throw FlightComputerError(
+        "flight_computer.library '" + path + "' was built for version " + std::to_string(functions.abi_version()) +
+        " of the test-article interface, this program for " + std::to_string(VBAR_GNC_ABI_VERSION));
   }
   return {article, &functions};
 }

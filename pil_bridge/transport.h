@@ -1,6 +1,6 @@
 #pragma once
-// The two layers under the step barrier: a byte channel (a serial line or a stream socket), and a frame transport, which is
-// either COBS over such a channel or datagrams. One thread; calls return by a deadline.
+// The two layers under the step barrier: a byte channel (a serial line or a stream socket), and a frame transport,
+// which is either COBS over such a channel or datagrams. One thread; calls return by a deadline.
 
 #include <chrono>
 #include <cstdint>
@@ -28,15 +28,16 @@ class ByteChannel {
   /// Writes all of `bytes`. Throws LinkError if the line is closed or does not take them by `deadline`.
   virtual void write(std::span<const std::uint8_t> bytes, Clock::time_point deadline) = 0;
 
-  /// What has arrived: at least one byte, or none if nothing came by `deadline`. Valid until the next call. Throws LinkError.
+  /// What has arrived: at least one byte, or none if nothing came by `deadline`. Valid until the next call. Throws
+  /// LinkError.
   virtual std::span<const std::uint8_t> read(Clock::time_point deadline) = 0;
 
   [[nodiscard]] virtual std::string description() const = 0;
 };
 
 struct TransportCounters {
-  std::uint64_t bytes_sent = 0;      ///< as coded for the wire
-  std::uint64_t bytes_received = 0;  ///< likewise
+  std::uint64_t bytes_sent = 0;       ///< as coded for the wire
+  std::uint64_t bytes_received = 0;   ///< likewise
   std::uint64_t frames_rejected = 0;  ///< dropped for breaking the line coding
   std::uint64_t strangers_ignored = 0;
 };
@@ -51,7 +52,8 @@ class FrameTransport {
   /// Sends one frame of fsw/link/frame.h. Throws LinkError.
   virtual void send(std::span<const std::uint8_t> frame) = 0;
 
-  /// The next frame (its CRC unchecked), or an empty span if none came by `deadline`. Valid until the next call. Throws LinkError.
+  /// The next frame (its CRC unchecked), or an empty span if none came by `deadline`. Valid until the next call. Throws
+  /// LinkError.
   virtual std::span<const std::uint8_t> receive(Clock::time_point deadline) = 0;
 
   [[nodiscard]] virtual TransportCounters counters() const = 0;

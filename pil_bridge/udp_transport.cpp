@@ -1,9 +1,10 @@
 #include "pil_bridge/udp_transport.h"
 
 #include <array>
+#include <optional>
+
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/udp.hpp>
-#include <optional>
 
 #include "fsw/link/frame.h"
 

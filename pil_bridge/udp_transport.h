@@ -10,8 +10,8 @@
 
 namespace vbar::pil {
 
-/// Datagrams that come from any other address than `peer` are ignored and counted. `local_port` 0: any free one. The socket is
-/// bound to the loopback interface when the peer is there, else to all. Throws LinkError.
+/// Datagrams that come from any other address than `peer` are ignored and counted. `local_port` 0: any free one. The
+/// socket is bound to the loopback interface when the peer is there, else to all. Throws LinkError.
 std::unique_ptr<FrameTransport> make_udp_transport(const std::string& peer_address, std::uint16_t peer_port,
                                                    std::uint16_t local_port = 0);
 
