@@ -25,7 +25,7 @@ class Outbox {
     packets::PacketHeader header;
     header.time = time;
     header.spacecraft = spacecraft_;
-    std::uint16_t& count = sequence_count_[sequence_slot(packets::apid_of<Message>)];
+    std::uint16_t& count = sequence_count_[sequence_slot(packets::MessageTraits<Message>::kApid)];
     header.sequence_count = count;
     std::array<std::uint8_t, packets::kMaxPacketBytes> buffer;
     const Result<std::size_t> size = packets::encode(header, message, buffer);
