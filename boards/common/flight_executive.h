@@ -7,8 +7,11 @@
 #include <cstdint>
 #include <span>
 
+#include "boards/common/outbox.h"
+#include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
 #include "fsw/gnc/vbar_gnc.h"
+#include "fsw/link/batch.h"
 #include "fsw/link/frame.h"
 
 namespace vbar::boards {
@@ -19,37 +22,81 @@ enum class CounterUnit : std::int8_t { kNone = 0, kEmulatedTimerTicks = 1, kCycl
 /// What a board supplies. All functions get `context`; none may block for good.
 struct Platform {
   void* context = nullptr;
-  const char* name = "";  ///< ASCII, shown to the host
+  const char* name = "";                                                       ///< ASCII, shown to the host
   void (*send)(void* context, std::span<const std::uint8_t> frame) = nullptr;  ///< one frame to the host, uncoded
   std::uint64_t (*counter)(void* context) = nullptr;                           ///< cost counter; may be null
   std::uint32_t (*stack_high_water)(void* context) = nullptr;                  ///< bytes; may be null
   CounterUnit counter_unit = CounterUnit::kNone;
 };
 
-/// Answer of a step, kept until the next step so that it can be sent again. Full: the newest packet is dropped, counted.
-inline constexpr std::size_t kOutboxBytes = 128 * 1024;
-inline constexpr std::size_t kOutboxPackets = 256;
-/// Room for the flight software's state (vbar_gnc_state_size() must not exceed it).
+/// Room for the flight software's state (vbar_gnc_state_size() must not exceed it), and how it is aligned.
 inline constexpr std::size_t kGncStateBytes = 8 * 1024 * 1024;
+inline constexpr std::size_t kGncStateAlignment = 64;
 
 enum class Activity : std::uint8_t { kIdle, kStepped, kGoodbye };
 
-/// One per image, in static memory (it is large). Not thread-safe, not re-entrant.
+/// One per image, in static memory (it is large). Not thread-safe, not re-entrant, and it stays where it is: the flight
+/// software is given its address.
+///
+/// A kHello of another session makes a new flight software and forgets everything else; one of the same session is only
+/// answered again. A flight software that does not fit this executive is never run: the kHelloAck says why ("error:
+/// ...").
 class FlightExecutive {
  public:
-  explicit FlightExecutive(const Platform& platform);
+  explicit FlightExecutive(const Platform& platform) : platform_(platform) {}
+  FlightExecutive(const FlightExecutive&) = delete;
+  FlightExecutive& operator=(const FlightExecutive&) = delete;
 
   /// Takes one received frame, whole and uncoded; sends what the protocol asks for; runs the step it completes.
+  /// kStepped also for a batch that ended without a tick: its answer is the report alone, and nothing was stepped.
   Activity on_frame(std::span<const std::uint8_t> frame);
 
   /// Frames a board dropped before they became frames (COBS errors, datagrams of strangers): into the step report.
-  void count_rejected(std::uint32_t frames) { frames_rejected_ += frames; }
+  void count_rejected(std::uint32_t frames) { counters_.rejected += frames; }
 
  private:
+  /// Since the session began, for the step report.
+  struct Counters {
+    std::uint32_t received = 0;         ///< frames handed to on_frame
+    std::uint32_t rejected = 0;         ///< of these (or before them): broken, of another session, out of order
+    std::uint32_t duplicated = 0;       ///< of these: held or run already
+    std::uint32_t packets_dropped = 0;  ///< from the flight software: outbox full, or not of a packet's size
+    std::uint32_t ticks_missing = 0;    ///< batches that did not end in a tick
+  };
+
   static void sink(void* context, const std::uint8_t* packet, std::size_t size);
-  // To be completed by the implementation.
+
+  void on_hello(const fsw::link::FrameView& frame);
+  Activity on_data(const fsw::link::FrameView& frame);
+  /// True for the step of the answer in hand and for every step before it.
+  [[nodiscard]] bool already_run(std::uint32_t step) const;
+  void on_poll(const fsw::link::FrameHeader& header);
+
+  void begin_session(std::uint32_t session, std::span<const std::uint8_t> hello_payload);
+  /// Null if the flight software was made, otherwise the text for the host.
+  const char* start_flight_software(std::span<const std::uint8_t> hello_payload);
+  void begin_step(std::uint32_t step);
+  void close_step(std::span<const std::uint8_t> last_packet);
+  void append_step_report(std::uint64_t cost);
+
+  void send_answer();
+  void send_frame(const fsw::link::FrameHeader& header, std::span<const std::uint8_t> payload);
+  [[nodiscard]] std::uint64_t read_counter() const;
+
   Platform platform_;
-  std::uint32_t frames_rejected_ = 0;
+  Counters counters_;
+  bool has_session_ = false;
+  bool can_fly_ = false;     ///< a flight software is running in gnc_state_
+  bool has_answer_ = false;  ///< outbox_ holds the answer of inputs_.step()
+  std::uint32_t session_ = 0;
+  std::uint8_t spacecraft_ = 0;
+  std::uint16_t report_count_ = 0;
+  fsw::GpsTime step_time_;
+  const char* hello_text_ = "";
+  fsw::link::BatchReceiver inputs_;
+  fsw::link::BatchSender answer_;
+  Outbox outbox_;
+  alignas(kGncStateAlignment) std::array<std::byte, kGncStateBytes> gnc_state_;  // cleared when a session begins
 };
 
 }  // namespace vbar::boards

@@ -17,19 +17,21 @@ Result<std::size_t> cobs_encode(std::span<const std::uint8_t> data, std::span<st
 /// Incremental decoder of a byte stream. Resynchronises at the next zero after anything malformed or oversized.
 class CobsDecoder {
  public:
-  /// Takes one byte. Returns true when it completes a well-formed frame, which `frame()` then shows until the next push.
+  /// Takes one byte. Returns true when it completes a well-formed frame, which `frame()` then shows until the next
+  /// push.
   bool push(std::uint8_t byte);
   [[nodiscard]] std::span<const std::uint8_t> frame() const { return {buffer_.data(), frame_size_}; }
   /// Malformed (a code that runs past its zero) or oversized frames dropped so far.
   [[nodiscard]] std::uint32_t rejected() const { return rejected_; }
 
  private:
+  void append(std::uint8_t byte);
   void restart();
   std::array<std::uint8_t, kMaxFrameBytes> buffer_{};
   std::size_t size_ = 0;
   std::size_t frame_size_ = 0;
-  std::uint8_t remaining_ = 0;    ///< literal bytes left in the current group
-  bool zero_after_group_ = false; ///< the current group ends in an implied zero
+  std::uint8_t remaining_ = 0;     ///< literal bytes left in the current group
+  bool zero_after_group_ = false;  ///< the current group ends in an implied zero
   bool in_frame_ = false;
   bool bad_ = false;
   std::uint32_t rejected_ = 0;

@@ -1,7 +1,7 @@
 #pragma once
-// Link frames between a host and a flight computer. They carry space packets through a step barrier: the packets of step N
-// go out as one numbered batch, the answer to step N comes back as one numbered batch, and whatever is lost, broken,
-// duplicated or delayed on the way is sent again, so a line's faults never become the experiment's.
+// Link frames between a host and a flight computer. They carry space packets through a step barrier: the packets of
+// step N go out as one numbered batch, the answer to step N comes back as one numbered batch, and whatever is lost,
+// broken, duplicated or delayed on the way is sent again, so a line's faults never become the experiment's.
 //
 //   byte  0      protocol version (kProtocolVersion)
 //   byte  1      FrameType
@@ -13,7 +13,8 @@
 //   14 ...       kData: one space packet; kHelloAck: the board's name in ASCII
 //   last 4       CRC-32 (IEEE 802.3, little-endian) over everything before it
 //
-// All but the CRC big-endian. Over a byte stream a frame is COBS-coded and ends with a zero byte; over UDP a datagram is a frame.
+// All but the CRC big-endian. Over a byte stream a frame is COBS-coded and ends with a zero byte; over UDP a datagram
+// is a frame.
 //
 // The exchange (go-back-N, window kWindow, both ways):
 //   host  kHello (repeated until answered)         board  resets the flight software, kHelloAck
@@ -21,8 +22,8 @@
 //   board takes kData only in order (others are counted and dropped; every kWindow/2 taken, or on demand, kAck);
 //         once the flagged one is in: runs the step, keeps its answer, sends it as kData 0..m-1 of step N, last flagged
 //   host  acknowledges the answer the same way; nothing heard for a while: kPoll(N, packets of the answer held).
-//   board on kPoll: if its inputs of N are incomplete, kAck with what it holds; else its answer again from that index on
-//   board on kData of a step already run: it is a duplicate; the answer is on its way or will be polled for
+//   board on kPoll: if its inputs of N are incomplete, kAck with what it holds; else its answer again from that index
+//         on. kData of a step already run is a duplicate: the answer is on its way or will be polled for
 //   host  kGoodbye ends the run: the board stops.
 
 #include <cstddef>

@@ -20,15 +20,24 @@ double exp(double x);
 double log(double x);
 double pow(double x, double y);
 double erf(double x);
+double erfc(double x);
 double fmod(double x, double y);
 double floor(double x);
 
-inline double sqrt(double x) { return __builtin_sqrt(x); }
-inline double abs(double x) { return __builtin_fabs(x); }
-inline bool is_finite(double x) { return x - x == 0.0; }
+inline double sqrt(double x) {
+  return __builtin_sqrt(x);
+}
+inline double abs(double x) {
+  return __builtin_fabs(x);
+}
+inline bool is_finite(double x) {
+  return x - x == 0.0;
+}
 
 /// sqrt(x^2+y^2); no guard against overflow, which cannot occur with lengths and speeds of orbits.
-inline double hypot(double x, double y) { return sqrt(x * x + y * y); }
+inline double hypot(double x, double y) {
+  return sqrt(x * x + y * y);
+}
 
 /// Angle mapped to (-pi, pi].
 double wrap_to_pi(double angle);

@@ -1,6 +1,7 @@
 #pragma once
 // Quasi-nonsingular (QNS) orbital elements and inertial states.
-// q = [a, ex, ey, i, raan, u] with ex = e cos w, ey = e sin w, u = w + M: regular at e = 0, singular only at i = 0 and pi.
+// q = [a, ex, ey, i, raan, u] with ex = e cos w, ey = e sin w, u = w + M: regular at e = 0, singular only at i = 0 and
+// pi.
 
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
@@ -26,13 +27,14 @@ struct QnsElements {
 /// Mean motion, rad/s, of a Keplerian orbit with semi-major axis a (m, > 0).
 double mean_motion(double a);
 
-/// True argument of latitude, rad in (-pi, pi].
+/// True argument of latitude, rad in (-pi, pi]; NaN for elements that no bound orbit has (e > 0.95, not finite).
 double true_argument_of_latitude(const QnsElements& elements);
 
-/// ECI state of osculating elements. kOutOfRange unless 0 <= e < 0.95, a > 0; kNotFinite; kDidNotConverge (Kepler).
+/// ECI state of osculating elements. kOutOfRange unless 0 <= e <= 0.95, a > 0; kNotFinite; kDidNotConverge (Kepler).
 Result<CartesianState> cartesian_from_qns(const QnsElements& osculating);
 
-/// Osculating elements of an ECI state; raan and u in (-pi, pi]. kOutOfRange for unbound or equatorial orbits; kNotFinite.
+/// Osculating elements of an ECI state; raan and u in (-pi, pi]. kOutOfRange for orbits that are unbound, rectilinear,
+/// equatorial (sin i < 1e-8) or have e > 0.95; kNotFinite.
 Result<QnsElements> qns_from_cartesian(const CartesianState& state);
 
 }  // namespace vbar::fsw::orbit

@@ -1,13 +1,14 @@
 #pragma once
 // Relative orbital elements (D'Amico 2010): deputy with respect to chief, dimensionless,
-// [da, dlambda, dex, dey, dix, diy]. In this project chief = servicer, deputy = target, as in the paper's waypoint table:
-// a burn of the servicer therefore changes them by MINUS the control matrix.
+// [da, dlambda, dex, dey, dix, diy]. In this project chief = servicer, deputy = target, as in the paper's waypoint
+// table: a burn of the servicer therefore changes them by MINUS the control matrix.
 
 #include "fsw/orbit/elements.h"
 
 namespace vbar::fsw::orbit {
 
-/// ROE of `deputy` with respect to `chief`; both mean or both osculating. dlambda and the node difference are in (-pi, pi].
+/// ROE of `deputy` with respect to `chief`; both mean or both osculating. dlambda and the node difference are in (-pi,
+/// pi].
 Vector6 roe_from_qns(const QnsElements& chief, const QnsElements& deputy);
 
 /// Exact inverse: the deputy's elements.
@@ -18,11 +19,14 @@ QnsElements qns_from_roe(const QnsElements& chief, const Vector6& roe);
 Matrix6 roe_transition_j2(const QnsElements& chief_mean, double tau);
 
 /// 6x3 change of the ROE per impulse [R,T,N] (m/s) of the DEPUTY, exact for any e (Gauss variational equations);
-/// negate for the chief (servicer).
+/// negate for the chief (servicer). `chief` must be valid elements (0 <= e <= 0.95, inclined); NaN otherwise.
 Matrix63 roe_control_matrix(const QnsElements& chief);
 
-/// Linear near-circular map (Hill-Clohessy-Wiltshire as ROE): relative position (m) and velocity (m/s) of the deputy in the
-/// chief's RTN, stacked.
+/// The same to O(e): what the closed-form solvers and hand checks use. Relative error about e.
+Matrix63 roe_control_matrix_near_circular(const QnsElements& chief);
+
+/// Linear near-circular map (Hill-Clohessy-Wiltshire as ROE): relative position (m) and velocity (m/s) of the deputy in
+/// the chief's RTN, stacked.
 Vector6 rtn_from_roe_linear(const QnsElements& chief, const Vector6& roe);
 
 /// Inverse of rtn_from_roe_linear.

@@ -7,11 +7,11 @@ namespace vbar::fsw::orbit {
 
 /// Rates of mean elements under J2, rad/s.
 struct SecularRates {
-  double mean_motion = 0.0;  ///< Keplerian n
-  double raan = 0.0;         ///< node
-  double perigee = 0.0;      ///< argument of perigee
-  double mean_anomaly = 0.0; ///< n plus the J2 part
-  double kappa = 0.0;        ///< (3/4) J2 Re^2 sqrt(mu) / (a^(7/2) eta^4)
+  double mean_motion = 0.0;   ///< Keplerian n
+  double raan = 0.0;          ///< node
+  double perigee = 0.0;       ///< argument of perigee
+  double mean_anomaly = 0.0;  ///< n plus the J2 part
+  double kappa = 0.0;         ///< (3/4) J2 Re^2 sqrt(mu) / (a^(7/2) eta^4)
   /// d(w+M)/dt.
   [[nodiscard]] double mean_argument_of_latitude() const { return perigee + mean_anomaly; }
 };

@@ -41,10 +41,14 @@ enum class Apid : std::uint16_t {
 };
 
 /// True for APIDs of telemetry, whose bytes make `telemetry_sha256`.
-constexpr bool is_telemetry(Apid apid) { return (static_cast<std::uint16_t>(apid) & 0x700U) == 0x500U; }
+constexpr bool is_telemetry(Apid apid) {
+  return (static_cast<std::uint16_t>(apid) & 0x700U) == 0x500U;
+}
 
 /// True for APIDs that go to the flight software.
-constexpr bool is_to_flight(Apid apid) { return static_cast<std::uint16_t>(apid) < 0x400U; }
+constexpr bool is_to_flight(Apid apid) {
+  return static_cast<std::uint16_t>(apid) < 0x400U;
+}
 
 enum class SequenceFlags : std::uint8_t { kContinuation = 0, kFirst = 1, kLast = 2, kUnsegmented = 3 };
 
@@ -63,10 +67,12 @@ struct PacketView {
   std::span<const std::uint8_t> payload;
 };
 
-/// Checks length, version, flags and CRC. kTooShort, kTooLong (bytes beyond the stated length), kWrongType, kBadChecksum.
+/// Checks length, version, flags and CRC. kTooShort, kTooLong (bytes beyond the stated length), kWrongType,
+/// kBadChecksum.
 Result<PacketView> parse_packet(std::span<const std::uint8_t> bytes);
 
-/// Writes header, payload and CRC to `out`; returns the packet's length. kTooLong if the payload or `out` does not allow it.
+/// Writes header, payload and CRC to `out`; returns the packet's length. kTooLong if the payload or `out` does not
+/// allow it.
 Result<std::size_t> write_packet(const PacketHeader& header, std::span<const std::uint8_t> payload,
                                  std::span<std::uint8_t> out);
 

@@ -1,0 +1,75 @@
+#include "boards/zynq7000/interrupts.h"
+
+#include <array>
+
+#include "boards/zynq7000/memory_map.h"
+
+extern "C" void vbar_interrupt();
+
+namespace vbar::boards::zynq7000 {
+namespace {
+
+constexpr unsigned kInterrupts = 96;
+constexpr unsigned kFirstShared = 32;
+constexpr std::uintptr_t kDistributorControl = kInterruptDistributor + 0x000U;
+constexpr std::uintptr_t kDistributorGroup = kInterruptDistributor + 0x080U;
+constexpr std::uintptr_t kDistributorEnable = kInterruptDistributor + 0x100U;
+constexpr std::uintptr_t kDistributorDisable = kInterruptDistributor + 0x180U;
+constexpr std::uintptr_t kDistributorClearPending = kInterruptDistributor + 0x280U;
+constexpr std::uintptr_t kDistributorPriority = kInterruptDistributor + 0x400U;
+constexpr std::uintptr_t kDistributorTarget = kInterruptDistributor + 0x800U;
+constexpr std::uintptr_t kCpuControl = kInterruptCpuInterface + 0x00U;
+constexpr std::uintptr_t kCpuPriorityMask = kInterruptCpuInterface + 0x04U;
+constexpr std::uintptr_t kCpuBinaryPoint = kInterruptCpuInterface + 0x08U;
+constexpr std::uintptr_t kCpuAcknowledge = kInterruptCpuInterface + 0x0CU;
+constexpr std::uintptr_t kCpuEnd = kInterruptCpuInterface + 0x10U;
+
+struct Entry {
+  InterruptHandler handler = nullptr;
+  void* context = nullptr;
+};
+std::array<Entry, kInterrupts> entries;
+
+}  // namespace
+
+void interrupts_initialize() {
+  reg(kDistributorControl) = 0;
+  reg(kCpuControl) = 0;
+  for (unsigned word = 0; word < kInterrupts / 32U; ++word) {
+    reg(kDistributorDisable + 4U * word) = 0xFFFFFFFFU;
+    reg(kDistributorClearPending + 4U * word) = 0xFFFFFFFFU;
+    reg(kDistributorGroup + 4U * word) = 0;  // secure: arrives as IRQ, whatever a boot loader had in mind
+  }
+  for (unsigned word = kFirstShared / 4U; word < kInterrupts / 4U; ++word) {
+    reg(kDistributorPriority + 4U * word) = 0xA0A0A0A0U;  // all alike: no handler interrupts another
+    reg(kDistributorTarget + 4U * word) = 0x01010101U;    // first core
+  }
+  reg(kCpuPriorityMask) = 0xF0U;
+  reg(kCpuBinaryPoint) = 0;
+  reg(kCpuControl) = 1;
+  reg(kDistributorControl) = 1;
+}
+
+void interrupts_attach(unsigned id, InterruptHandler handler, void* context) {
+  if (id < kFirstShared || id >= kInterrupts) {
+    return;
+  }
+  entries[id] = {handler, context};
+  reg(kDistributorEnable + 4U * (id / 32U)) = 1U << (id % 32U);
+}
+
+}  // namespace vbar::boards::zynq7000
+
+void vbar_interrupt() {
+  using namespace vbar::boards::zynq7000;
+  constexpr std::uint32_t kIdMask = 0x3FFU;
+  const std::uint32_t acknowledge = reg(kCpuAcknowledge);
+  const std::uint32_t id = acknowledge & kIdMask;
+  if (id >= kInterrupts) {
+    return;  // spurious: withdrawn before it was taken; has no end
+  }
+  if (entries[id].handler != nullptr) {
+    entries[id].handler(entries[id].context);
+  }
+  reg(kCpuEnd) = acknowledge;
+}

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# From a bare Debian 12 to the paper's sample trajectory: installs, builds, flies the whole mission in this process and on the
+# emulated Zynq, prints the waypoint table, whether the two gave the same bits, and where the report is.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+ci/install.sh
+ci/build.sh host zynq
+vbar=build/host/vbar
+"$vbar" run missions/ideal_navigation.toml --out runs/ideal_navigation-sil
+"$vbar" run missions/ideal_navigation.toml --set flight_computer.target=zynq_qemu --out runs/ideal_navigation-pil
+"$vbar" report runs/ideal_navigation-sil runs/ideal_navigation-pil

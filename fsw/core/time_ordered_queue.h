@@ -1,0 +1,54 @@
+#pragma once
+// A bounded queue of things with a time tag, kept in an order that does not depend on the order of arrival.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/result.h"
+
+namespace vbar::fsw {
+
+/// What orders entries: time first, then the sender's unit and sequence count, so that two entries of the same instant come
+/// out alike however they came in.
+struct FilingTag {
+  GpsTime time;
+  std::uint8_t unit = 0;
+  std::uint16_t sequence_count = 0;
+  constexpr auto operator<=>(const FilingTag&) const = default;
+};
+
+/// Up to `capacity` entries in order of their tags. Rule when full: the newest arrival is refused, nothing is overwritten.
+template <class T, std::size_t capacity>
+class TimeOrderedQueue {
+ public:
+  struct Entry {
+    FilingTag tag;
+    T value{};
+  };
+
+  /// Files an entry. kBadSequence: one with this very tag is already there (a duplicate); kFull.
+  [[nodiscard]] Status file(const FilingTag& tag, const T& value) {
+    std::size_t place = size_;
+    while (place > 0 && tag < entries_[place - 1].tag) --place;
+    if (place > 0 && entries_[place - 1].tag == tag) return Status::kBadSequence;
+    if (size_ == capacity) return Status::kFull;
+    for (std::size_t k = size_; k > place; --k) entries_[k] = entries_[k - 1];
+    entries_[place] = {tag, value};
+    ++size_;
+    return Status::kOk;
+  }
+
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] const Entry& operator[](std::size_t k) const { return entries_[k]; }
+
+  void clear() { size_ = 0; }
+
+ private:
+  std::array<Entry, capacity> entries_{};
+  std::size_t size_ = 0;
+};
+
+}  // namespace vbar::fsw

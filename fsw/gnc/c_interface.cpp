@@ -1,0 +1,49 @@
+// The C face of the flight software (vbar_gnc.h).
+
+#include <new>
+
+#include "fsw/gnc/gnc.h"
+#include "fsw/gnc/vbar_gnc.h"
+
+namespace {
+
+using vbar::fsw::Status;
+using vbar::fsw::gnc::Gnc;
+
+vbar_status as_c(Status status) { return static_cast<vbar_status>(status); }
+
+bool is_aligned(const void* state) { return reinterpret_cast<std::uintptr_t>(state) % alignof(Gnc) == 0; }
+
+}  // namespace
+
+extern "C" {
+
+int32_t vbar_gnc_abi_version(void) { return VBAR_GNC_ABI_VERSION; }
+
+const char* vbar_gnc_name(void) { return "vbar GNC 0.1.0"; }
+
+size_t vbar_gnc_state_size(void) { return sizeof(Gnc); }
+
+size_t vbar_gnc_state_alignment(void) { return alignof(Gnc); }
+
+vbar_status vbar_gnc_init(void* state, uint8_t spacecraft, vbar_packet_sink sink, void* sink_context) {
+  if (state == nullptr || sink == nullptr || !is_aligned(state)) return as_c(Status::kInvalidArgument);
+  new (state) Gnc(spacecraft, sink, sink_context);
+  return as_c(Status::kOk);
+}
+
+void vbar_gnc_set_sink(void* state, vbar_packet_sink sink, void* sink_context) {
+  static_cast<Gnc*>(state)->set_sink(sink, sink_context);
+}
+
+vbar_status vbar_gnc_receive(void* state, const uint8_t* packet, size_t size) {
+  if (state == nullptr || packet == nullptr) return as_c(Status::kInvalidArgument);
+  return as_c(static_cast<Gnc*>(state)->receive({packet, size}));
+}
+
+vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns) {
+  if (state == nullptr) return as_c(Status::kInvalidArgument);
+  return as_c(static_cast<Gnc*>(state)->step({gps_time_ns}));
+}
+
+}  // extern "C"

@@ -1,0 +1,137 @@
+#include "fsw/gnc/gnc.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+void copy(const Vector3& from, double (&to)[3]) {
+  for (int k = 0; k < 3; ++k) to[k] = from(k);
+}
+
+void copy(const Vector6& from, double (&to)[6]) {
+  for (int k = 0; k < 6; ++k) to[k] = from(k);
+}
+
+}  // namespace
+
+Gnc::Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context)
+    : inbox_(spacecraft), outbox_(spacecraft, sink, sink_context) {}
+
+Status Gnc::step(GpsTime now) {
+  if (stepped_ && now <= now_) {
+    faults_ |= kFaultClock;
+    inbox_.clear();
+    return Status::kBadSequence;
+  }
+  now_ = now;
+  stepped_ = true;
+
+  manage();
+  navigate();
+  assess();
+  control();
+  report();
+
+  inbox_.clear();
+  ++step_;
+  return Status::kOk;
+}
+
+void Gnc::manage() {
+  management_.update(now_, inbox_);
+  if (inbox_.counters().dropped_full > 0) faults_ |= kFaultInboxFull;
+}
+
+void Gnc::navigate() {
+  navigation_.update(now_, inbox_);
+  const NavigationState& state = navigation_.state();
+  const double timeout = management_.configuration().navigation_timeout_s;
+  if (state.valid && seconds(now_ - state.last_measurement) > timeout) faults_ |= kFaultNavigationTimeout;
+}
+
+void Gnc::assess() { guidance_.assess(now_, navigation_, management_); }
+
+void Gnc::control() {
+  guidance_.update(now_, inbox_.step_period(), navigation_, management_);
+  if (guidance_.report().holds > 0) faults_ |= kFaultHold;
+}
+
+void Gnc::report() {
+  for (std::size_t k = 0; k < guidance_.command_count(); ++k) {
+    const CommandedBurn& commanded = guidance_.command(k);
+    maneuver_command message{};
+    message.maneuver_id = commanded.maneuver_id;
+    message.waypoint_index = commanded.waypoint_index;
+    message.solver = static_cast<std::int8_t>(commanded.solver);
+    copy(commanded.burn.dv_rtn, message.dv_rtn);
+    outbox_.send(commanded.burn.time, message);
+  }
+  report_navigation();
+  report_control();
+  report_health();
+}
+
+void Gnc::report_navigation() {
+  const NavigationState& state = navigation_.state();
+  telemetry_navigation message{};
+  message.step = step_;
+  message.source = static_cast<std::int8_t>(state.source);
+  message.valid = state.valid ? 1 : 0;
+  if (state.valid) {
+    message.age_s = seconds(now_ - state.last_measurement);
+    copy(state.servicer.position_eci, message.servicer_position_eci);
+    copy(state.servicer.velocity_eci, message.servicer_velocity_eci);
+    const orbit::RelativeState relative = orbit::relative_state_rtn(state.servicer, state.target);
+    copy(relative.position_rtn, message.relative_position_rtn);
+    copy(relative.velocity_rtn, message.relative_velocity_rtn);
+    copy(state.sigma_rtn, message.sigma_rtn);
+    copy(management_.reference_semi_major_axis() * guidance_.report().roe, message.a_roe_mean_m);
+  }
+  outbox_.send(now_, message);
+}
+
+void Gnc::report_control() {
+  const GuidanceReport& guidance = guidance_.report();
+  const double a = management_.reference_semi_major_axis();
+  telemetry_control message{};
+  message.step = step_;
+  message.mode = static_cast<std::int8_t>(management_.mode());
+  message.active_solver = static_cast<std::int8_t>(guidance.active_solver);
+  message.koenig_damico_status = static_cast<std::int8_t>(guidance.koenig_damico);
+  message.closed_form_status = static_cast<std::int8_t>(guidance.closed_form);
+  message.least_squares_status = static_cast<std::int8_t>(guidance.least_squares);
+  message.safety_status = static_cast<std::int8_t>(guidance.safety);
+  message.waypoint_index = guidance.waypoint_index;
+  copy(a * guidance.roe_desired, message.a_roe_desired_m);
+  copy(a * guidance.predicted_roe_error, message.predicted_a_roe_error_m);
+  const control::Plan& plan = guidance_.plan();
+  message.planned_burns = static_cast<std::int32_t>(plan.count);
+  message.planned_dv = plan.total_dv();
+  message.next_burn_gps_ns = plan.count > 0 ? plan.burns[0].time.ns : 0;
+  message.passive_safety_distance_m = guidance.passive_safety_distance;
+  message.commanded_dv = guidance_.commanded_dv();
+  message.commanded_maneuvers = guidance_.commanded_maneuvers();
+  outbox_.send(now_, message);
+}
+
+void Gnc::report_health() {
+  const PacketCounters& packets = inbox_.counters();
+  const GuidanceReport& guidance = guidance_.report();
+  telemetry_health message{};
+  message.step = step_;
+  message.packets_accepted = packets.accepted;
+  message.rejected_checksum = packets.rejected_checksum;
+  message.rejected_type = packets.rejected_type;
+  message.rejected_length = packets.rejected_length;
+  message.rejected_content = packets.rejected_content;
+  message.rejected_time = packets.rejected_time;
+  message.rejected_other = packets.rejected_other;
+  message.inbox_dropped = packets.dropped_full;
+  message.outbox_dropped = outbox_.dropped();
+  message.solver_fallbacks = guidance.solver_fallbacks;
+  message.plans_unsafe = guidance.plans_unsafe;
+  message.holds = guidance.holds;
+  message.faults = faults_;
+  outbox_.send(now_, message);
+}
+
+}  // namespace vbar::fsw::gnc

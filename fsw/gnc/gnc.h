@@ -1,0 +1,59 @@
+#pragma once
+// The flight software: packets in, a step, packets out. Its whole state is this one object.
+
+#include <cstdint>
+#include <span>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/result.h"
+#include "fsw/gnc/guidance.h"
+#include "fsw/gnc/inbox.h"
+#include "fsw/gnc/management.h"
+#include "fsw/gnc/navigation.h"
+#include "fsw/gnc/outbox.h"
+
+namespace vbar::fsw::gnc {
+
+/// Latched faults, bits of telemetry_health.faults.
+enum Fault : std::int32_t {
+  kFaultNavigationTimeout = 1 << 0,  ///< no measurement for longer than navigation_timeout_s
+  kFaultHold = 1 << 1,               ///< no solver gave a plan that may be flown
+  kFaultInboxFull = 1 << 2,          ///< a packet was dropped because its queue was full
+  kFaultClock = 1 << 3,              ///< a step was asked for at or before the last step's time
+};
+
+class Gnc {
+ public:
+  Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context);
+
+  void set_sink(vbar_packet_sink sink, void* sink_context) { outbox_.set_sink(sink, sink_context); }
+
+  /// Checks and files one packet for the coming step.
+  Status receive(std::span<const std::uint8_t> packet) { return inbox_.receive(packet); }
+
+  /// Runs the step at `now`. kBadSequence, and nothing done, unless `now` is later than the last step.
+  Status step(GpsTime now);
+
+ private:
+  void manage();
+  void navigate();
+  void assess();
+  void control();
+  void report();
+
+  void report_navigation();
+  void report_control();
+  void report_health();
+
+  Inbox inbox_;
+  Outbox outbox_;
+  Management management_;
+  Navigation navigation_;
+  Guidance guidance_;
+  GpsTime now_;
+  std::int64_t step_ = 0;
+  std::int32_t faults_ = 0;
+  bool stepped_ = false;
+};
+
+}  // namespace vbar::fsw::gnc

@@ -1,0 +1,273 @@
+#include "fsw/gnc/guidance.h"
+
+#include <span>
+
+#include "fsw/math/math.h"
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+using control::Plan;
+using control::Solver;
+
+/// Solvers of a leg, best first. The closed form needs about an orbit of candidate times; where it has none left, the
+/// fuel-optimal solver flies the rest. Least squares always gives something, if not the cheapest.
+struct Ladder {
+  std::array<Solver, 3> solvers;
+  std::size_t count;
+};
+
+Ladder ladder_of(const Waypoint& goal, bool estimate_too_coarse) {
+  const auto preferred = static_cast<Solver>(goal.control_mode);
+  if (estimate_too_coarse || preferred == Solver::kLeastSquares) return {{Solver::kLeastSquares}, 1};
+  if (preferred == Solver::kKoenigDamico) return {{Solver::kKoenigDamico, Solver::kLeastSquares}, 2};
+  return {{Solver::kClosedForm, Solver::kKoenigDamico, Solver::kLeastSquares}, 3};
+}
+
+std::span<const control::Burn> burns_of(const Plan& plan) { return {plan.burns.data(), plan.count}; }
+
+bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
+  for (const control::Burn& burn : burns_of(plan)) {
+    if (!burn.dv_rtn.allFinite() || burn.dv_rtn.norm() > configuration.maximum_dv) return false;
+  }
+  return true;
+}
+
+bool is_safe(const Result<safety::PlanSafety>& verdict) { return verdict.ok() && verdict.value().safe; }
+
+/// How far the estimate may be off: three sigma of position, and of the drift along track that da leaves open.
+safety::PositionBound three_sigma(const Vector6& sigma_rtn, double sigma_a_da_m, const orbit::QnsElements& servicer_mean) {
+  safety::PositionBound bound;
+  bound.radial_normal = 3.0 * math::hypot(sigma_rtn(0), sigma_rtn(2));
+  bound.along_track = 3.0 * sigma_rtn(1);
+  bound.along_track_rate = 3.0 * 1.5 * orbit::mean_motion(servicer_mean.a) * sigma_a_da_m;
+  return bound;
+}
+
+void drop_burns_before(Plan& plan, GpsTime time) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < plan.count; ++k) {
+    if (plan.burns[k].time >= time) plan.burns[kept++] = plan.burns[k];
+  }
+  plan.count = kept;
+}
+
+void remove_first(Plan& plan) {
+  for (std::size_t k = 1; k < plan.count; ++k) plan.burns[k - 1] = plan.burns[k];
+  --plan.count;
+}
+
+/// First the burns commanded already, then those only planned; both in order of time, the former all earlier.
+Plan joined(const Plan& pending, const Plan& planned) {
+  Plan all = pending;
+  for (std::size_t k = 0; k < planned.count && all.count < control::kMaxBurns; ++k) {
+    all.burns[all.count++] = planned.burns[k];
+  }
+  return all;
+}
+
+}  // namespace
+
+void Guidance::assess(GpsTime now, const Navigation& navigation, const Management& management) {
+  situation_known_ = false;
+  const NavigationState& state = navigation.state();
+  if (!state.valid) return;
+  const Result<orbit::QnsElements> servicer_osculating = orbit::qns_from_cartesian(state.servicer);
+  const Result<orbit::QnsElements> target_osculating = orbit::qns_from_cartesian(state.target);
+  if (!servicer_osculating.ok() || !target_osculating.ok()) return;
+  const Result<orbit::QnsElements> servicer = orbit::mean_from_osculating(servicer_osculating.value());
+  const Result<orbit::QnsElements> target = orbit::mean_from_osculating(target_osculating.value());
+  if (!servicer.ok() || !target.ok()) return;
+
+  const gnc_configuration& configuration = management.configuration();
+  situation_known_ = true;
+  forget_past_burns(now);
+  orbits_ = {now, servicer.value(), target.value()};
+  report_.roe = orbit::roe_from_qns(orbits_.servicer, orbits_.target);
+  sigma_a_roe_m_ = navigation.sigma_a_roe_m(orbits_.servicer);
+  position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m_(0), servicer.value());
+  earliest_burn_ = now + Duration{configuration.compute_latency_ns};
+  const Result<safety::PlanSafety> drift = safety_of({}, configuration);
+  if (drift.ok()) report_.passive_safety_distance = drift.value().least_distance;
+}
+
+void Guidance::update(GpsTime now, Duration period, const Navigation& navigation, const Management& management) {
+  command_count_ = 0;
+  report_.waypoint_index = -1;
+  const gnc_configuration& configuration = management.configuration();
+  const double age = seconds(now - navigation.state().last_measurement);
+  const bool may_plan = situation_known_ && age <= configuration.navigation_timeout_s &&
+                        now.ns >= configuration.planner_start_ns && select_goal(now, management);
+  if (!may_plan) {
+    plan_ = {};
+    has_goal_ = false;
+    report_.active_solver = Solver::kNone;
+    return;
+  }
+  if (decision_is_due(now, configuration)) decide(configuration);
+  commit_due_burns(now, period, configuration);
+}
+
+/// The waypoint to fly to. Sets `goal_`; a new one drops the plan of the old.
+bool Guidance::select_goal(GpsTime now, const Management& management) {
+  const Waypoint* wanted = nullptr;
+  Waypoint stay;
+  switch (management.mode()) {
+    case Mode::kIdle:
+    case Mode::kHold: return false;
+    case Mode::kApproach: wanted = management.next_waypoint(); break;
+    case Mode::kStationKeeping: {
+      const Waypoint* last = management.last_waypoint();
+      if (last == nullptr) return false;
+      if (has_goal_ && goal_.index == last->index && goal_.time > now) return true;  // a correction under way
+      const gnc_configuration& configuration = management.configuration();
+      const Vector6 error_m = management.reference_semi_major_axis() * (report_.roe - last->roe);
+      if (error_m.norm() <= configuration.station_keeping_deadband_m) return false;
+      stay = *last;
+      stay.time = now + nearest_duration(configuration.station_keeping_horizon_s);
+      wanted = &stay;
+      break;
+    }
+  }
+  if (wanted == nullptr) return false;
+  if (!has_goal_ || wanted->index != goal_.index || wanted->time != goal_.time) {
+    plan_ = {};
+    next_decision_ = now;
+    report_.active_solver = Solver::kNone;
+  }
+  goal_ = *wanted;
+  has_goal_ = true;
+  report_.waypoint_index = goal_.index;
+  report_.roe_desired = goal_.roe;
+  return true;
+}
+
+bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configuration) {
+  if (now < next_decision_) return false;
+  const bool closed_form = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
+  next_decision_ = now + Duration{closed_form ? configuration.closed_form_period_ns : configuration.koenig_damico_period_ns};
+  return true;
+}
+
+void Guidance::decide(const gnc_configuration& configuration) {
+  if (goal_.time <= earliest_burn_) return;  // nothing can be done about this waypoint any more
+  if (keeps_plan(configuration)) return;
+  if (plan_.count > 0 && adopt_if_flyable(plan_.solver, correct(configuration), configuration)) return;
+
+  const bool too_coarse = configuration.roe_error_threshold_m > 0.0 &&
+                          sigma_a_roe_m_.maxCoeff() > configuration.roe_error_threshold_m;
+  const Ladder ladder = ladder_of(goal_, too_coarse);
+  for (std::size_t k = 0; k < ladder.count; ++k) {
+    const Result<Plan> candidate = solve(ladder.solvers[k], configuration);
+    status_of(ladder.solvers[k]) = candidate.status();
+    if (adopt_if_flyable(ladder.solvers[k], candidate, configuration)) return;
+    ++report_.solver_fallbacks;
+  }
+  plan_ = {};
+  report_.active_solver = Solver::kNone;
+  ++report_.holds;
+}
+
+/// A plan that still arrives well enough and is still safe stays: planning anew at every decision chases noise and, with
+/// burn opportunities coming and going, costs up to three times the fuel.
+bool Guidance::keeps_plan(const gnc_configuration& configuration) {
+  if (report_.active_solver == Solver::kNone) return false;
+  const Result<Vector6> error = arrival_error_of(plan_);
+  if (!error.ok()) return false;
+  report_.predicted_roe_error = error.value();
+  const bool arrives = arrives_well_enough(plan_, error.value(), configuration);
+  return arrives && is_safe(safety_of(plan_, configuration));
+}
+
+bool Guidance::adopt_if_flyable(Solver solver, const Result<Plan>& candidate, const gnc_configuration& configuration) {
+  if (!candidate.ok()) return false;
+  if (!is_flyable(candidate.value(), configuration)) {
+    status_of(solver) = Status::kOutOfRange;
+    return false;
+  }
+  const Result<Vector6> error = arrival_error_of(candidate.value());
+  if (!error.ok()) return false;
+  const Result<safety::PlanSafety> verdict = safety_of(candidate.value(), configuration);
+  report_.safety = verdict.ok() && !verdict.value().safe ? Status::kUnsafe : verdict.status();
+  if (!is_safe(verdict)) {
+    ++report_.plans_unsafe;
+    return false;
+  }
+  plan_ = candidate.value();
+  report_.active_solver = solver;
+  report_.predicted_roe_error = error.value();
+  report_.passive_safety_distance = verdict.value().least_distance;
+  return true;
+}
+
+Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configuration) {
+  const GpsTime start = earliest_start();
+  const Result<control::ControlProblem> problem =
+      control::remaining_problem(orbits_, burns_of(pending_), start, {goal_.time, goal_.roe});
+  if (!problem.ok()) return problem.status();
+  switch (solver) {
+    case Solver::kClosedForm: return control::solve_closed_form(problem.value());
+    case Solver::kKoenigDamico: {
+      control::KoenigDamicoSettings settings;
+      settings.grid_step = {configuration.koenig_damico_grid_ns};
+      return control::solve_koenig_damico(problem.value(), settings, koenig_damico_workspace_);
+    }
+    case Solver::kLeastSquares: return control::solve_least_squares(problem.value());
+    case Solver::kNone: break;
+  }
+  return Status::kInvalidArgument;
+}
+
+/// Where the commanded burns and those of `candidate` lead, dimensionless mean ROE wanted minus reached.
+Result<Vector6> Guidance::arrival_error_of(const Plan& candidate) const {
+  const Plan all = joined(pending_, candidate);
+  return control::arrival_error(orbits_, burns_of(all), {goal_.time, goal_.roe});
+}
+
+Result<safety::PlanSafety> Guidance::safety_of(const Plan& candidate, const gnc_configuration& configuration) const {
+  const Plan all = joined(pending_, candidate);
+  const safety::SafetyCriterion criterion{configuration.keep_out_radius_m, configuration.safety_horizon_s,
+                                          position_bound_};
+  return safety::assess_plan(orbits_.epoch, orbits_.servicer, report_.roe, all, criterion);
+}
+
+/// New burns come after the latency and after everything commanded.
+GpsTime Guidance::earliest_start() const {
+  if (pending_.count == 0) return earliest_burn_;
+  const GpsTime after_pending = pending_.burns[pending_.count - 1].time + Duration{1};
+  return after_pending > earliest_burn_ ? after_pending : earliest_burn_;
+}
+
+Status& Guidance::status_of(Solver solver) {
+  switch (solver) {
+    case Solver::kClosedForm: return report_.closed_form;
+    case Solver::kKoenigDamico: return report_.koenig_damico;
+    case Solver::kLeastSquares:
+    case Solver::kNone: break;
+  }
+  return report_.least_squares;
+}
+
+/// Commanded burns that have been flown by now are history; the state knows them.
+void Guidance::forget_past_burns(GpsTime now) {
+  drop_burns_before(pending_, now);
+  drop_burns_before(plan_, now);  // a planned burn can only be past if steps were missed: it was never commanded
+}
+
+/// Commands every burn that the next step could not command in time any more.
+void Guidance::commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration) {
+  const GpsTime next_chance = now + period + Duration{configuration.compute_latency_ns};
+  while (plan_.count > 0 && plan_.burns[0].time < next_chance && command_count_ < kMaxCommandsPerStep &&
+         pending_.count < control::kMaxBurns) {
+    const control::Burn burn = plan_.burns[0];
+    remove_first(plan_);
+    if (burn.time < earliest_burn_ || burn.dv_rtn.norm() < configuration.minimum_dv) continue;
+    commands_[command_count_++] = {next_maneuver_id_++, goal_.index, plan_.solver, burn};
+    pending_.burns[pending_.count++] = burn;
+    commanded_dv_ += burn.dv_rtn.norm();
+  }
+}
+
+}  // namespace vbar::fsw::gnc

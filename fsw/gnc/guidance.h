@@ -1,0 +1,98 @@
+#pragma once
+// control: which waypoint, which solver, which fallback; commit a burn.
+//
+// A plan is kept while it still arrives; otherwise the ladder of the leg's solvers is tried in order, and what a solver gives
+// is flown only if it passes the passive-safety test with every prefix of its burns. If none does, nothing is flown: hold.
+// A burn is commanded in the last step that can still do so, so that replanning may improve it until then.
+
+#include <array>
+#include <cstdint>
+
+#include "fsw/control/koenig_damico.h"
+#include "fsw/control/plan.h"
+#include "fsw/gnc/management.h"
+#include "fsw/gnc/navigation.h"
+#include "fsw/safety/passive_safety.h"
+
+namespace vbar::fsw::gnc {
+
+/// What guidance did in a step; telemetry carries it. Statuses are those of the last attempt.
+struct GuidanceReport {
+  control::Solver active_solver = control::Solver::kNone;
+  Status koenig_damico = Status::kNotReady;
+  Status closed_form = Status::kNotReady;
+  Status least_squares = Status::kNotReady;
+  Status safety = Status::kNotReady;
+  std::int32_t waypoint_index = -1;
+  Vector6 roe = Vector6::Zero();                  ///< estimated mean ROE now, dimensionless
+  Vector6 roe_desired = Vector6::Zero();          ///< dimensionless mean ROE of the waypoint ahead
+  Vector6 predicted_roe_error = Vector6::Zero();  ///< at the waypoint, remaining burns flown; dimensionless
+  double passive_safety_distance = 0.0;           ///< m
+  std::int32_t solver_fallbacks = 0;
+  std::int32_t plans_unsafe = 0;
+  std::int32_t holds = 0;
+};
+
+/// A burn that is to be commanded now.
+struct CommandedBurn {
+  std::int32_t maneuver_id = 0;
+  std::int32_t waypoint_index = -1;
+  control::Solver solver = control::Solver::kNone;
+  control::Burn burn;
+};
+
+class Guidance {
+ public:
+  static constexpr std::size_t kMaxCommandsPerStep = 16;
+
+  /// Mean orbits of both spacecraft and the passive safety of the drift if nothing more is commanded.
+  void assess(GpsTime now, const Navigation& navigation, const Management& management);
+
+  /// One step: drops what is past, replans if it is due and needed, and collects the burns to command. `period` is the time to
+  /// the next step.
+  void update(GpsTime now, Duration period, const Navigation& navigation, const Management& management);
+
+  [[nodiscard]] const GuidanceReport& report() const { return report_; }
+  [[nodiscard]] std::size_t command_count() const { return command_count_; }
+  [[nodiscard]] const CommandedBurn& command(std::size_t k) const { return commands_[k]; }
+  [[nodiscard]] const control::Plan& plan() const { return plan_; }
+  [[nodiscard]] double commanded_dv() const { return commanded_dv_; }
+  [[nodiscard]] std::int32_t commanded_maneuvers() const { return next_maneuver_id_; }
+
+ private:
+  bool select_goal(GpsTime now, const Management& management);
+  bool decision_is_due(GpsTime now, const gnc_configuration& configuration);
+  void decide(const gnc_configuration& configuration);
+  bool keeps_plan(const gnc_configuration& configuration);
+  bool adopt_if_flyable(control::Solver solver, const Result<control::Plan>& candidate,
+                        const gnc_configuration& configuration);
+  Result<control::Plan> solve(control::Solver solver, const gnc_configuration& configuration);
+  Result<control::Plan> correct(const gnc_configuration& configuration);
+  Status& status_of(control::Solver solver);
+  Result<safety::PlanSafety> safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
+  Result<Vector6> arrival_error_of(const control::Plan& candidate) const;
+  GpsTime earliest_start() const;
+  void forget_past_burns(GpsTime now);
+  void commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration);
+
+  // What assess() found; the rest of the step builds on it.
+  bool situation_known_ = false;
+  GpsTime earliest_burn_;
+  control::MeanOrbits orbits_;
+  Vector6 sigma_a_roe_m_ = Vector6::Zero();  ///< 1 sigma, m
+  safety::PositionBound position_bound_;     ///< 3 sigma
+
+  Waypoint goal_;
+  bool has_goal_ = false;
+  control::Plan plan_;                       ///< still to be commanded
+  control::Plan pending_;                    ///< commanded, not yet due
+  GpsTime next_decision_;
+  std::array<CommandedBurn, kMaxCommandsPerStep> commands_{};
+  std::size_t command_count_ = 0;
+  double commanded_dv_ = 0.0;
+  std::int32_t next_maneuver_id_ = 0;
+  GuidanceReport report_;
+  control::KoenigDamicoWorkspace koenig_damico_workspace_;
+};
+
+}  // namespace vbar::fsw::gnc

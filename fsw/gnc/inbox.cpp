@@ -1,0 +1,77 @@
+#include "fsw/gnc/inbox.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+using packets::Apid;
+using packets::PacketView;
+
+template <class Message, std::size_t capacity>
+Status decode_and_file(const PacketView& packet, TimeOrderedQueue<Message, capacity>& queue) {
+  const Result<Message> message = packets::decode<Message>(packet);
+  if (!message.ok()) return message.status();
+  const packets::PacketHeader& header = packet.header;
+  return queue.file({header.time, header.unit, header.sequence_count}, message.value());
+}
+
+}  // namespace
+
+Status Inbox::receive(std::span<const std::uint8_t> bytes) {
+  const Result<PacketView> packet = packets::parse_packet(bytes);
+  const Status status = packet.ok() ? file(packet.value()) : packet.status();
+  count(status);
+  return status;
+}
+
+Status Inbox::file(const PacketView& packet) {
+  if (packet.header.spacecraft != spacecraft_) return Status::kInvalidArgument;
+  switch (packet.header.apid) {
+    case Apid::kTick: {
+      const Result<tick> message = packets::decode<tick>(packet);
+      if (!message.ok()) return message.status();
+      if (message.value().period_ns <= 0) return Status::kOutOfRange;
+      step_period_ = {message.value().period_ns};
+      return Status::kOk;
+    }
+    case Apid::kIdealNavigation: return decode_and_file(packet, ideal_navigation_);
+    case Apid::kExecutedManeuver: return decode_and_file(packet, executed_maneuvers_);
+    case Apid::kWaypointTable: return decode_and_file(packet, waypoint_tables_);
+    case Apid::kGncConfiguration: return decode_and_file(packet, configurations_);
+    case Apid::kModeCommand: return decode_and_file(packet, mode_commands_);
+    case Apid::kManeuverCommand:
+    case Apid::kTelemetryNavigation:
+    case Apid::kTelemetryControl:
+    case Apid::kTelemetryHealth:
+    case Apid::kStepReport: break;
+  }
+  return Status::kWrongType;
+}
+
+void Inbox::count(Status status) {
+  switch (status) {
+    case Status::kOk: ++counters_.accepted; break;
+    case Status::kBadChecksum: ++counters_.rejected_checksum; break;
+    case Status::kWrongType: ++counters_.rejected_type; break;
+    case Status::kTooShort:
+    case Status::kTooLong: ++counters_.rejected_length; break;
+    case Status::kNotFinite:
+    case Status::kOutOfRange: ++counters_.rejected_content; break;
+    case Status::kFull: ++counters_.dropped_full; break;
+    case Status::kBadSequence:
+    case Status::kInvalidArgument:
+    case Status::kDidNotConverge:
+    case Status::kSingular:
+    case Status::kUnsafe:
+    case Status::kNotReady: ++counters_.rejected_other; break;
+  }
+}
+
+void Inbox::clear() {
+  ideal_navigation_.clear();
+  executed_maneuvers_.clear();
+  waypoint_tables_.clear();
+  configurations_.clear();
+  mode_commands_.clear();
+}
+
+}  // namespace vbar::fsw::gnc

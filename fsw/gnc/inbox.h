@@ -1,0 +1,77 @@
+#pragma once
+// receive: decode, check and file each packet by its time tag. Nothing else happens to a packet until the step.
+
+#include <cstdint>
+#include <span>
+
+#include "fsw/core/result.h"
+#include "fsw/core/time_ordered_queue.h"
+#include "fsw/packets/messages.h"
+
+namespace vbar::fsw::gnc {
+
+/// What happened to the packets so far; telemetry carries it.
+struct PacketCounters {
+  std::int32_t accepted = 0;
+  std::int32_t rejected_checksum = 0;
+  std::int32_t rejected_type = 0;     ///< APID unknown or not for flight, or type hash of another message
+  std::int32_t rejected_length = 0;
+  std::int32_t rejected_content = 0;  ///< NaN, infinity, or a value no field of the message may have
+  std::int32_t rejected_time = 0;     ///< time tag after the step, or not after what is already known
+  std::int32_t rejected_other = 0;    ///< another spacecraft's, or filed already
+  std::int32_t dropped_full = 0;      ///< its queue was full: the newest is dropped
+};
+
+/// Packets of the coming step. A queue that is full refuses the newest packet.
+class Inbox {
+ public:
+  static constexpr std::size_t kMeasurements = 64;
+  static constexpr std::size_t kManeuvers = 32;
+  static constexpr std::size_t kTelecommands = 4;
+
+  explicit Inbox(std::uint8_t spacecraft) : spacecraft_(spacecraft) {}
+
+  /// Takes one packet; the status says why one was refused. Never reads past `bytes`.
+  Status receive(std::span<const std::uint8_t> bytes);
+
+  /// Counts an entry that turned out to be unusable at the step (late, of the future).
+  void count_unusable_time() { ++counters_.rejected_time; }
+
+  /// Counts a telecommand whose content the step refused.
+  void count_bad_content() { ++counters_.rejected_content; }
+
+  /// Forgets everything filed, at the end of a step.
+  void clear();
+
+  [[nodiscard]] const PacketCounters& counters() const { return counters_; }
+  [[nodiscard]] const TimeOrderedQueue<ideal_navigation, kMeasurements>& ideal_navigation_states() const {
+    return ideal_navigation_;
+  }
+  [[nodiscard]] const TimeOrderedQueue<executed_maneuver, kManeuvers>& executed_maneuvers() const {
+    return executed_maneuvers_;
+  }
+  [[nodiscard]] const TimeOrderedQueue<waypoint_table, kTelecommands>& waypoint_tables() const {
+    return waypoint_tables_;
+  }
+  [[nodiscard]] const TimeOrderedQueue<gnc_configuration, kTelecommands>& configurations() const {
+    return configurations_;
+  }
+  [[nodiscard]] const TimeOrderedQueue<mode_command, kTelecommands>& mode_commands() const { return mode_commands_; }
+  /// Time from the last tick to the next one; 0 before the first tick.
+  [[nodiscard]] Duration step_period() const { return step_period_; }
+
+ private:
+  Status file(const packets::PacketView& packet);
+  void count(Status status);
+
+  std::uint8_t spacecraft_;
+  PacketCounters counters_;
+  Duration step_period_;
+  TimeOrderedQueue<ideal_navigation, kMeasurements> ideal_navigation_;
+  TimeOrderedQueue<executed_maneuver, kManeuvers> executed_maneuvers_;
+  TimeOrderedQueue<waypoint_table, kTelecommands> waypoint_tables_;
+  TimeOrderedQueue<gnc_configuration, kTelecommands> configurations_;
+  TimeOrderedQueue<mode_command, kTelecommands> mode_commands_;
+};
+
+}  // namespace vbar::fsw::gnc

@@ -1,0 +1,53 @@
+#pragma once
+// Packets out: headers, sequence counts, the sink. The only door of the flight software to the outside.
+
+#include <array>
+#include <cstdint>
+
+#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/packets/messages.h"
+
+namespace vbar::fsw::gnc {
+
+class Outbox {
+ public:
+  Outbox(std::uint8_t spacecraft, vbar_packet_sink sink, void* context)
+      : spacecraft_(spacecraft), sink_(sink), context_(context) {}
+
+  void set_sink(vbar_packet_sink sink, void* context) {
+    sink_ = sink;
+    context_ = context;
+  }
+
+  /// Encodes and emits a message. A message with a NaN or infinity is dropped and counted: the contract carries none.
+  template <class Message>
+  void send(GpsTime time, const Message& message) {
+    packets::PacketHeader header;
+    header.time = time;
+    header.spacecraft = spacecraft_;
+    std::uint16_t& count = sequence_count_[sequence_slot(packets::MessageTraits<Message>::kApid)];
+    header.sequence_count = count;
+    std::array<std::uint8_t, packets::kMaxPacketBytes> buffer;
+    const Result<std::size_t> size = packets::encode(header, message, buffer);
+    if (!size.ok()) {
+      ++dropped_;
+      return;
+    }
+    count = static_cast<std::uint16_t>((count + 1U) & 0x3FFFU);
+    sink_(context_, buffer.data(), size.value());
+  }
+
+  [[nodiscard]] std::int32_t dropped() const { return dropped_; }
+
+ private:
+  static std::size_t sequence_slot(packets::Apid apid);
+
+  static constexpr std::size_t kSlots = 4;  ///< kinds of message the flight software sends
+  std::uint8_t spacecraft_;
+  vbar_packet_sink sink_;
+  void* context_;
+  std::array<std::uint16_t, kSlots> sequence_count_{};
+  std::int32_t dropped_ = 0;
+};
+
+}  // namespace vbar::fsw::gnc

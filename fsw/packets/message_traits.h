@@ -1,0 +1,61 @@
+#pragma once
+// Which messages are packets: the compile-time list, the APID of each, and whether its numbers are finite.
+// A new message is a struct in vbar.lcm, an APID in packet.h, a line in VBAR_FOR_EACH_MESSAGE and an overload of
+// all_finite.
+
+#include <vbar/executed_maneuver.hpp>
+#include <vbar/gnc_configuration.hpp>
+#include <vbar/ideal_navigation.hpp>
+#include <vbar/maneuver_command.hpp>
+#include <vbar/mode_command.hpp>
+#include <vbar/step_report.hpp>
+#include <vbar/telemetry_control.hpp>
+#include <vbar/telemetry_health.hpp>
+#include <vbar/telemetry_navigation.hpp>
+#include <vbar/tick.hpp>
+#include <vbar/waypoint_table.hpp>
+
+#include "fsw/packets/packet.h"
+
+/// Expands X(message type, Apid enumerator) for every message that travels as a packet.
+#define VBAR_FOR_EACH_MESSAGE(X)                        \
+  X(::vbar::tick, kTick)                                \
+  X(::vbar::ideal_navigation, kIdealNavigation)         \
+  X(::vbar::executed_maneuver, kExecutedManeuver)       \
+  X(::vbar::waypoint_table, kWaypointTable)             \
+  X(::vbar::gnc_configuration, kGncConfiguration)       \
+  X(::vbar::mode_command, kModeCommand)                 \
+  X(::vbar::maneuver_command, kManeuverCommand)         \
+  X(::vbar::telemetry_navigation, kTelemetryNavigation) \
+  X(::vbar::telemetry_control, kTelemetryControl)       \
+  X(::vbar::telemetry_health, kTelemetryHealth)         \
+  X(::vbar::step_report, kStepReport)
+
+namespace vbar::fsw::packets {
+
+/// MessageTraits<M>::kApid for every message that is a packet; undefined for any other type.
+template <class Message>
+struct MessageTraits;
+
+#define VBAR_MESSAGE(type, enumerator)                              \
+  template <>                                                       \
+  struct MessageTraits<type> {                                      \
+    static constexpr Apid kApid = Apid::enumerator;                 \
+  };                                                                \
+  /** False if any floating-point field is a NaN or an infinity. */ \
+  [[nodiscard]] bool all_finite(const type& message);
+VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)
+#undef VBAR_MESSAGE
+
+/// Calls visit.template operator()<Message>() for every message that is a packet.
+template <class Visitor>
+constexpr void for_each_message(Visitor&& visit) {
+#define VBAR_MESSAGE(type, enumerator) visit.template operator()<type>();
+  VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)
+#undef VBAR_MESSAGE
+}
+
+/// The message's name as vbar.lcm has it (also its LCM type name); null for an APID that carries none.
+[[nodiscard]] const char* message_name(Apid apid);
+
+}  // namespace vbar::fsw::packets

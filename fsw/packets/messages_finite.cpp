@@ -1,0 +1,81 @@
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "fsw/packets/message_traits.h"
+
+namespace vbar::fsw::packets {
+namespace {
+
+/// By the bits: no compiler option for fast mathematics can make this always true.
+bool finite(double value) {
+  constexpr std::uint64_t kExponentMask = 0x7FF0'0000'0000'0000U;
+  return (std::bit_cast<std::uint64_t>(value) & kExponentMask) != kExponentMask;
+}
+
+template <std::size_t kSize>
+bool finite(const double (&values)[kSize]) {
+  for (const double value : values) {
+    if (!finite(value)) return false;
+  }
+  return true;
+}
+
+template <class... Fields>
+bool finite_fields(const Fields&... fields) {
+  return (finite(fields) && ...);
+}
+
+}  // namespace
+
+bool all_finite(const tick& /*message*/) {
+  return true;
+}
+
+bool all_finite(const ideal_navigation& m) {
+  return finite_fields(m.servicer_position_eci, m.servicer_velocity_eci, m.target_position_eci, m.target_velocity_eci);
+}
+
+bool all_finite(const executed_maneuver& m) {
+  return finite(m.dv_rtn);
+}
+
+bool all_finite(const waypoint_table& m) {
+  for (const waypoint& w : m.waypoints) {
+    if (!finite(w.a_roe_m)) return false;
+  }
+  return finite(m.reference_semi_major_axis_m);
+}
+
+bool all_finite(const gnc_configuration& m) {
+  return finite_fields(m.minimum_dv, m.maximum_dv, m.roe_error_threshold_m, m.keep_out_radius_m, m.safety_horizon_s,
+                       m.station_keeping_deadband_m, m.navigation_timeout_s);
+}
+
+bool all_finite(const mode_command& /*message*/) {
+  return true;
+}
+
+bool all_finite(const maneuver_command& m) {
+  return finite(m.dv_rtn);
+}
+
+bool all_finite(const telemetry_navigation& m) {
+  return finite_fields(m.age_s, m.servicer_position_eci, m.servicer_velocity_eci, m.relative_position_rtn,
+                       m.relative_velocity_rtn, m.sigma_rtn, m.a_roe_mean_m);
+}
+
+bool all_finite(const telemetry_control& m) {
+  return finite_fields(m.a_roe_desired_m, m.predicted_a_roe_error_m, m.planned_dv, m.passive_safety_distance_m,
+                       m.commanded_dv);
+}
+
+bool all_finite(const telemetry_health& /*message*/) {
+  return true;
+}
+
+bool all_finite(const step_report& /*message*/) {
+  return true;
+}
+
+}  // namespace vbar::fsw::packets

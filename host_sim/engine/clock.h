@@ -1,0 +1,76 @@
+#pragma once
+// How simulated time relates to the wall: lock-step (as fast as possible; simulated time waits for everybody) or real
+// time (paced by the wall clock, with a speed factor). The clock changes when things happen on the wall, never what
+// happens: both modes and every speed factor give the same run.
+//
+// In real time it keeps the books on lateness, one cause a column, because each has another remedy:
+//   step late         the flight computer's own computing exceeded its budget
+//   link late         what the exchange of a step took beyond the computing exceeded the link's budget
+//   woke late         the operating system gave the processor back later than asked
+//   simulation late   this program was still busy (truth, renderer, testbed) when the next step was due
+// A late step is not skipped: the schedule stays, and the run catches up.
+
+#include <cstdint>
+#include <functional>
+
+#include "fsw/core/gps_time.h"
+#include "host_sim/engine/wall_clock.h"
+
+namespace vbar::engine {
+
+enum class ClockMode { kLockStep, kRealTime };
+
+struct ClockSettings {
+  ClockMode mode = ClockMode::kLockStep;
+  double speed_factor = 1.0;  ///< real time: simulated seconds a wall second, > 0
+  fsw::Duration compute_budget =
+      fsw::duration_of_seconds(1);                          ///< simulated time; on the wall divided by the speed factor
+  fsw::Duration link_budget = fsw::duration_of_seconds(1);  ///< as compute_budget
+  WallClock::Span wake_tolerance = std::chrono::milliseconds(2);  ///< waking up to this late is not counted
+};
+
+struct Lateness {
+  std::uint64_t count = 0;
+  WallClock::Span worst{0};  ///< wall time beyond the budget, the tolerance included where there is one
+};
+
+struct DeadlineReport {
+  std::uint64_t steps = 0;  ///< steps begun
+  Lateness step_late;
+  Lateness link_late;
+  Lateness woke_late;
+  Lateness simulation_late;
+};
+
+class RunClock {
+ public:
+  /// `wall` must outlive the clock.
+  RunClock(const ClockSettings& settings, WallClock& wall);
+
+  /// Ties the simulated `time` to the wall's present. To be called before the first step.
+  void start(fsw::GpsTime time);
+
+  /// Waits until the step at `time` is due; in lock-step at once. False if `stop_requested` (asked about ten times a
+  /// second, may be empty) said so before.
+  bool begin_step(fsw::GpsTime time, const std::function<bool()>& stop_requested = {});
+
+  /// Books the exchange of the step: wall time from the first packet out to the last packet in, and how much of it the
+  /// flight computer spent computing.
+  void end_exchange(WallClock::Span round_trip, WallClock::Span compute);
+
+  [[nodiscard]] const DeadlineReport& report() const { return report_; }
+
+ private:
+  [[nodiscard]] WallClock::Span on_the_wall(fsw::Duration simulated) const;
+  bool sleep_until(WallClock::Span due, const std::function<bool()>& stop_requested);
+
+  ClockSettings settings_;
+  WallClock& wall_;
+  fsw::GpsTime start_;
+  WallClock::Span wall_start_{0};
+  WallClock::Span arrears_{0};  ///< how late the last step began
+  bool exchange_late_ = false;  ///< the last exchange exceeded a budget: the delay it causes is booked already
+  DeadlineReport report_;
+};
+
+}  // namespace vbar::engine

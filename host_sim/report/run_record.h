@@ -1,0 +1,109 @@
+#pragma once
+// What a run leaves behind, as rows: filled while the mission flies, written to the run folder, read back for the report.
+// SI units; frames in the names; ROE are mean, times the reference semi-major axis.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vbar::report {
+
+using Triple = std::array<double, 3>;
+using Sextuple = std::array<double, 6>;
+
+/// Truth at a step (truth.csv).
+struct TruthRow {
+  double time_s = 0.0;  ///< since the start of the mission
+  Triple servicer_position_eci{}, servicer_velocity_eci{};
+  Triple target_position_eci{}, target_velocity_eci{};
+  Triple relative_position_rtn{}, relative_velocity_rtn{};  ///< target in the servicer's RTN
+  Sextuple a_roe_mean_m{};
+};
+
+/// What the flight software said of itself at a step (estimate.csv).
+struct EstimateRow {
+  double time_s = 0.0;
+  std::int64_t step = 0;
+  int navigation_source = 0, navigation_valid = 0;
+  Triple relative_position_rtn{}, relative_velocity_rtn{};
+  Sextuple sigma_rtn{};
+  Sextuple a_roe_mean_m{}, a_roe_desired_m{}, predicted_a_roe_error_m{};
+  int mode = 0, active_solver = -1, waypoint_index = -1, planned_burns = 0;
+  int koenig_damico_status = 0, closed_form_status = 0, least_squares_status = 0, safety_status = 0;
+  double planned_dv_mps = 0.0, passive_safety_distance_m = 0.0, commanded_dv_mps = 0.0;
+  std::uint64_t step_cost = 0;  ///< instructions or cycles, 0 where the target cannot count them
+  std::uint32_t stack_bytes = 0;
+};
+
+/// A maneuver from command to execution (maneuvers.csv).
+struct ManeuverRow {
+  int maneuver_id = 0, waypoint_index = -1, solver = -1;
+  double command_time_s = 0.0, execution_time_s = 0.0;
+  bool accepted = false;
+  Triple commanded_dv_rtn_mps{}, executed_dv_rtn_mps{};
+};
+
+/// A residual of navigation (residuals.csv); none with ideal navigation.
+struct ResidualRow {
+  double time_s = 0.0;
+  std::string sensor;
+  double prefit = 0.0, postfit = 0.0, sigma = 0.0;
+};
+
+/// A waypoint of the table and how it was met (waypoints.csv).
+struct WaypointRow {
+  int index = 0;
+  double time_s = 0.0;
+  Sextuple a_roe_desired_m{}, a_roe_actual_m{};
+  Triple desired_position_rtn{}, actual_position_rtn{};
+  double control_error_m = 0.0;
+  std::optional<double> navigation_error_m, navigation_velocity_error_mps;
+  double leg_dv_mps = 0.0, cumulative_dv_mps = 0.0;
+  int leg_maneuvers = 0;
+};
+
+struct MeanAndDeviation {
+  double mean = 0.0, std = 0.0;
+};
+
+/// summary.json.
+struct Summary {
+  std::string mission;
+  std::uint64_t seed = 0;
+  bool complete = false;
+  std::string incomplete_reason;
+  std::string flight_computer, flight_software, camera, gnss, navigation;
+  double simulated_s = 0.0, wall_s = 0.0, speed_factor = 0.0;
+  std::optional<MeanAndDeviation> navigation_error_m, navigation_velocity_error_mps, attitude_error_deg;
+  double dv_mps = 0.0;
+  int maneuvers = 0;
+  std::string commands_sha256, telemetry_sha256;
+  struct FlightStep {
+    std::uint64_t count = 0, max = 0;
+    double mean = 0.0;
+    std::string unit = "none";
+    std::uint32_t stack_bytes_max = 0;
+  } flight_step;
+  struct Link {
+    std::uint64_t bytes = 0, frames_resent = 0, frames_rejected = 0, frames_duplicated = 0, strangers_ignored = 0;
+  } link;
+  struct Deadlines {
+    std::uint64_t compute_overruns = 0, wakeups_late = 0, link_late = 0;
+  } deadlines;
+  struct WallShare {
+    double truth_s = 0.0, flight_s = 0.0, link_s = 0.0, other_s = 0.0;
+  } wall_share;
+};
+
+struct RunRecord {
+  Summary summary;
+  std::vector<WaypointRow> waypoints;
+  std::vector<TruthRow> truth;
+  std::vector<EstimateRow> estimates;
+  std::vector<ManeuverRow> maneuvers;
+  std::vector<ResidualRow> residuals;
+};
+
+}  // namespace vbar::report
