@@ -35,6 +35,39 @@ bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
   return true;
 }
 
+bool is_safe(const Result<safety::PlanSafety>& verdict) { return verdict.ok() && verdict.value().safe; }
+
+/// How far the estimate may be off: three sigma of position, and of the drift along track that da leaves open.
+safety::PositionBound three_sigma(const Vector6& sigma_rtn, double sigma_a_da_m, const orbit::QnsElements& servicer_mean) {
+  safety::PositionBound bound;
+  bound.radial_normal = 3.0 * math::hypot(sigma_rtn(0), sigma_rtn(2));
+  bound.along_track = 3.0 * sigma_rtn(1);
+  bound.along_track_rate = 3.0 * 1.5 * orbit::mean_motion(servicer_mean.a) * sigma_a_da_m;
+  return bound;
+}
+
+void drop_burns_before(Plan& plan, GpsTime time) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < plan.count; ++k) {
+    if (plan.burns[k].time >= time) plan.burns[kept++] = plan.burns[k];
+  }
+  plan.count = kept;
+}
+
+void remove_first(Plan& plan) {
+  for (std::size_t k = 1; k < plan.count; ++k) plan.burns[k - 1] = plan.burns[k];
+  --plan.count;
+}
+
+/// First the burns commanded already, then those only planned; both in order of time, the former all earlier.
+Plan joined(const Plan& pending, const Plan& planned) {
+  Plan all = pending;
+  for (std::size_t k = 0; k < planned.count && all.count < control::kMaxBurns; ++k) {
+    all.burns[all.count++] = planned.burns[k];
+  }
+  return all;
+}
+
 }  // namespace
 
 void Guidance::assess(GpsTime now, const Navigation& navigation, const Management& management) {
@@ -54,10 +87,10 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   orbits_ = {now, servicer.value(), target.value()};
   report_.roe = orbit::roe_from_qns(orbits_.servicer, orbits_.target);
   sigma_a_roe_m_ = navigation.sigma_a_roe_m(orbits_.servicer);
-  sigma_position_ = state.sigma_rtn.head<3>().maxCoeff();
+  position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m_(0), servicer.value());
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
-  const safety::PlanSafety drift = safety_of(pending_, configuration);
-  report_.passive_safety_distance = drift.least_distance;
+  const Result<safety::PlanSafety> drift = safety_of({}, configuration);
+  if (drift.ok()) report_.passive_safety_distance = drift.value().least_distance;
 }
 
 void Guidance::update(GpsTime now, Duration period, const Navigation& navigation, const Management& management) {
@@ -145,7 +178,7 @@ bool Guidance::keeps_plan(const gnc_configuration& configuration) {
   if (!error.ok()) return false;
   report_.predicted_roe_error = error.value();
   const bool arrives = arrives_well_enough(plan_, error.value(), configuration);
-  return arrives && safety_of(plan_, configuration).safe;
+  return arrives && is_safe(safety_of(plan_, configuration));
 }
 
 bool Guidance::adopt_if_flyable(Solver solver, const Result<Plan>& candidate, const gnc_configuration& configuration) {
@@ -156,16 +189,16 @@ bool Guidance::adopt_if_flyable(Solver solver, const Result<Plan>& candidate, co
   }
   const Result<Vector6> error = arrival_error_of(candidate.value());
   if (!error.ok()) return false;
-  const safety::PlanSafety verdict = safety_of(candidate.value(), configuration);
-  report_.safety = verdict.safe ? Status::kOk : Status::kUnsafe;
-  if (!verdict.safe) {
+  const Result<safety::PlanSafety> verdict = safety_of(candidate.value(), configuration);
+  report_.safety = verdict.ok() && !verdict.value().safe ? Status::kUnsafe : verdict.status();
+  if (!is_safe(verdict)) {
     ++report_.plans_unsafe;
     return false;
   }
   plan_ = candidate.value();
   report_.active_solver = solver;
   report_.predicted_roe_error = error.value();
-  report_.passive_safety_distance = verdict.least_distance;
+  report_.passive_safety_distance = verdict.value().least_distance;
   return true;
 }
 
@@ -185,6 +218,36 @@ Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configurati
     case Solver::kNone: break;
   }
   return Status::kInvalidArgument;
+}
+
+/// Where the commanded burns and those of `candidate` lead, dimensionless mean ROE wanted minus reached.
+Result<Vector6> Guidance::arrival_error_of(const Plan& candidate) const {
+  const Plan all = joined(pending_, candidate);
+  return control::arrival_error(orbits_, burns_of(all), {goal_.time, goal_.roe});
+}
+
+Result<safety::PlanSafety> Guidance::safety_of(const Plan& candidate, const gnc_configuration& configuration) const {
+  const Plan all = joined(pending_, candidate);
+  const safety::SafetyCriterion criterion{configuration.keep_out_radius_m, configuration.safety_horizon_s,
+                                          position_bound_};
+  return safety::assess_plan(orbits_.epoch, orbits_.servicer, report_.roe, all, criterion);
+}
+
+/// New burns come after the latency and after everything commanded.
+GpsTime Guidance::earliest_start() const {
+  if (pending_.count == 0) return earliest_burn_;
+  const GpsTime after_pending = pending_.burns[pending_.count - 1].time + Duration{1};
+  return after_pending > earliest_burn_ ? after_pending : earliest_burn_;
+}
+
+Status& Guidance::status_of(Solver solver) {
+  switch (solver) {
+    case Solver::kClosedForm: return report_.closed_form;
+    case Solver::kKoenigDamico: return report_.koenig_damico;
+    case Solver::kLeastSquares:
+    case Solver::kNone: break;
+  }
+  return report_.least_squares;
 }
 
 /// Commanded burns that have been flown by now are history; the state knows them.

@@ -69,7 +69,9 @@ class Guidance {
   Result<control::Plan> solve(control::Solver solver, const gnc_configuration& configuration);
   Result<control::Plan> correct(const gnc_configuration& configuration);
   Status& status_of(control::Solver solver);
-  safety::PlanSafety safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
+  Result<safety::PlanSafety> safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
+  Result<Vector6> arrival_error_of(const control::Plan& candidate) const;
+  GpsTime earliest_start() const;
   void forget_past_burns(GpsTime now);
   void commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration);
 
@@ -77,8 +79,8 @@ class Guidance {
   bool situation_known_ = false;
   GpsTime earliest_burn_;
   control::MeanOrbits orbits_;
-  Vector6 sigma_a_roe_m_ = Vector6::Zero();
-  double sigma_position_ = 0.0;  ///< 1 sigma of the relative position, the largest of R, T, N, m
+  Vector6 sigma_a_roe_m_ = Vector6::Zero();  ///< 1 sigma, m
+  safety::PositionBound position_bound_;     ///< 3 sigma
 
   Waypoint goal_;
   bool has_goal_ = false;
