@@ -109,8 +109,11 @@ def main():
 
         examples = json.loads(ask(tool, "packets")[0])
         for example in examples:
-            payload = bytes.fromhex(example["packet"])[HEADER_BYTES:-CRC_BYTES]
+            packet = bytes.fromhex(example["packet"])
+            payload = packet[HEADER_BYTES:-CRC_BYTES]
             name = example["message"]
+            expect(struct.unpack(">qBB", packet[6:HEADER_BYTES]) ==
+                   (example["time_ns"], example["spacecraft"], example["unit"]), f"secondary header of {packet.hex()}")
             check_fields(getattr(types, name).decode(payload), example["fields"], name)
 
         apids = json.loads(ask(tool, "apids")[0])
