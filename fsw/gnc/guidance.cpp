@@ -2,6 +2,9 @@
 
 #include <span>
 
+#include "fsw/control/closed_form.h"
+#include "fsw/control/correction.h"
+#include "fsw/control/least_squares.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
@@ -154,7 +157,7 @@ bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configurati
 void Guidance::decide(const gnc_configuration& configuration) {
   if (goal_.time <= earliest_burn_) return;  // nothing can be done about this waypoint any more
   if (keeps_plan(configuration)) return;
-  if (plan_.count > 0 && adopt_if_flyable(plan_.solver, correct(configuration), configuration)) return;
+  if (plan_.count > 0 && adopt_if_flyable(plan_.solver, control::correct_plan(orbits_, pending_, plan_, waypoint()), configuration)) return;
 
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 &&
                           sigma_a_roe_m_.maxCoeff() > configuration.roe_error_threshold_m;
@@ -170,6 +173,15 @@ void Guidance::decide(const gnc_configuration& configuration) {
   ++report_.holds;
 }
 
+/// Tolerances of the arrival: what an orbit of corrections would gain is not worth more burns. The fuel-optimal solver of the
+/// close range replans at no cost in fuel, so it is held to millimetres.
+bool Guidance::arrives_well_enough(const Vector6& roe_error) const {
+  const bool far = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
+  const double tolerance = (far ? 0.3 : 0.003) + sigma_a_roe_m_.maxCoeff();
+  const Result<double> distance = control::arrival_distance(orbits_, waypoint(), roe_error);
+  return distance.ok() && distance.value() <= tolerance;
+}
+
 /// A plan that still arrives well enough and is still safe stays: planning anew at every decision chases noise and, with
 /// burn opportunities coming and going, costs up to three times the fuel.
 bool Guidance::keeps_plan(const gnc_configuration& configuration) {
@@ -177,8 +189,7 @@ bool Guidance::keeps_plan(const gnc_configuration& configuration) {
   const Result<Vector6> error = arrival_error_of(plan_);
   if (!error.ok()) return false;
   report_.predicted_roe_error = error.value();
-  const bool arrives = arrives_well_enough(plan_, error.value(), configuration);
-  return arrives && is_safe(safety_of(plan_, configuration));
+  return arrives_well_enough(error.value()) && is_safe(safety_of(plan_, configuration));
 }
 
 bool Guidance::adopt_if_flyable(Solver solver, const Result<Plan>& candidate, const gnc_configuration& configuration) {
@@ -205,7 +216,7 @@ bool Guidance::adopt_if_flyable(Solver solver, const Result<Plan>& candidate, co
 Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configuration) {
   const GpsTime start = earliest_start();
   const Result<control::ControlProblem> problem =
-      control::remaining_problem(orbits_, burns_of(pending_), start, {goal_.time, goal_.roe});
+      control::remaining_problem(orbits_, burns_of(pending_), start, waypoint());
   if (!problem.ok()) return problem.status();
   switch (solver) {
     case Solver::kClosedForm: return control::solve_closed_form(problem.value());
@@ -223,7 +234,7 @@ Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configurati
 /// Where the commanded burns and those of `candidate` lead, dimensionless mean ROE wanted minus reached.
 Result<Vector6> Guidance::arrival_error_of(const Plan& candidate) const {
   const Plan all = joined(pending_, candidate);
-  return control::arrival_error(orbits_, burns_of(all), {goal_.time, goal_.roe});
+  return control::arrival_error(orbits_, burns_of(all), waypoint());
 }
 
 Result<safety::PlanSafety> Guidance::safety_of(const Plan& candidate, const gnc_configuration& configuration) const {
