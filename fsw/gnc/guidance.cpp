@@ -157,7 +157,7 @@ bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configurati
 void Guidance::decide(const gnc_configuration& configuration) {
   if (goal_.time <= earliest_burn_) return;  // nothing can be done about this waypoint any more
   if (keeps_plan(configuration)) return;
-  if (plan_.count > 0 && adopt_if_flyable(plan_.solver, control::correct_plan(orbits_, pending_, plan_, waypoint()), configuration)) return;
+  if (adopt_correction(configuration)) return;
 
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 &&
                           sigma_a_roe_m_.maxCoeff() > configuration.roe_error_threshold_m;
@@ -165,7 +165,7 @@ void Guidance::decide(const gnc_configuration& configuration) {
   for (std::size_t k = 0; k < ladder.count; ++k) {
     const Result<Plan> candidate = solve(ladder.solvers[k], configuration);
     status_of(ladder.solvers[k]) = candidate.status();
-    if (adopt_if_flyable(ladder.solvers[k], candidate, configuration)) return;
+    if (candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration)) return;
     ++report_.solver_fallbacks;
   }
   plan_ = {};
@@ -192,22 +192,40 @@ bool Guidance::keeps_plan(const gnc_configuration& configuration) {
   return arrives_well_enough(error.value()) && is_safe(safety_of(plan_, configuration));
 }
 
-bool Guidance::adopt_if_flyable(Solver solver, const Result<Plan>& candidate, const gnc_configuration& configuration) {
-  if (!candidate.ok()) return false;
-  if (!is_flyable(candidate.value(), configuration)) {
-    status_of(solver) = Status::kOutOfRange;
+/// The burns that are left, changed a little, if that is enough to arrive: cheaper than a new plan.
+bool Guidance::adopt_correction(const gnc_configuration& configuration) {
+  if (plan_.count == 0) return false;
+  const Result<Plan> corrected = control::correct_plan(orbits_, pending_, plan_, waypoint());
+  if (!corrected.ok()) return false;
+  const Result<Vector6> error = arrival_error_of(corrected.value());
+  return error.ok() && arrives_well_enough(error.value()) && adopt_if_flyable(corrected.value(), configuration);
+}
+
+/// Solvers are linear; what the true geometry leaves of the error is taken out of their burns, where these can.
+Plan Guidance::refined(const Plan& candidate) const {
+  const Result<Plan> corrected = control::correct_plan(orbits_, pending_, candidate, waypoint());
+  if (!corrected.ok()) return candidate;
+  const Result<Vector6> before = arrival_error_of(candidate);
+  const Result<Vector6> after = arrival_error_of(corrected.value());
+  if (!before.ok() || !after.ok() || after.value().norm() >= before.value().norm()) return candidate;
+  return corrected.value();
+}
+
+bool Guidance::adopt_if_flyable(const Plan& candidate, const gnc_configuration& configuration) {
+  if (!is_flyable(candidate, configuration)) {
+    status_of(candidate.solver) = Status::kOutOfRange;
     return false;
   }
-  const Result<Vector6> error = arrival_error_of(candidate.value());
+  const Result<Vector6> error = arrival_error_of(candidate);
   if (!error.ok()) return false;
-  const Result<safety::PlanSafety> verdict = safety_of(candidate.value(), configuration);
+  const Result<safety::PlanSafety> verdict = safety_of(candidate, configuration);
   report_.safety = verdict.ok() && !verdict.value().safe ? Status::kUnsafe : verdict.status();
   if (!is_safe(verdict)) {
     ++report_.plans_unsafe;
     return false;
   }
-  plan_ = candidate.value();
-  report_.active_solver = solver;
+  plan_ = candidate;
+  report_.active_solver = candidate.solver;
   report_.predicted_roe_error = error.value();
   report_.passive_safety_distance = verdict.value().least_distance;
   return true;

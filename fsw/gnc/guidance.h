@@ -66,8 +66,9 @@ class Guidance {
   void decide(const gnc_configuration& configuration);
   bool arrives_well_enough(const Vector6& roe_error) const;
   bool keeps_plan(const gnc_configuration& configuration);
-  bool adopt_if_flyable(control::Solver solver, const Result<control::Plan>& candidate,
-                        const gnc_configuration& configuration);
+  bool adopt_correction(const gnc_configuration& configuration);
+  bool adopt_if_flyable(const control::Plan& candidate, const gnc_configuration& configuration);
+  control::Plan refined(const control::Plan& candidate) const;
   Result<control::Plan> solve(control::Solver solver, const gnc_configuration& configuration);
   control::Waypoint waypoint() const { return {goal_.time, goal_.roe}; }
   Status& status_of(control::Solver solver);
