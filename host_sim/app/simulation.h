@@ -78,7 +78,11 @@ class Simulation {
 
   void schedule(fsw::GpsTime time, Event event);
   void schedule_the_known();
-  void send_to_flight(std::vector<pil::Packet> packets);
+  void schedule_measurement(fsw::GpsTime from);
+  twins::Measurement measure_now();
+  [[nodiscard]] std::vector<twins::SpacecraftTruth> all_truth() const;
+  void send_to_flight(pil::Packet packet, fsw::GpsTime sent);
+  void report_execution(const twins::Execution& execution);
   void queue_telecommands();
   void take_commands(const pil::StepResult& answer);
   [[nodiscard]] pil::Packet make_tick();
