@@ -1,7 +1,8 @@
 #include "fsw/control/primer.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include <Eigen/Cholesky>
 
 #include "fsw/control/primer_extract.h"
 #include "fsw/math/math.h"
@@ -10,12 +11,12 @@ namespace vbar::fsw::control {
 namespace {
 
 constexpr std::size_t kCoarseTimes = 12;
-constexpr std::size_t kMaxAdded = 10;      ///< impulses that join the active set at once
-constexpr double kMinPivot = 1e-13;        ///< of the equilibrated gramian: below, the times do not span the state space
-constexpr double kMinSpan = 1e-3;          ///< pivot of the active effects' gramian below which none is dropped
-constexpr double kDropMargin = 0.01;       ///< impulses whose contact is lower than 1 by this leave the active set
-constexpr double kRelativeGap = 1e-9;      ///< of each active set's program
-constexpr double kMaxResidual = 1e-10;     ///< of the impulses found, |target| = 1
+constexpr std::size_t kMaxAdded = 10;   ///< impulses that join the active set at once
+constexpr double kMinPivot = 1e-13;     ///< of the equilibrated gramian: below, the times do not span the state space
+constexpr double kMinSpan = 1e-3;       ///< pivot of the active effects' gramian below which none is dropped
+constexpr double kDropMargin = 0.01;    ///< impulses whose contact is lower than 1 by this leave the active set
+constexpr double kRelativeGap = 1e-9;   ///< of each active set's program
+constexpr double kMaxResidual = 1e-10;  ///< of the impulses found, |target| = 1
 
 /// The state in which the coarse times' gramian is the identity and |target| = 1.
 struct Scaling {
@@ -43,8 +44,8 @@ void add_impulse(const ImpulseGrid& grid, const Scaling& scaling, std::size_t ti
   impulse.axes = axes;
 }
 
-/// Calls visit(index) for the coarse times: both ends and points between them by the golden ratio, whose spacing resonates with
-/// no period of the effects (at half and whole orbits they lose rank). A time may come twice.
+/// Calls visit(index) for the coarse times: both ends and points between them by the golden ratio, whose spacing
+/// resonates with no period of the effects (at half and whole orbits they lose rank). A time may come twice.
 template <class Visit>
 void for_each_coarse_time(std::size_t size, Visit visit) {
   constexpr double kGoldenRatio = 0.6180339887498949;
@@ -60,9 +61,8 @@ void for_each_coarse_time(std::size_t size, Visit visit) {
 /// Whitening of the state by the gramian of the coarse times. kSingular if they do not span it.
 Status make_scaling(const ImpulseGrid& grid, const Vector6& target, Scaling& scaling) {
   Matrix6 gramian = Matrix6::Zero();
-  for_each_coarse_time(grid.effects.size(), [&](std::size_t index) {
-    gramian += grid.effects[index] * grid.effects[index].transpose();
-  });
+  for_each_coarse_time(grid.effects.size(),
+                       [&](std::size_t index) { gramian += grid.effects[index] * grid.effects[index].transpose(); });
   if (!math::is_finite(gramian.sum())) return Status::kNotFinite;
   if (!(gramian.diagonal().minCoeff() > 0.0)) return Status::kSingular;
 
@@ -128,30 +128,41 @@ GridScan scan_grid(const ImpulseGrid& grid, const Vector6& lambda, double thresh
   return scan;
 }
 
-/// True if the effects of the impulses that are active, or nearly so, span the state space.
-bool is_active(const PrimerProgram& program, std::size_t k) {
-  const Vector3 primer = program.active[k].effect.transpose() * program.lambda;
-  return primer.squaredNorm() >= (1.0 - kDropMargin) * (1.0 - kDropMargin);
-}
-
-bool active_impulses_span(const PrimerProgram& program) {
-  Matrix6 gramian = Matrix6::Zero();
-  for (std::size_t k = 0; k < program.count; ++k) {
-    if (is_active(program, k)) gramian += program.active[k].effect * program.active[k].effect.transpose();
-  }
+bool spans(const Matrix6& gramian) {
   const Eigen::LLT<Matrix6> factor(gramian);
   return factor.info() == Eigen::Success && factor.matrixLLT().diagonal().minCoeff() > kMinSpan;
 }
 
-/// Drops what is inactive and adds the peaks of the scan.
-void exchange(const ImpulseGrid& grid, const Scaling& scaling, const GridScan& scan, PrimerProgram& program) {
-  if (active_impulses_span(program)) {
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < program.count; ++k) {
-      if (is_active(program, k)) program.active[kept++] = program.active[k];
-    }
-    program.count = kept;
+/// Drops the impulses whose contact is well below 1, except those without which the others would not span the state
+/// space (lambda would then be free to run away).
+void drop_inactive(PrimerProgram& program) {
+  std::array<bool, kMaxActive> dropped{};
+  Matrix6 kept_gramian = Matrix6::Zero();
+  Matrix6 gramian = Matrix6::Zero();
+  for (std::size_t k = 0; k < program.count; ++k) {
+    const Matrix63& effect = program.active[k].effect;
+    const double contact_squared = (effect.transpose() * program.lambda).squaredNorm();
+    dropped[k] = contact_squared < (1.0 - kDropMargin) * (1.0 - kDropMargin);
+    const Matrix6 own = effect * effect.transpose();
+    gramian += own;
+    if (!dropped[k]) kept_gramian += own;
   }
+  if (!spans(kept_gramian)) {
+    for (std::size_t k = 0; k < program.count; ++k) {
+      if (!dropped[k]) continue;
+      const Matrix6 without = gramian - program.active[k].effect * program.active[k].effect.transpose();
+      dropped[k] = spans(without);
+      if (dropped[k]) gramian = without;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < program.count; ++k) {
+    if (!dropped[k]) program.active[kept++] = program.active[k];
+  }
+  program.count = kept;
+}
+
+void add_peaks(const ImpulseGrid& grid, const Scaling& scaling, const GridScan& scan, PrimerProgram& program) {
   for (std::size_t k = 0; k < scan.peak_count && program.count < kMaxActive; ++k) {
     add_impulse(grid, scaling, scan.peaks[k].time_index, scan.peaks[k].contact.axes, program);
   }
@@ -223,7 +234,8 @@ Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& targ
       store_impulses(grid, program, scaling.target_norm, solution);
       return solution.residual <= kMaxResidual ? Result<PrimerSolution>(solution) : Status::kDidNotConverge;
     }
-    exchange(grid, scaling, scan, program);
+    drop_inactive(program);
+    add_peaks(grid, scaling, scan, program);
     const Status restarted = restart_primer_program(program);
     if (restarted != Status::kOk) return restarted;
   }

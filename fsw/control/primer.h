@@ -1,11 +1,13 @@
 #pragma once
 // Fuel-optimal impulsive control of a linear system over a grid of candidate times (Koenig & D'Amico 2020, IEEE Trans.
-// Automatic Control 66(9), "Fast Algorithm for Fuel-Optimal Impulsive Control of Linear Systems with Time-Varying Cost"):
+// Automatic Control 66(9), "Fast Algorithm for Fuel-Optimal Impulsive Control of Linear Systems with Time-Varying
+// Cost"):
 //
 //     minimise sum_j cost_j(dv_j)   subject to   sum_j G_j dv_j = target,
 //
-// solved through its dual: maximise target' lambda with contact_j(G_j' lambda) <= 1 at every time j. G_j' lambda is the primer
-// vector; impulses happen only where its contact function reaches 1. Knows nothing of orbits: the effects G_j are given.
+// solved through its dual: maximise target' lambda with contact_j(G_j' lambda) <= 1 at every time j. G_j' lambda is the
+// primer vector; impulses happen only where its contact function reaches 1. Knows nothing of orbits: the effects G_j
+// are given.
 
 #include <array>
 #include <cstddef>
@@ -43,8 +45,9 @@ struct Impulse {
 struct PrimerSolution {
   std::array<Impulse, kMaxImpulses> impulses{};
   std::size_t count = 0;
-  double cost = 0.0;                 ///< of the impulses, m/s
-  double lower_bound = 0.0;          ///< no set of impulses on the grid costs less: target' lambda, lambda feasible on all of it
+  double cost = 0.0;  ///< of the impulses, m/s
+  double lower_bound =
+      0.0;  ///< no set of impulses on the grid costs less: target' lambda, lambda feasible on all of it
   Vector6 lambda = Vector6::Zero();  ///< the dual variable behind lower_bound, m/s per unit of state
   double residual = 0.0;             ///< |target - sum G dv| / |target|, in the solver's scaling of the state
   int rounds = 0;                    ///< active sets solved
@@ -56,9 +59,9 @@ struct PrimerWorkspace {
   PrimerProgram program;
 };
 
-/// The impulses that bring about `target` at least cost. A zero target needs none. Errors: kInvalidArgument (settings, sizes),
-/// kNotFinite (a target or an effect), kSingular (the times allowed do not span the state space: none, too few, too
-/// close), kDidNotConverge.
+/// The impulses that bring about `target` at least cost. A zero target needs none. Errors: kInvalidArgument (settings,
+/// sizes), kNotFinite (a target or an effect), kSingular (the times allowed do not span the state space: none, too few,
+/// too close), kDidNotConverge.
 Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& target, const PrimerSettings& settings,
                                     PrimerWorkspace& workspace);
 

@@ -1,8 +1,9 @@
 #include "fsw/control/primer_extract.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
+
+#include <Eigen/Cholesky>
 
 #include "fsw/math/math.h"
 
@@ -10,6 +11,8 @@ namespace vbar::fsw::control {
 namespace {
 
 constexpr std::size_t kDimension = 6;
+constexpr double kRegularisation = 1e-14;
+constexpr int kPasses = 3;
 constexpr double kExact = 1e-13;  ///< residual that rounding leaves with |target| = 1
 
 /// A subset of the program's impulses with new values.
@@ -51,8 +54,8 @@ Vector6 residual_of(const PrimerProgram& program, const Selection& selection) {
   return residual;
 }
 
-/// A vector v != 0 with columns * v = 0 for seven columns in six dimensions: elimination with full pivoting; the columns
-/// left without a pivot are free, the last of them is set to one.
+/// A vector v != 0 with columns * v = 0 for seven columns in six dimensions: elimination with full pivoting; the
+/// columns left without a pivot are free, the last of them is set to one.
 std::array<double, kDimension + 1> null_vector(Eigen::Matrix<double, 6, 7> columns) {
   std::array<int, kDimension + 1> order{0, 1, 2, 3, 4, 5, 6};
   int rank = 0;
@@ -85,8 +88,8 @@ std::array<double, kDimension + 1> null_vector(Eigen::Matrix<double, 6, 7> colum
   return result;
 }
 
-/// Caratheodory's step on the first seven impulses: shifts their magnitudes along a null vector, in the direction that does not
-/// raise the cost, until one of them vanishes.
+/// Caratheodory's step on the first seven impulses: shifts their magnitudes along a null vector, in the direction that
+/// does not raise the cost, until one of them vanishes.
 void eliminate_one(const PrimerProgram& program, Selection& selection) {
   Eigen::Matrix<double, 6, 7> columns;
   std::array<double, kDimension + 1> magnitude{};
@@ -114,8 +117,10 @@ void eliminate_one(const PrimerProgram& program, Selection& selection) {
   remove(selection, vanishing);
 }
 
-/// Least change of the impulses, weighted by their size, that meets the target; false if they cannot.
-bool meet_target(const PrimerProgram& program, Selection& selection) {
+/// Least change of the impulses, weighted by their size, that brings them to the target; returns the residual left. A
+/// few impulses may span less than the state space and yet reach the target: hence the regularisation, whose error the
+/// passes remove.
+double meet_target(const PrimerProgram& program, Selection& selection) {
   Matrix6 normal = Matrix6::Zero();
   std::array<double, kMaxActive> weight{};
   for (std::size_t k = 0; k < selection.count; ++k) {
@@ -123,25 +128,33 @@ bool meet_target(const PrimerProgram& program, Selection& selection) {
     weight[k] = selection.dv[k].squaredNorm();
     normal += weight[k] * effect * effect.transpose();
   }
+  normal.diagonal().array() += kRegularisation * normal.trace();
   const Eigen::LLT<Matrix6> factor(normal);
-  if (factor.info() != Eigen::Success) return false;
-  for (int pass = 0; pass < 2; ++pass) {  // the second removes the rounding of the first
+  for (int pass = 0; pass < kPasses; ++pass) {
     const Vector6 multiplier = factor.solve(residual_of(program, selection));
     for (std::size_t k = 0; k < selection.count; ++k) {
       selection.dv[k] += weight[k] * (program.active[selection.index[k]].effect.transpose() * multiplier);
     }
   }
-  return residual_of(program, selection).norm() <= kExact;  // false for NaN too
+  return residual_of(program, selection).norm();
 }
 
 /// Takes `candidate` for `selection` if it meets the target at no more than `cost_limit`.
 bool accept(const PrimerProgram& program, Selection candidate, double cost_limit, Selection& selection) {
-  if (candidate.count == 0 || !meet_target(program, candidate) || !(cost_of(candidate) <= cost_limit)) return false;
+  if (candidate.count == 0 || !(meet_target(program, candidate) <= kExact) || !(cost_of(candidate) <= cost_limit)) {
+    return false;
+  }
   selection = candidate;
   return true;
 }
 
-/// The smallest impulse at place `from` or later in order of size below `limit`; count if none.
+/// Removes what rounding and the interior-point method left of the residual.
+void polish(const PrimerProgram& program, Selection& selection) {
+  Selection polished = selection;
+  if (meet_target(program, polished) < residual_of(program, selection).norm()) selection = polished;
+}
+
+/// Place of the smallest impulse between `above` and `limit`; count if none.
 std::size_t smallest_impulse(const Selection& selection, double above, double limit) {
   std::size_t smallest = selection.count;
   double size = limit;
@@ -210,7 +223,7 @@ void extract_impulses(PrimerProgram& program, double prune_ratio, double cost_li
 
   prune_small(program, prune_ratio, cost_limit, selection);
   join_neighbours(program, cost_limit, selection);
-  accept(program, selection, (1.0 + kExact) * cost_of(selection), selection);
+  polish(program, selection);
   store(selection, program);
 }
 

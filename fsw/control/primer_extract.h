@@ -8,9 +8,10 @@
 
 namespace vbar::fsw::control {
 
-/// Reduces the program's impulses in place to at most six with the same sum G u and no greater cost (Caratheodory), then drops
-/// those below `prune_ratio` of the largest and joins those at neighbouring times, where the others can make up for it and the
-/// cost stays below `cost_limit`; at last meets the target to rounding. `program.count` says how many are left.
+/// Reduces the program's impulses in place to at most six with the same sum G u and no greater cost (Caratheodory),
+/// then drops those below `prune_ratio` of the largest and joins those at neighbouring times, where the others can make
+/// up for it and the cost stays below `cost_limit`; at last meets the target to rounding. `program.count` says how many
+/// are left.
 void extract_impulses(PrimerProgram& program, double prune_ratio, double cost_limit);
 
 /// |target - sum G u|.

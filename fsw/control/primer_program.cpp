@@ -1,7 +1,8 @@
 #include "fsw/control/primer_program.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include <Eigen/Cholesky>
 
 #include "fsw/math/math.h"
 
@@ -10,8 +11,8 @@ namespace {
 
 using Cone = PrimerProgram::Cone;
 
-constexpr double kInteriorShare = 0.9;      ///< contact value to which a start shrinks lambda
-constexpr double kStepShare = 0.99;         ///< part of the way to a cone's boundary that a step may go
+constexpr double kInteriorShare = 0.9;  ///< contact value to which a start shrinks lambda
+constexpr double kStepShare = 0.99;     ///< part of the way to a cone's boundary that a step may go
 constexpr double kUnboundedStep = 1e300;
 
 /// lower triangle of m += factor * (g g' + 2 (g w)(g w)')
@@ -106,7 +107,8 @@ double cone_steps(PrimerProgram& program, const Vector6& lambda_step) {
   return kStepShare * longest;
 }
 
-/// Mehrotra's correction from the predictor's steps: W^-1 (l \ (sigma mu e - (W^-1 ds) o (W dz))), l = W z the scaled point.
+/// Mehrotra's correction from the predictor's steps: W^-1 (l \ (sigma mu e - (W^-1 ds) o (W dz))), l = W z the scaled
+/// point.
 void correct_cone(const ActiveImpulse& impulse, double centring, Cone& cone) {
   const ConeVector point = apply_scaling(cone, impulse.bound, -impulse.dv, 1.0);
   const ConeVector ds = apply_scaling(cone, 0.0, cone.primer_step, -1.0);
@@ -157,8 +159,7 @@ Status newton_step(PrimerProgram& program, double complementarity) {
 
   const double predictor_length = std::min(1.0, cone_steps(program, factor.solve(program.target)));
   const double remaining = 1.0 - predictor_length;
-  const double centring =
-      remaining * remaining * remaining * complementarity / static_cast<double>(program.count);
+  const double centring = remaining * remaining * remaining * complementarity / static_cast<double>(program.count);
   Vector6 right = program.target;
   for (std::size_t k = 0; k < program.count; ++k) {
     correct_cone(program.active[k], centring, program.cone[k]);
@@ -172,6 +173,24 @@ Status newton_step(PrimerProgram& program, double complementarity) {
   for (std::size_t k = 0; k < program.count; ++k) {
     program.active[k].bound += length * program.cone[k].step0;
     program.active[k].dv -= length * program.cone[k].step;
+  }
+  return Status::kOk;
+}
+
+/// Changes the multipliers so that they reach `missing` more, the large ones most, and stay inside their cones.
+Status meet_target(PrimerProgram& program, const Vector6& missing) {
+  Matrix6 gramian = Matrix6::Zero();
+  for (std::size_t k = 0; k < program.count; ++k) {
+    const ActiveImpulse& impulse = program.active[k];
+    add_scaled_gramian(impulse.effect, Vector3::Zero(), impulse.bound * impulse.bound, gramian);
+  }
+  const Eigen::LLT<Matrix6> factor(gramian);
+  if (factor.info() != Eigen::Success) return Status::kSingular;
+  const Vector6 multiplier = factor.solve(missing);
+  for (std::size_t k = 0; k < program.count; ++k) {
+    ActiveImpulse& impulse = program.active[k];
+    impulse.dv += impulse.bound * impulse.bound * (impulse.effect.transpose() * multiplier);
+    impulse.bound = std::max(impulse.bound, impulse.dv.norm() + (1.0 - kInteriorShare) * impulse.bound);
   }
   return Status::kOk;
 }
@@ -218,7 +237,7 @@ Status restart_primer_program(PrimerProgram& program) {
     program.active[k].bound *= mu;
     program.active[k].dv *= mu;
   }
-  return Status::kOk;
+  return meet_target(program, program.target - mu * reached);
 }
 
 PrimerProgramEnd solve_primer_program(PrimerProgram& program, double relative_gap, int max_steps) {

@@ -5,9 +5,9 @@
 //
 // a second-order cone program in six variables whose Lagrange multipliers are the impulses: w = sum_k G_k u_k with the
 // least sum |u_k|. Solved by a primal-dual interior-point method with Nesterov-Todd scaling and Mehrotra's
-// predictor-corrector (as in Vandenberghe, "The CVXOPT linear and quadratic cone program solvers", 2010, and Domahidi et al.,
-// "ECOS", 2013), specialised: the cone point s_k = (1, G_k' lambda) is a function of lambda, so each step is one 6x6
-// Cholesky factor with two right-hand sides.
+// predictor-corrector (as in Vandenberghe, "The CVXOPT linear and quadratic cone program solvers", 2010, and Domahidi
+// et al., "ECOS", 2013), specialised: the cone point s_k = (1, G_k' lambda) is a function of lambda, so each step is
+// one 6x6 Cholesky factor with two right-hand sides.
 
 #include <array>
 #include <cstddef>
@@ -18,8 +18,8 @@
 
 namespace vbar::fsw::control {
 
-/// Cap of the active set. 400 random problems needed at most 22.
-inline constexpr std::size_t kMaxActive = 32;
+/// Cap of the active set: room for the coarse times of three thruster pairs, and a dozen more.
+inline constexpr std::size_t kMaxActive = 48;
 
 /// An impulse the program may use, with the multiplier (bound, -dv) of its cone: |dv| <= bound, equal at the optimum.
 struct ActiveImpulse {
@@ -30,8 +30,8 @@ struct ActiveImpulse {
   double bound = 0.0;
 };
 
-/// The program, its present point and the Nesterov-Todd scaling, one fixed-size object. State and impulses are scaled by the
-/// caller so that |target| = 1 and the effects are of order one.
+/// The program, its present point and the Nesterov-Todd scaling, one fixed-size object. State and impulses are scaled
+/// by the caller so that |target| = 1 and the effects are of order one.
 struct PrimerProgram {
   Vector6 target = Vector6::Zero();
   Vector6 lambda = Vector6::Zero();
@@ -61,16 +61,16 @@ struct PrimerProgramEnd {
   int steps = 0;  ///< Newton steps taken
 };
 
-/// Starts from scratch: lambda strictly inside, multipliers strictly inside their cones and meeting w = sum G u as well as
-/// the active effects allow. kSingular if the active effects do not span the state space.
+/// Starts from scratch: lambda strictly inside, multipliers strictly inside their cones and meeting w = sum G u as well
+/// as the active effects allow. kSingular if the active effects do not span the state space.
 Status start_primer_program(PrimerProgram& program);
 
-/// Starts from the present lambda after the active set has changed: lambda is shrunk to the interior, the multipliers are put
-/// on the central path, as if lambda were on it.
+/// Starts from the present lambda after the active set has changed: lambda is shrunk to the interior, the multipliers
+/// are put on the central path, as if lambda were on it.
 Status restart_primer_program(PrimerProgram& program);
 
-/// Improves the present point until the duality gap is below `relative_gap` of the cost and w - sum G u below the same part
-/// of |w|. kDidNotConverge after `max_steps` Newton steps; kSingular or kNotFinite if a step cannot be computed.
+/// Improves the present point until the duality gap is below `relative_gap` of the cost and w - sum G u below the same
+/// part of |w|. kDidNotConverge after `max_steps` Newton steps; kSingular or kNotFinite if a step cannot be computed.
 PrimerProgramEnd solve_primer_program(PrimerProgram& program, double relative_gap, int max_steps);
 
 }  // namespace vbar::fsw::control

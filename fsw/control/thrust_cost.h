@@ -1,6 +1,7 @@
 #pragma once
 // What an impulse costs, by what the spacecraft can thrust with at a time, and the contact function of that cost
-// (Koenig & D'Amico 2020, "Fast Algorithm for Fuel-Optimal Impulsive Control of Linear Systems with Time-Varying Cost").
+// (Koenig & D'Amico 2020, "Fast Algorithm for Fuel-Optimal Impulsive Control of Linear Systems with Time-Varying
+// Cost").
 //
 // Every cost here is a sum of Euclidean norms over groups of RTN axes: the axes of a group are served by one steerable
 // thruster. Its contact function (the support function of the unit sublevel set) is then the largest norm of a group.

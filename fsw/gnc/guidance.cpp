@@ -2,6 +2,9 @@
 
 #include <span>
 
+#include "fsw/control/closed_form.h"
+#include "fsw/control/correction.h"
+#include "fsw/control/least_squares.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
@@ -154,7 +157,7 @@ bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configurati
 void Guidance::decide(const gnc_configuration& configuration) {
   if (goal_.time <= earliest_burn_) return;  // nothing can be done about this waypoint any more
   if (keeps_plan(configuration)) return;
-  if (plan_.count > 0 && adopt_if_flyable(plan_.solver, correct(configuration), configuration)) return;
+  if (adopt_correction(configuration)) return;
 
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 &&
                           sigma_a_roe_m_.maxCoeff() > configuration.roe_error_threshold_m;
@@ -162,12 +165,21 @@ void Guidance::decide(const gnc_configuration& configuration) {
   for (std::size_t k = 0; k < ladder.count; ++k) {
     const Result<Plan> candidate = solve(ladder.solvers[k], configuration);
     status_of(ladder.solvers[k]) = candidate.status();
-    if (adopt_if_flyable(ladder.solvers[k], candidate, configuration)) return;
+    if (candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration)) return;
     ++report_.solver_fallbacks;
   }
   plan_ = {};
   report_.active_solver = Solver::kNone;
   ++report_.holds;
+}
+
+/// Tolerances of the arrival: what an orbit of corrections would gain is not worth more burns. The fuel-optimal solver of the
+/// close range replans at no cost in fuel, so it is held to millimetres.
+bool Guidance::arrives_well_enough(const Vector6& roe_error) const {
+  const bool far = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
+  const double tolerance = (far ? 0.3 : 0.003) + sigma_a_roe_m_.maxCoeff();
+  const Result<double> distance = control::arrival_distance(orbits_, waypoint(), roe_error);
+  return distance.ok() && distance.value() <= tolerance;
 }
 
 /// A plan that still arrives well enough and is still safe stays: planning anew at every decision chases noise and, with
@@ -177,26 +189,43 @@ bool Guidance::keeps_plan(const gnc_configuration& configuration) {
   const Result<Vector6> error = arrival_error_of(plan_);
   if (!error.ok()) return false;
   report_.predicted_roe_error = error.value();
-  const bool arrives = arrives_well_enough(plan_, error.value(), configuration);
-  return arrives && is_safe(safety_of(plan_, configuration));
+  return arrives_well_enough(error.value()) && is_safe(safety_of(plan_, configuration));
 }
 
-bool Guidance::adopt_if_flyable(Solver solver, const Result<Plan>& candidate, const gnc_configuration& configuration) {
-  if (!candidate.ok()) return false;
-  if (!is_flyable(candidate.value(), configuration)) {
-    status_of(solver) = Status::kOutOfRange;
+/// The burns that are left, changed a little, if that is enough to arrive: cheaper than a new plan.
+bool Guidance::adopt_correction(const gnc_configuration& configuration) {
+  if (plan_.count == 0) return false;
+  const Result<Plan> corrected = control::correct_plan(orbits_, pending_, plan_, waypoint());
+  if (!corrected.ok()) return false;
+  const Result<Vector6> error = arrival_error_of(corrected.value());
+  return error.ok() && arrives_well_enough(error.value()) && adopt_if_flyable(corrected.value(), configuration);
+}
+
+/// Solvers are linear; what the true geometry leaves of the error is taken out of their burns, where these can.
+Plan Guidance::refined(const Plan& candidate) const {
+  const Result<Plan> corrected = control::correct_plan(orbits_, pending_, candidate, waypoint());
+  if (!corrected.ok()) return candidate;
+  const Result<Vector6> before = arrival_error_of(candidate);
+  const Result<Vector6> after = arrival_error_of(corrected.value());
+  if (!before.ok() || !after.ok() || after.value().norm() >= before.value().norm()) return candidate;
+  return corrected.value();
+}
+
+bool Guidance::adopt_if_flyable(const Plan& candidate, const gnc_configuration& configuration) {
+  if (!is_flyable(candidate, configuration)) {
+    status_of(candidate.solver) = Status::kOutOfRange;
     return false;
   }
-  const Result<Vector6> error = arrival_error_of(candidate.value());
+  const Result<Vector6> error = arrival_error_of(candidate);
   if (!error.ok()) return false;
-  const Result<safety::PlanSafety> verdict = safety_of(candidate.value(), configuration);
+  const Result<safety::PlanSafety> verdict = safety_of(candidate, configuration);
   report_.safety = verdict.ok() && !verdict.value().safe ? Status::kUnsafe : verdict.status();
   if (!is_safe(verdict)) {
     ++report_.plans_unsafe;
     return false;
   }
-  plan_ = candidate.value();
-  report_.active_solver = solver;
+  plan_ = candidate;
+  report_.active_solver = candidate.solver;
   report_.predicted_roe_error = error.value();
   report_.passive_safety_distance = verdict.value().least_distance;
   return true;
@@ -205,7 +234,7 @@ bool Guidance::adopt_if_flyable(Solver solver, const Result<Plan>& candidate, co
 Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configuration) {
   const GpsTime start = earliest_start();
   const Result<control::ControlProblem> problem =
-      control::remaining_problem(orbits_, burns_of(pending_), start, {goal_.time, goal_.roe});
+      control::remaining_problem(orbits_, burns_of(pending_), start, waypoint());
   if (!problem.ok()) return problem.status();
   switch (solver) {
     case Solver::kClosedForm: return control::solve_closed_form(problem.value());
@@ -223,7 +252,7 @@ Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configurati
 /// Where the commanded burns and those of `candidate` lead, dimensionless mean ROE wanted minus reached.
 Result<Vector6> Guidance::arrival_error_of(const Plan& candidate) const {
   const Plan all = joined(pending_, candidate);
-  return control::arrival_error(orbits_, burns_of(all), {goal_.time, goal_.roe});
+  return control::arrival_error(orbits_, burns_of(all), waypoint());
 }
 
 Result<safety::PlanSafety> Guidance::safety_of(const Plan& candidate, const gnc_configuration& configuration) const {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 
+#include "fsw/control/arrival.h"
 #include "fsw/control/koenig_damico.h"
 #include "fsw/control/plan.h"
 #include "fsw/gnc/management.h"
@@ -63,11 +64,13 @@ class Guidance {
   bool select_goal(GpsTime now, const Management& management);
   bool decision_is_due(GpsTime now, const gnc_configuration& configuration);
   void decide(const gnc_configuration& configuration);
+  bool arrives_well_enough(const Vector6& roe_error) const;
   bool keeps_plan(const gnc_configuration& configuration);
-  bool adopt_if_flyable(control::Solver solver, const Result<control::Plan>& candidate,
-                        const gnc_configuration& configuration);
+  bool adopt_correction(const gnc_configuration& configuration);
+  bool adopt_if_flyable(const control::Plan& candidate, const gnc_configuration& configuration);
+  control::Plan refined(const control::Plan& candidate) const;
   Result<control::Plan> solve(control::Solver solver, const gnc_configuration& configuration);
-  Result<control::Plan> correct(const gnc_configuration& configuration);
+  control::Waypoint waypoint() const { return {goal_.time, goal_.roe}; }
   Status& status_of(control::Solver solver);
   Result<safety::PlanSafety> safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
   Result<Vector6> arrival_error_of(const control::Plan& candidate) const;

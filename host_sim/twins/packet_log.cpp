@@ -8,6 +8,7 @@
 #include <lcm/eventlog.h>
 #include <vbar_host/packet_record.hpp>
 
+#include "fsw/packets/big_endian.h"
 #include "fsw/packets/message_traits.h"
 
 namespace vbar::twins {
@@ -56,11 +57,20 @@ void check_starts_as_log(const std::filesystem::path& file, std::FILE* stream) {
   if (size > 0 && start != kSyncWord) fail(file, "no LCM log");
 }
 
+// The size that a record claims, at its place in the encoded record, must be that of the event: the generated decoder
+// makes room for whatever is claimed before it looks whether the bytes are there.
+bool claims_its_size(const lcm_eventlog_event_t& event) {
+  constexpr std::size_t kSizeAt = 8 + 8 + 8 + 1;  // type hash, step, time, direction
+  constexpr std::size_t kPacketAt = kSizeAt + 4;
+  const std::span bytes(static_cast<const std::uint8_t*>(event.data), static_cast<std::size_t>(event.datalen));
+  return bytes.size() >= kPacketAt &&
+         fsw::packets::read_big_endian<std::uint32_t>(bytes, kSizeAt) == bytes.size() - kPacketAt;
+}
+
 PacketRecord record_of(const lcm_eventlog_event_t& event, const std::filesystem::path& file) {
   vbar_host::packet_record message;
-  const int size = message.decode(event.data, 0, event.datalen);
-  const bool good = size == event.datalen && message.step >= 0 &&
-                    message.step <= std::numeric_limits<std::uint32_t>::max() &&
+  const bool good = claims_its_size(event) && message.decode(event.data, 0, event.datalen) == event.datalen &&
+                    message.step >= 0 && message.step <= std::numeric_limits<std::uint32_t>::max() &&
                     (message.to_flight == 0 || message.to_flight == 1);
   if (!good) fail(file, "event " + std::to_string(event.eventnum) + " is a damaged packet record");
   return {static_cast<std::uint32_t>(message.step),
