@@ -9,6 +9,10 @@
 using vbar::boards::zynq7000::ExitCode;
 using vbar::boards::zynq7000::halt;
 
+namespace {
+[[noreturn]] void heap_called() { halt("heap call", ExitCode::kHeapCalled); }
+}  // namespace
+
 extern "C" {
 
 // Of zynq7000.ld.
@@ -16,16 +20,13 @@ using Constructor = void (*)();
 extern const Constructor __init_array_start[];
 extern const Constructor __init_array_end[];
 
-int main();
-
-[[noreturn]] void vbar_main();
-void vbar_main() {
+// startup.S calls the first before main, and the second should main ever return.
+void vbar_construct_statics() {
   for (const Constructor* constructor = __init_array_start; constructor != __init_array_end; ++constructor) {
     (*constructor)();
   }
-  static_cast<void>(main());
-  halt("main returned", ExitCode::kAborted);
 }
+[[noreturn]] void vbar_main_returned() { halt("main returned", ExitCode::kAborted); }
 
 // Destructors of static objects never run: nothing ends but by reset.
 void* __dso_handle = nullptr;
@@ -36,7 +37,6 @@ int atexit(void (*)()) { return 0; }
 [[noreturn]] void __cxa_pure_virtual() { halt("pure virtual call", ExitCode::kAborted); }
 
 struct _reent;
-[[noreturn]] static void heap_called() { halt("heap call", ExitCode::kHeapCalled); }
 void* malloc(std::size_t) { heap_called(); }
 void* calloc(std::size_t, std::size_t) { heap_called(); }
 void* realloc(void*, std::size_t) { heap_called(); }

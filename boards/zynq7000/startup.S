@@ -124,10 +124,9 @@ paint_stack:
     strlo r2, [r0], #4
     blo paint_stack
 
-    bl vbar_main                    /* runtime.cpp; does not return */
-never:
-    wfi
-    b never
+    bl vbar_construct_statics       /* runtime.cpp */
+    bl main
+    b vbar_main_returned
 
 /* ----------------------------------------------------------------------------------------------------- cache maintenance
  * Level 1 data cache by set and way: 4 ways of 32-byte lines, as many sets as CCSIDR says. No stack, no memory. */

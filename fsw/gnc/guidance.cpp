@@ -2,6 +2,9 @@
 
 #include <span>
 
+#include "fsw/control/closed_form.h"
+#include "fsw/control/correction.h"
+#include "fsw/control/least_squares.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
@@ -35,6 +38,39 @@ bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
   return true;
 }
 
+bool is_safe(const Result<safety::PlanSafety>& verdict) { return verdict.ok() && verdict.value().safe; }
+
+/// How far the estimate may be off: three sigma of position, and of the drift along track that da leaves open.
+safety::PositionBound three_sigma(const Vector6& sigma_rtn, double sigma_a_da_m, const orbit::QnsElements& servicer_mean) {
+  safety::PositionBound bound;
+  bound.radial_normal = 3.0 * math::hypot(sigma_rtn(0), sigma_rtn(2));
+  bound.along_track = 3.0 * sigma_rtn(1);
+  bound.along_track_rate = 3.0 * 1.5 * orbit::mean_motion(servicer_mean.a) * sigma_a_da_m;
+  return bound;
+}
+
+void drop_burns_before(Plan& plan, GpsTime time) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < plan.count; ++k) {
+    if (plan.burns[k].time >= time) plan.burns[kept++] = plan.burns[k];
+  }
+  plan.count = kept;
+}
+
+void remove_first(Plan& plan) {
+  for (std::size_t k = 1; k < plan.count; ++k) plan.burns[k - 1] = plan.burns[k];
+  --plan.count;
+}
+
+/// First the burns commanded already, then those only planned; both in order of time, the former all earlier.
+Plan joined(const Plan& pending, const Plan& planned) {
+  Plan all = pending;
+  for (std::size_t k = 0; k < planned.count && all.count < control::kMaxBurns; ++k) {
+    all.burns[all.count++] = planned.burns[k];
+  }
+  return all;
+}
+
 }  // namespace
 
 void Guidance::assess(GpsTime now, const Navigation& navigation, const Management& management) {
@@ -54,10 +90,10 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   orbits_ = {now, servicer.value(), target.value()};
   report_.roe = orbit::roe_from_qns(orbits_.servicer, orbits_.target);
   sigma_a_roe_m_ = navigation.sigma_a_roe_m(orbits_.servicer);
-  sigma_position_ = state.sigma_rtn.head<3>().maxCoeff();
+  position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m_(0), servicer.value());
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
-  const safety::PlanSafety drift = safety_of(pending_, configuration);
-  report_.passive_safety_distance = drift.least_distance;
+  const Result<safety::PlanSafety> drift = safety_of({}, configuration);
+  if (drift.ok()) report_.passive_safety_distance = drift.value().least_distance;
 }
 
 void Guidance::update(GpsTime now, Duration period, const Navigation& navigation, const Management& management) {
@@ -121,7 +157,7 @@ bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configurati
 void Guidance::decide(const gnc_configuration& configuration) {
   if (goal_.time <= earliest_burn_) return;  // nothing can be done about this waypoint any more
   if (keeps_plan(configuration)) return;
-  if (plan_.count > 0 && adopt_if_flyable(plan_.solver, correct(configuration), configuration)) return;
+  if (adopt_correction(configuration)) return;
 
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 &&
                           sigma_a_roe_m_.maxCoeff() > configuration.roe_error_threshold_m;
@@ -129,12 +165,21 @@ void Guidance::decide(const gnc_configuration& configuration) {
   for (std::size_t k = 0; k < ladder.count; ++k) {
     const Result<Plan> candidate = solve(ladder.solvers[k], configuration);
     status_of(ladder.solvers[k]) = candidate.status();
-    if (adopt_if_flyable(ladder.solvers[k], candidate, configuration)) return;
+    if (candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration)) return;
     ++report_.solver_fallbacks;
   }
   plan_ = {};
   report_.active_solver = Solver::kNone;
   ++report_.holds;
+}
+
+/// Tolerances of the arrival: what an orbit of corrections would gain is not worth more burns. The fuel-optimal solver of the
+/// close range replans at no cost in fuel, so it is held to millimetres.
+bool Guidance::arrives_well_enough(const Vector6& roe_error) const {
+  const bool far = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
+  const double tolerance = (far ? 0.3 : 0.003) + sigma_a_roe_m_.maxCoeff();
+  const Result<double> distance = control::arrival_distance(orbits_, waypoint(), roe_error);
+  return distance.ok() && distance.value() <= tolerance;
 }
 
 /// A plan that still arrives well enough and is still safe stays: planning anew at every decision chases noise and, with
@@ -144,35 +189,52 @@ bool Guidance::keeps_plan(const gnc_configuration& configuration) {
   const Result<Vector6> error = arrival_error_of(plan_);
   if (!error.ok()) return false;
   report_.predicted_roe_error = error.value();
-  const bool arrives = arrives_well_enough(plan_, error.value(), configuration);
-  return arrives && safety_of(plan_, configuration).safe;
+  return arrives_well_enough(error.value()) && is_safe(safety_of(plan_, configuration));
 }
 
-bool Guidance::adopt_if_flyable(Solver solver, const Result<Plan>& candidate, const gnc_configuration& configuration) {
-  if (!candidate.ok()) return false;
-  if (!is_flyable(candidate.value(), configuration)) {
-    status_of(solver) = Status::kOutOfRange;
+/// The burns that are left, changed a little, if that is enough to arrive: cheaper than a new plan.
+bool Guidance::adopt_correction(const gnc_configuration& configuration) {
+  if (plan_.count == 0) return false;
+  const Result<Plan> corrected = control::correct_plan(orbits_, pending_, plan_, waypoint());
+  if (!corrected.ok()) return false;
+  const Result<Vector6> error = arrival_error_of(corrected.value());
+  return error.ok() && arrives_well_enough(error.value()) && adopt_if_flyable(corrected.value(), configuration);
+}
+
+/// Solvers are linear; what the true geometry leaves of the error is taken out of their burns, where these can.
+Plan Guidance::refined(const Plan& candidate) const {
+  const Result<Plan> corrected = control::correct_plan(orbits_, pending_, candidate, waypoint());
+  if (!corrected.ok()) return candidate;
+  const Result<Vector6> before = arrival_error_of(candidate);
+  const Result<Vector6> after = arrival_error_of(corrected.value());
+  if (!before.ok() || !after.ok() || after.value().norm() >= before.value().norm()) return candidate;
+  return corrected.value();
+}
+
+bool Guidance::adopt_if_flyable(const Plan& candidate, const gnc_configuration& configuration) {
+  if (!is_flyable(candidate, configuration)) {
+    status_of(candidate.solver) = Status::kOutOfRange;
     return false;
   }
-  const Result<Vector6> error = arrival_error_of(candidate.value());
+  const Result<Vector6> error = arrival_error_of(candidate);
   if (!error.ok()) return false;
-  const safety::PlanSafety verdict = safety_of(candidate.value(), configuration);
-  report_.safety = verdict.safe ? Status::kOk : Status::kUnsafe;
-  if (!verdict.safe) {
+  const Result<safety::PlanSafety> verdict = safety_of(candidate, configuration);
+  report_.safety = verdict.ok() && !verdict.value().safe ? Status::kUnsafe : verdict.status();
+  if (!is_safe(verdict)) {
     ++report_.plans_unsafe;
     return false;
   }
-  plan_ = candidate.value();
-  report_.active_solver = solver;
+  plan_ = candidate;
+  report_.active_solver = candidate.solver;
   report_.predicted_roe_error = error.value();
-  report_.passive_safety_distance = verdict.least_distance;
+  report_.passive_safety_distance = verdict.value().least_distance;
   return true;
 }
 
 Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configuration) {
   const GpsTime start = earliest_start();
   const Result<control::ControlProblem> problem =
-      control::remaining_problem(orbits_, burns_of(pending_), start, {goal_.time, goal_.roe});
+      control::remaining_problem(orbits_, burns_of(pending_), start, waypoint());
   if (!problem.ok()) return problem.status();
   switch (solver) {
     case Solver::kClosedForm: return control::solve_closed_form(problem.value());
@@ -185,6 +247,36 @@ Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configurati
     case Solver::kNone: break;
   }
   return Status::kInvalidArgument;
+}
+
+/// Where the commanded burns and those of `candidate` lead, dimensionless mean ROE wanted minus reached.
+Result<Vector6> Guidance::arrival_error_of(const Plan& candidate) const {
+  const Plan all = joined(pending_, candidate);
+  return control::arrival_error(orbits_, burns_of(all), waypoint());
+}
+
+Result<safety::PlanSafety> Guidance::safety_of(const Plan& candidate, const gnc_configuration& configuration) const {
+  const Plan all = joined(pending_, candidate);
+  const safety::SafetyCriterion criterion{configuration.keep_out_radius_m, configuration.safety_horizon_s,
+                                          position_bound_};
+  return safety::assess_plan(orbits_.epoch, orbits_.servicer, report_.roe, all, criterion);
+}
+
+/// New burns come after the latency and after everything commanded.
+GpsTime Guidance::earliest_start() const {
+  if (pending_.count == 0) return earliest_burn_;
+  const GpsTime after_pending = pending_.burns[pending_.count - 1].time + Duration{1};
+  return after_pending > earliest_burn_ ? after_pending : earliest_burn_;
+}
+
+Status& Guidance::status_of(Solver solver) {
+  switch (solver) {
+    case Solver::kClosedForm: return report_.closed_form;
+    case Solver::kKoenigDamico: return report_.koenig_damico;
+    case Solver::kLeastSquares:
+    case Solver::kNone: break;
+  }
+  return report_.least_squares;
 }
 
 /// Commanded burns that have been flown by now are history; the state knows them.

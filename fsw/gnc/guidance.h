@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 
+#include "fsw/control/arrival.h"
 #include "fsw/control/koenig_damico.h"
 #include "fsw/control/plan.h"
 #include "fsw/gnc/management.h"
@@ -63,13 +64,17 @@ class Guidance {
   bool select_goal(GpsTime now, const Management& management);
   bool decision_is_due(GpsTime now, const gnc_configuration& configuration);
   void decide(const gnc_configuration& configuration);
+  bool arrives_well_enough(const Vector6& roe_error) const;
   bool keeps_plan(const gnc_configuration& configuration);
-  bool adopt_if_flyable(control::Solver solver, const Result<control::Plan>& candidate,
-                        const gnc_configuration& configuration);
+  bool adopt_correction(const gnc_configuration& configuration);
+  bool adopt_if_flyable(const control::Plan& candidate, const gnc_configuration& configuration);
+  control::Plan refined(const control::Plan& candidate) const;
   Result<control::Plan> solve(control::Solver solver, const gnc_configuration& configuration);
-  Result<control::Plan> correct(const gnc_configuration& configuration);
+  control::Waypoint waypoint() const { return {goal_.time, goal_.roe}; }
   Status& status_of(control::Solver solver);
-  safety::PlanSafety safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
+  Result<safety::PlanSafety> safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
+  Result<Vector6> arrival_error_of(const control::Plan& candidate) const;
+  GpsTime earliest_start() const;
   void forget_past_burns(GpsTime now);
   void commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration);
 
@@ -77,8 +82,8 @@ class Guidance {
   bool situation_known_ = false;
   GpsTime earliest_burn_;
   control::MeanOrbits orbits_;
-  Vector6 sigma_a_roe_m_ = Vector6::Zero();
-  double sigma_position_ = 0.0;  ///< 1 sigma of the relative position, the largest of R, T, N, m
+  Vector6 sigma_a_roe_m_ = Vector6::Zero();  ///< 1 sigma, m
+  safety::PositionBound position_bound_;     ///< 3 sigma
 
   Waypoint goal_;
   bool has_goal_ = false;

@@ -35,7 +35,7 @@ void Navigation::update(GpsTime now, Inbox& inbox) {
       fold_in(time, measurements[m].value);
     } else if (state_.valid) {
       propagate_to(time);
-      apply_own_maneuver(maneuvers[b].value);
+      if (state_.valid) apply_own_maneuver(maneuvers[b].value);
     }
     (measurement_first ? m : b) += 1;
   }
@@ -56,8 +56,14 @@ void Navigation::fold_in(GpsTime time, const ideal_navigation& measurement) {
 void Navigation::propagate_to(GpsTime time) {
   if (time <= state_.epoch) return;
   const double dt = seconds(time - state_.epoch);
-  state_.servicer = orbit::propagate_j2(state_.servicer, dt);
-  state_.target = orbit::propagate_j2(state_.target, dt);
+  const Result<orbit::CartesianState> servicer = orbit::propagate_j2(state_.servicer, dt);
+  const Result<orbit::CartesianState> target = orbit::propagate_j2(state_.target, dt);
+  if (!servicer.ok() || !target.ok()) {
+    state_.valid = false;  // too long a gap, or not an orbit: start again from the next measurement
+    return;
+  }
+  state_.servicer = servicer.value();
+  state_.target = target.value();
   state_.epoch = time;
   state_.source = NavigationSource::kPropagated;
   const double age = seconds(time - state_.last_measurement);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 namespace {
 
 // Longest sleep between two looks at whether the run shall stop.
@@ -68,4 +68,4 @@ void RunClock::end_exchange(WallClock::Span round_trip, WallClock::Span compute)
   exchange_late_ = compute_excess > WallClock::Span::zero() || link_excess > WallClock::Span::zero();
 }
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

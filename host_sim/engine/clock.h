@@ -16,7 +16,7 @@
 #include "fsw/core/gps_time.h"
 #include "host_sim/engine/wall_clock.h"
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 
 enum class ClockMode { kLockStep, kRealTime };
 
@@ -73,4 +73,4 @@ class RunClock {
   DeadlineReport report_;
 };
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 namespace {
 
 using Polynomial = std::array<double, 8>;  // lowest power first
@@ -88,4 +88,4 @@ double exponential_upper_quantile(double p) {
   return -std::log(p);
 }
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

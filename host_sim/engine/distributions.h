@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 
 /// 52 of the 64 bits as a number on the open interval (0, 1): never 0, never 1, symmetric about 1/2.
 constexpr double open_unit_interval(std::uint64_t bits) {
@@ -27,4 +27,4 @@ double truncated_normal_quantile(double p, double low, double high);
 /// open_unit_interval.
 double exponential_upper_quantile(double p);
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

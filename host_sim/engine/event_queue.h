@@ -12,7 +12,7 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 
 /// Names one scheduled event; its order is the order in which events happen.
 struct EventId {
@@ -72,4 +72,4 @@ class EventQueue {
   std::uint64_t next_insertion_ = 0;
 };
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

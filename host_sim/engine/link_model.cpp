@@ -4,7 +4,7 @@
 
 #include "host_sim/engine/distributions.h"
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 namespace {
 
 constexpr double kLongestLatency_s =
@@ -71,4 +71,4 @@ Transfer LinkModel::send(fsw::GpsTime now) {
   return transfer;
 }
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

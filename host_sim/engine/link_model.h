@@ -8,7 +8,7 @@
 #include "fsw/core/result.h"
 #include "host_sim/engine/random_stream.h"
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 
 enum class LatencyKind { kConstant, kUniform, kNormal, kExponential };
 
@@ -58,4 +58,4 @@ class LinkModel {
   LinkCounters counters_;
 };
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

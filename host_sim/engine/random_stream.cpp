@@ -4,7 +4,7 @@
 
 #include "host_sim/engine/distributions.h"
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 
 RandomStream::RandomStream(std::uint64_t seed, std::string_view name) : key_{seed, fnv1a_64(name)} {}
 
@@ -47,4 +47,4 @@ std::array<double, 4> RandomStream::uniforms_of(std::uint64_t index) const {
           open_unit_interval(words[3])};
 }
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 
 class RandomStream {
  public:
@@ -59,4 +59,4 @@ constexpr std::uint64_t fnv1a_64(std::string_view text) {
   return hash;
 }
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

@@ -2,7 +2,7 @@
 
 #include <thread>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 
 WallClock::Span SteadyWallClock::now() {
   return std::chrono::duration_cast<Span>(std::chrono::steady_clock::now().time_since_epoch());
@@ -13,4 +13,4 @@ void SteadyWallClock::sleep_until(Span wake) {
       std::chrono::steady_clock::time_point(std::chrono::duration_cast<std::chrono::steady_clock::duration>(wake)));
 }
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 
 class WallClock {
  public:
@@ -28,4 +28,4 @@ class SteadyWallClock final : public WallClock {
   void sleep_until(Span wake) override;
 };
 
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

@@ -1,2 +1,2 @@
 target_sources(vbar_bench PRIVATE packets_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_fsw_packets)
+target_link_libraries(vbar_bench PRIVATE vbar_fsw_packets vbar_fsw_link)

@@ -1,26 +1,67 @@
-// Cost of the packet contract: a telemetry message into a packet and back, and the CRC of the largest packet.
+// Cost of the wire formats: messages, checksums, COBS.
 
 #include <array>
+#include <cstdint>
 
 #include <benchmark/benchmark.h>
 
+#include "fsw/link/cobs.h"
+#include "fsw/packets/crc.h"
 #include "fsw/packets/messages.h"
 
 namespace {
 
-using namespace vbar::fsw::packets;
+namespace packets = vbar::fsw::packets;
+namespace link = vbar::fsw::link;
 
-void telemetry_round_trip(benchmark::State& state) {
-  vbar::telemetry_navigation message{};
-  message.valid = 1;
-  PacketHeader header;
-  std::array<std::uint8_t, kMaxPacketBytes> buffer{};
+std::array<std::uint8_t, link::kMaxFrameBytes> some_bytes() {
+  std::array<std::uint8_t, link::kMaxFrameBytes> bytes{};
+  std::uint32_t state = 1;
+  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>((state = state * 1664525U + 1013904223U) >> 24U);
+  return bytes;
+}
+
+void encode_telemetry(benchmark::State& state) {
+  std::array<std::uint8_t, packets::kMaxPacketBytes> out{};
+  const vbar::telemetry_navigation message{};
+  for (auto _ : state) benchmark::DoNotOptimize(packets::encode({}, message, out));
+}
+BENCHMARK(encode_telemetry)->Name("packet_encode/vbar/telemetry_navigation");
+
+void decode_telemetry(benchmark::State& state) {
+  std::array<std::uint8_t, packets::kMaxPacketBytes> out{};
+  const auto size = packets::encode({}, vbar::telemetry_navigation{}, out);
   for (auto _ : state) {
-    const auto size = encode(header, message, buffer);
-    const auto view = parse_packet(std::span(buffer).first(size.value()));
-    benchmark::DoNotOptimize(decode<vbar::telemetry_navigation>(view.value()));
+    const auto packet = packets::parse_packet(std::span(out).first(size.value()));
+    benchmark::DoNotOptimize(packets::decode<vbar::telemetry_navigation>(packet.value()));
   }
 }
-BENCHMARK(telemetry_round_trip)->Name("packet/vbar/telemetry_round_trip");
+BENCHMARK(decode_telemetry)->Name("packet_decode/vbar/telemetry_navigation");
+
+void crc16(benchmark::State& state) {
+  const auto bytes = some_bytes();
+  for (auto _ : state) benchmark::DoNotOptimize(packets::crc16_ccitt_false(bytes));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes.size()));
+}
+BENCHMARK(crc16)->Name("crc16/vbar/1400");
+
+void crc32(benchmark::State& state) {
+  const auto bytes = some_bytes();
+  for (auto _ : state) benchmark::DoNotOptimize(packets::crc32_ieee(bytes));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes.size()));
+}
+BENCHMARK(crc32)->Name("crc32/vbar/1400");
+
+void cobs_round_trip(benchmark::State& state) {
+  const auto bytes = some_bytes();
+  std::array<std::uint8_t, link::kMaxCobsFrameBytes> coded{};
+  link::CobsDecoder decoder;
+  for (auto _ : state) {
+    const auto size = link::cobs_encode(bytes, coded);
+    for (std::size_t i = 0; i < size.value(); ++i) benchmark::DoNotOptimize(decoder.push(coded[i]));
+  }
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes.size()));
+}
+BENCHMARK(cobs_round_trip)->Name("cobs_round_trip/vbar/1400");
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 namespace {
 
 using fsw::GpsTime;
@@ -153,4 +153,4 @@ TEST(SteadyWallClock, SleepsAtLeastAsLongAsAsked) {
 }
 
 }  // namespace
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

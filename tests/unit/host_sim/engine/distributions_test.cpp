@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 namespace {
 
 TEST(Distributions, UnitIntervalIsOpenAndSymmetric) {
@@ -71,4 +71,4 @@ TEST(Distributions, ExponentialIsItsInverse) {
 }
 
 }  // namespace
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

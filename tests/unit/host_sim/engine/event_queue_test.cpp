@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 namespace {
 
 using fsw::GpsTime;
@@ -89,4 +89,4 @@ TEST(EventQueue, EventsScheduledForThePresentHappenInPriorityOrder) {
 }
 
 }  // namespace
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

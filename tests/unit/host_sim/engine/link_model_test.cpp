@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 namespace {
 
 using fsw::GpsTime;
@@ -124,4 +124,4 @@ TEST(LinkModel, RefusesSettingsThatAreNoDistribution) {
 }
 
 }  // namespace
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

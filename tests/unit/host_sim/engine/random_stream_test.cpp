@@ -7,7 +7,7 @@
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
 
-namespace vbar::host_sim::engine {
+namespace vbar::engine {
 namespace {
 
 struct KnownAnswer {
@@ -171,4 +171,4 @@ TEST(RandomStream, UniformFillsItsIntervalEvenly) {
 }
 
 }  // namespace
-}  // namespace vbar::host_sim::engine
+}  // namespace vbar::engine

@@ -1,0 +1,163 @@
+#include "boards/posix/flight_main.h"
+
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+#include <unistd.h>
+
+#include "boards/common/flight_executive.h"
+#include "boards/posix/endpoints.h"
+#include "boards/posix/links.h"
+#include "boards/posix/stack_meter.h"
+
+namespace vbar::boards::posix {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: %s LINK\n"
+    "the flight software as a process of its own; LINK is one of\n"
+    "  --serial DEVICE [--baud N]             a serial device or pseudo-terminal, 921600 baud unless said otherwise\n"
+    "  --unix PATH                            a Unix stream socket on which the host listens\n"
+    "  --udp ADDRESS:PORT [--peer HOST:PORT]  listen for datagrams; without --peer, of whoever says hello\n"
+    "  --stream FD                            an open stream, inherited\n"
+    "  --datagram FD [--peer HOST:PORT]       a bound UDP socket, inherited\n";
+
+struct Options {
+  const char* serial = nullptr;
+  const char* unix_path = nullptr;
+  const char* udp = nullptr;
+  const char* stream = nullptr;
+  const char* datagram = nullptr;
+  const char* peer = nullptr;
+  const char* baud = "921600";
+};
+
+bool parse(int argc, char** argv, Options& options) {
+  struct Known {
+    const char* name;
+    const char** value;
+  };
+  const Known known[] = {{"--serial", &options.serial}, {"--unix", &options.unix_path},    {"--udp", &options.udp},
+                         {"--stream", &options.stream}, {"--datagram", &options.datagram}, {"--peer", &options.peer},
+                         {"--baud", &options.baud}};
+  for (int i = 1; i < argc; i += 2) {
+    const char** value = nullptr;
+    for (const Known& option : known) {
+      if (std::strcmp(argv[i], option.name) == 0) value = option.value;
+    }
+    if (value == nullptr || i + 1 >= argc) return false;
+    *value = argv[i + 1];
+  }
+  const char* const links[] = {options.serial, options.unix_path, options.udp, options.stream, options.datagram};
+  int chosen = 0;
+  for (const char* link : links) chosen += link != nullptr ? 1 : 0;
+  return chosen == 1;
+}
+
+/// An inherited descriptor's number; -1 with EBADF if the text is not one.
+int inherited(const char* text) {
+  std::uint32_t fd = 0;
+  if (parse_number(text, INT32_MAX, fd)) return static_cast<int>(fd);
+  errno = EBADF;
+  return -1;
+}
+
+int open_stream(const Options& options) {
+  std::uint32_t baud = 0;
+  if (options.unix_path != nullptr) return connect_unix(options.unix_path);
+  if (options.serial != nullptr) {
+    return parse_number(options.baud, UINT32_MAX, baud) ? open_serial(options.serial, baud)
+                                                        : open_serial(options.serial, 0);
+  }
+  const int fd = inherited(options.stream);
+  return fd >= 0 && make_raw_if_terminal(fd) ? fd : -1;
+}
+
+int open_datagram(const Options& options) {
+  if (options.datagram != nullptr) return inherited(options.datagram);
+  sockaddr_in address{};
+  if (parse_address(options.udp, address)) return bind_udp(address);
+  errno = EINVAL;
+  return -1;
+}
+
+/// Its memory is static, for it is large; it is built when the link it talks through is there.
+alignas(FlightExecutive) std::byte executive_memory[sizeof(FlightExecutive)];
+
+std::uint32_t measure_stack(void* /*context*/) {
+  return stack_high_water();
+}
+
+template <class Link>
+struct Flight {
+  const char* name;
+  Link* link;
+  LinkEnd end;
+
+  static void fly(void* context) {
+    auto* const flight = static_cast<Flight*>(context);
+    Platform platform;
+    platform.context = flight->link;
+    platform.name = flight->name;
+    platform.send = &Link::send;
+    platform.stack_high_water = &measure_stack;
+    auto* const executive = ::new (static_cast<void*>(executive_memory)) FlightExecutive(platform);
+    flight->end = flight->link->serve(*executive);
+  }
+};
+
+template <class Link>
+int fly(const char* name, Link& link) {
+  Flight<Link> flight{name, &link, LinkEnd::kFailed};
+  if (run_on_measured_stack(&Flight<Link>::fly, &flight) && flight.end != LinkEnd::kFailed) return 0;
+  std::fprintf(stderr, "%s: the link failed: %s\n", name, std::strerror(errno));
+  return 1;
+}
+
+int refuse(const char* program, const char* what) {
+  std::fprintf(stderr, "%s: %s: %s\n", program, what, std::strerror(errno));
+  return 1;
+}
+
+int fly_over_datagrams(const char* name, const char* program, const Options& options) {
+  sockaddr_in peer{};
+  if (options.peer != nullptr && !parse_address(options.peer, peer)) {
+    errno = EINVAL;
+    return refuse(program, options.peer);
+  }
+  const int fd = open_datagram(options);
+  if (fd < 0) return refuse(program, options.udp != nullptr ? options.udp : options.datagram);
+  DatagramLink link = options.peer != nullptr ? DatagramLink(fd, peer) : DatagramLink(fd);
+  return fly(name, link);
+}
+
+int fly_over_stream(const char* name, const char* program, const Options& options) {
+  const int fd = open_stream(options);
+  if (fd < 0) {
+    return refuse(program, options.serial != nullptr      ? options.serial
+                           : options.unix_path != nullptr ? options.unix_path
+                                                          : options.stream);
+  }
+  StreamLink link(fd);
+  return fly(name, link);
+}
+
+}  // namespace
+
+int flight_main(const char* name, int argc, char** argv) {
+  Options options;
+  if (!parse(argc, argv, options)) {
+    std::fprintf(stderr, kUsage, argv[0]);
+    return 2;
+  }
+  // A host that is gone shows as a failed write, which ends this program in good order.
+  (void)std::signal(SIGPIPE, SIG_IGN);
+  const bool datagrams = options.udp != nullptr || options.datagram != nullptr;
+  return datagrams ? fly_over_datagrams(name, argv[0], options) : fly_over_stream(name, argv[0], options);
+}
+
+}  // namespace vbar::boards::posix

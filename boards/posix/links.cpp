@@ -1,0 +1,116 @@
+#include "boards/posix/links.h"
+
+#include <cerrno>
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace vbar::boards::posix {
+namespace {
+
+void wait_until(int fd, short event) {
+  pollfd request{.fd = fd, .events = event, .revents = 0};
+  (void)::poll(&request, 1, -1);
+}
+
+/// Whether the call is to be repeated after `result` of a read or write, at once or when `event` has happened.
+bool is_passing(int fd, short event) {
+  if (errno == EINTR) return true;
+  if (errno != EAGAIN && errno != EWOULDBLOCK) return false;
+  wait_until(fd, event);
+  return true;
+}
+
+/// Errors by which a stream or a terminal says that nobody is at the other end.
+bool says_peer_gone(int error) {
+  return error == EIO || error == EPIPE || error == ECONNRESET;
+}
+
+bool write_all(int fd, std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written >= 0) {
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    } else if (!is_passing(fd, POLLOUT)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool same_address(const sockaddr_in& a, const sockaddr_in& b) {
+  return a.sin_addr.s_addr == b.sin_addr.s_addr && a.sin_port == b.sin_port;
+}
+
+bool is_hello(std::span<const std::uint8_t> datagram) {
+  const auto frame = fsw::link::parse_frame(datagram);
+  return frame.ok() && frame.value().header.type == fsw::link::FrameType::kHello;
+}
+
+}  // namespace
+
+void StreamLink::send(void* context, std::span<const std::uint8_t> frame) {
+  auto* const link = static_cast<StreamLink*>(context);
+  const auto size = fsw::link::cobs_encode(frame, link->coded_);
+  if (!size.ok() || link->broken_) return;
+  link->broken_ = !write_all(link->fd_, std::span(link->coded_).first(size.value()));
+}
+
+LinkEnd StreamLink::serve(FlightExecutive& executive) {
+  std::uint32_t rejected = 0;
+  for (;;) {
+    const ssize_t count = ::read(fd_, received_.data(), received_.size());
+    if (count == 0) return LinkEnd::kPeerGone;
+    if (count < 0) {
+      if (is_passing(fd_, POLLIN)) continue;
+      return says_peer_gone(errno) ? LinkEnd::kPeerGone : LinkEnd::kFailed;
+    }
+    for (const std::uint8_t byte : std::span(received_).first(static_cast<std::size_t>(count))) {
+      const bool frame_complete = decoder_.push(byte);
+      executive.count_rejected(decoder_.rejected() - rejected);
+      rejected = decoder_.rejected();
+      if (frame_complete && executive.on_frame(decoder_.frame()) == Activity::kGoodbye) return LinkEnd::kGoodbye;
+    }
+    if (broken_) return LinkEnd::kPeerGone;
+  }
+}
+
+void DatagramLink::send(void* context, std::span<const std::uint8_t> frame) {
+  auto* const link = static_cast<DatagramLink*>(context);
+  if (!link->has_peer_) return;
+  const auto* const address = reinterpret_cast<const sockaddr*>(&link->peer_);
+  // What the system does not take is lost like any datagram, and asked for again.
+  while (::sendto(link->fd_, frame.data(), frame.size(), 0, address, sizeof link->peer_) < 0 && errno == EINTR) {
+  }
+}
+
+LinkEnd DatagramLink::serve(FlightExecutive& executive) {
+  for (;;) {
+    sockaddr_in sender{};
+    socklen_t length = sizeof sender;
+    auto* const address = reinterpret_cast<sockaddr*>(&sender);
+    const ssize_t count = ::recvfrom(fd_, received_.data(), received_.size(), 0, address, &length);
+    if (count < 0) {
+      // An earlier datagram of ours found nobody at home: no reason to stop listening.
+      if (errno == ECONNREFUSED || is_passing(fd_, POLLIN)) continue;
+      return LinkEnd::kFailed;
+    }
+    const auto datagram = std::span<const std::uint8_t>(received_).first(static_cast<std::size_t>(count));
+    if (!accepts(sender, datagram)) {
+      executive.count_rejected(1);
+    } else if (executive.on_frame(datagram) == Activity::kGoodbye) {
+      return LinkEnd::kGoodbye;
+    }
+  }
+}
+
+bool DatagramLink::accepts(const sockaddr_in& sender, std::span<const std::uint8_t> datagram) {
+  if (has_peer_ && same_address(sender, peer_)) return true;
+  if (peer_is_fixed_ || !is_hello(datagram)) return false;
+  peer_ = sender;
+  has_peer_ = true;
+  return true;
+}
+
+}  // namespace vbar::boards::posix

@@ -1,0 +1,217 @@
+// The flight image: frames from UART0 or Ethernet to the flight executive, answers back to whoever leads the session. A
+// cyclic executive: one thing at a time, asleep in between.
+
+#include <array>
+
+#include "boards/common/flight_executive.h"
+#include "boards/zynq7000/clocks.h"
+#include "boards/zynq7000/console.h"
+#include "boards/zynq7000/cpu.h"
+#include "boards/zynq7000/ethernet.h"
+#include "boards/zynq7000/interrupts.h"
+#include "boards/zynq7000/memory_map.h"
+#include "boards/zynq7000/semihosting.h"
+#include "boards/zynq7000/session_guard.h"
+#include "boards/zynq7000/stack_meter.h"
+#include "boards/zynq7000/timer.h"
+#include "boards/zynq7000/uart.h"
+#include "boards/zynq7000/udp_endpoint.h"
+#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/link/cobs.h"
+
+namespace vbar::boards::zynq7000 {
+namespace {
+
+constexpr std::uint32_t kLinkBaud = 921'600;
+constexpr MacAddress kMac{0x02, 0x76, 0x62, 0x61, 0x72, 0x15};  // locally administered
+constexpr Ipv4Address kAddress{10, 0, 2, 15};
+constexpr std::uint16_t kPort = 5000;
+constexpr std::uint64_t kSilence = timer_span_ms(5'000);
+constexpr std::uint64_t kLinkPoll = timer_span_ms(500);
+
+/// Both interfaces, the guard before them and the executive behind them.
+class FlightBoard {
+ public:
+  FlightBoard() : executive_(platform()) {}
+
+  [[noreturn]] void run();
+
+ private:
+  Platform platform();
+  void open();
+  bool serve_serial();
+  bool serve_ethernet();
+  void await_link();
+  void deliver(const Sender& sender, std::span<const std::uint8_t> frame);
+  void goodbye();
+  void rest() const;
+
+  static void send(void* self, std::span<const std::uint8_t> frame);
+  void send_serial(std::span<const std::uint8_t> frame);
+  void send_datagram(const UdpPeer& to, std::span<const std::uint8_t> frame);
+
+  Uart uart_{kUart0, kInterruptUart0};
+  Ethernet ethernet_;
+  UdpEndpoint endpoint_{kMac, kAddress, kPort};
+  fsw::link::CobsDecoder decoder_;
+  std::uint32_t decoder_rejected_ = 0;
+  SessionGuard guard_{kSilence};
+  std::uint64_t link_asked_ = 0;
+  std::array<std::uint8_t, kMostFrameBytes> received_{};
+  std::array<std::uint8_t, kMostFrameBytes> transmitted_{};
+  std::array<std::uint8_t, fsw::link::kMaxCobsFrameBytes> coded_{};
+  FlightExecutive executive_;
+};
+
+Platform FlightBoard::platform() {
+  Platform platform;
+  platform.context = this;
+  platform.name = "vbar zynq7000, bare metal";
+  platform.send = &FlightBoard::send;
+  platform.counter = [](void*) { return cost_counter(); };
+  platform.stack_high_water = [](void*) { return stack_high_water(); };
+  platform.counter_unit = cost_counter_unit();
+  return platform;
+}
+
+void FlightBoard::open() {
+  uart_.open(kLinkBaud);
+  ethernet_.open(kMac);
+  link_asked_ = global_timer();
+  print("vbar zynq7000: ");
+  print(vbar_gnc_name());
+  print("\ncost in ");
+  print(cost_counter_unit() == CounterUnit::kCycles ? "processor cycles" : "ticks of the emulated timer");
+  print("\nlink on UART0 and on UDP 10.0.2.15:5000, Ethernet ");
+  print(ethernet_.waits_for_link() ? "waits for a link" : "up");
+  print("\nready\n");
+}
+
+void FlightBoard::run() {
+  open();
+  detail::unmask_interrupts();
+  for (;;) {
+    const bool serial = serve_serial();
+    const bool datagram = serve_ethernet();
+    if (!serial && !datagram) {
+      rest();
+    }
+  }
+}
+
+// One frame, so that neither interface starves the other.
+bool FlightBoard::serve_serial() {
+  std::uint8_t byte = 0;
+  while (uart_.read(byte)) {
+    const bool complete = decoder_.push(byte);
+    executive_.count_rejected(decoder_.rejected() - decoder_rejected_);
+    decoder_rejected_ = decoder_.rejected();
+    if (complete) {
+      deliver({Interface::kSerial, {}}, decoder_.frame());
+      return true;
+    }
+  }
+  return false;
+}
+
+bool FlightBoard::serve_ethernet() {
+  if (ethernet_.waits_for_link()) {
+    await_link();
+    return true;  // nothing wakes a sleeping processor when somebody plugs in a cable
+  }
+  const std::size_t size = ethernet_.receive(received_);
+  if (size == 0) {
+    return false;
+  }
+  const UdpReceived received = endpoint_.receive(std::span(received_).first(size), transmitted_);
+  switch (received.event) {
+    case UdpEvent::kNothing:
+      break;
+    case UdpEvent::kReply:
+      ethernet_.send(received.bytes);
+      break;
+    case UdpEvent::kDatagram:
+      deliver({Interface::kEthernet, received.from}, received.bytes);
+      break;
+  }
+  return true;
+}
+
+void FlightBoard::await_link() {
+  const std::uint64_t now = global_timer();
+  if (now - link_asked_ < kLinkPoll) {
+    return;
+  }
+  link_asked_ = now;
+  if (ethernet_.link_came_up()) {
+    print("Ethernet up\n");
+  }
+}
+
+void FlightBoard::deliver(const Sender& sender, std::span<const std::uint8_t> frame) {
+  if (!guard_.admits(sender, frame, global_timer())) {
+    executive_.count_rejected(1);
+    return;
+  }
+  // Interrupts wait while flight code runs, so that a byte that arrives meanwhile costs the step nothing; the FIFO and the
+  // DMA ring hold what comes in, and the link sends again what they cannot. send() lets them in.
+  const InterruptsMasked masked;
+  if (executive_.on_frame(frame) == Activity::kGoodbye) {
+    goodbye();
+  }
+}
+
+void FlightBoard::goodbye() {
+  guard_.end_session();
+  print("goodbye\n");
+  semihosting_exit(static_cast<std::uint32_t>(ExitCode::kDone));
+  // Still here: a bench board. It waits for the next hello.
+}
+
+void FlightBoard::rest() const {
+  const InterruptsMasked masked;  // what arrives after the last look is pending, and ends the sleep at once
+  if (!uart_.has_input() && !ethernet_.has_input()) {
+    wait_for_interrupt();
+  }
+}
+
+void FlightBoard::send(void* self, std::span<const std::uint8_t> frame) {
+  const InterruptsAllowed allowed;
+  auto* const board = static_cast<FlightBoard*>(self);
+  const Sender& peer = board->guard_.peer();
+  switch (peer.interface) {
+    case Interface::kSerial:
+      board->send_serial(frame);
+      break;
+    case Interface::kEthernet:
+      board->send_datagram(peer.peer, frame);
+      break;
+  }
+}
+
+void FlightBoard::send_serial(std::span<const std::uint8_t> frame) {
+  const auto size = fsw::link::cobs_encode(frame, coded_);
+  if (size.ok()) {
+    uart_.write(std::span(coded_).first(size.value()));
+  }
+}
+
+void FlightBoard::send_datagram(const UdpPeer& to, std::span<const std::uint8_t> frame) {
+  const auto size = endpoint_.write_datagram(to, frame, transmitted_);
+  if (size.ok()) {
+    ethernet_.send(std::span(transmitted_).first(size.value()));
+  }
+}
+
+}  // namespace
+}  // namespace vbar::boards::zynq7000
+
+int main() {
+  using namespace vbar::boards::zynq7000;
+  clocks_enable_peripherals();
+  timers_initialize();
+  console_open();
+  interrupts_initialize();
+  static FlightBoard board;  // here, not before main: its executive asks which counter counts
+  board.run();
+}

@@ -1,0 +1,35 @@
+#pragma once
+// The Ethernet PHY behind the controller's management bus (IEEE 802.3 clause 22), whichever one the board has.
+
+#include <cstdint>
+#include <optional>
+
+#include "boards/zynq7000/clocks.h"
+
+namespace vbar::boards::zynq7000 {
+
+struct PhyLink {
+  LineRate rate = LineRate::k1000Mbps;
+  bool full_duplex = true;
+};
+
+/// A PHY at an address on the management bus of the controller at `controller`.
+class Phy {
+ public:
+  /// Finds the PHY with the lowest address, if there is one, and lets it negotiate.
+  static std::optional<Phy> find(std::uintptr_t controller);
+
+  /// What was negotiated; nothing while there is no link.
+  [[nodiscard]] std::optional<PhyLink> link() const;
+
+ private:
+  Phy(std::uintptr_t controller, std::uint32_t address) : controller_(controller), address_(address) {}
+  [[nodiscard]] std::uint16_t read(std::uint32_t number) const;
+  void write(std::uint32_t number, std::uint16_t value) const;
+  void transfer(std::uint32_t command) const;
+
+  std::uintptr_t controller_;
+  std::uint32_t address_;
+};
+
+}  // namespace vbar::boards::zynq7000

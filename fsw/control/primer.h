@@ -1,0 +1,68 @@
+#pragma once
+// Fuel-optimal impulsive control of a linear system over a grid of candidate times (Koenig & D'Amico 2020, IEEE Trans.
+// Automatic Control 66(9), "Fast Algorithm for Fuel-Optimal Impulsive Control of Linear Systems with Time-Varying
+// Cost"):
+//
+//     minimise sum_j cost_j(dv_j)   subject to   sum_j G_j dv_j = target,
+//
+// solved through its dual: maximise target' lambda with contact_j(G_j' lambda) <= 1 at every time j. G_j' lambda is the
+// primer vector; impulses happen only where its contact function reaches 1. Knows nothing of orbits: the effects G_j
+// are given.
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "fsw/control/primer_program.h"
+#include "fsw/control/thrust_cost.h"
+#include "fsw/core/result.h"
+#include "fsw/core/types.h"
+
+namespace vbar::fsw::control {
+
+/// Candidate times, by index, in order of time. The caller owns the storage.
+struct ImpulseGrid {
+  std::span<const Matrix63> effects;  ///< change of the final state per impulse at each time (per m/s)
+  std::span<const ThrustCost> costs;  ///< one a time
+};
+
+struct PrimerSettings {
+  double cost_tolerance = 1e-3;  ///< the cost exceeds the optimum of the grid by at most this part; (0, 0.1]
+  double prune_ratio = 1e-3;     ///< impulses below this part of the largest one go, if the others can make up for them
+  int max_rounds = 30;           ///< exchanges of the active set
+  int max_newton_steps = 60;     ///< for each active set; 12 is typical
+};
+
+/// Caratheodory: six impulses reach whatever many can, at the same cost.
+inline constexpr std::size_t kMaxImpulses = 6;
+
+struct Impulse {
+  std::size_t time_index = 0;
+  Vector3 dv = Vector3::Zero();
+};
+
+/// Impulses in order of time, and the certificate of their optimality.
+struct PrimerSolution {
+  std::array<Impulse, kMaxImpulses> impulses{};
+  std::size_t count = 0;
+  double cost = 0.0;  ///< of the impulses, m/s
+  double lower_bound =
+      0.0;  ///< no set of impulses on the grid costs less: target' lambda, lambda feasible on all of it
+  Vector6 lambda = Vector6::Zero();  ///< the dual variable behind lower_bound, m/s per unit of state
+  double residual = 0.0;             ///< |target - sum G dv| / |target|, in the solver's scaling of the state
+  int rounds = 0;                    ///< active sets solved
+  int newton_steps = 0;              ///< over all rounds
+};
+
+/// Scratch of the solver, about 16 kB.
+struct PrimerWorkspace {
+  PrimerProgram program;
+};
+
+/// The impulses that bring about `target` at least cost. A zero target needs none. Errors: kInvalidArgument (settings,
+/// sizes), kNotFinite (a target or an effect), kSingular (the times allowed do not span the state space: none, too few,
+/// too close), kDidNotConverge.
+Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& target, const PrimerSettings& settings,
+                                    PrimerWorkspace& workspace);
+
+}  // namespace vbar::fsw::control

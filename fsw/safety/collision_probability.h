@@ -1,0 +1,44 @@
+#pragma once
+// Probability that two spacecraft whose relative position is normally distributed are within the sum of their radii.
+//
+// In proximity operations relative speeds are millimetres to metres a second: there is no short encounter, and the
+// measure is the instantaneous probability, its maximum over a drift being the risk. Along track the position is known
+// worst; the probability in the RN plane takes it as not known at all and so bounds the risk of e/i-separated orbits
+// from above.
+
+#include "fsw/core/result.h"
+#include "fsw/core/types.h"
+
+namespace vbar::fsw::safety {
+
+using Vector2 = Eigen::Matrix<double, 2, 1>;
+using Matrix2 = Eigen::Matrix<double, 2, 2>;
+
+// All functions: lengths in m, covariances in m^2, `radius` is the combined hard-body radius, >= 0. kNotFinite;
+// kOutOfRange for negative lengths or a covariance that is not positive definite. Results lie in [0, 1].
+
+/// Instantaneous probability for a spherical distribution with standard deviation `sigma` whose mean is `distance`
+/// away. Closed form (the non-central Maxwell distribution).
+Result<double> collision_probability_isotropic(double distance, double sigma, double radius);
+
+/// Instantaneous probability: integral over the ball of a general normal distribution of the relative position. Two
+/// nested quadratures in the principal axes, the third in closed form. Relative error under 1e-6 where every standard
+/// deviation is above half the radius, under 1e-3 where above a thirtieth.
+Result<double> collision_probability(const Vector3& mean, const Matrix3& covariance, double radius);
+
+/// Integral over the disk of a two-dimensional normal distribution: the RN plane, or an encounter plane. Relative error
+/// under 1e-6 where both standard deviations are above a tenth of the radius.
+Result<double> collision_probability_in_plane(const Vector2& mean, const Matrix2& covariance, double radius);
+
+/// Short encounter (Foster and Estes 1992): relative state at closest approach and the sum of both position covariances
+/// in one frame; motion straight and covariance constant while it lasts. kOutOfRange without relative velocity.
+Result<double> collision_probability_short_encounter(const Vector3& relative_position, const Vector3& relative_velocity,
+                                                     const Matrix3& covariance, double radius);
+
+/// The largest probability that any scaling of the covariance can give for a short encounter with a radius small
+/// against the miss, R^2 / (exp(1) s1 s2 d_M^2) with d_M the Mahalanobis distance (dilution; Alfano 2005): what remains
+/// possible when the size of the covariance is not believed. 1 where the miss is within the radius.
+Result<double> maximum_probability_short_encounter(const Vector3& relative_position, const Vector3& relative_velocity,
+                                                   const Matrix3& covariance, double radius);
+
+}  // namespace vbar::fsw::safety

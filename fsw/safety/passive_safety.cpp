@@ -1,0 +1,201 @@
+#include "fsw/safety/passive_safety.h"
+
+#include "fsw/math/math.h"
+#include "fsw/orbit/roe.h"
+#include "fsw/orbit/secular.h"
+
+namespace vbar::fsw::safety {
+namespace {
+
+using orbit::QnsElements;
+
+constexpr int kSamplesPerRevolution = 100;
+constexpr double kMaxRevolutions = 40.0;
+constexpr double kMaxRoe = 0.5;  ///< beyond it the relative-motion map says nothing
+
+bool within_model(const Vector6& roe) {
+  for (int k = 0; k < 6; ++k) {
+    if (!(math::abs(roe(k)) <= kMaxRoe)) return false;
+  }
+  return true;
+}
+
+/// Position of the target in the servicer's RTN during a drift. The ROE move from their values at the start to those at
+/// the end in a straight line: all but the e-vector's slow rotation is linear in time anyway.
+class DriftPath {
+ public:
+  DriftPath(const QnsElements& servicer, const Vector6& roe, const Vector6& roe_end, double duration)
+      : a_(servicer.a),
+        u_(servicer.u),
+        u_rate_(orbit::secular_rates(servicer).mean_argument_of_latitude()),
+        roe_(roe),
+        roe_rate_(duration > 0.0 ? Vector6((roe_end - roe) / duration) : Vector6(Vector6::Zero())) {}
+
+  [[nodiscard]] Vector3 position_rtn(double t) const {
+    const double cos_u = math::cos(u_ + u_rate_ * t);
+    const double sin_u = math::sin(u_ + u_rate_ * t);
+    const Vector6 roe = roe_ + t * roe_rate_;
+    const double radius = 1.0 + roe(0) - roe(2) * cos_u - roe(3) * sin_u;
+    const double along = roe(1) + 2.0 * roe(2) * sin_u - 2.0 * roe(3) * cos_u;
+    const double across = roe(4) * sin_u - roe(5) * cos_u;
+    const double cos_across = math::cos(across);
+    return a_ * Vector3(radius * cos_across * math::cos(along) - 1.0, radius * cos_across * math::sin(along),
+                        radius * math::sin(across));
+  }
+
+ private:
+  double a_;
+  double u_;
+  double u_rate_;
+  Vector6 roe_;
+  Vector6 roe_rate_;
+};
+
+/// Squared distances of which PositionBound leaves nothing in doubt.
+struct Clearance {
+  double spatial_squared;
+  double radial_normal_squared;
+};
+
+double excess(double distance, double bound) {
+  return distance > bound ? distance - bound : 0.0;
+}
+
+Clearance clearance(const DriftPath& path, double t, const PositionBound& bound) {
+  const Vector3 r = path.position_rtn(t);
+  const double radial_normal = excess(math::hypot(r.x(), r.z()), bound.radial_normal);
+  const double along_track = excess(math::abs(r.y()), bound.along_track + bound.along_track_rate * t);
+  return {.spatial_squared = radial_normal * radial_normal + along_track * along_track,
+          .radial_normal_squared = radial_normal * radial_normal};
+}
+
+/// Least of a function sampled at equal steps. Holds the last three samples and asks for one more where they bend
+/// upwards.
+class Minimum {
+ public:
+  explicit Minimum(double step) : step_(step) {}
+
+  /// Takes the sample at `t`. True if a minimum was passed; then `vertex()` is where to look again.
+  bool add(double t, double squared) {
+    note(t, squared);
+    before_ = previous_;
+    previous_ = last_;
+    last_ = squared;
+    ++count_;
+    const double curvature = before_ - 2.0 * previous_ + last_;
+    if (count_ < 3 || previous_ > before_ || previous_ > last_ || !(curvature > 0.0)) return false;
+    vertex_ = t - step_ + 0.5 * step_ * (before_ - last_) / curvature;
+    return true;
+  }
+
+  void note(double t, double squared) {
+    if (noted_ && squared >= least_squared_) return;
+    noted_ = true;
+    least_squared_ = squared;
+    time_ = t;
+  }
+
+  [[nodiscard]] double vertex() const { return vertex_; }
+  [[nodiscard]] Closest closest() const { return {.distance = math::sqrt(least_squared_), .time = time_}; }
+
+ private:
+  double step_;
+  double before_ = 0.0;
+  double previous_ = 0.0;
+  double last_ = 0.0;
+  double vertex_ = 0.0;
+  double least_squared_ = 0.0;
+  double time_ = 0.0;
+  int count_ = 0;
+  bool noted_ = false;
+};
+
+DriftSafety watch(const DriftPath& path, double duration, int samples, const PositionBound& bound) {
+  const double step = samples > 0 ? duration / samples : 0.0;
+  Minimum spatial(step);
+  Minimum radial_normal(step);
+  for (int k = 0; k <= samples; ++k) {
+    const double t = k * step;
+    const Clearance c = clearance(path, t, bound);
+    if (spatial.add(t, c.spatial_squared)) {
+      spatial.note(spatial.vertex(), clearance(path, spatial.vertex(), bound).spatial_squared);
+    }
+    if (radial_normal.add(t, c.radial_normal_squared)) {
+      radial_normal.note(radial_normal.vertex(), clearance(path, radial_normal.vertex(), bound).radial_normal_squared);
+    }
+  }
+  return {.spatial = spatial.closest(), .radial_normal = radial_normal.closest()};
+}
+
+}  // namespace
+
+double eccentricity_inclination_separation(const Vector6& roe, double a) {
+  const double dex = roe(2), dey = roe(3), dix = roe(4), diy = roe(5);
+  const double squares = dex * dex + dey * dey + dix * dix + diy * diy;
+  const double sum = math::hypot(dex + dix, dey + diy);
+  const double difference = math::hypot(dex - dix, dey - diy);
+  const double denominator = squares + sum * difference;
+  if (denominator == 0.0) return 0.0;
+  return math::sqrt(2.0 / denominator) * a * math::abs(dex * dix + dey * diy);
+}
+
+Result<DriftSafety> assess_drift(const QnsElements& servicer_mean, const Vector6& mean_roe, double horizon,
+                                 const PositionBound& bound) {
+  const double elements =
+      servicer_mean.a + servicer_mean.ex + servicer_mean.ey + servicer_mean.i + servicer_mean.raan + servicer_mean.u;
+  const double bounds = bound.radial_normal + bound.along_track + bound.along_track_rate;
+  if (!math::is_finite(elements + bounds + horizon) || !math::is_finite(mean_roe.squaredNorm()))
+    return Status::kNotFinite;
+  const double e_squared = servicer_mean.ex * servicer_mean.ex + servicer_mean.ey * servicer_mean.ey;
+  if (servicer_mean.a <= 0.0 || e_squared >= 1.0 || horizon < 0.0 || !within_model(mean_roe))
+    return Status::kOutOfRange;
+  const double revolutions = horizon * orbit::mean_motion(servicer_mean.a) / math::kTwoPi;
+  if (revolutions > kMaxRevolutions) return Status::kOutOfRange;
+
+  const QnsElements target = orbit::qns_from_roe(servicer_mean, mean_roe);
+  if (target.ex * target.ex + target.ey * target.ey >= 1.0) return Status::kOutOfRange;
+  const Vector6 roe_end =
+      orbit::roe_from_qns(orbit::propagate_secular(servicer_mean, horizon), orbit::propagate_secular(target, horizon));
+  if (!within_model(roe_end)) return Status::kOutOfRange;
+  const int samples = static_cast<int>(revolutions * kSamplesPerRevolution) + (horizon > 0.0 ? 2 : 0);
+  return watch(DriftPath(servicer_mean, mean_roe, roe_end, horizon), horizon, samples, bound);
+}
+
+Result<PlanSafety> assess_plan(GpsTime start, const QnsElements& servicer_mean, const Vector6& mean_roe,
+                               const control::Plan& plan, const SafetyCriterion& criterion) {
+  if (plan.count > control::kMaxBurns) return Status::kInvalidArgument;
+  QnsElements servicer = servicer_mean;
+  QnsElements target = orbit::qns_from_roe(servicer_mean, mean_roe);
+  GpsTime now = start;
+  PositionBound bound = criterion.bound;
+  PlanSafety worst;
+  for (std::size_t prefix = 0; prefix <= plan.count; ++prefix) {
+    const bool more = prefix < plan.count;
+    const double until_next = more ? seconds(plan.burns[prefix].time - now) : 0.0;
+    if (until_next < 0.0) return Status::kInvalidArgument;
+    const double watched = until_next > criterion.horizon ? until_next : criterion.horizon;
+    const Result<DriftSafety> drift = assess_drift(servicer, orbit::roe_from_qns(servicer, target), watched, bound);
+    if (!drift.ok()) return drift.status();
+    const DriftSafety& d = drift.value();
+    if (prefix == 0 || d.spatial.distance < worst.least_distance) {
+      worst.least_distance = d.spatial.distance;
+      worst.time = seconds(now - start) + d.spatial.time;
+      worst.prefix = prefix;
+    }
+    if (prefix == 0 || d.radial_normal.distance < worst.least_rn_distance) {
+      worst.least_rn_distance = d.radial_normal.distance;
+    }
+    if (!more) break;
+
+    servicer = orbit::propagate_secular(servicer, until_next);
+    target = orbit::propagate_secular(target, until_next);
+    bound.along_track += bound.along_track_rate * until_next;
+    now = plan.burns[prefix].time;
+    // The control matrix gives what the impulse does to the orbit it acts on, in the form of ROE.
+    servicer = orbit::qns_from_roe(servicer, orbit::roe_control_matrix(servicer) * plan.burns[prefix].dv_rtn);
+  }
+  worst.safe = worst.least_distance >= criterion.keep_out_radius;
+  return worst;
+}
+
+}  // namespace vbar::fsw::safety

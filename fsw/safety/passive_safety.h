@@ -1,0 +1,73 @@
+#pragma once
+// Passive safety: how close the spacecraft drift if nothing more is done, now and after every burn of a plan.
+//
+// The drift is seen through the linear near-circular map with its along-track and cross-track coordinates read as
+// angles (curvilinear), and the ROE drifting under J2. Against the exact map through both osculating orbits that errs
+// by up to 2 (e + J2) of the separation: 1.5 cm at 10 m, 150 m at 75 km.
+
+#include <cstddef>
+
+#include "fsw/control/plan.h"
+#include "fsw/core/gps_time.h"
+#include "fsw/core/result.h"
+#include "fsw/core/types.h"
+#include "fsw/orbit/elements.h"
+
+namespace vbar::fsw::safety {
+
+/// Least distance, m, in the plane perpendicular to the flight direction over a revolution, from the dimensionless
+/// ROE's eccentricity and inclination vectors alone (da = 0; otherwise the bound is this less a |da|). `a` in m.
+/// D'Amico 2010, eq. 2.22.
+double eccentricity_inclination_separation(const Vector6& roe, double a);
+
+/// How well the relative position is known: bounds, not sigmas, so that the caller chooses the confidence. All m, >= 0.
+struct PositionBound {
+  double radial_normal = 0.0;     ///< of the position in the RN plane
+  double along_track = 0.0;       ///< of the T coordinate at the start
+  double along_track_rate = 0.0;  ///< its growth, m/s: 1.5 n times the bound of a da
+};
+
+/// A least distance and when it occurs, s after the start.
+struct Closest {
+  double distance = 0.0;
+  double time = 0.0;
+};
+
+/// Closest points of a free drift, what `PositionBound` leaves uncertain already subtracted, never below zero.
+struct DriftSafety {
+  /// In space. At each time what is certain in the RN plane and what is certain along track are combined, so that an
+  /// along-track position of no certainty at all leaves the RN distance.
+  Closest spatial;
+  Closest radial_normal;  ///< in the RN plane only
+};
+
+/// Free drift over `horizon` s (>= 0) from mean elements of the servicer and dimensionless mean ROE of the target.
+/// Sampled a hundred times a revolution, minima refined by a parabola. kNotFinite; kOutOfRange for a horizon over 40
+/// revolutions, ROE over 0.5 or elements outside the mean-element theory.
+Result<DriftSafety> assess_drift(const orbit::QnsElements& servicer_mean, const Vector6& mean_roe, double horizon,
+                                 const PositionBound& bound = {});
+
+/// What a plan is held against.
+struct SafetyCriterion {
+  double keep_out_radius = 0.0;  ///< m
+  double horizon = 0.0;          ///< s, how long a drift is watched after each burn
+  PositionBound bound;
+};
+
+/// The worst drift of a plan. Prefix k: the first k burns fly, the rest are missed.
+struct PlanSafety {
+  bool safe = false;               ///< least_distance reaches the keep-out radius
+  double least_distance = 0.0;     ///< m, in space, bound subtracted, over all prefixes
+  double least_rn_distance = 0.0;  ///< m, in the RN plane, bound subtracted, over all prefixes
+  double time = 0.0;               ///< s after `start`, of least_distance
+  std::size_t prefix = 0;          ///< with which it occurs
+};
+
+/// Watches the drift after each prefix of the plan's burns (the servicer's, in its RTN), from 0 burns at `start` to
+/// all, for the horizon and at least until the next burn. Elements and ROE hold at `start`. kInvalidArgument unless the
+/// burns are in order of time and none before `start`; errors of assess_drift. A plan that cannot be assessed is not
+/// safe.
+Result<PlanSafety> assess_plan(GpsTime start, const orbit::QnsElements& servicer_mean, const Vector6& mean_roe,
+                               const control::Plan& plan, const SafetyCriterion& criterion);
+
+}  // namespace vbar::fsw::safety

@@ -1,0 +1,200 @@
+#include "host_sim/app/flight_recorder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
+#include "fsw/orbit/rtn.h"
+
+namespace vbar::app {
+namespace {
+
+using fsw::Vector3;
+using fsw::Vector6;
+using fsw::orbit::CartesianState;
+using fsw::orbit::QnsElements;
+
+report::Triple triple(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+report::Triple triple(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+report::Sextuple sextuple(const Vector6& v) { return {v(0), v(1), v(2), v(3), v(4), v(5)}; }
+report::Sextuple sextuple(const double (&v)[6]) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
+
+double norm(const report::Triple& v) { return std::hypot(v[0], v[1], v[2]); }
+
+double distance(const report::Triple& a, const report::Triple& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+QnsElements mean_elements(const CartesianState& state) {
+  const auto osculating = fsw::orbit::qns_from_cartesian(state);
+  if (!osculating.ok()) throw std::runtime_error("a true state is no orbit any more");
+  const auto mean = fsw::orbit::mean_from_osculating(osculating.value());
+  if (!mean.ok()) throw std::runtime_error("a true orbit has no mean elements");
+  return mean.value();
+}
+
+report::MeanAndDeviation statistics(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  const double mean = sum / static_cast<double>(values.size());
+  double squares = 0.0;
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  return {mean, std::sqrt(squares / static_cast<double>(values.size()))};
+}
+
+}  // namespace
+
+void FlightRecorder::on_truth(fsw::GpsTime time, const PairTruth& truth) {
+  report::TruthRow row;
+  row.time_s = mission_seconds(time);
+  row.servicer_position_eci = triple(truth.servicer.position_eci);
+  row.servicer_velocity_eci = triple(truth.servicer.velocity_eci);
+  row.target_position_eci = triple(truth.target.position_eci);
+  row.target_velocity_eci = triple(truth.target.velocity_eci);
+  const auto relative = fsw::orbit::relative_state_rtn(truth.servicer, truth.target);
+  row.relative_position_rtn = triple(relative.position_rtn);
+  row.relative_velocity_rtn = triple(relative.velocity_rtn);
+  const Vector6 roe = fsw::orbit::roe_from_qns(mean_elements(truth.servicer), mean_elements(truth.target));
+  row.a_roe_mean_m = sextuple(mission_.guidance.reference_semi_major_axis_m * roe);
+  record_.truth.push_back(row);
+}
+
+// Control error: the true RTN position of the target minus the one that the commanded mean ROE give on the true servicer orbit.
+void FlightRecorder::on_waypoint(const mission::Waypoint& waypoint, const PairTruth& truth) {
+  const double a = mission_.guidance.reference_semi_major_axis_m;
+  const QnsElements servicer_mean = mean_elements(truth.servicer);
+  const auto desired = fsw::orbit::relative_state_from_mean_roe(servicer_mean, waypoint.a_roe_m / a);
+  if (!desired.ok()) throw std::runtime_error("a waypoint gives no orbit about the servicer");
+  const auto actual = fsw::orbit::relative_state_rtn(truth.servicer, truth.target);
+
+  report::WaypointRow row;
+  row.index = waypoint.index;
+  row.time_s = mission_seconds(waypoint.time);
+  row.a_roe_desired_m = sextuple(waypoint.a_roe_m);
+  row.a_roe_actual_m = sextuple(a * fsw::orbit::roe_from_qns(servicer_mean, mean_elements(truth.target)));
+  row.desired_position_rtn = triple(desired.value().position_rtn);
+  row.actual_position_rtn = triple(actual.position_rtn);
+  row.control_error_m = distance(row.desired_position_rtn, row.actual_position_rtn);
+  record_.waypoints.push_back(row);
+}
+
+void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer) {
+  report::EstimateRow row;
+  row.time_s = mission_seconds(time);
+  row.step_cost = answer.report.count;
+  row.stack_bytes = answer.report.stack_bytes;
+  for (const pil::Packet& bytes : answer.packets) {
+    const auto packet = fsw::packets::parse_packet(bytes);
+    if (!packet.ok()) continue;  // hashed and logged as it came; it only has no row
+    if (packet.value().header.apid == fsw::packets::Apid::kManeuverCommand) {
+      on_command(time, packet.value());
+    } else {
+      on_telemetry(row, packet.value());
+    }
+  }
+  record_.estimates.push_back(row);
+}
+
+void FlightRecorder::on_telemetry(report::EstimateRow& row, const fsw::packets::PacketView& packet) {
+  if (const auto navigation = fsw::packets::decode<telemetry_navigation>(packet); navigation.ok()) {
+    const telemetry_navigation& m = navigation.value();
+    row.step = m.step;
+    row.navigation_source = m.source;
+    row.navigation_valid = m.valid;
+    row.relative_position_rtn = triple(m.relative_position_rtn);
+    row.relative_velocity_rtn = triple(m.relative_velocity_rtn);
+    row.sigma_rtn = sextuple(m.sigma_rtn);
+    row.a_roe_mean_m = sextuple(m.a_roe_mean_m);
+  } else if (const auto control = fsw::packets::decode<telemetry_control>(packet); control.ok()) {
+    const telemetry_control& m = control.value();
+    row.a_roe_desired_m = sextuple(m.a_roe_desired_m);
+    row.predicted_a_roe_error_m = sextuple(m.predicted_a_roe_error_m);
+    row.mode = m.mode;
+    row.active_solver = m.active_solver;
+    row.waypoint_index = m.waypoint_index;
+    row.planned_burns = m.planned_burns;
+    row.koenig_damico_status = m.koenig_damico_status;
+    row.closed_form_status = m.closed_form_status;
+    row.least_squares_status = m.least_squares_status;
+    row.safety_status = m.safety_status;
+    row.planned_dv_mps = m.planned_dv;
+    row.passive_safety_distance_m = m.passive_safety_distance_m;
+    row.commanded_dv_mps = m.commanded_dv;
+  }
+}
+
+void FlightRecorder::on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet) {
+  const auto command = fsw::packets::decode<maneuver_command>(packet);
+  if (!command.ok()) return;
+  report::ManeuverRow row;
+  row.maneuver_id = command.value().maneuver_id;
+  row.waypoint_index = command.value().waypoint_index;
+  row.solver = command.value().solver;
+  row.command_time_s = mission_seconds(step_time);
+  row.execution_time_s = mission_seconds(packet.header.time);
+  row.commanded_dv_rtn_mps = triple(command.value().dv_rtn);
+  record_.maneuvers.push_back(row);
+}
+
+void FlightRecorder::on_execution(fsw::GpsTime time, const executed_maneuver& executed) {
+  for (report::ManeuverRow& row : record_.maneuvers) {
+    if (row.maneuver_id != executed.maneuver_id || row.execution_time_s != mission_seconds(time)) continue;
+    row.accepted = executed.accepted != 0;
+    row.executed_dv_rtn_mps = triple(executed.dv_rtn);
+  }
+}
+
+void FlightRecorder::finish() {
+  finish_navigation_errors();
+  finish_legs();
+}
+
+void FlightRecorder::finish_navigation_errors() {
+  std::map<double, const report::TruthRow*> truth_at;
+  for (const report::TruthRow& row : record_.truth) truth_at[row.time_s] = &row;
+  std::vector<double> position_errors, velocity_errors;
+  for (const report::EstimateRow& estimate : record_.estimates) {
+    const auto truth = truth_at.find(estimate.time_s);
+    if (estimate.navigation_valid == 0 || truth == truth_at.end()) continue;
+    position_errors.push_back(distance(estimate.relative_position_rtn, truth->second->relative_position_rtn));
+    velocity_errors.push_back(distance(estimate.relative_velocity_rtn, truth->second->relative_velocity_rtn));
+    for (report::WaypointRow& waypoint : record_.waypoints) {
+      if (waypoint.time_s != estimate.time_s) continue;
+      waypoint.navigation_error_m = position_errors.back();
+      waypoint.navigation_velocity_error_mps = velocity_errors.back();
+    }
+  }
+  if (position_errors.empty()) return;
+  record_.summary.navigation_error_m = statistics(position_errors);
+  record_.summary.navigation_velocity_error_mps = statistics(velocity_errors);
+}
+
+// A burn at exactly a waypoint's time belongs to the leg after it.
+void FlightRecorder::finish_legs() {
+  report::Summary& summary = record_.summary;
+  summary.dv_mps = 0.0;
+  summary.maneuvers = 0;
+  for (const report::ManeuverRow& maneuver : record_.maneuvers) {
+    if (!maneuver.accepted) continue;
+    const double dv = norm(maneuver.executed_dv_rtn_mps);
+    summary.dv_mps += dv;
+    ++summary.maneuvers;
+    const auto leg_end = std::ranges::find_if(record_.waypoints, [&](const report::WaypointRow& waypoint) {
+      return maneuver.execution_time_s < waypoint.time_s;
+    });
+    if (leg_end == record_.waypoints.end()) continue;
+    leg_end->leg_dv_mps += dv;
+    ++leg_end->leg_maneuvers;
+  }
+  double cumulative = 0.0;
+  for (report::WaypointRow& waypoint : record_.waypoints) {
+    cumulative += waypoint.leg_dv_mps;
+    waypoint.cumulative_dv_mps = cumulative;
+  }
+}
+
+}  // namespace vbar::app

@@ -1,0 +1,51 @@
+#pragma once
+// Turns what happens in a run into the rows of its record: truth, what the flight software said, maneuvers, waypoints met.
+
+#include <span>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/packets/messages.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/report/run_record.h"
+#include "pil_bridge/flight_computer.h"
+
+namespace vbar::app {
+
+/// True states of the pair that flies.
+struct PairTruth {
+  fsw::orbit::CartesianState servicer;
+  fsw::orbit::CartesianState target;
+};
+
+class FlightRecorder {
+ public:
+  FlightRecorder(const mission::Mission& mission, report::RunRecord& record) : mission_(mission), record_(record) {}
+
+  /// Truth at the time of a flight step.
+  void on_truth(fsw::GpsTime time, const PairTruth& truth);
+
+  /// Truth at the time of a waypoint, before any burn of that instant.
+  void on_waypoint(const mission::Waypoint& waypoint, const PairTruth& truth);
+
+  /// The flight software's answer to a step: its telemetry becomes a row, its commands maneuvers yet to be executed.
+  void on_answer(fsw::GpsTime time, const pil::StepResult& answer);
+
+  /// What became of a command.
+  void on_execution(fsw::GpsTime time, const executed_maneuver& executed);
+
+  /// Completes what can only be known at the end: errors of navigation, fuel by leg.
+  void finish();
+
+ private:
+  [[nodiscard]] double mission_seconds(fsw::GpsTime time) const { return fsw::seconds(time - mission_.epoch); }
+  void on_telemetry(report::EstimateRow& row, const fsw::packets::PacketView& packet);
+  void on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet);
+  void finish_navigation_errors();
+  void finish_legs();
+
+  const mission::Mission& mission_;
+  report::RunRecord& record_;
+};
+
+}  // namespace vbar::app

@@ -1,0 +1,57 @@
+#include "host_sim/app/initial_orbits.h"
+
+#include <stdexcept>
+
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
+
+namespace vbar::app {
+namespace {
+
+using fsw::orbit::CartesianState;
+using fsw::orbit::QnsElements;
+
+template <class T>
+T value_or_throw(const fsw::Result<T>& result, const mission::Spacecraft& spacecraft) {
+  if (!result.ok()) throw std::runtime_error("spacecraft \"" + spacecraft.name + "\": its elements describe no orbit");
+  return result.value();
+}
+
+CartesianState state_of(const QnsElements& mean, const mission::Spacecraft& spacecraft) {
+  const QnsElements osculating = value_or_throw(fsw::orbit::osculating_from_mean(mean), spacecraft);
+  return value_or_throw(fsw::orbit::cartesian_from_qns(osculating), spacecraft);
+}
+
+CartesianState state_at_epoch(const mission::OrbitByElements& orbit, const mission::Spacecraft& spacecraft) {
+  if (orbit.kind == mission::ElementsKind::kMean) return state_of(orbit.elements, spacecraft);
+  return value_or_throw(fsw::orbit::cartesian_from_qns(orbit.elements), spacecraft);
+}
+
+CartesianState state_at_waypoint(const mission::Mission& mission, const mission::OrbitByWaypoint& orbit,
+                                 const mission::Spacecraft& spacecraft, const truth::TruthModel& truth) {
+  const mission::Waypoint* waypoint = mission.find_waypoint(orbit.waypoint_index);
+  if (waypoint == nullptr) throw std::runtime_error("spacecraft \"" + spacecraft.name + "\": no such waypoint");
+  const QnsElements chief_osculating =
+      value_or_throw(fsw::orbit::qns_from_cartesian(truth.state(orbit.to)), spacecraft);
+  const QnsElements chief_mean = value_or_throw(fsw::orbit::mean_from_osculating(chief_osculating), spacecraft);
+  const fsw::Vector6 roe = waypoint->a_roe_m / mission.guidance.reference_semi_major_axis_m;
+  return state_of(fsw::orbit::qns_from_roe(chief_mean, roe), spacecraft);
+}
+
+}  // namespace
+
+void place_spacecraft(const mission::Mission& mission, truth::TruthModel& truth) {
+  for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
+    if (const auto* orbit = std::get_if<mission::OrbitByElements>(&spacecraft.orbit)) {
+      truth.add_spacecraft(spacecraft.name, state_at_epoch(*orbit, spacecraft));
+    }
+  }
+  truth.advance_to(mission.start_time());
+  for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
+    if (const auto* orbit = std::get_if<mission::OrbitByWaypoint>(&spacecraft.orbit)) {
+      truth.add_spacecraft(spacecraft.name, state_at_waypoint(mission, *orbit, spacecraft, truth));
+    }
+  }
+}
+
+}  // namespace vbar::app

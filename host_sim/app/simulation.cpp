@@ -1,0 +1,272 @@
+#include "host_sim/app/simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "host_sim/app/connect_flight_computer.h"
+#include "host_sim/app/initial_orbits.h"
+#include "host_sim/app/make_twins.h"
+#include "host_sim/mission/telecommands.h"
+
+namespace vbar::app {
+namespace {
+
+using fsw::GpsTime;
+using fsw::packets::Apid;
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+engine::WallClock::Span wall_span(double s) {
+  return std::chrono::duration_cast<engine::WallClock::Span>(std::chrono::duration<double>(s));
+}
+
+/// The spacecraft that flies, with all it needs to.
+const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
+  const mission::Spacecraft& servicer = flying_spacecraft(mission);
+  for (const mission::Spacecraft& other : mission.spacecraft) {
+    if (&other != &servicer && other.flight_computer) {
+      throw std::runtime_error("spacecraft \"" + other.name + "\" has a flight computer too; one in a mission is supported");
+    }
+  }
+  if (!servicer.navigation) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no navigation sensor");
+  if (!servicer.thruster) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no thruster");
+  return servicer;
+}
+
+truth::TruthSettings truth_settings(const mission::Mission& mission, const std::filesystem::path& data_directory) {
+  truth::TruthSettings settings;
+  settings.epoch = mission.epoch;
+  settings.gravity_degree = mission.truth.gravity_degree;
+  settings.gravity_order = mission.truth.gravity_order;
+  settings.tolerance = mission.truth.relative_tolerance;
+  settings.threads = mission.truth.threads;
+  settings.data_directory = data_directory;
+  return settings;
+}
+
+template <class Message>
+pil::Packet make_packet(GpsTime time, std::uint8_t spacecraft, std::uint16_t sequence, const Message& message) {
+  fsw::packets::PacketHeader header;
+  header.time = time;
+  header.spacecraft = spacecraft;
+  header.sequence_count = sequence & 0x3FFFU;
+  pil::Packet packet(fsw::packets::kMaxPacketBytes);
+  const auto size = fsw::packets::encode(header, message, packet);
+  if (!size.ok()) throw std::runtime_error("a message cannot be sent: it holds a number that is not finite");
+  packet.resize(size.value());
+  return packet;
+}
+
+// Order of things that happen at one instant (simulation.h).
+constexpr std::int32_t kPriorityOf[] = {0, 10, 20, 30, 40};
+
+}  // namespace
+
+Simulation::Simulation(const mission::Mission& mission, const std::filesystem::path& data_directory,
+                       const Surroundings& surroundings, report::RunRecord& record)
+    : mission_(mission),
+      servicer_(complete_servicer(mission)),
+      surroundings_(surroundings),
+      record_(record),
+      recorder_(mission, record),
+      truth_(truth_settings(mission, data_directory)),
+      board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
+      clock_(mission.clock, surroundings.wall),
+      events_(mission.start_time()) {
+  place_spacecraft(mission, truth_);
+  servicer_index_ = truth_.index_of(servicer_.name);
+  target_index_ = truth_.index_of(servicer_.navigation->target);
+  navigation_ = make_navigation_source(mission, servicer_);
+  thruster_ = make_thruster(mission, servicer_);
+}
+
+bool Simulation::run() {
+  const double started = wall_seconds();
+  bool complete = false;
+  const auto finish = [&] {
+    recorder_.finish();
+    summarise(wall_seconds() - started, complete);
+  };
+  try {
+    schedule_the_known();
+    clock_.start(mission_.start_time());
+    while (auto next = events_.pop()) {
+      const bool is_step = std::holds_alternative<StepFlight>(next->event);
+      if (is_step && !clock_.begin_step(events_.now(), surroundings_.stop_requested)) break;
+      std::visit([this](const auto& event) { handle(event); }, next->event);
+      if (is_step && surroundings_.progress) surroundings_.progress(events_.now() - mission_.start_time());
+      if (is_step && surroundings_.stop_requested && surroundings_.stop_requested()) break;
+    }
+    complete = events_.empty();
+  } catch (...) {
+    finish();
+    throw;
+  }
+  finish();
+  return complete;
+}
+
+void Simulation::schedule(GpsTime time, Event event) {
+  const std::int32_t priority = kPriorityOf[event.index()];
+  static_cast<void>(events_.schedule(time, priority, std::move(event)));  // never before now: callers see to it
+}
+
+/// Measurements, waypoints and steps are a timetable; packets and burns come of what happens.
+void Simulation::schedule_the_known() {
+  schedule_measurement(mission_.start_time());
+  schedule(mission_.start_time(), StepFlight{});
+  for (std::size_t k = 0; k < mission_.waypoints.size(); ++k) {
+    const GpsTime time = mission_.waypoints[k].time;
+    if (time >= mission_.start_time() && time <= mission_.end_time()) schedule(time, JudgeWaypoint{k});
+  }
+  queue_telecommands();
+}
+
+/// The flight software is told its mission before its first step.
+void Simulation::queue_telecommands() {
+  const GpsTime now = mission_.start_time();
+  arrived_.push_back(make_packet(now, servicer_.number, 0, mission::gnc_configuration_of(mission_)));
+  arrived_.push_back(make_packet(now, servicer_.number, 0, mission::waypoint_table_of(mission_)));
+  arrived_.push_back(make_packet(now, servicer_.number, 0, mission::mode_command_of(mission_)));
+}
+
+void Simulation::schedule_measurement(GpsTime from) {
+  const auto epoch = navigation_->next_epoch(from);
+  if (epoch && *epoch <= mission_.end_time()) schedule(*epoch, TakeMeasurement{});
+}
+
+void Simulation::handle(const TakeMeasurement&) {
+  const GpsTime now = events_.now();
+  truth_.advance_to(now);
+  twins::Measurement measurement = measure_now();
+  // A sensor that fails an epoch has nothing to say; the flight software coasts.
+  for (twins::Packet& packet : measurement.packets) {
+    if (measurement.bypasses_link) {
+      schedule(measurement.available, DeliverPacket{std::move(packet)});
+    } else {
+      send_to_flight(std::move(packet), measurement.available);
+    }
+  }
+  schedule_measurement(now + fsw::Duration{1});
+}
+
+/// In lock-step simulated time waits for a sensor that needs longer.
+twins::Measurement Simulation::measure_now() {
+  const twins::TruthSnapshot snapshot{events_.now(), all_truth()};
+  while (true) {
+    twins::Measurement measurement = navigation_->measure(snapshot);
+    if (measurement.status != twins::MeasurementStatus::kLater) return measurement;
+    if (surroundings_.stop_requested && surroundings_.stop_requested()) return {};
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+std::vector<twins::SpacecraftTruth> Simulation::all_truth() const {
+  std::vector<twins::SpacecraftTruth> all;
+  for (const mission::Spacecraft& spacecraft : mission_.spacecraft) {
+    all.push_back({spacecraft.name, truth_.state(spacecraft.name)});
+  }
+  return all;
+}
+
+void Simulation::send_to_flight(pil::Packet packet, GpsTime sent) {
+  const engine::Transfer transfer = board_link_.send(sent);
+  if (!transfer.lost) schedule(transfer.delivery, DeliverPacket{std::move(packet)});
+}
+
+void Simulation::handle(const DeliverPacket& delivery) { arrived_.push_back(delivery.packet); }
+
+void Simulation::handle(const JudgeWaypoint& judged) {
+  truth_.advance_to(events_.now());
+  recorder_.on_waypoint(mission_.waypoints[judged.index], pair_truth());
+}
+
+void Simulation::handle(const StepFlight&) {
+  const GpsTime now = events_.now();
+  truth_.advance_to(now);
+  recorder_.on_truth(now, pair_truth());
+
+  arrived_.push_back(make_tick());
+  const std::vector<pil::Packet> inputs = std::exchange(arrived_, {});
+  const double before = wall_seconds();
+  const pil::StepResult answer = surroundings_.flight_computer.step(step_, inputs);
+  const double exchange_s = wall_seconds() - before;
+  clock_.end_exchange(wall_span(exchange_s), wall_span(answer.compute_wall_s));
+  flight_compute_s_ += answer.compute_wall_s;
+  link_s_ += exchange_s - answer.compute_wall_s;
+
+  for (PacketObserver* observer : surroundings_.observers) observer->on_step(step_, now, inputs, answer.packets);
+  recorder_.on_answer(now, answer);
+  take_commands(answer);
+  ++step_;
+  if (now + mission_.step <= mission_.end_time()) schedule(now + mission_.step, StepFlight{});
+}
+
+pil::Packet Simulation::make_tick() {
+  tick message{};
+  message.step = step_;
+  message.period_ns = mission_.step.ns;
+  return make_packet(events_.now(), servicer_.number, tick_sequence_++, message);
+}
+
+/// Commands take effect once the flight computer has had its compute latency; one that asks for an earlier time is refused.
+void Simulation::take_commands(const pil::StepResult& answer) {
+  const GpsTime effective = events_.now() + servicer_.flight_computer->compute_latency;
+  for (const pil::Packet& bytes : answer.packets) {
+    const auto packet = fsw::packets::parse_packet(bytes);
+    if (!packet.ok() || packet.value().header.apid != Apid::kManeuverCommand) continue;
+    const auto command = fsw::packets::decode<maneuver_command>(packet.value());
+    if (!command.ok()) continue;
+    const GpsTime time = packet.value().header.time;
+    if (time < effective) {
+      report_execution(thruster_->execute(command.value(), time, effective));
+    } else if (time <= mission_.end_time()) {
+      schedule(time, ExecuteBurn{command.value()});
+    }
+  }
+}
+
+void Simulation::handle(const ExecuteBurn& burn) {
+  const GpsTime now = events_.now();
+  truth_.advance_to(now);
+  const twins::Execution execution = thruster_->execute(burn.command, now, now);
+  const double (&dv)[3] = execution.maneuver.dv_rtn;
+  truth_.apply_impulse_rtn(servicer_index_, {dv[0], dv[1], dv[2]});
+  report_execution(execution);
+}
+
+void Simulation::report_execution(const twins::Execution& execution) {
+  recorder_.on_execution(execution.time, execution.maneuver);
+  send_to_flight(execution.packet, events_.now());
+}
+
+PairTruth Simulation::pair_truth() const { return {truth_.state(servicer_index_), truth_.state(target_index_)}; }
+
+void Simulation::summarise(double wall_s, bool complete) {
+  report::Summary& summary = record_.summary;
+  summary.mission = mission_.name;
+  summary.seed = mission_.seed;
+  summary.complete = complete;
+  summary.flight_computer = mission::name_of(servicer_.flight_computer->target);
+  summary.flight_software = surroundings_.flight_computer.description();
+  summary.navigation = mission::name_of(servicer_.navigation->source);
+  summary.simulated_s = fsw::seconds(events_.now() - mission_.start_time());
+  summary.wall_s = wall_s;
+  summary.speed_factor = wall_s > 0.0 ? summary.simulated_s / wall_s : 0.0;
+
+  const pil::LinkStatistics link = surroundings_.flight_computer.statistics();
+  summary.link = {link.bytes_sent + link.bytes_received, link.frames_resent, link.frames_rejected,
+                  link.frames_duplicated, link.strangers_ignored};
+  const engine::DeadlineReport& deadlines = clock_.report();
+  summary.deadlines = {deadlines.step_late.count, deadlines.woke_late.count, deadlines.link_late.count};
+  summary.wall_share.truth_s = truth_.statistics().wall_s;
+  summary.wall_share.flight_s = flight_compute_s_;
+  summary.wall_share.link_s = link_s_;
+  summary.wall_share.other_s = wall_s - summary.wall_share.truth_s - flight_compute_s_ - link_s_;
+}
+
+}  // namespace vbar::app

@@ -1,0 +1,53 @@
+#include "host_sim/mission/catalogue.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+#include "host_sim/mission/load.h"
+
+namespace vbar::mission {
+namespace {
+
+CatalogueEntry entry_of(const std::filesystem::path& file) {
+  CatalogueEntry entry;
+  entry.file = file;
+  try {
+    const Mission mission = load_mission(file);
+    entry.name = mission.name;
+    entry.description = mission.description;
+    entry.duration_h = fsw::seconds(mission.duration) / 3600.0;
+    entry.good = true;
+  } catch (const MissionError& error) {
+    entry.name = file.stem().string();
+    entry.description = error.what();
+  }
+  return entry;
+}
+
+}  // namespace
+
+std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> files;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == ".toml") files.push_back(it->path());
+  if (error) throw MissionError(folder.string(), "", "no folder that can be read", "a folder of mission files");
+  std::sort(files.begin(), files.end());
+  std::vector<CatalogueEntry> entries;
+  for (const auto& file : files) entries.push_back(entry_of(file));
+  return entries;
+}
+
+std::string line_of(const CatalogueEntry& entry, std::size_t name_width) {
+  std::ostringstream line;
+  line << std::left << std::setw(static_cast<int>(name_width)) << entry.name << "  ";
+  if (entry.good)
+    line << std::right << std::fixed << std::setprecision(2) << std::setw(7) << entry.duration_h << " h  ";
+  else
+    line << "cannot be run: ";
+  line << entry.description;
+  return line.str();
+}
+
+}  // namespace vbar::mission

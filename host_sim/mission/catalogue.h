@@ -1,0 +1,24 @@
+#pragma once
+// What can be run: the mission files of a folder.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vbar::mission {
+
+struct CatalogueEntry {
+  std::filesystem::path file;
+  std::string name;         ///< the file's stem if the file is bad
+  std::string description;  ///< or the message that says why it is bad
+  double duration_h = 0.0;
+  bool good = false;
+};
+
+/// Every *.toml file of `folder`, in order of file name. Throws MissionError if there is no such folder.
+[[nodiscard]] std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder);
+
+/// One line of the catalogue, without a line end: name, duration in hours, description; names padded to `name_width`.
+[[nodiscard]] std::string line_of(const CatalogueEntry& entry, std::size_t name_width);
+
+}  // namespace vbar::mission

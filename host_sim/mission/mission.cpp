@@ -1,0 +1,31 @@
+#include "host_sim/mission/mission.h"
+
+#include <algorithm>
+
+#include "host_sim/mission/names.h"
+
+namespace vbar::mission {
+
+const Spacecraft* Mission::find_spacecraft(std::string_view spacecraft_name) const {
+  const auto found = std::find_if(spacecraft.begin(), spacecraft.end(),
+                                  [&](const Spacecraft& candidate) { return candidate.name == spacecraft_name; });
+  return found == spacecraft.end() ? nullptr : &*found;
+}
+
+const Waypoint* Mission::find_waypoint(int index) const {
+  const auto found = std::find_if(waypoints.begin(), waypoints.end(),
+                                  [&](const Waypoint& candidate) { return candidate.index == index; });
+  return found == waypoints.end() ? nullptr : &*found;
+}
+
+std::string_view name_of(FlightTarget target) {
+  return name_in(kFlightTargets, target);
+}
+std::string_view name_of(FlightLink link) {
+  return name_in(kFlightLinks, link);
+}
+std::string_view name_of(NavigationSource source) {
+  return name_in(kNavigationSources, source);
+}
+
+}  // namespace vbar::mission

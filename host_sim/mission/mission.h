@@ -1,0 +1,162 @@
+#pragma once
+// A mission file's content, checked and in SI units: plain structs. What each key means, its default and its range
+// stand with the functions that read it (read_*.cpp) and, by example, in missions/ideal_navigation.toml.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/orbit/elements.h"
+#include "host_sim/engine/clock.h"
+#include "host_sim/engine/link_model.h"
+
+namespace vbar::mission {
+
+inline constexpr std::size_t kMaxWaypoints = 16;  ///< of one waypoint telecommand
+
+struct TruthSettings {
+  int gravity_degree = 60;
+  int gravity_order = 60;
+  double relative_tolerance = 1e-12;
+  int threads = 1;
+};
+
+/// Orbit of a spacecraft at the epoch.
+enum class ElementsKind { kOsculating, kMean };
+struct OrbitByElements {
+  ElementsKind kind = ElementsKind::kOsculating;
+  fsw::orbit::QnsElements elements;
+};
+
+/// Orbit given by the mean ROE of a waypoint with respect to another spacecraft, at the start of the run.
+struct OrbitByWaypoint {
+  std::string to;
+  int waypoint_index = 0;
+};
+
+struct SurfaceProperties {
+  double mass_kg = 0.0;
+  double drag_area_m2 = 0.0;
+  double drag_coefficient = 0.0;
+  double radiation_area_m2 = 0.0;
+  double radiation_coefficient = 0.0;
+};
+
+enum class FlightTarget { kInProcess, kHostProcess, kZynqQemu, kZynqLinuxQemu, kBoard };
+enum class FlightLink { kSerial, kUdp };
+
+/// Where a spacecraft's flight software runs, and how packets get there.
+struct FlightComputer {
+  FlightTarget target = FlightTarget::kInProcess;
+  FlightLink link = FlightLink::kSerial;
+  std::string library;            ///< shared library of another test article; empty: vbar's own
+  fsw::Duration compute_latency;  ///< from a step to the moment its outputs take effect
+  std::string device;             ///< board on a serial link: the tty
+  int baud = 921600;              ///< board on a serial link
+  std::string address;            ///< board on UDP
+  int port = 0;                   ///< board on UDP
+};
+
+enum class NavigationSource { kIdeal, kRecorded };
+
+/// sensors.navigation: states that need no estimating.
+struct NavigationSensor {
+  NavigationSource source = NavigationSource::kIdeal;
+  std::string target;  ///< the spacecraft it observes
+  fsw::Duration period;
+  std::filesystem::path log;  ///< recorded only: the packet log it plays
+};
+
+/// actuators.thruster; 1-sigma errors of each burn.
+struct Thruster {
+  double magnitude_error = 0.0;     ///< relative
+  double pointing_error_rad = 0.0;  ///< about each of two axes across the burn
+};
+
+struct Spacecraft {
+  std::string name;
+  std::uint8_t number = 0;  ///< as in packet headers
+  SurfaceProperties surface;
+  std::variant<OrbitByElements, OrbitByWaypoint> orbit;
+  std::optional<FlightComputer> flight_computer;
+  std::optional<NavigationSensor> navigation;
+  std::optional<Thruster> thruster;
+};
+
+/// Which solver plans the leg that ends at a waypoint; numbers as in vbar.lcm.
+enum class Solver : std::int8_t { kClosedForm = 0, kKoenigDamico = 1, kLeastSquares = 2 };
+
+struct Waypoint {
+  int index = 0;
+  fsw::GpsTime time;
+  fsw::Vector6 a_roe_m =
+      fsw::Vector6::Zero();  ///< mean ROE of the target with respect to the servicer, times the reference a
+  Solver solver = Solver::kClosedForm;
+};
+
+/// Numbers as in vbar.lcm, mode_command.
+enum class Mode : std::int8_t { kIdle = 0, kApproach = 1, kStationKeeping = 2, kHold = 3 };
+
+/// What is telecommanded to the flight software at the start; fields as in vbar.lcm, gnc_configuration.
+struct Guidance {
+  Mode mode = Mode::kApproach;
+  double reference_semi_major_axis_m = 0.0;
+  fsw::Duration compute_latency;
+  fsw::Duration closed_form_period;
+  fsw::Duration koenig_damico_period;
+  fsw::Duration koenig_damico_grid;
+  fsw::Duration least_squares_spacing;
+  fsw::GpsTime planner_start;
+  double minimum_dv = 0.0;
+  double maximum_dv = 0.0;
+  double roe_error_threshold_m = 0.0;
+  double keep_out_radius_m = 0.0;
+  double safety_horizon_s = 0.0;
+  double station_keeping_deadband_m = 0.0;
+  double navigation_timeout_s = 0.0;
+};
+
+/// Live packets on an LCM bus.
+struct LcmMirror {
+  bool mirror = false;
+  std::string url;
+};
+
+struct Mission {
+  std::filesystem::path file;
+  std::string name;
+  std::string description;
+  fsw::GpsTime epoch;      ///< of the orbital elements and of waypoint times
+  fsw::Duration start;     ///< first step, after the epoch
+  fsw::Duration duration;  ///< from the first step to the end of the run
+  fsw::Duration step;      ///< between flight steps
+  std::uint64_t seed = 1;
+  TruthSettings truth;
+  std::vector<Spacecraft> spacecraft;
+  Guidance guidance;
+  std::vector<Waypoint> waypoints;  ///< in order of time
+  engine::ClockSettings clock;
+  engine::LinkSettings
+      board_link;  ///< the simulated link between a spacecraft's sensors or actuators and its flight computer
+  LcmMirror lcm;
+
+  [[nodiscard]] fsw::GpsTime start_time() const { return epoch + start; }
+  [[nodiscard]] fsw::GpsTime end_time() const { return epoch + start + duration; }
+
+  /// Null if there is none of that name / with that index.
+  [[nodiscard]] const Spacecraft* find_spacecraft(std::string_view spacecraft_name) const;
+  [[nodiscard]] const Waypoint* find_waypoint(int index) const;
+};
+
+/// The names that mission files and summaries use (names.h has them all).
+[[nodiscard]] std::string_view name_of(FlightTarget target);
+[[nodiscard]] std::string_view name_of(FlightLink link);
+[[nodiscard]] std::string_view name_of(NavigationSource source);
+
+}  // namespace vbar::mission

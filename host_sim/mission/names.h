@@ -1,0 +1,47 @@
+#pragma once
+// The names of the enumerations in mission files, summaries and messages: one list each.
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "host_sim/mission/mission.h"
+
+namespace vbar::mission {
+
+template <class Enum, std::size_t N>
+using Names = std::array<std::pair<std::string_view, Enum>, N>;
+
+inline constexpr Names<ElementsKind, 2> kElementsKinds{
+    {{"osculating", ElementsKind::kOsculating}, {"mean", ElementsKind::kMean}}};
+inline constexpr Names<FlightTarget, 5> kFlightTargets{{{"in_process", FlightTarget::kInProcess},
+                                                        {"host_process", FlightTarget::kHostProcess},
+                                                        {"zynq_qemu", FlightTarget::kZynqQemu},
+                                                        {"zynq_linux_qemu", FlightTarget::kZynqLinuxQemu},
+                                                        {"board", FlightTarget::kBoard}}};
+inline constexpr Names<FlightLink, 2> kFlightLinks{{{"serial", FlightLink::kSerial}, {"udp", FlightLink::kUdp}}};
+inline constexpr Names<NavigationSource, 2> kNavigationSources{
+    {{"ideal", NavigationSource::kIdeal}, {"recorded", NavigationSource::kRecorded}}};
+inline constexpr Names<Solver, 3> kSolvers{{{"closed_form", Solver::kClosedForm},
+                                            {"koenig_damico", Solver::kKoenigDamico},
+                                            {"least_squares", Solver::kLeastSquares}}};
+inline constexpr Names<Mode, 4> kModes{{{"idle", Mode::kIdle},
+                                        {"approach", Mode::kApproach},
+                                        {"station_keeping", Mode::kStationKeeping},
+                                        {"hold", Mode::kHold}}};
+inline constexpr Names<engine::ClockMode, 2> kClockModes{
+    {{"lock_step", engine::ClockMode::kLockStep}, {"real_time", engine::ClockMode::kRealTime}}};
+inline constexpr Names<engine::LatencyKind, 4> kLatencyKinds{{{"constant", engine::LatencyKind::kConstant},
+                                                              {"uniform", engine::LatencyKind::kUniform},
+                                                              {"normal", engine::LatencyKind::kNormal},
+                                                              {"exponential", engine::LatencyKind::kExponential}}};
+
+/// The name of an enumerator; empty for a value that is none.
+template <class Enum, std::size_t N>
+constexpr std::string_view name_in(const Names<Enum, N>& names, Enum value) {
+  for (const auto& [name, candidate] : names)
+    if (candidate == value) return name;
+  return {};
+}
+
+}  // namespace vbar::mission

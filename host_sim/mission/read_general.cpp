@@ -1,0 +1,47 @@
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "host_sim/mission/read_sections.h"
+#include "host_sim/truth/time_scales.h"
+
+namespace vbar::mission {
+namespace {
+
+fsw::GpsTime read_epoch(const TableReader& section) {
+  // Default: the paper's initial epoch.
+  const std::string text = section.text("epoch_utc", "2011-07-18T01:00:00Z");
+  try {
+    return truth::gps_from_utc(text);
+  } catch (const std::invalid_argument&) {
+    section.refuse_value("epoch_utc", "a UTC time like 2011-07-18T01:00:00Z, from 1980-01-06 on");
+  }
+}
+
+}  // namespace
+
+void read_general(const TableReader& document, Mission& mission) {
+  const TableReader section = document.table("mission");
+  section.accept_only({"name", "description", "epoch_utc", "start_h", "duration_h", "step_s", "seed"});
+  mission.name = section.name("name", mission.file.stem().string());
+  mission.description = section.text("description", "");
+  mission.epoch = read_epoch(section);
+  mission.start = section.span("start_h", kHour_s, from_to(0.0, kLongestMission_h), 0.0);
+  mission.duration = section.span("duration_h", kHour_s, above_to(0.0, kLongestMission_h));
+  mission.step = section.span("step_s", 1.0, from_to(1e-3, 3600.0), 60.0);
+  constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
+  mission.seed = static_cast<std::uint64_t>(section.integer("seed", 0, kLargestSeed, 1));
+}
+
+void read_truth(const TableReader& document, Mission& mission) {
+  const TableReader section = document.table("truth");
+  section.accept_only({"gravity_degree", "gravity_order", "relative_tolerance", "threads"});
+  TruthSettings& truth = mission.truth;
+  truth.gravity_degree = static_cast<int>(section.integer("gravity_degree", 2, 120, truth.gravity_degree));
+  const int order = std::min(truth.gravity_order, truth.gravity_degree);
+  truth.gravity_order = static_cast<int>(section.integer("gravity_order", 0, truth.gravity_degree, order));
+  truth.relative_tolerance = section.number("relative_tolerance", from_to(1e-14, 1e-6), truth.relative_tolerance);
+  truth.threads = static_cast<int>(section.integer("threads", 1, 256, truth.threads));
+}
+
+}  // namespace vbar::mission

@@ -1,0 +1,165 @@
+#include <algorithm>
+
+#include "fsw/math/math.h"
+#include "host_sim/mission/names.h"
+#include "host_sim/mission/read_sections.h"
+
+namespace vbar::mission {
+namespace {
+
+using fsw::math::kDegree;
+
+// PRISMA's two spacecraft: Mango, the servicer, and Tango, the target (figures of the literature, to the digits known).
+constexpr SurfaceProperties kMango{154.0, 1.3, 2.5, 2.5, 1.32};
+constexpr SurfaceProperties kTango{40.0, 0.38, 2.25, 0.55, 1.2};
+
+SurfaceProperties read_surface(const TableReader& section, const std::string& name) {
+  const SurfaceProperties& usual = name == "target" ? kTango : kMango;
+  SurfaceProperties surface;
+  surface.mass_kg = section.number("mass_kg", above_to(0.0, 1e6), usual.mass_kg);
+  surface.drag_area_m2 = section.number("drag_area_m2", from_to(0.0, 1e4), usual.drag_area_m2);
+  surface.drag_coefficient = section.number("drag_coefficient", from_to(0.0, 10.0), usual.drag_coefficient);
+  surface.radiation_area_m2 = section.number("radiation_area_m2", from_to(0.0, 1e4), usual.radiation_area_m2);
+  surface.radiation_coefficient =
+      section.number("radiation_coefficient", from_to(0.0, 10.0), usual.radiation_coefficient);
+  return surface;
+}
+
+OrbitByElements read_elements(const TableReader& section) {
+  section.accept_only(
+      {"kind", "semi_major_axis_km", "ex", "ey", "inclination_deg", "raan_deg", "mean_argument_of_latitude_deg"});
+  OrbitByElements orbit;
+  orbit.kind = section.choice<ElementsKind>("kind", kElementsKinds);
+  fsw::orbit::QnsElements& elements = orbit.elements;
+  elements.a = 1e3 * section.number("semi_major_axis_km", from_to(6400.0, 1e6));
+  elements.ex = section.number("ex", from_to(-0.9, 0.9));
+  elements.ey = section.number("ey", from_to(-0.9, 0.9));
+  if (elements.ex * elements.ex + elements.ey * elements.ey >= 0.81)
+    section.refuse("ey", "an eccentricity of 0.9 or more", "ex and ey with ex^2 + ey^2 below 0.81");
+  // Quasi-nonsingular elements need a node.
+  elements.i = kDegree * section.number("inclination_deg", from_to(0.01, 179.99));
+  elements.raan = kDegree * section.number("raan_deg", from_to(-360.0, 360.0));
+  elements.u = kDegree * section.number("mean_argument_of_latitude_deg", from_to(-360.0, 360.0));
+  return orbit;
+}
+
+OrbitByWaypoint read_relative(const TableReader& section, const Mission& mission) {
+  section.accept_only({"to", "waypoint"});
+  OrbitByWaypoint orbit;
+  orbit.to = section.name("to");
+  // Only one that stands above, so that the orbits can be made in order.
+  if (mission.find_spacecraft(orbit.to) == nullptr)
+    section.refuse_value("to", "the name of a spacecraft further up in the file");
+  orbit.waypoint_index = static_cast<int>(section.integer("waypoint", 0, 9999));
+  if (mission.find_waypoint(orbit.waypoint_index) == nullptr)
+    section.refuse_value("waypoint", "the index of a waypoint");
+  return orbit;
+}
+
+std::variant<OrbitByElements, OrbitByWaypoint> read_orbit(const TableReader& section, const Mission& mission) {
+  if (section.has("elements") == section.has("relative"))
+    section.refuse("", section.has("elements") ? "both elements and relative" : "neither elements nor relative",
+                   "exactly one of them");
+  if (section.has("elements")) return read_elements(section.table("elements"));
+  return read_relative(section.table("relative"), mission);
+}
+
+FlightComputer read_flight_computer(const TableReader& section) {
+  section.accept_only({"target", "link", "library", "compute_latency_s", "device", "baud", "address", "port"});
+  FlightComputer computer;
+  computer.target = section.choice<FlightTarget>("target", kFlightTargets, FlightTarget::kInProcess);
+  computer.link = section.choice<FlightLink>("link", kFlightLinks, FlightLink::kSerial);
+  computer.library = section.text("library", "");
+  if (!computer.library.empty() && computer.target != FlightTarget::kInProcess)
+    section.refuse_value("library", "nothing, unless target is in_process");
+  computer.compute_latency = section.span("compute_latency_s", 1.0, from_to(0.0, 3600.0), 1.0);
+  computer.device = section.text("device", "");
+  computer.baud = static_cast<int>(section.integer("baud", 1200, 4000000, computer.baud));
+  computer.address = section.text("address", "");
+  computer.port = static_cast<int>(section.integer("port", 0, 65535, 0));
+  if (computer.target == FlightTarget::kBoard) {
+    if (computer.link == FlightLink::kSerial && computer.device.empty())
+      section.refuse("device", "nothing", "the tty of the board, e.g. /dev/ttyUSB0");
+    if (computer.link == FlightLink::kUdp && computer.address.empty())
+      section.refuse("address", "nothing", "the address of the board, e.g. 127.0.0.1");
+    if (computer.link == FlightLink::kUdp && computer.port == 0)
+      section.refuse("port", "nothing", "the UDP port of the board");
+  }
+  return computer;
+}
+
+NavigationSensor read_navigation(const TableReader& section, const std::vector<std::string>& spacecraft_names,
+                                 const Mission& mission) {
+  section.accept_only({"source", "target", "period_s", "log"});
+  NavigationSensor sensor;
+  sensor.source = section.choice<NavigationSource>("source", kNavigationSources, NavigationSource::kIdeal);
+  sensor.target = section.name("target", "target");
+  if (std::find(spacecraft_names.begin(), spacecraft_names.end(), sensor.target) == spacecraft_names.end())
+    section.refuse("target", "the spacecraft \"" + sensor.target + "\"",
+                   listing_of({spacecraft_names.begin(), spacecraft_names.end()}));
+  sensor.period = section.span("period_s", 1.0, from_to(1e-3, 1e6), fsw::seconds(mission.step));
+  const std::filesystem::path log = section.text("log", "");
+  const bool recorded = sensor.source == NavigationSource::kRecorded;
+  if (recorded && log.empty()) section.refuse("log", "nothing", "the packets.lcmlog to play, as source is recorded");
+  if (!recorded && !log.empty()) section.refuse_value("log", "nothing, unless source is recorded");
+  if (recorded) sensor.log = mission.file.parent_path() / log;  // an absolute one stays as it is
+  return sensor;
+}
+
+Thruster read_thruster(const TableReader& section) {
+  section.accept_only({"magnitude_error_percent", "pointing_error_deg"});
+  Thruster thruster;
+  thruster.magnitude_error = 1e-2 * section.number("magnitude_error_percent", from_to(0.0, 20.0), 0.0);
+  thruster.pointing_error_rad = kDegree * section.number("pointing_error_deg", from_to(0.0, 30.0), 0.0);
+  return thruster;
+}
+
+Spacecraft read_one(TableReader& section, const std::vector<std::string>& names, const Mission& mission) {
+  section.accept_only({"name", "number", "mass_kg", "drag_area_m2", "drag_coefficient", "radiation_area_m2",
+                       "radiation_coefficient", "elements", "relative", "flight_computer", "sensors", "actuators"});
+  Spacecraft spacecraft;
+  spacecraft.name = section.name("name");
+  section.rename("spacecraft." + spacecraft.name);
+  const auto usual_number = static_cast<std::int64_t>(mission.spacecraft.size()) + 1;
+  spacecraft.number =
+      static_cast<std::uint8_t>(section.integer("number", 1, 255, std::min<std::int64_t>(usual_number, 255)));
+  for (const Spacecraft& other : mission.spacecraft)
+    if (other.number == spacecraft.number)
+      section.refuse("number", "the number " + std::to_string(other.number) + " of " + other.name,
+                     "a number used once");
+  spacecraft.surface = read_surface(section, spacecraft.name);
+  spacecraft.orbit = read_orbit(section, mission);
+  if (section.has("flight_computer"))
+    spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
+
+  const TableReader sensors = section.table("sensors");
+  sensors.accept_only({"navigation"});
+  if (sensors.has("navigation")) spacecraft.navigation = read_navigation(sensors.table("navigation"), names, mission);
+  const TableReader actuators = section.table("actuators");
+  actuators.accept_only({"thruster"});
+  if (actuators.has("thruster")) spacecraft.thruster = read_thruster(actuators.table("thruster"));
+  return spacecraft;
+}
+
+// All names, before anything else: a sensor may look at a spacecraft further down.
+std::vector<std::string> read_names(const std::vector<TableReader>& sections) {
+  std::vector<std::string> names;
+  for (const TableReader& section : sections) {
+    const std::string name = section.name("name");
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      section.refuse("name", "a second spacecraft \"" + name + "\"", "a name used once");
+    names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace
+
+void read_spacecraft(const TableReader& document, Mission& mission) {
+  std::vector<TableReader> sections = document.tables("spacecraft");
+  if (sections.empty()) document.refuse("spacecraft", "nothing", "at least one [[spacecraft]]");
+  const std::vector<std::string> names = read_names(sections);
+  for (TableReader& section : sections) mission.spacecraft.push_back(read_one(section, names, mission));
+}
+
+}  // namespace vbar::mission

@@ -1,0 +1,232 @@
+#include "host_sim/mission/table_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "host_sim/mission/mission_error.h"
+#include "host_sim/mission/nearest_name.h"
+
+namespace vbar::mission {
+namespace {
+
+const toml::table kEmptyTable;
+
+std::string text_of(double number) {
+  std::ostringstream out;
+  out.precision(10);
+  out << number;
+  return out.str();
+}
+
+std::string text_of(Range range) {
+  return (range.above ? "above " : "from ") + text_of(range.low) + (range.above ? ", up to " : " to ") +
+         text_of(range.high);
+}
+
+template <class Value>
+std::string streamed(const Value& value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+bool is_control_character(char c) {
+  return static_cast<unsigned char>(c) < 0x20U || c == 0x7F;
+}
+
+bool is_name_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+// A table that an override had to make has no place of its own; what was put into it has.
+const toml::node* first_with_location(const toml::node& node) {
+  if (node.source().begin.line != 0) return &node;
+  if (const auto* table = node.as_table()) {
+    for (const auto& [key, child] : *table)
+      if (const auto* found = first_with_location(child)) return found;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::string location_of(const toml::node& node, const std::string& file) {
+  const toml::node* located = first_with_location(node);
+  if (located == nullptr) return file;
+  const toml::source_region& source = located->source();
+  if (source.path && *source.path != file) return *source.path;
+  return file + ":" + std::to_string(source.begin.line);
+}
+
+std::string description_of(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::string:
+      return "the text \"" + node.as_string()->get() + "\"";
+    case toml::node_type::integer:
+      return "the integer " + std::to_string(node.as_integer()->get());
+    case toml::node_type::floating_point: {
+      const double value = node.as_floating_point()->get();
+      return std::isfinite(value) ? "the number " + text_of(value) : std::isnan(value) ? "nan" : "an infinity";
+    }
+    case toml::node_type::boolean:
+      return node.as_boolean()->get() ? "true" : "false";
+    case toml::node_type::date:
+      return "the date " + streamed(node.as_date()->get());
+    case toml::node_type::time:
+      return "the time " + streamed(node.as_time()->get());
+    case toml::node_type::date_time:
+      return "the date-time " + streamed(node.as_date_time()->get());
+    case toml::node_type::array:
+      return "an array of " + std::to_string(node.as_array()->size());
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::none:
+      break;
+  }
+  return "nothing";
+}
+
+std::string listing_of(const std::vector<std::string_view>& names) {
+  std::string listing;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (k > 0) listing += k + 1 == names.size() ? " or " : ", ";
+    listing += names[k];
+  }
+  return listing;
+}
+
+TableReader::TableReader(const toml::table& table, std::string path, std::string file)
+    : table_(&table), path_(std::move(path)), file_(std::move(file)) {}
+
+void TableReader::accept_only(std::initializer_list<std::string_view> keys) const {
+  for (const auto& [key, node] : *table_) {
+    if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
+    const std::vector<std::string_view> accepted(keys);
+    const auto nearest = nearest_name(key.str(), accepted);
+    throw MissionError(location_of(node, file_), path_of(key.str()),
+                       "an unknown key" + (nearest ? " (did you mean " + std::string(*nearest) + "?)" : std::string()),
+                       listing_of(accepted));
+  }
+}
+
+std::string TableReader::path_of(std::string_view key) const {
+  if (key.empty()) return path_;
+  return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+}
+
+void TableReader::refuse(std::string_view key, const std::string& found, const std::string& accepted) const {
+  const toml::node* node = key.empty() ? nullptr : table_->get(key);
+  throw MissionError(location_of(node != nullptr ? *node : *table_, file_), path_of(key), found, accepted);
+}
+
+void TableReader::refuse_value(std::string_view key, const std::string& accepted) const {
+  const toml::node* node = table_->get(key);
+  refuse(key, node != nullptr ? description_of(*node) : "nothing", accepted);
+}
+
+const toml::node& TableReader::required(std::string_view key, const std::string& accepted) const {
+  const toml::node* node = table_->get(key);
+  if (node == nullptr) refuse(key, "nothing", accepted);
+  return *node;
+}
+
+double TableReader::checked_number(const toml::node& node, std::string_view key, Range range) const {
+  // TOML tells integers from floats; a person who writes 60 for 60.0 means the same.
+  const std::optional<double> value = node.is_number() ? node.value<double>() : std::nullopt;
+  const bool good = value && std::isfinite(*value) && (range.above ? *value > range.low : *value >= range.low) &&
+                    *value <= range.high;
+  if (!good)
+    throw MissionError(location_of(node, file_), path_of(key), description_of(node), "a number " + text_of(range));
+  return *value;
+}
+
+double TableReader::number(std::string_view key, Range range, std::optional<double> otherwise) const {
+  if (!has(key) && otherwise) return *otherwise;
+  return checked_number(required(key, "a number " + text_of(range)), key, range);
+}
+
+std::int64_t TableReader::integer(std::string_view key, std::int64_t low, std::int64_t high,
+                                  std::optional<std::int64_t> otherwise) const {
+  if (!has(key) && otherwise) return *otherwise;
+  const std::string accepted = "an integer from " + std::to_string(low) + " to " + std::to_string(high);
+  const auto* value = required(key, accepted).as_integer();
+  if (value == nullptr || value->get() < low || value->get() > high) refuse_value(key, accepted);
+  return value->get();
+}
+
+bool TableReader::flag(std::string_view key, bool otherwise) const {
+  if (!has(key)) return otherwise;
+  const auto* value = table_->get(key)->as_boolean();
+  if (value == nullptr) refuse_value(key, "true or false");
+  return value->get();
+}
+
+std::string TableReader::text(std::string_view key, std::optional<std::string> otherwise) const {
+  if (!has(key) && otherwise) return *otherwise;
+  const toml::node& node = required(key, "a text");
+  if (const auto* date_time = node.as_date_time()) return streamed(date_time->get());
+  const auto* value = node.as_string();
+  if (value == nullptr) refuse_value(key, "a text");
+  if (std::any_of(value->get().begin(), value->get().end(), is_control_character))
+    refuse(key, "a text with control characters", "a text on one line");
+  return value->get();
+}
+
+std::string TableReader::name(std::string_view key, std::optional<std::string> otherwise) const {
+  const std::string value = text(key, std::move(otherwise));
+  if (value.empty() || value.size() > 64 || !std::all_of(value.begin(), value.end(), is_name_character))
+    refuse(key, "the text \"" + value + "\"", "a name of 1 to 64 letters, digits, '_' and '-'");
+  return value;
+}
+
+std::array<double, 6> TableReader::six_numbers(std::string_view key, Range range) const {
+  const std::string accepted = "an array of 6 numbers " + text_of(range);
+  const auto* array = required(key, accepted).as_array();
+  if (array == nullptr || array->size() != 6) refuse_value(key, accepted);
+  std::array<double, 6> numbers{};
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    numbers[k] = checked_number((*array)[k], std::string(key) + "[" + std::to_string(k) + "]", range);
+  return numbers;
+}
+
+fsw::Duration TableReader::span(std::string_view key, double unit_s, Range range,
+                                std::optional<double> otherwise) const {
+  return fsw::nearest_duration(number(key, range, otherwise) * unit_s);
+}
+
+std::size_t TableReader::chosen(std::string_view key, const std::vector<std::string_view>& accepted) const {
+  const auto* value = required(key, listing_of(accepted)).as_string();
+  if (value == nullptr) refuse_value(key, listing_of(accepted));
+  const auto found = std::find(accepted.begin(), accepted.end(), value->get());
+  if (found == accepted.end()) {
+    const auto nearest = nearest_name(value->get(), accepted);
+    refuse(key, description_of(*value) + (nearest ? " (did you mean " + std::string(*nearest) + "?)" : std::string()),
+           listing_of(accepted));
+  }
+  return static_cast<std::size_t>(found - accepted.begin());
+}
+
+TableReader TableReader::table(std::string_view key) const {
+  const toml::node* node = table_->get(key);
+  if (node == nullptr) return {kEmptyTable, path_of(key), file_};
+  if (!node->is_table()) refuse_value(key, "a table");
+  return {*node->as_table(), path_of(key), file_};
+}
+
+std::vector<TableReader> TableReader::tables(std::string_view key) const {
+  std::vector<TableReader> readers;
+  const toml::node* node = table_->get(key);
+  if (node == nullptr) return readers;
+  const std::string accepted = "an array of tables, [[" + path_of(key) + "]]";
+  const auto* array = node->as_array();
+  if (array == nullptr) refuse_value(key, accepted);
+  for (const toml::node& element : *array) {
+    if (!element.is_table())
+      throw MissionError(location_of(element, file_), path_of(key), description_of(element), accepted);
+    readers.emplace_back(*element.as_table(), path_of(key) + "." + std::to_string(readers.size()), file_);
+  }
+  return readers;
+}
+
+}  // namespace vbar::mission

@@ -1,0 +1,114 @@
+#include "host_sim/truth/earth_rotation.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <erfa.h>
+
+namespace vbar::truth {
+namespace {
+
+constexpr double kJ2000 = 2451545.0;
+constexpr double kNodesPerDay = 4.0;
+constexpr int kFirstPoint = -2;  // nodes of an interval [0, 1]: -2, -1, 0, 1, 2, 3
+
+/// Coefficients, lowest power first, of the polynomial through six values at -2 ... 3 (Newton's forward differences).
+void fit_polynomial(const double (&values)[6], double (&coefficients)[6]) {
+  double difference[6];
+  for (int i = 0; i < 6; ++i) difference[i] = values[i];
+  for (int order = 1; order < 6; ++order) {
+    for (int i = 5; i >= order; --i) difference[i] = (difference[i] - difference[i - 1]) / order;
+  }
+  // Horner on the Newton form: multiply by (t - point) and add the next difference.
+  for (double& c : coefficients) c = 0.0;
+  for (int k = 5; k >= 0; --k) {
+    const double point = kFirstPoint + k;
+    for (int power = 5; power > 0; --power) coefficients[power] = coefficients[power - 1] - point * coefficients[power];
+    coefficients[0] = difference[k] - point * coefficients[0];
+  }
+}
+
+double polynomial(const double (&coefficients)[6], double t) {
+  double sum = coefficients[5];
+  for (int power = 4; power >= 0; --power) sum = sum * t + coefficients[power];
+  return sum;
+}
+
+}  // namespace
+
+CelestialPole celestial_pole_iau2006a(JulianDate tt) {
+  CelestialPole pole;
+  eraXy06(tt.day, tt.fraction, &pole.x, &pole.y);
+  pole.s = eraS06(tt.day, tt.fraction, pole.x, pole.y);
+  return pole;
+}
+
+CelestialPole CelestialPoleInterpolator::at(JulianDate tt) {
+  const double position = ((tt.day - kJ2000) + tt.fraction) * kNodesPerDay;
+  const double floor = std::floor(position);
+  const auto interval = static_cast<std::int64_t>(floor);
+  if (!ready_ || interval != interval_) enter_interval(interval);
+  const double t = position - floor;
+  return {polynomial(x_, t), polynomial(y_, t), polynomial(s_, t)};
+}
+
+void CelestialPoleInterpolator::enter_interval(std::int64_t interval) {
+  double x[kPoints], y[kPoints], s[kPoints];
+  for (int i = 0; i < kPoints; ++i) {
+    const CelestialPole& pole = node(interval + kFirstPoint + i);
+    x[i] = pole.x;
+    y[i] = pole.y;
+    s[i] = pole.s;
+  }
+  fit_polynomial(x, x_);
+  fit_polynomial(y, y_);
+  fit_polynomial(s, s_);
+  interval_ = interval;
+  ready_ = true;
+}
+
+const CelestialPole& CelestialPoleInterpolator::node(std::int64_t index) {
+  const auto found = nodes_.find(index);
+  if (found != nodes_.end()) return found->second;
+  return nodes_.emplace(index, celestial_pole_iau2006a({kJ2000, static_cast<double>(index) / kNodesPerDay}))
+      .first->second;
+}
+
+fsw::Matrix3 R_itrf_gcrf(const CelestialPole& pole, double era, double pole_x, double pole_y, double sp) {
+  // IERS Conventions 2010, eq. 5.10: to CIRS from GCRS = R3(-s) Q^T; R3(-s) joins the Earth rotation angle.
+  const double x = pole.x, y = pole.y;
+  const double z = std::sqrt(1.0 - x * x - y * y);
+  const double a = 1.0 / (1.0 + z);
+  fsw::Matrix3 intermediate_gcrf;
+  intermediate_gcrf << 1.0 - a * x * x, -a * x * y, -x,  //
+      -a * x * y, 1.0 - a * y * y, -y,                   //
+      x, y, z;
+  const double c = std::cos(era - pole.s), s = std::sin(era - pole.s);
+  fsw::Matrix3 terrestrial_gcrf;
+  terrestrial_gcrf.row(0) = c * intermediate_gcrf.row(0) + s * intermediate_gcrf.row(1);
+  terrestrial_gcrf.row(1) = c * intermediate_gcrf.row(1) - s * intermediate_gcrf.row(0);
+  terrestrial_gcrf.row(2) = intermediate_gcrf.row(2);
+
+  double polar_motion[3][3];
+  eraPom00(pole_x, pole_y, sp, polar_motion);
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&polar_motion[0][0]) * terrestrial_gcrf;
+}
+
+EarthRotation::EarthRotation(std::shared_ptr<const EarthOrientationSeries> orientation, fsw::GpsTime epoch)
+    : orientation_(std::move(orientation)), epoch_(epoch) {
+  if (!orientation_) throw std::invalid_argument("Earth rotation needs Earth orientation data");
+}
+
+fsw::Matrix3 EarthRotation::R_itrf_gcrf_at(double seconds) {
+  const EarthOrientation orientation = orientation_->at(epoch_, seconds);
+  const JulianDate tt = tt_of(epoch_, seconds);
+  const JulianDate ut1 = ut1_of(tai_of(epoch_, seconds), orientation.ut1_minus_tai_s);
+  CelestialPole pole = pole_.at(tt);
+  pole.x += orientation.cip_dx;
+  pole.y += orientation.cip_dy;
+  return R_itrf_gcrf(pole, eraEra00(ut1.day, ut1.fraction), orientation.pole_x, orientation.pole_y,
+                     eraSp00(tt.day, tt.fraction));
+}
+
+}  // namespace vbar::truth

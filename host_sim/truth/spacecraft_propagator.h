@@ -1,0 +1,69 @@
+#pragma once
+// One spacecraft carried through time: its dynamics, the integrator, and the last few steps' continuous solution.
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <string>
+
+#include "fsw/core/types.h"
+#include "fsw/orbit/elements.h"
+#include "host_sim/truth/dopri5.h"
+#include "host_sim/truth/spacecraft_dynamics.h"
+
+namespace vbar::truth {
+
+/// Times are seconds after the model's epoch. The integrator's steps do not depend on the times asked for, so neither
+/// does the trajectory; only an impulse ends a step. Not thread-safe: one thread a spacecraft.
+class SpacecraftPropagator {
+ public:
+  /// Starts at `seconds` with an osculating state. `tolerance`: local error of each element a step, relative for the
+  /// semi-major axis, absolute for the others (rad, or eccentricity); so tolerance times semi-major axis is about the
+  /// local position error. Throws std::domain_error, naming the spacecraft, if the state is not that of an ellipse
+  /// above the Earth.
+  SpacecraftPropagator(std::unique_ptr<SpacecraftDynamics> dynamics, double tolerance, double seconds,
+                       const fsw::orbit::CartesianState& osculating);
+
+  /// Moves the current time to `seconds`, not before it. Throws std::domain_error, naming the spacecraft, on re-entry.
+  void advance_to(double seconds);
+
+  /// State at the current time.
+  fsw::orbit::CartesianState state() const { return state_at(current_); }
+
+  /// State at a time from the beginning of the steps still kept (some minutes; kKeptSteps) to the end of the last one,
+  /// which may lie after the current time. At an impulse's time: after it. Throws std::out_of_range outside, saying
+  /// what is kept.
+  fsw::orbit::CartesianState state_at(double seconds) const;
+
+  /// Adds `dv_rtn` (m/s, in the spacecraft's own RTN) to the velocity at the current time.
+  void apply_impulse_rtn(const fsw::Vector3& dv_rtn);
+
+  /// Whether advance_to(seconds) would have to integrate.
+  bool needs_steps_to(double seconds) const { return integrator_.time() < seconds; }
+
+  const std::string& name() const { return dynamics_->name(); }
+  const IntegrationStatistics& statistics() const { return integrator_.statistics(); }
+
+  static constexpr std::size_t kKeptSteps = 8;
+
+ private:
+  struct Rates {
+    SpacecraftDynamics* dynamics;
+    fsw::Vector6 operator()(double t, const fsw::Vector6& y) const { return dynamics->element_rates(t, y); }
+  };
+  using Integrator = Dopri5<6, Rates>;
+
+  struct KeptStep {
+    double end;
+    DenseStep<6> solution;
+  };
+
+  void step();
+
+  std::unique_ptr<SpacecraftDynamics> dynamics_;
+  Integrator integrator_;
+  std::deque<KeptStep> kept_;  ///< oldest first; since the last impulse's step, times without gaps
+  double current_;
+};
+
+}  // namespace vbar::truth

@@ -1,0 +1,167 @@
+#include "host_sim/truth/time_scales.h"
+
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+#include <erfa.h>
+#include <erfam.h>
+#include <fmt/format.h>
+
+namespace vbar::truth {
+namespace {
+
+constexpr double kGpsEpochJulianDay = 2444244.5;  // 1980-01-06
+constexpr std::int64_t kTaiMinusGps_ns = 19 * fsw::kNanosecondsPerSecond;
+constexpr std::int64_t kNanosecondsPerDay = 86400 * fsw::kNanosecondsPerSecond;
+constexpr double kModifiedJulianZero = 2400000.5;
+
+// A span of time as whole days (the larger part) and the rest, so that neither loses digits to the other.
+JulianDate date_after(double julian_day, std::int64_t ns, double seconds) {
+  std::int64_t days = ns / kNanosecondsPerDay;
+  std::int64_t rest = ns % kNanosecondsPerDay;
+  if (rest < 0) {
+    rest += kNanosecondsPerDay;
+    --days;
+  }
+  return {julian_day + static_cast<double>(days), (static_cast<double>(rest) / 1e9 + seconds) / kSecondsPerDay};
+}
+
+[[noreturn]] void refuse(std::string_view text) {
+  throw std::invalid_argument(
+      fmt::format("\"{}\" is not a UTC time; accepted is YYYY-MM-DDThh:mm:ss with up to nine decimals and an optional "
+                  "Z, from 1980-01-06 on",
+                  text));
+}
+
+// Reads fields of decimal digits at fixed places and refuses anything else.
+class FieldReader {
+ public:
+  explicit FieldReader(std::string_view text) : text_(text), rest_(text) {}
+
+  int digits(std::size_t count) {
+    if (rest_.size() < count) refuse(text_);
+    int value = 0;
+    for (char c : rest_.substr(0, count)) {
+      if (c < '0' || c > '9') refuse(text_);
+      value = 10 * value + (c - '0');
+    }
+    rest_.remove_prefix(count);
+    return value;
+  }
+
+  void one_of(std::string_view accepted) {
+    if (rest_.empty() || accepted.find(rest_.front()) == std::string_view::npos) refuse(text_);
+    rest_.remove_prefix(1);
+  }
+
+  /// Nanoseconds of an optional decimal fraction.
+  int fraction_ns() {
+    if (rest_.empty() || rest_.front() != '.') return 0;
+    rest_.remove_prefix(1);
+    int value = 0;
+    int count = 0;
+    while (!rest_.empty() && std::isdigit(static_cast<unsigned char>(rest_.front())) != 0) {
+      if (++count > 9) refuse(text_);
+      value = 10 * value + (rest_.front() - '0');
+      rest_.remove_prefix(1);
+    }
+    if (count == 0) refuse(text_);
+    for (; count < 9; ++count) value *= 10;
+    return value;
+  }
+
+  void end() {
+    if (!rest_.empty() && (rest_.front() == 'Z' || rest_.front() == 'z')) rest_.remove_prefix(1);
+    if (!rest_.empty()) refuse(text_);
+  }
+
+ private:
+  std::string_view text_;
+  std::string_view rest_;
+};
+
+}  // namespace
+
+JulianDate tai_of(fsw::GpsTime epoch, double seconds) {
+  return date_after(kGpsEpochJulianDay, epoch.ns + kTaiMinusGps_ns, seconds);
+}
+
+JulianDate tt_of(fsw::GpsTime epoch, double seconds) {
+  JulianDate tt = tai_of(epoch, seconds);
+  tt.fraction += ERFA_TTMTAI / kSecondsPerDay;
+  return tt;
+}
+
+JulianDate utc_of(fsw::GpsTime time) {
+  if (time.ns < 0) throw std::out_of_range("a time before 1980-01-06 has no GPS time and so no UTC here");
+  const JulianDate tai = tai_of(time);
+  JulianDate utc;
+  if (eraTaiutc(tai.day, tai.fraction, &utc.day, &utc.fraction) < 0) {
+    throw std::out_of_range(fmt::format("no UTC for GPS time {} ns", time.ns));
+  }
+  return utc;
+}
+
+JulianDate ut1_of(JulianDate tai, double ut1_minus_tai_s) {
+  tai.fraction += ut1_minus_tai_s / kSecondsPerDay;
+  return tai;
+}
+
+double tai_minus_utc_s(int mjd_utc) {
+  int year = 0, month = 0, day = 0;
+  double fraction = 0.0, difference = 0.0;
+  if (eraJd2cal(kModifiedJulianZero, mjd_utc, &year, &month, &day, &fraction) != 0 || year < 1972 ||
+      eraDat(year, month, day, 0.0, &difference) < 0) {
+    throw std::out_of_range(fmt::format("no leap seconds known at modified Julian day {}", mjd_utc));
+  }
+  return difference;
+}
+
+fsw::GpsTime gps_from_utc(std::string_view iso8601) {
+  FieldReader reader(iso8601);
+  const int year = reader.digits(4);
+  reader.one_of("-");
+  const int month = reader.digits(2);
+  reader.one_of("-");
+  const int day = reader.digits(2);
+  reader.one_of("T ");
+  const int hour = reader.digits(2);
+  reader.one_of(":");
+  const int minute = reader.digits(2);
+  reader.one_of(":");
+  const int second = reader.digits(2);
+  const int fraction_ns = reader.fraction_ns();
+  reader.end();
+
+  double midnight = 0.0, mjd = 0.0, tai_minus_utc = 0.0, tai_minus_utc_next_day = 0.0;
+  if (year < 1980 || hour > 23 || minute > 59 || eraCal2jd(year, month, day, &midnight, &mjd) != 0 ||
+      eraDat(year, month, day, 0.0, &tai_minus_utc) < 0) {
+    refuse(iso8601);
+  }
+  tai_minus_utc_next_day = tai_minus_utc_s(static_cast<int>(mjd) + 1);
+  const bool day_ends_with_leap_second = tai_minus_utc_next_day > tai_minus_utc;
+  const int last_second = (day_ends_with_leap_second && hour == 23 && minute == 59) ? 60 : 59;
+  if (second > last_second) refuse(iso8601);
+
+  const std::int64_t days = std::llround(midnight + mjd - kGpsEpochJulianDay);
+  const std::int64_t seconds = 60 * (60 * hour + minute) + second + std::llround(tai_minus_utc);
+  const std::int64_t ns =
+      days * kNanosecondsPerDay + seconds * fsw::kNanosecondsPerSecond + fraction_ns - kTaiMinusGps_ns;
+  if (ns < 0) refuse(iso8601);
+  return {ns};
+}
+
+std::string format_utc(fsw::GpsTime time, int decimals) {
+  if (decimals < 0 || decimals > 9) throw std::invalid_argument("UTC text has 0 to 9 decimals of the second");
+  const JulianDate utc = utc_of(time);
+  int year = 0, month = 0, day = 0;
+  int clock[4] = {};  // hour, minute, second, fraction
+  eraD2dtf("UTC", decimals, utc.day, utc.fraction, &year, &month, &day, clock);
+  const std::string whole =
+      fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", year, month, day, clock[0], clock[1], clock[2]);
+  return decimals == 0 ? whole + "Z" : fmt::format("{}.{:0{}}Z", whole, clock[3], decimals);
+}
+
+}  // namespace vbar::truth

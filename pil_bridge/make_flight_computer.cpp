@@ -1,0 +1,270 @@
+#include "pil_bridge/make_flight_computer.h"
+
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "pil_bridge/byte_channels.h"
+#include "pil_bridge/in_process.h"
+#include "pil_bridge/remote_computer.h"
+#include "pil_bridge/stream_transport.h"
+#include "pil_bridge/udp_transport.h"
+
+namespace vbar::pil {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Target>, 5> kTargets{{{"in_process", Target::kInProcess},
+                                                                       {"host_process", Target::kHostProcess},
+                                                                       {"zynq_qemu", Target::kZynqQemu},
+                                                                       {"zynq_linux_qemu", Target::kZynqLinuxQemu},
+                                                                       {"board", Target::kBoard}}};
+constexpr std::array<std::pair<std::string_view, LinkKind>, 3> kLinks{
+    {{"serial", LinkKind::kSerial}, {"pty", LinkKind::kPty}, {"udp", LinkKind::kUdp}}};
+
+template <class Table>
+auto look_up(const Table& table, std::string_view name, std::string_view what) {
+  std::string accepted;
+  for (const auto& [known, value] : table) {
+    if (known == name) return value;
+    accepted += (accepted.empty() ? "" : ", ") + std::string(known);
+  }
+  throw std::invalid_argument("'" + std::string(name) + "' is no " + std::string(what) + "; accepted: " + accepted);
+}
+
+template <class Table, class Value>
+std::string_view name_in(const Table& table, Value value) {
+  for (const auto& [name, known] : table) {
+    if (known == value) return name;
+  }
+  return "unknown";
+}
+
+/// What a started program finds as its first inherited descriptor.
+constexpr int kChildLinkFd = 3;
+constexpr int kPortAttempts = 3;
+
+/// The two ends of a link to a program that is yet to be started.
+struct ChildLink {
+  std::unique_ptr<FrameTransport> transport;
+  FileDescriptor child_end;
+  std::vector<std::string> flight_arguments;  ///< how vbar_flight is told to use its end
+};
+
+std::unique_ptr<FrameTransport> finish(std::unique_ptr<FrameTransport> transport,
+                                       const FlightComputerOptions& options) {
+  if (!options.faults.any_frame_fault()) return transport;
+  return with_frame_faults(std::move(transport), options.faults);
+}
+
+std::unique_ptr<FrameTransport> finish(std::unique_ptr<ByteChannel> channel, const FlightComputerOptions& options) {
+  if (options.paced_bits_per_s > 0.0) channel = paced(std::move(channel), options.paced_bits_per_s);
+  if (options.faults.any_byte_fault()) channel = with_byte_faults(std::move(channel), options.faults);
+  return finish(std::make_unique<StreamTransport>(std::move(channel)), options);
+}
+
+ChildLink make_child_link(const FlightComputerOptions& options) {
+  const std::string fd = std::to_string(kChildLinkFd);
+  switch (options.link) {
+    case LinkKind::kSerial: {
+      auto [ours, theirs] = make_socket_pair();
+      return {finish(adopt_socket(std::move(ours), "stream socket"), options), std::move(theirs), {"--stream", fd}};
+    }
+    case LinkKind::kPty: {
+      Pty pty = make_pty();
+      return {finish(adopt_pty(std::move(pty.master), "pseudo-terminal " + pty.slave_path), options),
+              std::move(pty.slave),
+              {"--stream", fd}};
+    }
+    case LinkKind::kUdp:
+      break;
+  }
+  BoundUdpSocket ours = bind_udp_loopback();
+  BoundUdpSocket theirs = bind_udp_loopback();
+  return {finish(make_udp_transport(std::move(ours.socket), "127.0.0.1", theirs.port), options),
+          std::move(theirs.socket),
+          {"--datagram", fd, "--peer", "127.0.0.1:" + std::to_string(ours.port)}};
+}
+
+std::string full_name(const FlightComputerOptions& options) {
+  return std::string(name_of(options.target)) + " over " + std::string(name_of(options.link));
+}
+
+RemoteParts parts_for(const FlightComputerOptions& options) {
+  RemoteParts parts;
+  parts.name = full_name(options);
+  parts.timing = options.timing;
+  parts.spacecraft = options.spacecraft;
+  return parts;
+}
+
+std::unique_ptr<ChildProcess> start(const std::vector<std::string>& arguments,
+                                    std::vector<FileDescriptor> inherited = {}) {
+  try {
+    return std::make_unique<ChildProcess>(arguments, std::move(inherited));
+  } catch (const std::system_error& error) {
+    throw FlightComputerError(error.what());
+  }
+}
+
+std::vector<FileDescriptor> only(FileDescriptor descriptor) {
+  std::vector<FileDescriptor> list;
+  list.push_back(std::move(descriptor));
+  return list;
+}
+
+/// `options.image`, or what the build put at `beside` relative to the running program.
+std::string find_image(const FlightComputerOptions& options, const std::string& beside, const std::string& preset) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path image = options.image.empty() ? fs::read_symlink("/proc/self/exe", error).parent_path() / beside
+                                               : fs::path(options.image);
+  if (!fs::is_regular_file(image, error)) {
+    throw FlightComputerError("flight computer " + std::string(name_of(options.target)) + ": there is no image '" +
+                              image.lexically_normal().string() + "' (built by the CMake preset '" + preset + "')");
+  }
+  return image.lexically_normal().string();
+}
+
+std::unique_ptr<FlightComputer> make_host_process(const FlightComputerOptions& options) {
+  const std::string image = find_image(options, "vbar_flight", "host");
+  ChildLink link = make_child_link(options);
+  std::vector<std::string> arguments{image};
+  arguments.insert(arguments.end(), link.flight_arguments.begin(), link.flight_arguments.end());
+  RemoteParts parts = parts_for(options);
+  parts.process = start(arguments, only(std::move(link.child_end)));
+  parts.transport = std::move(link.transport);
+  return std::make_unique<RemoteComputer>(std::move(parts));
+}
+
+std::unique_ptr<FlightComputer> make_zynq_linux_qemu(const FlightComputerOptions& options) {
+  const std::string image = find_image(options, "../zynq-linux/vbar_flight", "zynq-linux");
+  ChildLink link = make_child_link(options);
+  RemoteParts parts = parts_for(options);
+  parts.process = start(linux_arm_qemu(image, link.flight_arguments), only(std::move(link.child_end)));
+  parts.transport = std::move(link.transport);
+  return std::make_unique<RemoteComputer>(std::move(parts));
+}
+
+std::unique_ptr<FlightComputer> make_zynq_qemu_over_udp(const FlightComputerOptions& options,
+                                                        const std::string& image) {
+  for (int attempt = 1;; ++attempt) {
+    // Found free, given back, and taken by the emulator: in between another program may take it, so try again then.
+    const std::uint16_t port = bind_udp_loopback().port;
+    RemoteParts parts = parts_for(options);
+    parts.icount_shift = options.icount_shift;
+    parts.process = start(zynq_qemu_over_udp(image, options.icount_shift, port));
+    parts.transport = finish(make_udp_transport("127.0.0.1", port), options);
+    try {
+      return std::make_unique<RemoteComputer>(std::move(parts));
+    } catch (const FlightComputerError& error) {
+      const bool port_taken = std::string_view(error.what()).find(kPortTakenMessage) != std::string_view::npos;
+      if (!port_taken || attempt == kPortAttempts) throw;
+    }
+  }
+}
+
+std::unique_ptr<FlightComputer> make_zynq_qemu(const FlightComputerOptions& options) {
+  if (options.icount_shift < kLeastIcountShift || options.icount_shift > kGreatestIcountShift) {
+    throw FlightComputerError("flight_computer.icount_shift is " + std::to_string(options.icount_shift) +
+                              "; accepted: " + std::to_string(kLeastIcountShift) + " to " +
+                              std::to_string(kGreatestIcountShift));
+  }
+  const std::string image = find_image(options, "../zynq/vbar_zynq7000.elf", "zynq");
+  if (options.link == LinkKind::kPty) throw FlightComputerError("zynq_qemu takes link serial or udp, not pty");
+  if (options.link == LinkKind::kUdp) return make_zynq_qemu_over_udp(options, image);
+  auto [ours, theirs] = make_socket_pair();
+  RemoteParts parts = parts_for(options);
+  parts.icount_shift = options.icount_shift;
+  parts.process = start(zynq_qemu_over_serial(image, options.icount_shift, kChildLinkFd), only(std::move(theirs)));
+  parts.transport = finish(adopt_socket(std::move(ours), "the emulator's UART0"), options);
+  return std::make_unique<RemoteComputer>(std::move(parts));
+}
+
+struct HostAndPort {
+  std::string host;
+  std::string port;
+};
+HostAndPort split_endpoint(const std::string& endpoint, const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0 || colon + 1 == text.size()) {
+    throw FlightComputerError("flight_computer.endpoint '" + endpoint + "' lacks HOST:PORT");
+  }
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+std::unique_ptr<FrameTransport> open_board_link(const FlightComputerOptions& options) {
+  constexpr std::string_view kUnix = "unix:";
+  constexpr std::string_view kTcp = "tcp:";
+  const std::string& endpoint = options.endpoint;
+  const auto deadline = Clock::now() + options.timing.boot_limit;
+  if (options.link == LinkKind::kUdp) {
+    const auto [host, port] = split_endpoint(endpoint, endpoint);
+    std::uint16_t number = 0;
+    const auto parsed = std::from_chars(port.data(), port.data() + port.size(), number);
+    if (parsed.ec != std::errc{} || parsed.ptr != port.data() + port.size()) {
+      throw FlightComputerError("flight_computer.endpoint '" + endpoint + "': '" + port + "' is not a port number");
+    }
+    return finish(make_udp_transport(host, number, options.local_udp_port), options);
+  }
+  if (endpoint.starts_with(kUnix)) return finish(connect_unix(endpoint.substr(kUnix.size()), deadline), options);
+  if (endpoint.starts_with(kTcp)) {
+    const auto [host, port] = split_endpoint(endpoint, endpoint.substr(kTcp.size()));
+    return finish(connect_tcp(host, port, deadline), options);
+  }
+  return finish(open_serial(endpoint, options.baud), options);
+}
+
+std::unique_ptr<FlightComputer> make_board(const FlightComputerOptions& options) {
+  if (options.endpoint.empty()) throw FlightComputerError("target board needs flight_computer.endpoint");
+  RemoteParts parts = parts_for(options);
+  parts.name += " at " + options.endpoint;
+  parts.transport = open_board_link(options);
+  return std::make_unique<RemoteComputer>(std::move(parts));
+}
+
+std::unique_ptr<FlightComputer> make_linked_or_loaded(const FlightComputerOptions& options) {
+  auto article = options.library.empty() ? options.article : load_test_article(options.library);
+  if (!article) throw FlightComputerError("in_process: this program is linked with no flight software; name a library");
+  return make_in_process(std::move(article), options.spacecraft);
+}
+
+}  // namespace
+
+Target target_from_name(std::string_view name) {
+  return look_up(kTargets, name, "flight_computer.target");
+}
+LinkKind link_from_name(std::string_view name) {
+  return look_up(kLinks, name, "flight_computer.link");
+}
+std::string_view name_of(Target target) {
+  return name_in(kTargets, target);
+}
+std::string_view name_of(LinkKind link) {
+  return name_in(kLinks, link);
+}
+
+std::unique_ptr<FlightComputer> make_flight_computer(const FlightComputerOptions& options) {
+  try {
+    switch (options.target) {
+      case Target::kInProcess:
+        return make_linked_or_loaded(options);
+      case Target::kHostProcess:
+        return make_host_process(options);
+      case Target::kZynqQemu:
+        return make_zynq_qemu(options);
+      case Target::kZynqLinuxQemu:
+        return make_zynq_linux_qemu(options);
+      case Target::kBoard:
+        return make_board(options);
+    }
+  } catch (const LinkError& error) {
+    throw FlightComputerError("flight computer " + full_name(options) + ": " + error.what());
+  }
+  throw FlightComputerError("unknown flight computer target");
+}
+
+}  // namespace vbar::pil

@@ -1,0 +1,64 @@
+#pragma once
+// One place that knows every kind of flight computer, so that a mission file's words are enough to get one.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "pil_bridge/flight_computer.h"
+#include "pil_bridge/link_faults.h"
+#include "pil_bridge/qemu.h"
+#include "pil_bridge/step_barrier.h"
+#include "pil_bridge/test_article.h"
+
+namespace vbar::pil {
+
+enum class Target : std::uint8_t {
+  kInProcess,      ///< "in_process"
+  kHostProcess,    ///< "host_process": a process of its own on this computer
+  kZynqQemu,       ///< "zynq_qemu": the bare-metal image on an emulated Zynq-7000
+  kZynqLinuxQemu,  ///< "zynq_linux_qemu": the ARM Linux program under user-mode emulation
+  kBoard,          ///< "board": hardware, or anything else that already runs and listens
+};
+
+enum class LinkKind : std::uint8_t {
+  kSerial,  ///< "serial": a byte stream; for a started process a pair of stream sockets
+  kPty,     ///< "pty": a byte stream through a pseudo-terminal (host_process and zynq_linux_qemu)
+  kUdp,     ///< "udp"
+};
+
+/// Throw std::invalid_argument that lists what is accepted.
+Target target_from_name(std::string_view name);
+LinkKind link_from_name(std::string_view name);
+std::string_view name_of(Target target);
+std::string_view name_of(LinkKind link);
+
+struct FlightComputerOptions {
+  Target target = Target::kInProcess;
+  LinkKind link = LinkKind::kSerial;
+  std::uint8_t spacecraft = 0;
+
+  /// in_process: the test article (`linked_test_article()`), unless `library` names a shared library.
+  std::shared_ptr<const TestArticle> article;
+  std::string library;
+
+  /// host_process, zynq_qemu, zynq_linux_qemu: the program or image to run. Empty: the one that the build put beside
+  /// the running program (`vbar_flight`, `../zynq/vbar_zynq7000.elf`, `../zynq-linux/vbar_flight`).
+  std::string image;
+  int icount_shift = kDefaultIcountShift;  ///< zynq_qemu
+
+  /// board. Serial: a device ("/dev/ttyUSB1"), "unix:PATH" or "tcp:HOST:PORT". UDP: "ADDRESS:PORT".
+  std::string endpoint;
+  unsigned baud = 921600;            ///< board, serial device
+  std::uint16_t local_udp_port = 0;  ///< board; 0: any
+
+  double paced_bits_per_s = 0.0;  ///< serial and pty: slow the line down to this; 0: as fast as it goes
+  BarrierTiming timing;
+  LinkFaults faults;
+};
+
+/// Starts or finds the flight computer and waits until it answers. Throws FlightComputerError.
+std::unique_ptr<FlightComputer> make_flight_computer(const FlightComputerOptions& options);
+
+}  // namespace vbar::pil

@@ -1,0 +1,168 @@
+#include "pil_bridge/process.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+
+#include <fcntl.h>
+#include <linux/close_range.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace vbar::pil {
+namespace {
+
+constexpr int kFirstInherited = 3;
+constexpr std::chrono::milliseconds kExitPollPeriod{2};
+
+[[noreturn]] void throw_errno(const std::string& what, int error) {
+  throw std::system_error(error, std::generic_category(), what);
+}
+
+/// What the child needs between fork and exec, prepared before the fork: only async-signal-safe calls are allowed
+/// there.
+struct ExecPlan {
+  std::vector<char*> arguments;
+  std::vector<int> descriptors;  ///< to become 0, 1, 2, 3, ...
+  int report_errno_to = -1;
+  pid_t parent = -1;
+};
+
+/// Moves the planned descriptors to 0, 1, 2, ... and closes the rest, except the one that reports errors
+/// (close-on-exec).
+bool arrange_descriptors(ExecPlan& plan) {
+  const int count = static_cast<int>(plan.descriptors.size());
+  // First out of the way of the numbers they may still occupy, then into place; dup2 clears close-on-exec.
+  for (int& fd : plan.descriptors) {
+    fd = ::fcntl(fd, F_DUPFD_CLOEXEC, count + 1);
+    if (fd < 0) return false;
+  }
+  const int report = ::fcntl(plan.report_errno_to, F_DUPFD_CLOEXEC, count + 1);
+  if (report < 0) return false;
+  for (int i = 0; i < count; ++i) {
+    if (::dup2(plan.descriptors[static_cast<std::size_t>(i)], i) < 0) return false;
+  }
+  if (::dup3(report, count, O_CLOEXEC) < 0) return false;
+  plan.report_errno_to = count;
+  // A kernel without close_range still closes what was opened close-on-exec, which is all this library opens.
+  (void)::close_range(static_cast<unsigned>(count) + 1U, ~0U, 0);
+  return true;
+}
+
+[[noreturn]] void become(ExecPlan& plan) {
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  const bool ready = ::setpgid(0, 0) == 0 && ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && arrange_descriptors(plan);
+  // The parent may have died before the death signal was asked for.
+  if (::getppid() != plan.parent) ::_exit(127);
+  if (ready) ::execvp(plan.arguments[0], plan.arguments.data());
+  const int error = errno;
+  (void)!::write(plan.report_errno_to, &error, sizeof error);
+  ::_exit(127);
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::vector<std::string>& arguments, std::vector<FileDescriptor> inherited) {
+  if (arguments.empty()) throw std::invalid_argument("a child process needs a program");
+  program_ = arguments[0];
+  // A memory file rather than a pipe: the child can never block on it and nobody has to read along.
+  output_ = FileDescriptor(::memfd_create("vbar child output", MFD_CLOEXEC));
+  FileDescriptor null(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  int pipe_ends[2];
+  if (output_.get() < 0 || null.get() < 0 || ::pipe2(pipe_ends, O_CLOEXEC) != 0)
+    throw_errno("starting " + program_, errno);
+  FileDescriptor error_reader(pipe_ends[0]);
+  FileDescriptor error_writer(pipe_ends[1]);
+
+  std::vector<std::string> storage = arguments;
+  ExecPlan plan;
+  for (std::string& argument : storage) plan.arguments.push_back(argument.data());
+  plan.arguments.push_back(nullptr);
+  plan.descriptors = {null.get(), output_.get(), output_.get()};
+  static_assert(kFirstInherited == STDERR_FILENO + 1);
+  for (const FileDescriptor& fd : inherited) plan.descriptors.push_back(fd.get());
+  plan.report_errno_to = error_writer.get();
+  plan.parent = ::getpid();
+
+  pid_ = ::fork();
+  if (pid_ < 0) throw_errno("starting " + program_, errno);
+  if (pid_ == 0) become(plan);
+
+  // Also here, so that the group exists whichever of the two runs first.
+  (void)::setpgid(pid_, pid_);
+  inherited.clear();
+  error_writer.reset();
+  int error = 0;
+  ssize_t got = 0;
+  do {
+    got = ::read(error_reader.get(), &error, sizeof error);
+  } while (got < 0 && errno == EINTR);
+  if (got > 0) {
+    terminate(std::chrono::milliseconds(0));
+    throw_errno("starting " + program_, error);
+  }
+}
+
+ChildProcess::~ChildProcess() {
+  terminate(std::chrono::milliseconds(500));
+}
+
+bool ChildProcess::has_ended() {
+  if (wait_status_) return true;
+  int status = 0;
+  const pid_t reaped = ::waitpid(pid_, &status, WNOHANG);
+  if (reaped == pid_) wait_status_ = status;
+  return wait_status_.has_value();
+}
+
+bool ChildProcess::wait_for_end(std::chrono::milliseconds patience) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!has_ended()) {
+    if (std::chrono::steady_clock::now() >= deadline) return false;
+    std::this_thread::sleep_for(kExitPollPeriod);
+  }
+  return true;
+}
+
+void ChildProcess::terminate(std::chrono::milliseconds patience) {
+  if (has_ended()) return;
+  if (patience.count() > 0) {
+    (void)::kill(-pid_, SIGTERM);
+    if (wait_for_end(patience)) return;
+  }
+  (void)::kill(-pid_, SIGKILL);
+  int status = 0;
+  while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  }
+  wait_status_ = status;
+}
+
+std::string ChildProcess::status_text() const {
+  if (!wait_status_) return "running";
+  if (WIFSIGNALED(*wait_status_)) {
+    const int signal = WTERMSIG(*wait_status_);
+    return "killed by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
+  }
+  return "exit status " + std::to_string(WEXITSTATUS(*wait_status_));
+}
+
+std::string ChildProcess::output_tail(std::size_t limit) const {
+  struct stat info {};
+  if (::fstat(output_.get(), &info) != 0) return {};
+  const auto size = static_cast<std::size_t>(info.st_size);
+  std::string text(std::min(size, limit), '\0');
+  const ssize_t got = ::pread(output_.get(), text.data(), text.size(), static_cast<off_t>(size - text.size()));
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  return text;
+}
+
+}  // namespace vbar::pil

@@ -1,0 +1,55 @@
+#pragma once
+// A child process that cannot be left behind: it is ended and reaped by its owner's destructor, also while an exception
+// unwinds, and by the kernel if this program dies first.
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "pil_bridge/file_descriptor.h"
+
+namespace vbar::pil {
+
+class ChildProcess {
+ public:
+  /// Starts `arguments[0]` (looked up in PATH if it has no slash) without a shell, in a process group of its own. It
+  /// finds `inherited[i]` as file descriptor 3 + i, nothing on its standard input, and no other descriptor of this
+  /// program; what it writes to standard output and error is kept for `output_tail`.
+  ///
+  /// The kernel kills the child when the thread that called this ends: call it from a thread that outlives the child.
+  /// Throws std::system_error if the program cannot be started.
+  ChildProcess(const std::vector<std::string>& arguments, std::vector<FileDescriptor> inherited);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// True once the child has ended by itself or has been ended.
+  bool has_ended();
+
+  /// Waits for the child to end by itself; true if it did.
+  bool wait_for_end(std::chrono::milliseconds patience);
+
+  /// Ends the child's process group: SIGTERM first, SIGKILL for what is still there after `patience`. Returns when it
+  /// is reaped.
+  void terminate(std::chrono::milliseconds patience);
+
+  /// "exit status 3", "killed by signal 9 (Killed)"; "running".
+  [[nodiscard]] std::string status_text() const;
+
+  /// The last bytes of what the child wrote to standard output and error, at most `limit`.
+  [[nodiscard]] std::string output_tail(std::size_t limit = 2000) const;
+
+  [[nodiscard]] pid_t pid() const { return pid_; }
+  [[nodiscard]] const std::string& program() const { return program_; }
+
+ private:
+  std::string program_;
+  FileDescriptor output_;
+  pid_t pid_ = -1;
+  std::optional<int> wait_status_;
+};
+
+}  // namespace vbar::pil

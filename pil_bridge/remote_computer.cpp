@@ -1,0 +1,129 @@
+#include "pil_bridge/remote_computer.h"
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include "boards/common/flight_executive.h"
+#include "fsw/packets/messages.h"
+#include "pil_bridge/qemu.h"
+
+namespace vbar::pil {
+namespace {
+
+using boards::CounterUnit;
+
+/// A process whose line broke is about to end: so long to see why, before it is ended.
+constexpr std::chrono::milliseconds kExplainPatience{300};
+/// After a goodbye, to end by itself; then after a SIGTERM.
+constexpr std::chrono::milliseconds kGoodbyePatience{2000};
+constexpr std::chrono::milliseconds kTerminatePatience{500};
+
+std::uint32_t draw_session() {
+  std::random_device device;
+  return device();
+}
+
+std::uint64_t counter(std::int64_t value) {
+  return value > 0 ? static_cast<std::uint64_t>(value) : 0;
+}
+
+/// Many lines as one, for an error message.
+std::string on_one_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.replace(at, 1, " | ");
+  return text;
+}
+
+}  // namespace
+
+RemoteComputer::RemoteComputer(RemoteParts parts)
+    : parts_(std::move(parts)),
+      barrier_(*parts_.transport, draw_session(), parts_.timing, [this] { check_process(); }) {
+  try {
+    board_name_ = barrier_.connect(parts_.spacecraft);
+  } catch (const LinkError& error) {
+    fail("while starting", error.what());
+  }
+}
+
+StepResult RemoteComputer::step(std::uint32_t step, std::span<const Packet> packets) {
+  if (!failure_.empty()) throw FlightComputerError(failure_);
+  if (closed_) throw FlightComputerError("flight computer " + parts_.name + " is closed");
+  const auto start = Clock::now();
+  StepResult result;
+  try {
+    result.packets = barrier_.exchange(step, packets);
+  } catch (const LinkError& error) {
+    fail("at step " + std::to_string(step), error.what());
+  }
+  result.compute_wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+  std::erase_if(result.packets, [&](const Packet& packet) { return take_step_report(packet, result.report); });
+  return result;
+}
+
+LinkStatistics RemoteComputer::statistics() const {
+  const BarrierCounters host = barrier_.counters();
+  const TransportCounters line = parts_.transport->counters();
+  return {.bytes_sent = line.bytes_sent,
+          .bytes_received = line.bytes_received,
+          .frames_resent = host.frames_resent + board_counters_.frames_resent,
+          .frames_rejected = host.frames_rejected + line.frames_rejected + board_counters_.frames_rejected,
+          .frames_duplicated = host.frames_duplicated + board_counters_.frames_duplicated,
+          .strangers_ignored = line.strangers_ignored,
+          .polls = host.polls};
+}
+
+void RemoteComputer::close() {
+  if (std::exchange(closed_, true) || !failure_.empty()) return;
+  try {
+    barrier_.goodbye();
+  } catch (const LinkError&) {
+    // Gone already: all that was wanted.
+  }
+  if (!parts_.process) return;
+  if (!parts_.process->wait_for_end(kGoodbyePatience)) parts_.process->terminate(kTerminatePatience);
+}
+
+void RemoteComputer::fail(const std::string& when, const std::string& cause) {
+  failure_ = "flight computer " + parts_.name + " failed " + when + ": " + cause;
+  if (parts_.process) {
+    ChildProcess& process = *parts_.process;
+    if (process.wait_for_end(kExplainPatience)) {
+      failure_ += "; " + process.program() + ": " + process.status_text();
+    } else {
+      failure_ += "; " + process.program() + " was still running and has been ended";
+      process.terminate(kTerminatePatience);
+    }
+    const std::string output = on_one_line(process.output_tail());
+    if (!output.empty()) failure_ += "; its last output: " + output;
+  }
+  throw FlightComputerError(failure_);
+}
+
+void RemoteComputer::check_process() const {
+  if (parts_.process && parts_.process->has_ended()) throw LinkError("its process has ended");
+}
+
+bool RemoteComputer::take_step_report(const Packet& packet, StepReport& report) {
+  const auto view = fsw::packets::parse_packet(packet);
+  if (!view.ok() || view.value().header.apid != fsw::packets::Apid::kStepReport) return false;
+  const auto message = fsw::packets::decode<vbar::step_report>(view.value());
+  if (!message.ok()) return false;
+  const vbar::step_report& told = message.value();
+  report.present = true;
+  report.stack_bytes = static_cast<std::uint32_t>(counter(told.stack_bytes));
+  if (told.unit == static_cast<std::int8_t>(CounterUnit::kCycles)) {
+    report.unit = "cycles";
+    report.count = counter(told.count);
+  } else if (told.unit == static_cast<std::int8_t>(CounterUnit::kEmulatedTimerTicks) && parts_.icount_shift) {
+    report.unit = "instructions";
+    report.count = instructions_of_ticks(counter(told.count), *parts_.icount_shift);
+  }
+  board_counters_.frames_resent = counter(told.frames_resent);
+  board_counters_.frames_rejected = counter(told.frames_rejected);
+  board_counters_.frames_duplicated = counter(told.frames_duplicated);
+  return true;
+}
+
+}  // namespace vbar::pil

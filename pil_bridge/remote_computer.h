@@ -1,0 +1,55 @@
+#pragma once
+// A flight computer at the other end of a link: a board, an emulated one, or a process of its own.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "pil_bridge/flight_computer.h"
+#include "pil_bridge/process.h"
+#include "pil_bridge/step_barrier.h"
+#include "pil_bridge/transport.h"
+
+namespace vbar::pil {
+
+struct RemoteParts {
+  std::string name;                       ///< "zynq_qemu over serial", for messages
+  std::unique_ptr<ChildProcess> process;  ///< what runs the flight computer, if this program started it
+  std::unique_ptr<FrameTransport> transport;
+  BarrierTiming timing;
+  std::uint8_t spacecraft = 0;
+  /// Of the emulator; without one the board's timer ticks cannot be turned into instructions.
+  std::optional<int> icount_shift;
+};
+
+class RemoteComputer final : public FlightComputer {
+ public:
+  /// Waits until the flight computer has booted and answers. Throws FlightComputerError.
+  explicit RemoteComputer(RemoteParts parts);
+  ~RemoteComputer() override = default;
+
+  StepResult step(std::uint32_t step, std::span<const Packet> packets) override;
+  [[nodiscard]] LinkStatistics statistics() const override;
+  [[nodiscard]] std::string description() const override { return parts_.name + ": " + board_name_; }
+  void close() override;
+
+  /// Of the process that runs the flight computer, -1 if there is none. For tests that end it.
+  [[nodiscard]] int process_id() const { return parts_.process ? parts_.process->pid() : -1; }
+
+ private:
+  /// Ends the process and throws FlightComputerError with all that is known about the cause.
+  [[noreturn]] void fail(const std::string& when, const std::string& cause);
+  void check_process() const;
+  /// If `packet` is a step report: keeps its counters, fills `report`, and returns true.
+  bool take_step_report(const Packet& packet, StepReport& report);
+
+  RemoteParts parts_;
+  StepBarrier barrier_;
+  std::string board_name_;
+  std::string failure_;  ///< why this computer cannot be used any more; empty while it can
+  bool closed_ = false;
+  LinkStatistics board_counters_;  ///< the board's share, from its last step report
+};
+
+}  // namespace vbar::pil

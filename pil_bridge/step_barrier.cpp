@@ -1,0 +1,179 @@
+#include "pil_bridge/step_barrier.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace vbar::pil {
+namespace {
+
+using fsw::link::BatchReceiver;
+using fsw::link::FrameHeader;
+using fsw::link::FrameType;
+using fsw::link::FrameView;
+
+/// A board that cannot run its flight software says so in place of its name.
+constexpr std::string_view kBoardErrorPrefix = "error: ";
+
+std::string seconds_text(std::chrono::milliseconds duration) {
+  const std::string text = std::to_string(static_cast<double>(duration.count()) * 1e-3);
+  return text.substr(0, text.find('.') + 2) + " s";
+}
+
+}  // namespace
+
+StepBarrier::StepBarrier(FrameTransport& transport, std::uint32_t session, const BarrierTiming& timing,
+                         std::function<void()> watch)
+    : transport_(transport), session_(session), timing_(timing), watch_(std::move(watch)) {}
+
+std::string StepBarrier::connect(std::uint8_t spacecraft) {
+  const auto give_up = Clock::now() + timing_.boot_limit;
+  while (Clock::now() < give_up) {
+    send({.type = FrameType::kHello, .session = session_}, std::span(&spacecraft, 1));
+    const auto next_hello = std::min(give_up, Clock::now() + timing_.hello_period);
+    while (const auto frame = receive(next_hello)) {
+      if (frame->header.type != FrameType::kHelloAck) {
+        ++counters_.frames_rejected;
+        continue;
+      }
+      const std::string name(frame->payload.begin(), frame->payload.end());
+      if (name.starts_with(kBoardErrorPrefix)) {
+        throw LinkError("the board cannot fly: " + name.substr(kBoardErrorPrefix.size()));
+      }
+      return name;
+    }
+    watch_();
+  }
+  throw LinkError("no answer to hello within " + seconds_text(timing_.boot_limit) + " on " + transport_.description());
+}
+
+std::vector<Packet> StepBarrier::exchange(std::uint32_t step, std::span<const Packet> packets) {
+  if (packets.empty() || packets.size() > std::numeric_limits<std::uint16_t>::max()) {
+    throw LinkError("a step takes 1 to 65535 packets, not " + std::to_string(packets.size()));
+  }
+  Exchange exchange;
+  exchange.step = step;
+  exchange.packets = packets;
+  inputs_.open(session_, step, static_cast<std::uint16_t>(packets.size()));
+  outputs_.open(session_, step);
+  auto last_progress = Clock::now();
+  auto patience = timing_.poll_after;
+  auto next_poll = last_progress + patience;
+  send_window(exchange);
+  while (!outputs_.complete()) {
+    if (const auto frame = receive(next_poll)) {
+      if (!take(exchange, *frame)) continue;
+      last_progress = Clock::now();
+      patience = timing_.poll_after;
+    } else {
+      watch_();
+      if (Clock::now() - last_progress >= timing_.give_up_after) {
+        throw LinkError("no answer to step " + std::to_string(step) + " within " + seconds_text(timing_.give_up_after) +
+                        " on " + transport_.description());
+      }
+      poll(exchange);
+      patience = std::min(2 * patience, timing_.poll_limit);
+    }
+    next_poll = std::min(Clock::now() + patience, last_progress + timing_.give_up_after);
+  }
+  return std::move(exchange.answer);
+}
+
+void StepBarrier::goodbye() {
+  send({.type = FrameType::kGoodbye, .session = session_});
+}
+
+BarrierCounters StepBarrier::counters() const {
+  BarrierCounters counters = counters_;
+  counters.frames_resent = inputs_.resent();
+  return counters;
+}
+
+void StepBarrier::send_window(const Exchange& exchange) {
+  while (inputs_.can_send()) {
+    const FrameHeader header = inputs_.next_header();
+    send(header, exchange.packets[header.index]);
+    inputs_.sent();
+  }
+}
+
+void StepBarrier::poll(Exchange& exchange) {
+  ++counters_.polls;
+  exchange.poll_pending = true;
+  send({.type = FrameType::kPoll, .session = session_, .step = exchange.step, .index = outputs_.held()});
+}
+
+bool StepBarrier::take(Exchange& exchange, const FrameView& frame) {
+  if (frame.header.type == FrameType::kHelloAck) {  // the board heard more than one hello
+    ++counters_.frames_duplicated;
+    return false;
+  }
+  if (frame.header.step != exchange.step) {
+    // A late repetition of an earlier answer, or nonsense about a step not yet begun.
+    ++(frame.header.step < exchange.step ? counters_.frames_duplicated : counters_.frames_rejected);
+    return false;
+  }
+  if (frame.header.type == FrameType::kAck) return take_acknowledgement(exchange, frame.header.index);
+  if (frame.header.type == FrameType::kData) return take_answer(exchange, frame);
+  ++counters_.frames_rejected;  // only a host sends the others
+  return false;
+}
+
+bool StepBarrier::take_acknowledgement(Exchange& exchange, std::uint16_t held) {
+  if (held > exchange.packets.size()) {
+    ++counters_.frames_rejected;
+    return false;
+  }
+  // The answer to a poll says what arrived of all that was sent before the poll: the rest got lost.
+  if (std::exchange(exchange.poll_pending, false)) {
+    inputs_.rewind(held);
+  } else {
+    inputs_.acknowledge(held);
+  }
+  send_window(exchange);
+  const bool progress = held > exchange.acknowledged;
+  exchange.acknowledged = std::max(exchange.acknowledged, held);
+  return progress;
+}
+
+bool StepBarrier::take_answer(Exchange& exchange, const FrameView& frame) {
+  const BatchReceiver::Decision decision = outputs_.offer(frame.header);
+  switch (decision.verdict) {
+    case BatchReceiver::Verdict::kTaken:
+      exchange.answer.emplace_back(frame.payload.begin(), frame.payload.end());
+      exchange.gap_reported = false;
+      break;
+    case BatchReceiver::Verdict::kDuplicate:
+      ++counters_.frames_duplicated;
+      break;
+    case BatchReceiver::Verdict::kOutOfOrder:
+      ++counters_.frames_rejected;
+      // What came before got lost: ask at once, but only once, for more of the same burst is still on its way.
+      if (!std::exchange(exchange.gap_reported, true)) poll(exchange);
+      break;
+    case BatchReceiver::Verdict::kForeign:
+      ++counters_.frames_rejected;
+      break;
+  }
+  if (decision.acknowledge && !outputs_.complete()) send(outputs_.acknowledgement());
+  return decision.verdict == BatchReceiver::Verdict::kTaken;
+}
+
+void StepBarrier::send(const FrameHeader& header, std::span<const std::uint8_t> payload) {
+  const auto size = fsw::link::write_frame(header, payload, frame_);
+  if (!size.ok()) throw LinkError("a packet of " + std::to_string(payload.size()) + " bytes does not fit a link frame");
+  transport_.send(std::span(frame_).first(size.value()));
+}
+
+std::optional<FrameView> StepBarrier::receive(Clock::time_point deadline) {
+  for (;;) {
+    const auto bytes = transport_.receive(deadline);
+    if (bytes.empty()) return std::nullopt;
+    const auto frame = fsw::link::parse_frame(bytes);
+    if (frame.ok() && frame.value().header.session == session_) return frame.value();
+    ++counters_.frames_rejected;
+    if (Clock::now() >= deadline) return std::nullopt;
+  }
+}
+
+}  // namespace vbar::pil

@@ -1,0 +1,90 @@
+#pragma once
+// The host's side of the step barrier (fsw/link/frame.h): go-back-N both ways, with polls for what is overdue. Whatever
+// the line loses, breaks, repeats or delays, `exchange` returns the flight computer's one answer to the step, or
+// throws.
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fsw/link/batch.h"
+#include "fsw/link/frame.h"
+#include "pil_bridge/flight_computer.h"
+#include "pil_bridge/transport.h"
+
+namespace vbar::pil {
+
+struct BarrierTiming {
+  /// Silence after which the host asks; doubled up to `poll_limit` while nothing moves. Well above the time of a step:
+  /// a poll that arrives during the step would be part of what the flight computer measures of itself.
+  std::chrono::milliseconds poll_after{500};
+  std::chrono::milliseconds poll_limit{4000};
+  /// Without any progress for this long the flight computer is given up.
+  std::chrono::milliseconds give_up_after{30000};
+  std::chrono::milliseconds hello_period{100};
+  /// For the first answer to a hello.
+  std::chrono::milliseconds boot_limit{30000};
+};
+
+struct BarrierCounters {
+  std::uint64_t frames_resent = 0;
+  std::uint64_t frames_rejected = 0;
+  std::uint64_t frames_duplicated = 0;
+  std::uint64_t polls = 0;
+};
+
+class StepBarrier {
+ public:
+  /// `watch` is called whenever nothing came for a while; it may throw to end a hopeless wait.
+  StepBarrier(FrameTransport& transport, std::uint32_t session, const BarrierTiming& timing,
+              std::function<void()> watch);
+
+  /// Says hello until the board answers, which makes it start the flight software of `spacecraft` anew; returns the
+  /// name the board gives. Throws LinkError, also with the reason of a board that cannot fly.
+  std::string connect(std::uint8_t spacecraft);
+
+  /// Sends the packets of `step` and returns the packets of the answer. Throws LinkError.
+  std::vector<Packet> exchange(std::uint32_t step, std::span<const Packet> packets);
+
+  /// Tells the board that the run is over. Not acknowledged.
+  void goodbye();
+
+  [[nodiscard]] BarrierCounters counters() const;
+
+ private:
+  /// State of one exchange.
+  struct Exchange {
+    std::uint32_t step = 0;
+    std::span<const Packet> packets;
+    std::vector<Packet> answer;
+    std::uint16_t acknowledged = 0;  ///< packets the board is known to hold without a gap
+    bool poll_pending = false;       ///< asked, and no acknowledgement since
+    bool gap_reported = false;       ///< asked because of a gap in the answer, and no progress since
+  };
+
+  void send_window(const Exchange& exchange);
+  void poll(Exchange& exchange);
+  // What a frame does to the exchange; true if it is progress.
+  bool take(Exchange& exchange, const fsw::link::FrameView& frame);
+  bool take_acknowledgement(Exchange& exchange, std::uint16_t held);
+  bool take_answer(Exchange& exchange, const fsw::link::FrameView& frame);
+  void send(const fsw::link::FrameHeader& header, std::span<const std::uint8_t> payload = {});
+  /// The next good frame of this session, none by `deadline`. Others are counted.
+  std::optional<fsw::link::FrameView> receive(Clock::time_point deadline);
+
+  FrameTransport& transport_;
+  std::uint32_t session_;
+  BarrierTiming timing_;
+  std::function<void()> watch_;
+  fsw::link::BatchSender inputs_;
+  fsw::link::BatchReceiver outputs_;
+  BarrierCounters counters_;
+  std::array<std::uint8_t, fsw::link::kMaxFrameBytes> frame_{};
+};
+
+}  // namespace vbar::pil

@@ -1,0 +1,38 @@
+#pragma once
+// The functions of a test article (fsw/gnc/vbar_gnc.h), wherever they come from.
+
+#include <memory>
+#include <string>
+
+#include "fsw/gnc/vbar_gnc.h"
+
+namespace vbar::pil {
+
+struct TestArticle {
+  decltype(&vbar_gnc_abi_version) abi_version = nullptr;
+  decltype(&vbar_gnc_name) name = nullptr;
+  decltype(&vbar_gnc_state_size) state_size = nullptr;
+  decltype(&vbar_gnc_state_alignment) state_alignment = nullptr;
+  decltype(&vbar_gnc_init) init = nullptr;
+  decltype(&vbar_gnc_set_sink) set_sink = nullptr;
+  decltype(&vbar_gnc_receive) receive = nullptr;
+  decltype(&vbar_gnc_step) step = nullptr;
+};
+
+/// The test article that this program is linked with. Inline, so that only a program that calls it needs one.
+inline std::shared_ptr<const TestArticle> linked_test_article() {
+  return std::make_shared<const TestArticle>(TestArticle{.abi_version = &vbar_gnc_abi_version,
+                                                         .name = &vbar_gnc_name,
+                                                         .state_size = &vbar_gnc_state_size,
+                                                         .state_alignment = &vbar_gnc_state_alignment,
+                                                         .init = &vbar_gnc_init,
+                                                         .set_sink = &vbar_gnc_set_sink,
+                                                         .receive = &vbar_gnc_receive,
+                                                         .step = &vbar_gnc_step});
+}
+
+/// The test article in the shared library at `path`, which stays loaded as long as the result lives. Throws
+/// FlightComputerError if it cannot be loaded, lacks a function, or was built for another version of the interface.
+std::shared_ptr<const TestArticle> load_test_article(const std::string& path);
+
+}  // namespace vbar::pil

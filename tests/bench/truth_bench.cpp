@@ -1,0 +1,110 @@
+// The truth model's cost: gravity beside GeographicLib's SphericalHarmonic, the frame chain, and whole orbits.
+
+#include <string>
+#include <vector>
+
+#include <GeographicLib/SphericalHarmonic.hpp>
+#include <benchmark/benchmark.h>
+
+#include "host_sim/truth/earth_rotation.h"
+#include "host_sim/truth/gravity_field.h"
+#include "host_sim/truth/time_scales.h"
+#include "host_sim/truth/truth_model.h"
+
+namespace {
+
+using vbar::fsw::Vector3;
+namespace truth = vbar::truth;
+
+const std::string kData = std::string(VBAR_SOURCE_DIR) + "/data";
+const Vector3 kLowOrbit(4.0e6, -3.0e6, 5.0e6);
+
+truth::GravityCoefficients coefficients(int degree) {
+  return truth::load_gravity_coefficients(kData + "/gravity/ggm05s_120.txt", degree);
+}
+
+void gravity(benchmark::State& state, int degree) {
+  const truth::GravityField field(coefficients(degree), degree, degree);
+  Vector3 position = kLowOrbit;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(position);
+    benchmark::DoNotOptimize(field.perturbation_itrf(position));
+  }
+}
+
+void gravity_portable(benchmark::State& state, int degree) {
+  const truth::GravityField field(coefficients(degree), degree, degree, truth::sum_harmonics_portable);
+  Vector3 position = kLowOrbit;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(position);
+    benchmark::DoNotOptimize(field.perturbation_itrf(position));
+  }
+}
+
+void gravity_geographiclib(benchmark::State& state, int degree) {
+  const truth::GravityCoefficients model = coefficients(degree);
+  std::vector<double> c, s;  // order by order, sine terms from order 1
+  for (int m = 0; m <= degree; ++m) {
+    for (int n = m; n <= degree; ++n) {
+      c.push_back(model.c_nm(n, m));
+      if (m > 0) s.push_back(model.s_nm(n, m));
+    }
+  }
+  const GeographicLib::SphericalHarmonic harmonic(c, s, degree, model.radius);
+  Vector3 position = kLowOrbit, gradient;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(position);
+    benchmark::DoNotOptimize(
+        harmonic(position.x(), position.y(), position.z(), gradient.x(), gradient.y(), gradient.z()));
+    benchmark::DoNotOptimize(gradient);
+  }
+}
+
+void earth_rotation(benchmark::State& state) {
+  const auto orientation = std::make_shared<const truth::EarthOrientationSeries>(
+      truth::EarthOrientationSeries::load(kData + "/earth/eop_2009_2013.csv"));
+  truth::EarthRotation rotation(orientation, truth::gps_from_utc("2011-07-18T01:00:00Z"));
+  double seconds = 0.0;
+  for (auto _ : state) {
+    seconds = seconds < 18000.0 ? seconds + 7.0 : 0.0;
+    benchmark::DoNotOptimize(rotation.R_itrf_gcrf_at(seconds));
+  }
+}
+
+/// Two spacecraft 10 m apart for one orbit, asked for every 10 s.
+void one_orbit_two_spacecraft(benchmark::State& state) {
+  truth::TruthSettings settings;
+  settings.epoch = truth::gps_from_utc("2011-07-18T01:00:00Z");
+  settings.data_directory = kData;
+  vbar::fsw::orbit::CartesianState servicer;
+  servicer.position_eci << 12161.8456633, -7076153.584868, -84606.5539942;
+  servicer.velocity_eci << -1068.5690877908, -90.5830005301, 7433.7358593127;
+  vbar::fsw::orbit::CartesianState target = servicer;
+  target.position_eci.y() += 10.0;
+  std::int64_t evaluations = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    truth::TruthModel model(settings);
+    model.add_spacecraft("servicer", servicer);
+    model.add_spacecraft("target", target);
+    const std::int64_t before = model.statistics().force_evaluations;
+    state.ResumeTiming();
+    for (int second = 10; second <= 5930; second += 10) {
+      model.advance_to(settings.epoch + vbar::fsw::duration_of_seconds(second));
+      benchmark::DoNotOptimize(model.state(0));
+      benchmark::DoNotOptimize(model.state(1));
+    }
+    evaluations = model.statistics().force_evaluations - before;
+  }
+  state.counters["force_evaluations"] = static_cast<double>(evaluations);
+}
+
+BENCHMARK_CAPTURE(gravity, 60, 60)->Name("gravity/vbar/60");
+BENCHMARK_CAPTURE(gravity, 120, 120)->Name("gravity/vbar/120");
+BENCHMARK_CAPTURE(gravity_portable, 60, 60)->Name("gravity/vbar_portable/60");
+BENCHMARK_CAPTURE(gravity_geographiclib, 60, 60)->Name("gravity/geographiclib/60");
+BENCHMARK_CAPTURE(gravity_geographiclib, 120, 120)->Name("gravity/geographiclib/120");
+BENCHMARK(earth_rotation)->Name("earth_rotation/vbar/1");
+BENCHMARK(one_orbit_two_spacecraft)->Name("truth/vbar/one_orbit_two_spacecraft")->Unit(benchmark::kMillisecond);
+
+}  // namespace

@@ -1,0 +1,126 @@
+// The inbox takes what the contract allows, refuses the rest with a count by cause, and orders by time tag.
+
+#include "fsw/gnc/inbox.h"
+
+#include <cstring>
+#include <limits>
+
+#include "tests/unit/fsw/gnc/packet_factory.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+using test::Bytes;
+using test::kServicer;
+using test::packet_of;
+
+TEST(Inbox, FilesByTimeTagWhateverTheOrderOfArrival) {
+  Inbox inbox(kServicer);
+  for (const std::int64_t ns : {30, 10, 20}) {
+    EXPECT_EQ(inbox.receive(packet_of({ns}, ideal_navigation{})), Status::kOk);
+  }
+  ASSERT_EQ(inbox.ideal_navigation_states().size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(inbox.ideal_navigation_states()[k].tag.time.ns, static_cast<std::int64_t>(10 * (k + 1)));
+  }
+}
+
+TEST(Inbox, RefusesADuplicateButNotAnotherPacketOfTheSameInstant) {
+  Inbox inbox(kServicer);
+  EXPECT_EQ(inbox.receive(packet_of({10}, executed_maneuver{}, 7)), Status::kOk);
+  EXPECT_EQ(inbox.receive(packet_of({10}, executed_maneuver{}, 7)), Status::kBadSequence);
+  EXPECT_EQ(inbox.receive(packet_of({10}, executed_maneuver{}, 8)), Status::kOk);
+  EXPECT_EQ(inbox.executed_maneuvers().size(), 2U);
+  EXPECT_EQ(inbox.counters().rejected_other, 1);
+}
+
+TEST(Inbox, DropsTheNewestWhenFullAndKeepsWhatItHas) {
+  Inbox inbox(kServicer);
+  const auto capacity = static_cast<std::int64_t>(Inbox::kMeasurements);
+  for (std::int64_t k = 0; k < capacity; ++k) {
+    ideal_navigation message{};
+    message.servicer_position_eci[0] = static_cast<double>(k);
+    ASSERT_EQ(inbox.receive(packet_of({k}, message)), Status::kOk);
+  }
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(inbox.receive(packet_of({capacity + k}, ideal_navigation{})), Status::kFull);
+  }
+  EXPECT_EQ(inbox.counters().dropped_full, 5);
+  ASSERT_EQ(inbox.ideal_navigation_states().size(), Inbox::kMeasurements);
+  for (std::size_t k = 0; k < Inbox::kMeasurements; ++k) {
+    EXPECT_EQ(inbox.ideal_navigation_states()[k].value.servicer_position_eci[0], static_cast<double>(k));
+  }
+}
+
+TEST(Inbox, CountsEachRefusalByItsCause) {
+  Inbox inbox(kServicer);
+  const Bytes good = packet_of({1}, ideal_navigation{});
+
+  Bytes flipped = good;
+  flipped[20] ^= 0x10U;
+  EXPECT_EQ(inbox.receive(flipped), Status::kBadChecksum);
+  EXPECT_EQ(inbox.counters().rejected_checksum, 1);
+
+  const Bytes cut(good.begin(), good.end() - 5);
+  EXPECT_NE(inbox.receive(cut), Status::kOk);
+  EXPECT_EQ(inbox.counters().rejected_length, 1);
+
+  EXPECT_EQ(inbox.receive(packet_of({1}, maneuver_command{})), Status::kWrongType);  // not for the flight software
+  EXPECT_EQ(inbox.counters().rejected_type, 1);
+
+  EXPECT_NE(inbox.receive(packet_of({1}, ideal_navigation{}, 0, kServicer + 1)), Status::kOk);
+  EXPECT_EQ(inbox.counters().rejected_other, 1);
+
+  EXPECT_NE(inbox.receive({}), Status::kOk);
+  EXPECT_EQ(inbox.counters().accepted, 0);
+}
+
+// The payload of one message under the APID of another: the type hash tells.
+TEST(Inbox, RefusesAMessageUnderAnotherOnesName) {
+  packets::PacketHeader header;
+  header.apid = packets::Apid::kIdealNavigation;
+  header.time = {1};
+  header.spacecraft = kServicer;
+  executed_maneuver message{};
+  Bytes payload(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(payload.data(), 0, static_cast<int>(payload.size()));
+  Bytes bytes(packets::kMaxPacketBytes);
+  const auto size = packets::write_packet(header, payload, bytes);
+  ASSERT_TRUE(size.ok());
+  bytes.resize(size.value());
+
+  Inbox inbox(kServicer);
+  EXPECT_NE(inbox.receive(bytes), Status::kOk);
+  EXPECT_TRUE(inbox.ideal_navigation_states().empty());
+}
+
+// encode() refuses a NaN, so it is put into the bytes by hand, with a CRC that fits.
+TEST(Inbox, RefusesNaN) {
+  ideal_navigation message{};
+  message.target_velocity_eci[2] = std::numeric_limits<double>::quiet_NaN();
+  Bytes payload(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(payload.data(), 0, static_cast<int>(payload.size()));
+  packets::PacketHeader header;
+  header.apid = packets::Apid::kIdealNavigation;
+  header.spacecraft = kServicer;
+  Bytes bytes(packets::kMaxPacketBytes);
+  const auto size = packets::write_packet(header, payload, bytes);
+  ASSERT_TRUE(size.ok());
+  bytes.resize(size.value());
+
+  Inbox inbox(kServicer);
+  EXPECT_EQ(inbox.receive(bytes), Status::kNotFinite);
+  EXPECT_EQ(inbox.counters().rejected_content, 1);
+}
+
+TEST(Inbox, RefusesATickWithoutAPeriod) {
+  Inbox inbox(kServicer);
+  tick message{};
+  EXPECT_EQ(inbox.receive(packet_of({1}, message)), Status::kOutOfRange);
+  message.period_ns = 60;
+  EXPECT_EQ(inbox.receive(packet_of({1}, message)), Status::kOk);
+  EXPECT_EQ(inbox.step_period().ns, 60);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::gnc

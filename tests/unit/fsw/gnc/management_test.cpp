@@ -1,0 +1,145 @@
+// Telecommands in, modes and waypoints out; nonsense changes nothing and is counted.
+
+#include "fsw/gnc/management.h"
+
+#include "tests/unit/fsw/gnc/packet_factory.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+using test::kServicer;
+using test::packet_of;
+
+waypoint_table table_of_three() {
+  waypoint_table table{};
+  table.count = 3;
+  table.reference_semi_major_axis_m = 7.0e6;
+  for (int k = 0; k < 3; ++k) {
+    table.waypoints[k].index = k;
+    table.waypoints[k].gps_time_ns = 100 * (k + 1);
+    table.waypoints[k].a_roe_m[1] = -7000.0 * (k + 1);
+  }
+  return table;
+}
+
+mode_command approach() {
+  mode_command command{};
+  command.mode = 1;
+  return command;
+}
+
+class ManagementTest : public ::testing::Test {
+ protected:
+  template <class Message>
+  void send(const Message& message, std::int64_t ns = 0) {
+    ASSERT_EQ(inbox_.receive(packet_of({ns}, message)), Status::kOk);
+  }
+  void step(std::int64_t ns) {
+    management_.update({ns}, inbox_);
+    inbox_.clear();
+  }
+
+  Inbox inbox_{kServicer};
+  Management management_;
+};
+
+TEST_F(ManagementTest, FliesTheTableThenKeepsStation) {
+  EXPECT_EQ(management_.mode(), Mode::kIdle);
+  send(table_of_three());
+  send(approach());
+  step(50);
+  EXPECT_EQ(management_.mode(), Mode::kApproach);
+  ASSERT_NE(management_.next_waypoint(), nullptr);
+  EXPECT_EQ(management_.next_waypoint()->index, 0);
+  EXPECT_EQ(management_.last_waypoint(), nullptr);
+  EXPECT_DOUBLE_EQ(management_.next_waypoint()->roe(1), -1e-3);  // -7000 m over 7000 km
+
+  step(100);  // the waypoint's own time: it is reached, what comes now is for the next one
+  EXPECT_EQ(management_.next_waypoint()->index, 1);
+  EXPECT_EQ(management_.last_waypoint()->index, 0);
+
+  step(300);
+  EXPECT_EQ(management_.next_waypoint(), nullptr);
+  EXPECT_EQ(management_.mode(), Mode::kStationKeeping);
+  EXPECT_EQ(management_.last_waypoint()->index, 2);
+}
+
+TEST_F(ManagementTest, StationKeepingWithoutAWaypointReachedIsIdle) {
+  mode_command keep{};
+  keep.mode = 2;
+  send(table_of_three());
+  send(keep);
+  step(10);
+  EXPECT_EQ(management_.mode(), Mode::kIdle);
+}
+
+TEST_F(ManagementTest, ANewTableReplacesTheOld) {
+  send(table_of_three());
+  step(150);
+  waypoint_table other = table_of_three();
+  other.count = 1;
+  other.waypoints[0].index = 9;
+  other.waypoints[0].gps_time_ns = 900;
+  send(other);
+  step(160);
+  EXPECT_EQ(management_.next_waypoint()->index, 9);
+}
+
+TEST_F(ManagementTest, RefusesTablesThatCannotBeFlown) {
+  const auto refused = [this](const waypoint_table& table) {
+    const std::int32_t before = inbox_.counters().rejected_content;
+    send(table);
+    step(1);
+    return inbox_.counters().rejected_content == before + 1 && management_.next_waypoint() == nullptr;
+  };
+  waypoint_table table = table_of_three();
+  table.count = 17;
+  EXPECT_TRUE(refused(table));
+  table = table_of_three();
+  table.count = 0;
+  EXPECT_TRUE(refused(table));
+  table = table_of_three();
+  table.waypoints[2].gps_time_ns = table.waypoints[1].gps_time_ns;
+  EXPECT_TRUE(refused(table));
+  table = table_of_three();
+  table.waypoints[1].control_mode = 3;
+  EXPECT_TRUE(refused(table));
+  table = table_of_three();
+  table.reference_semi_major_axis_m = 0.0;
+  EXPECT_TRUE(refused(table));
+  table = table_of_three();
+  table.waypoints[0].a_roe_m[3] = 2e6;
+  EXPECT_TRUE(refused(table));
+}
+
+TEST_F(ManagementTest, RefusesAConfigurationWithAnImpossibleFieldAndKeepsTheOld) {
+  gnc_configuration configuration = management_.configuration();
+  const double before = configuration.maximum_dv;
+  configuration.maximum_dv = 123.0;
+  configuration.koenig_damico_grid_ns = 0;
+  send(configuration);
+  step(1);
+  EXPECT_EQ(management_.configuration().maximum_dv, before);
+  EXPECT_EQ(inbox_.counters().rejected_content, 1);
+}
+
+TEST_F(ManagementTest, ATelecommandOfTheFutureIsNotTaken) {
+  send(approach(), 500);
+  step(100);
+  EXPECT_EQ(management_.mode(), Mode::kIdle);
+  EXPECT_EQ(inbox_.counters().rejected_time, 1);
+}
+
+// Two mode commands in one step: the later time tag has the last word, in whatever order they came.
+TEST_F(ManagementTest, TelecommandsApplyInOrderOfTheirTimeTags) {
+  send(table_of_three());
+  mode_command hold{};
+  hold.mode = 3;
+  send(hold, 20);
+  send(approach(), 10);
+  step(50);
+  EXPECT_EQ(management_.mode(), Mode::kHold);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::gnc

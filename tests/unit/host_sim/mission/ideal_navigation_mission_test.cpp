@@ -1,0 +1,114 @@
+// missions/ideal_navigation.toml says what the paper says, and its comments say which defaults the loader has.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/host_sim/mission/mission_text.h"
+
+namespace vbar::mission::test {
+namespace {
+
+Mission ideal_navigation() {
+  return load_mission(VBAR_SOURCE_DIR "/missions/ideal_navigation.toml");
+}
+
+// The paper's table "End-to-end Mission ROE Waypoints": time in hours, then a*ROE in metres.
+constexpr double kPaperWaypoints[11][7] = {
+    {0.0, -2000.0, -75000.0, 0.0, 0.0, 0.0, 0.0},    {6.0, -87.0, -50000.0, 0.0, 1000.0, 0.0, 1000.0},
+    {12.0, -70.0, -25000.0, 0.0, 500.0, 0.0, 500.0}, {18.0, -17.0, -5000.0, 0.0, 500.0, 0.0, 500.0},
+    {24.0, 0.0, -1000.0, 0.0, 30.0, 0.0, 30.0},      {28.0, 0.0, -600.0, 0.0, 18.0, 0.0, 18.0},
+    {32.0, 0.0, -200.0, 0.0, 6.0, 0.0, 6.0},         {36.0, 0.0, -100.0, 0.0, 3.0, 0.0, 3.0},
+    {39.0, -0.5, -10.0, 0.0, 2.0, 0.0, 1.0},         {40.0, 0.0, -7.0, 1.0, 0.0, 2.0, 0.0},
+    {41.25, 0.0, -8.5, 1.0, 0.0, 1.0, 0.0}};
+
+TEST(IdealNavigationMission, WaypointsAreThePapers) {
+  const Mission mission = ideal_navigation();
+  ASSERT_EQ(mission.waypoints.size(), 11U);
+  for (std::size_t k = 0; k < 11; ++k) {
+    const Waypoint& waypoint = mission.waypoints[k];
+    EXPECT_EQ(waypoint.index, static_cast<int>(k));
+    EXPECT_EQ((waypoint.time - mission.epoch).ns, static_cast<std::int64_t>(kPaperWaypoints[k][0] * 3600e9));
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(waypoint.a_roe_m(i), kPaperWaypoints[k][i + 1]) << k << ' ' << i;
+    EXPECT_EQ(waypoint.solver, k <= 7 ? Solver::kClosedForm : Solver::kKoenigDamico) << k;
+  }
+}
+
+// 2011-07-18 01:00:00 UTC: 11516 days and 1 h after 1980-01-06 (Julian days 2455760.5 and 2444244.5), and 15 leap
+// seconds between GPS time and UTC since 2009 (IERS Bulletin C 36).
+TEST(IdealNavigationMission, EpochIsThePapers) {
+  const Mission mission = ideal_navigation();
+  EXPECT_EQ(mission.epoch.ns, (std::int64_t{11516} * 86400 + 3600 + 15) * 1000000000);
+  EXPECT_EQ(mission.end_time() - mission.epoch, fsw::duration_of_seconds(148500)) << "41.25 h";
+}
+
+TEST(IdealNavigationMission, ServicerElementsAreThePapers) {
+  const auto& orbit = std::get<OrbitByElements>(ideal_navigation().find_spacecraft("servicer")->orbit);
+  constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  EXPECT_EQ(orbit.kind, ElementsKind::kOsculating);
+  EXPECT_DOUBLE_EQ(orbit.elements.a, 7087300.0);
+  EXPECT_EQ(orbit.elements.ex, 0.0015);
+  EXPECT_EQ(orbit.elements.ey, -4.17e-8);
+  EXPECT_DOUBLE_EQ(orbit.elements.i, 98.18 * kDegree);
+  EXPECT_DOUBLE_EQ(orbit.elements.raan, -90.0 * kDegree);
+  EXPECT_DOUBLE_EQ(orbit.elements.u, -0.69 * kDegree);
+}
+
+// The file claims to show the defaults, but for the keys it names: a mission without the sections has the same values.
+TEST(IdealNavigationMission, CommentsTellTheDefaults) {
+  const Mission shown = ideal_navigation();
+  const Mission defaults = small_mission({"mission.duration_h=41.25"});
+  EXPECT_EQ(shown.epoch, defaults.epoch);
+  EXPECT_EQ(shown.start, defaults.start);
+  EXPECT_EQ(shown.step, defaults.step);
+  EXPECT_EQ(shown.seed, defaults.seed);
+  EXPECT_EQ(shown.truth.gravity_degree, defaults.truth.gravity_degree);
+  EXPECT_EQ(shown.truth.gravity_order, defaults.truth.gravity_order);
+  EXPECT_EQ(shown.truth.relative_tolerance, defaults.truth.relative_tolerance);
+  EXPECT_EQ(shown.truth.threads, defaults.truth.threads);
+  for (const char* name : {"servicer", "target"}) {
+    const SurfaceProperties& a = shown.find_spacecraft(name)->surface;
+    const SurfaceProperties& b = defaults.find_spacecraft(name)->surface;
+    EXPECT_EQ(a.mass_kg, b.mass_kg);
+    EXPECT_EQ(a.drag_area_m2, b.drag_area_m2);
+    EXPECT_EQ(a.drag_coefficient, b.drag_coefficient);
+    EXPECT_EQ(a.radiation_area_m2, b.radiation_area_m2);
+    EXPECT_EQ(a.radiation_coefficient, b.radiation_coefficient);
+    EXPECT_EQ(shown.find_spacecraft(name)->number, defaults.find_spacecraft(name)->number);
+  }
+  const FlightComputer& computer = *shown.find_spacecraft("servicer")->flight_computer;
+  const FlightComputer& default_computer = *defaults.find_spacecraft("servicer")->flight_computer;
+  EXPECT_EQ(computer.target, default_computer.target);
+  EXPECT_EQ(computer.link, default_computer.link);
+  EXPECT_EQ(computer.compute_latency, default_computer.compute_latency);
+  EXPECT_EQ(shown.find_spacecraft("servicer")->navigation->period,
+            defaults.find_spacecraft("servicer")->navigation->period);
+  EXPECT_EQ(shown.find_spacecraft("servicer")->navigation->target,
+            defaults.find_spacecraft("servicer")->navigation->target);
+  const Guidance& a = shown.guidance;
+  const Guidance& b = defaults.guidance;
+  EXPECT_EQ(a.mode, b.mode);
+  EXPECT_EQ(a.reference_semi_major_axis_m, b.reference_semi_major_axis_m);
+  EXPECT_EQ(a.compute_latency, b.compute_latency);
+  EXPECT_EQ(a.closed_form_period, b.closed_form_period);
+  EXPECT_EQ(a.koenig_damico_period, b.koenig_damico_period);
+  EXPECT_EQ(a.koenig_damico_grid, b.koenig_damico_grid);
+  EXPECT_EQ(a.least_squares_spacing, b.least_squares_spacing);
+  EXPECT_EQ(a.planner_start, b.planner_start);
+  EXPECT_EQ(a.minimum_dv, b.minimum_dv);
+  EXPECT_EQ(a.maximum_dv, b.maximum_dv);
+  EXPECT_EQ(a.roe_error_threshold_m, b.roe_error_threshold_m);
+  EXPECT_EQ(a.station_keeping_deadband_m, b.station_keeping_deadband_m);
+  EXPECT_EQ(a.navigation_timeout_s, b.navigation_timeout_s);
+  EXPECT_EQ(shown.clock.mode, defaults.clock.mode);
+  EXPECT_EQ(shown.clock.speed_factor, defaults.clock.speed_factor);
+  EXPECT_EQ(shown.clock.compute_budget, defaults.clock.compute_budget);
+  EXPECT_EQ(shown.clock.link_budget, defaults.clock.link_budget);
+  EXPECT_EQ(shown.clock.wake_tolerance, defaults.clock.wake_tolerance);
+  EXPECT_EQ(shown.board_link.loss_probability, defaults.board_link.loss_probability);
+  EXPECT_EQ(shown.lcm.mirror, defaults.lcm.mirror);
+  EXPECT_EQ(shown.lcm.url, defaults.lcm.url);
+}
+
+}  // namespace
+}  // namespace vbar::mission::test

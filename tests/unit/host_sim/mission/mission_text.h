@@ -1,0 +1,73 @@
+#pragma once
+// The smallest mission that loads, and what goes wrong with changes of it.
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "host_sim/mission/load.h"
+
+namespace vbar::mission::test {
+
+inline constexpr std::string_view kSmallMission = R"(
+[mission]
+duration_h = 2.0
+[[spacecraft]]
+name = "servicer"
+flight_computer = {}
+sensors.navigation = {}
+actuators.thruster = {}
+[spacecraft.elements]
+kind = "osculating"
+semi_major_axis_km = 7087.3
+ex = 0.0015
+ey = 0.0
+inclination_deg = 98.18
+raan_deg = -90.0
+mean_argument_of_latitude_deg = -0.69
+[[spacecraft]]
+name = "target"
+relative = { to = "servicer", waypoint = 0 }
+[[waypoint]]
+index = 0
+time_h = 0.0
+a_roe_m = [0, -1000, 0, 30, 0, 30]
+[[waypoint]]
+index = 1
+time_h = 2.0
+a_roe_m = [0, -600, 0, 18, 0, 18]
+)";
+
+/// The text with the one occurrence of `what` replaced.
+inline std::string changed(std::string text, std::string_view what, std::string_view by) {
+  const std::size_t place = text.find(what);
+  EXPECT_NE(place, std::string::npos) << what;
+  EXPECT_EQ(text.find(what, place + 1), std::string::npos) << "ambiguous: " << what;
+  if (place != std::string::npos) text.replace(place, what.size(), by);
+  return text;
+}
+
+inline Mission small_mission(const std::vector<std::string>& overrides = {}) {
+  return parse_mission(kSmallMission, "m.toml", overrides);
+}
+
+/// The message that loading ends with; empty if it succeeds.
+inline std::string message_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    static_cast<void>(parse_mission(text, "m.toml", overrides));
+  } catch (const MissionError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+/// Line, counted from 1, on which `what` stands in `text`.
+inline std::string line_of_text(const std::string& text, std::string_view what) {
+  int line = 1;
+  for (std::size_t k = 0; k < text.find(what); ++k)
+    if (text[k] == '\n') ++line;
+  return std::to_string(line);
+}
+
+}  // namespace vbar::mission::test

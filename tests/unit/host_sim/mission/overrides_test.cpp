@@ -1,0 +1,122 @@
+#include "host_sim/mission/overrides.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/host_sim/mission/mission_text.h"
+
+namespace vbar::mission::test {
+namespace {
+
+const std::string kSmall(kSmallMission);
+
+TEST(Overrides, ReplaceWhatTheFileSays) {
+  EXPECT_EQ(small_mission({"mission.duration_h=1.5"}).duration, fsw::duration_of_seconds(5400));
+  EXPECT_EQ(small_mission({"mission.seed=3"}).seed, 3U);
+  EXPECT_EQ(small_mission({"mission.seed=3", "mission.seed=4"}).seed, 4U) << "the last one counts";
+}
+
+TEST(Overrides, MakeTablesTheFileDoesNotHave) {
+  const Mission mission = small_mission({"truth.gravity_degree=20", "links.board.latency.latency_s=0.25"});
+  EXPECT_EQ(mission.truth.gravity_degree, 20);
+  EXPECT_EQ(mission.truth.gravity_order, 20) << "the default follows the degree";
+  EXPECT_EQ(mission.board_link.latency.mean_s, 0.25);
+}
+
+TEST(Overrides, ReachASpacecraftByNameAndAWaypointByIndex) {
+  const Mission mission = small_mission({"spacecraft.target.mass_kg=41", "waypoint.1.time_h=3",
+                                         "spacecraft.servicer.actuators.thruster.magnitude_error_percent=1"});
+  EXPECT_EQ(mission.find_spacecraft("target")->surface.mass_kg, 41.0);
+  EXPECT_EQ(mission.find_spacecraft("servicer")->surface.mass_kg, 154.0);
+  EXPECT_EQ(mission.find_waypoint(1)->time - mission.epoch, fsw::duration_of_seconds(3 * 3600));
+  EXPECT_DOUBLE_EQ(mission.find_spacecraft("servicer")->thruster->magnitude_error, 0.01);
+}
+
+TEST(Overrides, FlightComputerAloneIsTheServicers) {
+  const Mission brief = small_mission({"flight_computer.target=zynq_qemu", "flight_computer.link=udp"});
+  const Mission full = small_mission(
+      {"spacecraft.servicer.flight_computer.target=zynq_qemu", "spacecraft.servicer.flight_computer.link=udp"});
+  for (const Mission& mission : {brief, full}) {
+    EXPECT_EQ(mission.find_spacecraft("servicer")->flight_computer->target, FlightTarget::kZynqQemu);
+    EXPECT_EQ(mission.find_spacecraft("servicer")->flight_computer->link, FlightLink::kUdp);
+    EXPECT_FALSE(mission.find_spacecraft("target")->flight_computer.has_value());
+  }
+}
+
+// camera and gnss are the servicer's sensors of these names; a mission without such sensors says so, and names the
+// override.
+TEST(Overrides, CameraAndGnssAloneAreTheServicersSensors) {
+  for (const std::string sensor : {"camera", "gnss"}) {
+    EXPECT_EQ(message_of(kSmall, {sensor + ".source=digital"}),
+              "--set " + sensor + ".source=digital: spacecraft.servicer.sensors." + sensor +
+                  ": found an unknown key; accepted: navigation");
+  }
+}
+
+TEST(Overrides, TextNeedsNoQuotesButMayHaveThem) {
+  for (const std::string set : {"mission.name=run_7", "mission.name=\"run_7\""})
+    EXPECT_EQ(small_mission({set}).name, "run_7");
+  const std::vector<std::string> board{"flight_computer.target=board", "flight_computer.device=/dev/ttyUSB0"};
+  EXPECT_EQ(small_mission(board).find_spacecraft("servicer")->flight_computer->device, "/dev/ttyUSB0");
+  EXPECT_EQ(small_mission({"mission.description=say \"hello\" = \\o/"}).description, "say \"hello\" = \\o/");
+  EXPECT_EQ(small_mission({"mission.description="}).description, "");
+}
+
+TEST(Overrides, WholeTablesAndArraysAreValuesToo) {
+  const Mission mission =
+      small_mission({"waypoint.1.a_roe_m=[1, 2, 3, 4, 5, 6]",
+                     "links.board.latency={distribution=\"uniform\", minimum_s=0.1, maximum_s=0.2}"});
+  EXPECT_EQ(mission.find_waypoint(1)->a_roe_m(5), 6.0);
+  EXPECT_EQ(mission.board_link.latency.kind, engine::LatencyKind::kUniform);
+}
+
+TEST(Overrides, DateTimeIsATimeOrAText) {
+  const Mission mission = small_mission({"mission.epoch_utc=2011-07-18T02:00:00Z"});
+  EXPECT_EQ(mission.epoch - small_mission().epoch, fsw::duration_of_seconds(3600));
+}
+
+struct BadOverride {
+  std::string set;
+  std::string message;  ///< after "--set <set>: "
+};
+
+TEST(Overrides, AreCheckedLikeTheFileAndNamedInTheMessage) {
+  const BadOverride cases[] = {
+      {"mission.seed=x", "mission.seed: found the text \"x\"; accepted: an integer from 0 to 9223372036854775807"},
+      {"mission.duration_h=nan", "mission.duration_h: found nan; accepted: a number above 0, up to 2000"},
+      {"mission.sed=1",
+       "mission.sed: found an unknown key (did you mean seed?); accepted: name, description, epoch_utc, start_h, "
+       "duration_h, step_s or seed"},
+      {"clok.mode=real_time",
+       "clok: found an unknown key (did you mean clock?); accepted: mission, truth, spacecraft, guidance, waypoint, "
+       "clock, links or lcm"},
+      {"waypoint.1.time_h=0",
+       "waypoint.1.time_h: found the integer 0; accepted: a time after that of waypoint 0, which stands before it"},
+      {"flight_computer.target=board",
+       "spacecraft.servicer.flight_computer.device: found nothing; accepted: the tty of the board, e.g. /dev/ttyUSB0"},
+      // Complaints about the assignment itself.
+      {"mission.seed", "mission.seed: found no '='; accepted: path=value with a dotted path, e.g. mission.seed=3"},
+      {"mission..seed=1",
+       "mission..seed: found an empty name in the path; accepted: path=value with a dotted path, e.g. mission.seed=3"},
+      {"=1", "found an empty name in the path; accepted: path=value with a dotted path, e.g. mission.seed=3"},
+      {"spacecraft.moon.mass_kg=1",
+       "spacecraft.moon.mass_kg: found no spacecraft whose name is \"moon\"; accepted: spacecraft.servicer or target"},
+      {"waypoint.9.time_h=1", "waypoint.9.time_h: found no waypoint whose index is \"9\"; accepted: waypoint.0 or 1"},
+      {"waypoint.1=1",
+       "waypoint.1: found a path that ends too early; accepted: spacecraft.NAME.KEY=value or waypoint.INDEX.KEY=value"},
+      {"mission.duration_h.unit=h",
+       "mission.duration_h.unit: found a path through duration_h, which is the number 2; accepted: a path through "
+       "tables"},
+  };
+  for (const BadOverride& bad : cases) {
+    const std::string message = message_of(kSmall, {bad.set});
+    // A key that is missing altogether has no override to blame; its table has.
+    if (bad.set == "flight_computer.target=board") {
+      EXPECT_TRUE(message.ends_with(bad.message)) << message;
+    } else {
+      EXPECT_EQ(message, "--set " + bad.set + ": " + bad.message);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vbar::mission::test

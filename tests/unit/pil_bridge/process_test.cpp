@@ -1,0 +1,152 @@
+#include "pil_bridge/process.h"
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+
+#include "pil_bridge/byte_channels.h"
+
+namespace vbar::pil {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+constexpr seconds kLong{10};  // far more than a process needs to start or end, even on a loaded machine
+
+/// A process that is neither gone nor a zombie.
+bool is_alive(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string line;
+  if (!std::getline(file, line)) return false;
+  return line.at(line.rfind(')') + 2) != 'Z';
+}
+
+bool ends_within(pid_t pid, std::chrono::steady_clock::duration patience) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (is_alive(pid)) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(milliseconds(2));
+  }
+  return true;
+}
+
+TEST(ChildProcess, TellsExitStatusAndOutput) {
+  ChildProcess child({"sh", "-c", "echo to output; echo to error >&2; exit 3"}, {});
+  ASSERT_TRUE(child.wait_for_end(kLong));
+  EXPECT_EQ(child.status_text(), "exit status 3");
+  EXPECT_EQ(child.output_tail(), "to output\nto error\n");
+  EXPECT_EQ(child.output_tail(9), "to error\n");
+}
+
+TEST(ChildProcess, TellsTheSignalThatKilledIt) {
+  ChildProcess child({"sh", "-c", "kill -9 $$"}, {});
+  ASSERT_TRUE(child.wait_for_end(kLong));
+  EXPECT_EQ(child.status_text(), "killed by signal 9 (Killed)");
+}
+
+TEST(ChildProcess, ArgumentsReachTheProgramAsTheyAre) {
+  ChildProcess child({"printf", "%s|", "a b", "$HOME", "*", ";exit"}, {});
+  ASSERT_TRUE(child.wait_for_end(kLong));
+  EXPECT_EQ(child.output_tail(), "a b|$HOME|*|;exit|");
+}
+
+TEST(ChildProcess, AMissingProgramIsAnErrorThatNamesIt) {
+  try {
+    ChildProcess child({"/nowhere/flight"}, {});
+    FAIL() << "started";
+  } catch (const std::system_error& error) {
+    EXPECT_EQ(error.code(), std::errc::no_such_file_or_directory);
+    EXPECT_THAT(error.what(), HasSubstr("/nowhere/flight"));
+  }
+}
+
+TEST(ChildProcess, IsGoneAfterItsOwnerEvenIfItIgnoresSigterm) {
+  pid_t pid = -1;
+  {
+    ChildProcess child({"sh", "-c", "trap '' TERM; echo ready; while :; do sleep 1; done"}, {});
+    pid = child.pid();
+    while (child.output_tail().empty()) std::this_thread::sleep_for(milliseconds(1));
+    EXPECT_TRUE(is_alive(pid));
+  }
+  EXPECT_FALSE(is_alive(pid));
+}
+
+TEST(ChildProcess, IsGoneAfterAnException) {
+  pid_t pid = -1;
+  try {
+    ChildProcess child({"sleep", "1000"}, {});
+    pid = child.pid();
+    throw std::runtime_error("in mid-run");
+  } catch (const std::runtime_error&) {
+  }
+  EXPECT_FALSE(is_alive(pid));
+  EXPECT_EQ(::waitpid(pid, nullptr, WNOHANG), -1);  // reaped already
+}
+
+TEST(ChildProcess, TakesItsOwnChildrenAlong) {
+  pid_t grandchild = -1;
+  {
+    ChildProcess child({"sh", "-c", "sleep 1000 & echo $!; wait"}, {});
+    while (child.output_tail().find('\n') == std::string::npos) std::this_thread::sleep_for(milliseconds(1));
+    grandchild = std::stoi(child.output_tail());
+    EXPECT_TRUE(is_alive(grandchild));
+  }
+  EXPECT_TRUE(ends_within(grandchild, kLong));
+}
+
+// The test's program plays the program that dies: a copy of it starts the child and is killed without a chance to clean
+// up.
+TEST(ChildProcess, DiesWithTheProgramThatStartedIt) {
+  int pipe_ends[2];
+  ASSERT_EQ(::pipe(pipe_ends), 0);
+  const pid_t program = ::fork();
+  ASSERT_GE(program, 0);
+  if (program == 0) {
+    const ChildProcess child({"sleep", "1000"}, {});
+    const pid_t pid = child.pid();
+    (void)!::write(pipe_ends[1], &pid, sizeof pid);
+    ::pause();
+  }
+  pid_t child = -1;
+  ASSERT_EQ(::read(pipe_ends[0], &child, sizeof child), static_cast<ssize_t>(sizeof child));
+  EXPECT_TRUE(is_alive(child));
+  ::kill(program, SIGKILL);
+  ::waitpid(program, nullptr, 0);
+  EXPECT_TRUE(ends_within(child, kLong));
+  ::close(pipe_ends[0]);
+  ::close(pipe_ends[1]);
+}
+
+TEST(ChildProcess, InheritsWhatItIsGivenAndNothingElse) {
+  const FileDescriptor not_for_it(::open("/dev/zero", O_RDONLY));  // deliberately not close-on-exec
+  auto [ours, theirs] = make_socket_pair();
+  std::vector<FileDescriptor> inherited;
+  inherited.push_back(std::move(theirs));
+  ChildProcess child({"sh", "-c", "cat <&3 >&3; ls -1 /proc/self/fd"}, std::move(inherited));
+  ASSERT_EQ(::write(ours.get(), "echo", 4), 4);
+  char answer[4] = {};
+  ASSERT_EQ(::read(ours.get(), answer, 4), 4);
+  EXPECT_EQ(std::string(answer, 4), "echo");
+  ::shutdown(ours.get(), SHUT_WR);
+  ASSERT_TRUE(child.wait_for_end(kLong));
+  EXPECT_EQ(child.output_tail(), "0\n1\n2\n3\n4\n");  // 4 is the directory that ls reads
+}
+
+TEST(ChildProcess, RunsInAProcessGroupOfItsOwn) {
+  ChildProcess child({"sleep", "1000"}, {});
+  EXPECT_EQ(::getpgid(child.pid()), child.pid());
+}
+
+}  // namespace
+}  // namespace vbar::pil

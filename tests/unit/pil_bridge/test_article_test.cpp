@@ -1,0 +1,58 @@
+#include "pil_bridge/test_article.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pil_bridge/in_process.h"
+#include "tests/support/step_packets.h"
+
+namespace vbar::pil {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string kLibraries = VBAR_TEST_LIBRARIES "/";
+
+std::string error_of_loading(const std::string& path) {
+  try {
+    (void)load_test_article(path);
+  } catch (const FlightComputerError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(TestArticle, ASharedLibraryFliesLikeTheSameCodeLinkedIn) {
+  const auto loaded = make_in_process(load_test_article(VBAR_BINARY_DIR "/libvbar_echo_article.so"), 1);
+  const auto linked = make_in_process(linked_test_article(), 1);
+  EXPECT_EQ(loaded->description(), "in process: vbar link exerciser");
+  EXPECT_EQ(vbar::test::fly(*loaded, 50), vbar::test::fly(*linked, 50));
+}
+
+TEST(TestArticle, TwoOfThemDoNotShareAnything) {
+  const auto article = linked_test_article();
+  const auto one = make_in_process(article, 1);
+  const auto other = make_in_process(article, 2);
+  const auto of_one = vbar::test::fly(*one, 5);
+  const auto of_other = vbar::test::fly(*other, 5);
+  EXPECT_NE(of_one, of_other);  // the spacecraft number is part of what it echoes
+  EXPECT_EQ(vbar::test::fly(*make_in_process(article, 1), 5), of_one);
+}
+
+TEST(TestArticle, ABatchWithoutATickStepsNothing) {
+  const auto computer = make_in_process(linked_test_article(), 1);
+  auto packets = vbar::test::step_packets(0, 3);
+  packets.pop_back();
+  EXPECT_TRUE(computer->step(0, packets).packets.empty());
+}
+
+TEST(TestArticle, LoadingSaysWhatIsWrong) {
+  EXPECT_THAT(error_of_loading("/nowhere/gnc.so"), AllOf(HasSubstr("/nowhere/gnc.so"), HasSubstr("cannot be loaded")));
+  EXPECT_THAT(error_of_loading(kLibraries + "libvbar_article_without_step.so"), HasSubstr("no function vbar_gnc_step"));
+  EXPECT_THAT(error_of_loading(kLibraries + "libvbar_article_of_other_version.so"),
+              HasSubstr("version 2 of the test-article interface, this program for 1"));
+}
+
+}  // namespace
+}  // namespace vbar::pil
