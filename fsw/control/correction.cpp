@@ -8,9 +8,12 @@
 namespace vbar::fsw::control {
 namespace {
 
-// dlambda answers a transverse burn with 3 m/s times the time to go, ten and more times what the other elements do; its row
-// is scaled to theirs by a fixed number. (Scaling by the largest effect, which changes from decision to decision, diverges.)
-Vector6 row_scale() { return {1.0, 0.1, 1.0, 1.0, 1.0, 1.0}; }
+// dlambda answers a transverse burn with 3 m/s times the time to go, ten and more times what the other elements do; its
+// row is scaled to theirs by a fixed number. (Scaling by the largest effect, which changes from decision to decision,
+// diverges.)
+Vector6 row_scale() {
+  return {1.0, 0.1, 1.0, 1.0, 1.0, 1.0};
+}
 
 }  // namespace
 
@@ -21,7 +24,8 @@ Result<Correction> least_norm_correction(std::span<const Matrix63> effects, cons
   const Vector6 rows = row_scale();
   const Vector3 columns(1.0 / settings.radial_price, 1.0, 1.0);
 
-  // With A = [scaled effects], A A' = U S^2 U' gives the truncated least-norm solution A' U S^-2 U' r without the wide A.
+  // With A = [scaled effects], A A' = U S^2 U' gives the truncated least-norm solution A' U S^-2 U' r without the wide
+  // A.
   Matrix6 gram = Matrix6::Zero();
   for (const Matrix63& effect : effects) {
     const Matrix63 scaled = rows.asDiagonal() * effect * columns.asDiagonal();
@@ -52,8 +56,8 @@ Result<Correction> least_norm_correction(std::span<const Matrix63> effects, cons
 Result<Plan> correct_plan(const MeanOrbits& orbits, const Plan& committed, const Plan& plan, const Waypoint& waypoint,
                           const CorrectionSettings& settings) {
   if (plan.count == 0) return Status::kInvalidArgument;
-  // The linear effects are good to about 1e-2 of the whole change, mostly by the servicer's own burns on the way: every round
-  // leaves that share of the error, from tens of metres after planning at 75 km down to millimetres.
+  // The linear effects are good to about 1e-2 of the whole change, mostly by the servicer's own burns on the way: every
+  // round leaves that share of the error, from tens of metres after planning at 75 km down to millimetres.
   constexpr int kRounds = 3;
   std::array<Matrix63, kMaxBurns> effects;
   for (std::size_t k = 0; k < plan.count; ++k) {

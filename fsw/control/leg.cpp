@@ -22,7 +22,7 @@ struct Candidate {
 };
 
 // What a correction may cost: `error` as a change of inclination, the dearest, and a share of the burns.
-double affordable(const LegSituation& situation, const Plan& plan, const Vector6& error, const LegPolicy& policy) {
+double affordable_dv(const LegSituation& situation, const Plan& plan, const Vector6& error, const LegPolicy& policy) {
   const double speed = orbit::mean_motion(situation.orbits.servicer.a) * situation.orbits.servicer.a;
   return (1.0 + policy.dear_share) * plan.total_dv() + speed * error.norm();
 }
@@ -66,12 +66,24 @@ bool arrives(const LegSituation& situation, const Vector6& error, const LegPolic
 }
 
 Result<Plan> plan_closed_form(const LegSituation& situation, const LegPolicy& policy) {
-  const Result<ControlProblem> problem = remaining_problem(situation.orbits, situation.committed.all(),
-                                                           situation.earliest_burn, situation.waypoint);
+  // What burns at the solver's times cannot reach, across the phase of the inclination change, goes back into the
+  // problem and moves those times by seconds.
+  constexpr int kRounds = 3;
+  Result<ControlProblem> problem =
+      remaining_problem(situation.orbits, situation.committed.all(), situation.earliest_burn, situation.waypoint);
   if (!problem.ok()) return problem.status();
-  const Result<Plan> plan = solve_closed_form(problem.value(), policy.closed_form);
-  if (!plan.ok() || plan.value().count == 0) return plan;
-  return correct_plan(situation.orbits, situation.committed, plan.value(), situation.waypoint, policy.correction);
+  ControlProblem adjusted = problem.value();
+  Result<Plan> plan = Status::kNotReady;
+  for (int round = 0; round < kRounds; ++round) {
+    plan = solve_closed_form(adjusted, policy.closed_form);
+    if (!plan.ok() || plan.value().count == 0) return plan;
+    plan = correct_plan(situation.orbits, situation.committed, plan.value(), situation.waypoint, policy.correction);
+    if (!plan.ok()) return plan;
+    const Result<Vector6> error = evaluate_plan(situation, plan.value());
+    if (!error.ok()) return error.status();
+    adjusted.pseudo_state += error.value();
+  }
+  return plan;
 }
 
 Result<LegDecision> decide_leg(const LegSituation& situation, const Plan& plan, const LegPolicy& policy) {
@@ -85,27 +97,28 @@ Result<LegDecision> decide_leg(const LegSituation& situation, const Plan& plan, 
     return decision;
   }
 
-  Result<Candidate> corrected = Status::kNotReady;
+  const double affordable = affordable_dv(situation, decision.plan, decision.error, policy);
+  const auto settle = [&](LegAction action, const Candidate& candidate) {
+    decision.action = action;
+    decision.plan = candidate.plan;
+    decision.error = candidate.error;
+  };
   if (decision.plan.count > 0) {
-    corrected = arriving(situation,
-                         correct_plan(situation.orbits, situation.committed, decision.plan, situation.waypoint,
-                                      policy.correction),
-                         policy);
+    const Result<Candidate> corrected = arriving(
+        situation,
+        correct_plan(situation.orbits, situation.committed, decision.plan, situation.waypoint, policy.correction),
+        policy);
+    if (corrected.ok() && corrected.value().plan.total_dv() <= affordable) {
+      settle(LegAction::kCorrect, corrected.value());
+      return decision;
+    }
   }
-  const bool cheap = corrected.ok() && corrected.value().plan.total_dv() <=
-                                           affordable(situation, decision.plan, decision.error, policy);
-  Result<Candidate> replanned = Status::kNotReady;
-  if (!cheap) {
-    replanned = arriving(situation, plan_closed_form(situation, policy), policy);
-    decision.closed_form = replanned.status();
+  const Result<Candidate> replanned = arriving(situation, plan_closed_form(situation, policy), policy);
+  decision.closed_form = replanned.status();
+  const bool first_plan = plan.count == 0;
+  if (replanned.ok() && (first_plan || replanned.value().plan.total_dv() <= affordable)) {
+    settle(LegAction::kReplan, replanned.value());
   }
-  const bool replan = replanned.ok() && (!corrected.ok() || replanned.value().plan.total_dv() <
-                                                                corrected.value().plan.total_dv());
-  if (!replan && !corrected.ok()) return decision;
-  const Candidate& chosen = replan ? replanned.value() : corrected.value();
-  decision.action = replan ? LegAction::kReplan : LegAction::kCorrect;
-  decision.plan = chosen.plan;
-  decision.error = chosen.error;
   return decision;
 }
 

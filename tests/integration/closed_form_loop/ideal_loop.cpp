@@ -115,8 +115,13 @@ class Loop {
     if (now.earliest_burn >= goal_.time) return;
     const control::LegDecision decision = must(control::decide_leg(now, plan_, policy_), "decision");
     switch (decision.action) {
-      case LegAction::kKeep: plan_ = decision.plan; return;
-      case LegAction::kCorrect: ++result_.corrections; plan_ = decision.plan; return;
+      case LegAction::kKeep:
+        plan_ = decision.plan;
+        return;
+      case LegAction::kCorrect:
+        ++result_.corrections;
+        plan_ = decision.plan;
+        return;
       case LegAction::kReplan:
         if (!close) {
           ++result_.replans;
@@ -124,10 +129,12 @@ class Loop {
           return;
         }
         break;
-      case LegAction::kHandOver: break;
+      case LegAction::kHandOver:
+        break;
     }
     ++result_.hand_overs;
-    plan_ = must(fuel_optimal(now), "fuel-optimal plan");
+    const Result<Plan> plan = fuel_optimal(now);
+    plan_ = plan.ok() ? plan.value() : decision.plan;
   }
 
   Result<Plan> fuel_optimal(const control::LegSituation& now) {
@@ -188,11 +195,11 @@ Vector6 roe_m(double da, double dlambda, double dex, double dey, double dix, dou
 
 const std::vector<TableWaypoint>& mission_waypoints() {
   static const std::vector<TableWaypoint> waypoints = {
-      {0.0, roe_m(-2000, -75000, 0, 0, 0, 0)},     {6.0, roe_m(-87, -50000, 0, 1000, 0, 1000)},
-      {12.0, roe_m(-70, -25000, 0, 500, 0, 500)},  {18.0, roe_m(-17, -5000, 0, 500, 0, 500)},
-      {24.0, roe_m(0, -1000, 0, 30, 0, 30)},       {28.0, roe_m(0, -600, 0, 18, 0, 18)},
-      {32.0, roe_m(0, -200, 0, 6, 0, 6)},          {36.0, roe_m(0, -100, 0, 3, 0, 3)},
-      {39.0, roe_m(-0.5, -10, 0, 2, 0, 1)},        {40.0, roe_m(0, -7, 1, 0, 2, 0)},
+      {0.0, roe_m(-2000, -75000, 0, 0, 0, 0)},    {6.0, roe_m(-87, -50000, 0, 1000, 0, 1000)},
+      {12.0, roe_m(-70, -25000, 0, 500, 0, 500)}, {18.0, roe_m(-17, -5000, 0, 500, 0, 500)},
+      {24.0, roe_m(0, -1000, 0, 30, 0, 30)},      {28.0, roe_m(0, -600, 0, 18, 0, 18)},
+      {32.0, roe_m(0, -200, 0, 6, 0, 6)},         {36.0, roe_m(0, -100, 0, 3, 0, 3)},
+      {39.0, roe_m(-0.5, -10, 0, 2, 0, 1)},       {40.0, roe_m(0, -7, 1, 0, 2, 0)},
       {41.25, roe_m(0, -8.5, 1, 0, 1, 0)},
   };
   return waypoints;
