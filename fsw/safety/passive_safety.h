@@ -51,7 +51,7 @@ Result<DriftSafety> assess_drift(const orbit::QnsElements& servicer_mean, const 
 struct SafetyCriterion {
   double keep_out_radius = 0.0;  ///< m
   double horizon = 0.0;          ///< s, how long a drift is watched after each burn
-  PositionBound bound;
+  PositionBound bound{};
 };
 
 /// The worst drift of a plan. Prefix k: the first k burns fly, the rest are missed.

@@ -26,6 +26,8 @@ void read_guidance(const TableReader& document, Mission& mission) {
   constexpr Range kPeriod_s = from_to(1e-3, 1e6);
   Guidance& guidance = mission.guidance;
   guidance.mode = section.choice<Mode>("mode", kModes, Mode::kApproach);
+  if (guidance.mode == Mode::kApproach && mission.waypoints.empty())
+    section.refuse("mode", "approach without a waypoint", "at least one [[waypoint]], or another mode");
   // PRISMA's mean semi-major axis, the mean of the paper's osculating elements by first-order Brouwer theory.
   guidance.reference_semi_major_axis_m =
       1e3 * section.number("reference_semi_major_axis_km", from_to(6400.0, 1e6), 7078.138944);

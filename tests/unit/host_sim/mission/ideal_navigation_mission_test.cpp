@@ -43,7 +43,8 @@ TEST(IdealNavigationMission, EpochIsThePapers) {
 }
 
 TEST(IdealNavigationMission, ServicerElementsAreThePapers) {
-  const auto& orbit = std::get<OrbitByElements>(ideal_navigation().find_spacecraft("servicer")->orbit);
+  const Mission mission = ideal_navigation();
+  const auto& orbit = std::get<OrbitByElements>(mission.find_spacecraft("servicer")->orbit);
   constexpr double kDegree = 3.14159265358979323846 / 180.0;
   EXPECT_EQ(orbit.kind, ElementsKind::kOsculating);
   EXPECT_DOUBLE_EQ(orbit.elements.a, 7087300.0);

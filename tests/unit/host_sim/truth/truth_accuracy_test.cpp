@@ -26,7 +26,6 @@ using test::mission_epoch;
 /// J2 about the inertial z axis: the field of the oracle below.
 class InertialJ2 final : public Force {
  public:
-  std::string_view name() const override { return "J2"; }
   Vector3 acceleration_eci(const ForceInput& input) override {
     constexpr double kJ2 = 1.0826358191967e-3;
     const Vector3& r = input.position_eci;
