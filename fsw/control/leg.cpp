@@ -86,7 +86,7 @@ Result<Plan> plan_closed_form(const LegSituation& situation, const LegPolicy& po
   return plan;
 }
 
-Result<LegDecision> decide_leg(const LegSituation& situation, const Plan& plan, const LegPolicy& policy) {
+Result<LegDecision> keep_or_correct(const LegSituation& situation, const Plan& plan, const LegPolicy& policy) {
   LegDecision decision;
   decision.plan = still_possible(plan, situation.earliest_burn);
   const Result<Vector6> error = evaluate_plan(situation, decision.plan);
@@ -96,28 +96,31 @@ Result<LegDecision> decide_leg(const LegSituation& situation, const Plan& plan, 
     decision.action = LegAction::kKeep;
     return decision;
   }
-
+  if (decision.plan.count == 0) return decision;
+  const Result<Candidate> corrected = arriving(
+      situation,
+      correct_plan(situation.orbits, situation.committed, decision.plan, situation.waypoint, policy.correction), policy);
   const double affordable = affordable_dv(situation, decision.plan, decision.error, policy);
-  const auto settle = [&](LegAction action, const Candidate& candidate) {
-    decision.action = action;
-    decision.plan = candidate.plan;
-    decision.error = candidate.error;
-  };
-  if (decision.plan.count > 0) {
-    const Result<Candidate> corrected = arriving(
-        situation,
-        correct_plan(situation.orbits, situation.committed, decision.plan, situation.waypoint, policy.correction),
-        policy);
-    if (corrected.ok() && corrected.value().plan.total_dv() <= affordable) {
-      settle(LegAction::kCorrect, corrected.value());
-      return decision;
-    }
+  if (corrected.ok() && corrected.value().plan.total_dv() <= affordable) {
+    decision.action = LegAction::kCorrect;
+    decision.plan = corrected.value().plan;
+    decision.error = corrected.value().error;
   }
+  return decision;
+}
+
+Result<LegDecision> decide_leg(const LegSituation& situation, const Plan& plan, const LegPolicy& policy) {
+  const Result<LegDecision> first = keep_or_correct(situation, plan, policy);
+  if (!first.ok() || first.value().action != LegAction::kHandOver) return first;
+  LegDecision decision = first.value();
   const Result<Candidate> replanned = arriving(situation, plan_closed_form(situation, policy), policy);
   decision.closed_form = replanned.status();
   const bool first_plan = plan.count == 0;
+  const double affordable = affordable_dv(situation, decision.plan, decision.error, policy);
   if (replanned.ok() && (first_plan || replanned.value().plan.total_dv() <= affordable)) {
-    settle(LegAction::kReplan, replanned.value());
+    decision.action = LegAction::kReplan;
+    decision.plan = replanned.value().plan;
+    decision.error = replanned.value().error;
   }
   return decision;
 }

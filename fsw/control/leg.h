@@ -62,6 +62,9 @@ struct LegDecision {
   Status closed_form = Status::kNotReady;  ///< of the closed-form solver, if it was asked
 };
 
+/// The first half of a decision, for the plan of any solver: keep it or correct it, else kHandOver. Errors of fly().
+Result<LegDecision> keep_or_correct(const LegSituation& situation, const Plan& plan, const LegPolicy& policy);
+
 /// One decision. Burns of `plan` before `earliest_burn` count as missed. Errors of fly(): then nothing is known about
 /// the leg.
 Result<LegDecision> decide_leg(const LegSituation& situation, const Plan& plan, const LegPolicy& policy);
