@@ -13,9 +13,6 @@ namespace {
 using control::Plan;
 using control::Solver;
 
-constexpr double kFarTolerance = 0.3;     // m
-constexpr double kCloseTolerance = 0.003;  // m
-
 /// The solvers that plan a leg from scratch, best first. (The closed form is asked by the policy of its legs, leg.h.) Least
 /// squares always gives something, if not the cheapest.
 struct Ladder {
@@ -169,8 +166,8 @@ bool Guidance::stays_on_plan(const gnc_configuration& configuration) {
   const control::LegSituation situation = leg_situation();
   const bool closed_form = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
   const Result<control::LegDecision> decision =
-      closed_form ? control::decide_leg(situation, plan_, leg_policy())
-                  : control::keep_or_correct(situation, plan_, leg_policy());
+      closed_form ? control::decide_leg(situation, plan_, leg_policy(configuration))
+                  : control::keep_or_correct(situation, plan_, leg_policy(configuration));
   if (!decision.ok()) return false;
   const control::LegDecision& decided = decision.value();
   if (decided.action == control::LegAction::kHandOver) {
@@ -248,10 +245,10 @@ control::LegSituation Guidance::leg_situation() const {
 
 /// The closed form's arrival is held to what an orbit of corrections would gain for next to nothing; the fuel-optimal solver of
 /// the close range to millimetres.
-control::LegPolicy Guidance::leg_policy() const {
+control::LegPolicy Guidance::leg_policy(const gnc_configuration& configuration) const {
   control::LegPolicy policy;
   const bool far = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
-  policy.tolerance_m = far ? kFarTolerance : kCloseTolerance;
+  policy.tolerance_m = far ? configuration.closed_form_tolerance_m : configuration.koenig_damico_tolerance_m;
   return policy;
 }
 

@@ -73,7 +73,7 @@ class Guidance {
   Status& status_of(control::Solver solver);
   Result<safety::PlanSafety> safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
   control::LegSituation leg_situation() const;
-  control::LegPolicy leg_policy() const;
+  control::LegPolicy leg_policy(const gnc_configuration& configuration) const;
   GpsTime earliest_start() const;
   void forget_past_burns(GpsTime now);
   void commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration);
