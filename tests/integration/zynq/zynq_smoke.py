@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """zynq_smoke.py IMAGE_FOLDER HOST_LIBRARY [TEST...]: the Zynq images on the emulator, spoken to from outside.
 
-IMAGE_FOLDER holds vbar_zynq7000_example.elf and vbar_zynq7000_selftest.elf; HOST_LIBRARY is the example article as a
+IMAGE_FOLDER holds the images of the preset zynq; HOST_LIBRARY is the example article as a
 shared library of this computer, which must answer with the same bits. Exit status 77 when any of these, or QEMU, is
 missing: then there is nothing to test."""
 
 import ctypes
 import math
 import os
+import select
 import shutil
+import struct
 import sys
 import time
 import unittest
@@ -20,6 +22,12 @@ from emulated_board import EmulatedBoard
 START_NS = 1_400_000_000_000_000_000
 PERIOD_NS = 10_000_000_000
 STEPS = 40
+
+
+def internet_checksum(data):
+    """RFC 1071, as a remainder: ones' complement addition is addition modulo 65535."""
+    total = sum(struct.unpack(f">{(len(data) + 1) // 2}H", data + b"\0" * (len(data) % 2)))
+    return 65535 - (0 if total == 0 else (total - 1) % 65535 + 1)
 
 
 def inputs(step):
@@ -184,6 +192,78 @@ class ZynqSmoke(unittest.TestCase):
             report = StepReport(Packet(session.step(11, inputs(11))[-1]))
             self.assertEqual(report.rejected, 60)  # three frames of each of two strangers in ten steps
 
+    def test_flood(self):
+        """More frames than any buffer holds: what does not fit is lost, the board is not, and neither is the session."""
+        with self.example() as board:
+            session = Session(SerialLine(board.serial), 19)
+            session.hello()
+            stranger = self.datagrams(board)
+            junk = bytes(range(256)) * 5
+            for step in range(5):
+                for _ in range(300):
+                    stranger.send(junk)
+                self.assertEqual(session.step(step, inputs(step))[:-1], self.expected(step + 1)[step])
+            report = StepReport(Packet(session.step(5, inputs(5))[-1]))
+            self.assertGreater(report.rejected, 0)
+            session.goodbye()
+            self.assertEqual(board.wait(), 0, board.console())
+
+    def test_raw_frames(self):
+        """The network as a neighbour on the wire sees it: ARP, ping at every size, and frames that are none."""
+        with self.example(raw_ethernet=True) as board:
+            me, board_mac = bytes.fromhex("525400123456"), bytes.fromhex("027662617215")
+            my_address, board_address = bytes([10, 0, 2, 2]), bytes([10, 0, 2, 15])
+            send = lambda data: board.frames.sendto(data, ("127.0.0.1", board.udp_port))
+
+            arp = b"\xff" * 6 + me + struct.pack(">HHHBBH", 0x0806, 1, 0x0800, 6, 4, 1) + me + my_address + bytes(6)
+            board.frames.settimeout(0.5)
+            for _ in range(20):  # until the board is up
+                send(arp + board_address)
+                try:
+                    answer = board.frames.recv(2000)
+                    break
+                except TimeoutError:
+                    continue
+            self.assertEqual(answer[:42], me + board_mac + arp[12:20] + b"\0\2" + board_mac + board_address + me + my_address)
+            board.frames.settimeout(5)
+            while select.select([board.frames], [], [], 0.3)[0]:
+                board.frames.recv(2000)  # late answers
+
+            def ipv4(protocol, payload, fragment=0):
+                head = struct.pack(">BBHHHBBH4s4s", 0x45, 0, 20 + len(payload), 1, fragment, 64, protocol, 0, my_address,
+                                   board_address)
+                head = head[:10] + struct.pack(">H", internet_checksum(head)) + head[12:]
+                return (board_mac + me + b"\x08\0" + head + payload).ljust(60, b"\0")
+
+            def echo(kind, body):
+                head = struct.pack(">BBHHH", kind, 0, 0, 7, 9)
+                return struct.pack(">BBHHH", kind, 0, internet_checksum(head + body), 7, 9) + body
+
+            for size in (0, 1, 18, 55, 56, 999, 1471, 1472):
+                body = bytes(i % 251 for i in range(size))
+                for hostile in (ipv4(1, echo(8, body))[:33], ipv4(1, echo(8, body), fragment=0x2000), ipv4(17, b"\0" * 7),
+                                ipv4(1, echo(8, body)[:-1] + b"x"), b"\xff" * 60, board_mac):
+                    send(hostile)
+                send(ipv4(1, echo(8, body)))
+                answer = board.frames.recv(2000)
+                self.assertEqual(answer[:14], me + board_mac + b"\x08\0")
+                self.assertEqual(answer[26:34], board_address + my_address)
+                self.assertEqual(internet_checksum(answer[14:34]), 0)
+                self.assertEqual(answer[34:42 + size], echo(0, body))
+
+    def test_flight_image(self):
+        """vbar's own flight software starts, answers ticks with telemetry, and stops when told."""
+        image = os.path.join(self.image_folder, "vbar_zynq7000.elf")
+        with EmulatedBoard(image) as board:
+            session = Session(SerialLine(board.serial), 20)
+            self.assertIn("zynq7000", session.hello())
+            for step in range(3):
+                packets = [Packet(data) for data in session.step(step, [tick(step, START_NS + step * PERIOD_NS, PERIOD_NS)])]
+                self.assertEqual({p.apid & 0x700 for p in packets[:-1]}, {0x500})
+                self.assertEqual(StepReport(packets[-1]).step, step)
+            session.goodbye()
+            self.assertEqual(board.wait(), 0, board.console())
+
     def test_next_session(self):
         """Without an emulator that takes the exit, as on silicon: after a goodbye the board serves whoever says hello."""
         with self.example(semihosting=False) as board:
@@ -210,8 +290,8 @@ class ZynqSmoke(unittest.TestCase):
 
 def main():
     ZynqSmoke.image_folder, ZynqSmoke.host_library = sys.argv[1:3]
-    needed = [os.path.join(sys.argv[1], "vbar_zynq7000_example.elf"),
-              os.path.join(sys.argv[1], "vbar_zynq7000_selftest.elf"), sys.argv[2]]
+    images = ("vbar_zynq7000.elf", "vbar_zynq7000_example.elf", "vbar_zynq7000_selftest.elf")
+    needed = [os.path.join(sys.argv[1], image) for image in images] + [sys.argv[2]]
     missing = [path for path in needed if not os.path.exists(path)]
     if missing or shutil.which("qemu-system-arm") is None:
         print("skipped, missing:", " ".join(missing) or "qemu-system-arm")
