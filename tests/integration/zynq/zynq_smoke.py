@@ -8,26 +8,22 @@ missing: then there is nothing to test."""
 import ctypes
 import math
 import os
-import select
 import shutil
-import struct
+import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
 from board_link import (ACK, APID_MANEUVER_COMMAND, APID_TELEMETRY_NAVIGATION, HELLO, POLL, Datagrams,
                         Packet, SerialLine, Session, StepReport, frame, ideal_navigation, tick)
 from emulated_board import EmulatedBoard
+from neighbour import (ADDRESS, ARP_REPLY, BOARD_ADDRESS, BOARD_MAC, ECHO_REPLY, ECHO_REQUEST, ICMP, MAC, UDP,
+                       Neighbour, echo, internet_checksum, ipv4)
 
 START_NS = 1_400_000_000_000_000_000
 PERIOD_NS = 10_000_000_000
 STEPS = 40
-
-
-def internet_checksum(data):
-    """RFC 1071, as a remainder: ones' complement addition is addition modulo 65535."""
-    total = sum(struct.unpack(f">{(len(data) + 1) // 2}H", data + b"\0" * (len(data) % 2)))
-    return 65535 - (0 if total == 0 else (total - 1) % 65535 + 1)
 
 
 def inputs(step):
@@ -165,7 +161,8 @@ class ZynqSmoke(unittest.TestCase):
                 flipped[20 + step] ^= 1 << (step % 8)
                 session.line.send(bytes(flipped))
                 session.line.send(good[:30] + good[31:])
-                session.line.send_raw(b"\x05\x01\x00" + bytes(range(1, 200)) * 20 + b"\x00")  # not COBS; longer than a frame
+                session.line.send_raw(b"\x05\x01\x00")  # not COBS
+                session.line.send_raw(bytes(range(1, 200)) * 20 + b"\x00")  # longer than a frame
                 answer = session.step(step, inputs(step))
                 self.assertEqual(answer[:-1], self.expected(step + 1)[step])
             report = StepReport(Packet(answer[-1]))
@@ -193,7 +190,7 @@ class ZynqSmoke(unittest.TestCase):
             self.assertEqual(report.rejected, 60)  # three frames of each of two strangers in ten steps
 
     def test_flood(self):
-        """More frames than any buffer holds: what does not fit is lost, the board is not, and neither is the session."""
+        """More frames than a buffer holds: what does not fit is lost, the board is not, and neither is the session."""
         with self.example() as board:
             session = Session(SerialLine(board.serial), 19)
             session.hello()
@@ -211,45 +208,20 @@ class ZynqSmoke(unittest.TestCase):
     def test_raw_frames(self):
         """The network as a neighbour on the wire sees it: ARP, ping at every size, and frames that are none."""
         with self.example(raw_ethernet=True) as board:
-            me, board_mac = bytes.fromhex("525400123456"), bytes.fromhex("027662617215")
-            my_address, board_address = bytes([10, 0, 2, 2]), bytes([10, 0, 2, 15])
-            send = lambda data: board.frames.sendto(data, ("127.0.0.1", board.udp_port))
-
-            arp = b"\xff" * 6 + me + struct.pack(">HHHBBH", 0x0806, 1, 0x0800, 6, 4, 1) + me + my_address + bytes(6)
-            board.frames.settimeout(0.5)
-            for _ in range(20):  # until the board is up
-                send(arp + board_address)
-                try:
-                    answer = board.frames.recv(2000)
-                    break
-                except TimeoutError:
-                    continue
-            self.assertEqual(answer[:42], me + board_mac + arp[12:20] + b"\0\2" + board_mac + board_address + me + my_address)
-            board.frames.settimeout(5)
-            while select.select([board.frames], [], [], 0.3)[0]:
-                board.frames.recv(2000)  # late answers
-
-            def ipv4(protocol, payload, fragment=0):
-                head = struct.pack(">BBHHHBBH4s4s", 0x45, 0, 20 + len(payload), 1, fragment, 64, protocol, 0, my_address,
-                                   board_address)
-                head = head[:10] + struct.pack(">H", internet_checksum(head)) + head[12:]
-                return (board_mac + me + b"\x08\0" + head + payload).ljust(60, b"\0")
-
-            def echo(kind, body):
-                head = struct.pack(">BBHHH", kind, 0, 0, 7, 9)
-                return struct.pack(">BBHHH", kind, 0, internet_checksum(head + body), 7, 9) + body
-
+            neighbour = Neighbour(board)
+            self.assertEqual(neighbour.resolve()[:42], ARP_REPLY)
             for size in (0, 1, 18, 55, 56, 999, 1471, 1472):
                 body = bytes(i % 251 for i in range(size))
-                for hostile in (ipv4(1, echo(8, body))[:33], ipv4(1, echo(8, body), fragment=0x2000), ipv4(17, b"\0" * 7),
-                                ipv4(1, echo(8, body)[:-1] + b"x"), b"\xff" * 60, board_mac):
-                    send(hostile)
-                send(ipv4(1, echo(8, body)))
-                answer = board.frames.recv(2000)
-                self.assertEqual(answer[:14], me + board_mac + b"\x08\0")
-                self.assertEqual(answer[26:34], board_address + my_address)
+                request = echo(ECHO_REQUEST, body)
+                for hostile in (ipv4(ICMP, request)[:33], ipv4(ICMP, request, fragment=0x2000), ipv4(UDP, bytes(7)),
+                                ipv4(ICMP, request[:-1] + b"x"), b"\xff" * 60, BOARD_MAC):
+                    neighbour.send(hostile)
+                neighbour.send(ipv4(ICMP, request))
+                answer = neighbour.receive()
+                self.assertEqual(answer[:14], MAC + BOARD_MAC + b"\x08\0")
+                self.assertEqual(answer[26:34], BOARD_ADDRESS + ADDRESS)
                 self.assertEqual(internet_checksum(answer[14:34]), 0)
-                self.assertEqual(answer[34:42 + size], echo(0, body))
+                self.assertEqual(answer[34:42 + size], echo(ECHO_REPLY, body))
 
     def test_flight_image(self):
         """vbar's own flight software starts, answers ticks with telemetry, and stops when told."""
@@ -258,14 +230,15 @@ class ZynqSmoke(unittest.TestCase):
             session = Session(SerialLine(board.serial), 20)
             self.assertIn("zynq7000", session.hello())
             for step in range(3):
-                packets = [Packet(data) for data in session.step(step, [tick(step, START_NS + step * PERIOD_NS, PERIOD_NS)])]
+                now = START_NS + step * PERIOD_NS
+                packets = [Packet(data) for data in session.step(step, [tick(step, now, PERIOD_NS)])]
                 self.assertEqual({p.apid & 0x700 for p in packets[:-1]}, {0x500})
                 self.assertEqual(StepReport(packets[-1]).step, step)
             session.goodbye()
             self.assertEqual(board.wait(), 0, board.console())
 
     def test_next_session(self):
-        """Without an emulator that takes the exit, as on silicon: after a goodbye the board serves whoever says hello."""
+        """Where nobody takes the exit, as on silicon: after a goodbye the board serves whoever says hello."""
         with self.example(semihosting=False) as board:
             session = Session(SerialLine(board.serial), 17)
             session.hello()
@@ -276,6 +249,21 @@ class ZynqSmoke(unittest.TestCase):
             self.check_flight(*fly(session, 5))
             self.assertIsNone(board.wait(0.2), "the board stopped")
 
+    def test_image_check(self):
+        """The check after each link passes the flight image, and bites on one in which something asks for memory."""
+        check = os.path.join(os.path.dirname(__file__), "../../../boards/zynq7000/check_image.cmake")
+        with tempfile.TemporaryDirectory() as folder:
+            def result(image):
+                copy = shutil.copy(os.path.join(self.image_folder, image), folder)  # the check removes what it condemns
+                command = ["cmake", "-DNM=arm-none-eabi-nm", "-DIMAGE=" + copy, "-P", check]
+                done = subprocess.run(command, capture_output=True, text=True, check=False)
+                return done.returncode, done.stderr, os.path.exists(copy)
+            self.assertEqual(result("vbar_zynq7000.elf"), (0, "", True))
+            code, message, remains = result("vbar_zynq7000_selftest.elf")
+            self.assertNotEqual(code, 0)
+            self.assertIn("_Znaj", message)  # operator new[], which the self-test calls to see it trapped
+            self.assertFalse(remains)
+
     def test_processor(self):
         """The self-test on the emulated processor, then each fault: caught, named, and an exit code of its own."""
         image = os.path.join(self.image_folder, "vbar_zynq7000_selftest.elf")
@@ -283,7 +271,8 @@ class ZynqSmoke(unittest.TestCase):
                  "jump": (102, "FAULT prefetch abort pc=03f00000"), "null": (103, "dfar=00000000"),
                  "code": (103, "dfar=00100000"), "stack": (103, "sp=03eff")}
         for name, (code, text) in cases.items():
-            with self.subTest(name), EmulatedBoard(image, arguments=["selftest", name] if name else ["selftest"]) as board:
+            arguments = ["selftest", name] if name else ["selftest"]
+            with self.subTest(name), EmulatedBoard(image, arguments=arguments) as board:
                 self.assertEqual(board.wait(), code, board.console())
                 self.assertIn(text, board.console())
 
