@@ -4,7 +4,6 @@
  * still in dirty cache lines) or in their random state after reset. References: ARM Architecture Reference Manual
  * ARMv7-A (DDI 0406), Cortex-A9 TRM (DDI 0388), UG585 chapter 3. */
     .syntax unified
-    .arch_extension sec
     .cpu cortex-a9
     .fpu neon
     .arm
