@@ -11,6 +11,7 @@ using fsw::link::BatchReceiver;
 using fsw::link::FrameHeader;
 using fsw::link::FrameType;
 using fsw::link::FrameView;
+using fsw::link::kWindow;
 
 /// A board that cannot run its flight software says so in place of its name.
 constexpr std::string_view kBoardErrorPrefix = "error: ";
@@ -89,17 +90,19 @@ BarrierCounters StepBarrier::counters() const {
   return counters;
 }
 
-void StepBarrier::send_window(const Exchange& exchange) {
+void StepBarrier::send_window(Exchange& exchange) {
   while (inputs_.can_send()) {
     const FrameHeader header = inputs_.next_header();
     send(header, exchange.packets[header.index]);
     inputs_.sent();
+    exchange.sent = static_cast<std::uint16_t>(header.index + 1U);
   }
 }
 
 void StepBarrier::poll(Exchange& exchange) {
   ++counters_.polls;
   exchange.poll_pending = true;
+  exchange.sent_before_poll = exchange.sent;
   send({.type = FrameType::kPoll, .session = session_, .step = exchange.step, .index = outputs_.held()});
 }
 
@@ -124,15 +127,19 @@ bool StepBarrier::take_acknowledgement(Exchange& exchange, std::uint16_t held) {
     ++counters_.frames_rejected;
     return false;
   }
-  // The answer to a poll says what arrived of all that was sent before the poll: the rest got lost.
-  if (std::exchange(exchange.poll_pending, false)) {
+  const bool progress = held > exchange.acknowledged;
+  exchange.acknowledged = std::max(exchange.acknowledged, held);
+  // The answer to a poll tells how much arrived of what was sent before the poll: the rest got lost. An acknowledgement
+  // on the board's own account, every half window, may still have been under way and says no such thing.
+  const bool on_own_account = progress && held % (kWindow / 2) == 0;
+  const bool answers_poll = exchange.poll_pending && !on_own_account;
+  if (answers_poll) exchange.poll_pending = false;
+  if (answers_poll && held < exchange.sent_before_poll) {
     inputs_.rewind(held);
   } else {
     inputs_.acknowledge(held);
   }
   send_window(exchange);
-  const bool progress = held > exchange.acknowledged;
-  exchange.acknowledged = std::max(exchange.acknowledged, held);
   return progress;
 }
 

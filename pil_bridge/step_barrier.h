@@ -63,11 +63,13 @@ class StepBarrier {
     std::span<const Packet> packets;
     std::vector<Packet> answer;
     std::uint16_t acknowledged = 0;  ///< packets the board is known to hold without a gap
-    bool poll_pending = false;       ///< asked, and no acknowledgement since
-    bool gap_reported = false;       ///< asked because of a gap in the answer, and no progress since
+    std::uint16_t sent = 0;          ///< packets sent, from the first on
+    bool poll_pending = false;       ///< asked, and not answered yet
+    std::uint16_t sent_before_poll = 0;
+    bool gap_reported = false;  ///< asked because of a gap in the answer, and no progress since
   };
 
-  void send_window(const Exchange& exchange);
+  void send_window(Exchange& exchange);
   void poll(Exchange& exchange);
   // What a frame does to the exchange; true if it is progress.
   bool take(Exchange& exchange, const fsw::link::FrameView& frame);

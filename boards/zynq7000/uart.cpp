@@ -32,13 +32,14 @@ constexpr std::uint32_t kInterruptTrigger = 1U << 0;  // at least kTriggerLevel 
 constexpr std::uint32_t kInterruptOverrun = 1U << 5;
 constexpr std::uint32_t kInterruptTimeout = 1U << 8;  // fewer wait, and the line has been quiet
 
+constexpr std::uint32_t kStatusReceiveTrigger = 1U << 0;
 constexpr std::uint32_t kStatusReceiveEmpty = 1U << 1;
 constexpr std::uint32_t kStatusTransmitEmpty = 1U << 3;
 constexpr std::uint32_t kStatusTransmitFull = 1U << 4;
 
-constexpr std::uint32_t kTriggerLevel = 8;    // must lie below both FIFO depths, or it never fires on the emulator
-constexpr std::uint32_t kTimeoutBits = 10;    // in units of 4 bit times
-constexpr std::size_t kSmallestFifo = 16;     // what fits into an empty transmit FIFO everywhere
+constexpr std::uint32_t kTriggerLevel = 8;  // must lie below both FIFO depths, or it never fires on the emulator
+constexpr std::uint32_t kTimeoutBits = 10;  // in units of 4 bit times
+constexpr std::size_t kSmallestFifo = 16;   // what fits into an empty transmit FIFO everywhere
 constexpr std::uint64_t kStallSpan = timer_span_ms(2000);
 
 // How many bytes the transmitter takes now without overflowing, waiting for the first; 0 when it stalls.
@@ -101,12 +102,27 @@ void Uart::write(std::span<const std::uint8_t> bytes) {
   }
 }
 
-void Uart::on_interrupt(void* self) { static_cast<Uart*>(self)->drain(); }
+void Uart::on_interrupt(void* self) {
+  static_cast<Uart*>(self)->drain();
+}
 
-// Acknowledge first, then empty the FIFO, then look again: a byte that arrives after the last look raises a new interrupt.
-// A timeout acknowledged after the last look would be lost, and the last bytes of a frame with it.
+// Moves what certainly waits from the FIFO to the ring, without a look at each byte: a look is not cheap.
+bool Uart::take_waiting() {
+  const std::uint32_t status = reg(base_ + kStatus);
+  if ((status & kStatusReceiveEmpty) != 0U) {
+    return false;
+  }
+  const std::uint32_t count = (status & kStatusReceiveTrigger) != 0U ? kTriggerLevel : 1U;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    received_.push(static_cast<std::uint8_t>(reg(base_ + kFifo)));
+  }
+  return true;
+}
+
+// Acknowledge first, then empty the FIFO, then look again: a byte that arrives after the last look raises a new
+// interrupt. A timeout acknowledged after the last look would be lost, and the last bytes of a frame with it.
 void Uart::drain() {
-  constexpr int kPasses = 8;       // a handler ends; should bytes be left, the interrupt fires again
+  constexpr int kPasses = 8;  // a handler ends; should bytes be left, the interrupt fires again
   constexpr int kDeepestFifo = 64;
   int pass = 0;
   do {
@@ -115,8 +131,7 @@ void Uart::drain() {
     if ((status & kInterruptOverrun) != 0U) {
       ++overruns_;
     }
-    for (int i = 0; i < kDeepestFifo && (reg(base_ + kStatus) & kStatusReceiveEmpty) == 0U; ++i) {
-      received_.push(static_cast<std::uint8_t>(reg(base_ + kFifo)));
+    for (int i = 0; i < kDeepestFifo && take_waiting(); ++i) {
     }
   } while (++pass < kPasses && (reg(base_ + kStatus) & kStatusReceiveEmpty) == 0U);
   reg(base_ + kInterruptStatus) = kInterruptTrigger;

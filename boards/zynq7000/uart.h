@@ -54,6 +54,7 @@ class Uart {
  private:
   static void on_interrupt(void* self);
   void drain();
+  bool take_waiting();
 
   std::uintptr_t base_;
   unsigned interrupt_;

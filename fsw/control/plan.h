@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
@@ -30,6 +31,9 @@ struct Plan {
   std::array<Burn, kMaxBurns> burns{};
   std::size_t count = 0;
   Solver solver = Solver::kNone;
+
+  /// The burns; the plan must outlive the span.
+  [[nodiscard]] std::span<const Burn> all() const { return {burns.data(), count}; }
 
   /// Sum of the burns' norms, m/s.
   [[nodiscard]] double total_dv() const {

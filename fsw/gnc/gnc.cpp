@@ -1,5 +1,7 @@
 #include "fsw/gnc/gnc.h"
 
+#include "fsw/orbit/rtn.h"
+
 namespace vbar::fsw::gnc {
 namespace {
 

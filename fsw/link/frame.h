@@ -13,8 +13,8 @@
 //   14 ...       kData: one space packet; kHelloAck: the board's name in ASCII
 //   last 4       CRC-32 (IEEE 802.3, little-endian) over everything before it
 //
-// All but the CRC big-endian. Over a byte stream a frame is COBS-coded and ends with a zero byte; over UDP a datagram
-// is a frame.
+// All but the CRC big-endian. Over a byte stream a frame is COBS-coded and ends with a zero byte; over UDP one frame is
+// one datagram.
 //
 // The exchange (go-back-N, window kWindow, both ways):
 //   host  kHello (repeated until answered)         board  resets the flight software, kHelloAck

@@ -16,6 +16,46 @@ struct SymmetricEigen {
   Eigen::Matrix<double, N, N> vectors = Eigen::Matrix<double, N, N>::Identity();
 };
 
+/// Turns columns and rows p < q of the upper triangle `a` so that a(p, q) vanishes, and the columns of `v` with them.
+template <int N>
+void jacobi_rotation(Eigen::Matrix<double, N, N>& a, Eigen::Matrix<double, N, N>& v, int p, int q) {
+  if (a(p, q) == 0.0) return;
+  // The smaller of the two angles that annihilate a(p, q).
+  const double cotangent = (a(q, q) - a(p, p)) / (2.0 * a(p, q));
+  const double root = sqrt(1.0 + cotangent * cotangent);
+  const double t = cotangent >= 0.0 ? 1.0 / (cotangent + root) : 1.0 / (cotangent - root);
+  const double c = 1.0 / sqrt(1.0 + t * t);
+  const double s = t * c;
+  const auto turn = [c, s](double& x, double& y) {
+    const double old = x;
+    x = c * old - s * y;
+    y = s * old + c * y;
+  };
+  a(p, p) -= t * a(p, q);
+  a(q, q) += t * a(p, q);
+  a(p, q) = 0.0;
+  for (int k = 0; k < N; ++k) {
+    if (k != p && k != q) turn(k < p ? a(k, p) : a(p, k), k < q ? a(k, q) : a(q, k));
+    turn(v(k, p), v(k, q));
+  }
+}
+
+/// Exchanges pairs until the values increase.
+template <int N>
+void sort_by_value(SymmetricEigen<N>& e) {
+  for (int p = 0; p < N; ++p) {
+    for (int q = p + 1; q < N; ++q) {
+      if (e.values(q) >= e.values(p)) continue;
+      const double value = e.values(p);
+      e.values(p) = e.values(q);
+      e.values(q) = value;
+      const Eigen::Matrix<double, N, 1> vector = e.vectors.col(p);
+      e.vectors.col(p) = e.vectors.col(q);
+      e.vectors.col(q) = vector;
+    }
+  }
+}
+
 /// Diagonalises the symmetric `a`, of which only the upper triangle is read, to rounding. kNotFinite; kDidNotConverge
 /// after 16 sweeps (quadratic convergence takes 3 to 6 for N <= 6).
 template <int N>
@@ -23,7 +63,6 @@ Result<SymmetricEigen<N>> symmetric_eigen(Eigen::Matrix<double, N, N> a) {
   constexpr int kMaxSweeps = 16;
   constexpr double kNegligible = 1e-32;  // squared, of off-diagonal over diagonal elements
   SymmetricEigen<N> result;
-  auto& v = result.vectors;
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double diagonal = 0.0;
     double rest = 0.0;
@@ -34,46 +73,11 @@ Result<SymmetricEigen<N>> symmetric_eigen(Eigen::Matrix<double, N, N> a) {
     if (!is_finite(diagonal + rest)) return Status::kNotFinite;
     if (rest <= kNegligible * diagonal) {
       result.values = a.diagonal();
-      for (int p = 0; p < N; ++p) {  // selection sort
-        int least = p;
-        for (int q = p + 1; q < N; ++q) {
-          if (result.values(q) < result.values(least)) least = q;
-        }
-        const double value = result.values(p);
-        result.values(p) = result.values(least);
-        result.values(least) = value;
-        const Eigen::Matrix<double, N, 1> column = v.col(p);
-        v.col(p) = v.col(least);
-        v.col(least) = column;
-      }
+      sort_by_value(result);
       return result;
     }
     for (int p = 0; p < N; ++p) {
-      for (int q = p + 1; q < N; ++q) {
-        if (a(p, q) == 0.0) continue;
-        // The smaller of the two angles that annihilate a(p, q).
-        const double cotangent = (a(q, q) - a(p, p)) / (2.0 * a(p, q));
-        const double root = sqrt(1.0 + cotangent * cotangent);
-        const double t = cotangent >= 0.0 ? 1.0 / (cotangent + root) : 1.0 / (cotangent - root);
-        const double c = 1.0 / sqrt(1.0 + t * t);
-        const double s = t * c;
-        const double a_pq = a(p, q);
-        a(p, p) -= t * a_pq;
-        a(q, q) += t * a_pq;
-        a(p, q) = 0.0;
-        for (int k = 0; k < N; ++k) {
-          if (k != p && k != q) {
-            double& kp = k < p ? a(k, p) : a(p, k);
-            double& kq = k < q ? a(k, q) : a(q, k);
-            const double old = kp;
-            kp = c * old - s * kq;
-            kq = s * old + c * kq;
-          }
-          const double old = v(k, p);
-          v(k, p) = c * old - s * v(k, q);
-          v(k, q) = s * old + c * v(k, q);
-        }
-      }
+      for (int q = p + 1; q < N; ++q) jacobi_rotation<N>(a, result.vectors, p, q);
     }
   }
   return Status::kDidNotConverge;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/initial_orbits.h"
 #include "host_sim/app/make_twins.h"
 #include "host_sim/mission/telecommands.h"
@@ -23,17 +24,17 @@ engine::WallClock::Span wall_span(double s) {
   return std::chrono::duration_cast<engine::WallClock::Span>(std::chrono::duration<double>(s));
 }
 
-/// The one spacecraft that carries a flight computer.
-const mission::Spacecraft& spacecraft_with_flight_computer(const mission::Mission& mission) {
-  const auto flies = [](const mission::Spacecraft& s) { return s.flight_computer.has_value(); };
-  const auto first = std::ranges::find_if(mission.spacecraft, flies);
-  if (first == mission.spacecraft.end()) throw std::runtime_error("no spacecraft of the mission has a flight computer");
-  if (std::find_if(first + 1, mission.spacecraft.end(), flies) != mission.spacecraft.end()) {
-    throw std::runtime_error("more than one spacecraft has a flight computer; one is supported");
+/// The spacecraft that flies, with all it needs to.
+const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
+  const mission::Spacecraft& servicer = flying_spacecraft(mission);
+  for (const mission::Spacecraft& other : mission.spacecraft) {
+    if (&other != &servicer && other.flight_computer) {
+      throw std::runtime_error("spacecraft \"" + other.name + "\" has a flight computer too; one in a mission is supported");
+    }
   }
-  if (!first->navigation) throw std::runtime_error("spacecraft \"" + first->name + "\" has no navigation sensor");
-  if (!first->thruster) throw std::runtime_error("spacecraft \"" + first->name + "\" has no thruster");
-  return *first;
+  if (!servicer.navigation) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no navigation sensor");
+  if (!servicer.thruster) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no thruster");
+  return servicer;
 }
 
 truth::TruthSettings truth_settings(const mission::Mission& mission, const std::filesystem::path& data_directory) {
@@ -68,7 +69,7 @@ constexpr std::int32_t kPriorityOf[] = {0, 10, 20, 30, 40};
 Simulation::Simulation(const mission::Mission& mission, const std::filesystem::path& data_directory,
                        const Surroundings& surroundings, report::RunRecord& record)
     : mission_(mission),
-      servicer_(spacecraft_with_flight_computer(mission)),
+      servicer_(complete_servicer(mission)),
       surroundings_(surroundings),
       record_(record),
       recorder_(mission, record),

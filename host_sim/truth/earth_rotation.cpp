@@ -39,9 +39,7 @@ double polynomial(const double (&coefficients)[6], double t) {
 
 CelestialPole celestial_pole_iau2006a(JulianDate tt) {
   CelestialPole pole;
-  double bias_precession_nutation[3][3];
-  eraPnm06a(tt.day, tt.fraction, bias_precession_nutation);
-  eraBpn2xy(bias_precession_nutation, &pole.x, &pole.y);
+  eraXy06(tt.day, tt.fraction, &pole.x, &pole.y);
   pole.s = eraS06(tt.day, tt.fraction, pole.x, pole.y);
   return pole;
 }

@@ -2,8 +2,6 @@
 // What every force on a spacecraft looks like: one call, one small file each. A force object belongs to one spacecraft
 // (it may hold the spacecraft's properties and caches of its own); what is large and constant is shared between them.
 
-#include <string_view>
-
 #include "fsw/core/types.h"
 
 namespace vbar::truth {
@@ -20,9 +18,6 @@ struct ForceInput {
 class Force {
  public:
   virtual ~Force() = default;
-
-  /// What reports call it.
-  virtual std::string_view name() const = 0;
 
   /// Acceleration, m/s^2, in ECI, beside that of the Earth's point mass.
   virtual fsw::Vector3 acceleration_eci(const ForceInput& input) = 0;

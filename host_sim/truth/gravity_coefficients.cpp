@@ -86,7 +86,7 @@ GravityCoefficients load_gravity_coefficients(const std::filesystem::path& file,
   field.model = header_text(reader, "model");
   field.gm = header_number(reader, "gm_m3ps2", 0.0, 1e21);
   field.radius = header_number(reader, "radius_m", 0.0, 1e9);
-  const int max_degree = header_number(reader, "max_degree", 1, kHighestDegree);
+  const int max_degree = header_number(reader, "max_degree", 0, kHighestDegree);
   field.tide_system = header_text(reader, "tide_system");
   if (degree < 0 || degree > max_degree) {
     throw std::invalid_argument(

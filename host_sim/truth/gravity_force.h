@@ -13,7 +13,6 @@ class GravityForce final : public Force {
   /// `field` is shared between spacecraft and must not be null.
   explicit GravityForce(std::shared_ptr<const GravityField> field);
 
-  std::string_view name() const override { return "gravity"; }
   fsw::Vector3 acceleration_eci(const ForceInput& input) override;
 
  private:

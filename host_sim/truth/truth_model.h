@@ -22,7 +22,7 @@ struct TruthSettings {
   fsw::GpsTime epoch;        ///< start of the run
   int gravity_degree = 60;   ///< 0 (point mass) to 120
   int gravity_order = 60;    ///< 0 to the degree
-  double tolerance = 1e-12;  ///< local error a step, in units of the orbit's size: kSmallestTolerance to 1e-3
+  double tolerance = 1e-13;  ///< local error a step, in units of the orbit's size: kSmallestTolerance to 1e-3
   int threads = 1;           ///< at most so many spacecraft are propagated at a time; does not change a bit
   std::filesystem::path data_directory;  ///< the project's data folder (gravity and Earth orientation)
 

@@ -28,6 +28,7 @@ target_include_directories(vbar_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_include_directories(vbar_options SYSTEM INTERFACE ${VBAR_EIGEN_INCLUDE})
 target_compile_definitions(vbar_options INTERFACE EIGEN_MPL2_ONLY EIGEN_DONT_VECTORIZE EIGEN_DONT_PARALLELIZE)
 target_compile_options(vbar_options INTERFACE
+  "$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include ${PROJECT_SOURCE_DIR}/fsw/core/eigen_assert.h>"
   -ffp-contract=off -fno-math-errno
   -Wall -Wextra -Wpedantic -Wshadow -Wcast-align -Wformat=2 -Wimplicit-fallthrough -Werror
   $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual>)
@@ -68,6 +69,9 @@ function(vbar_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE vbar_options ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
   target_compile_definitions(${name} PRIVATE VBAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" VBAR_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS unit)
+  endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
 endfunction()
 

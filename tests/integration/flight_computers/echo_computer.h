@@ -21,6 +21,7 @@ inline FlightComputerOptions echo_options(Target target, LinkKind link) {
   options.spacecraft = kSpacecraft;
   options.article = linked_test_article();
   if (target == Target::kHostProcess) options.image = VBAR_BINARY_DIR "/vbar_flight_echo";
+  if (target == Target::kZynqQemu) options.image = VBAR_SOURCE_DIR "/build/zynq/vbar_zynq7000_echo.elf";
   if (target == Target::kZynqLinuxQemu) options.image = VBAR_SOURCE_DIR "/build/zynq-linux/vbar_flight_echo";
   return options;
 }

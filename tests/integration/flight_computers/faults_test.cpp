@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "pil_bridge/remote_computer.h"
@@ -189,6 +190,7 @@ TEST(Stopped, IsGivenUpAfterABoundedTimeAndEnded) {
   const auto computer = make_flight_computer(options);
   const int pid = dynamic_cast<RemoteComputer&>(*computer).process_id();
   ASSERT_EQ(::kill(pid, SIGSTOP), 0);
+  ASSERT_EQ(::waitpid(pid, nullptr, WUNTRACED), pid);  // all its threads have stopped
   EXPECT_THAT(error_of_step(*computer, 0),
               AllOf(HasSubstr("no answer to step 0 within 0.3 s"), HasSubstr("was still running and has been ended")));
   EXPECT_FALSE(exists(pid));

@@ -25,7 +25,7 @@ TEST(Qemu, EmulationIsDeterministicAndIsolated) {
   EXPECT_THAT(serial, Contains("image.elf"));
   EXPECT_THAT(serial, Contains("socket,id=link,fd=3"));
   const auto udp = zynq_qemu_over_udp("image.elf", 6, 16000);
-  EXPECT_THAT(udp, Contains("user,model=cadence_gem,restrict=on,hostfwd=udp:127.0.0.1:16000-10.0.2.15:5000"));
+  EXPECT_THAT(udp, Contains("user,model=cadence_gem,hostfwd=udp:127.0.0.1:16000-10.0.2.15:5000"));
 }
 
 }  // namespace

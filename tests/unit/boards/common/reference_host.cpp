@@ -13,8 +13,8 @@ using fsw::link::FrameType;
 
 namespace {
 
-/// Bounds a failing test. A step on the worst line here takes some 60 rounds: 6 windows, each spoilt a few times, 3 rounds to
-/// notice.
+/// Bounds a failing test. A step on the worst line here takes some 60 rounds: 6 windows, each spoilt a few times, and
+/// 3 rounds to notice.
 constexpr int kMaxRounds = 500;
 constexpr int kRoundsBeforePoll = 3;
 constexpr std::size_t kWindow = 32;

@@ -12,6 +12,8 @@
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/orbit/secular.h"
+#include "fsw/safety/collision_probability.h"
+#include "fsw/safety/passive_safety.h"
 #include "tests/unit/fsw/same_bits/libm_sweeps.h"
 
 namespace {
@@ -85,6 +87,31 @@ std::uint64_t orbit_digest() {
   return digest.value();
 }
 
+/// Drifts and probabilities of random relative orbits within a kilometre.
+std::uint64_t safety_digest() {
+  namespace safety = vbar::fsw::safety;
+  Arguments arguments(5);
+  Digest digest;
+  for (int k = 0; k < 100; ++k) {
+    const orbit::QnsElements servicer{
+        .a = 7.1e6, .ex = 1e-3, .ey = -2e-4, .i = 1.7, .raan = 0.3, .u = arguments.between(-3.0, 3.0)};
+    vbar::fsw::Vector6 roe;
+    for (int j = 0; j < 6; ++j) roe(j) = arguments.between(-1e-4, 1e-4);
+    const safety::DriftSafety drift = safety::assess_drift(servicer, roe, 9000.0, {.radial_normal = 1.0}).value();
+    for (const safety::Closest& c : {drift.spatial, drift.radial_normal}) {
+      digest.add(c.distance);
+      digest.add(c.time);
+    }
+    vbar::fsw::Matrix3 root;
+    for (int j = 0; j < 9; ++j) root(j / 3, j % 3) = arguments.between(-5.0, 5.0);
+    vbar::fsw::Vector3 mean;
+    for (int j = 0; j < 3; ++j) mean(j) = arguments.between(-9.0, 9.0);
+    const vbar::fsw::Matrix3 covariance = root * root.transpose() + vbar::fsw::Matrix3::Identity();
+    digest.add(safety::collision_probability(mean, covariance, 3.0).value());
+  }
+  return digest.value();
+}
+
 }  // namespace
 
 int main() {
@@ -97,5 +124,6 @@ int main() {
     }
   }
   std::printf("%-6s %016" PRIx64 "\n", "orbit", orbit_digest());
+  std::printf("%-6s %016" PRIx64 "\n", "safety", safety_digest());
   return same ? 0 : 1;
 }

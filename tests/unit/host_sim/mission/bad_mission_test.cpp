@@ -172,6 +172,16 @@ TEST(BadMissionFile, NoSpacecraft) {
             "m.toml:1: spacecraft: found nothing; accepted: at least one [[spacecraft]]");
 }
 
+TEST(BadMissionFile, ApproachToNowhere) {
+  std::string text = kSmall.substr(0, kSmall.find("[[waypoint]]"));
+  text = text.substr(0, text.find("[[spacecraft]]\nname = \"target\""));
+  text = changed(text, "sensors.navigation = {}\n", "");
+  EXPECT_EQ(message_of(text),
+            "m.toml: guidance.mode: found approach without a waypoint; accepted: at least one [[waypoint]], or another "
+            "mode");
+  EXPECT_EQ(message_of(text, {"guidance.mode=idle"}), "");
+}
+
 TEST(BadMissionFile, MissingFileAndFolder) {
   EXPECT_THROW(
       {

@@ -43,7 +43,8 @@ TEST(IdealNavigationMission, EpochIsThePapers) {
 }
 
 TEST(IdealNavigationMission, ServicerElementsAreThePapers) {
-  const auto& orbit = std::get<OrbitByElements>(ideal_navigation().find_spacecraft("servicer")->orbit);
+  const Mission mission = ideal_navigation();
+  const auto& orbit = std::get<OrbitByElements>(mission.find_spacecraft("servicer")->orbit);
   constexpr double kDegree = 3.14159265358979323846 / 180.0;
   EXPECT_EQ(orbit.kind, ElementsKind::kOsculating);
   EXPECT_DOUBLE_EQ(orbit.elements.a, 7087300.0);
@@ -99,6 +100,9 @@ TEST(IdealNavigationMission, CommentsTellTheDefaults) {
   EXPECT_EQ(a.maximum_dv, b.maximum_dv);
   EXPECT_EQ(a.roe_error_threshold_m, b.roe_error_threshold_m);
   EXPECT_EQ(a.station_keeping_deadband_m, b.station_keeping_deadband_m);
+  EXPECT_EQ(a.closed_form_tolerance_m, b.closed_form_tolerance_m);
+  EXPECT_EQ(a.koenig_damico_tolerance_m, b.koenig_damico_tolerance_m);
+  EXPECT_EQ(a.station_keeping_horizon_s, b.station_keeping_horizon_s);
   EXPECT_EQ(a.navigation_timeout_s, b.navigation_timeout_s);
   EXPECT_EQ(shown.clock.mode, defaults.clock.mode);
   EXPECT_EQ(shown.clock.speed_factor, defaults.clock.speed_factor);

@@ -1,0 +1,257 @@
+/* A test article that is not vbar's: the interface of fsw/gnc/vbar_gnc.h in plain C, without a line of vbar's own
+ * flight software. It shows all that another GNC stack needs to fly here, and no more: given the states of both
+ * spacecraft, a proportional-derivative law closes in on a point behind the target and stays there.
+ *
+ * With x the relative position error and v the relative velocity (servicer's RTN), each step commands the impulse
+ *   dv = T (w^2 x + 2 w v),   T the time between steps, w = 0.01 rad/s, |dv| <= 50 mm/s,
+ * critically damped and, at ten times the orbital rate, stiff enough that orbital mechanics is a disturbance to it. */
+#include <stdbool.h>
+#include <string.h>
+
+#include "boards/examples/c_article/wire.h"
+#include "fsw/gnc/vbar_gnc.h"
+
+enum {
+  STATUS_OK = 0,
+  STATUS_INVALID_ARGUMENT = 1,
+  STATUS_NOT_FINITE = 2,
+  STATUS_BAD_CHECKSUM = 10,
+  STATUS_WRONG_TYPE = 9
+};
+
+#define BANDWIDTH_RADPS 0.01
+#define HOLD_DISTANCE_M 100.0 /* along the target's orbit, behind it */
+#define LARGEST_DV_MPS 0.050
+#define SMALLEST_DV_MPS 0.001
+
+enum { R = 0, T = 1, N = 2 };
+
+struct article {
+  vbar_packet_sink sink;
+  void* sink_context;
+  uint8_t spacecraft;
+  bool has_states;
+  int64_t states_time_ns;
+  double r_servicer_eci[3], v_servicer_eci[3], r_target_eci[3], v_target_eci[3];
+  int64_t step, period_ns;
+  unsigned maneuvers, reports; /* sequence counts */
+};
+
+/* Relative state of the target with respect to the servicer, in the servicer's rotating RTN frame. */
+struct relative_state {
+  double position_rtn[3];
+  double velocity_rtn[3];
+};
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Square root is exact by IEEE 754 and an instruction on every target; nothing else of a mathematics library is needed.
+ */
+static double length(const double a[3]) {
+  return __builtin_sqrt(dot(a, a));
+}
+
+static bool is_finite(double x) {
+  return x - x == 0.0;
+}
+
+static bool relative_state_of(const struct article* self, struct relative_state* relative) {
+  double h[3];
+  cross(self->r_servicer_eci, self->v_servicer_eci, h);
+  const double r = length(self->r_servicer_eci);
+  const double h_length = length(h);
+  if (!(r > 1.0) || !(h_length > 1.0)) {
+    return false; /* no orbit, no frame */
+  }
+  double axes[3][3]; /* rows: R, T, N in ECI */
+  for (int i = 0; i < 3; ++i) {
+    axes[R][i] = self->r_servicer_eci[i] / r;
+    axes[N][i] = h[i] / h_length;
+  }
+  cross(axes[N], axes[R], axes[T]);
+  double position[3];
+  double velocity[3];
+  for (int i = 0; i < 3; ++i) {
+    position[i] = self->r_target_eci[i] - self->r_servicer_eci[i];
+    velocity[i] = self->v_target_eci[i] - self->v_servicer_eci[i];
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    relative->position_rtn[axis] = dot(axes[axis], position);
+    relative->velocity_rtn[axis] = dot(axes[axis], velocity);
+  }
+  const double rate = h_length / (r * r); /* of the frame, about N */
+  relative->velocity_rtn[R] += rate * relative->position_rtn[T];
+  relative->velocity_rtn[T] -= rate * relative->position_rtn[R];
+  return true;
+}
+
+static void send(const struct article* self, struct wire_writer* packet) {
+  const size_t size = wire_finish(packet);
+  self->sink(self->sink_context, packet->bytes, size);
+}
+
+static void write_vector(struct wire_writer* packet, const double vector[3]) {
+  for (int i = 0; i < 3; ++i) {
+    wire_write_double(packet, vector[i]);
+  }
+}
+
+static void report(struct article* self, int64_t now_ns, const struct relative_state* relative) {
+  const double nothing[3] = {0.0, 0.0, 0.0};
+  const int8_t source_ideal = 2;
+  struct wire_writer packet;
+  wire_begin(&packet, WIRE_APID_TELEMETRY_NAVIGATION, self->reports++, now_ns, self->spacecraft,
+             WIRE_HASH_TELEMETRY_NAVIGATION);
+  wire_write_int64(&packet, self->step);
+  wire_write_int8(&packet, source_ideal);
+  wire_write_int8(&packet, 1); /* valid */
+  wire_write_double(&packet, (double)(now_ns - self->states_time_ns) * 1e-9);
+  write_vector(&packet, self->r_servicer_eci);
+  write_vector(&packet, self->v_servicer_eci);
+  write_vector(&packet, relative->position_rtn);
+  write_vector(&packet, relative->velocity_rtn);
+  write_vector(&packet, nothing); /* 1 sigma of position and velocity: ideal states have none */
+  write_vector(&packet, nothing);
+  write_vector(&packet, nothing); /* relative orbital elements: this article does not use them */
+  write_vector(&packet, nothing);
+  send(self, &packet);
+}
+
+static void control(struct article* self, int64_t now_ns, const struct relative_state* relative) {
+  const double period_s = (double)self->period_ns * 1e-9;
+  double dv[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double error = relative->position_rtn[axis] - (axis == T ? HOLD_DISTANCE_M : 0.0);
+    dv[axis] =
+        period_s * (BANDWIDTH_RADPS * BANDWIDTH_RADPS * error + 2.0 * BANDWIDTH_RADPS * relative->velocity_rtn[axis]);
+  }
+  const double size = length(dv);
+  if (!(size > SMALLEST_DV_MPS)) {
+    return;
+  }
+  const double scale = size > LARGEST_DV_MPS ? LARGEST_DV_MPS / size : 1.0;
+  const int8_t solver_none = -1;
+  struct wire_writer packet;
+  wire_begin(&packet, WIRE_APID_MANEUVER_COMMAND, self->maneuvers, now_ns + self->period_ns, self->spacecraft,
+             WIRE_HASH_MANEUVER_COMMAND);
+  wire_write_int32(&packet, (int32_t)(++self->maneuvers & 0x7FFFFFFFU));
+  wire_write_int32(&packet, -1); /* no waypoint */
+  wire_write_int8(&packet, solver_none);
+  for (int axis = 0; axis < 3; ++axis) {
+    wire_write_double(&packet, scale * dv[axis]);
+  }
+  send(self, &packet);
+}
+
+static vbar_status take_tick(struct article* self, struct wire_reader* packet) {
+  if (!wire_begins_with(packet, WIRE_HASH_TICK, 24)) {
+    return STATUS_WRONG_TYPE;
+  }
+  const int64_t step = wire_read_int64(packet);
+  const int64_t period_ns = wire_read_int64(packet);
+  if (period_ns <= 0) {
+    return STATUS_INVALID_ARGUMENT;
+  }
+  self->step = step;
+  self->period_ns = period_ns;
+  return STATUS_OK;
+}
+
+static vbar_status take_states(struct article* self, struct wire_reader* packet) {
+  double states[12];
+  if (!wire_begins_with(packet, WIRE_HASH_IDEAL_NAVIGATION, 8 + sizeof states)) {
+    return STATUS_WRONG_TYPE;
+  }
+  for (int i = 0; i < 12; ++i) {
+    states[i] = wire_read_double(packet);
+    if (!is_finite(states[i])) {
+      return STATUS_NOT_FINITE;
+    }
+  }
+  if (self->has_states && packet->gps_time_ns <= self->states_time_ns) {
+    return STATUS_OK; /* the newest counts, in whatever order they came */
+  }
+  memcpy(self->r_servicer_eci, states, sizeof self->r_servicer_eci);
+  memcpy(self->v_servicer_eci, states + 3, sizeof self->v_servicer_eci);
+  memcpy(self->r_target_eci, states + 6, sizeof self->r_target_eci);
+  memcpy(self->v_target_eci, states + 9, sizeof self->v_target_eci);
+  self->states_time_ns = packet->gps_time_ns;
+  self->has_states = true;
+  return STATUS_OK;
+}
+
+/* ------------------------------------------------------------------------------------------ the test article's
+ * interface */
+
+int32_t vbar_gnc_abi_version(void) {
+  return VBAR_GNC_ABI_VERSION;
+}
+
+const char* vbar_gnc_name(void) {
+  return "example article in C, version 1";
+}
+
+size_t vbar_gnc_state_size(void) {
+  return sizeof(struct article);
+}
+
+size_t vbar_gnc_state_alignment(void) {
+  return _Alignof(struct article);
+}
+
+vbar_status vbar_gnc_init(void* state, uint8_t spacecraft, vbar_packet_sink sink, void* sink_context) {
+  struct article* self = state;
+  if (self == NULL || sink == NULL) {
+    return STATUS_INVALID_ARGUMENT;
+  }
+  memset(self, 0, sizeof *self);
+  self->spacecraft = spacecraft;
+  vbar_gnc_set_sink(state, sink, sink_context);
+  return STATUS_OK;
+}
+
+void vbar_gnc_set_sink(void* state, vbar_packet_sink sink, void* sink_context) {
+  struct article* self = state;
+  self->sink = sink;
+  self->sink_context = sink_context;
+}
+
+vbar_status vbar_gnc_receive(void* state, const uint8_t* packet, size_t size) {
+  struct article* self = state;
+  struct wire_reader reader;
+  if (!wire_open(&reader, packet, size)) {
+    return STATUS_BAD_CHECKSUM;
+  }
+  if (reader.spacecraft != self->spacecraft) {
+    return STATUS_INVALID_ARGUMENT;
+  }
+  switch (reader.apid) {
+    case WIRE_APID_TICK:
+      return take_tick(self, &reader);
+    case WIRE_APID_IDEAL_NAVIGATION:
+      return take_states(self, &reader);
+    default:
+      return STATUS_OK; /* telecommands that this article has no use for */
+  }
+}
+
+vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns) {
+  struct article* self = state;
+  struct relative_state relative;
+  if (!self->has_states || self->period_ns <= 0 || !relative_state_of(self, &relative)) {
+    return STATUS_OK;
+  }
+  report(self, gps_time_ns, &relative);
+  if (self->states_time_ns == gps_time_ns) { /* old states are reported, but not acted upon */
+    control(self, gps_time_ns, &relative);
+  }
+  return STATUS_OK;
+}

@@ -1,0 +1,32 @@
+#include "host_sim/app/connect_flight_computer.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "pil_bridge/make_flight_computer.h"
+
+namespace vbar::app {
+
+const mission::Spacecraft& flying_spacecraft(const mission::Mission& mission) {
+  const auto flying = std::ranges::find_if(mission.spacecraft, [](const auto& s) { return s.flight_computer.has_value(); });
+  if (flying == mission.spacecraft.end()) throw std::runtime_error("no spacecraft of the mission has a flight computer");
+  return *flying;
+}
+
+std::unique_ptr<pil::FlightComputer> connect_flight_computer(const mission::Spacecraft& spacecraft) {
+  const mission::FlightComputer& wanted = *spacecraft.flight_computer;
+  pil::FlightComputerOptions options;
+  options.target = pil::target_from_name(mission::name_of(wanted.target));
+  options.link = pil::link_from_name(mission::name_of(wanted.link));
+  options.spacecraft = spacecraft.number;
+  options.library = wanted.library;
+  if (wanted.library.empty()) options.article = pil::linked_test_article();
+  if (wanted.target == mission::FlightTarget::kBoard) {
+    const bool serial = wanted.link == mission::FlightLink::kSerial;
+    options.endpoint = serial ? wanted.device : wanted.address + ":" + std::to_string(wanted.port);
+    options.baud = static_cast<unsigned>(wanted.baud);
+  }
+  return pil::make_flight_computer(options);
+}
+
+}  // namespace vbar::app

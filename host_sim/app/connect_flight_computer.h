@@ -1,0 +1,17 @@
+#pragma once
+// From a mission's words to its flight computer, started and answering.
+
+#include <memory>
+
+#include "host_sim/mission/mission.h"
+#include "pil_bridge/flight_computer.h"
+
+namespace vbar::app {
+
+/// The first spacecraft of the mission that has a flight computer. Throws std::runtime_error if none has.
+const mission::Spacecraft& flying_spacecraft(const mission::Mission& mission);
+
+/// Throws pil::FlightComputerError.
+std::unique_ptr<pil::FlightComputer> connect_flight_computer(const mission::Spacecraft& spacecraft);
+
+}  // namespace vbar::app

@@ -1,0 +1,33 @@
+#pragma once
+// Turns a maneuver command into an executed maneuver.
+
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/packets/messages.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::twins {
+
+/// What an actuator did with a command.
+struct Execution {
+  fsw::GpsTime time;  ///< of the impulse, or of the refused one
+  vbar::executed_maneuver
+      maneuver{};  ///< accepted or not, and the impulse that happened, m/s in the servicer's RTN at `time`
+  Packet packet;   ///< `maneuver` as the flight software gets it
+  std::vector<Note> notes;
+};
+
+class Actuator {
+ public:
+  Actuator() = default;
+  Actuator(const Actuator&) = delete;
+  Actuator& operator=(const Actuator&) = delete;
+  virtual ~Actuator() = default;
+
+  /// Executes `command` at `burn_time`, the time tag of its packet. A burn before `now` is refused: accepted is 0, the
+  /// impulse 0. Applying the impulse to the truth at Execution::time, and delivering the packet, is the caller's.
+  virtual Execution execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time, fsw::GpsTime now) = 0;
+};
+
+}  // namespace vbar::twins

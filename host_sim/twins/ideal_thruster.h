@@ -1,0 +1,36 @@
+#pragma once
+// An impulsive thruster: ideal, or with errors of magnitude and pointing.
+
+#include <cstdint>
+
+#include "host_sim/engine/random_stream.h"
+#include "host_sim/twins/actuator.h"
+#include "host_sim/twins/packet_encoder.h"
+
+namespace vbar::twins {
+
+class IdealThruster final : public Actuator {
+ public:
+  struct Settings {
+    std::uint8_t spacecraft_number = 0;
+    std::uint8_t unit = 0;
+    double magnitude_error = 0.0;     ///< 1 sigma, relative
+    double pointing_error_rad = 0.0;  ///< 1 sigma, about each of two axes across the impulse
+  };
+
+  /// `stream` is the thruster's own. The errors of a burn belong to its maneuver_id: they do not depend on other burns.
+  IdealThruster(const Settings& settings, const engine::RandomStream& stream);
+
+  /// Without errors the executed impulse is the commanded one, bit for bit. Notes: the errors made.
+  Execution execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time, fsw::GpsTime now) override;
+
+ private:
+  [[nodiscard]] fsw::Vector3 with_errors(const fsw::Vector3& dv_rtn, std::int32_t maneuver_id,
+                                         std::vector<Note>& notes) const;
+
+  Settings settings_;
+  engine::RandomStream stream_;
+  PacketEncoder encoder_;
+};
+
+}  // namespace vbar::twins

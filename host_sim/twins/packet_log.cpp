@@ -1,0 +1,143 @@
+#include "host_sim/twins/packet_log.h"
+
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+#include <lcm/eventlog.h>
+#include <vbar_host/packet_record.hpp>
+
+#include "fsw/packets/big_endian.h"
+#include "fsw/packets/message_traits.h"
+
+namespace vbar::twins {
+namespace {
+
+// LCM counts microseconds since 1970; GPS time counts from 1980-01-06. Leap seconds are left out: it is a label, not a
+// clock.
+constexpr std::int64_t kGpsOriginInUnixMicroseconds = 315964800LL * 1000000;
+
+std::int64_t lcm_timestamp(fsw::GpsTime time) {
+  return kGpsOriginInUnixMicroseconds + time.ns / 1000;
+}
+
+std::vector<std::uint8_t> encode_record(const PacketRecord& record) {
+  vbar_host::packet_record message;
+  message.step = record.step;
+  message.gps_time_ns = record.time.ns;
+  message.to_flight = record.to_flight ? 1 : 0;
+  message.size = static_cast<std::int32_t>(record.packet.size());
+  message.packet = record.packet;
+  std::vector<std::uint8_t> data(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(data.data(), 0, static_cast<int>(data.size()));
+  return data;
+}
+
+struct LogCloser {
+  void operator()(lcm_eventlog_t* log) const { lcm_eventlog_destroy(log); }
+};
+using LogHandle = std::unique_ptr<lcm_eventlog_t, LogCloser>;
+
+struct EventFreer {
+  void operator()(lcm_eventlog_event_t* event) const { lcm_eventlog_free_event(event); }
+};
+using EventHandle = std::unique_ptr<lcm_eventlog_event_t, EventFreer>;
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+  throw std::runtime_error(file.string() + ": " + what);
+}
+
+// LCM's reader looks for the next sync word wherever it is, so a file that is no log would read as an empty one.
+void check_starts_as_log(const std::filesystem::path& file, std::FILE* stream) {
+  constexpr std::array<std::uint8_t, 4> kSyncWord{0xED, 0xA1, 0xDA, 0x01};
+  std::array<std::uint8_t, 4> start{};
+  const std::size_t size = std::fread(start.data(), 1, start.size(), stream);
+  std::rewind(stream);
+  if (size > 0 && start != kSyncWord) fail(file, "no LCM log");
+}
+
+// The size that a record claims, at its place in the encoded record, must be that of the event: the generated decoder
+// makes room for whatever is claimed before it looks whether the bytes are there.
+bool claims_its_size(const lcm_eventlog_event_t& event) {
+  constexpr std::size_t kSizeAt = 8 + 8 + 8 + 1;  // type hash, step, time, direction
+  constexpr std::size_t kPacketAt = kSizeAt + 4;
+  const std::span bytes(static_cast<const std::uint8_t*>(event.data), static_cast<std::size_t>(event.datalen));
+  return bytes.size() >= kPacketAt &&
+         fsw::packets::read_big_endian<std::uint32_t>(bytes, kSizeAt) == bytes.size() - kPacketAt;
+}
+
+PacketRecord record_of(const lcm_eventlog_event_t& event, const std::filesystem::path& file) {
+  vbar_host::packet_record message;
+  const bool good = claims_its_size(event) && message.decode(event.data, 0, event.datalen) == event.datalen &&
+                    message.step >= 0 && message.step <= std::numeric_limits<std::uint32_t>::max() &&
+                    (message.to_flight == 0 || message.to_flight == 1);
+  if (!good) fail(file, "event " + std::to_string(event.eventnum) + " is a damaged packet record");
+  return {static_cast<std::uint32_t>(message.step),
+          {message.gps_time_ns},
+          message.to_flight == 1,
+          std::move(message.packet)};
+}
+
+}  // namespace
+
+std::vector<LcmEvent> lcm_events_of(const PacketRecord& record) {
+  std::vector<LcmEvent> events;
+  events.push_back({kPacketChannel, encode_record(record)});
+  const auto view = fsw::packets::parse_packet(record.packet);
+  if (!view.ok() || view.value().header.flags != fsw::packets::SequenceFlags::kUnsegmented) return events;
+  const fsw::packets::PacketHeader& header = view.value().header;
+  if (const char* name = fsw::packets::message_name(header.apid)) {
+    const auto payload = view.value().payload;
+    events.push_back(
+        {"vbar/" + std::string(name) + "/" + std::to_string(header.spacecraft) + "/" + std::to_string(header.unit),
+         {payload.begin(), payload.end()}});
+  }
+  return events;
+}
+
+struct PacketLogWriter::Log {
+  std::filesystem::path file;
+  LogHandle handle;
+};
+
+PacketLogWriter::PacketLogWriter(const std::filesystem::path& file)
+    : log_(new Log{file, LogHandle(lcm_eventlog_create(file.c_str(), "w"))}) {
+  if (log_->handle == nullptr) fail(file, "cannot be written");
+}
+
+PacketLogWriter::~PacketLogWriter() = default;
+
+void PacketLogWriter::write(const PacketRecord& record) {
+  for (LcmEvent& event : lcm_events_of(record)) {
+    lcm_eventlog_event_t raw{};
+    raw.timestamp = lcm_timestamp(record.time);
+    raw.channellen = static_cast<std::int32_t>(event.channel.size());
+    raw.channel = event.channel.data();
+    raw.datalen = static_cast<std::int32_t>(event.data.size());
+    raw.data = event.data.data();
+    if (lcm_eventlog_write_event(log_->handle.get(), &raw) != 0) fail(log_->file, "cannot be written");
+  }
+}
+
+void PacketLogWriter::flush() {
+  if (std::fflush(log_->handle->f) != 0) fail(log_->file, "cannot be written");
+}
+
+PacketLog read_packet_log(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) fail(file, "no such file");
+  const LogHandle log(lcm_eventlog_create(file.c_str(), "r"));
+  if (log == nullptr) fail(file, "cannot be read");
+  check_starts_as_log(file, log->f);
+
+  PacketLog result;
+  long whole = 0;  // where the last whole event ends
+  while (const EventHandle event{lcm_eventlog_read_next_event(log.get())}) {
+    whole = std::ftell(log->f);
+    if (std::string_view(event->channel) == kPacketChannel) result.records.push_back(record_of(*event, file));
+  }
+  result.cut_short = static_cast<std::uintmax_t>(whole) != std::filesystem::file_size(file);
+  return result;
+}
+
+}  // namespace vbar::twins

@@ -1,0 +1,68 @@
+#pragma once
+// Logs of packets in LCM's log format: what a run leaves (packets.lcmlog), and what lcm-logger writes when it listens
+// to a live run. A packet is two events:
+//   VBAR_PACKET                               a vbar_host.packet_record: the whole space packet, its step and direction
+//   vbar/<message>/<spacecraft>/<unit>        the LCM message inside it, for lcm-spy and other LCM programs that only
+//   listen
+// Only the first is read back. Event times are the simulated GPS time, so that the same run makes the same log.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::twins {
+
+inline constexpr const char* kPacketChannel = "VBAR_PACKET";
+
+/// A packet as it crossed the border of a flight computer.
+struct PacketRecord {
+  std::uint32_t step = 0;  ///< of the flight step that took it (its inputs and its tick) or made it
+  fsw::GpsTime time;       ///< of that step
+  bool to_flight = false;
+  Packet packet;
+};
+
+/// What goes out on LCM for a packet.
+struct LcmEvent {
+  std::string channel;
+  std::vector<std::uint8_t> data;
+};
+
+/// The record and, if the packet is whole and holds an LCM message, the message.
+[[nodiscard]] std::vector<LcmEvent> lcm_events_of(const PacketRecord& record);
+
+class PacketLogWriter {
+ public:
+  /// Makes or empties `file`. Throws std::runtime_error that names it.
+  explicit PacketLogWriter(const std::filesystem::path& file);
+  ~PacketLogWriter();
+  PacketLogWriter(const PacketLogWriter&) = delete;
+  PacketLogWriter& operator=(const PacketLogWriter&) = delete;
+
+  /// Throws std::runtime_error if the file takes no more.
+  void write(const PacketRecord& record);
+
+  /// Everything written is in the file. Throws as write.
+  void flush();
+
+ private:
+  struct Log;
+  std::unique_ptr<Log> log_;
+};
+
+struct PacketLog {
+  std::vector<PacketRecord> records;  ///< in the order of the file
+  bool cut_short = false;             ///< the file ends within an event, as that of a killed run may
+};
+
+/// Reads all packets of a log; events of other channels are passed over. Throws std::runtime_error that names the file
+/// for one that cannot be read, that is no LCM log, and for a record that is damaged.
+[[nodiscard]] PacketLog read_packet_log(const std::filesystem::path& file);
+
+}  // namespace vbar::twins

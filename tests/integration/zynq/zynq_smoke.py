@@ -1,0 +1,224 @@
+#!/usr/bin/env python3
+"""zynq_smoke.py IMAGE_FOLDER HOST_LIBRARY [TEST...]: the Zynq images on the emulator, spoken to from outside.
+
+IMAGE_FOLDER holds vbar_zynq7000_example.elf and vbar_zynq7000_selftest.elf; HOST_LIBRARY is the example article as a
+shared library of this computer, which must answer with the same bits. Exit status 77 when any of these, or QEMU, is
+missing: then there is nothing to test."""
+
+import ctypes
+import math
+import os
+import shutil
+import sys
+import time
+import unittest
+
+from board_link import (ACK, APID_MANEUVER_COMMAND, APID_TELEMETRY_NAVIGATION, HELLO, POLL, Datagrams,
+                        Packet, SerialLine, Session, StepReport, frame, ideal_navigation, tick)
+from emulated_board import EmulatedBoard
+
+START_NS = 1_400_000_000_000_000_000
+PERIOD_NS = 10_000_000_000
+STEPS = 40
+
+
+def inputs(step):
+    """Packets of a step: servicer on a circular orbit of 7000 km, target drifting around it."""
+    mu, radius = 3.986004415e14, 7.0e6
+    rate = math.sqrt(mu / radius**3)
+    angle = rate * 10.0 * step
+    r = (radius * math.cos(angle), radius * math.sin(angle), 0.0)
+    v = (-radius * rate * math.sin(angle), radius * rate * math.cos(angle), 0.0)
+    offset = (300.0 * math.sin(3.0 * angle), 200.0, 50.0 * math.cos(angle))
+    states = r + v + tuple(a + b for a, b in zip(r, offset)) + v
+    now = START_NS + step * PERIOD_NS
+    return [ideal_navigation(step, now, states), tick(step, now, PERIOD_NS)]
+
+
+class HostArticle:
+    """The example article in this process, through the C interface of fsw/gnc/vbar_gnc.h."""
+
+    def __init__(self, path, spacecraft=1):
+        sink_type = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.POINTER(ctypes.c_uint8), ctypes.c_size_t)
+        self.library = ctypes.CDLL(path)
+        self.library.vbar_gnc_state_size.restype = ctypes.c_size_t
+        self.library.vbar_gnc_step.argtypes = [ctypes.c_void_p, ctypes.c_int64]
+        self.packets = []
+        self.sink = sink_type(lambda _, data, size: self.packets.append(bytes(data[:size])))
+        self.state = ctypes.create_string_buffer(self.library.vbar_gnc_state_size())
+        assert self.library.vbar_gnc_init(self.state, ctypes.c_uint8(spacecraft), self.sink, None) == 0
+
+    def step(self, step, packets):
+        self.packets = []
+        for packet in packets:
+            self.library.vbar_gnc_receive(self.state, packet, ctypes.c_size_t(len(packet)))
+        self.library.vbar_gnc_step(self.state, START_NS + step * PERIOD_NS)
+        return self.packets
+
+
+def fly(session, steps=STEPS):
+    """Answers without their reports, and the reports."""
+    answers, reports = [], []
+    for step in range(steps):
+        packets = session.step(step, inputs(step))
+        answers.append(packets[:-1])
+        reports.append(StepReport(Packet(packets[-1])))
+    return answers, reports
+
+
+class ZynqSmoke(unittest.TestCase):
+    image_folder = ""
+    host_library = ""
+
+    def example(self, **options):
+        return EmulatedBoard(os.path.join(self.image_folder, "vbar_zynq7000_example.elf"), **options)
+
+    def datagrams(self, board):
+        line = Datagrams(board.udp_port)
+        self.addCleanup(line.close)
+        return line
+
+    def expected(self, steps=STEPS):
+        article = HostArticle(self.host_library)
+        return [article.step(step, inputs(step)) for step in range(steps)]
+
+    def check_flight(self, answers, reports):
+        self.assertEqual(answers, self.expected(len(answers)), "host and Zynq differ")
+        kinds = {Packet(packet).apid for answer in answers for packet in answer}
+        self.assertEqual(kinds, {APID_TELEMETRY_NAVIGATION, APID_MANEUVER_COMMAND})
+        for step, report in enumerate(reports):
+            self.assertEqual((report.step, report.unit), (step, 1))
+            self.assertGreater(report.count, 0)
+            # Above nothing, below the 256 KiB of the linker script.
+            self.assertTrue(1000 < report.stack_bytes < 256 * 1024, report.stack_bytes)
+
+    def test_serial(self):
+        """Hello, steps and goodbye over the serial line: the host library's bits, and a clean end."""
+        with self.example() as board:
+            session = Session(SerialLine(board.serial), 11)
+            self.assertIn("zynq7000", session.hello())
+            self.check_flight(*fly(session))
+            session.goodbye()
+            self.assertEqual(board.wait(), 0, board.console())
+            self.assertIn("example article in C", board.console())
+
+    def test_ethernet(self):
+        """The same over UDP."""
+        with self.example() as board:
+            session = Session(self.datagrams(board), 12)
+            session.hello()
+            self.check_flight(*fly(session))
+            session.goodbye()
+            self.assertEqual(board.wait(), 0, board.console())
+
+    def test_cost_repeats(self):
+        """With a fixed -icount a step costs the same instructions in every run, whatever the line and the load."""
+        costs = []
+        for make_line in (lambda b: SerialLine(b.serial), self.datagrams, lambda b: SerialLine(b.serial)):
+            with self.example() as board:
+                session = Session(make_line(board), 13)
+                session.hello()
+                _, reports = fly(session)
+                # 10 ns a tick, 2^5 ns an instruction.
+                costs.append([round(report.count * 10 / 32) for report in reports])
+        self.assertEqual(costs[0], costs[1])
+        self.assertEqual(costs[0], costs[2])
+        print(f"a step of the example article: {min(costs[0])} to {max(costs[0])} instructions")
+
+    def test_barrier(self):
+        """A step runs once, when all its packets are in, and its answer can be had again."""
+        with self.example() as board:
+            session = Session(SerialLine(board.serial), 14)
+            session.hello()
+            first, last = inputs(0)
+            session.line.send(session.data(0, 0, first, last=False))
+            self.assertIsNone(session.next_frame(0.3), "answered before the barrier closed")
+            session.line.send(session.data(0, 0, first, last=False))  # a duplicate
+            session.line.send(frame(POLL, session.number, 0, 0))
+            held = session.next_frame(2.0)
+            self.assertEqual((held.kind, held.step, held.index), (ACK, 0, 1))
+            session.line.send(session.data(0, 1, last, last=True))
+            answer = session.answer(0, acknowledge=False)
+            session.send_step(0, [first, last])  # again: must not run again
+            session.line.send(frame(POLL, session.number, 0, 0))
+            self.assertEqual(session.answer(0), answer)
+            next_answer = session.step(1, inputs(1))
+            self.assertEqual([answer[:-1], next_answer[:-1]], self.expected(2))
+            self.assertEqual(StepReport(Packet(next_answer[-1])).duplicated, 3)
+
+    def test_broken_bytes(self):
+        """Flipped, dropped and invented bytes on the line are detected and counted, and change no result."""
+        with self.example() as board:
+            session = Session(SerialLine(board.serial), 15)
+            session.hello()
+            for step in range(20):
+                good = session.data(step, 0, inputs(step)[0], last=False)
+                flipped = bytearray(good)
+                flipped[20 + step] ^= 1 << (step % 8)
+                session.line.send(bytes(flipped))
+                session.line.send(good[:30] + good[31:])
+                session.line.send_raw(b"\x05\x01\x00" + bytes(range(1, 200)) * 20 + b"\x00")  # not COBS; longer than a frame
+                answer = session.step(step, inputs(step))
+                self.assertEqual(answer[:-1], self.expected(step + 1)[step])
+            report = StepReport(Packet(answer[-1]))
+            self.assertEqual(report.rejected, 4 * 20)  # two bad checksums and two bad codings a step
+
+    def test_strangers(self):
+        """A session has one peer: frames of other senders, on either interface, are ignored and counted."""
+        with self.example() as board:
+            session = Session(self.datagrams(board), 16)
+            session.hello()
+            strangers = [self.datagrams(board), SerialLine(board.serial)]
+            for step in range(10):
+                for stranger in strangers:
+                    stranger.send(frame(HELLO, 99, payload=b"\x01"))
+                    stranger.send(session.data(step, 0, inputs(step)[0], last=False))
+                    stranger.send_raw(b"junk\0")
+                answer = session.step(step, inputs(step))
+                self.assertEqual(answer[:-1], self.expected(step + 1)[step])
+                if step == 0:
+                    time.sleep(0.5)  # let the serial line's bytes arrive, too
+            for stranger in strangers:
+                self.assertIsNone(stranger.receive(0.2), "a stranger was answered")
+            session.step(10, inputs(10))
+            report = StepReport(Packet(session.step(11, inputs(11))[-1]))
+            self.assertEqual(report.rejected, 60)  # three frames of each of two strangers in ten steps
+
+    def test_next_session(self):
+        """Without an emulator that takes the exit, as on silicon: after a goodbye the board serves whoever says hello."""
+        with self.example(semihosting=False) as board:
+            session = Session(SerialLine(board.serial), 17)
+            session.hello()
+            self.check_flight(*fly(session, 5))
+            session.goodbye()
+            session = Session(self.datagrams(board), 18)
+            session.hello()
+            self.check_flight(*fly(session, 5))
+            self.assertIsNone(board.wait(0.2), "the board stopped")
+
+    def test_processor(self):
+        """The self-test on the emulated processor, then each fault: caught, named, and an exit code of its own."""
+        image = os.path.join(self.image_folder, "vbar_zynq7000_selftest.elf")
+        cases = {"": (0, "self-test passed"), "heap": (99, "HALT heap call"), "undefined": (101, "FAULT undefined"),
+                 "jump": (102, "FAULT prefetch abort pc=03f00000"), "null": (103, "dfar=00000000"),
+                 "code": (103, "dfar=00100000"), "stack": (103, "sp=03eff")}
+        for name, (code, text) in cases.items():
+            with self.subTest(name), EmulatedBoard(image, arguments=["selftest", name] if name else ["selftest"]) as board:
+                self.assertEqual(board.wait(), code, board.console())
+                self.assertIn(text, board.console())
+
+
+def main():
+    ZynqSmoke.image_folder, ZynqSmoke.host_library = sys.argv[1:3]
+    needed = [os.path.join(sys.argv[1], "vbar_zynq7000_example.elf"),
+              os.path.join(sys.argv[1], "vbar_zynq7000_selftest.elf"), sys.argv[2]]
+    missing = [path for path in needed if not os.path.exists(path)]
+    if missing or shutil.which("qemu-system-arm") is None:
+        print("skipped, missing:", " ".join(missing) or "qemu-system-arm")
+        return 77
+    suite = unittest.main(argv=[sys.argv[0], "-v"] + sys.argv[3:], exit=False)
+    return 0 if suite.result.wasSuccessful() else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,190 @@
+// e/i-vector separation and the closest points of a free drift.
+
+#include "fsw/safety/passive_safety.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fsw/orbit/constants.h"
+#include "fsw/orbit/roe.h"
+#include "fsw/orbit/rtn.h"
+#include "fsw/orbit/secular.h"
+#include "tests/unit/fsw/orbit/mission.h"
+
+namespace vbar::fsw::safety {
+namespace {
+
+namespace mission = orbit::mission;
+using orbit::QnsElements;
+
+constexpr double kA = mission::kReferenceA;
+constexpr double kRevolution = 5934.0;  // s, nodal period of the mission orbit and a bit
+
+/// Metres to ROE.
+Vector6 roe_of(double da, double dlambda, double dex, double dey, double dix, double diy) {
+  Vector6 roe;
+  roe << da, dlambda, dex, dey, dix, diy;
+  return roe / kA;
+}
+
+TEST(EccentricityInclinationSeparation, OfParallelAndPerpendicularVectors) {
+  // Parallel or antiparallel: the shorter one. Perpendicular: nothing. Between: singular values computed elsewhere.
+  EXPECT_NEAR(eccentricity_inclination_separation(roe_of(0, 0, 0, 400, 0, 200), kA), 200.0, 1e-10);
+  EXPECT_NEAR(eccentricity_inclination_separation(roe_of(0, 0, 0, 400, 0, -200), kA), 200.0, 1e-10);
+  EXPECT_NEAR(eccentricity_inclination_separation(roe_of(0, 0, 300, 0, 0, 300), kA), 0.0, 1e-10);
+  EXPECT_NEAR(eccentricity_inclination_separation(roe_of(0, 0, 300, 0, 300 * std::sqrt(0.5), 300 * std::sqrt(0.5)), kA),
+              162.35883,
+              5e-6);  // printed digits
+  EXPECT_NEAR(eccentricity_inclination_separation(roe_of(0, 0, 3, 1, -1, 2), kA), 0.25877718, 5e-9);
+  EXPECT_EQ(eccentricity_inclination_separation(Vector6::Zero(), kA), 0.0);
+}
+
+TEST(EccentricityInclinationSeparation, IsTheLeastDistanceInTheRnPlane) {
+  std::mt19937_64 generator(6);
+  std::uniform_real_distribution<double> unit(-300.0, 300.0);
+  for (int k = 0; k < 100; ++k) {
+    const double dex = unit(generator), dey = unit(generator), dix = unit(generator), diy = unit(generator);
+    double least = std::numeric_limits<double>::infinity();
+    for (int j = 0; j < 100000; ++j) {
+      const double u = j * 2e-5 * math::kPi;
+      least = std::min(least, std::hypot(dex * std::cos(u) + dey * std::sin(u), dix * std::sin(u) - diy * std::cos(u)));
+    }
+    // Sampled 6e-5 rad apart, 3e-5 from the minimum: at most 420 m times that where the ellipse is flat.
+    EXPECT_NEAR(eccentricity_inclination_separation(roe_of(0, 0, dex, dey, dix, diy), kA), least, 0.015);
+  }
+}
+
+TEST(Drift, OfTheWaypointsKeepsTheirSeparation) {
+  // Least RN distance over a revolution in the linear map with fixed ROE, m (sampled independently): with a da of -87 m
+  // the ellipse of waypoint 1 is shifted towards the servicer. dlambda = 0 here: it bends the orbit of waypoint 1 down
+  // by 177 m. Over the revolution J2 turns the e-vector by 0.0037 and the i-vector by up to 0.0081 rad the other way;
+  // equal vectors lose half of the angle between them (0.6 %), unequal ones less.
+  struct Row {
+    std::size_t waypoint;
+    double least, tolerance;
+  };
+  for (const Row& row : {Row{1, 913.0, 0.5}, Row{8, 0.9574, 1e-3}, Row{9, 1.0, 1e-3}, Row{10, 1.0, 6e-3}}) {
+    Vector6 roe = mission::kWaypoints[row.waypoint].roe();
+    roe(1) = 0.0;
+    const DriftSafety drift = assess_drift(mission::kServicerMean, roe, kRevolution).value();
+    EXPECT_NEAR(drift.radial_normal.distance, row.least, row.tolerance) << "waypoint " << row.waypoint;
+  }
+}
+
+/// Closest points by the exact map, every two seconds: both mean orbits moved on, through their osculating states.
+struct Exact {
+  double spatial = std::numeric_limits<double>::infinity();
+  double radial_normal = std::numeric_limits<double>::infinity();
+  double farthest = 0.0;
+};
+
+Exact exact_drift(const Vector6& roe, double horizon) {
+  const QnsElements target = orbit::qns_from_roe(mission::kServicerMean, roe);
+  Exact exact;
+  for (double t = 0.0; t <= horizon; t += 2.0) {
+    const QnsElements chief = orbit::propagate_secular(mission::kServicerMean, t);
+    const Vector6 now = orbit::roe_from_qns(chief, orbit::propagate_secular(target, t));
+    const Vector3 r = orbit::relative_state_from_mean_roe(chief, now).value().position_rtn;
+    exact.spatial = std::min(exact.spatial, r.norm());
+    exact.radial_normal = std::min(exact.radial_normal, std::hypot(r.x(), r.z()));
+    exact.farthest = std::max(exact.farthest, r.norm());
+  }
+  return exact;
+}
+
+TEST(Drift, AgreesWithTheExactMapWithinItsStatedError) {
+  const double e = std::hypot(mission::kServicerMean.ex, mission::kServicerMean.ey);
+  std::vector<Vector6> starts;
+  for (const mission::Waypoint& waypoint : mission::kWaypoints) starts.push_back(waypoint.roe());
+  std::mt19937_64 generator(7);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (int k = 0; k < 30; ++k) {
+    const double size = std::pow(10.0, 2.0 + 1.5 * unit(generator));
+    starts.push_back(size * roe_of(0.1 * unit(generator), 3.0 * unit(generator), unit(generator), unit(generator),
+                                   unit(generator), unit(generator)));
+  }
+  for (const Vector6& roe : starts) {
+    const DriftSafety drift = assess_drift(mission::kServicerMean, roe, 2.0 * kRevolution).value();
+    const Exact exact = exact_drift(roe, 2.0 * kRevolution);
+    const double stated = 0.6 * (e + orbit::kJ2) * exact.farthest;
+    EXPECT_NEAR(drift.spatial.distance, exact.spatial, stated) << (kA * roe).transpose();
+    EXPECT_NEAR(drift.radial_normal.distance, exact.radial_normal, stated) << (kA * roe).transpose();
+  }
+}
+
+TEST(Drift, FindsTheMinimumBetweenItsSamples) {
+  // A fly-by: 900 m ahead, closing by 3 pi a da = 1.9 km a revolution. Samples are 59 s apart; the position is searched
+  // every 0.05 s here.
+  const Vector6 roe = roe_of(200.0, 900.0, 0.0, 120.0, 0.0, 80.0);
+  const DriftSafety drift = assess_drift(mission::kServicerMean, roe, 2.0 * kRevolution).value();
+  const QnsElements target = orbit::qns_from_roe(mission::kServicerMean, roe);
+  double least = std::numeric_limits<double>::infinity();
+  double least_rn = least;
+  for (double t = 0.0; t < 2.0 * kRevolution; t += 0.05) {
+    const QnsElements chief = orbit::propagate_secular(mission::kServicerMean, t);
+    const Vector6 now = orbit::roe_from_qns(chief, orbit::propagate_secular(target, t));
+    const Vector6 x = orbit::rtn_from_roe_linear(chief, now) / kA;
+    const double radius = 1.0 + x(0);
+    const Vector3 r = kA * Vector3(radius * std::cos(x(2)) * std::cos(x(1)) - 1.0,
+                                   radius * std::cos(x(2)) * std::sin(x(1)), radius * std::sin(x(2)));
+    least = std::min(least, r.norm());
+    least_rn = std::min(least_rn, std::hypot(r.x(), r.z()));
+  }
+  // The parabola through samples 3.6 deg apart leaves (0.063 rad)^4/64 = 2.5e-7 of the orbit's size; time 0.05 s: less.
+  EXPECT_NEAR(drift.spatial.distance, least, 0.05);
+  EXPECT_NEAR(drift.radial_normal.distance, least_rn, 0.05);
+}
+
+TEST(Drift, SubtractsWhatIsUncertain) {
+  const Vector6 roe = mission::kWaypoints[8].roe();
+  const double horizon = kRevolution;
+  const DriftSafety plain = assess_drift(mission::kServicerMean, roe, horizon).value();
+  const DriftSafety rn = assess_drift(mission::kServicerMean, roe, horizon, {.radial_normal = 0.3}).value();
+  EXPECT_NEAR(rn.radial_normal.distance, plain.radial_normal.distance - 0.3,
+              1e-6);  // both refined by the same parabola
+  EXPECT_LT(rn.spatial.distance, plain.spatial.distance);
+  // An along-track position that is not known at all leaves the RN distance.
+  const DriftSafety blind = assess_drift(mission::kServicerMean, roe, horizon, {.along_track = 1e6}).value();
+  EXPECT_NEAR(blind.spatial.distance, plain.radial_normal.distance, 1e-9);
+  // So does one whose error grows past the separation in time.
+  const DriftSafety growing = assess_drift(mission::kServicerMean, roe, horizon, {.along_track_rate = 1.0}).value();
+  EXPECT_LT(growing.spatial.distance, plain.spatial.distance);
+  // Never below zero.
+  const DriftSafety hopeless =
+      assess_drift(mission::kServicerMean, roe, horizon, {.radial_normal = 50.0, .along_track = 50.0}).value();
+  EXPECT_EQ(hopeless.spatial.distance, 0.0);
+}
+
+TEST(Drift, OfNoDurationIsThePresentDistance) {
+  const Vector6 roe = mission::kWaypoints[8].roe();
+  const DriftSafety drift = assess_drift(mission::kServicerMean, roe, 0.0).value();
+  const Vector3 now = orbit::rtn_from_roe_linear(mission::kServicerMean, roe).head<3>();
+  EXPECT_NEAR(drift.spatial.distance, now.norm(), 1e-3 * now.norm());  // curvature
+  EXPECT_EQ(drift.spatial.time, 0.0);
+}
+
+TEST(Drift, RefusesWhatTheModelCannotSee) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const QnsElements servicer = mission::kServicerMean;
+  const Vector6 roe = mission::kWaypoints[8].roe();
+  EXPECT_EQ(assess_drift(servicer, roe, nan).status(), Status::kNotFinite);
+  EXPECT_EQ(assess_drift(servicer, roe, -1.0).status(), Status::kOutOfRange);
+  EXPECT_EQ(assess_drift(servicer, roe, 1e6).status(), Status::kOutOfRange);
+  EXPECT_EQ(assess_drift(servicer, nan * roe, 100.0).status(), Status::kNotFinite);
+  EXPECT_EQ(assess_drift(servicer, Vector6::Constant(0.6), 100.0).status(), Status::kOutOfRange);
+  EXPECT_EQ(assess_drift(servicer, roe, 100.0, {.radial_normal = nan}).status(), Status::kNotFinite);
+  QnsElements bad = servicer;
+  bad.a = -1.0;
+  EXPECT_EQ(assess_drift(bad, roe, 100.0).status(), Status::kOutOfRange);
+  bad = servicer;
+  bad.u = nan;
+  EXPECT_EQ(assess_drift(bad, roe, 100.0).status(), Status::kNotFinite);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::safety

@@ -1,0 +1,186 @@
+// Plans with missed burns, against truth: point mass and J2 integrated slowly, impulses on the servicer.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
+#include "fsw/orbit/rtn.h"
+#include "fsw/safety/passive_safety.h"
+#include "tests/unit/fsw/orbit/mission.h"
+#include "tests/unit/fsw/orbit/reference_orbit.h"
+
+namespace vbar::fsw::safety {
+namespace {
+
+namespace mission = orbit::mission;
+namespace reference = orbit::reference;
+using control::Plan;
+using orbit::CartesianState;
+using orbit::QnsElements;
+
+constexpr GpsTime kStart{995000000'000'000'000};
+constexpr double kHorizon = 6000.0;  // s, an orbit and a bit
+
+void add_burn(Plan& plan, std::int64_t second, const Vector3& dv_rtn) {
+  plan.burns[plan.count++] = {.time = kStart + duration_of_seconds(second), .dv_rtn = dv_rtn};
+}
+
+Vector6 roe_of(double da, double dlambda, double dex, double dey, double dix, double diy) {
+  Vector6 roe;
+  roe << da, dlambda, dex, dey, dix, diy;
+  return roe / mission::kReferenceA;
+}
+
+struct Truth {
+  double least = std::numeric_limits<double>::infinity();
+  double time = 0.0;
+  std::size_t prefix = 0;
+  double farthest = 0.0;
+};
+
+/// Least distance over all prefixes, the drift after each watched for the horizon and until the next burn, every 10 s.
+Truth fly_all_prefixes(const Vector6& roe, const Plan& plan) {
+  const auto state_of = [](const QnsElements& mean) {
+    return orbit::cartesian_from_qns(orbit::osculating_from_mean(mean).value()).value();
+  };
+  CartesianState servicer = state_of(mission::kServicerMean);
+  CartesianState target = state_of(orbit::qns_from_roe(mission::kServicerMean, roe));
+  double now = 0.0;
+  Truth truth;
+  for (std::size_t prefix = 0; prefix <= plan.count; ++prefix) {
+    const double next = prefix < plan.count ? seconds(plan.burns[prefix].time - kStart) : now;
+    CartesianState s = servicer;
+    CartesianState t = target;
+    const double watched = std::max(kHorizon, next - now);
+    for (double elapsed = 0.0; elapsed <= watched; elapsed += 10.0) {
+      const double distance = (s.position_eci - t.position_eci).norm();
+      truth.farthest = std::max(truth.farthest, distance);
+      if (distance < truth.least) truth = {distance, now + elapsed, prefix, truth.farthest};
+      s = reference::fly(s, 10.0, 10.0);
+      t = reference::fly(t, 10.0, 10.0);
+    }
+    if (prefix == plan.count) break;
+    servicer = orbit::apply_impulse_rtn(reference::fly(servicer, next - now), plan.burns[prefix].dv_rtn);
+    target = reference::fly(target, next - now);
+    now = next;
+  }
+  return truth;
+}
+
+TEST(PlanSafety, SeesTheDriftThatAMissedBrakingBurnLeavesBehind) {
+  // 1000 m behind the target on its orbit. A retrograde burn that lowers the orbit by 106 m gains 3 pi times that, 1000
+  // m, in a revolution; a burn half a revolution later stops it. If that one is missed, the servicer arrives at the
+  // target.
+  const Vector6 roe = roe_of(0, 1000, 0, 0, 0, 0);
+  const double dv = 0.5 * orbit::mean_motion(mission::kReferenceA) * 1000.0 / (3.0 * math::kPi);
+  Plan plan;
+  add_burn(plan, 600, {0.0, -dv, 0.0});
+  add_burn(plan, 600 + 2963, {0.0, -dv, 0.0});
+  const SafetyCriterion criterion{.keep_out_radius = 100.0, .horizon = kHorizon};
+
+  const PlanSafety verdict = assess_plan(kStart, mission::kServicerMean, roe, plan, criterion).value();
+  EXPECT_FALSE(verdict.safe);
+  EXPECT_EQ(verdict.prefix, 1U);
+  EXPECT_LT(verdict.least_distance, 10.0);          // J2 shifts the rendezvous by metres
+  EXPECT_NEAR(verdict.time, 600.0 + 5926.0, 60.0);  // a revolution after the burn
+  const Truth truth = fly_all_prefixes(roe, plan);
+  EXPECT_EQ(truth.prefix, 1U);
+  EXPECT_NEAR(truth.time, verdict.time, 30.0);
+  EXPECT_NEAR(truth.least, verdict.least_distance,
+              5.0);  // 0.6 (e + J2) of 1.4 km, and 1.7 m between truth's samples
+
+  // Without the first burn nothing happens; the sign of a servicer's burn matters: prograde opens the distance.
+  Plan none;
+  EXPECT_TRUE(assess_plan(kStart, mission::kServicerMean, roe, none, criterion).value().safe);
+  Plan prograde;
+  add_burn(prograde, 600, {0.0, dv, 0.0});
+  EXPECT_TRUE(assess_plan(kStart, mission::kServicerMean, roe, prograde, criterion).value().safe);
+}
+
+TEST(PlanSafety, AgreesWithTruthForEveryKindOfBurn) {
+  struct Case {
+    Vector6 roe;
+    std::vector<std::pair<std::int64_t, Vector3>> burns;
+  };
+  const std::vector<Case> cases = {
+      {roe_of(0, -200, 0, 30, 0, 30),
+       {{300, {0.01, 0.02, 0.0}}, {2500, {0.0, -0.03, 0.02}}, {6000, {-0.02, 0.0, -0.03}}}},
+      {roe_of(20, -1000, 0, 100, 0, -80), {{0, {0.0, 0.0, 0.1}}, {9000, {0.0, 0.05, 0.0}}}},
+      {mission::kWaypoints[8].roe(), {{100, {1e-4, -2e-4, 3e-4}}, {1900, {-3e-4, 1e-4, 1e-4}}}},
+      {mission::kWaypoints[3].roe(), {{50, {0.05, 0.3, -0.2}}, {3000, {0.0, -0.2, 0.2}}, {12000, {0.1, 0.1, 0.1}}}},
+  };
+  for (const Case& c : cases) {
+    Plan plan;
+    for (const auto& [second, dv] : c.burns) add_burn(plan, second, dv);
+    const PlanSafety verdict = assess_plan(kStart, mission::kServicerMean, c.roe, plan, {.horizon = kHorizon}).value();
+    const Truth truth = fly_all_prefixes(c.roe, plan);
+    // The stated 0.6 (e + J2) of the largest separation, and what truth misses between its samples of 10 s.
+    const double tolerance = 1.3e-3 * truth.farthest + 5e-3 * truth.least;
+    EXPECT_NEAR(verdict.least_distance, truth.least, tolerance) << (mission::kReferenceA * c.roe).transpose();
+    EXPECT_EQ(verdict.prefix, truth.prefix) << (mission::kReferenceA * c.roe).transpose();
+  }
+}
+
+TEST(PlanSafety, WatchesUntilTheNextBurnHoweverLateItIs) {
+  // Closing at 30 m of da: 280 m a revolution, so the pass comes after 3.5 revolutions, far beyond the horizon of one.
+  const Vector6 roe = roe_of(30, 1000, 0, 0, 0, 0);
+  Plan late;
+  add_burn(late, 5 * 5934, {0.0, 1e-3, 0.0});
+  const SafetyCriterion criterion{.keep_out_radius = 100.0, .horizon = kHorizon};
+  const PlanSafety verdict = assess_plan(kStart, mission::kServicerMean, roe, late, criterion).value();
+  EXPECT_FALSE(verdict.safe);
+  EXPECT_EQ(verdict.prefix, 0U);
+  EXPECT_NEAR(verdict.least_distance, 30.0, 3.0);  // passes at a da; 0.6 (e + J2) of 1.2 km
+  EXPECT_NEAR(verdict.time, 3.5 * 5934.0, 0.05 * 5934.0);
+}
+
+TEST(PlanSafety, OfNoBurnsIsThatOfTheDrift) {
+  const Vector6 roe = mission::kWaypoints[8].roe();
+  const PlanSafety plan =
+      assess_plan(kStart, mission::kServicerMean, roe, {}, {.keep_out_radius = 1.0, .horizon = kHorizon}).value();
+  const DriftSafety drift = assess_drift(mission::kServicerMean, roe, kHorizon).value();
+  // The plan carries the target as elements: ROE round to 2e-16, 1.5e-9 m.
+  EXPECT_NEAR(plan.least_distance, drift.spatial.distance, 1e-8);
+  EXPECT_NEAR(plan.least_rn_distance, drift.radial_normal.distance, 1e-8);
+  EXPECT_NEAR(plan.time, drift.spatial.time, 1e-3);
+  EXPECT_TRUE(plan.safe);
+}
+
+TEST(PlanSafety, UncertaintyCanFailAPlan) {
+  const Vector6 roe = mission::kWaypoints[9].roe();
+  SafetyCriterion criterion{.keep_out_radius = 0.8, .horizon = kHorizon};
+  EXPECT_TRUE(assess_plan(kStart, mission::kServicerMean, roe, {}, criterion).value().safe);
+  criterion.bound = {.radial_normal = 0.3, .along_track = 10.0, .along_track_rate = 0.0};
+  const PlanSafety verdict = assess_plan(kStart, mission::kServicerMean, roe, {}, criterion).value();
+  EXPECT_FALSE(verdict.safe);
+  EXPECT_NEAR(verdict.least_distance, 0.7, 2e-3);  // the separation of 1 m, J2 turning de against di, less 0.3
+}
+
+TEST(PlanSafety, RefusesWhatIsNoPlan) {
+  const Vector6 roe = mission::kWaypoints[8].roe();
+  const SafetyCriterion criterion{.keep_out_radius = 1.0, .horizon = kHorizon};
+  Plan plan;
+  add_burn(plan, 100, Vector3::Zero());
+  add_burn(plan, 50, Vector3::Zero());
+  EXPECT_EQ(assess_plan(kStart, mission::kServicerMean, roe, plan, criterion).status(), Status::kInvalidArgument);
+  plan = {};
+  add_burn(plan, -1, Vector3::Zero());
+  EXPECT_EQ(assess_plan(kStart, mission::kServicerMean, roe, plan, criterion).status(), Status::kInvalidArgument);
+  plan = {};
+  add_burn(plan, 100, Vector3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_EQ(assess_plan(kStart, mission::kServicerMean, roe, plan, criterion).status(), Status::kNotFinite);
+  plan.count = control::kMaxBurns + 1;
+  EXPECT_EQ(assess_plan(kStart, mission::kServicerMean, roe, plan, criterion).status(), Status::kInvalidArgument);
+  plan = {};
+  for (std::size_t k = 0; k < control::kMaxBurns; ++k) add_burn(plan, 10, Vector3::Zero());  // full, and all at once
+  EXPECT_TRUE(assess_plan(kStart, mission::kServicerMean, roe, plan, criterion).ok());
+}
+
+}  // namespace
+}  // namespace vbar::fsw::safety

@@ -1,0 +1,186 @@
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <GeographicLib/SphericalHarmonic.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "host_sim/truth/gravity_coefficients.h"
+#include "host_sim/truth/gravity_field.h"
+#include "tests/unit/host_sim/truth/truth_fixture.h"
+
+namespace vbar::truth {
+namespace {
+
+using fsw::Vector3;
+
+const std::filesystem::path kFile = test::kDataDirectory / "gravity/ggm05s_120.txt";
+
+/// Karney's GeographicLib, an independent implementation (Clenshaw summation).
+class Peer {
+ public:
+  Peer(const GravityCoefficients& model, int degree, int order) : gm_(model.gm), radius_(model.radius) {
+    for (int m = 0; m <= order; ++m) {
+      for (int n = m; n <= degree; ++n) {
+        c_.push_back(model.c_nm(n, m));
+        if (m > 0) s_.push_back(model.s_nm(n, m));
+      }
+    }
+    harmonic_ = GeographicLib::SphericalHarmonic(c_, s_, degree, degree, order, radius_);
+  }
+
+  Vector3 acceleration(const Vector3& r) const {
+    Vector3 gradient;
+    harmonic_(r.x(), r.y(), r.z(), gradient.x(), gradient.y(), gradient.z());
+    return gm_ / radius_ * gradient;
+  }
+
+ private:
+  double gm_, radius_;
+  std::vector<double> c_, s_;
+  GeographicLib::SphericalHarmonic harmonic_;
+};
+
+/// Directions all over the sphere, distances from 200 km height to geostationary.
+std::vector<Vector3> points(int count) {
+  std::mt19937_64 random(60);
+  std::normal_distribution<double> direction;
+  std::uniform_real_distribution<double> log_distance(std::log(6578136.3), std::log(42164000.0));
+  std::vector<Vector3> result;
+  for (int i = 0; i < count; ++i) {
+    const Vector3 d(direction(random), direction(random), direction(random));
+    result.push_back(d.normalized() * std::exp(log_distance(random)));
+  }
+  return result;
+}
+
+void expect_peers_acceleration(int degree, int order, const std::vector<Vector3>& where) {
+  const GravityCoefficients model = load_gravity_coefficients(kFile, degree);
+  const GravityField field(model, degree, order);
+  const Peer peer(model, degree, order);
+  double largest = 0.0;
+  for (const Vector3& r : where) {
+    const Vector3 expected = peer.acceleration(r);
+    largest = std::max(largest, (field.acceleration_itrf(r) - expected).norm() / expected.norm());
+  }
+  testing::Test::RecordProperty("largest_relative_difference", std::to_string(largest * 1e15) + "e-15");
+  EXPECT_LT(largest, 1e-13);  // rounding of two sums of up to 7000 terms; found: 1e-15
+}
+
+TEST(Gravity, AgreesWithGeographicLibTo60) {
+  expect_peers_acceleration(60, 60, points(10000));
+}
+
+TEST(Gravity, AgreesWithGeographicLibTo120) {
+  expect_peers_acceleration(120, 120, points(2000));
+}
+
+TEST(Gravity, AgreesWithGeographicLibForOddSizes) {
+  for (const auto& [degree, order] : {std::pair{2, 0}, {2, 2}, {3, 1}, {5, 5}, {17, 6}, {31, 30}, {70, 1}}) {
+    SCOPED_TRACE(testing::Message() << degree << "x" << order);
+    expect_peers_acceleration(degree, order, points(200));
+  }
+}
+
+TEST(Gravity, HasNoSingularityAtThePoles) {
+  std::vector<Vector3> near_poles;
+  for (double z : {-7.0e6, 7.0e6}) {
+    for (double offset : {0.0, 1e-300, 1e-9, 1.0, 1e3}) {
+      near_poles.emplace_back(offset, 0.0, z);
+      near_poles.emplace_back(0.0, -offset, z);
+    }
+  }
+  expect_peers_acceleration(60, 60, near_poles);
+  expect_peers_acceleration(120, 120, near_poles);
+}
+
+TEST(Gravity, EveryBuildOfTheInnerLoopGivesTheSameBits) {
+  const GravityCoefficients model = load_gravity_coefficients(kFile, 120);
+  for (int degree : {2, 7, 60, 119}) {
+    const GravityField portable(model, degree, degree, sum_harmonics_portable);
+    const GravityField fastest(model, degree, degree, fastest_harmonic_summation());
+    for (const Vector3& r : points(200)) EXPECT_EQ(portable.perturbation_itrf(r), fastest.perturbation_itrf(r));
+  }
+}
+
+TEST(Gravity, Degree2IsTheFormulaOfJ2) {
+  // e.g. Montenbruck and Gill 2000, eq. 3.30 with the degree-2 zonal alone; J2 = -sqrt(5) C20.
+  const GravityCoefficients model = load_gravity_coefficients(kFile, 2);
+  const GravityField field(model, 2, 0);
+  const double j2 = -std::sqrt(5.0) * model.c_nm(2, 0);
+  EXPECT_NEAR(j2, 1.0826358191967e-3, 1e-16);
+  for (const Vector3& r : points(500)) {
+    const double d = r.norm(), z2 = 5.0 * r.z() * r.z() / (d * d);
+    const double scale = -1.5 * j2 * model.gm * model.radius * model.radius / std::pow(d, 5);
+    const Vector3 expected = scale * Vector3(r.x() * (1.0 - z2), r.y() * (1.0 - z2), r.z() * (3.0 - z2));
+    EXPECT_LT((field.perturbation_itrf(r) - expected).norm(),
+              1e-14 * expected.norm());  // rounding of a dozen operations
+  }
+}
+
+TEST(Gravity, Degree0IsThePointMass) {
+  const GravityField field(load_gravity_coefficients(kFile, 0), 0, 0);
+  const Vector3 r(3e6, -4e6, 12e6);
+  EXPECT_EQ(field.perturbation_itrf(r), Vector3::Zero().eval());
+  const Vector3 expected = -test::kGm / (13e6 * 13e6) * r / 13e6;
+  EXPECT_LT((field.acceleration_itrf(r) - expected).norm(), 1e-15 * expected.norm());
+}
+
+TEST(Gravity, RefusesDegreesItDoesNotHave) {
+  EXPECT_THROW(load_gravity_coefficients(kFile, 121), std::invalid_argument);
+  EXPECT_THROW(load_gravity_coefficients(kFile, -1), std::invalid_argument);
+  const GravityCoefficients model = load_gravity_coefficients(kFile, 10);
+  EXPECT_THROW(GravityField(model, 11, 0), std::invalid_argument);
+  EXPECT_THROW(GravityField(model, -1, 0), std::invalid_argument);
+  EXPECT_THROW(GravityField(model, 10, 11), std::invalid_argument);
+  EXPECT_THROW(GravityField(model, 10, -1), std::invalid_argument);
+}
+
+std::string error_for(const std::string& text, int degree = 1) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "vbar_gravity_test.txt";
+  std::ofstream(path) << text;
+  try {
+    static_cast<void>(load_gravity_coefficients(path, degree));
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GravityFile, ErrorsNameFileAndLine) {
+  using testing::HasSubstr;
+  const std::string head = "# test\nmodel M\ngm_m3ps2 4e14\nradius_m 6378000\nmax_degree 1\ntide_system zero_tide\n";
+  const std::string body = "coefficients\n0 0 1 0\n1 0 0 0\n1 1 0 0\n";
+  EXPECT_EQ(error_for(head + body + "end\n"), "");
+  EXPECT_THAT(error_for(""), HasSubstr("vbar_gravity_test.txt:1: the file ends here, expected model"));
+  EXPECT_THAT(error_for(head + body), HasSubstr(":11: the file ends here, expected \"end\""));
+  EXPECT_THAT(error_for(head + "coefficients\n0 0 1 0\n1 0 0 0\n"),
+              HasSubstr("the file ends here, expected the coefficients C and S of degree 1, order 1"));
+  EXPECT_THAT(error_for(head + "coefficients\n0 0 1 0\n1 1 0 0\n"), HasSubstr(":9: found \"1 1 0 0\", expected the"));
+  EXPECT_THAT(error_for(head + "coefficients\n0 0 nan 0\n"), HasSubstr("found \"0 0 nan 0\""));
+  EXPECT_THAT(error_for(head + "coefficients\n0 0 1\n"), HasSubstr("found \"0 0 1\""));
+  EXPECT_THAT(error_for(head + body + "end\n", 2), HasSubstr("gravity degree 2 asked of"));
+  EXPECT_THAT(error_for("model M\ngm_m3ps2 -4e14\n"), HasSubstr(":2: found \"gm_m3ps2 -4e14\""));
+  EXPECT_THAT(error_for("model M\nradius_m 1\n"), HasSubstr("expected \"gm_m3ps2 VALUE\""));
+  EXPECT_THROW(load_gravity_coefficients("/nonexistent/gravity.txt", 2), std::runtime_error);
+}
+
+TEST(GravityFile, TheShippedFileCutShortAnywhereIsRefused) {
+  std::stringstream whole;
+  whole << std::ifstream(kFile).rdbuf();
+  const std::string text = whole.str();
+  for (double part : {0.0, 0.1, 0.5, 0.9, 0.9999}) {
+    const auto length = static_cast<std::size_t>(part * static_cast<double>(text.size()));
+    // Degree 2 is complete in most of these: a truncated file is refused whatever is asked of it.
+    EXPECT_NE(error_for(text.substr(0, length), 2), "") << part;
+  }
+}
+
+}  // namespace
+}  // namespace vbar::truth

@@ -1,0 +1,157 @@
+#include "host_sim/twins/packet_log.h"
+
+#include "tests/unit/host_sim/twins/log_file.h"
+
+namespace vbar::twins::test {
+namespace {
+
+using fsw::GpsTime;
+
+using PacketLogFile = LogFile;
+
+// 2011-07-18 01:00:15 GPS, the mission's epoch.
+constexpr GpsTime kEpoch{995'000'000LL * 1'000'000'000LL};
+
+std::vector<PacketRecord> some_records() {
+  std::vector<PacketRecord> records;
+  for (std::uint32_t step = 0; step < 3; ++step) {
+    const GpsTime time = kEpoch + fsw::duration_of_seconds(60 * step);
+    vbar::tick tick{};
+    tick.step = step;
+    records.push_back({step, time, true, packet_of(tick, time, 1, static_cast<std::uint16_t>(step))});
+    vbar::telemetry_health health{};
+    health.step = step;
+    records.push_back({step, time, false, packet_of(health, time, 1, static_cast<std::uint16_t>(step))});
+  }
+  records.push_back({3, kEpoch + fsw::duration_of_seconds(180), true, {0xDE, 0xAD, 0x00, 0xBE}});  // no packet at all
+  records.push_back({3, kEpoch + fsw::duration_of_seconds(180), true, {}});
+  return records;
+}
+
+void write(const std::filesystem::path& file, const std::vector<PacketRecord>& records) {
+  PacketLogWriter writer(file);
+  for (const PacketRecord& record : records) writer.write(record);
+}
+
+TEST_F(PacketLogFile, GivesBackEveryByteInOrder) {
+  const std::vector<PacketRecord> records = some_records();
+  write(file_, records);
+  const PacketLog log = read_packet_log(file_);
+  EXPECT_FALSE(log.cut_short);
+  ASSERT_EQ(log.records.size(), records.size());
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    EXPECT_EQ(log.records[k].step, records[k].step);
+    EXPECT_EQ(log.records[k].time, records[k].time);
+    EXPECT_EQ(log.records[k].to_flight, records[k].to_flight);
+    EXPECT_EQ(log.records[k].packet, records[k].packet);
+  }
+}
+
+TEST_F(PacketLogFile, SameRunMakesTheSameFile) {
+  write(file_, some_records());
+  const std::string first = content();
+  write(file_, some_records());
+  EXPECT_EQ(content(), first);
+  EXPECT_FALSE(first.empty());
+}
+
+// The layout of LCM's log format, read byte by byte: sync word, event number, microseconds, channel and data lengths,
+// all big-endian; then a record whose packet stands at its end.
+TEST_F(PacketLogFile, IsInLcmsLogFormat) {
+  const std::vector<PacketRecord> records = some_records();
+  write(file_, {records[0]});
+  const std::string bytes = content();
+  const auto number = [&](std::size_t at, std::size_t size) {
+    std::uint64_t value = 0;
+    for (std::size_t k = 0; k < size; ++k) value = value << 8U | static_cast<std::uint8_t>(bytes.at(at + k));
+    return value;
+  };
+  EXPECT_EQ(number(0, 4), 0xEDA1DA01U);
+  EXPECT_EQ(number(4, 8), 0U);
+  EXPECT_EQ(number(12, 8), (995000000U + 315964800U) * std::uint64_t{1000000});
+  EXPECT_EQ(number(20, 4), 11U);
+  const std::size_t packet_size = records[0].packet.size();
+  EXPECT_EQ(number(24, 4), 8 + 8 + 8 + 1 + 4 + packet_size) << "type hash, step, time, direction, size, packet";
+  EXPECT_EQ(bytes.substr(28, 11), "VBAR_PACKET");
+  EXPECT_EQ(bytes.substr(39 + 29, packet_size), std::string(records[0].packet.begin(), records[0].packet.end()));
+  // The second event is the message alone, as any LCM program understands it.
+  const std::size_t second = 39 + 29 + packet_size;
+  EXPECT_EQ(number(second, 4), 0xEDA1DA01U);
+  EXPECT_EQ(bytes.substr(second + 28, 13), "vbar/tick/1/0");
+}
+
+TEST_F(PacketLogFile, ListenersGetTheMessageOfEveryWholePacket) {
+  vbar::tick tick{};
+  tick.step = 5;
+  tick.period_ns = 60;
+  const auto events = lcm_events_of({5, kEpoch, true, packet_of(tick, kEpoch, 2, 0)});
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].channel, "VBAR_PACKET");
+  EXPECT_EQ(events[1].channel, "vbar/tick/2/0");
+  // Type hash, step, period: what lcm-gen's own encoder would make, here from LCM's rule that fields are big-endian.
+  ASSERT_EQ(events[1].data.size(), 24U);
+  EXPECT_EQ(events[1].data[15], 5);
+  EXPECT_EQ(events[1].data[23], 60);
+  EXPECT_EQ(lcm_events_of({5, kEpoch, true, {1, 2, 3}}).size(), 1U) << "a broken packet is recorded and not announced";
+}
+
+TEST_F(PacketLogFile, OtherEventsArePassedOver) {
+  write(file_, {some_records()[0]});
+  const std::string bytes = content();
+  std::string foreign = bytes;
+  foreign.replace(foreign.find("VBAR_PACKET"), 11, "LCM_SELFTES");
+  std::ofstream(file_, std::ios::binary) << foreign << bytes;
+  EXPECT_EQ(read_packet_log(file_).records.size(), 1U);
+}
+
+TEST_F(PacketLogFile, CutAtAnyByteItGivesTheWholeEventsBefore) {
+  const std::vector<PacketRecord> records = some_records();
+  write(file_, records);
+  const std::string bytes = content();
+  std::size_t last_count = 0;
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes.substr(0, size);
+    if (size > 0 && size < 4) continue;  // not even the sync word: refused as no log
+    const PacketLog log = read_packet_log(file_);
+    EXPECT_GE(log.records.size(), last_count);
+    last_count = log.records.size();
+    for (std::size_t k = 0; k < log.records.size(); ++k) EXPECT_EQ(log.records[k].packet, records[k].packet);
+  }
+  std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes.substr(0, bytes.size() - 1);
+  EXPECT_TRUE(read_packet_log(file_).cut_short);
+}
+
+std::string error_of(const std::filesystem::path& file) {
+  try {
+    static_cast<void>(read_packet_log(file));
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_F(PacketLogFile, BadFilesAreNamed) {
+  EXPECT_EQ(error_of(file_), file_.string() + ": no such file");
+  std::ofstream(file_) << "[mission]\n";
+  EXPECT_EQ(error_of(file_), file_.string() + ": no LCM log");
+  write(file_, {some_records()[0]});
+  std::string bytes = content();
+  bytes[39] = static_cast<char>(bytes[39] ^ 1);  // first byte of the record: its type hash
+  std::ofstream(file_, std::ios::binary) << bytes;
+  EXPECT_EQ(error_of(file_), file_.string() + ": event 0 is a damaged packet record");
+  EXPECT_THROW(PacketLogWriter("/no/such/folder/x.lcmlog"), std::runtime_error);
+}
+
+// A record that claims more bytes than its event has must be refused, not read past the end.
+TEST_F(PacketLogFile, RecordThatClaimsTooManyBytesIsRefused) {
+  write(file_, {some_records()[0]});
+  std::string bytes = content();
+  for (const int claimed : {0x7F, 0xFF}) {  // enormous and negative
+    bytes[39 + 25] = static_cast<char>(claimed);
+    std::ofstream(file_, std::ios::binary) << bytes;
+    EXPECT_EQ(error_of(file_), file_.string() + ": event 0 is a damaged packet record");
+  }
+}
+
+}  // namespace
+}  // namespace vbar::twins::test
