@@ -2,8 +2,9 @@
 
 #include <array>
 
+#include "fsw/control/arrival.h"
+#include "fsw/control/check_problem.h"
 #include "fsw/control/cholesky.h"
-#include "fsw/control/impulse_effect.h"
 #include "fsw/math/math.h"
 #include "fsw/math/symmetric_eigen.h"
 
@@ -14,8 +15,8 @@ constexpr std::size_t kMaxTimes = 3;
 constexpr double kMaxCondition = 1e5;
 constexpr double kGoodCondition = 1e2;  ///< the middle is kept if it is no worse than this
 
-/// Places of the middle burn, as parts of the horizon, in order of preference. No two of them differ by the same part
-/// of an orbit, whatever the horizon, so that not all can be singular.
+/// Places of the middle burn, as parts of the horizon, in order of preference. Their distances to both ends have no
+/// common measure, so a horizon that makes one of them singular leaves others.
 constexpr std::array<double, 5> kMiddlePlaces{0.5, 0.4, 0.65, 0.28, 0.83};
 
 /// The impulses' times and effects, and the spectrum of the weighted system.
@@ -50,8 +51,8 @@ Result<System> make_system(const ControlProblem& problem, const LeastSquaresSett
   if (settings.burn_count == 3) system.times[system.count++] = problem.start + middle;
   system.times[system.count++] = problem.arrival;
   for (std::size_t k = 0; k < system.count; ++k) {
-    const double t = seconds(system.times[k] - problem.start);
-    system.effects[k] = problem.servicer_mean.a * impulse_effect(problem.servicer_mean, t, seconds(horizon));
+    system.effects[k] = problem.servicer_mean.a *
+                        arrival_effect(problem.servicer_mean, problem.start, system.times[k], problem.arrival);
   }
   const auto eigen = math::symmetric_eigen<6>(weighted_gramian(system, settings.weight));
   if (!eigen.ok()) return eigen.status();
@@ -73,21 +74,19 @@ Result<System> choose_system(const ControlProblem& problem, const LeastSquaresSe
   return best;
 }
 
-Status check(const ControlProblem& problem, const LeastSquaresSettings& settings) {
-  const bool valid = (settings.burn_count == 2 || settings.burn_count == 3) && settings.regularisation >= 0.0 &&
-                     math::is_finite(settings.regularisation) && settings.weight.minCoeff() > 0.0 &&
-                     math::is_finite(settings.weight.sum());
-  if (!valid) return Status::kInvalidArgument;
-  if (!math::is_finite(problem.pseudo_state.cwiseAbs().sum())) return Status::kNotFinite;
-  return check_horizon(problem.servicer_mean, seconds(problem.arrival - problem.start));
+bool valid(const LeastSquaresSettings& settings) {
+  return (settings.burn_count == 2 || settings.burn_count == 3) && settings.regularisation >= 0.0 &&
+         math::is_finite(settings.regularisation) && settings.weight.minCoeff() > 0.0 &&
+         math::is_finite(settings.weight.sum());
 }
 
 }  // namespace
 
 Result<Plan> solve_least_squares(const ControlProblem& problem, const LeastSquaresSettings& settings,
                                  LeastSquaresReport* report) {
-  const Status valid = check(problem, settings);
-  if (valid != Status::kOk) return valid;
+  if (!valid(settings)) return Status::kInvalidArgument;
+  const Status checked = check_problem(problem);
+  if (checked != Status::kOk) return checked;
   const Result<System> chosen = choose_system(problem, settings);
   if (!chosen.ok()) return chosen.status();
   const System& system = chosen.value();
