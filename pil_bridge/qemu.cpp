@@ -33,9 +33,9 @@ std::vector<std::string> zynq_qemu_over_serial(const std::string& elf, int icoun
 
 std::vector<std::string> zynq_qemu_over_udp(const std::string& elf, int icount_shift, std::uint16_t host_port) {
   auto arguments = zynq_machine(elf, icount_shift);
-  append(arguments, {"-serial", "null", "-serial", "chardev:console", "-nic",
-                     "user,model=cadence_gem,hostfwd=udp:127.0.0.1:" + std::to_string(host_port) + "-" +
-                         kBoardAddressAndPort});
+  append(arguments,
+         {"-serial", "null", "-serial", "chardev:console", "-nic",
+          "user,model=cadence_gem,hostfwd=udp:127.0.0.1:" + std::to_string(host_port) + "-" + kBoardAddressAndPort});
   return arguments;
 }
 

@@ -57,11 +57,8 @@ bool run_on_measured_stack(void (*function)(void*), void* context) {
   return ::mprotect(flight_stack.guard.data(), kGuardBytes, PROT_READ | PROT_WRITE) == 0 && started;
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__clang__)
-__attribute__((no_sanitize("address")))  // looks at frames that have been left
-#endif
-std::uint32_t
-stack_high_water() {
+// It looks at frames that have been left, which an address sanitizer would take for an error.
+__attribute__((no_sanitize("address"))) std::uint32_t stack_high_water() {
   const volatile std::uint64_t* const bottom =
       flight_stack.words.data();  // volatile: written as a stack, read as words
   std::size_t clean = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Bytes from an interrupt handler to the main loop: one writer, one reader, no lock. Full: the newest byte is dropped and
-// counted; what is already in is never overwritten.
+// Bytes from an interrupt handler to the main loop: one writer, one reader, no lock. Full: the newest byte is dropped
+// and counted; what is already in is never overwritten.
 
 #include <array>
 #include <atomic>

@@ -10,8 +10,8 @@ struct BaudDivisors {
   std::uint32_t divider = 4;    ///< BAUDDIV.BDIV, 4 to 255
 };
 
-/// Divisors nearest to `baud` = clock / (generator * (divider + 1)), UG585 (19-1). Of equals the least divider, which
-/// samples a bit least often but leaves the most room to the generator.
+/// Divisors nearest to `baud` = clock / (generator * (divider + 1)), UG585 chapter 19. Of equals the least divider,
+/// which samples a bit least often but leaves the most room to the generator.
 constexpr BaudDivisors baud_divisors(std::uint32_t clock_hz, std::uint32_t baud) {
   BaudDivisors best;
   std::uint32_t least_error = 0xFFFFFFFFU;

@@ -6,7 +6,7 @@
 namespace vbar::boards::zynq7000 {
 namespace {
 
-// UG585, appendix B.28.
+// Registers of the SLCR (UG585, appendix B).
 constexpr std::uintptr_t kUnlock = kSlcr + 0x008U;
 constexpr std::uintptr_t kArmPll = kSlcr + 0x100U;
 constexpr std::uintptr_t kDdrPll = kSlcr + 0x104U;

@@ -20,7 +20,9 @@ void put(char c) {
 
 }  // namespace
 
-void console_open() { kConsole.open(kConsoleBaud); }
+void console_open() {
+  kConsole.open(kConsoleBaud);
+}
 
 void print(const char* text) {
   for (; *text != '\0'; ++text) {

@@ -6,13 +6,19 @@
 namespace vbar::boards::zynq7000 {
 
 /// Everything before is complete, device writes included, before anything after starts.
-inline void synchronize() { asm volatile("dsb" ::: "memory"); }
+inline void synchronize() {
+  asm volatile("dsb" ::: "memory");
+}
 
 /// Memory accesses before are seen by other masters before those after.
-inline void memory_barrier() { asm volatile("dmb" ::: "memory"); }
+inline void memory_barrier() {
+  asm volatile("dmb" ::: "memory");
+}
 
 /// Sleeps until an interrupt is pending, masked or not.
-inline void wait_for_interrupt() { asm volatile("dsb\n\twfi" ::: "memory"); }
+inline void wait_for_interrupt() {
+  asm volatile("dsb\n\twfi" ::: "memory");
+}
 
 namespace detail {
 inline constexpr std::uint32_t kInterruptMaskBit = 1U << 7;
@@ -22,8 +28,12 @@ inline std::uint32_t status_register() {
   asm volatile("mrs %0, cpsr" : "=r"(cpsr)::"memory");
   return cpsr;
 }
-inline void mask_interrupts() { asm volatile("cpsid i" ::: "memory"); }
-inline void unmask_interrupts() { asm volatile("cpsie i" ::: "memory"); }
+inline void mask_interrupts() {
+  asm volatile("cpsid i" ::: "memory");
+}
+inline void unmask_interrupts() {
+  asm volatile("cpsie i" ::: "memory");
+}
 inline void restore_interrupts(std::uint32_t cpsr) {
   if ((cpsr & kInterruptMaskBit) != 0U) {
     mask_interrupts();

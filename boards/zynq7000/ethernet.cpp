@@ -38,7 +38,7 @@ constexpr std::uint32_t kInterruptReceived = 1U << 1;
 constexpr std::uint32_t kInterruptReceiveRingFull = 1U << 2;
 constexpr std::uint32_t kReceiveNoBuffer = 1U << 0;
 
-// Descriptors (UG585 tables 16-2 and 16-3).
+// Descriptors (UG585 chapter 16).
 struct Descriptor {
   volatile std::uint32_t address;
   volatile std::uint32_t status;
@@ -52,7 +52,7 @@ constexpr std::uint32_t kTransmitWrap = 1U << 30;
 constexpr std::uint32_t kTransmitLast = 1U << 15;
 
 constexpr std::size_t kBufferBytes = 1536;
-constexpr std::size_t kReceiveBuffers = 64;  // two windows of the link: one of the session, one of whoever disturbs it
+constexpr std::size_t kReceiveBuffers = 64;   // two windows of the link: one of the session, one of whoever disturbs it
 constexpr std::size_t kTransmitBuffers = 40;  // one window and some
 constexpr std::uint64_t kSendSpan = timer_span_ms(100);
 
@@ -132,7 +132,9 @@ bool Ethernet::link_came_up() {
   return link_.has_value();
 }
 
-bool Ethernet::has_input() const { return (rings.receive[next_receive_].address & kReceiveUsed) != 0U; }
+bool Ethernet::has_input() const {
+  return (rings.receive[next_receive_].address & kReceiveUsed) != 0U;
+}
 
 std::size_t Ethernet::receive(std::span<std::uint8_t> frame) {
   for (std::size_t i = 0; i < kReceiveBuffers && has_input(); ++i) {
@@ -191,6 +193,8 @@ void Ethernet::send(std::span<const std::uint8_t> frame) {
 }
 
 // Frames stay in the ring until the main loop fetches them; the interrupt only ends its sleep.
-void Ethernet::on_interrupt(void*) { reg(kInterruptStatus) = reg(kInterruptStatus); }
+void Ethernet::on_interrupt(void*) {
+  reg(kInterruptStatus) = reg(kInterruptStatus);
+}
 
 }  // namespace vbar::boards::zynq7000

@@ -1,9 +1,9 @@
 #pragma once
-// Gigabit Ethernet controller 0 (Cadence GEM, UG585 chapter 16): whole frames in and out of rings of buffers that its DMA
-// shares with the processor in uncached memory.
+// Gigabit Ethernet controller 0 (Cadence GEM, UG585 chapter 16): whole frames in and out of rings of buffers that its
+// DMA shares with the processor in uncached memory.
 //
-// Receive ring full: the controller drops the newest frames and counts them. Transmit ring full: a frame is dropped after a
-// bounded wait, and counted. Frames in a ring are never overwritten.
+// Receive ring full: the controller drops the newest frames and counts them. Transmit ring full: a frame is dropped
+// after a bounded wait, and counted. Frames in a ring are never overwritten.
 
 #include <cstddef>
 #include <cstdint>

@@ -32,8 +32,11 @@ const char* name_of(FaultKind kind) {
   return "unknown";
 }
 
-// The return address of an exception lies past the instruction that caused it, by kind (DDI 0406, table B1-7; ARM state).
-std::uint32_t offset_of(FaultKind kind) { return kind == FaultKind::kDataAbort ? 8U : 4U; }
+// The return address of an exception lies past the instruction that caused it, by kind (DDI 0406, table B1-7; ARM
+// state).
+std::uint32_t offset_of(FaultKind kind) {
+  return kind == FaultKind::kDataAbort ? 8U : 4U;
+}
 
 void print_register(const char* name, std::uint32_t value) {
   print(name);

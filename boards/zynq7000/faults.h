@@ -1,5 +1,6 @@
 #pragma once
-// Where execution ends when it cannot go on: a line on the console, the exit code for a debugger or emulator, then rest.
+// Where execution ends when it cannot go on: a line on the console, the exit code for a debugger or emulator, then
+// rest.
 
 #include "boards/zynq7000/semihosting.h"
 

@@ -153,8 +153,8 @@ void FlightBoard::deliver(const Sender& sender, std::span<const std::uint8_t> fr
     executive_.count_rejected(1);
     return;
   }
-  // Interrupts wait while flight code runs, so that a byte that arrives meanwhile costs the step nothing; the FIFO and the
-  // DMA ring hold what comes in, and the link sends again what they cannot. send() lets them in.
+  // Interrupts wait while flight code runs, so that a byte that arrives meanwhile costs the step nothing; the FIFO and
+  // the DMA ring hold what comes in, and the link sends again what they cannot. send() lets them in.
   const InterruptsMasked masked;
   if (executive_.on_frame(frame) == Activity::kGoodbye) {
     goodbye();

@@ -1,6 +1,6 @@
 #pragma once
-// Addresses and interrupt numbers of the Zynq-7000 processing system (Xilinx UG585, appendix B and table 7-4), and where
-// this image puts things in memory. zynq7000.ld states the same memory layout; mmu.cpp maps it.
+// Addresses and interrupt numbers of the Zynq-7000 processing system (Xilinx UG585, appendix B and chapter 7), and
+// where this image puts things in memory. zynq7000.ld states the same memory layout; mmu.cpp maps it.
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 // Memory protection and caches: a flat map of 1 MiB sections (ARMv7-A short descriptors, DDI 0406 B3.5) and the level 2
-// cache (PL310 TRM, DDI 0246; settings of UG585 section 3.4). Called once by startup.S, before .bss is cleared and with the
-// MMU off: nothing here may use static data except the translation table.
+// cache (PL310 TRM, DDI 0246; settings of UG585 chapter 3). Called once by startup.S, before .bss is cleared and with
+// the MMU off: nothing here may use static data except the translation table.
 
 #include <array>
 
@@ -24,7 +24,8 @@ constexpr std::uint32_t kWriteBackCached = (1U << 12) | (1U << 3) | (1U << 2);  
 constexpr std::uint32_t kNotCached = 1U << 12;                                  // TEX 001: normal memory
 constexpr std::uint32_t kDevice = 1U << 2;                                      // TEX 000, B: shared device
 
-// Not shareable: one core, and the Cortex-A9 does not cache shareable memory unless it takes part in coherency (ACTLR.SMP).
+// Not shareable: one core, and the Cortex-A9 does not cache shareable memory unless it takes part in coherency
+// (ACTLR.SMP).
 constexpr std::uint32_t kCode = kSection | kReadOnly | kWriteBackCached;
 constexpr std::uint32_t kData = kSection | kReadWrite | kWriteBackCached | kNeverExecute;
 constexpr std::uint32_t kDma = kSection | kReadWrite | kNotCached | kNeverExecute;
@@ -48,8 +49,8 @@ std::uint32_t attributes_of(std::uintptr_t address) {
   return peripherals || system ? kRegisters : kUnmapped;
 }
 
-// The random-access memory settings come from UG585 and Xilinx' answer record on the PL310 of the Zynq: the latencies its
-// arrays need, and one register of the SLCR that has no other description.
+// The random-access memory settings come from UG585 and Xilinx' answer record on the PL310 of the Zynq: the latencies
+// its arrays need, and one register of the SLCR that has no other description.
 void enable_level2_cache() {
   constexpr std::uintptr_t kControl = kLevel2Cache + 0x100U;
   constexpr std::uintptr_t kAuxiliary = kLevel2Cache + 0x104U;

@@ -1,5 +1,5 @@
-// What the C++ language needs below main: constructors of static objects, and ends for what must never be called. There is
-// no heap: an allocation stops the board. check_image.cmake proves that newlib's allocator is not even in the image.
+// What the C++ language needs below main: constructors of static objects, and ends for what must never be called. There
+// is no heap: an allocation stops the board. check_image.cmake proves that newlib's allocator is not even in the image.
 
 #include <cstddef>
 #include <new>
@@ -10,7 +10,9 @@ using vbar::boards::zynq7000::ExitCode;
 using vbar::boards::zynq7000::halt;
 
 namespace {
-[[noreturn]] void heap_called() { halt("heap call", ExitCode::kHeapCalled); }
+[[noreturn]] void heap_called() {
+  halt("heap call", ExitCode::kHeapCalled);
+}
 }  // namespace
 
 extern "C" {
@@ -26,37 +28,77 @@ void vbar_construct_statics() {
     (*constructor)();
   }
 }
-[[noreturn]] void vbar_main_returned() { halt("main returned", ExitCode::kAborted); }
+[[noreturn]] void vbar_main_returned() {
+  halt("main returned", ExitCode::kAborted);
+}
 
 // Destructors of static objects never run: nothing ends but by reset.
 void* __dso_handle = nullptr;
-int __aeabi_atexit(void*, void (*)(void*), void*) { return 0; }
-int atexit(void (*)()) { return 0; }
+int __aeabi_atexit(void*, void (*)(void*), void*) {
+  return 0;
+}
+int atexit(void (*)()) {
+  return 0;
+}
 
-[[noreturn]] void abort() { halt("abort", ExitCode::kAborted); }
-[[noreturn]] void __cxa_pure_virtual() { halt("pure virtual call", ExitCode::kAborted); }
+[[noreturn]] void abort() {
+  halt("abort", ExitCode::kAborted);
+}
+[[noreturn]] void __cxa_pure_virtual() {
+  halt("pure virtual call", ExitCode::kAborted);
+}
 
 struct _reent;
-void* malloc(std::size_t) { heap_called(); }
-void* calloc(std::size_t, std::size_t) { heap_called(); }
-void* realloc(void*, std::size_t) { heap_called(); }
-void* memalign(std::size_t, std::size_t) { heap_called(); }
-void* aligned_alloc(std::size_t, std::size_t) { heap_called(); }
+void* malloc(std::size_t) {
+  heap_called();
+}
+void* calloc(std::size_t, std::size_t) {
+  heap_called();
+}
+void* realloc(void*, std::size_t) {
+  heap_called();
+}
+void* memalign(std::size_t, std::size_t) {
+  heap_called();
+}
+void* aligned_alloc(std::size_t, std::size_t) {
+  heap_called();
+}
 void free(void* pointer) {
   if (pointer != nullptr) {
     heap_called();
   }
 }
-void* _malloc_r(_reent*, std::size_t) { heap_called(); }
-void* _calloc_r(_reent*, std::size_t, std::size_t) { heap_called(); }
-void* _realloc_r(_reent*, void*, std::size_t) { heap_called(); }
-void _free_r(_reent*, void* pointer) { free(pointer); }
+void* _malloc_r(_reent*, std::size_t) {
+  heap_called();
+}
+void* _calloc_r(_reent*, std::size_t, std::size_t) {
+  heap_called();
+}
+void* _realloc_r(_reent*, void*, std::size_t) {
+  heap_called();
+}
+void _free_r(_reent*, void* pointer) {
+  free(pointer);
+}
 
 }  // extern "C"
 
-void* operator new(std::size_t) { heap_called(); }
-void* operator new[](std::size_t) { heap_called(); }
-void operator delete(void* pointer) noexcept { free(pointer); }
-void operator delete[](void* pointer) noexcept { free(pointer); }
-void operator delete(void* pointer, std::size_t) noexcept { free(pointer); }
-void operator delete[](void* pointer, std::size_t) noexcept { free(pointer); }
+void* operator new(std::size_t) {
+  heap_called();
+}
+void* operator new[](std::size_t) {
+  heap_called();
+}
+void operator delete(void* pointer) noexcept {
+  free(pointer);
+}
+void operator delete[](void* pointer) noexcept {
+  free(pointer);
+}
+void operator delete(void* pointer, std::size_t) noexcept {
+  free(pointer);
+}
+void operator delete[](void* pointer, std::size_t) noexcept {
+  free(pointer);
+}

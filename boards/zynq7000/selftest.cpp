@@ -1,6 +1,6 @@
-// What the flight software takes for granted of this processor, tried on the processor itself. The semihosting command line
-// (second word) names the case: without one, all checks run; with one, the fault of that name is provoked, and the exit
-// code tells whether it was caught.
+// What the flight software takes for granted of this processor, tried on the processor itself. The semihosting command
+// line (second word) names the case: without one, all checks run; with one, the fault of that name is provoked, and the
+// exit code tells whether it was caught.
 
 #include <array>
 #include <cstring>

@@ -1,6 +1,6 @@
 #pragma once
-// Requests to a debugger or an emulator (Arm semihosting, 2.0). Where nobody listens they do nothing: the request is an SVC
-// instruction, and this image's own SVC handler answers what nobody else caught.
+// Requests to a debugger or an emulator (Arm semihosting, 2.0). Where nobody listens they do nothing: the request is an
+// SVC instruction, and this image's own SVC handler answers what nobody else caught.
 
 #include <cstddef>
 #include <cstdint>

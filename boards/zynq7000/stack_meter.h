@@ -1,5 +1,6 @@
 #pragma once
-// How deep the stack of flight code and interrupt handlers has ever been: startup.S paints it, this looks for the paint.
+// How deep the stack of flight code and interrupt handlers has ever been: startup.S paints it, this looks for the
+// paint.
 
 #include <cstdint>
 

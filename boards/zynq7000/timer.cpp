@@ -40,7 +40,8 @@ std::uint64_t total_cycles() {
 }  // namespace
 
 void timers_initialize() {
-  reg(kTimerControl) = 1;  // on, not prescaled; a debugger or loader may have left it running: only differences are used
+  reg(kTimerControl) =
+      1;  // on, not prescaled; a debugger or loader may have left it running: only differences are used
   start_cycle_counter();
   const std::uint32_t before = cycle_counter();
   last_timer = global_timer();
@@ -60,8 +61,12 @@ std::uint64_t global_timer() {
   return (static_cast<std::uint64_t>(high) << 32) | low;
 }
 
-CounterUnit cost_counter_unit() { return cycles_count ? CounterUnit::kCycles : CounterUnit::kEmulatedTimerTicks; }
+CounterUnit cost_counter_unit() {
+  return cycles_count ? CounterUnit::kCycles : CounterUnit::kEmulatedTimerTicks;
+}
 
-std::uint64_t cost_counter() { return cycles_count ? total_cycles() : global_timer(); }
+std::uint64_t cost_counter() {
+  return cycles_count ? total_cycles() : global_timer();
+}
 
 }  // namespace vbar::boards::zynq7000

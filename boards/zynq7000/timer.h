@@ -15,7 +15,9 @@ void timers_initialize();
 std::uint64_t global_timer();
 
 /// A span of the global timer that lasts at least `milliseconds` on any of them; up to 3.5 times that on the emulator.
-constexpr std::uint64_t timer_span_ms(std::uint64_t milliseconds) { return milliseconds * 350'000U; }
+constexpr std::uint64_t timer_span_ms(std::uint64_t milliseconds) {
+  return milliseconds * 350'000U;
+}
 
 /// What cost_counter() counts here.
 CounterUnit cost_counter_unit();

@@ -37,9 +37,9 @@ constexpr std::uint32_t kStatusReceiveEmpty = 1U << 1;
 constexpr std::uint32_t kStatusTransmitEmpty = 1U << 3;
 constexpr std::uint32_t kStatusTransmitFull = 1U << 4;
 
-constexpr std::uint32_t kTriggerLevel = 8;    // must lie below both FIFO depths, or it never fires on the emulator
-constexpr std::uint32_t kTimeoutBits = 10;    // in units of 4 bit times
-constexpr std::size_t kSmallestFifo = 16;     // what fits into an empty transmit FIFO everywhere
+constexpr std::uint32_t kTriggerLevel = 8;  // must lie below both FIFO depths, or it never fires on the emulator
+constexpr std::uint32_t kTimeoutBits = 10;  // in units of 4 bit times
+constexpr std::size_t kSmallestFifo = 16;   // what fits into an empty transmit FIFO everywhere
 constexpr std::uint64_t kStallSpan = timer_span_ms(2000);
 
 // How many bytes the transmitter takes now without overflowing, waiting for the first; 0 when it stalls.
@@ -102,7 +102,9 @@ void Uart::write(std::span<const std::uint8_t> bytes) {
   }
 }
 
-void Uart::on_interrupt(void* self) { static_cast<Uart*>(self)->drain(); }
+void Uart::on_interrupt(void* self) {
+  static_cast<Uart*>(self)->drain();
+}
 
 // Moves what certainly waits from the FIFO to the ring, without a look at each byte: a look is not cheap.
 bool Uart::take_waiting() {
@@ -117,10 +119,10 @@ bool Uart::take_waiting() {
   return true;
 }
 
-// Acknowledge first, then empty the FIFO, then look again: a byte that arrives after the last look raises a new interrupt.
-// A timeout acknowledged after the last look would be lost, and the last bytes of a frame with it.
+// Acknowledge first, then empty the FIFO, then look again: a byte that arrives after the last look raises a new
+// interrupt. A timeout acknowledged after the last look would be lost, and the last bytes of a frame with it.
 void Uart::drain() {
-  constexpr int kPasses = 8;       // a handler ends; should bytes be left, the interrupt fires again
+  constexpr int kPasses = 8;  // a handler ends; should bytes be left, the interrupt fires again
   constexpr int kDeepestFifo = 64;
   int pass = 0;
   do {

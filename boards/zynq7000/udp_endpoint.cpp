@@ -60,7 +60,9 @@ std::uint32_t pseudo_header(const Ipv4Address& source, const Ipv4Address& destin
   return add_words(source) + add_words(destination) + kProtocolUdp + static_cast<std::uint32_t>(udp_size);
 }
 
-bool is_group(const MacAddress& mac) { return (mac[0] & 1U) != 0U; }
+bool is_group(const MacAddress& mac) {
+  return (mac[0] & 1U) != 0U;
+}
 
 // Addresses that no single host has: this network, loopback, multicast, reserved, broadcast (RFC 6890).
 bool cannot_be_a_sender(const Ipv4Address& address) {
@@ -116,8 +118,7 @@ UdpReceived UdpEndpoint::receive_arp(Bytes frame, MutableBytes reply) {
   constexpr std::array<std::uint8_t, 6> kEthernetOverIpv4{0x00, 0x01, 0x08, 0x00, 6, 4};
   constexpr std::uint16_t kRequest = 1;
   constexpr std::uint16_t kReply = 2;
-  if (request.size() < kArpBytes ||
-      !std::equal(kEthernetOverIpv4.begin(), kEthernetOverIpv4.end(), request.begin())) {
+  if (request.size() < kArpBytes || !std::equal(kEthernetOverIpv4.begin(), kEthernetOverIpv4.end(), request.begin())) {
     return malformed();
   }
   if (read16(request, 6) != kRequest || read_address<4>(request, 24) != address_) {
@@ -164,8 +165,7 @@ UdpReceived UdpEndpoint::receive_ipv4(Bytes frame, MutableBytes reply) {
   if ((read16(packet, 6) & kMoreFragmentsOrOffset) != 0 || cannot_be_a_sender(source) || source == address_) {
     return malformed();
   }
-  const Ipv4Packet checked{read_address<6>(frame, 6), source,
-                           packet.subspan(header_size, total_size - header_size)};
+  const Ipv4Packet checked{read_address<6>(frame, 6), source, packet.subspan(header_size, total_size - header_size)};
   switch (packet[9]) {
     case kProtocolUdp:
       return receive_udp(checked);

@@ -1,11 +1,11 @@
 #pragma once
-// One UDP port on one IPv4 address: ARP (RFC 826), IPv4 (RFC 791), UDP (RFC 768) and ICMP echo (RFC 792), as little of each
-// as one peer at a time needs. No hardware here: frames in, frames out.
+// One UDP port on one IPv4 address: ARP (RFC 826), IPv4 (RFC 791), UDP (RFC 768) and ICMP echo (RFC 792), as little of
+// each as one peer at a time needs. No hardware here: frames in, frames out.
 //
-// Every byte that comes in may be hostile. A frame is believed only as far as its lengths, addresses and checksums agree;
-// anything else is counted and changes nothing. The endpoint never asks for an address: it answers to the one that a
-// request came from. Fragments are not put together (a link frame fits a packet), options are skipped, and nothing that was
-// sent to a group or claims to come from one is answered.
+// Every byte that comes in may be hostile. A frame is believed only as far as its lengths, addresses and checksums
+// agree; anything else is counted and changes nothing. The endpoint never asks for an address: it answers to the one
+// that a request came from. Fragments are not put together (a link frame fits a packet), options are skipped, and
+// nothing that was sent to a group or claims to come from one is answered.
 
 #include <array>
 #include <cstddef>
@@ -20,8 +20,8 @@ using MacAddress = std::array<std::uint8_t, 6>;
 using Ipv4Address = std::array<std::uint8_t, 4>;
 
 inline constexpr std::size_t kEthernetHeaderBytes = 14;
-inline constexpr std::size_t kLeastFrameBytes = 60;    ///< without the check sequence; shorter ones are padded
-inline constexpr std::size_t kMostFrameBytes = 1514;   ///< without the check sequence
+inline constexpr std::size_t kLeastFrameBytes = 60;   ///< without the check sequence; shorter ones are padded
+inline constexpr std::size_t kMostFrameBytes = 1514;  ///< without the check sequence
 inline constexpr std::size_t kUdpOverheadBytes = kEthernetHeaderBytes + 20 + 8;
 inline constexpr std::size_t kMostDatagramBytes = kMostFrameBytes - kUdpOverheadBytes;
 
@@ -58,8 +58,9 @@ class UdpEndpoint {
   UdpEndpoint(const MacAddress& mac, const Ipv4Address& address, std::uint16_t port)
       : mac_(mac), address_(address), port_(port) {}
 
-  /// Takes one Ethernet frame (from the destination address to the end of its data, padding allowed, no check sequence).
-  /// `reply` is where an answer is written; it must not overlap `frame`, and what it has no room for is not answered.
+  /// Takes one Ethernet frame (from the destination address to the end of its data, padding allowed, no check
+  /// sequence). `reply` is where an answer is written; it must not overlap `frame`, and what it has no room for is not
+  /// answered.
   UdpReceived receive(std::span<const std::uint8_t> frame, std::span<std::uint8_t> reply);
 
   /// Writes the Ethernet frame that carries `payload` to `to`; returns its length. kTooLong if it exceeds

@@ -12,7 +12,9 @@ namespace {
 using orbit::QnsElements;
 
 // A step in an angle: the short way round.
-double angle_step(double to, double from) { return math::wrap_to_pi(to - from); }
+double angle_step(double to, double from) {
+  return math::wrap_to_pi(to - from);
+}
 
 // elements + (to - from)
 QnsElements shifted(const QnsElements& elements, const QnsElements& from, const QnsElements& to) {
@@ -42,8 +44,8 @@ Result<QnsElements> mean_after_impulse(const QnsElements& mean, const Vector3& d
   const Result<QnsElements> wanted = orbit::qns_from_cartesian(orbit::apply_impulse_rtn(before.value(), dv_rtn));
   if (!wanted.ok()) return wanted.status();
 
-  // The mean elements before the impulse are known, so the fixed point for those after it starts next to the answer: each
-  // round divides the error by 1/J2, about 1e3, where a conversion from scratch would need three times as many.
+  // The mean elements before the impulse are known, so the fixed point for those after it starts next to the answer:
+  // each round divides the error by 1/J2, about 1e3, where a conversion from scratch would need three times as many.
   constexpr int kMaxRounds = 6;
   constexpr double kConverged = 1e-13;
   QnsElements after = mean;
@@ -55,7 +57,8 @@ Result<QnsElements> mean_after_impulse(const QnsElements& mean, const Vector3& d
     if (!next.ok()) return next.status();
     image = next.value();
   }
-  return distance(image, wanted.value()) < 1e-12 ? Result<QnsElements>(after) : Result<QnsElements>(Status::kOutOfRange);
+  return distance(image, wanted.value()) < 1e-12 ? Result<QnsElements>(after)
+                                                 : Result<QnsElements>(Status::kOutOfRange);
 }
 
 Result<MeanOrbits> fly(const MeanOrbits& orbits, std::span<const Burn> burns, GpsTime until) {
@@ -72,17 +75,6 @@ Result<MeanOrbits> fly(const MeanOrbits& orbits, std::span<const Burn> burns, Gp
   if (until < time) return Status::kInvalidArgument;
   return MeanOrbits{until, orbit::propagate_secular(servicer, seconds(until - time)),
                     orbit::propagate_secular(orbits.target, seconds(until - orbits.epoch))};
-}
-
-std::span<const Burn> burns_before(const Plan& plan, GpsTime time) {
-  std::size_t count = 0;
-  while (count < plan.count && plan.burns[count].time < time) ++count;
-  return {plan.burns.data(), count};
-}
-
-std::span<const Burn> burns_from(const Plan& plan, GpsTime time) {
-  const std::size_t first = burns_before(plan, time).size();
-  return {plan.burns.data() + first, plan.count - first};
 }
 
 Result<Vector6> arrival_error(const MeanOrbits& orbits, std::span<const Burn> burns, const Waypoint& waypoint) {

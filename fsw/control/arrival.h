@@ -1,9 +1,9 @@
 #pragma once
 // Where a plan arrives: mean ROE at the waypoint's time, predicted from the two absolute mean orbits.
 //
-// The linear state transition misses the waypoint by tens of metres at 75 km (second-order terms in the separation, and the
-// servicer's own orbit changes when it burns). Two absolute orbits, each with its own secular rates, and burns applied to
-// the servicer's osculating state leave decimetres over six hours; feedback removes those.
+// The linear state transition misses the waypoint by tens of metres at 75 km (second-order terms in the separation, and
+// the servicer's own orbit changes when it burns). Two absolute orbits, each with its own secular rates, and burns
+// applied to the servicer's osculating state leave decimetres over six hours; feedback removes those.
 
 #include <span>
 
@@ -11,10 +11,11 @@
 
 namespace vbar::fsw::control {
 
-/// Where the target shall be with respect to the servicer, and when.
+/// Where the target shall be with respect to the servicer, and when. Metres of a waypoint table become dimensionless by
+/// one fixed semi-major axis for the whole mission: by the current one, a waypoint at 50 km would move by 14 m.
 struct Waypoint {
   GpsTime time;
-  Vector6 roe = Vector6::Zero();  ///< mean, dimensionless
+  Vector6 roe = Vector6::Zero();  ///< mean ROE, dimensionless
 };
 
 /// Mean elements of both spacecraft at one instant.
@@ -28,25 +29,23 @@ struct MeanOrbits {
 /// Errors of the element conversions; kOutOfRange if the impulse moves the orbit by more than about 1e-2 of itself.
 Result<orbit::QnsElements> mean_after_impulse(const orbit::QnsElements& mean, const Vector3& dv_rtn);
 
-/// Both orbits at `until`, the servicer flying `burns` on the way. kInvalidArgument unless the burns are in order of time
-/// and within [orbits.epoch, until].
+/// Both orbits at `until`, the servicer flying `burns` on the way. kInvalidArgument unless the burns are in order of
+/// time and within [orbits.epoch, until].
 Result<MeanOrbits> fly(const MeanOrbits& orbits, std::span<const Burn> burns, GpsTime until);
 
-/// The burns of `plan` before `time`, and those at `time` or later.
-std::span<const Burn> burns_before(const Plan& plan, GpsTime time);
-std::span<const Burn> burns_from(const Plan& plan, GpsTime time);
-
-/// Mean ROE (dimensionless) wanted at the waypoint minus those at which `burns` arrive. A burn at the waypoint's own time
-/// counts: the ROE, unlike the position, feel it at once. Errors as fly().
+/// Mean ROE (dimensionless) wanted at the waypoint minus those at which `burns` arrive. A burn at the waypoint's own
+/// time counts: the ROE, unlike the position, feel it at once. Errors as fly().
 Result<Vector6> arrival_error(const MeanOrbits& orbits, std::span<const Burn> burns, const Waypoint& waypoint);
 
-/// What is left to plan from `start` on if `committed`, all before `start`, is flown: the pseudo-state is the arrival error of
-/// the free drift after those. kInvalidArgument if the waypoint does not lie after `start`; else errors as fly().
+/// What is left to plan from `start` on if `committed`, all before `start`, is flown: the pseudo-state is the arrival
+/// error of the free drift after those. kInvalidArgument if the waypoint does not lie after `start`; else errors as
+/// fly().
 Result<ControlProblem> remaining_problem(const MeanOrbits& orbits, std::span<const Burn> committed, GpsTime start,
                                          const Waypoint& waypoint);
 
-/// 6x3 change of the ROE at `arrival` per impulse (m/s, RTN) of the DEPUTY at `burn`, linear: Phi(arrival - burn) Gamma(burn).
-/// `servicer_mean` holds at `epoch`; the servicer's own burns in between are neglected. Negate for the servicer.
+/// 6x3 change of the ROE at `arrival` per impulse (m/s, RTN) of the DEPUTY at `burn`, linear: Phi(arrival - burn)
+/// Gamma(burn). `servicer_mean` holds at `epoch`; the servicer's own burns in between are neglected. Negate for the
+/// servicer.
 Matrix63 arrival_effect(const orbit::QnsElements& servicer_mean, GpsTime epoch, GpsTime burn, GpsTime arrival);
 
 }  // namespace vbar::fsw::control

@@ -1,205 +1,291 @@
 #include "fsw/control/closed_form.h"
 
+#include <span>
+
 #include "fsw/control/arrival.h"
+#include "fsw/control/correction.h"
+#include "fsw/control/near_circular.h"
+#include "fsw/control/tangential.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::control {
 namespace {
 
-constexpr std::size_t kMaxTimes = 40;  // twice a revolution: windows up to 20 revolutions
-constexpr double kMergeWithin = 60.0;  // s; burns closer than this become one
+// Impulses below this share of the plan are rounding, not burns.
+constexpr double kNegligibleShare = 1e-6;
 
-/// An admissible burn time and the sign with which a burn there counts.
-struct Opportunity {
-  double offset = 0.0;  // s after the start
-  double parity = 1.0;
-};
+// A plan may leave this share of the pseudo-state.
+constexpr double kAcceptedResidual = 1e-6;
 
-struct Opportunities {
-  std::array<Opportunity, kMaxTimes> at{};
-  std::size_t count = 0;
-};
+// Inclination changes below this, m, are rounding.
+constexpr double kNoInclinationChange = 1e-9;
 
-/// Times in [0, window] at which an angle that is `angle` at the start and grows by `rate` equals `phase` modulo pi.
-Opportunities opportunities(double phase, double angle, double rate, double window) {
-  Opportunities found;
-  double to_go = math::wrap_to_pi(phase - angle);
-  double parity = 1.0;
-  if (to_go < 0.0) {
-    to_go += math::kPi;
-    parity = -1.0;
-  }
-  for (double offset = to_go / rate; offset <= window && found.count < kMaxTimes; offset += math::kPi / rate) {
-    found.at[found.count++] = {offset, parity};
-    parity = -parity;
-  }
-  return found;
-}
-
-/// Burns at c (one parity) and a, b (the other) that meet sum, de and moment; cost infinite-free: the denominator is a time.
-struct Triple {
-  std::array<Opportunity, 3> at{};
-  std::array<double, 3> dv{};
-  double cost = 0.0;
-};
-
-Triple solve_triple(const TangentialTask& task, double de, Opportunity a, Opportunity b, Opportunity c) {
-  const double p = a.parity;
-  const double x_c = 0.5 * (task.sum - p * de);
-  const double majority = 0.5 * (task.sum + p * de);
-  const double tau_a = task.window - a.offset;
-  const double tau_b = task.window - b.offset;
-  const double tau_c = task.window - c.offset;
-  const double x_a = (task.moment - tau_c * x_c - tau_b * majority) / (tau_a - tau_b);
-  const double x_b = majority - x_a;
-  Triple triple{{a, b, c}, {x_a, x_b, x_c}, math::abs(x_a) + math::abs(x_b) + math::abs(x_c)};
-  return triple;
-}
-
-/// Burns in order of time.
-TangentialScheme in_order(const Triple& triple) {
-  std::array<std::size_t, 3> order{0, 1, 2};
-  for (std::size_t k = 1; k < 3; ++k) {
-    for (std::size_t j = k; j > 0 && triple.at[order[j]].offset < triple.at[order[j - 1]].offset; --j) {
-      const std::size_t later = order[j - 1];
-      order[j - 1] = order[j];
-      order[j] = later;
-    }
-  }
-  TangentialScheme scheme;
-  for (std::size_t k = 0; k < 3; ++k) {
-    scheme.offset[k] = triple.at[order[k]].offset;
-    scheme.dv[k] = triple.dv[order[k]];
-  }
-  scheme.cost = triple.cost;
-  return scheme;
-}
-
-}  // namespace
-
-Result<TangentialScheme> cheapest_tangential_scheme(const NearCircularOrbit& orbit, const Vector6& pseudo_state,
-                                                    double window) {
-  const TangentialTask task = tangential_task(orbit, pseudo_state, window);
-  const double de = math::hypot(task.e_cos, task.e_sin);
-  // Phase wanted at the end of the window; where there is nothing to turn, the first burn is now.
-  constexpr double kNoEccentricityChange = 1e-9;  // of ROE: 7 mm
-  const double now = eccentricity_phase(orbit, window, 0.0);
-  const bool turns = math::hypot(pseudo_state[2], pseudo_state[3]) > kNoEccentricityChange;
-  const double phase = turns ? math::atan2(task.e_sin, task.e_cos) : now;
-  const Opportunities times = opportunities(phase, now, orbit.latitude_rate - orbit.perigee_rate, window);
-
-  bool found = false;
-  Triple best;
-  for (std::size_t i = 0; i < times.count; ++i) {
-    for (std::size_t j = i + 1; j < times.count; ++j) {
-      if (times.at[i].parity * times.at[j].parity < 0.0) continue;
-      for (std::size_t k = 0; k < times.count; ++k) {
-        if (times.at[k].parity * times.at[i].parity > 0.0) continue;
-        const Triple candidate = solve_triple(task, de, times.at[i], times.at[j], times.at[k]);
-        if (!found || candidate.cost < best.cost) best = candidate;
-        found = true;
-      }
-    }
-  }
-  if (!found) return Status::kNotReady;
-  TangentialScheme scheme = in_order(best);
-  scheme.bounds = reachable_bounds(orbit, pseudo_state, window);
-  return scheme;
-}
-
-namespace {
-
-/// Burns of a deputy, T and N, at offsets from the start.
-struct DeputyBurn {
-  double offset = 0.0;
-  Vector3 dv = Vector3::Zero();
-};
-
+// Impulses of a manoeuvring deputy.
 struct DeputyBurns {
-  std::array<DeputyBurn, 6> burn{};
+  static constexpr std::size_t kMax = TangentialBurns::kMax + 1;
+  std::array<double, kMax> offsets{};  ///< s into the window
+  std::array<Vector3, kMax> dv{};
+  std::size_t count = 0;
+
+  void add(double offset, const Vector3& impulse) {
+    offsets[count] = offset;
+    dv[count++] = impulse;
+  }
+  [[nodiscard]] double cost() const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < count; ++k) sum += dv[k].norm();
+    return sum;
+  }
+};
+
+// The problem with what all steps need of it.
+struct Model {
+  const ControlProblem& problem;
+  const ClosedFormSettings& settings;
+  NearCircularOrbit orbit;
+  double window;  ///< s
+  double latest;  ///< last offset at which a burn may be, s
+
+  [[nodiscard]] Matrix63 effect(double offset) const {
+    return arrival_effect(problem.servicer_mean, problem.start, problem.start + nearest_duration(offset),
+                          problem.arrival);
+  }
+  // What `burns` leave of the pseudo-state.
+  [[nodiscard]] Vector6 residual(const DeputyBurns& burns) const {
+    Vector6 left = problem.pseudo_state;
+    for (std::size_t k = 0; k < burns.count; ++k) left -= effect(burns.offsets[k]) * burns.dv[k];
+    return left;
+  }
+};
+
+// Normal impulses: any one of them meets the inclination change by itself.
+struct NormalBurns {
+  struct Impulse {
+    double offset = 0.0;  ///< s into the window
+    double dv = 0.0;      ///< m/s along N
+  };
+  std::array<Impulse, kMaxPhaseTimes> impulses{};
   std::size_t count = 0;
 };
 
-/// The normal part of `pseudo_state` in proportion to the tangential burns, each share at the opportunity nearest to its
-/// tangential burn, and in the same burn if that is within kMergeWithin.
-DeputyBurns with_normal_burns(const NearCircularOrbit& orbit, const Vector6& pseudo_state, double window,
-                              const TangentialScheme& scheme) {
-  DeputyBurns burns;
-  for (std::size_t k = 0; k < 3; ++k) burns.burn[burns.count++] = {scheme.offset[k], {0.0, scheme.dv[k], 0.0}};
-  const double dix = pseudo_state[4];
-  const double total = scheme.cost > 0.0 ? scheme.cost : 1.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double share = scheme.cost > 0.0 ? math::abs(scheme.dv[k]) / total : 1.0 / 3.0;
-    // Between a burn and the end J2 turns dix into diy: what is wanted at the end is wanted less of that at the burn.
-    const double diy = pseudo_state[5] - orbit.node_drift_rate * (window - scheme.offset[k]) * dix;
-    const double dv_n = share * orbit.n * orbit.a * math::hypot(dix, diy);
-    if (dv_n == 0.0) continue;
-    const Opportunities times = opportunities(math::atan2(diy, dix), orbit.u, orbit.latitude_rate, window);
-    if (times.count == 0) continue;
-    Opportunity nearest = times.at[0];
-    for (std::size_t m = 1; m < times.count; ++m) {
-      if (math::abs(times.at[m].offset - scheme.offset[k]) < math::abs(nearest.offset - scheme.offset[k])) {
-        nearest = times.at[m];
-      }
+// The node drifts with the inclination change between burn and arrival, so the change wanted, and with it the phase,
+// depends a little on the time to go: a contraction by the ratio of the drift rates, about 1e-3.
+NormalBurns normal_burns(const Model& model, const Vector6& target) {
+  constexpr int kRounds = 4;
+  const NearCircularOrbit& orbit = model.orbit;
+  const double dix = target[4];
+  const double half_turn = math::kPi / orbit.latitude_rate;
+  const double nominal_phase = math::atan2(target[5], dix);
+  const double nominal_offset = math::wrap_to_pi(nominal_phase - orbit.u) / orbit.latitude_rate;
+
+  NormalBurns burns;
+  if (math::hypot(dix, target[5]) * orbit.a < kNoInclinationChange) return burns;
+  const int before = static_cast<int>(math::floor(nominal_offset / half_turn)) + 1;
+  for (int m = -before; burns.count < kMaxPhaseTimes; ++m) {
+    double offset = nominal_offset + m * half_turn;
+    if (offset > model.latest + half_turn) break;
+    double diy = target[5];
+    for (int round = 0; round < kRounds; ++round) {
+      diy = target[5] - orbit.node_drift_rate * (model.window - offset) * dix;
+      const double phase_change = math::wrap_to_pi(math::atan2(diy, dix) - nominal_phase);
+      offset = nominal_offset + m * half_turn + phase_change / orbit.latitude_rate;
     }
-    const Vector3 dv{0.0, 0.0, nearest.parity * dv_n};
-    if (math::abs(nearest.offset - scheme.offset[k]) < kMergeWithin) {
-      burns.burn[k].dv += dv;
+    if (offset < 0.0 || offset > model.latest) continue;
+    const double parity = m % 2 == 0 ? 1.0 : -1.0;
+    burns.impulses[burns.count++] = {offset, parity * orbit.n * orbit.a * math::hypot(dix, diy)};
+  }
+  return burns;
+}
+
+// Times at which the eccentricity vector turns along the wanted change, or against it.
+PhaseTimes tangential_grid(const Model& model, const TangentialTask& task) {
+  const NearCircularOrbit& orbit = model.orbit;
+  const double now = eccentricity_phase(orbit, model.window, 0.0);
+  const double least = 0.5 * orbit.n * model.settings.eccentricity_floor_m;
+  const bool has_phase = math::hypot(task.e_cos, task.e_sin) > least;
+  const double phase = has_phase ? math::wrap_to_pi(math::atan2(task.e_sin, task.e_cos) - now) : 0.0;
+  return phase_times(phase, orbit.latitude_rate - orbit.perigee_rate, model.latest);
+}
+
+// The grid and half orbits from both ends of the window.
+struct Offsets {
+  std::array<double, 3 * kMaxPhaseTimes> values{};
+  std::size_t count = 0;
+};
+
+Offsets grid_and_edges(const Model& model, const PhaseTimes& grid) {
+  const double half_turn = math::kPi / (model.orbit.latitude_rate - model.orbit.perigee_rate);
+  Offsets offsets;
+  for (const PhaseTime& time : grid.all()) offsets.values[offsets.count++] = time.offset;
+  for (std::size_t k = 0; k < kMaxPhaseTimes; ++k) {
+    const double along = static_cast<double>(k) * half_turn;
+    if (along > model.latest) break;
+    offsets.values[offsets.count++] = along;
+    offsets.values[offsets.count++] = model.latest - along;
+  }
+  return offsets;
+}
+
+enum class InPlane : unsigned char { kGrid, kGridAndEdges };
+
+Result<TangentialBurns> tangential_burns(const Model& model, const Vector6& target, InPlane method) {
+  const TangentialTask task = tangential_task(model.orbit, target, model.window);
+  const PhaseTimes grid = tangential_grid(model, task);
+  if (method == InPlane::kGrid) return cheapest_three_burns(task, grid.all());
+  const Offsets offsets = grid_and_edges(model, grid);
+  return cheapest_four_burns(model.orbit, task, {offsets.values.data(), offsets.count});
+}
+
+// One solution: tangential impulses and the choice of normal ones, the coupling between them (J2, eccentricity)
+// iterated away with the earliest normal impulse.
+struct Solution {
+  Vector6 target;  ///< what the near-circular view must aim at
+  TangentialBurns tangential;
+  NormalBurns normal;
+};
+
+DeputyBurns separate_burns(const Solution& solution) {
+  DeputyBurns burns;
+  for (std::size_t k = 0; k < solution.tangential.count; ++k) {
+    const TangentialBurns::Impulse& impulse = solution.tangential.impulses[k];
+    burns.add(impulse.offset, {0.0, impulse.dv, 0.0});
+  }
+  if (solution.normal.count > 0)
+    burns.add(solution.normal.impulses[0].offset, {0.0, 0.0, solution.normal.impulses[0].dv});
+  return burns;
+}
+
+Result<Solution> coupled_solution(const Model& model, InPlane method) {
+  constexpr int kRounds = 5;
+  Vector6 target = model.problem.pseudo_state;
+  Solution solution;
+  for (int round = 0; round < kRounds; ++round) {
+    const Result<TangentialBurns> tangential = tangential_burns(model, target, method);
+    if (!tangential.ok()) return tangential.status();
+    solution = {target, tangential.value(), normal_burns(model, target)};
+    target += model.residual(separate_burns(solution));
+  }
+  return solution;
+}
+
+// The normal impulse shared out over the tangential burns that have a normal time within the merge window, in
+// proportion to their sizes: the components then add in quadrature. Those burns move to the normal time.
+DeputyBurns spread_burns(const Model& model, const Solution& solution) {
+  std::array<const NormalBurns::Impulse*, TangentialBurns::kMax> partner{};
+  double shared = 0.0;
+  for (std::size_t k = 0; k < solution.tangential.count; ++k) {
+    double nearest = model.settings.merge_window;
+    for (std::size_t j = 0; j < solution.normal.count; ++j) {
+      const double apart = math::abs(solution.normal.impulses[j].offset - solution.tangential.impulses[k].offset);
+      if (apart > nearest) continue;
+      nearest = apart;
+      partner[k] = &solution.normal.impulses[j];
+    }
+    if (partner[k] != nullptr) shared += math::abs(solution.tangential.impulses[k].dv);
+  }
+  if (shared <= 0.0) return separate_burns(solution);
+
+  DeputyBurns burns;
+  for (std::size_t k = 0; k < solution.tangential.count; ++k) {
+    const TangentialBurns::Impulse& tangential = solution.tangential.impulses[k];
+    if (partner[k] == nullptr) {
+      burns.add(tangential.offset, {0.0, tangential.dv, 0.0});
     } else {
-      burns.burn[burns.count++] = {nearest.offset, dv};
+      burns.add(partner[k]->offset, {0.0, tangential.dv, partner[k]->dv * math::abs(tangential.dv) / shared});
     }
   }
   return burns;
 }
 
-/// ROE at the arrival that the burns leave undone.
-Vector6 residual(const ControlProblem& problem, const DeputyBurns& burns) {
-  Vector6 left = problem.pseudo_state;
+DeputyBurns without_negligible(const DeputyBurns& burns) {
+  const double least = kNegligibleShare * burns.cost();
+  DeputyBurns kept;
   for (std::size_t k = 0; k < burns.count; ++k) {
-    const GpsTime time = problem.start + nearest_duration(burns.burn[k].offset);
-    left -= arrival_effect(problem.servicer_mean, problem.start, time, problem.arrival) * burns.burn[k].dv;
+    if (burns.dv[k].norm() > least) kept.add(burns.offsets[k], burns.dv[k]);
   }
-  return left;
+  return kept;
 }
 
-/// In order of time, turned into the servicer's.
-Plan plan_of(const ControlProblem& problem, const DeputyBurns& burns) {
+bool meets(const Model& model, const Vector6& left) {
+  return left.norm() <= kAcceptedResidual * model.problem.pseudo_state.norm();
+}
+
+// Removes what merging and the near-circular view left, as far as burns at these times can: one linear step solves the
+// linear model, a second one its rounding.
+Result<DeputyBurns> polished(const Model& model, DeputyBurns burns) {
+  constexpr int kRounds = 2;
+  std::array<Matrix63, DeputyBurns::kMax> effects;
+  for (std::size_t k = 0; k < burns.count; ++k) effects[k] = model.effect(burns.offsets[k]);
+  for (int round = 0; round < kRounds; ++round) {
+    const Result<Correction> correction = least_norm_correction({effects.data(), burns.count}, model.residual(burns));
+    if (!correction.ok()) return correction.status();
+    for (std::size_t k = 0; k < burns.count; ++k) burns.dv[k] += correction.value().dv[k];
+  }
+  return burns;
+}
+
+enum class Arrangement : unsigned char { kSeparate, kSpread };
+
+// Burns at the normal phase cannot turn the inclination vector across it. What is left there moves the phase itself;
+// nothing else of the residual may, or it would wind up.
+Result<DeputyBurns> arranged(const Model& model, Solution solution, Arrangement arrangement) {
+  constexpr int kRounds = 4;
+  Vector6 target = solution.target;
+  for (int round = 0; round < kRounds; ++round) {
+    const DeputyBurns raw =
+        arrangement == Arrangement::kSeparate ? separate_burns(solution) : spread_burns(model, solution);
+    const Result<DeputyBurns> burns = polished(model, without_negligible(raw));
+    if (!burns.ok()) return burns;
+    const Vector6 left = model.residual(burns.value());
+    if (meets(model, left)) return burns;
+    target.tail<2>() += left.tail<2>();
+    solution.normal = normal_burns(model, target);
+  }
+  return Status::kDidNotConverge;
+}
+
+Plan servicer_plan(const Model& model, const DeputyBurns& burns) {
   Plan plan;
   plan.solver = Solver::kClosedForm;
   for (std::size_t k = 0; k < burns.count; ++k) {
-    const Burn burn{problem.start + nearest_duration(burns.burn[k].offset), -burns.burn[k].dv};
-    std::size_t place = plan.count++;
-    for (; place > 0 && burn.time < plan.burns[place - 1].time; --place) plan.burns[place] = plan.burns[place - 1];
-    plan.burns[place] = burn;
+    std::size_t slot = plan.count++;
+    const Burn burn{model.problem.start + nearest_duration(burns.offsets[k]), -burns.dv[k]};
+    for (; slot > 0 && burn.time < plan.burns[slot - 1].time; --slot) plan.burns[slot] = plan.burns[slot - 1];
+    plan.burns[slot] = burn;
   }
   return plan;
 }
 
 }  // namespace
 
-Result<Plan> solve_closed_form(const ControlProblem& problem) {
-  if (problem.arrival <= problem.start) return Status::kInvalidArgument;
+Result<Plan> solve_closed_form(const ControlProblem& problem, const ClosedFormSettings& settings) {
   if (!math::is_finite(problem.pseudo_state.sum())) return Status::kNotFinite;
   const double window = seconds(problem.arrival - problem.start);
-  const NearCircularOrbit orbit = near_circular_orbit(problem.servicer_mean);
+  if (window <= settings.final_coast) return Status::kInvalidArgument;
+  const Model model{problem, settings, near_circular_orbit(problem.servicer_mean), window,
+                    window - settings.final_coast};
 
-  constexpr int kMaxRounds = 12;
-  Vector6 wanted = problem.pseudo_state;
-  DeputyBurns best;
-  double best_left = -1.0;
-  for (int round = 0; round < kMaxRounds; ++round) {
-    const Result<TangentialScheme> scheme = cheapest_tangential_scheme(orbit, wanted, window);
-    if (!scheme.ok()) return scheme.status();
-    const DeputyBurns burns = with_normal_burns(orbit, wanted, window, scheme.value());
-    const Vector6 left = residual(problem, burns);
-    if (best_left < 0.0 || left.norm() < best_left) {
-      best = burns;
-      best_left = left.norm();
+  Result<Plan> best = Status::kSingular;
+  double best_cost = 0.0;
+  for (const InPlane method : {InPlane::kGrid, InPlane::kGridAndEdges}) {
+    const Result<Solution> solution = coupled_solution(model, method);
+    if (!solution.ok()) {
+      if (!best.ok()) best = solution.status();
+      continue;
     }
-    if (best_left <= 1e-9 * problem.pseudo_state.norm()) break;
-    wanted += left;
+    for (const Arrangement arrangement : {Arrangement::kSeparate, Arrangement::kSpread}) {
+      const Result<DeputyBurns> candidate = arranged(model, solution.value(), arrangement);
+      if (!candidate.ok()) {
+        if (!best.ok()) best = candidate.status();
+        continue;
+      }
+      const double cost = candidate.value().cost();
+      if (best.ok() && cost >= best_cost) continue;
+      best = servicer_plan(model, candidate.value());
+      best_cost = cost;
+    }
   }
-  return plan_of(problem, best);
+  return best;
 }
 
 }  // namespace vbar::fsw::control

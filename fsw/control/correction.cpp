@@ -1,5 +1,6 @@
 #include "fsw/control/correction.h"
 
+#include "fsw/math/math.h"
 #include "fsw/math/symmetric_eigen.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/secular.h"
@@ -7,72 +8,80 @@
 namespace vbar::fsw::control {
 namespace {
 
-constexpr double kRadialWeight = 1.0 / 3.0;  // a radial burn turns de at twice the price of a tangential one
-constexpr double kTruncation = 0.02;         // singular values below this part of the largest are not used
-
-/// committed, then planned.
-Plan joined(const Plan& committed, const Plan& plan) {
-  Plan all = committed;
-  for (std::size_t k = 0; k < plan.count && all.count < kMaxBurns; ++k) all.burns[all.count++] = plan.burns[k];
-  return all;
-}
-
-std::span<const Burn> burns_of(const Plan& plan) { return {plan.burns.data(), plan.count}; }
-
-/// Columns of a burn's effect, weighted.
-Matrix63 weighted_effect(const MeanOrbits& orbits, const Burn& burn, const Waypoint& waypoint) {
-  Matrix63 effect = arrival_effect(orbits.servicer, orbits.epoch, burn.time, waypoint.time);
-  effect.col(0) *= kRadialWeight;
-  return effect;
-}
-
-/// One least-norm step that takes `error` out, through the eigenvectors of the 6x6 Gram matrix of the weighted effects.
-Status correct_once(const MeanOrbits& orbits, const Waypoint& waypoint, const Vector6& error, Plan& plan) {
-  Matrix6 gram = Matrix6::Zero();
-  for (const Burn& burn : burns_of(plan)) {
-    const Matrix63 effect = weighted_effect(orbits, burn, waypoint);
-    gram += effect * effect.transpose();
-  }
-  const Result<math::SymmetricEigen<6>> eigen = math::symmetric_eigen<6>(gram);
-  if (!eigen.ok()) return eigen.status();
-  const double least = kTruncation * kTruncation * eigen.value().values(5);
-  Vector6 multiplier = Vector6::Zero();
-  for (int k = 0; k < 6; ++k) {
-    const double value = eigen.value().values(k);
-    if (value <= least) continue;
-    const Vector6 direction = eigen.value().vectors.col(k);
-    multiplier += direction * (direction.dot(error) / value);
-  }
-  for (std::size_t k = 0; k < plan.count; ++k) {
-    Vector3 deputy_dv = weighted_effect(orbits, plan.burns[k], waypoint).transpose() * multiplier;
-    deputy_dv(0) *= kRadialWeight;
-    plan.burns[k].dv_rtn -= deputy_dv;
-  }
-  return Status::kOk;
+// dlambda answers a transverse burn with 3 m/s times the time to go, ten and more times what the other elements do; its
+// row is scaled to theirs by a fixed number. (Scaling by the largest effect, which changes from decision to decision,
+// diverges.)
+Vector6 row_scale() {
+  return {1.0, 0.1, 1.0, 1.0, 1.0, 1.0};
 }
 
 }  // namespace
 
-Result<double> arrival_distance(const MeanOrbits& orbits, const Waypoint& waypoint, const Vector6& roe_error) {
-  const Vector6 rtn = orbit::rtn_from_roe_linear(
-      orbit::propagate_secular(orbits.servicer, seconds(waypoint.time - orbits.epoch)), roe_error);
-  const double distance = rtn.head<3>().norm();
-  if (!math::is_finite(distance)) return Status::kNotFinite;
-  return distance;
+Result<Correction> least_norm_correction(std::span<const Matrix63> effects, const Vector6& residual,
+                                         const CorrectionSettings& settings) {
+  if (effects.empty() || effects.size() > kMaxBurns) return Status::kInvalidArgument;
+  if (!math::is_finite(residual.sum())) return Status::kNotFinite;
+  const Vector6 rows = row_scale();
+  const Vector3 columns(1.0 / settings.radial_price, 1.0, 1.0);
+
+  // With A = [scaled effects], A A' = U S^2 U' gives the truncated least-norm solution A' U S^-2 U' r without the wide
+  // A.
+  Matrix6 gram = Matrix6::Zero();
+  for (const Matrix63& effect : effects) {
+    const Matrix63 scaled = rows.asDiagonal() * effect * columns.asDiagonal();
+    gram += scaled * scaled.transpose();
+  }
+  const Result<math::SymmetricEigen<6>> eigen = math::symmetric_eigen<6>(gram);
+  if (!eigen.ok()) return eigen.status();
+  const double strongest = eigen.value().values[5];
+  if (strongest <= 0.0) return Status::kSingular;
+
+  Vector6 multipliers = Vector6::Zero();
+  const Vector6 scaled_residual = rows.cwiseProduct(residual);
+  for (int k = 0; k < 6; ++k) {
+    const double gain_squared = eigen.value().values[k];
+    if (gain_squared < settings.least_gain * settings.least_gain * strongest) continue;
+    const Vector6 direction = eigen.value().vectors.col(k);
+    multipliers += direction * (direction.dot(scaled_residual) / gain_squared);
+  }
+
+  Correction correction;
+  for (const Matrix63& effect : effects) {
+    const Vector3 along = effect.transpose() * rows.cwiseProduct(multipliers);
+    correction.dv[correction.count++] = columns.cwiseProduct(columns).cwiseProduct(along);
+  }
+  return correction;
 }
 
-Result<Plan> correct_plan(const MeanOrbits& orbits, const Plan& committed, const Plan& plan, const Waypoint& waypoint) {
-  if (plan.count == 0) return Status::kNotReady;
-  constexpr int kRounds = 3;  // the linear effects are good to 1e-2: three rounds leave 1e-6 of the error
+Result<Plan> correct_plan(const MeanOrbits& orbits, const Plan& committed, const Plan& plan, const Waypoint& waypoint,
+                          const CorrectionSettings& settings) {
+  if (plan.count == 0) return Status::kInvalidArgument;
+  // The linear effects are good to about 1e-2 of the whole change, mostly by the servicer's own burns on the way: every
+  // round leaves that share of the error, from tens of metres after planning at 75 km down to millimetres.
+  constexpr int kRounds = 3;
+  std::array<Matrix63, kMaxBurns> effects;
+  for (std::size_t k = 0; k < plan.count; ++k) {
+    effects[k] = arrival_effect(orbits.servicer, orbits.epoch, plan.burns[k].time, waypoint.time);
+  }
+  const Result<MeanOrbits> at_first = fly(orbits, committed.all(), plan.burns[0].time);
+  if (!at_first.ok()) return at_first.status();
   Plan corrected = plan;
   for (int round = 0; round < kRounds; ++round) {
-    const Plan all = joined(committed, corrected);
-    const Result<Vector6> error = arrival_error(orbits, burns_of(all), waypoint);
+    const Result<Vector6> error = arrival_error(at_first.value(), corrected.all(), waypoint);
     if (!error.ok()) return error.status();
-    const Status status = correct_once(orbits, waypoint, error.value(), corrected);
-    if (status != Status::kOk) return status;
+    const Result<Correction> correction = least_norm_correction({effects.data(), plan.count}, error.value(), settings);
+    if (!correction.ok()) return correction.status();
+    // Effects are those of the deputy.
+    for (std::size_t k = 0; k < plan.count; ++k) corrected.burns[k].dv_rtn -= correction.value().dv[k];
   }
   return corrected;
+}
+
+Result<double> arrival_distance(const MeanOrbits& orbits, const Waypoint& waypoint, const Vector6& roe_error) {
+  const orbit::QnsElements servicer = orbit::propagate_secular(orbits.servicer, seconds(waypoint.time - orbits.epoch));
+  const double distance = orbit::rtn_from_roe_linear(servicer, roe_error).head<3>().norm();
+  if (!math::is_finite(distance)) return Status::kNotFinite;
+  return distance;
 }
 
 }  // namespace vbar::fsw::control

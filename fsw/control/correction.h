@@ -1,18 +1,45 @@
 #pragma once
-// Small corrections to a plan that is being flown: the times stay, the burns change a little.
+// The smallest change of existing burns that moves where they arrive.
+
+#include <array>
+#include <cstddef>
+#include <span>
 
 #include "fsw/control/arrival.h"
 #include "fsw/control/plan.h"
 
 namespace vbar::fsw::control {
 
-/// Distance (m) in the servicer's RTN at the waypoint that an arrival error of dimensionless ROE amounts to; linear map.
-Result<double> arrival_distance(const MeanOrbits& orbits, const Waypoint& waypoint, const Vector6& roe_error);
+/// How a correction weighs what it may change against what it must reach.
+struct CorrectionSettings {
+  /// Price of a radial impulse against a transverse or normal one: above one keeps R components small, so that they
+  /// serve where nothing else does, across the phase of the eccentricity vector.
+  double radial_price = 2.0;
+  /// A direction of the arrival whose gain is below this share of the strongest is left alone: closing it there would
+  /// cost more delta-v than it is worth, and another plan closes it for less.
+  double least_gain = 0.02;
+};
 
-/// The plan with its burns changed by the least amount (radial parts counted three times as dear) that takes the predicted
-/// arrival error out. `committed` burns, all earlier, fly as they are. Directions in which the burns can do next to nothing
-/// are left alone: forcing them costs metres per second. The caller judges what is left. kNotReady for a plan without burns;
-/// errors as arrival_error().
-Result<Plan> correct_plan(const MeanOrbits& orbits, const Plan& committed, const Plan& plan, const Waypoint& waypoint);
+/// Changes of impulses, m/s, in the sign of the effects they were found with.
+struct Correction {
+  std::array<Vector3, kMaxBurns> dv{};
+  std::size_t count = 0;
+};
+
+/// The least-norm change of burns, with 6x3 effects E_k on the dimensionless ROE per m/s, such that sum E_k dv_k =
+/// residual but for the truncated directions. kInvalidArgument without burns or with more than kMaxBurns; kNotFinite;
+/// kSingular if all effects vanish.
+Result<Correction> least_norm_correction(std::span<const Matrix63> effects, const Vector6& residual,
+                                         const CorrectionSettings& settings = {});
+
+/// `plan`, flown after all of `committed`, with its impulses, not its times, changed so that it arrives: Newton steps
+/// of least norm on the nonlinear prediction. It may still miss in directions that its times do not control: evaluate
+/// it. kInvalidArgument for a plan without burns; errors of arrival_error() and least_norm_correction().
+Result<Plan> correct_plan(const MeanOrbits& orbits, const Plan& committed, const Plan& plan, const Waypoint& waypoint,
+                          const CorrectionSettings& settings = {});
+
+/// Distance (m) at the waypoint's time between where the target would be and where it should, for an arrival error in
+/// ROE. kNotFinite.
+Result<double> arrival_distance(const MeanOrbits& orbits, const Waypoint& waypoint, const Vector6& roe_error);
 
 }  // namespace vbar::fsw::control

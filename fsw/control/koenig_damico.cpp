@@ -1,27 +1,65 @@
 #include "fsw/control/koenig_damico.h"
-#include "fsw/control/least_squares.h"
-#include "fsw/control/arrival.h"
+
+#include <algorithm>
+
+#include "fsw/control/impulse_effect.h"
+#include "fsw/math/math.h"
+
 namespace vbar::fsw::control {
+namespace {
+
+/// Intervals of the grid: none of them longer than the step asked for, unless that takes too many.
+std::int64_t grid_intervals(Duration horizon, Duration step) {
+  const std::int64_t wanted = horizon.ns / step.ns + (horizon.ns % step.ns != 0 ? 1 : 0);
+  return std::min(wanted, static_cast<std::int64_t>(kMaxGridTimes) - 1);
+}
+
+/// Candidate times and the effects of impulses there; returns how many.
+std::size_t make_grid(const ControlProblem& problem, const KoenigDamicoSettings& settings,
+                      KoenigDamicoWorkspace& workspace) {
+  const Duration horizon = problem.arrival - problem.start;
+  const std::int64_t intervals = grid_intervals(horizon, settings.grid_step);
+  std::size_t count = 0;
+  for (std::int64_t k = 0; k <= intervals; ++k) {
+    // 30 days times 640 stays below 2^63 ns.
+    const Duration since_start{intervals > 0 ? horizon.ns * k / intervals : 0};
+    const GpsTime time = problem.start + since_start;
+    const ThrustWindows& windows = settings.windows;
+    if (windows.allowed != nullptr && !windows.allowed(windows.context, time)) continue;
+    workspace.times[count] = time;
+    workspace.costs[count] = settings.cost;
+    workspace.effects[count] = impulse_effect(problem.servicer_mean, seconds(since_start), seconds(horizon));
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
 Result<Plan> solve_koenig_damico(const ControlProblem& problem, const KoenigDamicoSettings& settings,
                                  KoenigDamicoWorkspace& workspace) {
-  std::int64_t window = (problem.arrival - problem.start).ns;
-  std::int64_t step = settings.grid_step.ns;
-  while (window / step + 2 > 640) step *= 2;
-  std::array<GpsTime, kMaxGrid> t;
-  std::size_t n = 0;
-  for (std::int64_t o = 0; o < window; o += step) t[n++] = problem.start + Duration{o};
-  t[n++] = problem.arrival;
-  for (std::size_t k = 0; k < n; ++k) {
-    workspace.effects[k] = arrival_effect(problem.servicer_mean, problem.start, t[k], problem.arrival);
-    workspace.costs[k] = ThrustCost::kSteerable;
-  }
-  PrimerSettings ps;
-  auto s = solve_primer({{workspace.effects.data(), n}, {workspace.costs.data(), n}}, problem.pseudo_state, ps, workspace.primer);
-  if (!s.ok()) return s.status();
+  if (settings.grid_step.ns <= 0 || !(settings.negligible_change_m >= 0.0)) return Status::kInvalidArgument;
+  const Status valid = check_horizon(problem.servicer_mean, seconds(problem.arrival - problem.start));
+  if (valid != Status::kOk) return valid;
+
   Plan plan;
   plan.solver = Solver::kKoenigDamico;
-  for (std::size_t k = 0; k < s.value().count; ++k) plan.burns[plan.count++] = {t[s.value().impulses[k].time_index], -s.value().impulses[k].dv};
+  if (problem.servicer_mean.a * problem.pseudo_state.norm() < settings.negligible_change_m) {
+    workspace.solution = {};
+    return plan;
+  }
+  const std::size_t count = make_grid(problem, settings, workspace);
+  const ImpulseGrid grid{{workspace.effects.data(), count}, {workspace.costs.data(), count}};
+  const Result<PrimerSolution> solution = solve_primer(grid, problem.pseudo_state, settings.primer, workspace.primer);
+  if (!solution.ok()) return solution.status();
+
+  workspace.solution = solution.value();
+  plan.count = workspace.solution.count;
+  for (std::size_t k = 0; k < plan.count; ++k) {
+    const Impulse& impulse = workspace.solution.impulses[k];
+    plan.burns[k] = {workspace.times[impulse.time_index], -impulse.dv};
+  }
   return plan;
 }
-Result<Plan> solve_least_squares(const ControlProblem&) { return Status::kNotReady; }
-}
+
+}  // namespace vbar::fsw::control

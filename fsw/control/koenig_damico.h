@@ -1,16 +1,45 @@
 #pragma once
+// Fuel-optimal impulsive control of the relative orbit over a grid of candidate times: the primer-vector solver on the
+// J2 dynamics of mean ROE.
+
+#include <array>
+
 #include "fsw/control/plan.h"
 #include "fsw/control/primer.h"
+
 namespace vbar::fsw::control {
-inline constexpr std::size_t kMaxGrid = 640;
+
+/// Most candidate times; on longer horizons the grid widens.
+inline constexpr std::size_t kMaxGridTimes = 640;
+
+/// Says when thrust is allowed (attitude, camera, eclipse); without a function, always.
+struct ThrustWindows {
+  bool (*allowed)(const void* context, GpsTime time) = nullptr;
+  const void* context = nullptr;
+};
+
 struct KoenigDamicoSettings {
-  Duration grid_step = duration_of_seconds(30);
+  Duration grid_step = duration_of_seconds(30);  ///< > 0; the times are spread evenly, no wider than this if they fit
+  ThrustCost cost = ThrustCost::kSteerable;
+  ThrustWindows windows;
+  double negligible_change_m = 1e-6;  ///< |a pseudo_state| below which nothing is burned
+  PrimerSettings primer;
 };
+
+/// Scratch and the full account of the last solution; about 120 kB, so not for a flight computer's stack.
 struct KoenigDamicoWorkspace {
+  std::array<Matrix63, kMaxGridTimes> effects;
+  std::array<ThrustCost, kMaxGridTimes> costs;
+  std::array<GpsTime, kMaxGridTimes> times;
   PrimerWorkspace primer;
-  std::array<Matrix63, kMaxGrid> effects;
-  std::array<ThrustCost, kMaxGrid> costs;
+  PrimerSolution solution;  ///< impulses of the deputy; valid after a solve that returned a plan
 };
+
+/// Burns of the servicer (at most kMaxImpulses, from `start` to `arrival`, both included) that bring about the
+/// pseudo-state at least cost, within settings.primer.cost_tolerance of the optimum on the grid. Errors:
+/// kInvalidArgument (settings), kNotFinite, kOutOfRange (orbit or horizon, arrival before start), kSingular (no time
+/// allowed, or too few or too close to reach every state), kDidNotConverge.
 Result<Plan> solve_koenig_damico(const ControlProblem& problem, const KoenigDamicoSettings& settings,
                                  KoenigDamicoWorkspace& workspace);
-}
+
+}  // namespace vbar::fsw::control

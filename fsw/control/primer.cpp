@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-
+#include "fsw/control/cholesky.h"
 #include "fsw/control/primer_extract.h"
 #include "fsw/math/math.h"
 
@@ -11,11 +10,13 @@ namespace vbar::fsw::control {
 namespace {
 
 constexpr std::size_t kCoarseTimes = 12;
-constexpr std::size_t kMaxAdded = 10;   ///< impulses that join the active set at once
-constexpr double kMinPivot = 1e-13;     ///< of the equilibrated gramian: below, the times do not span the state space
-constexpr double kMinSpan = 1e-3;       ///< pivot of the active effects' gramian below which none is dropped
-constexpr double kDropMargin = 0.01;    ///< impulses whose contact is lower than 1 by this leave the active set
-constexpr double kRelativeGap = 1e-9;   ///< of each active set's program
+constexpr std::size_t kMaxAdded = 10;  ///< impulses that join the active set at once
+constexpr double kMinPivot = 1e-13;    ///< of the equilibrated gramian: below, the times do not span the state space
+constexpr double kMinSpan = 1e-3;      ///< pivot of the active effects' gramian below which none is dropped
+constexpr double kDropMargin = 0.01;   ///< impulses whose contact is lower than 1 by this leave the active set
+constexpr double kGapShare = 1e-3;     ///< of the cost tolerance: relative gap of each active set's program
+constexpr double kProgress = 1e-2;     ///< of the cost tolerance: relative decrease that counts as progress
+constexpr double kNoBound = 1e300;
 constexpr double kMaxResidual = 1e-10;  ///< of the impulses found, |target| = 1
 
 /// The state in which the coarse times' gramian is the identity and |target| = 1.
@@ -25,7 +26,7 @@ struct Scaling {
 };
 
 Status check(const ImpulseGrid& grid, const Vector6& target, const PrimerSettings& settings) {
-  const bool settings_valid = settings.cost_tolerance > 0.0 && settings.cost_tolerance <= 0.1 &&
+  const bool settings_valid = settings.cost_tolerance >= 1e-6 && settings.cost_tolerance <= 0.1 &&
                               settings.prune_ratio >= 0.0 && settings.prune_ratio < 1.0 && settings.max_rounds > 0 &&
                               settings.max_newton_steps > 0;
   if (!settings_valid || grid.effects.size() != grid.costs.size()) return Status::kInvalidArgument;
@@ -67,13 +68,11 @@ Status make_scaling(const ImpulseGrid& grid, const Vector6& target, Scaling& sca
   if (!(gramian.diagonal().minCoeff() > 0.0)) return Status::kSingular;
 
   const Vector6 row_scale = gramian.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Matrix6> factor(row_scale.asDiagonal() * gramian * row_scale.asDiagonal());
-  if (factor.info() != Eigen::Success) return Status::kSingular;
-  const Matrix6 lower = factor.matrixL();
-  if (lower.diagonal().minCoeff() < math::sqrt(kMinPivot)) return Status::kSingular;
-
-  scaling.from_state = row_scale.asDiagonal();
-  lower.triangularView<Eigen::Lower>().solveInPlace(scaling.from_state);
+  const Cholesky6 factor(row_scale.asDiagonal() * gramian * row_scale.asDiagonal());
+  if (!(factor.smallest_pivot() > kMinPivot)) return Status::kSingular;
+  for (int c = 0; c < 6; ++c) {
+    scaling.from_state.col(c) = factor.solve_lower(row_scale(c) * Vector6::Unit(c));
+  }
   scaling.target_norm = (scaling.from_state * target).norm();
   return math::is_finite(scaling.target_norm) && scaling.target_norm > 0.0 ? Status::kOk : Status::kNotFinite;
 }
@@ -129,8 +128,8 @@ GridScan scan_grid(const ImpulseGrid& grid, const Vector6& lambda, double thresh
 }
 
 bool spans(const Matrix6& gramian) {
-  const Eigen::LLT<Matrix6> factor(gramian);
-  return factor.info() == Eigen::Success && factor.matrixLLT().diagonal().minCoeff() > kMinSpan;
+  const Cholesky6 factor(gramian);
+  return factor.smallest_pivot() > kMinSpan;
 }
 
 /// Drops the impulses whose contact is well below 1, except those without which the others would not span the state
@@ -215,8 +214,10 @@ Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& targ
   if (started != Status::kOk) return started;
 
   PrimerSolution solution;
+  double least_bound = kNoBound;
   for (int round = 1; round <= settings.max_rounds; ++round) {
-    const PrimerProgramEnd end = solve_primer_program(program, kRelativeGap, settings.max_newton_steps);
+    const PrimerProgramEnd end =
+        solve_primer_program(program, kGapShare * settings.cost_tolerance, settings.max_newton_steps);
     solution.newton_steps += end.steps;
     solution.rounds = round;
     if (end.status != Status::kOk) return end.status;
@@ -234,7 +235,10 @@ Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& targ
       store_impulses(grid, program, scaling.target_norm, solution);
       return solution.residual <= kMaxResidual ? Result<PrimerSolution>(solution) : Status::kDidNotConverge;
     }
-    drop_inactive(program);
+    // Where the dual has many optima, an exchange need not bring progress; dropping would then go round in circles.
+    const double bound = program.target.dot(program.lambda);
+    if (bound < least_bound * (1.0 - kProgress * settings.cost_tolerance)) drop_inactive(program);
+    least_bound = std::min(least_bound, bound);
     add_peaks(grid, scaling, scan, program);
     const Status restarted = restart_primer_program(program);
     if (restarted != Status::kOk) return restarted;

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
+#include "fsw/control/cholesky.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::control {
@@ -95,6 +94,10 @@ void eliminate_one(const PrimerProgram& program, Selection& selection) {
   std::array<double, kDimension + 1> magnitude{};
   for (std::size_t k = 0; k <= kDimension; ++k) {
     magnitude[k] = selection.dv[k].norm();
+    if (!(magnitude[k] > 0.0)) {  // vanished together with the one eliminated before
+      remove(selection, k);
+      return;
+    }
     columns.col(static_cast<int>(k)) = program.active[selection.index[k]].effect * (selection.dv[k] / magnitude[k]);
   }
   std::array<double, kDimension + 1> shift = null_vector(columns);
@@ -129,7 +132,7 @@ double meet_target(const PrimerProgram& program, Selection& selection) {
     normal += weight[k] * effect * effect.transpose();
   }
   normal.diagonal().array() += kRegularisation * normal.trace();
-  const Eigen::LLT<Matrix6> factor(normal);
+  const Cholesky6 factor(normal);
   for (int pass = 0; pass < kPasses; ++pass) {
     const Vector6 multiplier = factor.solve(residual_of(program, selection));
     for (std::size_t k = 0; k < selection.count; ++k) {

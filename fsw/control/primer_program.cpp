@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-
+#include "fsw/control/cholesky.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::control {
@@ -154,8 +153,8 @@ Status newton_step(PrimerProgram& program, double complementarity) {
     program.cone[k].correction0 = 0.0;
     program.cone[k].correction.setZero();
   }
-  const Eigen::LLT<Matrix6> factor(normal);
-  if (factor.info() != Eigen::Success) return Status::kSingular;
+  const Cholesky6 factor(normal);
+  if (!factor.ok()) return Status::kSingular;
 
   const double predictor_length = std::min(1.0, cone_steps(program, factor.solve(program.target)));
   const double remaining = 1.0 - predictor_length;
@@ -184,8 +183,8 @@ Status meet_target(PrimerProgram& program, const Vector6& missing) {
     const ActiveImpulse& impulse = program.active[k];
     add_scaled_gramian(impulse.effect, Vector3::Zero(), impulse.bound * impulse.bound, gramian);
   }
-  const Eigen::LLT<Matrix6> factor(gramian);
-  if (factor.info() != Eigen::Success) return Status::kSingular;
+  const Cholesky6 factor(gramian);
+  if (!factor.ok()) return Status::kSingular;
   const Vector6 multiplier = factor.solve(missing);
   for (std::size_t k = 0; k < program.count; ++k) {
     ActiveImpulse& impulse = program.active[k];
@@ -202,8 +201,8 @@ Status start_primer_program(PrimerProgram& program) {
   for (std::size_t k = 0; k < program.count; ++k) {
     add_scaled_gramian(program.active[k].effect, Vector3::Zero(), 1.0, gramian);
   }
-  const Eigen::LLT<Matrix6> factor(gramian);
-  if (factor.info() != Eigen::Success) return Status::kSingular;
+  const Cholesky6 factor(gramian);
+  if (!factor.ok()) return Status::kSingular;
   program.lambda = factor.solve(program.target);
 
   double largest_dv = 0.0;

@@ -2,8 +2,6 @@
 
 #include <span>
 
-#include "fsw/control/closed_form.h"
-#include "fsw/control/correction.h"
 #include "fsw/control/least_squares.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/mean_osculating.h"
@@ -15,24 +13,21 @@ namespace {
 using control::Plan;
 using control::Solver;
 
-/// Solvers of a leg, best first. The closed form needs about an orbit of candidate times; where it has none left, the
-/// fuel-optimal solver flies the rest. Least squares always gives something, if not the cheapest.
+/// The solvers that plan a leg from scratch, best first. (The closed form is asked by the policy of its legs, leg.h.) Least
+/// squares always gives something, if not the cheapest.
 struct Ladder {
-  std::array<Solver, 3> solvers;
+  std::array<Solver, 2> solvers;
   std::size_t count;
 };
 
 Ladder ladder_of(const Waypoint& goal, bool estimate_too_coarse) {
-  const auto preferred = static_cast<Solver>(goal.control_mode);
-  if (estimate_too_coarse || preferred == Solver::kLeastSquares) return {{Solver::kLeastSquares}, 1};
-  if (preferred == Solver::kKoenigDamico) return {{Solver::kKoenigDamico, Solver::kLeastSquares}, 2};
-  return {{Solver::kClosedForm, Solver::kKoenigDamico, Solver::kLeastSquares}, 3};
+  const bool least_squares_only = estimate_too_coarse || static_cast<Solver>(goal.control_mode) == Solver::kLeastSquares;
+  if (least_squares_only) return {{Solver::kLeastSquares}, 1};
+  return {{Solver::kKoenigDamico, Solver::kLeastSquares}, 2};
 }
 
-std::span<const control::Burn> burns_of(const Plan& plan) { return {plan.burns.data(), plan.count}; }
-
 bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
-  for (const control::Burn& burn : burns_of(plan)) {
+  for (const control::Burn& burn : plan.all()) {
     if (!burn.dv_rtn.allFinite() || burn.dv_rtn.norm() > configuration.maximum_dv) return false;
   }
   return true;
@@ -89,8 +84,9 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   forget_past_burns(now);
   orbits_ = {now, servicer.value(), target.value()};
   report_.roe = orbit::roe_from_qns(orbits_.servicer, orbits_.target);
-  sigma_a_roe_m_ = navigation.sigma_a_roe_m(orbits_.servicer);
-  position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m_(0), servicer.value());
+  const Vector6 sigma_a_roe_m = navigation.sigma_a_roe_m(orbits_.servicer);
+  sigma_roe_ = sigma_a_roe_m / orbits_.servicer.a;
+  position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m(0), orbits_.servicer);
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
   const Result<safety::PlanSafety> drift = safety_of({}, configuration);
   if (drift.ok()) report_.passive_safety_distance = drift.value().least_distance;
@@ -156,57 +152,51 @@ bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configurati
 
 void Guidance::decide(const gnc_configuration& configuration) {
   if (goal_.time <= earliest_burn_) return;  // nothing can be done about this waypoint any more
-  if (keeps_plan(configuration)) return;
-  if (adopt_correction(configuration)) return;
-
-  const bool too_coarse = configuration.roe_error_threshold_m > 0.0 &&
-                          sigma_a_roe_m_.maxCoeff() > configuration.roe_error_threshold_m;
-  const Ladder ladder = ladder_of(goal_, too_coarse);
-  for (std::size_t k = 0; k < ladder.count; ++k) {
-    const Result<Plan> candidate = solve(ladder.solvers[k], configuration);
-    status_of(ladder.solvers[k]) = candidate.status();
-    if (candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration)) return;
-    ++report_.solver_fallbacks;
-  }
+  const double sigma_m = orbits_.servicer.a * sigma_roe_.maxCoeff();
+  const bool too_coarse = configuration.roe_error_threshold_m > 0.0 && sigma_m > configuration.roe_error_threshold_m;
+  if (!too_coarse && stays_on_plan(configuration)) return;
+  if (climbs_ladder(configuration, too_coarse)) return;
   plan_ = {};
   report_.active_solver = Solver::kNone;
   ++report_.holds;
 }
 
-/// Tolerances of the arrival: what an orbit of corrections would gain is not worth more burns. The fuel-optimal solver of the
-/// close range replans at no cost in fuel, so it is held to millimetres.
-bool Guidance::arrives_well_enough(const Vector6& roe_error) const {
-  const bool far = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
-  const double tolerance = (far ? 0.3 : 0.003) + sigma_a_roe_m_.maxCoeff();
-  const Result<double> distance = control::arrival_distance(orbits_, waypoint(), roe_error);
-  return distance.ok() && distance.value() <= tolerance;
+/// Keeps or corrects the plan, or lets the closed form make it, as the leg's policy says.
+bool Guidance::stays_on_plan(const gnc_configuration& configuration) {
+  const control::LegSituation situation = leg_situation();
+  const bool closed_form = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
+  const Result<control::LegDecision> decision =
+      closed_form ? control::decide_leg(situation, plan_, leg_policy(configuration))
+                  : control::keep_or_correct(situation, plan_, leg_policy(configuration));
+  if (!decision.ok()) return false;
+  const control::LegDecision& decided = decision.value();
+  if (decided.action == control::LegAction::kHandOver) {
+    if (closed_form) report_.closed_form = decided.closed_form;
+    return false;
+  }
+  if (decided.action == control::LegAction::kReplan) report_.closed_form = decided.closed_form;
+  return adopt_if_flyable(decided.plan, configuration);
 }
 
-/// A plan that still arrives well enough and is still safe stays: planning anew at every decision chases noise and, with
-/// burn opportunities coming and going, costs up to three times the fuel.
-bool Guidance::keeps_plan(const gnc_configuration& configuration) {
-  if (report_.active_solver == Solver::kNone) return false;
-  const Result<Vector6> error = arrival_error_of(plan_);
-  if (!error.ok()) return false;
-  report_.predicted_roe_error = error.value();
-  return arrives_well_enough(error.value()) && is_safe(safety_of(plan_, configuration));
-}
-
-/// The burns that are left, changed a little, if that is enough to arrive: cheaper than a new plan.
-bool Guidance::adopt_correction(const gnc_configuration& configuration) {
-  if (plan_.count == 0) return false;
-  const Result<Plan> corrected = control::correct_plan(orbits_, pending_, plan_, waypoint());
-  if (!corrected.ok()) return false;
-  const Result<Vector6> error = arrival_error_of(corrected.value());
-  return error.ok() && arrives_well_enough(error.value()) && adopt_if_flyable(corrected.value(), configuration);
+bool Guidance::climbs_ladder(const gnc_configuration& configuration, bool estimate_too_coarse) {
+  const Ladder ladder = ladder_of(goal_, estimate_too_coarse);
+  for (std::size_t k = 0; k < ladder.count; ++k) {
+    const Result<Plan> candidate = solve(ladder.solvers[k], configuration);
+    status_of(ladder.solvers[k]) = candidate.status();
+    if (candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration)) return true;
+    ++report_.solver_fallbacks;
+  }
+  return false;
 }
 
 /// Solvers are linear; what the true geometry leaves of the error is taken out of their burns, where these can.
 Plan Guidance::refined(const Plan& candidate) const {
-  const Result<Plan> corrected = control::correct_plan(orbits_, pending_, candidate, waypoint());
+  const control::LegSituation situation = leg_situation();
+  const Result<Plan> corrected =
+      control::correct_plan(situation.orbits, situation.committed, candidate, situation.waypoint);
   if (!corrected.ok()) return candidate;
-  const Result<Vector6> before = arrival_error_of(candidate);
-  const Result<Vector6> after = arrival_error_of(corrected.value());
+  const Result<Vector6> before = control::evaluate_plan(situation, candidate);
+  const Result<Vector6> after = control::evaluate_plan(situation, corrected.value());
   if (!before.ok() || !after.ok() || after.value().norm() >= before.value().norm()) return candidate;
   return corrected.value();
 }
@@ -216,7 +206,7 @@ bool Guidance::adopt_if_flyable(const Plan& candidate, const gnc_configuration& 
     status_of(candidate.solver) = Status::kOutOfRange;
     return false;
   }
-  const Result<Vector6> error = arrival_error_of(candidate);
+  const Result<Vector6> error = control::evaluate_plan(leg_situation(), candidate);
   if (!error.ok()) return false;
   const Result<safety::PlanSafety> verdict = safety_of(candidate, configuration);
   report_.safety = verdict.ok() && !verdict.value().safe ? Status::kUnsafe : verdict.status();
@@ -232,27 +222,34 @@ bool Guidance::adopt_if_flyable(const Plan& candidate, const gnc_configuration& 
 }
 
 Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configuration) {
-  const GpsTime start = earliest_start();
-  const Result<control::ControlProblem> problem =
-      control::remaining_problem(orbits_, burns_of(pending_), start, waypoint());
+  const control::LegSituation situation = leg_situation();
+  const Result<control::ControlProblem> problem = control::remaining_problem(
+      situation.orbits, situation.committed.all(), situation.earliest_burn, situation.waypoint);
   if (!problem.ok()) return problem.status();
   switch (solver) {
-    case Solver::kClosedForm: return control::solve_closed_form(problem.value());
     case Solver::kKoenigDamico: {
       control::KoenigDamicoSettings settings;
       settings.grid_step = {configuration.koenig_damico_grid_ns};
       return control::solve_koenig_damico(problem.value(), settings, koenig_damico_workspace_);
     }
     case Solver::kLeastSquares: return control::solve_least_squares(problem.value());
+    case Solver::kClosedForm:
     case Solver::kNone: break;
   }
   return Status::kInvalidArgument;
 }
 
-/// Where the commanded burns and those of `candidate` lead, dimensionless mean ROE wanted minus reached.
-Result<Vector6> Guidance::arrival_error_of(const Plan& candidate) const {
-  const Plan all = joined(pending_, candidate);
-  return control::arrival_error(orbits_, burns_of(all), waypoint());
+control::LegSituation Guidance::leg_situation() const {
+  return {orbits_, pending_, earliest_start(), {goal_.time, goal_.roe}, sigma_roe_};
+}
+
+/// The closed form's arrival is held to what an orbit of corrections would gain for next to nothing; the fuel-optimal solver of
+/// the close range to millimetres.
+control::LegPolicy Guidance::leg_policy(const gnc_configuration& configuration) const {
+  control::LegPolicy policy;
+  const bool far = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
+  policy.tolerance_m = far ? configuration.closed_form_tolerance_m : configuration.koenig_damico_tolerance_m;
+  return policy;
 }
 
 Result<safety::PlanSafety> Guidance::safety_of(const Plan& candidate, const gnc_configuration& configuration) const {

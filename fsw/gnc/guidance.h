@@ -10,6 +10,7 @@
 
 #include "fsw/control/arrival.h"
 #include "fsw/control/koenig_damico.h"
+#include "fsw/control/leg.h"
 #include "fsw/control/plan.h"
 #include "fsw/gnc/management.h"
 #include "fsw/gnc/navigation.h"
@@ -64,16 +65,15 @@ class Guidance {
   bool select_goal(GpsTime now, const Management& management);
   bool decision_is_due(GpsTime now, const gnc_configuration& configuration);
   void decide(const gnc_configuration& configuration);
-  bool arrives_well_enough(const Vector6& roe_error) const;
-  bool keeps_plan(const gnc_configuration& configuration);
-  bool adopt_correction(const gnc_configuration& configuration);
+  bool stays_on_plan(const gnc_configuration& configuration);
+  bool climbs_ladder(const gnc_configuration& configuration, bool estimate_too_coarse);
   bool adopt_if_flyable(const control::Plan& candidate, const gnc_configuration& configuration);
   control::Plan refined(const control::Plan& candidate) const;
   Result<control::Plan> solve(control::Solver solver, const gnc_configuration& configuration);
-  control::Waypoint waypoint() const { return {goal_.time, goal_.roe}; }
   Status& status_of(control::Solver solver);
   Result<safety::PlanSafety> safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
-  Result<Vector6> arrival_error_of(const control::Plan& candidate) const;
+  control::LegSituation leg_situation() const;
+  control::LegPolicy leg_policy(const gnc_configuration& configuration) const;
   GpsTime earliest_start() const;
   void forget_past_burns(GpsTime now);
   void commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration);
@@ -82,7 +82,7 @@ class Guidance {
   bool situation_known_ = false;
   GpsTime earliest_burn_;
   control::MeanOrbits orbits_;
-  Vector6 sigma_a_roe_m_ = Vector6::Zero();  ///< 1 sigma, m
+  Vector6 sigma_roe_ = Vector6::Zero();  ///< 1 sigma, dimensionless
   safety::PositionBound position_bound_;     ///< 3 sigma
 
   Waypoint goal_;

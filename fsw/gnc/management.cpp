@@ -22,6 +22,9 @@ gnc_configuration default_configuration() {
   c.keep_out_radius_m = 0.0;
   c.safety_horizon_s = 6000.0;
   c.station_keeping_deadband_m = 1.0;
+  c.closed_form_tolerance_m = 0.3;
+  c.koenig_damico_tolerance_m = 0.003;
+  c.station_keeping_horizon_s = 18000.0;
   c.navigation_timeout_s = 600.0;
   return c;
 }
@@ -83,7 +86,8 @@ bool Management::take(const gnc_configuration& c) {
                       positive(c.koenig_damico_period_ns) && positive(c.koenig_damico_grid_ns) &&
                       positive(c.least_squares_spacing_ns) && c.minimum_dv >= 0.0 && c.maximum_dv > c.minimum_dv &&
                       c.roe_error_threshold_m >= 0.0 && c.keep_out_radius_m >= 0.0 && c.safety_horizon_s >= 0.0 &&
-                      c.station_keeping_deadband_m > 0.0 && c.navigation_timeout_s > 0.0;
+                      c.station_keeping_deadband_m > 0.0 && c.closed_form_tolerance_m > 0.0 &&
+                      c.koenig_damico_tolerance_m > 0.0 && c.station_keeping_horizon_s > 0.0 && c.navigation_timeout_s > 0.0;
   if (usable) configuration_ = c;
   return usable;
 }

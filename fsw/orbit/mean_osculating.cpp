@@ -56,9 +56,7 @@ Corrections long_period(const QnsElements& q, const Inclination& incl, double et
   const double m = 1.0 - 33.0 * c2 - 200.0 * c4 / divisor - 400.0 * c4 * c2 / (divisor * divisor);
   const double eta2 = eta * eta;
 
-  // (de - i e dM) exp(iw) with de = g2'/8 l eta^2 e cos 2w, e dM = g2'/8 l eta^3 e sin 2w, as multiples of the
-  // e-vector: cos 2w exp(iw) = (exp(3iw) + exp(-iw))/2 and sin 2w alike; written out below through e cos 2w, e sin 2w
-  // over e.
+  // de = g2'/8 l eta^2 e cos 2w and e dM = g2'/8 l eta^3 e sin 2w, along and across the e-vector.
   const double e2 = q.ex * q.ex + q.ey * q.ey;
   if (e2 > 0.0) {
     const double de_over_e = g2p / 8.0 * l * eta2 * e2_cos_2w / e2;

@@ -49,7 +49,8 @@ bool all_finite(const waypoint_table& m) {
 
 bool all_finite(const gnc_configuration& m) {
   return finite_fields(m.minimum_dv, m.maximum_dv, m.roe_error_threshold_m, m.keep_out_radius_m, m.safety_horizon_s,
-                       m.station_keeping_deadband_m, m.station_keeping_horizon_s, m.navigation_timeout_s);
+                       m.station_keeping_deadband_m, m.closed_form_tolerance_m, m.koenig_damico_tolerance_m,
+                       m.station_keeping_horizon_s, m.navigation_timeout_s);
 }
 
 bool all_finite(const mode_command& /*message*/) {

@@ -173,7 +173,8 @@ void FlightRecorder::finish_navigation_errors() {
   record_.summary.navigation_velocity_error_mps = statistics(velocity_errors);
 }
 
-// A burn at exactly a waypoint's time belongs to the leg after it.
+// A burn belongs to the leg of the waypoint it was commanded for: the last burn of a fuel-optimal leg stands at the waypoint's
+// own time and stops the arrival.
 void FlightRecorder::finish_legs() {
   report::Summary& summary = record_.summary;
   summary.dv_mps = 0.0;
@@ -183,12 +184,12 @@ void FlightRecorder::finish_legs() {
     const double dv = norm(maneuver.executed_dv_rtn_mps);
     summary.dv_mps += dv;
     ++summary.maneuvers;
-    const auto leg_end = std::ranges::find_if(record_.waypoints, [&](const report::WaypointRow& waypoint) {
-      return maneuver.execution_time_s < waypoint.time_s;
+    const auto leg = std::ranges::find_if(record_.waypoints, [&](const report::WaypointRow& waypoint) {
+      return maneuver.waypoint_index == waypoint.index;
     });
-    if (leg_end == record_.waypoints.end()) continue;
-    leg_end->leg_dv_mps += dv;
-    ++leg_end->leg_maneuvers;
+    if (leg == record_.waypoints.end()) continue;
+    leg->leg_dv_mps += dv;
+    ++leg->leg_maneuvers;
   }
   double cumulative = 0.0;
   for (report::WaypointRow& waypoint : record_.waypoints) {

@@ -119,6 +119,9 @@ struct Guidance {
   double keep_out_radius_m = 0.0;
   double safety_horizon_s = 0.0;
   double station_keeping_deadband_m = 0.0;
+  double closed_form_tolerance_m = 0.0;
+  double koenig_damico_tolerance_m = 0.0;
+  double station_keeping_horizon_s = 0.0;
   double navigation_timeout_s = 0.0;
 };
 

@@ -22,7 +22,8 @@ void read_guidance(const TableReader& document, Mission& mission) {
   section.accept_only({"mode", "reference_semi_major_axis_km", "compute_latency_s", "closed_form_period_s",
                        "koenig_damico_period_s", "koenig_damico_grid_s", "least_squares_spacing_s", "planner_delay_s",
                        "minimum_dv_mmps", "maximum_dv_mps", "roe_error_threshold_m", "keep_out_radius_m",
-                       "safety_horizon_s", "station_keeping_deadband_m", "navigation_timeout_s"});
+                       "safety_horizon_s", "station_keeping_deadband_m", "closed_form_tolerance_m",
+                       "koenig_damico_tolerance_m", "station_keeping_horizon_s", "navigation_timeout_s"});
   constexpr Range kPeriod_s = from_to(1e-3, 1e6);
   Guidance& guidance = mission.guidance;
   guidance.mode = section.choice<Mode>("mode", kModes, Mode::kApproach);
@@ -50,6 +51,9 @@ void read_guidance(const TableReader& document, Mission& mission) {
   guidance.keep_out_radius_m = section.number("keep_out_radius_m", from_to(0.0, 1e5), 0.0);
   guidance.safety_horizon_s = section.number("safety_horizon_s", from_to(0.0, 1e6), 6000.0);
   guidance.station_keeping_deadband_m = section.number("station_keeping_deadband_m", above_to(0.0, 1e5), 1.0);
+  guidance.closed_form_tolerance_m = section.number("closed_form_tolerance_m", above_to(0.0, 1e5), 0.3);
+  guidance.koenig_damico_tolerance_m = section.number("koenig_damico_tolerance_m", above_to(0.0, 1e5), 0.003);
+  guidance.station_keeping_horizon_s = section.number("station_keeping_horizon_s", above_to(0.0, 1e6), 18000.0);
   guidance.navigation_timeout_s = section.number("navigation_timeout_s", above_to(0.0, 1e6), 600.0);
 }
 

@@ -32,6 +32,9 @@ vbar::gnc_configuration gnc_configuration_of(const Mission& mission) {
   configuration.keep_out_radius_m = guidance.keep_out_radius_m;
   configuration.safety_horizon_s = guidance.safety_horizon_s;
   configuration.station_keeping_deadband_m = guidance.station_keeping_deadband_m;
+  configuration.closed_form_tolerance_m = guidance.closed_form_tolerance_m;
+  configuration.koenig_damico_tolerance_m = guidance.koenig_damico_tolerance_m;
+  configuration.station_keeping_horizon_s = guidance.station_keeping_horizon_s;
   configuration.navigation_timeout_s = guidance.navigation_timeout_s;
   return configuration;
 }

@@ -70,6 +70,7 @@ void step(benchmark::State& state, Target target, LinkKind kind, const char* ima
 }
 
 constexpr const char* kHost = VBAR_BINARY_DIR "/vbar_flight_echo";
+constexpr const char* kZynq = VBAR_SOURCE_DIR "/build/zynq/vbar_zynq7000_echo.elf";
 constexpr const char* kArmLinux = VBAR_SOURCE_DIR "/build/zynq-linux/vbar_flight_echo";
 
 BENCHMARK(cobs_round_trip)->Name("link/cobs/1400");
@@ -88,6 +89,12 @@ BENCHMARK_CAPTURE(step, host_udp, Target::kHostProcess, LinkKind::kUdp, kHost)
     ->UseRealTime();
 BENCHMARK_CAPTURE(step, arm_linux, Target::kZynqLinuxQemu, LinkKind::kSerial, kArmLinux)
     ->Name("link/zynq_linux_qemu_serial/step")
+    ->UseRealTime();
+BENCHMARK_CAPTURE(step, zynq_serial, Target::kZynqQemu, LinkKind::kSerial, kZynq)
+    ->Name("link/zynq_qemu_serial/step")
+    ->UseRealTime();
+BENCHMARK_CAPTURE(step, zynq_udp, Target::kZynqQemu, LinkKind::kUdp, kZynq)
+    ->Name("link/zynq_qemu_udp/step")
     ->UseRealTime();
 
 }  // namespace

@@ -1,6 +1,6 @@
-/* A test article that is not vbar's: the interface of fsw/gnc/vbar_gnc.h in plain C, without a line of vbar's own flight
- * software. It shows all that another GNC stack needs to fly here, and no more: given the states of both spacecraft, a
- * proportional-derivative law closes in on a point behind the target and stays there.
+/* A test article that is not vbar's: the interface of fsw/gnc/vbar_gnc.h in plain C, without a line of vbar's own
+ * flight software. It shows all that another GNC stack needs to fly here, and no more: given the states of both
+ * spacecraft, a proportional-derivative law closes in on a point behind the target and stays there.
  *
  * With x the relative position error and v the relative velocity (servicer's RTN), each step commands the impulse
  *   dv = T (w^2 x + 2 w v),   T the time between steps, w = 0.01 rad/s, |dv| <= 50 mm/s,
@@ -11,7 +11,13 @@
 #include "boards/examples/c_article/wire.h"
 #include "fsw/gnc/vbar_gnc.h"
 
-enum { STATUS_OK = 0, STATUS_INVALID_ARGUMENT = 1, STATUS_NOT_FINITE = 2, STATUS_BAD_CHECKSUM = 10, STATUS_WRONG_TYPE = 9 };
+enum {
+  STATUS_OK = 0,
+  STATUS_INVALID_ARGUMENT = 1,
+  STATUS_NOT_FINITE = 2,
+  STATUS_BAD_CHECKSUM = 10,
+  STATUS_WRONG_TYPE = 9
+};
 
 #define BANDWIDTH_RADPS 0.01
 #define HOLD_DISTANCE_M 100.0 /* along the target's orbit, behind it */
@@ -37,7 +43,9 @@ struct relative_state {
   double velocity_rtn[3];
 };
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static void cross(const double a[3], const double b[3], double out[3]) {
   out[0] = a[1] * b[2] - a[2] * b[1];
@@ -45,10 +53,15 @@ static void cross(const double a[3], const double b[3], double out[3]) {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Square root is exact by IEEE 754 and an instruction on every target; nothing else of a mathematics library is needed. */
-static double length(const double a[3]) { return __builtin_sqrt(dot(a, a)); }
+/* Square root is exact by IEEE 754 and an instruction on every target; nothing else of a mathematics library is needed.
+ */
+static double length(const double a[3]) {
+  return __builtin_sqrt(dot(a, a));
+}
 
-static bool is_finite(double x) { return x - x == 0.0; }
+static bool is_finite(double x) {
+  return x - x == 0.0;
+}
 
 static bool relative_state_of(const struct article* self, struct relative_state* relative) {
   double h[3];
@@ -117,7 +130,8 @@ static void control(struct article* self, int64_t now_ns, const struct relative_
   double dv[3];
   for (int axis = 0; axis < 3; ++axis) {
     const double error = relative->position_rtn[axis] - (axis == T ? HOLD_DISTANCE_M : 0.0);
-    dv[axis] = period_s * (BANDWIDTH_RADPS * BANDWIDTH_RADPS * error + 2.0 * BANDWIDTH_RADPS * relative->velocity_rtn[axis]);
+    dv[axis] =
+        period_s * (BANDWIDTH_RADPS * BANDWIDTH_RADPS * error + 2.0 * BANDWIDTH_RADPS * relative->velocity_rtn[axis]);
   }
   const double size = length(dv);
   if (!(size > SMALLEST_DV_MPS)) {
@@ -174,15 +188,24 @@ static vbar_status take_states(struct article* self, struct wire_reader* packet)
   return STATUS_OK;
 }
 
-/* ------------------------------------------------------------------------------------------ the test article's interface */
+/* ------------------------------------------------------------------------------------------ the test article's
+ * interface */
 
-int32_t vbar_gnc_abi_version(void) { return VBAR_GNC_ABI_VERSION; }
+int32_t vbar_gnc_abi_version(void) {
+  return VBAR_GNC_ABI_VERSION;
+}
 
-const char* vbar_gnc_name(void) { return "example article in C, version 1"; }
+const char* vbar_gnc_name(void) {
+  return "example article in C, version 1";
+}
 
-size_t vbar_gnc_state_size(void) { return sizeof(struct article); }
+size_t vbar_gnc_state_size(void) {
+  return sizeof(struct article);
+}
 
-size_t vbar_gnc_state_alignment(void) { return _Alignof(struct article); }
+size_t vbar_gnc_state_alignment(void) {
+  return _Alignof(struct article);
+}
 
 vbar_status vbar_gnc_init(void* state, uint8_t spacecraft, vbar_packet_sink sink, void* sink_context) {
   struct article* self = state;

@@ -104,8 +104,8 @@ std::uint64_t safety_digest() {
     }
     vbar::fsw::Matrix3 root;
     for (int j = 0; j < 9; ++j) root(j / 3, j % 3) = arguments.between(-5.0, 5.0);
-    const vbar::fsw::Vector3 mean(arguments.between(-9.0, 9.0), arguments.between(-9.0, 9.0),
-                                  arguments.between(-9.0, 9.0));
+    vbar::fsw::Vector3 mean;
+    for (int j = 0; j < 3; ++j) mean(j) = arguments.between(-9.0, 9.0);
     const vbar::fsw::Matrix3 covariance = root * root.transpose() + vbar::fsw::Matrix3::Identity();
     digest.add(safety::collision_probability(mean, covariance, 3.0).value());
   }

@@ -100,6 +100,9 @@ TEST(IdealNavigationMission, CommentsTellTheDefaults) {
   EXPECT_EQ(a.maximum_dv, b.maximum_dv);
   EXPECT_EQ(a.roe_error_threshold_m, b.roe_error_threshold_m);
   EXPECT_EQ(a.station_keeping_deadband_m, b.station_keeping_deadband_m);
+  EXPECT_EQ(a.closed_form_tolerance_m, b.closed_form_tolerance_m);
+  EXPECT_EQ(a.koenig_damico_tolerance_m, b.koenig_damico_tolerance_m);
+  EXPECT_EQ(a.station_keeping_horizon_s, b.station_keeping_horizon_s);
   EXPECT_EQ(a.navigation_timeout_s, b.navigation_timeout_s);
   EXPECT_EQ(shown.clock.mode, defaults.clock.mode);
   EXPECT_EQ(shown.clock.speed_factor, defaults.clock.speed_factor);

@@ -1,0 +1,72 @@
+#pragma once
+// The policy of one leg: what to do with the plan at each decision on the way to a waypoint.
+//
+// Planning anew at every decision chatters: burn times of equal cost come and go with every metre of change, and a leg
+// can cost three times its optimum. So a plan stays while it arrives; then its burns are corrected where they are; only
+// then is the leg planned again. Any solver's plan can be judged and corrected here.
+
+#include "fsw/control/arrival.h"
+#include "fsw/control/closed_form.h"
+#include "fsw/control/correction.h"
+#include "fsw/control/plan.h"
+
+namespace vbar::fsw::control {
+
+/// All that a decision rests on.
+struct LegSituation {
+  MeanOrbits orbits;      ///< now
+  Plan committed;         ///< commanded, still to be flown, all before `earliest_burn`
+  GpsTime earliest_burn;  ///< now plus the time it takes to command
+  Waypoint waypoint;
+  Vector6 sigma_roe = Vector6::Zero();  ///< 1 sigma of the estimated ROE now, dimensionless
+};
+
+struct LegPolicy {
+  /// A plan stays while its arrival error, as a length (ROE times the semi-major axis, m), is below this or within 1
+  /// sigma.
+  double tolerance_m = 1.0;
+  /// Corrected burns may cost this share more than before, plus what the error would cost as a change of inclination,
+  /// the dearest; beyond, planning anew may be cheaper.
+  double dear_share = 0.02;
+  CorrectionSettings correction;
+  ClosedFormSettings closed_form;
+};
+
+/// Mean ROE wanted at the waypoint minus those at which the committed burns and `plan` arrive, dimensionless. Errors as
+/// fly().
+Result<Vector6> evaluate_plan(const LegSituation& situation, const Plan& plan);
+
+/// 1 sigma, dimensionless, of the arrival that the uncertainty of the estimate leaves; errors of the elements now are
+/// taken as independent.
+Vector6 arrival_sigma(const LegSituation& situation);
+
+/// Whether an arrival error counts as none: root sum square of its elements, each in units of the larger of the
+/// tolerance and its 1 sigma, below one.
+bool arrives(const LegSituation& situation, const Vector6& error, const LegPolicy& policy);
+
+/// The closed-form solution of the rest of the leg, corrected on the nonlinear prediction. Errors of
+/// remaining_problem(), solve_closed_form() and correct_plan().
+Result<Plan> plan_closed_form(const LegSituation& situation, const LegPolicy& policy);
+
+enum class LegAction : unsigned char {
+  kKeep,      ///< the plan arrives
+  kCorrect,   ///< same burn times, other impulses
+  kReplan,    ///< a new closed-form plan
+  kHandOver,  ///< none of these arrives: the rest of the leg is for another solver
+};
+
+struct LegDecision {
+  LegAction action = LegAction::kHandOver;
+  Plan plan;                        ///< of the action; at kHandOver the burns as they were, the missed ones left out
+  Vector6 error = Vector6::Zero();  ///< at the waypoint, with that plan, dimensionless
+  Status closed_form = Status::kNotReady;  ///< of the closed-form solver, if it was asked
+};
+
+/// The first half of a decision, for the plan of any solver: keep it or correct it, else kHandOver. Errors of fly().
+Result<LegDecision> keep_or_correct(const LegSituation& situation, const Plan& plan, const LegPolicy& policy);
+
+/// One decision. Burns of `plan` before `earliest_burn` count as missed. Errors of fly(): then nothing is known about
+/// the leg.
+Result<LegDecision> decide_leg(const LegSituation& situation, const Plan& plan, const LegPolicy& policy);
+
+}  // namespace vbar::fsw::control

@@ -1,0 +1,60 @@
+#pragma once
+// Magnitudes of tangential impulses at given times.
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "fsw/control/near_circular.h"
+#include "fsw/core/result.h"
+
+namespace vbar::fsw::control {
+
+/// Times a closed-form plan may choose from: two an orbit on the phase grid, so windows of up to 15 orbits.
+inline constexpr std::size_t kMaxPhaseTimes = 32;
+
+/// A time at which a tangential impulse turns the eccentricity vector along the wanted direction (parity +1) or against
+/// (-1).
+struct PhaseTime {
+  double offset = 0.0;  ///< s into the window
+  double parity = 1.0;
+};
+
+struct PhaseTimes {
+  std::array<PhaseTime, kMaxPhaseTimes> times{};
+  std::size_t count = 0;
+
+  [[nodiscard]] std::span<const PhaseTime> all() const { return {times.data(), count}; }
+};
+
+/// All times within [0, window] at which `rate` * offset passes `phase` + m pi, the first kMaxPhaseTimes of them. rate
+/// > 0.
+PhaseTimes phase_times(double phase, double rate, double window);
+
+/// Tangential impulses of the deputy.
+struct TangentialBurns {
+  static constexpr std::size_t kMax = 4;
+  struct Impulse {
+    double offset = 0.0;  ///< s into the window
+    double dv = 0.0;      ///< m/s along T
+  };
+  std::array<Impulse, kMax> impulses{};
+  std::size_t count = 0;
+
+  /// Sum of magnitudes, m/s.
+  [[nodiscard]] double cost() const;
+};
+
+/// The cheapest three impulses at times of the grid that meet da, dlambda and |de|, the phase of de being that of the
+/// grid: the exact optimum over the grid, since a basic solution of three equations has three non-zeros at most
+/// (Chernick and D'Amico 2018). Of equally cheap ones the earliest. kSingular if the grid has fewer than three times or
+/// only one parity.
+Result<TangentialBurns> cheapest_three_burns(const TangentialTask& task, std::span<const PhaseTime> grid);
+
+/// The cheapest impulses (four at most) among `offsets` (s into the window) that meet da, dlambda, dex and dey,
+/// whatever their phases: the linear program min sum |x| by the revised simplex method. kSingular if the offsets cannot
+/// meet the task.
+Result<TangentialBurns> cheapest_four_burns(const NearCircularOrbit& orbit, const TangentialTask& task,
+                                            std::span<const double> offsets);
+
+}  // namespace vbar::fsw::control

@@ -1,0 +1,28 @@
+#pragma once
+// What `vbar` can be asked to do. Each returns the program's exit code: 0 done, 1 not (said on standard error), 2 done but the
+// result is not what was hoped for (outputs differ).
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vbar::app {
+
+struct RunOptions {
+  std::filesystem::path mission;
+  std::filesystem::path out;           ///< empty: runs/<mission>-<seed>
+  std::vector<std::string> overrides;  ///< "path=value"
+};
+int run_command(const RunOptions& options);
+
+struct ReplayOptions {
+  std::filesystem::path run_folder;
+  std::vector<std::string> overrides;
+};
+int replay_command(const ReplayOptions& options);
+
+int report_command(const std::vector<std::filesystem::path>& run_folders);
+
+int missions_command(const std::filesystem::path& folder);
+
+}  // namespace vbar::app

@@ -1,0 +1,18 @@
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "host_sim/app/commands.h"
+#include "host_sim/mission/catalogue.h"
+
+namespace vbar::app {
+
+int missions_command(const std::filesystem::path& folder) {
+  const std::vector<mission::CatalogueEntry> entries = mission::list_missions(folder);
+  std::size_t width = 0;
+  for (const mission::CatalogueEntry& entry : entries) width = std::max(width, entry.name.size());
+  for (const mission::CatalogueEntry& entry : entries) fmt::print("{}\n", mission::line_of(entry, width));
+  return std::ranges::all_of(entries, &mission::CatalogueEntry::good) ? 0 : 1;
+}
+
+}  // namespace vbar::app

@@ -1,0 +1,215 @@
+#include "tests/integration/closed_form_loop/ideal_loop.h"
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include "fsw/control/koenig_damico.h"
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
+#include "fsw/orbit/rtn.h"
+#include "fsw/orbit/secular.h"
+#include "host_sim/truth/time_scales.h"
+#include "host_sim/truth/truth_model.h"
+
+namespace vbar::testing {
+namespace {
+
+using namespace fsw;
+using control::LegAction;
+using control::Plan;
+using orbit::QnsElements;
+
+constexpr double kReferenceSemiMajorAxis = 7078138.944;  // m, mean, of the servicer at the start
+constexpr double kDegree = M_PI / 180.0;
+constexpr std::size_t kServicer = 0;
+constexpr std::size_t kTarget = 1;
+
+template <class T>
+T must(const Result<T>& result, const std::string& what) {
+  if (!result.ok()) throw std::runtime_error(what + ": status " + std::to_string(static_cast<int>(result.status())));
+  return result.value();
+}
+
+QnsElements mean_of(const orbit::CartesianState& state) {
+  return must(orbit::mean_from_osculating(must(orbit::qns_from_cartesian(state), "elements")), "mean elements");
+}
+
+orbit::CartesianState state_of_mean(const QnsElements& mean) {
+  return must(orbit::cartesian_from_qns(must(orbit::osculating_from_mean(mean), "osculating elements")), "state");
+}
+
+// The paper's servicer table, osculating.
+QnsElements table_elements() {
+  return {7087300.0, 0.0015, -4.17e-8, 98.18 * kDegree, -90.0 * kDegree, -0.69 * kDegree};
+}
+
+class Loop {
+ public:
+  explicit Loop(const LoopSettings& settings) : settings_(settings), noise_(settings.seed) {
+    truth::TruthSettings truth_settings;
+    truth_settings.epoch = truth::gps_from_utc("2011-07-18T01:00:00Z");
+    truth_settings.gravity_degree = settings.gravity_degree;
+    truth_settings.gravity_order = settings.gravity_degree;
+    truth_settings.tolerance = 1e-12;
+    truth_settings.data_directory = std::string(VBAR_SOURCE_DIR) + "/data";
+    truth_ = std::make_unique<truth::TruthModel>(truth_settings);
+    start_ = truth_settings.epoch;
+
+    const TableWaypoint& origin = mission_waypoints()[settings.first];
+    const QnsElements servicer =
+        orbit::propagate_secular(must(orbit::mean_from_osculating(table_elements()), "mean elements"),
+                                 origin.time_h * 3600.0 + settings.start_delay_s);
+    const Vector6 roe = (origin.a_roe_m + settings.start_error_m) / kReferenceSemiMajorAxis;
+    truth_->add_spacecraft("servicer", state_of_mean(servicer));
+    truth_->add_spacecraft("target", state_of_mean(orbit::qns_from_roe(servicer, roe)));
+  }
+
+  LegResult fly_leg(std::size_t index) {
+    const TableWaypoint& waypoint = mission_waypoints()[index];
+    goal_ = {start_ + nearest_duration((waypoint.time_h - mission_waypoints()[settings_.first].time_h) * 3600.0),
+             waypoint.a_roe_m / kReferenceSemiMajorAxis};
+    result_ = {};
+    result_.waypoint = index;
+    plan_ = {};
+    const bool close = index >= 8;
+    policy_.tolerance_m = close        ? settings_.close_tolerance_m
+                          : index >= 4 ? settings_.middle_tolerance_m
+                                       : settings_.far_tolerance_m;
+    policy_.closed_form.eccentricity_floor_m = index >= 4 ? 0.05 : 1.0;
+    const int period = close ? 1 : settings_.ticks_a_closed_form_decision;
+    for (int tick = 0; truth_->time() < goal_.time; ++tick) {
+      if (tick % period == 0) decide(close);
+      GpsTime next = truth_->time() + nearest_duration(settings_.tick_s);
+      if (next > goal_.time) next = goal_.time;
+      commit_until(next + nearest_duration(settings_.latency_s));
+      fly_until(next);
+    }
+    const orbit::CartesianState servicer = truth_->state(kServicer);
+    const Vector3 reached = orbit::relative_state_rtn(servicer, truth_->state(kTarget)).position_rtn;
+    const Vector3 wanted =
+        must(orbit::relative_state_from_mean_roe(mean_of(servicer), goal_.roe), "commanded position").position_rtn;
+    result_.control_error_m = (reached - wanted).norm();
+    return result_;
+  }
+
+ private:
+  control::LegSituation situation() {
+    control::LegSituation now;
+    now.orbits = {truth_->time(), mean_of(truth_->state(kServicer)), mean_of(truth_->state(kTarget))};
+    now.committed = committed_;
+    now.earliest_burn = truth_->time() + nearest_duration(settings_.latency_s);
+    now.waypoint = goal_;
+    now.sigma_roe = settings_.navigation_sigma_m / kReferenceSemiMajorAxis;
+    Vector6 roe = orbit::roe_from_qns(now.orbits.servicer, now.orbits.target);
+    std::normal_distribution<double> standard;
+    for (int k = 0; k < 6; ++k) roe[k] += now.sigma_roe[k] * standard(noise_);
+    if (settings_.navigation_sigma_m.norm() > 0.0) now.orbits.target = orbit::qns_from_roe(now.orbits.servicer, roe);
+    return now;
+  }
+
+  void decide(bool close) {
+    const control::LegSituation now = situation();
+    if (now.earliest_burn >= goal_.time) return;
+    const control::LegDecision decision = must(control::decide_leg(now, plan_, policy_), "decision");
+    switch (decision.action) {
+      case LegAction::kKeep:
+        plan_ = decision.plan;
+        return;
+      case LegAction::kCorrect:
+        ++result_.corrections;
+        plan_ = decision.plan;
+        return;
+      case LegAction::kReplan:
+        if (!close) {
+          ++result_.replans;
+          plan_ = decision.plan;
+          return;
+        }
+        break;
+      case LegAction::kHandOver:
+        break;
+    }
+    ++result_.hand_overs;
+    const Result<Plan> plan = fuel_optimal(now);
+    plan_ = plan.ok() ? plan.value() : decision.plan;
+  }
+
+  Result<Plan> fuel_optimal(const control::LegSituation& now) {
+    const Result<control::ControlProblem> problem =
+        control::remaining_problem(now.orbits, now.committed.all(), now.earliest_burn, now.waypoint);
+    if (!problem.ok()) return problem.status();
+    const Result<Plan> plan = control::solve_koenig_damico(problem.value(), {}, *workspace_);
+    if (!plan.ok() || plan.value().count == 0) return plan;
+    return control::correct_plan(now.orbits, now.committed, plan.value(), now.waypoint);
+  }
+
+  // Burns that the next tick could not command in time any more; they count for the leg that asked for them.
+  void commit_until(GpsTime time) {
+    std::size_t due = 0;
+    for (; due < plan_.count && plan_.burns[due].time < time; ++due) {
+      committed_.burns[committed_.count++] = plan_.burns[due];
+      result_.dv_mps += plan_.burns[due].dv_rtn.norm();
+      ++result_.burns;
+    }
+    Plan rest;
+    rest.solver = plan_.solver;
+    for (std::size_t k = due; k < plan_.count; ++k) rest.burns[rest.count++] = plan_.burns[k];
+    plan_ = rest;
+  }
+
+  // A burn at exactly `time` is left for afterwards, as at a waypoint.
+  void fly_until(GpsTime time) {
+    Plan later;
+    for (const control::Burn& burn : committed_.all()) {
+      if (burn.time >= time) {
+        later.burns[later.count++] = burn;
+        continue;
+      }
+      truth_->advance_to(burn.time);
+      truth_->apply_impulse_rtn(kServicer, burn.dv_rtn);
+    }
+    committed_ = later;
+    truth_->advance_to(time);
+  }
+
+  LoopSettings settings_;
+  std::mt19937 noise_;
+  std::unique_ptr<truth::TruthModel> truth_;
+  std::unique_ptr<control::KoenigDamicoWorkspace> workspace_ = std::make_unique<control::KoenigDamicoWorkspace>();
+  GpsTime start_;
+  control::Waypoint goal_;
+  control::LegPolicy policy_;
+  Plan plan_;
+  Plan committed_;
+  LegResult result_{};
+};
+
+Vector6 roe_m(double da, double dlambda, double dex, double dey, double dix, double diy) {
+  return (Vector6() << da, dlambda, dex, dey, dix, diy).finished();
+}
+
+}  // namespace
+
+const std::vector<TableWaypoint>& mission_waypoints() {
+  static const std::vector<TableWaypoint> waypoints = {
+      {0.0, roe_m(-2000, -75000, 0, 0, 0, 0)},    {6.0, roe_m(-87, -50000, 0, 1000, 0, 1000)},
+      {12.0, roe_m(-70, -25000, 0, 500, 0, 500)}, {18.0, roe_m(-17, -5000, 0, 500, 0, 500)},
+      {24.0, roe_m(0, -1000, 0, 30, 0, 30)},      {28.0, roe_m(0, -600, 0, 18, 0, 18)},
+      {32.0, roe_m(0, -200, 0, 6, 0, 6)},         {36.0, roe_m(0, -100, 0, 3, 0, 3)},
+      {39.0, roe_m(-0.5, -10, 0, 2, 0, 1)},       {40.0, roe_m(0, -7, 1, 0, 2, 0)},
+      {41.25, roe_m(0, -8.5, 1, 0, 1, 0)},
+  };
+  return waypoints;
+}
+
+std::vector<LegResult> fly_mission(const LoopSettings& settings) {
+  Loop loop(settings);
+  std::vector<LegResult> results;
+  for (std::size_t index = settings.first + 1; index <= settings.last; ++index) results.push_back(loop.fly_leg(index));
+  return results;
+}
+
+}  // namespace vbar::testing
