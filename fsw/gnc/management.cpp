@@ -14,7 +14,6 @@ gnc_configuration default_configuration() {
   c.closed_form_period_ns = 300 * kNanosecondsPerSecond;
   c.koenig_damico_period_ns = 60 * kNanosecondsPerSecond;
   c.koenig_damico_grid_ns = 30 * kNanosecondsPerSecond;
-  c.least_squares_spacing_ns = 600 * kNanosecondsPerSecond;
   c.planner_start_ns = 0;
   c.minimum_dv = 1e-6;
   c.maximum_dv = 10.0;
@@ -85,7 +84,7 @@ bool Management::take(const waypoint_table& table) {
 bool Management::take(const gnc_configuration& c) {
   const bool usable = (c.compute_latency_ns == 0 || is_usable_span(c.compute_latency_ns)) &&
                       is_usable_span(c.closed_form_period_ns) && is_usable_span(c.koenig_damico_period_ns) &&
-                      is_usable_span(c.koenig_damico_grid_ns) && is_usable_span(c.least_squares_spacing_ns) && c.minimum_dv >= 0.0 && c.maximum_dv > c.minimum_dv &&
+                      is_usable_span(c.koenig_damico_grid_ns) && c.minimum_dv >= 0.0 && c.maximum_dv > c.minimum_dv &&
                       c.roe_error_threshold_m >= 0.0 && c.keep_out_radius_m >= 0.0 && c.safety_horizon_s >= 0.0 &&
                       c.station_keeping_deadband_m > 0.0 && c.closed_form_tolerance_m > 0.0 &&
                       c.koenig_damico_tolerance_m > 0.0 && is_usable_span(c.station_keeping_horizon_s) &&
