@@ -26,6 +26,10 @@ Ladder ladder_of(const Waypoint& goal, bool estimate_too_coarse) {
   return {{Solver::kKoenigDamico, Solver::kLeastSquares}, 2};
 }
 
+/// Where the fuel-optimal solver plans, planning anew costs computing only. Correcting a plan whose burn was missed can cost twice
+/// what a new plan does: a correction so much dearer than the plan gives way to one.
+constexpr double kDearCorrection = 1.1;
+
 bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
   for (const control::Burn& burn : plan.all()) {
     if (!burn.dv_rtn.allFinite() || burn.dv_rtn.norm() > configuration.maximum_dv) return false;
@@ -175,6 +179,8 @@ bool Guidance::stays_on_plan(const gnc_configuration& configuration) {
     return false;
   }
   if (decided.action == control::LegAction::kReplan) report_.closed_form = decided.closed_form;
+  const bool is_dear = decided.plan.total_dv() > kDearCorrection * plan_.total_dv();
+  if (!closed_form && decided.action == control::LegAction::kCorrect && is_dear) return false;
   return adopt_if_flyable(decided.plan, configuration);
 }
 

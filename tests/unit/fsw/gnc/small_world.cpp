@@ -126,21 +126,28 @@ Answer Flight::fly_until(GpsTime until) {
   return answer;
 }
 
+Answer Flight::arrive_at(GpsTime time) {
+  const Answer answer = fly_until(time);
+  execute_until(time + Duration{1});
+  return answer;
+}
+
 void Flight::execute_until(GpsTime until) {
-  while (!to_execute.empty() && to_execute.front().time < until) {
-    const Command command = to_execute.front();
-    to_execute.pop_front();
-    world.advance_to(command.time);
-    const double (&dv)[3] = command.message.dv_rtn;
-    world.apply({dv[0], dv[1], dv[2]});
-    executed_dv += Vector3(dv[0], dv[1], dv[2]).norm();
-    ++executed;
-    executed_maneuver report{};
-    report.maneuver_id = command.message.maneuver_id;
-    report.accepted = 1;
-    copy({dv[0], dv[1], dv[2]}, report.dv_rtn);
-    if (reports_maneuvers) reports_.push_back(packet_of(command.time, report, sequence_++));
-  }
+  for (; !to_execute.empty() && to_execute.front().time < until; to_execute.pop_front()) execute(to_execute.front());
+}
+
+void Flight::execute(const Command& command) {
+  const double (&dv)[3] = command.message.dv_rtn;
+  const Vector3 dv_rtn(dv[0], dv[1], dv[2]);
+  world.advance_to(command.time);
+  world.apply(dv_rtn);
+  executed_dv += dv_rtn.norm();
+  ++executed;
+  executed_maneuver report{};
+  report.maneuver_id = command.message.maneuver_id;
+  report.accepted = 1;
+  copy(dv_rtn, report.dv_rtn);
+  if (reports_maneuvers) reports_.push_back(packet_of(command.time, report, sequence_++));
 }
 
 }  // namespace vbar::fsw::gnc::test

@@ -63,6 +63,8 @@ class Flight {
   Answer step();
   /// Steps until `until`; the last answer.
   Answer fly_until(GpsTime until);
+  /// As fly_until, and what was commanded for that very instant is flown too: the ROE feel a burn at once.
+  Answer arrive_at(GpsTime time);
 
   SmallWorld world;
   Article article;
@@ -75,6 +77,7 @@ class Flight {
 
  private:
   void execute_until(GpsTime until);
+  void execute(const Command& command);
 
   std::deque<Bytes> reports_;
   std::uint16_t sequence_ = 0;
