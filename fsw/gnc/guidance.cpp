@@ -158,17 +158,19 @@ void Guidance::decide(const gnc_configuration& configuration) {
   if (goal_.time <= earliest_burn_) return;  // nothing can be done about this waypoint any more
   const double sigma_m = orbits_.servicer.a * sigma_roe_.maxCoeff();
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 && sigma_m > configuration.roe_error_threshold_m;
-  if (!too_coarse && stays_on_plan(configuration)) return;
+  if (stays_on_plan(configuration, too_coarse)) return;
   if (climbs_ladder(configuration, too_coarse)) return;
   plan_ = {};
   report_.active_solver = Solver::kNone;
   ++report_.holds;
 }
 
-/// Keeps or corrects the plan, or lets the closed form make it, as the leg's policy says.
-bool Guidance::stays_on_plan(const gnc_configuration& configuration) {
+/// Keeps or corrects the plan, or lets the closed form make it, as the leg's policy says. While the estimate is too coarse only
+/// what least squares planned stays.
+bool Guidance::stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse) {
+  if (estimate_too_coarse && report_.active_solver != Solver::kLeastSquares) return false;
   const control::LegSituation situation = leg_situation();
-  const bool closed_form = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
+  const bool closed_form = !estimate_too_coarse && static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
   const Result<control::LegDecision> decision =
       closed_form ? control::decide_leg(situation, plan_, leg_policy(configuration))
                   : control::keep_or_correct(situation, plan_, leg_policy(configuration));
@@ -186,11 +188,12 @@ bool Guidance::stays_on_plan(const gnc_configuration& configuration) {
 
 bool Guidance::climbs_ladder(const gnc_configuration& configuration, bool estimate_too_coarse) {
   const Ladder ladder = ladder_of(goal_, estimate_too_coarse);
+  const bool below_closed_form = !estimate_too_coarse && static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
   for (std::size_t k = 0; k < ladder.count; ++k) {
+    if (k > 0 || below_closed_form) ++report_.solver_fallbacks;
     const Result<Plan> candidate = solve(ladder.solvers[k], configuration);
     status_of(ladder.solvers[k]) = candidate.status();
     if (candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration)) return true;
-    ++report_.solver_fallbacks;
   }
   return false;
 }
