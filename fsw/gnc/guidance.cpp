@@ -124,7 +124,10 @@ bool Guidance::select_goal(GpsTime now, const Management& management) {
     case Mode::kStationKeeping: {
       const Waypoint* last = management.last_waypoint();
       if (last == nullptr) return false;
-      if (has_goal_ && goal_.index == last->index && goal_.time > now) return true;  // a correction under way
+      if (has_goal_ && goal_.index == last->index && goal_.time > now) {  // a correction under way
+        report_.waypoint_index = goal_.index;
+        return true;
+      }
       const gnc_configuration& configuration = management.configuration();
       const Vector6 error_m = management.reference_semi_major_axis() * (report_.roe - last->roe);
       if (error_m.norm() <= configuration.station_keeping_deadband_m) return false;

@@ -26,7 +26,9 @@ Article::Article()
   EXPECT_EQ(vbar_gnc_init(state_.get(), kServicer, &Article::sink, tray_.get()), 0);
 }
 
-vbar_status Article::deliver(const Bytes& packet) { return vbar_gnc_receive(state_.get(), packet.data(), packet.size()); }
+vbar_status Article::deliver(const Bytes& packet) {
+  return watched([&] { return vbar_gnc_receive(state_.get(), packet.data(), packet.size()); });
+}
 
 Answer Article::step(GpsTime now, Duration period) {
   tick message{};
@@ -35,7 +37,9 @@ Answer Article::step(GpsTime now, Duration period) {
   return step_without_tick(now);
 }
 
-Answer Article::step_without_tick(GpsTime now) { return collect(vbar_gnc_step(state_.get(), now.ns)); }
+Answer Article::step_without_tick(GpsTime now) {
+  return collect(watched([&] { return vbar_gnc_step(state_.get(), now.ns); }));
+}
 
 std::vector<std::byte> Article::save() const {
   return {state_.get(), state_.get() + vbar_gnc_state_size()};
