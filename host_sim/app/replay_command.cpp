@@ -1,6 +1,7 @@
 // vbar replay: the recorded packets of a run into a flight computer.
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,6 +16,15 @@
 
 namespace vbar::app {
 namespace {
+
+/// The mission as it was flown, with the overrides of then and, over them, those of now.
+mission::Mission mission_as_flown(const ReplayOptions& options) {
+  std::vector<std::string> overrides;
+  std::ifstream lines(options.run_folder / kOverridesCopy);
+  for (std::string line; std::getline(lines, line);) overrides.push_back(line);
+  overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
+  return mission::load_mission(options.run_folder / kMissionCopy, overrides);
+}
 
 struct RecordedStep {
   std::vector<pil::Packet> inputs;
@@ -46,9 +56,8 @@ std::optional<std::string> difference(const std::vector<pil::Packet>& recorded, 
 }  // namespace
 
 int replay_command(const ReplayOptions& options) {
-  // The mission as it was flown; overrides may send its packets elsewhere.
-  const mission::Mission mission = mission::load_mission(options.run_folder / report::kMissionFile, options.overrides);
-  const std::map<std::uint32_t, RecordedStep> steps = steps_of(options.run_folder / report::kPacketLogFile);
+  const mission::Mission mission = mission_as_flown(options);
+  const std::map<std::uint32_t, RecordedStep> steps = steps_of(report::packet_log_file(options.run_folder));
   const std::unique_ptr<pil::FlightComputer> flight_computer = connect_flight_computer(flying_spacecraft(mission));
   for (const auto& [number, step] : steps) {
     if (step.outputs.empty()) continue;  // the run broke off before the answer

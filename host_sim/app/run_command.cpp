@@ -1,5 +1,7 @@
 // vbar run: a mission file, a flight computer, a run folder.
 
+#include <algorithm>
+#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -13,16 +15,25 @@
 #include "host_sim/app/simulation.h"
 #include "host_sim/app/stop_request.h"
 #include "host_sim/mission/load.h"
-#include "host_sim/report/html_report.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/waypoint_table.h"
 
 namespace vbar::app {
 namespace {
 
-std::filesystem::path folder_of(const RunOptions& options, const mission::Mission& mission) {
-  if (!options.out.empty()) return options.out;
-  return std::filesystem::path("runs") / (mission.name + "-" + std::to_string(mission.seed));
+report::Summary start_of(const mission::Mission& mission) {
+  report::Summary summary;
+  summary.mission = mission.name;
+  summary.seed = mission.seed;
+  return summary;
+}
+
+/// The mission file as it was flown, for the replay.
+void keep_mission(const mission::Mission& mission, const RunOptions& options, const std::filesystem::path& folder) {
+  std::filesystem::copy_file(mission.file, folder / kMissionCopy, std::filesystem::copy_options::overwrite_existing);
+  std::ofstream overrides(folder / kOverridesCopy);
+  for (const std::string& line : options.overrides) overrides << line << '\n';
+  if (!overrides) throw std::runtime_error((folder / kOverridesCopy).string() + ": cannot be written");
 }
 
 /// What the flight computer's steps cost.
@@ -67,7 +78,10 @@ std::optional<std::string> fly(const mission::Mission& mission, const std::files
 
 int run_command(const RunOptions& options) {
   const mission::Mission mission = mission::load_mission(options.mission, options.overrides);
-  report::RunFolder folder(folder_of(options, mission), mission.name, mission.seed);
+  const std::filesystem::path out =
+      options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out;
+  const report::RunFolder folder(out, start_of(mission));
+  keep_mission(mission, options, folder.path());
   catch_stop_signals();
 
   report::RunRecord record;
@@ -84,7 +98,7 @@ int run_command(const RunOptions& options) {
   folder.finish(record);
 
   if (!record.waypoints.empty()) fmt::print("{}", report::waypoint_table(record));
-  fmt::print("report   {}\n", (folder.path() / "report.html").string());
+  fmt::print("run folder  {}\n", folder.path().string());
   if (!trouble) return 0;
   fmt::print(stderr, "vbar: {}: run incomplete: {}\n", folder.path().string(), *trouble);
   return 1;
