@@ -26,7 +26,7 @@ struct Scaling {
 };
 
 Status check(const ImpulseGrid& grid, const Vector6& target, const PrimerSettings& settings) {
-  const bool settings_valid = settings.cost_tolerance >= 1e-6 && settings.cost_tolerance <= 0.1 &&
+  const bool settings_valid = settings.cost_tolerance >= 1e-5 && settings.cost_tolerance <= 0.1 &&
                               settings.prune_ratio >= 0.0 && settings.prune_ratio < 1.0 && settings.max_rounds > 0 &&
                               settings.max_newton_steps > 0;
   if (!settings_valid || grid.effects.size() != grid.costs.size()) return Status::kInvalidArgument;
