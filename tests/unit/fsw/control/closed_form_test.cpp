@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "fsw/control/arrival.h"
-#include "fsw/control/impulse_effect.h"
 #include "fsw/control/near_circular.h"
 #include "fsw/orbit/roe.h"
 #include "tests/unit/fsw/control/legs.h"
@@ -21,10 +20,9 @@ namespace mission = orbit::mission;
 
 // What the plan leaves of the pseudo-state in the linear model, relative.
 double residual(const ControlProblem& problem, const Plan& plan) {
-  const double horizon = seconds(problem.arrival - problem.start);
   Vector6 left = problem.pseudo_state;
   for (const Burn& burn : plan.all()) {
-    left += impulse_effect(problem.servicer_mean, seconds(burn.time - problem.start), horizon) * burn.dv_rtn;
+    left += arrival_effect(problem.servicer_mean, problem.start, burn.time, problem.arrival) * burn.dv_rtn;
   }
   return left.norm() / problem.pseudo_state.norm();
 }

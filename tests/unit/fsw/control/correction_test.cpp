@@ -9,7 +9,6 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "fsw/control/impulse_effect.h"
 #include "fsw/control/leg.h"
 #include "fsw/orbit/roe.h"
 #include "tests/unit/fsw/control/legs.h"
@@ -19,11 +18,16 @@ namespace {
 
 namespace mission = orbit::mission;
 
+// On arrival at 20000 s; s.
+Matrix63 effect_of_burn_at(double time) {
+  return arrival_effect(mission::kServicerMean, {}, GpsTime{} + nearest_duration(time),
+                        GpsTime{} + nearest_duration(2e4));
+}
+
 std::vector<Matrix63> random_effects(std::mt19937& random, std::size_t count) {
   std::uniform_real_distribution<double> time(0.0, 20000.0);
   std::vector<Matrix63> effects;
-  for (std::size_t k = 0; k < count; ++k)
-    effects.push_back(impulse_effect(mission::kServicerMean, time(random), 20000.0));
+  for (std::size_t k = 0; k < count; ++k) effects.push_back(effect_of_burn_at(time(random)));
   return effects;
 }
 
@@ -59,8 +63,7 @@ TEST(LeastNormCorrection, IsThePseudoInverseOfTheWeightedEffects) {
 
 TEST(LeastNormCorrection, LeavesDirectionsOfLittleGainAlone) {
   // One burn cannot move the inclination vector across its own phase: asked for just that, it does next to nothing.
-  const double horizon = 20000.0;
-  const std::vector<Matrix63> effects = {impulse_effect(mission::kServicerMean, 5000.0, horizon)};
+  const std::vector<Matrix63> effects = {effect_of_burn_at(5000.0)};
   Vector6 residual = Vector6::Zero();
   residual[4] = -effects[0](5, 2);
   residual[5] = effects[0](4, 2);
