@@ -95,4 +95,9 @@ Result<ControlProblem> remaining_problem(const MeanOrbits& orbits, std::span<con
   return ControlProblem{start, waypoint.time, at_start.value().servicer, error.value()};
 }
 
+Matrix63 arrival_effect(const QnsElements& servicer_mean, GpsTime epoch, GpsTime burn, GpsTime arrival) {
+  const QnsElements at_burn = orbit::propagate_secular(servicer_mean, seconds(burn - epoch));
+  return orbit::roe_transition_j2(at_burn, seconds(arrival - burn)) * orbit::roe_control_matrix(at_burn);
+}
+
 }  // namespace vbar::fsw::control

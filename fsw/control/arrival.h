@@ -43,4 +43,9 @@ Result<Vector6> arrival_error(const MeanOrbits& orbits, std::span<const Burn> bu
 Result<ControlProblem> remaining_problem(const MeanOrbits& orbits, std::span<const Burn> committed, GpsTime start,
                                          const Waypoint& waypoint);
 
+/// 6x3 change of the ROE at `arrival` per impulse (m/s, RTN) of the DEPUTY at `burn`, linear: Phi(arrival - burn)
+/// Gamma(burn). `servicer_mean` holds at `epoch`; the servicer's own burns in between are neglected. Negate for the
+/// servicer.
+Matrix63 arrival_effect(const orbit::QnsElements& servicer_mean, GpsTime epoch, GpsTime burn, GpsTime arrival);
+
 }  // namespace vbar::fsw::control

@@ -2,8 +2,9 @@
 
 #include <span>
 
+#include "fsw/control/arrival.h"
+#include "fsw/control/check_problem.h"
 #include "fsw/control/correction.h"
-#include "fsw/control/impulse_effect.h"
 #include "fsw/control/near_circular.h"
 #include "fsw/control/tangential.h"
 #include "fsw/math/math.h"
@@ -46,7 +47,10 @@ struct Model {
   double window;  ///< s
   double latest;  ///< last offset at which a burn may be, s
 
-  [[nodiscard]] Matrix63 effect(double offset) const { return impulse_effect(problem.servicer_mean, offset, window); }
+  [[nodiscard]] Matrix63 effect(double offset) const {
+    return arrival_effect(problem.servicer_mean, problem.start, problem.start + nearest_duration(offset),
+                          problem.arrival);
+  }
   // What `burns` leave of the pseudo-state.
   [[nodiscard]] Vector6 residual(const DeputyBurns& burns) const {
     Vector6 left = problem.pseudo_state;
@@ -256,11 +260,10 @@ Plan servicer_plan(const Model& model, const DeputyBurns& burns) {
 }  // namespace
 
 Result<Plan> solve_closed_form(const ControlProblem& problem, const ClosedFormSettings& settings) {
-  if (!math::is_finite(problem.pseudo_state.sum())) return Status::kNotFinite;
+  const Status valid = check_problem(problem);
+  if (valid != Status::kOk) return valid;
   const double window = seconds(problem.arrival - problem.start);
   if (window <= settings.final_coast) return Status::kInvalidArgument;
-  const Status valid = check_horizon(problem.servicer_mean, window);
-  if (valid != Status::kOk) return valid;
   const Model model{problem, settings, near_circular_orbit(problem.servicer_mean), window,
                     window - settings.final_coast};
 

@@ -1,6 +1,5 @@
 #include "fsw/control/correction.h"
 
-#include "fsw/control/impulse_effect.h"
 #include "fsw/math/math.h"
 #include "fsw/math/symmetric_eigen.h"
 #include "fsw/orbit/roe.h"
@@ -60,12 +59,9 @@ Result<Plan> correct_plan(const MeanOrbits& orbits, const Plan& committed, const
   // The linear effects are good to about 1e-2 of the whole change, mostly by the servicer's own burns on the way: every
   // round leaves that share of the error, from tens of metres after planning at 75 km down to millimetres.
   constexpr int kRounds = 3;
-  const double horizon = seconds(waypoint.time - orbits.epoch);
-  const Status valid = check_horizon(orbits.servicer, horizon);
-  if (valid != Status::kOk) return valid;
   std::array<Matrix63, kMaxBurns> effects;
   for (std::size_t k = 0; k < plan.count; ++k) {
-    effects[k] = impulse_effect(orbits.servicer, seconds(plan.burns[k].time - orbits.epoch), horizon);
+    effects[k] = arrival_effect(orbits.servicer, orbits.epoch, plan.burns[k].time, waypoint.time);
   }
   const Result<MeanOrbits> at_first = fly(orbits, committed.all(), plan.burns[0].time);
   if (!at_first.ok()) return at_first.status();

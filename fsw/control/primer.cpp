@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kCoarseTimes = 12;
 constexpr std::size_t kMaxAdded = 10;  ///< impulses that join the active set at once
-constexpr double kMinPivot = 1e-13;    ///< of the equilibrated gramian: below, the times do not span the state space
+constexpr double kMinPivot = 1e-9;     ///< of the equilibrated gramian; windows under about 0.1 s fall below
 constexpr double kMinSpan = 1e-3;      ///< pivot of the active effects' gramian below which none is dropped
 constexpr double kDropMargin = 0.01;   ///< impulses whose contact is lower than 1 by this leave the active set
 constexpr double kGapShare = 1e-3;     ///< of the cost tolerance: relative gap of each active set's program

@@ -1,6 +1,6 @@
 #pragma once
-// What a run leaves behind, as rows: filled while the mission flies, written to the run folder, read back for the report.
-// SI units; frames in the names; ROE are mean, times the reference semi-major axis.
+// What a run leaves behind, as rows: filled while the mission flies, written to the run folder, read back for the
+// report. SI units; frames in the names; ROE are mean, times the reference semi-major axis.
 
 #include <array>
 #include <cstdint>

@@ -1,0 +1,52 @@
+#include "host_sim/report/csv_table.h"
+
+#include "host_sim/report/text_file.h"
+
+namespace vbar::report {
+
+void append_text(std::string& line, std::string_view text) {
+  const bool quoted = text.find_first_of(",\"") != std::string_view::npos;
+  if (quoted) line += '"';
+  for (const char c : text) {
+    if (c == '"') line += '"';
+    line += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  if (quoted) line += '"';
+}
+
+bool split_cells(std::string_view line, std::vector<std::string>& cells) {
+  cells.assign(1, {});
+  bool quoted = false;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const char c = line[k];
+    const bool doubled = quoted && c == '"' && k + 1 < line.size() && line[k + 1] == '"';
+    if (doubled) {
+      cells.back() += '"';
+      ++k;
+    } else if (c == '"') {
+      const bool at_start = cells.back().empty() && (k == 0 || line[k - 1] == ',');
+      const bool at_end = k + 1 == line.size() || line[k + 1] == ',';
+      if (quoted ? !at_end : !at_start) return false;
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  return !quoted;
+}
+
+std::vector<std::string> read_lines(const std::filesystem::path& file) {
+  const std::string text = read_text_file(file);
+  std::vector<std::string> lines;
+  for (std::size_t start = 0; start < text.size();) {
+    const std::size_t end = std::min(text.find('\n', start), text.size());
+    const std::size_t content_end = end > start && text[end - 1] == '\r' ? end - 1 : end;
+    lines.push_back(text.substr(start, content_end - start));
+    start = end + 1;
+  }
+  return lines;
+}
+
+}  // namespace vbar::report

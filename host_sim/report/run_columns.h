@@ -1,0 +1,124 @@
+#pragma once
+// The columns of each file of a run folder, once for writing and reading alike: visit_columns(row, visitor) calls
+// visitor(ColumnName, value) in the order of the file.
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "host_sim/report/run_record.h"
+
+namespace vbar::report {
+
+/// `<group>_<member>`, or the group alone.
+struct ColumnName {
+  std::string_view group;
+  std::string_view member{};
+
+  [[nodiscard]] std::string text() const {
+    std::string joined(group);
+    if (!member.empty()) joined.append("_").append(member);
+    return joined;
+  }
+};
+
+namespace columns {
+
+inline constexpr std::array<std::string_view, 3> kXyzM{"x_m", "y_m", "z_m"};
+inline constexpr std::array<std::string_view, 3> kXyzMps{"x_mps", "y_mps", "z_mps"};
+inline constexpr std::array<std::string_view, 3> kRtnM{"r_m", "t_m", "n_m"};
+inline constexpr std::array<std::string_view, 3> kRtnMps{"r_mps", "t_mps", "n_mps"};
+inline constexpr std::array<std::string_view, 6> kRtnMAndMps{"r_m", "t_m", "n_m", "r_mps", "t_mps", "n_mps"};
+inline constexpr std::array<std::string_view, 6> kRoeM{"da_m", "dlambda_m", "dex_m", "dey_m", "dix_m", "diy_m"};
+
+template <class Visitor, class Values, std::size_t size>
+void group(Visitor& visit, std::string_view name, const std::array<std::string_view, size>& members, Values& values) {
+  static_assert(std::tuple_size_v<std::remove_const_t<Values>> == size);
+  for (std::size_t k = 0; k < size; ++k) visit(ColumnName{name, members[k]}, values[k]);
+}
+
+/// `Row`, as a row that is written (const) or one that is read.
+template <class Some, class Row>
+concept RowOf = std::is_same_v<std::remove_const_t<Some>, Row>;
+
+}  // namespace columns
+
+template <columns::RowOf<TruthRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  columns::group(visit, "servicer_position_eci", columns::kXyzM, row.servicer_position_eci);
+  columns::group(visit, "servicer_velocity_eci", columns::kXyzMps, row.servicer_velocity_eci);
+  columns::group(visit, "target_position_eci", columns::kXyzM, row.target_position_eci);
+  columns::group(visit, "target_velocity_eci", columns::kXyzMps, row.target_velocity_eci);
+  columns::group(visit, "relative_position_rtn", columns::kRtnM, row.relative_position_rtn);
+  columns::group(visit, "relative_velocity_rtn", columns::kRtnMps, row.relative_velocity_rtn);
+  columns::group(visit, "a_roe_mean", columns::kRoeM, row.a_roe_mean_m);
+}
+
+template <columns::RowOf<EstimateRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"step"}, row.step);
+  visit(ColumnName{"navigation_source"}, row.navigation_source);
+  visit(ColumnName{"navigation_valid"}, row.navigation_valid);
+  columns::group(visit, "relative_position_rtn", columns::kRtnM, row.relative_position_rtn);
+  columns::group(visit, "relative_velocity_rtn", columns::kRtnMps, row.relative_velocity_rtn);
+  columns::group(visit, "sigma_rtn", columns::kRtnMAndMps, row.sigma_rtn);
+  columns::group(visit, "a_roe_mean", columns::kRoeM, row.a_roe_mean_m);
+  columns::group(visit, "a_roe_desired", columns::kRoeM, row.a_roe_desired_m);
+  columns::group(visit, "predicted_a_roe_error", columns::kRoeM, row.predicted_a_roe_error_m);
+  visit(ColumnName{"mode"}, row.mode);
+  visit(ColumnName{"active_solver"}, row.active_solver);
+  visit(ColumnName{"waypoint_index"}, row.waypoint_index);
+  visit(ColumnName{"planned_burns"}, row.planned_burns);
+  visit(ColumnName{"koenig_damico_status"}, row.koenig_damico_status);
+  visit(ColumnName{"closed_form_status"}, row.closed_form_status);
+  visit(ColumnName{"least_squares_status"}, row.least_squares_status);
+  visit(ColumnName{"safety_status"}, row.safety_status);
+  visit(ColumnName{"planned_dv_mps"}, row.planned_dv_mps);
+  visit(ColumnName{"passive_safety_distance_m"}, row.passive_safety_distance_m);
+  visit(ColumnName{"commanded_dv_mps"}, row.commanded_dv_mps);
+  visit(ColumnName{"step_cost"}, row.step_cost);
+  visit(ColumnName{"stack_bytes"}, row.stack_bytes);
+}
+
+template <columns::RowOf<ManeuverRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"maneuver_id"}, row.maneuver_id);
+  visit(ColumnName{"waypoint_index"}, row.waypoint_index);
+  visit(ColumnName{"solver"}, row.solver);
+  visit(ColumnName{"command_time_s"}, row.command_time_s);
+  visit(ColumnName{"execution_time_s"}, row.execution_time_s);
+  visit(ColumnName{"accepted"}, row.accepted);
+  columns::group(visit, "commanded_dv_rtn", columns::kRtnMps, row.commanded_dv_rtn_mps);
+  columns::group(visit, "executed_dv_rtn", columns::kRtnMps, row.executed_dv_rtn_mps);
+}
+
+template <columns::RowOf<ResidualRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"sensor"}, row.sensor);
+  visit(ColumnName{"prefit"}, row.prefit);
+  visit(ColumnName{"postfit"}, row.postfit);
+  visit(ColumnName{"sigma"}, row.sigma);
+}
+
+template <columns::RowOf<WaypointRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"index"}, row.index);
+  visit(ColumnName{"time_s"}, row.time_s);
+  columns::group(visit, "a_roe_desired", columns::kRoeM, row.a_roe_desired_m);
+  columns::group(visit, "a_roe_actual", columns::kRoeM, row.a_roe_actual_m);
+  columns::group(visit, "desired_position_rtn", columns::kRtnM, row.desired_position_rtn);
+  columns::group(visit, "actual_position_rtn", columns::kRtnM, row.actual_position_rtn);
+  visit(ColumnName{"control_error_m"}, row.control_error_m);
+  visit(ColumnName{"navigation_error_m"}, row.navigation_error_m);
+  visit(ColumnName{"navigation_velocity_error_mps"}, row.navigation_velocity_error_mps);
+  visit(ColumnName{"leg_dv_mps"}, row.leg_dv_mps);
+  visit(ColumnName{"cumulative_dv_mps"}, row.cumulative_dv_mps);
+  visit(ColumnName{"leg_maneuvers"}, row.leg_maneuvers);
+}
+
+}  // namespace vbar::report

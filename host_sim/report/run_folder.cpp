@@ -1,0 +1,95 @@
+#include "host_sim/report/run_folder.h"
+
+#include <array>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host_sim/report/run_tables.h"
+#include "host_sim/report/summary_json.h"
+#include "host_sim/report/text_file.h"
+
+namespace vbar::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kSummary = "summary.json";
+constexpr std::string_view kWaypoints = "waypoints.csv";
+constexpr std::string_view kTruth = "truth.csv";
+constexpr std::string_view kEstimate = "estimate.csv";
+constexpr std::string_view kManeuvers = "maneuvers.csv";
+constexpr std::string_view kResiduals = "residuals.csv";
+constexpr std::string_view kPacketLog = "packets.lcmlog";
+constexpr std::string_view kReport = "report.html";
+
+constexpr std::array kFilesBesideSummary{kWaypoints, kTruth, kEstimate, kManeuvers, kResiduals, kPacketLog, kReport};
+
+[[noreturn]] void fail(const fs::path& folder, std::string_view what) {
+  throw std::runtime_error(fmt::format("{}: {}", folder.string(), what));
+}
+
+void check_may_be_replaced(const fs::path& folder) {
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) fail(folder, "is a file; a run needs a folder");
+  if (fs::is_empty(folder) || is_summary(folder / kSummary)) return;
+  fail(folder, "holds something other than a run; remove it or name another folder with --out");
+}
+
+}  // namespace
+
+fs::path default_run_folder(const std::string& mission, std::uint64_t seed) {
+  return fs::path("runs") / fmt::format("{}-{}", mission, seed);
+}
+
+fs::path packet_log_file(const fs::path& run_folder) {
+  return run_folder / kPacketLog;
+}
+fs::path report_file(const fs::path& run_folder) {
+  return run_folder / kReport;
+}
+
+RunFolder::RunFolder(fs::path folder, const Summary& start) : folder_(std::move(folder)) {
+  try {
+    check_may_be_replaced(folder_);
+    fs::create_directories(folder_);
+    Summary running = start;
+    running.complete = false;
+    running.incomplete_reason = "running";
+    replace_text_file(folder_ / kSummary, summary_json(running, {}));
+    for (const std::string_view name : kFilesBesideSummary) fs::remove(folder_ / name);
+  } catch (const fs::filesystem_error& error) {
+    fail(folder_, "cannot be made: " + error.code().message());
+  }
+}
+
+void RunFolder::finish(const RunRecord& record) const {
+  write_rows(folder_ / kWaypoints, record.waypoints);
+  write_rows(folder_ / kTruth, record.truth);
+  write_rows(folder_ / kEstimate, record.estimates);
+  write_rows(folder_ / kManeuvers, record.maneuvers);
+  write_rows(folder_ / kResiduals, record.residuals);
+  replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
+}
+
+RunRecord read_run(const fs::path& run_folder) {
+  if (!fs::is_directory(run_folder)) fail(run_folder, "no such run folder");
+  RunRecord record;
+  record.summary = read_summary(run_folder / kSummary);
+  // A run that was killed left nothing but its packet log.
+  if (!record.summary.complete && !fs::exists(run_folder / kTruth)) {
+    fail(run_folder,
+         fmt::format("the run did not end (it says \"{}\") and left no tables", record.summary.incomplete_reason));
+  }
+  record.waypoints = read_rows<WaypointRow>(run_folder / kWaypoints);
+  record.truth = read_rows<TruthRow>(run_folder / kTruth);
+  record.estimates = read_rows<EstimateRow>(run_folder / kEstimate);
+  record.maneuvers = read_rows<ManeuverRow>(run_folder / kManeuvers);
+  record.residuals = read_rows<ResidualRow>(run_folder / kResiduals);
+  return record;
+}
+
+}  // namespace vbar::report

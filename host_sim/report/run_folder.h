@@ -1,0 +1,40 @@
+#pragma once
+// The folder that a run leaves, and reading it back. A folder says that its run is incomplete from the moment it exists
+// until the run is known to be whole, so that a killed run can never be taken for a finished one.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "host_sim/report/run_record.h"
+
+namespace vbar::report {
+
+/// Where a run goes unless told otherwise: runs/<mission>-<seed>.
+[[nodiscard]] std::filesystem::path default_run_folder(const std::string& mission, std::uint64_t seed);
+
+[[nodiscard]] std::filesystem::path packet_log_file(const std::filesystem::path& run_folder);
+[[nodiscard]] std::filesystem::path report_file(const std::filesystem::path& run_folder);
+
+class RunFolder {
+ public:
+  /// Makes the folder and writes a summary that says the run is under way. The files of an earlier run are removed;
+  /// files that no run writes stay. Throws std::runtime_error that names the folder if it holds anything but a run, or
+  /// cannot be made or written.
+  RunFolder(std::filesystem::path folder, const Summary& start);
+
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+  [[nodiscard]] std::filesystem::path packet_log() const { return packet_log_file(folder_); }
+
+  /// Writes the tables, then the summary, which alone may say that the run is complete. Throws std::runtime_error that
+  /// names the file that could not be written; the folder then still says incomplete.
+  void finish(const RunRecord& record) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Throws std::runtime_error that names the file and the line for a folder that is no run's, or damaged.
+[[nodiscard]] RunRecord read_run(const std::filesystem::path& run_folder);
+
+}  // namespace vbar::report

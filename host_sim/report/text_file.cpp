@@ -1,0 +1,33 @@
+#include "host_sim/report/text_file.h"
+
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <system_error>
+
+namespace vbar::report {
+
+std::string read_text_file(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": no such file");
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream.is_open() || stream.bad()) throw std::runtime_error(file.string() + ": cannot be read");
+  return text;
+}
+
+void replace_text_file(const std::filesystem::path& file, std::string_view text) {
+  std::filesystem::path neighbour = file;
+  neighbour += ".new";
+  std::ofstream stream(neighbour, std::ios::binary | std::ios::trunc);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  std::error_code error;
+  if (stream) std::filesystem::rename(neighbour, file, error);
+  if (!stream || error) {
+    std::error_code ignored;
+    std::filesystem::remove(neighbour, ignored);
+    throw std::runtime_error(file.string() + ": cannot be written");
+  }
+}
+
+}  // namespace vbar::report

@@ -1,0 +1,17 @@
+#pragma once
+// Whole text files, for files that are either there as meant or not at all.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace vbar::report {
+
+/// Throws std::runtime_error that names the file.
+[[nodiscard]] std::string read_text_file(const std::filesystem::path& file);
+
+/// Writes a neighbour and renames it, so that `file` never holds half of `text`. Throws std::runtime_error that names
+/// the file; what was there before then still is.
+void replace_text_file(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace vbar::report
