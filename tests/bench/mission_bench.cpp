@@ -22,9 +22,12 @@ namespace mission = vbar::mission;
 
 const std::string kRoot = VBAR_SOURCE_DIR;
 
-mission::Mission ideal_navigation() { return mission::load_mission(kRoot + "/missions/ideal_navigation.toml"); }
+mission::Mission ideal_navigation() {
+  return mission::load_mission(kRoot + "/missions/ideal_navigation.toml");
+}
 
-void fly(const mission::Mission& mission, std::span<app::PacketObserver* const> observers, vbar::report::RunRecord& record) {
+void fly(const mission::Mission& mission, std::span<app::PacketObserver* const> observers,
+         vbar::report::RunRecord& record) {
   const auto computer = app::connect_flight_computer(app::flying_spacecraft(mission));
   vbar::engine::SteadyWallClock wall;
   app::Simulation(mission, kRoot + "/data", {*computer, wall, observers, {}, {}}, record).run();
@@ -69,7 +72,8 @@ class FlightSoftware {
     void* start = memory_.data();
     std::size_t room = memory_.size();
     state_ = std::align(vbar_gnc_state_alignment(), vbar_gnc_state_size(), start, room);
-    vbar_gnc_init(state_, 1, [](void*, const std::uint8_t*, std::size_t) {}, nullptr);
+    vbar_gnc_init(
+        state_, 1, [](void*, const std::uint8_t*, std::size_t) {}, nullptr);
   }
   void step(const InputKeeper::Step& step) {
     for (const vbar::pil::Packet& packet : step.inputs) vbar_gnc_receive(state_, packet.data(), packet.size());

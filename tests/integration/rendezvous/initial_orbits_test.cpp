@@ -35,7 +35,8 @@ fsw::Vector3 relative_position(const Pair& pair) {
   return fsw::orbit::relative_state_rtn(pair.servicer, pair.target).position_rtn;
 }
 
-// The paper's table of servicer elements, read as osculating, by an independent implementation of the element conversion.
+// The paper's table of servicer elements, read as osculating, by an independent implementation of the element
+// conversion.
 TEST(InitialOrbits, TheServicerFliesThePapersElements) {
   const Pair pair = placed();
   const fsw::Vector3 position(12161.8456633, -7076153.584868, -84606.5539942);
@@ -45,9 +46,9 @@ TEST(InitialOrbits, TheServicerFliesThePapersElements) {
   EXPECT_LT((pair.servicer.velocity_eci - velocity).norm(), 1e-9);
 }
 
-// Waypoint 0 through mean elements, osculating elements and ECI, by an independent implementation. That one lacks a first-order
-// term of the mean longitude, proportional to the eccentricity: 6 m here, turning with the latitude, so up to 6.4 cm between
-// spacecraft 75 km apart.
+// Waypoint 0 through mean elements, osculating elements and ECI, by an independent implementation. That one lacks a
+// first-order term of the mean longitude, proportional to the eccentricity: 6 m here, turning with the latitude, so up
+// to 6.4 cm between spacecraft 75 km apart.
 TEST(InitialOrbits, TheTargetStandsAtItsWaypoint) {
   const fsw::Vector3 difference = relative_position(placed()) - fsw::Vector3(-2393.793, -75134.098, -13.938);
   EXPECT_LT(std::abs(difference.x()), 1e-3);  // half the reference's last digit, and the same of its elements'
@@ -55,9 +56,9 @@ TEST(InitialOrbits, TheTargetStandsAtItsWaypoint) {
   EXPECT_LT(std::abs(difference.z()), 1e-3);
 }
 
-// A run that starts 39 h in: the servicer has flown there unburned, the target is placed about it at waypoint 8. The reference
-// propagated the servicer by mean elements to an argument of latitude of -122.379 deg; over 39 h the first-order theory's mean
-// semi-major axis, good to 15 m, leaves 1 mrad of it, which turns the 2 m ellipse by 2 mm.
+// A run that starts 39 h in: the servicer has flown there unburned, the target is placed about it at waypoint 8. The
+// reference propagated the servicer by mean elements to an argument of latitude of -122.379 deg; over 39 h the
+// first-order theory's mean semi-major axis, good to 15 m, leaves 1 mrad of it, which turns the 2 m ellipse by 2 mm.
 TEST(InitialOrbits, ALaterStartIsPlacedAboutTheServicerOfThatTime) {
   const Pair pair = placed({"mission.start_h=39.0", "mission.duration_h=2.25", "spacecraft.target.relative.waypoint=8",
                             "truth.gravity_degree=2", "truth.gravity_order=0"});

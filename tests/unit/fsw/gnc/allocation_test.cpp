@@ -1,5 +1,5 @@
-// The flight software flies the whole mission without asking the heap for anything. A program of its own, because it puts itself
-// between all code and the allocator.
+// The flight software flies the whole mission without asking the heap for anything. A program of its own, because it
+// puts itself between all code and the allocator.
 
 #include <cstdlib>
 #include <new>
@@ -8,8 +8,8 @@
 
 namespace {
 
-// Allocations while the flight software runs. The counter is armed around each call of the C interface only: the world and the
-// test may allocate as they like.
+// Allocations while the flight software runs. The counter is armed around each call of the C interface only: the world
+// and the test may allocate as they like.
 bool armed = false;
 long allocations = 0;
 
@@ -39,8 +39,8 @@ namespace {
 
 #else
 
-// glibc's own names for its allocator, of which these take the place in this program; operator new and the C++ library's
-// containers come here too.
+// glibc's own names for its allocator, of which these take the place in this program; operator new and the C++
+// library's containers come here too.
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);

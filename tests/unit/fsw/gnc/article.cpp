@@ -21,7 +21,7 @@ void Article::Free::operator()(std::byte* state) const {
 
 Article::Article()
     : tray_(std::make_unique<Tray>()),
-      state_(new(std::align_val_t(vbar_gnc_state_alignment())) std::byte[vbar_gnc_state_size()]) {
+      state_(new (std::align_val_t(vbar_gnc_state_alignment())) std::byte[vbar_gnc_state_size()]) {
   std::memset(state_.get(), 0, vbar_gnc_state_size());
   EXPECT_EQ(vbar_gnc_init(state_.get(), kServicer, &Article::sink, tray_.get()), 0);
 }

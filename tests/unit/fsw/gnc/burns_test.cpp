@@ -52,8 +52,8 @@ TEST(Burns, ComeAfterTheLatencyInTheLastStepThatCanAndOnce) {
   }
 }
 
-// Where the burns lead in another model than the one they were planned with (numerical J2 orbits against mean elements) shows the
-// sign: dv_servicer = -dv_deputy. With the wrong one the miss would be twice the 90 m to go.
+// Where the burns lead in another model than the one they were planned with (numerical J2 orbits against mean elements)
+// shows the sign: dv_servicer = -dv_deputy. With the wrong one the miss would be twice the 90 m to go.
 TEST(Burns, LeadToTheWaypoint) {
   for (const std::int8_t solver : {0, 1, 2}) {
     Flight flight = approach(solver);
@@ -120,7 +120,7 @@ TEST(Burns, BelowTheLeastAreLeftOut) {
   Flight flight = approach(1, c);
   while (flight.now < at(3 * 3600)) {
     for (const Command& command : flight.step().commands) {
-      const double (&dv)[3] = command.message.dv_rtn;
+      const double(&dv)[3] = command.message.dv_rtn;
       EXPECT_GE(Vector3(dv[0], dv[1], dv[2]).norm(), 1e-3);
     }
   }
@@ -137,7 +137,8 @@ TEST(Burns, NoneBeforeThePlannersStart) {
   EXPECT_GT(flight.executed, 0);
 }
 
-// Steps that do not come in time: their burns are past when the next one does. They are not commanded late, but planned anew.
+// Steps that do not come in time: their burns are past when the next one does. They are not commanded late, but planned
+// anew.
 TEST(Burns, OfMissedStepsAreNotCommandedLate) {
   Flight flight = approach(1);
   flight.fly_until(at(600));

@@ -1,12 +1,11 @@
-// What the flight software promises whoever holds it through the C interface: outputs that depend on the packets of a step, not
-// on their order; a state that is its bytes; telemetry in every mode; a clock that only goes forward.
+// What the flight software promises whoever holds it through the C interface: outputs that depend on the packets of a
+// step, not on their order; a state that is its bytes; telemetry in every mode; a clock that only goes forward.
 
 #include <algorithm>
 #include <limits>
 #include <random>
 
 #include "fsw/gnc/gnc.h"
-
 #include "tests/unit/fsw/gnc/small_world.h"
 
 namespace vbar::fsw::gnc::test {
@@ -129,8 +128,8 @@ TEST(Contract, TheClockGoesForwardOnly) {
 
 TEST(Contract, AStepOutsideTheClocksRangeIsRefused) {
   Article article;
-  for (const std::int64_t ns : {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1},
-                                std::numeric_limits<std::int64_t>::max()}) {
+  for (const std::int64_t ns :
+       {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()}) {
     EXPECT_EQ(article.step_without_tick({ns}).status, static_cast<vbar_status>(Status::kOutOfRange));
   }
   EXPECT_EQ(article.step(kEpoch, kStep).status, 0);
@@ -150,7 +149,8 @@ TEST(Contract, AStepWithoutATickStillSteps) {
   EXPECT_EQ(without.control.planned_dv, with.control.planned_dv);
 }
 
-// Telemetry cannot carry a NaN (encoding refuses it, and the outbox counts): three packets a step and none dropped is the proof.
+// Telemetry cannot carry a NaN (encoding refuses it, and the outbox counts): three packets a step and none dropped is
+// the proof.
 void expect_whole_telemetry(const Answer& answer, const char* when) {
   EXPECT_EQ(answer.status, 0) << when;
   EXPECT_EQ(answer.telemetry_count, 3) << when;

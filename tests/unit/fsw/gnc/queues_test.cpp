@@ -34,7 +34,7 @@ TEST(Queues, OfMeasurementsKeepWhatTheyHave) {
   const Answer answer = flight.step();
   EXPECT_EQ(answer.health.inbox_dropped, 7);
   EXPECT_EQ(answer.health.faults, kFaultInboxFull);
-  EXPECT_EQ(answer.health.packets_accepted, Inbox::kMeasurements + 1);  // and the tick
+  EXPECT_EQ(answer.health.packets_accepted, Inbox::kMeasurements + 1);    // and the tick
   EXPECT_NEAR(answer.navigation.relative_position_rtn[1], -100.0, 10.0);  // not the -10 m of the dropped ones
 
   // The next step has all its room again.
@@ -66,8 +66,8 @@ TEST(Queues, OfManeuversAndTelecommandsKeepWhatTheyHave) {
   EXPECT_EQ(answer.telemetry_count, 3);
 }
 
-// Reports of maneuvers nobody commanded, hundreds of them without a measurement: navigation has room for 64. Its anchor then moves
-// past the oldest, so each still counts: 10 a minute of 1 mm/s along track for an hour are 0.6 m/s.
+// Reports of maneuvers nobody commanded, hundreds of them without a measurement: navigation has room for 64. Its anchor
+// then moves past the oldest, so each still counts: 10 a minute of 1 mm/s along track for an hour are 0.6 m/s.
 TEST(Queues, OfManeuversSinceTheLastMeasurementLoseNone) {
   Flight flight(kStart);
   gnc_configuration c = configuration();
@@ -88,7 +88,8 @@ TEST(Queues, OfManeuversSinceTheLastMeasurementLoseNone) {
   }
   EXPECT_EQ(answer.health.rejected_time, 0);
   ASSERT_EQ(answer.navigation.valid, 1);
-  // The same maneuvers in the world, whose present is that of the next step: compared after a measurement-free step there.
+  // The same maneuvers in the world, whose present is that of the next step: compared after a measurement-free step
+  // there.
   SmallWorld world(kStart);
   for (GpsTime step_time = at(60); step_time < at(3600); step_time = step_time + kStep) {
     for (int k = 0; k < 10; ++k) {
@@ -104,8 +105,8 @@ TEST(Queues, OfManeuversSinceTheLastMeasurementLoseNone) {
   }
 }
 
-// A plan has more burns due in one step than may be commanded in one: with a step of an hour, the least-squares plan of a leg of
-// half an hour is due at once. Never more than the limit leaves a step.
+// A plan has more burns due in one step than may be commanded in one: with a step of an hour, the least-squares plan of
+// a leg of half an hour is due at once. Never more than the limit leaves a step.
 TEST(Queues, CommandsOfAStepAreBounded) {
   Flight flight(kStart);
   flight.send(table_of({waypoint_at(8, 3 * 3600, 1, kNear)}));
