@@ -13,21 +13,22 @@ namespace {
 using control::Plan;
 using control::Solver;
 
-/// The solvers that plan a leg from scratch, best first. (The closed form is asked by the policy of its legs, leg.h.) Least
-/// squares always gives something, if not the cheapest.
+/// The solvers that plan a leg from scratch, best first. (The closed form is asked by the policy of its legs, leg.h.)
+/// Least squares always gives something, if not the cheapest.
 struct Ladder {
   std::array<Solver, 2> solvers;
   std::size_t count;
 };
 
 Ladder ladder_of(const Waypoint& goal, bool estimate_too_coarse) {
-  const bool least_squares_only = estimate_too_coarse || static_cast<Solver>(goal.control_mode) == Solver::kLeastSquares;
+  const bool least_squares_only =
+      estimate_too_coarse || static_cast<Solver>(goal.control_mode) == Solver::kLeastSquares;
   if (least_squares_only) return {{Solver::kLeastSquares}, 1};
   return {{Solver::kKoenigDamico, Solver::kLeastSquares}, 2};
 }
 
-/// Where the fuel-optimal solver plans, planning anew costs computing only. Correcting a plan whose burn was missed can cost twice
-/// what a new plan does: a correction so much dearer than the plan gives way to one.
+/// Where the fuel-optimal solver plans, planning anew costs computing only. Correcting a plan whose burn was missed can
+/// cost twice what a new plan does: a correction so much dearer than the plan gives way to one.
 constexpr double kDearCorrection = 1.1;
 
 bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
@@ -37,10 +38,13 @@ bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
   return true;
 }
 
-bool is_safe(const Result<safety::PlanSafety>& verdict) { return verdict.ok() && verdict.value().safe; }
+bool is_safe(const Result<safety::PlanSafety>& verdict) {
+  return verdict.ok() && verdict.value().safe;
+}
 
 /// How far the estimate may be off: three sigma of position, and of the drift along track that da leaves open.
-safety::PositionBound three_sigma(const Vector6& sigma_rtn, double sigma_a_da_m, const orbit::QnsElements& servicer_mean) {
+safety::PositionBound three_sigma(const Vector6& sigma_rtn, double sigma_a_da_m,
+                                  const orbit::QnsElements& servicer_mean) {
   safety::PositionBound bound;
   bound.radial_normal = 3.0 * math::hypot(sigma_rtn(0), sigma_rtn(2));
   bound.along_track = 3.0 * sigma_rtn(1);
@@ -119,8 +123,11 @@ bool Guidance::select_goal(GpsTime now, const Management& management) {
   Waypoint stay;
   switch (management.mode()) {
     case Mode::kIdle:
-    case Mode::kHold: return false;
-    case Mode::kApproach: wanted = management.next_waypoint(); break;
+    case Mode::kHold:
+      return false;
+    case Mode::kApproach:
+      wanted = management.next_waypoint();
+      break;
     case Mode::kStationKeeping: {
       const Waypoint* last = management.last_waypoint();
       if (last == nullptr) return false;
@@ -153,7 +160,8 @@ bool Guidance::select_goal(GpsTime now, const Management& management) {
 bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configuration) {
   if (now < next_decision_) return false;
   const bool closed_form = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
-  next_decision_ = now + Duration{closed_form ? configuration.closed_form_period_ns : configuration.koenig_damico_period_ns};
+  next_decision_ =
+      now + Duration{closed_form ? configuration.closed_form_period_ns : configuration.koenig_damico_period_ns};
   return true;
 }
 
@@ -168,8 +176,8 @@ void Guidance::decide(const gnc_configuration& configuration) {
   ++report_.holds;
 }
 
-/// Keeps or corrects the plan, or lets the closed form make it, as the leg's policy says. While the estimate is too coarse only
-/// what least squares planned stays.
+/// Keeps or corrects the plan, or lets the closed form make it, as the leg's policy says. While the estimate is too
+/// coarse only what least squares planned stays.
 bool Guidance::stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse) {
   if (estimate_too_coarse && report_.active_solver != Solver::kLeastSquares) return false;
   const control::LegSituation situation = leg_situation();
@@ -244,9 +252,11 @@ Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configurati
       settings.grid_step = {configuration.koenig_damico_grid_ns};
       return control::solve_koenig_damico(problem.value(), settings, koenig_damico_workspace_);
     }
-    case Solver::kLeastSquares: return control::solve_least_squares(problem.value());
+    case Solver::kLeastSquares:
+      return control::solve_least_squares(problem.value());
     case Solver::kClosedForm:
-    case Solver::kNone: break;
+    case Solver::kNone:
+      break;
   }
   return Status::kInvalidArgument;
 }
@@ -255,8 +265,8 @@ control::LegSituation Guidance::leg_situation() const {
   return {orbits_, pending_, earliest_start(), {goal_.time, goal_.roe}, sigma_roe_};
 }
 
-/// The closed form's arrival is held to what an orbit of corrections would gain for next to nothing; the fuel-optimal solver of
-/// the close range to millimetres.
+/// The closed form's arrival is held to what an orbit of corrections would gain for next to nothing; the fuel-optimal
+/// solver of the close range to millimetres.
 control::LegPolicy Guidance::leg_policy(const gnc_configuration& configuration) const {
   control::LegPolicy policy;
   const bool far = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
@@ -280,10 +290,13 @@ GpsTime Guidance::earliest_start() const {
 
 Status& Guidance::status_of(Solver solver) {
   switch (solver) {
-    case Solver::kClosedForm: return report_.closed_form;
-    case Solver::kKoenigDamico: return report_.koenig_damico;
+    case Solver::kClosedForm:
+      return report_.closed_form;
+    case Solver::kKoenigDamico:
+      return report_.koenig_damico;
     case Solver::kLeastSquares:
-    case Solver::kNone: break;
+    case Solver::kNone:
+      break;
   }
   return report_.least_squares;
 }

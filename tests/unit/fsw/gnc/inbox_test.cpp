@@ -126,7 +126,8 @@ TEST(Inbox, RefusesATickWithoutAPeriod) {
 TEST(Inbox, RefusesTimesOutsideTheClocksRange) {
   Inbox inbox(kServicer);
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-  for (const std::int64_t ns : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(), kLatestTime.ns + 1, kMost}) {
+  for (const std::int64_t ns :
+       {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(), kLatestTime.ns + 1, kMost}) {
     EXPECT_EQ(inbox.receive(packet_of({ns}, ideal_navigation{})), Status::kOutOfRange) << ns;
   }
   EXPECT_EQ(inbox.counters().rejected_content, 4);

@@ -134,7 +134,7 @@ TEST_F(ManagementTest, RefusesSpansAndTimesThatOverflow) {
     step(1);
     return inbox_.counters().rejected_content == ++refusals;
   };
-  const auto with = [this](std::int64_t gnc_configuration::* span) {
+  const auto with = [this](std::int64_t gnc_configuration::*span) {
     gnc_configuration c = management_.configuration();
     c.*span = kMost;
     return c;

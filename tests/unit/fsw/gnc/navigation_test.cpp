@@ -134,7 +134,8 @@ TEST_F(NavigationTest, BelievesACommandUntilTheActuatorSaysOtherwise) {
     return orbit::propagate_j2(orbit::apply_impulse_rtn(at_burn, {0.0, dv_t, 0.0}), dt).value().position_eci;
   };
   update(20);  // not yet
-  EXPECT_EQ(navigation_.state().servicer.position_eci, orbit::propagate_j2(servicer_state(), 20.0).value().position_eci);
+  EXPECT_EQ(navigation_.state().servicer.position_eci,
+            orbit::propagate_j2(servicer_state(), 20.0).value().position_eci);
   update(60);
   EXPECT_EQ(navigation_.state().servicer.position_eci, after(0.5, 30.0));
 
@@ -153,7 +154,8 @@ TEST_F(NavigationTest, BelievesACommandUntilTheActuatorSaysOtherwise) {
             orbit::propagate_j2(servicer_state(), 240.0).value().position_eci);
 }
 
-// A burn of a step's own instant comes after the step: a measurement of that instant does not know it, and neither does the state.
+// A burn of a step's own instant comes after the step: a measurement of that instant does not know it, and neither does
+// the state.
 TEST_F(NavigationTest, ABurnAtTheStepsTimeIsOfTheNextStep) {
   navigation_.expect_maneuver(5, {60 * kSecond}, {0.0, 0.5, 0.0});
   EXPECT_EQ(inbox_.receive(packet_of({60 * kSecond}, measurement_of(servicer_state()))), Status::kOk);
@@ -164,7 +166,8 @@ TEST_F(NavigationTest, ABurnAtTheStepsTimeIsOfTheNextStep) {
   EXPECT_EQ(navigation_.state().servicer.position_eci, expected.value().position_eci);
 }
 
-// Hours without a measurement: the anchor follows, so that a step's work stays bounded, and the coast stays the orbit model's.
+// Hours without a measurement: the anchor follows, so that a step's work stays bounded, and the coast stays the orbit
+// model's.
 TEST_F(NavigationTest, CoastsForHours) {
   EXPECT_EQ(inbox_.receive(packet_of({0}, measurement_of(servicer_state()))), Status::kOk);
   for (std::int64_t s = 0; s <= 7200; s += 60) update(s);
