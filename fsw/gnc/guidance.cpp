@@ -26,6 +26,10 @@ Ladder ladder_of(const Waypoint& goal, bool estimate_too_coarse) {
   return {{Solver::kKoenigDamico, Solver::kLeastSquares}, 2};
 }
 
+/// Where the fuel-optimal solver plans, planning anew costs computing only. Correcting a plan whose burn was missed can cost twice
+/// what a new plan does: a correction so much dearer than the plan gives way to one.
+constexpr double kDearCorrection = 1.1;
+
 bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
   for (const control::Burn& burn : plan.all()) {
     if (!burn.dv_rtn.allFinite() || burn.dv_rtn.norm() > configuration.maximum_dv) return false;
@@ -120,7 +124,10 @@ bool Guidance::select_goal(GpsTime now, const Management& management) {
     case Mode::kStationKeeping: {
       const Waypoint* last = management.last_waypoint();
       if (last == nullptr) return false;
-      if (has_goal_ && goal_.index == last->index && goal_.time > now) return true;  // a correction under way
+      if (has_goal_ && goal_.index == last->index && goal_.time > now) {  // a correction under way
+        report_.waypoint_index = goal_.index;
+        return true;
+      }
       const gnc_configuration& configuration = management.configuration();
       const Vector6 error_m = management.reference_semi_major_axis() * (report_.roe - last->roe);
       if (error_m.norm() <= configuration.station_keeping_deadband_m) return false;
@@ -154,17 +161,19 @@ void Guidance::decide(const gnc_configuration& configuration) {
   if (goal_.time <= earliest_burn_) return;  // nothing can be done about this waypoint any more
   const double sigma_m = orbits_.servicer.a * sigma_roe_.maxCoeff();
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 && sigma_m > configuration.roe_error_threshold_m;
-  if (!too_coarse && stays_on_plan(configuration)) return;
+  if (stays_on_plan(configuration, too_coarse)) return;
   if (climbs_ladder(configuration, too_coarse)) return;
   plan_ = {};
   report_.active_solver = Solver::kNone;
   ++report_.holds;
 }
 
-/// Keeps or corrects the plan, or lets the closed form make it, as the leg's policy says.
-bool Guidance::stays_on_plan(const gnc_configuration& configuration) {
+/// Keeps or corrects the plan, or lets the closed form make it, as the leg's policy says. While the estimate is too coarse only
+/// what least squares planned stays.
+bool Guidance::stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse) {
+  if (estimate_too_coarse && report_.active_solver != Solver::kLeastSquares) return false;
   const control::LegSituation situation = leg_situation();
-  const bool closed_form = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
+  const bool closed_form = !estimate_too_coarse && static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
   const Result<control::LegDecision> decision =
       closed_form ? control::decide_leg(situation, plan_, leg_policy(configuration))
                   : control::keep_or_correct(situation, plan_, leg_policy(configuration));
@@ -175,16 +184,19 @@ bool Guidance::stays_on_plan(const gnc_configuration& configuration) {
     return false;
   }
   if (decided.action == control::LegAction::kReplan) report_.closed_form = decided.closed_form;
+  const bool is_dear = decided.plan.total_dv() > kDearCorrection * plan_.total_dv();
+  if (!closed_form && decided.action == control::LegAction::kCorrect && is_dear) return false;
   return adopt_if_flyable(decided.plan, configuration);
 }
 
 bool Guidance::climbs_ladder(const gnc_configuration& configuration, bool estimate_too_coarse) {
   const Ladder ladder = ladder_of(goal_, estimate_too_coarse);
+  const bool below_closed_form = !estimate_too_coarse && static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
   for (std::size_t k = 0; k < ladder.count; ++k) {
+    if (k > 0 || below_closed_form) ++report_.solver_fallbacks;
     const Result<Plan> candidate = solve(ladder.solvers[k], configuration);
     status_of(ladder.solvers[k]) = candidate.status();
     if (candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration)) return true;
-    ++report_.solver_fallbacks;
   }
   return false;
 }

@@ -65,7 +65,7 @@ class Guidance {
   bool select_goal(GpsTime now, const Management& management);
   bool decision_is_due(GpsTime now, const gnc_configuration& configuration);
   void decide(const gnc_configuration& configuration);
-  bool stays_on_plan(const gnc_configuration& configuration);
+  bool stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse);
   bool climbs_ladder(const gnc_configuration& configuration, bool estimate_too_coarse);
   bool adopt_if_flyable(const control::Plan& candidate, const gnc_configuration& configuration);
   control::Plan refined(const control::Plan& candidate) const;

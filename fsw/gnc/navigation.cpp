@@ -8,9 +8,9 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// What point mass + J2 misses of the relative acceleration, per metre of separation: the next zonal and tesseral terms are 1e-3
-// of J2, whose own differential acceleration is 2e-4 m/s^2 over 50 km.
-constexpr double kUnmodelledGradient = 4e-12;  // 1/s^2, 1 sigma, constant over a coast
+// What point mass + J2 misses of the relative acceleration, per metre of separation: the gravity gradient of all other harmonics is
+// a tenth of an Eotvos at 700 km. (Flown in 60x60 gravity, ten-minute coasts err by 0.7 to 1 of this, from 75 km down to 7 m.)
+constexpr double kUnmodelledGradient = 1e-10;  // 1/s^2, 1 sigma, constant over a coast
 
 // A report or measurement may come so much after its time and still be used.
 constexpr Duration kLongestDelay = duration_of_seconds(600);
