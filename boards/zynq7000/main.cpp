@@ -44,6 +44,7 @@ class FlightBoard {
   void await_link();
   void deliver(const Sender& sender, std::span<const std::uint8_t> frame);
   void goodbye();
+  void print_counters() const;
   void rest() const;
 
   static void send(void* self, std::span<const std::uint8_t> frame);
@@ -164,8 +165,34 @@ void FlightBoard::deliver(const Sender& sender, std::span<const std::uint8_t> fr
 void FlightBoard::goodbye() {
   guard_.end_session();
   print("goodbye\n");
+  print_counters();
   semihosting_exit(static_cast<std::uint32_t>(ExitCode::kDone));
   // Still here: a bench board. It waits for the next hello.
+}
+
+// What the interfaces lost or refused since start-up. The step report tells what reached the flight executive.
+void FlightBoard::print_counters() const {
+  const UdpCounters& udp = endpoint_.counters();
+  const struct {
+    const char* name;
+    std::uint32_t value;
+  } counters[] = {
+      {"uart overruns", uart_.overruns()},
+      {"uart bytes dropped", uart_.bytes_dropped()},
+      {"uart writes stalled", uart_.writes_stalled()},
+      {"ethernet receive overruns", ethernet_.receive_overruns()},
+      {"ethernet frames broken", ethernet_.frames_broken()},
+      {"ethernet sends dropped", ethernet_.sends_dropped()},
+      {"datagrams", udp.datagrams},
+      {"packets malformed", udp.malformed},
+      {"packets for others", udp.not_for_us},
+  };
+  for (const auto& counter : counters) {
+    print(counter.name);
+    print(" ");
+    print_decimal(counter.value);
+    print("\n");
+  }
 }
 
 void FlightBoard::rest() const {

@@ -1,10 +1,9 @@
 /* From reset, a debugger's `go` or a boot loader to main(), and the exception vectors.
  *
- * Nothing is assumed of what ran before: caches and the MMU may be on (U-Boot leaves them so, with this image perhaps still
- * in dirty cache lines) or in their random state after reset. References: ARM Architecture Reference Manual ARMv7-A (DDI
- * 0406), Cortex-A9 TRM (DDI 0388), UG585 chapter 3. */
+ * Nothing is assumed of what ran before: caches and the MMU may be on (U-Boot leaves them so, with this image perhaps
+ * still in dirty cache lines) or in their random state after reset. References: ARM Architecture Reference Manual
+ * ARMv7-A (DDI 0406), Cortex-A9 TRM (DDI 0388), UG585 chapter 3. */
     .syntax unified
-    .arch_extension sec
     .cpu cortex-a9
     .fpu neon
     .arm
@@ -26,7 +25,7 @@
 
     .equ STACK_PAINT, 0xdeadbeef    /* kStackPaint of stack_meter.cpp */
 
-/* ------------------------------------------------------------------------------------------------------------ vectors */
+/* ------------------------------------------------------------------------------------- vectors */
     .section .vectors, "ax"
     .align 5
     .global vbar_vectors
@@ -41,7 +40,7 @@ vbar_vectors:
     ldr pc, =fast_interrupt_entry
     .ltorg
 
-/* ------------------------------------------------------------------------------------------------------------ start-up */
+/* ------------------------------------------------------------------------------------- start-up */
     .section .text.startup, "ax"
     .global vbar_start
     .type vbar_start, %function
@@ -95,7 +94,7 @@ caches_clean:
     cps #MODE_SYS                   /* flight code and interrupt handlers; IRQ mode's own stack is never used */
     ldr sp, =__stack_top
 
-    /* VFP and NEON for everybody. FPSCR = 0: round to nearest, subnormal numbers kept, NaNs propagated, as on the host. */
+    /* VFP and NEON for everybody. FPSCR = 0: round to nearest, subnormals kept, NaNs propagated, as on the host. */
     mrc p15, 0, r0, c1, c0, 2       /* CPACR */
     orr r0, r0, #(0xf << 20)
     bic r0, r0, #(3 << 30)
@@ -128,7 +127,7 @@ paint_stack:
     bl main
     b vbar_main_returned
 
-/* ----------------------------------------------------------------------------------------------------- cache maintenance
+/* ------------------------------------------------------------------------------------- cache maintenance
  * Level 1 data cache by set and way: 4 ways of 32-byte lines, as many sets as CCSIDR says. No stack, no memory. */
     .macro level1_by_set_and_way operation
     mov r0, #0
@@ -173,7 +172,7 @@ clean_level2_cache:
     bx lr
     .ltorg
 
-/* ---------------------------------------------------------------------------------------------------------- exceptions
+/* ------------------------------------------------------------------------------------- exceptions
  * vbar_fault(kind, return address, status register, {stack pointer, link register} of the interrupted code). */
     .macro fault name, kind
 \name:

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "fsw/control/arrival.h"
+#include "fsw/control/check_problem.h"
 #include "fsw/control/correction.h"
 #include "fsw/control/near_circular.h"
 #include "fsw/control/tangential.h"
@@ -259,12 +260,14 @@ Plan servicer_plan(const Model& model, const DeputyBurns& burns) {
 }  // namespace
 
 Result<Plan> solve_closed_form(const ControlProblem& problem, const ClosedFormSettings& settings) {
-  if (!math::is_finite(problem.pseudo_state.sum())) return Status::kNotFinite;
+  const Status valid = check_problem(problem);
+  if (valid != Status::kOk) return valid;
   const double window = seconds(problem.arrival - problem.start);
   if (window <= settings.final_coast) return Status::kInvalidArgument;
   const Model model{problem, settings, near_circular_orbit(problem.servicer_mean), window,
                     window - settings.final_coast};
 
+  if (problem.pseudo_state.isZero(0.0)) return servicer_plan(model, {});
   Result<Plan> best = Status::kSingular;
   double best_cost = 0.0;
   for (const InPlane method : {InPlane::kGrid, InPlane::kGridAndEdges}) {

@@ -22,7 +22,8 @@ struct ClosedFormSettings {
 };
 
 /// Burns (of the servicer, signs as in Plan) that meet the problem's pseudo-state to 1e-6 of it in the linear model
-/// with the exact effects of the burns. kInvalidArgument for an empty window; kNotFinite; kSingular when the window has
+/// with the exact effects of the burns. Errors of
+/// check_problem(); kInvalidArgument for an empty window; kSingular when the window has
 /// fewer than three burn times or only one parity of them (shorter than about an orbit): the next solver takes over;
 /// kDidNotConverge when the coupling does not settle.
 Result<Plan> solve_closed_form(const ControlProblem& problem, const ClosedFormSettings& settings = {});

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "fsw/control/impulse_effect.h"
-#include "fsw/math/math.h"
+#include "fsw/control/arrival.h"
+#include "fsw/control/check_problem.h"
 
 namespace vbar::fsw::control {
 namespace {
@@ -22,13 +22,12 @@ std::size_t make_grid(const ControlProblem& problem, const KoenigDamicoSettings&
   std::size_t count = 0;
   for (std::int64_t k = 0; k <= intervals; ++k) {
     // 30 days times 640 stays below 2^63 ns.
-    const Duration since_start{intervals > 0 ? horizon.ns * k / intervals : 0};
-    const GpsTime time = problem.start + since_start;
+    const GpsTime time = problem.start + Duration{intervals > 0 ? horizon.ns * k / intervals : 0};
     const ThrustWindows& windows = settings.windows;
     if (windows.allowed != nullptr && !windows.allowed(windows.context, time)) continue;
     workspace.times[count] = time;
     workspace.costs[count] = settings.cost;
-    workspace.effects[count] = impulse_effect(problem.servicer_mean, seconds(since_start), seconds(horizon));
+    workspace.effects[count] = arrival_effect(problem.servicer_mean, problem.start, time, problem.arrival);
     ++count;
   }
   return count;
@@ -39,8 +38,8 @@ std::size_t make_grid(const ControlProblem& problem, const KoenigDamicoSettings&
 Result<Plan> solve_koenig_damico(const ControlProblem& problem, const KoenigDamicoSettings& settings,
                                  KoenigDamicoWorkspace& workspace) {
   if (settings.grid_step.ns <= 0 || !(settings.negligible_change_m >= 0.0)) return Status::kInvalidArgument;
-  const Status valid = check_horizon(problem.servicer_mean, seconds(problem.arrival - problem.start));
-  if (valid != Status::kOk) return valid;
+  const Status checked = check_problem(problem);
+  if (checked != Status::kOk) return checked;
 
   Plan plan;
   plan.solver = Solver::kKoenigDamico;

@@ -99,7 +99,8 @@ Result<LegDecision> keep_or_correct(const LegSituation& situation, const Plan& p
   if (decision.plan.count == 0) return decision;
   const Result<Candidate> corrected = arriving(
       situation,
-      correct_plan(situation.orbits, situation.committed, decision.plan, situation.waypoint, policy.correction), policy);
+      correct_plan(situation.orbits, situation.committed, decision.plan, situation.waypoint, policy.correction),
+      policy);
   const double affordable = affordable_dv(situation, decision.plan, decision.error, policy);
   if (corrected.ok() && corrected.value().plan.total_dv() <= affordable) {
     decision.action = LegAction::kCorrect;

@@ -1,7 +1,7 @@
 #pragma once
 // The near-circular view of relative motion that the closed-form solver is made of: a tangential impulse changes da
 // and, by drift, dlambda, and turns de along one phase; a normal impulse changes di along one phase (Chernick and
-// D'Amico 2018; ALGORITHM: terms of order e are left to the caller, who evaluates the exact effects).
+// D'Amico 2018). Terms of order e are left to the caller, who evaluates the exact effects.
 
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"

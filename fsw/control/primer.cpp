@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kCoarseTimes = 12;
 constexpr std::size_t kMaxAdded = 10;  ///< impulses that join the active set at once
-constexpr double kMinPivot = 1e-13;    ///< of the equilibrated gramian: below, the times do not span the state space
+constexpr double kMinPivot = 1e-9;     ///< of the equilibrated gramian; windows under about 0.1 s fall below
 constexpr double kMinSpan = 1e-3;      ///< pivot of the active effects' gramian below which none is dropped
 constexpr double kDropMargin = 0.01;   ///< impulses whose contact is lower than 1 by this leave the active set
 constexpr double kGapShare = 1e-3;     ///< of the cost tolerance: relative gap of each active set's program
@@ -26,7 +26,7 @@ struct Scaling {
 };
 
 Status check(const ImpulseGrid& grid, const Vector6& target, const PrimerSettings& settings) {
-  const bool settings_valid = settings.cost_tolerance >= 1e-6 && settings.cost_tolerance <= 0.1 &&
+  const bool settings_valid = settings.cost_tolerance >= 1e-5 && settings.cost_tolerance <= 0.1 &&
                               settings.prune_ratio >= 0.0 && settings.prune_ratio < 1.0 && settings.max_rounds > 0 &&
                               settings.max_newton_steps > 0;
   if (!settings_valid || grid.effects.size() != grid.costs.size()) return Status::kInvalidArgument;

@@ -27,7 +27,7 @@ struct ImpulseGrid {
 };
 
 struct PrimerSettings {
-  double cost_tolerance = 1e-3;  ///< the cost exceeds the optimum of the grid by at most this part; 1e-6 to 0.1
+  double cost_tolerance = 1e-3;  ///< the cost exceeds the optimum of the grid by at most this part; 1e-5 to 0.1
   double prune_ratio = 1e-3;     ///< impulses below this part of the largest one go, if the others can make up for them
   int max_rounds = 30;           ///< exchanges of the active set
   int max_newton_steps = 60;     ///< for each active set; 12 is typical

@@ -19,10 +19,11 @@ Gnc::Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context)
     : inbox_(spacecraft), outbox_(spacecraft, sink, sink_context) {}
 
 Status Gnc::step(GpsTime now) {
-  if (stepped_ && now <= now_) {
+  const bool is_later = !stepped_ || now > now_;
+  if (!is_later || !is_usable(now)) {
     faults_ |= kFaultClock;
     inbox_.clear();
-    return Status::kBadSequence;
+    return is_later ? Status::kOutOfRange : Status::kBadSequence;
   }
   now_ = now;
   stepped_ = true;
@@ -54,6 +55,10 @@ void Gnc::assess() { guidance_.assess(now_, navigation_, management_); }
 
 void Gnc::control() {
   guidance_.update(now_, inbox_.step_period(), navigation_, management_);
+  for (std::size_t k = 0; k < guidance_.command_count(); ++k) {
+    const CommandedBurn& commanded = guidance_.command(k);
+    navigation_.expect_maneuver(commanded.maneuver_id, commanded.burn.time, commanded.burn.dv_rtn);
+  }
   if (guidance_.report().holds > 0) faults_ |= kFaultHold;
 }
 

@@ -19,7 +19,7 @@ enum Fault : std::int32_t {
   kFaultNavigationTimeout = 1 << 0,  ///< no measurement for longer than navigation_timeout_s
   kFaultHold = 1 << 1,               ///< no solver gave a plan that may be flown
   kFaultInboxFull = 1 << 2,          ///< a packet was dropped because its queue was full
-  kFaultClock = 1 << 3,              ///< a step was asked for at or before the last step's time
+  kFaultClock = 1 << 3,              ///< a step was asked for at or before the last step's time, or outside the clock's range
 };
 
 class Gnc {
@@ -31,7 +31,8 @@ class Gnc {
   /// Checks and files one packet for the coming step.
   Status receive(std::span<const std::uint8_t> packet) { return inbox_.receive(packet); }
 
-  /// Runs the step at `now`. kBadSequence, and nothing done, unless `now` is later than the last step.
+  /// Runs the step at `now`. Nothing is done but to forget the step's packets if `now` is not later than the last step
+  /// (kBadSequence) or outside the clock's range (kOutOfRange).
   Status step(GpsTime now);
 
  private:

@@ -25,12 +25,14 @@ Status Inbox::receive(std::span<const std::uint8_t> bytes) {
 
 Status Inbox::file(const PacketView& packet) {
   if (packet.header.spacecraft != spacecraft_) return Status::kInvalidArgument;
+  if (!is_usable(packet.header.time)) return Status::kOutOfRange;
   switch (packet.header.apid) {
     case Apid::kTick: {
       const Result<tick> message = packets::decode<tick>(packet);
       if (!message.ok()) return message.status();
-      if (message.value().period_ns <= 0) return Status::kOutOfRange;
-      step_period_ = {message.value().period_ns};
+      const Duration period{message.value().period_ns};
+      if (!is_usable(period)) return Status::kOutOfRange;
+      step_period_ = period;
       return Status::kOk;
     }
     case Apid::kIdealNavigation: return decode_and_file(packet, ideal_navigation_);

@@ -14,7 +14,6 @@ gnc_configuration default_configuration() {
   c.closed_form_period_ns = 300 * kNanosecondsPerSecond;
   c.koenig_damico_period_ns = 60 * kNanosecondsPerSecond;
   c.koenig_damico_grid_ns = 30 * kNanosecondsPerSecond;
-  c.least_squares_spacing_ns = 600 * kNanosecondsPerSecond;
   c.planner_start_ns = 0;
   c.minimum_dv = 1e-6;
   c.maximum_dv = 10.0;
@@ -29,8 +28,8 @@ gnc_configuration default_configuration() {
   return c;
 }
 
-bool non_negative(std::int64_t ns) { return ns >= 0; }
-bool positive(std::int64_t ns) { return ns > 0; }
+bool is_usable_span(std::int64_t ns) { return is_usable(Duration{ns}); }
+bool is_usable_span(double s) { return s > 0.0 && s <= seconds(kLongestSpan); }
 
 }  // namespace
 
@@ -62,6 +61,7 @@ bool Management::take(const waypoint_table& table) {
   const auto count = static_cast<std::size_t>(table.count);
   for (std::size_t k = 0; k < count; ++k) {
     const waypoint& w = table.waypoints[k];
+    if (!is_usable(GpsTime{w.gps_time_ns})) return false;
     if (w.control_mode < 0 || w.control_mode > 2) return false;
     if (k > 0 && w.gps_time_ns <= table.waypoints[k - 1].gps_time_ns) return false;
     for (const double a_roe : w.a_roe_m) {
@@ -82,12 +82,13 @@ bool Management::take(const waypoint_table& table) {
 }
 
 bool Management::take(const gnc_configuration& c) {
-  const bool usable = non_negative(c.compute_latency_ns) && positive(c.closed_form_period_ns) &&
-                      positive(c.koenig_damico_period_ns) && positive(c.koenig_damico_grid_ns) &&
-                      positive(c.least_squares_spacing_ns) && c.minimum_dv >= 0.0 && c.maximum_dv > c.minimum_dv &&
+  const bool usable = (c.compute_latency_ns == 0 || is_usable_span(c.compute_latency_ns)) &&
+                      is_usable_span(c.closed_form_period_ns) && is_usable_span(c.koenig_damico_period_ns) &&
+                      is_usable_span(c.koenig_damico_grid_ns) && c.minimum_dv >= 0.0 && c.maximum_dv > c.minimum_dv &&
                       c.roe_error_threshold_m >= 0.0 && c.keep_out_radius_m >= 0.0 && c.safety_horizon_s >= 0.0 &&
                       c.station_keeping_deadband_m > 0.0 && c.closed_form_tolerance_m > 0.0 &&
-                      c.koenig_damico_tolerance_m > 0.0 && c.station_keeping_horizon_s > 0.0 && c.navigation_timeout_s > 0.0;
+                      c.koenig_damico_tolerance_m > 0.0 && is_usable_span(c.station_keeping_horizon_s) &&
+                      c.navigation_timeout_s > 0.0;
   if (usable) configuration_ = c;
   return usable;
 }

@@ -8,72 +8,150 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// Relative acceleration that point mass + J2 misses between two spacecraft tens of kilometres apart: the next zonal and
-// tesseral terms are 1e-3 of J2, whose own differential acceleration over 50 km is about 2e-4 m/s^2.
-constexpr double kUnmodelledRelativeAcceleration = 2e-7;  // m/s^2, 1 sigma, constant over a coast
+// What point mass + J2 misses of the relative acceleration, per metre of separation: the next zonal and tesseral terms are 1e-3
+// of J2, whose own differential acceleration is 2e-4 m/s^2 over 50 km.
+constexpr double kUnmodelledGradient = 4e-12;  // 1/s^2, 1 sigma, constant over a coast
+
+// A report or measurement may come so much after its time and still be used.
+constexpr Duration kLongestDelay = duration_of_seconds(600);
 
 Vector3 vector(const double (&xyz)[3]) { return {xyz[0], xyz[1], xyz[2]}; }
+
+bool is_orbit(const orbit::CartesianState& state) { return orbit::qns_from_cartesian(state).ok(); }
 
 }  // namespace
 
 void Navigation::update(GpsTime now, Inbox& inbox) {
-  const auto& measurements = inbox.ideal_navigation_states();
-  const auto& maneuvers = inbox.executed_maneuvers();
+  take_maneuvers(now, inbox);
+  take_measurements(now, inbox);
+  if (!anchored_) return;
+  if (now - anchor_.epoch > kLongestDelay + kLongestDelay) move_anchor(now - kLongestDelay);
 
-  // Two lists in order of time become one; at the same instant a measurement speaks of the state before the impulse.
-  std::size_t m = 0;
-  std::size_t b = 0;
-  while (m < measurements.size() || b < maneuvers.size()) {
-    const bool measurement_first =
-        b == maneuvers.size() ||
-        (m < measurements.size() && measurements[m].tag.time <= maneuvers[b].tag.time);
-    const GpsTime time = measurement_first ? measurements[m].tag.time : maneuvers[b].tag.time;
-    const bool usable = time <= now && (!state_.valid || time >= state_.epoch);
-    if (!usable) {
-      inbox.count_unusable_time();
-    } else if (measurement_first) {
-      fold_in(time, measurements[m].value);
-    } else if (state_.valid) {
-      propagate_to(time);
-      if (state_.valid) apply_own_maneuver(maneuvers[b].value);
-    }
-    (measurement_first ? m : b) += 1;
-  }
-  if (state_.valid) propagate_to(now);
-}
-
-void Navigation::fold_in(GpsTime time, const ideal_navigation& measurement) {
-  state_.servicer = {vector(measurement.servicer_position_eci), vector(measurement.servicer_velocity_eci)};
-  state_.target = {vector(measurement.target_position_eci), vector(measurement.target_velocity_eci)};
-  state_.epoch = time;
-  state_.last_measurement = time;
-  state_.source = NavigationSource::kIdeal;
-  state_.sigma_rtn.setZero();
-  // A state no orbit model can hold is no state: wait for a better one.
-  state_.valid = orbit::qns_from_cartesian(state_.servicer).ok() && orbit::qns_from_cartesian(state_.target).ok();
-}
-
-void Navigation::propagate_to(GpsTime time) {
-  if (time <= state_.epoch) return;
-  const double dt = seconds(time - state_.epoch);
-  const Result<orbit::CartesianState> servicer = orbit::propagate_j2(state_.servicer, dt);
-  const Result<orbit::CartesianState> target = orbit::propagate_j2(state_.target, dt);
-  if (!servicer.ok() || !target.ok()) {
-    state_.valid = false;  // too long a gap, or not an orbit: start again from the next measurement
+  const Result<Pair> present = flown_to(now);
+  if (!present.ok()) {
+    anchored_ = false;  // too long a gap, or no orbit any more: start again from the next measurement
+    state_.valid = false;
     return;
   }
-  state_.servicer = servicer.value();
-  state_.target = target.value();
-  state_.epoch = time;
-  state_.source = NavigationSource::kPropagated;
-  const double age = seconds(time - state_.last_measurement);
-  state_.sigma_rtn.head<3>().setConstant(0.5 * kUnmodelledRelativeAcceleration * age * age);
-  state_.sigma_rtn.tail<3>().setConstant(kUnmodelledRelativeAcceleration * age);
+  state_.valid = true;
+  state_.epoch = now;
+  state_.servicer = present.value().servicer;
+  state_.target = present.value().target;
+  state_.source = state_.last_measurement == now ? NavigationSource::kIdeal : NavigationSource::kPropagated;
+  const double age = seconds(now - state_.last_measurement);
+  const double separation = (state_.target.position_eci - state_.servicer.position_eci).norm();
+  const double unmodelled_acceleration = kUnmodelledGradient * separation;
+  state_.sigma_rtn.head<3>().setConstant(0.5 * unmodelled_acceleration * age * age);
+  state_.sigma_rtn.tail<3>().setConstant(unmodelled_acceleration * age);
 }
 
-void Navigation::apply_own_maneuver(const executed_maneuver& maneuver) {
-  if (maneuver.accepted == 0) return;
-  state_.servicer = orbit::apply_impulse_rtn(state_.servicer, vector(maneuver.dv_rtn));
+/// Ideal navigation knows everything, so the latest measurement is all that counts: it becomes the anchor.
+void Navigation::take_measurements(GpsTime now, Inbox& inbox) {
+  const auto& measurements = inbox.ideal_navigation_states();
+  for (std::size_t k = 0; k < measurements.size(); ++k) {
+    const GpsTime time = measurements[k].tag.time;
+    if (time > now || (anchored_ && time < anchor_.epoch)) {
+      inbox.count_unusable_time();
+      continue;
+    }
+    const ideal_navigation& measurement = measurements[k].value;
+    const Pair measured{time,
+                        {vector(measurement.servicer_position_eci), vector(measurement.servicer_velocity_eci)},
+                        {vector(measurement.target_position_eci), vector(measurement.target_velocity_eci)}};
+    // A state no orbit model can hold is no state: wait for a better one.
+    if (!is_orbit(measured.servicer) || !is_orbit(measured.target)) {
+      inbox.count_bad_content();
+      continue;
+    }
+    anchor_ = measured;
+    anchored_ = true;
+    state_.last_measurement = time;
+    forget_before(time);
+  }
+}
+
+void Navigation::take_maneuvers(GpsTime now, Inbox& inbox) {
+  const auto& reports = inbox.executed_maneuvers();
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    const GpsTime time = reports[k].tag.time;
+    const executed_maneuver& report = reports[k].value;
+    if (time > now) {
+      inbox.count_unusable_time();
+      continue;
+    }
+    forget(report.maneuver_id);
+    if (report.accepted == 0) continue;
+    if (!anchored_ || time >= anchor_.epoch) {
+      remember({report.maneuver_id, time, vector(report.dv_rtn)});
+    } else if (time >= state_.last_measurement) {
+      inbox.count_unusable_time();  // before the anchor has moved on without a measurement: that cannot be undone
+    }
+  }
+}
+
+void Navigation::expect_maneuver(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn) {
+  remember({maneuver_id, time, dv_rtn});
+}
+
+/// Without measurements the anchor follows at a distance, so that a step's work stays bounded.
+void Navigation::move_anchor(GpsTime time) {
+  const Result<Pair> moved = flown_to(time);
+  anchored_ = moved.ok();
+  if (!anchored_) return;
+  anchor_ = moved.value();
+  forget_before(time);
+}
+
+/// The anchor's states coasted to `time` through the own maneuvers before it.
+Result<Navigation::Pair> Navigation::flown_to(GpsTime time) const {
+  orbit::CartesianState servicer = anchor_.servicer;
+  GpsTime reached = anchor_.epoch;
+  const auto coast_to = [&](GpsTime next) {
+    const Result<orbit::CartesianState> coasted = orbit::propagate_j2(servicer, seconds(next - reached));
+    if (coasted.ok()) servicer = coasted.value();
+    reached = next;
+    return coasted.status();
+  };
+  for (std::size_t k = 0; k < maneuver_count_ && maneuvers_[k].time < time; ++k) {
+    if (const Status status = coast_to(maneuvers_[k].time); status != Status::kOk) return status;
+    servicer = orbit::apply_impulse_rtn(servicer, maneuvers_[k].dv_rtn);
+  }
+  if (const Status status = coast_to(time); status != Status::kOk) return status;
+  const Result<orbit::CartesianState> target = orbit::propagate_j2(anchor_.target, seconds(time - anchor_.epoch));
+  if (!target.ok()) return target.status();
+  if (!is_orbit(servicer) || !is_orbit(target.value())) return Status::kOutOfRange;
+  return Pair{time, servicer, target.value()};
+}
+
+/// In order of time, those of one instant in order of their number. If there is no room the anchor moves past the oldest:
+/// nothing is lost but the chance to use what comes later than that.
+void Navigation::remember(const OwnManeuver& maneuver) {
+  if (maneuver_count_ == kMaxManeuvers) {
+    if (anchored_) move_anchor(maneuvers_[0].time + Duration{1});
+    if (maneuver_count_ == kMaxManeuvers) forget(maneuvers_[0].id);
+  }
+  std::size_t place = maneuver_count_++;
+  const auto comes_before = [&](const OwnManeuver& other) {
+    return maneuver.time < other.time || (maneuver.time == other.time && maneuver.id < other.id);
+  };
+  for (; place > 0 && comes_before(maneuvers_[place - 1]); --place) maneuvers_[place] = maneuvers_[place - 1];
+  maneuvers_[place] = maneuver;
+}
+
+void Navigation::forget(std::int32_t maneuver_id) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < maneuver_count_; ++k) {
+    if (maneuvers_[k].id != maneuver_id) maneuvers_[kept++] = maneuvers_[k];
+  }
+  maneuver_count_ = kept;
+}
+
+void Navigation::forget_before(GpsTime time) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < maneuver_count_; ++k) {
+    if (maneuvers_[k].time >= time) maneuvers_[kept++] = maneuvers_[k];
+  }
+  maneuver_count_ = kept;
 }
 
 Vector6 Navigation::sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const {

@@ -1,6 +1,12 @@
 #pragma once
 // navigate: the state of servicer and target at the step's time, from measurements folded in at their own times and own
 // maneuvers. Ideal navigation (true states in a packet) is the first source; between measurements the state coasts under J2.
+//
+// What arrives late is not lost: the state is built anew at each step from an anchor, the last measurement, and the own
+// maneuvers since. A commanded maneuver counts as flown as commanded until the actuator says otherwise, so that neither a late
+// nor a lost report makes guidance fly it twice.
+
+#include <array>
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
@@ -25,8 +31,11 @@ struct NavigationState {
 
 class Navigation {
  public:
-  /// Brings the state to `now`. Entries tagged after `now` or not after the last measurement are counted as unusable.
+  /// Brings the state to `now`. Entries tagged after `now` or before the anchor are counted as unusable.
   void update(GpsTime now, Inbox& inbox);
+
+  /// A maneuver was commanded: `dv_rtn` (m/s) at `time`, which lies after the last update.
+  void expect_maneuver(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn);
 
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
@@ -34,11 +43,33 @@ class Navigation {
   [[nodiscard]] Vector6 sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const;
 
  private:
-  void fold_in(GpsTime time, const ideal_navigation& measurement);
-  void propagate_to(GpsTime time);
-  void apply_own_maneuver(const executed_maneuver& maneuver);
+  /// Both spacecraft at one instant, before any impulse of that instant.
+  struct Pair {
+    GpsTime epoch;
+    orbit::CartesianState servicer;
+    orbit::CartesianState target;
+  };
+  struct OwnManeuver {
+    std::int32_t id = 0;
+    GpsTime time;
+    Vector3 dv_rtn = Vector3::Zero();
+  };
+
+  void take_measurements(GpsTime now, Inbox& inbox);
+  void take_maneuvers(GpsTime now, Inbox& inbox);
+  void move_anchor(GpsTime time);
+  [[nodiscard]] Result<Pair> flown_to(GpsTime time) const;
+  void remember(const OwnManeuver& maneuver);
+  void forget(std::int32_t maneuver_id);
+  void forget_before(GpsTime time);
+
+  static constexpr std::size_t kMaxManeuvers = 64;  // of those twice what guidance may have commanded ahead
 
   NavigationState state_;
+  bool anchored_ = false;
+  Pair anchor_;
+  std::array<OwnManeuver, kMaxManeuvers> maneuvers_{};  ///< in order of time, none before the anchor
+  std::size_t maneuver_count_ = 0;
 };
 
 }  // namespace vbar::fsw::gnc

@@ -8,6 +8,10 @@
 
 namespace vbar::app {
 
+/// In a run folder: the mission file and the overrides it was flown with, one a line.
+inline constexpr const char* kMissionCopy = "mission.toml";
+inline constexpr const char* kOverridesCopy = "overrides.txt";
+
 struct RunOptions {
   std::filesystem::path mission;
   std::filesystem::path out;           ///< empty: runs/<mission>-<seed>

@@ -196,6 +196,7 @@ void Simulation::handle(const StepFlight&) {
   const pil::StepResult answer = surroundings_.flight_computer.step(step_, inputs);
   const double exchange_s = wall_seconds() - before;
   clock_.end_exchange(wall_span(exchange_s), wall_span(answer.compute_wall_s));
+  if (answer.report.present) cost_unit_ = answer.report.unit;
   flight_compute_s_ += answer.compute_wall_s;
   link_s_ += exchange_s - answer.compute_wall_s;
 

@@ -56,6 +56,9 @@ class Simulation {
   /// throw; the record then holds what was flown.
   bool run();
 
+  /// Unit of EstimateRow::step_cost: "none", "instructions" or "cycles".
+  [[nodiscard]] const std::string& cost_unit() const { return cost_unit_; }
+
  private:
   struct TakeMeasurement {};
   struct DeliverPacket {
@@ -105,6 +108,7 @@ class Simulation {
   std::vector<pil::Packet> arrived_;  ///< for the next step
   std::uint32_t step_ = 0;
   std::uint16_t tick_sequence_ = 0;
+  std::string cost_unit_ = "none";
   double flight_compute_s_ = 0.0;
   double link_s_ = 0.0;
 };

@@ -111,7 +111,6 @@ struct Guidance {
   fsw::Duration closed_form_period;
   fsw::Duration koenig_damico_period;
   fsw::Duration koenig_damico_grid;
-  fsw::Duration least_squares_spacing;
   fsw::GpsTime planner_start;
   double minimum_dv = 0.0;
   double maximum_dv = 0.0;

@@ -20,7 +20,7 @@ fsw::Duration longest_compute_latency(const Mission& mission) {
 void read_guidance(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("guidance");
   section.accept_only({"mode", "reference_semi_major_axis_km", "compute_latency_s", "closed_form_period_s",
-                       "koenig_damico_period_s", "koenig_damico_grid_s", "least_squares_spacing_s", "planner_delay_s",
+                       "koenig_damico_period_s", "koenig_damico_grid_s", "planner_delay_s",
                        "minimum_dv_mmps", "maximum_dv_mps", "roe_error_threshold_m", "keep_out_radius_m",
                        "safety_horizon_s", "station_keeping_deadband_m", "closed_form_tolerance_m",
                        "koenig_damico_tolerance_m", "station_keeping_horizon_s", "navigation_timeout_s"});
@@ -41,7 +41,6 @@ void read_guidance(const TableReader& document, Mission& mission) {
   guidance.closed_form_period = section.span("closed_form_period_s", 1.0, kPeriod_s, 300.0);
   guidance.koenig_damico_period = section.span("koenig_damico_period_s", 1.0, kPeriod_s, 60.0);
   guidance.koenig_damico_grid = section.span("koenig_damico_grid_s", 1.0, kPeriod_s, 30.0);
-  guidance.least_squares_spacing = section.span("least_squares_spacing_s", 1.0, kPeriod_s, 600.0);
   guidance.planner_start = mission.start_time() + section.span("planner_delay_s", 1.0, from_to(0.0, 1e6), 0.0);
 
   guidance.minimum_dv = 1e-3 * section.number("minimum_dv_mmps", from_to(0.0, 1e3), 1e-3);

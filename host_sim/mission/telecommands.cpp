@@ -24,7 +24,6 @@ vbar::gnc_configuration gnc_configuration_of(const Mission& mission) {
   configuration.closed_form_period_ns = guidance.closed_form_period.ns;
   configuration.koenig_damico_period_ns = guidance.koenig_damico_period.ns;
   configuration.koenig_damico_grid_ns = guidance.koenig_damico_grid.ns;
-  configuration.least_squares_spacing_ns = guidance.least_squares_spacing.ns;
   configuration.planner_start_ns = guidance.planner_start.ns;
   configuration.minimum_dv = guidance.minimum_dv;
   configuration.maximum_dv = guidance.maximum_dv;

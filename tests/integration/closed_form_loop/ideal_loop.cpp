@@ -1,29 +1,29 @@
 #include "tests/integration/closed_form_loop/ideal_loop.h"
 
-#include <cmath>
 #include <memory>
 #include <random>
 #include <stdexcept>
 #include <string>
 
 #include "fsw/control/koenig_damico.h"
+#include "fsw/control/leg.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/orbit/secular.h"
 #include "host_sim/truth/time_scales.h"
 #include "host_sim/truth/truth_model.h"
+#include "tests/unit/fsw/orbit/mission.h"
 
 namespace vbar::testing {
 namespace {
 
 using namespace fsw;
+namespace mission = orbit::mission;
 using control::LegAction;
 using control::Plan;
 using orbit::QnsElements;
 
-constexpr double kReferenceSemiMajorAxis = 7078138.944;  // m, mean, of the servicer at the start
-constexpr double kDegree = M_PI / 180.0;
 constexpr std::size_t kServicer = 0;
 constexpr std::size_t kTarget = 1;
 
@@ -41,11 +41,6 @@ orbit::CartesianState state_of_mean(const QnsElements& mean) {
   return must(orbit::cartesian_from_qns(must(orbit::osculating_from_mean(mean), "osculating elements")), "state");
 }
 
-// The paper's servicer table, osculating.
-QnsElements table_elements() {
-  return {7087300.0, 0.0015, -4.17e-8, 98.18 * kDegree, -90.0 * kDegree, -0.69 * kDegree};
-}
-
 class Loop {
  public:
   explicit Loop(const LoopSettings& settings) : settings_(settings), noise_(settings.seed) {
@@ -58,19 +53,19 @@ class Loop {
     truth_ = std::make_unique<truth::TruthModel>(truth_settings);
     start_ = truth_settings.epoch;
 
-    const TableWaypoint& origin = mission_waypoints()[settings.first];
+    const mission::Waypoint& origin = mission::kWaypoints[settings.first];
     const QnsElements servicer =
-        orbit::propagate_secular(must(orbit::mean_from_osculating(table_elements()), "mean elements"),
+        orbit::propagate_secular(must(orbit::mean_from_osculating(mission::kServicerOsculating), "mean elements"),
                                  origin.time_h * 3600.0 + settings.start_delay_s);
-    const Vector6 roe = (origin.a_roe_m + settings.start_error_m) / kReferenceSemiMajorAxis;
+    const Vector6 roe = origin.roe() + settings.start_error_m / mission::kReferenceA;
     truth_->add_spacecraft("servicer", state_of_mean(servicer));
     truth_->add_spacecraft("target", state_of_mean(orbit::qns_from_roe(servicer, roe)));
   }
 
   LegResult fly_leg(std::size_t index) {
-    const TableWaypoint& waypoint = mission_waypoints()[index];
-    goal_ = {start_ + nearest_duration((waypoint.time_h - mission_waypoints()[settings_.first].time_h) * 3600.0),
-             waypoint.a_roe_m / kReferenceSemiMajorAxis};
+    const mission::Waypoint& waypoint = mission::kWaypoints[index];
+    goal_ = {start_ + nearest_duration((waypoint.time_h - mission::kWaypoints[settings_.first].time_h) * 3600.0),
+             waypoint.roe()};
     result_ = {};
     result_.waypoint = index;
     plan_ = {};
@@ -102,7 +97,7 @@ class Loop {
     now.committed = committed_;
     now.earliest_burn = truth_->time() + nearest_duration(settings_.latency_s);
     now.waypoint = goal_;
-    now.sigma_roe = settings_.navigation_sigma_m / kReferenceSemiMajorAxis;
+    now.sigma_roe = settings_.navigation_sigma_m / mission::kReferenceA;
     Vector6 roe = orbit::roe_from_qns(now.orbits.servicer, now.orbits.target);
     std::normal_distribution<double> standard;
     for (int k = 0; k < 6; ++k) roe[k] += now.sigma_roe[k] * standard(noise_);
@@ -110,31 +105,19 @@ class Loop {
     return now;
   }
 
+  // The closed form plans far legs, the fuel-optimal solver close ones and what the closed form leaves of far ones.
   void decide(bool close) {
     const control::LegSituation now = situation();
     if (now.earliest_burn >= goal_.time) return;
-    const control::LegDecision decision = must(control::decide_leg(now, plan_, policy_), "decision");
-    switch (decision.action) {
-      case LegAction::kKeep:
-        plan_ = decision.plan;
-        return;
-      case LegAction::kCorrect:
-        ++result_.corrections;
-        plan_ = decision.plan;
-        return;
-      case LegAction::kReplan:
-        if (!close) {
-          ++result_.replans;
-          plan_ = decision.plan;
-          return;
-        }
-        break;
-      case LegAction::kHandOver:
-        break;
-    }
+    const control::LegDecision decision = must(
+        close ? control::keep_or_correct(now, plan_, policy_) : control::decide_leg(now, plan_, policy_), "decision");
+    plan_ = decision.plan;
+    if (decision.action == LegAction::kCorrect) ++result_.corrections;
+    if (decision.action == LegAction::kReplan) ++result_.replans;
+    if (decision.action != LegAction::kHandOver) return;
     ++result_.hand_overs;
     const Result<Plan> plan = fuel_optimal(now);
-    plan_ = plan.ok() ? plan.value() : decision.plan;
+    if (plan.ok()) plan_ = plan.value();
   }
 
   Result<Plan> fuel_optimal(const control::LegSituation& now) {
@@ -187,23 +170,7 @@ class Loop {
   LegResult result_{};
 };
 
-Vector6 roe_m(double da, double dlambda, double dex, double dey, double dix, double diy) {
-  return (Vector6() << da, dlambda, dex, dey, dix, diy).finished();
-}
-
 }  // namespace
-
-const std::vector<TableWaypoint>& mission_waypoints() {
-  static const std::vector<TableWaypoint> waypoints = {
-      {0.0, roe_m(-2000, -75000, 0, 0, 0, 0)},    {6.0, roe_m(-87, -50000, 0, 1000, 0, 1000)},
-      {12.0, roe_m(-70, -25000, 0, 500, 0, 500)}, {18.0, roe_m(-17, -5000, 0, 500, 0, 500)},
-      {24.0, roe_m(0, -1000, 0, 30, 0, 30)},      {28.0, roe_m(0, -600, 0, 18, 0, 18)},
-      {32.0, roe_m(0, -200, 0, 6, 0, 6)},         {36.0, roe_m(0, -100, 0, 3, 0, 3)},
-      {39.0, roe_m(-0.5, -10, 0, 2, 0, 1)},       {40.0, roe_m(0, -7, 1, 0, 2, 0)},
-      {41.25, roe_m(0, -8.5, 1, 0, 1, 0)},
-  };
-  return waypoints;
-}
 
 std::vector<LegResult> fly_mission(const LoopSettings& settings) {
   Loop loop(settings);

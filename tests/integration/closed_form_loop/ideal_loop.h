@@ -4,18 +4,9 @@
 
 #include <vector>
 
-#include "fsw/control/leg.h"
+#include "fsw/core/types.h"
 
 namespace vbar::testing {
-
-/// Waypoint of the mission's table: hours after the start, mean ROE in metres (target with respect to servicer).
-struct TableWaypoint {
-  double time_h;
-  fsw::Vector6 a_roe_m;
-};
-
-/// Waypoints 0 to 10 of the paper's "End-to-end Mission ROE Waypoints".
-const std::vector<TableWaypoint>& mission_waypoints();
 
 /// What one decision period and burn command cost in time, and how well legs must arrive.
 struct LoopSettings {
@@ -29,8 +20,8 @@ struct LoopSettings {
   double latency_s = 10.0;
   double tick_s = 60.0;
   int ticks_a_closed_form_decision = 5;  ///< 300 s, as in the paper
-  double far_tolerance_m = 1.0;          ///< waypoints 1 to 3
-  double middle_tolerance_m = 0.2;       ///< waypoints 4 to 7
+  double far_tolerance_m = 0.5;          ///< waypoints 1 to 3
+  double middle_tolerance_m = 0.1;       ///< waypoints 4 to 7
   double close_tolerance_m = 0.002;      ///< waypoints 8 to 10
 };
 

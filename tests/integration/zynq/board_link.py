@@ -1,5 +1,5 @@
-"""The host's end of the board link, written from fsw/link/frame.h and fsw/packets/packet.h alone: it shares no code with
-the flight side, so that a misreading on one side shows on the other."""
+"""The host's end of the board link, written from fsw/link/frame.h and fsw/packets/packet.h alone: it shares no code
+with the flight side, so that a misreading on one side shows on the other."""
 
 import select
 import socket
@@ -210,7 +210,8 @@ def tick(step, time_ns, period_ns, spacecraft=1):
 
 
 def ideal_navigation(step, time_ns, states, spacecraft=1):
-    return telecommand(APID_IDEAL_NAVIGATION, step, time_ns, spacecraft, IDEAL_NAVIGATION + struct.pack(">12d", *states))
+    payload = IDEAL_NAVIGATION + struct.pack(">12d", *states)
+    return telecommand(APID_IDEAL_NAVIGATION, step, time_ns, spacecraft, payload)
 
 
 class StepReport:

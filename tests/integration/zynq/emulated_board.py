@@ -22,10 +22,11 @@ def die_with_parent():
 class EmulatedBoard:
     """Context manager: the emulator runs inside the `with`."""
 
-    def __init__(self, image, semihosting=True, arguments=()):
+    def __init__(self, image, semihosting=True, arguments=(), raw_ethernet=False):
         self.image = image
         self.semihosting = semihosting
         self.arguments = arguments
+        self.raw_ethernet = raw_ethernet
 
     def __enter__(self):
         self.folder = tempfile.TemporaryDirectory(prefix="vbar-zynq-")
@@ -36,6 +37,13 @@ class EmulatedBoard:
         listener.listen(1)
         listener.settimeout(30)
         self.udp_port = free_udp_port()
+        # Not restrict=on: it holds back the answers to forwarded datagrams.
+        network = f"user,hostfwd=udp:127.0.0.1:{self.udp_port}-10.0.2.15:5000"
+        if self.raw_ethernet:  # each Ethernet frame as a datagram to and from self.frames
+            self.frames = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            self.frames.bind(("127.0.0.1", 0))
+            self.frames.settimeout(5)
+            network = f"socket,udp=127.0.0.1:{self.frames.getsockname()[1]},localaddr=127.0.0.1:{self.udp_port}"
         semihosting = "enable=on,target=native" if self.semihosting else "enable=off"
         for argument in self.arguments:
             semihosting += ",arg=" + argument
@@ -44,8 +52,7 @@ class EmulatedBoard:
             "-accel", "tcg,tb-size=64", "-icount", "shift=5,sleep=off,align=off", "-semihosting-config", semihosting,
             "-chardev", f"socket,id=link,path={serial_path},server=off", "-serial", "chardev:link",
             "-chardev", f"file,id=console,path={self.console_path}", "-serial", "chardev:console",
-            # Not restrict=on: it holds back the answers to forwarded datagrams.
-            "-nic", f"user,model=cadence_gem,hostfwd=udp:127.0.0.1:{self.udp_port}-10.0.2.15:5000",
+            "-nic", network + ",model=cadence_gem",
             "-kernel", self.image]
         try:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
@@ -62,8 +69,9 @@ class EmulatedBoard:
         if hasattr(self, "process"):
             self.process.kill()
             self.process.communicate()
-        if hasattr(self, "serial"):
-            self.serial.close()
+        for name in ("serial", "frames"):
+            if hasattr(self, name):
+                getattr(self, name).close()
         self.folder.cleanup()
 
     def console(self):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """zynq_smoke.py IMAGE_FOLDER HOST_LIBRARY [TEST...]: the Zynq images on the emulator, spoken to from outside.
 
-IMAGE_FOLDER holds vbar_zynq7000_example.elf and vbar_zynq7000_selftest.elf; HOST_LIBRARY is the example article as a
+IMAGE_FOLDER holds the images of the preset zynq; HOST_LIBRARY is the example article as a
 shared library of this computer, which must answer with the same bits. Exit status 77 when any of these, or QEMU, is
 missing: then there is nothing to test."""
 
@@ -9,13 +9,17 @@ import ctypes
 import math
 import os
 import shutil
+import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
 from board_link import (ACK, APID_MANEUVER_COMMAND, APID_TELEMETRY_NAVIGATION, HELLO, POLL, Datagrams,
                         Packet, SerialLine, Session, StepReport, frame, ideal_navigation, tick)
 from emulated_board import EmulatedBoard
+from neighbour import (ADDRESS, ARP_REPLY, BOARD_ADDRESS, BOARD_MAC, ECHO_REPLY, ECHO_REQUEST, ICMP, MAC, UDP,
+                       Neighbour, echo, internet_checksum, ipv4)
 
 START_NS = 1_400_000_000_000_000_000
 PERIOD_NS = 10_000_000_000
@@ -157,7 +161,8 @@ class ZynqSmoke(unittest.TestCase):
                 flipped[20 + step] ^= 1 << (step % 8)
                 session.line.send(bytes(flipped))
                 session.line.send(good[:30] + good[31:])
-                session.line.send_raw(b"\x05\x01\x00" + bytes(range(1, 200)) * 20 + b"\x00")  # not COBS; longer than a frame
+                session.line.send_raw(b"\x05\x01\x00")  # not COBS
+                session.line.send_raw(bytes(range(1, 200)) * 20 + b"\x00")  # longer than a frame
                 answer = session.step(step, inputs(step))
                 self.assertEqual(answer[:-1], self.expected(step + 1)[step])
             report = StepReport(Packet(answer[-1]))
@@ -184,8 +189,56 @@ class ZynqSmoke(unittest.TestCase):
             report = StepReport(Packet(session.step(11, inputs(11))[-1]))
             self.assertEqual(report.rejected, 60)  # three frames of each of two strangers in ten steps
 
+    def test_flood(self):
+        """More frames than a buffer holds: what does not fit is lost, the board is not, and neither is the session."""
+        with self.example() as board:
+            session = Session(SerialLine(board.serial), 19)
+            session.hello()
+            stranger = self.datagrams(board)
+            junk = bytes(range(256)) * 5
+            for step in range(5):
+                for _ in range(300):
+                    stranger.send(junk)
+                self.assertEqual(session.step(step, inputs(step))[:-1], self.expected(step + 1)[step])
+            report = StepReport(Packet(session.step(5, inputs(5))[-1]))
+            self.assertGreater(report.rejected, 0)
+            session.goodbye()
+            self.assertEqual(board.wait(), 0, board.console())
+
+    def test_raw_frames(self):
+        """The network as a neighbour on the wire sees it: ARP, ping at every size, and frames that are none."""
+        with self.example(raw_ethernet=True) as board:
+            neighbour = Neighbour(board)
+            self.assertEqual(neighbour.resolve()[:42], ARP_REPLY)
+            for size in (0, 1, 18, 55, 56, 999, 1471, 1472):
+                body = bytes(i % 251 for i in range(size))
+                request = echo(ECHO_REQUEST, body)
+                for hostile in (ipv4(ICMP, request)[:33], ipv4(ICMP, request, fragment=0x2000), ipv4(UDP, bytes(7)),
+                                ipv4(ICMP, request[:-1] + b"x"), b"\xff" * 60, BOARD_MAC):
+                    neighbour.send(hostile)
+                neighbour.send(ipv4(ICMP, request))
+                answer = neighbour.receive()
+                self.assertEqual(answer[:14], MAC + BOARD_MAC + b"\x08\0")
+                self.assertEqual(answer[26:34], BOARD_ADDRESS + ADDRESS)
+                self.assertEqual(internet_checksum(answer[14:34]), 0)
+                self.assertEqual(answer[34:42 + size], echo(ECHO_REPLY, body))
+
+    def test_flight_image(self):
+        """vbar's own flight software starts, answers ticks with telemetry, and stops when told."""
+        image = os.path.join(self.image_folder, "vbar_zynq7000.elf")
+        with EmulatedBoard(image) as board:
+            session = Session(SerialLine(board.serial), 20)
+            self.assertIn("zynq7000", session.hello())
+            for step in range(3):
+                now = START_NS + step * PERIOD_NS
+                packets = [Packet(data) for data in session.step(step, [tick(step, now, PERIOD_NS)])]
+                self.assertEqual({p.apid & 0x700 for p in packets[:-1]}, {0x500})
+                self.assertEqual(StepReport(packets[-1]).step, step)
+            session.goodbye()
+            self.assertEqual(board.wait(), 0, board.console())
+
     def test_next_session(self):
-        """Without an emulator that takes the exit, as on silicon: after a goodbye the board serves whoever says hello."""
+        """Where nobody takes the exit, as on silicon: after a goodbye the board serves whoever says hello."""
         with self.example(semihosting=False) as board:
             session = Session(SerialLine(board.serial), 17)
             session.hello()
@@ -196,6 +249,21 @@ class ZynqSmoke(unittest.TestCase):
             self.check_flight(*fly(session, 5))
             self.assertIsNone(board.wait(0.2), "the board stopped")
 
+    def test_image_check(self):
+        """The check after each link passes the flight image, and bites on one in which something asks for memory."""
+        check = os.path.join(os.path.dirname(__file__), "../../../boards/zynq7000/check_image.cmake")
+        with tempfile.TemporaryDirectory() as folder:
+            def result(image):
+                copy = shutil.copy(os.path.join(self.image_folder, image), folder)  # the check removes what it condemns
+                command = ["cmake", "-DNM=arm-none-eabi-nm", "-DIMAGE=" + copy, "-P", check]
+                done = subprocess.run(command, capture_output=True, text=True, check=False)
+                return done.returncode, done.stderr, os.path.exists(copy)
+            self.assertEqual(result("vbar_zynq7000.elf"), (0, "", True))
+            code, message, remains = result("vbar_zynq7000_selftest.elf")
+            self.assertNotEqual(code, 0)
+            self.assertIn("_Znaj", message)  # operator new[], which the self-test calls to see it trapped
+            self.assertFalse(remains)
+
     def test_processor(self):
         """The self-test on the emulated processor, then each fault: caught, named, and an exit code of its own."""
         image = os.path.join(self.image_folder, "vbar_zynq7000_selftest.elf")
@@ -203,15 +271,16 @@ class ZynqSmoke(unittest.TestCase):
                  "jump": (102, "FAULT prefetch abort pc=03f00000"), "null": (103, "dfar=00000000"),
                  "code": (103, "dfar=00100000"), "stack": (103, "sp=03eff")}
         for name, (code, text) in cases.items():
-            with self.subTest(name), EmulatedBoard(image, arguments=["selftest", name] if name else ["selftest"]) as board:
+            arguments = ["selftest", name] if name else ["selftest"]
+            with self.subTest(name), EmulatedBoard(image, arguments=arguments) as board:
                 self.assertEqual(board.wait(), code, board.console())
                 self.assertIn(text, board.console())
 
 
 def main():
     ZynqSmoke.image_folder, ZynqSmoke.host_library = sys.argv[1:3]
-    needed = [os.path.join(sys.argv[1], "vbar_zynq7000_example.elf"),
-              os.path.join(sys.argv[1], "vbar_zynq7000_selftest.elf"), sys.argv[2]]
+    images = ("vbar_zynq7000.elf", "vbar_zynq7000_example.elf", "vbar_zynq7000_selftest.elf")
+    needed = [os.path.join(sys.argv[1], image) for image in images] + [sys.argv[2]]
     missing = [path for path in needed if not os.path.exists(path)]
     if missing or shutil.which("qemu-system-arm") is None:
         print("skipped, missing:", " ".join(missing) or "qemu-system-arm")

@@ -19,8 +19,13 @@ using namespace vbar::test;
 
 class UdpEndpointTest : public testing::Test {
  protected:
-  UdpReceived receive(const Frame& frame) { return endpoint_.receive(frame, reply_); }
+  // What is received points into the frame, so the frame is kept.
+  UdpReceived receive(const Frame& frame) {
+    frame_ = frame;
+    return endpoint_.receive(frame_, reply_);
+  }
 
+  Frame frame_;
   UdpEndpoint endpoint_{kBoardMac, kBoardAddress, kBoardPort};
   std::array<std::uint8_t, kMostFrameBytes> reply_{};
 };

@@ -94,7 +94,6 @@ TEST(IdealNavigationMission, CommentsTellTheDefaults) {
   EXPECT_EQ(a.closed_form_period, b.closed_form_period);
   EXPECT_EQ(a.koenig_damico_period, b.koenig_damico_period);
   EXPECT_EQ(a.koenig_damico_grid, b.koenig_damico_grid);
-  EXPECT_EQ(a.least_squares_spacing, b.least_squares_spacing);
   EXPECT_EQ(a.planner_start, b.planner_start);
   EXPECT_EQ(a.minimum_dv, b.minimum_dv);
   EXPECT_EQ(a.maximum_dv, b.maximum_dv);

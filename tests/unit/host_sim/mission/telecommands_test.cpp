@@ -26,7 +26,7 @@ TEST(Telecommands, ConfigurationIsInTheUnitsOfThePacketContract) {
   const Mission mission = small_mission(
       {"mission.start_h=1", "guidance.planner_delay_s=1200", "guidance.minimum_dv_mmps=0.25",
        "guidance.maximum_dv_mps=3", "guidance.compute_latency_s=1.5", "guidance.closed_form_period_s=301",
-       "guidance.koenig_damico_period_s=61", "guidance.koenig_damico_grid_s=31", "guidance.least_squares_spacing_s=601",
+       "guidance.koenig_damico_period_s=61", "guidance.koenig_damico_grid_s=31",
        "guidance.roe_error_threshold_m=0.4", "guidance.keep_out_radius_m=0.6", "guidance.safety_horizon_s=6001",
        "guidance.station_keeping_deadband_m=0.7", "guidance.closed_form_tolerance_m=0.8",
        "guidance.koenig_damico_tolerance_m=0.009", "guidance.station_keeping_horizon_s=6003", "guidance.navigation_timeout_s=602"});
@@ -36,7 +36,6 @@ TEST(Telecommands, ConfigurationIsInTheUnitsOfThePacketContract) {
   EXPECT_EQ(configuration.closed_form_period_ns, 301 * kSecond);
   EXPECT_EQ(configuration.koenig_damico_period_ns, 61 * kSecond);
   EXPECT_EQ(configuration.koenig_damico_grid_ns, 31 * kSecond);
-  EXPECT_EQ(configuration.least_squares_spacing_ns, 601 * kSecond);
   EXPECT_EQ(configuration.planner_start_ns, mission.epoch.ns + (3600 + 1200) * kSecond);
   EXPECT_DOUBLE_EQ(configuration.minimum_dv, 0.25e-3);
   EXPECT_EQ(configuration.maximum_dv, 3.0);

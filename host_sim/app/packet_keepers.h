@@ -1,0 +1,39 @@
+#pragma once
+// Who sees the packets of a run: the log, the hashes, and, when asked, the LCM bus.
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host_sim/app/simulation.h"
+#include "host_sim/mission/mission.h"
+
+namespace vbar::app {
+
+class PacketKeepers {
+ public:
+  /// Starts packets.lcmlog in `folder`, and the LCM mirror if the mission asks for it. Throws std::runtime_error.
+  PacketKeepers(const mission::Mission& mission, const std::filesystem::path& folder);
+  ~PacketKeepers();
+  PacketKeepers(const PacketKeepers&) = delete;
+  PacketKeepers& operator=(const PacketKeepers&) = delete;
+
+  [[nodiscard]] std::span<PacketObserver* const> observers() const { return observers_; }
+
+  /// Of the maneuver commands, and of all telemetry, so far.
+  [[nodiscard]] std::string commands_sha256() const;
+  [[nodiscard]] std::string telemetry_sha256() const;
+
+ private:
+  class Log;
+  class Hash;
+  class Mirror;
+  std::unique_ptr<Log> log_;
+  std::unique_ptr<Hash> hash_;
+  std::unique_ptr<Mirror> mirror_;
+  std::vector<PacketObserver*> observers_;
+};
+
+}  // namespace vbar::app

@@ -1,0 +1,236 @@
+#!/usr/bin/env python3
+"""The program from outside: the same bits on every flight computer, replay, faults, bad input, the run folder."""
+import os
+import pathlib
+import signal
+import subprocess
+import time
+import unittest
+
+from vbar_program import (BINARY, MISSION, SOURCE, ZYNQ_IMAGE, ZYNQ_LINUX_PROGRAM, children_of, fly, hashes, is_running,
+                          main, missing, overrides, scratch, start, summary_of, vbar)
+
+# 6.4 h: the whole first leg with its burns, the waypoint, and the first burn of the next leg.
+SHORT = "mission.duration_h=6.4"
+
+TARGETS = {
+    "host process, serial": ("flight_computer.target=host_process",),
+    "host process, UDP": ("flight_computer.target=host_process", "flight_computer.link=udp"),
+    "ARM Linux, serial": ("flight_computer.target=zynq_linux_qemu",),
+    "Zynq, UART": ("flight_computer.target=zynq_qemu",),
+    "Zynq, Ethernet": ("flight_computer.target=zynq_qemu", "flight_computer.link=udp"),
+}
+
+
+def not_built(name):
+    if name.startswith("Zynq"):
+        return missing(ZYNQ_IMAGE)
+    if name.startswith("ARM"):
+        return missing(ZYNQ_LINUX_PROGRAM)
+    return None
+
+
+class SameBits(unittest.TestCase):
+    """Commands and telemetry do not depend on where the flight software runs, nor on how often or how fast."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = cls.enterClassContext(scratch())
+        cls.reference_folder = cls.folder / "reference"
+        cls.reference = fly(cls.reference_folder, SHORT)
+
+    def test_the_arc_has_several_maneuvers(self):
+        self.assertGreaterEqual(self.reference["maneuvers"], 5)
+
+    def test_every_flight_computer(self):
+        for name, settings in TARGETS.items():
+            with self.subTest(name):
+                if not_built(name):
+                    self.skipTest(not_built(name))
+                summary = fly(self.folder / "run", SHORT, *settings)
+                self.assertEqual(hashes(summary), hashes(self.reference))
+                if name.startswith("Zynq"):
+                    self.assertEqual(summary["flight_step"]["unit"], "instructions")
+                    self.assertGreater(summary["flight_step"]["max"], 0)
+                    self.assertGreater(summary["flight_step"]["stack_bytes_max"], 0)
+
+    def test_replay_into_every_flight_computer(self):
+        for name, settings in {"in process": (), **TARGETS}.items():
+            with self.subTest(name):
+                if not_built(name):
+                    self.skipTest(not_built(name))
+                result = vbar("replay", self.reference_folder, *overrides(*settings))
+                self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+                self.assertIn("identical", result.stdout)
+
+    def test_again_with_another_speed_and_number_of_threads(self):
+        for settings in ((), ("truth.threads=2",), ("clock.mode=real_time", "clock.speed_factor=20000")):
+            with self.subTest(settings):
+                self.assertEqual(hashes(fly(self.folder / "run", SHORT, *settings)), hashes(self.reference))
+
+    def test_instructions_of_a_step_are_the_same_in_every_run(self):
+        if missing(ZYNQ_IMAGE):
+            self.skipTest(missing(ZYNQ_IMAGE))
+        settings = ("mission.duration_h=0.5", "flight_computer.target=zynq_qemu", "flight_computer.link=udp")
+        costs = [fly(self.folder / "run", *settings)["flight_step"] for _ in range(2)]
+        self.assertEqual(costs[0], costs[1])
+
+    def test_recorded_navigation_as_a_source_gives_the_same_run(self):
+        log = self.reference_folder / "packets.lcmlog"
+        summary = fly(self.folder / "run", SHORT, "spacecraft.servicer.sensors.navigation.source=recorded",
+                      f"spacecraft.servicer.sensors.navigation.log={log}")
+        self.assertEqual(hashes(summary), hashes(self.reference))
+
+
+class ForeignArticle(unittest.TestCase):
+    """A flight software that is not vbar's, written in C: as a shared library here."""
+
+    def test_it_flies_from_a_shared_library(self):
+        library = BINARY / "libvbar_example_article.so"
+        if missing(library):
+            self.skipTest(missing(library))
+        with scratch() as folder:
+            summary = fly(folder / "run", "mission.duration_h=1", f"flight_computer.library={library}")
+            self.assertTrue(summary["complete"])
+            self.assertNotIn("vbar GNC", summary["flight_software"])
+
+    def test_a_library_that_is_none_is_one_clear_error(self):
+        with scratch() as folder:
+            result = vbar("run", MISSION, "--out", folder / "run", "--set", "flight_computer.library=/nonexistent.so")
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("/nonexistent.so", result.stderr)
+            self.assertFalse(summary_of(folder / "run")["complete"])
+
+
+class BrokenOff(unittest.TestCase):
+    """A run that cannot go on ends with one error, says so in its folder, and leaves no process behind."""
+
+    def wait_for_children(self, run, count):
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline:
+            children = children_of(run.pid)
+            if len(children) >= count:
+                return children
+            time.sleep(0.02)
+        self.fail("the flight computer was never started")
+
+    def assert_incomplete(self, run, folder, reason):
+        _, errors = run.communicate(timeout=90)
+        self.assertNotEqual(run.returncode, 0)
+        self.assertEqual(errors.count("vbar:"), 1, errors)
+        summary = summary_of(folder)
+        self.assertFalse(summary["complete"])
+        self.assertRegex(summary["incomplete_reason"], reason)
+
+    def kill_in_mid_run(self, *settings):
+        with scratch() as folder:
+            run = start("run", MISSION, "--out", folder / "run", *overrides(*settings))
+            try:
+                children = self.wait_for_children(run, 1)
+                time.sleep(1.5)
+                os.kill(children[-1], signal.SIGKILL)
+                self.assert_incomplete(run, folder / "run", ".")
+                self.assertFalse([pid for pid in children if is_running(pid)])
+            finally:
+                run.kill()
+                run.wait()
+
+    def test_qemu_killed(self):
+        if missing(ZYNQ_IMAGE):
+            self.skipTest(missing(ZYNQ_IMAGE))
+        self.kill_in_mid_run("flight_computer.target=zynq_qemu")
+
+    def test_host_process_killed(self):
+        # Paced, so that the run is still under way when the process dies.
+        self.kill_in_mid_run("flight_computer.target=host_process", "clock.mode=real_time", "clock.speed_factor=3000")
+
+    def test_interrupted_by_the_user(self):
+        with scratch() as folder:
+            run = start("run", MISSION, "--out", folder / "run", "--set", "clock.mode=real_time", "--set",
+                        "clock.speed_factor=100")
+            try:
+                time.sleep(1.5)
+                run.send_signal(signal.SIGINT)
+                self.assert_incomplete(run, folder / "run", "interrupted")
+                self.assertGreater(summary_of(folder / "run")["simulated_s"], 0.0)
+            finally:
+                run.kill()
+                run.wait()
+
+
+class BadInput(unittest.TestCase):
+    """One message that names the place; nothing is left behind as if complete."""
+
+    def refuse(self, arguments, *parts):
+        with scratch() as folder:
+            out = ["--out", folder / "run"] if arguments[0] == "run" else []
+            result = vbar(*arguments, *out)
+            self.assertNotEqual(result.returncode, 0)
+            for part in parts:
+                self.assertIn(part, result.stderr)
+            self.assertFalse((folder / "run").exists())
+
+    def test_unknown_key(self):
+        self.refuse(["run", MISSION, "--set", "mission.durations_h=3"], "durations_h", "duration_h")
+
+    def test_no_such_mission(self):
+        self.refuse(["run", "no_such_mission.toml"], "no_such_mission.toml")
+
+    def test_replay_of_a_folder_that_is_no_run(self):
+        with scratch() as folder:
+            self.refuse(["replay", folder], str(folder))
+
+    def test_report_of_a_folder_that_is_no_run(self):
+        with scratch() as folder:
+            self.refuse(["report", folder], str(folder))
+
+    def test_a_folder_of_something_else_is_not_overwritten(self):
+        with scratch() as folder:
+            (folder / "precious.txt").write_text("keep me")
+            result = vbar("run", MISSION, "--out", folder)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertEqual((folder / "precious.txt").read_text(), "keep me")
+
+
+class RunFolder(unittest.TestCase):
+    """What a run leaves, and what reads it."""
+
+    def test_everything_is_there_and_reports_compare(self):
+        with scratch() as folder:
+            for name in ("a", "b"):
+                fly(folder / name, "mission.duration_h=6.4")
+            for file in ("summary.json", "waypoints.csv", "truth.csv", "estimate.csv", "maneuvers.csv", "residuals.csv",
+                         "packets.lcmlog", "report.html"):
+                self.assertTrue((folder / "a" / file).is_file(), file)
+            for file in ("waypoints.csv", "truth.csv", "estimate.csv", "maneuvers.csv", "packets.lcmlog"):
+                self.assertEqual((folder / "a" / file).read_bytes(), (folder / "b" / file).read_bytes(), file)
+            result = vbar("report", folder / "a", folder / "b")
+            self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_missions_lists_the_mission(self):
+        result = vbar("missions", SOURCE / "missions")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("ideal_navigation", result.stdout)
+
+
+class LcmMirror(unittest.TestCase):
+    """Live packets on an LCM bus, in a network of this test's own."""
+
+    def test_lcm_logger_sees_the_run(self):
+        with scratch() as folder:
+            script = (
+                "ip link set lo up && ip link set lo multicast on && ip route add 224.0.0.0/4 dev lo && "
+                f"lcm-logger --quiet --lcm-url='udpm://239.255.76.67:7667?ttl=0' {folder}/live.lcmlog & logger=$!; sleep 1; "
+                f"{BINARY}/vbar run {MISSION} --out {folder}/run --set mission.duration_h=1 --set lcm.mirror=true "
+                "--set clock.mode=real_time --set clock.speed_factor=1800 >/dev/null; code=$?; sleep 0.5; "
+                "kill -INT $logger; wait $logger; exit $code")
+            result = subprocess.run(["unshare", "--net", "sh", "-c", script], capture_output=True, text=True, timeout=60)
+            if "unshare" in result.stderr or "Operation not permitted" in result.stderr:
+                self.skipTest("no network namespace of our own: " + result.stderr.strip())
+            self.assertEqual(result.returncode, 0, result.stderr)
+            live = (folder / "live.lcmlog").read_bytes()
+            self.assertGreater(live.count(b"VBAR_PACKET"), 60)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,86 @@
+#include "tests/unit/fsw/gnc/article.h"
+
+#include <cstring>
+#include <new>
+
+namespace vbar::fsw::gnc::test {
+namespace {
+
+template <class Message>
+Message decoded(const packets::PacketView& packet) {
+  const Result<Message> message = packets::decode<Message>(packet);
+  EXPECT_TRUE(message.ok()) << "the flight software sent a packet that cannot be read";
+  return message.value();
+}
+
+}  // namespace
+
+void Article::Free::operator()(std::byte* state) const {
+  ::operator delete[](state, std::align_val_t(vbar_gnc_state_alignment()));
+}
+
+Article::Article()
+    : tray_(std::make_unique<Tray>()),
+      state_(new(std::align_val_t(vbar_gnc_state_alignment())) std::byte[vbar_gnc_state_size()]) {
+  std::memset(state_.get(), 0, vbar_gnc_state_size());
+  EXPECT_EQ(vbar_gnc_init(state_.get(), kServicer, &Article::sink, tray_.get()), 0);
+}
+
+vbar_status Article::deliver(const Bytes& packet) { return vbar_gnc_receive(state_.get(), packet.data(), packet.size()); }
+
+Answer Article::step(GpsTime now, Duration period) {
+  tick message{};
+  message.period_ns = period.ns;
+  EXPECT_EQ(deliver(now, message), 0);
+  return step_without_tick(now);
+}
+
+Answer Article::step_without_tick(GpsTime now) { return collect(vbar_gnc_step(state_.get(), now.ns)); }
+
+std::vector<std::byte> Article::save() const {
+  return {state_.get(), state_.get() + vbar_gnc_state_size()};
+}
+
+void Article::restore(const std::vector<std::byte>& saved) {
+  ASSERT_EQ(saved.size(), vbar_gnc_state_size());
+  std::memcpy(state_.get(), saved.data(), saved.size());
+  vbar_gnc_set_sink(state_.get(), &Article::sink, tray_.get());
+}
+
+void Article::sink(void* context, const std::uint8_t* packet, std::size_t size) {
+  Tray& tray = *static_cast<Tray*>(context);
+  ASSERT_LT(tray.count, Tray::kPackets);
+  ASSERT_LE(size, packets::kMaxPacketBytes);
+  std::memcpy(tray.bytes[tray.count].data(), packet, size);
+  tray.size[tray.count++] = size;
+}
+
+Answer Article::collect(vbar_status status) {
+  using packets::Apid;
+  Answer answer;
+  answer.status = status;
+  for (std::size_t k = 0; k < tray_->count; ++k) {
+    const Bytes bytes(tray_->bytes[k].begin(), tray_->bytes[k].begin() + static_cast<std::ptrdiff_t>(tray_->size[k]));
+    const Result<packets::PacketView> packet = packets::parse_packet(bytes);
+    EXPECT_TRUE(packet.ok());
+    if (!packet.ok()) continue;
+    const packets::PacketView& view = packet.value();
+    answer.telemetry_count += packets::is_telemetry(view.header.apid) ? 1 : 0;
+    if (view.header.apid == Apid::kManeuverCommand) {
+      answer.commands.push_back({view.header.time, decoded<maneuver_command>(view)});
+    } else if (view.header.apid == Apid::kTelemetryNavigation) {
+      answer.navigation = decoded<telemetry_navigation>(view);
+    } else if (view.header.apid == Apid::kTelemetryControl) {
+      answer.control = decoded<telemetry_control>(view);
+    } else if (view.header.apid == Apid::kTelemetryHealth) {
+      answer.health = decoded<telemetry_health>(view);
+    } else {
+      ADD_FAILURE() << "the flight software sent a packet of a kind it should not";
+    }
+    answer.packets.push_back(bytes);
+  }
+  tray_->count = 0;
+  return answer;
+}
+
+}  // namespace vbar::fsw::gnc::test
