@@ -48,7 +48,7 @@ th { color: var(--muted); font-weight: 600; border-bottom: 1px solid var(--frame
 td { border-bottom: 1px solid var(--grid); }
 th.number, td.number { text-align: right; padding: 4px 0 4px 22px; white-space: nowrap; }
 th.number { white-space: normal; }
-dl { display: grid; grid-template-columns: repeat(auto-fit, minmax(340px, 1fr)); gap: 0 36px; margin: 8px 0; font-size: 14px; }
+dl { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 0 36px; margin: 8px 0; font-size: 14px; }
 dl div { display: flex; gap: 14px; padding: 3px 0; border-bottom: 1px solid var(--grid); }
 dt { color: var(--muted); flex: 0 0 150px; }
 dd { margin: 0; overflow-wrap: anywhere; font-variant-numeric: tabular-nums; }
@@ -68,8 +68,8 @@ svg .mid { text-anchor: middle; } svg .end { text-anchor: end; }
 svg .frame { fill: none; stroke: var(--frame); } svg .grid { stroke: var(--grid); }
 svg line.moment { stroke: var(--muted); stroke-dasharray: 2 3; } svg text.moment { fill: var(--muted); font-size: 10px; }
 svg .line { fill: none; stroke-width: 1.3; stroke-linejoin: round; }
-svg .broad { stroke-width: 3; stroke-opacity: 0.55; } svg .dashed { stroke-dasharray: 5 3; }
-svg .dots { fill: none; stroke-width: 2.4; stroke-linecap: round; }
+svg .broad { stroke-width: 4.5; stroke-opacity: 0.4; } svg .dashed { stroke-dasharray: 5 3; }
+svg .dots { fill: none; stroke-width: 3.4; stroke-linecap: round; }
 svg .c0 { stroke: var(--c0); } svg .c1 { stroke: var(--c1); } svg .c2 { stroke: var(--c2); }
 svg .c3 { stroke: var(--c3); } svg .c4 { stroke: var(--c4); } svg .c5 { stroke: var(--c5); }
 svg .f0 { fill: var(--c0); } svg .f1 { fill: var(--c1); } svg .f2 { fill: var(--c2); }

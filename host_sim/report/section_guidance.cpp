@@ -14,6 +14,8 @@ namespace vbar::report {
 namespace {
 
 constexpr int kWarningColour = 6;
+constexpr int kOk = 0;
+constexpr int kNotReady = 13;  // a solver that was never asked
 
 /// Stretches over which `code(row)` keeps its value; those for which `describe` gives no text are left out.
 template <class Code, class Describe>
@@ -34,7 +36,8 @@ std::vector<Band> bands(const RunRecord& record, const Code& code, const Describ
 
 Band warning_unless_ok(int status) {
   Band band{.colour = kWarningColour};
-  if (status != 0) band.text = status_name(status);
+  const bool tried = status != kNotReady;
+  if (tried && status != kOk) band.text = status_name(status);
   return band;
 }
 
@@ -70,10 +73,9 @@ std::string what_was_done_when(const RunRecord& record) {
 Plot distance_plot(const RunRecord& record) {
   const View whole = whole_run(record);
   Plot plot;
-  plot.title = "Distance to the target: now, and the least if every burn still to come were missed";
+  plot.title = "Distance to the target: now, and the least to come if the plan ended after any of its burns";
   plot.x = time_axis(whole);
-  plot.y = {.name = "distance", .unit = Unit::kNone, .logarithmic = true};
-  plot.y.name = "distance, m";
+  plot.y = {.name = "distance", .unit = Unit::kMetres, .logarithmic = true};
   plot.width = 1190.0;
   plot.height = 280.0;
   plot.moments = waypoint_moments(whole);

@@ -63,8 +63,10 @@ void set_unit(Scale& scale, const DisplayUnit& unit) {
   scale.range = {scale.range.low * unit.per_si, scale.range.high * unit.per_si};
 }
 
-double largest(const Range& range) {
-  return std::max(std::abs(range.low), std::abs(range.high));
+/// The size of the numbers that an axis writes: the largest, or the middle one of decades.
+double typical_size(const Scale& scale) {
+  if (scale.logarithmic) return std::sqrt(scale.range.low * scale.range.high);
+  return std::max(std::abs(scale.range.low), std::abs(scale.range.high));
 }
 
 /// Widens the axis that shows fewer metres a pixel.
@@ -121,9 +123,9 @@ class Drawing {
     y_.logarithmic = plot_.y.logarithmic;
     y_.start = plot_.height - kBottomMargin;
     y_.length = top_ - y_.start;
-    const double both = std::max(largest(x_.range), largest(y_.range));
-    set_unit(x_, display_unit(plot_.x.unit, plot_.same_scale ? both : largest(x_.range)));
-    set_unit(y_, display_unit(plot_.y.unit, plot_.same_scale ? both : largest(y_.range)));
+    const double both = std::max(typical_size(x_), typical_size(y_));
+    set_unit(x_, display_unit(plot_.x.unit, plot_.same_scale ? both : typical_size(x_)));
+    set_unit(y_, display_unit(plot_.y.unit, plot_.same_scale ? both : typical_size(y_)));
 
     settle_left_margin();
     if (!plot_.same_scale) return;
@@ -170,7 +172,7 @@ class Drawing {
 
   // A line for each; a text only where it has room.
   void draw_moments() {
-    double free_from = left_ - 1.0;
+    double free_from = 0.0;
     for (const Moment& moment : plot_.moments) {
       const double x = x_.pixel(moment.x);
       if (!(x >= left_ && x <= left_ + x_.length)) continue;
