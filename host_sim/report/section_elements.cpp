@@ -7,16 +7,11 @@
 namespace vbar::report {
 namespace {
 
-constexpr const char* kNames[] = {"aδa", "aδλ", "aδex", "aδey", "aδix", "aδiy"};
-
-// Mean elements scatter by millimetres about what they mean; less is not worth a plot.
-constexpr double kLeastSpan_m = 0.02;
-
 Plot element_plot(const RunRecord& record, const View& view, std::size_t k) {
   Plot plot;
-  plot.title = fmt::format("{}, {}", kNames[k], view.name);
+  plot.title = fmt::format("{}, {}", kElementNames[k], view.name);
   plot.x = time_axis(view);
-  plot.y = {.name = kNames[k], .unit = Unit::kMetres, .least_span = kLeastSpan_m};
+  plot.y = {.name = kElementNames[k], .unit = Unit::kMetres, .least_span = kLeastElementSpan_m};
   plot.height = 220.0;
   plot.moments = waypoint_moments(view);
   plot.series = {{"true", 0, Mark::kBroadLine,
@@ -49,15 +44,14 @@ std::string elements_section(const RunRecord& record) {
   if (record.truth.empty()) return {};
   const std::vector<View> views = mission_views(record);
   std::vector<std::string> plots;
-  for (std::size_t k = 0; k < 6; ++k) {
+  for (std::size_t k = 0; k < kElementNames.size(); ++k) {
     for (const View& view : views) plots.push_back(svg(element_plot(record, view, k)));
   }
-  const int columns = views.size() == 1 || views.size() == 3 ? 3 : 2;
   return section(
       "Relative orbital elements",
       "<p class=\"note\">Mean ROE of the target with respect to the servicer, times the reference semi-major axis. "
       "Rings and dashed lines: waypoints.</p>\n" +
-          legend(element_plot(record, views.front(), 0).series) + figures(columns, plots));
+          legend(element_plot(record, views.front(), 0).series) + figures(columns_for(views.size()), plots));
 }
 
 }  // namespace vbar::report

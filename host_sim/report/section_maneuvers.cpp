@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "host_sim/report/code_names.h"
 #include "host_sim/report/html_page.h"
+#include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/report_sections.h"
 #include "host_sim/report/section_parts.h"
@@ -12,18 +12,6 @@
 namespace vbar::report {
 namespace {
 
-double magnitude(const Triple& v) {
-  return std::hypot(v[0], v[1], v[2]);
-}
-
-std::vector<ManeuverRow> executed_in_order(const RunRecord& record) {
-  std::vector<ManeuverRow> executed;
-  std::ranges::copy_if(record.maneuvers, std::back_inserter(executed), &ManeuverRow::accepted);
-  std::ranges::stable_sort(executed, {}, &ManeuverRow::execution_time_s);
-  return executed;
-}
-
-/// Executed delta-v since the start of the view.
 Plot cumulative_plot(const std::vector<ManeuverRow>& executed, const View& view, const std::string& title) {
   Plot plot;
   plot.title = title;
@@ -32,16 +20,8 @@ Plot cumulative_plot(const std::vector<ManeuverRow>& executed, const View& view,
   plot.width = 580.0;
   plot.height = 260.0;
   plot.moments = waypoint_moments(view);
-  Series series{"executed", 0, Mark::kStairs, {{hours(view.start_s), 0.0}}};
-  double total = 0.0;
-  for (const ManeuverRow& row : executed) {
-    if (!view.holds(row.execution_time_s)) continue;
-    total += magnitude(row.executed_dv_rtn_mps);
-    series.points.push_back({hours(row.execution_time_s), total});
-  }
-  series.points.push_back({hours(view.end_s), total});
-  plot.y.range = Range{0.0, total > 0.0 ? 1.06 * total : 1.0};
-  plot.series.push_back(std::move(series));
+  plot.series.push_back({"executed", 0, Mark::kStairs, cumulative_dv(executed, view)});
+  plot.y.range = from_zero_to(plot.series.front().points.back().y);
   return plot;
 }
 

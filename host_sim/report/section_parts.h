@@ -1,6 +1,8 @@
 #pragma once
 // What several sections draw alike.
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "host_sim/report/mission_views.h"
@@ -12,6 +14,16 @@ inline constexpr double kSecondsPerHour = 3600.0;
 
 inline double hours(double seconds) {
   return seconds / kSecondsPerHour;
+}
+
+inline constexpr std::array<const char*, 6> kElementNames{"aδa", "aδλ", "aδex", "aδey", "aδix", "aδiy"};
+
+/// Mean elements scatter by millimetres about what they mean; less is not worth a plot.
+inline constexpr double kLeastElementSpan_m = 0.02;
+
+/// Figures a row so that plots of one view stand below each other.
+inline int columns_for(std::size_t views) {
+  return views == 1 || views == 3 ? 3 : 2;
 }
 
 /// A time axis that shows just the view.
