@@ -20,6 +20,7 @@ struct TruthRow {
   Triple target_position_eci{}, target_velocity_eci{};
   Triple relative_position_rtn{}, relative_velocity_rtn{};  ///< target in the servicer's RTN
   Sextuple a_roe_mean_m{};
+  friend bool operator==(const TruthRow&, const TruthRow&) = default;
 };
 
 /// What the flight software said of itself at a step (estimate.csv).
@@ -35,6 +36,7 @@ struct EstimateRow {
   double planned_dv_mps = 0.0, passive_safety_distance_m = 0.0, commanded_dv_mps = 0.0;
   std::uint64_t step_cost = 0;  ///< instructions or cycles, 0 where the target cannot count them
   std::uint32_t stack_bytes = 0;
+  friend bool operator==(const EstimateRow&, const EstimateRow&) = default;
 };
 
 /// A maneuver from command to execution (maneuvers.csv).
@@ -43,6 +45,7 @@ struct ManeuverRow {
   double command_time_s = 0.0, execution_time_s = 0.0;
   bool accepted = false;
   Triple commanded_dv_rtn_mps{}, executed_dv_rtn_mps{};
+  friend bool operator==(const ManeuverRow&, const ManeuverRow&) = default;
 };
 
 /// A residual of navigation (residuals.csv); none with ideal navigation.
@@ -50,6 +53,7 @@ struct ResidualRow {
   double time_s = 0.0;
   std::string sensor;
   double prefit = 0.0, postfit = 0.0, sigma = 0.0;
+  friend bool operator==(const ResidualRow&, const ResidualRow&) = default;
 };
 
 /// A waypoint of the table and how it was met (waypoints.csv).
@@ -62,10 +66,12 @@ struct WaypointRow {
   std::optional<double> navigation_error_m, navigation_velocity_error_mps;
   double leg_dv_mps = 0.0, cumulative_dv_mps = 0.0;
   int leg_maneuvers = 0;
+  friend bool operator==(const WaypointRow&, const WaypointRow&) = default;
 };
 
 struct MeanAndDeviation {
   double mean = 0.0, std = 0.0;
+  friend bool operator==(const MeanAndDeviation&, const MeanAndDeviation&) = default;
 };
 
 /// summary.json.
@@ -85,16 +91,21 @@ struct Summary {
     double mean = 0.0;
     std::string unit = "none";
     std::uint32_t stack_bytes_max = 0;
+    friend bool operator==(const FlightStep&, const FlightStep&) = default;
   } flight_step;
   struct Link {
     std::uint64_t bytes = 0, frames_resent = 0, frames_rejected = 0, frames_duplicated = 0, strangers_ignored = 0;
+    friend bool operator==(const Link&, const Link&) = default;
   } link;
   struct Deadlines {
     std::uint64_t compute_overruns = 0, wakeups_late = 0, link_late = 0;
+    friend bool operator==(const Deadlines&, const Deadlines&) = default;
   } deadlines;
   struct WallShare {
     double truth_s = 0.0, flight_s = 0.0, link_s = 0.0, other_s = 0.0;
+    friend bool operator==(const WallShare&, const WallShare&) = default;
   } wall_share;
+  friend bool operator==(const Summary&, const Summary&) = default;
 };
 
 struct RunRecord {
@@ -104,6 +115,7 @@ struct RunRecord {
   std::vector<EstimateRow> estimates;
   std::vector<ManeuverRow> maneuvers;
   std::vector<ResidualRow> residuals;
+  friend bool operator==(const RunRecord&, const RunRecord&) = default;
 };
 
 }  // namespace vbar::report

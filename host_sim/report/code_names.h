@@ -1,0 +1,12 @@
+#pragma once
+// The numbers of telemetry (fsw/packets/vbar.lcm, fsw/core/result.h) in words.
+
+#include <string>
+
+namespace vbar::report {
+
+[[nodiscard]] std::string mode_name(int mode);
+[[nodiscard]] std::string solver_name(int solver);  ///< -1: "none"
+[[nodiscard]] std::string status_name(int status);
+
+}  // namespace vbar::report

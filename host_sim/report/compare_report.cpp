@@ -1,0 +1,120 @@
+#include "host_sim/report/compare_report.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "host_sim/report/html_page.h"
+#include "host_sim/report/maneuver_series.h"
+#include "host_sim/report/section_parts.h"
+#include "host_sim/report/text_file.h"
+
+namespace vbar::report {
+namespace {
+
+using Runs = std::span<const ComparedRun>;
+
+// Later runs are drawn on top of earlier ones, thin on broad, so that equal runs can be seen to be equal.
+Mark mark_of(std::size_t run) {
+  return run == 0 ? Mark::kBroadLine : Mark::kLine;
+}
+int colour_of(std::size_t run) {
+  return static_cast<int>(run % 5);
+}
+
+/// The run that came farthest sets what is drawn.
+const RunRecord& longest(Runs runs) {
+  return std::ranges::max_element(runs, {}, [](const ComparedRun& run) { return run.record.summary.simulated_s; })
+      ->record;
+}
+
+std::string verdict(Runs runs) {
+  if (runs.size() < 2) return {};
+  const Summary& first = runs.front().record.summary;
+  const bool same =
+      std::ranges::all_of(runs, [&](const ComparedRun& run) { return same_outputs(first, run.record.summary); });
+  return same ? "<p><span class=\"status good\">same bits</span> All runs gave the same maneuver commands and "
+                "telemetry.</p>\n"
+              : "<p><span class=\"status bad\">different</span> Not all runs gave the same maneuver commands and "
+                "telemetry.</p>\n";
+}
+
+std::string metrics(Runs runs) {
+  std::vector<Column> columns{{"", false}};
+  for (const ComparedRun& run : runs) columns.push_back({run.name});
+  std::vector<std::vector<std::string>> rows;
+  for (const ComparisonRow& row : comparison_rows(runs)) {
+    std::vector<std::string>& cells = rows.emplace_back();
+    cells.push_back(row.name);
+    cells.insert(cells.end(), row.cells.begin(), row.cells.end());
+    cells.resize(runs.size() + 1);
+  }
+  return section("Performance", table(columns, rows));
+}
+
+Plot delta_v_plot(Runs runs, const View& view) {
+  Plot plot;
+  plot.title = "Cumulative delta-v, " + view.name;
+  plot.x = time_axis(view);
+  plot.y = {.name = "delta-v", .unit = Unit::kMetresPerSecond};
+  plot.width = 580.0;
+  plot.height = 260.0;
+  plot.moments = waypoint_moments(view);
+  double most = 0.0;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    std::vector<Point> points = stairs(cumulative_dv(executed_in_order(runs[k].record), view));
+    most = std::max(most, points.back().y);
+    plot.series.push_back({runs[k].name, colour_of(k), mark_of(k), std::move(points)});
+  }
+  plot.y.range = from_zero_to(most);
+  return plot;
+}
+
+std::string delta_v(Runs runs) {
+  const RunRecord& shown = longest(runs);
+  const Plot whole = delta_v_plot(runs, whole_run(shown));
+  std::vector<std::string> plots{svg(whole)};
+  const std::vector<View> views = mission_views(shown);
+  if (views.size() > 1) plots.push_back(svg(delta_v_plot(runs, views.back())));
+  return section("Delta-v", legend(whole.series) + figures(2, plots));
+}
+
+Plot element_plot(Runs runs, const View& view, std::size_t element) {
+  Plot plot;
+  plot.title = fmt::format("{}, {}", kElementNames[element], view.name);
+  plot.x = time_axis(view);
+  plot.y = {.name = kElementNames[element], .unit = Unit::kMetres, .least_span = kLeastElementSpan_m};
+  plot.height = 220.0;
+  plot.moments = waypoint_moments(view);
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    plot.series.push_back(
+        {runs[k].name, colour_of(k), mark_of(k),
+         over_time(runs[k].record.truth, view, [element](const TruthRow& row) { return row.a_roe_mean_m[element]; })});
+  }
+  return plot;
+}
+
+std::string elements(Runs runs) {
+  const std::vector<View> views = mission_views(longest(runs));
+  std::vector<std::string> plots;
+  for (std::size_t element = 0; element < kElementNames.size(); ++element) {
+    for (const View& view : views) plots.push_back(svg(element_plot(runs, view, element)));
+  }
+  return section("True relative orbital elements",
+                 legend(element_plot(runs, views.front(), 0).series) + figures(columns_for(views.size()), plots));
+}
+
+}  // namespace
+
+std::string html_comparison(Runs runs) {
+  std::string names;
+  for (const ComparedRun& run : runs) names += (names.empty() ? "" : " | ") + run.name;
+  const std::string head = fmt::format("<h1>Runs side by side</h1>\n<p class=\"lead\">{}</p>\n", escaped(names));
+  return html_page(names, head + verdict(runs) + metrics(runs) + delta_v(runs) + elements(runs));
+}
+
+void write_html_comparison(const std::filesystem::path& file, Runs runs) {
+  replace_text_file(file, html_comparison(runs));
+}
+
+}  // namespace vbar::report

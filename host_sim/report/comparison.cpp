@@ -1,0 +1,173 @@
+#include "host_sim/report/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "host_sim/report/number_text.h"
+
+namespace vbar::report {
+namespace {
+
+using Runs = std::span<const ComparedRun>;
+
+template <class Cell>
+ComparisonRow row_of(std::string name, Runs runs, const Cell& cell) {
+  ComparisonRow row{std::move(name), {}};
+  for (const ComparedRun& run : runs) row.cells.push_back(cell(run.record));
+  return row;
+}
+
+/// Index and time of every waypoint that any run reached.
+std::map<int, double> waypoint_times(Runs runs) {
+  std::map<int, double> times;
+  for (const ComparedRun& run : runs) {
+    for (const WaypointRow& waypoint : run.record.waypoints) times.emplace(waypoint.index, waypoint.time_s);
+  }
+  return times;
+}
+
+const WaypointRow* find_waypoint(const RunRecord& record, int index) {
+  const auto found = std::ranges::find(record.waypoints, index, &WaypointRow::index);
+  return found == record.waypoints.end() ? nullptr : &*found;
+}
+
+/// A value of each waypoint, a row a waypoint under a heading. Nothing if no run has any.
+using WaypointValue = std::function<std::optional<double>(const WaypointRow&)>;
+void append_by_waypoint(std::vector<ComparisonRow>& rows, Runs runs, const std::string& heading,
+                        const WaypointValue& value, int decimals) {
+  bool any = false;
+  std::vector<ComparisonRow> values;
+  for (const auto& [index, time_s] : waypoint_times(runs)) {
+    const auto cell = [&, wanted = index](const RunRecord& record) {
+      const WaypointRow* waypoint = find_waypoint(record, wanted);
+      const std::optional<double> found = waypoint != nullptr ? value(*waypoint) : std::nullopt;
+      any = any || found.has_value();
+      return fixed(found, decimals);
+    };
+    values.push_back(row_of(fmt::format("  waypoint {}, {:.2f} h", index, time_s / 3600.0), runs, cell));
+  }
+  if (!any) return;
+  rows.push_back({heading, {}});
+  rows.insert(rows.end(), values.begin(), values.end());
+}
+
+std::optional<double> largest_difference(const RunRecord& a, const RunRecord& b) {
+  std::optional<double> largest;
+  for (const WaypointRow& waypoint : a.waypoints) {
+    const WaypointRow* other = find_waypoint(b, waypoint.index);
+    if (other == nullptr) continue;
+    largest = std::max(largest.value_or(0.0), std::abs(waypoint.control_error_m - other->control_error_m));
+  }
+  return largest;
+}
+
+std::string mean_and_deviation(const std::optional<MeanAndDeviation>& value) {
+  return value ? fmt::format("{} ± {}", fixed(value->mean, 4), fixed(value->std, 4)) : fixed(std::nullopt, 4);
+}
+
+std::string same_as_first(const std::string& hash, const std::string& first) {
+  if (hash.empty() || first.empty()) return "–";
+  return hash == first ? "same bits" : "DIFFERENT";
+}
+
+std::string cost(const Summary::FlightStep& step) {
+  return step.max == 0 ? "–" : fmt::format("{} {}", grouped(step.max), step.unit);
+}
+
+void append_setting(std::vector<ComparisonRow>& rows, Runs runs) {
+  rows.push_back(row_of("mission", runs, [](const RunRecord& r) { return r.summary.mission; }));
+  rows.push_back(row_of("seed", runs, [](const RunRecord& r) { return std::to_string(r.summary.seed); }));
+  rows.push_back(row_of("flight computer", runs, [](const RunRecord& r) { return r.summary.flight_computer; }));
+  rows.push_back(row_of("outcome", runs, [](const RunRecord& r) {
+    return r.summary.complete ? std::string("complete") : "incomplete: " + r.summary.incomplete_reason;
+  }));
+}
+
+void append_totals(std::vector<ComparisonRow>& rows, Runs runs) {
+  rows.push_back({"whole run", {}});
+  rows.push_back(row_of("  delta-v, m/s", runs, [](const RunRecord& r) { return fixed(r.summary.dv_mps, 6); }));
+  rows.push_back(row_of("  maneuvers", runs, [](const RunRecord& r) { return std::to_string(r.summary.maneuvers); }));
+  rows.push_back(row_of("  navigation error, m (mean ± std)", runs,
+                        [](const RunRecord& r) { return mean_and_deviation(r.summary.navigation_error_m); }));
+  rows.push_back(row_of("  longest flight step", runs, [](const RunRecord& r) { return cost(r.summary.flight_step); }));
+  rows.push_back(row_of("  most stack, bytes", runs, [](const RunRecord& r) {
+    const auto bytes = r.summary.flight_step.stack_bytes_max;
+    return bytes == 0 ? std::string("–") : grouped(bytes);
+  }));
+  rows.push_back(row_of("  wall-clock time", runs, [](const RunRecord& r) { return duration_text(r.summary.wall_s); }));
+}
+
+void append_differences(std::vector<ComparisonRow>& rows, Runs runs) {
+  const RunRecord& first = runs.front().record;
+  rows.push_back({"against " + runs.front().name, {}});
+  rows.push_back(row_of("  largest difference of control error, m", runs, [&](const RunRecord& r) {
+    const auto difference = largest_difference(first, r);
+    return difference ? significant(*difference, 3) : std::string("–");
+  }));
+  rows.push_back(row_of("  maneuver commands", runs, [&](const RunRecord& r) {
+    return same_as_first(r.summary.commands_sha256, first.summary.commands_sha256);
+  }));
+  rows.push_back(row_of("  telemetry", runs, [&](const RunRecord& r) {
+    return same_as_first(r.summary.telemetry_sha256, first.summary.telemetry_sha256);
+  }));
+}
+
+/// Characters, not bytes: names and units may hold more than ASCII.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
+bool same_outputs(const Summary& a, const Summary& b) {
+  return !a.commands_sha256.empty() && a.commands_sha256 == b.commands_sha256 && !a.telemetry_sha256.empty() &&
+         a.telemetry_sha256 == b.telemetry_sha256;
+}
+
+std::vector<ComparisonRow> comparison_rows(Runs runs) {
+  std::vector<ComparisonRow> rows;
+  if (runs.empty()) return rows;
+  append_setting(rows, runs);
+  append_by_waypoint(
+      rows, runs, "control error, m", [](const WaypointRow& w) { return w.control_error_m; }, 4);
+  append_by_waypoint(
+      rows, runs, "navigation error, m", [](const WaypointRow& w) { return w.navigation_error_m; }, 4);
+  append_by_waypoint(
+      rows, runs, "delta-v so far, m/s", [](const WaypointRow& w) { return w.cumulative_dv_mps; }, 6);
+  append_totals(rows, runs);
+  if (runs.size() > 1) append_differences(rows, runs);
+  return rows;
+}
+
+std::string comparison_table(Runs runs) {
+  const std::vector<ComparisonRow> rows = comparison_rows(runs);
+  std::size_t name_width = 0;
+  for (const ComparisonRow& row : rows) name_width = std::max(name_width, width_of(row.name));
+  std::vector<std::size_t> widths;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    widths.push_back(width_of(runs[k].name));
+    for (const ComparisonRow& row : rows) {
+      if (!row.cells.empty()) widths[k] = std::max(widths[k], width_of(row.cells[k]));
+    }
+  }
+  std::string text(name_width, ' ');
+  for (std::size_t k = 0; k < runs.size(); ++k) text += fmt::format("  {:>{}}", runs[k].name, widths[k]);
+  text += '\n';
+  for (const ComparisonRow& row : rows) {
+    if (row.cells.empty()) {
+      text += row.name + '\n';
+      continue;
+    }
+    text += fmt::format("{:<{}}", row.name, name_width);
+    for (std::size_t k = 0; k < row.cells.size(); ++k) text += fmt::format("  {:>{}}", row.cells[k], widths[k]);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace vbar::report

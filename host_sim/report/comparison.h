@@ -1,0 +1,33 @@
+#pragma once
+// Several runs side by side (SIL | PIL | HIL): the paper's performance metrics, and whether the outputs are the same
+// bits.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host_sim/report/run_record.h"
+
+namespace vbar::report {
+
+struct ComparedRun {
+  std::string name;
+  RunRecord record;
+};
+
+/// Both runs gave the same maneuver commands and the same telemetry, bit for bit.
+[[nodiscard]] bool same_outputs(const Summary& a, const Summary& b);
+
+/// A line of the comparison: a cell for each run, or a heading without cells.
+struct ComparisonRow {
+  std::string name;
+  std::vector<std::string> cells;
+};
+
+/// The first run is what the others are held against. Waypoints that a run did not reach are dashes.
+[[nodiscard]] std::vector<ComparisonRow> comparison_rows(std::span<const ComparedRun> runs);
+
+/// For the console: aligned columns, a run each; ends in a line break.
+[[nodiscard]] std::string comparison_table(std::span<const ComparedRun> runs);
+
+}  // namespace vbar::report

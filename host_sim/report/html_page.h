@@ -1,0 +1,36 @@
+#pragma once
+// The page around a report: one file without any other, readable in light and dark and on paper.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vbar::report {
+
+/// Text with <, >, & and quotes made harmless.
+[[nodiscard]] std::string escaped(std::string_view text);
+
+/// A whole HTML document; `body` is HTML.
+[[nodiscard]] std::string html_page(std::string_view title, std::string_view body);
+
+/// A heading and what stands under it; `content` is HTML. Empty without content.
+[[nodiscard]] std::string section(std::string_view heading, std::string_view content);
+
+/// Figures side by side, `columns` a row on a wide screen.
+[[nodiscard]] std::string figures(int columns, const std::vector<std::string>& figures);
+
+struct Column {
+  std::string head;
+  bool is_number = true;  ///< numbers are set flush right
+};
+
+/// Cells are text, not HTML.
+[[nodiscard]] std::string table(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows);
+
+/// Names and values, one a line; values are text.
+struct Fact {
+  std::string name, value;
+};
+[[nodiscard]] std::string fact_list(const std::vector<Fact>& facts);
+
+}  // namespace vbar::report

@@ -1,0 +1,25 @@
+#include "host_sim/report/html_report.h"
+
+#include <fmt/format.h>
+
+#include "host_sim/report/html_page.h"
+#include "host_sim/report/report_sections.h"
+#include "host_sim/report/run_folder.h"
+#include "host_sim/report/text_file.h"
+
+namespace vbar::report {
+
+std::string html_report(const RunRecord& record) {
+  const std::string body = overview(record) + waypoint_section(record) + trajectory_section(record) +
+                           elements_section(record) + maneuver_section(record) + navigation_section(record) +
+                           guidance_section(record) + computer_section(record);
+  return html_page(fmt::format("{} (seed {})", record.summary.mission, record.summary.seed), body);
+}
+
+std::filesystem::path write_html_report(const std::filesystem::path& run_folder, const RunRecord& record) {
+  std::filesystem::path file = report_file(run_folder);
+  replace_text_file(file, html_report(record));
+  return file;
+}
+
+}  // namespace vbar::report

@@ -1,0 +1,64 @@
+#include "host_sim/report/mission_views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace vbar::report {
+namespace {
+
+constexpr double kNearer = 20.0;
+
+double range_m(const WaypointRow& row) {
+  const Triple& p = row.desired_position_rtn;
+  return std::hypot(p[0], p[1], p[2]);
+}
+
+void complete(View& view, const RunRecord& record) {
+  for (const WaypointRow& row : record.waypoints) {
+    if (view.holds(row.time_s)) view.waypoints.push_back(row);
+  }
+  if (view.waypoints.empty()) {
+    view.name = "whole run";
+  } else {
+    view.name = fmt::format("waypoints {} to {}", view.waypoints.front().index, view.waypoints.back().index);
+  }
+}
+
+}  // namespace
+
+View whole_run(const RunRecord& record) {
+  View view;
+  if (!record.truth.empty()) {
+    view.start_s = record.truth.front().time_s;
+    view.end_s = record.truth.back().time_s;
+  }
+  complete(view, record);
+  return view;
+}
+
+std::vector<View> mission_views(const RunRecord& record) {
+  const View whole = whole_run(record);
+  std::vector<double> bounds{whole.start_s};
+  double first_range = 0.0;
+  for (const WaypointRow& row : record.waypoints) {
+    const double range = range_m(row);
+    if (first_range == 0.0) first_range = range;
+    if (range * kNearer > first_range) continue;
+    bounds.push_back(row.time_s);
+    first_range = range;
+  }
+  if (bounds.size() == 1 || bounds.back() < whole.end_s) bounds.push_back(whole.end_s);
+
+  std::vector<View> views;
+  for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
+    View& view = views.emplace_back();
+    view.start_s = bounds[k];
+    view.end_s = bounds[k + 1];
+    complete(view, record);
+  }
+  return views;
+}
+
+}  // namespace vbar::report

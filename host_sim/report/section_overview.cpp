@@ -1,0 +1,64 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "host_sim/report/html_page.h"
+#include "host_sim/report/number_text.h"
+#include "host_sim/report/report_sections.h"
+
+namespace vbar::report {
+namespace {
+
+std::string status(const Summary& s) {
+  if (s.complete) return R"(<p><span class="status good">complete</span></p>)";
+  return fmt::format(R"(<p><span class="status bad">incomplete</span> <span class="bad">{}</span></p>)",
+                     escaped(s.incomplete_reason));
+}
+
+std::string tile(std::string_view value, std::string_view meaning) {
+  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>\n", escaped(value), escaped(meaning));
+}
+
+std::string tiles(const RunRecord& record) {
+  const Summary& s = record.summary;
+  std::string out = "<div class=\"tiles\">\n";
+  out += tile(velocity_text(s.dv_mps), fmt::format("delta-v in {} maneuvers", s.maneuvers));
+  if (!record.waypoints.empty()) {
+    const WaypointRow& last = record.waypoints.back();
+    out += tile(fixed(last.control_error_m, 4) + " m", fmt::format("control error at waypoint {}", last.index));
+    const auto worst = std::ranges::max_element(record.waypoints, {}, &WaypointRow::control_error_m);
+    out +=
+        tile(fixed(worst->control_error_m, 3) + " m", fmt::format("largest control error (waypoint {})", worst->index));
+  }
+  if (s.navigation_error_m) {
+    out += tile(fixed(s.navigation_error_m->mean, 4) + " m", "mean navigation error");
+  }
+  out += tile(duration_text(s.simulated_s), fmt::format("simulated in {}", duration_text(s.wall_s)));
+  out += tile(fmt::format("{}×", grouped(static_cast<std::uint64_t>(std::max(0.0, s.speed_factor)))), "real time");
+  return out + "</div>\n";
+}
+
+std::string or_none(const std::string& text) {
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace
+
+std::string overview(const RunRecord& record) {
+  const Summary& s = record.summary;
+  std::string out = fmt::format("<h1>{}</h1>\n<p class=\"lead\">seed {}, flown on {}</p>\n", escaped(s.mission), s.seed,
+                                escaped(s.flight_computer));
+  out += status(s);
+  out += tiles(record);
+  std::vector<Fact> facts{{"flight computer", s.flight_computer},
+                          {"flight software", s.flight_software},
+                          {"navigation", or_none(s.navigation)},
+                          {"camera", or_none(s.camera)},
+                          {"GNSS", or_none(s.gnss)},
+                          {"seed", std::to_string(s.seed)},
+                          {"commands SHA-256", s.commands_sha256},
+                          {"telemetry SHA-256", s.telemetry_sha256}};
+  return out + fact_list(facts);
+}
+
+}  // namespace vbar::report

@@ -1,0 +1,51 @@
+#pragma once
+// What several sections draw alike.
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "host_sim/report/mission_views.h"
+#include "host_sim/report/svg_plot.h"
+
+namespace vbar::report {
+
+inline constexpr double kSecondsPerHour = 3600.0;
+
+inline double hours(double seconds) {
+  return seconds / kSecondsPerHour;
+}
+
+inline constexpr std::array<const char*, 6> kElementNames{"aδa", "aδλ", "aδex", "aδey", "aδix", "aδiy"};
+
+/// Mean elements scatter by millimetres about what they mean; less is not worth a plot.
+inline constexpr double kLeastElementSpan_m = 0.02;
+
+/// Figures a row so that plots of one view stand below each other.
+inline int columns_for(std::size_t views) {
+  return views == 1 || views == 3 ? 3 : 2;
+}
+
+/// A time axis that shows just the view.
+inline Axis time_axis(const View& view) {
+  return {.name = "time", .unit = Unit::kHours, .range = Range{hours(view.start_s), hours(view.end_s)}};
+}
+
+/// The waypoints of a view as dashed lines with their numbers.
+inline std::vector<Moment> waypoint_moments(const View& view) {
+  std::vector<Moment> moments;
+  for (const WaypointRow& row : view.waypoints) moments.push_back({hours(row.time_s), std::to_string(row.index)});
+  return moments;
+}
+
+/// (time in hours, value(row)) of all rows inside the view.
+template <class Row, class Value>
+std::vector<Point> over_time(const std::vector<Row>& rows, const View& view, const Value& value) {
+  std::vector<Point> points;
+  for (const Row& row : rows) {
+    if (view.holds(row.time_s)) points.push_back({hours(row.time_s), value(row)});
+  }
+  return points;
+}
+
+}  // namespace vbar::report

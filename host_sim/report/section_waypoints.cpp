@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include "host_sim/report/html_page.h"
+#include "host_sim/report/number_text.h"
+#include "host_sim/report/report_sections.h"
+
+namespace vbar::report {
+namespace {
+
+const std::vector<Column> kColumns{{"waypoint"},
+                                   {"time, h"},
+                                   {"control error, m"},
+                                   {"navigation error, m"},
+                                   {"navigation velocity error, mm/s"},
+                                   {"delta-v of leg, m/s"},
+                                   {"delta-v so far, m/s"},
+                                   {"maneuvers in leg"}};
+
+std::vector<std::string> cells(const WaypointRow& row) {
+  std::optional<double> velocity_error_mmps;
+  if (row.navigation_velocity_error_mps) velocity_error_mmps = 1e3 * *row.navigation_velocity_error_mps;
+  return {std::to_string(row.index),        fixed(row.time_s / 3600.0, 2),    fixed(row.control_error_m, 4),
+          fixed(row.navigation_error_m, 4), fixed(velocity_error_mmps, 4),    fixed(row.leg_dv_mps, 5),
+          fixed(row.cumulative_dv_mps, 5),  std::to_string(row.leg_maneuvers)};
+}
+
+std::string mean_and_deviation(const char* name, const std::optional<MeanAndDeviation>& value, double scale,
+                               const char* unit) {
+  if (!value) return {};
+  return fmt::format("<p>{}: {} ± {} {} (mean and standard deviation over all steps)</p>\n", name,
+                     significant(value->mean * scale, 3), significant(value->std * scale, 3), unit);
+}
+
+const std::vector<Column> kRoeColumns{{"waypoint"}, {"", false}, {"aδa, m"},  {"aδλ, m"},
+                                      {"aδex, m"},  {"aδey, m"}, {"aδix, m"}, {"aδiy, m"}};
+
+std::vector<std::string> roe_cells(const WaypointRow& row, const char* what, const Sextuple& a_roe_m) {
+  std::vector<std::string> cells{std::to_string(row.index), what};
+  for (const double component : a_roe_m) cells.push_back(fixed(component, 3));
+  return cells;
+}
+
+}  // namespace
+
+std::string waypoint_section(const RunRecord& record) {
+  if (record.waypoints.empty()) return section("Waypoints", "<p>No waypoint was reached.</p>\n");
+  std::vector<std::vector<std::string>> rows, roe_rows;
+  for (const WaypointRow& row : record.waypoints) {
+    rows.push_back(cells(row));
+    roe_rows.push_back(roe_cells(row, "wanted", row.a_roe_desired_m));
+    roe_rows.push_back(roe_cells(row, "true", row.a_roe_actual_m));
+  }
+  const Summary& s = record.summary;
+  std::string out = table(kColumns, rows);
+  out += mean_and_deviation("Navigation error", s.navigation_error_m, 1.0, "m");
+  out += mean_and_deviation("Navigation velocity error", s.navigation_velocity_error_mps, 1e3, "mm/s");
+  out += mean_and_deviation("Attitude error", s.attitude_error_deg, 1.0, "deg");
+  out +=
+      "<p class=\"note\">Control error: true RTN position of the target against the one that the wanted mean ROE give "
+      "on the "
+      "true orbit of the servicer. Navigation error: estimated against true RTN position. A burn at a waypoint's own "
+      "time "
+      "counts to the next leg.</p>\n";
+  out += "<details><summary>Mean ROE at the waypoints</summary>" + table(kRoeColumns, roe_rows) + "</details>\n";
+  return section("Waypoints", out);
+}
+
+}  // namespace vbar::report
