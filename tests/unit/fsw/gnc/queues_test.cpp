@@ -18,7 +18,7 @@ executed_maneuver tiny_maneuver(std::int32_t id) {
   return message;
 }
 
-// More measurements than fit: those of the first minute are kept, so the state is that of the last of them.
+// More measurements than fit: the first are kept, so the state is that of the last of these.
 TEST(Queues, OfMeasurementsKeepWhatTheyHave) {
   Flight flight(kStart);
   const std::int64_t first = flight.now.ns - kNanosecondsPerSecond;
@@ -105,8 +105,8 @@ TEST(Queues, OfManeuversSinceTheLastMeasurementLoseNone) {
   }
 }
 
-// A plan has more burns due in one step than may be commanded in one: with a step of an hour, the least-squares plan of
-// a leg of half an hour is due at once. Never more than the limit leaves a step.
+// With the next step only after the waypoint, all burns of the leg are due at once; never more than the limit leave a
+// step.
 TEST(Queues, CommandsOfAStepAreBounded) {
   Flight flight(kStart);
   flight.send(table_of({waypoint_at(8, 3 * 3600, 1, kNear)}));
