@@ -47,7 +47,6 @@ std::string metrics(Runs runs) {
     std::vector<std::string>& cells = rows.emplace_back();
     cells.push_back(row.name);
     cells.insert(cells.end(), row.cells.begin(), row.cells.end());
-    cells.resize(runs.size() + 1);
   }
   return section("Performance", table(columns, rows));
 }

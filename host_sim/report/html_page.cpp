@@ -61,6 +61,10 @@ std::string table(const std::vector<Column>& columns, const std::vector<std::vec
   for (const Column& column : columns) out += cell("th", column, column.head);
   out += "</tr></thead>\n<tbody>\n";
   for (const std::vector<std::string>& row : rows) {
+    if (row.size() == 1) {
+      out += fmt::format("<tr><th class=\"group\" colspan=\"{}\">{}</th></tr>\n", columns.size(), escaped(row.front()));
+      continue;
+    }
     out += "<tr>";
     for (std::size_t k = 0; k < columns.size(); ++k) out += cell("td", columns[k], row.at(k));
     out += "</tr>\n";

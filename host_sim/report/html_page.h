@@ -24,7 +24,7 @@ struct Column {
   bool is_number = true;  ///< numbers are set flush right
 };
 
-/// Cells are text, not HTML.
+/// Cells are text, not HTML. A row of a single cell is a heading across all columns.
 [[nodiscard]] std::string table(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows);
 
 /// Names and values, one a line; values are text.

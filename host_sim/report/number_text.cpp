@@ -33,6 +33,12 @@ std::string grouped(std::uint64_t value) {
   return text;
 }
 
+std::string grouped_nearest(double value) {
+  constexpr double kLargest = 1e18;  // fits 64 bits
+  if (!(value >= 0.0 && value <= kLargest)) return kNone;
+  return grouped(static_cast<std::uint64_t>(std::llround(value)));
+}
+
 std::string duration_text(double seconds) {
   if (!std::isfinite(seconds)) return kNone;
   if (seconds < 60.0) return fmt::format("{:.3g} s", seconds);

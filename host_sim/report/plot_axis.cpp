@@ -21,8 +21,8 @@ DisplayUnit display_unit(Unit unit, double largest) {
     case Unit::kNone:
       break;
   }
-  if (largest >= 1e7) return {1e-6, "million"};
-  if (largest >= 1e5) return {1e-3, "thousand"};
+  if (largest >= 2e6) return {1e-6, "million"};
+  if (largest >= 2e4) return {1e-3, "thousand"};
   return {1.0, ""};
 }
 

@@ -27,7 +27,7 @@ std::string step_cost(const RunRecord& record) {
                     return static_cast<double>(r.step_cost);
                   })}};
   return fmt::format("<p>{} flight steps: at most {}, on average {} {}; at most {} bytes of stack.</p>\n",
-                     grouped(step.count), grouped(step.max), grouped(static_cast<std::uint64_t>(step.mean)), step.unit,
+                     grouped(step.count), grouped(step.max), grouped_nearest(step.mean), step.unit,
                      grouped(step.stack_bytes_max)) +
          figures(1, {svg(plot)});
 }
@@ -50,10 +50,10 @@ std::string computer_section(const RunRecord& record) {
       {"steps late", grouped(s.deadlines.compute_overruns)},
       {"wake-ups late", grouped(s.deadlines.wakeups_late)},
       {"link late", grouped(s.deadlines.link_late)},
-      {"time in truth", share(s.wall_share.truth_s, s.wall_s)},
-      {"time in flight", share(s.wall_share.flight_s, s.wall_s)},
-      {"time on the link", share(s.wall_share.link_s, s.wall_s)},
-      {"time elsewhere", share(s.wall_share.other_s, s.wall_s)},
+      {"wall clock: truth", share(s.wall_share.truth_s, s.wall_s)},
+      {"wall clock: flight computer", share(s.wall_share.flight_s, s.wall_s)},
+      {"wall clock: link", share(s.wall_share.link_s, s.wall_s)},
+      {"wall clock: elsewhere", share(s.wall_share.other_s, s.wall_s)},
   };
   return section("Flight computer, link and time", step_cost(record) + fact_list(facts));
 }

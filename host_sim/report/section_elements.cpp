@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/report/html_page.h"
+#include "host_sim/report/number_text.h"
 #include "host_sim/report/report_sections.h"
 #include "host_sim/report/section_parts.h"
 
@@ -32,8 +33,8 @@ Plot element_plot(const RunRecord& record, const View& view, std::size_t k) {
   for (const WaypointRow& row : view.waypoints) {
     plot.rings.push_back({{hours(row.time_s), row.a_roe_desired_m[k]},
                           "",
-                          fmt::format("waypoint {}: {:.3f} m wanted, {:.3f} m true", row.index, row.a_roe_desired_m[k],
-                                      row.a_roe_actual_m[k])});
+                          fmt::format("waypoint {}: {} m wanted, {} m true", row.index,
+                                      fixed(row.a_roe_desired_m[k], 3), fixed(row.a_roe_actual_m[k], 3))});
   }
   return plot;
 }

@@ -65,9 +65,8 @@ std::string what_was_done_when(const RunRecord& record) {
                             record, [](const EstimateRow& r) { return r.least_squares_status; }, warning_unless_ok)},
       {"passive safety", bands(
                              record, [](const EstimateRow& r) { return r.safety_status; }, warning_unless_ok)}};
-  const View whole = whole_run(record);
   return "<p class=\"note\">The last four rows are empty while all is well.</p>\n" +
-         figures(1, {timeline(rows, {hours(whole.start_s), hours(whole.end_s)})});
+         figures(1, {timeline(rows, hours_of(whole_run(record)))});
 }
 
 Plot distance_plot(const RunRecord& record) {

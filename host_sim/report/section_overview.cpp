@@ -34,7 +34,7 @@ std::string tiles(const RunRecord& record) {
     out += tile(fixed(s.navigation_error_m->mean, 4) + " m", "mean navigation error");
   }
   out += tile(duration_text(s.simulated_s), fmt::format("simulated in {}", duration_text(s.wall_s)));
-  out += tile(fmt::format("{}×", grouped(static_cast<std::uint64_t>(std::max(0.0, s.speed_factor)))), "real time");
+  out += tile(fmt::format("{}×", grouped_nearest(s.speed_factor)), "real time");
   return out + "</div>\n";
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // What several sections draw alike.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -26,9 +27,14 @@ inline int columns_for(std::size_t views) {
   return views == 1 || views == 3 ? 3 : 2;
 }
 
+/// The hours of a view; a minute even for a run that ended with its first step.
+inline Range hours_of(const View& view) {
+  return {hours(view.start_s), hours(std::max(view.end_s, view.start_s + 60.0))};
+}
+
 /// A time axis that shows just the view.
 inline Axis time_axis(const View& view) {
-  return {.name = "time", .unit = Unit::kHours, .range = Range{hours(view.start_s), hours(view.end_s)}};
+  return {.name = "time", .unit = Unit::kHours, .range = hours_of(view)};
 }
 
 /// The waypoints of a view as dashed lines with their numbers.

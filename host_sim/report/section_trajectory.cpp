@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/report/html_page.h"
+#include "host_sim/report/number_text.h"
 #include "host_sim/report/report_sections.h"
 #include "host_sim/report/section_parts.h"
 
@@ -41,8 +42,9 @@ bool fits_same_scale(const std::vector<Point>& points) {
 
 std::string ring_tooltip(const WaypointRow& row) {
   const Triple& p = row.actual_position_rtn;
-  return fmt::format("waypoint {} at {:.2f} h: R {:.3f}, T {:.3f}, N {:.3f} m; control error {:.4f} m", row.index,
-                     hours(row.time_s), p[0], p[1], p[2], row.control_error_m);
+  return fmt::format("waypoint {} at {} h: R {}, T {}, N {} m; control error {} m", row.index,
+                     fixed(hours(row.time_s), 2), fixed(p[0], 3), fixed(p[1], 3), fixed(p[2], 3),
+                     fixed(row.control_error_m, 4));
 }
 
 Plot projection(const RunRecord& record, const View& view, const Plane& plane) {

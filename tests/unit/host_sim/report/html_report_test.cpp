@@ -1,0 +1,115 @@
+#include "host_sim/report/html_report.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "host_sim/report/compare_report.h"
+#include "host_sim/report/run_folder.h"
+#include "tests/unit/host_sim/report/program_output.h"
+#include "tests/unit/host_sim/report/scratch_folder.h"
+#include "tests/unit/host_sim/report/synthetic_run.h"
+
+namespace vbar::report::test {
+namespace {
+
+using testing::HasSubstr;
+
+class HtmlReport : public ScratchFolder {
+ protected:
+  /// What an XML parser and a search for outside references have to say of the page.
+  [[nodiscard]] std::string complaints(const std::string& html) const {
+    const auto file = scratch_ / "page.html";
+    write(file, html);
+    const ProgramOutput output =
+        output_of("python3 " VBAR_SOURCE_DIR "/tests/unit/host_sim/report/check_page.py " + file.string());
+    return output.status == 0 ? output.text : "check_page.py failed: " + output.text;
+  }
+};
+
+TEST_F(HtmlReport, IsOneWellFormedPageThatNeedsNothingElse) {
+  EXPECT_EQ(complaints(html_report(synthetic_run())), "");
+}
+
+TEST_F(HtmlReport, TheCheckSeesFaults) {
+  EXPECT_NE(complaints("<html><p>open</html>"), "");
+  EXPECT_NE(complaints("<html><img src=\"x.png\"/></html>"), "");
+  EXPECT_NE(complaints("<html><path d=\"M1 nan\"/></html>"), "");
+}
+
+TEST_F(HtmlReport, TellsTheWholeRun) {
+  const std::string html = html_report(synthetic_run());
+  for (const char* heading : {"Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation",
+                              "Guidance and passive safety", "Flight computer, link and time"}) {
+    EXPECT_THAT(html, HasSubstr("<h2>" + std::string(heading) + "</h2>"));
+  }
+  EXPECT_THAT(html, HasSubstr("&lt;a &quot;test&quot; &amp; nothing else&gt;")) << "the flight software's own name";
+  EXPECT_THAT(html, HasSubstr(std::string(64, 'a')));
+  EXPECT_THAT(html, HasSubstr("did not converge"));
+  EXPECT_THAT(html, HasSubstr("40 commanded, 39 executed, 1 not executed"));
+  EXPECT_THAT(html, HasSubstr("at most 350,000, on average 250,001 instructions; at most 21,000 bytes of stack"));
+}
+
+// 41 h at a step a minute; a page that a browser opens at once and a mail server takes.
+TEST_F(HtmlReport, StaysSmall) {
+  EXPECT_LT(html_report(synthetic_run()).size(), 1'500'000U);
+}
+
+TEST_F(HtmlReport, SaysWhyARunIsIncomplete) {
+  RunRecord record = synthetic_run();
+  record.summary.complete = false;
+  record.summary.incomplete_reason = "the emulator was killed";
+  const std::string html = html_report(record);
+  EXPECT_THAT(html, HasSubstr("incomplete"));
+  EXPECT_THAT(html, HasSubstr("the emulator was killed"));
+}
+
+TEST_F(HtmlReport, CopesWithARunThatNeverFlew) {
+  RunRecord record;
+  record.summary.incomplete_reason = "the board did not answer";
+  EXPECT_EQ(complaints(html_report(record)), "");
+}
+
+TEST_F(HtmlReport, CopesWithASingleStep) {
+  RunRecord record = synthetic_run();
+  record.truth.resize(1);
+  record.estimates.resize(1);
+  record.waypoints.resize(1);
+  record.maneuvers.clear();
+  record.residuals.clear();
+  EXPECT_EQ(complaints(html_report(record)), "");
+}
+
+TEST_F(HtmlReport, CopesWithNumbersThatAreNone) {
+  RunRecord record = synthetic_run();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  record.summary.speed_factor = none;
+  record.summary.dv_mps = std::numeric_limits<double>::infinity();
+  record.summary.flight_step.mean = none;
+  record.waypoints[2].control_error_m = none;
+  record.truth[100].relative_position_rtn = {none, none, none};
+  record.truth[200].a_roe_mean_m.fill(std::numeric_limits<double>::infinity());
+  record.estimates[300].passive_safety_distance_m = none;
+  record.maneuvers[5].executed_dv_rtn_mps = {none, 0.0, 0.0};
+  EXPECT_EQ(complaints(html_report(record)), "");
+}
+
+TEST_F(HtmlReport, StandsInTheRunFolder) {
+  const RunFolder folder(scratch_ / "run", {});
+  EXPECT_EQ(write_html_report(folder.path(), synthetic_run()), scratch_ / "run" / "report.html");
+  EXPECT_EQ(content(scratch_ / "run" / "report.html"), html_report(synthetic_run()));
+}
+
+TEST_F(HtmlReport, RunsSideBySideAreAPageToo) {
+  std::vector<ComparedRun> runs{{"sil", synthetic_run()}, {"pil & <more>", synthetic_run()}};
+  EXPECT_EQ(complaints(html_comparison(runs)), "");
+  EXPECT_THAT(html_comparison(runs), HasSubstr("All runs gave the same maneuver commands and telemetry"));
+  runs[1].record.summary.telemetry_sha256 = std::string(64, 'c');
+  EXPECT_THAT(html_comparison(runs), HasSubstr("Not all runs gave the same"));
+  runs.push_back({"never flew", {}});
+  EXPECT_EQ(complaints(html_comparison(runs)), "");
+}
+
+}  // namespace
+}  // namespace vbar::report::test

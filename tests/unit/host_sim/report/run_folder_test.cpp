@@ -1,0 +1,263 @@
+#include "host_sim/report/run_folder.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "host_sim/report/summary_json.h"
+#include "tests/unit/host_sim/report/scratch_folder.h"
+#include "tests/unit/host_sim/report/synthetic_run.h"
+
+namespace vbar::report::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+class RunFolderTest : public ScratchFolder {
+ protected:
+  [[nodiscard]] fs::path run() const { return scratch_ / "run"; }
+
+  void leave_a_run() const { RunFolder(run(), synthetic_run().summary).finish(synthetic_run()); }
+
+  [[nodiscard]] std::string error_of_reading() const {
+    try {
+      static_cast<void>(read_run(run()));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  [[nodiscard]] std::string error_of_making(const fs::path& folder) const {
+    try {
+      const RunFolder made(folder, {});
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  static std::vector<std::string> keys(const Json& json) {
+    std::vector<std::string> all;
+    for (const auto& item : json.items()) all.push_back(item.key());
+    return all;
+  }
+
+  static std::string first_line(const fs::path& file) {
+    const std::string text = content(file);
+    return text.substr(0, text.find('\n'));
+  }
+};
+
+TEST_F(RunFolderTest, StandsWhereMissionAndSeedSay) {
+  EXPECT_EQ(default_run_folder("experiment3", 7), fs::path("runs/experiment3-7"));
+}
+
+TEST_F(RunFolderTest, GivesBackEveryRow) {
+  const RunRecord record = synthetic_run();
+  leave_a_run();
+  EXPECT_TRUE(read_run(run()) == record);
+}
+
+TEST_F(RunFolderTest, WritingWhatWasReadGivesTheSameFiles) {
+  leave_a_run();
+  const RunFolder again(scratch_ / "again", {});
+  again.finish(read_run(run()));
+  for (const char* name :
+       {"summary.json", "waypoints.csv", "truth.csv", "estimate.csv", "maneuvers.csv", "residuals.csv"}) {
+    EXPECT_EQ(content(run() / name), content(again.path() / name)) << name;
+    EXPECT_FALSE(content(run() / name).empty()) << name;
+  }
+}
+
+// The columns are a contract with scripts: a change of these lines breaks them.
+TEST_F(RunFolderTest, ColumnsAreAsAgreed) {
+  const RunFolder folder(run(), {});
+  folder.finish({});
+  const auto group = [](std::string name, std::initializer_list<const char*> members) {
+    std::string text;
+    for (const char* member : members) text += (text.empty() ? "" : ",") + name + "_" + member;
+    return text;
+  };
+  const auto rtn = [&](const char* name) { return group(name, {"r_m", "t_m", "n_m"}); };
+  const auto rtn_rate = [&](const char* name) { return group(name, {"r_mps", "t_mps", "n_mps"}); };
+  const auto elements = [&](const char* name) {
+    return group(name, {"da_m", "dlambda_m", "dex_m", "dey_m", "dix_m", "diy_m"});
+  };
+
+  EXPECT_EQ(content(run() / "residuals.csv"), "time_s,sensor,prefit,postfit,sigma\n");
+  EXPECT_EQ(content(run() / "maneuvers.csv"),
+            "maneuver_id,waypoint_index,solver,command_time_s,execution_time_s,accepted," +
+                rtn_rate("commanded_dv_rtn") + "," + rtn_rate("executed_dv_rtn") + "\n");
+  EXPECT_EQ(first_line(run() / "waypoints.csv"),
+            "index,time_s," + elements("a_roe_desired") + "," + elements("a_roe_actual") + "," +
+                rtn("desired_position_rtn") + "," + rtn("actual_position_rtn") +
+                ",control_error_m,navigation_error_m,navigation_velocity_error_mps,leg_dv_mps,cumulative_dv_mps,"
+                "leg_maneuvers");
+  const auto xyz = [&](const char* name) { return group(name, {"x_m", "y_m", "z_m"}); };
+  const auto xyz_rate = [&](const char* name) { return group(name, {"x_mps", "y_mps", "z_mps"}); };
+  EXPECT_EQ(first_line(run() / "truth.csv"),
+            "time_s," + xyz("servicer_position_eci") + "," + xyz_rate("servicer_velocity_eci") + "," +
+                xyz("target_position_eci") + "," + xyz_rate("target_velocity_eci") + "," +
+                rtn("relative_position_rtn") + "," + rtn_rate("relative_velocity_rtn") + "," + elements("a_roe_mean"));
+  EXPECT_EQ(first_line(run() / "estimate.csv"),
+            "time_s,step,navigation_source,navigation_valid," + rtn("relative_position_rtn") + "," +
+                rtn_rate("relative_velocity_rtn") + "," +
+                group("sigma_rtn", {"r_m", "t_m", "n_m", "r_mps", "t_mps", "n_mps"}) + "," + elements("a_roe_mean") +
+                "," + elements("a_roe_desired") + "," + elements("predicted_a_roe_error") +
+                ",mode,active_solver,waypoint_index,planned_burns,koenig_damico_status,closed_form_status,"
+                "least_squares_status,safety_status,planned_dv_mps,passive_safety_distance_m,commanded_dv_mps,"
+                "step_cost,stack_bytes");
+}
+
+// So are the keys of the summary.
+TEST_F(RunFolderTest, SummaryIsAsAgreed) {
+  leave_a_run();
+  const Json json = Json::parse(content(run() / "summary.json"));
+  EXPECT_THAT(
+      keys(json),
+      ElementsAre("mission", "seed", "complete", "incomplete_reason", "flight_computer", "flight_software", "camera",
+                  "gnss", "navigation", "simulated_s", "wall_s", "speed_factor", "waypoints", "navigation_error_m",
+                  "navigation_velocity_error_mps", "attitude_error_deg", "dv_mps", "maneuvers", "commands_sha256",
+                  "telemetry_sha256", "flight_step", "link", "deadlines", "wall_share"));
+  EXPECT_THAT(keys(json.at("waypoints").at(3)),
+              ElementsAre("index", "time_s", "navigation_error_m", "navigation_velocity_error_mps", "control_error_m",
+                          "leg_dv_mps", "cumulative_dv_mps", "leg_maneuvers"));
+  EXPECT_THAT(keys(json.at("flight_step")), ElementsAre("count", "unit", "max", "mean", "stack_bytes_max"));
+  EXPECT_THAT(keys(json.at("link")),
+              ElementsAre("bytes", "frames_resent", "frames_rejected", "frames_duplicated", "strangers_ignored"));
+  EXPECT_THAT(keys(json.at("deadlines")), ElementsAre("compute_overruns", "wakeups_late", "link_late"));
+  EXPECT_TRUE(json.at("camera").is_null());
+  EXPECT_TRUE(json.at("incomplete_reason").is_null());
+  EXPECT_TRUE(json.at("attitude_error_deg").at("mean").is_null());
+  EXPECT_TRUE(json.at("waypoints").at(0).at("navigation_error_m").is_null());
+  EXPECT_EQ(json.at("seed").get<std::uint64_t>(), 18446744073709551615ULL);
+}
+
+TEST_F(RunFolderTest, SaysIncompleteUntilFinished) {
+  Summary start;
+  start.mission = "experiment3";
+  start.complete = true;
+  const RunFolder folder(run(), start);
+  const Json json = Json::parse(content(run() / "summary.json"));
+  EXPECT_EQ(json.at("mission"), "experiment3");
+  EXPECT_EQ(json.at("complete"), false);
+  EXPECT_EQ(json.at("incomplete_reason"), "running");
+  EXPECT_THAT(error_of_reading(), AllOf(HasSubstr(run().string()), HasSubstr("did not end"), HasSubstr("running")));
+}
+
+TEST_F(RunFolderTest, AStoppedRunIsReadWithItsReason) {
+  RunRecord record = synthetic_run();
+  record.summary.complete = false;
+  record.summary.incomplete_reason = "interrupted";
+  RunFolder(run(), record.summary).finish(record);
+  EXPECT_TRUE(read_run(run()) == record);
+}
+
+TEST_F(RunFolderTest, ReplacesAnEarlierRunButNotWhatIsNotItsOwn) {
+  leave_a_run();
+  write(packet_log_file(run()), "old");
+  write(report_file(run()), "old");
+  write(run() / "notes.txt", "mine");
+  const RunFolder folder(run(), {});
+  EXPECT_FALSE(fs::exists(run() / "truth.csv"));
+  EXPECT_FALSE(fs::exists(folder.packet_log()));
+  EXPECT_FALSE(fs::exists(report_file(run())));
+  EXPECT_EQ(content(run() / "notes.txt"), "mine");
+}
+
+TEST_F(RunFolderTest, TakesAnEmptyFolder) {
+  fs::create_directories(run());
+  EXPECT_EQ(error_of_making(run()), "no error");
+}
+
+TEST_F(RunFolderTest, LeavesForeignFoldersAlone) {
+  fs::create_directories(run());
+  write(run() / "thesis.tex", "years of work");
+  EXPECT_THAT(error_of_making(run()), AllOf(HasSubstr(run().string()), HasSubstr("other than a run")));
+  write(run() / "summary.json", R"({"name": "something else"})");
+  EXPECT_THAT(error_of_making(run()), HasSubstr("other than a run"));
+  write(run() / "summary.json", "not even JSON");
+  EXPECT_THAT(error_of_making(run()), HasSubstr("other than a run"));
+  EXPECT_EQ(content(run() / "thesis.tex"), "years of work");
+}
+
+TEST_F(RunFolderTest, NamesWhatStandsInTheWay) {
+  write(scratch_ / "file", "");
+  EXPECT_THAT(error_of_making(scratch_ / "file"), AllOf(HasSubstr("file"), HasSubstr("is a file")));
+  EXPECT_THAT(error_of_making(scratch_ / "file" / "below"), HasSubstr("cannot be made"));
+}
+
+TEST_F(RunFolderTest, AFailureToWriteNamesTheFile) {
+  const RunFolder folder(run(), {});
+  fs::remove_all(run());
+  try {
+    folder.finish({});
+    FAIL() << "written into a folder that is gone";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("waypoints.csv"), HasSubstr("cannot be written")));
+  }
+}
+
+TEST_F(RunFolderTest, NumbersThatAreNoneBecomeEmptyAndNull) {
+  RunRecord record;
+  record.summary.dv_mps = std::numeric_limits<double>::quiet_NaN();
+  record.waypoints.emplace_back().control_error_m = std::numeric_limits<double>::infinity();
+  RunFolder(run(), {}).finish(record);
+  EXPECT_TRUE(Json::parse(content(run() / "summary.json")).at("dv_mps").is_null());
+  EXPECT_THAT(content(run() / "waypoints.csv"), testing::Not(HasSubstr("inf")));
+  const RunRecord back = read_run(run());
+  EXPECT_TRUE(std::isnan(back.summary.dv_mps));
+  EXPECT_TRUE(std::isnan(back.waypoints.front().control_error_m));
+}
+
+TEST_F(RunFolderTest, DamagedFoldersAreRefusedWithFileAndLine) {
+  const std::string residuals = "time_s,sensor,prefit,postfit,sigma\n";
+  const std::pair<std::string, std::string> damages[] = {
+      {"", "residuals.csv:1: the file is empty"},
+      {"time_s,sensor,prefit,postfit\n", "residuals.csv:1: column \"sigma\" is missing"},
+      {"time_s,sensor,prefit,sigma,postfit\n", "residuals.csv:1: column 4 is \"sigma\", expected \"postfit\""},
+      {"time_s,sensor,prefit,postfit,sigma,more\n", "residuals.csv:1: column \"more\" is unknown"},
+      {residuals + "1,camera,2,3,4\n5,camera,6,x,8\n", "residuals.csv:3: postfit is \"x\""},
+      {residuals + "1,camera,2,3,4\n5,cam", "residuals.csv:3: 2 cells, expected 5"},
+      {residuals + "1,\"camera,2,3,4\n", "residuals.csv:2: a quote is not closed"},
+      {residuals + "1,camera,2,3,4\n\n", "residuals.csv:3: 1 cells, expected 5"},
+  };
+  leave_a_run();
+  for (const auto& [text, expected] : damages) {
+    write(run() / "residuals.csv", text);
+    EXPECT_THAT(error_of_reading(), HasSubstr(run().string() + "/" + expected)) << text;
+  }
+  fs::remove(run() / "residuals.csv");
+  EXPECT_THAT(error_of_reading(), HasSubstr("residuals.csv: no such file"));
+}
+
+TEST_F(RunFolderTest, DamagedSummariesAreRefused) {
+  EXPECT_THAT(error_of_reading(), AllOf(HasSubstr(run().string()), HasSubstr("no such run folder")));
+  leave_a_run();
+  const std::string good = content(run() / "summary.json");
+  write(run() / "summary.json", good.substr(0, good.size() / 2));
+  EXPECT_THAT(error_of_reading(), AllOf(HasSubstr("summary.json"), HasSubstr("line")));
+  Json json = Json::parse(good);
+  json.erase("telemetry_sha256");
+  write(run() / "summary.json", json.dump());
+  EXPECT_THAT(error_of_reading(), AllOf(HasSubstr("summary.json"), HasSubstr("telemetry_sha256")));
+  json = Json::parse(good);
+  json["maneuvers"] = "many";
+  write(run() / "summary.json", json.dump());
+  EXPECT_THAT(error_of_reading(), AllOf(HasSubstr("summary.json"), HasSubstr("number")));
+  fs::remove(run() / "summary.json");
+  EXPECT_THAT(error_of_reading(), HasSubstr("summary.json: no such file"));
+}
+
+}  // namespace
+}  // namespace vbar::report::test

@@ -1,0 +1,182 @@
+#include "tests/unit/host_sim/report/synthetic_run.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace vbar::report::test {
+namespace {
+
+struct PaperWaypoint {
+  double time_h;
+  Sextuple a_roe_m;
+};
+
+// The paper's table "End-to-end Mission ROE Waypoints".
+constexpr PaperWaypoint kWaypoints[] = {
+    {0.0, {-2000.0, -75000.0, 0.0, 0.0, 0.0, 0.0}},    {6.0, {-87.0, -50000.0, 0.0, 1000.0, 0.0, 1000.0}},
+    {12.0, {-70.0, -25000.0, 0.0, 500.0, 0.0, 500.0}}, {18.0, {-17.0, -5000.0, 0.0, 500.0, 0.0, 500.0}},
+    {24.0, {0.0, -1000.0, 0.0, 30.0, 0.0, 30.0}},      {28.0, {0.0, -600.0, 0.0, 18.0, 0.0, 18.0}},
+    {32.0, {0.0, -200.0, 0.0, 6.0, 0.0, 6.0}},         {36.0, {0.0, -100.0, 0.0, 3.0, 0.0, 3.0}},
+    {39.0, {-0.5, -10.0, 0.0, 2.0, 0.0, 1.0}},         {40.0, {0.0, -7.0, 1.0, 0.0, 2.0, 0.0}},
+    {41.25, {0.0, -8.5, 1.0, 0.0, 1.0, 0.0}}};
+constexpr int kLast = 10;
+
+constexpr double kMeanMotion_radps = 1.0602e-3;
+
+int leg_of(double time_h) {
+  int leg = 1;
+  while (leg < kLast && time_h >= kWaypoints[leg].time_h) ++leg;
+  return leg;
+}
+
+Sextuple roe_at(double time_h) {
+  const int leg = leg_of(time_h);
+  const PaperWaypoint& from = kWaypoints[leg - 1];
+  const PaperWaypoint& to = kWaypoints[leg];
+  const double fraction = (time_h - from.time_h) / (to.time_h - from.time_h);
+  Sextuple roe{};
+  for (std::size_t k = 0; k < 6; ++k) roe[k] = from.a_roe_m[k] + fraction * (to.a_roe_m[k] - from.a_roe_m[k]);
+  return roe;
+}
+
+// D'Amico's first-order map from ROE to RTN about a circular orbit.
+Triple rtn_of(const Sextuple& roe, double time_s) {
+  const double c = std::cos(kMeanMotion_radps * time_s);
+  const double s = std::sin(kMeanMotion_radps * time_s);
+  return {roe[0] - roe[2] * c - roe[3] * s, roe[1] + 2.0 * (roe[2] * s - roe[3] * c), roe[4] * s - roe[5] * c};
+}
+
+double norm(const Triple& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+/// Something between -1 and 1 that looks like noise.
+double wobble(double time_s, double salt) {
+  return std::sin(12.9898 * time_s + 78.233 * salt);
+}
+
+TruthRow truth_at(double time_s) {
+  TruthRow row;
+  row.time_s = time_s;
+  const double angle = kMeanMotion_radps * time_s;
+  row.servicer_position_eci = {7078e3 * std::cos(angle), 0.0, 7078e3 * std::sin(angle)};
+  row.servicer_velocity_eci = {-7504.0 * std::sin(angle), 0.1, 7504.0 * std::cos(angle)};
+  row.target_position_eci = row.servicer_position_eci;
+  row.target_velocity_eci = row.servicer_velocity_eci;
+  row.a_roe_mean_m = roe_at(time_s / 3600.0);
+  row.relative_position_rtn = rtn_of(row.a_roe_mean_m, time_s);
+  row.relative_velocity_rtn = {1e-3 * wobble(time_s, 1.0), -0.1, 1e-300};
+  return row;
+}
+
+EstimateRow estimate_of(const TruthRow& truth, std::int64_t step) {
+  EstimateRow row;
+  row.time_s = truth.time_s;
+  row.step = step;
+  row.navigation_source = 2;
+  row.navigation_valid = step % 97 == 0 ? 0 : 1;
+  const double sigma = 1e-3 * norm(truth.relative_position_rtn);
+  for (std::size_t k = 0; k < 3; ++k) {
+    row.relative_position_rtn[k] =
+        truth.relative_position_rtn[k] + sigma * wobble(truth.time_s, static_cast<double>(k));
+    row.relative_velocity_rtn[k] = truth.relative_velocity_rtn[k] + 1e-4 * wobble(truth.time_s, 7.0);
+    row.sigma_rtn[k] = sigma;
+    row.sigma_rtn[k + 3] = 1e-4;
+  }
+  const int leg = leg_of(truth.time_s / 3600.0);
+  row.a_roe_mean_m = truth.a_roe_mean_m;
+  row.a_roe_desired_m = kWaypoints[leg].a_roe_m;
+  row.predicted_a_roe_error_m = {0.1, -0.2, 0.3, -0.4, 0.5, -0.0};
+  row.mode = step < 3 ? 0 : 1;
+  row.active_solver = leg <= 7 ? 0 : 1;
+  row.waypoint_index = leg;
+  row.planned_burns = 3;
+  row.koenig_damico_status = step > 2300 && step < 2320 ? 4 : 0;
+  row.least_squares_status = 13;
+  row.safety_status = step == 1000 ? 12 : 0;
+  row.planned_dv_mps = 0.1;
+  row.passive_safety_distance_m = 0.3 * norm(truth.relative_position_rtn);
+  row.commanded_dv_mps = 1e-5 * truth.time_s;
+  row.step_cost = 150000 + static_cast<std::uint64_t>(100000.0 * (1.0 + wobble(truth.time_s, 3.0)));
+  row.stack_bytes = 21000;
+  return row;
+}
+
+void add_waypoints(RunRecord& record) {
+  double cumulative = 0.0;
+  for (int k = 0; k <= kLast; ++k) {
+    WaypointRow row;
+    row.index = k;
+    row.time_s = 3600.0 * kWaypoints[k].time_h;
+    row.a_roe_desired_m = kWaypoints[k].a_roe_m;
+    row.a_roe_actual_m = kWaypoints[k].a_roe_m;
+    row.desired_position_rtn = rtn_of(row.a_roe_desired_m, row.time_s);
+    row.actual_position_rtn = row.desired_position_rtn;
+    row.control_error_m = 0.1 * k;
+    if (k > 0) row.navigation_error_m = 1.0 / (1.0 + k);
+    if (k > 1) row.navigation_velocity_error_mps = 1e-4 / k;
+    row.leg_dv_mps = k > 0 ? 1.0 / (k * k) : 0.0;
+    cumulative += row.leg_dv_mps;
+    row.cumulative_dv_mps = cumulative;
+    row.leg_maneuvers = k > 0 ? 4 : 0;
+    record.waypoints.push_back(row);
+  }
+}
+
+void add_maneuvers(RunRecord& record) {
+  for (int id = 1; id <= 40; ++id) {
+    ManeuverRow row;
+    row.maneuver_id = id;
+    row.waypoint_index = 1 + (id - 1) / 4;
+    row.solver = row.waypoint_index <= 7 ? 0 : 1;
+    row.execution_time_s = 3600.0 * (kWaypoints[row.waypoint_index - 1].time_h + 0.2 * ((id - 1) % 4));
+    row.command_time_s = row.execution_time_s - 60.0;
+    row.accepted = id != 17;
+    row.commanded_dv_rtn_mps = {0.0, 1.0 / (id * id), -0.3 / id};
+    if (row.accepted) row.executed_dv_rtn_mps = row.commanded_dv_rtn_mps;
+    record.maneuvers.push_back(row);
+  }
+}
+
+Summary summary() {
+  Summary s;
+  s.mission = "synthetic";
+  s.seed = 18446744073709551615ULL;
+  s.complete = true;
+  s.flight_computer = "zynq_qemu";
+  s.flight_software = "<a \"test\" & nothing else>";
+  s.navigation = "ideal";
+  s.simulated_s = 148500.0;
+  s.wall_s = 52.36;
+  s.speed_factor = s.simulated_s / s.wall_s;
+  s.navigation_error_m = MeanAndDeviation{0.0087, 0.0032};
+  s.navigation_velocity_error_mps = MeanAndDeviation{2.4e-5, 1.1e-5};
+  s.dv_mps = 3.8345;
+  s.maneuvers = 39;
+  s.commands_sha256 = std::string(64, 'a');
+  s.telemetry_sha256 = std::string(64, 'b');
+  s.flight_step = {.count = 2476, .max = 350000, .mean = 250000.5, .unit = "instructions", .stack_bytes_max = 21000};
+  s.link = {2135034, 3, 2, 1, 4};
+  s.deadlines = {5, 6, 7};
+  s.wall_share = {0.12, 52.0, 0.1, 0.14};
+  return s;
+}
+
+}  // namespace
+
+RunRecord synthetic_run() {
+  RunRecord record;
+  record.summary = summary();
+  for (std::int64_t step = 0; step <= 2475; ++step) {
+    record.truth.push_back(truth_at(60.0 * static_cast<double>(step)));
+    record.estimates.push_back(estimate_of(record.truth.back(), step));
+    const double t = record.truth.back().time_s;
+    if (step % 10 == 0) record.residuals.push_back({t, "camera, \"left\"", wobble(t, 5.0), 0.5 * wobble(t, 5.0), 0.4});
+    if (step % 15 == 0) record.residuals.push_back({t, "gnss", 2.0 * wobble(t, 6.0), wobble(t, 6.0), 0.9});
+  }
+  add_waypoints(record);
+  add_maneuvers(record);
+  return record;
+}
+
+}  // namespace vbar::report::test
