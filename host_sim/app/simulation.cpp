@@ -263,7 +263,8 @@ void Simulation::summarise(double wall_s, bool complete) {
   summary.link = {link.bytes_sent + link.bytes_received, link.frames_resent, link.frames_rejected,
                   link.frames_duplicated, link.strangers_ignored};
   const engine::DeadlineReport& deadlines = clock_.report();
-  summary.deadlines = {deadlines.step_late.count, deadlines.woke_late.count, deadlines.link_late.count};
+  summary.deadlines = {deadlines.step_late.count, deadlines.woke_late.count, deadlines.link_late.count,
+                       deadlines.simulation_late.count};
   summary.wall_share.truth_s = truth_.statistics().wall_s;
   summary.wall_share.flight_s = flight_compute_s_;
   summary.wall_share.link_s = link_s_;

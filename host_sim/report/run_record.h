@@ -98,7 +98,7 @@ struct Summary {
     friend bool operator==(const Link&, const Link&) = default;
   } link;
   struct Deadlines {
-    std::uint64_t compute_overruns = 0, wakeups_late = 0, link_late = 0;
+    std::uint64_t compute_overruns = 0, wakeups_late = 0, link_late = 0, simulation_late = 0;
     friend bool operator==(const Deadlines&, const Deadlines&) = default;
   } deadlines;
   struct WallShare {

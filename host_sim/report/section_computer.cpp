@@ -50,6 +50,7 @@ std::string computer_section(const RunRecord& record) {
       {"steps late", grouped(s.deadlines.compute_overruns)},
       {"wake-ups late", grouped(s.deadlines.wakeups_late)},
       {"link late", grouped(s.deadlines.link_late)},
+      {"simulation late", grouped(s.deadlines.simulation_late)},
       {"wall clock: truth", share(s.wall_share.truth_s, s.wall_s)},
       {"wall clock: flight computer", share(s.wall_share.flight_s, s.wall_s)},
       {"wall clock: link", share(s.wall_share.link_s, s.wall_s)},

@@ -91,6 +91,7 @@ Summary summary_from(const Json& json) {
   deadlines.at("compute_overruns").get_to(s.deadlines.compute_overruns);
   deadlines.at("wakeups_late").get_to(s.deadlines.wakeups_late);
   deadlines.at("link_late").get_to(s.deadlines.link_late);
+  deadlines.at("simulation_late").get_to(s.deadlines.simulation_late);
 
   const Json& share = json.at("wall_share");
   s.wall_share.truth_s = number(share.at("truth_s"));
@@ -141,7 +142,8 @@ std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypo
       {"deadlines",
        {{"compute_overruns", s.deadlines.compute_overruns},
         {"wakeups_late", s.deadlines.wakeups_late},
-        {"link_late", s.deadlines.link_late}}},
+        {"link_late", s.deadlines.link_late},
+        {"simulation_late", s.deadlines.simulation_late}}},
       {"wall_share",
        {{"truth_s", s.wall_share.truth_s},
         {"flight_s", s.wall_share.flight_s},
