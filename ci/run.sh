@@ -4,7 +4,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ci/install.sh
-ci/build.sh host zynq
+cmake --preset host --log-level=WARNING
+cmake --build --preset host --parallel --target vbar
+ci/build.sh zynq
 vbar=build/host/vbar
 "$vbar" run missions/ideal_navigation.toml --out runs/ideal_navigation-sil
 "$vbar" run missions/ideal_navigation.toml --set flight_computer.target=zynq_qemu --out runs/ideal_navigation-pil
