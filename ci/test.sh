@@ -11,10 +11,11 @@ ci/install.sh
 say "build for this computer, for the bare Zynq and for Linux on the Zynq"
 ci/build.sh host zynq zynq-linux
 say "tests"
+tests/peers/wire_formats/install_npm.sh
 ctest --preset host --parallel 2
 say "unit tests under the address and undefined-behaviour sanitizers"
 ci/build.sh asan
-ctest --preset asan --parallel 2 --label-exclude "integration|peer|slow"
+ctest --preset asan --parallel 2 --label-exclude "integration|peer"
 say "flight code with the second compiler, all warnings errors"
 cmake --preset host-clang --log-level=WARNING
 cmake --build --preset host-clang --parallel --target flight_code

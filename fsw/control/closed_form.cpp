@@ -245,12 +245,24 @@ Result<DeputyBurns> arranged(const Model& model, Solution solution, Arrangement 
   return Status::kDidNotConverge;
 }
 
+Burn* burn_at(Plan& plan, GpsTime time) {
+  for (std::size_t k = 0; k < plan.count; ++k) {
+    if (plan.burns[k].time == time) return &plan.burns[k];
+  }
+  return nullptr;
+}
+
+// In order of time; burns of the same instant are one.
 Plan servicer_plan(const Model& model, const DeputyBurns& burns) {
   Plan plan;
   plan.solver = Solver::kClosedForm;
   for (std::size_t k = 0; k < burns.count; ++k) {
-    std::size_t slot = plan.count++;
     const Burn burn{model.problem.start + nearest_duration(burns.offsets[k]), -burns.dv[k]};
+    if (Burn* same = burn_at(plan, burn.time)) {
+      same->dv_rtn += burn.dv_rtn;
+      continue;
+    }
+    std::size_t slot = plan.count++;
     for (; slot > 0 && burn.time < plan.burns[slot - 1].time; --slot) plan.burns[slot] = plan.burns[slot - 1];
     plan.burns[slot] = burn;
   }

@@ -10,6 +10,7 @@ namespace vbar::fsw::control {
 namespace {
 
 constexpr std::size_t kCoarseTimes = 12;
+static_assert(3 * kCoarseTimes <= kMaxActive);
 constexpr std::size_t kMaxAdded = 10;  ///< impulses that join the active set at once
 constexpr double kMinPivot = 1e-9;     ///< of the equilibrated gramian; windows under about 0.1 s fall below
 constexpr double kMinSpan = 1e-3;      ///< pivot of the active effects' gramian below which none is dropped
@@ -104,8 +105,9 @@ void insert_peak(const Violation& peak, GridScan& scan) {
   scan.peaks[place] = peak;
 }
 
-/// Peaks above `threshold_squared`; the ends of the grid count. A value that is not finite makes largest_squared so.
-GridScan scan_grid(const ImpulseGrid& grid, const Vector6& lambda, double threshold_squared) {
+/// The ends of the grid count as peaks, a plateau by its last time. A value that is not finite makes largest_squared
+/// so.
+GridScan scan_grid(const ImpulseGrid& grid, const Vector6& lambda) {
   GridScan scan;
   Violation last;
   bool rising = true;
@@ -116,13 +118,13 @@ GridScan scan_grid(const ImpulseGrid& grid, const Vector6& lambda, double thresh
     if (here.contact.squared > last.contact.squared) {
       rising = true;
     } else if (here.contact.squared < last.contact.squared) {
-      if (rising && last.contact.squared > threshold_squared) insert_peak(last, scan);
+      if (rising && last.contact.squared > 1.0) insert_peak(last, scan);
       rising = false;
     }
     scan.largest_squared = std::max(scan.largest_squared, here.contact.squared);
     last = here;
   }
-  if (rising && last.contact.squared > threshold_squared) insert_peak(last, scan);
+  if (rising && last.contact.squared > 1.0) insert_peak(last, scan);
   if (!math::is_finite(sum)) scan.largest_squared = sum;
   return scan;
 }
@@ -176,7 +178,7 @@ void start_program(const ImpulseGrid& grid, const Scaling& scaling, const Vector
   });
 }
 
-/// The program's impulses in order of time, in the caller's units, those of one time as one.
+/// The program's impulses in order of time, in the caller's units, those of one time as one; their cost and residual.
 void store_impulses(const ImpulseGrid& grid, const PrimerProgram& program, double unit, PrimerSolution& solution) {
   for (std::size_t k = 0; k < program.count; ++k) {
     const ActiveImpulse& impulse = program.active[k];
@@ -191,6 +193,7 @@ void store_impulses(const ImpulseGrid& grid, const PrimerProgram& program, doubl
     }
     solution.impulses[place].dv += unit * impulse.dv;
   }
+  solution.residual = impulse_residual(program);
   for (std::size_t k = 0; k < solution.count; ++k) {
     solution.cost += impulse_cost(grid.costs[solution.impulses[k].time_index], solution.impulses[k].dv);
   }
@@ -220,18 +223,17 @@ Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& targ
         solve_primer_program(program, kGapShare * settings.cost_tolerance, settings.max_newton_steps);
     solution.newton_steps += end.steps;
     solution.rounds = round;
-    if (end.status != Status::kOk) return end.status;
+    if (end.status != Status::kOk) return Status::kDidNotConverge;
 
     solution.lambda = scaling.from_state.transpose() * program.lambda;
-    const GridScan scan = scan_grid(grid, solution.lambda, 1.0);
+    const GridScan scan = scan_grid(grid, solution.lambda);
     if (!math::is_finite(scan.largest_squared)) return Status::kNotFinite;
     const double largest = math::sqrt(scan.largest_squared);
     if (largest <= 1.0 + settings.cost_tolerance) {
-      solution.lambda /= std::max(1.0, largest);
+      solution.lambda /= std::max(1.0, largest);  // now feasible at every time
       solution.lower_bound = target.dot(solution.lambda);
-      extract_impulses(program, settings.prune_ratio,
-                       (1.0 + settings.cost_tolerance) * solution.lower_bound / scaling.target_norm);
-      solution.residual = impulse_residual(program);
+      const double cost_limit = (1.0 + settings.cost_tolerance) * solution.lower_bound / scaling.target_norm;
+      extract_impulses(program, settings.prune_ratio, cost_limit);
       store_impulses(grid, program, scaling.target_norm, solution);
       return solution.residual <= kMaxResidual ? Result<PrimerSolution>(solution) : Status::kDidNotConverge;
     }
@@ -241,7 +243,7 @@ Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& targ
     least_bound = std::min(least_bound, bound);
     add_peaks(grid, scaling, scan, program);
     const Status restarted = restart_primer_program(program);
-    if (restarted != Status::kOk) return restarted;
+    if (restarted != Status::kOk) return Status::kDidNotConverge;
   }
   return Status::kDidNotConverge;
 }

@@ -54,7 +54,7 @@ struct PrimerSolution {
   int newton_steps = 0;              ///< over all rounds
 };
 
-/// Scratch of the solver, about 16 kB.
+/// Scratch of the solver, about 18 kB.
 struct PrimerWorkspace {
   PrimerProgram program;
 };

@@ -10,9 +10,9 @@ namespace vbar::fsw::control {
 namespace {
 
 constexpr std::size_t kDimension = 6;
-constexpr double kRegularisation = 1e-14;
-constexpr int kPasses = 3;
-constexpr double kExact = 1e-13;  ///< residual that rounding leaves with |target| = 1
+constexpr double kRegularisation = 1e-14;  ///< of the trace of the weighted gramian
+constexpr int kPasses = 3;                 ///< of iterative refinement
+constexpr double kExact = 1e-13;           ///< residual that rounding leaves with |target| = 1
 
 /// A subset of the program's impulses with new values.
 struct Selection {
@@ -191,8 +191,8 @@ bool are_neighbours(const ActiveImpulse& a, const ActiveImpulse& b) {
   return distance == 1 && a.axes == b.axes;
 }
 
-/// The optimum of a continuous time between two grid points shows as a pair of impulses there.
-void join_neighbours(const PrimerProgram& program, double cost_limit, Selection& selection) {
+/// Adds one impulse to a larger neighbour, if that is accepted.
+bool join_one_pair(const PrimerProgram& program, double cost_limit, Selection& selection) {
   for (std::size_t a = 0; a < selection.count; ++a) {
     for (std::size_t b = 0; b < selection.count; ++b) {
       if (!are_neighbours(program.active[selection.index[a]], program.active[selection.index[b]])) continue;
@@ -200,12 +200,10 @@ void join_neighbours(const PrimerProgram& program, double cost_limit, Selection&
       Selection candidate = selection;
       candidate.dv[a] += candidate.dv[b];
       remove(candidate, b);
-      if (accept(program, candidate, cost_limit, selection)) {
-        a = b < a ? a - 1 : a;
-        break;
-      }
+      if (accept(program, candidate, cost_limit, selection)) return true;
     }
   }
+  return false;
 }
 
 void store(const Selection& selection, PrimerProgram& program) {
@@ -225,7 +223,9 @@ void extract_impulses(PrimerProgram& program, double prune_ratio, double cost_li
   while (selection.count > kDimension) eliminate_one(program, selection);
 
   prune_small(program, prune_ratio, cost_limit, selection);
-  join_neighbours(program, cost_limit, selection);
+  // The optimum of a continuous time between two grid points shows as a pair of impulses there.
+  while (join_one_pair(program, cost_limit, selection)) {
+  }
   polish(program, selection);
   store(selection, program);
 }

@@ -61,12 +61,12 @@ struct PrimerProgramEnd {
   int steps = 0;  ///< Newton steps taken
 };
 
-/// Starts from scratch: lambda strictly inside, multipliers strictly inside their cones and meeting w = sum G u as well
-/// as the active effects allow. kSingular if the active effects do not span the state space.
+/// Starts from scratch: lambda strictly inside, multipliers strictly inside their cones and meeting w = sum G u.
+/// kSingular if the active effects do not span the state space.
 Status start_primer_program(PrimerProgram& program);
 
 /// Starts from the present lambda after the active set has changed: lambda is shrunk to the interior, the multipliers
-/// are put on the central path, as if lambda were on it.
+/// are put near the central path, as if lambda were on it, meeting w = sum G u. kSingular as above.
 Status restart_primer_program(PrimerProgram& program);
 
 /// Improves the present point until the duality gap is below `relative_gap` of the cost and w - sum G u below the same

@@ -10,21 +10,33 @@ namespace {
 using vbar::fsw::Status;
 using vbar::fsw::gnc::Gnc;
 
-vbar_status as_c(Status status) { return static_cast<vbar_status>(status); }
+vbar_status as_c(Status status) {
+  return static_cast<vbar_status>(status);
+}
 
-bool is_aligned(const void* state) { return reinterpret_cast<std::uintptr_t>(state) % alignof(Gnc) == 0; }
+bool is_aligned(const void* state) {
+  return reinterpret_cast<std::uintptr_t>(state) % alignof(Gnc) == 0;
+}
 
 }  // namespace
 
 extern "C" {
 
-int32_t vbar_gnc_abi_version(void) { return VBAR_GNC_ABI_VERSION; }
+int32_t vbar_gnc_abi_version(void) {
+  return VBAR_GNC_ABI_VERSION;
+}
 
-const char* vbar_gnc_name(void) { return "vbar GNC 0.1.0"; }
+const char* vbar_gnc_name(void) {
+  return "vbar GNC 0.1.0";
+}
 
-size_t vbar_gnc_state_size(void) { return sizeof(Gnc); }
+size_t vbar_gnc_state_size(void) {
+  return sizeof(Gnc);
+}
 
-size_t vbar_gnc_state_alignment(void) { return alignof(Gnc); }
+size_t vbar_gnc_state_alignment(void) {
+  return alignof(Gnc);
+}
 
 vbar_status vbar_gnc_init(void* state, uint8_t spacecraft, vbar_packet_sink sink, void* sink_context) {
   if (state == nullptr || sink == nullptr || !is_aligned(state)) return as_c(Status::kInvalidArgument);

@@ -51,7 +51,9 @@ void Gnc::navigate() {
   if (state.valid && seconds(now_ - state.last_measurement) > timeout) faults_ |= kFaultNavigationTimeout;
 }
 
-void Gnc::assess() { guidance_.assess(now_, navigation_, management_); }
+void Gnc::assess() {
+  guidance_.assess(now_, navigation_, management_);
+}
 
 void Gnc::control() {
   guidance_.update(now_, inbox_.step_period(), navigation_, management_);

@@ -19,7 +19,7 @@ enum Fault : std::int32_t {
   kFaultNavigationTimeout = 1 << 0,  ///< no measurement for longer than navigation_timeout_s
   kFaultHold = 1 << 1,               ///< no solver gave a plan that may be flown
   kFaultInboxFull = 1 << 2,          ///< a packet was dropped because its queue was full
-  kFaultClock = 1 << 3,              ///< a step was asked for at or before the last step's time, or outside the clock's range
+  kFaultClock = 1 << 3,  ///< a step was asked for at or before the last step's time, or outside the clock's range
 };
 
 class Gnc {

@@ -13,18 +13,23 @@ namespace {
 using control::Plan;
 using control::Solver;
 
-/// The solvers that plan a leg from scratch, best first. (The closed form is asked by the policy of its legs, leg.h.) Least
-/// squares always gives something, if not the cheapest.
+/// The solvers that plan a leg from scratch, best first. (The closed form is asked by the policy of its legs, leg.h.)
+/// Least squares always gives something, if not the cheapest.
 struct Ladder {
   std::array<Solver, 2> solvers;
   std::size_t count;
 };
 
 Ladder ladder_of(const Waypoint& goal, bool estimate_too_coarse) {
-  const bool least_squares_only = estimate_too_coarse || static_cast<Solver>(goal.control_mode) == Solver::kLeastSquares;
+  const bool least_squares_only =
+      estimate_too_coarse || static_cast<Solver>(goal.control_mode) == Solver::kLeastSquares;
   if (least_squares_only) return {{Solver::kLeastSquares}, 1};
   return {{Solver::kKoenigDamico, Solver::kLeastSquares}, 2};
 }
+
+/// Where the fuel-optimal solver plans, planning anew costs computing only. Correcting a plan whose burn was missed can
+/// cost twice what a new plan does: a correction so much dearer than the plan gives way to one.
+constexpr double kDearCorrection = 1.1;
 
 bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
   for (const control::Burn& burn : plan.all()) {
@@ -33,10 +38,13 @@ bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
   return true;
 }
 
-bool is_safe(const Result<safety::PlanSafety>& verdict) { return verdict.ok() && verdict.value().safe; }
+bool is_safe(const Result<safety::PlanSafety>& verdict) {
+  return verdict.ok() && verdict.value().safe;
+}
 
 /// How far the estimate may be off: three sigma of position, and of the drift along track that da leaves open.
-safety::PositionBound three_sigma(const Vector6& sigma_rtn, double sigma_a_da_m, const orbit::QnsElements& servicer_mean) {
+safety::PositionBound three_sigma(const Vector6& sigma_rtn, double sigma_a_da_m,
+                                  const orbit::QnsElements& servicer_mean) {
   safety::PositionBound bound;
   bound.radial_normal = 3.0 * math::hypot(sigma_rtn(0), sigma_rtn(2));
   bound.along_track = 3.0 * sigma_rtn(1);
@@ -115,12 +123,18 @@ bool Guidance::select_goal(GpsTime now, const Management& management) {
   Waypoint stay;
   switch (management.mode()) {
     case Mode::kIdle:
-    case Mode::kHold: return false;
-    case Mode::kApproach: wanted = management.next_waypoint(); break;
+    case Mode::kHold:
+      return false;
+    case Mode::kApproach:
+      wanted = management.next_waypoint();
+      break;
     case Mode::kStationKeeping: {
       const Waypoint* last = management.last_waypoint();
       if (last == nullptr) return false;
-      if (has_goal_ && goal_.index == last->index && goal_.time > now) return true;  // a correction under way
+      if (has_goal_ && goal_.index == last->index && goal_.time > now) {  // a correction under way
+        report_.waypoint_index = goal_.index;
+        return true;
+      }
       const gnc_configuration& configuration = management.configuration();
       const Vector6 error_m = management.reference_semi_major_axis() * (report_.roe - last->roe);
       if (error_m.norm() <= configuration.station_keeping_deadband_m) return false;
@@ -146,7 +160,8 @@ bool Guidance::select_goal(GpsTime now, const Management& management) {
 bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configuration) {
   if (now < next_decision_) return false;
   const bool closed_form = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
-  next_decision_ = now + Duration{closed_form ? configuration.closed_form_period_ns : configuration.koenig_damico_period_ns};
+  next_decision_ =
+      now + Duration{closed_form ? configuration.closed_form_period_ns : configuration.koenig_damico_period_ns};
   return true;
 }
 
@@ -154,17 +169,19 @@ void Guidance::decide(const gnc_configuration& configuration) {
   if (goal_.time <= earliest_burn_) return;  // nothing can be done about this waypoint any more
   const double sigma_m = orbits_.servicer.a * sigma_roe_.maxCoeff();
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 && sigma_m > configuration.roe_error_threshold_m;
-  if (!too_coarse && stays_on_plan(configuration)) return;
+  if (stays_on_plan(configuration, too_coarse)) return;
   if (climbs_ladder(configuration, too_coarse)) return;
   plan_ = {};
   report_.active_solver = Solver::kNone;
   ++report_.holds;
 }
 
-/// Keeps or corrects the plan, or lets the closed form make it, as the leg's policy says.
-bool Guidance::stays_on_plan(const gnc_configuration& configuration) {
+/// Keeps or corrects the plan, or lets the closed form make it, as the leg's policy says. While the estimate is too
+/// coarse only what least squares planned stays.
+bool Guidance::stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse) {
+  if (estimate_too_coarse && report_.active_solver != Solver::kLeastSquares) return false;
   const control::LegSituation situation = leg_situation();
-  const bool closed_form = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
+  const bool closed_form = !estimate_too_coarse && static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
   const Result<control::LegDecision> decision =
       closed_form ? control::decide_leg(situation, plan_, leg_policy(configuration))
                   : control::keep_or_correct(situation, plan_, leg_policy(configuration));
@@ -175,16 +192,19 @@ bool Guidance::stays_on_plan(const gnc_configuration& configuration) {
     return false;
   }
   if (decided.action == control::LegAction::kReplan) report_.closed_form = decided.closed_form;
+  const bool is_dear = decided.plan.total_dv() > kDearCorrection * plan_.total_dv();
+  if (!closed_form && decided.action == control::LegAction::kCorrect && is_dear) return false;
   return adopt_if_flyable(decided.plan, configuration);
 }
 
 bool Guidance::climbs_ladder(const gnc_configuration& configuration, bool estimate_too_coarse) {
   const Ladder ladder = ladder_of(goal_, estimate_too_coarse);
+  const bool below_closed_form = !estimate_too_coarse && static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
   for (std::size_t k = 0; k < ladder.count; ++k) {
+    if (k > 0 || below_closed_form) ++report_.solver_fallbacks;
     const Result<Plan> candidate = solve(ladder.solvers[k], configuration);
     status_of(ladder.solvers[k]) = candidate.status();
     if (candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration)) return true;
-    ++report_.solver_fallbacks;
   }
   return false;
 }
@@ -232,9 +252,11 @@ Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configurati
       settings.grid_step = {configuration.koenig_damico_grid_ns};
       return control::solve_koenig_damico(problem.value(), settings, koenig_damico_workspace_);
     }
-    case Solver::kLeastSquares: return control::solve_least_squares(problem.value());
+    case Solver::kLeastSquares:
+      return control::solve_least_squares(problem.value());
     case Solver::kClosedForm:
-    case Solver::kNone: break;
+    case Solver::kNone:
+      break;
   }
   return Status::kInvalidArgument;
 }
@@ -243,8 +265,8 @@ control::LegSituation Guidance::leg_situation() const {
   return {orbits_, pending_, earliest_start(), {goal_.time, goal_.roe}, sigma_roe_};
 }
 
-/// The closed form's arrival is held to what an orbit of corrections would gain for next to nothing; the fuel-optimal solver of
-/// the close range to millimetres.
+/// The closed form's arrival is held to what an orbit of corrections would gain for next to nothing; the fuel-optimal
+/// solver of the close range to millimetres.
 control::LegPolicy Guidance::leg_policy(const gnc_configuration& configuration) const {
   control::LegPolicy policy;
   const bool far = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
@@ -268,10 +290,13 @@ GpsTime Guidance::earliest_start() const {
 
 Status& Guidance::status_of(Solver solver) {
   switch (solver) {
-    case Solver::kClosedForm: return report_.closed_form;
-    case Solver::kKoenigDamico: return report_.koenig_damico;
+    case Solver::kClosedForm:
+      return report_.closed_form;
+    case Solver::kKoenigDamico:
+      return report_.koenig_damico;
     case Solver::kLeastSquares:
-    case Solver::kNone: break;
+    case Solver::kNone:
+      break;
   }
   return report_.least_squares;
 }

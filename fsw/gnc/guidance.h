@@ -1,9 +1,9 @@
 #pragma once
 // control: which waypoint, which solver, which fallback; commit a burn.
 //
-// A plan is kept while it still arrives; otherwise the ladder of the leg's solvers is tried in order, and what a solver gives
-// is flown only if it passes the passive-safety test with every prefix of its burns. If none does, nothing is flown: hold.
-// A burn is commanded in the last step that can still do so, so that replanning may improve it until then.
+// A plan is kept while it still arrives; otherwise the ladder of the leg's solvers is tried in order, and what a solver
+// gives is flown only if it passes the passive-safety test with every prefix of its burns. If none does, nothing is
+// flown: hold. A burn is commanded in the last step that can still do so, so that replanning may improve it until then.
 
 #include <array>
 #include <cstdint>
@@ -50,8 +50,8 @@ class Guidance {
   /// Mean orbits of both spacecraft and the passive safety of the drift if nothing more is commanded.
   void assess(GpsTime now, const Navigation& navigation, const Management& management);
 
-  /// One step: drops what is past, replans if it is due and needed, and collects the burns to command. `period` is the time to
-  /// the next step.
+  /// One step: drops what is past, replans if it is due and needed, and collects the burns to command. `period` is the
+  /// time to the next step.
   void update(GpsTime now, Duration period, const Navigation& navigation, const Management& management);
 
   [[nodiscard]] const GuidanceReport& report() const { return report_; }
@@ -65,7 +65,7 @@ class Guidance {
   bool select_goal(GpsTime now, const Management& management);
   bool decision_is_due(GpsTime now, const gnc_configuration& configuration);
   void decide(const gnc_configuration& configuration);
-  bool stays_on_plan(const gnc_configuration& configuration);
+  bool stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse);
   bool climbs_ladder(const gnc_configuration& configuration, bool estimate_too_coarse);
   bool adopt_if_flyable(const control::Plan& candidate, const gnc_configuration& configuration);
   control::Plan refined(const control::Plan& candidate) const;
@@ -82,13 +82,13 @@ class Guidance {
   bool situation_known_ = false;
   GpsTime earliest_burn_;
   control::MeanOrbits orbits_;
-  Vector6 sigma_roe_ = Vector6::Zero();  ///< 1 sigma, dimensionless
-  safety::PositionBound position_bound_;     ///< 3 sigma
+  Vector6 sigma_roe_ = Vector6::Zero();   ///< 1 sigma, dimensionless
+  safety::PositionBound position_bound_;  ///< 3 sigma
 
   Waypoint goal_;
   bool has_goal_ = false;
-  control::Plan plan_;                       ///< still to be commanded
-  control::Plan pending_;                    ///< commanded, not yet due
+  control::Plan plan_;     ///< still to be commanded
+  control::Plan pending_;  ///< commanded, not yet due
   GpsTime next_decision_;
   std::array<CommandedBurn, kMaxCommandsPerStep> commands_{};
   std::size_t command_count_ = 0;

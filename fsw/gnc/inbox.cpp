@@ -35,36 +35,56 @@ Status Inbox::file(const PacketView& packet) {
       step_period_ = period;
       return Status::kOk;
     }
-    case Apid::kIdealNavigation: return decode_and_file(packet, ideal_navigation_);
-    case Apid::kExecutedManeuver: return decode_and_file(packet, executed_maneuvers_);
-    case Apid::kWaypointTable: return decode_and_file(packet, waypoint_tables_);
-    case Apid::kGncConfiguration: return decode_and_file(packet, configurations_);
-    case Apid::kModeCommand: return decode_and_file(packet, mode_commands_);
+    case Apid::kIdealNavigation:
+      return decode_and_file(packet, ideal_navigation_);
+    case Apid::kExecutedManeuver:
+      return decode_and_file(packet, executed_maneuvers_);
+    case Apid::kWaypointTable:
+      return decode_and_file(packet, waypoint_tables_);
+    case Apid::kGncConfiguration:
+      return decode_and_file(packet, configurations_);
+    case Apid::kModeCommand:
+      return decode_and_file(packet, mode_commands_);
     case Apid::kManeuverCommand:
     case Apid::kTelemetryNavigation:
     case Apid::kTelemetryControl:
     case Apid::kTelemetryHealth:
-    case Apid::kStepReport: break;
+    case Apid::kStepReport:
+      break;
   }
   return Status::kWrongType;
 }
 
 void Inbox::count(Status status) {
   switch (status) {
-    case Status::kOk: ++counters_.accepted; break;
-    case Status::kBadChecksum: ++counters_.rejected_checksum; break;
-    case Status::kWrongType: ++counters_.rejected_type; break;
+    case Status::kOk:
+      ++counters_.accepted;
+      break;
+    case Status::kBadChecksum:
+      ++counters_.rejected_checksum;
+      break;
+    case Status::kWrongType:
+      ++counters_.rejected_type;
+      break;
     case Status::kTooShort:
-    case Status::kTooLong: ++counters_.rejected_length; break;
+    case Status::kTooLong:
+      ++counters_.rejected_length;
+      break;
     case Status::kNotFinite:
-    case Status::kOutOfRange: ++counters_.rejected_content; break;
-    case Status::kFull: ++counters_.dropped_full; break;
+    case Status::kOutOfRange:
+      ++counters_.rejected_content;
+      break;
+    case Status::kFull:
+      ++counters_.dropped_full;
+      break;
     case Status::kBadSequence:
     case Status::kInvalidArgument:
     case Status::kDidNotConverge:
     case Status::kSingular:
     case Status::kUnsafe:
-    case Status::kNotReady: ++counters_.rejected_other; break;
+    case Status::kNotReady:
+      ++counters_.rejected_other;
+      break;
   }
 }
 

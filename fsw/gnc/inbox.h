@@ -13,14 +13,18 @@ namespace vbar::fsw::gnc {
 /// Instants from 1980 to 2126, and spans up to 115 days: sums and differences of what is within stay within int64.
 inline constexpr GpsTime kLatestTime{std::int64_t{1} << 62};
 inline constexpr Duration kLongestSpan = duration_of_seconds(10'000'000);
-constexpr bool is_usable(GpsTime time) { return time.ns >= 0 && time <= kLatestTime; }
-constexpr bool is_usable(Duration span) { return span.ns > 0 && span <= kLongestSpan; }
+constexpr bool is_usable(GpsTime time) {
+  return time.ns >= 0 && time <= kLatestTime;
+}
+constexpr bool is_usable(Duration span) {
+  return span.ns > 0 && span <= kLongestSpan;
+}
 
 /// What happened to the packets so far; telemetry carries it.
 struct PacketCounters {
   std::int32_t accepted = 0;
   std::int32_t rejected_checksum = 0;
-  std::int32_t rejected_type = 0;     ///< APID unknown or not for flight, or type hash of another message
+  std::int32_t rejected_type = 0;  ///< APID unknown or not for flight, or type hash of another message
   std::int32_t rejected_length = 0;
   std::int32_t rejected_content = 0;  ///< NaN, infinity, or a value (a time tag, too) that no field may have
   std::int32_t rejected_time = 0;     ///< time tag after the step, or not after what is already known

@@ -28,8 +28,12 @@ gnc_configuration default_configuration() {
   return c;
 }
 
-bool is_usable_span(std::int64_t ns) { return is_usable(Duration{ns}); }
-bool is_usable_span(double s) { return s > 0.0 && s <= seconds(kLongestSpan); }
+bool is_usable_span(std::int64_t ns) {
+  return is_usable(Duration{ns});
+}
+bool is_usable_span(double s) {
+  return s > 0.0 && s <= seconds(kLongestSpan);
+}
 
 }  // namespace
 
@@ -82,13 +86,12 @@ bool Management::take(const waypoint_table& table) {
 }
 
 bool Management::take(const gnc_configuration& c) {
-  const bool usable = (c.compute_latency_ns == 0 || is_usable_span(c.compute_latency_ns)) &&
-                      is_usable_span(c.closed_form_period_ns) && is_usable_span(c.koenig_damico_period_ns) &&
-                      is_usable_span(c.koenig_damico_grid_ns) && c.minimum_dv >= 0.0 && c.maximum_dv > c.minimum_dv &&
-                      c.roe_error_threshold_m >= 0.0 && c.keep_out_radius_m >= 0.0 && c.safety_horizon_s >= 0.0 &&
-                      c.station_keeping_deadband_m > 0.0 && c.closed_form_tolerance_m > 0.0 &&
-                      c.koenig_damico_tolerance_m > 0.0 && is_usable_span(c.station_keeping_horizon_s) &&
-                      c.navigation_timeout_s > 0.0;
+  const bool usable =
+      (c.compute_latency_ns == 0 || is_usable_span(c.compute_latency_ns)) && is_usable_span(c.closed_form_period_ns) &&
+      is_usable_span(c.koenig_damico_period_ns) && is_usable_span(c.koenig_damico_grid_ns) && c.minimum_dv >= 0.0 &&
+      c.maximum_dv > c.minimum_dv && c.roe_error_threshold_m >= 0.0 && c.keep_out_radius_m >= 0.0 &&
+      c.safety_horizon_s >= 0.0 && c.station_keeping_deadband_m > 0.0 && c.closed_form_tolerance_m > 0.0 &&
+      c.koenig_damico_tolerance_m > 0.0 && is_usable_span(c.station_keeping_horizon_s) && c.navigation_timeout_s > 0.0;
   if (usable) configuration_ = c;
   return usable;
 }

@@ -11,10 +11,10 @@
 namespace vbar::fsw::gnc {
 
 enum class Mode : std::int8_t {
-  kIdle = 0,           ///< nothing commanded yet
-  kApproach = 1,       ///< fly to the next waypoint of the table
-  kStationKeeping = 2, ///< stay at the last waypoint reached
-  kHold = 3,           ///< no burns until commanded otherwise
+  kIdle = 0,            ///< nothing commanded yet
+  kApproach = 1,        ///< fly to the next waypoint of the table
+  kStationKeeping = 2,  ///< stay at the last waypoint reached
+  kHold = 3,            ///< no burns until commanded otherwise
 };
 
 /// A place to be at a time.
@@ -31,8 +31,8 @@ class Management {
 
   Management();
 
-  /// Takes the telecommands of the inbox in order of their time tags, then moves the state machine to `now`. A telecommand
-  /// with content no field may have changes nothing and is counted.
+  /// Takes the telecommands of the inbox in order of their time tags, then moves the state machine to `now`. A
+  /// telecommand with content no field may have changes nothing and is counted.
   void update(GpsTime now, Inbox& inbox);
 
   [[nodiscard]] Mode mode() const { return mode_; }

@@ -8,16 +8,21 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// What point mass + J2 misses of the relative acceleration, per metre of separation: the next zonal and tesseral terms are 1e-3
-// of J2, whose own differential acceleration is 2e-4 m/s^2 over 50 km.
-constexpr double kUnmodelledGradient = 4e-12;  // 1/s^2, 1 sigma, constant over a coast
+// What point mass + J2 misses of the relative acceleration, per metre of separation: the gravity gradient of all other
+// harmonics is a tenth of an Eotvos at 700 km. (Flown in 60x60 gravity, ten-minute coasts err by 0.7 to 1 of this, from
+// 75 km down to 7 m.)
+constexpr double kUnmodelledGradient = 1e-10;  // 1/s^2, 1 sigma, constant over a coast
 
 // A report or measurement may come so much after its time and still be used.
 constexpr Duration kLongestDelay = duration_of_seconds(600);
 
-Vector3 vector(const double (&xyz)[3]) { return {xyz[0], xyz[1], xyz[2]}; }
+Vector3 vector(const double (&xyz)[3]) {
+  return {xyz[0], xyz[1], xyz[2]};
+}
 
-bool is_orbit(const orbit::CartesianState& state) { return orbit::qns_from_cartesian(state).ok(); }
+bool is_orbit(const orbit::CartesianState& state) {
+  return orbit::qns_from_cartesian(state).ok();
+}
 
 }  // namespace
 
@@ -123,8 +128,8 @@ Result<Navigation::Pair> Navigation::flown_to(GpsTime time) const {
   return Pair{time, servicer, target.value()};
 }
 
-/// In order of time, those of one instant in order of their number. If there is no room the anchor moves past the oldest:
-/// nothing is lost but the chance to use what comes later than that.
+/// In order of time, those of one instant in order of their number. If there is no room the anchor moves past the
+/// oldest: nothing is lost but the chance to use what comes later than that.
 void Navigation::remember(const OwnManeuver& maneuver) {
   if (maneuver_count_ == kMaxManeuvers) {
     if (anchored_) move_anchor(maneuvers_[0].time + Duration{1});

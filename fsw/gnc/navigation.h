@@ -1,10 +1,11 @@
 #pragma once
 // navigate: the state of servicer and target at the step's time, from measurements folded in at their own times and own
-// maneuvers. Ideal navigation (true states in a packet) is the first source; between measurements the state coasts under J2.
+// maneuvers. Ideal navigation (true states in a packet) is the first source; between measurements the state coasts
+// under J2.
 //
 // What arrives late is not lost: the state is built anew at each step from an anchor, the last measurement, and the own
-// maneuvers since. A commanded maneuver counts as flown as commanded until the actuator says otherwise, so that neither a late
-// nor a lost report makes guidance fly it twice.
+// maneuvers since. A commanded maneuver counts as flown as commanded until the actuator says otherwise, so that neither
+// a late nor a lost report makes guidance fly it twice.
 
 #include <array>
 
@@ -39,7 +40,8 @@ class Navigation {
 
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
-  /// 1 sigma of a * ROE (m, six components) that `sigma_rtn` amounts to; the linear near-circular map, `servicer_mean` at epoch.
+  /// 1 sigma of a * ROE (m, six components) that `sigma_rtn` amounts to; the linear near-circular map, `servicer_mean`
+  /// at epoch.
   [[nodiscard]] Vector6 sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const;
 
  private:

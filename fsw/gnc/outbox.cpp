@@ -5,9 +5,12 @@ namespace vbar::fsw::gnc {
 std::size_t Outbox::sequence_slot(packets::Apid apid) {
   using packets::Apid;
   switch (apid) {
-    case Apid::kManeuverCommand: return 1;
-    case Apid::kTelemetryNavigation: return 2;
-    case Apid::kTelemetryControl: return 3;
+    case Apid::kManeuverCommand:
+      return 1;
+    case Apid::kTelemetryNavigation:
+      return 2;
+    case Apid::kTelemetryControl:
+      return 3;
     case Apid::kTelemetryHealth:
     case Apid::kTick:
     case Apid::kIdealNavigation:
@@ -15,7 +18,8 @@ std::size_t Outbox::sequence_slot(packets::Apid apid) {
     case Apid::kWaypointTable:
     case Apid::kGncConfiguration:
     case Apid::kModeCommand:
-    case Apid::kStepReport: break;
+    case Apid::kStepReport:
+      break;
   }
   return 0;
 }

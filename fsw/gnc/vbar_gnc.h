@@ -1,11 +1,11 @@
 /* The test article, as C: what a board or a simulation needs of a flight software, and all it may use.
  *
- * vbar's own GNC implements it (fsw/gnc). So can another stack in C, C++, Rust or generated code: as a shared library that
- * `flight_computer.library` names on the host, or linked into a board image instead of vbar's.
+ * vbar's own GNC implements it (fsw/gnc). So can another stack in C, C++, Rust or generated code: as a shared library
+ * that `flight_computer.library` names on the host, or linked into a board image instead of vbar's.
  *
- * Rules for an implementation: its whole state is one plain object of vbar_gnc_state_size() bytes in memory the caller owns;
- * no heap, no clock, no threads, no I/O; what it does with a packet depends on the packet's time tag and the step it was
- * delivered in, not on the order of arrival within the step. */
+ * Rules for an implementation: its whole state is one plain object of vbar_gnc_state_size() bytes in memory the caller
+ * owns; no heap, no clock, no threads, no I/O; what it does with a packet depends on the packet's time tag and the step
+ * it was delivered in, not on the order of arrival within the step. */
 #ifndef VBAR_FSW_GNC_VBAR_GNC_H
 #define VBAR_FSW_GNC_VBAR_GNC_H
 

@@ -25,7 +25,8 @@ struct ReplayOptions {
 };
 int replay_command(const ReplayOptions& options);
 
-int report_command(const std::vector<std::filesystem::path>& run_folders);
+/// Of one run: its report.html. Of several: a comparison in `out`, beside the first run unless given.
+int report_command(const std::vector<std::filesystem::path>& run_folders, const std::filesystem::path& out);
 
 int missions_command(const std::filesystem::path& folder);
 

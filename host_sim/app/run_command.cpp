@@ -15,6 +15,7 @@
 #include "host_sim/app/simulation.h"
 #include "host_sim/app/stop_request.h"
 #include "host_sim/mission/load.h"
+#include "host_sim/report/html_report.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/waypoint_table.h"
 
@@ -98,7 +99,7 @@ int run_command(const RunOptions& options) {
   folder.finish(record);
 
   if (!record.waypoints.empty()) fmt::print("{}", report::waypoint_table(record));
-  fmt::print("run folder  {}\n", folder.path().string());
+  fmt::print("report  {}\n", report::write_html_report(folder.path(), record).string());
   if (!trouble) return 0;
   fmt::print(stderr, "vbar: {}: run incomplete: {}\n", folder.path().string(), *trouble);
   return 1;

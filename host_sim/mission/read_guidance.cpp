@@ -48,7 +48,7 @@ void read_guidance(const TableReader& document, Mission& mission) {
   if (guidance.maximum_dv <= guidance.minimum_dv) section.refuse_value("maximum_dv_mps", "more than minimum_dv_mmps");
   guidance.roe_error_threshold_m = section.number("roe_error_threshold_m", from_to(0.0, 1e6), 0.0);
   guidance.keep_out_radius_m = section.number("keep_out_radius_m", from_to(0.0, 1e5), 0.0);
-  guidance.safety_horizon_s = section.number("safety_horizon_s", from_to(0.0, 1e6), 6000.0);
+  guidance.safety_horizon_s = section.number("safety_horizon_s", from_to(0.0, 2e5), 6000.0);
   guidance.station_keeping_deadband_m = section.number("station_keeping_deadband_m", above_to(0.0, 1e5), 1.0);
   guidance.closed_form_tolerance_m = section.number("closed_form_tolerance_m", above_to(0.0, 1e5), 0.3);
   guidance.koenig_damico_tolerance_m = section.number("koenig_damico_tolerance_m", above_to(0.0, 1e5), 0.003);

@@ -57,10 +57,8 @@ std::string waypoint_section(const RunRecord& record) {
   out += mean_and_deviation("Attitude error", s.attitude_error_deg, 1.0, "deg");
   out +=
       "<p class=\"note\">Control error: true RTN position of the target against the one that the wanted mean ROE give "
-      "on the "
-      "true orbit of the servicer. Navigation error: estimated against true RTN position. A burn at a waypoint's own "
-      "time "
-      "counts to the next leg.</p>\n";
+      "on the true orbit of the servicer, before a burn of that instant. Navigation error: estimated against true RTN "
+      "position. A burn belongs to the leg of the waypoint it was commanded for.</p>\n";
   out += "<details><summary>Mean ROE at the waypoints</summary>" + table(kRoeColumns, roe_rows) + "</details>\n";
   return section("Waypoints", out);
 }

@@ -21,7 +21,8 @@ class OutputCollector final : public app::PacketObserver {
  public:
   explicit OutputCollector(FlownMission& flown) : flown_(flown) {}
 
-  void on_step(std::uint32_t, fsw::GpsTime, std::span<const pil::Packet>, std::span<const pil::Packet> outputs) override {
+  void on_step(std::uint32_t, fsw::GpsTime, std::span<const pil::Packet>,
+               std::span<const pil::Packet> outputs) override {
     for (const pil::Packet& packet : outputs) {
       const auto view = fsw::packets::parse_packet(packet);
       ASSERT_TRUE(view.ok()) << "the flight software sent something that is no packet";

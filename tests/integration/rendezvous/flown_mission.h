@@ -1,5 +1,6 @@
 #pragma once
-// A mission file flown from start to end with the flight software in this process, and what a test asks about the flight.
+// A mission file flown from start to end with the flight software in this process, and what a test asks about the
+// flight.
 
 #include <functional>
 #include <memory>

@@ -1,7 +1,9 @@
-// The paper's sample trajectory, waypoints 0 to 10 in 41.25 h, flown whole: does it arrive, what does it cost, and is it the
-// same flight every time?
+// The paper's sample trajectory, waypoints 0 to 10 in 41.25 h, flown whole: does it arrive, what does it cost, and is
+// it the same flight every time?
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 #include <random>
 #include <utility>
@@ -68,9 +70,9 @@ TEST(IdealNavigation, MeetsEveryWaypoint) {
 
 TEST(IdealNavigation, CostsNoMoreThanItMust) {
   const report::RunRecord& record = the_flight().record;
-  EXPECT_LE(dv_commanded_for(record, 0, 7), 4.1);       // the paper: 4.69; optimum of the linear problems: 3.77
+  EXPECT_LE(dv_commanded_for(record, 0, 7), 4.1);  // the paper: 4.69; optimum of the linear problems: 3.77
   EXPECT_LE(dv_commanded_for(record, 8, 8), 7.6e-3);
-  EXPECT_LE(dv_commanded_for(record, 9, 10), 6.0e-3);   // the paper: 5.78e-3; optimum: 5.71e-3
+  EXPECT_LE(dv_commanded_for(record, 9, 10), 6.0e-3);  // the paper: 5.78e-3; optimum: 5.71e-3
 }
 
 // Every command the flight software gives comes in time, once, in order, and is flown.
@@ -89,13 +91,44 @@ TEST(IdealNavigation, EveryCommandIsFlown) {
   }
 }
 
-// Navigation is fed the truth at every step, so what it says must be the truth, to the last bit but one: the difference of
-// two positions of 7e6 m is good to 1e-9 m, turned into RTN to a few of these.
+// Navigation is fed the truth at every step, so what it says must be the truth, to the last bit but one: the difference
+// of two positions of 7e6 m is good to 1e-9 m, turned into RTN to a few of these.
 TEST(IdealNavigation, NavigationSaysWhatItWasTold) {
   for (const report::WaypointRow& row : the_flight().record.waypoints) {
     ASSERT_TRUE(row.navigation_error_m.has_value()) << row.index;
     EXPECT_LT(*row.navigation_error_m, 1e-8) << row.index;
   }
+}
+
+// Ten minutes between measurements: what the coast says of its own error against what it is, in 60x60 gravity, from 75
+// km to 7 m.
+TEST(IdealNavigation, ACoastKnowsItsUncertainty) {
+  const report::RunRecord record = fly(kMission, {"spacecraft.servicer.sensors.navigation.period_s=600.0"}).record;
+  ASSERT_EQ(record.estimates.size(), record.truth.size());
+  int coasting = 0, beyond_three_sigma = 0;
+  std::array<double, 2> ratio_sum{};  // of error to 1 sigma, far and near
+  std::array<int, 2> count{};
+  for (std::size_t k = 0; k < record.estimates.size(); ++k) {
+    const report::EstimateRow& estimate = record.estimates[k];
+    if (estimate.navigation_source != 1) continue;
+    const report::Triple& truth = record.truth[k].relative_position_rtn;
+    const report::Triple& told = estimate.relative_position_rtn;
+    const double error = std::hypot(told[0] - truth[0], told[1] - truth[1], told[2] - truth[2]);
+    const double sigma = estimate.sigma_rtn[0];
+    ++coasting;
+    beyond_three_sigma += error > 3.0 * sigma + 1e-7 ? 1 : 0;  // below it positions of 7e6 m have no digits left
+    const std::size_t near = std::abs(truth[1]) < 1000.0 ? 1 : 0;
+    ratio_sum[near] += error / sigma;
+    ++count[near];
+  }
+  ASSERT_GT(coasting, 2000);
+  // For a normal distribution the mean of the norm is 1.6 sigma and 3 % of it lies beyond 3; what gravity leaves out is
+  // neither normal nor alike in all directions, so a factor of two is what can be asked.
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_GT(ratio_sum[k] / count[k], 0.8) << (k == 0 ? "far" : "near");
+    EXPECT_LT(ratio_sum[k] / count[k], 3.2) << (k == 0 ? "far" : "near");
+  }
+  EXPECT_LT(beyond_three_sigma, coasting / 10);
 }
 
 // A run is a function of its mission file and seed.
@@ -108,9 +141,13 @@ class SameFlight : public ::testing::Test {
   }
 };
 
-TEST_F(SameFlight, FlownTwice) { expect_same(the_flight(), fly(kMission)); }
+TEST_F(SameFlight, FlownTwice) {
+  expect_same(the_flight(), fly(kMission));
+}
 
-TEST_F(SameFlight, WithTruthOnTwoThreads) { expect_same(the_flight(), fly(kMission, {"truth.threads=2"})); }
+TEST_F(SameFlight, WithTruthOnTwoThreads) {
+  expect_same(the_flight(), fly(kMission, {"truth.threads=2"}));
+}
 
 // A million times real time: 60 us of wall a step, so deadlines are missed, and none may matter.
 TEST_F(SameFlight, AgainstTheWallClock) {

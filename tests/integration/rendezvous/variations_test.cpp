@@ -1,5 +1,5 @@
-// Not one lucky case: the same rendezvous from other starts, in other gravity, with other sensors and a thruster that errs.
-// Each flight must meet every waypoint and cost about what the nominal one does.
+// Not one lucky case: the same rendezvous from other starts, in other gravity, with other sensors and a thruster that
+// errs. Each flight must meet every waypoint and cost about what the nominal one does.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,9 @@ struct Variation {
   std::vector<std::string> overrides;
 };
 
-[[maybe_unused]] void PrintTo(const Variation& variation, std::ostream* out) { *out << variation.name; }
+[[maybe_unused]] void PrintTo(const Variation& variation, std::ostream* out) {
+  *out << variation.name;
+}
 
 constexpr const char* kThrusterMagnitude = "spacecraft.servicer.actuators.thruster.magnitude_error_percent=1.0";
 constexpr const char* kThrusterPointing = "spacecraft.servicer.actuators.thruster.pointing_error_deg=0.5";
@@ -60,8 +62,9 @@ TEST_P(Variations, MeetsEveryWaypointAtTheUsualCost) {
              1e3 * dv_commanded_for(record, 8, 8), 1e3 * dv_commanded_for(record, 9, 10), record.summary.maneuvers);
 
   ASSERT_TRUE(flown.complete);
-  // Twice what the nominal mission must do. Far out a plan is flown on while it arrives within a metre; in the middle range
-  // and near it is the last burns that decide: a few millimetres a second an hour before, with 1 % of error, are centimetres.
+  // Twice what the nominal mission must do. Far out a plan is flown on while it arrives within a metre; in the middle
+  // range and near it is the last burns that decide: a few millimetres a second an hour before, with 1 % of error, are
+  // centimetres.
   for (int index = 1; index <= 3; ++index) EXPECT_LT(waypoint(record, index).control_error_m, 4.0) << index;
   for (int index = 4; index <= 7; ++index) EXPECT_LT(waypoint(record, index).control_error_m, 1.0) << index;
   for (int index = 8; index <= 10; ++index) EXPECT_LT(waypoint(record, index).control_error_m, 0.02) << index;

@@ -21,12 +21,14 @@ void Article::Free::operator()(std::byte* state) const {
 
 Article::Article()
     : tray_(std::make_unique<Tray>()),
-      state_(new(std::align_val_t(vbar_gnc_state_alignment())) std::byte[vbar_gnc_state_size()]) {
+      state_(new (std::align_val_t(vbar_gnc_state_alignment())) std::byte[vbar_gnc_state_size()]) {
   std::memset(state_.get(), 0, vbar_gnc_state_size());
   EXPECT_EQ(vbar_gnc_init(state_.get(), kServicer, &Article::sink, tray_.get()), 0);
 }
 
-vbar_status Article::deliver(const Bytes& packet) { return vbar_gnc_receive(state_.get(), packet.data(), packet.size()); }
+vbar_status Article::deliver(const Bytes& packet) {
+  return watched([&] { return vbar_gnc_receive(state_.get(), packet.data(), packet.size()); });
+}
 
 Answer Article::step(GpsTime now, Duration period) {
   tick message{};
@@ -35,7 +37,9 @@ Answer Article::step(GpsTime now, Duration period) {
   return step_without_tick(now);
 }
 
-Answer Article::step_without_tick(GpsTime now) { return collect(vbar_gnc_step(state_.get(), now.ns)); }
+Answer Article::step_without_tick(GpsTime now) {
+  return collect(watched([&] { return vbar_gnc_step(state_.get(), now.ns); }));
+}
 
 std::vector<std::byte> Article::save() const {
   return {state_.get(), state_.get() + vbar_gnc_state_size()};

@@ -47,7 +47,17 @@ class Article {
   /// Puts saved bytes in place of the state, and this article's own sink in place of the one they name.
   void restore(const std::vector<std::byte>& saved);
 
+  /// Called with true just before, and with false just after, each delivery and step; may be null.
+  void (*around_flight_code)(bool entering) = nullptr;
+
  private:
+  template <class Call>
+  vbar_status watched(Call call) {
+    if (around_flight_code != nullptr) around_flight_code(true);
+    const vbar_status status = call();
+    if (around_flight_code != nullptr) around_flight_code(false);
+    return status;
+  }
   struct Free {
     void operator()(std::byte* state) const;
   };

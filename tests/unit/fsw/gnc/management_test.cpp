@@ -2,6 +2,8 @@
 
 #include "fsw/gnc/management.h"
 
+#include <limits>
+
 #include "tests/unit/fsw/gnc/packet_factory.h"
 
 namespace vbar::fsw::gnc {
@@ -121,6 +123,37 @@ TEST_F(ManagementTest, RefusesAConfigurationWithAnImpossibleFieldAndKeepsTheOld)
   step(1);
   EXPECT_EQ(management_.configuration().maximum_dv, before);
   EXPECT_EQ(inbox_.counters().rejected_content, 1);
+}
+
+// Spans that, added to a time, could leave the clock's range, and waypoints outside it.
+TEST_F(ManagementTest, RefusesSpansAndTimesThatOverflow) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  std::int32_t refusals = 0;
+  const auto refused = [&](const auto& message) {
+    send(message);
+    step(1);
+    return inbox_.counters().rejected_content == ++refusals;
+  };
+  const auto with = [this](std::int64_t gnc_configuration::*span) {
+    gnc_configuration c = management_.configuration();
+    c.*span = kMost;
+    return c;
+  };
+  EXPECT_TRUE(refused(with(&gnc_configuration::compute_latency_ns)));
+  EXPECT_TRUE(refused(with(&gnc_configuration::closed_form_period_ns)));
+  EXPECT_TRUE(refused(with(&gnc_configuration::koenig_damico_period_ns)));
+  EXPECT_TRUE(refused(with(&gnc_configuration::koenig_damico_grid_ns)));
+  gnc_configuration c = management_.configuration();
+  c.station_keeping_horizon_s = 1e300;
+  EXPECT_TRUE(refused(c));
+  c.station_keeping_horizon_s = 0.0;
+  EXPECT_TRUE(refused(c));
+  waypoint_table table = table_of_three();
+  table.waypoints[2].gps_time_ns = kMost;
+  EXPECT_TRUE(refused(table));
+  table = table_of_three();
+  table.waypoints[0].gps_time_ns = -kMost;
+  EXPECT_TRUE(refused(table));
 }
 
 TEST_F(ManagementTest, ATelecommandOfTheFutureIsNotTaken) {

@@ -105,5 +105,106 @@ TEST_F(NavigationTest, AMeasurementThatIsNoOrbitMakesNoState) {
   EXPECT_FALSE(navigation_.state().valid);
 }
 
+// A measurement that took its time still counts, at its own time: what came since is flown again on top of it.
+TEST_F(NavigationTest, ALateMeasurementIsFoldedInAtItsTime) {
+  EXPECT_EQ(inbox_.receive(packet_of({0}, measurement_of(servicer_state()))), Status::kOk);
+  executed_maneuver maneuver{};
+  maneuver.accepted = 1;
+  maneuver.dv_rtn[1] = 0.5;
+  EXPECT_EQ(inbox_.receive(packet_of({50 * kSecond}, maneuver)), Status::kOk);
+  update(60);
+
+  orbit::CartesianState better = orbit::propagate_j2(servicer_state(), 40.0).value();
+  better.position_eci.x() += 3.0;
+  EXPECT_EQ(inbox_.receive(packet_of({40 * kSecond}, measurement_of(better))), Status::kOk);
+  update(120);
+  const auto at_burn = orbit::propagate_j2(better, 10.0);
+  const auto expected = orbit::propagate_j2(orbit::apply_impulse_rtn(at_burn.value(), {0.0, 0.5, 0.0}), 70.0);
+  EXPECT_EQ(navigation_.state().servicer.position_eci, expected.value().position_eci);
+  EXPECT_EQ(navigation_.state().last_measurement.ns, 40 * kSecond);
+  EXPECT_EQ(inbox_.counters().rejected_time, 0);
+}
+
+TEST_F(NavigationTest, BelievesACommandUntilTheActuatorSaysOtherwise) {
+  EXPECT_EQ(inbox_.receive(packet_of({0}, measurement_of(servicer_state()))), Status::kOk);
+  update(0);
+  navigation_.expect_maneuver(5, {30 * kSecond}, {0.0, 0.5, 0.0});
+  const auto at_burn = orbit::propagate_j2(servicer_state(), 30.0).value();
+  const auto after = [&](double dv_t, double dt) {
+    return orbit::propagate_j2(orbit::apply_impulse_rtn(at_burn, {0.0, dv_t, 0.0}), dt).value().position_eci;
+  };
+  update(20);  // not yet
+  EXPECT_EQ(navigation_.state().servicer.position_eci,
+            orbit::propagate_j2(servicer_state(), 20.0).value().position_eci);
+  update(60);
+  EXPECT_EQ(navigation_.state().servicer.position_eci, after(0.5, 30.0));
+
+  executed_maneuver report{};  // two steps late, and it was 1 % less
+  report.maneuver_id = 5;
+  report.accepted = 1;
+  report.dv_rtn[1] = 0.495;
+  EXPECT_EQ(inbox_.receive(packet_of({30 * kSecond}, report)), Status::kOk);
+  update(180);
+  EXPECT_EQ(navigation_.state().servicer.position_eci, after(0.495, 150.0));
+
+  report.accepted = 0;
+  EXPECT_EQ(inbox_.receive(packet_of({30 * kSecond}, report, 1)), Status::kOk);
+  update(240);
+  EXPECT_EQ(navigation_.state().servicer.position_eci,
+            orbit::propagate_j2(servicer_state(), 240.0).value().position_eci);
+}
+
+// A burn of a step's own instant comes after the step: a measurement of that instant does not know it, and neither does
+// the state.
+TEST_F(NavigationTest, ABurnAtTheStepsTimeIsOfTheNextStep) {
+  navigation_.expect_maneuver(5, {60 * kSecond}, {0.0, 0.5, 0.0});
+  EXPECT_EQ(inbox_.receive(packet_of({60 * kSecond}, measurement_of(servicer_state()))), Status::kOk);
+  update(60);
+  EXPECT_EQ(navigation_.state().servicer.velocity_eci, servicer_state().velocity_eci);
+  update(120);
+  const auto expected = orbit::propagate_j2(orbit::apply_impulse_rtn(servicer_state(), {0.0, 0.5, 0.0}), 60.0);
+  EXPECT_EQ(navigation_.state().servicer.position_eci, expected.value().position_eci);
+}
+
+// Hours without a measurement: the anchor follows, so that a step's work stays bounded, and the coast stays the orbit
+// model's.
+TEST_F(NavigationTest, CoastsForHours) {
+  EXPECT_EQ(inbox_.receive(packet_of({0}, measurement_of(servicer_state()))), Status::kOk);
+  for (std::int64_t s = 0; s <= 7200; s += 60) update(s);
+  ASSERT_TRUE(navigation_.state().valid);
+  const auto expected = orbit::propagate_j2(servicer_state(), 7200.0);
+  // The same steps of 10 s, in other pieces: rounding only, 1e-9 m grown by the orbit's shear over two hours.
+  EXPECT_LT((navigation_.state().servicer.position_eci - expected.value().position_eci).norm(), 1e-4);
+  EXPECT_EQ(navigation_.state().last_measurement.ns, 0);
+
+  executed_maneuver report{};  // of before the anchor: it can no longer be made good, and is counted
+  report.accepted = 1;
+  EXPECT_EQ(inbox_.receive(packet_of({600 * kSecond}, report)), Status::kOk);
+  update(7260);
+  EXPECT_EQ(inbox_.counters().rejected_time, 1);
+}
+
+TEST_F(NavigationTest, AGapTooLongForTheModelEndsTheState) {
+  EXPECT_EQ(inbox_.receive(packet_of({0}, measurement_of(servicer_state()))), Status::kOk);
+  update(0);
+  update(86400);
+  EXPECT_FALSE(navigation_.state().valid);
+  EXPECT_EQ(inbox_.receive(packet_of({86460 * kSecond}, measurement_of(servicer_state()))), Status::kOk);
+  update(86460);
+  EXPECT_TRUE(navigation_.state().valid);
+}
+
+TEST_F(NavigationTest, AMeasurementThatIsNoOrbitChangesNothing) {
+  EXPECT_EQ(inbox_.receive(packet_of({0}, measurement_of(servicer_state()))), Status::kOk);
+  update(0);
+  ideal_navigation message = measurement_of(servicer_state());
+  message.servicer_velocity_eci[2] = 20000.0;  // beyond escape
+  EXPECT_EQ(inbox_.receive(packet_of({60 * kSecond}, message)), Status::kOk);
+  update(60);
+  EXPECT_TRUE(navigation_.state().valid);
+  EXPECT_EQ(navigation_.state().source, NavigationSource::kPropagated);
+  EXPECT_EQ(inbox_.counters().rejected_content, 1);
+}
+
 }  // namespace
 }  // namespace vbar::fsw::gnc

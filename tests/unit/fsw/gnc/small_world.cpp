@@ -12,7 +12,7 @@ namespace {
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 // Mean elements of the paper's servicer (its osculating table by first-order Brouwer theory).
-const orbit::QnsElements kServicerMean{7078138.944,           0.00104134174,          1.5923745e-5,
+const orbit::QnsElements kServicerMean{7078138.944,          0.00104134174,         1.5923745e-5,
                                        98.1853293 * kDegree, -90.0001291 * kDegree, -0.6886792 * kDegree};
 
 orbit::CartesianState state_of(const orbit::QnsElements& mean) {
@@ -64,20 +64,21 @@ waypoint_table table_of(std::initializer_list<waypoint> waypoints) {
 
 waypoint_table paper_waypoints() {
   constexpr std::int64_t kHour = 3600;
-  return table_of({waypoint_at(0, 0, 0, roe(-2000, -75000, 0, 0, 0, 0)),
-                   waypoint_at(1, 6 * kHour, 0, roe(-87, -50000, 0, 1000, 0, 1000)),
-                   waypoint_at(2, 12 * kHour, 0, roe(-70, -25000, 0, 500, 0, 500)),
-                   waypoint_at(3, 18 * kHour, 0, roe(-17, -5000, 0, 500, 0, 500)),
-                   waypoint_at(4, 24 * kHour, 0, roe(0, -1000, 0, 30, 0, 30)),
-                   waypoint_at(5, 28 * kHour, 0, roe(0, -600, 0, 18, 0, 18)),
-                   waypoint_at(6, 32 * kHour, 0, roe(0, -200, 0, 6, 0, 6)),
-                   waypoint_at(7, 36 * kHour, 0, roe(0, -100, 0, 3, 0, 3)),
-                   waypoint_at(8, 39 * kHour, 1, roe(-0.5, -10, 0, 2, 0, 1)),
-                   waypoint_at(9, 40 * kHour, 1, roe(0, -7, 1, 0, 2, 0)),
-                   waypoint_at(10, 41 * kHour + 900, 1, roe(0, -8.5, 1, 0, 1, 0))});
+  return table_of(
+      {waypoint_at(0, 0, 0, roe(-2000, -75000, 0, 0, 0, 0)),
+       waypoint_at(1, 6 * kHour, 0, roe(-87, -50000, 0, 1000, 0, 1000)),
+       waypoint_at(2, 12 * kHour, 0, roe(-70, -25000, 0, 500, 0, 500)),
+       waypoint_at(3, 18 * kHour, 0, roe(-17, -5000, 0, 500, 0, 500)),
+       waypoint_at(4, 24 * kHour, 0, roe(0, -1000, 0, 30, 0, 30)),
+       waypoint_at(5, 28 * kHour, 0, roe(0, -600, 0, 18, 0, 18)),
+       waypoint_at(6, 32 * kHour, 0, roe(0, -200, 0, 6, 0, 6)), waypoint_at(7, 36 * kHour, 0, roe(0, -100, 0, 3, 0, 3)),
+       waypoint_at(8, 39 * kHour, 1, roe(-0.5, -10, 0, 2, 0, 1)), waypoint_at(9, 40 * kHour, 1, roe(0, -7, 1, 0, 2, 0)),
+       waypoint_at(10, 41 * kHour + 900, 1, roe(0, -8.5, 1, 0, 1, 0))});
 }
 
-gnc_configuration configuration() { return Management().configuration(); }
+gnc_configuration configuration() {
+  return Management().configuration();
+}
 
 mode_command mode(std::int8_t number) {
   mode_command command{};
@@ -86,7 +87,8 @@ mode_command mode(std::int8_t number) {
 }
 
 SmallWorld::SmallWorld(const Vector6& a_roe_m)
-    : servicer_(state_of(kServicerMean)), target_(state_of(orbit::qns_from_roe(kServicerMean, a_roe_m / kReferenceA))) {}
+    : servicer_(state_of(kServicerMean)),
+      target_(state_of(orbit::qns_from_roe(kServicerMean, a_roe_m / kReferenceA))) {}
 
 void SmallWorld::advance_to(GpsTime time) {
   coast(servicer_, seconds(time - time_));
@@ -94,7 +96,9 @@ void SmallWorld::advance_to(GpsTime time) {
   time_ = time;
 }
 
-void SmallWorld::apply(const Vector3& dv_rtn) { servicer_ = orbit::apply_impulse_rtn(servicer_, dv_rtn); }
+void SmallWorld::apply(const Vector3& dv_rtn) {
+  servicer_ = orbit::apply_impulse_rtn(servicer_, dv_rtn);
+}
 
 ideal_navigation SmallWorld::measurement() const {
   ideal_navigation message{};
@@ -126,21 +130,28 @@ Answer Flight::fly_until(GpsTime until) {
   return answer;
 }
 
+Answer Flight::arrive_at(GpsTime time) {
+  const Answer answer = fly_until(time);
+  execute_until(time + Duration{1});
+  return answer;
+}
+
 void Flight::execute_until(GpsTime until) {
-  while (!to_execute.empty() && to_execute.front().time < until) {
-    const Command command = to_execute.front();
-    to_execute.pop_front();
-    world.advance_to(command.time);
-    const double (&dv)[3] = command.message.dv_rtn;
-    world.apply({dv[0], dv[1], dv[2]});
-    executed_dv += Vector3(dv[0], dv[1], dv[2]).norm();
-    ++executed;
-    executed_maneuver report{};
-    report.maneuver_id = command.message.maneuver_id;
-    report.accepted = 1;
-    copy({dv[0], dv[1], dv[2]}, report.dv_rtn);
-    if (reports_maneuvers) reports_.push_back(packet_of(command.time, report, sequence_++));
-  }
+  for (; !to_execute.empty() && to_execute.front().time < until; to_execute.pop_front()) execute(to_execute.front());
+}
+
+void Flight::execute(const Command& command) {
+  const double(&dv)[3] = command.message.dv_rtn;
+  const Vector3 dv_rtn(dv[0], dv[1], dv[2]);
+  world.advance_to(command.time);
+  world.apply(dv_rtn);
+  executed_dv += dv_rtn.norm();
+  ++executed;
+  executed_maneuver report{};
+  report.maneuver_id = command.message.maneuver_id;
+  report.accepted = 1;
+  copy(dv_rtn, report.dv_rtn);
+  if (reports_maneuvers) reports_.push_back(packet_of(command.time, report, sequence_++));
 }
 
 }  // namespace vbar::fsw::gnc::test

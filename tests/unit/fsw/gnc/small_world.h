@@ -1,6 +1,6 @@
 #pragma once
-// A small world to fly in: two spacecraft under point mass and J2, true states as measurements, burns executed as commanded.
-// The flight software's own coast is the same model, so what a test sees is guidance, not the weather.
+// A small world to fly in: two spacecraft under point mass and J2, true states as measurements, burns executed as
+// commanded. The flight software's own coast is the same model, so what a test sees is guidance, not the weather.
 
 #include <cstdint>
 #include <deque>
@@ -14,7 +14,9 @@ inline constexpr GpsTime kEpoch{994'986'015LL * kNanosecondsPerSecond};  ///< 20
 inline constexpr Duration kStep = duration_of_seconds(60);
 inline constexpr double kReferenceA = 7078138.944;  ///< m, the mission's
 
-constexpr GpsTime at(std::int64_t s) { return kEpoch + duration_of_seconds(s); }
+constexpr GpsTime at(std::int64_t s) {
+  return kEpoch + duration_of_seconds(s);
+}
 
 /// A waypoint `s` seconds after the epoch; control_mode as in vbar.lcm.
 waypoint waypoint_at(std::int32_t index, std::int64_t s, std::int8_t control_mode, const Vector6& a_roe_m);
@@ -63,6 +65,8 @@ class Flight {
   Answer step();
   /// Steps until `until`; the last answer.
   Answer fly_until(GpsTime until);
+  /// As fly_until, and what was commanded for that very instant is flown too: the ROE feel a burn at once.
+  Answer arrive_at(GpsTime time);
 
   SmallWorld world;
   Article article;
@@ -75,6 +79,7 @@ class Flight {
 
  private:
   void execute_until(GpsTime until);
+  void execute(const Command& command);
 
   std::deque<Bytes> reports_;
   std::uint16_t sequence_ = 0;

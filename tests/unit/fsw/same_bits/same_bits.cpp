@@ -15,6 +15,7 @@
 #include "fsw/safety/collision_probability.h"
 #include "fsw/safety/passive_safety.h"
 #include "tests/unit/fsw/same_bits/libm_sweeps.h"
+#include "tests/unit/fsw/same_bits/solver_digest.h"
 
 namespace {
 
@@ -125,5 +126,6 @@ int main() {
   }
   std::printf("%-6s %016" PRIx64 "\n", "orbit", orbit_digest());
   std::printf("%-6s %016" PRIx64 "\n", "safety", safety_digest());
+  std::printf("%-6s %016" PRIx64 "\n", "solver", solver_digest());
   return same ? 0 : 1;
 }

@@ -1,0 +1,107 @@
+// The whole mission in process, with the share of each part, and one step of the flight software.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "fsw/gnc/vbar_gnc.h"
+#include "host_sim/app/connect_flight_computer.h"
+#include "host_sim/app/simulation.h"
+#include "host_sim/mission/load.h"
+
+namespace {
+
+namespace app = vbar::app;
+namespace mission = vbar::mission;
+
+const std::string kRoot = VBAR_SOURCE_DIR;
+
+mission::Mission ideal_navigation() {
+  return mission::load_mission(kRoot + "/missions/ideal_navigation.toml");
+}
+
+void fly(const mission::Mission& mission, std::span<app::PacketObserver* const> observers,
+         vbar::report::RunRecord& record) {
+  const auto computer = app::connect_flight_computer(app::flying_spacecraft(mission));
+  vbar::engine::SteadyWallClock wall;
+  app::Simulation(mission, kRoot + "/data", {*computer, wall, observers, {}, {}}, record).run();
+}
+
+void whole_mission(benchmark::State& state) {
+  const mission::Mission mission = ideal_navigation();
+  vbar::report::Summary::WallShare sum;
+  for (auto _ : state) {
+    vbar::report::RunRecord record;
+    fly(mission, {}, record);
+    const auto& share = record.summary.wall_share;
+    sum.truth_s += share.truth_s;
+    sum.flight_s += share.flight_s;
+    sum.link_s += share.link_s;
+    sum.other_s += share.other_s;
+  }
+  const auto mean = [](double total) { return benchmark::Counter(total, benchmark::Counter::kAvgIterations); };
+  state.counters["truth_s"] = mean(sum.truth_s);
+  state.counters["flight_s"] = mean(sum.flight_s);
+  state.counters["link_s"] = mean(sum.link_s);
+  state.counters["other_s"] = mean(sum.other_s);
+}
+
+/// What the flight software was told, step by step.
+class InputKeeper final : public app::PacketObserver {
+ public:
+  struct Step {
+    std::int64_t time_ns;
+    std::vector<vbar::pil::Packet> inputs;
+  };
+  void on_step(std::uint32_t, vbar::fsw::GpsTime time, std::span<const vbar::pil::Packet> inputs,
+               std::span<const vbar::pil::Packet>) override {
+    steps.push_back({time.ns, {inputs.begin(), inputs.end()}});
+  }
+  std::vector<Step> steps;
+};
+
+class FlightSoftware {
+ public:
+  FlightSoftware() : memory_(vbar_gnc_state_size() + vbar_gnc_state_alignment()) {
+    void* start = memory_.data();
+    std::size_t room = memory_.size();
+    state_ = std::align(vbar_gnc_state_alignment(), vbar_gnc_state_size(), start, room);
+    vbar_gnc_init(
+        state_, 1, [](void*, const std::uint8_t*, std::size_t) {}, nullptr);
+  }
+  void step(const InputKeeper::Step& step) {
+    for (const vbar::pil::Packet& packet : step.inputs) vbar_gnc_receive(state_, packet.data(), packet.size());
+    vbar_gnc_step(state_, step.time_ns);
+  }
+
+ private:
+  std::vector<std::byte> memory_;
+  void* state_;
+};
+
+/// The mean step of the whole mission on recorded inputs: packets in, telemetry out, all planning included.
+void gnc_step(benchmark::State& state) {
+  InputKeeper recording;
+  const std::array<app::PacketObserver*, 1> observers{&recording};
+  vbar::report::RunRecord record;
+  fly(ideal_navigation(), observers, record);
+  for (auto _ : state) {
+    state.PauseTiming();
+    FlightSoftware flight;
+    state.ResumeTiming();
+    for (const InputKeeper::Step& step : recording.steps) flight.step(step);
+  }
+  state.counters["step"] = benchmark::Counter(static_cast<double>(recording.steps.size() * state.iterations()),
+                                              benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+BENCHMARK(whole_mission)->Name("mission/ideal_navigation")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(gnc_step)->Name("gnc/vbar/step")->Unit(benchmark::kMillisecond);
+
+}  // namespace

@@ -1,0 +1,205 @@
+// What the flight software promises whoever holds it through the C interface: outputs that depend on the packets of a
+// step, not on their order; a state that is its bytes; telemetry in every mode; a clock that only goes forward.
+
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include "fsw/gnc/gnc.h"
+#include "tests/unit/fsw/gnc/small_world.h"
+
+namespace vbar::fsw::gnc::test {
+namespace {
+
+const Vector6 kWaypoint0 = (Vector6() << -2000, -75000, 0, 0, 0, 0).finished();
+
+/// A flight that has had burns, half an orbit into the paper's first leg.
+Flight under_way() {
+  Flight flight(kWaypoint0);
+  flight.send(configuration());
+  flight.send(paper_waypoints());
+  flight.send(mode(1));
+  flight.fly_until(at(3000));
+  EXPECT_GT(flight.executed, 0);
+  return flight;
+}
+
+executed_maneuver unheard_of_maneuver(std::int32_t id, double dv_t) {
+  executed_maneuver message{};
+  message.maneuver_id = id;
+  message.accepted = 1;
+  message.dv_rtn[1] = dv_t;
+  return message;
+}
+
+/// Packets that all matter: measurements at three times, two maneuvers between them, telecommands of all kinds.
+std::vector<Bytes> rich_step(const Flight& flight) {
+  std::vector<Bytes> packets;
+  for (int k = 3; k-- > 0;) {
+    packets.push_back(packet_of(flight.now - duration_of_seconds(15 * k), flight.world.measurement(), 0));
+  }
+  const GpsTime just_now = flight.now - duration_of_seconds(1);
+  packets.push_back(packet_of(just_now, unheard_of_maneuver(1001, 0.01), 1));
+  packets.push_back(packet_of(just_now, unheard_of_maneuver(1002, -0.03), 2));
+  gnc_configuration changed = configuration();
+  changed.maximum_dv = 5.0;
+  packets.push_back(packet_of(flight.now, changed));
+  packets.push_back(packet_of(flight.now, paper_waypoints()));
+  packets.push_back(packet_of(just_now, mode(3)));
+  packets.push_back(packet_of(flight.now, mode(1)));
+  tick message{};
+  message.period_ns = kStep.ns;
+  packets.push_back(packet_of(flight.now, message));
+  return packets;
+}
+
+TEST(Contract, TheOrderOfPacketsInAStepDoesNotMatter) {
+  const Flight flight = under_way();
+  const std::vector<std::byte> before = flight.article.save();
+  std::vector<Bytes> packets = rich_step(flight);
+  std::mt19937_64 random(7);
+  std::vector<Bytes> expected;
+  for (int trial = 0; trial < 40; ++trial) {
+    Article article;
+    article.restore(before);
+    for (const Bytes& packet : packets) EXPECT_EQ(article.deliver(packet), 0);
+    const Answer answer = article.step_without_tick(flight.now);
+    const Answer next = article.step(flight.now + kStep, kStep);  // nothing of the order may linger either
+    std::vector<Bytes> said = answer.packets;
+    said.insert(said.end(), next.packets.begin(), next.packets.end());
+    if (trial == 0) expected = said;
+    EXPECT_EQ(said, expected) << "trial " << trial;
+    std::shuffle(packets.begin(), packets.end(), random);
+  }
+  EXPECT_GE(expected.size(), 6U);
+}
+
+TEST(Contract, TheStateIsItsBytes) {
+  Flight flight = under_way();
+  const std::vector<std::byte> saved = flight.article.save();
+  Article other;
+  other.restore(saved);
+  int commands = 0;
+  for (int k = 0; k < 120; ++k) {
+    EXPECT_EQ(other.deliver(flight.now, flight.world.measurement()), 0);
+    const Answer resumed = other.step(flight.now, kStep);
+    flight.reports_maneuvers = false;  // the other one is not told, so this one must not be
+    flight.measures = false;
+    EXPECT_EQ(flight.article.deliver(flight.now, flight.world.measurement()), 0);
+    const Answer continued = flight.step();
+    ASSERT_EQ(resumed.packets, continued.packets) << "step " << k;
+    commands += static_cast<int>(continued.commands.size());
+  }
+  EXPECT_GT(commands, 0) << "two hours without a burn: this compares little";
+}
+
+TEST(Contract, APacketDeliveredBetweenStepsIsPartOfTheSavedState) {
+  Flight flight = under_way();
+  Article a, b;
+  a.restore(flight.article.save());
+  EXPECT_EQ(a.deliver(flight.now, flight.world.measurement()), 0);
+  b.restore(a.save());
+  EXPECT_EQ(a.step(flight.now, kStep).packets, b.step(flight.now, kStep).packets);
+}
+
+TEST(Contract, TheClockGoesForwardOnly) {
+  Flight flight = under_way();
+  const std::vector<std::byte> before = flight.article.save();
+  Article article;
+  article.restore(before);
+  for (const GpsTime wrong : {flight.now - kStep, flight.now - kStep - kStep, kEpoch}) {
+    EXPECT_EQ(article.deliver(wrong, flight.world.measurement()), 0);
+    const Answer answer = article.step(wrong, kStep);
+    EXPECT_EQ(answer.status, static_cast<vbar_status>(Status::kBadSequence));
+    EXPECT_TRUE(answer.packets.empty());
+  }
+  // Steps that were refused have left nothing behind but the fault and the count of packets.
+  Article undisturbed;
+  undisturbed.restore(before);
+  EXPECT_EQ(article.deliver(flight.now, flight.world.measurement()), 0);
+  EXPECT_EQ(undisturbed.deliver(flight.now, flight.world.measurement()), 0);
+  const Answer answer = article.step(flight.now, kStep);
+  const Answer reference = undisturbed.step(flight.now, kStep);
+  EXPECT_EQ(answer.health.faults & kFaultClock, kFaultClock);
+  EXPECT_EQ(reference.health.faults & kFaultClock, 0);
+  ASSERT_EQ(answer.packets.size(), reference.packets.size());
+  for (std::size_t k = 0; k + 1 < answer.packets.size(); ++k) EXPECT_EQ(answer.packets[k], reference.packets[k]);
+}
+
+TEST(Contract, AStepOutsideTheClocksRangeIsRefused) {
+  Article article;
+  for (const std::int64_t ns :
+       {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()}) {
+    EXPECT_EQ(article.step_without_tick({ns}).status, static_cast<vbar_status>(Status::kOutOfRange));
+  }
+  EXPECT_EQ(article.step(kEpoch, kStep).status, 0);
+}
+
+// Without a tick the next step's time is not known; the promise of the last one holds on.
+TEST(Contract, AStepWithoutATickStillSteps) {
+  Flight flight = under_way();
+  EXPECT_EQ(flight.article.deliver(flight.now, flight.world.measurement()), 0);
+  Article ticked;
+  ticked.restore(flight.article.save());
+  const Answer without = flight.article.step_without_tick(flight.now);
+  EXPECT_EQ(without.status, 0);
+  EXPECT_EQ(without.telemetry_count, 3);
+  const Answer with = ticked.step(flight.now, kStep);
+  EXPECT_EQ(without.navigation.step, with.navigation.step);
+  EXPECT_EQ(without.control.planned_dv, with.control.planned_dv);
+}
+
+// Telemetry cannot carry a NaN (encoding refuses it, and the outbox counts): three packets a step and none dropped is
+// the proof.
+void expect_whole_telemetry(const Answer& answer, const char* when) {
+  EXPECT_EQ(answer.status, 0) << when;
+  EXPECT_EQ(answer.telemetry_count, 3) << when;
+  EXPECT_EQ(answer.health.outbox_dropped, 0) << when;
+}
+
+TEST(Contract, TelemetryIsWholeBeforeAnythingIsKnown) {
+  Flight flight(kWaypoint0);
+  flight.measures = false;
+  expect_whole_telemetry(flight.step(), "first step, no packet at all");
+  flight.send(paper_waypoints());
+  flight.send(mode(1));
+  const Answer answer = flight.step();
+  expect_whole_telemetry(answer, "a mission, no measurement");
+  EXPECT_EQ(answer.navigation.valid, 0);
+  EXPECT_EQ(answer.control.planned_burns, 0);
+  EXPECT_TRUE(answer.commands.empty());
+}
+
+TEST(Contract, TelemetryIsWholeInEveryMode) {
+  for (const std::int8_t number : {0, 1, 2, 3}) {
+    Flight flight(kWaypoint0);
+    flight.send(paper_waypoints());
+    flight.send(mode(number));
+    for (int k = 0; k < 60; ++k) {
+      const Answer answer = flight.step();
+      expect_whole_telemetry(answer, "every mode");
+      EXPECT_EQ(answer.control.mode, number);
+      EXPECT_EQ(answer.navigation.valid, 1);
+      if (number == 0 || number == 3) {
+        EXPECT_EQ(answer.control.active_solver, -1);
+        EXPECT_EQ(answer.control.waypoint_index, -1);
+      }
+    }
+    EXPECT_EQ(flight.executed > 0, number == 1 || number == 2) << int{number};  // it drifts at 3 m/s
+  }
+}
+
+TEST(Contract, HoldStopsWhatWasPlannedAndApproachGoesOn) {
+  Flight flight = under_way();
+  flight.send(mode(3));
+  flight.step();
+  const int executed = flight.executed + static_cast<int>(flight.to_execute.size());
+  flight.fly_until(flight.now + duration_of_seconds(6000));  // an orbit, in which the leg had burns to come
+  EXPECT_EQ(flight.executed, executed);
+  flight.send(mode(1));
+  flight.fly_until(flight.now + duration_of_seconds(6000));
+  EXPECT_GT(flight.executed, executed);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::gnc::test
