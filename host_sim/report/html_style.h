@@ -22,9 +22,6 @@ inline constexpr const char* kStyleSheet = R"css(
     --good: #1a7a3c; --bad: #c0291f;
     --c0: #2a78d6; --c1: #e0560f; --c2: #10916a; --c3: #b98400; --c4: #6a4fc4; --c5: #7a7973;
   }
-  main { max-width: none; padding: 0; }
-  figure, tr, dl { break-inside: avoid; }
-  h2 { break-after: avoid; }
 }
 @page { size: A4; margin: 14mm; }
 * { box-sizing: border-box; }
@@ -77,6 +74,18 @@ svg .f0 { fill: var(--c0); } svg .f1 { fill: var(--c1); } svg .f2 { fill: var(--
 svg .f3 { fill: var(--c3); } svg .f4 { fill: var(--c4); } svg .f5 { fill: var(--c5); } svg .f6 { fill: var(--bad); }
 svg circle.ring { fill: var(--page); fill-opacity: 0.35; stroke: var(--bad); stroke-width: 1.4; }
 svg text.ring { fill: var(--bad); font-size: 10.5px; font-weight: 600; }
+@media print {
+  body { font-size: 11px; } h1 { font-size: 20px; } h2 { font-size: 14px; margin: 20px 0 6px; } h3 { font-size: 12px; }
+  main { max-width: none; padding: 0; }
+  table, dl, .legend { font-size: 10px; }
+  th.number, td.number { padding-left: 10px; }
+  .tiles { grid-template-columns: repeat(6, 1fr); gap: 6px; margin: 10px 0; }
+  .tile { padding: 5px 8px; } .tile b { font-size: 13px; } .tile span { font-size: 10px; }
+  dl { grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 20px; } dt { flex-basis: 120px; }
+  .scroll { overflow: visible; }
+  figure, tr, dl div, .tile { break-inside: avoid; }
+  h2, .note, .legend { break-after: avoid; }
+}
 )css";
 
 }  // namespace vbar::report

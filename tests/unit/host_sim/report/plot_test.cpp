@@ -1,5 +1,6 @@
 #include <cmath>
-#include <regex>
+#include <stdexcept>
+#include <string_view>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -104,13 +105,14 @@ TEST(DisplayUnit, SuitsTheSize) {
   EXPECT_EQ(display_unit(Unit::kMetresPerSecond, 0.006).symbol, "mm/s");
 }
 
-/// The numbers that stand where the pattern has groups.
-std::vector<double> numbers_at(const std::string& text, const std::string& pattern) {
-  std::smatch match;
-  std::vector<double> numbers;
-  if (!std::regex_search(text, match, std::regex(pattern))) return numbers;
-  for (std::size_t k = 1; k < match.size(); ++k) numbers.push_back(std::stod(match[k].str()));
-  return numbers;
+/// The number behind `key`, looked for from `at` on, which moves behind it.
+double number_behind(const std::string& text, std::string_view key, std::size_t& at) {
+  const std::size_t found = text.find(key, at);
+  if (found == std::string::npos) throw std::runtime_error("no " + std::string(key));
+  std::size_t size = 0;
+  const double number = std::stod(text.substr(found + key.size(), 24), &size);
+  at = found + key.size() + size;
+  return number;
 }
 
 // A line from one corner of the axes' ranges to the other must run from corner to corner of the frame.
@@ -121,16 +123,17 @@ TEST(SvgPlot, PutsValuesWhereTheAxesSay) {
     plot.y = {.name = "y", .unit = Unit::kMetres, .range = Range{3.0, 9000.0}, .logarithmic = logarithmic};
     plot.series = {{"line", 0, Mark::kLine, {{-2.0, 3.0}, {6.0, 9000.0}}}};
     const std::string text = svg(plot);
-    const std::vector<double> frame =
-        numbers_at(text, R"re(class="frame" x="(.*?)" y="(.*?)" width="(.*?)" height="(.*?)")re");
-    const std::vector<double> line = numbers_at(text, R"re(class="line c0" d="M(.*?) (.*?)L(.*?) (.*?)")re");
-    ASSERT_EQ(frame.size(), 4U);
-    ASSERT_EQ(line.size(), 4U);
+    std::size_t at = text.find("class=\"frame\"");
+    const double left = number_behind(text, "x=\"", at);
+    const double top = number_behind(text, "y=\"", at);
+    const double right = left + number_behind(text, "width=\"", at);
+    const double bottom = top + number_behind(text, "height=\"", at);
+    at = text.find("class=\"line c0\"");
     constexpr double kRounding = 0.11;  // pixels are written with one digit, sums of two of them differ by 0.1
-    EXPECT_NEAR(line[0], frame[0], kRounding);
-    EXPECT_NEAR(line[1], frame[1] + frame[3], kRounding);
-    EXPECT_NEAR(line[2], frame[0] + frame[2], kRounding);
-    EXPECT_NEAR(line[3], frame[1], kRounding);
+    EXPECT_NEAR(number_behind(text, "M", at), left, kRounding);
+    EXPECT_NEAR(number_behind(text, " ", at), bottom, kRounding);
+    EXPECT_NEAR(number_behind(text, "L", at), right, kRounding);
+    EXPECT_NEAR(number_behind(text, " ", at), top, kRounding);
   }
 }
 
@@ -143,11 +146,11 @@ TEST(SvgPlot, SameScaleKeepsShapes) {
   plot.rings = {{{-2.0, 0.0}, "", ""}, {{2.0, 0.0}, "", ""}, {{0.0, -2.0}, "", ""}, {{0.0, 2.0}, "", ""}};
   const std::string text = svg(plot);
   std::vector<Point> centres;
-  const std::regex circle(R"re(cx="(.*?)" cy="(.*?)")re");
-  for (auto it = std::sregex_iterator(text.begin(), text.end(), circle); it != std::sregex_iterator(); ++it) {
-    centres.push_back({std::stod((*it)[1]), std::stod((*it)[2])});
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < plot.rings.size(); ++k) {
+    const double x = number_behind(text, "cx=\"", at);
+    centres.push_back({x, number_behind(text, "cy=\"", at)});
   }
-  ASSERT_EQ(centres.size(), 4U);
   EXPECT_NEAR(centres[1].x - centres[0].x, centres[2].y - centres[3].y, 0.21);  // four numbers of one digit
 }
 
