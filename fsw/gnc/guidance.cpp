@@ -96,8 +96,8 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   sigma_roe_ = sigma_a_roe_m / orbits_.servicer.a;
   position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m(0), orbits_.servicer);
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
-  const Result<safety::PlanSafety> drift = safety_of({}, configuration);
-  if (drift.ok()) report_.passive_safety_distance = drift.value().least_distance;
+  const Result<safety::PlanSafety> ahead = safety_of(plan_, configuration);
+  if (ahead.ok()) report_.passive_safety_distance = ahead.value().least_distance;
 }
 
 void Guidance::update(GpsTime now, Duration period, const Navigation& navigation, const Management& management) {

@@ -47,7 +47,7 @@ class Guidance {
  public:
   static constexpr std::size_t kMaxCommandsPerStep = 16;
 
-  /// Mean orbits of both spacecraft and the passive safety of the drift if nothing more is commanded.
+  /// Mean orbits of both spacecraft and the passive safety of the plan as it stands.
   void assess(GpsTime now, const Navigation& navigation, const Management& management);
 
   /// One step: drops what is past, replans if it is due and needed, and collects the burns to command. `period` is the

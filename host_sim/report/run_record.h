@@ -15,7 +15,7 @@ using Sextuple = std::array<double, 6>;
 
 /// Truth at a step (truth.csv).
 struct TruthRow {
-  double time_s = 0.0;  ///< since the start of the mission
+  double time_s = 0.0;  ///< since the mission's epoch
   Triple servicer_position_eci{}, servicer_velocity_eci{};
   Triple target_position_eci{}, target_velocity_eci{};
   Triple relative_position_rtn{}, relative_velocity_rtn{};  ///< target in the servicer's RTN
