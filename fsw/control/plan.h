@@ -1,8 +1,9 @@
 #pragma once
 // What every control solver takes and gives.
 //
-// All algebra is in dimensionless mean ROE of the target (deputy) with respect to the servicer (chief). The solvers think of a
-// manoeuvring deputy; a plan's burns are already those of the servicer: dv_servicer = -dv_deputy, in the servicer's RTN.
+// All algebra is in dimensionless mean ROE of the target (deputy) with respect to the servicer (chief). The solvers
+// think of a manoeuvring deputy; a plan's burns are already those of the servicer: dv_servicer = -dv_deputy, in the
+// servicer's RTN.
 
 #include <array>
 #include <cstddef>
@@ -45,9 +46,9 @@ struct Plan {
 
 /// Bring the ROE from their free drift to where they shall be, by impulses in [start, arrival].
 struct ControlProblem {
-  GpsTime start;                      ///< earliest burn, epoch of servicer_mean
-  GpsTime arrival;                    ///< waypoint time
-  orbit::QnsElements servicer_mean;   ///< mean elements of the servicer at `start`
+  GpsTime start;                     ///< earliest burn, epoch of servicer_mean
+  GpsTime arrival;                   ///< waypoint time
+  orbit::QnsElements servicer_mean;  ///< mean elements of the servicer at `start`
   /// Change of the mean ROE wanted at `arrival` beyond the free drift (the pseudo-state w of the paper), dimensionless.
   Vector6 pseudo_state = Vector6::Zero();
 };

@@ -1,6 +1,6 @@
 #pragma once
-// The one clock: integer nanoseconds of GPS time since 1980-01-06 00:00:00. No floating-point time is stored or compared;
-// seconds as double exist only as differences handed to dynamics.
+// The one clock: integer nanoseconds of GPS time since 1980-01-06 00:00:00. No floating-point time is stored or
+// compared; seconds as double exist only as differences handed to dynamics.
 
 #include <compare>
 #include <cstdint>
@@ -21,16 +21,28 @@ struct GpsTime {
   constexpr auto operator<=>(const GpsTime&) const = default;
 };
 
-constexpr Duration operator-(GpsTime a, GpsTime b) { return {a.ns - b.ns}; }
-constexpr GpsTime operator+(GpsTime a, Duration d) { return {a.ns + d.ns}; }
-constexpr GpsTime operator-(GpsTime a, Duration d) { return {a.ns - d.ns}; }
-constexpr Duration operator+(Duration a, Duration b) { return {a.ns + b.ns}; }
+constexpr Duration operator-(GpsTime a, GpsTime b) {
+  return {a.ns - b.ns};
+}
+constexpr GpsTime operator+(GpsTime a, Duration d) {
+  return {a.ns + d.ns};
+}
+constexpr GpsTime operator-(GpsTime a, Duration d) {
+  return {a.ns - d.ns};
+}
+constexpr Duration operator+(Duration a, Duration b) {
+  return {a.ns + b.ns};
+}
 
 /// Seconds of a span: exact to a nanosecond for spans under 104 days (2^53 ns).
-constexpr double seconds(Duration d) { return static_cast<double>(d.ns) / 1e9; }
+constexpr double seconds(Duration d) {
+  return static_cast<double>(d.ns) / 1e9;
+}
 
 /// Whole-second span.
-constexpr Duration duration_of_seconds(std::int64_t s) { return {s * kNanosecondsPerSecond}; }
+constexpr Duration duration_of_seconds(std::int64_t s) {
+  return {s * kNanosecondsPerSecond};
+}
 
 /// Span nearest to `s` seconds; `s` must be finite and below 9e9 in magnitude.
 constexpr Duration nearest_duration(double s) {

@@ -8,19 +8,19 @@ namespace vbar::fsw {
 /// Why something was refused or did not work. One list for all flight code, so that telemetry can carry it.
 enum class Status : std::uint8_t {
   kOk = 0,
-  kInvalidArgument,   ///< a precondition of the call does not hold
-  kNotFinite,         ///< a NaN or an infinity where a number is needed
-  kOutOfRange,        ///< a number outside the range in which the model or the table is valid
-  kDidNotConverge,    ///< an iteration reached its bound
-  kSingular,          ///< a linear system without a usable solution
-  kFull,              ///< a queue, pool or buffer has no room left
-  kTooShort,          ///< input ends before the thing it should hold
-  kTooLong,           ///< input is longer than the thing it should hold
-  kWrongType,         ///< packet identifier or type hash is not the expected one
-  kBadChecksum,       ///< CRC does not match
-  kBadSequence,       ///< out of order, duplicated or of another session
-  kUnsafe,            ///< a plan that fails the passive-safety test
-  kNotReady,          ///< asked before it could be answered
+  kInvalidArgument,  ///< a precondition of the call does not hold
+  kNotFinite,        ///< a NaN or an infinity where a number is needed
+  kOutOfRange,       ///< a number outside the range in which the model or the table is valid
+  kDidNotConverge,   ///< an iteration reached its bound
+  kSingular,         ///< a linear system without a usable solution
+  kFull,             ///< a queue, pool or buffer has no room left
+  kTooShort,         ///< input ends before the thing it should hold
+  kTooLong,          ///< input is longer than the thing it should hold
+  kWrongType,        ///< packet identifier or type hash is not the expected one
+  kBadChecksum,      ///< CRC does not match
+  kBadSequence,      ///< out of order, duplicated or of another session
+  kUnsafe,           ///< a plan that fails the passive-safety test
+  kNotReady,         ///< asked before it could be answered
 };
 
 /// A value or the reason there is none. `value()` may only be read when `ok()`.

@@ -10,8 +10,8 @@
 
 namespace vbar::fsw {
 
-/// What orders entries: time first, then the sender's unit and sequence count, so that two entries of the same instant come
-/// out alike however they came in.
+/// What orders entries: time first, then the sender's unit and sequence count, so that two entries of the same instant
+/// come out alike however they came in.
 struct FilingTag {
   GpsTime time;
   std::uint8_t unit = 0;
@@ -19,7 +19,8 @@ struct FilingTag {
   constexpr auto operator<=>(const FilingTag&) const = default;
 };
 
-/// Up to `capacity` entries in order of their tags. Rule when full: the newest arrival is refused, nothing is overwritten.
+/// Up to `capacity` entries in order of their tags. Rule when full: the newest arrival is refused, nothing is
+/// overwritten.
 template <class T, std::size_t capacity>
 class TimeOrderedQueue {
  public:

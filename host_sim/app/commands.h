@@ -1,6 +1,6 @@
 #pragma once
-// What `vbar` can be asked to do. Each returns the program's exit code: 0 done, 1 not (said on standard error), 2 done but the
-// result is not what was hoped for (outputs differ).
+// What `vbar` can be asked to do. Each returns the program's exit code: 0 done, 1 not (said on standard error), 2 done
+// but the result is not what was hoped for (outputs differ).
 
 #include <filesystem>
 #include <string>

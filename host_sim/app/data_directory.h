@@ -5,8 +5,8 @@
 
 namespace vbar::app {
 
-/// $VBAR_DATA if set, else the data folder of the source tree this program was built from. Throws std::runtime_error that names
-/// the folder if it is not there.
+/// $VBAR_DATA if set, else the data folder of the source tree this program was built from. Throws std::runtime_error
+/// that names the folder if it is not there.
 std::filesystem::path data_directory();
 
 }  // namespace vbar::app

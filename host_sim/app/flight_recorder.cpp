@@ -17,13 +17,23 @@ using fsw::Vector6;
 using fsw::orbit::CartesianState;
 using fsw::orbit::QnsElements;
 
-report::Triple triple(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-report::Triple triple(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+report::Triple triple(const Vector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+report::Triple triple(const double (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
 
-report::Sextuple sextuple(const Vector6& v) { return {v(0), v(1), v(2), v(3), v(4), v(5)}; }
-report::Sextuple sextuple(const double (&v)[6]) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
+report::Sextuple sextuple(const Vector6& v) {
+  return {v(0), v(1), v(2), v(3), v(4), v(5)};
+}
+report::Sextuple sextuple(const double (&v)[6]) {
+  return {v[0], v[1], v[2], v[3], v[4], v[5]};
+}
 
-double norm(const report::Triple& v) { return std::hypot(v[0], v[1], v[2]); }
+double norm(const report::Triple& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
 
 double distance(const report::Triple& a, const report::Triple& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -63,7 +73,8 @@ void FlightRecorder::on_truth(fsw::GpsTime time, const PairTruth& truth) {
   record_.truth.push_back(row);
 }
 
-// Control error: the true RTN position of the target minus the one that the commanded mean ROE give on the true servicer orbit.
+// Control error: the true RTN position of the target minus the one that the commanded mean ROE give on the true
+// servicer orbit.
 void FlightRecorder::on_waypoint(const mission::Waypoint& waypoint, const PairTruth& truth) {
   const double a = mission_.guidance.reference_semi_major_axis_m;
   const QnsElements servicer_mean = mean_elements(truth.servicer);
@@ -173,8 +184,8 @@ void FlightRecorder::finish_navigation_errors() {
   record_.summary.navigation_velocity_error_mps = statistics(velocity_errors);
 }
 
-// A burn belongs to the leg of the waypoint it was commanded for: the last burn of a fuel-optimal leg stands at the waypoint's
-// own time and stops the arrival.
+// A burn belongs to the leg of the waypoint it was commanded for: the last burn of a fuel-optimal leg stands at the
+// waypoint's own time and stops the arrival.
 void FlightRecorder::finish_legs() {
   report::Summary& summary = record_.summary;
   summary.dv_mps = 0.0;

@@ -1,5 +1,6 @@
 #pragma once
-// Turns what happens in a run into the rows of its record: truth, what the flight software said, maneuvers, waypoints met.
+// Turns what happens in a run into the rows of its record: truth, what the flight software said, maneuvers, waypoints
+// met.
 
 #include <span>
 #include <vector>

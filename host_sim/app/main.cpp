@@ -43,7 +43,8 @@ int main(int argc, char** argv) {
   CLI::App* report_app = program.add_subcommand("report", "write the report of a run, or of several side by side");
   report_app->add_option("run", folders, "run folders")->required();
   std::filesystem::path report_out;
-  report_app->add_option("--out", report_out, "file of the comparison; comparison.html beside the first run unless given");
+  report_app->add_option("--out", report_out,
+                         "file of the comparison; comparison.html beside the first run unless given");
   report_app->callback([&] { exit_code = report_command(folders, report_out); });
 
   std::filesystem::path missions = "missions";

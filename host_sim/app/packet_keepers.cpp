@@ -47,7 +47,8 @@ class PacketKeepers::Mirror final : public PacketObserver {
   explicit Mirror(const std::string& url) : mirror_(url) {}
   void on_step(std::uint32_t step, fsw::GpsTime time, std::span<const pil::Packet> inputs,
                std::span<const pil::Packet> outputs) override {
-    for_each_record(step, time, inputs, outputs, [this](const twins::PacketRecord& record) { mirror_.publish(record); });
+    for_each_record(step, time, inputs, outputs,
+                    [this](const twins::PacketRecord& record) { mirror_.publish(record); });
   }
 
  private:
@@ -63,7 +64,11 @@ PacketKeepers::PacketKeepers(const mission::Mission& mission, const std::filesys
 
 PacketKeepers::~PacketKeepers() = default;
 
-std::string PacketKeepers::commands_sha256() const { return hash_->get().commands_sha256(); }
-std::string PacketKeepers::telemetry_sha256() const { return hash_->get().telemetry_sha256(); }
+std::string PacketKeepers::commands_sha256() const {
+  return hash_->get().commands_sha256();
+}
+std::string PacketKeepers::telemetry_sha256() const {
+  return hash_->get().telemetry_sha256();
+}
 
 }  // namespace vbar::app

@@ -1,15 +1,16 @@
 #include "host_sim/app/progress.h"
 
-#include <unistd.h>
-
 #include <fmt/core.h>
+#include <unistd.h>
 
 namespace vbar::app {
 
 ProgressLine::ProgressLine(fsw::Duration total)
     : total_(total), started_(Clock::now()), drawn_(started_), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
-ProgressLine::~ProgressLine() { erase(); }
+ProgressLine::~ProgressLine() {
+  erase();
+}
 
 void ProgressLine::update(fsw::Duration simulated) {
   const Clock::time_point now = Clock::now();

@@ -29,7 +29,8 @@ const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
   const mission::Spacecraft& servicer = flying_spacecraft(mission);
   for (const mission::Spacecraft& other : mission.spacecraft) {
     if (&other != &servicer && other.flight_computer) {
-      throw std::runtime_error("spacecraft \"" + other.name + "\" has a flight computer too; one in a mission is supported");
+      throw std::runtime_error("spacecraft \"" + other.name +
+                               "\" has a flight computer too; one in a mission is supported");
     }
   }
   if (!servicer.navigation) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no navigation sensor");
@@ -178,7 +179,9 @@ void Simulation::send_to_flight(pil::Packet packet, GpsTime sent) {
   if (!transfer.lost) schedule(transfer.delivery, DeliverPacket{std::move(packet)});
 }
 
-void Simulation::handle(const DeliverPacket& delivery) { arrived_.push_back(delivery.packet); }
+void Simulation::handle(const DeliverPacket& delivery) {
+  arrived_.push_back(delivery.packet);
+}
 
 void Simulation::handle(const JudgeWaypoint& judged) {
   truth_.advance_to(events_.now());
@@ -214,7 +217,8 @@ pil::Packet Simulation::make_tick() {
   return make_packet(events_.now(), servicer_.number, tick_sequence_++, message);
 }
 
-/// Commands take effect once the flight computer has had its compute latency; one that asks for an earlier time is refused.
+/// Commands take effect once the flight computer has had its compute latency; one that asks for an earlier time is
+/// refused.
 void Simulation::take_commands(const pil::StepResult& answer) {
   const GpsTime effective = events_.now() + servicer_.flight_computer->compute_latency;
   for (const pil::Packet& bytes : answer.packets) {
@@ -235,7 +239,7 @@ void Simulation::handle(const ExecuteBurn& burn) {
   const GpsTime now = events_.now();
   truth_.advance_to(now);
   const twins::Execution execution = thruster_->execute(burn.command, now, now);
-  const double (&dv)[3] = execution.maneuver.dv_rtn;
+  const double(&dv)[3] = execution.maneuver.dv_rtn;
   truth_.apply_impulse_rtn(servicer_index_, {dv[0], dv[1], dv[2]});
   report_execution(execution);
 }
@@ -245,7 +249,9 @@ void Simulation::report_execution(const twins::Execution& execution) {
   send_to_flight(execution.packet, events_.now());
 }
 
-PairTruth Simulation::pair_truth() const { return {truth_.state(servicer_index_), truth_.state(target_index_)}; }
+PairTruth Simulation::pair_truth() const {
+  return {truth_.state(servicer_index_), truth_.state(target_index_)};
+}
 
 void Simulation::summarise(double wall_s, bool complete) {
   report::Summary& summary = record_.summary;

@@ -2,8 +2,8 @@
 // One run of a mission: truth, sensors, links, flight computer and actuators around one queue of events.
 //
 // At one instant things happen in this order: measurements are taken, packets arrive, a waypoint is judged, the flight
-// software steps, burns are executed. So a burn at a waypoint's own time counts as after it, and a step sees what was measured
-// at its own time if the link is fast enough.
+// software steps, burns are executed. So a burn at a waypoint's own time counts as after it, and a step sees what was
+// measured at its own time if the link is fast enough.
 
 #include <cstdint>
 #include <functional>
@@ -39,8 +39,8 @@ class PacketObserver {
 
 class Simulation {
  public:
-  /// All references must outlive the simulation. `progress` is told the simulated span after each step; `stop_requested` is
-  /// asked before each (both may be empty).
+  /// All references must outlive the simulation. `progress` is told the simulated span after each step;
+  /// `stop_requested` is asked before each (both may be empty).
   struct Surroundings {
     pil::FlightComputer& flight_computer;
     engine::WallClock& wall;
@@ -52,8 +52,8 @@ class Simulation {
   Simulation(const mission::Mission& mission, const std::filesystem::path& data_directory,
              const Surroundings& surroundings, report::RunRecord& record);
 
-  /// Flies the mission. True if it came to its end, false if it was stopped. Throws what truth, twins and flight computer
-  /// throw; the record then holds what was flown.
+  /// Flies the mission. True if it came to its end, false if it was stopped. Throws what truth, twins and flight
+  /// computer throw; the record then holds what was flown.
   bool run();
 
   /// Unit of EstimateRow::step_cost: "none", "instructions" or "cycles".

@@ -20,10 +20,10 @@ fsw::Duration longest_compute_latency(const Mission& mission) {
 void read_guidance(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("guidance");
   section.accept_only({"mode", "reference_semi_major_axis_km", "compute_latency_s", "closed_form_period_s",
-                       "koenig_damico_period_s", "koenig_damico_grid_s", "planner_delay_s",
-                       "minimum_dv_mmps", "maximum_dv_mps", "roe_error_threshold_m", "keep_out_radius_m",
-                       "safety_horizon_s", "station_keeping_deadband_m", "closed_form_tolerance_m",
-                       "koenig_damico_tolerance_m", "station_keeping_horizon_s", "navigation_timeout_s"});
+                       "koenig_damico_period_s", "koenig_damico_grid_s", "planner_delay_s", "minimum_dv_mmps",
+                       "maximum_dv_mps", "roe_error_threshold_m", "keep_out_radius_m", "safety_horizon_s",
+                       "station_keeping_deadband_m", "closed_form_tolerance_m", "koenig_damico_tolerance_m",
+                       "station_keeping_horizon_s", "navigation_timeout_s"});
   constexpr Range kPeriod_s = from_to(1e-3, 1e6);
   Guidance& guidance = mission.guidance;
   guidance.mode = section.choice<Mode>("mode", kModes, Mode::kApproach);

@@ -2,8 +2,9 @@
 #define VBAR_FSW_MATH_NEWLIB_RENAME_H
 /* Force-included before every newlib source: gives each external name of the library the prefix vbar_libm_.
 
-   The IEEE cores (__ieee754_asin, ...) get the public names directly, so newlib's errno wrappers are not needed. What IEEE 754
-   defines exactly (square root, absolute value, sign copy) is left to the compiler: one instruction on every target. */
+   The IEEE cores (__ieee754_asin, ...) get the public names directly, so newlib's errno wrappers are not needed. What
+   IEEE 754 defines exactly (square root, absolute value, sign copy) is left to the compiler: one instruction on every
+   target. */
 
 /* The platform's own declarations have to be seen before their names become macros. */
 #include <math.h>

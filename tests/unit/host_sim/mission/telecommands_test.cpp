@@ -26,10 +26,10 @@ TEST(Telecommands, ConfigurationIsInTheUnitsOfThePacketContract) {
   const Mission mission = small_mission(
       {"mission.start_h=1", "guidance.planner_delay_s=1200", "guidance.minimum_dv_mmps=0.25",
        "guidance.maximum_dv_mps=3", "guidance.compute_latency_s=1.5", "guidance.closed_form_period_s=301",
-       "guidance.koenig_damico_period_s=61", "guidance.koenig_damico_grid_s=31",
-       "guidance.roe_error_threshold_m=0.4", "guidance.keep_out_radius_m=0.6", "guidance.safety_horizon_s=6001",
-       "guidance.station_keeping_deadband_m=0.7", "guidance.closed_form_tolerance_m=0.8",
-       "guidance.koenig_damico_tolerance_m=0.009", "guidance.station_keeping_horizon_s=6003", "guidance.navigation_timeout_s=602"});
+       "guidance.koenig_damico_period_s=61", "guidance.koenig_damico_grid_s=31", "guidance.roe_error_threshold_m=0.4",
+       "guidance.keep_out_radius_m=0.6", "guidance.safety_horizon_s=6001", "guidance.station_keeping_deadband_m=0.7",
+       "guidance.closed_form_tolerance_m=0.8", "guidance.koenig_damico_tolerance_m=0.009",
+       "guidance.station_keeping_horizon_s=6003", "guidance.navigation_timeout_s=602"});
   const vbar::gnc_configuration configuration = gnc_configuration_of(mission);
   constexpr std::int64_t kSecond = 1000000000;
   EXPECT_EQ(configuration.compute_latency_ns, 3 * kSecond / 2);

@@ -135,7 +135,8 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
   EXPECT_THAT(keys(json.at("flight_step")), ElementsAre("count", "unit", "max", "mean", "stack_bytes_max"));
   EXPECT_THAT(keys(json.at("link")),
               ElementsAre("bytes", "frames_resent", "frames_rejected", "frames_duplicated", "strangers_ignored"));
-  EXPECT_THAT(keys(json.at("deadlines")), ElementsAre("compute_overruns", "wakeups_late", "link_late", "simulation_late"));
+  EXPECT_THAT(keys(json.at("deadlines")),
+              ElementsAre("compute_overruns", "wakeups_late", "link_late", "simulation_late"));
   EXPECT_TRUE(json.at("camera").is_null());
   EXPECT_TRUE(json.at("incomplete_reason").is_null());
   EXPECT_TRUE(json.at("attitude_error_deg").at("mean").is_null());
