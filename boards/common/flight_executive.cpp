@@ -228,7 +228,7 @@ void FlightExecutive::send_answer() {
   }
 }
 
-void FlightExecutive::send_frame(const FrameHeader& header, std::span<const std::uint8_t> payload) {
+void FlightExecutive::send_frame(const FrameHeader& header, std::span<const std::uint8_t> payload) const {
   std::array<std::uint8_t, fsw::link::kMaxFrameBytes> frame{};
   const fsw::Result<std::size_t> size = fsw::link::write_frame(header, payload, frame);
   if (size.ok()) platform_.send(platform_.context, std::span(frame).first(size.value()));

@@ -30,7 +30,7 @@ struct Platform {
 };
 
 /// Room for the flight software's state (vbar_gnc_state_size() must not exceed it), and how it is aligned.
-inline constexpr std::size_t kGncStateBytes = 8 * 1024 * 1024;
+inline constexpr std::size_t kGncStateBytes = std::size_t{8} * 1024 * 1024;
 inline constexpr std::size_t kGncStateAlignment = 64;
 
 enum class Activity : std::uint8_t { kIdle, kStepped, kGoodbye };
@@ -43,6 +43,7 @@ enum class Activity : std::uint8_t { kIdle, kStepped, kGoodbye };
 /// ...").
 class FlightExecutive {
  public:
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): gnc_state_ is cleared when a session begins
   explicit FlightExecutive(const Platform& platform) : platform_(platform) {}
   FlightExecutive(const FlightExecutive&) = delete;
   FlightExecutive& operator=(const FlightExecutive&) = delete;
@@ -80,7 +81,7 @@ class FlightExecutive {
   void append_step_report(std::uint64_t cost);
 
   void send_answer();
-  void send_frame(const fsw::link::FrameHeader& header, std::span<const std::uint8_t> payload);
+  void send_frame(const fsw::link::FrameHeader& header, std::span<const std::uint8_t> payload) const;
   [[nodiscard]] std::uint64_t read_counter() const;
 
   Platform platform_;
@@ -96,7 +97,7 @@ class FlightExecutive {
   fsw::link::BatchReceiver inputs_;
   fsw::link::BatchSender answer_;
   Outbox outbox_;
-  alignas(kGncStateAlignment) std::array<std::byte, kGncStateBytes> gnc_state_;  // cleared when a session begins
+  alignas(kGncStateAlignment) std::array<std::byte, kGncStateBytes> gnc_state_;
 };
 
 }  // namespace vbar::boards

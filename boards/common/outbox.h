@@ -12,10 +12,10 @@ namespace vbar::boards {
 
 /// Answer of a step, kept until the next step so that it can be sent again. Full: the newest packet is dropped,
 /// counted.
-inline constexpr std::size_t kOutboxBytes = 128 * 1024;
+inline constexpr std::size_t kOutboxBytes = std::size_t{128} * 1024;
 inline constexpr std::size_t kOutboxPackets = 256;
 
-class Outbox {
+class Outbox {  // NOLINT(cppcoreguidelines-pro-type-member-init): see bytes_
  public:
   void clear();
 

@@ -1,5 +1,6 @@
 #include "boards/posix/flight_main.h"
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -41,9 +42,10 @@ bool parse(int argc, char** argv, Options& options) {
     const char* name;
     const char** value;
   };
-  const Known known[] = {{"--serial", &options.serial}, {"--unix", &options.unix_path},    {"--udp", &options.udp},
-                         {"--stream", &options.stream}, {"--datagram", &options.datagram}, {"--peer", &options.peer},
-                         {"--baud", &options.baud}};
+  const std::array known{Known{"--serial", &options.serial},     Known{"--unix", &options.unix_path},
+                         Known{"--udp", &options.udp},           Known{"--stream", &options.stream},
+                         Known{"--datagram", &options.datagram}, Known{"--peer", &options.peer},
+                         Known{"--baud", &options.baud}};
   for (int i = 1; i < argc; i += 2) {
     const char** value = nullptr;
     for (const Known& option : known) {
@@ -52,7 +54,7 @@ bool parse(int argc, char** argv, Options& options) {
     if (value == nullptr || i + 1 >= argc) return false;
     *value = argv[i + 1];
   }
-  const char* const links[] = {options.serial, options.unix_path, options.udp, options.stream, options.datagram};
+  const std::array links{options.serial, options.unix_path, options.udp, options.stream, options.datagram};
   int chosen = 0;
   for (const char* link : links) chosen += link != nullptr ? 1 : 0;
   return chosen == 1;
@@ -86,7 +88,7 @@ int open_datagram(const Options& options) {
 }
 
 /// Its memory is static, for it is large; it is built when the link it talks through is there.
-alignas(FlightExecutive) std::byte executive_memory[sizeof(FlightExecutive)];
+alignas(FlightExecutive) std::array<std::byte, sizeof(FlightExecutive)> executive_memory;
 
 std::uint32_t measure_stack(void* /*context*/) {
   return stack_high_water();
@@ -105,7 +107,7 @@ struct Flight {
     platform.name = flight->name;
     platform.send = &Link::send;
     platform.stack_high_water = &measure_stack;
-    auto* const executive = ::new (static_cast<void*>(executive_memory)) FlightExecutive(platform);
+    auto* const executive = ::new (static_cast<void*>(executive_memory.data())) FlightExecutive(platform);
     flight->end = flight->link->serve(*executive);
   }
 };

@@ -9,11 +9,11 @@
 namespace vbar::boards::posix {
 namespace {
 
-constexpr std::size_t kGuardBytes = 64 * 1024;  // a multiple of every page size in use on these processors
+constexpr std::size_t kGuardBytes = std::size_t{64} * 1024;  // a multiple of every page size in use on these processors
 constexpr std::uint64_t kPaint = 0x5AFEC0DE5AFEC0DEU;
 /// So much paint in one piece ends the search. Larger than any array that a frame of flight code might leave untouched;
 /// searching all of the stack would cost more than many a step.
-constexpr std::size_t kCleanWords = 64 * 1024 / sizeof(std::uint64_t);
+constexpr std::size_t kCleanWords = std::size_t{64} * 1024 / sizeof(std::uint64_t);
 
 struct FlightStack {
   alignas(kGuardBytes) std::array<std::byte, kGuardBytes> guard;

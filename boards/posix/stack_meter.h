@@ -6,7 +6,7 @@
 
 namespace vbar::boards::posix {
 
-inline constexpr std::size_t kFlightStackBytes = 1024 * 1024;
+inline constexpr std::size_t kFlightStackBytes = std::size_t{1024} * 1024;
 
 /// Runs `function(context)` to its end on a painted stack with a guard page below it. False if the system refuses.
 /// One at a time.

@@ -1,5 +1,7 @@
 #include "fsw/control/check_problem.h"
 
+#include <cstdint>
+
 #include "fsw/math/math.h"
 #include "fsw/orbit/constants.h"
 
@@ -8,7 +10,7 @@ namespace {
 
 constexpr double kMaxEccentricity = 0.9;
 constexpr double kMinSinInclination = 1e-6;
-constexpr Duration kMaxHorizon = duration_of_seconds(30 * 86400);
+constexpr Duration kMaxHorizon = duration_of_seconds(std::int64_t{30} * 86400);
 
 }  // namespace
 

@@ -44,8 +44,8 @@ struct Model {
   const ControlProblem& problem;
   const ClosedFormSettings& settings;
   NearCircularOrbit orbit;
-  double window;  ///< s
-  double latest;  ///< last offset at which a burn may be, s
+  double window = 0.0;  ///< s
+  double latest = 0.0;  ///< last offset at which a burn may be, s
 
   [[nodiscard]] Matrix63 effect(double offset) const {
     return arrival_effect(problem.servicer_mean, problem.start, problem.start + nearest_duration(offset),

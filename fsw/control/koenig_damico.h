@@ -29,7 +29,7 @@ struct KoenigDamicoSettings {
 /// Scratch and the full account of the last solution; about 120 kB, so not for a flight computer's stack.
 struct KoenigDamicoWorkspace {
   std::array<Matrix63, kMaxGridTimes> effects;
-  std::array<ThrustCost, kMaxGridTimes> costs;
+  std::array<ThrustCost, kMaxGridTimes> costs{};
   std::array<GpsTime, kMaxGridTimes> times;
   PrimerWorkspace primer;
   PrimerSolution solution;  ///< impulses of the deputy; valid after a solve that returned a plan

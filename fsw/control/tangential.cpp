@@ -53,7 +53,7 @@ Vector4 right_hand_side(const TangentialTask& task) {
 // One basis of the simplex method: four columns, each with a sign such that its variable is not negative. Index
 // kArtificial and above are the four unit columns of the start, priced so high that they leave.
 struct Basis {
-  static constexpr std::size_t kArtificial = 1u << 16;
+  static constexpr std::size_t kArtificial = 1U << 16;
   static constexpr double kArtificialPrice = 1e4;
 
   Matrix4 columns = Matrix4::Zero();

@@ -19,9 +19,9 @@ struct FilingTag {
   constexpr auto operator<=>(const FilingTag&) const = default;
 };
 
-/// Up to `capacity` entries in order of their tags. Rule when full: the newest arrival is refused, nothing is
+/// Up to `kCapacity` entries in order of their tags. Rule when full: the newest arrival is refused, nothing is
 /// overwritten.
-template <class T, std::size_t capacity>
+template <class T, std::size_t kCapacity>
 class TimeOrderedQueue {
  public:
   struct Entry {
@@ -34,7 +34,7 @@ class TimeOrderedQueue {
     std::size_t place = size_;
     while (place > 0 && tag < entries_[place - 1].tag) --place;
     if (place > 0 && entries_[place - 1].tag == tag) return Status::kBadSequence;
-    if (size_ == capacity) return Status::kFull;
+    if (size_ == kCapacity) return Status::kFull;
     for (std::size_t k = size_; k > place; --k) entries_[k] = entries_[k - 1];
     entries_[place] = {tag, value};
     ++size_;
@@ -48,7 +48,7 @@ class TimeOrderedQueue {
   void clear() { size_ = 0; }
 
  private:
-  std::array<Entry, capacity> entries_{};
+  std::array<Entry, kCapacity> entries_{};
   std::size_t size_ = 0;
 };
 

@@ -15,6 +15,7 @@ vbar_status as_c(Status status) {
 }
 
 bool is_aligned(const void* state) {
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the address itself is asked for
   return reinterpret_cast<std::uintptr_t>(state) % alignof(Gnc) == 0;
 }
 

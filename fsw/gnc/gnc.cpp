@@ -5,6 +5,7 @@
 namespace vbar::fsw::gnc {
 namespace {
 
+// NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays): fields of packet types
 void copy(const Vector3& from, double (&to)[3]) {
   for (int k = 0; k < 3; ++k) to[k] = from(k);
 }
@@ -12,6 +13,7 @@ void copy(const Vector3& from, double (&to)[3]) {
 void copy(const Vector6& from, double (&to)[6]) {
   for (int k = 0; k < 6; ++k) to[k] = from(k);
 }
+// NOLINTEND(cppcoreguidelines-avoid-c-arrays)
 
 }  // namespace
 

@@ -68,13 +68,13 @@ class Guidance {
   bool stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse);
   bool climbs_ladder(const gnc_configuration& configuration, bool estimate_too_coarse);
   bool adopt_if_flyable(const control::Plan& candidate, const gnc_configuration& configuration);
-  control::Plan refined(const control::Plan& candidate) const;
+  [[nodiscard]] control::Plan refined(const control::Plan& candidate) const;
   Result<control::Plan> solve(control::Solver solver, const gnc_configuration& configuration);
   Status& status_of(control::Solver solver);
-  Result<safety::PlanSafety> safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
-  control::LegSituation leg_situation() const;
-  control::LegPolicy leg_policy(const gnc_configuration& configuration) const;
-  GpsTime earliest_start() const;
+  [[nodiscard]] Result<safety::PlanSafety> safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
+  [[nodiscard]] control::LegSituation leg_situation() const;
+  [[nodiscard]] control::LegPolicy leg_policy(const gnc_configuration& configuration) const;
+  [[nodiscard]] GpsTime earliest_start() const;
   void forget_past_burns(GpsTime now);
   void commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration);
 

@@ -6,8 +6,8 @@ namespace {
 using packets::Apid;
 using packets::PacketView;
 
-template <class Message, std::size_t capacity>
-Status decode_and_file(const PacketView& packet, TimeOrderedQueue<Message, capacity>& queue) {
+template <class Message, std::size_t kCapacity>
+Status decode_and_file(const PacketView& packet, TimeOrderedQueue<Message, kCapacity>& queue) {
   const Result<Message> message = packets::decode<Message>(packet);
   if (!message.ok()) return message.status();
   const packets::PacketHeader& header = packet.header;

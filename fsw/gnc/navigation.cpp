@@ -16,6 +16,7 @@ constexpr double kUnmodelledGradient = 1e-10;  // 1/s^2, 1 sigma, constant over 
 // A report or measurement may come so much after its time and still be used.
 constexpr Duration kLongestDelay = duration_of_seconds(600);
 
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays): a field of a packet type
 Vector3 vector(const double (&xyz)[3]) {
   return {xyz[0], xyz[1], xyz[2]};
 }

@@ -27,6 +27,7 @@ class Outbox {
     header.spacecraft = spacecraft_;
     std::uint16_t& count = sequence_count_[sequence_slot(packets::MessageTraits<Message>::kApid)];
     header.sequence_count = count;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): encode writes what is read
     std::array<std::uint8_t, packets::kMaxPacketBytes> buffer;
     const Result<std::size_t> size = packets::encode(header, message, buffer);
     if (!size.ok()) {

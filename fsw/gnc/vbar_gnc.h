@@ -9,6 +9,7 @@
 #ifndef VBAR_FSW_GNC_VBAR_GNC_H
 #define VBAR_FSW_GNC_VBAR_GNC_H
 
+/* C first. NOLINTBEGIN(modernize-*) */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -50,5 +51,6 @@ vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns);
 #ifdef __cplusplus
 }
 #endif
+/* NOLINTEND(modernize-*) */
 
 #endif

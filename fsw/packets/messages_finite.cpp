@@ -14,6 +14,7 @@ bool finite(double value) {
 }
 
 template <std::size_t kSize>
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays): a field of a packet type
 bool finite(const double (&values)[kSize]) {
   for (const double value : values) {
     if (!finite(value)) return false;
