@@ -17,7 +17,7 @@ say "unit tests under the address and undefined-behaviour sanitizers"
 cmake --preset asan --log-level=WARNING
 cmake --build --preset asan --parallel --target unit_tests
 ctest --preset asan --parallel 2 --label-regex unit
-say "flight code with the second compiler, all warnings errors"
+say "flight code and the program with the second compiler, all warnings errors"
 cmake --preset host-clang --log-level=WARNING
-cmake --build --preset host-clang --parallel --target flight_code
+cmake --build --preset host-clang --parallel --target flight_code vbar
 say "all passed"

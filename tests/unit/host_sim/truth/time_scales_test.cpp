@@ -29,7 +29,8 @@ TEST(TimeScales, MissionEpoch) {
 }
 
 TEST(TimeScales, EarthRotationAngleAndSiderealTimeOfTheMissionEpoch) {
-  // ALGORITHMS of the mission: ERA 310.349033 deg, GMST06 310.496907 deg with UT1-UTC = -0.3 s; half a printed digit.
+  // Computed independently with ERFA at the mission epoch: ERA 310.349033 deg, GMST06 310.496907 deg with UT1-UTC =
+  // -0.3 s; half a printed digit.
   const fsw::GpsTime epoch = gps_from_utc("2011-07-18T01:00:00Z");
   const JulianDate ut1 = ut1_of(tai_of(epoch), -0.3 - 34.0);
   const JulianDate tt = tt_of(epoch);
