@@ -71,7 +71,8 @@ class Guidance {
   [[nodiscard]] control::Plan refined(const control::Plan& candidate) const;
   Result<control::Plan> solve(control::Solver solver, const gnc_configuration& configuration);
   Status& status_of(control::Solver solver);
-  [[nodiscard]] Result<safety::PlanSafety> safety_of(const control::Plan& candidate, const gnc_configuration& configuration) const;
+  [[nodiscard]] Result<safety::PlanSafety> safety_of(const control::Plan& candidate,
+                                                     const gnc_configuration& configuration) const;
   [[nodiscard]] control::LegSituation leg_situation() const;
   [[nodiscard]] control::LegPolicy leg_policy(const gnc_configuration& configuration) const;
   [[nodiscard]] GpsTime earliest_start() const;

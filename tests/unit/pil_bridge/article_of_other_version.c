@@ -4,7 +4,9 @@
 #undef vbar_gnc_abi_version
 
 int32_t vbar_gnc_abi_version(void);
-int32_t vbar_gnc_abi_version(void) { return VBAR_GNC_ABI_VERSION + 1; }
+int32_t vbar_gnc_abi_version(void) {
+  return VBAR_GNC_ABI_VERSION + 1;
+}
 
 vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns) {
   (void)state;

@@ -1,10 +1,18 @@
 /* Has the functions of a test article but one. */
 #include "fsw/gnc/vbar_gnc.h"
 
-int32_t vbar_gnc_abi_version(void) { return VBAR_GNC_ABI_VERSION; }
-const char* vbar_gnc_name(void) { return "article without step"; }
-size_t vbar_gnc_state_size(void) { return 1; }
-size_t vbar_gnc_state_alignment(void) { return 1; }
+int32_t vbar_gnc_abi_version(void) {
+  return VBAR_GNC_ABI_VERSION;
+}
+const char* vbar_gnc_name(void) {
+  return "article without step";
+}
+size_t vbar_gnc_state_size(void) {
+  return 1;
+}
+size_t vbar_gnc_state_alignment(void) {
+  return 1;
+}
 vbar_status vbar_gnc_init(void* state, uint8_t spacecraft, vbar_packet_sink sink, void* sink_context) {
   (void)state;
   (void)spacecraft;
