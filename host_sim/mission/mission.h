@@ -15,6 +15,7 @@
 #include "fsw/orbit/elements.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/link_model.h"
+#include "host_sim/truth/forces/surface_properties.h"
 
 namespace vbar::mission {
 
@@ -40,13 +41,7 @@ struct OrbitByWaypoint {
   int waypoint_index = 0;
 };
 
-struct SurfaceProperties {
-  double mass_kg = 0.0;
-  double drag_area_m2 = 0.0;
-  double drag_coefficient = 0.0;
-  double radiation_area_m2 = 0.0;
-  double radiation_coefficient = 0.0;
-};
+using truth::SurfaceProperties;
 
 enum class FlightTarget { kInProcess, kHostProcess, kZynqQemu, kZynqLinuxQemu, kBoard };
 enum class FlightLink { kSerial, kUdp };

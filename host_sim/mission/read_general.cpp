@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "host_sim/mission/read_sections.h"
-#include "host_sim/truth/time_scales.h"
+#include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::mission {
 namespace {

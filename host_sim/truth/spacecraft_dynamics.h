@@ -7,8 +7,8 @@
 
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
-#include "host_sim/truth/earth_rotation.h"
-#include "host_sim/truth/force.h"
+#include "host_sim/truth/earth/earth_rotation.h"
+#include "host_sim/truth/forces/force.h"
 
 namespace vbar::truth {
 

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/truth/gravity_coefficients.h"
-#include "host_sim/truth/gravity_force.h"
+#include "host_sim/truth/forces/gravity_coefficients.h"
+#include "host_sim/truth/forces/gravity_force.h"
 
 namespace vbar::truth {
 namespace {

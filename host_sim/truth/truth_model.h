@@ -12,8 +12,8 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
-#include "host_sim/truth/earth_orientation.h"
-#include "host_sim/truth/gravity_field.h"
+#include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/truth/forces/gravity_field.h"
 #include "host_sim/truth/spacecraft_propagator.h"
 
 namespace vbar::truth {

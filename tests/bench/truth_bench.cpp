@@ -6,9 +6,9 @@
 #include <GeographicLib/SphericalHarmonic.hpp>
 #include <benchmark/benchmark.h>
 
-#include "host_sim/truth/earth_rotation.h"
-#include "host_sim/truth/gravity_field.h"
-#include "host_sim/truth/time_scales.h"
+#include "host_sim/truth/earth/earth_rotation.h"
+#include "host_sim/truth/earth/time_scales.h"
+#include "host_sim/truth/forces/gravity_field.h"
 #include "host_sim/truth/truth_model.h"
 
 namespace {

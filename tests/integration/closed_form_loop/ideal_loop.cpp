@@ -11,7 +11,7 @@
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/orbit/secular.h"
-#include "host_sim/truth/time_scales.h"
+#include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/truth_model.h"
 #include "tests/unit/fsw/orbit/mission.h"
 

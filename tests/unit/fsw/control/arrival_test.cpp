@@ -10,7 +10,7 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
-#include "host_sim/truth/time_scales.h"
+#include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/truth_model.h"
 #include "tests/unit/fsw/control/legs.h"
 

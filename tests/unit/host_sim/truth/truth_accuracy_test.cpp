@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "host_sim/truth/gravity_force.h"
+#include "host_sim/truth/forces/gravity_force.h"
 #include "host_sim/truth/spacecraft_propagator.h"
 #include "host_sim/truth/truth_model.h"
 #include "tests/unit/host_sim/truth/cowell.h"
@@ -26,6 +26,7 @@ using test::mission_epoch;
 /// J2 about the inertial z axis: the field of the oracle below.
 class InertialJ2 final : public Force {
  public:
+  std::string_view name() const override { return "inertial J2"; }
   Vector3 acceleration_eci(const ForceInput& input) override {
     constexpr double kJ2 = 1.0826358191967e-3;
     const Vector3& r = input.position_eci;

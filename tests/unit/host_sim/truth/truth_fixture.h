@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "fsw/orbit/elements.h"
+#include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/orbit_geometry.h"
-#include "host_sim/truth/time_scales.h"
 #include "host_sim/truth/truth_model.h"
 
 namespace vbar::truth::test {

@@ -1,4 +1,4 @@
-#include "host_sim/truth/earth_rotation.h"
+#include "host_sim/truth/earth/earth_rotation.h"
 
 #include <cmath>
 #include <memory>
@@ -10,7 +10,7 @@
 #include <erfam.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/host_sim/truth/iau2006_epochs.h"
+#include "tests/unit/host_sim/truth/earth/iau2006_epochs.h"
 #include "tests/unit/host_sim/truth/truth_fixture.h"
 
 namespace vbar::truth {

@@ -1,4 +1,4 @@
-#include "host_sim/truth/gravity_field.h"
+#include "host_sim/truth/forces/gravity_field.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "host_sim/truth/gravity_coefficients.h"
+#include "host_sim/truth/forces/gravity_coefficients.h"
 
 #include <charconv>
 #include <cmath>

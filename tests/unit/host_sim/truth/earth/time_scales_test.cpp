@@ -1,4 +1,4 @@
-#include "host_sim/truth/time_scales.h"
+#include "host_sim/truth/earth/time_scales.h"
 
 #include <cstdint>
 #include <stdexcept>

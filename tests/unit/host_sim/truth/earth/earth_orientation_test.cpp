@@ -1,4 +1,4 @@
-#include "host_sim/truth/earth_orientation.h"
+#include "host_sim/truth/earth/earth_orientation.h"
 
 #include <filesystem>
 #include <fstream>
@@ -8,8 +8,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
-#include "host_sim/truth/time_scales.h"
+#include "host_sim/truth/earth/time_scales.h"
 #include "tests/unit/host_sim/truth/truth_fixture.h"
 
 namespace vbar::truth {
@@ -90,7 +91,7 @@ TEST(EarthOrientation, RefusesDatesOutsideTheData) {
 class EarthOrientationFile : public testing::Test {
  protected:
   std::string message_for(const std::string& text) {
-    const auto path = std::filesystem::path(testing::TempDir()) / "vbar_eop_test.csv";
+    const auto path = std::filesystem::path(testing::TempDir()) / (std::to_string(::getpid()) + "_vbar_eop_test.csv");
     std::ofstream(path) << text;
     try {
       static_cast<void>(EarthOrientationSeries::load(path));

@@ -1,4 +1,4 @@
-#include "host_sim/truth/earth_rotation.h"
+#include "host_sim/truth/earth/earth_rotation.h"
 
 #include <cmath>
 #include <stdexcept>

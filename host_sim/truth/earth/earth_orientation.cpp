@@ -1,4 +1,4 @@
-#include "host_sim/truth/earth_orientation.h"
+#include "host_sim/truth/earth/earth_orientation.h"
 
 #include <algorithm>
 #include <charconv>
@@ -13,7 +13,7 @@
 #include <erfam.h>
 #include <fmt/format.h>
 
-#include "host_sim/truth/time_scales.h"
+#include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::truth {
 namespace {

@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "fsw/core/types.h"
-#include "host_sim/truth/earth_orientation.h"
-#include "host_sim/truth/time_scales.h"
+#include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::truth {
 

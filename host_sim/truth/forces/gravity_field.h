@@ -9,8 +9,8 @@
 // run side by side.
 
 #include "fsw/core/types.h"
-#include "host_sim/truth/gravity_coefficients.h"
-#include "host_sim/truth/harmonic_sum.h"
+#include "host_sim/truth/forces/gravity_coefficients.h"
+#include "host_sim/truth/forces/harmonic_sum.h"
 
 namespace vbar::truth {
 

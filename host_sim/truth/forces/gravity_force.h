@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "host_sim/truth/force.h"
-#include "host_sim/truth/gravity_field.h"
+#include "host_sim/truth/forces/force.h"
+#include "host_sim/truth/forces/gravity_field.h"
 
 namespace vbar::truth {
 
@@ -13,6 +13,7 @@ class GravityForce final : public Force {
   /// `field` is shared between spacecraft and must not be null.
   explicit GravityForce(std::shared_ptr<const GravityField> field);
 
+  std::string_view name() const override { return "gravity"; }
   fsw::Vector3 acceleration_eci(const ForceInput& input) override;
 
  private:

@@ -1,4 +1,4 @@
-#include "host_sim/truth/harmonic_sum.h"
+#include "host_sim/truth/forces/harmonic_sum.h"
 
 #include <cstring>
 

@@ -1,4 +1,4 @@
-#include "host_sim/truth/gravity_force.h"
+#include "host_sim/truth/forces/gravity_force.h"
 
 #include <stdexcept>
 #include <utility>

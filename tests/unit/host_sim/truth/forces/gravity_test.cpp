@@ -10,9 +10,10 @@
 #include <GeographicLib/SphericalHarmonic.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
-#include "host_sim/truth/gravity_coefficients.h"
-#include "host_sim/truth/gravity_field.h"
+#include "host_sim/truth/forces/gravity_coefficients.h"
+#include "host_sim/truth/forces/gravity_field.h"
 #include "tests/unit/host_sim/truth/truth_fixture.h"
 
 namespace vbar::truth {
@@ -143,7 +144,7 @@ TEST(Gravity, RefusesDegreesItDoesNotHave) {
 }
 
 std::string error_for(const std::string& text, int degree = 1) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "vbar_gravity_test.txt";
+  const auto path = std::filesystem::path(testing::TempDir()) / (std::to_string(::getpid()) + "_vbar_gravity_test.txt");
   std::ofstream(path) << text;
   try {
     static_cast<void>(load_gravity_coefficients(path, degree));
