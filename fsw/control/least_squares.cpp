@@ -4,7 +4,7 @@
 
 #include "fsw/control/arrival.h"
 #include "fsw/control/check_problem.h"
-#include "fsw/control/cholesky.h"
+#include "fsw/math/cholesky6.h"
 #include "fsw/math/math.h"
 #include "fsw/math/symmetric_eigen.h"
 
@@ -95,7 +95,7 @@ Result<Plan> solve_least_squares(const ControlProblem& problem, const LeastSquar
   // With as many unknowns as equations or more, (B'B + alpha I)^-1 B' = B' (B B' + alpha I)^-1: a 6x6 system, B = W A.
   Matrix6 normal = weighted_gramian(system, settings.weight);
   normal.diagonal().array() += settings.regularisation;
-  const Cholesky6 factor(normal);
+  const math::Cholesky6 factor(normal);
   if (!factor.ok()) return Status::kSingular;
   const Vector6 target = problem.servicer_mean.a * problem.pseudo_state;
   const Vector6 multiplier = settings.weight.cwiseProduct(factor.solve(settings.weight.cwiseProduct(target)));

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fsw/control/cholesky.h"
+#include "fsw/math/cholesky6.h"
 #include "fsw/control/primer_extract.h"
 #include "fsw/math/math.h"
 
@@ -69,7 +69,7 @@ Status make_scaling(const ImpulseGrid& grid, const Vector6& target, Scaling& sca
   if (!(gramian.diagonal().minCoeff() > 0.0)) return Status::kSingular;
 
   const Vector6 row_scale = gramian.diagonal().cwiseSqrt().cwiseInverse();
-  const Cholesky6 factor(row_scale.asDiagonal() * gramian * row_scale.asDiagonal());
+  const math::Cholesky6 factor(row_scale.asDiagonal() * gramian * row_scale.asDiagonal());
   if (!(factor.smallest_pivot() > kMinPivot)) return Status::kSingular;
   for (int c = 0; c < 6; ++c) {
     scaling.from_state.col(c) = factor.solve_lower(row_scale(c) * Vector6::Unit(c));
@@ -130,7 +130,7 @@ GridScan scan_grid(const ImpulseGrid& grid, const Vector6& lambda) {
 }
 
 bool spans(const Matrix6& gramian) {
-  const Cholesky6 factor(gramian);
+  const math::Cholesky6 factor(gramian);
   return factor.smallest_pivot() > kMinSpan;
 }
 

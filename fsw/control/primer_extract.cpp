@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "fsw/control/cholesky.h"
+#include "fsw/math/cholesky6.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::control {
@@ -132,7 +132,7 @@ double meet_target(const PrimerProgram& program, Selection& selection) {
     normal += weight[k] * effect * effect.transpose();
   }
   normal.diagonal().array() += kRegularisation * normal.trace();
-  const Cholesky6 factor(normal);
+  const math::Cholesky6 factor(normal);
   for (int pass = 0; pass < kPasses; ++pass) {
     const Vector6 multiplier = factor.solve(residual_of(program, selection));
     for (std::size_t k = 0; k < selection.count; ++k) {

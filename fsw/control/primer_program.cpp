@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fsw/control/cholesky.h"
+#include "fsw/math/cholesky6.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::control {
@@ -153,7 +153,7 @@ Status newton_step(PrimerProgram& program, double complementarity) {
     program.cone[k].correction0 = 0.0;
     program.cone[k].correction.setZero();
   }
-  const Cholesky6 factor(normal);
+  const math::Cholesky6 factor(normal);
   if (!factor.ok()) return Status::kSingular;
 
   const double predictor_length = std::min(1.0, cone_steps(program, factor.solve(program.target)));
@@ -183,7 +183,7 @@ Status meet_target(PrimerProgram& program, const Vector6& missing) {
     const ActiveImpulse& impulse = program.active[k];
     add_scaled_gramian(impulse.effect, Vector3::Zero(), impulse.bound * impulse.bound, gramian);
   }
-  const Cholesky6 factor(gramian);
+  const math::Cholesky6 factor(gramian);
   if (!factor.ok()) return Status::kSingular;
   const Vector6 multiplier = factor.solve(missing);
   for (std::size_t k = 0; k < program.count; ++k) {
@@ -201,7 +201,7 @@ Status start_primer_program(PrimerProgram& program) {
   for (std::size_t k = 0; k < program.count; ++k) {
     add_scaled_gramian(program.active[k].effect, Vector3::Zero(), 1.0, gramian);
   }
-  const Cholesky6 factor(gramian);
+  const math::Cholesky6 factor(gramian);
   if (!factor.ok()) return Status::kSingular;
   program.lambda = factor.solve(program.target);
 

@@ -103,11 +103,14 @@ class Estimate {
     innovation.accepted = true;
     mean_ += ph * (residual / innovation.variance);
     for (int c = 0; c < N; ++c) {
+      if (ph(c) == 0.0) continue;
       const double gain = ph(c) / innovation.variance;
-      if (gain == 0.0) continue;
-      for (int r = 0; r < N; ++r) covariance_(r, c) -= ph(r) * gain;
+      for (int r = c; r < N; ++r) {
+        const double less = covariance_(r, c) - ph(r) * gain;
+        covariance_(r, c) = less;
+        covariance_(c, r) = less;
+      }
     }
-    symmetrise();
     return innovation;
   }
 

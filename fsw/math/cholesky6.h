@@ -5,7 +5,7 @@
 #include "fsw/core/types.h"
 #include "fsw/math/math.h"
 
-namespace vbar::fsw::control {
+namespace vbar::fsw::math {
 
 /// A = L L'. Only the lower triangle of A is read.
 class Cholesky6 {
@@ -14,12 +14,12 @@ class Cholesky6 {
     for (int c = 0; c < 6; ++c) {
       double pivot = a(c, c);
       for (int k = 0; k < c; ++k) pivot -= lower_(c, k) * lower_(c, k);
-      if (!(pivot > 0.0) || !math::is_finite(pivot)) {
+      if (!(pivot > 0.0) || !is_finite(pivot)) {
         smallest_pivot_ = 0.0;
         return;
       }
       if (c == 0 || pivot < smallest_pivot_) smallest_pivot_ = pivot;
-      lower_(c, c) = math::sqrt(pivot);
+      lower_(c, c) = sqrt(pivot);
       inverse_diagonal_(c) = 1.0 / lower_(c, c);
       for (int r = c + 1; r < 6; ++r) {
         double sum = a(r, c);
@@ -61,4 +61,4 @@ class Cholesky6 {
   double smallest_pivot_ = 0.0;
 };
 
-}  // namespace vbar::fsw::control
+}  // namespace vbar::fsw::math

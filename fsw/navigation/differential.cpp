@@ -1,0 +1,65 @@
+#include "fsw/navigation/differential.h"
+
+#include <compare>
+
+#include "fsw/math/math.h"
+
+namespace vbar::fsw::navigation {
+namespace {
+
+// Receivers are optimists; no signal is taken for better than this.
+constexpr double kLeastCodeSigma_m = 0.05;
+constexpr double kLeastPhaseSigma_m = 0.3e-3;
+
+std::strong_ordering order(const gnss::Observation& a, const gnss::Observation& b) {
+  if (const auto by_satellite = a.satellite <=> b.satellite; by_satellite != 0) return by_satellite;
+  return a.signal <=> b.signal;
+}
+
+double difference_sigma(double a, double b, double least) {
+  const double floor_a = a > least ? a : least;
+  const double floor_b = b > least ? b : least;
+  return math::hypot(floor_a, floor_b);
+}
+
+}  // namespace
+
+void form_differences(const gnss::ObservationEpoch& servicer, const gnss::ObservationEpoch& target,
+                      const EphemerisStore& ephemerides, const EarthFrame& frame, DifferentialEpoch& out) {
+  out.time = servicer.receiver_time;
+  out.count = 0;
+  std::size_t t = 0;
+  for (std::size_t s = 0; s < servicer.count; ++s) {
+    const gnss::Observation& ours = servicer.observations[s];
+    while (t < target.count && order(target.observations[t], ours) < 0) ++t;
+    if (t == target.count) return;
+    const gnss::Observation& theirs = target.observations[t];
+    if (order(theirs, ours) != 0) continue;
+    // One ephemeris for both: receivers may hold different ones, and their errors would not cancel.
+    const auto our_source =
+        signal_source(ours.satellite, ours.pseudorange_m, servicer.receiver_time, ephemerides, frame);
+    const auto their_source =
+        signal_source(theirs.satellite, theirs.pseudorange_m, target.receiver_time, ephemerides, frame);
+    if (!our_source.ok() || !their_source.ok()) continue;
+    const double wavelength = gnss::wavelength(ours.signal);
+    const double clock_difference = their_source.value().clock_m - our_source.value().clock_m;
+    DifferentialObservation& difference = out.observations[out.count];
+    difference = {
+        .satellite = ours.satellite,
+        .signal = ours.signal,
+        .code_m = theirs.pseudorange_m - ours.pseudorange_m + clock_difference,
+        .phase_m = wavelength * (theirs.carrier_phase_cycles - ours.carrier_phase_cycles) + clock_difference,
+        .phase_usable = ours.phase_usable && theirs.phase_usable,
+        .code_sigma_m = difference_sigma(ours.pseudorange_sigma_m, theirs.pseudorange_sigma_m, kLeastCodeSigma_m),
+        .phase_sigma_m = difference_sigma(wavelength * ours.phase_sigma_cycles, wavelength * theirs.phase_sigma_cycles,
+                                          kLeastPhaseSigma_m),
+        .servicer_lock_s = ours.lock_time_s,
+        .target_lock_s = theirs.lock_time_s,
+        .servicer_source_eci = our_source.value().position_eci,
+        .target_source_eci = their_source.value().position_eci};
+    const double check = difference.code_m + difference.phase_m + difference.code_sigma_m + difference.phase_sigma_m;
+    if (math::is_finite(check)) ++out.count;
+  }
+}
+
+}  // namespace vbar::fsw::navigation

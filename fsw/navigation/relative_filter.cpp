@@ -1,0 +1,346 @@
+#include "fsw/navigation/relative_filter.h"
+
+#include "fsw/estimation/unscented.h"
+#include "fsw/math/math.h"
+#include "fsw/navigation/dynamics.h"
+#include "fsw/orbit/constants.h"
+#include "fsw/orbit/rtn.h"
+
+namespace vbar::fsw::navigation {
+namespace {
+
+using Filter = RelativeFilter;
+
+constexpr int kPosition = 0;
+constexpr int kVelocity = 3;
+constexpr int kAcceleration = Filter::State::offset<Filter::EmpiricalAcceleration>();
+constexpr int kServicerAntenna = Filter::State::offset<Filter::ServicerAntenna>();
+constexpr int kTargetAntenna = Filter::State::offset<Filter::TargetAntenna>();
+constexpr int kJitter = Filter::State::offset<Filter::PhaseCentreJitter>();
+constexpr int kClock = Filter::State::offset<Filter::ClockDifference>();
+constexpr int kCodeBias = Filter::State::offset<Filter::CodeBiases>();
+
+constexpr double kGate = 25.0;  // 5 sigma, one degree of freedom
+constexpr double kNoGate = 1e300;
+
+// A clock difference by single points is some metres wrong; so wide that it weighs nothing.
+constexpr double kClockSigma_m = 100.0;
+// The same of an ambiguity that begins from its own first measurement.
+constexpr double kAmbiguitySigma_m = 30.0;
+
+// Beside the correlated acceleration: what keeps the velocity's covariance from closing, m^2/s^3.
+constexpr double kVelocityPsd = 1e-18;
+
+// A phase that stands so far from the epoch's others, beside what the filter does not know, has slipped.
+constexpr double kSlip_m = 0.03;
+constexpr double kSlipSigmas = 5.0;
+constexpr std::size_t kLeastForMedian = 5;
+
+/// Where a receiver's antenna was when its signals arrived: the tag is by its own clock.
+Vector3 antenna_position(const ReceiverPlatform& platform, const orbit::CartesianState& state) {
+  const double late = -platform.clock_m / gnss::kSpeedOfLight;
+  const double distance = state.position_eci.norm();
+  const Vector3 gravity = -orbit::kMu / (distance * distance * distance) * state.position_eci;
+  return state.position_eci + late * state.velocity_eci + 0.5 * late * late * gravity +
+         platform.R_eci_body * platform.antenna_body_m;
+}
+
+/// Index of the code bias, or -1 for GPS L1, which the clock is told by.
+int code_bias_index(gnss::Signal signal) {
+  return signal == gnss::Signal::kGpsL1 ? -1 : kCodeBias + static_cast<int>(signal) - 1;
+}
+
+/// Median of the first `count`; sorts them.
+double median(std::array<double, gnss::kMaxObservations>& values, std::size_t count) {
+  for (std::size_t k = 1; k < count; ++k) {
+    const double value = values[k];
+    std::size_t place = k;
+    for (; place > 0 && values[place - 1] > value; --place) values[place] = values[place - 1];
+    values[place] = value;
+  }
+  return count % 2 == 1 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+}
+
+}  // namespace
+
+void RelativeFilter::reset() {
+  started_ = false;
+  channels_.clear();
+  for (int i = 0; i < State::kSize; ++i) estimate_.reset(i, 0.0, 0.0);
+}
+
+void RelativeFilter::begin(GpsTime time, const Vector3& position_eci, double sigma_m, double mean_motion) {
+  reset();
+  const auto square = [](double x) { return x * x; };
+  const double velocity_sigma = settings_.start_velocity_sigma + 2.0 * mean_motion * (position_eci.norm() + sigma_m);
+  for (int axis = 0; axis < 3; ++axis) {
+    estimate_.reset(kPosition + axis, position_eci(axis), square(sigma_m));
+    estimate_.reset(kVelocity + axis, 0.0, square(velocity_sigma));
+    estimate_.reset(kAcceleration + axis, 0.0, square(settings_.acceleration_sigma));
+    estimate_.reset(kServicerAntenna + axis, 0.0, square(settings_.antenna_offset_sigma_m));
+    estimate_.reset(kTargetAntenna + axis, 0.0, square(settings_.antenna_offset_sigma_m));
+    estimate_.reset(kCodeBias + axis, 0.0, square(settings_.code_bias_sigma_m));
+  }
+  epoch_ = time;
+  started_ = true;
+}
+
+void RelativeFilter::advance_to(GpsTime time, const orbit::CartesianState& servicer) {
+  const double dt = seconds(time - epoch_);
+  if (!started_ || dt <= 0.0) return;
+  using Transform = estimation::UnscentedTransform<kHead>;
+  using Head = Transform::Vector;
+  Transform::Matrix covariance;
+  for (int c = 0; c < kHead; ++c) {
+    for (int r = 0; r < kHead; ++r) covariance(r, c) = estimate_.covariance(r, c);
+  }
+  Transform transform;
+  if (transform.start(estimate_.mean().head<kHead>(), covariance) != Status::kOk) {
+    reset();
+    return;
+  }
+  const double decay = math::exp(-dt / settings_.acceleration_time_s);
+  const orbit::CartesianState servicer_later = propagate_pushed(servicer, Vector3::Zero(), dt);
+  std::array<Head, Transform::kPoints> moved;
+  for (int k = 0; k < Transform::kPoints; ++k) {
+    const Head x = transform.point(k);
+    const orbit::CartesianState target{.position_eci = servicer.position_eci + x.segment<3>(kPosition),
+                                       .velocity_eci = servicer.velocity_eci + x.segment<3>(kVelocity)};
+    const orbit::CartesianState later = propagate_pushed(target, x.segment<3>(kAcceleration), dt);
+    moved[static_cast<std::size_t>(k)] << later.position_eci - servicer_later.position_eci,
+        later.velocity_eci - servicer_later.velocity_eci, decay * x.segment<3>(kAcceleration);
+  }
+  const auto regression = transform.regress<kHead>(moved);
+  Transform::Matrix noise = regression.remainder;
+  const double acceleration_variance = settings_.acceleration_sigma * settings_.acceleration_sigma;
+  for (int axis = 0; axis < 3; ++axis) {
+    noise(kPosition + axis, kPosition + axis) += kVelocityPsd * dt * dt * dt / 3.0;
+    noise(kPosition + axis, kVelocity + axis) += kVelocityPsd * dt * dt / 2.0;
+    noise(kVelocity + axis, kPosition + axis) += kVelocityPsd * dt * dt / 2.0;
+    noise(kVelocity + axis, kVelocity + axis) += kVelocityPsd * dt;
+    noise(kAcceleration + axis, kAcceleration + axis) += (1.0 - decay * decay) * acceleration_variance;
+  }
+  estimate_.transform_head<kHead>(regression.mean, regression.slope, noise);
+  epoch_ = time;
+  if (!estimate_.is_sound()) reset();
+}
+
+void RelativeFilter::add_servicer_impulse(const Vector3& dv_eci) {
+  const double sigma = settings_.maneuver_sigma + settings_.maneuver_sigma_relative * dv_eci.norm();
+  for (int axis = 0; axis < 3; ++axis) {
+    estimate_.shift(kVelocity + axis, -dv_eci(axis));
+    estimate_.add_noise(kVelocity + axis, sigma * sigma);
+  }
+}
+
+RelativeUpdate RelativeFilter::take(const DifferentialEpoch& epoch, const ReceiverPlatform& servicer,
+                                    const ReceiverPlatform& target) {
+  RelativeUpdate update;
+  if (!started_ || epoch.count == 0) return update;
+  channels_.give_back_unseen(epoch.time,
+                             [this](std::size_t place) { estimate_.reset(ambiguity_index(place), 0.0, 0.0); });
+  renew_epoch_states(servicer, target);
+  if (linearise(epoch, servicer, target) != Status::kOk) {
+    reset();
+    return update;
+  }
+  use_codes(epoch, update);
+  follow_channels(epoch, update);
+  find_slips_by_median(epoch, update);
+  use_phases(epoch, update);
+  if (!estimate_.is_sound()) reset();
+  return update;
+}
+
+/// Clocks and jitter know nothing of the epoch before.
+void RelativeFilter::renew_epoch_states(const ReceiverPlatform& servicer, const ReceiverPlatform& target) {
+  estimate_.reset(kClock, target.clock_m - servicer.clock_m, kClockSigma_m * kClockSigma_m);
+  const double jitter_variance = 2.0 * settings_.phase_centre_jitter_m * settings_.phase_centre_jitter_m;
+  for (int axis = 0; axis < 3; ++axis) estimate_.reset(kJitter + axis, 0.0, jitter_variance);
+}
+
+Status RelativeFilter::linearise(const DifferentialEpoch& epoch, const ReceiverPlatform& servicer,
+                                 const ReceiverPlatform& target) {
+  using Transform = estimation::UnscentedTransform<kHead>;
+  using Scalar = Eigen::Matrix<double, 1, 1>;
+  Transform::Matrix covariance;
+  for (int c = 0; c < kHead; ++c) {
+    for (int r = 0; r < kHead; ++r) covariance(r, c) = estimate_.covariance(r, c);
+  }
+  Transform transform;
+  if (const Status status = transform.start(estimate_.mean().head<kHead>(), covariance); status != Status::kOk) {
+    return status;
+  }
+  reference_ = estimate_.mean().head<kGeometry>();
+  const Vector3 servicer_antenna =
+      antenna_position(servicer, servicer.state) + servicer.R_eci_body * reference_.segment<3>(kServicerAntenna);
+  std::array<Vector3, Transform::kPoints> target_antennas;
+  for (int k = 0; k < Transform::kPoints; ++k) {
+    const Transform::Vector x = transform.point(k);
+    const orbit::CartesianState state{.position_eci = servicer.state.position_eci + x.segment<3>(kPosition),
+                                      .velocity_eci = servicer.state.velocity_eci + x.segment<3>(kVelocity)};
+    target_antennas[static_cast<std::size_t>(k)] =
+        antenna_position(target, state) + target.R_eci_body * reference_.segment<3>(kTargetAntenna);
+  }
+  for (std::size_t n = 0; n < epoch.count; ++n) {
+    const DifferentialObservation& observation = epoch.observations[n];
+    const Vector3 servicer_line = servicer_antenna - observation.servicer_source_eci;
+    const double servicer_range = servicer_line.norm();
+    std::array<Scalar, Transform::kPoints> ranges;
+    for (std::size_t k = 0; k < ranges.size(); ++k) {
+      ranges[k](0) = (target_antennas[k] - observation.target_source_eci).norm() - servicer_range;
+    }
+    const auto regression = transform.regress<1>(ranges);
+    const Vector3 target_direction = (target_antennas[0] - observation.target_source_eci).normalized();
+    Row& row = rows_[n];
+    row = Row{};
+    row.predicted = regression.mean(0) + reference_(kClock);
+    row.extra_variance = regression.remainder(0);
+    row.slope.head<kHead>() = regression.slope.transpose();
+    row.slope.segment<3>(kServicerAntenna) = -servicer.R_eci_body.transpose() * (servicer_line / servicer_range);
+    row.slope.segment<3>(kTargetAntenna) = target.R_eci_body.transpose() * target_direction;
+    row.slope.segment<3>(kJitter) = target_direction;
+    row.slope(kClock) = 1.0;
+  }
+  return Status::kOk;
+}
+
+/// Measured minus what the state, as it is now, predicts; code bias and ambiguity not counted.
+double RelativeFilter::residual(const Row& row, double measured) const {
+  return measured - row.predicted - row.slope.dot(estimate_.mean().head<kGeometry>() - reference_);
+}
+
+RelativeFilter::Estimate::Vector RelativeFilter::full_slope(const Row& row) const {
+  Estimate::Vector slope = Estimate::Vector::Zero();
+  slope.head<kGeometry>() = row.slope;
+  return slope;
+}
+
+void RelativeFilter::use_codes(const DifferentialEpoch& epoch, RelativeUpdate& update) {
+  for (std::size_t n = 0; n < epoch.count; ++n) {
+    const DifferentialObservation& observation = epoch.observations[n];
+    Estimate::Vector slope = full_slope(rows_[n]);
+    double measured_less_predicted = residual(rows_[n], observation.code_m);
+    if (const int bias = code_bias_index(observation.signal); bias >= 0) {
+      slope(bias) = 1.0;
+      measured_less_predicted -= estimate_.mean(bias);
+    }
+    const double variance = observation.code_sigma_m * observation.code_sigma_m + rows_[n].extra_variance;
+    const estimation::Innovation innovation = estimate_.update(slope, measured_less_predicted, variance, kGate);
+    if (innovation.accepted) {
+      ++update.codes_used;
+      update.code_nis += innovation.nis();
+    } else {
+      ++update.codes_refused;
+    }
+  }
+}
+
+/// Gives each usable phase its channel, and finds the slips that receivers themselves tell.
+void RelativeFilter::follow_channels(const DifferentialEpoch& epoch, RelativeUpdate& update) {
+  for (std::size_t n = 0; n < epoch.count; ++n) {
+    const DifferentialObservation& observation = epoch.observations[n];
+    if (!observation.phase_usable) continue;
+    std::optional<std::size_t> place = channels_.find(observation.satellite, observation.signal);
+    if (!place) place = channels_.take(observation.satellite, observation.signal);
+    if (!place) continue;
+    if (channels_.lost_lock(*place, observation, epoch.time)) {
+      ++update.slips;
+      lose(*place);
+    }
+    rows_[n].channel = place;
+  }
+}
+
+/// The clock moves all phases alike: what the median does not share is a slip of its own.
+void RelativeFilter::find_slips_by_median(const DifferentialEpoch& epoch, RelativeUpdate& update) {
+  std::array<double, gnss::kMaxObservations> residuals{};
+  std::array<double, gnss::kMaxObservations> sorted{};
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < epoch.count; ++n) {
+    const std::optional<std::size_t>& place = rows_[n].channel;
+    if (!place || channels_[*place].epochs == 0) continue;
+    residuals[n] = residual(rows_[n], epoch.observations[n].phase_m) - estimate_.mean(ambiguity_index(*place));
+    sorted[count++] = residuals[n];
+  }
+  if (count < kLeastForMedian) return;
+  const double common = median(sorted, count);
+  for (std::size_t n = 0; n < epoch.count; ++n) {
+    const std::optional<std::size_t>& place = rows_[n].channel;
+    if (!place || channels_[*place].epochs == 0) continue;
+    Estimate::Vector slope = full_slope(rows_[n]);
+    slope(kClock) = 0.0;
+    slope(ambiguity_index(*place)) = 1.0;
+    const double sigma_m = epoch.observations[n].phase_sigma_m;
+    const estimation::Innovation alone = estimate_.predict(slope, residuals[n] - common, sigma_m * sigma_m);
+    if (math::abs(alone.value) > kSlip_m + kSlipSigmas * math::sqrt(alone.variance)) {
+      ++update.slips;
+      lose(*place);
+    }
+  }
+}
+
+void RelativeFilter::use_phases(const DifferentialEpoch& epoch, RelativeUpdate& update) {
+  // Known ambiguities first: they tell the clock that new ones begin with.
+  for (const bool known : {true, false}) {
+    for (std::size_t n = 0; n < epoch.count; ++n) {
+      const std::optional<std::size_t>& place = rows_[n].channel;
+      if (!place || (channels_[*place].epochs > 0) != known) continue;
+      const DifferentialObservation& observation = epoch.observations[n];
+      const int index = ambiguity_index(*place);
+      if (!known) begin_ambiguity(*place, residual(rows_[n], observation.phase_m));
+      Estimate::Vector slope = full_slope(rows_[n]);
+      slope(index) = 1.0;
+      const double variance = observation.phase_sigma_m * observation.phase_sigma_m + rows_[n].extra_variance;
+      const double value = residual(rows_[n], observation.phase_m) - estimate_.mean(index);
+      const estimation::Innovation innovation = estimate_.update(slope, value, variance, known ? kGate : kNoGate);
+      if (!innovation.accepted) {
+        ++update.phases_refused;
+        lose(*place);
+        continue;
+      }
+      channels_.see(*place, observation, epoch.time);
+      if (known) {
+        ++update.phases_used;
+        update.phase_nis += innovation.nis();
+      }
+      rows_[n].channel.reset();  // done, so that the second round does not take it for a new one
+    }
+  }
+}
+
+void RelativeFilter::begin_ambiguity(std::size_t place, double value_m) {
+  estimate_.reset(ambiguity_index(place), value_m, kAmbiguitySigma_m * kAmbiguitySigma_m);
+}
+
+void RelativeFilter::lose(std::size_t place) {
+  channels_.restart(place);
+  estimate_.reset(ambiguity_index(place), 0.0, 0.0);
+}
+
+void RelativeFilter::hold(std::size_t place, std::size_t reference, double cycles) {
+  // A tenth of a millimetre: far below what any phase can tell, far above rounding.
+  constexpr double kHoldVariance = 1e-8;
+  const double wavelength = gnss::wavelength(channels_[place].signal);
+  Estimate::Vector slope = Estimate::Vector::Zero();
+  slope(ambiguity_index(place)) = 1.0;
+  slope(ambiguity_index(reference)) = -1.0;
+  const double difference = estimate_.mean(ambiguity_index(place)) - estimate_.mean(ambiguity_index(reference));
+  estimate_.update(slope, wavelength * cycles - difference, kHoldVariance, kNoGate);
+  channels_.set_fixed(place, true);
+  channels_.set_fixed(reference, true);
+}
+
+void RelativeFilter::release(double position_sigma_m) {
+  for (std::size_t place = 0; place < kPhaseChannels; ++place) {
+    if (channels_[place].in_use) lose(place);
+  }
+  // An orbit's own time scale turns the displacement into a velocity: 1/n is about 1000 s.
+  const double velocity_sigma = 1e-3 * position_sigma_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    estimate_.add_noise(kPosition + axis, position_sigma_m * position_sigma_m);
+    estimate_.add_noise(kVelocity + axis, velocity_sigma * velocity_sigma);
+  }
+}
+
+}  // namespace vbar::fsw::navigation

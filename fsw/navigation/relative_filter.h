@@ -1,0 +1,157 @@
+#pragma once
+// The relative orbit from differences of carrier phase and code: one unscented filter over the relative orbit, what
+// pushes the two spacecraft apart, where the antennas really are, clocks, and the carrier ambiguities in metres.
+//
+// The orbit is sampled; everything else enters linearly and follows by the slope (fsw/estimation/unscented.h). Receiver
+// clocks are free at every epoch. The phase centres' jitter is a state of its own, new at every epoch, because it moves
+// all satellites' ranges together: as noise of each signal it would have to be independent, which it is not. Antenna
+// offsets are constant in each body: across a spacecraft that keeps its attitude they look like a displacement, and
+// only the dynamics tell the two apart - radially and cross-track well, along-track not at all. So they are estimated,
+// and what cannot be told stays in the covariance.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/estimation/estimate.h"
+#include "fsw/estimation/layout.h"
+#include "fsw/navigation/differential.h"
+#include "fsw/navigation/phase_channels.h"
+#include "fsw/orbit/elements.h"
+
+namespace vbar::fsw::navigation {
+
+/// 1-sigma figures of what the filter starts from and does not model.
+struct RelativeFilterSettings {
+  double start_velocity_sigma = 0.2;       ///< m/s, beside the rate of the orbit times the separation
+  double acceleration_sigma = 3e-8;        ///< m/s^2, of differential drag, sunlight and higher gravity, each RTN axis
+  double acceleration_time_s = 1500.0;     ///< their correlation time
+  double antenna_offset_sigma_m = 3.2e-3;  ///< of each axis of each antenna against its nominal place
+  double phase_centre_jitter_m = 1.0e-3;   ///< of each axis of each antenna, from epoch to epoch
+  double code_bias_sigma_m = 2.0;          ///< between signals, of the difference of two receivers
+  double maneuver_sigma = 2e-6;            ///< m/s, each axis, of a burn
+  double maneuver_sigma_relative = 2e-3;   ///< of its size
+};
+
+/// What one receiver stands on at an epoch.
+struct ReceiverPlatform {
+  orbit::CartesianState state;  ///< of the centre of mass at the tag
+  Matrix3 R_eci_body = Matrix3::Identity();
+  Vector3 antenna_body_m = Vector3::Zero();  ///< nominal phase centre, from the centre of mass
+  double clock_m = 0.0;                      ///< c times the receiver clock's advance
+};
+
+/// What came of one epoch.
+struct RelativeUpdate {
+  std::int32_t codes_used = 0;
+  std::int32_t codes_refused = 0;
+  std::int32_t phases_used = 0;
+  std::int32_t phases_refused = 0;
+  std::int32_t slips = 0;
+  double code_nis = 0.0;  ///< sums over what was used; each is expected to be near the count
+  double phase_nis = 0.0;
+};
+
+class RelativeFilter {
+ public:
+  struct RelativeOrbit {
+    static constexpr int kSize = 6;  ///< target minus servicer, position m and velocity m/s, ECI
+  };
+  struct EmpiricalAcceleration {
+    static constexpr int kSize = 3;  ///< m/s^2, RTN, of the target over the servicer
+  };
+  struct ServicerAntenna {
+    static constexpr int kSize = 3;  ///< offset from the nominal place, m, body
+  };
+  struct TargetAntenna {
+    static constexpr int kSize = 3;
+  };
+  struct PhaseCentreJitter {
+    static constexpr int kSize = 3;  ///< m, ECI, of the pair
+  };
+  struct ClockDifference {
+    static constexpr int kSize = 1;  ///< m
+  };
+  struct CodeBiases {
+    static constexpr int kSize = 3;  ///< m, of GPS L2, Galileo E1, BeiDou B1I over GPS L1
+  };
+  struct Ambiguities {
+    static constexpr int kSize = static_cast<int>(kPhaseChannels);  ///< m, single differences
+  };
+  using State = estimation::Layout<RelativeOrbit, EmpiricalAcceleration, ServicerAntenna, TargetAntenna,
+                                   PhaseCentreJitter, ClockDifference, CodeBiases, Ambiguities>;
+  using Estimate = estimation::Estimate<State::kSize>;
+
+  explicit RelativeFilter(const RelativeFilterSettings& settings = {}) : settings_(settings) {}
+
+  /// Forgets everything but the settings.
+  void reset();
+
+  /// Begins at `time` with a relative position (m, ECI) known to `sigma_m` an axis.
+  void begin(GpsTime time, const Vector3& position_eci, double sigma_m, double mean_motion);
+
+  [[nodiscard]] bool started() const { return started_; }
+  [[nodiscard]] GpsTime epoch() const { return epoch_; }
+
+  /// Moves the estimate to `time`; `servicer` is its absolute state at the current epoch.
+  void advance_to(GpsTime time, const orbit::CartesianState& servicer);
+
+  /// The servicer burns at the epoch.
+  void add_servicer_impulse(const Vector3& dv_eci);
+
+  /// Folds an epoch's differences in; the filter must stand at its time. `servicer` and `target`: platforms, the
+  /// target's state is not read.
+  RelativeUpdate take(const DifferentialEpoch& epoch, const ReceiverPlatform& servicer, const ReceiverPlatform& target);
+
+  /// The single differences of two channels of one signal differ by a whole number of cycles: held from now on.
+  void hold(std::size_t place, std::size_t reference, double cycles);
+
+  /// Every integer is given up; the orbit keeps its covariance, widened by `position_sigma_m` and what that is a
+  /// second-scale velocity of: what was held wrongly may have moved it so far.
+  void release(double position_sigma_m);
+
+  [[nodiscard]] const Estimate& estimate() const { return estimate_; }
+  [[nodiscard]] const PhaseChannels& channels() const { return channels_; }
+  /// Index in the estimate of a channel's ambiguity.
+  [[nodiscard]] static constexpr int ambiguity_index(std::size_t place) {
+    return State::offset<Ambiguities>() + static_cast<int>(place);
+  }
+  [[nodiscard]] Vector3 position_eci() const { return estimate_.mean().head<3>(); }
+  [[nodiscard]] Vector3 velocity_eci() const { return estimate_.mean().segment<3>(3); }
+  [[nodiscard]] Vector3 acceleration_rtn() const { return estimate_.mean().segment<3>(6); }
+
+ private:
+  static constexpr int kHead = RelativeOrbit::kSize + EmpiricalAcceleration::kSize;  ///< sampled
+  static constexpr int kGeometry = State::offset<Ambiguities>();                     ///< all but ambiguities
+  using Geometry = Eigen::Matrix<double, kGeometry, 1>;
+
+  /// An observation's model about the state before the epoch's first measurement.
+  struct Row {
+    Geometry slope = Geometry::Zero();  ///< of the range difference, clock included, code bias not
+    double predicted = 0.0;
+    double extra_variance = 0.0;  ///< of the curvature
+    std::optional<std::size_t> channel;
+  };
+
+  Status linearise(const DifferentialEpoch& epoch, const ReceiverPlatform& servicer, const ReceiverPlatform& target);
+  void renew_epoch_states(const ReceiverPlatform& servicer, const ReceiverPlatform& target);
+  void use_codes(const DifferentialEpoch& epoch, RelativeUpdate& update);
+  void follow_channels(const DifferentialEpoch& epoch, RelativeUpdate& update);
+  void find_slips_by_median(const DifferentialEpoch& epoch, RelativeUpdate& update);
+  void use_phases(const DifferentialEpoch& epoch, RelativeUpdate& update);
+  void begin_ambiguity(std::size_t place, double value_m);
+  void lose(std::size_t place);
+  [[nodiscard]] double residual(const Row& row, double measured) const;
+  [[nodiscard]] Estimate::Vector full_slope(const Row& row) const;
+
+  RelativeFilterSettings settings_;
+  bool started_ = false;
+  GpsTime epoch_;
+  Estimate estimate_;
+  PhaseChannels channels_;
+  std::array<Row, gnss::kMaxObservations> rows_{};
+  Geometry reference_ = Geometry::Zero();  ///< the state the rows are linear about
+};
+
+}  // namespace vbar::fsw::navigation
