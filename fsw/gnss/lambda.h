@@ -24,6 +24,15 @@ struct IntegerSolution {
   double success_rate = 0.0;  ///< of bootstrapping on the decorrelated ambiguities: a lower bound (Teunissen 1998)
 };
 
+/// Probability that sequential rounding ("bootstrapping") of ambiguities with these conditional variances (cycles^2,
+/// each given those fixed before it) gives the true integers: prod of 2 Phi(1 / (2 sigma)) - 1 (Teunissen 1998,
+/// equation 18). For a decorrelated problem it is a sharp lower bound of the success rate of integer least squares.
+double bootstrap_success_rate(std::span<const double> conditional_variances);
+
+/// Ambiguity dilution of precision, cycles: det(Q)^(1/(2 n)), the geometric mean of the conditional standard deviations
+/// in any order and after any integer transformation (Teunissen 1997).
+double adop(std::span<const double> conditional_variances);
+
 /// `ambiguities` (cycles, n of them, 1 <= n <= kMaxAmbiguities) and their covariance (cycles^2, n x n, column-major;
 /// the lower triangle is read). kNotFinite; kSingular for a covariance that is not positive definite; kOutOfRange for
 /// an ambiguity too large to be a whole number; kDidNotConverge when the search reaches its bound.

@@ -1,0 +1,29 @@
+#pragma once
+// The two whole vectors nearest to decorrelated float ambiguities: depth-first search in a shrinking ellipsoid, the
+// candidates of a component in the order of their distance (Schnorr and Euchner 1994; Chang, Yang, Zhou 2005, 3.2).
+
+#include <array>
+#include <cstddef>
+
+#include "fsw/core/result.h"
+#include "fsw/gnss/decorrelation.h"
+
+namespace vbar::fsw::gnss {
+
+/// Decorrelated integers and their squared distances from the float ones in the metric of the covariance.
+struct NearestIntegers {
+  std::array<double, kMaxAmbiguities> best{};
+  std::array<double, kMaxAmbiguities> second{};
+  double best_norm2 = 0.0;
+  double second_norm2 = 0.0;
+  std::size_t nodes = 0;  ///< components visited
+};
+
+/// Nodes of a search. A problem whose success rate is 0.5 takes some hundred at 24 ambiguities; one that takes this
+/// many is not worth an answer. A node costs about 100 cycles of a Cortex-A9.
+inline constexpr std::size_t kMaxSearchNodes = 1U << 18U;
+
+/// kDidNotConverge after kMaxSearchNodes; kOutOfRange for components or distances that are not numbers of use.
+Status search_integers(const Decorrelation& problem, NearestIntegers& nearest);
+
+}  // namespace vbar::fsw::gnss
