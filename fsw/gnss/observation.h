@@ -36,6 +36,9 @@ constexpr double wavelength(Signal signal) {
 struct Observation {
   SatelliteId satellite;
   Signal signal = Signal::kGpsL1;
+  /// By which of the signal's codes it is tracked, the receiver's number (GPS L2: 9 P(Y), 5 P, 17 C). Phases of
+  /// different codes differ by fractions of a cycle: an arc, and a difference between receivers, is of one code.
+  std::uint8_t code = 0;
   bool phase_usable = false;  ///< phase lock, and no half-cycle ambiguity (parity known)
   double pseudorange_m = 0.0;
   double carrier_phase_cycles = 0.0;  ///< grows with the range (the opposite sign of NovAtel's ADR)

@@ -1,0 +1,33 @@
+#pragma once
+// The single-frequency ionospheric model that GPS broadcasts (Klobuchar 1987; IS-GPS-200N, 20.3.3.5.2.5).
+
+#include <array>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/result.h"
+
+namespace vbar::fsw::gnss {
+
+/// Coefficients as broadcast: alpha in s, s/semicircle, ...; beta likewise.
+struct KlobucharCoefficients {
+  std::array<double, 4> alpha{};
+  std::array<double, 4> beta{};
+};
+
+/// Whether they are numbers that the message's fields can hold (IS-GPS-200N, table 20-X).
+Status check(const KlobucharCoefficients& coefficients);
+
+/// Where the signal comes from, seen by a user; rad.
+struct LineOfSight {
+  double latitude = 0.0;   ///< of the user, geodetic
+  double longitude = 0.0;  ///< of the user
+  double azimuth = 0.0;    ///< of the satellite, from north over east
+  double elevation = 0.0;  ///< of the satellite
+};
+
+/// Group delay at L1, m, for a user at the ground: the whole ionosphere. It goes with the inverse square of the
+/// frequency; the phase advances by as much. kNotFinite; kOutOfRange for an elevation outside [0, pi/2], where the
+/// model's mapping has no meaning (it has a pole at -19.8 degrees), or coefficients that fail check().
+Result<double> klobuchar_delay_l1_m(const KlobucharCoefficients& coefficients, const LineOfSight& sight, GpsTime time);
+
+}  // namespace vbar::fsw::gnss
