@@ -7,6 +7,7 @@
 // components this is the unscented Kalman filter with additive noise.
 
 #include <array>
+#include <cstddef>
 
 #include <Eigen/Core>
 
@@ -28,7 +29,7 @@ class UnscentedTransform {
  public:
   using Vector = Eigen::Matrix<double, M, 1>;
   using Matrix = Eigen::Matrix<double, M, M>;
-  static constexpr int kPoints = 2 * M + 1;
+  static constexpr std::size_t kPoints = 2 * M + 1;
 
   /// kSingular if the covariance is not positive definite.
   Status start(const Vector& mean, const Matrix& covariance, const UnscentedParameters& parameters = {}) {
@@ -42,10 +43,11 @@ class UnscentedTransform {
   }
 
   /// Point 0 is the mean; 1 to M lie on one side of it, M + 1 to 2 M on the other.
-  [[nodiscard]] Vector point(int k) const {
+  [[nodiscard]] Vector point(std::size_t k) const {
     if (k == 0) return mean_;
-    const int column = (k - 1) % M;
-    return k <= M ? Vector(mean_ + gamma_ * lower_.col(column)) : Vector(mean_ - gamma_ * lower_.col(column));
+    const int side = static_cast<int>(k) - 1;
+    const int column = side % M;
+    return side < M ? Vector(mean_ + gamma_ * lower_.col(column)) : Vector(mean_ - gamma_ * lower_.col(column));
   }
 
   /// A vector function y(x) of the points: mean, slope A = P_yx P_xx^-1 and the covariance about A x.
@@ -61,7 +63,7 @@ class UnscentedTransform {
     Regression<K> result;
     // About the central value, which keeps a metre beside seven million.
     result.mean = Eigen::Matrix<double, K, 1>::Zero();
-    for (int k = 1; k < kPoints; ++k) result.mean += side_weight_ * (values[at(k)] - values[0]);
+    for (std::size_t k = 1; k < kPoints; ++k) result.mean += side_weight_ * (values[k] - values[0]);
     const Eigen::Matrix<double, K, 1> shift = result.mean;
     result.mean += values[0];
     result.remainder = (covariance_weight_ * shift).lazyProduct(shift.transpose());

@@ -26,4 +26,7 @@ inline constexpr std::size_t kMaxSearchNodes = 1U << 18U;
 /// kDidNotConverge after kMaxSearchNodes; kOutOfRange for components or distances that are not numbers of use.
 Status search_integers(const Decorrelation& problem, NearestIntegers& nearest);
 
+/// resolve_ambiguities() of a problem that is decorrelated already.
+Result<IntegerSolution> resolve_decorrelated(const Decorrelation& problem);
+
 }  // namespace vbar::fsw::gnss

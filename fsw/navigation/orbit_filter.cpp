@@ -92,9 +92,9 @@ void OrbitFilter::advance_to(GpsTime time) {
     return;
   }
   std::array<Vector6, Transform::kPoints> moved;
-  for (int k = 0; k < Transform::kPoints; ++k) {
+  for (std::size_t k = 0; k < Transform::kPoints; ++k) {
     const orbit::CartesianState later = propagate_pushed(state_of(transform.point(k)), Vector3::Zero(), dt);
-    moved[static_cast<std::size_t>(k)] << later.position_eci, later.velocity_eci;
+    moved[k] << later.position_eci, later.velocity_eci;
   }
   const auto regression = transform.regress<6>(moved);
   Matrix6 noise = regression.remainder;

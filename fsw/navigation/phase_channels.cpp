@@ -25,7 +25,10 @@ std::optional<std::size_t> PhaseChannels::find(gnss::SatelliteId satellite, gnss
 std::optional<std::size_t> PhaseChannels::take(gnss::SatelliteId satellite, gnss::Signal signal) {
   for (std::size_t k = 0; k < channels_.size(); ++k) {
     if (channels_[k].in_use) continue;
-    channels_[k] = PhaseChannel{.in_use = true, .satellite = satellite, .signal = signal};
+    channels_[k] = PhaseChannel{};
+    channels_[k].in_use = true;
+    channels_[k].satellite = satellite;
+    channels_[k].signal = signal;
     return k;
   }
   return std::nullopt;

@@ -102,13 +102,13 @@ void RelativeFilter::advance_to(GpsTime time, const orbit::CartesianState& servi
   const double decay = math::exp(-dt / settings_.acceleration_time_s);
   const orbit::CartesianState servicer_later = propagate_pushed(servicer, Vector3::Zero(), dt);
   std::array<Head, Transform::kPoints> moved;
-  for (int k = 0; k < Transform::kPoints; ++k) {
+  for (std::size_t k = 0; k < Transform::kPoints; ++k) {
     const Head x = transform.point(k);
     const orbit::CartesianState target{.position_eci = servicer.position_eci + x.segment<3>(kPosition),
                                        .velocity_eci = servicer.velocity_eci + x.segment<3>(kVelocity)};
     const orbit::CartesianState later = propagate_pushed(target, x.segment<3>(kAcceleration), dt);
-    moved[static_cast<std::size_t>(k)] << later.position_eci - servicer_later.position_eci,
-        later.velocity_eci - servicer_later.velocity_eci, decay * x.segment<3>(kAcceleration);
+    moved[k] << later.position_eci - servicer_later.position_eci, later.velocity_eci - servicer_later.velocity_eci,
+        decay * x.segment<3>(kAcceleration);
   }
   const auto regression = transform.regress<kHead>(moved);
   Transform::Matrix noise = regression.remainder;
@@ -175,12 +175,11 @@ Status RelativeFilter::linearise(const DifferentialEpoch& epoch, const ReceiverP
   const Vector3 servicer_antenna =
       antenna_position(servicer, servicer.state) + servicer.R_eci_body * reference_.segment<3>(kServicerAntenna);
   std::array<Vector3, Transform::kPoints> target_antennas;
-  for (int k = 0; k < Transform::kPoints; ++k) {
+  for (std::size_t k = 0; k < Transform::kPoints; ++k) {
     const Transform::Vector x = transform.point(k);
     const orbit::CartesianState state{.position_eci = servicer.state.position_eci + x.segment<3>(kPosition),
                                       .velocity_eci = servicer.state.velocity_eci + x.segment<3>(kVelocity)};
-    target_antennas[static_cast<std::size_t>(k)] =
-        antenna_position(target, state) + target.R_eci_body * reference_.segment<3>(kTargetAntenna);
+    target_antennas[k] = antenna_position(target, state) + target.R_eci_body * reference_.segment<3>(kTargetAntenna);
   }
   for (std::size_t n = 0; n < epoch.count; ++n) {
     const DifferentialObservation& observation = epoch.observations[n];

@@ -1,5 +1,7 @@
 #include "fsw/navigation/signal_source.h"
 
+#include <Eigen/Geometry>
+
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::navigation {

@@ -21,9 +21,9 @@ struct PolarToCartesian {
     UnscentedTransform<2> transform;
     EXPECT_EQ(transform.start(mean, covariance, parameters), Status::kOk);
     std::array<Vector2, 5> values;
-    for (int k = 0; k < 5; ++k) {
+    for (std::size_t k = 0; k < 5; ++k) {
       const Vector2 p = transform.point(k);
-      values[static_cast<std::size_t>(k)] = p(0) * Vector2(std::cos(p(1)), std::sin(p(1)));
+      values[k] = p(0) * Vector2(std::cos(p(1)), std::sin(p(1)));
     }
     return transform.regress<2>(values);
   }
@@ -60,7 +60,7 @@ TEST(Unscented, LinearFunctionIsExact) {
   UnscentedTransform<4> transform;
   ASSERT_EQ(transform.start(mean, covariance), Status::kOk);
   std::array<Eigen::Matrix<double, 3, 1>, 9> values;
-  for (int k = 0; k < 9; ++k) values[static_cast<std::size_t>(k)] = a * transform.point(k);
+  for (std::size_t k = 0; k < 9; ++k) values[k] = a * transform.point(k);
   const auto r = transform.regress<3>(values);
   // Differences of numbers near 7e6 keep 1e-9; the smallest factor divided by is 1e-3.
   EXPECT_LT((r.mean - a * mean).norm(), 2e-8);
@@ -75,7 +75,7 @@ TEST(Unscented, SecondMomentOfASquare) {
                             {.alpha = 1.0, .beta = 0.0, .kappa = 2.0}),
             Status::kOk);
   std::array<Eigen::Matrix<double, 1, 1>, 3> values;
-  for (int k = 0; k < 3; ++k) values[static_cast<std::size_t>(k)] = transform.point(k).cwiseAbs2();
+  for (std::size_t k = 0; k < 3; ++k) values[k] = transform.point(k).cwiseAbs2();
   const auto r = transform.regress<1>(values);
   EXPECT_NEAR(r.mean(0), 1.0, 1e-15);
   EXPECT_NEAR(r.slope(0), 0.0, 1e-15);
