@@ -77,6 +77,7 @@ void Gnc::report() {
     outbox_.send(commanded.burn.time, message);
   }
   report_navigation();
+  if (navigation_.uses_gnss()) report_gnss();
   report_control();
   report_health();
 }
@@ -97,6 +98,45 @@ void Gnc::report_navigation() {
     copy(state.sigma_rtn, message.sigma_rtn);
     copy(management_.reference_semi_major_axis() * guidance_.report().roe, message.a_roe_mean_m);
   }
+  outbox_.send(now_, message);
+}
+
+void Gnc::report_gnss() {
+  const navigation::GnssNavigation& gnss = navigation_.gnss();
+  const navigation::GnssNavigationCounters& counters = gnss.counters();
+  const navigation::AmbiguityReport& ambiguities = gnss.ambiguities().report();
+  const navigation::RelativeUpdate& last = gnss.last_update();
+  telemetry_gnss message{};
+  message.step = step_;
+  message.epoch_gps_ns = gnss.epoch().ns;
+  message.pairs = counters.pairs;
+  message.alone = counters.alone;
+  message.too_late = counters.too_late;
+  message.no_solution = counters.no_solution;
+  message.codes_refused = counters.codes_refused;
+  message.phases_refused = counters.phases_refused;
+  message.slips = counters.slips;
+  message.restarts = counters.restarts;
+  message.tracked = ambiguities.tracked;
+  message.fixed = ambiguities.fixed;
+  message.fixes = ambiguities.fixes;
+  message.releases = ambiguities.releases;
+  message.obstacle = static_cast<std::int8_t>(ambiguities.obstacle);
+  message.success_rate = ambiguities.success_rate;
+  message.ratio = ambiguities.ratio;
+  message.codes_used = last.codes_used;
+  message.phases_used = last.phases_used;
+  message.code_nis = last.code_nis;
+  message.phase_nis = last.phase_nis;
+  if (gnss.valid()) {
+    const Matrix6 covariance = gnss.covariance_rtn();
+    std::size_t place = 0;
+    for (int row = 0; row < 6; ++row) {
+      for (int column = 0; column <= row; ++column) message.covariance_rtn[place++] = covariance(row, column);
+    }
+  }
+  message.messages = navigation_.receivers().messages();
+  message.messages_refused = navigation_.receivers().refused();
   outbox_.send(now_, message);
 }
 

@@ -43,6 +43,7 @@ class Gnc {
   void report();
 
   void report_navigation();
+  void report_gnss();
   void report_control();
   void report_health();
 

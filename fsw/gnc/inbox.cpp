@@ -37,6 +37,14 @@ Status Inbox::file(const PacketView& packet) {
     }
     case Apid::kIdealNavigation:
       return decode_and_file(packet, ideal_navigation_);
+    case Apid::kGnssBytes:
+      return decode_and_file(packet, gnss_bytes_);
+    case Apid::kCrosslinkGnssBytes:
+      return decode_and_file(packet, crosslink_gnss_bytes_);
+    case Apid::kAttitude:
+      return decode_and_file(packet, attitudes_);
+    case Apid::kCrosslinkAttitude:
+      return decode_and_file(packet, crosslink_attitudes_);
     case Apid::kExecutedManeuver:
       return decode_and_file(packet, executed_maneuvers_);
     case Apid::kWaypointTable:
@@ -45,10 +53,13 @@ Status Inbox::file(const PacketView& packet) {
       return decode_and_file(packet, configurations_);
     case Apid::kModeCommand:
       return decode_and_file(packet, mode_commands_);
+    case Apid::kNavigationConfiguration:
+      return decode_and_file(packet, navigation_configurations_);
     case Apid::kManeuverCommand:
     case Apid::kTelemetryNavigation:
     case Apid::kTelemetryControl:
     case Apid::kTelemetryHealth:
+    case Apid::kTelemetryGnss:
     case Apid::kStepReport:
       break;
   }
@@ -94,6 +105,11 @@ void Inbox::clear() {
   waypoint_tables_.clear();
   configurations_.clear();
   mode_commands_.clear();
+  navigation_configurations_.clear();
+  gnss_bytes_.clear();
+  crosslink_gnss_bytes_.clear();
+  attitudes_.clear();
+  crosslink_attitudes_.clear();
 }
 
 }  // namespace vbar::fsw::gnc

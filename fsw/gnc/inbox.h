@@ -38,6 +38,7 @@ class Inbox {
   static constexpr std::size_t kMeasurements = 64;
   static constexpr std::size_t kManeuvers = 32;
   static constexpr std::size_t kTelecommands = 4;
+  static constexpr std::size_t kGnssPackets = 64;  ///< of each receiver, 82 kB: twenty epochs of eighty signals
 
   explicit Inbox(std::uint8_t spacecraft) : spacecraft_(spacecraft) {}
 
@@ -67,6 +68,17 @@ class Inbox {
     return configurations_;
   }
   [[nodiscard]] const TimeOrderedQueue<mode_command, kTelecommands>& mode_commands() const { return mode_commands_; }
+  [[nodiscard]] const TimeOrderedQueue<navigation_configuration, kTelecommands>& navigation_configurations() const {
+    return navigation_configurations_;
+  }
+  [[nodiscard]] const TimeOrderedQueue<gnss_bytes, kGnssPackets>& gnss_bytes_packets() const { return gnss_bytes_; }
+  [[nodiscard]] const TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets>& crosslink_gnss_bytes_packets() const {
+    return crosslink_gnss_bytes_;
+  }
+  [[nodiscard]] const TimeOrderedQueue<attitude, kMeasurements>& attitudes() const { return attitudes_; }
+  [[nodiscard]] const TimeOrderedQueue<crosslink_attitude, kMeasurements>& crosslink_attitudes() const {
+    return crosslink_attitudes_;
+  }
   /// Time from the last tick to the next one; 0 before the first tick.
   [[nodiscard]] Duration step_period() const { return step_period_; }
 
@@ -82,6 +94,11 @@ class Inbox {
   TimeOrderedQueue<waypoint_table, kTelecommands> waypoint_tables_;
   TimeOrderedQueue<gnc_configuration, kTelecommands> configurations_;
   TimeOrderedQueue<mode_command, kTelecommands> mode_commands_;
+  TimeOrderedQueue<navigation_configuration, kTelecommands> navigation_configurations_;
+  TimeOrderedQueue<gnss_bytes, kGnssPackets> gnss_bytes_;
+  TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets> crosslink_gnss_bytes_;
+  TimeOrderedQueue<attitude, kMeasurements> attitudes_;
+  TimeOrderedQueue<crosslink_attitude, kMeasurements> crosslink_attitudes_;
 };
 
 }  // namespace vbar::fsw::gnc

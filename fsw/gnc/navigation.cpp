@@ -1,5 +1,7 @@
 #include "fsw/gnc/navigation.h"
 
+#include <span>
+
 #include "fsw/math/math.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
@@ -21,6 +23,47 @@ Vector3 vector(const double (&xyz)[3]) {
   return {xyz[0], xyz[1], xyz[2]};
 }
 
+// GNSS navigation lags its newest measurement by what the crosslink takes; older than this the state is a coast.
+constexpr double kFreshGnss_s = 30.0;
+
+/// What a telecommand asks for; kOutOfRange for figures that no filter can work with.
+Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_configuration& c) {
+  const auto positive = [](double x, double most) { return x > 0.0 && x <= most; };
+  const Vector3 servicer_antenna = vector(c.servicer_antenna_body_m);
+  const Vector3 target_antenna = vector(c.target_antenna_body_m);
+  const bool usable = (c.source == 0 || c.source == 1) && positive(c.min_success_rate, 1.0) && c.min_ratio >= 1.0 &&
+                      c.min_ratio <= 1e6 && is_usable(Duration{c.pair_wait_ns}) && servicer_antenna.norm() < 100.0 &&
+                      target_antenna.norm() < 100.0 && positive(c.antenna_offset_sigma_m, 10.0) &&
+                      positive(c.phase_centre_jitter_m, 1.0) && positive(c.code_bias_sigma_m, 1e3) &&
+                      positive(c.start_velocity_sigma, 1e3) && positive(c.acceleration_sigma, 1.0) &&
+                      positive(c.acceleration_time_s, 1e6) && positive(c.maneuver_sigma, 1.0) &&
+                      c.maneuver_sigma_relative >= 0.0 && c.maneuver_sigma_relative <= 1.0 &&
+                      is_usable(GpsTime{c.earth_epoch_ns}) && math::abs(c.ut1_minus_gps_s) < 100.0 &&
+                      math::abs(c.ut1_rate) < 1e-6 && math::abs(c.pole_x) < 1e-4 && math::abs(c.pole_y) < 1e-4;
+  if (!usable) return Status::kOutOfRange;
+  navigation::GnssNavigationSettings settings;
+  settings.relative = {.start_velocity_sigma = c.start_velocity_sigma,
+                       .acceleration_sigma = c.acceleration_sigma,
+                       .acceleration_time_s = c.acceleration_time_s,
+                       .antenna_offset_sigma_m = c.antenna_offset_sigma_m,
+                       .phase_centre_jitter_m = c.phase_centre_jitter_m,
+                       .code_bias_sigma_m = c.code_bias_sigma_m,
+                       .maneuver_sigma = c.maneuver_sigma,
+                       .maneuver_sigma_relative = c.maneuver_sigma_relative};
+  settings.ambiguities.enabled = c.resolve_ambiguities != 0;
+  settings.ambiguities.min_success_rate = c.min_success_rate;
+  settings.ambiguities.min_ratio = c.min_ratio;
+  settings.earth = {.epoch = GpsTime{c.earth_epoch_ns},
+                    .ut1_minus_gps_s = c.ut1_minus_gps_s,
+                    .ut1_rate = c.ut1_rate,
+                    .pole_x = c.pole_x,
+                    .pole_y = c.pole_y};
+  settings.servicer_antenna_body_m = servicer_antenna;
+  settings.target_antenna_body_m = target_antenna;
+  settings.pair_wait = Duration{c.pair_wait_ns};
+  return settings;
+}
+
 bool is_orbit(const orbit::CartesianState& state) {
   return orbit::qns_from_cartesian(state).ok();
 }
@@ -28,8 +71,13 @@ bool is_orbit(const orbit::CartesianState& state) {
 }  // namespace
 
 void Navigation::update(GpsTime now, Inbox& inbox) {
+  take_configurations(now, inbox);
   take_maneuvers(now, inbox);
-  take_measurements(now, inbox);
+  if (uses_gnss_) {
+    take_gnss(now, inbox);
+  } else {
+    take_measurements(now, inbox);
+  }
   if (!anchored_) return;
   if (now - anchor_.epoch > kLongestDelay + kLongestDelay) move_anchor(now - kLongestDelay);
 
@@ -43,12 +91,71 @@ void Navigation::update(GpsTime now, Inbox& inbox) {
   state_.epoch = now;
   state_.servicer = present.value().servicer;
   state_.target = present.value().target;
-  state_.source = state_.last_measurement == now ? NavigationSource::kIdeal : NavigationSource::kPropagated;
+  set_uncertainty(now);
+}
+
+/// Of a coast from what the last measurement left; ideal navigation leaves nothing.
+void Navigation::set_uncertainty(GpsTime now) {
   const double age = seconds(now - state_.last_measurement);
   const double separation = (state_.target.position_eci - state_.servicer.position_eci).norm();
   const double unmodelled_acceleration = kUnmodelledGradient * separation;
-  state_.sigma_rtn.head<3>().setConstant(0.5 * unmodelled_acceleration * age * age);
-  state_.sigma_rtn.tail<3>().setConstant(unmodelled_acceleration * age);
+  if (!uses_gnss_) {
+    state_.source = state_.last_measurement == now ? NavigationSource::kIdeal : NavigationSource::kPropagated;
+    state_.sigma_rtn.head<3>().setConstant(0.5 * unmodelled_acceleration * age * age);
+    state_.sigma_rtn.tail<3>().setConstant(unmodelled_acceleration * age);
+    return;
+  }
+  const bool is_fixed = gnss_.ambiguities().is_fixed();
+  const bool is_fresh = age <= kFreshGnss_s;
+  state_.source = !is_fresh  ? NavigationSource::kPropagated
+                  : is_fixed ? NavigationSource::kGnssFixed
+                             : NavigationSource::kGnssFloat;
+  const Matrix6 covariance = gnss_.covariance_rtn();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double position = math::sqrt(covariance(axis, axis));
+    const double velocity = math::sqrt(covariance(3 + axis, 3 + axis));
+    state_.sigma_rtn(axis) = math::hypot(position + velocity * age, 0.5 * unmodelled_acceleration * age * age);
+    state_.sigma_rtn(3 + axis) = math::hypot(velocity, unmodelled_acceleration * age);
+  }
+}
+
+void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
+  const auto& configurations = inbox.navigation_configurations();
+  for (std::size_t k = 0; k < configurations.size(); ++k) {
+    if (configurations[k].tag.time > now) {
+      inbox.count_unusable_time();
+      continue;
+    }
+    const Result<navigation::GnssNavigationSettings> settings = gnss_settings(configurations[k].value);
+    if (!settings.ok()) {
+      inbox.count_bad_content();
+      continue;
+    }
+    uses_gnss_ = configurations[k].value.source == 1;
+    gnss_.configure(settings.value());
+    anchored_ = false;
+    state_.valid = false;
+  }
+}
+
+/// The filters' state at the last epoch folded in is the anchor; what was flown since follows as with any other source.
+void Navigation::take_gnss(GpsTime now, Inbox& inbox) {
+  receivers_.feed(now, inbox, gnss_);
+  std::array<navigation::Burn, kMaxManeuvers> burns;
+  for (std::size_t k = 0; k < maneuver_count_; ++k) burns[k] = {maneuvers_[k].time, maneuvers_[k].dv_rtn};
+  gnss_.update(now, std::span(burns).first(maneuver_count_));
+  if (!gnss_.valid()) {
+    anchored_ = false;
+    state_.valid = false;
+    return;
+  }
+  const Pair estimated{gnss_.epoch(), gnss_.servicer(), gnss_.target()};
+  if (!is_orbit(estimated.servicer) || !is_orbit(estimated.target)) return;
+  if (anchored_ && estimated.epoch <= state_.last_measurement) return;
+  anchor_ = estimated;
+  anchored_ = true;
+  state_.last_measurement = estimated.epoch;
+  forget_before(estimated.epoch);
 }
 
 /// Ideal navigation knows everything, so the latest measurement is all that counts: it becomes the anchor.

@@ -1,7 +1,7 @@
 #pragma once
 // navigate: the state of servicer and target at the step's time, from measurements folded in at their own times and own
-// maneuvers. Ideal navigation (true states in a packet) is the first source; between measurements the state coasts
-// under J2.
+// maneuvers. A telecommand chooses the source: ideal navigation (true states in a packet), or the GNSS receivers of
+// both spacecraft; between measurements the state coasts under J2.
 //
 // What arrives late is not lost: the state is built anew at each step from an anchor, the last measurement, and the own
 // maneuvers since. A commanded maneuver counts as flown as commanded until the actuator says otherwise, so that neither
@@ -11,12 +11,14 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
+#include "fsw/gnc/gnss_receivers.h"
 #include "fsw/gnc/inbox.h"
+#include "fsw/navigation/gnss_navigation.h"
 #include "fsw/orbit/elements.h"
 
 namespace vbar::fsw::gnc {
 
-enum class NavigationSource : std::int8_t { kNone = 0, kPropagated = 1, kIdeal = 2 };
+enum class NavigationSource : std::int8_t { kNone = 0, kPropagated = 1, kIdeal = 2, kGnssFloat = 3, kGnssFixed = 4 };
 
 /// What navigation knows at `epoch`.
 struct NavigationState {
@@ -40,6 +42,11 @@ class Navigation {
 
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
+  /// Whether GNSS is the source, and what it knows of itself.
+  [[nodiscard]] bool uses_gnss() const { return uses_gnss_; }
+  [[nodiscard]] const navigation::GnssNavigation& gnss() const { return gnss_; }
+  [[nodiscard]] const GnssReceivers& receivers() const { return receivers_; }
+
   /// 1 sigma of a * ROE (m, six components) that `sigma_rtn` amounts to; the linear near-circular map, `servicer_mean`
   /// at epoch.
   [[nodiscard]] Vector6 sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const;
@@ -57,7 +64,10 @@ class Navigation {
     Vector3 dv_rtn = Vector3::Zero();
   };
 
+  void take_configurations(GpsTime now, Inbox& inbox);
   void take_measurements(GpsTime now, Inbox& inbox);
+  void take_gnss(GpsTime now, Inbox& inbox);
+  void set_uncertainty(GpsTime now);
   void take_maneuvers(GpsTime now, Inbox& inbox);
   void move_anchor(GpsTime time);
   [[nodiscard]] Result<Pair> flown_to(GpsTime time) const;
@@ -72,6 +82,10 @@ class Navigation {
   Pair anchor_;
   std::array<OwnManeuver, kMaxManeuvers> maneuvers_{};  ///< in order of time, none before the anchor
   std::size_t maneuver_count_ = 0;
+
+  bool uses_gnss_ = false;
+  GnssReceivers receivers_;
+  navigation::GnssNavigation gnss_;
 };
 
 }  // namespace vbar::fsw::gnc

@@ -11,13 +11,20 @@ std::size_t Outbox::sequence_slot(packets::Apid apid) {
       return 2;
     case Apid::kTelemetryControl:
       return 3;
+    case Apid::kTelemetryGnss:
+      return 4;
     case Apid::kTelemetryHealth:
     case Apid::kTick:
     case Apid::kIdealNavigation:
+    case Apid::kGnssBytes:
+    case Apid::kCrosslinkGnssBytes:
+    case Apid::kAttitude:
+    case Apid::kCrosslinkAttitude:
     case Apid::kExecutedManeuver:
     case Apid::kWaypointTable:
     case Apid::kGncConfiguration:
     case Apid::kModeCommand:
+    case Apid::kNavigationConfiguration:
     case Apid::kStepReport:
       break;
   }

@@ -27,7 +27,7 @@ GnssNavigation::GnssNavigation(const GnssNavigationSettings& settings)
 void GnssNavigation::configure(const GnssNavigationSettings& settings) {
   settings_ = settings;
   orbit_.reset();
-  relative_ = RelativeFilter(settings.relative);
+  relative_.configure(settings.relative);
   ambiguities_.reset();
   has_epoch_ = false;
   relative_has_begun_ = false;

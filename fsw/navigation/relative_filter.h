@@ -88,6 +88,12 @@ class RelativeFilter {
   /// Forgets everything but the settings.
   void reset();
 
+  /// Replaces the settings and forgets everything else.
+  void configure(const RelativeFilterSettings& settings) {
+    settings_ = settings;
+    reset();
+  }
+
   /// Begins at `time` with a relative position (m, ECI) known to `sigma_m` an axis.
   void begin(GpsTime time, const Vector3& position_eci, double sigma_m, double mean_motion);
 

@@ -3,13 +3,19 @@
 // A new message is a struct in vbar.lcm, an APID in packet.h, a line in VBAR_FOR_EACH_MESSAGE and an overload of
 // all_finite.
 
+#include <vbar/attitude.hpp>
+#include <vbar/crosslink_attitude.hpp>
+#include <vbar/crosslink_gnss_bytes.hpp>
 #include <vbar/executed_maneuver.hpp>
 #include <vbar/gnc_configuration.hpp>
+#include <vbar/gnss_bytes.hpp>
 #include <vbar/ideal_navigation.hpp>
 #include <vbar/maneuver_command.hpp>
 #include <vbar/mode_command.hpp>
+#include <vbar/navigation_configuration.hpp>
 #include <vbar/step_report.hpp>
 #include <vbar/telemetry_control.hpp>
+#include <vbar/telemetry_gnss.hpp>
 #include <vbar/telemetry_health.hpp>
 #include <vbar/telemetry_navigation.hpp>
 #include <vbar/tick.hpp>
@@ -18,17 +24,23 @@
 #include "fsw/packets/packet.h"
 
 /// Expands X(message type, Apid enumerator) for every message that travels as a packet.
-#define VBAR_FOR_EACH_MESSAGE(X)                        \
-  X(::vbar::tick, kTick)                                \
-  X(::vbar::ideal_navigation, kIdealNavigation)         \
-  X(::vbar::executed_maneuver, kExecutedManeuver)       \
-  X(::vbar::waypoint_table, kWaypointTable)             \
-  X(::vbar::gnc_configuration, kGncConfiguration)       \
-  X(::vbar::mode_command, kModeCommand)                 \
-  X(::vbar::maneuver_command, kManeuverCommand)         \
-  X(::vbar::telemetry_navigation, kTelemetryNavigation) \
-  X(::vbar::telemetry_control, kTelemetryControl)       \
-  X(::vbar::telemetry_health, kTelemetryHealth)         \
+#define VBAR_FOR_EACH_MESSAGE(X)                                \
+  X(::vbar::tick, kTick)                                        \
+  X(::vbar::ideal_navigation, kIdealNavigation)                 \
+  X(::vbar::gnss_bytes, kGnssBytes)                             \
+  X(::vbar::crosslink_gnss_bytes, kCrosslinkGnssBytes)          \
+  X(::vbar::attitude, kAttitude)                                \
+  X(::vbar::crosslink_attitude, kCrosslinkAttitude)             \
+  X(::vbar::executed_maneuver, kExecutedManeuver)               \
+  X(::vbar::waypoint_table, kWaypointTable)                     \
+  X(::vbar::gnc_configuration, kGncConfiguration)               \
+  X(::vbar::mode_command, kModeCommand)                         \
+  X(::vbar::navigation_configuration, kNavigationConfiguration) \
+  X(::vbar::maneuver_command, kManeuverCommand)                 \
+  X(::vbar::telemetry_navigation, kTelemetryNavigation)         \
+  X(::vbar::telemetry_control, kTelemetryControl)               \
+  X(::vbar::telemetry_health, kTelemetryHealth)                 \
+  X(::vbar::telemetry_gnss, kTelemetryGnss)                     \
   X(::vbar::step_report, kStepReport)
 
 namespace vbar::fsw::packets {

@@ -37,6 +37,22 @@ bool all_finite(const ideal_navigation& m) {
   return finite_fields(m.servicer_position_eci, m.servicer_velocity_eci, m.target_position_eci, m.target_velocity_eci);
 }
 
+bool all_finite(const gnss_bytes& /*message*/) {
+  return true;
+}
+
+bool all_finite(const crosslink_gnss_bytes& /*message*/) {
+  return true;
+}
+
+bool all_finite(const attitude& m) {
+  return finite_fields(m.q_eci_body, m.rate_body);
+}
+
+bool all_finite(const crosslink_attitude& m) {
+  return finite_fields(m.q_eci_body, m.rate_body);
+}
+
 bool all_finite(const executed_maneuver& m) {
   return finite(m.dv_rtn);
 }
@@ -58,6 +74,13 @@ bool all_finite(const mode_command& /*message*/) {
   return true;
 }
 
+bool all_finite(const navigation_configuration& m) {
+  return finite_fields(m.min_success_rate, m.min_ratio, m.servicer_antenna_body_m, m.target_antenna_body_m,
+                       m.antenna_offset_sigma_m, m.phase_centre_jitter_m, m.code_bias_sigma_m, m.start_velocity_sigma,
+                       m.acceleration_sigma, m.acceleration_time_s, m.maneuver_sigma, m.maneuver_sigma_relative,
+                       m.ut1_minus_gps_s, m.ut1_rate, m.pole_x, m.pole_y);
+}
+
 bool all_finite(const maneuver_command& m) {
   return finite(m.dv_rtn);
 }
@@ -74,6 +97,10 @@ bool all_finite(const telemetry_control& m) {
 
 bool all_finite(const telemetry_health& /*message*/) {
   return true;
+}
+
+bool all_finite(const telemetry_gnss& m) {
+  return finite_fields(m.success_rate, m.ratio, m.code_nis, m.phase_nis, m.covariance_rtn);
 }
 
 bool all_finite(const step_report& /*message*/) {

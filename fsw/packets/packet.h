@@ -29,14 +29,20 @@ inline constexpr std::size_t kMaxPayloadBytes = kMaxPacketBytes - kPacketHeaderB
 enum class Apid : std::uint16_t {
   kTick = 0x001,
   kIdealNavigation = 0x010,
+  kGnssBytes = 0x011,
+  kCrosslinkGnssBytes = 0x012,
+  kAttitude = 0x013,
+  kCrosslinkAttitude = 0x014,
   kExecutedManeuver = 0x020,
   kWaypointTable = 0x101,
   kGncConfiguration = 0x102,
   kModeCommand = 0x103,
+  kNavigationConfiguration = 0x104,
   kManeuverCommand = 0x401,
   kTelemetryNavigation = 0x501,
   kTelemetryControl = 0x502,
   kTelemetryHealth = 0x503,
+  kTelemetryGnss = 0x504,
   kStepReport = 0x601,
 };
 
