@@ -21,7 +21,8 @@ double adop(std::span<const double> conditional_variances) {
 
 Result<IntegerSolution> resolve_decorrelated(const Decorrelation& problem) {
   NearestIntegers nearest;
-  if (const Status status = search_integers(problem, nearest); status != Status::kOk) return status;
+  if (const Status status = search_integers(problem, {}, nearest); status != Status::kOk) return status;
+  if (nearest.found < 2) return Status::kOutOfRange;
   const std::size_t n = problem.count();
   if (const Status status = problem.to_original(std::span(nearest.best).first(n)); status != Status::kOk) return status;
   if (const Status status = problem.to_original(std::span(nearest.second).first(n)); status != Status::kOk) {
