@@ -10,20 +10,31 @@
 
 namespace vbar::fsw::gnss {
 
-/// Decorrelated integers and their squared distances from the float ones in the metric of the covariance.
-struct NearestIntegers {
-  std::array<double, kMaxAmbiguities> best{};
-  std::array<double, kMaxAmbiguities> second{};
-  double best_norm2 = 0.0;
-  double second_norm2 = 0.0;
-  std::size_t nodes = 0;  ///< components visited
-};
-
 /// Nodes of a search. A problem whose success rate is 0.5 takes some hundred at 24 ambiguities; one that takes this
 /// many is not worth an answer. A node costs about 100 cycles of a Cortex-A9.
 inline constexpr std::size_t kMaxSearchNodes = 1U << 18U;
 
-/// kDidNotConverge after kMaxSearchNodes; kOutOfRange for components or distances that are not numbers of use.
-Status search_integers(const Decorrelation& problem, NearestIntegers& nearest);
+/// More than any squared distance that a search can meet.
+inline constexpr double kUnboundedNorm2 = 1e300;
+
+struct SearchLimits {
+  double norm2 = kUnboundedNorm2;  ///< only vectors nearer than this are of interest
+  std::size_t nodes = kMaxSearchNodes;
+};
+
+/// Decorrelated integers and their squared distances from the float ones in the metric of the covariance.
+struct NearestIntegers {
+  std::size_t found = 0;  ///< 0, 1 or 2; the squared distance of what was not found is the limit
+  std::array<double, kMaxAmbiguities> best{};
+  std::array<double, kMaxAmbiguities> second{};
+  double best_norm2 = 0.0;
+  double second_norm2 = 0.0;
+};
+
+/// kDidNotConverge at the limit of nodes: `nearest` then holds the nearest met so far.
+Status search_integers(const Decorrelation& problem, const SearchLimits& limits, NearestIntegers& nearest);
+
+/// resolve_ambiguities() of a problem that is decorrelated already.
+Result<IntegerSolution> resolve_decorrelated(const Decorrelation& problem);
 
 }  // namespace vbar::fsw::gnss

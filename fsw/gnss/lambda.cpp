@@ -19,11 +19,10 @@ double adop(std::span<const double> conditional_variances) {
   return math::exp(0.5 * log_determinant / static_cast<double>(conditional_variances.size()));
 }
 
-Result<IntegerSolution> resolve_ambiguities(std::span<const double> ambiguities, std::span<const double> covariance) {
-  Decorrelation problem;
-  if (const Status status = problem.compute(ambiguities, covariance); status != Status::kOk) return status;
+Result<IntegerSolution> resolve_decorrelated(const Decorrelation& problem) {
   NearestIntegers nearest;
-  if (const Status status = search_integers(problem, nearest); status != Status::kOk) return status;
+  if (const Status status = search_integers(problem, {}, nearest); status != Status::kOk) return status;
+  if (nearest.found < 2) return Status::kOutOfRange;
   const std::size_t n = problem.count();
   if (const Status status = problem.to_original(std::span(nearest.best).first(n)); status != Status::kOk) return status;
   if (const Status status = problem.to_original(std::span(nearest.second).first(n)); status != Status::kOk) {
@@ -35,6 +34,12 @@ Result<IntegerSolution> resolve_ambiguities(std::span<const double> ambiguities,
                          .best_norm2 = nearest.best_norm2,
                          .second_norm2 = nearest.second_norm2,
                          .success_rate = bootstrap_success_rate(problem.d())};
+}
+
+Result<IntegerSolution> resolve_ambiguities(std::span<const double> ambiguities, std::span<const double> covariance) {
+  Decorrelation problem;
+  if (const Status status = problem.compute(ambiguities, covariance); status != Status::kOk) return status;
+  return resolve_decorrelated(problem);
 }
 
 }  // namespace vbar::fsw::gnss
