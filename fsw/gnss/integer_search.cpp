@@ -7,9 +7,6 @@
 namespace vbar::fsw::gnss {
 namespace {
 
-/// More than any distance that a search can meet: norms beyond are refused.
-constexpr double kUnbounded = 1e300;
-
 /// One component of the vector being tried.
 struct Level {
   double centre = 0.0;     ///< float value given the whole numbers of the later components
@@ -31,26 +28,42 @@ void next_candidate(Level& level) {
   level.step = -level.step - __builtin_copysign(1.0, level.step);
 }
 
+/// Puts the vector that is being tried in its place.
+void keep(const std::array<Level, kMaxAmbiguities>& levels, std::size_t n, double norm2, NearestIntegers& nearest) {
+  std::array<double, kMaxAmbiguities>* place = &nearest.second;
+  if (norm2 < nearest.best_norm2) {
+    nearest.second = nearest.best;
+    nearest.second_norm2 = nearest.best_norm2;
+    nearest.best_norm2 = norm2;
+    place = &nearest.best;
+  } else {
+    nearest.second_norm2 = norm2;
+  }
+  for (std::size_t k = 0; k < n; ++k) (*place)[k] = levels[k].whole;
+  nearest.found = std::min<std::size_t>(nearest.found + 1, 2);
+}
+
 }  // namespace
 
-Status search_integers(const Decorrelation& problem, NearestIntegers& nearest) {
+Status search_integers(const Decorrelation& problem, const SearchLimits& limits, NearestIntegers& nearest) {
   const std::size_t n = problem.count();
   std::array<Level, kMaxAmbiguities> levels{};
   for (std::size_t k = 0; k < n; ++k) levels[k].weight = 1.0 / problem.d()[k];
   // Row k: centres of components 0 to k given the whole numbers of those after k.
   LowerTriangle centres;
   std::copy(problem.z().begin(), problem.z().end(), centres.row(n - 1));
-  nearest.best_norm2 = kUnbounded;
-  nearest.second_norm2 = kUnbounded;
+  nearest.found = 0;
+  nearest.best_norm2 = limits.norm2;
+  nearest.second_norm2 = limits.norm2;
   std::size_t k = n - 1;
   enter(levels[k], centres.row(k)[k], 0.0);
-  for (nearest.nodes = 1; nearest.nodes <= kMaxSearchNodes; ++nearest.nodes) {
+  for (std::size_t node = 0; node < limits.nodes; ++node) {
     Level& level = levels[k];
     const double residual = level.centre - level.whole;
     const double distance2 = level.distance2 + residual * residual * level.weight;
     if (!(distance2 < nearest.second_norm2)) {
       // Candidates only get farther: this component is exhausted.
-      if (++k == n) return nearest.second_norm2 < kUnbounded ? Status::kOk : Status::kOutOfRange;
+      if (++k == n) return Status::kOk;
       next_candidate(levels[k]);
     } else if (k > 0) {
       const double* from = centres.row(k);
@@ -60,16 +73,7 @@ Status search_integers(const Decorrelation& problem, NearestIntegers& nearest) {
       --k;
       enter(levels[k], to[k], distance2);
     } else {
-      std::array<double, kMaxAmbiguities>* place = &nearest.second;
-      if (distance2 < nearest.best_norm2) {
-        nearest.second = nearest.best;
-        nearest.second_norm2 = nearest.best_norm2;
-        nearest.best_norm2 = distance2;
-        place = &nearest.best;
-      } else {
-        nearest.second_norm2 = distance2;
-      }
-      for (std::size_t j = 0; j < n; ++j) (*place)[j] = levels[j].whole;
+      keep(levels, n, distance2, nearest);
       next_candidate(level);
     }
   }

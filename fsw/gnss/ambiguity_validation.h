@@ -1,0 +1,69 @@
+#pragma once
+// Which float ambiguities may be held to which integers. Integers are believed if
+//   the model is strong:  bootstrapping succeeds with the probability asked for (Teunissen 1998);
+//   they stand out:       the second-best are farther by the ratio that keeps wrong fixes below kFixFailureRate
+//                         (ratio_threshold.h), and by a fixed ratio that guards against covariances that are too small;
+//   they fit:             their squared distance from the float solution is one that a chi-square variable takes.
+// When not all can be, the one that spoils most is left out and the rest tried again, down to a smallest useful set.
+// More than kMaxAmbiguities are cut down first to those that are sharpest given each other; once these are held, the
+// filter's covariance of the others shrinks and a further call gets them.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "fsw/core/result.h"
+#include "fsw/gnss/decorrelation.h"
+#include "fsw/gnss/lambda.h"
+
+namespace vbar::fsw::gnss {
+
+/// Double differences that a filter may carry; above what 80 observations have.
+inline constexpr std::size_t kMaxFloatAmbiguities = 80;
+
+struct ValidationCriteria {
+  double min_success_rate = 0.9;       ///< of bootstrapping; 1 - kLargestModelFailureRate at least
+  double min_ratio = 2.0;              ///< of squared norms, second-best to best, whatever the model's strength
+  double residual_false_alarm = 1e-4;  ///< probability that true integers are refused for not fitting
+  std::size_t min_count = 4;           ///< fewer double differences do not fix a baseline
+};
+
+/// What kept the ambiguities that are not held from being held.
+enum class Obstacle : std::uint8_t {
+  kNone = 0,
+  kTooFew,    ///< fewer ambiguities than min_count
+  kWeak,      ///< success rate
+  kNotApart,  ///< ratio
+  kNoFit,     ///< residual
+  kSearch,    ///< the search reached its bound, or the covariance is not positive definite
+};
+
+struct AmbiguityDecision {
+  std::size_t count = 0;  ///< to hold; 0: none, the float solution stands
+  /// Which, as positions in the caller's vector, increasing, and their whole numbers.
+  std::array<std::uint8_t, kMaxAmbiguities> position{};
+  std::array<double, kMaxAmbiguities> whole{};
+  Obstacle obstacle = Obstacle::kNone;  ///< the first that was met on the way from all to those held
+  // Of those held, or of the last set that was tried.
+  double success_rate = 0.0;
+  double ratio = 0.0;     ///< at most 1e9
+  double residual = 0.0;  ///< squared norm of the integers, chi-square of the size of the set if they are right
+  std::size_t tried = 0;  ///< sets
+};
+
+/// Memory of a decision, too large for a small stack; holds nothing between calls.
+struct ValidationWorkspace {
+  Decorrelation decorrelation;
+  std::array<double, kMaxAmbiguities> floats{};
+  std::array<double, kMaxAmbiguities * kMaxAmbiguities> covariance{};
+  std::array<double, kMaxAmbiguities * kMaxAmbiguities> information{};
+  std::array<double, kMaxAmbiguities * kMaxFloatAmbiguities> factor{};
+};
+
+/// `ambiguities`: n floats, cycles, n <= kMaxFloatAmbiguities; `covariance`: n x n, cycles^2, column-major, lower
+/// triangle read. kInvalidArgument for sizes or criteria that make no sense, kNotFinite.
+Result<AmbiguityDecision> decide_ambiguities(std::span<const double> ambiguities, std::span<const double> covariance,
+                                             const ValidationCriteria& criteria, ValidationWorkspace& workspace);
+
+}  // namespace vbar::fsw::gnss

@@ -1,0 +1,12 @@
+#pragma once
+// The chi-square distribution's tail, in closed form for whole degrees of freedom.
+
+#include <cstddef>
+
+namespace vbar::fsw::gnss {
+
+/// Probability that a chi-square variable of `degrees` >= 1 degrees of freedom exceeds x >= 0 (Abramowitz and Stegun,
+/// 26.4.4 and 26.4.5). `degrees` terms; relative error about 1e-15 times degrees.
+double chi_square_tail(double x, std::size_t degrees);
+
+}  // namespace vbar::fsw::gnss
