@@ -31,7 +31,7 @@ struct OemMessage {
   std::uint16_t id = 0;
   bool is_response = false;      ///< answer to a command, not a log
   std::uint8_t format = 0;       ///< 0: binary. A binary header may also wrap ASCII
-  std::uint8_t source = 0;       ///< 0: the receiver's first antenna
+  std::uint8_t source = 0;       ///< 1: the receiver's second antenna. Older receivers leave other numbers in it
   std::uint8_t time_status = 0;  ///< 0 with a short header, which has none
   std::uint16_t week = 0;        ///< of GPS, counted from 1980 without rollover
   std::uint32_t time_of_week_ms = 0;
