@@ -9,11 +9,12 @@
 // A sync pattern may be chance or the remains of a broken message. So every sync pattern opens a candidate, and all
 // open candidates are followed side by side, each with a CRC of its own: a whole message is reported with its last
 // byte, and no false start before it can swallow or delay it. What a reported message contains is not searched for
-// further messages; candidates that began before it are thereby shown to be false.
+// further messages; candidates that began before it are thereby shown to be false. (A log that the receiver wraps in
+// another, as RXCONFIG does, has its CRC complemented, so it does not disprove what wraps it.)
 //
 // Bounds, whatever the input: memory is sizeof(OemStream); a byte costs at most kMaxOpenCandidates CRC steps and,
 // spread over the stream, less than one moved byte. More candidates at once than that do not arise by chance (a sync
-// pattern is one in 2^24 bytes); if they do, the oldest is given up.
+// pattern is one in 2^23 bytes); if they do, the oldest is given up.
 
 #include <array>
 #include <cstddef>
