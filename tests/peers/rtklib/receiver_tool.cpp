@@ -34,8 +34,8 @@ void print(const Ephemeris& e) {
   std::printf("ephemeris %c %d %d %d %" PRId64 " %" PRId64, system_letter(e.satellite.constellation), e.satellite.prn,
               e.issue, e.healthy ? 1 : 0, e.toe.ns, e.toc.ns);
   for (const double value :
-       {e.sqrt_a, e.e,   e.m0,  e.delta_n, e.omega0, e.omega_dot,     e.i0,  e.i_dot, e.omega, e.cuc,          e.cus,
-        e.cic,    e.cis, e.crc, e.crs,     e.toe_of_week_s, e.af0, e.af1,   e.af2,   e.group_delay_s}) {
+       {e.sqrt_a, e.e,   e.m0,  e.delta_n, e.omega0, e.omega_dot,     e.i0,  e.i_dot, e.omega, e.cuc,
+        e.cus,    e.cic, e.cis, e.crc,     e.crs,    e.toe_of_week_s, e.af0, e.af1,   e.af2,   e.group_delay_s}) {
     std::printf(" %.17g", value);
   }
   std::printf("\n");

@@ -2,8 +2,8 @@
 //
 //   system (1 GPS, 8 Galileo, 32 BeiDou)  prn  toe_ns  toc_ns  time_ns  then 20 elements in the order of Ephemeris
 //
-// gives a line: x y z clock. Times are ns of GPS time since 1980-01-06. Debian has the library but no header, so what is
-// called is declared here, as in rtklib.h of release 2.4.3 b34.
+// gives a line: x y z clock. Times are ns of GPS time since 1980-01-06. Debian has the library but no header, so what
+// is called is declared here, as in rtklib.h of release 2.4.3 b34.
 
 #include <array>
 #include <cinttypes>
