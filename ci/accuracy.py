@@ -34,12 +34,12 @@ def gtest_json(program, *arguments):
         return json.loads(output.read_text())
 
 
-def tests_in(result):
-    """name, source file relative to the root, gtest's own entry."""
+def tests_in(result, build):
+    """name, source file relative to the root, gtest's own entry. The compiler saw paths relative to the build folder."""
     for suite in result["testsuites"]:
         for test in suite["testsuite"]:
             name = f"{suite['name']}.{test['name']}"
-            source = pathlib.Path(test["file"])
+            source = (build / test["file"]).resolve()
             yield name, (source.relative_to(ROOT) if source.is_relative_to(ROOT) else source), test
 
 
@@ -73,7 +73,7 @@ def recording_tests(build, sources):
     for program in test_programs(build):
         if program.exists():
             listed = gtest_json(program, "--gtest_list_tests")
-            tests[program] = [(name, source) for name, source, _ in tests_in(listed) if source in sources]
+            tests[program] = [(name, source) for name, source, _ in tests_in(listed, build) if source in sources]
     missing = set(sources) - {source for listed in tests.values() for _, source in listed}
     if missing:
         sys.exit(f"not built: the tests of {', '.join(map(str, sorted(missing)))}")
@@ -85,7 +85,7 @@ def records(build, sources):
     for program, listed in recording_tests(build, sources).items():
         print(f"running {len(listed)} tests of {program.name}", flush=True)
         result = gtest_json(program, "--gtest_filter=" + ":".join(name for name, _ in listed))
-        for name, source, test in tests_in(result):
+        for name, source, test in tests_in(result, build):
             if "failures" in test:
                 sys.exit(f"{name} fails: {test['failures'][0]['failure']}")
             for key, value in test.items():
@@ -109,16 +109,15 @@ def table(head, lines):
     return "\n".join("| " + " | ".join(map(cell, line)) + " |" for line in [head, ["---"] * len(head), *lines])
 
 
-def rounded(number):
-    """Two digits of a measurement; a count as it is."""
-    return number if re.fullmatch(r"-?\d+", number) else f"{float(number):.1e}" if abs(float(number)) < 1e-3 \
-        else f"{float(number):.2g}"
+def with_unit(number, unit, digits):
+    """A count as it is, a measurement to so many digits."""
+    text = number if re.fullmatch(r"(= )?-?\d+", number) else f"{float(number):.{digits}g}"
+    return f"{text} {unit}".strip()
 
 
 def row_line(row):
-    limit = row["limit"] if row["limit"].startswith("=") else f"{float(row['limit']):g}"
-    return [row["claim"], row["reference"], f"{rounded(row['measured'])} {row['unit']}", f"{limit} {row['unit']}",
-            f"[`{row['test']}`](../{row['source']})"]
+    return [row["claim"], row["reference"], with_unit(row["measured"], row["unit"], 3),
+            with_unit(row["limit"], row["unit"], 3), f"[`{row['test']}`](../{row['source']})"]
 
 
 def cost_tables(file):
