@@ -5,7 +5,7 @@
 
 #include <erfa.h>
 
-#include "host_sim/truth/forces/gravitational_parameters.h"
+#include "host_sim/truth/forces/third_body_force.h"
 
 namespace vbar::truth {
 
@@ -21,7 +21,7 @@ LowDegreeCoefficients SolidTidesForce::coefficients(const ForceInput& input) {
   const JulianDate ut1 = ut1_of(tai_of(epoch_, input.seconds), orientation.ut1_minus_tai_s);
 
   LowDegreeCoefficients change;
-  add_love_number_response({kMoonPerEarthMass, input.R_itrf_gcrf * input.moon_eci}, radius_, change);
+  add_love_number_response({kMoonGm / gm_, input.R_itrf_gcrf * input.moon_eci}, radius_, change);
   add_love_number_response({kSunGm / gm_, input.R_itrf_gcrf * input.sun_eci}, radius_, change);
   frequency_dependent_.add(tt, eraGmst06(ut1.day, ut1.fraction, tt.day, tt.fraction), change);
   add_pole_tides(orientation.pole_x, orientation.pole_y, tt, change);

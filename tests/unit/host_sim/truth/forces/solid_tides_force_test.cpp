@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/truth/earth/earth_rotation.h"
-#include "tests/unit/host_sim/truth/forces/erfa_sun_moon.h"
+#include "host_sim/truth/earth/sun_moon.h"
 #include "tests/unit/host_sim/truth/truth_fixture.h"
 
 namespace vbar::truth {
@@ -23,14 +23,14 @@ class SolidTidesForceTest : public testing::Test {
 
   ForceInput input(double seconds, const Vector3& position_eci) const {
     EarthRotation rotation(orientation_, test::mission_epoch());
-    const test::SunMoon bodies = test::erfa_sun_moon(tt_of(test::mission_epoch(), seconds));
+    const SunMoon bodies = sun_moon_series(tt_of(test::mission_epoch(), seconds));
     ForceInput in;
     in.seconds = seconds;
     in.position_eci = position_eci;
     in.R_itrf_gcrf = rotation.R_itrf_gcrf_at(seconds);
     in.position_itrf = in.R_itrf_gcrf * position_eci;
-    in.sun_eci = bodies.sun;
-    in.moon_eci = bodies.moon;
+    in.sun_eci = bodies.sun_eci;
+    in.moon_eci = bodies.moon_eci;
     return in;
   }
 
@@ -42,9 +42,9 @@ TEST_F(SolidTidesForceTest, IsAboutATenMillionthOfAMetrePerSecondSquaredUnderThe
   // Degree 2 alone, under the Moon: 3 k2 GM_moon/d^3 (R/r)^5 r, with the Sun's half as much again at most; the Sun's
   // share may also take half away.
   SolidTidesForce tides = force(TideSystem::kTideFree);
-  const test::SunMoon bodies = test::erfa_sun_moon(tt_of(test::mission_epoch()));
-  const Vector3 r = 6.85e6 * bodies.moon.normalized();
-  const double moon = 3.0 * 0.30 * 0.0123 * test::kGm / std::pow(bodies.moon.norm(), 3) *
+  const SunMoon bodies = sun_moon_series(tt_of(test::mission_epoch()));
+  const Vector3 r = 6.85e6 * bodies.moon_eci.normalized();
+  const double moon = 3.0 * 0.30 * 0.0123 * test::kGm / std::pow(bodies.moon_eci.norm(), 3) *
                       std::pow(test::kEarthRadius / r.norm(), 5) * r.norm();
   const Vector3 a = tides.acceleration_eci(input(0.0, r));
   EXPECT_GT(a.norm(), 0.5 * moon);

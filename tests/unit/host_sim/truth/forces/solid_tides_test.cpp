@@ -13,10 +13,10 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/truth/earth/earth_rotation.h"
-#include "host_sim/truth/forces/gravitational_parameters.h"
+#include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/forces/solid_tide_tables.h"
+#include "host_sim/truth/forces/third_body_force.h"
 #include "tests/support/accuracy.h"
-#include "tests/unit/host_sim/truth/forces/erfa_sun_moon.h"
 #include "tests/unit/host_sim/truth/truth_fixture.h"
 
 namespace vbar::truth {
@@ -67,9 +67,9 @@ TEST(SolidTides, OneBodysTideIsTheGradientOfItsPotential) {
   for (int i = 0; i < 200; ++i) {
     const Vector3 moon = 3.84e8 * direction(), r = 6.85e6 * direction();
     LowDegreeCoefficients change;
-    add_love_number_response({kMoonPerEarthMass, moon}, kRadius, change);
+    add_love_number_response({kMoonGm / test::kGm, moon}, kRadius, change);
     for (int m = 0; m <= 2; ++m) change.c[4][m] = change.s[4][m] = 0.0;  // the potential above has degrees 2 and 3
-    const Vector3 expected = gradient(kMoonPerEarthMass * test::kGm, moon, r);
+    const Vector3 expected = gradient(kMoonGm, moon, r);
     largest = std::max(largest, (acceleration_itrf(change, test::kGm, kRadius, r) - expected).norm() / expected.norm());
   }
   // Central differences of order 4: (step/r)^4 = 7e-15 times the fifth derivative's factor of some hundreds, and
@@ -82,14 +82,14 @@ TEST(SolidTides, OneBodysTideIsTheGradientOfItsPotential) {
 TEST(SolidTides, TheBulgeIsCarriedAheadOfTheMoonByTheEarthsRotation) {
   // Im k22 / (2 Re k22) = -0.0013 / 0.60204: 0.124 deg eastward.
   LowDegreeCoefficients change;
-  add_love_number_response({kMoonPerEarthMass, Vector3(3.84e8, 0.0, 0.0)}, kRadius, change);
+  add_love_number_response({kMoonGm / test::kGm, Vector3(3.84e8, 0.0, 0.0)}, kRadius, change);
   EXPECT_NEAR(0.5 * std::atan2(change.s[2][2], change.c[2][2]) / test::kDegree, 0.124, 5e-4);
 }
 
 TEST(SolidTides, Degree4FollowsDegree2) {
   // IERS Conventions 2010, eq. 6.7 beside 6.6: the same factor with k+ for k.
   LowDegreeCoefficients change;
-  add_love_number_response({kMoonPerEarthMass, Vector3(2.9e8, -1.3e8, 2.1e8)}, kRadius, change);
+  add_love_number_response({kMoonGm / test::kGm, Vector3(2.9e8, -1.3e8, 2.1e8)}, kRadius, change);
   constexpr double kRatio0 = -0.00089 / 0.30190;
   EXPECT_NEAR(change.c[4][0], kRatio0 * change.c[2][0], 1e-24);  // rounding of 1e-9
   const Complex k21(0.29830, -0.00144), k22(0.30102, -0.00130);
@@ -194,10 +194,10 @@ TidalSpectrum tidal_spectrum() {
     // UT1 = TT - 64 s, the mean of these years 1990 to 2027: some seconds off turn a daily tide by some 1e-4 rad.
     const JulianDate ut1{tt.day, tt.fraction - 64.0 / 86400.0};
     const fsw::Matrix3 R = R_itrf_gcrf(pole.at(tt), eraEra00(ut1.day, ut1.fraction), 0.0, 0.0, 0.0);
-    const test::SunMoon bodies = test::erfa_sun_moon(tt);
+    const SunMoon bodies = sun_moon_series(tt);
     LowDegreeCoefficients tide;
-    add_love_number_response({kMoonPerEarthMass, R * bodies.moon}, kRadius, tide);
-    add_love_number_response({kSunGm / test::kGm, R * bodies.sun}, kRadius, tide);
+    add_love_number_response({kMoonGm / test::kGm, R * bodies.moon_eci}, kRadius, tide);
+    add_love_number_response({kSunGm / test::kGm, R * bodies.sun_eci}, kRadius, tide);
     const double gmst = eraGmst06(ut1.day, ut1.fraction, tt.day, tt.fraction);
     const double t = (tt.day - ERFA_DJ00 + tt.fraction) / ERFA_DJC;
     const auto line = [&](int doodson) { return std::polar(weight, -doodson_argument(doodson, gmst, t)); };
@@ -285,10 +285,10 @@ TEST(SolidTides, CoefficientsOfAnotherProgram) {
   const JulianDate tt = tt_of(date), utc = utc_of(date);
   const fsw::Matrix3 R =
       R_itrf_gcrf(celestial_pole_iau2006a(tt), eraEra00(utc.day, utc.fraction - 0.35 / 86400.0), 0.0, 0.0, 0.0);
-  const test::SunMoon bodies = test::erfa_sun_moon(tt);
+  const SunMoon bodies = sun_moon_series(tt);
   LowDegreeCoefficients change;
-  add_love_number_response({kMoonPerEarthMass, R * bodies.moon}, kRadius, change);
-  add_love_number_response({kSunGm / test::kGm, R * bodies.sun}, kRadius, change);
+  add_love_number_response({kMoonGm / test::kGm, R * bodies.moon_eci}, kRadius, change);
+  add_love_number_response({kSunGm / test::kGm, R * bodies.sun_eci}, kRadius, change);
   FrequencyDependentTides tides;
   tides.add(tt, eraGmst06(utc.day, utc.fraction - 0.35 / 86400.0, tt.day, tt.fraction), change);
   constexpr double kC[3][4] = {

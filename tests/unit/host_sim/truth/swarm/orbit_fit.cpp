@@ -11,8 +11,8 @@
 namespace vbar::truth::test {
 namespace {
 
-/// Steps of the differences: 10 m, 1 cm/s, a tenth of drag. Small enough for the orbit to answer linearly (1e-5 of it), large
-/// beside the propagation's error of some micrometres.
+/// Steps of the differences: 10 m, 1 cm/s, a tenth of drag. Small enough for the orbit to answer linearly (1e-5 of it),
+/// large beside the propagation's error of some micrometres.
 constexpr double kSteps[7] = {10.0, 10.0, 10.0, 0.01, 0.01, 0.01, 0.1};
 
 Eigen::VectorXd stacked_difference(const Positions& a, const Positions& b) {

@@ -28,8 +28,8 @@ PreciseOrbit load_precise_orbit(const std::filesystem::path& file) {
     int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0;
     PreciseState s;
     fsw::Vector3 &r = s.position_itrf, &v = s.velocity_itrf;
-    if (std::sscanf(line.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d,%lf,%lf,%lf,%lf,%lf,%lf", &year, &month, &day, &hour, &minute,
-                    &second, &r.x(), &r.y(), &r.z(), &v.x(), &v.y(), &v.z()) != 12) {
+    if (std::sscanf(line.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d,%lf,%lf,%lf,%lf,%lf,%lf", &year, &month, &day, &hour,
+                    &minute, &second, &r.x(), &r.y(), &r.z(), &v.x(), &v.y(), &v.z()) != 12) {
       throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": expected a time and six numbers");
     }
     const fsw::GpsTime time = gps_time(year, month, day, hour, minute, second);
