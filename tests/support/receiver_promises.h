@@ -40,7 +40,7 @@ inline bool keeps_promises(const fsw::gnss::ReceiverDecoder& decoder, fsw::gnss:
     case ReceiverUpdate::kIonosphere:
       return fsw::gnss::check(decoder.ionosphere()) == fsw::Status::kOk;
     case ReceiverUpdate::kClock:
-      return std::isfinite(decoder.clock().offset_s) && std::isfinite(decoder.clock().sigma_s);
+      return std::isfinite(decoder.receiver_clock().offset_s) && std::isfinite(decoder.receiver_clock().sigma_s);
     case ReceiverUpdate::kPosition:
       return decoder.position().position_ecef.allFinite() && decoder.position().velocity_ecef.allFinite() &&
              decoder.position().position_sigma_m.allFinite() && decoder.position().velocity_sigma_mps.allFinite();
