@@ -9,11 +9,12 @@
 // A sync pattern may be chance or the remains of a broken message. So every sync pattern opens a candidate, and all
 // open candidates are followed side by side, each with a CRC of its own: a whole message is reported with its last
 // byte, and no false start before it can swallow or delay it. What a reported message contains is not searched for
-// further messages; candidates that began before it are thereby shown to be false.
+// further messages; candidates that began before it are thereby shown to be false. (A log that the receiver wraps in
+// another, as RXCONFIG does, has its CRC complemented, so it does not disprove what wraps it.)
 //
 // Bounds, whatever the input: memory is sizeof(OemStream); a byte costs at most kMaxOpenCandidates CRC steps and,
 // spread over the stream, less than one moved byte. More candidates at once than that do not arise by chance (a sync
-// pattern is one in 2^24 bytes); if they do, the oldest is given up.
+// pattern is one in 2^23 bytes); if they do, the oldest is given up.
 
 #include <array>
 #include <cstddef>
@@ -31,7 +32,7 @@ struct OemMessage {
   std::uint16_t id = 0;
   bool is_response = false;      ///< answer to a command, not a log
   std::uint8_t format = 0;       ///< 0: binary. A binary header may also wrap ASCII
-  std::uint8_t source = 0;       ///< 0: the receiver's first antenna
+  std::uint8_t source = 0;       ///< 1: the receiver's second antenna. Older receivers leave other numbers in it
   std::uint8_t time_status = 0;  ///< 0 with a short header, which has none
   std::uint16_t week = 0;        ///< of GPS, counted from 1980 without rollover
   std::uint32_t time_of_week_ms = 0;

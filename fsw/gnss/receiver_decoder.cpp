@@ -21,8 +21,9 @@ ReceiverUpdate ReceiverDecoder::keep(const Result<T>& result, T& place, Receiver
 }
 
 ReceiverUpdate ReceiverDecoder::read(const OemMessage& message) {
-  const bool log_of_first_antenna = !message.is_response && message.format == 0 && message.source == 0;
-  if (log_of_first_antenna) {
+  constexpr std::uint8_t kBinary = 0;
+  constexpr std::uint8_t kSecondAntenna = 1;
+  if (!message.is_response && message.format == kBinary && message.source != kSecondAntenna) {
     switch (message.id) {
       case kOemRange:
         return judge(read_range(message, observations_, counters_.observations), ReceiverUpdate::kObservations);

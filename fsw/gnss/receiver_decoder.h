@@ -37,7 +37,7 @@ class ReceiverDecoder {
   [[nodiscard]] const ObservationEpoch& observations() const { return observations_; }
   [[nodiscard]] const Ephemeris& ephemeris() const { return ephemeris_; }
   [[nodiscard]] const KlobucharCoefficients& ionosphere() const { return ionosphere_; }
-  [[nodiscard]] const ReceiverClock& clock() const { return clock_; }
+  [[nodiscard]] const ReceiverClock& receiver_clock() const { return clock_; }
   [[nodiscard]] const ReceiverPosition& position() const { return position_; }
 
   [[nodiscard]] const OemStream& stream() const { return stream_; }
