@@ -1,0 +1,95 @@
+#pragma once
+// The navigation satellites of a run: where they truly are, and what they say. One object serves every receiver.
+//
+// A satellite truly moves as one set of real broadcast elements says, plus an error in radial, transverse and normal
+// direction and of its clock, each a constant and a sine of the orbit's period, drawn per satellite and seed: the
+// "uncorrected broadcast" of the paper's table. The broadcast sets of all reference times describe that same motion
+// without the error, rounded to the bits of the navigation message: so the difference steps by centimetres where a new
+// set begins, as real ones do by decimetres. The elements' day is moved to the mission's by whole days with Earth-fixed
+// geometry kept: at the same time of day each satellite stands over the same place. Real elements are fitted to four
+// hours; here they define the motion for as long as the run lasts.
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "host_sim/twins/gnss/broadcast_orbit.h"
+#include "host_sim/twins/gnss/klobuchar.h"
+
+namespace vbar::twins::gnss {
+
+/// Which satellites of a system fly. kBroadcast: those of the system's real broadcast file (GPS 31 of 2011-10-20; 4
+/// Galileo, 14 BeiDou of 2013-07-19). kNominal: the full constellation by its definition (Galileo: Walker 24/3/1 at 56
+/// deg, 29600.318 km; BeiDou-3: Walker 24/3/1 at 55 deg, 27906.1 km, its medium orbits only); GPS has none.
+enum class SatelliteSet : std::uint8_t { kNone, kBroadcast, kNominal };
+
+struct ConstellationSettings {
+  SatelliteSet gps = SatelliteSet::kBroadcast;
+  SatelliteSet galileo = SatelliteSet::kBroadcast;
+  SatelliteSet beidou = SatelliteSet::kBroadcast;
+  // True minus broadcast, one sigma. Sizes of 2011: signal-in-space range error about 1 m.
+  double orbit_error_radial_m = 0.4;
+  double orbit_error_transverse_m = 1.5;
+  double orbit_error_normal_m = 1.0;
+  double clock_error_ns = 1.5;
+};
+
+/// Throws std::invalid_argument naming the setting, what was found and what is accepted.
+void check(const ConstellationSettings& settings);
+
+/// Ionosphere and UTC parameters that the satellites broadcast.
+struct BroadcastCorrections {
+  KlobucharCoefficients klobuchar;
+  double utc_a0_s = 0.0;
+  double utc_a1 = 0.0;
+};
+
+/// A broadcast set and the number that tells it from its neighbours (IODE, IODnav, AODE).
+struct BroadcastSet {
+  Ephemeris ephemeris;  ///< rounded to the message's bits
+  int issue = 0;
+};
+
+class Constellation {
+ public:
+  /// Reads data_directory/gps. `epoch` tells the day the elements are moved to. Errors are drawn from the streams
+  /// "gnss/constellation/<satellite>" of `seed`. Throws std::runtime_error naming file and line,
+  /// std::invalid_argument for settings.
+  Constellation(const std::filesystem::path& data_directory, const ConstellationSettings& settings, fsw::GpsTime epoch,
+                std::uint64_t seed);
+
+  /// In order of system and number.
+  [[nodiscard]] std::size_t size() const { return satellites_.size(); }
+  [[nodiscard]] SatelliteId id(std::size_t index) const { return satellites_[index].base.satellite; }
+
+  /// Where the satellite truly is and what its clock truly shows, `offset_s` after `time`. The errors' own velocity
+  /// (0.2 mm/s) is included in position only.
+  [[nodiscard]] SatelliteState true_state(std::size_t index, fsw::GpsTime time, double offset_s) const;
+
+  /// True group delay of the satellite's first signal, s; broadcast values are taken as true.
+  [[nodiscard]] double group_delay_s(std::size_t index) const { return satellites_[index].base.group_delay_s; }
+
+  /// The set that the satellite transmits at `time`. GPS: a new one every two hours, with toe at their end; Galileo and
+  /// BeiDou: every hour, with toe at its beginning.
+  [[nodiscard]] BroadcastSet broadcast_set(std::size_t index, fsw::GpsTime time) const;
+
+  [[nodiscard]] const BroadcastCorrections& corrections() const { return corrections_; }
+
+ private:
+  // Constant plus a sine of the orbit's period.
+  struct SlowError {
+    double constant;
+    double amplitude;
+    double phase;
+    [[nodiscard]] double at(double orbit_angle) const;
+  };
+  struct Satellite {
+    Ephemeris base;
+    SlowError radial_m, transverse_m, normal_m, clock_s;
+  };
+
+  std::vector<Satellite> satellites_;
+  BroadcastCorrections corrections_;
+};
+
+}  // namespace vbar::twins::gnss

@@ -1,0 +1,20 @@
+#pragma once
+// Reads the broadcast ephemerides of data/gps.
+
+#include <filesystem>
+#include <vector>
+
+#include "host_sim/twins/gnss/broadcast_orbit.h"
+#include "host_sim/twins/gnss/constellation.h"
+
+namespace vbar::twins::gnss {
+
+struct EphemerisFile {
+  std::vector<Ephemeris> satellites;  ///< as the file's own day has them
+  BroadcastCorrections corrections;   ///< zero where the file has none
+};
+
+/// Throws std::runtime_error naming file, line and what is accepted.
+EphemerisFile read_ephemeris_file(const std::filesystem::path& file);
+
+}  // namespace vbar::twins::gnss

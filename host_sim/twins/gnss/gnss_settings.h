@@ -1,0 +1,104 @@
+#pragma once
+// Everything about one receiver and its antenna that a mission may set. Defaults are those of the paper's Appendix A
+// (marked A) or, where it is silent, of a NovAtel OEM628 and a typical patch antenna.
+
+#include <cstdint>
+
+#include "fsw/core/types.h"
+
+namespace vbar::twins::gnss {
+
+/// Which signals can reach the receiver.
+struct VisibilitySettings {
+  double transmit_aperture_deg = 170.0;   ///< A, "GNSS aperture": full cone about the satellite's nadir
+  double receiver_mask_deg = 190.0;       ///< A: full cone about the antenna's boresight
+  double horizon_mask_deg = -20.0;        ///< A: least elevation above the local horizontal
+  double occultation_altitude_km = 50.0;  ///< a line of sight that dips below this altitude is blocked
+};
+
+/// From transmitted power to C/N0. The satellites' antennas radiate alike in all directions (A: spherical gain).
+struct LinkBudgetSettings {
+  double boresight_gain_dbi = 4.0;  ///< with the pattern of data/gps below it
+  double antenna_temperature_k = 130.0;
+  double lna_gain_db = 33.0;  ///< A
+  double lna_noise_figure_db = 2.0;
+  double receiver_noise_figure_db = 8.0;  ///< behind the amplifier
+  double losses_db = 2.0;                 ///< polarisation, cable, quantisation
+};
+
+/// Loops and what becomes of them. Noise: formulas of the coherent early-late and Costas loops.
+struct TrackingSettings {
+  bool thermal_noise = true;
+  double code_loop_bandwidth_hz = 0.25;
+  double carrier_loop_bandwidth_hz = 15.0;
+  double integration_s = 0.02;
+  double acquisition_threshold_dbhz = 33.0;
+  double loss_threshold_dbhz = 28.0;
+  double cycle_slips_per_hour = 0.02;  ///< of each signal; every slip is seen by the receiver: the lock time restarts
+  double unseen_slip_fraction = 0.0;   ///< of those slips, the share that the receiver does not see
+  double code_bias_sigma_m = 0.0;      ///< constant code delay of each signal in the receiver
+};
+
+enum class StartMode : std::uint8_t {
+  kCold,  ///< knows nothing: searches the sky satellite by satellite
+  kWarm,  ///< A: time, place and almanac roughly known
+  kHot,   ///< the same, and ephemerides from before
+};
+
+/// How tracking begins. Each satellite's delay is uniform in its interval.
+struct StartSettings {
+  StartMode mode = StartMode::kWarm;
+  double cold_search_least_s = 20.0;
+  double cold_search_most_s = 60.0;
+  double reacquisition_least_s = 1.0;  ///< warm, hot, and every satellite that rises later
+  double reacquisition_most_s = 8.0;
+  double ephemeris_decoding_s = 30.0;  ///< a message's set has been received after so long in lock
+};
+
+/// Two-state crystal oscillator, not steered (CLOCKADJUST DISABLE: the harder case; a steering receiver stays within
+/// nanoseconds). Where the offset passes half a millisecond the receiver sets its clock by whole milliseconds.
+struct ClockSettings {
+  double initial_offset_ms = 0.4;  ///< uniform in [-x, x]
+  double initial_drift_sigma_ns_per_s = 100.0;
+  double h0_s = 2e-19;             ///< Allan coefficients of white frequency noise
+  double h_minus2_per_s = 2e-20;   ///< and of random-walk frequency noise
+  double jump_threshold_ms = 0.5;  ///< at least 0.5: a smaller one would jump back and forth
+};
+
+/// Where the antenna truly is (A, second table). Vectors in the body frame.
+struct BodyFrameSettings {
+  fsw::Vector3 antenna_in_body_m = fsw::Vector3(0.0, 0.0, 0.3);  ///< from the nominal centre of mass
+  fsw::Vector3 boresight_in_body = fsw::Vector3::UnitZ();
+  double mass_sigma_kg = 0.04;              ///< A
+  double com_radius_mm = 3.0;               ///< A: centre of mass uniform in a ball
+  double pco_bias_mm = 5.0;                 ///< A: length of a constant vector of random direction
+  double pco_noise_mm = 1.0;                ///< A: each axis, each epoch, all signals alike
+  double antenna_direction_arcsec = 30.0;   ///< A: each axis
+  double attitude_knowledge_arcsec = 20.0;  ///< A: each axis; the body against the attitude it is thought to have
+};
+
+enum class GpsEphemerisLog : std::uint8_t { kRawEphem, kGpsEphem };
+
+/// What the receiver was asked to log.
+struct OutputSettings {
+  double period_s = 10.0;               ///< of RANGE, BESTXYZ, TIME: 0.1 to 60, whole milliseconds
+  double ephemeris_repeat_s = 300.0;    ///< each ephemeris again; new ones at once
+  double corrections_repeat_s = 300.0;  ///< IONUTC
+  GpsEphemerisLog gps_ephemeris = GpsEphemerisLog::kRawEphem;
+};
+
+struct GnssReceiverSettings {
+  VisibilitySettings visibility;
+  LinkBudgetSettings link_budget;
+  TrackingSettings tracking;
+  StartSettings start;
+  ClockSettings clock;
+  BodyFrameSettings body_frame;
+  OutputSettings output;
+  bool ionosphere = true;  ///< A: Klobuchar, delay of code and advance of phase
+};
+
+/// Throws std::invalid_argument: one sentence with the setting, what was found and what is accepted.
+void check(const GnssReceiverSettings& settings);
+
+}  // namespace vbar::twins::gnss

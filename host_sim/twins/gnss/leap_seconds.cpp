@@ -1,0 +1,53 @@
+#include "host_sim/twins/gnss/leap_seconds.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "host_sim/truth/earth/time_scales.h"
+
+namespace vbar::twins::gnss {
+namespace {
+
+constexpr int kGpsEpoch_mjd = 44244;
+constexpr int kTaiMinusGps_s = 19;
+constexpr int kDaysToSearch = 3653;
+constexpr std::int64_t kSecondsPerDay = 86400;
+
+int gps_minus_utc_s(int mjd_utc) {
+  return static_cast<int>(std::lround(truth::tai_minus_utc_s(mjd_utc))) - kTaiMinusGps_s;
+}
+
+}  // namespace
+
+UtcOffset utc_offset_at(fsw::GpsTime time) {
+  const std::int64_t gps_s = time.ns / fsw::kNanosecondsPerSecond;
+  const int about_day = kGpsEpoch_mjd + static_cast<int>(gps_s / kSecondsPerDay);
+  // The UTC day may still be the day before.
+  const int day = kGpsEpoch_mjd + static_cast<int>((gps_s - gps_minus_utc_s(about_day)) / kSecondsPerDay);
+  UtcOffset offset;
+  offset.gps_minus_utc_s = gps_minus_utc_s(day);
+  for (int earlier = day - 1; earlier >= kGpsEpoch_mjd && earlier > day - kDaysToSearch; --earlier) {
+    if (gps_minus_utc_s(earlier) == offset.gps_minus_utc_s) continue;
+    offset.change_week = (earlier - kGpsEpoch_mjd) / 7;
+    offset.change_day = (earlier - kGpsEpoch_mjd) % 7 + 1;
+    break;
+  }
+  return offset;
+}
+
+CalendarTime utc_calendar(fsw::GpsTime time, const UtcOffset& offset) {
+  using namespace std::chrono;
+  constexpr sys_days kGpsEpoch = year{1980} / January / 6;
+  const auto utc = kGpsEpoch + milliseconds(time.ns / 1'000'000) - seconds(offset.gps_minus_utc_s);
+  const auto day_begin = floor<days>(utc);
+  const year_month_day date{day_begin};
+  const hh_mm_ss clock{floor<milliseconds>(utc - day_begin)};
+  return {static_cast<int>(date.year()),
+          static_cast<unsigned>(date.month()),
+          static_cast<unsigned>(date.day()),
+          static_cast<unsigned>(clock.hours().count()),
+          static_cast<unsigned>(clock.minutes().count()),
+          static_cast<unsigned>((clock.seconds() + clock.subseconds()).count())};
+}
+
+}  // namespace vbar::twins::gnss

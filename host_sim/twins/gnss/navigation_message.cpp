@@ -1,0 +1,192 @@
+#include "host_sim/twins/gnss/navigation_message.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "host_sim/twins/gnss/system_time.h"
+
+namespace vbar::twins::gnss {
+namespace {
+
+constexpr double kSemicircle = std::numbers::pi;
+
+// Least significant bits, in the units of Ephemeris.
+struct Grid {
+  double sqrt_a = 0x1p-19;
+  double e = 0x1p-33;
+  double angle = 0x1p-31 * kSemicircle;
+  double angle_rate = 0x1p-43 * kSemicircle;
+  double harmonic_angle;
+  double harmonic_radius;
+  double af0;
+  double af1;
+  double af2;
+  double group_delay;
+};
+
+const Grid& grid_of(System system) {
+  static constexpr Grid kGps{.harmonic_angle = 0x1p-29,
+                             .harmonic_radius = 0x1p-5,
+                             .af0 = 0x1p-31,
+                             .af1 = 0x1p-43,
+                             .af2 = 0x1p-55,
+                             .group_delay = 0x1p-31};
+  static constexpr Grid kGalileo{.harmonic_angle = 0x1p-29,
+                                 .harmonic_radius = 0x1p-5,
+                                 .af0 = 0x1p-34,
+                                 .af1 = 0x1p-46,
+                                 .af2 = 0x1p-59,
+                                 .group_delay = 0x1p-32};
+  static constexpr Grid kBeidou{.harmonic_angle = 0x1p-31,
+                                .harmonic_radius = 0x1p-6,
+                                .af0 = 0x1p-33,
+                                .af1 = 0x1p-50,
+                                .af2 = 0x1p-66,
+                                .group_delay = 1e-10};
+  switch (system) {
+    case System::kGps:
+      return kGps;
+    case System::kGalileo:
+      return kGalileo;
+    case System::kBeidou:
+      return kBeidou;
+  }
+  return kGps;
+}
+
+double rounded(double value, double grid) {
+  return std::nearbyint(value / grid) * grid;
+}
+
+double wrapped(double angle) {
+  return std::remainder(angle, 2.0 * std::numbers::pi);
+}
+
+// Writes fields of bits, most significant first, as the signal carries them.
+class SubframeWriter {
+ public:
+  SubframeWriter(Subframe& subframe, SatelliteId satellite) : subframe_(subframe), satellite_(satellite) {}
+
+  void bits(std::uint64_t value, int count) {
+    for (int k = count - 1; k >= 0; --k, ++position_)
+      if (((value >> static_cast<unsigned>(k)) & 1U) != 0)
+        subframe_[position_ / 8] = static_cast<std::uint8_t>(subframe_[position_ / 8] | (0x80U >> (position_ % 8)));
+  }
+
+  void skip(std::size_t count) { position_ += count; }
+
+  void number(const char* name, double value, double grid, int count, bool is_signed = true) {
+    const double scaled = std::nearbyint(value / grid);
+    const double low = is_signed ? -std::ldexp(1.0, count - 1) : 0.0;
+    const double high = std::ldexp(1.0, is_signed ? count - 1 : count) - 1.0;
+    if (!(scaled >= low && scaled <= high))
+      throw std::out_of_range(
+          fmt::format("{}: {} = {} does not fit the navigation message", name_of(satellite_), name, value));
+    bits(static_cast<std::uint64_t>(static_cast<std::int64_t>(scaled)), count);
+  }
+
+  /// An angle: half a turn more than fits is half a turn less.
+  void angle(double value, int count) {
+    const double scaled = std::nearbyint(wrapped(value) / (0x1p-31 * kSemicircle));
+    bits(static_cast<std::uint64_t>(static_cast<std::int64_t>(scaled)), count);
+  }
+
+ private:
+  Subframe& subframe_;
+  SatelliteId satellite_;
+  std::size_t position_ = 0;
+};
+
+// Telemetry word and handover word: preamble; time of week at the beginning of the NEXT subframe in units of 6 s.
+void write_head(SubframeWriter& writer, unsigned subframe, std::int64_t transmission_s) {
+  writer.bits(0x8B, 8);
+  writer.bits(0, 16);
+  const std::int64_t next = (transmission_s / 6 + subframe) % (kSecondsPerWeek / 6);
+  writer.bits(static_cast<std::uint64_t>(next), 17);
+  writer.bits(0, 2);  // alert, anti-spoof
+  writer.bits(subframe, 3);
+  writer.bits(0, 2);  // solved for parity, which is taken off
+}
+
+}  // namespace
+
+double node_at_week_begin(const Ephemeris& ephemeris) {
+  const System system = ephemeris.satellite.system;
+  return wrapped(ephemeris.node_at_toe + earth_rate(system) * week_time(system, ephemeris.toe).seconds_of_week());
+}
+
+Ephemeris rounded_to_message(const Ephemeris& ephemeris) {
+  const System system = ephemeris.satellite.system;
+  const Grid& grid = grid_of(system);
+  Ephemeris message = ephemeris;
+  message.sqrt_a = rounded(ephemeris.sqrt_a, grid.sqrt_a);
+  message.e = rounded(ephemeris.e, grid.e);
+  for (double* angle : {&message.m0, &message.i0, &message.omega}) *angle = rounded(wrapped(*angle), grid.angle);
+  for (double* rate : {&message.delta_n, &message.omega_dot, &message.i_dot}) *rate = rounded(*rate, grid.angle_rate);
+  for (double* harmonic : {&message.cuc, &message.cus, &message.cic, &message.cis})
+    *harmonic = rounded(*harmonic, grid.harmonic_angle);
+  for (double* harmonic : {&message.crc, &message.crs}) *harmonic = rounded(*harmonic, grid.harmonic_radius);
+  message.node_at_toe = rounded(node_at_week_begin(ephemeris), grid.angle) -
+                        earth_rate(system) * week_time(system, ephemeris.toe).seconds_of_week();
+  message.af0 = rounded(ephemeris.af0, grid.af0);
+  message.af1 = rounded(ephemeris.af1, grid.af1);
+  message.af2 = rounded(ephemeris.af2, grid.af2);
+  message.group_delay_s = rounded(ephemeris.group_delay_s, grid.group_delay);
+  return message;
+}
+
+std::array<Subframe, 3> lnav_subframes(const Ephemeris& ephemeris, int issue, fsw::GpsTime transmission) {
+  const Grid& grid = grid_of(System::kGps);
+  const auto issue_bits = static_cast<std::uint64_t>(issue);
+  const double toe_s = week_time(System::kGps, ephemeris.toe).seconds_of_week();
+  const WeekTime sent = week_time(System::kGps, transmission);
+  const std::int64_t sent_s = sent.ns_of_week / fsw::kNanosecondsPerSecond;
+  std::array<Subframe, 3> subframes{};
+
+  SubframeWriter first(subframes[0], ephemeris.satellite);
+  write_head(first, 1, sent_s);
+  first.bits(static_cast<std::uint64_t>(sent.week % 1024), 10);
+  first.bits(1, 2);                 // P code on L2
+  first.bits(0, 4);                 // user range accuracy index
+  first.bits(0, 6);                 // healthy
+  first.bits(issue_bits >> 8U, 2);  // IODC, upper bits
+  first.skip(1 + 87);               // L2 P data flag, reserved
+  first.number("group delay", ephemeris.group_delay_s, grid.group_delay, 8);
+  first.bits(issue_bits, 8);
+  first.number("toc", toe_s, 16.0, 16, false);
+  first.number("af2", ephemeris.af2, grid.af2, 8);
+  first.number("af1", ephemeris.af1, grid.af1, 16);
+  first.number("af0", ephemeris.af0, grid.af0, 22);
+
+  SubframeWriter second(subframes[1], ephemeris.satellite);
+  write_head(second, 2, sent_s);
+  second.bits(issue_bits, 8);
+  second.number("crs", ephemeris.crs, grid.harmonic_radius, 16);
+  second.number("delta n", ephemeris.delta_n, grid.angle_rate, 16);
+  second.angle(ephemeris.m0, 32);
+  second.number("cuc", ephemeris.cuc, grid.harmonic_angle, 16);
+  second.number("e", ephemeris.e, grid.e, 32, false);
+  second.number("cus", ephemeris.cus, grid.harmonic_angle, 16);
+  second.number("sqrt a", ephemeris.sqrt_a, grid.sqrt_a, 32, false);
+  second.number("toe", toe_s, 16.0, 16, false);
+  second.bits(0, 1);  // fit interval: four hours
+  second.bits(0, 5);  // age of data offset
+
+  SubframeWriter third(subframes[2], ephemeris.satellite);
+  write_head(third, 3, sent_s);
+  third.number("cic", ephemeris.cic, grid.harmonic_angle, 16);
+  third.angle(node_at_week_begin(ephemeris), 32);
+  third.number("cis", ephemeris.cis, grid.harmonic_angle, 16);
+  third.angle(ephemeris.i0, 32);
+  third.number("crc", ephemeris.crc, grid.harmonic_radius, 16);
+  third.angle(ephemeris.omega, 32);
+  third.number("omega dot", ephemeris.omega_dot, grid.angle_rate, 24);
+  third.bits(issue_bits, 8);
+  third.number("i dot", ephemeris.i_dot, grid.angle_rate, 14);
+  return subframes;
+}
+
+}  // namespace vbar::twins::gnss

@@ -1,0 +1,27 @@
+#pragma once
+// What the satellites' navigation messages can carry: the grid of each number, and GPS's subframes.
+// IS-GPS-200N, tables 20-I and 20-III, figure 20-1; Galileo OS SIS ICD 2.1, tables 67 to 70 and 76;
+// BDS-SIS-ICD-B1I-3.0, tables 5-8 to 5-11.
+
+#include <array>
+#include <cstdint>
+
+#include "host_sim/twins/gnss/broadcast_orbit.h"
+
+namespace vbar::twins::gnss {
+
+/// The set as its message can say it: every number rounded to the message's least significant bit.
+Ephemeris rounded_to_message(const Ephemeris& ephemeris);
+
+/// omega0 as the message has it: longitude of the node at the beginning of the system's week, rad in [-pi, pi].
+double node_at_week_begin(const Ephemeris& ephemeris);
+
+/// Ten words of 24 bits, parity taken off, as a receiver writes them.
+using Subframe = std::array<std::uint8_t, 30>;
+
+/// Subframes 1 to 3 of the GPS LNAV message for a healthy satellite, user range accuracy index 0 (2.4 m).
+/// `transmission` is when subframe 1 begins; `issue` is 0 to 255 and becomes IODC and IODE.
+/// Throws std::out_of_range, naming satellite and number, where one does not fit its field.
+std::array<Subframe, 3> lnav_subframes(const Ephemeris& ephemeris, int issue, fsw::GpsTime transmission);
+
+}  // namespace vbar::twins::gnss

@@ -1,0 +1,74 @@
+#pragma once
+// Binary logs as NovAtel's OEM6 and OEM7 receivers send them (OEM6 Family Firmware Reference Manual, OM-20000129):
+// a long header of 28 bytes, a body, a CRC-32; little-endian. Each function appends one log to `bytes`.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/types.h"
+#include "host_sim/twins/gnss/constellation.h"
+#include "host_sim/twins/gnss/leap_seconds.h"
+
+namespace vbar::twins::gnss::oem {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// How well the receiver knows the time, as the header says it.
+enum class TimeStatus : std::uint8_t { kUnknown = 20, kApproximate = 60, kCoarse = 100, kFine = 160 };
+
+/// What all logs of one epoch have in common.
+struct Header {
+  fsw::GpsTime time;  ///< by the receiver's clock, whole milliseconds; not told while the status is kUnknown
+  TimeStatus status = TimeStatus::kUnknown;
+  bool position_valid = false;
+};
+
+/// One signal in RANGE.
+struct RangeRecord {
+  SatelliteId satellite;
+  Signal signal = Signal::kGpsL1;
+  int channel = 0;       ///< 0 to 31
+  bool grouped = false;  ///< another signal of the satellite is tracked too
+  double pseudorange_m = 0.0;
+  double carrier_phase_cycles = 0.0;  ///< grows with the range; the log has the opposite sign
+  double doppler_hz = 0.0;
+  double pseudorange_sigma_m = 0.0;
+  double carrier_sigma_cycles = 0.0;
+  double cn0_dbhz = 0.0;
+  double lock_time_s = 0.0;
+};
+void append_range(Bytes& bytes, const Header& header, std::span<const RangeRecord> records);
+
+/// GPS ephemeris as subframes; `heard` is when the first began.
+void append_rawephem(Bytes& bytes, const Header& header, const BroadcastSet& set, fsw::GpsTime heard);
+/// GPS ephemeris as numbers.
+void append_gpsephem(Bytes& bytes, const Header& header, const BroadcastSet& set, fsw::GpsTime heard);
+void append_galephemeris(Bytes& bytes, const Header& header, const BroadcastSet& set);
+void append_bdsephemeris(Bytes& bytes, const Header& header, const BroadcastSet& set);
+
+/// Ionosphere and UTC; `utc` as of the header's time.
+void append_ionutc(Bytes& bytes, const Header& header, const BroadcastCorrections& corrections, const UtcOffset& utc);
+
+/// BESTXYZ: a single-point solution, or "insufficient observations" if `solved` is false.
+struct PositionRecord {
+  bool solved = false;
+  fsw::Vector3 position_ecef = fsw::Vector3::Zero();
+  fsw::Vector3 velocity_ecef = fsw::Vector3::Zero();
+  fsw::Vector3 position_sigma_m = fsw::Vector3::Zero();
+  fsw::Vector3 velocity_sigma_mps = fsw::Vector3::Zero();
+  int satellites_tracked = 0;
+  int satellites_used = 0;
+};
+void append_bestxyz(Bytes& bytes, const Header& header, const PositionRecord& position);
+
+/// TIME: the clock's offset as the receiver estimates it (GPS time = receiver time - offset), and UTC.
+struct ClockRecord {
+  bool valid = false;
+  double offset_s = 0.0;
+  double sigma_s = 0.0;
+};
+void append_time(Bytes& bytes, const Header& header, const ClockRecord& clock, const UtcOffset& utc);
+
+}  // namespace vbar::twins::gnss::oem

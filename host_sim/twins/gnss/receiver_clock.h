@@ -1,0 +1,32 @@
+#pragma once
+// The receiver's clock: a crystal of two states, set by whole milliseconds where it strays.
+
+#include <string_view>
+
+#include "host_sim/engine/random_stream.h"
+#include "host_sim/twins/gnss/gnss_settings.h"
+
+namespace vbar::twins::gnss {
+
+class ReceiverClock {
+ public:
+  /// Draws from the stream "gnss/<receiver>/clock" of `seed`.
+  ReceiverClock(const ClockSettings& settings, std::uint64_t seed, std::string_view receiver);
+
+  /// Lets `elapsed_s` >= 0 pass: white and random-walk frequency noise with the covariance of the two-state model
+  /// (van Dierendonck, McGraw, Brown 1984): S_f t + S_g t^3/3, S_g t^2/2, S_g t; S_f = h0/2, S_g = 2 pi^2 h_-2.
+  void advance(double elapsed_s);
+
+  [[nodiscard]] double offset_s() const { return offset_s_; }  ///< clock minus GPS time
+  [[nodiscard]] double drift() const { return drift_; }        ///< s/s
+  [[nodiscard]] int jumps() const { return jumps_; }           ///< how often it was set
+
+ private:
+  ClockSettings settings_;
+  engine::RandomStream stream_;
+  double offset_s_;
+  double drift_;
+  int jumps_ = 0;
+};
+
+}  // namespace vbar::twins::gnss

@@ -1,0 +1,74 @@
+#pragma once
+// The tracking of one satellite: when its signals are acquired and lost, the integer their carriers' count began with,
+// cycle slips, and which navigation messages have been heard.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "host_sim/engine/random_stream.h"
+#include "host_sim/twins/gnss/gnss_settings.h"
+#include "host_sim/twins/gnss/satellite.h"
+
+namespace vbar::twins::gnss {
+
+/// One signal's loops.
+struct SignalTrack {
+  SignalTrack(Signal of, const engine::RandomStream& draws) : signal(of), stream(draws) {}
+
+  Signal signal;
+  engine::RandomStream stream;  ///< of its slips, ambiguities and noise
+  bool tracking = false;
+  fsw::GpsTime lock_since;            ///< of the unbroken count, as the receiver knows it
+  std::int64_t ambiguity_cycles = 0;  ///< added to the true phase
+  int slips = 0;                      ///< seen and unseen, since the start
+  double cn0_dbhz = 0.0;              ///< of the last update
+};
+
+class SatelliteTracking {
+ public:
+  /// Draws from the streams "gnss/<receiver>/<satellite>" and "gnss/<receiver>/<satellite>/<signal>" of `seed`.
+  SatelliteTracking(SatelliteId satellite, const StartSettings& start, const TrackingSettings& tracking,
+                    std::uint64_t seed, std::string_view receiver);
+
+  /// One epoch. `cn0_dbhz` has one value for each of signals(), in order; empty if the satellite is not visible.
+  /// `first` is the epoch at which the receiver was switched on.
+  void update(fsw::GpsTime now, bool first, const std::vector<double>& cn0_dbhz);
+
+  /// Adds a slip at the next update, if the signal is tracked then; its whole cycles as given, not zero.
+  void command_slip(Signal signal, std::int64_t cycles, bool seen);
+
+  [[nodiscard]] SatelliteId satellite() const { return satellite_; }
+  [[nodiscard]] std::vector<SignalTrack>& signals() { return signals_; }
+  [[nodiscard]] const std::vector<SignalTrack>& signals() const { return signals_; }
+
+  /// Since when the navigation message has been heard without a break; none while it is not.
+  [[nodiscard]] std::optional<fsw::GpsTime> heard_since() const { return heard_since_; }
+
+ private:
+  struct CommandedSlip {
+    Signal signal;
+    std::int64_t cycles;
+    bool seen;
+  };
+
+  void search(fsw::GpsTime now, bool first);
+  void lose();
+  void begin(SignalTrack& track, fsw::GpsTime since);
+  void slip(SignalTrack& track, fsw::GpsTime now, std::int64_t cycles, bool seen);
+  void slip_by_chance(SignalTrack& track, fsw::GpsTime now, double elapsed_s);
+
+  SatelliteId satellite_;
+  StartSettings start_;
+  TrackingSettings tracking_;
+  engine::RandomStream stream_;
+  std::vector<SignalTrack> signals_;
+  std::optional<fsw::GpsTime> found_;  ///< when the search for it ends or ended
+  std::optional<fsw::GpsTime> heard_since_;
+  fsw::GpsTime last_update_;
+  std::vector<CommandedSlip> commanded_;
+};
+
+}  // namespace vbar::twins::gnss
