@@ -50,16 +50,22 @@ int code_bias_index(gnss::Signal signal) {
   return signal == gnss::Signal::kGpsL1 ? -1 : kCodeBias + static_cast<int>(signal) - 1;
 }
 
-/// Median of the first `count`; sorts them.
-double median(std::array<double, gnss::kMaxObservations>& values, std::size_t count) {
-  for (std::size_t k = 1; k < count; ++k) {
-    const double value = values[k];
-    std::size_t place = k;
-    for (; place > 0 && values[place - 1] > value; --place) values[place] = values[place - 1];
-    values[place] = value;
+/// Phase residuals in order of size.
+struct Residual {
+  std::size_t observation = 0;
+  double value = 0.0;
+};
+struct Residuals {
+  std::array<Residual, gnss::kMaxObservations> sorted{};
+  std::size_t count = 0;
+
+  void add(const Residual& residual) {
+    std::size_t place = count++;
+    for (; place > 0 && sorted[place - 1].value > residual.value; --place) sorted[place] = sorted[place - 1];
+    sorted[place] = residual;
   }
-  return count % 2 == 1 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
-}
+  [[nodiscard]] const Residual& median() const { return sorted[count / 2]; }
+};
 
 }  // namespace
 
@@ -251,30 +257,31 @@ void RelativeFilter::follow_channels(const DifferentialEpoch& epoch, RelativeUpd
   }
 }
 
-/// The clock moves all phases alike: what the median does not share is a slip of its own.
+/// The clock moves all phases alike, and the code tells it to decimetres only. So each is compared with the one in the
+/// middle: of the two, clock and common level fall out.
 void RelativeFilter::find_slips_by_median(const DifferentialEpoch& epoch, RelativeUpdate& update) {
-  std::array<double, gnss::kMaxObservations> residuals{};
-  std::array<double, gnss::kMaxObservations> sorted{};
-  std::size_t count = 0;
+  Residuals residuals;
   for (std::size_t n = 0; n < epoch.count; ++n) {
     const std::optional<std::size_t>& place = rows_[n].channel;
     if (!place || channels_[*place].epochs == 0) continue;
-    residuals[n] = residual(rows_[n], epoch.observations[n].phase_m) - estimate_.mean(ambiguity_index(*place));
-    sorted[count++] = residuals[n];
+    const double value = residual(rows_[n], epoch.observations[n].phase_m) - estimate_.mean(ambiguity_index(*place));
+    residuals.add({n, value});
   }
-  if (count < kLeastForMedian) return;
-  const double common = median(sorted, count);
-  for (std::size_t n = 0; n < epoch.count; ++n) {
-    const std::optional<std::size_t>& place = rows_[n].channel;
-    if (!place || channels_[*place].epochs == 0) continue;
-    Estimate::Vector slope = full_slope(rows_[n]);
-    slope(kClock) = 0.0;
-    slope(ambiguity_index(*place)) = 1.0;
-    const double sigma_m = epoch.observations[n].phase_sigma_m;
-    const estimation::Innovation alone = estimate_.predict(slope, residuals[n] - common, sigma_m * sigma_m);
-    if (math::abs(alone.value) > kSlip_m + kSlipSigmas * math::sqrt(alone.variance)) {
+  if (residuals.count < kLeastForMedian) return;
+  const std::size_t middle = residuals.median().observation;
+  for (std::size_t k = 0; k < residuals.count; ++k) {
+    const std::size_t n = residuals.sorted[k].observation;
+    if (n == middle) continue;
+    const std::size_t place = *rows_[n].channel;
+    Estimate::Vector slope = full_slope(rows_[n]) - full_slope(rows_[middle]);
+    slope(ambiguity_index(place)) += 1.0;
+    slope(ambiguity_index(*rows_[middle].channel)) -= 1.0;
+    const double sigma_m = math::hypot(epoch.observations[n].phase_sigma_m, epoch.observations[middle].phase_sigma_m);
+    const estimation::Innovation apart =
+        estimate_.predict(slope, residuals.sorted[k].value - residuals.median().value, sigma_m * sigma_m);
+    if (math::abs(apart.value) > kSlip_m + kSlipSigmas * math::sqrt(apart.variance)) {
       ++update.slips;
-      lose(*place);
+      lose(place);
     }
   }
 }

@@ -14,6 +14,8 @@ constexpr int kMaxIterations = 12;
 // What broadcast orbits and clocks, and on one frequency the ionosphere above the receiver, leave in a pseudorange.
 constexpr double kBroadcastSigma_m = 1.5;
 constexpr double kIonosphereSigma_m = 4.0;
+// The ionosphere parts two frequencies by less.
+constexpr double kMostDispersion_m = 200.0;
 // A residual beyond so many of its sigmas does not belong.
 constexpr double kWorstResidual = 5.0;
 // Clocks of the other constellations run within so much of GPS time: keeps the equations regular without them.
@@ -52,6 +54,7 @@ Ranges ranges_of(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephe
     if (first.signal == gnss::Signal::kGpsL1 && k + 1 < epoch.count &&
         epoch.observations[k + 1].satellite == first.satellite) {
       const gnss::Observation& second = epoch.observations[k + 1];
+      if (!(math::abs(second.pseudorange_m - first.pseudorange_m) < kMostDispersion_m)) continue;
       pseudorange = (kGamma * first.pseudorange_m - second.pseudorange_m) / (kGamma - 1.0);
       noise = math::hypot(kGamma * first.pseudorange_sigma_m, second.pseudorange_sigma_m) / (kGamma - 1.0);
       unmodelled = 0.0;

@@ -1,113 +1,208 @@
 #include "fsw/navigation/gnss_navigation.h"
 
 #include <cmath>
-#include <cstdio>
-#include <memory>
-#include <random>
 
-#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "fsw/navigation/single_point.h"
-#include "tests/unit/fsw/navigation/synthetic_receivers.h"
+#include "tests/unit/fsw/navigation/cooperating_pair.h"
 
 namespace vbar::fsw::navigation {
 namespace {
 
-using test::start_time;
-using test::SyntheticReceiver;
+using test::CooperatingPair;
+using test::kEarth;
 
-const orbit::EarthOrientation kEarth{.epoch = start_time(), .ut1_minus_gps_s = -15.3, .ut1_rate = 0.0, .pole_x = 0.0, .pole_y = 0.0};
-
-orbit::CartesianState servicer_start() {
-  const double degree = M_PI / 180.0;
-  return orbit::cartesian_from_qns({7087300.0, 0.0015, 0.0, 98.18 * degree, -90.0 * degree, -0.69 * degree}).value();
+TEST(GnssNavigation, FixesWithinTwoMinutesAndFindsTheBaseline) {
+  CooperatingPair pair(3);
+  pair.fly(12);
+  ASSERT_TRUE(pair.navigation->valid());
+  EXPECT_TRUE(pair.navigation->ambiguities().is_fixed());
+  EXPECT_TRUE(pair.integers_are_true());
+  // Phases of 0.7 mm, differenced, fourteen satellites: half a millimetre an axis; five of those.
+  EXPECT_LT(pair.position_error(), 3e-3);
+  pair.fly(60);
+  EXPECT_LT((pair.error().tail<3>().norm()), 2e-5);  // a millimetre over the minutes that velocity is averaged
+  EXPECT_EQ(pair.navigation->counters().restarts, 0);
+  EXPECT_EQ(pair.navigation->counters().phases_refused, 0);
 }
 
-/// Servicer and target at waypoint distance, with unknown antenna offsets if asked for.
-struct Pair {
-  explicit Pair(unsigned seed, double offset_m = 0.0, double jitter_m = 0.0) {
-    random.seed(seed);
-    servicer.start = servicer_start();
-    target.start = servicer.start;
-    const Matrix3 R = orbit::R_rtn_eci(servicer.start).transpose();
-    target.start.position_eci += R * Vector3(-0.5, -9.0, 1.0);
-    target.start.velocity_eci += R * Vector3(0.0005, 0.0011, 0.0007) +
-                                 servicer.start.position_eci.cross(servicer.start.velocity_eci).cross(R * Vector3(-0.5, -9.0, 1.0)) /
-                                     servicer.start.position_eci.squaredNorm();
-    std::normal_distribution<double> normal;
-    std::uniform_int_distribution<int> whole(-1000000, 1000000);
-    for (SyntheticReceiver* r : {&servicer, &target}) {
-      r->random.seed(seed * 2 + (r == &target ? 1 : 0));
-      for (double& n : r->cycles) n = whole(random);
-      r->jitter_m = jitter_m;
-      const Vector3 direction = Vector3(normal(random), normal(random), normal(random)).normalized();
-      r->antenna_body_m = Vector3(0.0, 0.1, 0.4) + offset_m * direction;
-    }
-    servicer.clock_s = 0.3e-3;
-    target.clock_s = -0.45e-3;
-    settings.earth = kEarth;
-    settings.servicer_antenna_body_m = settings.target_antenna_body_m = Vector3(0.0, 0.1, 0.4);
-    navigation = std::make_unique<GnssNavigation>(settings);
-    for (const gnss::Ephemeris& e : satellites) navigation->take(e);
+TEST(GnssNavigation, EveryHeldIntegerIsTheTrueOneOverFiftySeeds) {
+  int fixed = 0;
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    CooperatingPair pair(seed, 5e-3, 1e-3);
+    pair.servicer.code_sigma_m = pair.target.code_sigma_m = 0.8;
+    pair.fly(20);
+    EXPECT_TRUE(pair.integers_are_true()) << seed;
+    fixed += pair.navigation->ambiguities().is_fixed() ? 1 : 0;
   }
-
-  void fly(int epochs, int period_s = 10) {
-    for (int k = 0; k < epochs; ++k, tag = tag + duration_of_seconds(period_s)) {
-      for (const Receiver r : {Receiver::kServicer, Receiver::kTarget}) {
-        SyntheticReceiver& receiver = r == Receiver::kServicer ? servicer : target;
-        navigation->take(r, AttitudeSample{.time = tag, .R_eci_body = receiver.R_eci_body_at(tag), .rate_body = Vector3::Zero()});
-        navigation->take(r, receiver.observe(tag, satellites, kEarth));
-      }
-      navigation->update(tag, {});
-    }
-  }
-
-  Vector6 error() const {
-    const GpsTime t = navigation->epoch();
-    const orbit::CartesianState s = servicer.state_at(t), g = target.state_at(t);
-    const orbit::RelativeState truth = orbit::relative_state_rtn(s, g);
-    const orbit::RelativeState estimate = orbit::relative_state_rtn(navigation->servicer(), navigation->target());
-    Vector6 e;
-    e << estimate.position_rtn - truth.position_rtn, estimate.velocity_rtn - truth.velocity_rtn;
-    return e;
-  }
-
-  std::mt19937_64 random;
-  SyntheticReceiver servicer, target;
-  std::vector<gnss::Ephemeris> satellites = test::constellation(start_time() + duration_of_seconds(3600));
-  GnssNavigationSettings settings;
-  std::unique_ptr<GnssNavigation> navigation;
-  GpsTime tag = start_time() + duration_of_seconds(10);
-};
-
-TEST(SinglePoint, WithoutNoiseIsExact) {
-  Pair pair(1);
-  pair.servicer.code_sigma_m = 0.0;
-  EphemerisStore store;
-  for (const auto& e : pair.satellites) ASSERT_EQ(store.put(e), Status::kOk);
-  const EarthFrame frame = EarthFrame::at(pair.tag, kEarth);
-  const auto point = single_point(pair.servicer.observe(pair.tag, pair.satellites, kEarth), store, frame);
-  ASSERT_TRUE(point.ok());
-  EXPECT_NEAR(point.value().clock_m, 0.3e-3 * gnss::kSpeedOfLight, 1e-3);
-  const orbit::CartesianState s = pair.servicer.state_at(pair.tag);
-  const Vector3 antenna = s.position_eci - 0.3e-3 * s.velocity_eci + pair.servicer.R_eci_body_at(pair.tag) * pair.servicer.antenna_body_m;
-  EXPECT_LT((point.value().position_eci - antenna).norm(), 2e-3);
+  EXPECT_EQ(fixed, 50);
 }
 
-TEST(GnssNavigation, LooksSane) {
-  Pair pair(3, 0.0, 0.0);
-  for (int k = 0; k < 30; ++k) {
-    pair.fly(6);
-    const Vector6 e = pair.error();
-    const Matrix6 p = pair.navigation->covariance_rtn();
-    const auto& a = pair.navigation->ambiguities().report();
-    const auto& u = pair.navigation->last_update();
-    std::printf("%5d s  err %8.2f %8.2f %8.2f mm  %7.4f %7.4f %7.4f mm/s  sig %7.2f %7.2f %7.2f  trk %d fix %d obst %d sr %.4f ratio %.1f  codes %d/%d nis %.2f phases %d/%d nis %.2f slips %d\n",
-                60 * (k + 1), 1e3 * e(0), 1e3 * e(1), 1e3 * e(2), 1e3 * e(3), 1e3 * e(4), 1e3 * e(5), 1e3 * std::sqrt(p(0, 0)),
-                1e3 * std::sqrt(p(1, 1)), 1e3 * std::sqrt(p(2, 2)), a.tracked, a.fixed, static_cast<int>(a.obstacle), a.success_rate, a.ratio,
-                u.codes_used, u.codes_refused, u.code_nis / u.codes_used, u.phases_used, u.phases_refused, u.phase_nis / u.phases_used, u.slips);
+// Normalised error squared of the six relative states, over seeds, against chi-square with 6 x 40 degrees of freedom.
+TEST(GnssNavigation, IsHonestAboutItsErrors) {
+  double nees = 0.0;
+  double nis = 0.0;
+  double nis_count = 0.0;
+  constexpr int kSeeds = 40;
+  for (unsigned seed = 101; seed < 101 + kSeeds; ++seed) {
+    // A vector of fixed length and random direction has length / sqrt(3) an axis: what the filter is told.
+    CooperatingPair pair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3);
+    // Nothing pushes these two apart: the truth is the filter's own model.
+    pair.settings.relative.acceleration_sigma = 1e-10;
+    pair.begin();
+    for (int k = 0; k < 40; ++k) {
+      pair.fly(1);
+      if (k < 20) continue;
+      nis += pair.navigation->last_update().phase_nis;
+      nis_count += pair.navigation->last_update().phases_used;
+    }
+    const Vector6 error = pair.error();
+    nees += error.dot(pair.navigation->covariance_rtn().inverse() * error);
   }
+  // 95 % of chi-square(240) / 40: 6 +- 1.96 sqrt(12 / 40).
+  EXPECT_NEAR(nees / kSeeds, 6.0, 1.96 * std::sqrt(12.0 / kSeeds));
+  // Some 20,000 phases: 1 +- 0.02; the clock and the position take their part of each epoch's degrees of freedom
+  // through correlation, which sequential updates count properly.
+  EXPECT_NEAR(nis / nis_count, 1.0, 0.05);
+}
+
+TEST(GnssNavigation, ASlipThatReceiversTellIsMendedAtOnce) {
+  CooperatingPair pair(5);
+  pair.fly(15);
+  for (std::size_t k = 0; k < 60; k += 7) {
+    pair.target.cycles[k] += 3.0;
+    pair.target.lock_start_s[k] = 1000.0 + seconds(pair.tag - test::start_time()) - 1.0;
+  }
+  pair.fly(1);
+  EXPECT_GT(pair.navigation->counters().slips, 0);
+  EXPECT_LT(pair.position_error(), 3e-3);
+  pair.fly(10);
+  EXPECT_TRUE(pair.integers_are_true());
+  EXPECT_LT(pair.position_error(), 3e-3);
+}
+
+TEST(GnssNavigation, ASlipThatNobodyTellsIsFound) {
+  for (const double cycles : {1.0, -1.0, 5.0, 1000.0}) {
+    CooperatingPair pair(6);
+    pair.fly(15);
+    const std::size_t place = 2U * (pair.navigation->relative().channels()[0].satellite.prn - 1U);
+    pair.target.cycles[place] += cycles;
+    pair.fly(1);
+    EXPECT_EQ(pair.navigation->counters().slips, 1) << cycles;
+    EXPECT_LT(pair.position_error(), 3e-3) << cycles;
+    pair.fly(10);
+    EXPECT_TRUE(pair.integers_are_true()) << cycles;
+  }
+}
+
+TEST(GnssNavigation, BurnsAreFollowed) {
+  CooperatingPair pair(7);
+  pair.fly(20);
+  // A burn 4 s after the last epoch, as large as they come at close range.
+  const GpsTime burn_time = pair.navigation->epoch() + duration_of_seconds(4);
+  const Vector3 dv_rtn(0.002, -0.003, 0.001);
+  const orbit::CartesianState before = pair.servicer.state_at(burn_time);
+  const orbit::CartesianState after = orbit::apply_impulse_rtn(before, dv_rtn);
+  pair.servicer.start = propagate_pushed(after, Vector3::Zero(), -seconds(burn_time - test::start_time()));
+  const std::array<Burn, 1> burns{{{burn_time, dv_rtn}}};
+  pair.take(Receiver::kServicer);
+  pair.take(Receiver::kTarget);
+  pair.navigation->update(pair.tag, burns);
+  EXPECT_LT(pair.position_error(), 3e-3);
+  EXPECT_LT((pair.error().tail<3>().norm()), 5e-5);
+  EXPECT_TRUE(pair.integers_are_true());
+}
+
+TEST(GnssNavigation, CrosslinkDataMayBeLateAndOutOfOrder) {
+  CooperatingPair pair(8);
+  CooperatingPair in_time(8);
+  in_time.fly(30);
+  // The target's epochs come two at a time, the later one first.
+  for (int k = 0; k < 15; ++k) {
+    const GpsTime first = pair.tag;
+    const GpsTime second = first + duration_of_seconds(10);
+    for (const GpsTime tag : {first, second}) {
+      pair.tag = tag;
+      pair.take(Receiver::kServicer);
+      pair.navigation->update(tag, {});
+    }
+    pair.tag = second;
+    pair.take(Receiver::kTarget);
+    pair.tag = first;
+    // The receiver's noise is drawn in order of the calls, so it differs from that of the pair in time.
+    pair.take(Receiver::kTarget);
+    pair.navigation->update(second, {});
+    pair.tag = second + duration_of_seconds(10);
+  }
+  EXPECT_EQ(pair.navigation->counters().pairs, in_time.navigation->counters().pairs);
+  EXPECT_EQ(pair.navigation->counters().alone, 0);
+  EXPECT_TRUE(pair.integers_are_true());
+  EXPECT_LT(pair.position_error(), 3e-3);
+}
+
+TEST(GnssNavigation, SilenceIsCoastedAndFixedAgain) {
+  CooperatingPair pair(9);
+  pair.fly(30);
+  for (int k = 0; k < 60; ++k, pair.tag = pair.tag + duration_of_seconds(10)) {
+    pair.take(Receiver::kServicer);
+    pair.navigation->update(pair.tag, {});
+  }
+  EXPECT_GE(pair.navigation->counters().alone, 55);
+  const Matrix6 covariance = pair.navigation->covariance_rtn();
+  const double variance = covariance(0, 0) + covariance(1, 1) + covariance(2, 2);
+  EXPECT_GT(variance, 1e-6);  // it says so
+  EXPECT_LT(pair.position_error(), 5.0 * std::sqrt(variance));
+  pair.fly(20);
+  EXPECT_TRUE(pair.navigation->ambiguities().is_fixed());
+  EXPECT_TRUE(pair.integers_are_true());
+  EXPECT_LT(pair.position_error(), 3e-3);
+}
+
+TEST(GnssNavigation, ASkyThatChangesAtOnce) {
+  CooperatingPair pair(10);
+  pair.fly(20);
+  // All carriers begin anew with other integers.
+  for (double& cycles : pair.target.cycles) cycles += 17.0 + (&cycles - pair.target.cycles.data());
+  for (double& lock : pair.target.lock_start_s) lock = 1000.0 + seconds(pair.tag - test::start_time()) - 1.0;
+  pair.fly(1);
+  EXPECT_LT(pair.position_error(), 5e-3);  // carried by the dynamics
+  pair.fly(20);
+  EXPECT_TRUE(pair.navigation->ambiguities().is_fixed());
+  EXPECT_TRUE(pair.integers_are_true());
+}
+
+TEST(GnssNavigation, HostileEpochsMoveNothing) {
+  CooperatingPair pair(11);
+  pair.fly(20);
+  gnss::ObservationEpoch bad = pair.target.observe(pair.tag, pair.satellites, kEarth);
+  for (std::size_t k = 0; k < bad.count; k += 3) bad.observations[k].pseudorange_m = NAN;
+  for (std::size_t k = 1; k < bad.count; k += 3) bad.observations[k].carrier_phase_cycles = 1e300;
+  for (std::size_t k = 2; k < bad.count; k += 3) bad.observations[k].pseudorange_m += 1e5;
+  pair.take(Receiver::kServicer);
+  pair.navigation->take(Receiver::kTarget, bad);
+  pair.navigation->update(pair.tag, {});
+  EXPECT_LT(pair.position_error(), 5e-3);
+  EXPECT_EQ(pair.navigation->counters().restarts, 0);
+  pair.tag = pair.tag + duration_of_seconds(10);
+  pair.fly(20);
+  EXPECT_TRUE(pair.integers_are_true());
+  EXPECT_LT(pair.position_error(), 3e-3);
+}
+
+TEST(GnssNavigation, FewerThanFourSatellitesCoast) {
+  CooperatingPair pair(12);
+  pair.fly(20);
+  const std::int32_t pairs = pair.navigation->counters().pairs;
+  const std::vector<gnss::Ephemeris> all = pair.satellites;
+  pair.satellites.resize(6);  // of six, three or fewer are in view
+  pair.fly(10);
+  EXPECT_EQ(pair.navigation->counters().pairs, pairs);
+  EXPECT_GT(pair.navigation->counters().no_solution, 0);
+  pair.satellites = all;
+  pair.fly(20);
+  EXPECT_TRUE(pair.integers_are_true());
+  EXPECT_LT(pair.position_error(), 3e-3);
 }
 
 }  // namespace

@@ -42,9 +42,9 @@ inline std::vector<gnss::Ephemeris> constellation(GpsTime toe) {
 }
 
 struct SyntheticReceiver {
-  orbit::CartesianState start;            ///< of the centre of mass, at start_time()
+  orbit::CartesianState start;               ///< of the centre of mass, at start_time()
   Vector3 antenna_body_m = Vector3::Zero();  ///< the true one
-  double clock_s = 0.0;                   ///< advance
+  double clock_s = 0.0;                      ///< advance
   double code_sigma_m = 0.4;
   double phase_sigma_m = 0.7e-3;
   double jitter_m = 0.0;
