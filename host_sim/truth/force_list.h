@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "fsw/core/gps_time.h"
+#include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
 #include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/truth/earth/space_weather.h"
 #include "host_sim/truth/forces/force.h"
 #include "host_sim/truth/forces/gravity_field.h"
 #include "host_sim/truth/forces/solid_tides.h"
@@ -18,6 +20,8 @@ struct ForceData {
   std::shared_ptr<const GravityField> gravity;
   TideSystem tide_system = TideSystem::kZeroTide;  ///< of the gravity model; read only if the tides act
   std::shared_ptr<const EarthOrientationSeries> earth_orientation;
+  std::shared_ptr<const Nrlmsise00Tables> atmosphere;  ///< null without drag, as is the next
+  std::shared_ptr<const SpaceWeather> space_weather;
 };
 
 /// Loads what the forces of `settings` need. Throws std::runtime_error for a missing or damaged file,
