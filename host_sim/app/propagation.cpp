@@ -1,53 +1,41 @@
 #include "host_sim/app/propagation.h"
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <exception>
 #include <optional>
+#include <string_view>
 
-#include "fsw/orbit/mean_osculating.h"
 #include "host_sim/app/initial_orbits.h"
 #include "host_sim/truth/earth/geodetic.h"
 
 namespace vbar::app {
 
-/// Averages the mean semi-major axis over the first and the last revolution of a flight.
+/// Sums what drag takes from the semi-major axis: da/dt = 2 a^2 / GM (velocity . drag), by the trapezoidal rule over the
+/// sampling times. From the motion itself it could not be told: the field's tesserals move the mean semi-major axis by
+/// ten metres, more than a day's drag.
 class Propagation::DecayMeter {
  public:
-  DecayMeter(const fsw::orbit::CartesianState& start, double gm, fsw::Duration flight) {
-    const double a = 1.0 / (2.0 / start.position_eci.norm() - start.velocity_eci.squaredNorm() / gm);
-    const fsw::Duration revolution = fsw::nearest_duration(2.0 * M_PI * std::sqrt(a / gm) * a);
-    if (revolution + revolution > flight) return;
-    first_end_ = revolution;
-    last_start_ = fsw::Duration{flight.ns - revolution.ns};
+  explicit DecayMeter(double gm) : gm_(gm) {}
+
+  void add(double seconds, const fsw::orbit::CartesianState& state, const fsw::Vector3& drag_eci) {
+    const double a = 1.0 / (2.0 / state.position_eci.norm() - state.velocity_eci.squaredNorm() / gm_);
+    const double rate = 2.0 * a * a / gm_ * state.velocity_eci.dot(drag_eci);
+    if (last_) change_ += 0.5 * (rate + last_->rate) * (seconds - last_->seconds);
+    last_ = {seconds, rate};
   }
 
-  void add(fsw::Duration since_start, const fsw::orbit::CartesianState& state) {
-    if (!first_end_) return;
-    Average* average = since_start < *first_end_ ? &first_ : since_start > last_start_ ? &last_ : nullptr;
-    if (average == nullptr) return;
-    const auto osculating = fsw::orbit::qns_from_cartesian(state);
-    if (!osculating.ok()) return;
-    const auto mean = fsw::orbit::mean_from_osculating(osculating.value());
-    if (!mean.ok()) return;
-    average->sum += mean.value().a;
-    ++average->count;
-  }
-
-  [[nodiscard]] std::optional<double> change() const {
-    if (first_.count == 0 || last_.count == 0) return std::nullopt;
-    return last_.sum / last_.count - first_.sum / first_.count;
-  }
+  [[nodiscard]] std::optional<double> change() const { return last_ ? std::optional(change_) : std::nullopt; }
 
  private:
-  struct Average {
-    double sum = 0.0;
-    int count = 0;
+  struct Sample {
+    double seconds;
+    double rate;
   };
 
-  std::optional<fsw::Duration> first_end_;  ///< nothing if the flight is too short
-  fsw::Duration last_start_;
-  Average first_, last_;
+  double gm_;
+  double change_ = 0.0;
+  std::optional<Sample> last_;
 };
 
 Propagation::Propagation(const mission::Mission& mission, const std::filesystem::path& data_directory)
@@ -73,6 +61,12 @@ std::vector<std::string> Propagation::names() const {
   return names;
 }
 
+fsw::Vector3 Propagation::drag_eci(std::size_t truth_index) {
+  const std::vector<truth::ForceAcceleration> shares = truth_.accelerations(truth_index);
+  const auto drag = std::ranges::find(shares, std::string_view("drag"), &truth::ForceAcceleration::force);
+  return drag == shares.end() ? fsw::Vector3::Zero().eval() : drag->acceleration_eci;
+}
+
 void Propagation::sample(std::vector<DecayMeter>& decay, const RowSink& sink, report::PropagationRecord& record) {
   report::EphemerisRow row;
   row.time = truth_.time();
@@ -81,7 +75,7 @@ void Propagation::sample(std::vector<DecayMeter>& decay, const RowSink& sink, re
   for (std::size_t k = 0; k < truth_index_.size(); ++k) {
     row.state = truth_.state(truth_index_[k]);
     row.geodetic = truth::geodetic_from_itrf(R_itrf_gcrf * row.state.position_eci);
-    decay[k].add(row.time - mission_.start_time(), row.state);
+    if (mission_.truth.forces.drag) decay[k].add(row.time_s, row.state, drag_eci(truth_index_[k]));
     report::PropagatedSpacecraft& outcome = record.spacecraft[k];
     if (row.time == mission_.start_time()) outcome.first_altitude_m = row.geodetic.altitude;
     outcome.last_altitude_m = row.geodetic.altitude;
@@ -98,7 +92,7 @@ report::PropagationRecord Propagation::run(const RowSink& sink, const std::funct
   std::vector<DecayMeter> decay;
   for (std::size_t k = 0; k < truth_index_.size(); ++k) {
     record.spacecraft.emplace_back().name = mission_.spacecraft[k].name;
-    decay.emplace_back(truth_.state(truth_index_[k]), truth_.data().gravity->gm(), mission_.duration);
+    decay.emplace_back(truth_.data().gravity->gm());
   }
   truth_.measure_force_times(true);
   try {
@@ -119,7 +113,7 @@ report::PropagationRecord Propagation::run(const RowSink& sink, const std::funct
   }
   for (std::size_t k = 0; k < truth_index_.size(); ++k) {
     record.spacecraft[k].statistics = truth_.statistics(truth_index_[k]);
-    record.spacecraft[k].semi_major_axis_change_m = decay[k].change();
+    record.spacecraft[k].semi_major_axis_change_by_drag_m = decay[k].change();
   }
   record.total = truth_.statistics();
   record.force_times = truth_.force_times();

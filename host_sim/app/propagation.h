@@ -35,6 +35,7 @@ class Propagation {
  private:
   class DecayMeter;
 
+  [[nodiscard]] fsw::Vector3 drag_eci(std::size_t truth_index);
   void sample(std::vector<DecayMeter>& decay, const RowSink& sink, report::PropagationRecord& record);
 
   const mission::Mission& mission_;

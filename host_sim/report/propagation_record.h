@@ -25,9 +25,7 @@ struct PropagatedSpacecraft {
   std::string name;
   double first_altitude_m = 0.0;  ///< above WGS 84, at the start
   double last_altitude_m = 0.0;   ///< and at the last sampling time
-  /// Mean semi-major axis (first-order Brouwer), averaged over the last revolution, less that over the first: decay is
-  /// negative. Nothing for a run shorter than two revolutions.
-  std::optional<double> semi_major_axis_change_m;
+  std::optional<double> semi_major_axis_change_by_drag_m;  ///< over the flight, below 0; nothing without drag
   truth::TruthStatistics statistics;
 };
 

@@ -16,12 +16,12 @@ std::string spacecraft_table(const PropagationRecord& record) {
   std::size_t width = std::string_view("spacecraft").size();
   for (const PropagatedSpacecraft& one : record.spacecraft) width = std::max(width, one.name.size());
   constexpr auto kHead = "{:<{}} {:>12} {:>12} {:>12} {:>9} {:>9} {:>12} {:>8}\n";
-  std::string text = fmt::format(kHead, "", width, "first alt.", "last alt.", "mean a", "", "rejected", "force", "shadow");
-  text += fmt::format(kHead, "spacecraft", width, "km", "km", "change, m", "steps", "steps", "evaluations", "edges");
+  std::string text = fmt::format(kHead, "", width, "first alt.", "last alt.", "a by drag", "", "rejected", "force", "shadow");
+  text += fmt::format(kHead, "spacecraft", width, "km", "km", "m", "steps", "steps", "evaluations", "edges");
   for (const PropagatedSpacecraft& one : record.spacecraft) {
     const truth::TruthStatistics& s = one.statistics;
     text += fmt::format(kHead, one.name, width, fixed(1e-3 * one.first_altitude_m, 3),
-                        fixed(1e-3 * one.last_altitude_m, 3), fixed(one.semi_major_axis_change_m, 1), s.steps,
+                        fixed(1e-3 * one.last_altitude_m, 3), fixed(one.semi_major_axis_change_by_drag_m, 2), s.steps,
                         s.rejected_steps, s.force_evaluations, s.edges_crossed);
   }
   return text;
@@ -59,8 +59,8 @@ Json json_of(const PropagatedSpacecraft& one) {
   return {{"name", one.name},
           {"first_altitude_m", one.first_altitude_m},
           {"last_altitude_m", one.last_altitude_m},
-          {"semi_major_axis_change_m",
-           one.semi_major_axis_change_m ? Json(*one.semi_major_axis_change_m) : Json(nullptr)},
+          {"semi_major_axis_change_by_drag_m",
+           one.semi_major_axis_change_by_drag_m ? Json(*one.semi_major_axis_change_by_drag_m) : Json(nullptr)},
           {"steps", one.statistics.steps},
           {"rejected_steps", one.statistics.rejected_steps},
           {"force_evaluations", one.statistics.force_evaluations},
