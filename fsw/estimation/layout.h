@@ -1,0 +1,28 @@
+#pragma once
+// Where each block of a filter's state stands. A mission composes its state from blocks - orbit, clocks, attitude,
+// ambiguities - by naming them in a list; blocks know their own size and nothing of each other.
+//
+//   using State = Layout<RelativeOrbit, EmpiricalAcceleration, ReceiverClock>;
+//   State::kSize, State::offset<ReceiverClock>()
+
+#include <type_traits>
+
+namespace vbar::fsw::estimation {
+
+/// Blocks have `static constexpr int kSize`. The same block twice: wrap it (struct TargetClock : ReceiverClock {}).
+template <class... Blocks>
+struct Layout {
+  static constexpr int kSize = (Blocks::kSize + ... + 0);
+
+  /// Index of the block's first component.
+  template <class Block>
+  static constexpr int offset() {
+    static_assert((std::is_same_v<Block, Blocks> + ... + 0) == 1, "the block is not in the layout, or twice");
+    int sum = 0;
+    bool found = false;
+    ((found = found || std::is_same_v<Block, Blocks>, sum += found ? 0 : Blocks::kSize), ...);
+    return sum;
+  }
+};
+
+}  // namespace vbar::fsw::estimation

@@ -1,0 +1,27 @@
+#pragma once
+// Where the Earth-fixed frame stands, as a flight computer knows it: precession in full, the nineteen largest terms of
+// nutation, the Earth rotation angle, and what only the ground can tell (UT1, polar motion) from a telecommand.
+// Equations of the IERS Conventions 2010, chapter 5 (CIO-based), truncated.
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/types.h"
+
+namespace vbar::fsw::orbit {
+
+/// Earth orientation as telecommanded: straight lines through an epoch, good for some days.
+struct EarthOrientation {
+  GpsTime epoch;
+  double ut1_minus_gps_s = -15.0;  ///< (UT1 - UTC) less the leap seconds since 1980, 15 in 2011
+  double ut1_rate = 0.0;           ///< of it, s/s
+  double pole_x = 0.0;             ///< polar motion, rad
+  double pole_y = 0.0;
+};
+
+/// Mean rate of the Earth rotation angle, rad/s of UT1 (IAU 2000).
+inline constexpr double kEarthRotationRate = 7.292115146706979e-5;
+
+/// Rotation to ITRF from GCRF at a GPS time. With true orientation the error stays below 1e-7 rad (0.02 arcsec, 0.7 m
+/// at LEO) from 2000 to 2040.
+Matrix3 R_itrf_gcrf(GpsTime time, const EarthOrientation& orientation);
+
+}  // namespace vbar::fsw::orbit

@@ -1,0 +1,169 @@
+#include "fsw/estimation/estimate.h"
+
+#include <cmath>
+#include <random>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "fsw/estimation/layout.h"
+#include "tests/support/allocation_counter.h"
+
+namespace vbar::fsw::estimation {
+namespace {
+
+constexpr double kNoGate = 1e300;
+
+struct Orbit {
+  static constexpr int kSize = 6;
+};
+struct Clock {
+  static constexpr int kSize = 2;
+};
+struct Ambiguities {
+  static constexpr int kSize = 40;
+};
+
+TEST(Layout, BlocksStandOneAfterTheOther) {
+  using State = Layout<Orbit, Clock, Ambiguities>;
+  static_assert(State::kSize == 48);
+  static_assert(State::offset<Orbit>() == 0 && State::offset<Clock>() == 6 && State::offset<Ambiguities>() == 8);
+}
+
+/// A dense Kalman filter by the textbook, in the information form: another way to the same numbers.
+template <int N>
+struct InformationFilter {
+  Eigen::Matrix<double, N, N> information;
+  Eigen::Matrix<double, N, 1> vector;
+  void add(const Eigen::Matrix<double, N, 1>& h, double z, double variance) {
+    information += h * h.transpose() / variance;
+    vector += h * z / variance;
+  }
+};
+
+TEST(Estimate, ScalarUpdatesAreTheLeastSquaresSolution) {
+  constexpr int kN = 8;
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  Estimate<kN> estimate;
+  InformationFilter<kN> reference{Eigen::Matrix<double, kN, kN>::Zero(), Eigen::Matrix<double, kN, 1>::Zero()};
+  for (int i = 0; i < kN; ++i) {
+    estimate.reset(i, i, 4.0);
+    reference.add(Eigen::Matrix<double, kN, 1>::Unit(i), i, 4.0);
+  }
+  for (int k = 0; k < 30; ++k) {
+    Eigen::Matrix<double, kN, 1> h;
+    for (int i = 0; i < kN; ++i) h(i) = normal(random);
+    const double z = normal(random);
+    const Innovation foreseen = estimate.predict(h, z - h.dot(estimate.mean()), 0.25);
+    const Innovation seen = estimate.update(h, z - h.dot(estimate.mean()), 0.25, kNoGate);
+    EXPECT_TRUE(seen.accepted);
+    EXPECT_DOUBLE_EQ(foreseen.variance, seen.variance);
+    reference.add(h, z, 0.25);
+  }
+  const Eigen::Matrix<double, kN, kN> covariance = reference.information.inverse();
+  const Eigen::Matrix<double, kN, 1> mean = covariance * reference.vector;
+  for (int i = 0; i < kN; ++i) {
+    EXPECT_NEAR(estimate.mean(i), mean(i), 1e-12);  // 30 updates of numbers near 1
+    for (int j = 0; j < kN; ++j) EXPECT_NEAR(estimate.covariance(i, j), covariance(i, j), 1e-13);
+  }
+}
+
+TEST(Estimate, IdleComponentsStayIdle) {
+  Estimate<4> estimate;
+  estimate.reset(0, 1.0, 4.0);
+  estimate.reset(2, 3.0, 9.0);
+  estimate.update({1.0, 1.0, 1.0, 1.0}, 2.0, 1.0, kNoGate);
+  EXPECT_TRUE(estimate.is_idle(1));
+  EXPECT_TRUE(estimate.is_idle(3));
+  EXPECT_EQ(estimate.mean(1), 0.0);
+  EXPECT_EQ(estimate.covariance(0, 1), 0.0);
+  EXPECT_NE(estimate.covariance(0, 2), 0.0);
+  estimate.reset(2, 0.0, 0.0);
+  EXPECT_TRUE(estimate.is_idle(2));
+  EXPECT_EQ(estimate.covariance(0, 2), 0.0);
+}
+
+TEST(Estimate, TransformIsThePropagationOfTheWholeCovariance) {
+  constexpr int kN = 5;
+  constexpr int kM = 2;
+  Estimate<kN> estimate;
+  for (int i = 0; i < kN; ++i) estimate.reset(i, 1.0 + i, 1.0 + i);
+  // Correlate everything with everything.
+  estimate.update({1.0, -2.0, 0.5, 1.0, 3.0}, 0.7, 0.5, kNoGate);
+  Eigen::Matrix<double, kN, kN> before;
+  for (int i = 0; i < kN; ++i)
+    for (int j = 0; j < kN; ++j) before(i, j) = estimate.covariance(i, j);
+
+  const Eigen::Matrix<double, kM, kM> a{{1.0, 10.0}, {0.2, 0.9}};
+  const Eigen::Matrix<double, kM, kM> q{{0.3, 0.1}, {0.1, 0.2}};
+  estimate.transform_head<kM>({5.0, 6.0}, a, q);
+  estimate.accumulate(2, 3, 10.0);
+  estimate.scale(4, 0.5);
+  estimate.add_noise(2, 3, 0.05);
+
+  Eigen::Matrix<double, kN, kN> f = Eigen::Matrix<double, kN, kN>::Identity();
+  f.topLeftCorner<kM, kM>() = a;
+  f(2, 3) = 10.0;
+  f(4, 4) = 0.5;
+  Eigen::Matrix<double, kN, kN> expected = f * before * f.transpose();
+  expected.topLeftCorner<kM, kM>() += q;
+  expected(2, 3) += 0.05;
+  expected(3, 2) += 0.05;
+  for (int i = 0; i < kN; ++i)
+    for (int j = 0; j < kN; ++j) EXPECT_NEAR(estimate.covariance(i, j), expected(i, j), 1e-12);
+  EXPECT_EQ(estimate.mean(0), 5.0);
+  EXPECT_EQ(estimate.mean(1), 6.0);
+}
+
+TEST(Estimate, GateRefusesOutliersAndWhatIsNoNumber) {
+  Estimate<2> estimate;
+  estimate.reset(0, 0.0, 1.0);
+  estimate.reset(1, 0.0, 1.0);
+  const Eigen::Matrix<double, 2, 1> h(1.0, 0.0);
+  for (const double residual : {10.0, double(NAN), double(INFINITY)}) {
+    EXPECT_FALSE(estimate.update(h, residual, 1.0, 9.0).accepted) << residual;
+    EXPECT_EQ(estimate.mean(0), 0.0);
+    EXPECT_EQ(estimate.variance(0), 1.0);
+  }
+  EXPECT_FALSE(estimate.update(h, 1.0, NAN, 9.0).accepted);
+  EXPECT_TRUE(estimate.update(h, 1.0, 1.0, 9.0).accepted);
+  EXPECT_NEAR(estimate.mean(0), 0.5, 1e-15);
+  EXPECT_TRUE(estimate.is_sound());
+  estimate.shift(1, NAN);
+  EXPECT_FALSE(estimate.is_sound());
+}
+
+TEST(Estimate, MillimetresBesideUnknownAmbiguities) {
+  // The worst a phase filter asks of doubles: 50 m against 1 mm, a hundred times over. The covariance stays sound and
+  // the difference of two ambiguities is known to what the phases say.
+  Estimate<4> estimate;
+  estimate.reset(0, 0.0, 1.0);     // position
+  estimate.reset(1, 0.0, 2500.0);  // two ambiguities, m
+  estimate.reset(2, 0.0, 2500.0);
+  estimate.reset(3, 0.0, 1e6);  // clock
+  for (int k = 0; k < 100; ++k) {
+    estimate.update({0.6, 1.0, 0.0, 1.0}, 0.0, 1e-6, kNoGate);
+    estimate.update({-0.8, 0.0, 1.0, 1.0}, 0.0, 1e-6, kNoGate);
+    EXPECT_TRUE(estimate.is_sound());
+    estimate.add_noise(3, 1e6);
+  }
+  const double difference = estimate.variance(1) + estimate.variance(2) - 2.0 * estimate.covariance(1, 2);
+  // Single-difference of the two: known to 1.4 times the position (1.4 m) up to noise.
+  EXPECT_NEAR(difference, 1.4 * 1.4 * estimate.variance(0), 1e-3);
+}
+
+TEST(Estimate, AsksNothingOfTheHeap) {
+  static Estimate<80> estimate;
+  const std::size_t before = test::allocation_count();
+  for (int i = 0; i < 80; ++i) estimate.reset(i, 0.0, 1.0);
+  Estimate<80>::Vector h = Estimate<80>::Vector::Ones();
+  estimate.update(h, 1.0, 1.0, kNoGate);
+  estimate.transform_head<12>(Eigen::Matrix<double, 12, 1>::Zero(), Eigen::Matrix<double, 12, 12>::Identity(),
+                              Eigen::Matrix<double, 12, 12>::Identity());
+  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_TRUE(estimate.is_sound());
+}
+
+}  // namespace
+}  // namespace vbar::fsw::estimation
