@@ -2,6 +2,7 @@
 
 #include "fsw/math/math.h"
 #include "host_sim/mission/names.h"
+#include "host_sim/mission/read_attitude.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
@@ -116,7 +117,8 @@ Thruster read_thruster(const TableReader& section) {
 
 Spacecraft read_one(TableReader& section, const std::vector<std::string>& names, const Mission& mission) {
   section.accept_only({"name", "number", "mass_kg", "drag_area_m2", "drag_coefficient", "radiation_area_m2",
-                       "radiation_coefficient", "elements", "relative", "flight_computer", "sensors", "actuators"});
+                       "radiation_coefficient", "elements", "relative", "attitude", "flight_computer", "sensors",
+                       "actuators"});
   Spacecraft spacecraft;
   spacecraft.name = section.name("name");
   section.rename("spacecraft." + spacecraft.name);
@@ -129,6 +131,7 @@ Spacecraft read_one(TableReader& section, const std::vector<std::string>& names,
                      "a number used once");
   spacecraft.surface = read_surface(section, spacecraft.name);
   spacecraft.orbit = read_orbit(section, mission);
+  spacecraft.attitude = read_attitude(section.table("attitude"), spacecraft.name, names);
   if (section.has("flight_computer"))
     spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
 

@@ -14,20 +14,24 @@ using fsw::Vector3;
 /// The Sun moves 2e-7 rad/s: over two minutes 2.4e-5 rad, whose curvature is nothing and whose rounding 1e-18 rad/s.
 constexpr double kSunDifference_s = 60.0;
 
-bool same_line(Direction a, Direction b) {
+}  // namespace
+
+bool are_two_axes(const Vector3& a, const Vector3& b) {
+  // Written so that what is not a number is refused as well.
+  return a.cross(b).norm() > kLeastAngle_rad * a.norm() * b.norm();
+}
+
+bool are_one_line(Direction a, Direction b) {
   const auto vertical = [](Direction d) { return d == Direction::kZenith || d == Direction::kNadir; };
   return a == b || (vertical(a) && vertical(b));
 }
 
-}  // namespace
-
 PointingProfile::PointingProfile(const PointingSettings& settings, MotionOfTime own, MotionOfTime other, SunOfTime sun)
     : settings_(settings), own_(std::move(own)), other_(std::move(other)), sun_(std::move(sun)) {
-  const Vector3 &boresight = settings.boresight_body, &second = settings.second_body;
-  if (!(boresight.cross(second).norm() > kLeastAngle_rad * boresight.norm() * second.norm())) {
+  if (!are_two_axes(settings.boresight_body, settings.second_body)) {
     throw std::invalid_argument("boresight and second body axis must be two different axes");
   }
-  if (same_line(settings.boresight_to, settings.second_to)) {
+  if (are_one_line(settings.boresight_to, settings.second_to)) {
     throw std::invalid_argument("boresight and second body axis must point in two different directions");
   }
   const auto needs = [&](Direction d) { return settings.boresight_to == d || settings.second_to == d; };

@@ -39,12 +39,18 @@ struct PointingSettings {
   fsw::Vector3 second_body = fsw::Vector3::UnitY();
 };
 
+/// Whether two body axes (of any length) span a plane: neither zero nor parallel within kLeastAngle_rad.
+[[nodiscard]] bool are_two_axes(const fsw::Vector3& a, const fsw::Vector3& b);
+
+/// Whether two directions are always the same or opposite.
+[[nodiscard]] bool are_one_line(Direction a, Direction b);
+
 /// A pure function of the orbits: it holds no state.
 class PointingProfile final : public AttitudeMotion {
  public:
   /// `own`: of the spacecraft that points. `other`: of the one pointed at, and `sun`: needed only if a direction of the
-  /// settings says so. Throws std::invalid_argument for body axes that are zero or parallel within kLeastAngle_rad, for
-  /// directions that are the same or opposite, and for what is needed and missing.
+  /// settings says so. Throws std::invalid_argument for body axes that are not two, directions on one line, and for
+  /// what is needed and missing.
   PointingProfile(const PointingSettings& settings, MotionOfTime own, MotionOfTime other, SunOfTime sun);
 
   void advance_to(double /*seconds*/, double /*orbit_step_end*/) override {}
