@@ -82,7 +82,9 @@ TEST_F(RunFolderTest, WritingWhatWasReadGivesTheSameFiles) {
 // The columns are a contract with scripts: a change of these lines breaks them.
 TEST_F(RunFolderTest, ColumnsAreAsAgreed) {
   const RunFolder folder(run(), {});
-  folder.finish({});
+  RunRecord record;
+  record.attitudes.emplace_back();
+  folder.finish(record);
   const auto group = [](std::string name, std::initializer_list<const char*> members) {
     std::string text;
     for (const char* member : members) text += (text.empty() ? "" : ",") + name + "_" + member;
