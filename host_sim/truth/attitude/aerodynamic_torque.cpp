@@ -9,7 +9,7 @@ using fsw::Vector3;
 
 namespace {
 
-constexpr double kEarthRate_radps = 7.292115e-5;  // IERS Conventions 2010, table 1.2
+constexpr double kEarthRate_radps = 7.292115146706979e-5;  // of the Earth rotation angle (IERS 2010, eq. 5.15)
 
 }  // namespace
 
@@ -18,10 +18,9 @@ Vector3 velocity_through_air_eci(const ForceInput& orbit) {
   return orbit.velocity_eci - kEarthRate_radps * pole_eci.cross(orbit.position_eci);
 }
 
-AerodynamicTorque::AerodynamicTorque(std::vector<Facet> facets, double drag_coefficient, Density density)
-    : facets_(std::move(facets)), drag_coefficient_(drag_coefficient), density_(std::move(density)) {
-  if (facets_.empty() || !density_)
-    throw std::invalid_argument("an aerodynamic torque needs a surface and an atmosphere");
+AerodynamicTorque::AerodynamicTorque(std::vector<Facet> facets, double drag_coefficient, std::unique_ptr<Air> air)
+    : facets_(std::move(facets)), drag_coefficient_(drag_coefficient), air_(std::move(air)) {
+  if (facets_.empty() || !air_) throw std::invalid_argument("an aerodynamic torque needs a surface and an atmosphere");
 }
 
 Vector3 AerodynamicTorque::torque_body(const ForceInput& orbit, const AttitudeState& attitude) {
@@ -32,7 +31,7 @@ Vector3 AerodynamicTorque::torque_body(const ForceInput& orbit, const AttitudeSt
     const double cosine = facet.normal.dot(flow);
     if (cosine > 0.0) area_times_arm += facet.area_m2 * cosine * facet.centre_m;
   }
-  const double pressure = 0.5 * density_(orbit) * drag_coefficient_ * velocity_body.squaredNorm();
+  const double pressure = 0.5 * air_->density(orbit) * drag_coefficient_ * velocity_body.squaredNorm();
   return area_times_arm.cross(-pressure * flow);
 }
 

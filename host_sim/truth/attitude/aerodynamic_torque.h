@@ -5,7 +5,8 @@
 // accommodation, and the damping by the body's own rotation (cm/s against km/s) are left out. Facets do not shade each
 // other (a convex body).
 
-#include <functional>
+#include <limits>
+#include <memory>
 #include <vector>
 
 #include "host_sim/truth/attitude/body.h"
@@ -13,21 +14,37 @@
 
 namespace vbar::truth {
 
+/// The air at a spacecraft. Where it jumps it has dates, as a torque has (torque.h).
+class Air {
+ public:
+  Air() = default;
+  Air(const Air&) = delete;
+  Air& operator=(const Air&) = delete;
+  virtual ~Air() = default;
+
+  /// kg/m^3, in the interval entered last.
+  [[nodiscard]] virtual double density(const ForceInput& orbit) = 0;
+
+  [[nodiscard]] virtual double next_jump_after(double /*seconds*/) const {
+    return std::numeric_limits<double>::infinity();
+  }
+  virtual void enter_interval(double /*seconds*/) {}
+};
+
 class AerodynamicTorque final : public Torque {
  public:
-  /// Density of the air at a spacecraft, kg/m^3.
-  using Density = std::function<double(const ForceInput& orbit)>;
-
-  /// Throws std::invalid_argument without facets or density.
-  AerodynamicTorque(std::vector<Facet> facets, double drag_coefficient, Density density);
+  /// Throws std::invalid_argument without facets or air.
+  AerodynamicTorque(std::vector<Facet> facets, double drag_coefficient, std::unique_ptr<Air> air);
 
   [[nodiscard]] std::string_view name() const override { return "aerodynamic"; }
   [[nodiscard]] fsw::Vector3 torque_body(const ForceInput& orbit, const AttitudeState& attitude) override;
+  [[nodiscard]] double next_jump_after(double seconds) const override { return air_->next_jump_after(seconds); }
+  void enter_interval(double seconds) override { air_->enter_interval(seconds); }
 
  private:
   std::vector<Facet> facets_;
   double drag_coefficient_;
-  Density density_;
+  std::unique_ptr<Air> air_;
 };
 
 /// Velocity with respect to an atmosphere that turns with the Earth, m/s, in ECI.

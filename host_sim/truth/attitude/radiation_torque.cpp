@@ -3,16 +3,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host_sim/truth/earth/sun_moon.h"
+#include "host_sim/truth/forces/radiation_pressure_force.h"
+
 namespace vbar::truth {
 
 using fsw::Vector3;
-
-namespace {
-
-constexpr double kSolarPressureAtOneAu_Npm2 = 4.54e-6;  // 1361 W/m^2 over the speed of light
-constexpr double kAstronomicalUnit_m = 149597870700.0;  // IAU 2012 resolution B2
-
-}  // namespace
 
 RadiationTorque::RadiationTorque(std::vector<Facet> facets, std::unique_ptr<Sunlight> sunlight)
     : facets_(std::move(facets)), sunlight_(std::move(sunlight)) {
@@ -23,7 +19,7 @@ Vector3 RadiationTorque::torque_body(const ForceInput& orbit, const AttitudeStat
   const double fraction = sunlight_->fraction(orbit);
   if (fraction == 0.0) return Vector3::Zero();
   const Vector3 to_sun_eci = orbit.sun_eci - orbit.position_eci;
-  const double distance_au = to_sun_eci.norm() / kAstronomicalUnit_m;
+  const double distance_au = to_sun_eci.norm() / kAstronomicalUnit;
   const Vector3 s = attitude.q_body_eci * to_sun_eci.normalized();
   Vector3 torque = Vector3::Zero();
   for (const Facet& facet : facets_) {
@@ -33,7 +29,7 @@ Vector3 RadiationTorque::torque_body(const ForceInput& orbit, const AttitudeStat
         (1.0 - facet.specular) * s + 2.0 * (facet.specular * cosine + facet.diffuse / 3.0) * facet.normal;
     torque -= facet.area_m2 * cosine * facet.centre_m.cross(push);
   }
-  return fraction * kSolarPressureAtOneAu_Npm2 / (distance_au * distance_au) * torque;
+  return fraction * kSolarPressure / (distance_au * distance_au) * torque;
 }
 
 }  // namespace vbar::truth

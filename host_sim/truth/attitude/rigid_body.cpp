@@ -68,7 +68,7 @@ RigidBody::RigidBody(const Matrix3& inertia_kgm2, std::vector<std::unique_ptr<To
   momentum_scale_ = std::max(momentum_body.norm(), inertia_.trace() / 3.0 * kOrbitRate_radps);
   Vector7 y;
   y << q.coeffs(), (q.conjugate() * momentum_body) / momentum_scale_;
-  take_sides(seconds);
+  enter_regime_of(seconds);
   integrator_.start(seconds, y);
 }
 
@@ -105,14 +105,21 @@ void RigidBody::advance_to(double seconds, double orbit_step_end) {
 }
 
 void RigidBody::step(double limit) {
-  integrator_.step(limit);
+  const double jump = next_jump();
+  integrator_.step(std::min(limit, jump));
   const std::optional<double> edge = first_edge_of_last_step();
   if (edge) integrator_.cut_last_step(*edge);
   kept_.push_back({integrator_.time(), integrator_.last_step()});
-  if (edge) {
-    take_sides(integrator_.time());
+  if (edge || integrator_.time() == jump) {
+    enter_regime_of(integrator_.time());
     integrator_.restart(integrator_.state());
   }
+}
+
+double RigidBody::next_jump() const {
+  double first = std::numeric_limits<double>::infinity();
+  for (const auto& torque : torques_) first = std::min(first, torque->next_jump_after(integrator_.time()));
+  return first;
 }
 
 std::optional<double> RigidBody::first_edge_of_last_step() const {
@@ -130,10 +137,12 @@ std::optional<double> RigidBody::first_edge_of_last_step() const {
   return first;
 }
 
-void RigidBody::take_sides(double seconds) {
+/// Sides of all edges and intervals of all jumps, as they are at an instant.
+void RigidBody::enter_regime_of(double seconds) {
   if (torques_.empty()) return;
   const ForceInput orbit = orbit_(seconds);
   for (const auto& torque : torques_) {
+    torque->enter_interval(seconds);
     for (int i = 0; i < torque->edge_count(); ++i) torque->set_side(i, torque->edge(i, orbit) > 0.0);
   }
 }
@@ -141,11 +150,13 @@ void RigidBody::take_sides(double seconds) {
 void RigidBody::orbit_changed(double seconds) {
   if (torques_.empty()) return;
   if (seconds < integrator_.time()) {
-    // advance_to went no further than the step that holds `seconds`.
+    // advance_to went no further than the step that holds `seconds`. The step may have ended at an edge or a jump, and
+    // the torques been told of what follows.
+    enter_regime_of(integrator_.last_step().start);
     integrator_.cut_last_step(seconds);
     kept_.back() = {seconds, integrator_.last_step()};
   }
-  take_sides(seconds);
+  enter_regime_of(seconds);
   integrator_.restart(integrator_.state());
 }
 

@@ -69,8 +69,9 @@ class RigidBody final : public AttitudeMotion {
   [[nodiscard]] Vector7 rates(double seconds, const Vector7& y);
   [[nodiscard]] AttitudeState attitude_of(const Vector7& y) const;
   void step(double limit);
+  [[nodiscard]] double next_jump() const;
   [[nodiscard]] std::optional<double> first_edge_of_last_step() const;
-  void take_sides(double seconds);
+  void enter_regime_of(double seconds);
 
   fsw::Matrix3 inertia_;
   fsw::Matrix3 inverse_inertia_;

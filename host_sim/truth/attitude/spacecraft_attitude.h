@@ -14,12 +14,11 @@ namespace vbar::truth {
 
 /// What attitudes look at. What a spacecraft's settings do not call for may be empty.
 struct AttitudeSurroundings {
-  double gm = 0.0;                ///< of the Earth, m^3/s^2
-  double tolerance = 0.0;         ///< of the integration (RigidBody)
-  double seconds = 0.0;           ///< now
-  double drag_coefficient = 0.0;  ///< for the aerodynamic torque
+  double gm = 0.0;         ///< of the Earth, m^3/s^2
+  double tolerance = 0.0;  ///< of the integration (RigidBody)
+  double seconds = 0.0;    ///< now
   RigidBody::OrbitOfTime orbit;
-  AerodynamicTorque::Density density;
+  std::unique_ptr<Air> air;
   std::unique_ptr<Sunlight> sunlight;
   MotionOfTime own;
   MotionOfTime other;  ///< of the spacecraft pointed at

@@ -2,9 +2,11 @@
 // What every torque on a rigid body looks like: one call, one small file each, as the forces on its orbit
 // (forces/force.h). A torque object belongs to one spacecraft.
 //
-// A torque may jump where sunlight ends. It then says so by an edge, a zero of a function of time and orbit; the
-// integration ends a step exactly there, and in between the torque acts as on the side it was told.
+// A torque may jump, as a force may: at an edge (a zero of a function of time and orbit: sunlight ends) or at a date
+// known beforehand (the day's solar flux). The integration ends a step exactly there; in between the torque acts as on
+// the side, or in the interval, that it was told.
 
+#include <limits>
 #include <string_view>
 
 #include "fsw/core/types.h"
@@ -32,6 +34,14 @@ class Torque {
 
   /// From here on (until told otherwise) the motion is on this side of the edge: edge() positive, or not.
   virtual void set_side(int /*index*/, bool /*positive*/) {}
+
+  /// The first date (seconds after the epoch) after `seconds` at which it jumps by itself.
+  [[nodiscard]] virtual double next_jump_after(double /*seconds*/) const {
+    return std::numeric_limits<double>::infinity();
+  }
+
+  /// The motion (re)starts at `seconds`: until the next jump the torque is that of the interval that begins here.
+  virtual void enter_interval(double /*seconds*/) {}
 };
 
 }  // namespace vbar::truth

@@ -16,8 +16,8 @@ using Eigen::Quaterniond;
 using fsw::Vector3;
 
 constexpr double kAu_m = 149597870700.0;
-constexpr double kPressure_Npm2 = 4.54e-6;  // 1361 W/m^2 over the speed of light, to the digits in use
-constexpr double kRounding = 1e-14;         // relative, of some tens of operations
+constexpr double kPressure_Npm2 = 1361.0 / 299792458.0;  // W/m^2 at 1 au (IAU 2015 B3) over the speed of light
+constexpr double kRounding = 1e-14;                      // relative, of some tens of operations
 
 /// A box with the given edges, its geometrical centre at `centre` from the centre of mass.
 std::vector<Facet> box(const Vector3& edges, const Vector3& centre, double specular = 0.0, double diffuse = 0.0) {
@@ -46,16 +46,24 @@ std::vector<Quaterniond> many_attitudes() {
   return attitudes;
 }
 
+class ConstantAir final : public Air {
+ public:
+  double density(const ForceInput&) override { return 3e-13; }
+};
+
 AerodynamicTorque aerodynamic(std::vector<Facet> facets) {
-  return {std::move(facets), 2.25, [](const ForceInput&) { return 3e-13; }};
+  return {std::move(facets), 2.25, std::make_unique<ConstantAir>()};
 }
 
 TEST(AerodynamicTorque, VelocityIsThatThroughTurningAir) {
-  // On the equator the air moves east at 7.292115e-5 rad/s times the radius.
+  // On the equator the air moves east at the rate of the Earth rotation angle, 2 pi 1.00273781191135448 / 86400 s (IERS
+  // Conventions 2010, eq. 5.15), times the radius.
   ForceInput orbit;
   orbit.position_eci = {7e6, 0.0, 0.0};
   orbit.velocity_eci = {0.0, 0.0, 7500.0};
-  EXPECT_LT((velocity_through_air_eci(orbit) - Vector3(0.0, -510.44805, 7500.0)).norm(), 1e-9);
+  EXPECT_LT(
+      (velocity_through_air_eci(orbit) - Vector3(0.0, -7e6 * kTwoPi * 1.00273781191135448 / 86400.0, 7500.0)).norm(),
+      1e-9);
 }
 
 TEST(AerodynamicTorque, OfASymmetricBoxAboutItsCentreIsNone) {
@@ -153,7 +161,7 @@ TEST(RadiationTorque, OfASymmetricBoxAboutItsCentreIsNone) {
 
 TEST(SurfaceTorques, NeedASurface) {
   EXPECT_THROW(aerodynamic({}), std::invalid_argument);
-  EXPECT_THROW(AerodynamicTorque(box(kEdges, Vector3::Zero()), 2.0, {}), std::invalid_argument);
+  EXPECT_THROW(AerodynamicTorque(box(kEdges, Vector3::Zero()), 2.0, nullptr), std::invalid_argument);
   EXPECT_THROW(RadiationTorque({}, std::make_unique<FullSun>()), std::invalid_argument);
   EXPECT_THROW(RadiationTorque(box(kEdges, Vector3::Zero()), nullptr), std::invalid_argument);
 }
