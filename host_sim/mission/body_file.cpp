@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "host_sim/mission/read_attitude.h"
@@ -32,7 +33,8 @@ truth::Facet read_facet(const TableReader& section, const std::vector<Vector3>& 
   try {
     return truth::facet_of_polygon(polygon_m, specular, diffuse);
   } catch (const std::invalid_argument& error) {
-    section.refuse("", "what is no facet", error.what());
+    section.refuse("", std::string("what is no facet: ") + error.what(),
+                   "a plane convex polygon, anticlockwise from outside, and reflectivities that add to at most 1");
   }
 }
 

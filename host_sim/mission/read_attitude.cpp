@@ -38,9 +38,9 @@ constexpr Names<TorqueKind, 3> kTorques{{{"gravity_gradient", TorqueKind::kGravi
                                          {"aerodynamic", TorqueKind::kAerodynamic},
                                          {"radiation", TorqueKind::kRadiation}}};
 
-// Ten turns a second: an integration of hours takes minutes there.
+// Ten turns a second: integrating hours of it takes minutes.
 constexpr double kFastest_degps = 3600.0;
-// The target of the experiments (the choices in docs/tour.md say nothing else).
+// The tumbles that the experiments with an uncooperative target fly.
 constexpr double kUsualSlowest_degps = 0.3;
 constexpr double kUsualFastest_degps = 1.5;
 
@@ -147,7 +147,8 @@ std::optional<fsw::Matrix3> read_inertia(const TableReader& section) {
   try {
     truth::check_inertia(inertia);
   } catch (const std::invalid_argument& error) {
-    section.refuse("inertia_kgm2", "what is not the inertia of a body", error.what());
+    section.refuse("inertia_kgm2", std::string("numbers that are no body's: ") + error.what(),
+                   "principal moments above 0, none above the sum of the other two");
   }
   return inertia;
 }
