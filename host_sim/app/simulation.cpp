@@ -39,17 +39,6 @@ const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
   return servicer;
 }
 
-truth::TruthSettings truth_settings(const mission::Mission& mission, const std::filesystem::path& data_directory) {
-  truth::TruthSettings settings;
-  settings.epoch = mission.epoch;
-  settings.gravity_degree = mission.truth.gravity_degree;
-  settings.gravity_order = mission.truth.gravity_order;
-  settings.tolerance = mission.truth.relative_tolerance;
-  settings.threads = mission.truth.threads;
-  settings.data_directory = data_directory;
-  return settings;
-}
-
 template <class Message>
 pil::Packet make_packet(GpsTime time, std::uint8_t spacecraft, std::uint16_t sequence, const Message& message) {
   fsw::packets::PacketHeader header;

@@ -74,12 +74,12 @@ void read_rate(const TableReader& section, Tumble& tumble) {
   tumble.fastest_radps = kDegree * range[1];
 }
 
-Tumble read_tumble(const TableReader& section, const std::string& own) {
+Tumble read_tumble(const TableReader& section, const std::string& usual_body) {
   section.accept_only({"profile", "q_body_eci", "rate_degps", "tumble_rate_degps", "body", "inertia_kgm2", "torques"});
   Tumble tumble;
   tumble.q_body_eci = read_quaternion(section);
   read_rate(section, tumble);
-  tumble.body = section.name("body", own == "target" ? "tango" : "mango");
+  tumble.body = section.name("body", usual_body);
   tumble.inertia_kgm2 = read_inertia(section);
   tumble.torques = section.choices<TorqueKind>("torques", kTorques);
   return tumble;
@@ -153,7 +153,7 @@ std::optional<fsw::Matrix3> read_inertia(const TableReader& section) {
   return inertia;
 }
 
-std::optional<Attitude> read_attitude(const TableReader& section, const std::string& own,
+std::optional<Attitude> read_attitude(const TableReader& section, const std::string& own, const std::string& usual_body,
                                       const std::vector<std::string>& names) {
   const auto profile = section.choice<Profile>("profile", kProfiles, Profile::kNone);
   switch (profile) {
@@ -161,7 +161,7 @@ std::optional<Attitude> read_attitude(const TableReader& section, const std::str
       section.accept_only({"profile"});
       return std::nullopt;
     case Profile::kTumble:
-      return read_tumble(section, own);
+      return read_tumble(section, usual_body);
     case Profile::kInertial:
       section.accept_only({"profile", "q_body_eci"});
       return Inertial{read_quaternion(section)};

@@ -19,11 +19,6 @@ std::string text_of(double number) {
   return out.str();
 }
 
-std::string text_of(Range range) {
-  return (range.above ? "above " : "from ") + text_of(range.low) + (range.above ? ", up to " : " to ") +
-         text_of(range.high);
-}
-
 template <class Value>
 std::string streamed(const Value& value) {
   std::ostringstream out;
@@ -85,6 +80,11 @@ std::string description_of(const toml::node& node) {
       break;
   }
   return "nothing";
+}
+
+std::string text_of(Range range) {
+  return (range.above ? "above " : "from ") + text_of(range.low) + (range.above ? ", up to " : " to ") +
+         text_of(range.high);
 }
 
 std::string listing_of(const std::vector<std::string_view>& names) {

@@ -112,6 +112,9 @@ class TableReader {
 /// The value as a message shows it: `the text "abc"`, `the number 2.5`, `nan`, `a table`, ...
 [[nodiscard]] std::string description_of(const toml::node& node);
 
+/// "from 0 to 1", "above 0, up to 1".
+[[nodiscard]] std::string text_of(Range range);
+
 /// "a, b or c".
 [[nodiscard]] std::string listing_of(const std::vector<std::string_view>& names);
 

@@ -43,7 +43,12 @@ void TruthModel::set_attitude(std::size_t index, const AttitudeSettings& setting
   if (has_torque(settings, TorqueKind::kRadiation)) {
     own->dynamics().provide_sun_and_moon();
     surroundings.sunlight = std::make_unique<SunlightOfRadiationPressure>(
-        std::make_unique<RadiationPressureForce>(kAnySphere, Shadow::kCylindrical));
+        std::make_unique<RadiationPressureForce>(kAnySphere, settings_.forces.shadow));
+  }
+  if (has_torque(settings, TorqueKind::kAerodynamic)) {
+    load_atmosphere(settings_, data_);
+    surroundings.air = std::make_unique<AirOfDrag>(std::make_unique<DragForce>(
+        kAnySphere, data_.atmosphere, data_.space_weather, settings_.forces.geomagnetic_index, settings_.epoch));
   }
   own->set_attitude(make_attitude(settings, std::move(surroundings)));
 }
