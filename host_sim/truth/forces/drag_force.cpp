@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "host_sim/truth/earth/geodetic.h"
