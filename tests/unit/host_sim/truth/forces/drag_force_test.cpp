@@ -83,7 +83,7 @@ TEST(DragForce, NothingDragsOnWhatTurnsWithTheEarth) {
   DragForce force = drag();
   double largest = 0.0;
   for (const Vector3& r_itrf : {Vector3(6.9e6, 0.0, 0.0), Vector3(-4e6, 4e6, 4e6), Vector3(1e6, -2e6, -6.6e6)}) {
-    for (double seconds = 100.0; seconds < 80000.0; seconds += 9000.0) {
+    for (int seconds = 100; seconds < 80000; seconds += 9000) {
       constexpr double kStep = 1.0;  // s: truncation w^3 r/6 = 4e-7 m/s
       ForceInput input;
       input.seconds = seconds;
@@ -221,7 +221,8 @@ TEST(DragForce, HasNoAirBelowTheGroundAndSomeEverywhereAbove) {
   const Vector3 v(0.0, 7612.0, 0.0);
   EXPECT_THROW(force.acceleration_eci(input_at(0.0, {6378136.0, 0.0, 0.0}, v)), std::domain_error);
   double before = std::numeric_limits<double>::infinity();
-  for (double distance = 6378138.0; distance < 4.3e7; distance *= 1.01) {
+  for (int step = 0; step < 190; ++step) {
+    const double distance = 6378138.0 * std::pow(1.01, step);  // to geostationary
     const double now =
         force.acceleration_eci(input_at(0.0, {distance, 0.0, 0.0}, {0.0, 7612.0 + kEarthRate * distance, 0.0})).norm();
     EXPECT_GT(now, 0.0);
