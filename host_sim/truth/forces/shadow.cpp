@@ -68,7 +68,9 @@ double penumbra_sunlit_fraction(const SkyDisks& disks) {
 }
 
 double inner_sunlit_fraction(const SkyDisks& disks) {
-  const double ratio = std::tan(0.5 * disks.earth_radius) / std::tan(0.5 * disks.sun_radius);
+  // The same circles as in the penumbra, so that nothing jumps at the rim between them.
+  const PlaneCircles circles = stereographic(disks);
+  const double ratio = circles.earth_radius / circles.sun_radius;
   return std::max(0.0, 1.0 - ratio * ratio);
 }
 

@@ -14,6 +14,7 @@
 #include "host_sim/truth/truth_model.h"
 #include "tests/support/accuracy.h"
 #include "tests/unit/host_sim/truth/cowell.h"
+#include "tests/unit/host_sim/truth/forces_fixture.h"
 #include "tests/unit/host_sim/truth/truth_fixture.h"
 
 namespace vbar::truth {
@@ -24,26 +25,10 @@ using fsw::orbit::CartesianState;
 using test::cowell;
 using test::mission_epoch;
 
-/// J2 about the inertial z axis: the field of the oracle below.
-class InertialJ2 final : public Force {
- public:
-  std::string_view name() const override { return "inertial J2"; }
-  Vector3 acceleration_eci(const ForceInput& input) override {
-    constexpr double kJ2 = 1.0826358191967e-3;
-    const Vector3& r = input.position_eci;
-    const double d = r.norm(), z2 = 5.0 * r.z() * r.z() / (d * d);
-    const double scale = -1.5 * kJ2 * test::kGm * test::kEarthRadius * test::kEarthRadius / std::pow(d, 5);
-    return scale * Vector3(r.x() * (1.0 - z2), r.y() * (1.0 - z2), r.z() * (3.0 - z2));
-  }
-};
-
 std::unique_ptr<SpacecraftDynamics> dynamics_with(std::unique_ptr<Force> force) {
-  const auto orientation = std::make_shared<const EarthOrientationSeries>(
-      EarthOrientationSeries::load(test::kDataDirectory / "earth/eop_2009_2013.csv"));
   std::vector<std::unique_ptr<Force>> forces;
   forces.push_back(std::move(force));
-  return std::make_unique<SpacecraftDynamics>("test", test::kGm, test::kEarthRadius,
-                                              EarthRotation(orientation, mission_epoch()), std::move(forces));
+  return test::dynamics_with(std::move(forces));
 }
 
 std::unique_ptr<SpacecraftDynamics> gravity_60() {
@@ -58,7 +43,8 @@ fsw::GpsTime after(double seconds) {
 TEST(TruthAccuracy, J2OrbitOfAnotherProgram) {
   // The mission's table state after 21600 s under J2 alone, printed to 0.1 mm and 1e-6 m/s: half a unit of it, and 0.1
   // mm for this propagation (measured against Cowell below).
-  SpacecraftPropagator propagator(dynamics_with(std::make_unique<InertialJ2>()), 1e-13, 0.0, test::servicer_state());
+  SpacecraftPropagator propagator(dynamics_with(std::make_unique<test::InertialJ2>()), 1e-13, 0.0,
+                                  test::servicer_state());
   propagator.advance_to(21600.0);
   const CartesianState end = propagator.state();
   accuracy::expect_below("six hours under J2 alone, position", "another program, printed to 0.1 mm",
