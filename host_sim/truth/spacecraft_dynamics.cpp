@@ -156,6 +156,10 @@ ForceInput SpacecraftDynamics::input_at(double seconds, const fsw::orbit::Cartes
   return input;
 }
 
+fsw::Vector3 SpacecraftDynamics::sun_eci_at(double seconds) {
+  return sun_moon_.at(tt_of(earth_rotation_.epoch(), seconds)).sun_eci;
+}
+
 void SpacecraftDynamics::check_altitude(double seconds, const fsw::Vector3& position_eci) const {
   const double altitude = position_eci.norm() - earth_radius_;
   // Written so that a state that is not a number is refused as well.

@@ -77,6 +77,14 @@ class SpacecraftDynamics {
   /// The first date after `seconds` at which a force jumps by itself.
   double next_jump_after(double seconds) const;
 
+  /// What forces, and torques beside them, are given at an instant. The Sun and the Moon only if a force needs them or
+  /// provide_sun_and_moon() was called.
+  ForceInput input_at(double seconds, const fsw::orbit::CartesianState& state);
+  void provide_sun_and_moon() { needs_sun_and_moon_ = true; }
+
+  /// Geocentric position of the Sun, m.
+  fsw::Vector3 sun_eci_at(double seconds);
+
   /// Takes the time that each force takes from now on (some 50 ns a force are added to it), or stops doing so.
   void measure_time(bool on);
   std::vector<ForceTime> times() const;
@@ -92,7 +100,6 @@ class SpacecraftDynamics {
     int index;
   };
 
-  ForceInput input_at(double seconds, const fsw::orbit::CartesianState& state);
   fsw::Vector3 timed_perturbation_eci(double seconds, const fsw::orbit::CartesianState& state);
   void check_altitude(double seconds, const fsw::Vector3& position_eci) const;
 

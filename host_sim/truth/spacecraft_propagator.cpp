@@ -75,7 +75,12 @@ SpacecraftPropagator::SpacecraftPropagator(std::unique_ptr<SpacecraftDynamics> d
 void SpacecraftPropagator::advance_to(double seconds) {
   if (!(seconds >= current_)) throw std::invalid_argument("the truth does not go back in time");
   naming(name(), [&] {
-    while (integrator_.time() < seconds) step();
+    while (integrator_.time() < seconds) {
+      // An attitude under torques follows the orbit's steps one by one.
+      if (attitude_) attitude_->advance_to(integrator_.time(), integrator_.time());
+      step();
+    }
+    if (attitude_) attitude_->advance_to(seconds, integrator_.time());
   });
   current_ = seconds;
 }
@@ -144,6 +149,25 @@ fsw::orbit::CartesianState SpacecraftPropagator::state_at(double seconds) const 
   return orbit_geometry(elements_from_vector(elements), dynamics_->gm()).state;
 }
 
+OrbitalMotion SpacecraftPropagator::motion_at(double seconds) const {
+  const fsw::orbit::CartesianState state = state_at(seconds);
+  const double r = state.position_eci.norm();
+  const fsw::Vector3 central = -dynamics_->gm() / (r * r * r) * state.position_eci;
+  return {state.position_eci, state.velocity_eci, central + dynamics_->perturbation_eci(seconds, state)};
+}
+
+ForceInput SpacecraftPropagator::surroundings_at(double seconds) const {
+  const double known = std::min(seconds, integrator_.time());
+  return dynamics_->input_at(known, state_at(known));
+}
+
+AttitudeState SpacecraftPropagator::attitude_at(double seconds) const {
+  if (!attitude_) throw std::logic_error(fmt::format("spacecraft \"{}\" has no attitude", name()));
+  AttitudeState attitude;
+  naming(name(), [&] { attitude = attitude_->state_at(seconds); });
+  return attitude;
+}
+
 void SpacecraftPropagator::apply_impulse_rtn(const fsw::Vector3& dv_rtn) {
   if (!dv_rtn.allFinite())
     throw std::invalid_argument(fmt::format("spacecraft \"{}\": an impulse is not a number", name()));
@@ -155,6 +179,7 @@ void SpacecraftPropagator::apply_impulse_rtn(const fsw::Vector3& dv_rtn) {
     const fsw::orbit::QnsElements elements = dated_elements(*dynamics_, after, current_);
     dynamics_->enter_regime_of(current_, after);
     integrator_.restart(vector_from_elements(elements));
+    if (attitude_) attitude_->orbit_changed(current_);
   });
 }
 
