@@ -45,6 +45,9 @@ class TruthModel {
     return add_spacecraft({name, osculating, {}});
   }
 
+  /// What the forces share.
+  const ForceData& data() const { return data_; }
+
   std::size_t spacecraft_count() const { return spacecraft_.size(); }
 
   /// Throws std::invalid_argument for a name that no spacecraft has.
