@@ -15,6 +15,7 @@
 #include "fsw/orbit/elements.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/link_model.h"
+#include "host_sim/mission/attitude.h"
 #include "host_sim/truth/truth_settings.h"
 
 namespace vbar::mission {
@@ -72,6 +73,7 @@ struct Spacecraft {
   std::uint8_t number = 0;  ///< as in packet headers
   SurfaceProperties surface;
   std::variant<OrbitByElements, OrbitByWaypoint> orbit;
+  std::optional<Attitude> attitude;
   std::optional<FlightComputer> flight_computer;
   std::optional<NavigationSensor> navigation;
   std::optional<Thruster> thruster;

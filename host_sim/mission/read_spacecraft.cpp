@@ -3,6 +3,7 @@
 
 #include "fsw/math/math.h"
 #include "host_sim/mission/names.h"
+#include "host_sim/mission/read_attitude.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/mission/spacecraft_group.h"
 
@@ -152,6 +153,8 @@ Spacecraft read_one(TableReader& section, const Member& member, const std::vecto
   spacecraft.number = read_number(section, member, mission);
   spacecraft.surface = read_surface(section, member);
   spacecraft.orbit = read_orbit(section, member, mission);
+  spacecraft.attitude = read_attitude(section.table("attitude"), spacecraft.name,
+                                      member.group.name() == "target" ? "tango" : "mango", names);
   if (section.has("flight_computer"))
     spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
 
@@ -167,8 +170,8 @@ Spacecraft read_one(TableReader& section, const Member& member, const std::vecto
 void read_section(TableReader& section, const SpacecraftGroup& group, const std::vector<std::string>& names,
                   Mission& mission) {
   section.accept_only({"name", "count", "spacing", "number", "mass_kg", "drag_area_m2", "drag_coefficient",
-                       "radiation_area_m2", "radiation_coefficient", "elements", "relative", "flight_computer",
-                       "sensors", "actuators"});
+                       "radiation_area_m2", "radiation_coefficient", "elements", "relative", "attitude",
+                       "flight_computer", "sensors", "actuators"});
   for (int index = 0; index < group.count(); ++index)
     mission.spacecraft.push_back(read_one(section, {group, index}, names, mission));
 }

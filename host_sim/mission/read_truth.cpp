@@ -47,10 +47,9 @@ void read_truth(const TableReader& document, Mission& mission) {
   const int order = std::min(truth.gravity_order, truth.gravity_degree);
   truth.gravity_order = static_cast<int>(section.integer("gravity_order", 0, truth.gravity_degree, order));
   truth.forces = read_forces(section);
-  truth.tolerance = section.number("relative_tolerance",
-                                   from_to(truth::TruthSettings::kSmallestTolerance,
-                                           truth::TruthSettings::kLargestTolerance),
-                                   truth.tolerance);
+  truth.tolerance = section.number(
+      "relative_tolerance", from_to(truth::TruthSettings::kSmallestTolerance, truth::TruthSettings::kLargestTolerance),
+      truth.tolerance);
   truth.threads = static_cast<int>(section.integer("threads", 1, 256, truth.threads));
   truth.gravity_file = read_file(section, "gravity_file", truth.gravity_file, mission);
   truth.earth_orientation_file = read_file(section, "earth_orientation_file", truth.earth_orientation_file, mission);

@@ -18,7 +18,8 @@ namespace vbar::mission {
 
 class SpacecraftGroup {
  public:
-  /// Reads `name`, `count` and `spacing` of a [[spacecraft]] section, which must outlive the group. Throws MissionError.
+  /// Reads `name`, `count` and `spacing` of a [[spacecraft]] section, which must outlive the group. Throws
+  /// MissionError.
   explicit SpacecraftGroup(const TableReader& section);
 
   [[nodiscard]] const std::string& name() const { return name_; }

@@ -60,23 +60,25 @@ void load_earth_orientation(const TruthSettings& settings, ForceData& data) {
   check_reach(settings, file, [&](fsw::GpsTime time) { static_cast<void>(data.earth_orientation->at(time)); });
 }
 
+/// A force on the surface is that of an area over a mass: without one of them there is none, which nobody asks for.
+void require(const SpacecraftSettings& spacecraft, std::string_view force, std::string_view property, double value) {
+  if (value > 0.0) return;
+  throw std::invalid_argument(
+      fmt::format("spacecraft \"{}\": {} needs {} above 0; it has {}", spacecraft.name, force, property, value));
+}
+
+}  // namespace
+
 void load_atmosphere(const TruthSettings& settings, ForceData& data) {
+  if (data.atmosphere) return;
   const std::filesystem::path file = settings.data_directory / settings.space_weather_file;
-  data.atmosphere = std::make_shared<const Nrlmsise00Tables>(load_nrlmsise00_tables(settings.data_directory / kAtmosphereFile));
+  data.atmosphere =
+      std::make_shared<const Nrlmsise00Tables>(load_nrlmsise00_tables(settings.data_directory / kAtmosphereFile));
   data.space_weather = std::make_shared<const SpaceWeather>(SpaceWeather::load(file));
   check_reach(settings, file, [&](fsw::GpsTime time) {
     static_cast<void>(data.space_weather->indices_at(time, settings.forces.geomagnetic_index));
   });
 }
-
-/// A force on the surface is that of an area over a mass: without one of them there is none, which nobody asks for.
-void require(const SpacecraftSettings& spacecraft, std::string_view force, std::string_view property, double value) {
-  if (value > 0.0) return;
-  throw std::invalid_argument(fmt::format("spacecraft \"{}\": {} needs {} above 0; it has {}", spacecraft.name, force,
-                                          property, value));
-}
-
-}  // namespace
 
 ForceData load_force_data(const TruthSettings& settings) {
   ForceData data;

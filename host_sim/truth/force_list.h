@@ -29,6 +29,10 @@ struct ForceData {
 /// reach from the epoch to the end.
 ForceData load_force_data(const TruthSettings& settings);
 
+/// Loads the atmosphere and its solar indices, which load_force_data() leaves out without drag; nothing if they are
+/// there. Throws as load_force_data().
+void load_atmosphere(const TruthSettings& settings, ForceData& data);
+
 /// The forces on one spacecraft, gravity first. Throws std::invalid_argument, naming spacecraft, force and property, if
 /// a force needs a mass, an area or a coefficient that the spacecraft does not have.
 std::vector<std::unique_ptr<Force>> make_forces(const TruthSettings& settings, const ForceData& data,

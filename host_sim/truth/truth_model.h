@@ -11,6 +11,7 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
+#include "host_sim/truth/attitude/attitude_settings.h"
 #include "host_sim/truth/force_list.h"
 #include "host_sim/truth/spacecraft_propagator.h"
 #include "host_sim/truth/truth_settings.h"
@@ -69,6 +70,20 @@ class TruthModel {
 
   /// Adds a velocity (m/s, in the spacecraft's own RTN) at the current time.
   void apply_impulse_rtn(std::size_t index, const fsw::Vector3& dv_rtn);
+
+  /// Gives a spacecraft an attitude from the current time on. Throws std::invalid_argument for settings that make none
+  /// (a body that is none, axes that are not two, a spacecraft to point at that is not there).
+  void set_attitude(std::size_t index, const AttitudeSettings& settings);
+
+  bool has_attitude(std::size_t index) const { return spacecraft_.at(index)->has_attitude(); }
+
+  /// Attitude at the current time. Throws std::logic_error if the spacecraft has none, std::domain_error where its
+  /// pointing does not determine it.
+  AttitudeState attitude(std::size_t index) const { return attitude_at(index, time_); }
+
+  /// Attitude at another time near the current one, as state_at; of a spacecraft that points at another, where the
+  /// states of both are kept.
+  AttitudeState attitude_at(std::size_t index, fsw::GpsTime time) const;
 
   TruthStatistics statistics() const;
   TruthStatistics statistics(std::size_t index) const;

@@ -12,11 +12,11 @@
 namespace vbar::truth {
 
 struct TruthSettings {
-  fsw::GpsTime epoch;       ///< start of the run
-  fsw::GpsTime end;         ///< last instant that will be asked for: the data must reach it; before the epoch: unknown
-  int gravity_degree = 60;  ///< 0 (point mass) to that of the gravity file
-  int gravity_order = 60;   ///< 0 to the degree
-  ForceModel forces;        ///< beside gravity
+  fsw::GpsTime epoch;        ///< start of the run
+  fsw::GpsTime end;          ///< last instant that will be asked for: the data must reach it; before the epoch: unknown
+  int gravity_degree = 60;   ///< 0 (point mass) to that of the gravity file
+  int gravity_order = 60;    ///< 0 to the degree
+  ForceModel forces;         ///< beside gravity
   double tolerance = 1e-12;  ///< local error a step, in units of the orbit's size: kSmallestTolerance to
                              ///< kLargestTolerance
   int threads = 1;           ///< at most so many spacecraft are propagated at a time; does not change a bit

@@ -3,9 +3,10 @@
 // Aikin 2002, J. Geophys. Res. 107(A12), 1468), with the coefficients of its release. The model was fitted up to about
 // 1000 km; above, its formulas go on (diffusive equilibrium at the exosphere's temperature).
 //
-// Its altitude ranges do not join smoothly everywhere, as released: variations are switched at 123.4 and 300 km and
-// each species' mixing at a ceiling of its own (160 to 450 km). The steps in density are below 1e-3 at 123.4 km and
-// below 1e-4 elsewhere (held by its test).
+// Its altitude ranges do not join smoothly, as released: variations of temperature are switched at 72.5, 123.4 and 300
+// km and each species' mixing at a ceiling of its own, 160 to 450 km. The steps in density are below 1e-2 at 72.5 and
+// 123.4 km, 3e-3 at 160 km, 5e-4 at 300 km and 1e-4 elsewhere (held by its test): part of the model, whose error is 15
+// %.
 
 #include <memory>
 

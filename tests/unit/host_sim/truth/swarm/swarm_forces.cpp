@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "host_sim/truth/forces/drag_force.h"
 #include "host_sim/truth/forces/gravity_force.h"
 #include "host_sim/truth/forces/radiation_pressure_force.h"
 #include "host_sim/truth/forces/relativity_force.h"
@@ -32,6 +33,10 @@ SwarmOrbit::SwarmOrbit()
     : orbit_(load_precise_orbit(kDataDirectory / "orbits/swarm_a_2022_001.csv")),
       orientation_(std::make_shared<const EarthOrientationSeries>(
           EarthOrientationSeries::load(kDataDirectory / "earth/eop_swarm_2022.csv"))),
+      space_weather_(std::make_shared<const SpaceWeather>(
+          SpaceWeather::load(kDataDirectory / "earth/space_weather_swarm_2022.csv"))),
+      atmosphere_(std::make_shared<const Nrlmsise00Tables>(
+          load_nrlmsise00_tables(kDataDirectory / "atmosphere/nrlmsise00.csv"))),
       gravity_(load_gravity_coefficients(kDataDirectory / "gravity/ggm05s_120.txt", 120)) {
   EarthRotation rotation(orientation_, orbit_.epoch);
   for (const PreciseState& state : orbit_.states) measured_.push_back(to_eci(state, rotation).position_eci);
@@ -42,13 +47,19 @@ std::unique_ptr<SpacecraftDynamics> SwarmOrbit::dynamics(const SwarmForces& on, 
   std::vector<std::unique_ptr<Force>> forces;
   forces.push_back(std::make_unique<GravityForce>(
       std::make_shared<const GravityField>(gravity_, on.gravity_degree, on.gravity_degree)));
-  (void)drag_scale;
+  if (on.drag) {
+    SurfaceProperties scaled = kSwarm;
+    scaled.drag_coefficient *= drag_scale;
+    forces.push_back(
+        std::make_unique<DragForce>(scaled, atmosphere_, space_weather_, GeomagneticIndex::kThreeHourly, orbit_.epoch));
+  }
   if (on.radiation_pressure) forces.push_back(std::make_unique<RadiationPressureForce>(kSwarm, Shadow::kConical));
   if (on.sun) forces.push_back(std::make_unique<ThirdBodyForce>(ThirdBodyForce::Body::kSun));
   if (on.moon) forces.push_back(std::make_unique<ThirdBodyForce>(ThirdBodyForce::Body::kMoon));
   if (on.solid_tides) {
-    forces.push_back(std::make_unique<SolidTidesForce>(
-        gravity_.gm, gravity_.radius, tide_system_named(gravity_.tide_system), orbit_.epoch, orientation_));
+    const TideSystem system = on.permanent_tide_twice ? TideSystem::kTideFree : tide_system_named(gravity_.tide_system);
+    forces.push_back(
+        std::make_unique<SolidTidesForce>(gravity_.gm, gravity_.radius, system, orbit_.epoch, orientation_));
   }
   if (on.relativity) forces.push_back(std::make_unique<RelativityForce>(gravity_.gm));
   return std::make_unique<SpacecraftDynamics>("Swarm A", gravity_.gm, gravity_.radius,

@@ -4,7 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
 #include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/truth/earth/space_weather.h"
 #include "host_sim/truth/forces/force_model.h"
 #include "host_sim/truth/forces/gravity_coefficients.h"
 #include "host_sim/truth/forces/gravity_field.h"
@@ -23,6 +25,7 @@ struct SwarmForces {
   bool moon = true;
   bool solid_tides = true;
   bool relativity = true;
+  bool permanent_tide_twice = false;  ///< as if the gravity model's C20 held nothing of it
 };
 
 class SwarmOrbit {
@@ -44,6 +47,8 @@ class SwarmOrbit {
 
   PreciseOrbit orbit_;
   std::shared_ptr<const EarthOrientationSeries> orientation_;
+  std::shared_ptr<const SpaceWeather> space_weather_;
+  std::shared_ptr<const Nrlmsise00Tables> atmosphere_;
   GravityCoefficients gravity_;
   Positions measured_;
   fsw::orbit::CartesianState first_state_;
