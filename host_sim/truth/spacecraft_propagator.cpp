@@ -88,14 +88,14 @@ void SpacecraftPropagator::advance_to(double seconds) {
 void SpacecraftPropagator::step() {
   const double jump = dynamics_->next_jump_after(integrator_.time());
   regime_of_last_step_ = dynamics_->regime();
-  integrator_.step(jump);
+  integrator_.step(std::min(jump, integrator_.time() + regime_of_last_step_.longest_step));
   const std::optional<Crossing> crossing = first_crossing_in_last_step();
   if (crossing) integrator_.cut_last_step(crossing->seconds);
   kept_.push_back({integrator_.time(), integrator_.last_step()});
   if (kept_.size() > kKeptSteps) kept_.pop_front();
 
   if (crossing) {
-    dynamics_->cross_edge(crossing->edge);
+    dynamics_->cross_edge(crossing->edge, integrator_.time(), cartesian(integrator_.state()));
     ++edges_crossed_;
   }
   const bool jumped = integrator_.time() == jump;
@@ -111,8 +111,7 @@ void SpacecraftPropagator::step() {
 }
 
 double SpacecraftPropagator::edge_in_last_step(int edge, double seconds) const {
-  const fsw::Vector6 elements = integrator_.last_step()(seconds);
-  return dynamics_->edge(edge, seconds, orbit_geometry(elements_from_vector(elements), dynamics_->gm()).state);
+  return dynamics_->edge(edge, seconds, cartesian(integrator_.last_step()(seconds)));
 }
 
 std::optional<SpacecraftPropagator::Crossing> SpacecraftPropagator::first_crossing_in_last_step() const {
@@ -146,6 +145,10 @@ fsw::orbit::CartesianState SpacecraftPropagator::state_at(double seconds) const 
     }
     elements = kept->solution(seconds);
   }
+  return cartesian(elements);
+}
+
+fsw::orbit::CartesianState SpacecraftPropagator::cartesian(const fsw::Vector6& elements) const {
   return orbit_geometry(elements_from_vector(elements), dynamics_->gm()).state;
 }
 

@@ -100,6 +100,7 @@ class SpacecraftPropagator {
   std::optional<Crossing> first_crossing_in_last_step() const;
   double edge_in_last_step(int edge, double seconds) const;
   void retake_last_step_to(double seconds);
+  fsw::orbit::CartesianState cartesian(const fsw::Vector6& elements) const;
 
   std::unique_ptr<SpacecraftDynamics> dynamics_;
   Integrator integrator_;
