@@ -41,7 +41,7 @@ class SwarmA : public testing::Test {
 TEST_F(SwarmA, OrbitIsMetWithAllForces) {
   constexpr const char* kReference = "ESA's precise orbit (some cm), 181 positions; start and drag scale fitted";
   const Distances found = residual({}, best_);
-  // Not modelled: ocean tides (2e-8 m/s^2, a tenth of the solid Earth's tide, whose effect is 2.7 m), the light and
+  // Not modelled: ocean tides (3e-8 m/s^2, a tenth of the solid Earth's tide, whose effect is 2.7 m), the light and
   // heat of the Earth (2e-8 m/s^2), a body that is no sphere to wind and sunlight (tenths of 1e-7 m/s^2), gravity above
   // degree 120 (from degree 90 to 120: 0.2 m). Each of them may be worth one or two decimetres over the arc.
   accuracy::expect_below("Swarm A over three hours, all forces, root mean square distance", kReference, found.rms, 0.2,
