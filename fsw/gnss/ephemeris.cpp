@@ -9,7 +9,7 @@
 namespace vbar::fsw::gnss {
 namespace {
 
-constexpr Duration kMaxAge = duration_of_seconds(4 * 3600);
+constexpr Duration kMaxAge = duration_of_seconds(14'400);
 constexpr int kMaxKeplerIterations = 10;
 
 struct SystemConstants {

@@ -31,7 +31,7 @@ constexpr double kMaxClockRate = 1.5e-8;       // 20 bits of 2^-46 (Galileo)
 constexpr double kMaxClockAging = 3.6e-15;     // 7 bits of 2^-55 /s (GPS)
 constexpr double kMaxGroupDelay = 1.2e-7;      // 9 bits of 2^-32 s (Galileo)
 // Clock and orbit of a set are referred to the same hour or two.
-constexpr Duration kMaxClockApart = duration_of_seconds(24 * 3600);
+constexpr Duration kMaxClockApart = duration_of_seconds(86'400);
 
 struct Bounded {
   double value;

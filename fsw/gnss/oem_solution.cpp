@@ -34,15 +34,15 @@ Vector3 read_f32_vector(std::span<const std::uint8_t> bytes, std::size_t offset)
 }
 
 /// Semi-major axis and flattening of WGS 84 (NGA.STND.0036).
-Vector3 ecef_of_geodetic(double latitude, double longitude, double height_m) {
+Vector3 ecef_of_geodetic(double latitude, double longitude, double height) {
   constexpr double kA = 6378137.0;
   constexpr double kFlattening = 1.0 / 298.257223563;
   constexpr double kE2 = kFlattening * (2.0 - kFlattening);
   const double sin_latitude = math::sin(latitude);
   const double cos_latitude = math::cos(latitude);
   const double normal = kA / math::sqrt(1.0 - kE2 * sin_latitude * sin_latitude);
-  return {(normal + height_m) * cos_latitude * math::cos(longitude),
-          (normal + height_m) * cos_latitude * math::sin(longitude), (normal * (1.0 - kE2) + height_m) * sin_latitude};
+  return {(normal + height) * cos_latitude * math::cos(longitude),
+          (normal + height) * cos_latitude * math::sin(longitude), (normal * (1.0 - kE2) + height) * sin_latitude};
 }
 
 }  // namespace
@@ -114,16 +114,16 @@ Result<ReceiverPosition> read_best_position(const OemMessage& message) {
   if (read_u32(message.body, 0) != kSolutionComputed) return Status::kNotReady;
   const double latitude_deg = read_f64(message.body, 8);
   const double longitude_deg = read_f64(message.body, 16);
-  const double height_m = read_f64(message.body, 24) + read_f32(message.body, 32);  // above the geoid, and the geoid's
+  const double height = read_f64(message.body, 24) + read_f32(message.body, 32);  // above the geoid, and the geoid's
   const Vector3 sigma_m = read_f32_vector(message.body, 40);
   if (!within(latitude_deg, -90.0, 90.0) || !within(longitude_deg, -360.0, 360.0) ||
-      !within(height_m, -kMaxRadius, kMaxRadius) || !within(sigma_m, 0.0, kMaxSigma) ||
+      !within(height, -kMaxRadius, kMaxRadius) || !within(sigma_m, 0.0, kMaxSigma) ||
       read_u32(message.body, 36) != kWgs84) {
     return Status::kOutOfRange;
   }
   ReceiverPosition solution;
   solution.receiver_time = time.value();
-  solution.position_ecef = ecef_of_geodetic(latitude_deg * math::kDegree, longitude_deg * math::kDegree, height_m);
+  solution.position_ecef = ecef_of_geodetic(latitude_deg * math::kDegree, longitude_deg * math::kDegree, height);
   solution.position_sigma_m = Vector3::Constant(math::sqrt(sigma_m.squaredNorm()));
   solution.satellites_used = message.body[65];
   return solution;
