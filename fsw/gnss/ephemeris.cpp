@@ -1,6 +1,5 @@
 #include "fsw/gnss/ephemeris.h"
 
-#include <array>
 
 #include "fsw/gnss/gps_week.h"
 #include "fsw/gnss/tracking_status.h"
