@@ -106,7 +106,6 @@ class SpacecraftDynamics {
   };
 
   double longest_step(const ForceInput& input) const;
-  ForceInput input_at(double seconds, const fsw::orbit::CartesianState& state);
   fsw::Vector3 timed_perturbation_eci(double seconds, const fsw::orbit::CartesianState& state);
   void check_altitude(double seconds, const fsw::Vector3& position_eci) const;
 
