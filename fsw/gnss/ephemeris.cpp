@@ -1,6 +1,5 @@
 #include "fsw/gnss/ephemeris.h"
 
-
 #include "fsw/gnss/gps_week.h"
 #include "fsw/gnss/tracking_status.h"
 #include "fsw/math/math.h"
