@@ -1,7 +1,5 @@
 #include "fsw/gnss/ephemeris.h"
 
-#include <array>
-
 #include "fsw/gnss/gps_week.h"
 #include "fsw/gnss/tracking_status.h"
 #include "fsw/math/math.h"
@@ -9,7 +7,7 @@
 namespace vbar::fsw::gnss {
 namespace {
 
-constexpr Duration kMaxAge = duration_of_seconds(4 * 3600);
+constexpr Duration kMaxAge = duration_of_seconds(14'400);
 constexpr int kMaxKeplerIterations = 10;
 
 struct SystemConstants {

@@ -21,17 +21,17 @@ constexpr double kMaxEccentricityGps = 0.03;
 constexpr double kMaxEccentricity = 0.2;
 // Sent between -pi and pi; receivers that pass them on in radians may turn them positive.
 constexpr double kMaxAngle = math::kTwoPi;
-constexpr double kMaxDeltaN = 1.2e-8;        // 15 bits of 2^-43 semicircles/s
-constexpr double kMaxNodeRate = 3.0e-6;      // 23 bits of the same
-constexpr double kMaxIDot = 3.0e-9;          // 13 bits of the same
-constexpr double kMaxHarmonic = 6.2e-5;      // 17 bits of 2^-31 rad (BeiDou)
-constexpr double kMaxHarmonic_m = 2048.0;    // 17 bits of 2^-6 m (BeiDou)
-constexpr double kMaxClock_s = 0.0625;       // 30 bits of 2^-34 s (Galileo)
-constexpr double kMaxClockRate = 1.5e-8;     // 20 bits of 2^-46 (Galileo)
-constexpr double kMaxClockAging = 3.6e-15;   // 7 bits of 2^-55 /s (GPS)
-constexpr double kMaxGroupDelay_s = 1.2e-7;  // 9 bits of 2^-32 s (Galileo)
+constexpr double kMaxDeltaN = 1.2e-8;          // 15 bits of 2^-43 semicircles/s
+constexpr double kMaxNodeRate = 3.0e-6;        // 23 bits of the same
+constexpr double kMaxIDot = 3.0e-9;            // 13 bits of the same
+constexpr double kMaxAngleHarmonic = 6.2e-5;   // 17 bits of 2^-31 rad (BeiDou)
+constexpr double kMaxRadiusHarmonic = 2048.0;  // 17 bits of 2^-6 m (BeiDou)
+constexpr double kMaxClock = 0.0625;           // 30 bits of 2^-34 s (Galileo)
+constexpr double kMaxClockRate = 1.5e-8;       // 20 bits of 2^-46 (Galileo)
+constexpr double kMaxClockAging = 3.6e-15;     // 7 bits of 2^-55 /s (GPS)
+constexpr double kMaxGroupDelay = 1.2e-7;      // 9 bits of 2^-32 s (Galileo)
 // Clock and orbit of a set are referred to the same hour or two.
-constexpr Duration kMaxClockApart = duration_of_seconds(24 * 3600);
+constexpr Duration kMaxClockApart = duration_of_seconds(86'400);
 
 struct Bounded {
   double value;
@@ -68,16 +68,16 @@ Status check(const Ephemeris& ephemeris) {
   const SatelliteId& satellite = ephemeris.satellite;
   const bool gps = satellite.constellation == Constellation::kGps;
   const std::array<Bounded, 20> list{
-      {{ephemeris.sqrt_a, kMaxSqrtA},   {ephemeris.e, gps ? kMaxEccentricityGps : kMaxEccentricity},
-       {ephemeris.m0, kMaxAngle},       {ephemeris.omega0, kMaxAngle},
-       {ephemeris.i0, kMaxAngle},       {ephemeris.omega, kMaxAngle},
-       {ephemeris.delta_n, kMaxDeltaN}, {ephemeris.omega_dot, kMaxNodeRate},
-       {ephemeris.i_dot, kMaxIDot},     {ephemeris.cuc, kMaxHarmonic},
-       {ephemeris.cus, kMaxHarmonic},   {ephemeris.cic, kMaxHarmonic},
-       {ephemeris.cis, kMaxHarmonic},   {ephemeris.crc, kMaxHarmonic_m},
-       {ephemeris.crs, kMaxHarmonic_m}, {ephemeris.toe_of_week_s, static_cast<double>(kSecondsPerWeek)},
-       {ephemeris.af0, kMaxClock_s},    {ephemeris.af1, kMaxClockRate},
-       {ephemeris.af2, kMaxClockAging}, {ephemeris.group_delay_s, kMaxGroupDelay_s}}};
+      {{ephemeris.sqrt_a, kMaxSqrtA},       {ephemeris.e, gps ? kMaxEccentricityGps : kMaxEccentricity},
+       {ephemeris.m0, kMaxAngle},           {ephemeris.omega0, kMaxAngle},
+       {ephemeris.i0, kMaxAngle},           {ephemeris.omega, kMaxAngle},
+       {ephemeris.delta_n, kMaxDeltaN},     {ephemeris.omega_dot, kMaxNodeRate},
+       {ephemeris.i_dot, kMaxIDot},         {ephemeris.cuc, kMaxAngleHarmonic},
+       {ephemeris.cus, kMaxAngleHarmonic},  {ephemeris.cic, kMaxAngleHarmonic},
+       {ephemeris.cis, kMaxAngleHarmonic},  {ephemeris.crc, kMaxRadiusHarmonic},
+       {ephemeris.crs, kMaxRadiusHarmonic}, {ephemeris.toe_of_week_s, static_cast<double>(kSecondsPerWeek)},
+       {ephemeris.af0, kMaxClock},          {ephemeris.af1, kMaxClockRate},
+       {ephemeris.af2, kMaxClockAging},     {ephemeris.group_delay_s, kMaxGroupDelay}}};
   const Status status = all_within(list);
   if (status != Status::kOk) return status;
   const bool known = satellite.prn > 0 && satellite.prn <= highest_prn(satellite.constellation);

@@ -46,19 +46,19 @@ Result<double> klobuchar_delay_l1_m(const KlobucharCoefficients& coefficients, c
       sight.longitude / math::kPi + earth_angle * math::sin(sight.azimuth) / math::cos(pierce_latitude * math::kPi);
   const double magnetic_latitude = pierce_latitude + 0.064 * math::cos((pierce_longitude - 1.617) * math::kPi);
 
-  constexpr std::int64_t kDay_ns = 86'400 * kNanosecondsPerSecond;
-  constexpr double kDay_s = 86'400.0;
-  const double local = 4.32e4 * pierce_longitude + seconds({time.ns % kDay_ns});
-  const double local_time = local - kDay_s * math::floor(local / kDay_s);
+  constexpr std::int64_t kDayNs = 86'400 * kNanosecondsPerSecond;
+  constexpr double kDay = 86'400.0;
+  const double local = 4.32e4 * pierce_longitude + seconds({time.ns % kDayNs});
+  const double local_time = local - kDay * math::floor(local / kDay);
 
   const double slant = 1.0 + 16.0 * (0.53 - elevation) * (0.53 - elevation) * (0.53 - elevation);
-  constexpr double kNight_s = 5.0e-9;
+  constexpr double kNight = 5.0e-9;
   double amplitude = cubic(coefficients.alpha, magnetic_latitude);
   if (amplitude < 0.0) amplitude = 0.0;
   double period = cubic(coefficients.beta, magnetic_latitude);
   if (period < 72'000.0) period = 72'000.0;
   const double x = math::kTwoPi * (local_time - 50'400.0) / period;
-  double vertical = kNight_s;
+  double vertical = kNight;
   if (math::abs(x) < 1.57) vertical += amplitude * (1.0 - x * x / 2.0 + x * x * x * x / 24.0);
   return kSpeedOfLight * slant * vertical;
 }

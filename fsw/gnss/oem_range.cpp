@@ -15,16 +15,16 @@ constexpr std::size_t kRangeBytes = 44;
 constexpr std::size_t kCompressedBytes = 24;
 
 // From the ground or a low orbit a navigation satellite is 18,000 to 50,000 km away; 20 ms of clock error are 6,000 km.
-constexpr double kMinPseudorange_m = 1.0e7;
-constexpr double kMaxPseudorange_m = 6.0e7;
+constexpr double kMinPseudorange = 1.0e7;
+constexpr double kMaxPseudorange = 6.0e7;
 // Twice what a pseudorange of 60,000 km is in cycles, for a receiver that counts from an origin of its own.
-constexpr double kMaxPhase_cycles = 1.0e9;
+constexpr double kMaxPhaseCycles = 1.0e9;
 // 8 km/s of a low orbit on 4 km/s of a navigation satellite are 63 kHz; the receiver's oscillator adds a few.
-constexpr double kMaxDoppler_hz = 1.0e5;
-constexpr double kMaxSigma_m = 1.0e4;
-constexpr double kMaxPhaseSigma_cycles = 1.0e4;
-constexpr double kMaxCn0_dbhz = 100.0;
-constexpr double kMaxLockTime_s = 1.0e9;
+constexpr double kMaxDoppler = 1.0e5;
+constexpr double kMaxSigma = 1.0e4;
+constexpr double kMaxPhaseSigmaCycles = 1.0e4;
+constexpr double kMaxCn0Dbhz = 100.0;
+constexpr double kMaxLockTime = 1.0e9;
 
 /// False for NaN.
 bool within(double value, double low, double high) {
@@ -63,8 +63,8 @@ class EpochBuilder {
     observation.signal = used->signal;
     observation.code = status.signal;
     observation.phase_usable = status.phase_lock && status.parity_known;
-    if (!within(observation.carrier_phase_cycles, -kMaxPhase_cycles, kMaxPhase_cycles) ||
-        !within(observation.phase_sigma_cycles, 0.0, kMaxPhaseSigma_cycles)) {
+    if (!within(observation.carrier_phase_cycles, -kMaxPhaseCycles, kMaxPhaseCycles) ||
+        !within(observation.phase_sigma_cycles, 0.0, kMaxPhaseSigmaCycles)) {
       ++tally_.phase_refused;
       observation.phase_usable = false;
       observation.carrier_phase_cycles = 0.0;
@@ -75,10 +75,10 @@ class EpochBuilder {
 
  private:
   static bool plausible(const Observation& observation) {
-    return within(observation.pseudorange_m, kMinPseudorange_m, kMaxPseudorange_m) &&
-           within(observation.doppler_hz, -kMaxDoppler_hz, kMaxDoppler_hz) &&
-           within(observation.pseudorange_sigma_m, 0.0, kMaxSigma_m) &&
-           within(observation.cn0_dbhz, 0.0, kMaxCn0_dbhz) && within(observation.lock_time_s, 0.0, kMaxLockTime_s);
+    return within(observation.pseudorange_m, kMinPseudorange, kMaxPseudorange) &&
+           within(observation.doppler_hz, -kMaxDoppler, kMaxDoppler) &&
+           within(observation.pseudorange_sigma_m, 0.0, kMaxSigma) && within(observation.cn0_dbhz, 0.0, kMaxCn0Dbhz) &&
+           within(observation.lock_time_s, 0.0, kMaxLockTime);
   }
 
   /// Whether `a` stands after `b`.
@@ -137,8 +137,8 @@ double unrolled_phase_cycles(double rolled_adr_cycles, double pseudorange_m, Sig
 
 Record compressed_record(std::span<const std::uint8_t> bytes) {
   // Manual's table "Range record format (RANGECMP only)": standard deviations of the pseudorange, m.
-  constexpr std::array<double, 16> kPseudorangeSigma_m{0.050, 0.075, 0.113, 0.169, 0.253, 0.380, 0.570, 0.854,
-                                                       1.281, 2.375, 4.750, 9.500, 19.00, 38.00, 76.00, 152.0};
+  constexpr std::array<double, 16> kPseudorangeSigma{0.050, 0.075, 0.113, 0.169, 0.253, 0.380, 0.570, 0.854,
+                                                     1.281, 2.375, 4.750, 9.500, 19.00, 38.00, 76.00, 152.0};
   const auto field = [bytes](std::size_t first, unsigned count) { return read_low_first_bits(bytes, first, count); };
   const auto signed_field = [field](std::size_t first, unsigned count) {
     return static_cast<double>(sign_extended(static_cast<std::uint32_t>(field(first, count)), count));
@@ -147,7 +147,7 @@ Record compressed_record(std::span<const std::uint8_t> bytes) {
   record.status_word = static_cast<std::uint32_t>(field(0, 32));
   record.measured.doppler_hz = signed_field(32, 28) / 256.0;
   record.measured.pseudorange_m = static_cast<double>(field(60, 36)) / 128.0;
-  record.measured.pseudorange_sigma_m = kPseudorangeSigma_m[field(128, 4)];
+  record.measured.pseudorange_sigma_m = kPseudorangeSigma[static_cast<std::size_t>(field(128, 4))];
   record.measured.phase_sigma_cycles = static_cast<double>(field(132, 4) + 1) / 512.0;
   record.prn = static_cast<std::uint32_t>(field(136, 8));
   record.measured.lock_time_s = static_cast<double>(field(144, 21)) / 32.0;

@@ -12,10 +12,10 @@ constexpr std::uint32_t kSolutionComputed = 0;
 constexpr std::uint32_t kWgs84 = 61;
 
 // A receiver at the ground or in low orbit. Wide: navigation judges the rest.
-constexpr double kMaxRadius_m = 1.0e8;
-constexpr double kMaxSpeed_mps = 2.0e4;
-constexpr double kMaxClockOffset_s = 1.0;
-constexpr double kMaxLatency_s = 60.0;
+constexpr double kMaxRadius = 1.0e8;
+constexpr double kMaxSpeed = 2.0e4;
+constexpr double kMaxClockOffset = 1.0;
+constexpr double kMaxLatency = 60.0;
 constexpr double kMaxSigma = 1.0e9;
 
 /// False for NaN.
@@ -34,15 +34,15 @@ Vector3 read_f32_vector(std::span<const std::uint8_t> bytes, std::size_t offset)
 }
 
 /// Semi-major axis and flattening of WGS 84 (NGA.STND.0036).
-Vector3 ecef_of_geodetic(double latitude, double longitude, double height_m) {
+Vector3 ecef_of_geodetic(double latitude, double longitude, double height) {
   constexpr double kA = 6378137.0;
   constexpr double kFlattening = 1.0 / 298.257223563;
   constexpr double kE2 = kFlattening * (2.0 - kFlattening);
   const double sin_latitude = math::sin(latitude);
   const double cos_latitude = math::cos(latitude);
   const double normal = kA / math::sqrt(1.0 - kE2 * sin_latitude * sin_latitude);
-  return {(normal + height_m) * cos_latitude * math::cos(longitude),
-          (normal + height_m) * cos_latitude * math::sin(longitude), (normal * (1.0 - kE2) + height_m) * sin_latitude};
+  return {(normal + height) * cos_latitude * math::cos(longitude),
+          (normal + height) * cos_latitude * math::sin(longitude), (normal * (1.0 - kE2) + height) * sin_latitude};
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ Result<ReceiverClock> read_time(const OemMessage& message) {
   clock.receiver_time = time.value();
   clock.offset_s = read_f64(message.body, 4);
   clock.sigma_s = read_f64(message.body, 12);
-  if (!within(clock.offset_s, -kMaxClockOffset_s, kMaxClockOffset_s) || !within(clock.sigma_s, 0.0, kMaxSigma)) {
+  if (!within(clock.offset_s, -kMaxClockOffset, kMaxClockOffset) || !within(clock.sigma_s, 0.0, kMaxSigma)) {
     return Status::kOutOfRange;
   }
   return clock;
@@ -90,8 +90,7 @@ Result<ReceiverPosition> read_best_xyz(const OemMessage& message) {
   solution.position_ecef = read_f64_vector(message.body, 8);
   solution.position_sigma_m = read_f32_vector(message.body, 32);
   solution.satellites_used = message.body[105];
-  if (!within(solution.position_ecef, -kMaxRadius_m, kMaxRadius_m) ||
-      !within(solution.position_sigma_m, 0.0, kMaxSigma)) {
+  if (!within(solution.position_ecef, -kMaxRadius, kMaxRadius) || !within(solution.position_sigma_m, 0.0, kMaxSigma)) {
     return Status::kOutOfRange;
   }
   if (read_u32(message.body, 44) != kSolutionComputed) return solution;
@@ -99,9 +98,8 @@ Result<ReceiverPosition> read_best_xyz(const OemMessage& message) {
   solution.velocity_ecef = read_f64_vector(message.body, 52);
   solution.velocity_sigma_mps = read_f32_vector(message.body, 76);
   solution.velocity_latency_s = read_f32(message.body, 92);
-  if (!within(solution.velocity_ecef, -kMaxSpeed_mps, kMaxSpeed_mps) ||
-      !within(solution.velocity_sigma_mps, 0.0, kMaxSigma) ||
-      !within(solution.velocity_latency_s, -kMaxLatency_s, kMaxLatency_s)) {
+  if (!within(solution.velocity_ecef, -kMaxSpeed, kMaxSpeed) || !within(solution.velocity_sigma_mps, 0.0, kMaxSigma) ||
+      !within(solution.velocity_latency_s, -kMaxLatency, kMaxLatency)) {
     return Status::kOutOfRange;
   }
   return solution;
@@ -116,16 +114,16 @@ Result<ReceiverPosition> read_best_position(const OemMessage& message) {
   if (read_u32(message.body, 0) != kSolutionComputed) return Status::kNotReady;
   const double latitude_deg = read_f64(message.body, 8);
   const double longitude_deg = read_f64(message.body, 16);
-  const double height_m = read_f64(message.body, 24) + read_f32(message.body, 32);  // above the geoid, and the geoid's
+  const double height = read_f64(message.body, 24) + read_f32(message.body, 32);  // above the geoid, and the geoid's
   const Vector3 sigma_m = read_f32_vector(message.body, 40);
   if (!within(latitude_deg, -90.0, 90.0) || !within(longitude_deg, -360.0, 360.0) ||
-      !within(height_m, -kMaxRadius_m, kMaxRadius_m) || !within(sigma_m, 0.0, kMaxSigma) ||
+      !within(height, -kMaxRadius, kMaxRadius) || !within(sigma_m, 0.0, kMaxSigma) ||
       read_u32(message.body, 36) != kWgs84) {
     return Status::kOutOfRange;
   }
   ReceiverPosition solution;
   solution.receiver_time = time.value();
-  solution.position_ecef = ecef_of_geodetic(latitude_deg * math::kDegree, longitude_deg * math::kDegree, height_m);
+  solution.position_ecef = ecef_of_geodetic(latitude_deg * math::kDegree, longitude_deg * math::kDegree, height);
   solution.position_sigma_m = Vector3::Constant(math::sqrt(sigma_m.squaredNorm()));
   solution.satellites_used = message.body[65];
   return solution;

@@ -105,7 +105,7 @@ void OemStream::open_at_sync() {
   if (open_count_ == open_.size()) {
     std::copy(open_.begin() + 1, open_.end(), open_.begin());
     --open_count_;
-    ++counters_.disproved;
+    ++counters_.given_up;
   }
   Candidate candidate;
   candidate.start = size_ - kSyncBytes;

@@ -46,7 +46,8 @@ struct OemStreamCounters {
   std::uint32_t bad_checksum = 0;  ///< candidates that were complete and had a wrong CRC
   std::uint32_t bad_header = 0;    ///< candidates whose header length cannot be
   std::uint32_t oversized = 0;     ///< candidates longer than kMaxOemMessageBytes
-  std::uint32_t disproved = 0;     ///< candidates in which a whole message began and ended, or given up for room
+  std::uint32_t disproved = 0;     ///< candidates in which a whole message began and ended
+  std::uint32_t given_up = 0;      ///< candidates given up because newer ones needed their place
 };
 
 class OemStream {

@@ -2,11 +2,15 @@
 // Messages as a NovAtel receiver sends them, packed by the manual for the decoder's tests, with a CRC of its own: bit
 // by bit, where the decoder works by table.
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <vector>
+
+#include "fsw/gnss/gps_week.h"
+#include "fsw/gnss/oem_stream.h"
 
 namespace vbar::fsw::gnss::test {
 
@@ -101,6 +105,22 @@ inline Bytes range_body(std::span<const Signal44> signals) {
 
 inline Bytes range(std::span<const Signal44> signals, const Header& header = {}) {
   return message(43, range_body(signals), header);
+}
+
+/// Field `field` written over the bytes at `offset`.
+inline void overwrite(Bytes& bytes, std::size_t offset, const Bytes& field) {
+  std::copy(field.begin(), field.end(), bytes.begin() + static_cast<std::ptrdiff_t>(offset));
+}
+
+/// A log as the stream reports it, of a receiver that knows the time. The body must live as long.
+inline OemMessage log_of(std::uint16_t id, const Bytes& body, GpsTime time) {
+  OemMessage message;
+  message.id = id;
+  message.time_status = 180;
+  message.week = static_cast<std::uint16_t>(time.ns / kNanosecondsPerWeek);
+  message.time_of_week_ms = static_cast<std::uint32_t>(time_of_week(time).ns / 1'000'000);
+  message.body = body;
+  return message;
 }
 
 }  // namespace vbar::fsw::gnss::test

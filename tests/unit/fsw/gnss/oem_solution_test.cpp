@@ -19,21 +19,12 @@ namespace {
 
 using test::Body;
 using test::Bytes;
+using test::overwrite;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 OemMessage log_of(std::uint16_t id, const Bytes& body) {
-  OemMessage message;
-  message.id = id;
-  message.time_status = 180;
-  message.week = 1643;
-  message.time_of_week_ms = 100'000'500;
-  message.body = body;
-  return message;
-}
-
-void overwrite(Bytes& bytes, std::size_t offset, const Bytes& field) {
-  std::copy(field.begin(), field.end(), bytes.begin() + static_cast<std::ptrdiff_t>(offset));
+  return test::log_of(id, body, start_of_week(1643) + Duration{100'000'500'000'000});
 }
 
 TEST(Ionutc, ReadsTheManufacturersVector) {
