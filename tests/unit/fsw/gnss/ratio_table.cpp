@@ -24,10 +24,11 @@
 
 namespace {
 
-using namespace vbar::fsw::gnss;
+namespace problems = vbar::fsw::gnss::problems;
 using problems::Matrix;
 using problems::Random;
 using problems::Vector;
+using vbar::fsw::gnss::Decorrelation;
 
 constexpr std::array<Eigen::Index, 12> kCounts{1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24};
 constexpr std::array<double, 6> kFailureRates{0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
@@ -40,7 +41,7 @@ double bootstrap_failure_rate(const Matrix& covariance) {
   const Vector zero = Vector::Zero(covariance.rows());
   const vbar::fsw::Status status = problem.compute({zero.data(), static_cast<std::size_t>(zero.size())},
                                                    {covariance.data(), static_cast<std::size_t>(covariance.size())});
-  return status == vbar::fsw::Status::kOk ? 1.0 - bootstrap_success_rate(problem.d()) : NAN;
+  return status == vbar::fsw::Status::kOk ? 1.0 - vbar::fsw::gnss::bootstrap_success_rate(problem.d()) : NAN;
 }
 
 /// The covariance times the factor that gives it the failure rate.
@@ -60,8 +61,9 @@ double sufficient_ratio(const Matrix& covariance, Random& random) {
   std::vector<double> wrong;
   for (std::size_t draw = 0; draw < kDraws; ++draw) {
     const Vector a = factor.matrixL() * problems::standard_normal(random, covariance.rows());
-    const auto solution = resolve_ambiguities({a.data(), static_cast<std::size_t>(a.size())},
-                                              {covariance.data(), static_cast<std::size_t>(covariance.size())});
+    const auto solution =
+        vbar::fsw::gnss::resolve_ambiguities({a.data(), static_cast<std::size_t>(a.size())},
+                                             {covariance.data(), static_cast<std::size_t>(covariance.size())});
     if (!solution.ok()) continue;  // not accepted either
     const auto& best = solution.value().best;
     const bool right = std::all_of(best.begin(), best.end(), [](double z) { return z == 0.0; });
