@@ -109,6 +109,8 @@ class Dopri5 {
         shrink = std::clamp(shrink / kSafety, 1.0 / kLargestGrowth, kLargestShrink);
         double next = h / shrink;
         if (just_rejected_) next = direction_ * std::min(std::abs(next), std::abs(h));
+        // A step shortened by the limit says little about the one after it: the size chosen before stands.
+        if (std::abs(h) < std::abs(step_) && std::abs(next) < std::abs(step_)) next = step_;
         previous_error_ = std::max(error, kSmallestError);
         just_rejected_ = false;
         step_ = next;

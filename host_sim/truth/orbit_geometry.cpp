@@ -31,7 +31,9 @@ SineCosine solve_kepler(double ex, double ey, double u) {
     // The error left is of the order of the square of the correction, below rounding when the correction is below 1e-9.
     if (std::abs(correction) < 1e-9) return {sine - correction * cosine, cosine + correction * sine};
   }
-  throw std::domain_error(fmt::format("Kepler's equation did not converge for ex = {}, ey = {}, u = {}", ex, ey, u));
+  throw std::domain_error(fmt::format(
+      "the orbit is not an ellipse clear of a parabola: eccentricity {} (Kepler's equation did not converge)",
+      std::hypot(ex, ey)));
 }
 
 }  // namespace

@@ -1,40 +1,112 @@
 #pragma once
 // The equations of motion of one spacecraft: Gauss's variational equations driven by a list of forces.
+//
+// Forces with edges (force.h) act on the side they were told last. The dynamics keep count of the sides, over all
+// forces in a row; who integrates (spacecraft_propagator.h) finds the edges and turns them over.
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
 #include "host_sim/truth/earth/earth_rotation.h"
+#include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/forces/force.h"
 
 namespace vbar::truth {
 
+/// One force's share of the acceleration.
+struct ForceAcceleration {
+  std::string_view force;
+  fsw::Vector3 acceleration_eci;  ///< m/s^2
+};
+
+/// Wall-clock time spent in one force, or in what all of them share.
+struct ForceTime {
+  std::string_view force;  ///< the force's name, or "frames" for the Earth's rotation, the Sun and the Moon
+  double wall_s;
+};
+
+/// Where the motion is: the date from which the forces' interval runs, and of each edge whether it is positive.
+struct ForceRegime {
+  double seconds = 0.0;
+  std::vector<bool> sides;
+};
+
 /// Not thread-safe: one object a spacecraft.
 class SpacecraftDynamics {
  public:
+  /// A spacecraft this low (m, above a sphere of the Earth's radius, so up to 101 km above the ellipsoid near a pole)
+  /// has re-entered: no orbit is completed there (perigees of the last orbits of real satellites lie at 80 to 90 km,
+  /// McDowell 2018), and drag as of free molecules means nothing.
+  static constexpr double kReentryAltitude = 80e3;
+
   /// `name` for messages; `gm` (m^3/s^2) and `earth_radius` (m) of the central body; forces beside the point mass.
   SpacecraftDynamics(std::string name, double gm, double earth_radius, EarthRotation earth_rotation,
                      std::vector<std::unique_ptr<Force>> forces);
 
-  /// Rates of the osculating elements [a, ex, ey, i, raan, u] `seconds` after the epoch.
-  /// Throws std::domain_error if the spacecraft is below the Earth's radius or its orbit no ellipse.
+  /// Rates of the osculating elements [a, ex, ey, i, raan, u] `seconds` after the epoch. Throws std::domain_error, with
+  /// the date, if the spacecraft is below kReentryAltitude or its orbit no ellipse.
   fsw::Vector6 element_rates(double seconds, const fsw::Vector6& elements);
 
-  /// Sum of all forces, m/s^2 in ECI, beside the point mass: what a Cartesian integration would use.
+  /// Sum of all forces, m/s^2 in ECI, beside the point mass: what a Cartesian integration would use. Throws as
+  /// element_rates() on re-entry.
   fsw::Vector3 perturbation_eci(double seconds, const fsw::orbit::CartesianState& state);
+
+  /// The shares of the sum, in the forces' order, in the regime of that very instant; the regime told is left as it
+  /// was.
+  std::vector<ForceAcceleration> accelerations(double seconds, const fsw::orbit::CartesianState& state);
+
+  /// All forces' edges, counted through, and their values.
+  int edge_count() const { return static_cast<int>(edges_.size()); }
+  double edge(int index, double seconds, const fsw::orbit::CartesianState& state);
+
+  const ForceRegime& regime() const { return regime_; }
+  void set_regime(const ForceRegime& regime);
+
+  /// The regime of an instant.
+  void enter_regime_of(double seconds, const fsw::orbit::CartesianState& state);
+
+  /// From `seconds` on the motion is on the other side of an edge, or in the interval that begins at a jump.
+  void cross_edge(int index);
+  void enter_interval(double seconds);
+
+  /// The first date after `seconds` at which a force jumps by itself.
+  double next_jump_after(double seconds) const;
+
+  /// Takes the time that each force takes from now on (some 50 ns a force are added to it), or stops doing so.
+  void measure_time(bool on);
+  std::vector<ForceTime> times() const;
 
   const std::string& name() const { return name_; }
   double gm() const { return gm_; }
+  /// UTC of an instant, for messages.
+  std::string date(double seconds) const;
 
  private:
+  struct EdgeOfForce {
+    Force* force;
+    int index;
+  };
+
+  ForceInput input_at(double seconds, const fsw::orbit::CartesianState& state);
+  fsw::Vector3 timed_perturbation_eci(double seconds, const fsw::orbit::CartesianState& state);
+  void check_altitude(double seconds, const fsw::Vector3& position_eci) const;
+
   std::string name_;
   double gm_;
   double earth_radius_;
   EarthRotation earth_rotation_;
+  SunMoonInterpolator sun_moon_;
   std::vector<std::unique_ptr<Force>> forces_;
+  bool needs_sun_and_moon_ = false;
+  std::vector<EdgeOfForce> edges_;
+  ForceRegime regime_;
+  bool measures_time_ = false;
+  std::vector<std::int64_t> times_ns_;  ///< the frames' first, then the forces'
 };
 
 }  // namespace vbar::truth

@@ -1,5 +1,6 @@
 #include "host_sim/truth/spacecraft_propagator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -36,6 +37,27 @@ void naming(const std::string& name, const Work& work) {
   }
 }
 
+/// Elements of a state, and the date in the message if there are none.
+fsw::orbit::QnsElements dated_elements(const SpacecraftDynamics& dynamics, const fsw::orbit::CartesianState& state,
+                                       double seconds) {
+  try {
+    return elements_from_cartesian(state, dynamics.gm());
+  } catch (const std::domain_error& error) {
+    throw std::domain_error(fmt::format("{}, at {}", error.what(), dynamics.date(seconds)));
+  }
+}
+
+/// In how many equal parts a step of `size` (s) is looked at: two, or so many that the parts are no longer than a
+/// twelfth of the period of a circular orbit at the perigee. Faster than that circle nothing turns about the Earth but
+/// by the eccentricity's factor below 1.5.
+int looks_along(double size, const fsw::Vector6& elements, double gm) {
+  constexpr double kPartsOfPeriod = 12.0;
+  constexpr int kMostParts = 10000;  // a step of weeks, in the loosest of orbits: bounds the work
+  const double perigee = elements[0] * (1.0 - std::hypot(elements[1], elements[2]));
+  const double longest = kTwoPi / kPartsOfPeriod * std::sqrt(perigee / gm) * perigee;
+  return std::clamp(static_cast<int>(std::ceil(std::min(size / longest, 1.0 * kMostParts))), 2, kMostParts);
+}
+
 }  // namespace
 
 SpacecraftPropagator::SpacecraftPropagator(std::unique_ptr<SpacecraftDynamics> dynamics, double tolerance,
@@ -44,7 +66,9 @@ SpacecraftPropagator::SpacecraftPropagator(std::unique_ptr<SpacecraftDynamics> d
       integrator_(Rates{dynamics_.get()}, element_tolerance<Integrator::Tolerance>(tolerance)),
       current_(seconds) {
   naming(name(), [&] {
-    integrator_.start(seconds, vector_from_elements(elements_from_cartesian(osculating, dynamics_->gm())));
+    const fsw::orbit::QnsElements elements = dated_elements(*dynamics_, osculating, seconds);
+    dynamics_->enter_regime_of(seconds, osculating);
+    integrator_.start(seconds, vector_from_elements(elements));
   });
 }
 
@@ -57,9 +81,21 @@ void SpacecraftPropagator::advance_to(double seconds) {
 }
 
 void SpacecraftPropagator::step() {
-  integrator_.step();
+  const double jump = dynamics_->next_jump_after(integrator_.time());
+  regime_of_last_step_ = dynamics_->regime();
+  integrator_.step(jump);
+  const std::optional<Crossing> crossing = first_crossing_in_last_step();
+  if (crossing) integrator_.cut_last_step(crossing->seconds);
   kept_.push_back({integrator_.time(), integrator_.last_step()});
   if (kept_.size() > kKeptSteps) kept_.pop_front();
+
+  if (crossing) {
+    dynamics_->cross_edge(crossing->edge);
+    ++edges_crossed_;
+  }
+  const bool jumped = integrator_.time() == jump;
+  if (jumped) dynamics_->enter_interval(jump);
+  if (crossing || jumped) integrator_.restart(integrator_.state());
   // The mean argument of latitude is kept within a turn, so that its rounding stays that of an angle and not of a count
   // of turns.
   if (integrator_.state()[5] > M_PI) {
@@ -67,6 +103,29 @@ void SpacecraftPropagator::step() {
     turn[5] = -kTwoPi;
     integrator_.translate(turn);
   }
+}
+
+double SpacecraftPropagator::edge_in_last_step(int edge, double seconds) const {
+  const fsw::Vector6 elements = integrator_.last_step()(seconds);
+  return dynamics_->edge(edge, seconds, orbit_geometry(elements_from_vector(elements), dynamics_->gm()).state);
+}
+
+std::optional<SpacecraftPropagator::Crossing> SpacecraftPropagator::first_crossing_in_last_step() const {
+  if (dynamics_->edge_count() == 0) return std::nullopt;
+  const DenseStep<6>& step = integrator_.last_step();
+  const int samples = looks_along(step.size, step.c[0], dynamics_->gm());
+  std::optional<Crossing> first;
+  double end = integrator_.time();
+  for (int edge = 0; edge < dynamics_->edge_count(); ++edge) {
+    const double side = dynamics_->regime().sides[static_cast<std::size_t>(edge)] ? 1.0 : -1.0;
+    const auto on_this_side = [&](double seconds) { return side * edge_in_last_step(edge, seconds); };
+    const std::optional<double> exit = first_exit(on_this_side, step.start, end, samples, kEdgeResolution);
+    if (exit) {
+      first = Crossing{*exit, edge};
+      end = *exit;
+    }
+  }
+  return first;
 }
 
 fsw::orbit::CartesianState SpacecraftPropagator::state_at(double seconds) const {
@@ -89,15 +148,21 @@ void SpacecraftPropagator::apply_impulse_rtn(const fsw::Vector3& dv_rtn) {
   if (!dv_rtn.allFinite())
     throw std::invalid_argument(fmt::format("spacecraft \"{}\": an impulse is not a number", name()));
   naming(name(), [&] {
-    if (current_ < integrator_.time()) {
-      integrator_.cut_last_step(current_);
-      kept_.back() = {current_, integrator_.last_step()};
-    }
+    if (current_ < integrator_.time()) retake_last_step_to(current_);
     const OrbitGeometry before = orbit_geometry(elements_from_vector(integrator_.state()), dynamics_->gm());
     fsw::orbit::CartesianState after = before.state;
     after.velocity_eci += before.R_rtn_eci.transpose() * dv_rtn;
-    integrator_.restart(vector_from_elements(elements_from_cartesian(after, dynamics_->gm())));
+    const fsw::orbit::QnsElements elements = dated_elements(*dynamics_, after, current_);
+    dynamics_->enter_regime_of(current_, after);
+    integrator_.restart(vector_from_elements(elements));
   });
+}
+
+void SpacecraftPropagator::retake_last_step_to(double seconds) {
+  // The step may have ended at an edge or a jump, and the forces been told of what follows.
+  dynamics_->set_regime(regime_of_last_step_);
+  integrator_.cut_last_step(seconds);
+  kept_.back() = {seconds, integrator_.last_step()};
 }
 
 }  // namespace vbar::truth

@@ -2,9 +2,12 @@
 // One spacecraft carried through time: its dynamics, the integrator, and the last few steps' continuous solution.
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
@@ -14,17 +17,23 @@
 namespace vbar::truth {
 
 /// Times are seconds after the model's epoch. The integrator's steps do not depend on the times asked for, so neither
-/// does the trajectory; only an impulse ends a step. Not thread-safe: one thread a spacecraft.
+/// does the trajectory; only impulses and the forces' jumps end a step. Not thread-safe: one thread a spacecraft.
+///
+/// Where a force jumps (force.h), a step ends: at dates exactly, at edges within kEdgeResolution beyond the edge of the
+/// dense output. Along each step every edge is looked at twice or more, at most a twelfth of the perigee circle's
+/// period apart (8 minutes in a low orbit; steps are shorter there), and a dip between these looks is followed to its
+/// bottom: a spacecraft that grazes the shadow for a tenth of a second is seen.
 class SpacecraftPropagator {
  public:
   /// Starts at `seconds` with an osculating state. `tolerance`: local error of each element a step, relative for the
   /// semi-major axis, absolute for the others (rad, or eccentricity); so tolerance times semi-major axis is about the
-  /// local position error. Throws std::domain_error, naming the spacecraft, if the state is not that of an ellipse
-  /// above the Earth.
+  /// local position error. Throws std::domain_error, naming the spacecraft and the date, if the state is not that
+  /// of an ellipse above the Earth's atmosphere.
   SpacecraftPropagator(std::unique_ptr<SpacecraftDynamics> dynamics, double tolerance, double seconds,
                        const fsw::orbit::CartesianState& osculating);
 
-  /// Moves the current time to `seconds`, not before it. Throws std::domain_error, naming the spacecraft, on re-entry.
+  /// Moves the current time to `seconds`, not before it. Throws std::domain_error, naming the spacecraft
+  /// and the date, on re-entry or if a force turns the orbit into no ellipse.
   void advance_to(double seconds);
 
   /// State at the current time.
@@ -41,10 +50,16 @@ class SpacecraftPropagator {
   /// Whether advance_to(seconds) would have to integrate.
   bool needs_steps_to(double seconds) const { return integrator_.time() < seconds; }
 
+  /// The forces' shares of the acceleration at the current time.
+  std::vector<ForceAcceleration> accelerations() { return dynamics_->accelerations(current_, state()); }
+
+  SpacecraftDynamics& dynamics() { return *dynamics_; }
   const std::string& name() const { return dynamics_->name(); }
   const IntegrationStatistics& statistics() const { return integrator_.statistics(); }
+  std::int64_t edges_crossed() const { return edges_crossed_; }
 
   static constexpr std::size_t kKeptSteps = 8;
+  static constexpr double kEdgeResolution = 1e-7;  ///< s; the force's error in it is far below any tolerance's
 
  private:
   struct Rates {
@@ -58,11 +73,21 @@ class SpacecraftPropagator {
     DenseStep<6> solution;
   };
 
+  struct Crossing {
+    double seconds;
+    int edge;
+  };
+
   void step();
+  std::optional<Crossing> first_crossing_in_last_step() const;
+  double edge_in_last_step(int edge, double seconds) const;
+  void retake_last_step_to(double seconds);
 
   std::unique_ptr<SpacecraftDynamics> dynamics_;
   Integrator integrator_;
-  std::deque<KeptStep> kept_;  ///< oldest first; since the last impulse's step, times without gaps
+  std::deque<KeptStep> kept_;        ///< oldest first; since the last impulse's step, times without gaps
+  ForceRegime regime_of_last_step_;  ///< as it was when that step was taken
+  std::int64_t edges_crossed_ = 0;
   double current_;
 };
 

@@ -13,6 +13,7 @@
 
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -26,11 +27,15 @@ inline std::string number_text(double value) {
   return text;
 }
 
+/// Properties of one test need different keys: the number already recorded tells the next.
+inline std::string next_key() {
+  const int recorded = testing::UnitTest::GetInstance()->current_test_info()->result()->test_property_count();
+  return "accuracy." + std::to_string(recorded) + ".";
+}
+
 inline void record(const std::string& claim, const std::string& reference, const std::string& measured,
                    const std::string& limit, const std::string& unit) {
-  // Properties of one test need different keys: the number already recorded tells this row's.
-  const int row = testing::UnitTest::GetInstance()->current_test_info()->result()->test_property_count();
-  const std::string key = "accuracy." + std::to_string(row) + ".";
+  const std::string key = next_key();
   testing::Test::RecordProperty(key + "claim", claim);
   testing::Test::RecordProperty(key + "reference", reference);
   testing::Test::RecordProperty(key + "measured", measured);
@@ -59,6 +64,16 @@ inline void expect_count(const std::string& claim, const std::string& reference,
     ADD_FAILURE_AT(file, line) << claim << " against " << reference << ": " << measured << " " << unit << ", expected "
                                << expected;
   }
+}
+
+/// Records a table that stands below the rows of the test's folder: numbers that explain, where a row claims. Cells are
+/// text without tabs and line ends; all lines as long as the first, the head.
+inline void record_table(const std::string& title, const std::vector<std::vector<std::string>>& lines) {
+  std::string text = title;
+  for (const std::vector<std::string>& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) text += (i == 0 ? "\n" : "\t") + line[i];
+  }
+  testing::Test::RecordProperty(detail::next_key() + "table", text);
 }
 
 }  // namespace vbar::accuracy

@@ -15,7 +15,7 @@
 
 namespace vbar::test {
 
-using twins::gnss::CarrierTruth;
+using twins::gnss::BodyTruth;
 
 /// 2011-07-19 16:00:00 GPS, near the start of the third experiment.
 inline constexpr fsw::GpsTime kGnssStart = twins::gnss::gps_time_of(twins::gnss::System::kGps, 1645, 2 * 86400 + 57600);
@@ -25,9 +25,9 @@ inline std::filesystem::path data_directory() {
 }
 
 /// The truth about a body with this motion (ECI) `t_s` after kGnssStart; body z to the zenith, x ahead.
-inline CarrierTruth zenith_pointing(const fsw::Vector3& position_eci, const fsw::Vector3& velocity_eci, double t_s) {
+inline BodyTruth zenith_pointing(const fsw::Vector3& position_eci, const fsw::Vector3& velocity_eci, double t_s) {
   using fsw::Vector3;
-  CarrierTruth truth;
+  BodyTruth truth;
   truth.time = kGnssStart + fsw::nearest_duration(t_s);
   truth.position_eci = position_eci;
   truth.velocity_eci = velocity_eci;
@@ -42,7 +42,7 @@ inline CarrierTruth zenith_pointing(const fsw::Vector3& position_eci, const fsw:
 }
 
 /// On a circular orbit, 7087.3 km, 98.18 deg; `offset_rtn_m` beside it (a few metres), without relative motion.
-inline CarrierTruth in_orbit(double t_s, const fsw::Vector3& offset_rtn_m = fsw::Vector3::Zero()) {
+inline BodyTruth in_orbit(double t_s, const fsw::Vector3& offset_rtn_m = fsw::Vector3::Zero()) {
   using fsw::Vector3;
   constexpr double kRadius_m = 7087.3e3;
   constexpr double kInclination = 98.18 * std::numbers::pi / 180.0;

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/truth/earth/time_scales.h"
+#include "host_sim/truth/earth/utc_day.h"
 
 namespace vbar::truth {
 namespace {
@@ -21,11 +22,6 @@ namespace {
 constexpr int kMjdOfGpsEpoch = 44244;
 constexpr int kLastMjd = 88068;  // 2099-12-31: beyond it a file is no record of observations
 constexpr std::string_view kColumns = "mjd_utc,x_arcsec,y_arcsec,ut1_minus_utc_s,dx_arcsec,dy_arcsec";
-
-fsw::GpsTime midnight_utc(int mjd_utc) {
-  const auto seconds = std::int64_t{86400} * (mjd_utc - kMjdOfGpsEpoch) + std::llround(tai_minus_utc_s(mjd_utc)) - 19;
-  return {seconds * fsw::kNanosecondsPerSecond};
-}
 
 /// The six numbers of a row; false if there are not exactly six.
 bool parse_row(std::string_view line, double (&values)[6]) {

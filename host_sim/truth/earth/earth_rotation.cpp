@@ -11,29 +11,6 @@ namespace {
 
 constexpr double kJ2000 = 2451545.0;
 constexpr double kNodesPerDay = 4.0;
-constexpr int kFirstPoint = -2;  // nodes of an interval [0, 1]: -2, -1, 0, 1, 2, 3
-
-/// Coefficients, lowest power first, of the polynomial through six values at -2 ... 3 (Newton's forward differences).
-void fit_polynomial(const double (&values)[6], double (&coefficients)[6]) {
-  double difference[6];
-  for (int i = 0; i < 6; ++i) difference[i] = values[i];
-  for (int order = 1; order < 6; ++order) {
-    for (int i = 5; i >= order; --i) difference[i] = (difference[i] - difference[i - 1]) / order;
-  }
-  // Horner on the Newton form: multiply by (t - point) and add the next difference.
-  for (double& c : coefficients) c = 0.0;
-  for (int k = 5; k >= 0; --k) {
-    const double point = kFirstPoint + k;
-    for (int power = 5; power > 0; --power) coefficients[power] = coefficients[power - 1] - point * coefficients[power];
-    coefficients[0] = difference[k] - point * coefficients[0];
-  }
-}
-
-double polynomial(const double (&coefficients)[6], double t) {
-  double sum = coefficients[5];
-  for (int power = 4; power >= 0; --power) sum = sum * t + coefficients[power];
-  return sum;
-}
 
 }  // namespace
 
@@ -50,20 +27,20 @@ CelestialPole CelestialPoleInterpolator::at(JulianDate tt) {
   const auto interval = static_cast<std::int64_t>(floor);
   if (!ready_ || interval != interval_) enter_interval(interval);
   const double t = position - floor;
-  return {polynomial(x_, t), polynomial(y_, t), polynomial(s_, t)};
+  return {node_polynomial(x_, t), node_polynomial(y_, t), node_polynomial(s_, t)};
 }
 
 void CelestialPoleInterpolator::enter_interval(std::int64_t interval) {
-  double x[kPoints], y[kPoints], s[kPoints];
-  for (int i = 0; i < kPoints; ++i) {
-    const CelestialPole& pole = node(interval + kFirstPoint + i);
+  double x[kNodePoints], y[kNodePoints], s[kNodePoints];
+  for (int i = 0; i < kNodePoints; ++i) {
+    const CelestialPole& pole = node(interval + kFirstNode + i);
     x[i] = pole.x;
     y[i] = pole.y;
     s[i] = pole.s;
   }
-  fit_polynomial(x, x_);
-  fit_polynomial(y, y_);
-  fit_polynomial(s, s_);
+  fit_node_polynomial(x, x_);
+  fit_node_polynomial(y, y_);
+  fit_node_polynomial(s, s_);
   interval_ = interval;
   ready_ = true;
 }

@@ -10,6 +10,7 @@
 
 #include "fsw/core/types.h"
 #include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/truth/earth/node_polynomial.h"
 #include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::truth {
@@ -33,17 +34,15 @@ class CelestialPoleInterpolator {
   CelestialPole at(JulianDate tt);
 
  private:
-  static constexpr int kPoints = 6;
-
   void enter_interval(std::int64_t interval);
   const CelestialPole& node(std::int64_t index);
 
   std::map<std::int64_t, CelestialPole> nodes_;
   bool ready_ = false;
   std::int64_t interval_ = 0;
-  double x_[kPoints] = {};  // polynomials in the fraction of the interval, lowest power first
-  double y_[kPoints] = {};
-  double s_[kPoints] = {};
+  double x_[kNodePoints] = {};  // polynomials in the fraction of the interval, lowest power first
+  double y_[kNodePoints] = {};
+  double s_[kNodePoints] = {};
 };
 
 /// Rotation to ITRF from GCRF out of its parts; era, pole_x, pole_y, sp (TIO locator s') in rad.
@@ -57,6 +56,8 @@ class EarthRotation {
 
   /// Rotation to ITRF from GCRF `seconds` after the epoch. Throws std::out_of_range outside the Earth orientation data.
   fsw::Matrix3 R_itrf_gcrf_at(double seconds);
+
+  fsw::GpsTime epoch() const { return epoch_; }
 
  private:
   std::shared_ptr<const EarthOrientationSeries> orientation_;

@@ -30,7 +30,7 @@ using fsw::Vector3;
 constexpr std::uint64_t kSeed = 7;
 
 // Standing on the turning Earth.
-CarrierTruth on_ground(double t, const Vector3& position_ecef) {
+BodyTruth on_ground(double t, const Vector3& position_ecef) {
   const Vector3 position = Eigen::AngleAxisd(fsw::gnss::kEarthRateGps * t, Vector3::UnitZ()) * position_ecef;
   return test::zenith_pointing(position, fsw::gnss::kEarthRateGps * Vector3::UnitZ().cross(position), t);
 }
@@ -79,8 +79,8 @@ int run(const std::filesystem::path& folder, bool orbit, int epochs, double peri
            "target_satellites\n";
   for (int k = 0; k < epochs; ++k) {
     const double t = k * period_s;
-    const auto take = [](GnssReceiver& receiver, const CarrierTruth& carrier, std::vector<std::uint8_t>& bytes) {
-      const std::vector<std::uint8_t> sent = receiver.bytes_at(carrier);
+    const auto take = [](GnssReceiver& receiver, const BodyTruth& body, std::vector<std::uint8_t>& bytes) {
+      const std::vector<std::uint8_t> sent = receiver.bytes_at(body);
       // Logging begins with the first satellite: RTKLIB takes a RANGE without observations for the last one it saw.
       if (!receiver.observations().empty() || !bytes.empty()) bytes.insert(bytes.end(), sent.begin(), sent.end());
     };

@@ -1,10 +1,14 @@
 #include "host_sim/truth/dopri5.h"
 
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/accuracy.h"
 
 namespace vbar::truth {
 namespace {
@@ -50,10 +54,19 @@ TEST(Dopri5, TakesTheStepsOfHairersProgramOnArenstorfsOrbit) {
     solver.start(0.0, kArenstorfStart);
     solver.integrate_to(kArenstorfPeriod);
     EXPECT_NEAR(static_cast<double>(solver.statistics().accepted_steps), row.steps, row.steps_margin);
+    const double error = (solver.state() - kArenstorfStart).norm();
     if (row.tolerance == 1e-7) {
-      EXPECT_EQ(solver.statistics().evaluations, 1442);
+      accuracy::expect_count("Dormand-Prince on Arenstorf's orbit, accepted steps at 1e-7", "Hairer's DOPRI5, printed",
+                             solver.statistics().accepted_steps, 216, "steps");
+      accuracy::expect_count("Dormand-Prince on Arenstorf's orbit, evaluations at 1e-7", "Hairer's DOPRI5, printed",
+                             solver.statistics().evaluations, 1442, "evaluations");
     }
-    EXPECT_NEAR((solver.state() - kArenstorfStart).norm(), row.error, row.error_margin) << row.tolerance;
+    EXPECT_NEAR(error, row.error, row.error_margin) << row.tolerance;
+    char tolerance[16];
+    std::snprintf(tolerance, sizeof tolerance, "%g", row.tolerance);
+    accuracy::expect_below(std::string("Dormand-Prince on Arenstorf's orbit, error at the end at ") + tolerance,
+                           "the orbit is closed; a second program's error, its margin added", error,
+                           row.error + row.error_margin, "");
     EXPECT_EQ(solver.time(), kArenstorfPeriod);
   }
 }
@@ -85,11 +98,15 @@ TEST(Dopri5, TwoBodyOrbitsReturnToTheirStart) {
     const Vector6 start = circular_orbit(kRadius);
     solver.start(0.0, start);
     solver.integrate_to(15.0 * period);
-    EXPECT_LT((solver.state() - start).head<3>().norm(), 1.5 * error) << tolerance;
+    char text[64];
+    std::snprintf(text, sizeof text, "at a tolerance of %g", tolerance);
+    accuracy::expect_below(std::string("two bodies, 15 low orbits, position ") + text, "Kepler: the start",
+                           (solver.state() - start).head<3>().norm(), 1.5 * error, "m");
     const auto energy = [](const Vector6& y) { return 0.5 * y.tail<3>().squaredNorm() - kGm / y.head<3>().norm(); };
     // 1 m in position along track comes from about 1e-8 / 90 of energy per radian; a tenth of the position's error
     // bounds it.
-    EXPECT_LT(std::abs(energy(solver.state()) / energy(start) - 1.0), 0.1 * error / kRadius) << tolerance;
+    accuracy::expect_below(std::string("two bodies, 15 low orbits, energy ") + text, "conservation",
+                           std::abs(energy(solver.state()) / energy(start) - 1.0), 0.1 * error / kRadius, "relative");
   }
 }
 
@@ -102,7 +119,9 @@ TEST(Dopri5, ForwardAndBackToTheStart) {
   back.start(20000.0, forward.state(), -1.0);
   back.integrate_to(0.0);
   EXPECT_EQ(back.time(), 0.0);
-  EXPECT_LT((back.state() - start).head<3>().norm(), 5e-3);  // twice 3.5 orbits' share of 1.9 cm in 15
+  accuracy::expect_below("two bodies, 20,000 s forward and back", "the start", (back.state() - start).head<3>().norm(),
+                         5e-3,
+                         "m");  // twice 3.5 orbits' share of 1.9 cm in 15
 }
 
 Vector2 oscillator(double, const Vector2& y) {
@@ -133,8 +152,10 @@ TEST(Dopri5, IsOfOrderFiveAndItsDenseOutputToo) {
   // is of order h^5, keeps the rate. 20 % for the next order's terms at steps of 1/80 and 1/160 of a turn.
   const auto [ends_80, inside_80] = oscillator_errors(80);
   const auto [ends_160, inside_160] = oscillator_errors(160);
-  EXPECT_NEAR(ends_80 / ends_160, 32.0, 6.4);
-  EXPECT_NEAR(inside_80 / inside_160, 32.0, 6.4);
+  accuracy::expect_below("Dormand-Prince is of order 5: error over that of half the step",
+                         "2^5, the harmonic oscillator", std::abs(ends_80 / ends_160 - 32.0), 6.4, "from 32");
+  accuracy::expect_below("its dense output of order 4: error inside one step over that of half the step",
+                         "2^5, the harmonic oscillator", std::abs(inside_80 / inside_160 - 32.0), 6.4, "from 32");
 }
 
 TEST(Dopri5, DenseOutputMeetsTheStepsAndTheirSlopes) {

@@ -12,7 +12,9 @@
 #include "host_sim/truth/forces/gravity_force.h"
 #include "host_sim/truth/spacecraft_propagator.h"
 #include "host_sim/truth/truth_model.h"
+#include "tests/support/accuracy.h"
 #include "tests/unit/host_sim/truth/cowell.h"
+#include "tests/unit/host_sim/truth/forces_fixture.h"
 #include "tests/unit/host_sim/truth/truth_fixture.h"
 
 namespace vbar::truth {
@@ -23,26 +25,10 @@ using fsw::orbit::CartesianState;
 using test::cowell;
 using test::mission_epoch;
 
-/// J2 about the inertial z axis: the field of the oracle below.
-class InertialJ2 final : public Force {
- public:
-  std::string_view name() const override { return "inertial J2"; }
-  Vector3 acceleration_eci(const ForceInput& input) override {
-    constexpr double kJ2 = 1.0826358191967e-3;
-    const Vector3& r = input.position_eci;
-    const double d = r.norm(), z2 = 5.0 * r.z() * r.z() / (d * d);
-    const double scale = -1.5 * kJ2 * test::kGm * test::kEarthRadius * test::kEarthRadius / std::pow(d, 5);
-    return scale * Vector3(r.x() * (1.0 - z2), r.y() * (1.0 - z2), r.z() * (3.0 - z2));
-  }
-};
-
 std::unique_ptr<SpacecraftDynamics> dynamics_with(std::unique_ptr<Force> force) {
-  const auto orientation = std::make_shared<const EarthOrientationSeries>(
-      EarthOrientationSeries::load(test::kDataDirectory / "earth/eop_2009_2013.csv"));
   std::vector<std::unique_ptr<Force>> forces;
   forces.push_back(std::move(force));
-  return std::make_unique<SpacecraftDynamics>("test", test::kGm, test::kEarthRadius,
-                                              EarthRotation(orientation, mission_epoch()), std::move(forces));
+  return test::dynamics_with(std::move(forces));
 }
 
 std::unique_ptr<SpacecraftDynamics> gravity_60() {
@@ -57,10 +43,13 @@ fsw::GpsTime after(double seconds) {
 TEST(TruthAccuracy, J2OrbitOfAnotherProgram) {
   // The mission's table state after 21600 s under J2 alone, printed to 0.1 mm and 1e-6 m/s: half a unit of it, and 0.1
   // mm for this propagation (measured against Cowell below).
-  SpacecraftPropagator propagator(dynamics_with(std::make_unique<InertialJ2>()), 1e-13, 0.0, test::servicer_state());
+  SpacecraftPropagator propagator(dynamics_with(std::make_unique<test::InertialJ2>()), 1e-13, 0.0,
+                                  test::servicer_state());
   propagator.advance_to(21600.0);
   const CartesianState end = propagator.state();
-  EXPECT_LT((end.position_eci - Vector3(750773.9627, 4583790.1554, -5352715.4900)).cwiseAbs().maxCoeff(), 1.5e-4);
+  accuracy::expect_below("six hours under J2 alone, position", "another program, printed to 0.1 mm",
+                         (end.position_eci - Vector3(750773.9627, 4583790.1554, -5352715.4900)).cwiseAbs().maxCoeff(),
+                         1.5e-4, "m");
   EXPECT_LT((end.velocity_eci - Vector3(712.735141, -5721.338951, -4787.387539)).cwiseAbs().maxCoeff(), 6e-7);
 }
 
@@ -82,11 +71,11 @@ TEST(TruthAccuracy, VariationalEquationsAgainstCowellOverALeg) {
   const double velocity_error = (model.state(0).velocity_eci - servicer.velocity_eci).norm();
   const Vector3 relative = model.state(1).position_eci - model.state(0).position_eci;
   const double relative_error = (relative - (target.position_eci - servicer.position_eci)).norm();
-  RecordProperty("position_error_um", std::to_string(position_error * 1e6));
-  RecordProperty("relative_position_error_um", std::to_string(relative_error * 1e6));
-  EXPECT_LT(position_error, 1e-3);
+  constexpr const char* kReference = "Cowell's equations by Fehlberg 7(8), the same 60x60 gravity";
+  accuracy::expect_below("six hours of the variational equations, position", kReference, position_error, 1e-3, "m");
   EXPECT_LT(velocity_error, 1e-6);  // the position's error times the mean motion, 1e-3 1/s
-  EXPECT_LT(relative_error, 1e-4);
+  accuracy::expect_below("six hours of the variational equations, relative position of two spacecraft 10 m apart",
+                         kReference, relative_error, 1e-4, "m");
 }
 
 TEST(TruthAccuracy, StatesBetweenStepsAreAsGood) {
@@ -109,10 +98,11 @@ TEST(TruthAccuracy, StatesBetweenStepsAreAsGood) {
     relative_velocity =
         std::max(relative_velocity, (b.velocity_eci - a.velocity_eci - (d.velocity_eci - c.velocity_eci)).norm());
   }
-  RecordProperty("position_error_um", std::to_string(position * 1e6));
-  RecordProperty("relative_position_error_um", std::to_string(relative * 1e6));
-  EXPECT_LT(position, 1e-3);  // the claims of the leg
-  EXPECT_LT(relative, 1e-4);
+  constexpr const char* kReference = "the same at the finest tolerance, every 7 s of an orbit";
+  // The claims of the leg.
+  accuracy::expect_below("states between steps, position", kReference, position, 1e-3, "m");
+  accuracy::expect_below("states between steps, relative position of two spacecraft 10 m apart", kReference, relative,
+                         1e-4, "m");
   EXPECT_LT(relative_velocity, 1e-7);  // the relative position's claim times the mean motion
 }
 
@@ -136,7 +126,10 @@ TEST(TruthAccuracy, ImpulsesAgainstCowell) {
   }
   model.advance_to(after(15000.0));
   reference = cowell(*dynamics, reference, t, 15000.0);
-  EXPECT_LT((model.state(0).position_eci - reference.position_eci).norm(), 1e-3);  // the claim over a leg
+  accuracy::expect_below("three impulses in four hours, position",
+                         "Cowell's equations, the impulses by their definition",
+                         (model.state(0).position_eci - reference.position_eci).norm(), 1e-3,
+                         "m");  // the claim over a leg
 }
 
 TEST(TruthAccuracy, TheWholeMission) {
@@ -155,11 +148,11 @@ TEST(TruthAccuracy, TheWholeMission) {
   const double position_error = (model.state(0).position_eci - servicer.position_eci).norm();
   const Vector3 relative = model.state(1).position_eci - model.state(0).position_eci;
   const double relative_error = (relative - (target.position_eci - servicer.position_eci)).norm();
-  RecordProperty("position_error_um", std::to_string(position_error * 1e6));
-  RecordProperty("relative_position_error_um", std::to_string(relative_error * 1e6));
   RecordProperty("wall_ms_per_simulated_hour", std::to_string(model.statistics().wall_s * 1e3 / (kMission / 3600.0)));
-  EXPECT_LT(position_error, 1e-3);
-  EXPECT_LT(relative_error, 2e-4);
+  constexpr const char* kReference = "Cowell's equations by Fehlberg 7(8), the same 60x60 gravity, 0.15 mm itself";
+  accuracy::expect_below("41.25 hours of the variational equations, position", kReference, position_error, 1e-3, "m");
+  accuracy::expect_below("41.25 hours of the variational equations, relative position at 75 km", kReference,
+                         relative_error, 2e-4, "m");
 }
 
 }  // namespace

@@ -288,7 +288,7 @@ TEST(GnssReceiver, ClockJumpsMoveCodeAndCarrierAlike) {
 }
 
 TEST(GnssReceiver, RefusesWithOneClearError) {
-  const auto message = [](const CarrierTruth& truth) -> std::string {
+  const auto message = [](const BodyTruth& truth) -> std::string {
     GnssReceiver subject = receiver({});
     try {
       subject.bytes_at(truth);
@@ -297,7 +297,7 @@ TEST(GnssReceiver, RefusesWithOneClearError) {
     }
     return "accepted";
   };
-  CarrierTruth truth = test::in_orbit(0.0);
+  BodyTruth truth = test::in_orbit(0.0);
   truth.position_eci.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(message(truth), "GNSS receiver: the truth holds a number that is not finite");
   truth = test::in_orbit(0.0);

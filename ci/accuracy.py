@@ -1,0 +1,187 @@
+#!/usr/bin/env python3
+"""The accuracy page, docs/accuracy.md: what the tests measured against references from outside.
+
+usage: ci/accuracy.py [--build build/host] [--bench FILE.json]    run the tests that record rows, write the page
+       ci/accuracy.py [--build build/host] --check                run nothing: does the page name what the tests record?
+
+Tests record rows and tables by tests/support/accuracy.h. --bench adds tables of cost from a run of vbar_bench with
+--benchmark_format=json. (ci/accuracy.sh builds first.)
+"""
+import argparse
+import json
+import pathlib
+import platform
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs/accuracy.md"
+HEAD = ["claim", "reference", "measured", "at most", "test"]
+CALL = re.compile(r"accuracy::(?:expect_below|expect_count|record_table)\s*\(\s*")
+LITERALS = re.compile(r'((?:"(?:[^"\\]|\\.)*"\s*)+)\s*([,)+])')
+
+
+def gtest_json(program, *arguments):
+    with tempfile.TemporaryDirectory() as folder:
+        output = pathlib.Path(folder) / "result.json"
+        run = subprocess.run([str(program), f"--gtest_output=json:{output}", *arguments], cwd=program.parent,
+                             capture_output=True, text=True, timeout=1800)
+        if not output.exists():
+            sys.exit(f"{program}: {run.stderr.strip() or run.stdout.strip()}")
+        return json.loads(output.read_text())
+
+
+def tests_in(result, build):
+    """name, source file relative to the root, gtest's own entry. The compiler saw paths relative to the build folder."""
+    for suite in result["testsuites"]:
+        for test in suite["testsuite"]:
+            name = f"{suite['name']}.{test['name']}"
+            source = (build / test["file"]).resolve()
+            yield name, (source.relative_to(ROOT) if source.is_relative_to(ROOT) else source), test
+
+
+def test_programs(build):
+    listed = subprocess.run(["ctest", "--test-dir", str(build), "--show-only=json-v1"], capture_output=True, text=True,
+                            check=True)
+    programs = {test["command"][0] for test in json.loads(listed.stdout)["tests"]
+                if any(argument.startswith("--gtest_filter") for argument in test.get("command", []))}
+    return sorted(pathlib.Path(program) for program in programs)
+
+
+def recording_sources():
+    """Source file of a test -> the claims and titles it writes out as a literal."""
+    found = {}
+    for source in sorted((ROOT / "tests").rglob("*_test.cpp")):
+        text = source.read_text()
+        claims = []
+        for call in CALL.finditer(text):
+            literal = LITERALS.match(text, call.end())
+            composed = literal is None or literal.group(2) == "+"
+            claims.append(None if composed else "".join(json.loads(part) for part in re.findall(r'"(?:[^"\\]|\\.)*"',
+                                                                                          literal.group(1))))
+        if claims:
+            found[source.relative_to(ROOT)] = claims
+    return found
+
+
+def recording_tests(build, sources):
+    """program -> [(name, source)] of the tests in those sources."""
+    tests = {}
+    for program in test_programs(build):
+        if program.exists():
+            listed = gtest_json(program, "--gtest_list_tests")
+            tests[program] = [(name, source) for name, source, _ in tests_in(listed, build) if source in sources]
+    missing = set(sources) - {source for listed in tests.values() for _, source in listed}
+    if missing:
+        sys.exit(f"not built: the tests of {', '.join(map(str, sorted(missing)))}")
+    return {program: listed for program, listed in tests.items() if listed}
+
+
+def records(build, sources):
+    rows, tables = [], []
+    for program, listed in recording_tests(build, sources).items():
+        print(f"running {len(listed)} tests of {program.name}", flush=True)
+        result = gtest_json(program, "--gtest_filter=" + ":".join(name for name, _ in listed))
+        for name, source, test in tests_in(result, build):
+            if "failures" in test:
+                sys.exit(f"{name} fails: {test['failures'][0]['failure']}")
+            for key, value in test.items():
+                if not key.startswith("accuracy."):
+                    continue
+                _, number, field = key.split(".")
+                if field == "claim":
+                    rest = {f: test[f"accuracy.{number}.{f}"] for f in ("reference", "measured", "limit", "unit")}
+                    rows.append({"claim": value, "test": name, "source": source, **rest})
+                elif field == "table":
+                    tables.append({"text": value, "test": name, "source": source})
+    claims = [row["claim"] for row in rows]
+    twice = sorted({claim for claim in claims if claims.count(claim) > 1})
+    if twice:
+        sys.exit(f"told twice: {', '.join(twice)}")
+    return rows, tables
+
+
+def table(head, lines):
+    cell = lambda text: str(text).replace("|", "\\|")
+    return "\n".join("| " + " | ".join(map(cell, line)) + " |" for line in [head, ["---"] * len(head), *lines])
+
+
+def with_unit(number, unit, digits):
+    """A count as it is, a measurement to so many digits."""
+    text = number if re.fullmatch(r"(= )?-?\d+", number) else f"{float(number):.{digits}g}"
+    return f"{text} {unit}".strip()
+
+
+def row_line(row):
+    return [row["claim"], row["reference"], with_unit(row["measured"], row["unit"], 3),
+            with_unit(row["limit"], row["unit"], 3), f"[`{row['test']}`](../{row['source']})"]
+
+
+def cost_tables(file):
+    """One table a kernel: names are kernel/who/size."""
+    kernels = {}
+    for case in json.loads(pathlib.Path(file).read_text())["benchmarks"]:
+        if case.get("run_type", "iteration") == "iteration" and not case.get("error_occurred"):
+            kernel, _, rest = case["name"].partition("/")
+            kernels.setdefault(kernel, []).append([rest or kernel, f"{case['real_time']:.4g} {case['time_unit']}"])
+    text = ["## What it costs", "", f"By `vbar_bench`, one run, {platform.machine()}.", ""]
+    for kernel, lines in kernels.items():
+        text += [f"### {kernel}", "", table(["who, size", "time"], lines), ""]
+    return text
+
+
+def page(rows, tables, bench):
+    text = ["# Accuracy", "",
+            f"Written by `ci/accuracy.sh` on {time.strftime('%Y-%m-%d')}, {platform.machine()}."
+            " Each row is an expectation of the test it names, against a reference from outside the code under test; measured"
+            " is the largest difference that the test found. Another processor may round differently.", ""]
+    for folder in sorted({str(entry["source"].parent) for entry in rows + tables}):
+        of_folder = lambda entries: [e for e in entries if str(e["source"].parent) == folder]
+        text += [f"## {folder.removeprefix('tests/unit/')}", ""]
+        if of_folder(rows):
+            text += [table(HEAD, [row_line(row) for row in of_folder(rows)]), ""]
+        for entry in of_folder(tables):
+            title, head, *lines = entry["text"].split("\n")
+            text += [f"### {title}", "", f"From [`{entry['test']}`](../{entry['source']}).", "",
+                     table(head.split("\t"), [line.split("\t") for line in lines]), ""]
+    return "\n".join(text + (cost_tables(bench) if bench else []))
+
+
+def check(build, sources):
+    """The page's faults, as far as they show without running a test."""
+    text = PAGE.read_text()
+    named = set(re.findall(r"\[`([^`]+)`\]\(\.\./([^)]+)\)", text))
+    existing = {(name, str(source)) for listed in recording_tests(build, sources).values() for name, source in listed}
+    faults = [f"the page names {name} in {source}, which records nothing or does not exist"
+              for name, source in sorted(named - existing)]
+    for source, claims in sources.items():
+        if str(source) not in {s for _, s in named}:
+            faults.append(f"the page names no test of {source}")
+        faults += [f"the page lacks \"{claim}\" of {source}" for claim in claims
+                   if claim is not None and claim.replace("|", "\\|") not in text]
+    return faults
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/host")
+    parser.add_argument("--bench", type=pathlib.Path)
+    parser.add_argument("--check", action="store_true")
+    arguments = parser.parse_args()
+    build = arguments.build.resolve()
+    sources = recording_sources()
+    if arguments.check:
+        faults = check(build, sources)
+        print("\n".join(faults + ["run ci/accuracy.sh"]) if faults else "the page is the tests' own")
+        return 1 if faults else 0
+    rows, tables = records(build, sources)
+    PAGE.write_text(page(rows, tables, arguments.bench))
+    print(f"{len(rows)} rows, {len(tables)} tables: {PAGE.relative_to(ROOT)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

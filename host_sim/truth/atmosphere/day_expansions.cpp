@@ -1,0 +1,107 @@
+#include "host_sim/truth/atmosphere/day_expansions.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace vbar::truth {
+namespace {
+
+constexpr std::size_t kBoundaryTemperature = 5;  // its place in upper_quantities()
+
+std::array<const Nrlmsise00Tables::Upper*, 11> upper_quantities(const Nrlmsise00Tables& t) {
+  return {&t.pt, &t.ps, &t.pd[0], &t.pd[1], &t.pd[2], &t.pd[3], &t.pd[4], &t.pd[5], &t.pd[6], &t.pd[7], &t.pd[8]};
+}
+
+std::array<const Nrlmsise00Tables::Lower*, 5> lower_thermosphere_quantities(const Nrlmsise00Tables& t) {
+  return {&t.ptl[0], &t.ptl[1], &t.ptl[2], &t.ptl[3], &t.pma[8]};
+}
+
+std::array<const Nrlmsise00Tables::Lower*, 9> lower_atmosphere_quantities(const Nrlmsise00Tables& t) {
+  return {&t.pma[0], &t.pma[1], &t.pma[2], &t.pma[3], &t.pma[4], &t.pma[5], &t.pma[6], &t.pma[7], &t.pma[9]};
+}
+
+void add(HorizontalSeries& sum, double factor, const HorizontalSeries& term) {
+  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += factor * term[k];
+}
+
+}  // namespace
+
+void DayExpansions::set_day(int day_of_year, const SolarIndices& indices) {
+  if (day_of_year == day_of_year_ && indices == indices_) return;
+  day_of_year_ = day_of_year;
+  indices_ = indices;
+  work_out();
+}
+
+void DayExpansions::work_out() {
+  constexpr double kAnyLatitude_deg = 0.0;  // for the daily index, which all latitudes share
+  remembers_ = indices_.geomagnetic_index == GeomagneticIndex::kThreeHourly;
+
+  const auto upper = upper_quantities(*tables_);
+  for (std::size_t i = 0; i < upper.size(); ++i) {
+    effective_ap_[i] = EffectiveAp(*upper[i], indices_);
+    ExpansionOfDay expansion = upper_expansion(*upper[i], day_of_year_, indices_);
+    if (!remembers_) add(expansion.quiet, effective_ap_[i].at(kAnyLatitude_deg), expansion.magnetic);
+    upper_.set(static_cast<int>(i), expansion.quiet);
+    upper_magnetic_.set(static_cast<int>(i), expansion.magnetic);
+  }
+
+  const auto lower = lower_thermosphere_quantities(*tables_);
+  for (std::size_t i = 0; i < lower.size(); ++i) {
+    // The lower thermosphere responds to activity as the temperature at its upper boundary does.
+    ExpansionOfDay expansion = lower_expansion(*lower[i], day_of_year_, indices_);
+    if (!remembers_) add(expansion.quiet, effective_ap_[kBoundaryTemperature].at(kAnyLatitude_deg), expansion.magnetic);
+    lower_thermosphere_.set(static_cast<int>(i), expansion.quiet);
+    lower_thermosphere_magnetic_.set(static_cast<int>(i), expansion.magnetic);
+  }
+  lower_atmosphere_ready_ = false;
+  turbopause_season_ = std::cos(kModelDay * (day_of_year_ - tables_->pt[13]));
+}
+
+UpperVariations DayExpansions::upper(const HorizontalSeries& functions, double latitude_deg) const {
+  auto v = upper_.sums(functions);
+  if (remembers_) {
+    const auto magnetic = upper_magnetic_.sums(functions);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] += effective_ap_[i].at(latitude_deg) * magnetic[i];
+  }
+  return {.exospheric_temperature = v[0],
+          .gradient = v[1],
+          .boundary_temperature = v[kBoundaryTemperature],
+          .he = v[2],
+          .o = v[3],
+          .n2 = v[4],
+          .o2 = v[6],
+          .ar = v[7],
+          .h = v[8],
+          .n = v[9],
+          .anomalous_o = v[10]};
+}
+
+LowerThermosphereVariations DayExpansions::lower_thermosphere(const HorizontalSeries& functions,
+                                                              double latitude_deg) const {
+  auto v = lower_thermosphere_.sums(functions);
+  if (remembers_) {
+    const auto magnetic = lower_thermosphere_magnetic_.sums(functions);
+    const double activity = effective_ap_[kBoundaryTemperature].at(latitude_deg);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] += activity * magnetic[i];
+  }
+  return {.temperature = {v[0], v[1], v[2], v[3]}, .bottom_gradient = v[4]};
+}
+
+LowerAtmosphereVariations DayExpansions::lower_atmosphere(const HorizontalSeries& functions) {
+  if (!lower_atmosphere_ready_) {
+    const auto quantities = lower_atmosphere_quantities(*tables_);
+    for (std::size_t i = 0; i < quantities.size(); ++i) {
+      // The published coefficients have no response to geomagnetic activity down here.
+      lower_atmosphere_.set(static_cast<int>(i), lower_expansion(*quantities[i], day_of_year_, indices_).quiet);
+    }
+    lower_atmosphere_ready_ = true;
+  }
+  const auto v = lower_atmosphere_.sums(functions);
+  return {.stratosphere = {v[0], v[1], v[2]},
+          .troposphere = {v[3], v[4], v[5], v[6]},
+          .surface_gradient = v[7],
+          .joint_gradient = v[8]};
+}
+
+}  // namespace vbar::truth

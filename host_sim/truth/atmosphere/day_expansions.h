@@ -1,0 +1,71 @@
+#pragma once
+// All series of NRLMSISE-00 for one day and one level of solar activity, ready to be summed at a place and time of day.
+
+#include <array>
+#include <memory>
+#include <utility>
+
+#include "host_sim/truth/atmosphere/effective_ap.h"
+#include "host_sim/truth/atmosphere/horizontal_expansion.h"
+#include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
+#include "host_sim/truth/atmosphere/series_table.h"
+
+namespace vbar::truth {
+
+/// Relative variations (dimensionless, about 0) of the thermosphere's quantities: temperatures and gradient as factors
+/// 1 + v, densities at 120 km as factors exp(v).
+struct UpperVariations {
+  double exospheric_temperature, gradient, boundary_temperature;
+  double he, o, n2, o2, ar, h, n, anomalous_o;
+};
+
+/// Variations v, as factors 1/(1 - v) of temperature and 1 + v of gradient.
+struct LowerThermosphereVariations {
+  std::array<double, 4> temperature;  ///< at 110, 100, 90, 72.5 km
+  double bottom_gradient;             ///< at 72.5 km
+};
+
+/// The same below 72.5 km, in the order of the published array pma without its ninth row (the bottom gradient above).
+struct LowerAtmosphereVariations {
+  std::array<double, 3> stratosphere;  ///< at 55, 45, 32.5 km
+  std::array<double, 4> troposphere;   ///< at 20, 15, 10, 0 km
+  double surface_gradient;             ///< at 0 km
+  double joint_gradient;               ///< at 32.5 km
+};
+
+/// Working out the series costs some 50 evaluations, so it is done when day or indices change and not before.
+class DayExpansions {
+ public:
+  explicit DayExpansions(std::shared_ptr<const Nrlmsise00Tables> tables) : tables_(std::move(tables)) {}
+
+  void set_day(int day_of_year, const SolarIndices& indices);
+
+  /// The wave of the year that moves the turbopause, one way in the north and the other in the south: -1 to 1.
+  double turbopause_season() const { return turbopause_season_; }
+
+  UpperVariations upper(const HorizontalSeries& functions, double latitude_deg) const;
+  LowerThermosphereVariations lower_thermosphere(const HorizontalSeries& functions, double latitude_deg) const;
+  LowerAtmosphereVariations lower_atmosphere(const HorizontalSeries& functions);
+
+ private:
+  static constexpr int kUpperCount = 11;
+  static constexpr int kLowerThermosphereCount = 5;
+  static constexpr int kLowerAtmosphereCount = 9;
+
+  void work_out();
+
+  std::shared_ptr<const Nrlmsise00Tables> tables_;
+  int day_of_year_ = 0;  // none yet
+  SolarIndices indices_;
+  double turbopause_season_ = 0.0;
+  bool remembers_ = false;  // effective ap depends on latitude: the magnetic series are kept apart
+  std::array<EffectiveAp, kUpperCount> effective_ap_;
+  SeriesTable<kUpperCount, kHorizontalSize> upper_;
+  SeriesTable<kUpperCount, kHorizontalSize> upper_magnetic_;
+  SeriesTable<kLowerThermosphereCount, kLowerSize> lower_thermosphere_;
+  SeriesTable<kLowerThermosphereCount, kLowerSize> lower_thermosphere_magnetic_;
+  SeriesTable<kLowerAtmosphereCount, kLowerSize> lower_atmosphere_;
+  bool lower_atmosphere_ready_ = false;
+};
+
+}  // namespace vbar::truth

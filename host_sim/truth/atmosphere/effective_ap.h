@@ -1,0 +1,30 @@
+#pragma once
+// The geomagnetic activity that a quantity of NRLMSISE-00 responds to: ap above its quiet value of 4, bent by the
+// saturation that the model found, from the day's mean or from the fading memory of the last 57 hours.
+
+#include <array>
+
+#include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
+#include "host_sim/truth/atmosphere/solar_indices.h"
+
+namespace vbar::truth {
+
+class EffectiveAp {
+ public:
+  EffectiveAp() = default;
+
+  /// `p`: the coefficients of the quantity.
+  EffectiveAp(const Nrlmsise00Tables::Upper& p, const SolarIndices& indices);
+
+  /// The memory depends on the latitude's distance from 45 deg.
+  double at(double latitude_deg) const;
+
+ private:
+  bool remembers_ = false;
+  double daily_ = 0.0;
+  std::array<double, 6> history_{};  // saturated
+  double fading_ = 0.0;              // over three hours: exp(-fading) at 45 deg
+  double latitude_slope_ = 0.0;
+};
+
+}  // namespace vbar::truth

@@ -1,0 +1,22 @@
+#pragma once
+// What drives the upper atmosphere: the Sun's radio flux and the geomagnetic indices of an instant.
+
+#include <array>
+
+#include "host_sim/truth/forces/force_model.h"
+
+namespace vbar::truth {
+
+struct SolarIndices {
+  double f107 = 0.0;          ///< 10.7 cm flux of the day before, observed, 1e-22 W/m^2/Hz
+  double f107_average = 0.0;  ///< its mean over 81 days centred on the day
+  GeomagneticIndex geomagnetic_index = GeomagneticIndex::kDaily;
+  double ap_daily = 0.0;  ///< the day's mean ap; all that kDaily uses
+  /// What kThreeHourly uses: ap of the current three hours and of 3, 6, 9 hours before; the mean of the eight from 12
+  /// to 33 hours before; that of the eight from 36 to 57 hours before.
+  std::array<double, 6> ap_history{};
+
+  bool operator==(const SolarIndices&) const = default;
+};
+
+}  // namespace vbar::truth

@@ -1,0 +1,50 @@
+#pragma once
+// The Sun's radio flux and the geomagnetic indices as observed, day by day, and what an atmosphere model is given of
+// them at an instant. Indices are constant in steps: the force that uses them says where they jump (force.h).
+
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "host_sim/truth/atmosphere/solar_indices.h"
+#include "host_sim/truth/forces/force_model.h"
+
+namespace vbar::truth {
+
+/// A series of days. Immutable once made, so it may be shared between threads.
+class SpaceWeather {
+ public:
+  /// One UTC day's row.
+  struct Day {
+    int mjd_utc = 0;
+    std::array<double, 8> ap{};  ///< three-hourly, from 00-03 to 21-24 UTC
+    double ap_daily = 0.0;
+    double f107 = 0.0;          ///< observed, 1e-22 W/m^2/Hz
+    double f107_average = 0.0;  ///< over 81 days centred on the day
+  };
+
+  /// Reads data/earth/space_weather_2009_2013.csv or a file of the same columns, days without gaps.
+  /// Throws std::runtime_error naming file, line and what is accepted.
+  static SpaceWeather load(const std::filesystem::path& file);
+
+  /// `days` in order, without gaps, at least four of them: std::invalid_argument otherwise.
+  explicit SpaceWeather(std::vector<Day> days);
+
+  /// The indices that hold at `time`. F10.7 is the day before's. Throws std::out_of_range, naming date and range, where
+  /// the series has not the day itself, the day before and, three-hourly, 57 hours before.
+  SolarIndices indices_at(fsw::GpsTime time, GeomagneticIndex geomagnetic_index) const;
+
+  /// The first instant after `time` at which indices change: 0h UTC, and three-hourly 3h, 6h, ... UTC too.
+  static fsw::GpsTime next_change_after(fsw::GpsTime time, GeomagneticIndex geomagnetic_index);
+
+ private:
+  double ap_before(int slot, int three_hours) const { return ap_[static_cast<std::size_t>(slot - three_hours)]; }
+  double mean_of_eight_before(int slot, int latest) const;
+  [[noreturn]] void refuse(fsw::GpsTime time, GeomagneticIndex geomagnetic_index) const;
+
+  std::vector<Day> days_;
+  std::vector<double> ap_;  // three-hourly, of all days
+};
+
+}  // namespace vbar::truth

@@ -1,0 +1,52 @@
+#pragma once
+// How much of the Sun a spacecraft sees past the Earth, and where that changes.
+//
+// The Earth's figure is an ellipsoid of revolution about the z axis of GCRF (the true pole is 1e-3 rad away in 2011,
+// which moves the limb by 25 m). Stretching z by 1/(1 - flattening) makes it a sphere and keeps straight lines
+// straight, so the shadow of the ellipsoid is that of the sphere in stretched coordinates (Escobal 1965, chapter 5,
+// uses the same device for visibility). That is exact for light that arrives parallel; of the Sun's disk it stretches
+// the height by up to 0.3 per cent, and the penumbra's width with it. No atmosphere: its refraction and absorption
+// soften and shift real edges by some seconds in a low orbit.
+
+#include "fsw/core/types.h"
+
+namespace vbar::truth {
+
+inline constexpr double kSunRadius = 6.957e8;  ///< m, nominal (IAU 2015 B3)
+
+struct EarthFigure {
+  double equatorial_radius = 6378137.0;     ///< m; WGS 84
+  double flattening = 1.0 / 298.257223563;  ///< WGS 84; 0 is a sphere
+};
+
+/// Sunlight arriving parallel: positive in the light, zero at the edge of the Earth's shadow, negative in it, in metres
+/// along the direction to the Sun, and smooth. `position` (outside the Earth) and `sun`: geocentric, m, axes of GCRF.
+double cylindrical_shadow_edge(const fsw::Vector3& position, const fsw::Vector3& sun, const EarthFigure& earth);
+
+/// The Sun and the Earth as disks in the spacecraft's sky, rad.
+struct SkyDisks {
+  double sun_radius = 0.0;
+  double earth_radius = 0.0;
+  double separation = 0.0;  ///< of their centres
+};
+
+SkyDisks sky_disks(const fsw::Vector3& position, const fsw::Vector3& sun, const EarthFigure& earth);
+
+/// Positive where the Sun is clear of the Earth, zero at the penumbra's outer rim; rad.
+inline double penumbra_outer_edge(const SkyDisks& disks) {
+  return disks.separation - (disks.earth_radius + disks.sun_radius);
+}
+
+/// Zero at the penumbra's inner rim, negative inside: the umbra near the Earth, where the Sun is hidden, and beyond its
+/// apex (1.4 million km) the antumbra, where the Earth stands wholly before the Sun; rad.
+double penumbra_inner_edge(const SkyDisks& disks);
+
+/// Uncovered part of the Sun's disk where the rims of the disks cross, 0 to 1: the overlap of two circles on the sky,
+/// exact (in the stereographic projection about the Sun's centre both stay circles; its scale varies by 2e-5 over the
+/// Sun's disk). Outside of that the value at the rim crossed. The Sun's limb is taken as bright as its centre.
+double penumbra_sunlit_fraction(const SkyDisks& disks);
+
+/// The same inside the inner rim: 0 in the umbra, 1 less the ratio of the disks' areas in the antumbra.
+double inner_sunlit_fraction(const SkyDisks& disks);
+
+}  // namespace vbar::truth

@@ -1,0 +1,206 @@
+#include "host_sim/truth/atmosphere/nrlmsise00.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/accuracy.h"
+#include "tests/unit/host_sim/truth/atmosphere/reference_cases.h"
+
+namespace vbar::truth {
+namespace {
+
+using test::number;
+using test::published_tables;
+
+TEST(Nrlmsise00, PrintsTheOfficialCasesDigitForDigit) {
+  const auto inputs = test::reference_rows("full_precision_cases.csv");
+  const auto printed = test::reference_rows("official_cases.csv");
+  ASSERT_EQ(inputs.size(), 17U);
+  ASSERT_EQ(printed.size(), 17U);
+  Nrlmsise00 model(published_tables());
+  long same = 0;
+  for (std::size_t i = 0; i < printed.size(); ++i) {
+    const auto found = test::outputs(model.at(test::input_of(inputs[i])));
+    for (const auto& [column, text] : printed[i]) {
+      if (column == "case") continue;
+      const std::string mine = fmt::format("{:.6E}", found.at(column));
+      EXPECT_EQ(mine, text) << "case " << i + 1 << ", " << column;
+      if (mine == text) ++same;
+    }
+  }
+  accuracy::expect_count("NRLMSISE-00, numbers alike in every printed digit",
+                         "the 17 cases of the model's documentation, 11 numbers each", same, 17 * 11, "numbers");
+}
+
+TEST(Nrlmsise00, AgreesWithTheReferenceAtFullPrecision) {
+  Nrlmsise00 model(published_tables());
+  double largest = 0.0;
+  for (const auto& row : test::reference_rows("full_precision_cases.csv")) {
+    const auto found = test::outputs(model.at(test::input_of(row)));
+    for (const std::string column :
+         {"HE", "O", "N2", "O2", "AR", "RHO_g_cm3", "H", "N", "ANOM_O", "TEXO_K", "TALT_K", "RHO_gtd7d_g_cm3"}) {
+      const double expected = number(row, column);
+      if (expected == 0.0) {
+        EXPECT_EQ(found.at(column), 0.0) << column;
+      } else {
+        largest = std::max(largest, std::abs(found.at(column) / expected - 1.0));
+      }
+    }
+  }
+  // Rounding: densities are exponentials of sums of up to 100 in size, so some 100 half units of the last place.
+  accuracy::expect_below("NRLMSISE-00, densities and temperatures",
+                         "the public C release in double precision, 17 cases of 12 numbers", largest, 1e-13,
+                         "relative");
+}
+
+TEST(Nrlmsise00, AgreesWithAnotherProfile) {
+  // Other hemisphere, date, time and solar activity than the official cases, of F10.7 far from its mean.
+  Nrlmsise00 model(published_tables());
+  AtmosphereInput input;
+  input.day_of_year = 170;
+  input.ut_s = 21.5 * 3600.0;
+  input.latitude_deg = -16.0;
+  input.longitude_deg = 312.0;
+  input.local_solar_time_h = input.ut_s / 3600.0 + input.longitude_deg / 15.0;
+  input.indices.f107 = 121.0;
+  input.indices.f107_average = 80.0;
+  input.indices.ap_daily = 7.0;
+  double largest = 0.0;
+  for (const auto& row : test::reference_rows("ccmc_profile.csv")) {
+    input.altitude_km = number(row, "alt_km");
+    const auto found = test::outputs(model.at(input));
+    for (const std::string column : {"HE", "O", "N2", "O2", "AR", "RHO", "H", "N", "ANOM_O"}) {
+      const double expected = number(row, column);
+      if (expected == 0.0) {
+        EXPECT_LT(found.at(column), 1e-30) << column;  // its smallest printed number is larger
+      } else {
+        largest = std::max(largest, std::abs(found.at(column) / expected - 1.0));
+      }
+    }
+    EXPECT_NEAR(found.at("TALT_K"), number(row, "TALT_K"), 0.051);  // printed to 0.1 K
+    EXPECT_NEAR(found.at("TEXO_K"), number(row, "TEXO_K"), 0.51);   // printed to 1 K
+  }
+  // Four digits: half a unit of the last is up to 5e-4.
+  accuracy::expect_below("NRLMSISE-00, a profile from 0 to 1000 km",
+                         "NASA CCMC's online run, 99 densities printed to 4 digits", largest, 5e-4, "relative");
+}
+
+TEST(Nrlmsise00, StepsAtItsJointsAreSmall) {
+  // The published model switches there what it takes for negligible, so a step is a property of the model; the bounds
+  // are those that nrlmsise00.h states. At 32.5 and 62.5 km two formulas meet, and only rounding and 2e-9 km are left.
+  constexpr std::pair<double, double> kJoints[] = {{32.5, 1e-9},  {62.5, 1e-9},  {72.5, 1e-2},  {123.435, 1e-2},
+                                                   {160.0, 3e-3}, {200.0, 1e-4}, {240.0, 1e-4}, {250.0, 1e-4},
+                                                   {300.0, 5e-4}, {320.0, 1e-4}, {450.0, 1e-4}};
+  Nrlmsise00 model(published_tables());
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int trial = 0; trial < 300; ++trial) {
+    AtmosphereInput input;
+    input.day_of_year = 1 + static_cast<int>(365.0 * unit(random));
+    input.ut_s = 86400.0 * unit(random);
+    input.latitude_deg = -90.0 + 180.0 * unit(random);
+    input.longitude_deg = -180.0 + 360.0 * unit(random);
+    input.local_solar_time_h = input.ut_s / 3600.0 + input.longitude_deg / 15.0;
+    input.indices.f107_average = 70.0 + 180.0 * unit(random);
+    input.indices.f107 = input.indices.f107_average + 40.0 * (unit(random) - 0.5);
+    input.indices.ap_daily = 50.0 * unit(random);
+    const auto step_at = [&](double altitude_km) {
+      constexpr double kNear_km = 1e-9;  // over which density falls by 1e-10
+      input.altitude_km = altitude_km - kNear_km;
+      const double below = model.at(input).drag_density;
+      input.altitude_km = altitude_km + kNear_km;
+      return std::abs(model.at(input).drag_density / below - 1.0);
+    };
+    for (const auto& [joint_km, largest] : kJoints) EXPECT_LT(step_at(joint_km), largest) << joint_km;
+  }
+}
+
+TEST(Nrlmsise00, DependsOnTheInputOnly) {
+  Nrlmsise00 fresh(published_tables()), used(published_tables());
+  const auto rows = test::reference_rows("full_precision_cases.csv");
+  for (const auto& row : rows) used.at(test::input_of(row));
+  for (const auto& row : rows) {
+    Nrlmsise00 model(published_tables());
+    const AtmosphereState expected = model.at(test::input_of(row));
+    const AtmosphereState found = used.at(test::input_of(row));
+    EXPECT_EQ(found.drag_density, expected.drag_density);
+    EXPECT_EQ(found.temperature, expected.temperature);
+  }
+}
+
+TEST(Nrlmsise00, GoesOnAboveItsRange) {
+  Nrlmsise00 model(published_tables());
+  AtmosphereInput input = test::input_of(test::reference_rows("full_precision_cases.csv").front());
+  double before = std::numeric_limits<double>::infinity();
+  for (double altitude_km = 1000.0; altitude_km < 40000.0; altitude_km *= 1.3) {
+    input.altitude_km = altitude_km;
+    const AtmosphereState state = model.at(input);
+    EXPECT_GT(state.drag_density, 0.0);
+    EXPECT_LT(state.drag_density, before);
+    EXPECT_NEAR(state.temperature, state.exospheric_temperature, 1.0);  // isothermal up there
+    before = state.drag_density;
+  }
+}
+
+TEST(Nrlmsise00, HoldsAtThePoles) {
+  Nrlmsise00 model(published_tables());
+  AtmosphereInput input = test::input_of(test::reference_rows("full_precision_cases.csv").front());
+  for (const double pole : {-90.0, 90.0}) {
+    // All longitudes meet there: with one universal time, density differs by nothing but what the waves of longitude
+    // and local time leave at 1e-9 deg from it and by the model's rounding of pi.
+    input.latitude_deg = pole;
+    input.longitude_deg = -100.0;
+    const double one = model.at(input).drag_density;
+    input.longitude_deg = 80.0;
+    input.local_solar_time_h += 12.0;
+    EXPECT_NEAR(model.at(input).drag_density / one, 1.0, 1e-6);
+  }
+}
+
+TEST(Nrlmsise00, RefusesWhatIsNoNumberOrOutOfRange) {
+  Nrlmsise00 model(published_tables());
+  const AtmosphereInput good = test::input_of(test::reference_rows("full_precision_cases.csv").front());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const auto refuses = [&](auto&& spoil) {
+    AtmosphereInput input = good;
+    spoil(input);
+    EXPECT_THROW(model.at(input), std::invalid_argument);
+  };
+  for (const double bad : {nan, inf, -inf}) {
+    refuses([&](AtmosphereInput& i) { i.ut_s = bad; });
+    refuses([&](AtmosphereInput& i) { i.altitude_km = bad; });
+    refuses([&](AtmosphereInput& i) { i.latitude_deg = bad; });
+    refuses([&](AtmosphereInput& i) { i.longitude_deg = bad; });
+    refuses([&](AtmosphereInput& i) { i.local_solar_time_h = bad; });
+    refuses([&](AtmosphereInput& i) { i.indices.f107 = bad; });
+    refuses([&](AtmosphereInput& i) { i.indices.f107_average = bad; });
+    refuses([&](AtmosphereInput& i) { i.indices.ap_daily = bad; });
+    refuses([&](AtmosphereInput& i) {
+      i.indices.geomagnetic_index = GeomagneticIndex::kThreeHourly;
+      i.indices.ap_history[5] = bad;
+    });
+  }
+  refuses([](AtmosphereInput& i) { i.latitude_deg = 90.1; });
+  refuses([](AtmosphereInput& i) { i.day_of_year = 0; });
+  refuses([](AtmosphereInput& i) { i.day_of_year = 367; });
+
+  AtmosphereInput underground = good;
+  underground.altitude_km = -0.001;
+  EXPECT_THROW(model.at(underground), std::domain_error);
+  AtmosphereInput no_sun = good;
+  no_sun.indices.f107 = -1e6;
+  EXPECT_THROW(model.at(no_sun), std::domain_error);
+  EXPECT_THROW(Nrlmsise00{nullptr}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace vbar::truth
