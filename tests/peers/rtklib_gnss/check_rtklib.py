@@ -87,9 +87,14 @@ GROUP_DELAY = {"G": 25, "E": 26, "C": 25}
 
 
 def check_convbin(tool):
+    for scene in ("orbit", "week_end"):
+        check_files(tool, scene)
+
+
+def check_files(tool, scene):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        record(tool, folder, "orbit")
+        record(tool, folder, scene)
         for receiver in ("servicer", "target"):
             epochs, observations = epochs_of(folder / f"{receiver}.obs")
             # Nothing is tracked at the moment of switching on; all later epochs are there.
@@ -134,7 +139,7 @@ GPS, ALL = 1, 1 + 8 + 32
 
 
 def check_single(tool):
-    for scene, systems in (("orbit", GPS), ("orbit", ALL), ("ground", GPS)):
+    for scene, systems in (("orbit", GPS), ("orbit", ALL), ("week_end", ALL), ("ground", GPS)):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             record(tool, folder, scene)

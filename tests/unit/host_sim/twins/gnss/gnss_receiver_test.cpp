@@ -214,6 +214,29 @@ TEST(GnssReceiver, FindsItselfAndItsClock) {
   }
 }
 
+// Where the antenna is: 0.3 m above the centre of mass of a zenith-pointing body, at the instant at which the
+// receiver's clock shows the epoch; 3 + 5 mm and 5 sigma of 1 mm noise off.
+TEST(GnssReceiver, AntennaIsWhereTheBodyCarriesIt) {
+  GnssReceiver subject = receiver({});
+  for (int k = 0; k < 10; ++k) {
+    const double t = 600.0 * k;
+    const BodyTruth body = test::in_orbit(t);
+    subject.bytes_at(body);
+    // The orbit itself, a fraction of a millisecond away from the epoch.
+    const double early_s = -subject.truth().clock_offset_s;
+    BodyTruth then = test::in_orbit(t + 1.0);
+    const double rate =
+        std::acos(std::clamp(then.position_eci.normalized().dot(body.position_eci.normalized()), -1.0, 1.0));
+    const Vector3 normal = body.position_eci.cross(body.velocity_eci).normalized();
+    const Vector3 com = Eigen::AngleAxisd(rate * early_s, normal) * body.position_eci;
+    const Vector3 antenna_eci = com + 0.3 * com.normalized();
+    const double turn = fsw::gnss::kEarthRateGps * (t + early_s);
+    const Vector3 expected = Eigen::AngleAxisd(-turn, Vector3::UnitZ()) * antenna_eci;
+    EXPECT_LT((subject.truth().antenna_ecef - expected).norm(), 13e-3);
+    EXPECT_GT((subject.truth().antenna_ecef - expected).norm(), 0.5e-3);
+  }
+}
+
 // Same seed, same bytes; BeiDou left out changes no bit of what GPS measures.
 TEST(GnssReceiver, IsAFunctionOfTheSeed) {
   GnssReceiver a = receiver({}, 5);
