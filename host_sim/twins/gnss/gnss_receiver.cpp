@@ -28,7 +28,7 @@ const GnssReceiverSettings& checked(const GnssReceiverSettings& settings) {
   return settings;
 }
 
-void check_truth(const CarrierTruth& truth) {
+void check_truth(const BodyTruth& truth) {
   if (truth.time.ns % 1'000'000 != 0)
     throw std::invalid_argument(fmt::format("GNSS receiver: epoch {} ns is not a whole millisecond", truth.time.ns));
   const bool finite = truth.position_eci.allFinite() && truth.velocity_eci.allFinite() &&
@@ -77,7 +77,7 @@ GnssReceiver::GnssReceiver(const GnssReceiverSettings& settings, std::shared_ptr
   }
 }
 
-std::vector<std::uint8_t> GnssReceiver::bytes_at(const CarrierTruth& truth) {
+std::vector<std::uint8_t> GnssReceiver::bytes_at(const BodyTruth& truth) {
   check_truth(truth);
   advance(truth);
   const AntennaState antenna = antenna_state(truth);
@@ -101,21 +101,7 @@ std::vector<std::uint8_t> GnssReceiver::bytes_at(const CarrierTruth& truth) {
     corrections_logged_ = true;
     corrections_logged_at_ = truth.time;
   }
-  oem::PositionRecord position;
-  oem::ClockRecord clock;
-  position.satellites_tracked = truth_.visible_satellites;
-  if (solution) {
-    position.solved = clock.valid = true;
-    position.position_ecef = antenna.position_ecef + solution->position_error_ecef;
-    position.velocity_ecef = antenna.velocity_ecef + solution->velocity_error_ecef;
-    position.position_sigma_m = solution->position_sigma;
-    position.velocity_sigma_mps = solution->velocity_sigma;
-    position.satellites_used = static_cast<int>(solution->satellites);
-    clock.offset_s = solution->clock_offset_s;
-    clock.sigma_s = solution->clock_sigma_s;
-  }
-  oem::append_bestxyz(bytes, header, position);
-  oem::append_time(bytes, header, clock, utc);
+  append_solution(bytes, header, antenna, solution, utc);
   return bytes;
 }
 
@@ -124,7 +110,7 @@ void GnssReceiver::command_slip(SatelliteId satellite, Signal signal, std::int64
     if (tracking.satellite() == satellite) tracking.command_slip(signal, cycles, seen);
 }
 
-void GnssReceiver::advance(const CarrierTruth& truth) {
+void GnssReceiver::advance(const BodyTruth& truth) {
   if (on_) {
     if (truth.time <= last_epoch_) throw std::invalid_argument("GNSS receiver: the epoch is not later than the last");
     clock_.advance(seconds(truth.time - last_epoch_));
@@ -133,7 +119,7 @@ void GnssReceiver::advance(const CarrierTruth& truth) {
   }
 }
 
-AntennaState GnssReceiver::antenna_state(const CarrierTruth& truth) {
+AntennaState GnssReceiver::antenna_state(const BodyTruth& truth) {
   const BodyFrameSettings& body = settings_.body_frame;
   const double x = antenna_noise_.normal();
   const double y = antenna_noise_.normal();
@@ -167,6 +153,7 @@ AntennaState GnssReceiver::antenna_state(const CarrierTruth& truth) {
 
 void GnssReceiver::observe(const AntennaState& antenna, fsw::GpsTime now) {
   observations_.clear();
+  observed_satellites_.clear();
 
   truth_.observations.clear();
   truth_.visible_satellites = 0;
@@ -243,6 +230,7 @@ void GnssReceiver::observe_signal(SignalTrack& track, const SignalPath& path, do
   for (const SignalTrack& other : tracking_[index].signals())
     record.grouped = record.grouped || (other.tracking && other.signal != signal);
   observations_.push_back(record);
+  observed_satellites_.push_back(index);
 }
 
 void GnssReceiver::hear_messages(fsw::GpsTime now) {
@@ -268,11 +256,10 @@ void GnssReceiver::hear_messages(fsw::GpsTime now) {
 
 std::optional<PointSolution> GnssReceiver::point_solution(const AntennaState& antenna) const {
   std::vector<PointResidual> residuals;
-  for (const oem::RangeRecord& record : observations_) {
-    if (record.signal != Signal::kGpsL1) continue;
-    std::size_t index = 0;
-    while (constellation_->id(index) != record.satellite) ++index;
-    if (!messages_[index].received) continue;
+  for (std::size_t k = 0; k < observations_.size(); ++k) {
+    const oem::RangeRecord& record = observations_[k];
+    const std::size_t index = observed_satellites_[k];
+    if (record.signal != Signal::kGpsL1 || !messages_[index].received) continue;
     const Ephemeris& set = messages_[index].set.ephemeris;
     const SignalPath predicted = broadcast_path(set, antenna);
     PointResidual residual;
@@ -321,6 +308,26 @@ void GnssReceiver::append_ephemerides(oem::Bytes& bytes, const oem::Header& head
     message.logged = true;
     message.logged_at = header.time;
   }
+}
+
+void GnssReceiver::append_solution(oem::Bytes& bytes, const oem::Header& header, const AntennaState& antenna,
+                                   const std::optional<PointSolution>& solution, const UtcOffset& utc) const {
+  oem::PositionRecord position;
+  oem::ClockRecord clock;
+  for (const SatelliteTracking& tracking : tracking_)
+    if (tracking.signals().front().tracking) ++position.satellites_tracked;
+  if (solution) {
+    position.solved = clock.valid = true;
+    position.position_ecef = antenna.position_ecef + solution->position_error_ecef;
+    position.velocity_ecef = antenna.velocity_ecef + solution->velocity_error_ecef;
+    position.position_sigma_m = solution->position_sigma;
+    position.velocity_sigma_mps = solution->velocity_sigma;
+    position.satellites_used = static_cast<int>(solution->satellites);
+    clock.offset_s = solution->clock_offset_s;
+    clock.sigma_s = solution->clock_sigma_s;
+  }
+  oem::append_bestxyz(bytes, header, position);
+  oem::append_time(bytes, header, clock, utc);
 }
 
 }  // namespace vbar::twins::gnss

@@ -31,7 +31,7 @@
 namespace vbar::twins::gnss {
 
 /// The truth about the body that carries the receiver.
-struct CarrierTruth {
+struct BodyTruth {
   fsw::GpsTime time;                                 ///< whole milliseconds
   fsw::Vector3 position_eci = fsw::Vector3::Zero();  ///< of the centre of mass
   fsw::Vector3 velocity_eci = fsw::Vector3::Zero();
@@ -77,7 +77,7 @@ class GnssReceiver {
   /// One epoch: the logs that the receiver sends, in the order RANGE, ephemerides, IONUTC, BESTXYZ, TIME. The first
   /// call switches it on. Throws std::invalid_argument for a time that is not later than the last or not a whole
   /// millisecond, and for a truth that is not finite or not near the Earth.
-  std::vector<std::uint8_t> bytes_at(const CarrierTruth& truth);
+  std::vector<std::uint8_t> bytes_at(const BodyTruth& truth);
 
   /// Lets a carrier slip by whole cycles at the next epoch, if it is tracked then.
   void command_slip(SatelliteId satellite, Signal signal, std::int64_t cycles, bool seen);
@@ -102,8 +102,8 @@ class GnssReceiver {
     double carrier_fraction_cycles = 0.0;
   };
 
-  void advance(const CarrierTruth& truth);
-  AntennaState antenna_state(const CarrierTruth& truth);
+  void advance(const BodyTruth& truth);
+  AntennaState antenna_state(const BodyTruth& truth);
   void observe(const AntennaState& antenna, fsw::GpsTime now);
   void observe_satellite(const AntennaState& antenna, fsw::GpsTime now, std::size_t index);
   void observe_signal(SignalTrack& track, const SignalPath& path, double ionosphere_l1_m, double elevation,
@@ -112,6 +112,8 @@ class GnssReceiver {
   [[nodiscard]] std::optional<PointSolution> point_solution(const AntennaState& antenna) const;
   [[nodiscard]] oem::TimeStatus time_status(fsw::GpsTime now, bool solved) const;
   void append_ephemerides(oem::Bytes& bytes, const oem::Header& header);
+  void append_solution(oem::Bytes& bytes, const oem::Header& header, const AntennaState& antenna,
+                       const std::optional<PointSolution>& solution, const UtcOffset& utc) const;
 
   GnssReceiverSettings settings_;
   std::shared_ptr<const Constellation> constellation_;
@@ -129,6 +131,7 @@ class GnssReceiver {
   bool corrections_logged_ = false;
   fsw::GpsTime corrections_logged_at_;
   std::vector<oem::RangeRecord> observations_;
+  std::vector<std::size_t> observed_satellites_;  ///< the constellation's index of each observation
   ReceiverTruth truth_;
 };
 

@@ -1,10 +1,11 @@
 // Writes what two emulated receivers send, for RTKLIB's programs to read, and the truth beside it.
 //
-//   vbar_gnss_tool FOLDER orbit|ground EPOCHS PERIOD_S
+//   vbar_gnss_tool FOLDER orbit|week_end|ground EPOCHS PERIOD_S
 //
-// FOLDER gets servicer.gps and target.gps (OEM binary logs) and truth.csv: at each epoch of the clock the true antenna
-// of both, ECEF, m. "orbit": two spacecraft 10 m apart on a circular orbit at 709 km, antennas to the zenith; "ground":
-// two antennas 8 m apart on the equator. The Earth turns uniformly here: RTKLIB never sees the inertial frame.
+// FOLDER gets servicer.gps and target.gps (OEM binary logs), ephemerides.csv (what the satellites say) and truth.csv:
+// at each epoch of the clock the true antenna of both, ECEF, m. "orbit": two spacecraft 10 m apart on a circular orbit
+// at 709 km, antennas to the zenith; "week_end": the same from half an hour before a GPS week ends; "ground": two
+// antennas 8 m apart on the equator. The Earth turns uniformly here: RTKLIB never sees the inertial frame.
 
 #include <cmath>
 #include <cstdio>
@@ -12,12 +13,13 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
 
-#include "host_sim/twins/gnss/gnss_receiver.h"
-#include "host_sim/twins/gnss/system_time.h"
+#include "host_sim/twins/gnss/navigation_message.h"
+#include "tests/support/gnss_scene.h"
 
 namespace {
 
@@ -25,47 +27,12 @@ using namespace vbar;
 using namespace vbar::twins::gnss;
 using fsw::Vector3;
 
-// 2011-07-19 16:00:00 GPS, near the start of the third experiment.
-constexpr fsw::GpsTime kStart = gps_time_of(System::kGps, 1645, 2 * 86400 + 57600);
 constexpr std::uint64_t kSeed = 7;
 
-struct Motion {
-  Vector3 position_eci;
-  Vector3 velocity_eci;
-};
-
-// Circular orbit, inclined 98 deg, `ahead_m` along the track and `up_m` and `across_m` beside the reference.
-Motion in_orbit(double t, const Vector3& offset_rtn) {
-  constexpr double kRadius = 7087.3e3;
-  const double rate = std::sqrt(fsw::gnss::kGmGps / (kRadius * kRadius * kRadius));
-  const double u = rate * t + offset_rtn.y() / kRadius;
-  const double i = 98.18 * std::numbers::pi / 180.0;
-  const Vector3 p(std::cos(u), std::sin(u) * std::cos(i), std::sin(u) * std::sin(i));
-  const Vector3 q(-std::sin(u), std::cos(u) * std::cos(i), std::cos(u) * std::sin(i));
-  const Vector3 w = p.cross(q);
-  const double radius = kRadius + offset_rtn.x();
-  return {radius * p + offset_rtn.z() * w, radius * rate * q};
-}
-
-Motion on_ground(double turn, const Vector3& position_ecef) {
-  const Vector3 position = Eigen::AngleAxisd(turn, Vector3::UnitZ()) * position_ecef;
-  return {position, fsw::gnss::kEarthRateGps * Vector3::UnitZ().cross(position)};
-}
-
-CarrierTruth truth_of(const Motion& motion, fsw::GpsTime time, double turn) {
-  CarrierTruth truth;
-  truth.time = time;
-  truth.position_eci = motion.position_eci;
-  truth.velocity_eci = motion.velocity_eci;
-  truth.R_ecef_eci = Eigen::AngleAxisd(-turn, Vector3::UnitZ()).toRotationMatrix();
-  // Body z to the zenith, x along the velocity's horizontal part.
-  const Vector3 z = motion.position_eci.normalized();
-  const Vector3 y = z.cross(motion.velocity_eci).normalized();
-  fsw::Matrix3 R_eci_body;
-  R_eci_body << y.cross(z), y, z;
-  truth.q_body_eci = Eigen::Quaterniond(R_eci_body.transpose());
-  truth.rate_body_eci = motion.position_eci.cross(motion.velocity_eci) / motion.position_eci.squaredNorm();
-  return truth;
+// Standing on the turning Earth.
+BodyTruth on_ground(double t, const Vector3& position_ecef) {
+  const Vector3 position = Eigen::AngleAxisd(fsw::gnss::kEarthRateGps * t, Vector3::UnitZ()) * position_ecef;
+  return test::zenith_pointing(position, fsw::gnss::kEarthRateGps * Vector3::UnitZ().cross(position), t);
 }
 
 void write(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes) {
@@ -74,38 +41,64 @@ void write(const std::filesystem::path& file, const std::vector<std::uint8_t>& b
   if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
 }
 
-int run(const std::filesystem::path& folder, bool orbit, int epochs, double period_s) {
-  const std::filesystem::path data = std::filesystem::path(VBAR_SOURCE_DIR) / "data";
-  const auto constellation = std::make_shared<const Constellation>(data, ConstellationSettings{}, kStart, kSeed);
+std::size_t satellites(const GnssReceiver& receiver) {
+  std::set<SatelliteId> tracked;
+  for (const oem::RangeRecord& record : receiver.observations()) tracked.insert(record.satellite);
+  return tracked.size();
+}
+
+// What the satellites broadcast at the start, angles and times as their messages have them.
+void write_ephemerides(const std::filesystem::path& file, const Constellation& constellation, fsw::GpsTime time) {
+  std::ofstream out(file);
+  out << "satellite,toe_of_week_s,issue,sqrt_a,e,m0,delta_n,omega0,omega_dot,i0,i_dot,omega,cuc,cus,cic,cis,crc,crs,"
+         "af0,af1,af2,group_delay_s\n";
+  for (std::size_t k = 0; k < constellation.size(); ++k) {
+    const BroadcastSet set = constellation.broadcast_set(k, time);
+    const Ephemeris& e = set.ephemeris;
+    out << fmt::format("{},{:.0f},{}", name_of(e.satellite), week_time(e.satellite.system, e.toe).seconds_of_week(),
+                       set.issue);
+    for (const double value : {e.sqrt_a, e.e, e.m0, e.delta_n, node_at_week_begin(e), e.omega_dot, e.i0, e.i_dot,
+                               e.omega, e.cuc, e.cus, e.cic, e.cis, e.crc, e.crs, e.af0, e.af1, e.af2, e.group_delay_s})
+      out << fmt::format(",{:.15e}", value);
+    out << '\n';
+  }
+}
+
+int run(const std::filesystem::path& folder, const std::string& scene, int epochs, double period_s) {
+  const bool orbit = scene != "ground";
+  // From Tuesday 16:00 to Saturday 23:30.
+  const fsw::Duration later = fsw::duration_of_seconds(scene == "week_end" ? 4 * 86400 + 27000 : 0);
+  const auto constellation = test::constellation(kSeed);
   GnssReceiverSettings settings;
-  // RTKLIB's kinematic solution follows neither: slips flagged are theirs to handle, but the phase must be one phase.
-  GnssReceiver servicer(settings, constellation, data, kSeed, "servicer");
-  GnssReceiver target(settings, constellation, data, kSeed, "target");
+  settings.ionosphere = orbit;
+  GnssReceiver servicer(settings, constellation, test::data_directory(), kSeed, "servicer");
+  GnssReceiver target(settings, constellation, test::data_directory(), kSeed, "target");
   const Vector3 ground(6378137.0, 0.0, 0.0);
+  const Vector3 separation = orbit ? Vector3(1.2, -7.9, 0.5) : Vector3(0.0, 6.0, 5.0);
   std::vector<std::uint8_t> servicer_bytes;
   std::vector<std::uint8_t> target_bytes;
   std::ofstream truth(folder / "truth.csv");
-  truth << "time_of_week_s,servicer_x,servicer_y,servicer_z,target_x,target_y,target_z\n";
+  truth << "time_of_week_s,servicer_x,servicer_y,servicer_z,target_x,target_y,target_z,servicer_satellites,"
+           "target_satellites\n";
   for (int k = 0; k < epochs; ++k) {
     const double t = k * period_s;
-    const fsw::GpsTime time = kStart + fsw::nearest_duration(t);
-    const double turn = fsw::gnss::kEarthRateGps * t;
-    const Vector3 separation = orbit ? Vector3(1.2, -7.9, 0.5) : Vector3(0.0, 6.0, 5.0);
-    const Motion first = orbit ? in_orbit(t, Vector3::Zero()) : on_ground(turn, ground);
-    const Motion second = orbit ? in_orbit(t, separation) : on_ground(turn, ground + separation);
-    for (const auto& [receiver, motion, bytes] :
-         {std::tuple{&servicer, &first, &servicer_bytes}, std::tuple{&target, &second, &target_bytes}}) {
-      const std::vector<std::uint8_t> sent = receiver->bytes_at(truth_of(*motion, time, turn));
+    const auto take = [later](GnssReceiver& receiver, BodyTruth body, std::vector<std::uint8_t>& bytes) {
+      body.time = body.time + later;
+      const std::vector<std::uint8_t> sent = receiver.bytes_at(body);
       // Logging begins with the first satellite: RTKLIB takes a RANGE without observations for the last one it saw.
-      if (!receiver->observations().empty() || !bytes->empty()) bytes->insert(bytes->end(), sent.begin(), sent.end());
-    }
+      if (!receiver.observations().empty() || !bytes.empty()) bytes.insert(bytes.end(), sent.begin(), sent.end());
+    };
+    take(servicer, orbit ? test::in_orbit(t) : on_ground(t, ground), servicer_bytes);
+    take(target, orbit ? test::in_orbit(t, separation) : on_ground(t, ground + separation), target_bytes);
+    const WeekTime time = week_time(System::kGps, test::kGnssStart + later + fsw::nearest_duration(t));
     const Vector3& a = servicer.truth().antenna_ecef;
     const Vector3& b = target.truth().antenna_ecef;
-    truth << fmt::format("{:.3f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n",
-                         week_time(System::kGps, time).seconds_of_week(), a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+    truth << fmt::format("{:.3f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n", time.seconds_of_week(), a.x(),
+                         a.y(), a.z(), b.x(), b.y(), b.z(), satellites(servicer), satellites(target));
   }
   write(folder / "servicer.gps", servicer_bytes);
   write(folder / "target.gps", target_bytes);
+  write_ephemerides(folder / "ephemerides.csv", *constellation, test::kGnssStart + later);
   return 0;
 }
 
@@ -113,11 +106,11 @@ int run(const std::filesystem::path& folder, bool orbit, int epochs, double peri
 
 int main(int argc, char** argv) {
   if (argc != 5) {
-    std::fputs("usage: vbar_gnss_tool FOLDER orbit|ground EPOCHS PERIOD_S\n", stderr);
+    std::fputs("usage: vbar_gnss_tool FOLDER orbit|week_end|ground EPOCHS PERIOD_S\n", stderr);
     return 2;
   }
   try {
-    return run(argv[1], std::string(argv[2]) == "orbit", std::atoi(argv[3]), std::atof(argv[4]));
+    return run(argv[1], argv[2], std::atoi(argv[3]), std::atof(argv[4]));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
