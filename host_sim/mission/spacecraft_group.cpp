@@ -17,6 +17,7 @@ SpacecraftGroup::SpacecraftGroup(const TableReader& section)
       counted_(section.has("count")),
       count_(static_cast<int>(section.integer("count", 1, kMostSpacecraft, 1))),
       spacing_(section.table("spacing")) {
+  spacing_.rename("spacecraft." + name_ + ".spacing");
   spacing_.accept_only({"semi_major_axis_km", "ex", "ey", "inclination_deg", "raan_deg",
                         "mean_argument_of_latitude_deg", "mass_kg", "drag_area_m2", "drag_coefficient",
                         "radiation_area_m2", "radiation_coefficient"});
