@@ -19,6 +19,14 @@ struct RunOptions {
 };
 int run_command(const RunOptions& options);
 
+struct PropagateOptions {
+  std::filesystem::path mission;
+  std::filesystem::path out;           ///< empty: runs/<mission>-truth
+  bool oem = false;                    ///< CCSDS orbit ephemeris messages too
+  std::vector<std::string> overrides;  ///< "path=value"
+};
+int propagate_command(const PropagateOptions& options);
+
 struct ReplayOptions {
   std::filesystem::path run_folder;
   std::vector<std::string> overrides;

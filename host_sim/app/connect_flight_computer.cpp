@@ -11,7 +11,8 @@ const mission::Spacecraft& flying_spacecraft(const mission::Mission& mission) {
   const auto flying =
       std::ranges::find_if(mission.spacecraft, [](const auto& s) { return s.flight_computer.has_value(); });
   if (flying == mission.spacecraft.end())
-    throw std::runtime_error("no spacecraft of the mission has a flight computer");
+    throw std::runtime_error(
+        "no spacecraft of the mission has a flight computer (vbar propagate flies a mission without)");
   return *flying;
 }
 

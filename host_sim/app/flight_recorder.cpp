@@ -73,6 +73,14 @@ void FlightRecorder::on_truth(fsw::GpsTime time, const PairTruth& truth) {
   record_.truth.push_back(row);
 }
 
+void FlightRecorder::on_attitudes(fsw::GpsTime time, const std::vector<NamedAttitude>& attitudes) {
+  for (const NamedAttitude& named : attitudes) {
+    const Eigen::Quaterniond& q = named.attitude.q_body_eci;
+    record_.attitudes.push_back(
+        {mission_seconds(time), named.spacecraft, {q.w(), q.x(), q.y(), q.z()}, triple(named.attitude.rate_body)});
+  }
+}
+
 // Control error: the true RTN position of the target minus the one that the commanded mean ROE give on the true
 // servicer orbit.
 void FlightRecorder::on_waypoint(const mission::Waypoint& waypoint, const PairTruth& truth) {

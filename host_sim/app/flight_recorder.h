@@ -3,12 +3,14 @@
 // met.
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
+#include "host_sim/truth/attitude/attitude_state.h"
 #include "pil_bridge/flight_computer.h"
 
 namespace vbar::app {
@@ -19,12 +21,21 @@ struct PairTruth {
   fsw::orbit::CartesianState target;
 };
 
+/// True attitude of a spacecraft that has one.
+struct NamedAttitude {
+  std::string spacecraft;
+  truth::AttitudeState attitude;
+};
+
 class FlightRecorder {
  public:
   FlightRecorder(const mission::Mission& mission, report::RunRecord& record) : mission_(mission), record_(record) {}
 
   /// Truth at the time of a flight step.
   void on_truth(fsw::GpsTime time, const PairTruth& truth);
+
+  /// Attitudes at the time of a flight step.
+  void on_attitudes(fsw::GpsTime time, const std::vector<NamedAttitude>& attitudes);
 
   /// Truth at the time of a waypoint, before any burn of that instant.
   void on_waypoint(const mission::Waypoint& waypoint, const PairTruth& truth);

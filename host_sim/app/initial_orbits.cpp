@@ -40,16 +40,23 @@ CartesianState state_at_waypoint(const mission::Mission& mission, const mission:
 
 }  // namespace
 
+truth::TruthSettings truth_settings(const mission::Mission& mission, const std::filesystem::path& data_directory) {
+  truth::TruthSettings settings = mission.truth;
+  settings.data_directory = data_directory;
+  return settings;
+}
+
 void place_spacecraft(const mission::Mission& mission, truth::TruthModel& truth) {
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (const auto* orbit = std::get_if<mission::OrbitByElements>(&spacecraft.orbit)) {
-      truth.add_spacecraft(spacecraft.name, state_at_epoch(*orbit, spacecraft));
+      truth.add_spacecraft({spacecraft.name, state_at_epoch(*orbit, spacecraft), spacecraft.surface});
     }
   }
   truth.advance_to(mission.start_time());
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (const auto* orbit = std::get_if<mission::OrbitByWaypoint>(&spacecraft.orbit)) {
-      truth.add_spacecraft(spacecraft.name, state_at_waypoint(mission, *orbit, spacecraft, truth));
+      truth.add_spacecraft(
+          {spacecraft.name, state_at_waypoint(mission, *orbit, spacecraft, truth), spacecraft.surface});
     }
   }
 }

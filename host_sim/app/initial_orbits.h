@@ -1,10 +1,15 @@
 #pragma once
 // Puts the spacecraft of a mission on their orbits.
 
+#include <filesystem>
+
 #include "host_sim/mission/mission.h"
 #include "host_sim/truth/truth_model.h"
 
 namespace vbar::app {
+
+/// What the mission says of its truth, with the data in `data_directory`.
+truth::TruthSettings truth_settings(const mission::Mission& mission, const std::filesystem::path& data_directory);
 
 /// Adds every spacecraft of `mission` to `truth`, which stands at the mission's epoch, in the mission's order of kinds:
 /// those given by elements fly from the epoch to the start unburned; those given by a waypoint are then placed about

@@ -32,6 +32,15 @@ int main(int argc, char** argv) {
     exit_code = run_command(run);
   });
 
+  PropagateOptions propagate;
+  CLI::App* propagate_app = program.add_subcommand(
+      "propagate", "fly a mission's spacecraft without flight software and leave their ephemerides");
+  propagate_app->add_option("mission", propagate.mission, "mission file (TOML)")->required();
+  propagate_app->add_option("--out", propagate.out, "folder; runs/<mission>-truth unless given");
+  propagate_app->add_flag("--oem", propagate.oem, "write CCSDS orbit ephemeris messages as well");
+  propagate_app->add_option("--set", propagate.overrides, kSetHelp);
+  propagate_app->callback([&] { exit_code = propagate_command(propagate); });
+
   ReplayOptions replay;
   CLI::App* replay_app =
       program.add_subcommand("replay", "feed a run's packets to a flight computer; are the outputs the same bits?");

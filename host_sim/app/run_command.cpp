@@ -79,6 +79,7 @@ std::optional<std::string> fly(const mission::Mission& mission, const std::files
 
 int run_command(const RunOptions& options) {
   const mission::Mission mission = mission::load_mission(options.mission, options.overrides);
+  static_cast<void>(flying_spacecraft(mission));  // refused before there is a folder
   const std::filesystem::path out =
       options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out;
   const report::RunFolder folder(out, start_of(mission));

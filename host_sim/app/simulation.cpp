@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "host_sim/app/connect_flight_computer.h"
+#include "host_sim/app/initial_attitudes.h"
 #include "host_sim/app/initial_orbits.h"
 #include "host_sim/app/make_twins.h"
 #include "host_sim/mission/telecommands.h"
@@ -38,17 +39,6 @@ const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
   return servicer;
 }
 
-truth::TruthSettings truth_settings(const mission::Mission& mission, const std::filesystem::path& data_directory) {
-  truth::TruthSettings settings;
-  settings.epoch = mission.epoch;
-  settings.gravity_degree = mission.truth.gravity_degree;
-  settings.gravity_order = mission.truth.gravity_order;
-  settings.tolerance = mission.truth.relative_tolerance;
-  settings.threads = mission.truth.threads;
-  settings.data_directory = data_directory;
-  return settings;
-}
-
 template <class Message>
 pil::Packet make_packet(GpsTime time, std::uint8_t spacecraft, std::uint16_t sequence, const Message& message) {
   fsw::packets::PacketHeader header;
@@ -79,6 +69,7 @@ Simulation::Simulation(const mission::Mission& mission, const std::filesystem::p
       clock_(mission.clock, surroundings.wall),
       events_(mission.start_time()) {
   place_spacecraft(mission, truth_);
+  set_attitudes(mission, data_directory, truth_);
   servicer_index_ = truth_.index_of(servicer_.name);
   target_index_ = truth_.index_of(servicer_.navigation->target);
   navigation_ = make_navigation_source(mission, servicer_);
@@ -166,6 +157,15 @@ twins::Measurement Simulation::measure_now() {
   }
 }
 
+std::vector<NamedAttitude> Simulation::all_attitudes() const {
+  std::vector<NamedAttitude> all;
+  for (const mission::Spacecraft& spacecraft : mission_.spacecraft) {
+    if (!spacecraft.attitude) continue;
+    all.push_back({spacecraft.name, truth_.attitude(truth_.index_of(spacecraft.name))});
+  }
+  return all;
+}
+
 std::vector<twins::SpacecraftTruth> Simulation::all_truth() const {
   std::vector<twins::SpacecraftTruth> all;
   for (const mission::Spacecraft& spacecraft : mission_.spacecraft) {
@@ -192,6 +192,7 @@ void Simulation::handle(const StepFlight&) {
   const GpsTime now = events_.now();
   truth_.advance_to(now);
   recorder_.on_truth(now, pair_truth());
+  recorder_.on_attitudes(now, all_attitudes());
 
   arrived_.push_back(make_tick());
   const std::vector<pil::Packet> inputs = std::exchange(arrived_, {});

@@ -84,6 +84,7 @@ class Simulation {
   void schedule_measurement(fsw::GpsTime from);
   twins::Measurement measure_now();
   [[nodiscard]] std::vector<twins::SpacecraftTruth> all_truth() const;
+  [[nodiscard]] std::vector<NamedAttitude> all_attitudes() const;
   void send_to_flight(pil::Packet packet, fsw::GpsTime sent);
   void report_execution(const twins::Execution& execution);
   void queue_telecommands();

@@ -6,6 +6,11 @@
 
 namespace vbar::mission {
 
+bool Mission::flies() const {
+  return std::any_of(spacecraft.begin(), spacecraft.end(),
+                     [](const Spacecraft& candidate) { return candidate.flight_computer.has_value(); });
+}
+
 const Spacecraft* Mission::find_spacecraft(std::string_view spacecraft_name) const {
   const auto found = std::find_if(spacecraft.begin(), spacecraft.end(),
                                   [&](const Spacecraft& candidate) { return candidate.name == spacecraft_name; });

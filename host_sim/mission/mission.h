@@ -15,18 +15,12 @@
 #include "fsw/orbit/elements.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/link_model.h"
-#include "host_sim/truth/forces/surface_properties.h"
+#include "host_sim/mission/attitude.h"
+#include "host_sim/truth/truth_settings.h"
 
 namespace vbar::mission {
 
 inline constexpr std::size_t kMaxWaypoints = 16;  ///< of one waypoint telecommand
-
-struct TruthSettings {
-  int gravity_degree = 60;
-  int gravity_order = 60;
-  double relative_tolerance = 1e-12;
-  int threads = 1;
-};
 
 /// Orbit of a spacecraft at the epoch.
 enum class ElementsKind { kOsculating, kMean };
@@ -79,6 +73,7 @@ struct Spacecraft {
   std::uint8_t number = 0;  ///< as in packet headers
   SurfaceProperties surface;
   std::variant<OrbitByElements, OrbitByWaypoint> orbit;
+  std::optional<Attitude> attitude;
   std::optional<FlightComputer> flight_computer;
   std::optional<NavigationSensor> navigation;
   std::optional<Thruster> thruster;
@@ -134,7 +129,7 @@ struct Mission {
   fsw::Duration duration;  ///< from the first step to the end of the run
   fsw::Duration step;      ///< between flight steps
   std::uint64_t seed = 1;
-  TruthSettings truth;
+  truth::TruthSettings truth;  ///< all but the data folder, which the program knows
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
   std::vector<Waypoint> waypoints;  ///< in order of time
@@ -145,6 +140,9 @@ struct Mission {
 
   [[nodiscard]] fsw::GpsTime start_time() const { return epoch + start; }
   [[nodiscard]] fsw::GpsTime end_time() const { return epoch + start + duration; }
+
+  /// Whether any spacecraft carries flight software.
+  [[nodiscard]] bool flies() const;
 
   /// Null if there is none of that name / with that index.
   [[nodiscard]] const Spacecraft* find_spacecraft(std::string_view spacecraft_name) const;

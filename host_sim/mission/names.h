@@ -36,6 +36,12 @@ inline constexpr Names<engine::LatencyKind, 4> kLatencyKinds{{{"constant", engin
                                                               {"normal", engine::LatencyKind::kNormal},
                                                               {"exponential", engine::LatencyKind::kExponential}}};
 
+inline constexpr Names<truth::GeomagneticIndex, 2> kGeomagneticIndices{
+    {{"daily", truth::GeomagneticIndex::kDaily}, {"three_hourly", truth::GeomagneticIndex::kThreeHourly}}};
+inline constexpr Names<truth::Shadow, 3> kShadows{{{"none", truth::Shadow::kNone},
+                                                   {"cylindrical", truth::Shadow::kCylindrical},
+                                                   {"conical", truth::Shadow::kConical}}};
+
 /// The name of an enumerator; empty for a value that is none.
 template <class Enum, std::size_t N>
 constexpr std::string_view name_in(const Names<Enum, N>& names, Enum value) {

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -31,17 +30,6 @@ void read_general(const TableReader& document, Mission& mission) {
   mission.step = section.span("step_s", 1.0, from_to(1e-3, 3600.0), 60.0);
   constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
   mission.seed = static_cast<std::uint64_t>(section.integer("seed", 0, kLargestSeed, 1));
-}
-
-void read_truth(const TableReader& document, Mission& mission) {
-  const TableReader section = document.table("truth");
-  section.accept_only({"gravity_degree", "gravity_order", "relative_tolerance", "threads"});
-  TruthSettings& truth = mission.truth;
-  truth.gravity_degree = static_cast<int>(section.integer("gravity_degree", 2, 120, truth.gravity_degree));
-  const int order = std::min(truth.gravity_order, truth.gravity_degree);
-  truth.gravity_order = static_cast<int>(section.integer("gravity_order", 0, truth.gravity_degree, order));
-  truth.relative_tolerance = section.number("relative_tolerance", from_to(1e-14, 1e-6), truth.relative_tolerance);
-  truth.threads = static_cast<int>(section.integer("threads", 1, 256, truth.threads));
 }
 
 }  // namespace vbar::mission

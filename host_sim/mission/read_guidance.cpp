@@ -26,7 +26,7 @@ void read_guidance(const TableReader& document, Mission& mission) {
                        "station_keeping_horizon_s", "navigation_timeout_s"});
   constexpr Range kPeriod_s = from_to(1e-3, 1e6);
   Guidance& guidance = mission.guidance;
-  guidance.mode = section.choice<Mode>("mode", kModes, Mode::kApproach);
+  guidance.mode = section.choice<Mode>("mode", kModes, mission.flies() ? Mode::kApproach : Mode::kIdle);
   if (guidance.mode == Mode::kApproach && mission.waypoints.empty())
     section.refuse("mode", "approach without a waypoint", "at least one [[waypoint]], or another mode");
   // PRISMA's mean semi-major axis, the mean of the paper's osculating elements by first-order Brouwer theory.

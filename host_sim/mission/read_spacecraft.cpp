@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <optional>
 
 #include "fsw/math/math.h"
 #include "host_sim/mission/names.h"
+#include "host_sim/mission/read_attitude.h"
 #include "host_sim/mission/read_sections.h"
+#include "host_sim/mission/spacecraft_group.h"
 
 namespace vbar::mission {
 namespace {
@@ -13,33 +16,47 @@ using fsw::math::kDegree;
 constexpr SurfaceProperties kMango{154.0, 1.3, 2.5, 2.5, 1.32};
 constexpr SurfaceProperties kTango{40.0, 0.38, 2.25, 0.55, 1.2};
 
-SurfaceProperties read_surface(const TableReader& section, const std::string& name) {
-  const SurfaceProperties& usual = name == "target" ? kTango : kMango;
+/// One of the spacecraft that a section stands for.
+struct Member {
+  const SpacecraftGroup& group;
+  int index;
+
+  double number(const TableReader& section, std::string_view key, Range range,
+                std::optional<double> otherwise = std::nullopt) const {
+    return group.number(section, index, key, range, otherwise);
+  }
+  double angle(const TableReader& section, std::string_view key) const {
+    return kDegree * group.angle_deg(section, index, key);
+  }
+};
+
+SurfaceProperties read_surface(const TableReader& section, const Member& member) {
+  const SurfaceProperties& usual = member.group.name() == "target" ? kTango : kMango;
   SurfaceProperties surface;
-  surface.mass_kg = section.number("mass_kg", above_to(0.0, 1e6), usual.mass_kg);
-  surface.drag_area_m2 = section.number("drag_area_m2", from_to(0.0, 1e4), usual.drag_area_m2);
-  surface.drag_coefficient = section.number("drag_coefficient", from_to(0.0, 10.0), usual.drag_coefficient);
-  surface.radiation_area_m2 = section.number("radiation_area_m2", from_to(0.0, 1e4), usual.radiation_area_m2);
+  surface.mass_kg = member.number(section, "mass_kg", above_to(0.0, 1e6), usual.mass_kg);
+  surface.drag_area_m2 = member.number(section, "drag_area_m2", from_to(0.0, 1e4), usual.drag_area_m2);
+  surface.drag_coefficient = member.number(section, "drag_coefficient", from_to(0.0, 10.0), usual.drag_coefficient);
+  surface.radiation_area_m2 = member.number(section, "radiation_area_m2", from_to(0.0, 1e4), usual.radiation_area_m2);
   surface.radiation_coefficient =
-      section.number("radiation_coefficient", from_to(0.0, 10.0), usual.radiation_coefficient);
+      member.number(section, "radiation_coefficient", from_to(0.0, 10.0), usual.radiation_coefficient);
   return surface;
 }
 
-OrbitByElements read_elements(const TableReader& section) {
+OrbitByElements read_elements(const TableReader& section, const Member& member) {
   section.accept_only(
       {"kind", "semi_major_axis_km", "ex", "ey", "inclination_deg", "raan_deg", "mean_argument_of_latitude_deg"});
   OrbitByElements orbit;
   orbit.kind = section.choice<ElementsKind>("kind", kElementsKinds);
   fsw::orbit::QnsElements& elements = orbit.elements;
-  elements.a = 1e3 * section.number("semi_major_axis_km", from_to(6400.0, 1e6));
-  elements.ex = section.number("ex", from_to(-0.9, 0.9));
-  elements.ey = section.number("ey", from_to(-0.9, 0.9));
+  elements.a = 1e3 * member.number(section, "semi_major_axis_km", from_to(6400.0, 1e6));
+  elements.ex = member.number(section, "ex", from_to(-0.9, 0.9));
+  elements.ey = member.number(section, "ey", from_to(-0.9, 0.9));
   if (elements.ex * elements.ex + elements.ey * elements.ey >= 0.81)
     section.refuse("ey", "an eccentricity of 0.9 or more", "ex and ey with ex^2 + ey^2 below 0.81");
   // Quasi-nonsingular elements need a node.
-  elements.i = kDegree * section.number("inclination_deg", from_to(0.01, 179.99));
-  elements.raan = kDegree * section.number("raan_deg", from_to(-360.0, 360.0));
-  elements.u = kDegree * section.number("mean_argument_of_latitude_deg", from_to(-360.0, 360.0));
+  elements.i = kDegree * member.number(section, "inclination_deg", from_to(0.01, 179.99));
+  elements.raan = member.angle(section, "raan_deg");
+  elements.u = member.angle(section, "mean_argument_of_latitude_deg");
   return orbit;
 }
 
@@ -56,11 +73,12 @@ OrbitByWaypoint read_relative(const TableReader& section, const Mission& mission
   return orbit;
 }
 
-std::variant<OrbitByElements, OrbitByWaypoint> read_orbit(const TableReader& section, const Mission& mission) {
+std::variant<OrbitByElements, OrbitByWaypoint> read_orbit(const TableReader& section, const Member& member,
+                                                          const Mission& mission) {
   if (section.has("elements") == section.has("relative"))
     section.refuse("", section.has("elements") ? "both elements and relative" : "neither elements nor relative",
                    "exactly one of them");
-  if (section.has("elements")) return read_elements(section.table("elements"));
+  if (section.has("elements")) return read_elements(section.table("elements"), member);
   return read_relative(section.table("relative"), mission);
 }
 
@@ -114,21 +132,29 @@ Thruster read_thruster(const TableReader& section) {
   return thruster;
 }
 
-Spacecraft read_one(TableReader& section, const std::vector<std::string>& names, const Mission& mission) {
-  section.accept_only({"name", "number", "mass_kg", "drag_area_m2", "drag_coefficient", "radiation_area_m2",
-                       "radiation_coefficient", "elements", "relative", "flight_computer", "sensors", "actuators"});
-  Spacecraft spacecraft;
-  spacecraft.name = section.name("name");
-  section.rename("spacecraft." + spacecraft.name);
-  const auto usual_number = static_cast<std::int64_t>(mission.spacecraft.size()) + 1;
-  spacecraft.number =
-      static_cast<std::uint8_t>(section.integer("number", 1, 255, std::min<std::int64_t>(usual_number, 255)));
+std::uint8_t read_number(const TableReader& section, const Member& member, const Mission& mission) {
+  constexpr std::int64_t kLargest = 255;
+  const auto place = static_cast<std::int64_t>(mission.spacecraft.size()) + 1;
+  std::int64_t number = std::min(place, kLargest);
+  if (section.has("number")) number = section.integer("number", 1, kLargest) + member.index;
+  if (number > kLargest)
+    section.refuse("number", std::to_string(number) + " for " + member.group.member_name(member.index),
+                   "numbers up to 255");
   for (const Spacecraft& other : mission.spacecraft)
-    if (other.number == spacecraft.number)
-      section.refuse("number", "the number " + std::to_string(other.number) + " of " + other.name,
-                     "a number used once");
-  spacecraft.surface = read_surface(section, spacecraft.name);
-  spacecraft.orbit = read_orbit(section, mission);
+    if (other.number == number)
+      section.refuse("number", "the number " + std::to_string(number) + " of " + other.name, "a number used once");
+  return static_cast<std::uint8_t>(number);
+}
+
+Spacecraft read_one(TableReader& section, const Member& member, const std::vector<std::string>& names,
+                    const Mission& mission) {
+  Spacecraft spacecraft;
+  spacecraft.name = member.group.member_name(member.index);
+  spacecraft.number = read_number(section, member, mission);
+  spacecraft.surface = read_surface(section, member);
+  spacecraft.orbit = read_orbit(section, member, mission);
+  spacecraft.attitude = read_attitude(section.table("attitude"), spacecraft.name,
+                                      member.group.name() == "target" ? "tango" : "mango", names);
   if (section.has("flight_computer"))
     spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
 
@@ -141,16 +167,22 @@ Spacecraft read_one(TableReader& section, const std::vector<std::string>& names,
   return spacecraft;
 }
 
-// All names, before anything else: a sensor may look at a spacecraft further down.
-std::vector<std::string> read_names(const std::vector<TableReader>& sections) {
-  std::vector<std::string> names;
-  for (const TableReader& section : sections) {
-    const std::string name = section.name("name");
+void read_section(TableReader& section, const SpacecraftGroup& group, const std::vector<std::string>& names,
+                  Mission& mission) {
+  section.accept_only({"name", "count", "spacing", "number", "mass_kg", "drag_area_m2", "drag_coefficient",
+                       "radiation_area_m2", "radiation_coefficient", "elements", "relative", "attitude",
+                       "flight_computer", "sensors", "actuators"});
+  for (int index = 0; index < group.count(); ++index)
+    mission.spacecraft.push_back(read_one(section, {group, index}, names, mission));
+}
+
+void add_names(const TableReader& section, const SpacecraftGroup& group, std::vector<std::string>& names) {
+  for (int index = 0; index < group.count(); ++index) {
+    const std::string name = group.member_name(index);
     if (std::find(names.begin(), names.end(), name) != names.end())
       section.refuse("name", "a second spacecraft \"" + name + "\"", "a name used once");
     names.push_back(name);
   }
-  return names;
 }
 
 }  // namespace
@@ -158,8 +190,15 @@ std::vector<std::string> read_names(const std::vector<TableReader>& sections) {
 void read_spacecraft(const TableReader& document, Mission& mission) {
   std::vector<TableReader> sections = document.tables("spacecraft");
   if (sections.empty()) document.refuse("spacecraft", "nothing", "at least one [[spacecraft]]");
-  const std::vector<std::string> names = read_names(sections);
-  for (TableReader& section : sections) mission.spacecraft.push_back(read_one(section, names, mission));
+  // All names, before anything else: a sensor may look at a spacecraft further down.
+  std::vector<SpacecraftGroup> groups;
+  std::vector<std::string> names;
+  for (TableReader& section : sections) {
+    const SpacecraftGroup& group = groups.emplace_back(section);
+    add_names(section, group, names);
+    section.rename("spacecraft." + group.name());
+  }
+  for (std::size_t k = 0; k < sections.size(); ++k) read_section(sections[k], groups[k], names, mission);
 }
 
 }  // namespace vbar::mission

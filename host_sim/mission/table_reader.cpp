@@ -19,11 +19,6 @@ std::string text_of(double number) {
   return out.str();
 }
 
-std::string text_of(Range range) {
-  return (range.above ? "above " : "from ") + text_of(range.low) + (range.above ? ", up to " : " to ") +
-         text_of(range.high);
-}
-
 template <class Value>
 std::string streamed(const Value& value) {
   std::ostringstream out;
@@ -85,6 +80,11 @@ std::string description_of(const toml::node& node) {
       break;
   }
   return "nothing";
+}
+
+std::string text_of(Range range) {
+  return (range.above ? "above " : "from ") + text_of(range.low) + (range.above ? ", up to " : " to ") +
+         text_of(range.high);
 }
 
 std::string listing_of(const std::vector<std::string_view>& names) {
@@ -180,14 +180,29 @@ std::string TableReader::name(std::string_view key, std::optional<std::string> o
   return value;
 }
 
-std::array<double, 6> TableReader::six_numbers(std::string_view key, Range range) const {
-  const std::string accepted = "an array of 6 numbers " + text_of(range);
+std::vector<double> TableReader::numbers(std::string_view key, std::size_t least, std::size_t most, Range range) const {
+  const std::string count = std::to_string(least) + (most == least ? "" : " to " + std::to_string(most));
+  const std::string accepted = "an array of " + count + " numbers " + text_of(range);
   const auto* array = required(key, accepted).as_array();
-  if (array == nullptr || array->size() != 6) refuse_value(key, accepted);
-  std::array<double, 6> numbers{};
-  for (std::size_t k = 0; k < numbers.size(); ++k)
-    numbers[k] = checked_number((*array)[k], std::string(key) + "[" + std::to_string(k) + "]", range);
-  return numbers;
+  if (array == nullptr || array->size() < least || array->size() > most) refuse_value(key, accepted);
+  std::vector<double> values;
+  for (std::size_t k = 0; k < array->size(); ++k)
+    values.push_back(checked_number((*array)[k], std::string(key) + "[" + std::to_string(k) + "]", range));
+  return values;
+}
+
+std::array<double, 3> TableReader::three_numbers(std::string_view key, Range range,
+                                                 std::optional<std::array<double, 3>> otherwise) const {
+  if (!has(key) && otherwise) return *otherwise;
+  std::array<double, 3> three{};
+  std::ranges::copy(numbers(key, 3, 3, range), three.begin());
+  return three;
+}
+
+std::array<double, 6> TableReader::six_numbers(std::string_view key, Range range) const {
+  std::array<double, 6> six{};
+  std::ranges::copy(numbers(key, 6, 6, range), six.begin());
+  return six;
 }
 
 fsw::Duration TableReader::span(std::string_view key, double unit_s, Range range,
@@ -205,6 +220,24 @@ std::size_t TableReader::chosen(std::string_view key, const std::vector<std::str
            listing_of(accepted));
   }
   return static_cast<std::size_t>(found - accepted.begin());
+}
+
+std::vector<std::size_t> TableReader::chosen_several(std::string_view key,
+                                                     const std::vector<std::string_view>& accepted) const {
+  std::vector<std::size_t> indices;
+  if (!has(key)) return indices;
+  const std::string listing = "an array of distinct names out of " + listing_of(accepted);
+  const auto* array = table_->get(key)->as_array();
+  if (array == nullptr) refuse_value(key, listing);
+  for (const toml::node& element : *array) {
+    const auto* name = element.as_string();
+    const auto found = name == nullptr ? accepted.end() : std::find(accepted.begin(), accepted.end(), name->get());
+    const auto index = static_cast<std::size_t>(found - accepted.begin());
+    if (found == accepted.end() || std::find(indices.begin(), indices.end(), index) != indices.end())
+      throw MissionError(location_of(element, file_), path_of(key), description_of(element), listing);
+    indices.push_back(index);
+  }
+  return indices;
 }
 
 TableReader TableReader::table(std::string_view key) const {

@@ -50,6 +50,11 @@ class TableReader {
   std::string text(std::string_view key, std::optional<std::string> otherwise = std::nullopt) const;
   /// Letters, digits, '_' and '-' only: a name that can stand in a path.
   std::string name(std::string_view key, std::optional<std::string> otherwise = std::nullopt) const;
+  /// An array of at least `least` and at most `most` numbers.
+  std::vector<double> numbers(std::string_view key, std::size_t least, std::size_t most, Range range) const;
+  /// Three numbers or, where the key is missing, `otherwise`; without `otherwise` the key is required.
+  std::array<double, 3> three_numbers(std::string_view key, Range range,
+                                      std::optional<std::array<double, 3>> otherwise = std::nullopt) const;
   /// Six numbers.
   std::array<double, 6> six_numbers(std::string_view key, Range range) const;
   /// A span given in units of `unit_s` seconds, rounded to a nanosecond; range and `otherwise` in the same units.
@@ -64,6 +69,16 @@ class TableReader {
     std::vector<std::string_view> accepted;
     for (const auto& [name, value] : names) accepted.push_back(name);
     return names[chosen(key, accepted)].second;
+  }
+
+  /// The enumerators whose names are in the array, each at most once; none where the key is missing.
+  template <class Enum, std::size_t N>
+  std::vector<Enum> choices(std::string_view key, const std::array<std::pair<std::string_view, Enum>, N>& names) const {
+    std::vector<std::string_view> accepted;
+    for (const auto& [name, value] : names) accepted.push_back(name);
+    std::vector<Enum> values;
+    for (const std::size_t index : chosen_several(key, accepted)) values.push_back(names[index].second);
+    return values;
   }
 
   /// A table inside this one; an empty one if it is missing.
@@ -82,6 +97,8 @@ class TableReader {
   [[nodiscard]] std::string path_of(std::string_view key) const;
   [[nodiscard]] const toml::node& required(std::string_view key, const std::string& accepted) const;
   [[nodiscard]] std::size_t chosen(std::string_view key, const std::vector<std::string_view>& accepted) const;
+  [[nodiscard]] std::vector<std::size_t> chosen_several(std::string_view key,
+                                                        const std::vector<std::string_view>& accepted) const;
   double checked_number(const toml::node& node, std::string_view key, Range range) const;
 
   const toml::table* table_;
@@ -94,6 +111,9 @@ class TableReader {
 
 /// The value as a message shows it: `the text "abc"`, `the number 2.5`, `nan`, `a table`, ...
 [[nodiscard]] std::string description_of(const toml::node& node);
+
+/// "from 0 to 1", "above 0, up to 1".
+[[nodiscard]] std::string text_of(Range range);
 
 /// "a, b or c".
 [[nodiscard]] std::string listing_of(const std::vector<std::string_view>& names);

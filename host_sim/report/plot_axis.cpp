@@ -18,6 +18,10 @@ DisplayUnit display_unit(Unit unit, double largest) {
       return largest < 0.3 ? DisplayUnit{1e3, "mm"} : DisplayUnit{1.0, "m"};
     case Unit::kMetresPerSecond:
       return largest < 0.3 ? DisplayUnit{1e3, "mm/s"} : DisplayUnit{1.0, "m/s"};
+    case Unit::kRadians:
+      return {180.0 / M_PI, "deg"};
+    case Unit::kRadiansPerSecond:
+      return {180.0 / M_PI, "deg/s"};
     case Unit::kNone:
       break;
   }

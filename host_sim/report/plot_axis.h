@@ -9,9 +9,9 @@
 namespace vbar::report {
 
 /// What the numbers of an axis measure, in SI; hours for time.
-enum class Unit { kNone, kHours, kMetres, kMetresPerSecond, kSigmas };
+enum class Unit { kNone, kHours, kMetres, kMetresPerSecond, kRadians, kRadiansPerSecond, kSigmas };
 
-/// The form in which numbers of that size are best read: 75000 m as 75 km, 0.004 m/s as 4 mm/s.
+/// The form in which numbers of that size are best read: 75000 m as 75 km, 0.004 m/s as 4 mm/s, angles in degrees.
 struct DisplayUnit {
   double per_si = 1.0;      ///< displayed number = per_si * SI number
   std::string_view symbol;  ///< "" for plain numbers

@@ -28,6 +28,8 @@ namespace columns {
 
 inline constexpr std::array<std::string_view, 3> kXyzM{"x_m", "y_m", "z_m"};
 inline constexpr std::array<std::string_view, 3> kXyzMps{"x_mps", "y_mps", "z_mps"};
+inline constexpr std::array<std::string_view, 3> kXyzRadps{"x_radps", "y_radps", "z_radps"};
+inline constexpr std::array<std::string_view, 4> kWxyz{"w", "x", "y", "z"};
 inline constexpr std::array<std::string_view, 3> kRtnM{"r_m", "t_m", "n_m"};
 inline constexpr std::array<std::string_view, 3> kRtnMps{"r_mps", "t_mps", "n_mps"};
 inline constexpr std::array<std::string_view, 6> kRtnMAndMps{"r_m", "t_m", "n_m", "r_mps", "t_mps", "n_mps"};
@@ -55,6 +57,14 @@ void visit_columns(Row& row, Visitor& visit) {
   columns::group(visit, "relative_position_rtn", columns::kRtnM, row.relative_position_rtn);
   columns::group(visit, "relative_velocity_rtn", columns::kRtnMps, row.relative_velocity_rtn);
   columns::group(visit, "a_roe_mean", columns::kRoeM, row.a_roe_mean_m);
+}
+
+template <columns::RowOf<AttitudeRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"spacecraft"}, row.spacecraft);
+  columns::group(visit, "q_body_eci", columns::kWxyz, row.q_body_eci);
+  columns::group(visit, "rate_body", columns::kXyzRadps, row.rate_body_radps);
 }
 
 template <columns::RowOf<EstimateRow> Row, class Visitor>

@@ -20,13 +20,15 @@ namespace fs = std::filesystem;
 constexpr std::string_view kSummary = "summary.json";
 constexpr std::string_view kWaypoints = "waypoints.csv";
 constexpr std::string_view kTruth = "truth.csv";
+constexpr std::string_view kAttitude = "attitude.csv";
 constexpr std::string_view kEstimate = "estimate.csv";
 constexpr std::string_view kManeuvers = "maneuvers.csv";
 constexpr std::string_view kResiduals = "residuals.csv";
 constexpr std::string_view kPacketLog = "packets.lcmlog";
 constexpr std::string_view kReport = "report.html";
 
-constexpr std::array kFilesBesideSummary{kWaypoints, kTruth, kEstimate, kManeuvers, kResiduals, kPacketLog, kReport};
+constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,     kAttitude,  kEstimate,
+                                         kManeuvers, kResiduals, kPacketLog, kReport};
 
 [[noreturn]] void fail(const fs::path& folder, std::string_view what) {
   throw std::runtime_error(fmt::format("{}: {}", folder.string(), what));
@@ -69,6 +71,7 @@ RunFolder::RunFolder(fs::path folder, const Summary& start) : folder_(std::move(
 void RunFolder::finish(const RunRecord& record) const {
   write_rows(folder_ / kWaypoints, record.waypoints);
   write_rows(folder_ / kTruth, record.truth);
+  if (!record.attitudes.empty()) write_rows(folder_ / kAttitude, record.attitudes);
   write_rows(folder_ / kEstimate, record.estimates);
   write_rows(folder_ / kManeuvers, record.maneuvers);
   write_rows(folder_ / kResiduals, record.residuals);
@@ -86,6 +89,7 @@ RunRecord read_run(const fs::path& run_folder) {
   }
   record.waypoints = read_rows<WaypointRow>(run_folder / kWaypoints);
   record.truth = read_rows<TruthRow>(run_folder / kTruth);
+  if (fs::exists(run_folder / kAttitude)) record.attitudes = read_rows<AttitudeRow>(run_folder / kAttitude);
   record.estimates = read_rows<EstimateRow>(run_folder / kEstimate);
   record.maneuvers = read_rows<ManeuverRow>(run_folder / kManeuvers);
   record.residuals = read_rows<ResidualRow>(run_folder / kResiduals);

@@ -12,6 +12,7 @@ namespace vbar::report {
 
 using Triple = std::array<double, 3>;
 using Sextuple = std::array<double, 6>;
+using Quadruple = std::array<double, 4>;
 
 /// Truth at a step (truth.csv).
 struct TruthRow {
@@ -21,6 +22,15 @@ struct TruthRow {
   Triple relative_position_rtn{}, relative_velocity_rtn{};  ///< target in the servicer's RTN
   Sextuple a_roe_mean_m{};
   friend bool operator==(const TruthRow&, const TruthRow&) = default;
+};
+
+/// True attitude of one spacecraft at a step (attitude.csv, only if the mission has attitudes).
+struct AttitudeRow {
+  double time_s = 0.0;
+  std::string spacecraft;
+  Quadruple q_body_eci{1.0, 0.0, 0.0, 0.0};  ///< w, x, y, z: turns ECI components into body components
+  Triple rate_body_radps{};                  ///< of the body with respect to ECI, in body axes
+  friend bool operator==(const AttitudeRow&, const AttitudeRow&) = default;
 };
 
 /// What the flight software said of itself at a step (estimate.csv).
@@ -112,6 +122,7 @@ struct RunRecord {
   Summary summary;
   std::vector<WaypointRow> waypoints;
   std::vector<TruthRow> truth;
+  std::vector<AttitudeRow> attitudes;
   std::vector<EstimateRow> estimates;
   std::vector<ManeuverRow> maneuvers;
   std::vector<ResidualRow> residuals;

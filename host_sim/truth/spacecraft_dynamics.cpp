@@ -103,15 +103,24 @@ void SpacecraftDynamics::set_regime(const ForceRegime& regime) {
 
 void SpacecraftDynamics::enter_regime_of(double seconds, const fsw::orbit::CartesianState& state) {
   const ForceInput input = input_at(seconds, state);
-  ForceRegime regime{seconds, {}};
+  ForceRegime regime;
+  regime.seconds = seconds;
   for (const EdgeOfForce& edge : edges_) regime.sides.push_back(edge.force->edge(edge.index, input) > 0.0);
   set_regime(regime);
+  regime_.longest_step = longest_step(input);
 }
 
-void SpacecraftDynamics::cross_edge(int index) {
+void SpacecraftDynamics::cross_edge(int index, double seconds, const fsw::orbit::CartesianState& state) {
   const auto i = static_cast<std::size_t>(index);
   regime_.sides.at(i) = !regime_.sides.at(i);
   edges_[i].force->set_side(edges_[i].index, regime_.sides[i]);
+  regime_.longest_step = longest_step(input_at(seconds, state));
+}
+
+double SpacecraftDynamics::longest_step(const ForceInput& input) const {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const auto& force : forces_) shortest = std::min(shortest, force->longest_step(input));
+  return shortest;
 }
 
 void SpacecraftDynamics::enter_interval(double seconds) {
@@ -154,6 +163,10 @@ ForceInput SpacecraftDynamics::input_at(double seconds, const fsw::orbit::Cartes
     input.moon_eci = positions.moon_eci;
   }
   return input;
+}
+
+fsw::Vector3 SpacecraftDynamics::sun_eci_at(double seconds) {
+  return sun_moon_.at(tt_of(earth_rotation_.epoch(), seconds)).sun_eci;
 }
 
 void SpacecraftDynamics::check_altitude(double seconds, const fsw::Vector3& position_eci) const {

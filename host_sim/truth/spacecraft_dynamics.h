@@ -5,6 +5,7 @@
 // forces in a row; who integrates (spacecraft_propagator.h) finds the edges and turns them over.
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -30,10 +31,12 @@ struct ForceTime {
   double wall_s;
 };
 
-/// Where the motion is: the date from which the forces' interval runs, and of each edge whether it is positive.
+/// Where the motion is: the date from which the forces' interval runs, of each edge whether it is positive, and the
+/// longest step (s) that the forces bear there.
 struct ForceRegime {
   double seconds = 0.0;
   std::vector<bool> sides;
+  double longest_step = std::numeric_limits<double>::infinity();
 };
 
 /// Not thread-safe: one object a spacecraft.
@@ -70,12 +73,22 @@ class SpacecraftDynamics {
   /// The regime of an instant.
   void enter_regime_of(double seconds, const fsw::orbit::CartesianState& state);
 
-  /// From `seconds` on the motion is on the other side of an edge, or in the interval that begins at a jump.
-  void cross_edge(int index);
+  /// From here on the motion is on the other side of an edge.
+  void cross_edge(int index, double seconds, const fsw::orbit::CartesianState& state);
+
+  /// From here on the motion is in the interval that begins at a jump.
   void enter_interval(double seconds);
 
   /// The first date after `seconds` at which a force jumps by itself.
   double next_jump_after(double seconds) const;
+
+  /// What forces, and torques beside them, are given at an instant. The Sun and the Moon only if a force needs them or
+  /// provide_sun_and_moon() was called.
+  ForceInput input_at(double seconds, const fsw::orbit::CartesianState& state);
+  void provide_sun_and_moon() { needs_sun_and_moon_ = true; }
+
+  /// Geocentric position of the Sun, m.
+  fsw::Vector3 sun_eci_at(double seconds);
 
   /// Takes the time that each force takes from now on (some 50 ns a force are added to it), or stops doing so.
   void measure_time(bool on);
@@ -92,7 +105,7 @@ class SpacecraftDynamics {
     int index;
   };
 
-  ForceInput input_at(double seconds, const fsw::orbit::CartesianState& state);
+  double longest_step(const ForceInput& input) const;
   fsw::Vector3 timed_perturbation_eci(double seconds, const fsw::orbit::CartesianState& state);
   void check_altitude(double seconds, const fsw::Vector3& position_eci) const;
 

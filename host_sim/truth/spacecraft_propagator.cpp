@@ -75,7 +75,12 @@ SpacecraftPropagator::SpacecraftPropagator(std::unique_ptr<SpacecraftDynamics> d
 void SpacecraftPropagator::advance_to(double seconds) {
   if (!(seconds >= current_)) throw std::invalid_argument("the truth does not go back in time");
   naming(name(), [&] {
-    while (integrator_.time() < seconds) step();
+    while (integrator_.time() < seconds) {
+      // An attitude under torques follows the orbit's steps one by one.
+      if (attitude_) attitude_->advance_to(integrator_.time(), integrator_.time());
+      step();
+    }
+    if (attitude_) attitude_->advance_to(seconds, integrator_.time());
   });
   current_ = seconds;
 }
@@ -83,14 +88,14 @@ void SpacecraftPropagator::advance_to(double seconds) {
 void SpacecraftPropagator::step() {
   const double jump = dynamics_->next_jump_after(integrator_.time());
   regime_of_last_step_ = dynamics_->regime();
-  integrator_.step(jump);
+  integrator_.step(std::min(jump, integrator_.time() + regime_of_last_step_.longest_step));
   const std::optional<Crossing> crossing = first_crossing_in_last_step();
   if (crossing) integrator_.cut_last_step(crossing->seconds);
   kept_.push_back({integrator_.time(), integrator_.last_step()});
   if (kept_.size() > kKeptSteps) kept_.pop_front();
 
   if (crossing) {
-    dynamics_->cross_edge(crossing->edge);
+    dynamics_->cross_edge(crossing->edge, integrator_.time(), cartesian(integrator_.state()));
     ++edges_crossed_;
   }
   const bool jumped = integrator_.time() == jump;
@@ -106,8 +111,7 @@ void SpacecraftPropagator::step() {
 }
 
 double SpacecraftPropagator::edge_in_last_step(int edge, double seconds) const {
-  const fsw::Vector6 elements = integrator_.last_step()(seconds);
-  return dynamics_->edge(edge, seconds, orbit_geometry(elements_from_vector(elements), dynamics_->gm()).state);
+  return dynamics_->edge(edge, seconds, cartesian(integrator_.last_step()(seconds)));
 }
 
 std::optional<SpacecraftPropagator::Crossing> SpacecraftPropagator::first_crossing_in_last_step() const {
@@ -141,7 +145,30 @@ fsw::orbit::CartesianState SpacecraftPropagator::state_at(double seconds) const 
     }
     elements = kept->solution(seconds);
   }
+  return cartesian(elements);
+}
+
+fsw::orbit::CartesianState SpacecraftPropagator::cartesian(const fsw::Vector6& elements) const {
   return orbit_geometry(elements_from_vector(elements), dynamics_->gm()).state;
+}
+
+OrbitalMotion SpacecraftPropagator::motion_at(double seconds) const {
+  const fsw::orbit::CartesianState state = state_at(seconds);
+  const double r = state.position_eci.norm();
+  const fsw::Vector3 central = -dynamics_->gm() / (r * r * r) * state.position_eci;
+  return {state.position_eci, state.velocity_eci, central + dynamics_->perturbation_eci(seconds, state)};
+}
+
+ForceInput SpacecraftPropagator::surroundings_at(double seconds) const {
+  const double known = std::min(seconds, integrator_.time());
+  return dynamics_->input_at(known, state_at(known));
+}
+
+AttitudeState SpacecraftPropagator::attitude_at(double seconds) const {
+  if (!attitude_) throw std::logic_error(fmt::format("spacecraft \"{}\" has no attitude", name()));
+  AttitudeState attitude;
+  naming(name(), [&] { attitude = attitude_->state_at(seconds); });
+  return attitude;
 }
 
 void SpacecraftPropagator::apply_impulse_rtn(const fsw::Vector3& dv_rtn) {
@@ -155,6 +182,7 @@ void SpacecraftPropagator::apply_impulse_rtn(const fsw::Vector3& dv_rtn) {
     const fsw::orbit::QnsElements elements = dated_elements(*dynamics_, after, current_);
     dynamics_->enter_regime_of(current_, after);
     integrator_.restart(vector_from_elements(elements));
+    if (attitude_) attitude_->orbit_changed(current_);
   });
 }
 

@@ -7,10 +7,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
+#include "host_sim/truth/attitude/attitude_motion.h"
+#include "host_sim/truth/attitude/pointing_profile.h"
 #include "host_sim/truth/dopri5.h"
 #include "host_sim/truth/spacecraft_dynamics.h"
 
@@ -43,6 +46,21 @@ class SpacecraftPropagator {
   /// which may lie after the current time. At an impulse's time: after it. Throws std::out_of_range outside, saying
   /// what is kept.
   fsw::orbit::CartesianState state_at(double seconds) const;
+
+  /// The same with all of the acceleration.
+  OrbitalMotion motion_at(double seconds) const;
+
+  /// What torques are given at a time as in state_at, or for one after the last step's end what they are given there:
+  /// an attitude's first guess of a step, or rounding, may reach beyond.
+  ForceInput surroundings_at(double seconds) const;
+
+  /// Gives the spacecraft an attitude, known at the current time; from then on it is carried along.
+  void set_attitude(std::unique_ptr<AttitudeMotion> attitude) { attitude_ = std::move(attitude); }
+  bool has_attitude() const { return attitude_ != nullptr; }
+
+  /// Attitude at a time as in state_at. Throws std::logic_error if the spacecraft has none, std::domain_error, naming
+  /// the spacecraft, where it is not defined.
+  AttitudeState attitude_at(double seconds) const;
 
   /// Adds `dv_rtn` (m/s, in the spacecraft's own RTN) to the velocity at the current time.
   void apply_impulse_rtn(const fsw::Vector3& dv_rtn);
@@ -82,6 +100,7 @@ class SpacecraftPropagator {
   std::optional<Crossing> first_crossing_in_last_step() const;
   double edge_in_last_step(int edge, double seconds) const;
   void retake_last_step_to(double seconds);
+  fsw::orbit::CartesianState cartesian(const fsw::Vector6& elements) const;
 
   std::unique_ptr<SpacecraftDynamics> dynamics_;
   Integrator integrator_;
@@ -89,6 +108,7 @@ class SpacecraftPropagator {
   ForceRegime regime_of_last_step_;  ///< as it was when that step was taken
   std::int64_t edges_crossed_ = 0;
   double current_;
+  std::unique_ptr<AttitudeMotion> attitude_;
 };
 
 }  // namespace vbar::truth

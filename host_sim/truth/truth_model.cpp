@@ -10,14 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/truth/forces/gravity_coefficients.h"
-#include "host_sim/truth/forces/gravity_force.h"
-
 namespace vbar::truth {
 namespace {
-
-constexpr const char* kGravityFile = "gravity/ggm05s_120.txt";
-constexpr const char* kEarthOrientationFile = "earth/eop_2009_2013.csv";
 
 /// Starting threads costs as much as about this many seconds of simulated flight; below it one thread is faster.
 constexpr double kWorthThreads_s = 120.0;
@@ -36,41 +30,46 @@ class WallClock {
 };
 
 void check(const TruthSettings& settings) {
-  if (!(settings.tolerance >= TruthSettings::kSmallestTolerance && settings.tolerance <= 1e-3)) {
-    throw std::invalid_argument(fmt::format("truth tolerance {}; accepted is {} (what doubles can hold) to 0.001",
-                                            settings.tolerance, TruthSettings::kSmallestTolerance));
+  if (!(settings.tolerance >= TruthSettings::kSmallestTolerance &&
+        settings.tolerance <= TruthSettings::kLargestTolerance)) {
+    throw std::invalid_argument(fmt::format("truth tolerance {}; accepted is {} (what doubles can hold) to {}",
+                                            settings.tolerance, TruthSettings::kSmallestTolerance,
+                                            TruthSettings::kLargestTolerance));
   }
   if (settings.threads < 1) {
     throw std::invalid_argument(fmt::format("truth threads {}; accepted is 1 or more", settings.threads));
   }
 }
 
-std::shared_ptr<const GravityField> load_gravity(const TruthSettings& settings) {
-  const auto coefficients = load_gravity_coefficients(settings.data_directory / kGravityFile, settings.gravity_degree);
-  return std::make_shared<const GravityField>(coefficients, settings.gravity_degree, settings.gravity_order);
+TruthStatistics statistics_of(const SpacecraftPropagator& spacecraft) {
+  const IntegrationStatistics& integration = spacecraft.statistics();
+  TruthStatistics statistics;
+  statistics.steps = integration.accepted_steps;
+  statistics.rejected_steps = integration.rejected_steps;
+  statistics.force_evaluations = integration.evaluations;
+  statistics.edges_crossed = spacecraft.edges_crossed();
+  return statistics;
 }
 
 }  // namespace
 
 TruthModel::TruthModel(const TruthSettings& settings) : settings_(settings), time_(settings.epoch) {
   check(settings);
-  gravity_ = load_gravity(settings);
-  earth_orientation_ = std::make_shared<const EarthOrientationSeries>(
-      EarthOrientationSeries::load(settings.data_directory / kEarthOrientationFile));
-  static_cast<void>(earth_orientation_->at(settings.epoch));  // refuses an epoch outside the data now, not in flight
+  data_ = load_force_data(settings);
 }
 
-std::size_t TruthModel::add_spacecraft(const std::string& name, const fsw::orbit::CartesianState& osculating) {
-  const auto same_name = [&](const auto& spacecraft) { return spacecraft->name() == name; };
+std::size_t TruthModel::add_spacecraft(const SpacecraftSettings& spacecraft) {
+  const std::string& name = spacecraft.name;
+  const auto same_name = [&](const auto& other) { return other->name() == name; };
   if (name.empty() || std::any_of(spacecraft_.begin(), spacecraft_.end(), same_name)) {
     throw std::invalid_argument(fmt::format("spacecraft name \"{}\" is empty or used twice", name));
   }
-  std::vector<std::unique_ptr<Force>> forces;
-  forces.push_back(std::make_unique<GravityForce>(gravity_));
-  auto dynamics = std::make_unique<SpacecraftDynamics>(
-      name, gravity_->gm(), gravity_->radius(), EarthRotation(earth_orientation_, settings_.epoch), std::move(forces));
+  auto dynamics = std::make_unique<SpacecraftDynamics>(name, data_.gravity->gm(), data_.gravity->radius(),
+                                                       EarthRotation(data_.earth_orientation, settings_.epoch),
+                                                       make_forces(settings_, data_, spacecraft));
+  dynamics->measure_time(measures_force_times_);
   spacecraft_.push_back(std::make_unique<SpacecraftPropagator>(std::move(dynamics), settings_.tolerance,
-                                                               seconds_after_epoch(time_), osculating));
+                                                               seconds_after_epoch(time_), spacecraft.osculating));
   return spacecraft_.size() - 1;
 }
 
@@ -136,12 +135,35 @@ void TruthModel::apply_impulse_rtn(std::size_t index, const fsw::Vector3& dv_rtn
 TruthStatistics TruthModel::statistics() const {
   TruthStatistics sum;
   for (const auto& spacecraft : spacecraft_) {
-    const IntegrationStatistics& one = spacecraft->statistics();
-    sum.steps += one.accepted_steps;
+    const TruthStatistics one = statistics_of(*spacecraft);
+    sum.steps += one.steps;
     sum.rejected_steps += one.rejected_steps;
-    sum.force_evaluations += one.evaluations;
+    sum.force_evaluations += one.force_evaluations;
+    sum.edges_crossed += one.edges_crossed;
   }
   sum.wall_s = wall_s_;
+  return sum;
+}
+
+TruthStatistics TruthModel::statistics(std::size_t index) const {
+  return statistics_of(*spacecraft_.at(index));
+}
+
+void TruthModel::measure_force_times(bool on) {
+  measures_force_times_ = on;
+  for (const auto& spacecraft : spacecraft_) spacecraft->dynamics().measure_time(on);
+}
+
+std::vector<ForceTime> TruthModel::force_times() const {
+  std::vector<ForceTime> sum;
+  for (const auto& spacecraft : spacecraft_) {
+    const std::vector<ForceTime> times = spacecraft->dynamics().times();
+    if (sum.empty()) {
+      sum = times;
+    } else {
+      for (std::size_t i = 0; i < times.size(); ++i) sum[i].wall_s += times[i].wall_s;
+    }
+  }
   return sum;
 }
 

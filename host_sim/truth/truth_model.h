@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -12,30 +11,20 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
-#include "host_sim/truth/earth/earth_orientation.h"
-#include "host_sim/truth/forces/gravity_field.h"
+#include "host_sim/truth/attitude/attitude_settings.h"
+#include "host_sim/truth/force_list.h"
 #include "host_sim/truth/spacecraft_propagator.h"
+#include "host_sim/truth/truth_settings.h"
 
 namespace vbar::truth {
 
-struct TruthSettings {
-  fsw::GpsTime epoch;        ///< start of the run
-  int gravity_degree = 60;   ///< 0 (point mass) to 120
-  int gravity_order = 60;    ///< 0 to the degree
-  double tolerance = 1e-13;  ///< local error a step, in units of the orbit's size: kSmallestTolerance to 1e-3
-  int threads = 1;           ///< at most so many spacecraft are propagated at a time; does not change a bit
-  std::filesystem::path data_directory;  ///< the project's data folder (gravity and Earth orientation)
-
-  /// Below it rounding, which a step cannot beat, would decide about the step size.
-  static constexpr double kSmallestTolerance = 1e-14;
-};
-
-/// Cost of a run so far, over all spacecraft.
+/// Cost of a run so far, of one spacecraft or of all.
 struct TruthStatistics {
   std::int64_t steps = 0;
   std::int64_t rejected_steps = 0;
   std::int64_t force_evaluations = 0;
-  double wall_s = 0.0;  ///< wall-clock time spent inside the model
+  std::int64_t edges_crossed = 0;  ///< of shadows
+  double wall_s = 0.0;             ///< wall-clock time spent inside the model; of all only
 };
 
 /// Every spacecraft has its own integrator with the same settings, and its steps depend on its own state and impulses
@@ -43,12 +32,21 @@ struct TruthStatistics {
 class TruthModel {
  public:
   /// Loads the data. Throws std::invalid_argument for a setting out of range, std::runtime_error for a missing or
-  /// damaged file, std::out_of_range for an epoch outside the Earth orientation data.
+  /// damaged file, std::out_of_range if the data do not reach from the epoch to the end.
   explicit TruthModel(const TruthSettings& settings);
 
-  /// Adds a spacecraft at the current time and returns its index (0, 1, ...). `osculating`: position and velocity in
-  /// GCRF. Throws std::invalid_argument for an empty or used name, std::domain_error for a state that is not an orbit.
-  std::size_t add_spacecraft(const std::string& name, const fsw::orbit::CartesianState& osculating);
+  /// Adds a spacecraft at the current time and returns its index (0, 1, ...). Throws std::invalid_argument for an empty
+  /// or used name and for a mass, area or coefficient that one of the forces needs and the spacecraft does not have,
+  /// std::domain_error for a state that is not an orbit.
+  std::size_t add_spacecraft(const SpacecraftSettings& spacecraft);
+
+  /// The same without a surface: where no force acts on it.
+  std::size_t add_spacecraft(const std::string& name, const fsw::orbit::CartesianState& osculating) {
+    return add_spacecraft({name, osculating, {}});
+  }
+
+  /// What the forces share.
+  const ForceData& data() const { return data_; }
 
   std::size_t spacecraft_count() const { return spacecraft_.size(); }
 
@@ -73,7 +71,30 @@ class TruthModel {
   /// Adds a velocity (m/s, in the spacecraft's own RTN) at the current time.
   void apply_impulse_rtn(std::size_t index, const fsw::Vector3& dv_rtn);
 
+  /// Gives a spacecraft an attitude from the current time on. Throws std::invalid_argument for settings that make none
+  /// (a body that is none, axes that are not two, a spacecraft to point at that is not there).
+  void set_attitude(std::size_t index, const AttitudeSettings& settings);
+
+  bool has_attitude(std::size_t index) const { return spacecraft_.at(index)->has_attitude(); }
+
+  /// Attitude at the current time. Throws std::logic_error if the spacecraft has none, std::domain_error where its
+  /// pointing does not determine it.
+  AttitudeState attitude(std::size_t index) const { return attitude_at(index, time_); }
+
+  /// Attitude at another time near the current one, as state_at; of a spacecraft that points at another, where the
+  /// states of both are kept.
+  AttitudeState attitude_at(std::size_t index, fsw::GpsTime time) const;
+
   TruthStatistics statistics() const;
+  TruthStatistics statistics(std::size_t index) const;
+
+  /// The forces' shares of a spacecraft's acceleration beside the Earth's point mass, at the current time.
+  std::vector<ForceAcceleration> accelerations(std::size_t index) { return spacecraft_.at(index)->accelerations(); }
+
+  /// From now on takes the time that each force takes, or stops doing so. Times are sums over the spacecraft, in the
+  /// forces' order, that of the frames first.
+  void measure_force_times(bool on);
+  std::vector<ForceTime> force_times() const;
 
  private:
   double seconds_after_epoch(fsw::GpsTime time) const { return fsw::seconds(time - settings_.epoch); }
@@ -81,8 +102,8 @@ class TruthModel {
 
   TruthSettings settings_;
   fsw::GpsTime time_;
-  std::shared_ptr<const EarthOrientationSeries> earth_orientation_;
-  std::shared_ptr<const GravityField> gravity_;
+  ForceData data_;
+  bool measures_force_times_ = false;
   std::vector<std::unique_ptr<SpacecraftPropagator>> spacecraft_;
   double wall_s_ = 0.0;
 };

@@ -2,22 +2,26 @@
 
 #include <cmath>
 #include <cstddef>
+#include <functional>
 
 namespace vbar::truth {
 namespace {
 
 constexpr std::size_t kBoundaryTemperature = 5;  // its place in upper_quantities()
 
-std::array<const Nrlmsise00Tables::Upper*, 11> upper_quantities(const Nrlmsise00Tables& t) {
-  return {&t.pt, &t.ps, &t.pd[0], &t.pd[1], &t.pd[2], &t.pd[3], &t.pd[4], &t.pd[5], &t.pd[6], &t.pd[7], &t.pd[8]};
+using Upper = Nrlmsise00Tables::Upper;
+using Lower = Nrlmsise00Tables::Lower;
+
+std::array<std::reference_wrapper<const Upper>, 11> upper_quantities(const Nrlmsise00Tables& t) {
+  return {t.pt, t.ps, t.pd[0], t.pd[1], t.pd[2], t.pd[3], t.pd[4], t.pd[5], t.pd[6], t.pd[7], t.pd[8]};
 }
 
-std::array<const Nrlmsise00Tables::Lower*, 5> lower_thermosphere_quantities(const Nrlmsise00Tables& t) {
-  return {&t.ptl[0], &t.ptl[1], &t.ptl[2], &t.ptl[3], &t.pma[8]};
+std::array<std::reference_wrapper<const Lower>, 5> lower_thermosphere_quantities(const Nrlmsise00Tables& t) {
+  return {t.ptl[0], t.ptl[1], t.ptl[2], t.ptl[3], t.pma[8]};
 }
 
-std::array<const Nrlmsise00Tables::Lower*, 9> lower_atmosphere_quantities(const Nrlmsise00Tables& t) {
-  return {&t.pma[0], &t.pma[1], &t.pma[2], &t.pma[3], &t.pma[4], &t.pma[5], &t.pma[6], &t.pma[7], &t.pma[9]};
+std::array<std::reference_wrapper<const Lower>, 9> lower_atmosphere_quantities(const Nrlmsise00Tables& t) {
+  return {t.pma[0], t.pma[1], t.pma[2], t.pma[3], t.pma[4], t.pma[5], t.pma[6], t.pma[7], t.pma[9]};
 }
 
 void add(HorizontalSeries& sum, double factor, const HorizontalSeries& term) {
@@ -34,14 +38,14 @@ void DayExpansions::set_day(int day_of_year, const SolarIndices& indices) {
 }
 
 void DayExpansions::work_out() {
-  constexpr double kAnyLatitude_deg = 0.0;  // for the daily index, which all latitudes share
+  constexpr double kAnyLatitudeDeg = 0.0;  // for the daily index, which all latitudes share
   remembers_ = indices_.geomagnetic_index == GeomagneticIndex::kThreeHourly;
 
   const auto upper = upper_quantities(*tables_);
   for (std::size_t i = 0; i < upper.size(); ++i) {
-    effective_ap_[i] = EffectiveAp(*upper[i], indices_);
-    ExpansionOfDay expansion = upper_expansion(*upper[i], day_of_year_, indices_);
-    if (!remembers_) add(expansion.quiet, effective_ap_[i].at(kAnyLatitude_deg), expansion.magnetic);
+    effective_ap_[i] = EffectiveAp(upper[i], indices_);
+    ExpansionOfDay expansion = upper_expansion(upper[i], day_of_year_, indices_);
+    if (!remembers_) add(expansion.quiet, effective_ap_[i].at(kAnyLatitudeDeg), expansion.magnetic);
     upper_.set(static_cast<int>(i), expansion.quiet);
     upper_magnetic_.set(static_cast<int>(i), expansion.magnetic);
   }
@@ -49,8 +53,8 @@ void DayExpansions::work_out() {
   const auto lower = lower_thermosphere_quantities(*tables_);
   for (std::size_t i = 0; i < lower.size(); ++i) {
     // The lower thermosphere responds to activity as the temperature at its upper boundary does.
-    ExpansionOfDay expansion = lower_expansion(*lower[i], day_of_year_, indices_);
-    if (!remembers_) add(expansion.quiet, effective_ap_[kBoundaryTemperature].at(kAnyLatitude_deg), expansion.magnetic);
+    ExpansionOfDay expansion = lower_expansion(lower[i], day_of_year_, indices_);
+    if (!remembers_) add(expansion.quiet, effective_ap_[kBoundaryTemperature].at(kAnyLatitudeDeg), expansion.magnetic);
     lower_thermosphere_.set(static_cast<int>(i), expansion.quiet);
     lower_thermosphere_magnetic_.set(static_cast<int>(i), expansion.magnetic);
   }
@@ -93,7 +97,7 @@ LowerAtmosphereVariations DayExpansions::lower_atmosphere(const HorizontalSeries
     const auto quantities = lower_atmosphere_quantities(*tables_);
     for (std::size_t i = 0; i < quantities.size(); ++i) {
       // The published coefficients have no response to geomagnetic activity down here.
-      lower_atmosphere_.set(static_cast<int>(i), lower_expansion(*quantities[i], day_of_year_, indices_).quiet);
+      lower_atmosphere_.set(static_cast<int>(i), lower_expansion(quantities[i], day_of_year_, indices_).quiet);
     }
     lower_atmosphere_ready_ = true;
   }

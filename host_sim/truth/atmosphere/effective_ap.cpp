@@ -8,7 +8,7 @@ namespace vbar::truth {
 namespace {
 
 constexpr double kQuietAp = 4.0;
-constexpr double kThreeHours_s = 10800.0;
+constexpr double kThreeHours = 10800.0;
 
 /// From slope 1 at the quiet value to `slope` far above, with rate `rate`.
 double saturated(double ap, double rate, double slope) {
@@ -26,7 +26,7 @@ EffectiveAp::EffectiveAp(const Nrlmsise00Tables::Upper& p, const SolarIndices& i
   if (p[51] == 0.0) return;  // the quantity does not respond
   remembers_ = true;
   for (std::size_t i = 0; i < history_.size(); ++i) history_[i] = saturated(indices.ap_history[i], p[24], p[25]);
-  fading_ = kThreeHours_s * std::abs(p[51]);
+  fading_ = kThreeHours * std::abs(p[51]);
   latitude_slope_ = p[138];
 }
 

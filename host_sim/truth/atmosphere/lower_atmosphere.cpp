@@ -9,9 +9,9 @@
 namespace vbar::truth {
 namespace {
 
-constexpr double kMixed_km = 62.5;  // below, all species have the mixed ratio
-constexpr std::array<double, 4> kStratosphereNodes_km = {Thermosphere::kBottom_km, 55.0, 45.0, 32.5};
-constexpr std::array<double, 5> kTroposphereNodes_km = {32.5, 20.0, 15.0, 10.0, 0.0};
+constexpr double kMixedKm = 62.5;  // below, all species have the mixed ratio
+constexpr std::array<double, 4> kStratosphereNodesKm = {Thermosphere::kBottomKm, 55.0, 45.0, 32.5};
+constexpr std::array<double, 5> kTroposphereNodesKm = {32.5, 20.0, 15.0, 10.0, 0.0};
 
 /// Gradient of 1/T's spline is given at the mean temperature and kept in proportion.
 double gradient_at(double mean_gradient, double variation, double temperature, double mean_temperature) {
@@ -38,16 +38,16 @@ LowerAtmosphereState LowerAtmosphere::at(double altitude_km, const LatitudeGravi
   std::array<double, 4> upper{bottom.bottom_temperature};
   for (std::size_t i = 0; i < 3; ++i) upper[i + 1] = stratosphere_[i] / (1.0 - variations.stratosphere[i]);
   const double joint_gradient = gradient_at(joint_gradient_, variations.joint_gradient, upper[3], stratosphere_[2]);
-  const InverseTemperature<4> stratosphere(gravity, kStratosphereNodes_km, upper, bottom.bottom_gradient,
+  const InverseTemperature<4> stratosphere(gravity, kStratosphereNodesKm, upper, bottom.bottom_gradient,
                                            joint_gradient);
-  const double joint_km = kStratosphereNodes_km[3];
+  const double joint_km = kStratosphereNodesKm[3];
   SplineLevel level = stratosphere.at(gravity, std::max(altitude_km, joint_km));
   if (altitude_km <= joint_km) {
     std::array<double, 5> lower{upper[3]};
     for (std::size_t i = 0; i < 4; ++i) lower[i + 1] = troposphere_[i] / (1.0 - variations.troposphere[i]);
     const double surface_gradient =
         gradient_at(surface_gradient_, variations.surface_gradient, lower[4], troposphere_[3]);
-    const InverseTemperature<5> troposphere(gravity, kTroposphereNodes_km, lower, joint_gradient, surface_gradient);
+    const InverseTemperature<5> troposphere(gravity, kTroposphereNodesKm, lower, joint_gradient, surface_gradient);
     const double weight_above = level.weight;
     level = troposphere.at(gravity, altitude_km);
     level.weight += weight_above;
@@ -56,8 +56,8 @@ LowerAtmosphereState LowerAtmosphere::at(double altitude_km, const LatitudeGravi
   const double mixed_n2 =
       bottom.mixed_n2_per_cm3 * bottom.bottom_temperature / level.temperature * std::exp(mixed_mass_ * level.weight);
   // From the mixed ratio at 62.5 km to that of the thermosphere's bottom.
-  const double blend = altitude_km > kMixed_km
-                           ? 1.0 - (Thermosphere::kBottom_km - altitude_km) / (Thermosphere::kBottom_km - kMixed_km)
+  const double blend = altitude_km > kMixedKm
+                           ? 1.0 - (Thermosphere::kBottomKm - altitude_km) / (Thermosphere::kBottomKm - kMixedKm)
                            : 0.0;
   const auto blended = [&](double mixed, double at_bottom, double mixed_at_bottom) {
     return mixed * (1.0 + blend * (at_bottom / mixed_at_bottom - 1.0));

@@ -28,8 +28,8 @@ class LowerAtmosphere {
 
  private:
   double mixed_mass_;
-  std::array<double, 3> stratosphere_;        // mean temperatures, K, at 55, 45, 32.5 km
-  std::array<double, 4> troposphere_;         // at 20, 15, 10, 0 km
+  std::array<double, 3> stratosphere_{};      // mean temperatures, K, at 55, 45, 32.5 km
+  std::array<double, 4> troposphere_{};       // at 20, 15, 10, 0 km
   double joint_gradient_, surface_gradient_;  // mean, K/km
   double he_ratio_, o2_ratio_, ar_ratio_;     // to N2, by number
 };

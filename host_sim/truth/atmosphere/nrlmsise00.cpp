@@ -47,9 +47,9 @@ void check(const AtmosphereInput& input) {
 
 /// With molar masses and the atomic mass unit as the model rounds them.
 double mass_density(const SpeciesDensities& per_m3) {
-  constexpr double kAtomicMassUnit_kg = 1.66e-27;
-  return kAtomicMassUnit_kg * (4.0 * per_m3.he + 16.0 * per_m3.o + 28.0 * per_m3.n2 + 32.0 * per_m3.o2 +
-                               40.0 * per_m3.ar + per_m3.h + 14.0 * per_m3.n);
+  constexpr double kAtomicMassUnit = 1.66e-27;
+  return kAtomicMassUnit * (4.0 * per_m3.he + 16.0 * per_m3.o + 28.0 * per_m3.n2 + 32.0 * per_m3.o2 + 40.0 * per_m3.ar +
+                            per_m3.h + 14.0 * per_m3.n);
 }
 
 double anomalous_mass_density(const SpeciesDensities& per_m3) {
@@ -57,9 +57,10 @@ double anomalous_mass_density(const SpeciesDensities& per_m3) {
 }
 
 SpeciesDensities per_m3(const SpeciesDensities& per_cm3) {
-  constexpr double k = 1e6;
-  return {k * per_cm3.he, k * per_cm3.o, k * per_cm3.n2, k * per_cm3.o2,
-          k * per_cm3.ar, k * per_cm3.h, k * per_cm3.n,  k * per_cm3.anomalous_o};
+  constexpr double kPerCubicMetre = 1e6;
+  return {kPerCubicMetre * per_cm3.he, kPerCubicMetre * per_cm3.o,          kPerCubicMetre * per_cm3.n2,
+          kPerCubicMetre * per_cm3.o2, kPerCubicMetre * per_cm3.ar,         kPerCubicMetre * per_cm3.h,
+          kPerCubicMetre * per_cm3.n,  kPerCubicMetre * per_cm3.anomalous_o};
 }
 
 }  // namespace
@@ -80,17 +81,17 @@ AtmosphereState Nrlmsise00::at(const AtmosphereInput& input) {
 
   ThermosphereConditions conditions;
   conditions.upper = expansions_.upper(functions, input.latitude_deg);
-  if (input.altitude_km < Thermosphere::kLowerVariationsCeiling_km) {
+  if (input.altitude_km < Thermosphere::kLowerVariationsCeilingKm) {
     conditions.lower = expansions_.lower_thermosphere(functions, input.latitude_deg);
   }
   conditions.turbopause_season = sin_latitude * expansions_.turbopause_season();
   conditions.flux_excess = input.indices.f107_average - kMeanFlux;
   const ThermosphereState above =
-      thermosphere_.at(std::max(input.altitude_km, Thermosphere::kBottom_km), gravity, conditions);
+      thermosphere_.at(std::max(input.altitude_km, Thermosphere::kBottomKm), gravity, conditions);
 
   AtmosphereState state;
   state.exospheric_temperature = above.exospheric_temperature;
-  if (input.altitude_km >= Thermosphere::kBottom_km) {
+  if (input.altitude_km >= Thermosphere::kBottomKm) {
     state.per_m3 = per_m3(above.per_cm3);
     state.temperature = above.temperature;
   } else {

@@ -19,15 +19,15 @@ class TableReader {
     if (!in_) throw std::runtime_error(fmt::format("{}: cannot open the atmosphere's coefficients", file.string()));
   }
 
-  template <std::size_t Columns>
-  void read(std::string_view name, std::array<double, Columns>& array) {
-    expect_line(fmt::format("array,{},1,{}", name, Columns));
+  template <std::size_t kColumns>
+  void read(std::string_view name, std::array<double, kColumns>& array) {
+    expect_line(fmt::format("array,{},1,{}", name, kColumns));
     read_row(name, array);
   }
 
-  template <std::size_t Rows, std::size_t Columns>
-  void read(std::string_view name, std::array<std::array<double, Columns>, Rows>& array) {
-    expect_line(fmt::format("array,{},{},{}", name, Rows, Columns));
+  template <std::size_t kRows, std::size_t kColumns>
+  void read(std::string_view name, std::array<std::array<double, kColumns>, kRows>& array) {
+    expect_line(fmt::format("array,{},{},{}", name, kRows, kColumns));
     for (auto& row : array) read_row(name, row);
   }
 
@@ -44,17 +44,17 @@ class TableReader {
     } while (line_.starts_with('#'));
   }
 
-  template <std::size_t Columns>
-  void read_row(std::string_view name, std::array<double, Columns>& row) {
-    const std::string expected = fmt::format("{} numbers of array {}", Columns, name);
+  template <std::size_t kColumns>
+  void read_row(std::string_view name, std::array<double, kColumns>& row) {
+    const std::string expected = fmt::format("{} numbers of array {}", kColumns, name);
     next(expected);
     const char* at = line_.data();
     const char* const end = at + line_.size();
-    for (std::size_t column = 0; column < Columns; ++column) {
+    for (std::size_t column = 0; column < kColumns; ++column) {
       const auto [after, error] = std::from_chars(at, end, row[column]);
       if (error != std::errc{} || !std::isfinite(row[column])) fail(excerpt(), expected);
       at = after;
-      const bool last = column + 1 == Columns;
+      const bool last = column + 1 == kColumns;
       if (last ? at != end : (at == end || *at++ != ',')) fail(excerpt(), expected);
     }
   }

@@ -8,18 +8,18 @@
 
 namespace vbar::truth {
 
-/// `Count` series in the first `Functions` functions.
-template <int Count, int Functions>
+/// `kCount` series in the first `kFunctions` functions.
+template <int kCount, int kFunctions>
 class SeriesTable {
  public:
   void set(int index, const HorizontalSeries& series) {
-    for (int k = 0; k < Functions; ++k) blocks_[index / kLanes][k].lanes[index % kLanes] = series[k];
+    for (int k = 0; k < kFunctions; ++k) blocks_[index / kLanes][k].lanes[index % kLanes] = series[k];
   }
 
-  std::array<double, Count> sums(const HorizontalSeries& functions) const {
-    std::array<double, kBlocks * kLanes> all;
-    for (int block = 0; block < kBlocks; ++block) sum_block(blocks_[block], functions, all.data() + kLanes * block);
-    std::array<double, Count> result;
+  std::array<double, kCount> sums(const HorizontalSeries& functions) const {
+    std::array<std::array<double, kLanes>, kBlocks> all{};
+    for (int block = 0; block < kBlocks; ++block) sum_block(blocks_[block], functions, all[block].data());
+    std::array<double, kCount> result{};
     std::memcpy(result.data(), all.data(), sizeof result);
     return result;
   }
@@ -27,12 +27,12 @@ class SeriesTable {
  private:
   using TwoLanes = double __attribute__((vector_size(16)));
   static constexpr int kLanes = 4;
-  static constexpr int kBlocks = (Count + kLanes - 1) / kLanes;
+  static constexpr int kBlocks = (kCount + kLanes - 1) / kLanes;
 
   struct alignas(16) Row {
     double lanes[kLanes];
   };
-  using Block = std::array<Row, Functions>;
+  using Block = std::array<Row, kFunctions>;
 
   static void sum_block(const Block& block, const HorizontalSeries& functions, double* sums) {
     TwoLanes low{}, high{}, low_odd{}, high_odd{};  // even and odd functions apart: shorter chains of additions
@@ -43,11 +43,11 @@ class SeriesTable {
       b += rows[1] * functions[k];
     };
     int k = 0;
-    for (; k + 1 < Functions; k += 2) {
+    for (; k + 1 < kFunctions; k += 2) {
       add(k, low, high);
       add(k + 1, low_odd, high_odd);
     }
-    if (k < Functions) add(k, low, high);
+    if (k < kFunctions) add(k, low, high);
     const TwoLanes both[2] = {low + low_odd, high + high_odd};
     std::memcpy(sums, both, sizeof both);
   }

@@ -7,7 +7,7 @@ namespace vbar::truth {
 
 /// One altitude of one profile, with the turbopause.
 struct Thermosphere::Column {
-  double altitude_km;
+  double altitude_km = 0.0;
   const LatitudeGravity& gravity;
   const BatesProfile& bates;
   const LowerThermosphereNodes& nodes;
@@ -59,7 +59,7 @@ Thermosphere::Thermosphere(const Nrlmsise00Tables& t)
       anomalous_temperature_(t.pdm[7][9] * t.pdl[0][6]),
       anomalous_km_(t.pdm[7][4]),
       anomalous_scale_km_(t.pdm[7][5]) {
-  mean_nodes_.altitude_km = {t.pdl[1][15], 110.0, 100.0, 90.0, kBottom_km};
+  mean_nodes_.altitude_km = {t.pdl[1][15], 110.0, 100.0, 90.0, kBottomKm};
   mean_nodes_.temperature = {t.ptm[6] * t.ptl[0][0], t.ptm[2] * t.ptl[1][0], t.ptm[7] * t.ptl[2][0],
                              t.ptm[4] * t.ptl[3][0]};
   mean_nodes_.bottom_gradient = t.ptm[8] * t.pma[8][0];
@@ -139,13 +139,13 @@ BatesProfile Thermosphere::bates_profile(double altitude_km, const UpperVariatio
   if (altitude_km > mean_nodes_.altitude_km[0]) bates.exospheric *= 1.0 + upper.exospheric_temperature;
   bates.boundary = mean_boundary_ * (1.0 + upper.boundary_temperature);
   double gradient = mean_gradient_;
-  if (altitude_km > kBottom_km) gradient *= 1.0 + upper.gradient;
+  if (altitude_km > kBottomKm) gradient *= 1.0 + upper.gradient;
   bates.shape = gradient / (bates.exospheric - bates.boundary);
   bates.boundary_km = boundary_km_;
   return bates;
 }
 
-double Thermosphere::log_diffusive(const Species& species, double variation, const ThermosphereLevel& level) const {
+double Thermosphere::log_diffusive(const Species& species, double variation, const ThermosphereLevel& level) {
   return species.log_reference + variation + (1.0 + species.thermal_diffusion) * level.log_cooling +
          species.mass * level.weight;
 }

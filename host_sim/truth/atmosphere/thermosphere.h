@@ -16,7 +16,7 @@ namespace vbar::truth {
 /// What the thermosphere of an instant and place depends on besides the altitude.
 struct ThermosphereConditions {
   UpperVariations upper{};
-  LowerThermosphereVariations lower{};  ///< matters below Thermosphere::kLowerVariationsCeiling_km only; 0 above
+  LowerThermosphereVariations lower{};  ///< matters below Thermosphere::kLowerVariationsCeilingKm only; 0 above
   double turbopause_season = 0.0;       ///< sine of latitude times the wave of the year that moves the turbopause
   double flux_excess = 0.0;             ///< 81-day mean of F10.7, less 150
 };
@@ -33,12 +33,12 @@ struct ThermosphereState {
 /// Immutable; may be shared between threads.
 class Thermosphere {
  public:
-  static constexpr double kBottom_km = 72.5;
-  static constexpr double kLowerVariationsCeiling_km = 300.0;
+  static constexpr double kBottomKm = 72.5;
+  static constexpr double kLowerVariationsCeilingKm = 300.0;
 
   explicit Thermosphere(const Nrlmsise00Tables& tables);
 
-  /// At kBottom_km or above.
+  /// At kBottomKm or above.
   ThermosphereState at(double altitude_km, const LatitudeGravity& gravity,
                        const ThermosphereConditions& conditions) const;
 
@@ -70,7 +70,7 @@ class Thermosphere {
   BatesProfile bates_profile(double altitude_km, const UpperVariations& upper) const;
 
   // All of these are ln of a number density in 1/cm^3.
-  double log_diffusive(const Species& species, double variation, const ThermosphereLevel& level) const;
+  static double log_diffusive(const Species& species, double variation, const ThermosphereLevel& level);
   double log_at_homopause(const Species& species, double homopause_km, double variation, const Column& column) const;
   double log_mixed(double log_at_homopause, const ThermosphereLevel& level) const;
   double log_net(const Species& species, double log_diffusive, double log_mixed) const;

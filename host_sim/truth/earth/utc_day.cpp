@@ -14,14 +14,14 @@ namespace vbar::truth {
 namespace {
 
 constexpr int kMjdOfGpsEpoch = 44244;
-constexpr std::int64_t kTaiMinusGps_s = 19;
+constexpr std::int64_t kTaiMinusGps = 19;
 constexpr std::int64_t kSecondsOfDay = 86400;
 
 }  // namespace
 
 fsw::GpsTime midnight_utc(int mjd_utc) {
   const std::int64_t days = mjd_utc - kMjdOfGpsEpoch;
-  const std::int64_t seconds = kSecondsOfDay * days + std::llround(tai_minus_utc_s(mjd_utc)) - kTaiMinusGps_s;
+  const std::int64_t seconds = kSecondsOfDay * days + std::llround(tai_minus_utc_s(mjd_utc)) - kTaiMinusGps;
   return {seconds * fsw::kNanosecondsPerSecond};
 }
 

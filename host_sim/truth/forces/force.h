@@ -33,7 +33,8 @@ class Force {
   /// As in the mission file and in tables: "drag", "radiation_pressure", ...
   virtual std::string_view name() const = 0;
 
-  /// Acceleration, m/s^2, in ECI, beside that of the Earth's point mass.
+  /// Acceleration, m/s^2, in ECI, beside that of the Earth's point mass: a function of the input and of the sides and
+  /// the interval told, not of earlier calls (a table of forces asks at instants of its own).
   virtual fsw::Vector3 acceleration_eci(const ForceInput& input) = 0;
 
   /// Whether the input must hold the Sun and the Moon.
@@ -45,6 +46,10 @@ class Force {
 
   /// From here on (until told otherwise) the motion is on this side of the edge: edge() positive, or not.
   virtual void set_side(int /*index*/, bool /*positive*/) {}
+
+  /// The longest step, s, over which it is smooth enough from here on, on the sides it was told: asked for at the start
+  /// and wherever a side changes. Infinity: the integrator's own step control is enough.
+  virtual double longest_step(const ForceInput& /*input*/) const { return std::numeric_limits<double>::infinity(); }
 
   /// The first date (seconds after the epoch) after `seconds` at which it jumps by itself.
   virtual double next_jump_after(double /*seconds*/) const { return std::numeric_limits<double>::infinity(); }

@@ -1,6 +1,7 @@
 #include "host_sim/truth/forces/radiation_pressure_force.h"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -53,6 +54,13 @@ double RadiationPressureForce::edge(int index, const ForceInput& input) const {
   if (shadow_ == Shadow::kCylindrical) return cylindrical_shadow_edge(input.position_eci, input.sun_eci, earth_);
   const SkyDisks disks = sky_disks(input.position_eci, input.sun_eci, earth_);
   return index == 0 ? penumbra_outer_edge(disks) : penumbra_inner_edge(disks);
+}
+
+double RadiationPressureForce::longest_step(const ForceInput& input) const {
+  const bool in_penumbra = shadow_ == Shadow::kConical && !positive_[0] && positive_[1];
+  if (!in_penumbra) return std::numeric_limits<double>::infinity();
+  const double distance = input.position_eci.norm(), speed = input.velocity_eci.norm();
+  return 0.25 * kSunRadius / (input.sun_eci - input.position_eci).norm() * distance / speed;
 }
 
 double RadiationPressureForce::sunlit_fraction(const ForceInput& input) const {

@@ -56,8 +56,8 @@ std::complex<double> slow_sum(std::span<const TidalLine> lines, const double (&d
 TideSystem tide_system_named(std::string_view name) {
   if (name == "zero_tide") return TideSystem::kZeroTide;
   if (name == "tide_free") return TideSystem::kTideFree;
-  throw std::invalid_argument("tide system \"" + std::string(name) +
-                              "\"; accepted are \"zero_tide\" and \"tide_free\"");
+  throw std::invalid_argument(R"(tide system ")" + std::string(name) +
+                              R"("; accepted are "zero_tide" and "tide_free")");
 }
 
 void add_love_number_response(const TidalBody& body, double radius, LowDegreeCoefficients& change) {

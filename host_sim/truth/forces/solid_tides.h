@@ -6,7 +6,7 @@
 //   pole     the change of the centrifugal potential by polar motion, of the solid Earth and of the oceans
 //            (sections 6.4 and 6.5, of the oceans degree 2 alone, nine tenths of it).
 // Corrections to normalised coefficients. Not here: the ocean tides (section 6.3), which need a model of some hundred
-// coefficients; their acceleration of a low satellite is about a tenth of the solid Earth's, some 2e-8 m/s^2.
+// coefficients; their acceleration of a low satellite is about a tenth of the solid Earth's, some 3e-8 m/s^2.
 
 #include <string_view>
 

@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
 """The program from outside: the same bits on every flight computer, replay, faults, bad input, the run folder."""
+import csv
+import json
+import math
 import os
 import pathlib
 import signal
@@ -190,6 +193,108 @@ class BadInput(unittest.TestCase):
             result = vbar("run", MISSION, "--out", folder)
             self.assertNotEqual(result.returncode, 0)
             self.assertEqual((folder / "precious.txt").read_text(), "keep me")
+
+
+class Propagate(unittest.TestCase):
+    """The truth alone, and what it refuses."""
+
+    ORBIT = SOURCE / "missions" / "full_force_orbit.toml"
+    SWARM = SOURCE / "missions" / "swarm_of_fifty.toml"
+
+    def propagate(self, mission, folder, *settings, flags=()):
+        result = vbar("propagate", mission, "--out", folder, *flags, *overrides(*settings))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        summary = json.loads((folder / "propagation.json").read_text())
+        self.assertTrue(summary["complete"])
+        return result.stdout, summary
+
+    def test_a_day_under_all_forces_as_csv_and_oem(self):
+        with scratch() as folder:
+            table, summary = self.propagate(self.ORBIT, folder / "out", flags=["--oem"])
+            rows = list(csv.DictReader((folder / "out" / "mango.csv").open()))
+            self.assertEqual(len(rows), 24 * 60 + 1)
+            self.assertEqual(rows[-1]["utc"], "2011-07-19T01:00:00.000Z")
+            radii = [math.hypot(*(float(row[f"position_eci_{axis}_m"]) for axis in "xyz")) for row in rows]
+            # a (1 +- e) of the file's elements, and 10 km of the Earth's oblateness.
+            self.assertGreater(min(radii), 7087.3e3 * (1 - 0.0015) - 15e3)
+            self.assertLess(max(radii), 7087.3e3 * (1 + 0.0015) + 15e3)
+            states = [line.split() for line in (folder / "out" / "mango.oem").read_text().splitlines()
+                      if line[:2] == "20"]
+            self.assertEqual(len(states), len(rows))
+            for state, row in zip(states, rows):
+                self.assertEqual(state[0][:23] + "Z", row["utc"])
+                for k, axis in enumerate("xyz"):
+                    self.assertAlmostEqual(1e3 * float(state[1 + k]), float(row[f"position_eci_{axis}_m"]), delta=1e-6)
+            # A satellite of 154 kg and 1.3 m^2 at 700 km in 2011 loses metres a day, not less than centimetres.
+            decay = summary["spacecraft"][0]["semi_major_axis_change_by_drag_m"]
+            self.assertTrue(-20.0 < decay < -0.02, decay)
+            for force in ("frames", "gravity", "drag", "radiation_pressure", "sun", "moon", "solid_tides", "relativity"):
+                self.assertIn(force, table)
+                self.assertGreater(summary["force_wall_s"][force], 0.0)
+
+    def test_any_number_of_threads_gives_the_same_files(self):
+        with scratch() as folder:
+            settings = ("mission.duration_h=0.5", "spacecraft.swarm.count=12")
+            _, summary = self.propagate(self.SWARM, folder / "one", *settings, "truth.threads=1")
+            self.propagate(self.SWARM, folder / "three", *settings, "truth.threads=3")
+            self.assertEqual(len(summary["files"]), 12)
+            for file in summary["files"]:
+                self.assertEqual((folder / "one" / file).read_bytes(), (folder / "three" / file).read_bytes(), file)
+
+    def test_a_mission_with_a_flight_computer_flies_without_it(self):
+        with scratch() as folder:
+            _, summary = self.propagate(MISSION, folder / "out", "mission.duration_h=1")
+            self.assertEqual([one["name"] for one in summary["spacecraft"]], ["servicer", "target"])
+
+    def test_a_mission_without_one_cannot_be_run(self):
+        with scratch() as folder:
+            result = vbar("run", self.ORBIT, "--out", folder / "run")
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("vbar propagate", result.stderr)
+            self.assertFalse((folder / "run").exists())
+
+    def refuse(self, settings, *parts):
+        with scratch() as folder:
+            result = vbar("propagate", self.ORBIT, "--out", folder / "out", *overrides(*settings))
+            self.assertEqual(result.returncode, 1)
+            self.assertEqual(result.stderr.count("vbar:"), 1, result.stderr)
+            for part in parts:
+                self.assertIn(part, result.stderr)
+            self.assertFalse((folder / "out").exists())
+
+    def test_data_that_end_are_noticed_at_the_start(self):
+        self.refuse(["mission.epoch_utc=2013-12-20T00:00:00Z", "mission.duration_h=480"], "eop_2009_2013.csv",
+                    "ends at 2014-01-09T00:00:00Z")
+        self.refuse(["mission.epoch_utc=2009-01-02T00:00:00Z"], "space_weather_2009_2013.csv", "2009-01-02")
+
+    def test_files_that_do_not_serve(self):
+        self.refuse(["truth.gravity_degree=121"], "degree 121", "0 to 120")
+        with scratch() as folder:
+            text = (SOURCE / "data" / "gravity" / "ggm05s_120.txt").read_text()
+            (folder / "cut.txt").write_text(text[:len(text) // 2])
+            self.refuse([f"truth.gravity_file={folder / 'cut.txt'}"], str(folder / "cut.txt"), "expected")
+
+    def test_settings_that_do_not_serve(self):
+        self.refuse(["truth.relative_tolerance=1e-15"], "relative_tolerance", "from 1e-14 to 1e-06")
+        self.refuse(["spacecraft.mango.drag_area_m2=0"], "mango", "drag needs drag_area_m2 above 0")
+
+    def test_re_entry_leaves_parts_and_says_so(self):
+        with scratch() as folder:
+            result = vbar("propagate", self.ORBIT, "--out", folder / "out", *overrides(
+                "spacecraft.mango.elements.semi_major_axis_km=6540", "spacecraft.mango.elements.ex=0",
+                "spacecraft.mango.drag_area_m2=100"))
+            self.assertEqual(result.returncode, 1)
+            self.assertIn('spacecraft "mango": re-enters', result.stderr)
+            self.assertIn("at 2011-07-18T", result.stderr)
+            summary = json.loads((folder / "out" / "propagation.json").read_text())
+            self.assertFalse(summary["complete"])
+            self.assertIn("re-enters", summary["incomplete_reason"])
+            self.assertFalse((folder / "out" / "mango.csv").exists())
+            self.assertGreater((folder / "out" / "mango.csv.part").stat().st_size, 0)
+
+    def test_an_orbit_that_is_no_ellipse(self):
+        # A mission file gives elements, and cannot give those of an orbit that leaves the Earth.
+        self.refuse(["spacecraft.mango.elements.ex=0.95"], "spacecraft.mango.elements.ex", "0.9")
 
 
 class RunFolder(unittest.TestCase):

@@ -65,7 +65,7 @@ TEST(IdealNavigationMission, CommentsTellTheDefaults) {
   EXPECT_EQ(shown.seed, defaults.seed);
   EXPECT_EQ(shown.truth.gravity_degree, defaults.truth.gravity_degree);
   EXPECT_EQ(shown.truth.gravity_order, defaults.truth.gravity_order);
-  EXPECT_EQ(shown.truth.relative_tolerance, defaults.truth.relative_tolerance);
+  EXPECT_EQ(shown.truth.tolerance, defaults.truth.tolerance);
   EXPECT_EQ(shown.truth.threads, defaults.truth.threads);
   for (const char* name : {"servicer", "target"}) {
     const SurfaceProperties& a = shown.find_spacecraft(name)->surface;

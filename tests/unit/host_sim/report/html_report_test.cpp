@@ -41,7 +41,7 @@ TEST_F(HtmlReport, TheCheckSeesFaults) {
 TEST_F(HtmlReport, TellsTheWholeRun) {
   const std::string html = html_report(synthetic_run());
   for (const char* heading : {"Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation",
-                              "Guidance and passive safety", "Flight computer, link and time"}) {
+                              "Attitude", "Guidance and passive safety", "Flight computer, link and time"}) {
     EXPECT_THAT(html, HasSubstr("<h2>" + std::string(heading) + "</h2>"));
   }
   EXPECT_THAT(html, HasSubstr("&lt;a &quot;test&quot; &amp; nothing else&gt;")) << "the flight software's own name";

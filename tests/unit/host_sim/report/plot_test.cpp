@@ -102,6 +102,8 @@ TEST(DisplayUnit, SuitsTheSize) {
   EXPECT_EQ(display_unit(Unit::kMetres, 7.0).symbol, "m");
   EXPECT_EQ(display_unit(Unit::kMetres, 0.02).symbol, "mm");
   EXPECT_EQ(display_unit(Unit::kMetresPerSecond, 4.0).symbol, "m/s");
+  EXPECT_EQ(display_unit(Unit::kRadians, 4.0).symbol, "deg");
+  EXPECT_EQ(display_unit(Unit::kRadiansPerSecond, 4.0).symbol, "deg/s");
   EXPECT_EQ(display_unit(Unit::kMetresPerSecond, 0.006).symbol, "mm/s");
 }
 

@@ -72,8 +72,8 @@ TEST_F(RunFolderTest, WritingWhatWasReadGivesTheSameFiles) {
   leave_a_run();
   const RunFolder again(scratch_ / "again", {});
   again.finish(read_run(run()));
-  for (const char* name :
-       {"summary.json", "waypoints.csv", "truth.csv", "estimate.csv", "maneuvers.csv", "residuals.csv"}) {
+  for (const char* name : {"summary.json", "waypoints.csv", "truth.csv", "attitude.csv", "estimate.csv",
+                           "maneuvers.csv", "residuals.csv"}) {
     EXPECT_EQ(content(run() / name), content(again.path() / name)) << name;
     EXPECT_FALSE(content(run() / name).empty()) << name;
   }
@@ -82,7 +82,9 @@ TEST_F(RunFolderTest, WritingWhatWasReadGivesTheSameFiles) {
 // The columns are a contract with scripts: a change of these lines breaks them.
 TEST_F(RunFolderTest, ColumnsAreAsAgreed) {
   const RunFolder folder(run(), {});
-  folder.finish({});
+  RunRecord record;
+  record.attitudes.emplace_back();
+  folder.finish(record);
   const auto group = [](std::string name, std::initializer_list<const char*> members) {
     std::string text;
     for (const char* member : members) text += (text.empty() ? "" : ",") + name + "_" + member;
@@ -109,6 +111,8 @@ TEST_F(RunFolderTest, ColumnsAreAsAgreed) {
             "time_s," + xyz("servicer_position_eci") + "," + xyz_rate("servicer_velocity_eci") + "," +
                 xyz("target_position_eci") + "," + xyz_rate("target_velocity_eci") + "," +
                 rtn("relative_position_rtn") + "," + rtn_rate("relative_velocity_rtn") + "," + elements("a_roe_mean"));
+  EXPECT_EQ(first_line(run() / "attitude.csv"), "time_s,spacecraft," + group("q_body_eci", {"w", "x", "y", "z"}) + "," +
+                                                    group("rate_body", {"x_radps", "y_radps", "z_radps"}));
   EXPECT_EQ(first_line(run() / "estimate.csv"),
             "time_s,step,navigation_source,navigation_valid," + rtn("relative_position_rtn") + "," +
                 rtn_rate("relative_velocity_rtn") + "," +
@@ -117,6 +121,16 @@ TEST_F(RunFolderTest, ColumnsAreAsAgreed) {
                 ",mode,active_solver,waypoint_index,planned_burns,koenig_damico_status,closed_form_status,"
                 "least_squares_status,safety_status,planned_dv_mps,passive_safety_distance_m,commanded_dv_mps,"
                 "step_cost,stack_bytes");
+}
+
+// A mission without attitudes leaves the files it always left.
+TEST_F(RunFolderTest, AttitudesAreAFileOnlyWhereThereAreSome) {
+  leave_a_run();
+  RunRecord record = synthetic_run();
+  record.attitudes.clear();
+  RunFolder(run(), record.summary).finish(record);
+  EXPECT_FALSE(fs::exists(run() / "attitude.csv"));
+  EXPECT_TRUE(read_run(run()) == record);
 }
 
 // So are the keys of the summary.

@@ -174,6 +174,10 @@ RunRecord synthetic_run() {
     if (step % 10 == 0) record.residuals.push_back({t, "camera, \"left\"", wobble(t, 5.0), 0.5 * wobble(t, 5.0), 0.4});
     if (step % 15 == 0) record.residuals.push_back({t, "gnss", 2.0 * wobble(t, 6.0), wobble(t, 6.0), 0.9});
   }
+  for (const TruthRow& row : record.truth) {
+    const double half = 0.5 * 0.01 * row.time_s;
+    record.attitudes.push_back({row.time_s, "target", {std::cos(half), 0.0, std::sin(half), 0.0}, {0.0, 0.01, 0.0}});
+  }
   add_waypoints(record);
   add_maneuvers(record);
   return record;

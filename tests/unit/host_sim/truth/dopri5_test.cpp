@@ -202,6 +202,21 @@ TEST(Dopri5, ACutStepIsARungeKuttaStep) {
   EXPECT_THROW(whole.cut_last_step(0.0), std::invalid_argument);
 }
 
+TEST(Dopri5, AStepCutShortByALimitDoesNotShortenTheNext) {
+  auto free = integrator<2>(oscillator, 1e-10, 1e-10), limited = integrator<2>(oscillator, 1e-10, 1e-10);
+  free.start(0.0, Vector2(1.0, 0.0));
+  limited.start(0.0, Vector2(1.0, 0.0));
+  for (int i = 0; i < 20; ++i) {
+    free.step();
+    limited.step();
+  }
+  const double usual = free.last_step().size;
+  limited.step(limited.time() + 1e-3 * usual);
+  EXPECT_NEAR(limited.last_step().size, 1e-3 * usual, 1e-12);
+  limited.step();
+  EXPECT_GT(limited.last_step().size, 0.8 * usual);  // the oscillator's steps vary by a tenth over a turn
+}
+
 TEST(Dopri5, RestartAfterAJumpIsANewProblem) {
   // At t = 1 the velocity is reversed: the motion runs back to the start.
   auto solver = integrator<2>(oscillator, 1e-11, 1e-11);
@@ -228,32 +243,6 @@ TEST(Dopri5, StopsWithAnErrorAtASingularity) {
   EXPECT_THROW(solver.integrate_to(2.0), std::runtime_error);
   EXPECT_LT(solver.time(), 1.0 + 1e-6);
   EXPECT_THROW(solver.integrate_to(0.0), std::invalid_argument);
-}
-
-TEST(EventLocation, FindsTheFirstChangeInEitherDirection) {
-  const auto g = [](double t) { return std::sin(t); };
-  EXPECT_NEAR(first_sign_change(g, 1.0, 10.0, 30, 1e-9).value(), M_PI, 2e-9);
-  EXPECT_NEAR(first_sign_change(g, 10.0, 1.0, 30, 1e-9).value(), 3.0 * M_PI, 2e-9);
-  EXPECT_FALSE(first_sign_change(g, 0.5, 3.0, 30, 1e-9).has_value());
-}
-
-TEST(EventLocation, ReturnsTheFarSideAndDoesNotFindAnEventTwice) {
-  const auto g = [](double t) { return t * t * t - 2.0; };
-  const double found = first_sign_change(g, 0.0, 3.0, 1, 1e-6).value();
-  EXPECT_GE(g(found), 0.0);
-  EXPECT_NEAR(found, std::cbrt(2.0), 1e-6);
-  EXPECT_FALSE(first_sign_change(g, found, 3.0, 10, 1e-6).has_value());
-  // A zero exactly at the start is an event already dealt with.
-  EXPECT_FALSE(first_sign_change([](double t) { return t; }, 0.0, 1.0, 10, 1e-6).has_value());
-  // A zero exactly at a sample is found there.
-  EXPECT_EQ(first_sign_change([](double t) { return t - 0.5; }, 0.0, 1.0, 2, 1e-6).value(), 0.5);
-}
-
-TEST(EventLocation, RefusesNonsense) {
-  const auto g = [](double t) { return t - 0.3; };
-  EXPECT_THROW(first_sign_change(g, 0.0, 1.0, 0, 1e-6), std::invalid_argument);
-  EXPECT_THROW(first_sign_change(g, 0.0, 1.0, 1, 0.0), std::invalid_argument);
-  EXPECT_THROW(first_sign_change([](double) { return std::nan(""); }, 0.0, 1.0, 1, 1e-6), std::invalid_argument);
 }
 
 }  // namespace

@@ -37,9 +37,9 @@ TEST(Nrlmsise00Physics, MixedAirIsInHydrostaticEquilibrium) {
     return std::log(air.per_m3.n2 * air.temperature);
   };
   for (const double altitude_km : {1.0, 5.0, 12.0, 18.0, 25.0, 40.0, 50.0, 60.0}) {
-    constexpr double kStep_km = 0.01;  // truncation 1e-7 of the slope, rounding 1e-9
+    constexpr double kStepKm = 0.01;  // truncation 1e-7 of the slope, rounding 1e-9
     const double slope_per_km =
-        (log_pressure(altitude_km + kStep_km) - log_pressure(altitude_km - kStep_km)) / (2.0 * kStep_km);
+        (log_pressure(altitude_km + kStepKm) - log_pressure(altitude_km - kStepKm)) / (2.0 * kStepKm);
     const double temperature = model.at(somewhere(altitude_km)).temperature;
     const double expected_per_km = -28.95 * gravity(altitude_km) / (kGasConstant * temperature);
     EXPECT_NEAR(slope_per_km / expected_per_km, 1.0, 2e-3) << altitude_km;  // the gravity formulas' difference
@@ -50,12 +50,12 @@ TEST(Nrlmsise00Physics, HighSpeciesAreInDiffusiveEquilibrium) {
   // Above 450 km each species has its own scale height: d ln n/dz = -M g / (R T) - (1 + alpha) d ln T/dz, T constant.
   Nrlmsise00 model(test::published_tables());
   for (const double altitude_km : {600.0, 800.0, 1000.0}) {
-    constexpr double kStep_km = 0.1;
-    const AtmosphereState above = model.at(somewhere(altitude_km + kStep_km));
-    const AtmosphereState below = model.at(somewhere(altitude_km - kStep_km));
+    constexpr double kStepKm = 0.1;
+    const AtmosphereState above = model.at(somewhere(altitude_km + kStepKm));
+    const AtmosphereState below = model.at(somewhere(altitude_km - kStepKm));
     const double temperature = model.at(somewhere(altitude_km)).temperature;
     const auto expect_scale_height = [&](double molar_mass, double n_above, double n_below) {
-      const double slope_per_km = std::log(n_above / n_below) / (2.0 * kStep_km);
+      const double slope_per_km = std::log(n_above / n_below) / (2.0 * kStepKm);
       const double expected_per_km = -molar_mass * gravity(altitude_km) / (kGasConstant * temperature);
       // The gravity formulas' difference, and what is left of the temperature gradient (below 0.02 K/km of 1240 K).
       EXPECT_NEAR(slope_per_km / expected_per_km, 1.0, 3e-3) << altitude_km << " km, M " << molar_mass;
@@ -77,9 +77,9 @@ GlobalMean global_mean(double altitude_km, double f107) {
   Nrlmsise00 model(test::published_tables());
   double log_density = 0.0, temperature = 0.0, weights = 0.0;
   for (int day = 15; day < 366; day += 61) {
-    for (double latitude_deg = -75.0; latitude_deg <= 75.0; latitude_deg += 30.0) {
-      for (double longitude_deg = -180.0; longitude_deg < 180.0; longitude_deg += 60.0) {
-        for (double hour = 0.0; hour < 24.0; hour += 4.0) {
+    for (int latitude_deg = -75; latitude_deg <= 75; latitude_deg += 30) {
+      for (int longitude_deg = -180; longitude_deg < 180; longitude_deg += 60) {
+        for (int hour = 0; hour < 24; hour += 4) {
           AtmosphereInput input;
           input.day_of_year = day;
           input.altitude_km = altitude_km;

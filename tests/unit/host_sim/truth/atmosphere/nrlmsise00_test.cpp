@@ -37,7 +37,7 @@ TEST(Nrlmsise00, PrintsTheOfficialCasesDigitForDigit) {
     }
   }
   accuracy::expect_count("NRLMSISE-00, numbers alike in every printed digit",
-                         "the 17 cases of the model's documentation, 11 numbers each", same, 17 * 11, "numbers");
+                         "the 17 cases of the model's documentation, 11 numbers each", same, 187, "numbers");
 }
 
 TEST(Nrlmsise00, AgreesWithTheReferenceAtFullPrecision) {
@@ -113,10 +113,10 @@ TEST(Nrlmsise00, StepsAtItsJointsAreSmall) {
     input.indices.f107 = input.indices.f107_average + 40.0 * (unit(random) - 0.5);
     input.indices.ap_daily = 50.0 * unit(random);
     const auto step_at = [&](double altitude_km) {
-      constexpr double kNear_km = 1e-9;  // over which density falls by 1e-10
-      input.altitude_km = altitude_km - kNear_km;
+      constexpr double kNearKm = 1e-9;  // over which density falls by 1e-10
+      input.altitude_km = altitude_km - kNearKm;
       const double below = model.at(input).drag_density;
-      input.altitude_km = altitude_km + kNear_km;
+      input.altitude_km = altitude_km + kNearKm;
       return std::abs(model.at(input).drag_density / below - 1.0);
     };
     for (const auto& [joint_km, largest] : kJoints) EXPECT_LT(step_at(joint_km), largest) << joint_km;
@@ -140,7 +140,7 @@ TEST(Nrlmsise00, GoesOnAboveItsRange) {
   Nrlmsise00 model(published_tables());
   AtmosphereInput input = test::input_of(test::reference_rows("full_precision_cases.csv").front());
   double before = std::numeric_limits<double>::infinity();
-  for (double altitude_km = 1000.0; altitude_km < 40000.0; altitude_km *= 1.3) {
+  for (const double altitude_km : {1000.0, 1500.0, 3000.0, 8000.0, 20000.0, 36000.0}) {
     input.altitude_km = altitude_km;
     const AtmosphereState state = model.at(input);
     EXPECT_GT(state.drag_density, 0.0);

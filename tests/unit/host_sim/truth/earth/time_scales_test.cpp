@@ -28,6 +28,11 @@ TEST(TimeScales, MissionEpoch) {
   EXPECT_NEAR(((tt.day - utc.day) + (tt.fraction - utc.fraction)) * kSecondsPerDay, 66.184, 1e-10);
 }
 
+TEST(TimeScales, GpsIsEighteenSecondsAheadSince2017) {
+  // Saturday of GPS week 2190, as an SP3 file of 2022-01-01T00:00:00 GPS time says: "2190 518400.0".
+  EXPECT_EQ(gps_from_utc("2021-12-31T23:59:42Z").ns, (2190 * std::int64_t{604800} + 518400) * kSecond);
+}
+
 TEST(TimeScales, EarthRotationAngleAndSiderealTimeOfTheMissionEpoch) {
   // Computed independently with ERFA at the mission epoch: ERA 310.349033 deg, GMST06 310.496907 deg with UT1-UTC =
   // -0.3 s; half a printed digit.

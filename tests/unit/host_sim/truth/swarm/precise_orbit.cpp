@@ -1,41 +1,34 @@
 #include "tests/unit/host_sim/truth/swarm/precise_orbit.h"
 
+#include <array>
 #include <cstdint>
-#include <cstdio>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 namespace vbar::truth::test {
-namespace {
-
-/// GPS time of a calendar date in GPS time.
-fsw::GpsTime gps_time(int year, int month, int day, int hour, int minute, int second) {
-  // Days since the GPS epoch by the Gregorian calendar, counted from March 1 of a year 0 (Richards 2013).
-  const int y = month > 2 ? year : year - 1, m = month > 2 ? month - 3 : month + 9;
-  const std::int64_t days = 365LL * y + y / 4 - y / 100 + y / 400 + (153 * m + 2) / 5 + day - 1 - 723125;
-  return {(((days * 24 + hour) * 60 + minute) * 60 + second) * fsw::kNanosecondsPerSecond};
-}
-
-}  // namespace
 
 PreciseOrbit load_precise_orbit(const std::filesystem::path& file) {
   std::ifstream in(file);
   PreciseOrbit orbit;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
-    if (line.starts_with("#") || line.starts_with("gps_time,")) continue;
-    int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0;
-    PreciseState s;
-    fsw::Vector3 &r = s.position_itrf, &v = s.velocity_itrf;
-    if (std::sscanf(line.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d,%lf,%lf,%lf,%lf,%lf,%lf", &year, &month, &day, &hour,
-                    &minute, &second, &r.x(), &r.y(), &r.z(), &v.x(), &v.y(), &v.z()) != 12) {
+    if (line.starts_with("#") || line.starts_with("gps_time_s,")) continue;
+    std::istringstream cells(line);
+    std::int64_t gps_s = 0;
+    std::array<double, 6> x{};
+    cells >> gps_s;
+    for (double& value : x) {
+      char comma = 0;
+      cells >> comma >> value;
+    }
+    if (!cells || !cells.eof()) {
       throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": expected a time and six numbers");
     }
-    const fsw::GpsTime time = gps_time(year, month, day, hour, minute, second);
+    const fsw::GpsTime time{gps_s * fsw::kNanosecondsPerSecond};
     if (orbit.states.empty()) orbit.epoch = time;
-    s.seconds = fsw::seconds(time - orbit.epoch);
-    orbit.states.push_back(s);
+    orbit.states.push_back({fsw::seconds(time - orbit.epoch), {x[0], x[1], x[2]}, {x[3], x[4], x[5]}});
   }
   if (orbit.states.empty()) throw std::runtime_error(file.string() + ": no states");
   return orbit;

@@ -1,13 +1,8 @@
 #include "tests/unit/host_sim/truth/swarm/swarm_forces.h"
 
+#include <cstddef>
 #include <utility>
 
-#include "host_sim/truth/forces/drag_force.h"
-#include "host_sim/truth/forces/gravity_force.h"
-#include "host_sim/truth/forces/radiation_pressure_force.h"
-#include "host_sim/truth/forces/relativity_force.h"
-#include "host_sim/truth/forces/solid_tides_force.h"
-#include "host_sim/truth/forces/third_body_force.h"
 #include "host_sim/truth/spacecraft_propagator.h"
 #include "tests/unit/host_sim/truth/truth_fixture.h"
 
@@ -25,49 +20,48 @@ constexpr SurfaceProperties kSwarm{
     .radiation_coefficient = 1.3,
 };
 
-constexpr double kTolerance = 1e-13;
+TruthSettings settings_of(const PreciseOrbit& orbit) {
+  TruthSettings settings;
+  settings.epoch = orbit.epoch;
+  settings.forces = SwarmForces{}.model;
+  settings.tolerance = 1e-13;
+  settings.data_directory = kDataDirectory;
+  settings.earth_orientation_file = "earth/eop_swarm_2022.csv";
+  settings.space_weather_file = "earth/space_weather_swarm_2022.csv";
+  return settings;
+}
 
 }  // namespace
 
 SwarmOrbit::SwarmOrbit()
-    : orbit_(load_precise_orbit(kDataDirectory / "orbits/swarm_a_2022_001.csv")),
-      orientation_(std::make_shared<const EarthOrientationSeries>(
-          EarthOrientationSeries::load(kDataDirectory / "earth/eop_swarm_2022.csv"))),
-      space_weather_(std::make_shared<const SpaceWeather>(
-          SpaceWeather::load(kDataDirectory / "earth/space_weather_swarm_2022.csv"))),
-      atmosphere_(std::make_shared<const Nrlmsise00Tables>(
-          load_nrlmsise00_tables(kDataDirectory / "atmosphere/nrlmsise00.csv"))),
-      gravity_(load_gravity_coefficients(kDataDirectory / "gravity/ggm05s_120.txt", 120)) {
-  EarthRotation rotation(orientation_, orbit_.epoch);
+    : orbit_(load_precise_orbit(kDataDirectory / "orbits/swarm_a_2022_001.csv")), settings_(settings_of(orbit_)) {
+  EarthRotation rotation(data(120).earth_orientation, orbit_.epoch);
   for (const PreciseState& state : orbit_.states) measured_.push_back(to_eci(state, rotation).position_eci);
   first_state_ = to_eci(orbit_.states.front(), rotation);
 }
 
-std::unique_ptr<SpacecraftDynamics> SwarmOrbit::dynamics(const SwarmForces& on, double drag_scale) const {
-  std::vector<std::unique_ptr<Force>> forces;
-  forces.push_back(std::make_unique<GravityForce>(
-      std::make_shared<const GravityField>(gravity_, on.gravity_degree, on.gravity_degree)));
-  if (on.drag) {
-    SurfaceProperties scaled = kSwarm;
-    scaled.drag_coefficient *= drag_scale;
-    forces.push_back(
-        std::make_unique<DragForce>(scaled, atmosphere_, space_weather_, GeomagneticIndex::kThreeHourly, orbit_.epoch));
-  }
-  if (on.radiation_pressure) forces.push_back(std::make_unique<RadiationPressureForce>(kSwarm, Shadow::kConical));
-  if (on.sun) forces.push_back(std::make_unique<ThirdBodyForce>(ThirdBodyForce::Body::kSun));
-  if (on.moon) forces.push_back(std::make_unique<ThirdBodyForce>(ThirdBodyForce::Body::kMoon));
-  if (on.solid_tides) {
-    const TideSystem system = on.permanent_tide_twice ? TideSystem::kTideFree : tide_system_named(gravity_.tide_system);
-    forces.push_back(
-        std::make_unique<SolidTidesForce>(gravity_.gm, gravity_.radius, system, orbit_.epoch, orientation_));
-  }
-  if (on.relativity) forces.push_back(std::make_unique<RelativityForce>(gravity_.gm));
-  return std::make_unique<SpacecraftDynamics>("Swarm A", gravity_.gm, gravity_.radius,
-                                              EarthRotation(orientation_, orbit_.epoch), std::move(forces));
+const ForceData& SwarmOrbit::data(int gravity_degree) {
+  const auto found = data_.find(gravity_degree);
+  if (found != data_.end()) return found->second;
+  TruthSettings settings = settings_;
+  settings.gravity_degree = settings.gravity_order = gravity_degree;
+  return data_.emplace(gravity_degree, load_force_data(settings)).first->second;
 }
 
-Positions SwarmOrbit::propagate(const SwarmForces& forces, const OrbitStart& start) const {
-  SpacecraftPropagator propagator(dynamics(forces, start.drag_scale), kTolerance, 0.0, start.state);
+std::unique_ptr<SpacecraftDynamics> SwarmOrbit::dynamics(const SwarmForces& forces, const OrbitStart& start) {
+  SpacecraftSettings spacecraft{"Swarm A", start.state, kSwarm};
+  spacecraft.surface.drag_coefficient *= start.drag_scale;
+  TruthSettings settings = settings_;
+  settings.forces = forces.model;
+  ForceData data = this->data(forces.gravity_degree);
+  if (forces.permanent_tide_twice) data.tide_system = TideSystem::kTideFree;
+  return std::make_unique<SpacecraftDynamics>(spacecraft.name, data.gravity->gm(), data.gravity->radius(),
+                                              EarthRotation(data.earth_orientation, orbit_.epoch),
+                                              make_forces(settings, data, spacecraft));
+}
+
+Positions SwarmOrbit::propagate(const SwarmForces& forces, const OrbitStart& start) {
+  SpacecraftPropagator propagator(dynamics(forces, start), settings_.tolerance, 0.0, start.state);
   Positions positions;
   for (const PreciseState& state : orbit_.states) {
     propagator.advance_to(state.seconds);
@@ -76,9 +70,9 @@ Positions SwarmOrbit::propagate(const SwarmForces& forces, const OrbitStart& sta
   return positions;
 }
 
-std::vector<ForceAcceleration> SwarmOrbit::mean_sizes(const OrbitStart& start) const {
-  const auto all = dynamics({}, start.drag_scale);
-  EarthRotation rotation(orientation_, orbit_.epoch);
+std::vector<ForceAcceleration> SwarmOrbit::mean_sizes(const OrbitStart& start) {
+  const auto all = dynamics({}, start);
+  EarthRotation rotation(data(120).earth_orientation, orbit_.epoch);
   std::vector<ForceAcceleration> sizes;
   for (const PreciseState& state : orbit_.states) {
     const auto now = all->accelerations(state.seconds, to_eci(state, rotation));

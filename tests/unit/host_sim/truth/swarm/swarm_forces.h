@@ -1,30 +1,29 @@
 #pragma once
 // Swarm A on 2022-01-01: its precise orbit and the forces on it, any of which can be left out.
 
+#include <map>
 #include <memory>
 #include <vector>
 
-#include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
-#include "host_sim/truth/earth/earth_orientation.h"
-#include "host_sim/truth/earth/space_weather.h"
-#include "host_sim/truth/forces/force_model.h"
-#include "host_sim/truth/forces/gravity_coefficients.h"
-#include "host_sim/truth/forces/gravity_field.h"
+#include "host_sim/truth/force_list.h"
 #include "host_sim/truth/spacecraft_dynamics.h"
+#include "host_sim/truth/truth_settings.h"
 #include "tests/unit/host_sim/truth/swarm/orbit_fit.h"
 #include "tests/unit/host_sim/truth/swarm/precise_orbit.h"
 
 namespace vbar::truth::test {
 
-/// Forces beside gravity, and gravity's degree.
+/// Which forces act: by default all that the truth has, with gravity as far as its file goes.
 struct SwarmForces {
+  ForceModel model = {.drag = true,
+                      .geomagnetic_index = GeomagneticIndex::kThreeHourly,
+                      .radiation_pressure = true,
+                      .shadow = Shadow::kConical,
+                      .sun = true,
+                      .moon = true,
+                      .solid_tides = true,
+                      .relativity = true};
   int gravity_degree = 120;
-  bool drag = true;
-  bool radiation_pressure = true;
-  bool sun = true;
-  bool moon = true;
-  bool solid_tides = true;
-  bool relativity = true;
   bool permanent_tide_twice = false;  ///< as if the gravity model's C20 held nothing of it
 };
 
@@ -36,20 +35,19 @@ class SwarmOrbit {
   const Positions& measured() const { return measured_; }
   const fsw::orbit::CartesianState& first_state() const { return first_state_; }
 
-  /// Propagation by the project's propagator to the instants of the measured positions.
-  Positions propagate(const SwarmForces& forces, const OrbitStart& start) const;
+  /// Propagation by the truth's forces and propagator to the instants of the measured positions.
+  Positions propagate(const SwarmForces& forces, const OrbitStart& start);
 
-  /// Mean sizes (m/s^2) of the forces' accelerations along the measured orbit.
-  std::vector<ForceAcceleration> mean_sizes(const OrbitStart& start) const;
+  /// Mean sizes (m/s^2, in x) of the accelerations of all forces along the measured orbit.
+  std::vector<ForceAcceleration> mean_sizes(const OrbitStart& start);
 
  private:
-  std::unique_ptr<SpacecraftDynamics> dynamics(const SwarmForces& forces, double drag_scale) const;
+  std::unique_ptr<SpacecraftDynamics> dynamics(const SwarmForces& forces, const OrbitStart& start);
+  const ForceData& data(int gravity_degree);
 
   PreciseOrbit orbit_;
-  std::shared_ptr<const EarthOrientationSeries> orientation_;
-  std::shared_ptr<const SpaceWeather> space_weather_;
-  std::shared_ptr<const Nrlmsise00Tables> atmosphere_;
-  GravityCoefficients gravity_;
+  TruthSettings settings_;
+  std::map<int, ForceData> data_;  ///< by degree of gravity
   Positions measured_;
   fsw::orbit::CartesianState first_state_;
 };

@@ -1,0 +1,58 @@
+// vbar propagate: a mission file, its truth alone, an ephemeris of every spacecraft.
+
+#include <chrono>
+
+#include <fmt/core.h>
+
+#include "host_sim/app/commands.h"
+#include "host_sim/app/data_directory.h"
+#include "host_sim/app/progress.h"
+#include "host_sim/app/propagation.h"
+#include "host_sim/app/stop_request.h"
+#include "host_sim/mission/load.h"
+#include "host_sim/report/propagation_folder.h"
+#include "host_sim/report/propagation_summary.h"
+#include "host_sim/truth/earth/time_scales.h"
+
+namespace vbar::app {
+namespace {
+
+/// By this computer's clock, to a second. Its seconds since 1970 count no leap seconds; 1980's midnight is the GPS
+/// epoch's.
+fsw::GpsTime now() {
+  using namespace std::chrono;
+  const auto unix_s = duration_cast<seconds>(system_clock::now().time_since_epoch()).count();
+  const auto days = floor<std::chrono::days>(sys_seconds(seconds(unix_s)));
+  const year_month_day date(days);
+  const hh_mm_ss time(sys_seconds(seconds(unix_s)) - days);
+  return truth::gps_from_utc(fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", static_cast<int>(date.year()),
+                                         static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                                         time.hours().count(), time.minutes().count(), time.seconds().count()));
+}
+
+}  // namespace
+
+int propagate_command(const PropagateOptions& options) {
+  const mission::Mission mission = mission::load_mission(options.mission, options.overrides);
+  Propagation propagation(mission, data_directory());
+  report::PropagationFolder folder(
+      options.out.empty() ? report::default_propagation_folder(mission.name) : options.out, mission.name);
+  const report::OemFile::Span span{mission.start_time(), mission.end_time(), propagation.sampling_times().size(),
+                                   now()};
+  folder.start_files(propagation.names(), options.oem ? &span : nullptr);
+  catch_stop_signals();
+
+  report::PropagationRecord record;
+  {
+    ProgressLine progress(mission.duration);
+    record = propagation.run([&](std::size_t k, const report::EphemerisRow& row) { folder.append(k, row); },
+                             [&](fsw::Duration simulated) { progress.update(simulated); }, stop_requested);
+  }
+  folder.finish(record);
+  fmt::print("{}ephemeris  {}\n", report::propagation_table(record), folder.path().string());
+  if (record.complete) return 0;
+  fmt::print(stderr, "vbar: {}: propagation incomplete: {}\n", folder.path().string(), record.incomplete_reason);
+  return 1;
+}
+
+}  // namespace vbar::app

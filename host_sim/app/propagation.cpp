@@ -1,0 +1,125 @@
+#include "host_sim/app/propagation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <optional>
+#include <string_view>
+
+#include "host_sim/app/initial_orbits.h"
+#include "host_sim/truth/earth/geodetic.h"
+
+namespace vbar::app {
+
+/// Sums what drag takes from the semi-major axis: da/dt = 2 a^2 / GM (velocity . drag), by the trapezoidal rule over the
+/// sampling times. From the motion itself it could not be told: the field's tesserals move the mean semi-major axis by
+/// ten metres, more than a day's drag.
+class Propagation::DecayMeter {
+ public:
+  explicit DecayMeter(double gm) : gm_(gm) {}
+
+  void add(double seconds, const fsw::orbit::CartesianState& state, const fsw::Vector3& drag_eci) {
+    const double a = 1.0 / (2.0 / state.position_eci.norm() - state.velocity_eci.squaredNorm() / gm_);
+    const double rate = 2.0 * a * a / gm_ * state.velocity_eci.dot(drag_eci);
+    if (last_) change_ += 0.5 * (rate + last_->rate) * (seconds - last_->seconds);
+    last_ = {seconds, rate};
+  }
+
+  [[nodiscard]] std::optional<double> change() const { return last_ ? std::optional(change_) : std::nullopt; }
+
+ private:
+  struct Sample {
+    double seconds;
+    double rate;
+  };
+
+  double gm_;
+  double change_ = 0.0;
+  std::optional<Sample> last_;
+};
+
+Propagation::Propagation(const mission::Mission& mission, const std::filesystem::path& data_directory)
+    : mission_(mission),
+      truth_(truth_settings(mission, data_directory)),
+      earth_rotation_(truth_.data().earth_orientation, mission.epoch) {
+  place_spacecraft(mission, truth_);
+  for (const mission::Spacecraft& spacecraft : mission.spacecraft)
+    truth_index_.push_back(truth_.index_of(spacecraft.name));
+}
+
+std::vector<fsw::GpsTime> Propagation::sampling_times() const {
+  std::vector<fsw::GpsTime> times;
+  for (fsw::GpsTime time = mission_.start_time(); time < mission_.end_time(); time = time + mission_.step)
+    times.push_back(time);
+  times.push_back(mission_.end_time());
+  return times;
+}
+
+std::vector<std::string> Propagation::names() const {
+  std::vector<std::string> names;
+  for (const mission::Spacecraft& spacecraft : mission_.spacecraft) names.push_back(spacecraft.name);
+  return names;
+}
+
+fsw::Vector3 Propagation::drag_eci(std::size_t truth_index) {
+  const std::vector<truth::ForceAcceleration> shares = truth_.accelerations(truth_index);
+  const auto drag = std::ranges::find(shares, std::string_view("drag"), &truth::ForceAcceleration::force);
+  return drag == shares.end() ? fsw::Vector3::Zero().eval() : drag->acceleration_eci;
+}
+
+void Propagation::sample(std::vector<DecayMeter>& decay, const RowSink& sink, report::PropagationRecord& record) {
+  report::EphemerisRow row;
+  row.time = truth_.time();
+  row.time_s = fsw::seconds(row.time - mission_.epoch);
+  const fsw::Matrix3 R_itrf_gcrf = earth_rotation_.R_itrf_gcrf_at(row.time_s);
+  for (std::size_t k = 0; k < truth_index_.size(); ++k) {
+    row.state = truth_.state(truth_index_[k]);
+    row.geodetic = truth::geodetic_from_itrf(R_itrf_gcrf * row.state.position_eci);
+    if (mission_.truth.forces.drag) decay[k].add(row.time_s, row.state, drag_eci(truth_index_[k]));
+    report::PropagatedSpacecraft& outcome = record.spacecraft[k];
+    if (row.time == mission_.start_time()) outcome.first_altitude_m = row.geodetic.altitude;
+    outcome.last_altitude_m = row.geodetic.altitude;
+    sink(k, row);
+  }
+}
+
+report::PropagationRecord Propagation::run(const RowSink& sink, const std::function<void(fsw::Duration)>& progress,
+                                           const std::function<bool()>& stop_requested) {
+  const auto started = std::chrono::steady_clock::now();
+  report::PropagationRecord record;
+  record.mission = mission_.name;
+  record.threads = mission_.truth.threads;
+  std::vector<DecayMeter> decay;
+  for (std::size_t k = 0; k < truth_index_.size(); ++k) {
+    record.spacecraft.emplace_back().name = mission_.spacecraft[k].name;
+    decay.emplace_back(truth_.data().gravity->gm());
+  }
+  truth_.measure_force_times(true);
+  try {
+    record.complete = true;
+    for (const fsw::GpsTime time : sampling_times()) {
+      if (stop_requested && stop_requested()) {
+        record.complete = false;
+        record.incomplete_reason = "interrupted";
+        break;
+      }
+      truth_.advance_to(time);
+      sample(decay, sink, record);
+      if (progress) progress(time - mission_.start_time());
+    }
+  } catch (const std::exception& error) {
+    record.complete = false;
+    record.incomplete_reason = error.what();
+  }
+  for (std::size_t k = 0; k < truth_index_.size(); ++k) {
+    record.spacecraft[k].statistics = truth_.statistics(truth_index_[k]);
+    record.spacecraft[k].semi_major_axis_change_by_drag_m = decay[k].change();
+  }
+  record.total = truth_.statistics();
+  record.force_times = truth_.force_times();
+  record.simulated_s = fsw::seconds(truth_.time() - mission_.start_time());
+  record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  return record;
+}
+
+}  // namespace vbar::app

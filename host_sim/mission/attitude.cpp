@@ -1,0 +1,43 @@
+#include "host_sim/mission/attitude.h"
+
+#include <cmath>
+
+#include "host_sim/engine/random_stream.h"
+
+namespace vbar::mission {
+namespace {
+
+constexpr double kTwoPi = 2.0 * M_PI;
+
+engine::RandomStream stream(std::uint64_t seed, std::string_view spacecraft, const char* what) {
+  return {seed, std::string(spacecraft) + "/" + what};
+}
+
+}  // namespace
+
+// Shoemake 1992, "Uniform random rotations".
+Eigen::Quaterniond drawn_attitude(std::uint64_t seed, std::string_view spacecraft) {
+  engine::RandomStream random = stream(seed, spacecraft, "attitude");
+  const double share = random.uniform(), first = random.uniform(0.0, kTwoPi), second = random.uniform(0.0, kTwoPi);
+  const double a = std::sqrt(1.0 - share), b = std::sqrt(share);
+  return {b * std::cos(second), a * std::sin(first), a * std::cos(first), b * std::sin(second)};
+}
+
+fsw::Vector3 drawn_rate(std::uint64_t seed, std::string_view spacecraft, double slowest, double fastest) {
+  engine::RandomStream random = stream(seed, spacecraft, "tumble");
+  // Archimedes: the height of a uniform point on the sphere is uniform.
+  const double height = random.uniform(-1.0, 1.0), longitude = random.uniform(0.0, kTwoPi);
+  const double across = std::sqrt(1.0 - height * height);
+  const double size = slowest + (fastest - slowest) * random.uniform();
+  return size * fsw::Vector3(across * std::cos(longitude), across * std::sin(longitude), height);
+}
+
+truth::AttitudeState start_of(const Tumble& tumble, std::uint64_t seed, std::string_view spacecraft) {
+  truth::AttitudeState start;
+  start.q_body_eci = tumble.q_body_eci ? *tumble.q_body_eci : drawn_attitude(seed, spacecraft);
+  start.rate_body =
+      tumble.rate_body ? *tumble.rate_body : drawn_rate(seed, spacecraft, tumble.slowest_radps, tumble.fastest_radps);
+  return start;
+}
+
+}  // namespace vbar::mission

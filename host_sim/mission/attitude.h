@@ -1,0 +1,46 @@
+#pragma once
+// What a mission file says of a spacecraft's attitude, and what it leaves to the seed.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "fsw/core/types.h"
+#include "host_sim/truth/attitude/attitude_settings.h"
+
+namespace vbar::mission {
+
+/// profile = "tumble": a rigid body, from the start of the run on.
+struct Tumble {
+  std::optional<Eigen::Quaterniond> q_body_eci;  ///< at the start; else drawn
+  std::optional<fsw::Vector3> rate_body;         ///< at the start, rad/s; else drawn between the next two
+  double slowest_radps = 0.0;
+  double fastest_radps = 0.0;
+  std::string body;                          ///< names its file in data/bodies
+  std::optional<fsw::Matrix3> inertia_kgm2;  ///< instead of that of the file
+  std::vector<truth::TorqueKind> torques;
+};
+
+/// profile = "inertial".
+struct Inertial {
+  std::optional<Eigen::Quaterniond> q_body_eci;  ///< else drawn
+};
+
+/// The profiles that point need nothing drawn.
+using Attitude = std::variant<Tumble, Inertial, truth::PointedSettings>;
+
+/// An attitude drawn for a spacecraft: uniform over all rotations.
+[[nodiscard]] Eigen::Quaterniond drawn_attitude(std::uint64_t seed, std::string_view spacecraft);
+
+/// A rate in body axes, rad/s: about an axis uniform on the sphere, its size uniform from `slowest` to `fastest`.
+[[nodiscard]] fsw::Vector3 drawn_rate(std::uint64_t seed, std::string_view spacecraft, double slowest, double fastest);
+
+/// The attitude at the start of the run, drawn where the file does not say it.
+[[nodiscard]] truth::AttitudeState start_of(const Tumble& tumble, std::uint64_t seed, std::string_view spacecraft);
+
+}  // namespace vbar::mission

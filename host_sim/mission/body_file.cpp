@@ -1,0 +1,62 @@
+#include "host_sim/mission/body_file.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "host_sim/mission/read_attitude.h"
+#include "host_sim/mission/toml_file.h"
+
+namespace vbar::mission {
+namespace {
+
+using fsw::Vector3;
+
+constexpr Range kLength_m = from_to(-1000.0, 1000.0);
+
+Vector3 read_point(const TableReader& section, std::string_view key) {
+  const auto v = section.three_numbers(key, kLength_m);
+  return {v[0], v[1], v[2]};
+}
+
+truth::Facet read_facet(const TableReader& section, const std::vector<Vector3>& corners_m) {
+  section.accept_only({"corners", "specular", "diffuse"});
+  const double last = static_cast<double>(corners_m.size()) - 1.0;
+  std::vector<Vector3> polygon_m;
+  for (const double index : section.numbers("corners", 3, 64, from_to(0.0, last))) {
+    if (index != std::floor(index)) section.refuse("corners", "a number that is no integer", "places in `corners`");
+    polygon_m.push_back(corners_m[static_cast<std::size_t>(index)]);
+  }
+  const Range share = from_to(0.0, 1.0);
+  const double specular = section.number("specular", share), diffuse = section.number("diffuse", share);
+  try {
+    return truth::facet_of_polygon(polygon_m, specular, diffuse);
+  } catch (const std::invalid_argument& error) {
+    section.refuse("", std::string("what is no facet: ") + error.what(),
+                   "a plane convex polygon, anticlockwise from outside, and reflectivities that add to at most 1");
+  }
+}
+
+}  // namespace
+
+truth::Body load_body(const std::filesystem::path& file) {
+  const toml::table table = parse_toml(read_text_file(file, "a body file (TOML)"), file.string());
+  const TableReader document(table, "", file.string());
+  document.accept_only({"inertia_kgm2", "centre_of_mass_m", "corners", "facet"});
+  truth::Body body;
+  body.name = file.stem().string();
+  const auto inertia = read_inertia(document);
+  if (!inertia) document.refuse("inertia_kgm2", "nothing", "[xx, yy, zz] or [xx, yy, zz, xy, xz, yz]");
+  body.inertia_kgm2 = *inertia;
+  body.centre_of_mass_m = read_point(document, "centre_of_mass_m");
+  std::vector<Vector3> corners_m;
+  for (const TableReader& corner : document.tables("corners")) {
+    corner.accept_only({"at_m"});
+    corners_m.push_back(read_point(corner, "at_m") - body.centre_of_mass_m);
+  }
+  for (const TableReader& facet : document.tables("facet")) body.facets.push_back(read_facet(facet, corners_m));
+  return body;
+}
+
+}  // namespace vbar::mission

@@ -1,0 +1,173 @@
+#include "host_sim/mission/read_attitude.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "fsw/math/math.h"
+#include "host_sim/truth/attitude/rigid_body.h"
+
+namespace vbar::mission {
+namespace {
+
+using fsw::Vector3;
+using fsw::math::kDegree;
+using truth::Direction;
+using truth::TorqueKind;
+
+template <class Enum, std::size_t N>
+using Names = std::array<std::pair<std::string_view, Enum>, N>;
+
+enum class Profile { kNone, kTumble, kInertial, kZenith, kNadir, kAlongTrack, kTarget };
+constexpr Names<Profile, 7> kProfiles{{{"none", Profile::kNone},
+                                       {"tumble", Profile::kTumble},
+                                       {"inertial", Profile::kInertial},
+                                       {"zenith", Profile::kZenith},
+                                       {"nadir", Profile::kNadir},
+                                       {"along_track", Profile::kAlongTrack},
+                                       {"target", Profile::kTarget}}};
+constexpr Names<Direction, 5> kSecondDirections{{{"orbit_normal", Direction::kOrbitNormal},
+                                                 {"along_track", Direction::kAlongTrack},
+                                                 {"zenith", Direction::kZenith},
+                                                 {"nadir", Direction::kNadir},
+                                                 {"sun", Direction::kSun}}};
+constexpr Names<TorqueKind, 3> kTorques{{{"gravity_gradient", TorqueKind::kGravityGradient},
+                                         {"aerodynamic", TorqueKind::kAerodynamic},
+                                         {"radiation", TorqueKind::kRadiation}}};
+
+// Ten turns a second: integrating hours of it takes minutes.
+constexpr double kFastest_degps = 3600.0;
+// The tumbles that the experiments with an uncooperative target fly.
+constexpr double kUsualSlowest_degps = 0.3;
+constexpr double kUsualFastest_degps = 1.5;
+
+Vector3 vector(const std::array<double, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
+
+/// [w, x, y, z], to the digits that people write.
+std::optional<Eigen::Quaterniond> read_quaternion(const TableReader& section) {
+  if (!section.has("q_body_eci")) return std::nullopt;
+  const std::vector<double> q = section.numbers("q_body_eci", 4, 4, from_to(-1.0, 1.0));
+  const Eigen::Quaterniond quaternion(q[0], q[1], q[2], q[3]);
+  if (std::abs(quaternion.norm() - 1.0) > 1e-3)
+    section.refuse("q_body_eci", "a quaternion whose length is not 1", "[w, x, y, z] of length 1, to 0.001");
+  return quaternion.normalized();
+}
+
+void read_rate(const TableReader& section, Tumble& tumble) {
+  if (section.has("rate_degps") && section.has("tumble_rate_degps"))
+    section.refuse("rate_degps", "both rate_degps and tumble_rate_degps", "at most one of them");
+  if (section.has("rate_degps")) {
+    tumble.rate_body = kDegree * vector(section.three_numbers("rate_degps", from_to(-kFastest_degps, kFastest_degps)));
+    return;
+  }
+  std::vector<double> range{kUsualSlowest_degps, kUsualFastest_degps};
+  if (section.has("tumble_rate_degps"))
+    range = section.numbers("tumble_rate_degps", 2, 2, from_to(0.0, kFastest_degps));
+  if (range[1] < range[0])
+    section.refuse("tumble_rate_degps", "a range that ends below its start", "[slowest, fastest]");
+  tumble.slowest_radps = kDegree * range[0];
+  tumble.fastest_radps = kDegree * range[1];
+}
+
+Tumble read_tumble(const TableReader& section, const std::string& usual_body) {
+  section.accept_only({"profile", "q_body_eci", "rate_degps", "tumble_rate_degps", "body", "inertia_kgm2", "torques"});
+  Tumble tumble;
+  tumble.q_body_eci = read_quaternion(section);
+  read_rate(section, tumble);
+  tumble.body = section.name("body", usual_body);
+  tumble.inertia_kgm2 = read_inertia(section);
+  tumble.torques = section.choices<TorqueKind>("torques", kTorques);
+  return tumble;
+}
+
+Direction boresight_of(Profile profile) {
+  switch (profile) {
+    case Profile::kNadir:
+      return Direction::kNadir;
+    case Profile::kAlongTrack:
+      return Direction::kAlongTrack;
+    case Profile::kTarget:
+      return Direction::kSpacecraft;
+    default:
+      return Direction::kZenith;
+  }
+}
+
+std::string read_target(const TableReader& section, const std::string& own, const std::vector<std::string>& names) {
+  const std::string target = section.name("target", "target");
+  std::vector<std::string_view> others;
+  for (const std::string& name : names)
+    if (name != own) others.push_back(name);
+  if (std::find(others.begin(), others.end(), target) == others.end())
+    section.refuse("target", "the spacecraft \"" + target + "\"",
+                   others.empty() ? "a mission with another spacecraft" : listing_of(others));
+  return target;
+}
+
+truth::PointedSettings read_pointed(const TableReader& section, Profile profile, const std::string& own,
+                                    const std::vector<std::string>& names) {
+  truth::PointedSettings pointed;
+  if (profile == Profile::kTarget) {
+    section.accept_only({"profile", "target", "boresight_body", "second_body", "second_to"});
+    pointed.spacecraft = read_target(section, own, names);
+  } else {
+    section.accept_only({"profile", "boresight_body", "second_body", "second_to"});
+  }
+  truth::PointingSettings& pointing = pointed.pointing;
+  const Range component = from_to(-1.0, 1.0);
+  pointing.boresight_to = boresight_of(profile);
+  pointing.boresight_body = vector(section.three_numbers("boresight_body", component, {{0.0, 0.0, 1.0}}));
+  pointing.second_body = vector(section.three_numbers("second_body", component, {{0.0, 1.0, 0.0}}));
+  pointing.second_to = section.choice<Direction>("second_to", kSecondDirections, Direction::kOrbitNormal);
+  if (!truth::are_two_axes(pointing.boresight_body, pointing.second_body))
+    section.refuse(section.has("boresight_body") ? "boresight_body" : "second_body", "an axis along the other one",
+                   "boresight_body and second_body in two different directions");
+  if (truth::are_one_line(pointing.boresight_to, pointing.second_to))
+    section.refuse("second_to", "the line that the boresight follows", "another direction");
+  return pointed;
+}
+
+}  // namespace
+
+std::optional<fsw::Matrix3> read_inertia(const TableReader& section) {
+  if (!section.has("inertia_kgm2")) return std::nullopt;
+  const std::vector<double> j = section.numbers("inertia_kgm2", 3, 6, from_to(-1e9, 1e9));
+  if (j.size() != 3 && j.size() != 6) section.refuse_value("inertia_kgm2", "[xx, yy, zz] or [xx, yy, zz, xy, xz, yz]");
+  fsw::Matrix3 inertia = Vector3(j[0], j[1], j[2]).asDiagonal();
+  if (j.size() == 6) {
+    inertia(0, 1) = inertia(1, 0) = j[3];
+    inertia(0, 2) = inertia(2, 0) = j[4];
+    inertia(1, 2) = inertia(2, 1) = j[5];
+  }
+  try {
+    truth::check_inertia(inertia);
+  } catch (const std::invalid_argument& error) {
+    section.refuse("inertia_kgm2", std::string("numbers that are no body's: ") + error.what(),
+                   "principal moments above 0, none above the sum of the other two");
+  }
+  return inertia;
+}
+
+std::optional<Attitude> read_attitude(const TableReader& section, const std::string& own, const std::string& usual_body,
+                                      const std::vector<std::string>& names) {
+  const auto profile = section.choice<Profile>("profile", kProfiles, Profile::kNone);
+  switch (profile) {
+    case Profile::kNone:
+      section.accept_only({"profile"});
+      return std::nullopt;
+    case Profile::kTumble:
+      return read_tumble(section, usual_body);
+    case Profile::kInertial:
+      section.accept_only({"profile", "q_body_eci"});
+      return Inertial{read_quaternion(section)};
+    default:
+      return read_pointed(section, profile, own, names);
+  }
+}
+
+}  // namespace vbar::mission

@@ -1,0 +1,32 @@
+#include "host_sim/mission/toml_file.h"
+
+#include <fstream>
+#include <sstream>
+
+#include "host_sim/mission/mission_error.h"
+
+namespace vbar::mission {
+
+toml::table parse_toml(std::string_view text, const std::string& file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    throw MissionError(file + ":" + std::to_string(error.source().begin.line), "",
+                       "text that is no TOML: " + std::string(error.description()), "a TOML 1.0 document");
+  }
+}
+
+std::string read_text_file(const std::filesystem::path& file, const std::string& kind) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) throw MissionError(file.string(), "", "no such file", kind);
+  if (!std::filesystem::is_regular_file(status))
+    throw MissionError(file.string(), "", "something that is not a file", kind);
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream || !text) throw MissionError(file.string(), "", "a file that cannot be read", kind);
+  return text.str();
+}
+
+}  // namespace vbar::mission

@@ -1,0 +1,18 @@
+#pragma once
+// TOML text and files into tables, with MissionErrors for what is none.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include <toml++/toml.h>
+
+namespace vbar::mission {
+
+/// `file`: its name, for messages.
+[[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& file);
+
+/// The text of a file; `kind` is what it should be: "a mission file (TOML)".
+[[nodiscard]] std::string read_text_file(const std::filesystem::path& file, const std::string& kind);
+
+}  // namespace vbar::mission

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "host_sim/report/html_page.h"
+#include "host_sim/report/report_sections.h"
+#include "host_sim/report/section_parts.h"
+
+namespace vbar::report {
+namespace {
+
+/// A tumble of a degree a second over the whole mission would be a black band: two orbits of it are a figure.
+constexpr double kClose_s = 12000.0;
+
+/// A rate that is constant but for rounding is not worth a plot of its noise; 1e-4 deg/s.
+constexpr double kLeastRateSpan_radps = 2e-6;
+
+View beginning_of(const View& run) {
+  View view = run;
+  view.end_s = std::min(run.end_s, run.start_s + kClose_s);
+  view.waypoints.clear();
+  for (const WaypointRow& row : run.waypoints)
+    if (view.holds(row.time_s)) view.waypoints.push_back(row);
+  return view;
+}
+
+/// Angle of the rotation from one attitude to the other, 0 to pi.
+double angle_between(const Quadruple& a, const Quadruple& b) {
+  double cosine = 0.0;
+  for (std::size_t k = 0; k < 4; ++k) cosine += a[k] * b[k];
+  return 2.0 * std::acos(std::min(std::abs(cosine), 1.0));
+}
+
+Plot plot_of(const std::string& title, const std::string& quantity, Unit unit, const View& view) {
+  Plot plot;
+  plot.title = title;
+  plot.x = time_axis(view);
+  plot.y = {.name = quantity, .unit = unit};
+  plot.height = 220.0;
+  plot.moments = waypoint_moments(view);
+  return plot;
+}
+
+Plot angle_plot(const std::string& spacecraft, const std::vector<AttitudeRow>& rows, const View& view) {
+  Plot plot = plot_of(fmt::format("{}, turned since the start", spacecraft), "angle", Unit::kRadians, view);
+  const auto angle = [&](const AttitudeRow& row) { return angle_between(row.q_body_eci, rows.front().q_body_eci); };
+  plot.series = {{"angle", 0, Mark::kLine, over_time(rows, view, angle)}};
+  return plot;
+}
+
+Plot components_plot(const std::string& spacecraft, const std::vector<AttitudeRow>& rows, const View& view) {
+  Plot plot = plot_of(fmt::format("{}, rate about body axes", spacecraft), "rate", Unit::kRadiansPerSecond, view);
+  plot.y.least_span = kLeastRateSpan_radps;
+  constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto component = [k](const AttitudeRow& row) { return row.rate_body_radps[k]; };
+    plot.series.push_back({kAxes[k], static_cast<int>(k), Mark::kLine, over_time(rows, view, component)});
+  }
+  return plot;
+}
+
+Plot size_plot(const std::string& spacecraft, const std::vector<AttitudeRow>& rows, const View& view) {
+  Plot plot =
+      plot_of(fmt::format("{}, size of the rate, whole run", spacecraft), "rate", Unit::kRadiansPerSecond, view);
+  plot.y.least_span = kLeastRateSpan_radps;
+  const auto size = [](const AttitudeRow& row) {
+    return std::hypot(row.rate_body_radps[0], row.rate_body_radps[1], row.rate_body_radps[2]);
+  };
+  plot.series = {{"rate", 0, Mark::kLine, over_time(rows, view, size)}};
+  return plot;
+}
+
+}  // namespace
+
+std::string attitude_section(const RunRecord& record) {
+  if (record.attitudes.empty()) return {};
+  std::map<std::string, std::vector<AttitudeRow>> rows_of;
+  for (const AttitudeRow& row : record.attitudes) rows_of[row.spacecraft].push_back(row);
+  const View run = whole_run(record);
+  const View beginning = beginning_of(run);
+  std::vector<std::string> plots;
+  std::vector<Series> axes;
+  for (const auto& [spacecraft, rows] : rows_of) {
+    const Plot components = components_plot(spacecraft, rows, beginning);
+    axes = components.series;
+    plots.push_back(svg(angle_plot(spacecraft, rows, beginning)));
+    plots.push_back(svg(components));
+    plots.push_back(svg(size_plot(spacecraft, rows, run)));
+  }
+  return section(
+      "Attitude",
+      "<p class=\"note\">True attitude, at flight steps: the angle between the attitude and that of the first "
+      "step, and the rate with respect to ECI. Dashed lines: waypoints.</p>\n" +
+          legend(axes) + figures(3, plots));
+}
+
+}  // namespace vbar::report

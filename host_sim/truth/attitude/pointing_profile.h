@@ -1,0 +1,86 @@
+#pragma once
+// The attitude of a spacecraft that points: a body axis, the boresight, follows a direction without error, and the turn
+// about it keeps a second axis as near as possible to another direction. Errors of control and of knowledge are matters
+// of sensors and of control, not of this.
+
+#include <functional>
+
+#include "host_sim/truth/attitude/aiming.h"
+#include "host_sim/truth/attitude/attitude_motion.h"
+
+namespace vbar::truth {
+
+/// A spacecraft's motion at one instant, GCRF.
+struct OrbitalMotion {
+  fsw::Vector3 position_eci = fsw::Vector3::Zero();
+  fsw::Vector3 velocity_eci = fsw::Vector3::Zero();
+  fsw::Vector3 acceleration_eci = fsw::Vector3::Zero();  ///< all of it, the point mass included
+};
+
+using MotionOfTime = std::function<OrbitalMotion(double seconds)>;
+
+/// Geocentric direction to the Sun, m.
+using SunOfTime = std::function<fsw::Vector3(double seconds)>;
+
+/// What a body axis is turned to.
+enum class Direction {
+  kZenith,       ///< away from the Earth's centre: R of RTN
+  kNadir,        ///< to the Earth's centre
+  kAlongTrack,   ///< T of RTN
+  kOrbitNormal,  ///< N of RTN
+  kSun,
+  kSpacecraft,  ///< another spacecraft
+};
+
+struct PointingSettings {
+  Direction boresight_to = Direction::kZenith;
+  fsw::Vector3 boresight_body = fsw::Vector3::UnitZ();
+  Direction second_to = Direction::kOrbitNormal;
+  fsw::Vector3 second_body = fsw::Vector3::UnitY();
+};
+
+/// Whether two body axes (of any length) span a plane: neither zero nor parallel within kLeastAngle_rad.
+[[nodiscard]] bool are_two_axes(const fsw::Vector3& a, const fsw::Vector3& b);
+
+/// Whether two directions are always the same or opposite.
+[[nodiscard]] bool are_one_line(Direction a, Direction b);
+
+/// A pure function of the orbits: it holds no state.
+class PointingProfile final : public AttitudeMotion {
+ public:
+  /// `own`: of the spacecraft that points. `other`: of the one pointed at, and `sun`: needed only if a direction of the
+  /// settings says so. Throws std::invalid_argument for body axes that are not two, directions on one line, and for
+  /// what is needed and missing.
+  PointingProfile(const PointingSettings& settings, MotionOfTime own, MotionOfTime other, SunOfTime sun);
+
+  void advance_to(double /*seconds*/, double /*orbit_step_end*/) override {}
+  void orbit_changed(double /*seconds*/) override {}
+
+  /// The rate is that of the directions' own motion and exact but for the Sun's (differenced over two minutes, 1e-15
+  /// rad/s). std::domain_error: the boresight lies along the second direction.
+  [[nodiscard]] AttitudeState state_at(double seconds) const override;
+
+ private:
+  [[nodiscard]] MovingDirection direction_at(Direction direction, double seconds, const OrbitalMotion& own) const;
+
+  PointingSettings settings_;
+  MotionOfTime own_;
+  MotionOfTime other_;
+  SunOfTime sun_;
+};
+
+/// The attitude of a spacecraft that keeps still among the stars.
+class InertialAttitude final : public AttitudeMotion {
+ public:
+  explicit InertialAttitude(const Eigen::Quaterniond& q_body_eci)
+      : attitude_{q_body_eci.normalized(), fsw::Vector3::Zero()} {}
+
+  void advance_to(double /*seconds*/, double /*orbit_step_end*/) override {}
+  void orbit_changed(double /*seconds*/) override {}
+  [[nodiscard]] AttitudeState state_at(double /*seconds*/) const override { return attitude_; }
+
+ private:
+  AttitudeState attitude_;
+};
+
+}  // namespace vbar::truth

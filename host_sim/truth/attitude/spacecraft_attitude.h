@@ -1,0 +1,32 @@
+#pragma once
+// Makes the attitude of one spacecraft from its settings and from what surrounds it.
+
+#include <functional>
+#include <memory>
+
+#include "host_sim/truth/attitude/aerodynamic_torque.h"
+#include "host_sim/truth/attitude/attitude_motion.h"
+#include "host_sim/truth/attitude/attitude_settings.h"
+#include "host_sim/truth/attitude/radiation_torque.h"
+#include "host_sim/truth/attitude/rigid_body.h"
+
+namespace vbar::truth {
+
+/// What attitudes look at. What a spacecraft's settings do not call for may be empty.
+struct AttitudeSurroundings {
+  double gm = 0.0;         ///< of the Earth, m^3/s^2
+  double tolerance = 0.0;  ///< of the integration (RigidBody)
+  double seconds = 0.0;    ///< now
+  RigidBody::OrbitOfTime orbit;
+  std::unique_ptr<Air> air;
+  std::unique_ptr<Sunlight> sunlight;
+  MotionOfTime own;
+  MotionOfTime other;  ///< of the spacecraft pointed at
+  SunOfTime sun;
+};
+
+/// Throws std::invalid_argument for settings that make no attitude, or call for what the surroundings lack.
+[[nodiscard]] std::unique_ptr<AttitudeMotion> make_attitude(const AttitudeSettings& settings,
+                                                            AttitudeSurroundings surroundings);
+
+}  // namespace vbar::truth

@@ -1,0 +1,120 @@
+#include "host_sim/truth/force_list.h"
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "host_sim/truth/earth/time_scales.h"
+#include "host_sim/truth/forces/drag_force.h"
+#include "host_sim/truth/forces/gravity_coefficients.h"
+#include "host_sim/truth/forces/gravity_force.h"
+#include "host_sim/truth/forces/radiation_pressure_force.h"
+#include "host_sim/truth/forces/relativity_force.h"
+#include "host_sim/truth/forces/solid_tides_force.h"
+#include "host_sim/truth/forces/third_body_force.h"
+
+namespace vbar::truth {
+namespace {
+
+constexpr const char* kAtmosphereFile = "atmosphere/nrlmsise00.csv";
+
+/// The integrator's last step goes beyond the end by up to its length: a minute or two in a low orbit. A longer one, of
+/// a high orbit, that overruns the data is refused when it happens.
+constexpr std::int64_t kLongestStep_s = 3600;
+
+/// Refuses now, and not in flight, a run that `look_up` has no data for. `look_up`: of an instant, throws
+/// std::out_of_range.
+template <class LookUp>
+void check_reach(const TruthSettings& settings, const std::filesystem::path& file, const LookUp& look_up) {
+  const auto check = [&](fsw::GpsTime time, const std::string& what) {
+    try {
+      look_up(time);
+    } catch (const std::out_of_range& error) {
+      throw std::out_of_range(fmt::format("{}: {} needs it: {}", file.string(), what, error.what()));
+    }
+  };
+  check(settings.epoch, "the epoch");
+  if (settings.end <= settings.epoch) return;
+  check(settings.end + fsw::duration_of_seconds(kLongestStep_s),
+        fmt::format("the last step of a run that ends at {}", format_utc(settings.end, 0)));
+}
+
+void load_gravity(const TruthSettings& settings, ForceData& data) {
+  const std::filesystem::path file = settings.data_directory / settings.gravity_file;
+  const auto coefficients = load_gravity_coefficients(file, settings.gravity_degree);
+  data.gravity = std::make_shared<const GravityField>(coefficients, settings.gravity_degree, settings.gravity_order);
+  if (!settings.forces.solid_tides) return;
+  try {
+    data.tide_system = tide_system_named(coefficients.tide_system);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+void load_earth_orientation(const TruthSettings& settings, ForceData& data) {
+  const std::filesystem::path file = settings.data_directory / settings.earth_orientation_file;
+  data.earth_orientation = std::make_shared<const EarthOrientationSeries>(EarthOrientationSeries::load(file));
+  check_reach(settings, file, [&](fsw::GpsTime time) { static_cast<void>(data.earth_orientation->at(time)); });
+}
+
+/// A force on the surface is that of an area over a mass: without one of them there is none, which nobody asks for.
+void require(const SpacecraftSettings& spacecraft, std::string_view force, std::string_view property, double value) {
+  if (value > 0.0) return;
+  throw std::invalid_argument(
+      fmt::format("spacecraft \"{}\": {} needs {} above 0; it has {}", spacecraft.name, force, property, value));
+}
+
+}  // namespace
+
+void load_atmosphere(const TruthSettings& settings, ForceData& data) {
+  if (data.atmosphere) return;
+  const std::filesystem::path file = settings.data_directory / settings.space_weather_file;
+  data.atmosphere =
+      std::make_shared<const Nrlmsise00Tables>(load_nrlmsise00_tables(settings.data_directory / kAtmosphereFile));
+  data.space_weather = std::make_shared<const SpaceWeather>(SpaceWeather::load(file));
+  check_reach(settings, file, [&](fsw::GpsTime time) {
+    static_cast<void>(data.space_weather->indices_at(time, settings.forces.geomagnetic_index));
+  });
+}
+
+ForceData load_force_data(const TruthSettings& settings) {
+  ForceData data;
+  load_gravity(settings, data);
+  load_earth_orientation(settings, data);
+  if (settings.forces.drag) load_atmosphere(settings, data);
+  return data;
+}
+
+std::vector<std::unique_ptr<Force>> make_forces(const TruthSettings& settings, const ForceData& data,
+                                                const SpacecraftSettings& spacecraft) {
+  const ForceModel& model = settings.forces;
+  const SurfaceProperties& surface = spacecraft.surface;
+  std::vector<std::unique_ptr<Force>> forces;
+  forces.push_back(std::make_unique<GravityForce>(data.gravity));
+  if (model.drag) {
+    require(spacecraft, "drag", "mass_kg", surface.mass_kg);
+    require(spacecraft, "drag", "drag_area_m2", surface.drag_area_m2);
+    require(spacecraft, "drag", "drag_coefficient", surface.drag_coefficient);
+    forces.push_back(std::make_unique<DragForce>(surface, data.atmosphere, data.space_weather, model.geomagnetic_index,
+                                                 settings.epoch));
+  }
+  if (model.radiation_pressure) {
+    require(spacecraft, "radiation_pressure", "mass_kg", surface.mass_kg);
+    require(spacecraft, "radiation_pressure", "radiation_area_m2", surface.radiation_area_m2);
+    require(spacecraft, "radiation_pressure", "radiation_coefficient", surface.radiation_coefficient);
+    forces.push_back(std::make_unique<RadiationPressureForce>(surface, model.shadow));
+  }
+  if (model.sun) forces.push_back(std::make_unique<ThirdBodyForce>(ThirdBodyForce::Body::kSun));
+  if (model.moon) forces.push_back(std::make_unique<ThirdBodyForce>(ThirdBodyForce::Body::kMoon));
+  if (model.solid_tides) {
+    forces.push_back(std::make_unique<SolidTidesForce>(data.gravity->gm(), data.gravity->radius(), data.tide_system,
+                                                       settings.epoch, data.earth_orientation));
+  }
+  if (model.relativity) forces.push_back(std::make_unique<RelativityForce>(data.gravity->gm()));
+  return forces;
+}
+
+}  // namespace vbar::truth

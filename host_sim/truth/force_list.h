@@ -1,0 +1,41 @@
+#pragma once
+// From the switches of a mission to the forces on a spacecraft.
+
+#include <memory>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
+#include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/truth/earth/space_weather.h"
+#include "host_sim/truth/forces/force.h"
+#include "host_sim/truth/forces/gravity_field.h"
+#include "host_sim/truth/forces/solid_tides.h"
+#include "host_sim/truth/truth_settings.h"
+
+namespace vbar::truth {
+
+/// What is large and constant: loaded once, shared by the forces of all spacecraft and by all threads.
+struct ForceData {
+  std::shared_ptr<const GravityField> gravity;
+  TideSystem tide_system = TideSystem::kZeroTide;  ///< of the gravity model; read only if the tides act
+  std::shared_ptr<const EarthOrientationSeries> earth_orientation;
+  std::shared_ptr<const Nrlmsise00Tables> atmosphere;  ///< null without drag, as is the next
+  std::shared_ptr<const SpaceWeather> space_weather;
+};
+
+/// Loads what the forces of `settings` need. Throws std::runtime_error for a missing or damaged file,
+/// std::invalid_argument for a degree or order that the gravity file has not, std::out_of_range if the data do not
+/// reach from the epoch to the end.
+ForceData load_force_data(const TruthSettings& settings);
+
+/// Loads the atmosphere and its solar indices, which load_force_data() leaves out without drag; nothing if they are
+/// there. Throws as load_force_data().
+void load_atmosphere(const TruthSettings& settings, ForceData& data);
+
+/// The forces on one spacecraft, gravity first. Throws std::invalid_argument, naming spacecraft, force and property, if
+/// a force needs a mass, an area or a coefficient that the spacecraft does not have.
+std::vector<std::unique_ptr<Force>> make_forces(const TruthSettings& settings, const ForceData& data,
+                                                const SpacecraftSettings& spacecraft);
+
+}  // namespace vbar::truth

@@ -1,0 +1,60 @@
+// The truth model's attitudes: what surrounds each, taken from the spacecraft's own orbit and forces.
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host_sim/truth/attitude/air_and_light.h"
+#include "host_sim/truth/attitude/spacecraft_attitude.h"
+#include "host_sim/truth/truth_model.h"
+
+namespace vbar::truth {
+namespace {
+
+/// Air and light on facets do not depend on the sphere that stands for a spacecraft in its orbit's forces.
+constexpr SurfaceProperties kAnySphere{1.0, 1.0, 1.0, 1.0, 1.0};
+
+bool has_torque(const AttitudeSettings& settings, TorqueKind kind) {
+  const auto* tumble = std::get_if<TumbleSettings>(&settings);
+  return tumble != nullptr && std::ranges::find(tumble->torques, kind) != tumble->torques.end();
+}
+
+}  // namespace
+
+void TruthModel::set_attitude(std::size_t index, const AttitudeSettings& settings) {
+  SpacecraftPropagator* const own = spacecraft_.at(index).get();
+  AttitudeSurroundings surroundings;
+  surroundings.gm = own->dynamics().gm();
+  surroundings.tolerance = settings_.tolerance;
+  surroundings.seconds = seconds_after_epoch(time_);
+  surroundings.orbit = [own](double seconds) { return own->surroundings_at(seconds); };
+  surroundings.own = [own](double seconds) { return own->motion_at(seconds); };
+  surroundings.sun = [own](double seconds) { return own->dynamics().sun_eci_at(seconds); };
+  if (const auto* pointed = std::get_if<PointedSettings>(&settings);
+      pointed != nullptr && !pointed->spacecraft.empty()) {
+    const SpacecraftPropagator* const other = spacecraft_[index_of(pointed->spacecraft)].get();
+    if (other == own) {
+      throw std::invalid_argument(fmt::format("spacecraft \"{}\" cannot point at itself", own->name()));
+    }
+    surroundings.other = [other](double seconds) { return other->motion_at(seconds); };
+  }
+  if (has_torque(settings, TorqueKind::kRadiation)) {
+    own->dynamics().provide_sun_and_moon();
+    surroundings.sunlight = std::make_unique<SunlightOfRadiationPressure>(
+        std::make_unique<RadiationPressureForce>(kAnySphere, settings_.forces.shadow));
+  }
+  if (has_torque(settings, TorqueKind::kAerodynamic)) {
+    load_atmosphere(settings_, data_);
+    surroundings.air = std::make_unique<AirOfDrag>(std::make_unique<DragForce>(
+        kAnySphere, data_.atmosphere, data_.space_weather, settings_.forces.geomagnetic_index, settings_.epoch));
+  }
+  own->set_attitude(make_attitude(settings, std::move(surroundings)));
+}
+
+AttitudeState TruthModel::attitude_at(std::size_t index, fsw::GpsTime time) const {
+  return spacecraft_.at(index)->attitude_at(seconds_after_epoch(time));
+}
+
+}  // namespace vbar::truth
