@@ -78,9 +78,9 @@ class Constellation {
  private:
   // Constant plus a sine of the orbit's period.
   struct SlowError {
-    double constant;
-    double amplitude;
-    double phase;
+    double constant = 0.0;
+    double amplitude = 0.0;
+    double phase = 0.0;
     [[nodiscard]] double at(double orbit_angle) const;
   };
   struct Satellite {

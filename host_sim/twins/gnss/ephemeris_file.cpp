@@ -1,5 +1,6 @@
 #include "host_sim/twins/gnss/ephemeris_file.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>

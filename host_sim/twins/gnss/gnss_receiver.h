@@ -7,7 +7,8 @@
 // at the instant at which its own clock shows the epoch. N is an integer, beta a fraction of a cycle that all carriers
 // of one signal share in one receiver: double differences within a signal hold integers. Half-cycle ambiguities do not
 // occur. Phase wind-up is left out: it is the same in antennas of parallel attitude, which the missions fly (each 20
-// arcsec of relative yaw would make 3e-6 m). Multipath is left out, as in the paper's table.
+// arcsec of relative yaw would make 3e-6 m). Multipath is left out, as in the paper's table. Noise of two epochs is
+// independent: right for periods above the code loop's 2 s, while at 1 Hz real code noise would be correlated.
 
 #include <cstdint>
 #include <memory>

@@ -13,10 +13,12 @@ void need_between(const char* name, double value, double low, double high) {
     throw std::invalid_argument(fmt::format("{} = {}: accepted is {} to {}", name, value, low, high));
 }
 
-void need_in_order(const char* low_name, double low, const char* high_name, double high, double most) {
-  need_between(low_name, low, 0.0, most);
-  need_between(high_name, high, 0.0, most);
-  if (low > high) throw std::invalid_argument(fmt::format("{} = {} is above {} = {}", low_name, low, high_name, high));
+// An interval of times from 0 to a day.
+void need_interval(const char* least_name, double least_s, const char* most_name, double most_s) {
+  need_between(least_name, least_s, 0.0, 86400.0);
+  need_between(most_name, most_s, 0.0, 86400.0);
+  if (least_s > most_s)
+    throw std::invalid_argument(fmt::format("{} = {} is above {} = {}", least_name, least_s, most_name, most_s));
 }
 
 void check_visibility(const VisibilitySettings& visibility) {
@@ -50,9 +52,9 @@ void check_tracking(const TrackingSettings& tracking) {
 }
 
 void check_start(const StartSettings& start) {
-  need_in_order("cold_search_least_s", start.cold_search_least_s, "cold_search_most_s", start.cold_search_most_s, 1e5);
-  need_in_order("reacquisition_least_s", start.reacquisition_least_s, "reacquisition_most_s",
-                start.reacquisition_most_s, 1e5);
+  need_interval("cold_search_least_s", start.cold_search_least_s, "cold_search_most_s", start.cold_search_most_s);
+  need_interval("reacquisition_least_s", start.reacquisition_least_s, "reacquisition_most_s",
+                start.reacquisition_most_s);
   need_between("ephemeris_decoding_s", start.ephemeris_decoding_s, 0.0, 3600.0);
 }
 

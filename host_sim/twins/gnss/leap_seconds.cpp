@@ -36,12 +36,13 @@ UtcOffset utc_offset_at(fsw::GpsTime time) {
 }
 
 CalendarTime utc_calendar(fsw::GpsTime time, const UtcOffset& offset) {
-  using namespace std::chrono;
-  constexpr sys_days kGpsEpoch = year{1980} / January / 6;
-  const auto utc = kGpsEpoch + milliseconds(time.ns / 1'000'000) - seconds(offset.gps_minus_utc_s);
-  const auto day_begin = floor<days>(utc);
-  const year_month_day date{day_begin};
-  const hh_mm_ss clock{floor<milliseconds>(utc - day_begin)};
+  namespace chrono = std::chrono;
+  using chrono::milliseconds;
+  constexpr chrono::sys_days kGpsEpoch = chrono::year{1980} / chrono::January / 6;
+  const auto utc = kGpsEpoch + milliseconds(time.ns / 1'000'000) - chrono::seconds(offset.gps_minus_utc_s);
+  const auto day_begin = chrono::floor<chrono::days>(utc);
+  const chrono::year_month_day date{day_begin};
+  const chrono::hh_mm_ss clock{chrono::floor<milliseconds>(utc - day_begin)};
   return {static_cast<int>(date.year()),
           static_cast<unsigned>(date.month()),
           static_cast<unsigned>(date.day()),

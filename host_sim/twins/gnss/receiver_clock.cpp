@@ -7,15 +7,15 @@
 namespace vbar::twins::gnss {
 
 ReceiverClock::ReceiverClock(const ClockSettings& settings, std::uint64_t seed, std::string_view receiver)
-    : settings_(settings), stream_(seed, "gnss/" + std::string(receiver) + "/clock") {
-  offset_s_ = stream_.uniform(-1.0, 1.0) * settings_.initial_offset_ms * 1e-3;
-  drift_ = stream_.normal() * settings_.initial_drift_sigma_ns_per_s * 1e-9;
-}
+    : settings_(settings),
+      stream_(seed, "gnss/" + std::string(receiver) + "/clock"),
+      offset_s_(stream_.uniform(-1.0, 1.0) * settings.initial_offset_ms * 1e-3),
+      drift_(stream_.normal() * settings.initial_drift_sigma_ns_per_s * 1e-9) {}
 
 void ReceiverClock::advance(double elapsed_s) {
   const double s_f = settings_.h0_s / 2.0;
   const double s_g = 2.0 * std::numbers::pi * std::numbers::pi * settings_.h_minus2_per_s;
-  // The drift's noise integrates to half its step times t; a third of the integrated part is not seen in the step.
+  // Of the offset's S_g t^3/3, t^3/4 goes along with the drift's step (half of it times t); t^3/12 is its own.
   const double drift_step = stream_.normal() * std::sqrt(s_g * elapsed_s);
   const double rest_variance = s_f * elapsed_s + s_g * elapsed_s * elapsed_s * elapsed_s / 12.0;
   offset_s_ += (drift_ + drift_step / 2.0) * elapsed_s + stream_.normal() * std::sqrt(rest_variance);

@@ -73,14 +73,12 @@ TEST(Constellation, ErrorsHaveTheirSizes) {
 }
 
 // The true motion has no step where a broadcast set ends; the broadcast one steps by rounding only. Half a day on, at
-// the boundary of every system's sets.
+// a boundary of every system's sets: Wednesday 4h of the mission's week.
 TEST(Constellation, SetsFollowEachOtherSmoothly) {
   const Constellation constellation(kData, {}, kMission, 3);
   for (std::size_t k = 0; k < constellation.size(); ++k) {
     const fsw::GpsTime boundary =
-        gps_time_of(constellation.id(k).system, 0, 0) +
-        fsw::duration_of_seconds((constellation.id(k).system == System::kBeidou ? 289 : 1645) * kSecondsPerWeek +
-                                 3 * 86400 + 14400);
+        gps_time_of(constellation.id(k).system, constellation.id(k).system == System::kBeidou ? 289 : 1645, 273600);
     const BroadcastSet before = constellation.broadcast_set(k, boundary - fsw::Duration{1});
     const BroadcastSet after = constellation.broadcast_set(k, boundary);
     EXPECT_NE(before.issue, after.issue);
