@@ -19,11 +19,11 @@ constexpr double kMaxLatency = 60.0;
 constexpr double kMaxSigma = 1.0e9;
 
 /// False for NaN.
-bool within(double value, double low, double high) {
-  return value >= low && value <= high;
+bool lies_between(double x, double low, double high) {
+  return x >= low && x <= high;
 }
-bool within(const Vector3& v, double low, double high) {
-  return within(v.x(), low, high) && within(v.y(), low, high) && within(v.z(), low, high);
+bool lies_between(const Vector3& v, double low, double high) {
+  return lies_between(v.x(), low, high) && lies_between(v.y(), low, high) && lies_between(v.z(), low, high);
 }
 
 Vector3 read_f64_vector(std::span<const std::uint8_t> bytes, std::size_t offset) {
@@ -72,7 +72,8 @@ Result<ReceiverClock> read_time(const OemMessage& message) {
   clock.receiver_time = time.value();
   clock.offset_s = read_f64(message.body, 4);
   clock.sigma_s = read_f64(message.body, 12);
-  if (!within(clock.offset_s, -kMaxClockOffset, kMaxClockOffset) || !within(clock.sigma_s, 0.0, kMaxSigma)) {
+  if (!lies_between(clock.offset_s, -kMaxClockOffset, kMaxClockOffset) ||
+      !lies_between(clock.sigma_s, 0.0, kMaxSigma)) {
     return Status::kOutOfRange;
   }
   return clock;
@@ -90,7 +91,8 @@ Result<ReceiverPosition> read_best_xyz(const OemMessage& message) {
   solution.position_ecef = read_f64_vector(message.body, 8);
   solution.position_sigma_m = read_f32_vector(message.body, 32);
   solution.satellites_used = message.body[105];
-  if (!within(solution.position_ecef, -kMaxRadius, kMaxRadius) || !within(solution.position_sigma_m, 0.0, kMaxSigma)) {
+  if (!lies_between(solution.position_ecef, -kMaxRadius, kMaxRadius) ||
+      !lies_between(solution.position_sigma_m, 0.0, kMaxSigma)) {
     return Status::kOutOfRange;
   }
   if (read_u32(message.body, 44) != kSolutionComputed) return solution;
@@ -98,8 +100,9 @@ Result<ReceiverPosition> read_best_xyz(const OemMessage& message) {
   solution.velocity_ecef = read_f64_vector(message.body, 52);
   solution.velocity_sigma_mps = read_f32_vector(message.body, 76);
   solution.velocity_latency_s = read_f32(message.body, 92);
-  if (!within(solution.velocity_ecef, -kMaxSpeed, kMaxSpeed) || !within(solution.velocity_sigma_mps, 0.0, kMaxSigma) ||
-      !within(solution.velocity_latency_s, -kMaxLatency, kMaxLatency)) {
+  if (!lies_between(solution.velocity_ecef, -kMaxSpeed, kMaxSpeed) ||
+      !lies_between(solution.velocity_sigma_mps, 0.0, kMaxSigma) ||
+      !lies_between(solution.velocity_latency_s, -kMaxLatency, kMaxLatency)) {
     return Status::kOutOfRange;
   }
   return solution;
@@ -116,8 +119,8 @@ Result<ReceiverPosition> read_best_position(const OemMessage& message) {
   const double longitude_deg = read_f64(message.body, 16);
   const double height = read_f64(message.body, 24) + read_f32(message.body, 32);  // above the geoid, and the geoid's
   const Vector3 sigma_m = read_f32_vector(message.body, 40);
-  if (!within(latitude_deg, -90.0, 90.0) || !within(longitude_deg, -360.0, 360.0) ||
-      !within(height, -kMaxRadius, kMaxRadius) || !within(sigma_m, 0.0, kMaxSigma) ||
+  if (!lies_between(latitude_deg, -90.0, 90.0) || !lies_between(longitude_deg, -360.0, 360.0) ||
+      !lies_between(height, -kMaxRadius, kMaxRadius) || !lies_between(sigma_m, 0.0, kMaxSigma) ||
       read_u32(message.body, 36) != kWgs84) {
     return Status::kOutOfRange;
   }
