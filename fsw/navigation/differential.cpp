@@ -13,7 +13,8 @@ constexpr double kLeastPhaseSigma_m = 0.3e-3;
 
 std::strong_ordering order(const gnss::Observation& a, const gnss::Observation& b) {
   if (const auto by_satellite = a.satellite <=> b.satellite; by_satellite != 0) return by_satellite;
-  return a.signal <=> b.signal;
+  if (const auto by_signal = a.signal <=> b.signal; by_signal != 0) return by_signal;
+  return a.code <=> b.code;
 }
 
 double difference_sigma(double a, double b, double least) {

@@ -148,14 +148,21 @@ void FlightRecorder::on_telemetry(report::EstimateRow& row, const fsw::packets::
 
 void FlightRecorder::on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet) {
   const auto command = fsw::packets::decode<maneuver_command>(packet);
-  if (!command.ok()) return;
+  if (command.ok()) add_maneuver(step_time, packet.header.time, command.value());
+}
+
+void FlightRecorder::on_prescribed(fsw::GpsTime time, const maneuver_command& command) {
+  add_maneuver(time, time, command);
+}
+
+void FlightRecorder::add_maneuver(fsw::GpsTime command_time, fsw::GpsTime burn_time, const maneuver_command& command) {
   report::ManeuverRow row;
-  row.maneuver_id = command.value().maneuver_id;
-  row.waypoint_index = command.value().waypoint_index;
-  row.solver = command.value().solver;
-  row.command_time_s = mission_seconds(step_time);
-  row.execution_time_s = mission_seconds(packet.header.time);
-  row.commanded_dv_rtn_mps = triple(command.value().dv_rtn);
+  row.maneuver_id = command.maneuver_id;
+  row.waypoint_index = command.waypoint_index;
+  row.solver = command.solver;
+  row.command_time_s = mission_seconds(command_time);
+  row.execution_time_s = mission_seconds(burn_time);
+  row.commanded_dv_rtn_mps = triple(command.dv_rtn);
   record_.maneuvers.push_back(row);
 }
 

@@ -43,6 +43,9 @@ class FlightRecorder {
   /// The flight software's answer to a step: its telemetry becomes a row, its commands maneuvers yet to be executed.
   void on_answer(fsw::GpsTime time, const pil::StepResult& answer);
 
+  /// A burn of the mission file is about to happen.
+  void on_prescribed(fsw::GpsTime time, const maneuver_command& command);
+
   /// What became of a command.
   void on_execution(fsw::GpsTime time, const executed_maneuver& executed);
 
@@ -53,6 +56,7 @@ class FlightRecorder {
   [[nodiscard]] double mission_seconds(fsw::GpsTime time) const { return fsw::seconds(time - mission_.epoch); }
   void on_telemetry(report::EstimateRow& row, const fsw::packets::PacketView& packet);
   void on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet);
+  void add_maneuver(fsw::GpsTime command_time, fsw::GpsTime burn_time, const maneuver_command& command);
   void finish_navigation_errors();
   void finish_legs();
 

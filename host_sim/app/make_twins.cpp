@@ -1,10 +1,15 @@
 #include "host_sim/app/make_twins.h"
 
+#include <utility>
+
+#include "host_sim/twins/gnss_sensor.h"
 #include "host_sim/twins/ideal_navigation.h"
 #include "host_sim/twins/ideal_thruster.h"
 #include "host_sim/twins/recorded_log.h"
 
 namespace vbar::app {
+
+namespace {
 
 std::unique_ptr<twins::PacketSource> make_navigation_source(const mission::Mission& mission,
                                                             const mission::Spacecraft& spacecraft) {
@@ -20,6 +25,41 @@ std::unique_ptr<twins::PacketSource> make_navigation_source(const mission::Missi
   settings.start = mission.start_time();
   settings.period = sensor.period;
   return std::make_unique<twins::IdealNavigation>(settings);
+}
+
+std::unique_ptr<twins::PacketSource> make_gnss_sensor(const mission::Mission& mission,
+                                                      const mission::Spacecraft& spacecraft,
+                                                      const mission::Spacecraft& servicer,
+                                                      const std::shared_ptr<const twins::gnss::Constellation>& sky,
+                                                      const std::filesystem::path& data_directory) {
+  const twins::gnss::GnssReceiverSettings& settings = spacecraft.gnss->receiver;
+  twins::GnssSensor::Settings sensor;
+  sensor.spacecraft = spacecraft.name;
+  sensor.flight_number = servicer.number;
+  sensor.start = mission.start_time();
+  sensor.period = fsw::nearest_duration(settings.output.period_s);
+  std::unique_ptr<twins::gnss::Crosslink> crosslink;
+  if (&spacecraft != &servicer)
+    crosslink = std::make_unique<twins::gnss::Crosslink>(mission.crosslink, mission.seed, spacecraft.name);
+  auto receiver =
+      std::make_unique<twins::gnss::GnssReceiver>(settings, sky, data_directory, mission.seed, spacecraft.name);
+  return std::make_unique<twins::GnssSensor>(sensor, std::move(receiver), std::move(crosslink));
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mission& mission,
+                                                               const mission::Spacecraft& servicer,
+                                                               const std::filesystem::path& data_directory) {
+  std::vector<std::unique_ptr<twins::PacketSource>> sensors;
+  if (servicer.navigation) sensors.push_back(make_navigation_source(mission, servicer));
+  if (servicer.gnss) {
+    const auto sky = std::make_shared<const twins::gnss::Constellation>(data_directory, mission.constellation,
+                                                                        mission.start_time(), mission.seed);
+    for (const mission::Spacecraft* spacecraft : {&servicer, mission.find_spacecraft(servicer.gnss->partner)})
+      sensors.push_back(make_gnss_sensor(mission, *spacecraft, servicer, sky, data_directory));
+  }
+  return sensors;
 }
 
 std::unique_ptr<twins::Actuator> make_thruster(const mission::Mission& mission, const mission::Spacecraft& spacecraft) {

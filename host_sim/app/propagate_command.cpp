@@ -35,8 +35,8 @@ fsw::GpsTime now() {
 int propagate_command(const PropagateOptions& options) {
   const mission::Mission mission = mission::load_mission(options.mission, options.overrides);
   Propagation propagation(mission, data_directory());
-  report::PropagationFolder folder(
-      options.out.empty() ? report::default_propagation_folder(mission.name) : options.out, mission.name);
+  report::PropagationFolder folder(options.out.empty() ? report::default_propagation_folder(mission.name) : options.out,
+                                   mission.name);
   const report::OemFile::Span span{mission.start_time(), mission.end_time(), propagation.sampling_times().size(),
                                    now()};
   folder.start_files(propagation.names(), options.oem ? &span : nullptr);

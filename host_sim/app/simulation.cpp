@@ -25,6 +25,26 @@ engine::WallClock::Span wall_span(double s) {
   return std::chrono::duration_cast<engine::WallClock::Span>(std::chrono::duration<double>(s));
 }
 
+/// Both ends of relative navigation by GNSS have what it takes.
+void check_gnss_pair(const mission::Mission& mission, const mission::Spacecraft& servicer) {
+  const mission::Spacecraft* partner = mission.find_spacecraft(servicer.gnss->partner);
+  if (partner == nullptr || !partner->gnss) {
+    throw std::runtime_error("spacecraft \"" + servicer.name +
+                             "\": sensors.gnss.partner must name a spacecraft that has sensors.gnss too");
+  }
+  for (const mission::Spacecraft* spacecraft : {&servicer, partner}) {
+    if (!spacecraft->attitude) {
+      throw std::runtime_error("spacecraft \"" + spacecraft->name +
+                               "\" has sensors.gnss but no attitude; its antenna must point somewhere");
+    }
+  }
+}
+
+/// The spacecraft that the servicer's navigation is about.
+const std::string& observed_by(const mission::Spacecraft& servicer) {
+  return servicer.gnss ? servicer.gnss->partner : servicer.navigation->target;
+}
+
 /// The spacecraft that flies, with all it needs to.
 const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
   const mission::Spacecraft& servicer = flying_spacecraft(mission);
@@ -34,7 +54,12 @@ const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
                                "\" has a flight computer too; one in a mission is supported");
     }
   }
-  if (!servicer.navigation) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no navigation sensor");
+  if (servicer.navigation.has_value() == servicer.gnss.has_value()) {
+    throw std::runtime_error("spacecraft \"" + servicer.name + "\" has " + (servicer.gnss ? "both" : "neither") +
+                             " sensors.navigation " + (servicer.gnss ? "and" : "nor") +
+                             " sensors.gnss; one of them is needed to navigate by");
+  }
+  if (servicer.gnss) check_gnss_pair(mission, servicer);
   if (!servicer.thruster) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no thruster");
   return servicer;
 }
@@ -53,7 +78,7 @@ pil::Packet make_packet(GpsTime time, std::uint8_t spacecraft, std::uint16_t seq
 }
 
 // Order of things that happen at one instant (simulation.h).
-constexpr std::int32_t kPriorityOf[] = {0, 10, 20, 30, 40};
+constexpr std::int32_t kPriorityOf[] = {0, 10, 20, 30, 40, 40};
 
 }  // namespace
 
@@ -66,13 +91,14 @@ Simulation::Simulation(const mission::Mission& mission, const std::filesystem::p
       recorder_(mission, record),
       truth_(truth_settings(mission, data_directory)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
+      earth_rotation_(truth_.data().earth_orientation, mission.epoch),
       clock_(mission.clock, surroundings.wall),
       events_(mission.start_time()) {
   place_spacecraft(mission, truth_);
   set_attitudes(mission, data_directory, truth_);
   servicer_index_ = truth_.index_of(servicer_.name);
-  target_index_ = truth_.index_of(servicer_.navigation->target);
-  navigation_ = make_navigation_source(mission, servicer_);
+  target_index_ = truth_.index_of(observed_by(servicer_));
+  sensors_ = make_sensors(mission, servicer_, data_directory);
   thruster_ = make_thruster(mission, servicer_);
 }
 
@@ -109,12 +135,15 @@ void Simulation::schedule(GpsTime time, Event event) {
 
 /// Measurements, waypoints and steps are a timetable; packets and burns come of what happens.
 void Simulation::schedule_the_known() {
-  schedule_measurement(mission_.start_time());
+  for (std::size_t sensor = 0; sensor < sensors_.size(); ++sensor) {
+    schedule_measurement(sensor, mission_.start_time());
+  }
   schedule(mission_.start_time(), StepFlight{});
   for (std::size_t k = 0; k < mission_.waypoints.size(); ++k) {
     const GpsTime time = mission_.waypoints[k].time;
     if (time >= mission_.start_time() && time <= mission_.end_time()) schedule(time, JudgeWaypoint{k});
   }
+  for (std::size_t k = 0; k < mission_.burns.size(); ++k) schedule(mission_.burns[k].time, ExecutePrescribedBurn{k});
   queue_telecommands();
 }
 
@@ -122,19 +151,24 @@ void Simulation::schedule_the_known() {
 void Simulation::queue_telecommands() {
   const GpsTime now = mission_.start_time();
   arrived_.push_back(make_packet(now, servicer_.number, 0, mission::gnc_configuration_of(mission_)));
+  if (servicer_.gnss) {
+    const auto configuration =
+        mission::navigation_configuration_of(mission_, servicer_, *truth_.data().earth_orientation);
+    arrived_.push_back(make_packet(now, servicer_.number, 0, configuration));
+  }
   arrived_.push_back(make_packet(now, servicer_.number, 0, mission::waypoint_table_of(mission_)));
   arrived_.push_back(make_packet(now, servicer_.number, 0, mission::mode_command_of(mission_)));
 }
 
-void Simulation::schedule_measurement(GpsTime from) {
-  const auto epoch = navigation_->next_epoch(from);
-  if (epoch && *epoch <= mission_.end_time()) schedule(*epoch, TakeMeasurement{});
+void Simulation::schedule_measurement(std::size_t sensor, GpsTime from) {
+  const auto epoch = sensors_[sensor]->next_epoch(from);
+  if (epoch && *epoch <= mission_.end_time()) schedule(*epoch, TakeMeasurement{sensor});
 }
 
-void Simulation::handle(const TakeMeasurement&) {
+void Simulation::handle(const TakeMeasurement& taken) {
   const GpsTime now = events_.now();
   truth_.advance_to(now);
-  twins::Measurement measurement = measure_now();
+  twins::Measurement measurement = measure_now(*sensors_[taken.sensor]);
   // A sensor that fails an epoch has nothing to say; the flight software coasts.
   for (twins::Packet& packet : measurement.packets) {
     if (measurement.bypasses_link) {
@@ -143,14 +177,14 @@ void Simulation::handle(const TakeMeasurement&) {
       send_to_flight(std::move(packet), measurement.available);
     }
   }
-  schedule_measurement(now + fsw::Duration{1});
+  schedule_measurement(taken.sensor, now + fsw::Duration{1});
 }
 
 /// In lock-step simulated time waits for a sensor that needs longer.
-twins::Measurement Simulation::measure_now() {
-  const twins::TruthSnapshot snapshot{events_.now(), all_truth()};
+twins::Measurement Simulation::measure_now(twins::PacketSource& sensor) {
+  const twins::TruthSnapshot truth = snapshot();
   while (true) {
-    twins::Measurement measurement = navigation_->measure(snapshot);
+    twins::Measurement measurement = sensor.measure(truth);
     if (measurement.status != twins::MeasurementStatus::kLater) return measurement;
     if (surroundings_.stop_requested && surroundings_.stop_requested()) return {};
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -166,12 +200,18 @@ std::vector<NamedAttitude> Simulation::all_attitudes() const {
   return all;
 }
 
-std::vector<twins::SpacecraftTruth> Simulation::all_truth() const {
-  std::vector<twins::SpacecraftTruth> all;
+twins::TruthSnapshot Simulation::snapshot() {
+  twins::TruthSnapshot truth;
+  truth.time = events_.now();
+  truth.R_itrf_gcrf = earth_rotation_.R_itrf_gcrf_at(fsw::seconds(events_.now() - mission_.epoch));
   for (const mission::Spacecraft& spacecraft : mission_.spacecraft) {
-    all.push_back({spacecraft.name, truth_.state(spacecraft.name)});
+    const std::size_t index = truth_.index_of(spacecraft.name);
+    twins::SpacecraftTruth& one = truth.spacecraft.emplace_back();
+    one.name = spacecraft.name;
+    one.orbit = truth_.state(index);
+    if (truth_.has_attitude(index)) one.attitude = truth_.attitude(index);
   }
-  return all;
+  return truth;
 }
 
 void Simulation::send_to_flight(pil::Packet packet, GpsTime sent) {
@@ -237,9 +277,25 @@ void Simulation::take_commands(const pil::StepResult& answer) {
 }
 
 void Simulation::handle(const ExecuteBurn& burn) {
+  execute(burn.command);
+}
+
+/// Numbers below zero, which the flight software never gives.
+void Simulation::handle(const ExecutePrescribedBurn& prescribed) {
+  maneuver_command command{};
+  command.maneuver_id = -1 - static_cast<std::int32_t>(prescribed.index);
+  command.waypoint_index = -1;
+  command.solver = -1;
+  const fsw::Vector3& dv_rtn = mission_.burns[prescribed.index].dv_rtn;
+  std::copy(dv_rtn.begin(), dv_rtn.end(), command.dv_rtn);
+  recorder_.on_prescribed(events_.now(), command);
+  execute(command);
+}
+
+void Simulation::execute(const maneuver_command& command) {
   const GpsTime now = events_.now();
   truth_.advance_to(now);
-  const twins::Execution execution = thruster_->execute(burn.command, now, now);
+  const twins::Execution execution = thruster_->execute(command, now, now);
   const double(&dv)[3] = execution.maneuver.dv_rtn;
   truth_.apply_impulse_rtn(servicer_index_, {dv[0], dv[1], dv[2]});
   report_execution(execution);
@@ -261,7 +317,8 @@ void Simulation::summarise(double wall_s, bool complete) {
   summary.complete = complete;
   summary.flight_computer = mission::name_of(servicer_.flight_computer->target);
   summary.flight_software = surroundings_.flight_computer.description();
-  summary.navigation = mission::name_of(servicer_.navigation->source);
+  summary.navigation = servicer_.gnss ? "gnss" : std::string(mission::name_of(servicer_.navigation->source));
+  summary.gnss = servicer_.gnss ? "digital" : "";
   summary.simulated_s = fsw::seconds(events_.now() - mission_.start_time());
   summary.wall_s = wall_s;
   summary.speed_factor = wall_s > 0.0 ? summary.simulated_s / wall_s : 0.0;

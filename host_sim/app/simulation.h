@@ -18,6 +18,7 @@
 #include "host_sim/engine/link_model.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
+#include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/truth_model.h"
 #include "host_sim/twins/actuator.h"
 #include "host_sim/twins/packet_source.h"
@@ -60,7 +61,9 @@ class Simulation {
   [[nodiscard]] const std::string& cost_unit() const { return cost_unit_; }
 
  private:
-  struct TakeMeasurement {};
+  struct TakeMeasurement {
+    std::size_t sensor;
+  };
   struct DeliverPacket {
     pil::Packet packet;
   };
@@ -71,19 +74,26 @@ class Simulation {
   struct ExecuteBurn {
     maneuver_command command;
   };
-  using Event = std::variant<TakeMeasurement, DeliverPacket, JudgeWaypoint, StepFlight, ExecuteBurn>;
+  /// One that the mission file prescribes.
+  struct ExecutePrescribedBurn {
+    std::size_t index;
+  };
+  using Event =
+      std::variant<TakeMeasurement, DeliverPacket, JudgeWaypoint, StepFlight, ExecuteBurn, ExecutePrescribedBurn>;
 
-  void handle(const TakeMeasurement&);
+  void handle(const TakeMeasurement& taken);
   void handle(const DeliverPacket&);
   void handle(const JudgeWaypoint&);
   void handle(const StepFlight&);
   void handle(const ExecuteBurn&);
+  void handle(const ExecutePrescribedBurn& prescribed);
 
   void schedule(fsw::GpsTime time, Event event);
   void schedule_the_known();
-  void schedule_measurement(fsw::GpsTime from);
-  twins::Measurement measure_now();
-  [[nodiscard]] std::vector<twins::SpacecraftTruth> all_truth() const;
+  void schedule_measurement(std::size_t sensor, fsw::GpsTime from);
+  twins::Measurement measure_now(twins::PacketSource& sensor);
+  [[nodiscard]] twins::TruthSnapshot snapshot();
+  void execute(const maneuver_command& command);
   [[nodiscard]] std::vector<NamedAttitude> all_attitudes() const;
   void send_to_flight(pil::Packet packet, fsw::GpsTime sent);
   void report_execution(const twins::Execution& execution);
@@ -101,9 +111,10 @@ class Simulation {
   truth::TruthModel truth_;
   std::size_t servicer_index_ = 0;
   std::size_t target_index_ = 0;
-  std::unique_ptr<twins::PacketSource> navigation_;
+  std::vector<std::unique_ptr<twins::PacketSource>> sensors_;
   std::unique_ptr<twins::Actuator> thruster_;
   engine::LinkModel board_link_;
+  truth::EarthRotation earth_rotation_;
   engine::RunClock clock_;
   engine::EventQueue<Event> events_;
   std::vector<pil::Packet> arrived_;  ///< for the next step

@@ -17,6 +17,9 @@
 #include "host_sim/engine/link_model.h"
 #include "host_sim/mission/attitude.h"
 #include "host_sim/truth/truth_settings.h"
+#include "host_sim/twins/gnss/constellation.h"
+#include "host_sim/twins/gnss/crosslink.h"
+#include "host_sim/twins/gnss/gnss_settings.h"
 
 namespace vbar::mission {
 
@@ -62,6 +65,35 @@ struct NavigationSensor {
   std::filesystem::path log;  ///< recorded only: the packet log it plays
 };
 
+/// sensors.gnss: a receiver and a star tracker.
+struct GnssSensor {
+  twins::gnss::GnssReceiverSettings receiver;
+  /// The spacecraft whose receiver's data come by the crosslink; empty: this one's go to its partner.
+  std::string partner;
+};
+
+/// What flight software navigates by, telecommanded; fields as in vbar.lcm, navigation_configuration.
+struct GnssNavigation {
+  bool resolve_ambiguities = true;
+  double min_success_rate = 0.0;
+  double min_ratio = 0.0;
+  fsw::Duration pair_wait;
+  double antenna_offset_sigma_m = 0.0;
+  double phase_centre_jitter_m = 0.0;
+  double code_bias_sigma_m = 0.0;
+  double start_velocity_sigma = 0.0;
+  double acceleration_sigma = 0.0;
+  double acceleration_time_s = 0.0;
+  double maneuver_sigma = 0.0;
+  double maneuver_sigma_relative = 0.0;
+};
+
+/// A burn that the flight software is told of but did not ask for.
+struct PrescribedBurn {
+  fsw::GpsTime time;
+  fsw::Vector3 dv_rtn = fsw::Vector3::Zero();
+};
+
 /// actuators.thruster; 1-sigma errors of each burn.
 struct Thruster {
   double magnitude_error = 0.0;     ///< relative
@@ -76,6 +108,7 @@ struct Spacecraft {
   std::optional<Attitude> attitude;
   std::optional<FlightComputer> flight_computer;
   std::optional<NavigationSensor> navigation;
+  std::optional<GnssSensor> gnss;
   std::optional<Thruster> thruster;
 };
 
@@ -132,10 +165,14 @@ struct Mission {
   truth::TruthSettings truth;  ///< all but the data folder, which the program knows
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
-  std::vector<Waypoint> waypoints;  ///< in order of time
+  GnssNavigation gnss_navigation;
+  std::vector<PrescribedBurn> burns;  ///< of the spacecraft that flies, in order of time
+  std::vector<Waypoint> waypoints;    ///< in order of time
   engine::ClockSettings clock;
   engine::LinkSettings
       board_link;  ///< the simulated link between a spacecraft's sensors or actuators and its flight computer
+  twins::gnss::CrosslinkSettings crosslink;
+  twins::gnss::ConstellationSettings constellation;
   LcmMirror lcm;
 
   [[nodiscard]] fsw::GpsTime start_time() const { return epoch + start; }

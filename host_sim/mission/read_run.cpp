@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "host_sim/mission/names.h"
+#include "host_sim/mission/read_gnss.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
@@ -63,11 +64,17 @@ void read_clock(const TableReader& document, Mission& mission) {
 
 void read_links(const TableReader& document, Mission& mission) {
   const TableReader links = document.table("links");
-  links.accept_only({"board"});
+  links.accept_only({"board", "crosslink"});
   const TableReader board = links.table("board");
   board.accept_only({"latency", "loss_probability"});
   mission.board_link.latency = read_latency(board.table("latency"));
   mission.board_link.loss_probability = board.number("loss_probability", from_to(0.0, 1.0), 0.0);
+  const TableReader crosslink = links.table("crosslink");
+  crosslink.accept_only({"latency", "loss_probability", "silence_begin_s", "silence_duration_s"});
+  if (crosslink.has("latency")) mission.crosslink.link.latency = read_latency(crosslink.table("latency"));
+  mission.crosslink.link.loss_probability =
+      crosslink.number("loss_probability", from_to(0.0, 1.0), mission.crosslink.link.loss_probability);
+  read_crosslink_silence(crosslink, mission);
 }
 
 void read_lcm(const TableReader& document, Mission& mission) {

@@ -4,6 +4,7 @@
 #include "fsw/math/math.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_attitude.h"
+#include "host_sim/mission/read_gnss.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/mission/spacecraft_group.h"
 
@@ -159,8 +160,9 @@ Spacecraft read_one(TableReader& section, const Member& member, const std::vecto
     spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
 
   const TableReader sensors = section.table("sensors");
-  sensors.accept_only({"navigation"});
+  sensors.accept_only({"navigation", "gnss"});
   if (sensors.has("navigation")) spacecraft.navigation = read_navigation(sensors.table("navigation"), names, mission);
+  if (sensors.has("gnss")) spacecraft.gnss = read_gnss_sensor(sensors.table("gnss"), spacecraft.name, names);
   const TableReader actuators = section.table("actuators");
   actuators.accept_only({"thruster"});
   if (actuators.has("thruster")) spacecraft.thruster = read_thruster(actuators.table("thruster"));

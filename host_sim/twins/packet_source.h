@@ -10,6 +10,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
+#include "host_sim/truth/attitude/attitude_state.h"
 
 namespace vbar::twins {
 
@@ -20,12 +21,14 @@ using Packet = std::vector<std::uint8_t>;
 struct SpacecraftTruth {
   std::string name;
   fsw::orbit::CartesianState orbit;
+  std::optional<truth::AttitudeState> attitude;  ///< if it has one
 };
 
 /// The truth at one instant.
 struct TruthSnapshot {
   fsw::GpsTime time;
   std::vector<SpacecraftTruth> spacecraft;
+  fsw::Matrix3 R_itrf_gcrf = fsw::Matrix3::Identity();  ///< the Earth's true orientation
 
   /// Null if there is none of that name.
   [[nodiscard]] const SpacecraftTruth* find(std::string_view name) const {

@@ -1,0 +1,50 @@
+#pragma once
+// A GNSS receiver and a star tracker as a packet source: at each epoch the receiver's bytes and the attitude, straight
+// to the flight software, or by way of the crosslink if they are those of another spacecraft.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "fsw/core/gps_time.h"
+#include "host_sim/twins/gnss/crosslink.h"
+#include "host_sim/twins/gnss/gnss_receiver.h"
+#include "host_sim/twins/packet_encoder.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::twins {
+
+class GnssSensor final : public PacketSource {
+ public:
+  struct Settings {
+    std::string spacecraft;          ///< that carries the receiver
+    std::uint8_t flight_number = 0;  ///< of the spacecraft whose flight software gets the packets
+    fsw::GpsTime start;              ///< first epoch
+    fsw::Duration period;            ///< > 0, whole milliseconds
+  };
+
+  /// `crosslink`: how the bytes reach the flight software; null: by wire. `receiver` must not be null.
+  GnssSensor(const Settings& settings, std::unique_ptr<gnss::GnssReceiver> receiver,
+             std::unique_ptr<gnss::Crosslink> crosslink);
+
+  [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
+
+  /// The packets of one epoch: receiver bytes in pieces, and the attitude. No packets if the crosslink loses them,
+  /// which it does whole. kFailed if the truth lacks the spacecraft or its attitude.
+  Measurement measure(const TruthSnapshot& truth) override;
+
+  [[nodiscard]] const gnss::GnssReceiver& receiver() const { return *receiver_; }
+
+ private:
+  template <class BytesMessage, class AttitudeMessage>
+  bool append_packets(fsw::GpsTime time, const std::vector<std::uint8_t>& bytes, const truth::AttitudeState& attitude,
+                      std::vector<Packet>& packets);
+
+  Settings settings_;
+  std::unique_ptr<gnss::GnssReceiver> receiver_;
+  std::unique_ptr<gnss::Crosslink> crosslink_;
+  PacketEncoder bytes_encoder_;
+  PacketEncoder attitude_encoder_;
+};
+
+}  // namespace vbar::twins
