@@ -17,8 +17,8 @@ class SeriesTable {
   }
 
   std::array<double, kCount> sums(const HorizontalSeries& functions) const {
-    std::array<double, kBlocks * kLanes> all{};
-    for (int block = 0; block < kBlocks; ++block) sum_block(blocks_[block], functions, &all[kLanes * block]);
+    std::array<std::array<double, kLanes>, kBlocks> all{};
+    for (int block = 0; block < kBlocks; ++block) sum_block(blocks_[block], functions, all[block].data());
     std::array<double, kCount> result{};
     std::memcpy(result.data(), all.data(), sizeof result);
     return result;

@@ -22,7 +22,7 @@ constexpr double kOrbitRate_radps = 1e-3;
 
 /// An edge is crossed in some seconds and a step takes no more than a minute: four parts miss none that matters.
 constexpr int kEdgeSamples = 4;
-constexpr double kEdgeResolution_s = 1e-6;
+constexpr double kEdgeResolution_s = 1e-7;
 
 Matrix3 checked_inverse(const Matrix3& inertia) {
   check_inertia(inertia);
