@@ -11,9 +11,9 @@
 
 namespace vbar::app {
 
-/// Sums what drag takes from the semi-major axis: da/dt = 2 a^2 / GM (velocity . drag), by the trapezoidal rule over the
-/// sampling times. From the motion itself it could not be told: the field's tesserals move the mean semi-major axis by
-/// ten metres, more than a day's drag.
+/// Sums what drag takes from the semi-major axis: da/dt = 2 a^2 / GM (velocity . drag), by the trapezoidal rule over
+/// the sampling times. From the motion itself it could not be told: the field's tesserals move the mean semi-major axis
+/// by ten metres, more than a day's drag.
 class Propagation::DecayMeter {
  public:
   explicit DecayMeter(double gm) : gm_(gm) {}
