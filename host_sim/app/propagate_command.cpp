@@ -1,7 +1,8 @@
 // vbar propagate: a mission file, its truth alone, an ephemeris of every spacecraft.
 
-#include <chrono>
+#include <ctime>
 
+#include <fmt/chrono.h>
 #include <fmt/core.h>
 
 #include "host_sim/app/commands.h"
@@ -17,17 +18,12 @@
 namespace vbar::app {
 namespace {
 
-/// By this computer's clock, to a second. Its seconds since 1970 count no leap seconds; 1980's midnight is the GPS
-/// epoch's.
+/// By this computer's clock, to a second.
 fsw::GpsTime now() {
-  using namespace std::chrono;
-  const auto unix_s = duration_cast<seconds>(system_clock::now().time_since_epoch()).count();
-  const auto days = floor<std::chrono::days>(sys_seconds(seconds(unix_s)));
-  const year_month_day date(days);
-  const hh_mm_ss time(sys_seconds(seconds(unix_s)) - days);
-  return truth::gps_from_utc(fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", static_cast<int>(date.year()),
-                                         static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
-                                         time.hours().count(), time.minutes().count(), time.seconds().count()));
+  const std::time_t seconds = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  return truth::gps_from_utc(fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", utc));
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ OemFile::OemFile(const std::filesystem::path& file, const std::string& object, c
       "STOP_TIME = {}\n",
       epoch_text(span.created, 0), object, object, epoch_text(span.start, 9), epoch_text(span.stop, 9));
   if (span.states > 1) {
-    head += fmt::format("INTERPOLATION = HERMITE\nINTERPOLATION_DEGREE = {}\n",
-                        2 * std::min(span.states, kMostStates) - 1);
+    head +=
+        fmt::format("INTERPOLATION = HERMITE\nINTERPOLATION_DEGREE = {}\n", 2 * std::min(span.states, kMostStates) - 1);
   }
   file_.append(head + "META_STOP\n\n");
 }

@@ -16,14 +16,14 @@ namespace vbar::report {
 class OemFile {
  public:
   struct Span {
-    fsw::GpsTime start;       ///< of the first row
-    fsw::GpsTime stop;        ///< of the last row
-    std::size_t states = 2;   ///< how many rows there will be
-    fsw::GpsTime created;     ///< when the file is made
+    fsw::GpsTime start;      ///< of the first row
+    fsw::GpsTime stop;       ///< of the last row
+    std::size_t states = 2;  ///< how many rows there will be
+    fsw::GpsTime created;    ///< when the file is made
   };
 
-  /// `object`: name of the spacecraft, which is its identifier as well: simulated ones have no international designator.
-  /// Throws std::runtime_error that names the file, as the others do.
+  /// `object`: name of the spacecraft, which is its identifier as well: simulated ones have no international
+  /// designator. Throws std::runtime_error that names the file, as the others do.
   OemFile(const std::filesystem::path& file, const std::string& object, const Span& span);
 
   /// Rows in order of time.

@@ -23,8 +23,8 @@ struct EphemerisRow {
 
 struct PropagatedSpacecraft {
   std::string name;
-  double first_altitude_m = 0.0;  ///< above WGS 84, at the start
-  double last_altitude_m = 0.0;   ///< and at the last sampling time
+  double first_altitude_m = 0.0;                           ///< above WGS 84, at the start
+  double last_altitude_m = 0.0;                            ///< and at the last sampling time
   std::optional<double> semi_major_axis_change_by_drag_m;  ///< over the flight, below 0; nothing without drag
   truth::TruthStatistics statistics;
 };

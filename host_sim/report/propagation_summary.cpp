@@ -16,7 +16,8 @@ std::string spacecraft_table(const PropagationRecord& record) {
   std::size_t width = std::string_view("spacecraft").size();
   for (const PropagatedSpacecraft& one : record.spacecraft) width = std::max(width, one.name.size());
   constexpr auto kHead = "{:<{}} {:>12} {:>12} {:>12} {:>9} {:>9} {:>12} {:>8}\n";
-  std::string text = fmt::format(kHead, "", width, "first alt.", "last alt.", "a by drag", "", "rejected", "force", "shadow");
+  std::string text =
+      fmt::format(kHead, "", width, "first alt.", "last alt.", "a by drag", "", "rejected", "force", "shadow");
   text += fmt::format(kHead, "spacecraft", width, "km", "km", "m", "steps", "steps", "evaluations", "edges");
   for (const PropagatedSpacecraft& one : record.spacecraft) {
     const truth::TruthStatistics& s = one.statistics;
@@ -81,16 +82,17 @@ std::string propagation_json(const PropagationRecord& record, std::span<const st
   for (const PropagatedSpacecraft& one : record.spacecraft) spacecraft.push_back(json_of(one));
   Json times = Json::object();
   for (const truth::ForceTime& share : shares_of(record)) times[std::string(share.force)] = share.wall_s;
-  const Json json{{"mission", record.mission},
-                  {"complete", record.complete},
-                  {"incomplete_reason", record.incomplete_reason.empty() ? Json(nullptr) : Json(record.incomplete_reason)},
-                  {"simulated_s", record.simulated_s},
-                  {"wall_s", record.wall_s},
-                  {"speed_factor", speed_factor(record)},
-                  {"threads", record.threads},
-                  {"spacecraft", std::move(spacecraft)},
-                  {"force_wall_s", std::move(times)},
-                  {"files", files}};
+  const Json json{
+      {"mission", record.mission},
+      {"complete", record.complete},
+      {"incomplete_reason", record.incomplete_reason.empty() ? Json(nullptr) : Json(record.incomplete_reason)},
+      {"simulated_s", record.simulated_s},
+      {"wall_s", record.wall_s},
+      {"speed_factor", speed_factor(record)},
+      {"threads", record.threads},
+      {"spacecraft", std::move(spacecraft)},
+      {"force_wall_s", std::move(times)},
+      {"files", files}};
   return json.dump(2) + "\n";
 }
 

@@ -64,14 +64,17 @@ TEST(SpacecraftGroup, IsSetByItsName) {
 
 TEST(SpacecraftGroup, BadOnesEndWithOneMessage) {
   const auto message = [](std::string_view what, std::string_view by) { return message_of(changed(kSwarm, what, by)); };
-  EXPECT_EQ(message("count = 12\n", ""), "m.toml:4: spacecraft.0.count: found nothing; accepted: how many spacecraft the spacing is for");
+  EXPECT_EQ(message("count = 12\n", ""),
+            "m.toml:4: spacecraft.0.count: found nothing; accepted: how many spacecraft the spacing is for");
   EXPECT_EQ(message("count = 12", "count = 256"),
             "m.toml:6: spacecraft.0.count: found the integer 256; accepted: an integer from 1 to 255");
-  EXPECT_EQ(message("inclination_deg = 0.5", "inclination_deg = 12.0"),
-            "m.toml:8: spacecraft.swarm.spacing.inclination_deg: found 180 for swarm_11; accepted: a number from 0.01 to "
-            "179.99");
-  EXPECT_EQ(message("mass_kg = 0.25", "mass_kg = -1.0"),
-            "m.toml:8: spacecraft.swarm.spacing.mass_kg: found 0 for swarm_11; accepted: a number above 0, up to 1000000");
+  EXPECT_EQ(
+      message("inclination_deg = 0.5", "inclination_deg = 12.0"),
+      "m.toml:8: spacecraft.swarm.spacing.inclination_deg: found 180 for swarm_11; accepted: a number from 0.01 to "
+      "179.99");
+  EXPECT_EQ(
+      message("mass_kg = 0.25", "mass_kg = -1.0"),
+      "m.toml:8: spacecraft.swarm.spacing.mass_kg: found 0 for swarm_11; accepted: a number above 0, up to 1000000");
   EXPECT_EQ(message("mass_kg = 0.25", "mas_kg = 0.25"),
             "m.toml:8: spacecraft.swarm.spacing.mas_kg: found an unknown key (did you mean mass_kg?); accepted: "
             "semi_major_axis_km, ex, ey, inclination_deg, raan_deg, mean_argument_of_latitude_deg, mass_kg, "

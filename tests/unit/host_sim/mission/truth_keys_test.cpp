@@ -62,21 +62,24 @@ TEST(TruthKeys, BadValuesEndWithOneMessage) {
   const auto message = [](const std::string& line) { return message_of(with_truth(line)); };
   const std::string where = "m.toml:" + line_of_text(with_truth("X"), "X") + ": truth.";
   EXPECT_EQ(message("drag = 1"), where + "drag: found the integer 1; accepted: true or false");
-  EXPECT_EQ(message("shadow = \"conicl\""),
-            where + "shadow: found the text \"conicl\" (did you mean conical?); accepted: none, cylindrical or conical");
+  EXPECT_EQ(
+      message("shadow = \"conicl\""),
+      where + "shadow: found the text \"conicl\" (did you mean conical?); accepted: none, cylindrical or conical");
   EXPECT_EQ(message("geomagnetic_index = \"hourly\""),
             where + "geomagnetic_index: found the text \"hourly\"; accepted: daily or three_hourly");
   EXPECT_EQ(message("solid_tide = true"),
-            where + "solid_tide: found an unknown key (did you mean solid_tides?); accepted: gravity_degree, "
-                    "gravity_order, drag, geomagnetic_index, radiation_pressure, shadow, sun, moon, solid_tides, "
-                    "relativity, relative_tolerance, threads, gravity_file, earth_orientation_file or "
-                    "space_weather_file");
+            where +
+                "solid_tide: found an unknown key (did you mean solid_tides?); accepted: gravity_degree, "
+                "gravity_order, drag, geomagnetic_index, radiation_pressure, shadow, sun, moon, solid_tides, "
+                "relativity, relative_tolerance, threads, gravity_file, earth_orientation_file or "
+                "space_weather_file");
   EXPECT_EQ(message("relative_tolerance = 1e-15"),
             where + "relative_tolerance: found the number 1e-15; accepted: a number from 1e-14 to 1e-06");
   EXPECT_EQ(message("relative_tolerance = 1e-5"),
             where + "relative_tolerance: found the number 1e-05; accepted: a number from 1e-14 to 1e-06");
-  EXPECT_EQ(message("gravity_file = \"\""), where + "gravity_file: found the text \"\"; accepted: a file of the data "
-                                                    "folder, or one seen from the mission file (./...)");
+  EXPECT_EQ(message("gravity_file = \"\""), where +
+                                                "gravity_file: found the text \"\"; accepted: a file of the data "
+                                                "folder, or one seen from the mission file (./...)");
 }
 
 // A file for the truth alone: spacecraft on orbits and nothing else.

@@ -71,8 +71,8 @@ TEST_F(Propagated, CsvReadsBackTheSameBits) {
   EXPECT_THAT(lines[2], testing::HasSubstr(",2012-06-30T23:59:60.500Z,"));
 }
 
-// The grammar of CCSDS 502.0-B-2: keywords and their order by its tables 5-2 and 5-3, lines by sections 5.2.4 and 6.2 to
-// 6.5: printable ASCII, at most 254 characters, times without a zone, numbers with at most 16 digits.
+// The grammar of CCSDS 502.0-B-2: keywords and their order by its tables 5-2 and 5-3, lines by sections 5.2.4 and 6.2
+// to 6.5: printable ASCII, at most 254 characters, times without a zone, numbers with at most 16 digits.
 TEST_F(Propagated, OemKeepsToTheStandardsGrammar) {
   OemFile oem(scratch_ / "a.oem", "mango", span_of(rows()));
   for (const EphemerisRow& row : rows()) oem.append(row);

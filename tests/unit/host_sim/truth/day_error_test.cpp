@@ -1,4 +1,5 @@
-// What a tolerance is worth: the error after a day in low orbit under all forces, for the tolerances that missions choose.
+// What a tolerance is worth: the error after a day in low orbit under all forces, for the tolerances that missions
+// choose.
 
 #include <string>
 

@@ -1,4 +1,5 @@
-// What a mission switches on acts, and nothing else; what cannot act is refused with one clear error, before the flight.
+// What a mission switches on acts, and nothing else; what cannot act is refused with one clear error, before the
+// flight.
 
 #include "host_sim/truth/force_list.h"
 
@@ -67,8 +68,8 @@ std::string text_of(const std::filesystem::path& file) {
 
 TEST(ForceList, HasWhatIsSwitchedOn) {
   TruthSettings settings = all_forces_settings();
-  EXPECT_THAT(names_of_forces(settings), ElementsAre("gravity", "drag", "radiation_pressure", "sun", "moon",
-                                                     "solid_tides", "relativity"));
+  EXPECT_THAT(names_of_forces(settings),
+              ElementsAre("gravity", "drag", "radiation_pressure", "sun", "moon", "solid_tides", "relativity"));
   settings.forces = {};
   EXPECT_THAT(names_of_forces(settings), ElementsAre("gravity"));
   settings.forces.moon = true;
@@ -108,7 +109,8 @@ TEST(ForceList, AForceWithoutWhatItNeedsIsRefused) {
               t.forces = {};
               s.surface = {};
             }),
-            "") << "gravity asks for no surface";
+            "")
+      << "gravity asks for no surface";
 }
 
 // The data end at a date; what a run needs is known before it.

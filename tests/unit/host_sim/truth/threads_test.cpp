@@ -12,7 +12,8 @@ namespace {
 
 using fsw::orbit::CartesianState;
 
-constexpr std::int64_t kFlight_s = 5400;  // most of a revolution, with the shadow's edges and a three-hourly jump (3h UTC)
+constexpr std::int64_t kFlight_s =
+    5400;  // most of a revolution, with the shadow's edges and a three-hourly jump (3h UTC)
 
 /// Spacecraft all around the orbit, each with its own mass.
 std::vector<CartesianState> fly(int count, int threads, std::int64_t every_s) {
