@@ -1,0 +1,196 @@
+#include "tests/integration/experiment3/emulated_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/LU>
+
+#include "fsw/gnss/lambda.h"
+#include "fsw/orbit/rtn.h"
+#include "host_sim/app/initial_attitudes.h"
+#include "host_sim/app/initial_orbits.h"
+#include "host_sim/app/make_twins.h"
+#include "host_sim/mission/load.h"
+#include "host_sim/mission/telecommands.h"
+#include "host_sim/truth/earth/earth_rotation.h"
+#include "host_sim/twins/packet_encoder.h"
+
+namespace vbar::test {
+namespace {
+
+using fsw::GpsTime;
+using fsw::navigation::kPhaseChannels;
+using fsw::navigation::PhaseChannel;
+using fsw::navigation::RelativeFilter;
+
+const std::string kRoot = VBAR_SOURCE_DIR;
+constexpr std::uint8_t kServicerNumber = 1;
+
+mission::Mission experiment3(std::vector<std::string> overrides, const std::vector<std::string>& more) {
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return mission::load_mission(kRoot + "/missions/experiment3.toml", overrides);
+}
+
+}  // namespace
+
+CoastingPair::CoastingPair(int duration_s, const std::vector<std::string>& overrides)
+    : overrides_(overrides),
+      mission_(experiment3(overrides, {})),
+      truth_(app::truth_settings(mission_, kRoot + "/data")) {
+  app::place_spacecraft(mission_, truth_);
+  app::set_attitudes(mission_, kRoot + "/data", truth_);
+  truth::EarthRotation earth_rotation(truth_.data().earth_orientation, mission_.epoch);
+  const fsw::Duration period =
+      fsw::nearest_duration(mission_.find_spacecraft("servicer")->gnss->receiver.output.period_s);
+  const GpsTime end = mission_.start_time() + fsw::duration_of_seconds(duration_s);
+  for (GpsTime time = mission_.start_time(); time <= end; time = time + period) {
+    truth_.advance_to(time);
+    twins::TruthSnapshot& snapshot = epochs_.emplace_back();
+    snapshot.time = time;
+    snapshot.R_itrf_gcrf = earth_rotation.R_itrf_gcrf_at(fsw::seconds(time - mission_.epoch));
+    for (const mission::Spacecraft& spacecraft : mission_.spacecraft) {
+      const std::size_t index = truth_.index_of(spacecraft.name);
+      snapshot.spacecraft.push_back({spacecraft.name, truth_.state(index), truth_.attitude(index)});
+    }
+  }
+}
+
+EmulatedPair::EmulatedPair(const CoastingPair& coast, std::uint64_t seed, const std::vector<std::string>& overrides)
+    : coast_(coast),
+      mission_(experiment3(coast.overrides(), overrides)),
+      inbox_(kServicerNumber),
+      navigation_(std::make_unique<fsw::gnc::Navigation>()) {
+  mission_.seed = seed;
+  const mission::Spacecraft& servicer = *mission_.find_spacecraft("servicer");
+  sensors_ = app::make_sensors(mission_, servicer, kRoot + "/data");
+  twins::PacketEncoder encoder(kServicerNumber, 0);
+  const auto packet = encoder.encode(
+      mission_.start_time(), mission::navigation_configuration_of(mission_, servicer, coast.earth_orientation()));
+  under_way_.push_back({mission_.start_time(), packet.value()});
+}
+
+void EmulatedPair::fly(int epochs) {
+  for (int k = 0; k < epochs && !done(); ++k, ++next_) {
+    const twins::TruthSnapshot& truth = coast_.epochs()[next_];
+    measure(truth);
+    const auto arrived = [&](const Arrival& arrival) { return arrival.time <= truth.time; };
+    const auto first_later = std::stable_partition(under_way_.begin(), under_way_.end(), arrived);
+    std::vector<twins::Packet> packets;
+    for (auto arrival = under_way_.begin(); arrival != first_later; ++arrival) packets.push_back(arrival->packet);
+    under_way_.erase(under_way_.begin(), first_later);
+    if (tamper_) tamper_(static_cast<int>(next_), packets);
+    for (const twins::Packet& packet : packets) static_cast<void>(inbox_.receive(packet));
+    navigation_->update(truth.time, inbox_);
+    inbox_.clear();
+  }
+}
+
+void EmulatedPair::measure(const twins::TruthSnapshot& truth) {
+  for (const auto& sensor : sensors_) {
+    twins::Measurement measurement = sensor->measure(truth);
+    if (measurement.status != twins::MeasurementStatus::kReady) throw std::runtime_error(measurement.reason);
+    for (twins::Packet& packet : measurement.packets) {
+      under_way_.push_back({measurement.available, std::move(packet)});
+    }
+  }
+  remember_integers(truth.time);
+}
+
+void EmulatedPair::remember_integers(GpsTime time) {
+  Integers& integers = integers_[time];
+  for (const int sign : {-1, 1}) {
+    const auto& sensor = dynamic_cast<const twins::GnssSensor&>(*sensors_[sign < 0 ? 0 : 1]);
+    for (const auto& one : sensor.receiver().truth().observations) {
+      integers[{static_cast<int>(one.signal), one.satellite.prn}] += sign * one.ambiguity_cycles;
+    }
+  }
+}
+
+double EmulatedPair::elapsed_s() const {
+  return fsw::seconds(coast_.epochs()[next_ - 1].time - coast_.epochs().front().time);
+}
+
+const twins::TruthSnapshot& EmulatedPair::truth_of_filter() const {
+  const auto is_then = [&](const twins::TruthSnapshot& truth) { return truth.time == gnss().epoch(); };
+  const auto found = std::find_if(coast_.epochs().begin(), coast_.epochs().end(), is_then);
+  if (found == coast_.epochs().end()) throw std::logic_error("the filter stands at an epoch that never was");
+  return *found;
+}
+
+fsw::Vector6 EmulatedPair::error() const {
+  const twins::TruthSnapshot& then = truth_of_filter();
+  const auto truth =
+      fsw::orbit::relative_state_rtn(then.find("servicer")->orbit, then.find("target")->orbit);
+  const auto estimate = fsw::orbit::relative_state_rtn(gnss().servicer(), gnss().target());
+  fsw::Vector6 error;
+  error << estimate.position_rtn - truth.position_rtn, estimate.velocity_rtn - truth.velocity_rtn;
+  return error;
+}
+
+double EmulatedPair::nees() const {
+  const fsw::Vector6 e = error();
+  return e.dot(gnss().covariance_rtn().inverse() * e);
+}
+
+int EmulatedPair::wrong_integers() const {
+  const Integers& integers = integers_.at(gnss().epoch());
+  const RelativeFilter& filter = gnss().relative();
+  const auto true_cycles = [&](const PhaseChannel& channel) {
+    return static_cast<double>(integers.at({static_cast<int>(channel.signal), channel.satellite.prn}));
+  };
+  // Integers are held against each other within a signal: all must agree with the first one held.
+  std::map<int, std::size_t> first;
+  int wrong = 0;
+  for (std::size_t k = 0; k < kPhaseChannels; ++k) {
+    const PhaseChannel& channel = filter.channels()[k];
+    const bool is_seen_now = channel.in_use && channel.last_seen == gnss().epoch();
+    if (!channel.fixed || !is_seen_now) continue;
+    const auto [place, is_first] = first.try_emplace(static_cast<int>(channel.signal), k);
+    if (is_first) continue;
+    const double held = (filter.estimate().mean(RelativeFilter::ambiguity_index(k)) -
+                         filter.estimate().mean(RelativeFilter::ambiguity_index(place->second))) /
+                        fsw::gnss::wavelength(channel.signal);
+    const double truth = true_cycles(channel) - true_cycles(filter.channels()[place->second]);
+    wrong += std::abs(held - truth) > 0.1 ? 1 : 0;
+  }
+  return wrong;
+}
+
+bool EmulatedPair::hold_second_best() {
+  // The object itself is not const: reaching into it is what the mistake consists of.
+  auto& filter = const_cast<RelativeFilter&>(gnss().relative());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  std::map<int, std::size_t> reference;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t k = 0; k < kPhaseChannels && pairs.size() < fsw::gnss::kMaxAmbiguities; ++k) {
+    const PhaseChannel& channel = filter.channels()[k];
+    if (!channel.in_use || channel.epochs == 0) continue;
+    const auto [place, is_first] = reference.try_emplace(static_cast<int>(channel.signal), k);
+    if (!is_first) pairs.emplace_back(k, place->second);
+  }
+  const auto n = static_cast<Eigen::Index>(pairs.size());
+  if (n < fsw::navigation::AmbiguityResolution::kLeastHeld) return false;
+  const auto size = static_cast<Eigen::Index>(RelativeFilter::State::kSize);
+  Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(n, size);
+  for (Eigen::Index row = 0; row < n; ++row) {
+    const auto& [place, base] = pairs[static_cast<std::size_t>(row)];
+    const double wavelength = fsw::gnss::wavelength(filter.channels()[place].signal);
+    difference(row, RelativeFilter::ambiguity_index(place)) = 1.0 / wavelength;
+    difference(row, RelativeFilter::ambiguity_index(base)) = -1.0 / wavelength;
+  }
+  Eigen::MatrixXd covariance(size, size);
+  for (int c = 0; c < size; ++c) {
+    for (int r = 0; r < size; ++r) covariance(r, c) = filter.estimate().covariance(r, c);
+  }
+  const Eigen::VectorXd floats = difference * filter.estimate().mean();
+  const Eigen::MatrixXd spread = difference * covariance * difference.transpose();
+  const auto solution = fsw::gnss::resolve_ambiguities({floats.data(), pairs.size()},
+                                                       {spread.data(), pairs.size() * pairs.size()});
+  if (!solution.ok()) return false;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    filter.hold(pairs[k].first, pairs[k].second, solution.value().second[k]);
+  }
+  return true;
+}
+
+}  // namespace vbar::test

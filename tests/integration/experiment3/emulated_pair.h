@@ -1,0 +1,94 @@
+#pragma once
+// Navigation alone, fed with the bytes of emulated receivers: the pair of experiment 3 coasts as all forces of the
+// truth make it, one truth serves receivers of any seed, and a test may look into the filter and at what it cannot see.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fsw/gnc/inbox.h"
+#include "fsw/gnc/navigation.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/truth/truth_model.h"
+#include "host_sim/twins/gnss_sensor.h"
+
+namespace vbar::test {
+
+/// Truth of the pair at each of the receivers' epochs, nobody burning.
+class CoastingPair {
+ public:
+  /// missions/experiment3.toml with `overrides`, for `duration_s`.
+  explicit CoastingPair(int duration_s, const std::vector<std::string>& overrides = {});
+
+  [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
+  [[nodiscard]] const std::vector<twins::TruthSnapshot>& epochs() const { return epochs_; }
+  [[nodiscard]] const truth::EarthOrientationSeries& earth_orientation() const {
+    return *truth_.data().earth_orientation;
+  }
+
+ private:
+  std::vector<std::string> overrides_;
+  mission::Mission mission_;
+  truth::TruthModel truth_;
+  std::vector<twins::TruthSnapshot> epochs_;
+};
+
+/// Receivers and flight navigation on top of it.
+class EmulatedPair {
+ public:
+  /// `overrides` as on the command line, beside those of `coast`, which must outlive this.
+  EmulatedPair(const CoastingPair& coast, std::uint64_t seed, const std::vector<std::string>& overrides = {});
+
+  /// What reaches the flight software at a step, for a test to change.
+  using Tamper = std::function<void(int epoch, std::vector<twins::Packet>& packets)>;
+  void set_tamper(Tamper tamper) { tamper_ = std::move(tamper); }
+
+  /// The next `epochs` epochs: receivers measure, and navigation steps with what has arrived.
+  void fly(int epochs = 1);
+  [[nodiscard]] bool done() const { return next_ >= coast_.epochs().size(); }
+
+  [[nodiscard]] const fsw::gnc::Navigation& navigation() const { return *navigation_; }
+  [[nodiscard]] const fsw::navigation::GnssNavigation& gnss() const { return navigation_->gnss(); }
+  [[nodiscard]] bool is_fixed() const { return gnss().valid() && gnss().ambiguities().is_fixed(); }
+  [[nodiscard]] double elapsed_s() const;
+
+  /// Estimated minus true relative state in the servicer's RTN at the filter's epoch, m and m/s.
+  [[nodiscard]] fsw::Vector6 error() const;
+  [[nodiscard]] double position_error_m() const { return error().head<3>().norm(); }
+  /// Normalised estimation error squared: chi-square with six degrees of freedom if the filter is honest.
+  [[nodiscard]] double nees() const;
+
+  /// Held integers that are not those of the emulator.
+  [[nodiscard]] int wrong_integers() const;
+
+  /// A mistake made on purpose in the filter's memory: the integers that fit second best are held.
+  /// False if there are too few ambiguities to hold.
+  bool hold_second_best();
+
+ private:
+  using Integers = std::map<std::pair<int, int>, std::int64_t>;  // of signal and satellite number
+  struct Arrival {
+    fsw::GpsTime time;
+    twins::Packet packet;
+  };
+
+  void measure(const twins::TruthSnapshot& truth);
+  void remember_integers(fsw::GpsTime time);
+  [[nodiscard]] const twins::TruthSnapshot& truth_of_filter() const;
+
+  const CoastingPair& coast_;
+  mission::Mission mission_;
+  std::vector<std::unique_ptr<twins::PacketSource>> sensors_;  ///< servicer's, then target's
+  std::vector<Arrival> under_way_;
+  std::map<fsw::GpsTime, Integers> integers_;  ///< target minus servicer
+  fsw::gnc::Inbox inbox_;
+  std::unique_ptr<fsw::gnc::Navigation> navigation_;
+  Tamper tamper_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace vbar::test
