@@ -29,6 +29,7 @@ std::optional<std::size_t> reference_of(const PhaseChannels& channels, gnss::Sig
 
 void AmbiguityResolution::reset() {
   suspicious_in_a_row_ = 0;
+  contradicted_ = 0;
   report_.tracked = 0;
   report_.fixed = 0;
 }
@@ -54,13 +55,20 @@ void AmbiguityResolution::count(const RelativeFilter& filter) {
 
 void AmbiguityResolution::watch(RelativeFilter& filter, const RelativeUpdate& epoch,
                                 const AmbiguitySettings& settings) {
-  if (!is_fixed() || epoch.phases_used + epoch.phases_refused < kLeastHeld) return;
-  const bool disagree = epoch.phase_nis > settings.suspicious_nis * epoch.phases_used;
-  const bool refused = 3 * (epoch.phases_refused + epoch.slips) > epoch.phases_used + epoch.phases_refused;
-  suspicious_in_a_row_ = disagree || refused ? suspicious_in_a_row_ + 1 : 0;
-  if (suspicious_in_a_row_ < settings.suspicious_epochs) return;
+  // One satellite that slips unseen is put right by the others. Where many contradict at once, the few that agree with
+  // the state may be the wrong ones.
+  contradicted_ = contradicted_ / 2 + epoch.contradictions;
+  const std::int32_t held_before = report_.fixed + contradicted_;
+  const bool many_contradict = held_before > kLeastHeld && 3 * contradicted_ > held_before;
+  if (is_fixed() && epoch.phases_used + epoch.phases_refused >= kLeastHeld) {
+    const bool disagree = epoch.phase_nis > settings.suspicious_nis * epoch.phases_used;
+    const bool refused = 3 * (epoch.phases_refused + epoch.slips) > epoch.phases_used + epoch.phases_refused;
+    suspicious_in_a_row_ = disagree || refused ? suspicious_in_a_row_ + 1 : 0;
+  }
+  if (!many_contradict && suspicious_in_a_row_ < settings.suspicious_epochs) return;
   filter.release(settings.release_sigma_m);
   suspicious_in_a_row_ = 0;
+  contradicted_ = 0;
   ++report_.releases;
 }
 

@@ -16,7 +16,7 @@ struct AmbiguitySettings {
   double min_ratio = 3.0;           ///< second-best to best squared norm, at least
   int least_epochs = 4;             ///< tracked without a break before an ambiguity is offered
   // What is held is let go when, in so many epochs in a row, the phases' normalised innovations average above this (1
-  // is honest) or more than a third of them are refused.
+  // is honest) or more than a third of them are refused; and at once when a third of the held ones contradict.
   int suspicious_epochs = 3;
   double suspicious_nis = 4.0;
   double release_sigma_m = 0.05;  ///< wrong integers are to be let go before they move the position further than this
@@ -62,6 +62,7 @@ class AmbiguityResolution {
 
   AmbiguityReport report_;
   int suspicious_in_a_row_ = 0;
+  std::int32_t contradicted_ = 0;  ///< held channels of late, those of an epoch before counting half
   Offer offer_;
   std::array<double, kPhaseChannels> floats_{};                       ///< cycles
   std::array<double, kPhaseChannels * kPhaseChannels> covariance_{};  ///< cycles^2, column-major

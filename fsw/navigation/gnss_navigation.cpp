@@ -16,6 +16,8 @@ constexpr std::size_t index_of(Receiver receiver) {
 
 // Differences of single points share the errors of orbits and clocks, but not the noise.
 constexpr double kStartSigma_m = 5.0;
+// A relative state that most codes contradict for so many epochs is lost.
+constexpr int kMostContradicted = 5;
 // A single point's own sigma knows nothing of slow errors common to all epochs.
 constexpr double kOrbitSigma_m = 2.0;
 
@@ -31,6 +33,7 @@ void GnssNavigation::configure(const GnssNavigationSettings& settings) {
   ambiguities_.reset();
   has_epoch_ = false;
   relative_has_begun_ = false;
+  contradicted_in_a_row_ = 0;
 }
 
 void GnssNavigation::take(Receiver receiver, const gnss::ObservationEpoch& epoch) {
@@ -134,6 +137,11 @@ void GnssNavigation::take_pair(const gnss::ObservationEpoch& ours, const gnss::O
   }
   form_differences(ours, theirs, ephemerides_, frame, differences_);
   last_update_ = relative_.take(differences_, servicer, target);
+  contradicted_in_a_row_ = last_update_.codes_refused > last_update_.codes_used ? contradicted_in_a_row_ + 1 : 0;
+  if (contradicted_in_a_row_ == kMostContradicted) {
+    relative_.reset();
+    contradicted_in_a_row_ = 0;
+  }
   ambiguities_.update(relative_, last_update_, settings_.ambiguities);
   ++counters_.pairs;
   counters_.codes_refused += last_update_.codes_refused;

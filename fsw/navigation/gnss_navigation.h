@@ -90,6 +90,7 @@ class GnssNavigation {
   bool has_epoch_ = false;
   GpsTime epoch_;  ///< of the last servicer epoch folded in
   bool relative_has_begun_ = false;
+  int contradicted_in_a_row_ = 0;  ///< epochs whose codes were mostly refused
   GnssNavigationCounters counters_;
   RelativeUpdate last_update_;
 };

@@ -281,7 +281,7 @@ void RelativeFilter::find_slips_by_median(const DifferentialEpoch& epoch, Relati
         estimate_.predict(slope, residuals.sorted[k].value - residuals.median().value, sigma_m * sigma_m);
     if (math::abs(apart.value) > kSlip_m + kSlipSigmas * math::sqrt(apart.variance)) {
       ++update.slips;
-      lose(place);
+      contradict(place, update);
     }
   }
 }
@@ -302,7 +302,7 @@ void RelativeFilter::use_phases(const DifferentialEpoch& epoch, RelativeUpdate& 
       const estimation::Innovation innovation = estimate_.update(slope, value, variance, known ? kGate : kNoGate);
       if (!innovation.accepted) {
         ++update.phases_refused;
-        lose(*place);
+        contradict(*place, update);
         continue;
       }
       channels_.see(*place, observation, epoch.time);
@@ -322,6 +322,11 @@ void RelativeFilter::begin_ambiguity(std::size_t place, double value_m) {
 void RelativeFilter::lose(std::size_t place) {
   channels_.restart(place);
   estimate_.reset(ambiguity_index(place), 0.0, 0.0);
+}
+
+void RelativeFilter::contradict(std::size_t place, RelativeUpdate& update) {
+  if (channels_[place].fixed) ++update.contradictions;
+  lose(place);
 }
 
 void RelativeFilter::hold(std::size_t place, std::size_t reference, double cycles) {

@@ -49,6 +49,7 @@ struct RelativeUpdate {
   std::int32_t phases_used = 0;
   std::int32_t phases_refused = 0;
   std::int32_t slips = 0;
+  std::int32_t contradictions = 0;  ///< held channels given up although their receivers told of no loss
   double code_nis = 0.0;  ///< sums over what was used; each is expected to be near the count
   double phase_nis = 0.0;
 };
@@ -148,6 +149,7 @@ class RelativeFilter {
   void use_phases(const DifferentialEpoch& epoch, RelativeUpdate& update);
   void begin_ambiguity(std::size_t place, double value_m);
   void lose(std::size_t place);
+  void contradict(std::size_t place, RelativeUpdate& update);
   [[nodiscard]] double residual(const Row& row, double measured) const;
   [[nodiscard]] Estimate::Vector full_slope(const Row& row) const;
 

@@ -6,7 +6,6 @@
 
 #include <Eigen/LU>
 
-#include "fsw/gnss/lambda.h"
 #include "fsw/orbit/rtn.h"
 #include "host_sim/app/initial_attitudes.h"
 #include "host_sim/app/initial_orbits.h"
@@ -157,38 +156,60 @@ int EmulatedPair::wrong_integers() const {
   return wrong;
 }
 
-bool EmulatedPair::hold_second_best() {
-  // The object itself is not const: reaching into it is what the mistake consists of.
-  auto& filter = const_cast<RelativeFilter&>(gnss().relative());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+RelativeFilter& EmulatedPair::filter() {
+  // The navigation is this object's own and not const: reaching into it is what the mistakes consist of.
+  return const_cast<RelativeFilter&>(gnss().relative());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+}
+
+std::optional<EmulatedPair::Offer> EmulatedPair::offer() const {
+  const RelativeFilter& filter = gnss().relative();
+  Offer offer;
   std::map<int, std::size_t> reference;
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t k = 0; k < kPhaseChannels && pairs.size() < fsw::gnss::kMaxAmbiguities; ++k) {
+  for (std::size_t k = 0; k < kPhaseChannels && offer.pairs.size() < fsw::gnss::kMaxAmbiguities; ++k) {
     const PhaseChannel& channel = filter.channels()[k];
     if (!channel.in_use || channel.epochs == 0) continue;
     const auto [place, is_first] = reference.try_emplace(static_cast<int>(channel.signal), k);
-    if (!is_first) pairs.emplace_back(k, place->second);
+    if (!is_first) offer.pairs.emplace_back(k, place->second);
   }
-  const auto n = static_cast<Eigen::Index>(pairs.size());
-  if (n < fsw::navigation::AmbiguityResolution::kLeastHeld) return false;
-  const auto size = static_cast<Eigen::Index>(RelativeFilter::State::kSize);
-  Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(n, size);
-  for (Eigen::Index row = 0; row < n; ++row) {
-    const auto& [place, base] = pairs[static_cast<std::size_t>(row)];
+  const auto count = static_cast<Eigen::Index>(offer.pairs.size());
+  if (count < fsw::navigation::AmbiguityResolution::kLeastHeld) return std::nullopt;
+  constexpr Eigen::Index kSize = RelativeFilter::State::kSize;
+  Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(count, kSize);
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const auto& [place, base] = offer.pairs[static_cast<std::size_t>(row)];
     const double wavelength = fsw::gnss::wavelength(filter.channels()[place].signal);
     difference(row, RelativeFilter::ambiguity_index(place)) = 1.0 / wavelength;
     difference(row, RelativeFilter::ambiguity_index(base)) = -1.0 / wavelength;
   }
-  Eigen::MatrixXd covariance(size, size);
-  for (int c = 0; c < size; ++c) {
-    for (int r = 0; r < size; ++r) covariance(r, c) = filter.estimate().covariance(r, c);
+  Eigen::MatrixXd covariance(kSize, kSize);
+  for (int c = 0; c < kSize; ++c) {
+    for (int r = 0; r < kSize; ++r) covariance(r, c) = filter.estimate().covariance(r, c);
   }
   const Eigen::VectorXd floats = difference * filter.estimate().mean();
   const Eigen::MatrixXd spread = difference * covariance * difference.transpose();
-  const auto solution = fsw::gnss::resolve_ambiguities({floats.data(), pairs.size()},
-                                                       {spread.data(), pairs.size() * pairs.size()});
-  if (!solution.ok()) return false;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    filter.hold(pairs[k].first, pairs[k].second, solution.value().second[k]);
+  const std::size_t n = offer.pairs.size();
+  const auto solution = fsw::gnss::resolve_ambiguities({floats.data(), n}, {spread.data(), n * n});
+  if (!solution.ok()) return std::nullopt;
+  offer.integers = solution.value();
+  return offer;
+}
+
+bool EmulatedPair::hold_second_best() {
+  const std::optional<Offer> offered = offer();
+  if (!offered) return false;
+  for (std::size_t k = 0; k < offered->pairs.size(); ++k) {
+    filter().hold(offered->pairs[k].first, offered->pairs[k].second, offered->integers.second[k]);
+  }
+  return true;
+}
+
+bool EmulatedPair::hold_shifted(double cycles) {
+  const std::optional<Offer> offered = offer();
+  if (!offered) return false;
+  for (std::size_t k = 0; k < offered->pairs.size(); ++k) {
+    const auto& [place, base] = offered->pairs[k];
+    const bool is_shifted = gnss().relative().channels()[place].satellite.prn % 2 == 1;
+    filter().hold(place, base, offered->integers.best[k] + (is_shifted ? cycles : 0.0));
   }
   return true;
 }

@@ -6,12 +6,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/navigation.h"
+#include "fsw/gnss/lambda.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/truth/truth_model.h"
 #include "host_sim/twins/gnss_sensor.h"
@@ -65,9 +67,10 @@ class EmulatedPair {
   /// Held integers that are not those of the emulator.
   [[nodiscard]] int wrong_integers() const;
 
-  /// A mistake made on purpose in the filter's memory: the integers that fit second best are held.
-  /// False if there are too few ambiguities to hold.
+  /// Mistakes made on purpose in the filter's memory. The integers that fit second best are held; or those that fit
+  /// best after `cycles` were added to every other satellite's. False if there are too few ambiguities to hold.
   bool hold_second_best();
+  bool hold_shifted(double cycles);
 
  private:
   using Integers = std::map<std::pair<int, int>, std::int64_t>;  // of signal and satellite number
@@ -75,6 +78,14 @@ class EmulatedPair {
     fsw::GpsTime time;
     twins::Packet packet;
   };
+
+  struct Offer {
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;  ///< channels: one and its signal's reference
+    fsw::gnss::IntegerSolution integers;
+  };
+  [[nodiscard]] std::optional<Offer> offer() const;
+  /// The flight code's filter, to be tampered with.
+  [[nodiscard]] fsw::navigation::RelativeFilter& filter();
 
   void measure(const twins::TruthSnapshot& truth);
   void remember_integers(fsw::GpsTime time);
