@@ -105,6 +105,8 @@ void Navigation::set_uncertainty(GpsTime now) {
     state_.sigma_rtn.tail<3>().setConstant(unmodelled_acceleration * age);
     return;
   }
+  // The covariance stands at the filters' epoch, which goes on with the servicer's receiver alone.
+  const double coast_s = seconds(now - gnss_.epoch());
   const bool is_fixed = gnss_.ambiguities().is_fixed();
   const bool is_fresh = age <= kFreshGnss_s;
   state_.source = !is_fresh  ? NavigationSource::kPropagated
@@ -114,8 +116,8 @@ void Navigation::set_uncertainty(GpsTime now) {
   for (int axis = 0; axis < 3; ++axis) {
     const double position = math::sqrt(covariance(axis, axis));
     const double velocity = math::sqrt(covariance(3 + axis, 3 + axis));
-    state_.sigma_rtn(axis) = math::hypot(position + velocity * age, 0.5 * unmodelled_acceleration * age * age);
-    state_.sigma_rtn(3 + axis) = math::hypot(velocity, unmodelled_acceleration * age);
+    state_.sigma_rtn(axis) = math::hypot(position + velocity * coast_s, 0.5 * unmodelled_acceleration * coast_s * coast_s);
+    state_.sigma_rtn(3 + axis) = math::hypot(velocity, unmodelled_acceleration * coast_s);
   }
 }
 
@@ -151,10 +153,10 @@ void Navigation::take_gnss(GpsTime now, Inbox& inbox) {
   }
   const Pair estimated{gnss_.epoch(), gnss_.servicer(), gnss_.target()};
   if (!is_orbit(estimated.servicer) || !is_orbit(estimated.target)) return;
-  if (anchored_ && estimated.epoch <= state_.last_measurement) return;
+  state_.last_measurement = gnss_.last_pair();
+  if (anchored_ && estimated.epoch <= anchor_.epoch) return;
   anchor_ = estimated;
   anchored_ = true;
-  state_.last_measurement = estimated.epoch;
   forget_before(estimated.epoch);
 }
 

@@ -144,6 +144,7 @@ void GnssNavigation::take_pair(const gnss::ObservationEpoch& ours, const gnss::O
   }
   ambiguities_.update(relative_, last_update_, settings_.ambiguities);
   ++counters_.pairs;
+  last_pair_ = tag;
   counters_.codes_refused += last_update_.codes_refused;
   counters_.phases_refused += last_update_.phases_refused;
   counters_.slips += last_update_.slips;

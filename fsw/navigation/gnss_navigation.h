@@ -63,6 +63,8 @@ class GnssNavigation {
   /// Whether there is a relative orbit, and whose instant it is.
   [[nodiscard]] bool valid() const { return orbit_.started() && relative_.started(); }
   [[nodiscard]] GpsTime epoch() const { return epoch_; }
+  /// When both receivers were last heard of the same instant: since then the relative orbit coasts. At most epoch().
+  [[nodiscard]] GpsTime last_pair() const { return last_pair_; }
   [[nodiscard]] orbit::CartesianState servicer() const { return orbit_.state(); }
   [[nodiscard]] orbit::CartesianState target() const;
   /// Covariance of the relative state in the servicer's RTN (velocity as seen in the turning frame), m and m/s.
@@ -89,6 +91,7 @@ class GnssNavigation {
   DifferentialEpoch differences_;
   bool has_epoch_ = false;
   GpsTime epoch_;  ///< of the last servicer epoch folded in
+  GpsTime last_pair_;
   bool relative_has_begun_ = false;
   int contradicted_in_a_row_ = 0;  ///< epochs whose codes were mostly refused
   GnssNavigationCounters counters_;

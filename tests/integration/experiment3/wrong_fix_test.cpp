@@ -1,39 +1,105 @@
-// Wrong integers, held on purpose.
+// Wrong integers: held on purpose, and made by slips that no receiver tells of.
 
 #include <algorithm>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "host_sim/twins/gnss/body_frame.h"
 #include "tests/integration/experiment3/emulated_pair.h"
 
 namespace vbar::test {
 namespace {
 
-TEST(WrongFix, Explore) {
-  const CoastingPair coast(900);
-  for (int at : {5, 6, 7}) {
-    for (int seed = 1; seed <= 4; ++seed) {
-      EmulatedPair pair(coast, static_cast<std::uint64_t>(seed));
-      pair.fly(at + 1);
-      const double before = pair.position_error_m();
-      const fsw::Vector6 e0 = pair.error();
-      const bool held = pair.hold_shifted(1.0);
-      const double after = pair.position_error_m();
-      const int wrong = pair.wrong_integers();
-      double most = after, moved = (pair.error() - e0).head<3>().norm();
-      double released = -1, right = -1;
-      while (!pair.done()) {
-        pair.fly();
-        const bool is_released = pair.gnss().ambiguities().report().releases > 0;
-        if (is_released && released < 0) released = pair.elapsed_s();
-        if (released < 0) { most = std::max(most, pair.position_error_m()); moved = std::max(moved, (pair.error() - e0).head<3>().norm()); }
-        if (pair.is_fixed() && pair.wrong_integers() == 0 && right < 0) right = pair.elapsed_s();
-      }
-      fmt::print("at {} seed {} held {} wrong {} before {:.3f} after {:.3f} most {:.3f} moved {:.3f} released {} right {} end {:.4f} wrong {} rel {}\n", 10 * at, seed,
-                 held, wrong, before, after, most, moved, released, right, pair.position_error_m(), pair.wrong_integers(), pair.gnss().ambiguities().report().releases);
+constexpr double kLargestMove_m = 0.05;  // what a wrong fix may cost
+
+const CoastingPair& coast() {
+  static const CoastingPair pair(900);
+  return pair;
+}
+
+/// Three times what the unknown places of both antennas alone leave of a position, root mean square.
+double settled_m() {
+  const twins::gnss::BodyFrameSettings body;
+  return 3.0 * twins::gnss::static_floor_rms_m(body, body);
+}
+
+/// Held before the filter itself would have: five and seven epochs after the start of the receivers.
+class WrongFix : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(AfterEpochs, WrongFix, ::testing::Values(6, 8));
+
+// The one most likely to be taken for the right one. It differs from that by a cycle of one satellite, and two epochs
+// are enough for the others to outvote it.
+TEST_P(WrongFix, TheSecondBestIntegersAreFoundOut) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    EmulatedPair pair(coast(), seed);
+    pair.fly(GetParam());
+    ASSERT_TRUE(pair.hold_second_best()) << seed;
+    ASSERT_GT(pair.wrong_integers(), 0) << seed;
+    EXPECT_LT(pair.position_error_m(), kLargestMove_m) << seed;
+    const auto said = [&] { return pair.gnss().counters().slips + pair.gnss().counters().phases_refused; };
+    const std::int32_t before = said();
+    for (int epoch = 0; epoch < 2; ++epoch) {
+      pair.fly();
+      EXPECT_LT(pair.position_error_m(), kLargestMove_m) << seed;
     }
+    EXPECT_GT(said(), before) << seed;
+    while (!pair.done()) {
+      pair.fly();
+      EXPECT_EQ(pair.wrong_integers(), 0) << seed << " at " << pair.elapsed_s() << " s";
+    }
+    EXPECT_TRUE(pair.is_fixed()) << seed;
+    EXPECT_LT(pair.position_error_m(), settled_m()) << seed;
   }
+}
+
+// No decision would take these: half of all satellites a cycle off, which moves the position by decimetres at once. The
+// next epoch contradicts them, everything is given up, and the position with it.
+TEST_P(WrongFix, AGrossMistakeIsGivenUpAtOnce) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    EmulatedPair pair(coast(), seed);
+    pair.fly(GetParam());
+    ASSERT_TRUE(pair.hold_shifted(1.0)) << seed;
+    ASSERT_GT(pair.wrong_integers(), 5) << seed;
+    pair.fly();
+    EXPECT_EQ(pair.gnss().ambiguities().report().releases, 1) << seed;
+    EXPECT_FALSE(pair.is_fixed()) << seed;
+    EXPECT_EQ(pair.navigation().state().source, fsw::gnc::NavigationSource::kGnssFloat) << seed;
+    pair.fly(30);  // what a warm start may take
+    EXPECT_TRUE(pair.is_fixed()) << seed;
+    while (!pair.done()) {
+      EXPECT_EQ(pair.wrong_integers(), 0) << seed << " at " << pair.elapsed_s() << " s";
+      pair.fly();
+    }
+    EXPECT_LT(pair.position_error_m(), settled_m()) << seed;
+  }
+}
+
+// Three slips an hour of every signal, a hundred times as many as a receiver has, and it tells of none of them.
+TEST(UnseenSlips, NeverStayInAHeldInteger) {
+  const char* kTracking = "sensors.gnss.tracking";
+  std::vector<std::string> overrides;
+  for (const std::string spacecraft : {"servicer", "target"}) {
+    const std::string tracking = "spacecraft." + spacecraft + "." + kTracking;
+    overrides.push_back(tracking + ".cycle_slips_per_hour=3.0");
+    overrides.push_back(tracking + ".unseen_slip_fraction=1.0");
+  }
+  std::int32_t found = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    EmulatedPair pair(coast(), seed, overrides);
+    bool was_fixed = false;
+    while (!pair.done()) {
+      pair.fly();
+      if (!pair.gnss().valid()) continue;
+      was_fixed = was_fixed || pair.is_fixed();
+      EXPECT_EQ(pair.wrong_integers(), 0) << seed << " at " << pair.elapsed_s() << " s";
+      if (was_fixed) {
+        EXPECT_LT(pair.position_error_m(), kLargestMove_m) << seed << " at " << pair.elapsed_s() << " s";
+      }
+    }
+    EXPECT_TRUE(pair.is_fixed()) << seed;
+    found += pair.gnss().counters().slips;
+  }
+  EXPECT_GT(found, 200);  // ten flights of a quarter of an hour, two receivers, twenty signals and more: 300
 }
 
 }  // namespace
