@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fsw/packets/messages.h"
 #include "tests/integration/rendezvous/flown_mission.h"
 
 namespace vbar::test {
