@@ -80,8 +80,8 @@ TEST(TruthAccuracy, VariationalEquationsAgainstCowellOverALeg) {
 }
 
 TEST(TruthAccuracy, AllSmoothForcesAgainstCowellOverALeg) {
-  // As above with drag, Sun, Moon, tides and relativity (sunlight and its edges: edges_test.cpp), each spacecraft its own
-  // ballistic coefficient.
+  // As above with drag, Sun, Moon, tides and relativity (sunlight and its edges: edges_test.cpp), each spacecraft its
+  // own ballistic coefficient.
   constexpr double kLeg = 21600.0;
   TruthSettings settings = test::mission_settings();
   settings.forces.drag = settings.forces.sun = settings.forces.moon = true;
