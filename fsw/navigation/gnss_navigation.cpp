@@ -78,10 +78,9 @@ void GnssNavigation::take_servicer_epoch(const gnss::ObservationEpoch& epoch, st
   epoch_ = epoch.receiver_time;
   has_epoch_ = true;
   // The position is that of the instant of reception, the tag that of the receiver's clock.
-  const double late = point.value().clock_m / gnss::kSpeedOfLight;
-  const Vector3 velocity = orbit_.started() ? Vector3(orbit_.state().velocity_eci) : Vector3(Vector3::Zero());
+  const double early_s = point.value().clock_m / gnss::kSpeedOfLight;
   const double sigma_m = math::hypot(point.value().sigma_m, kOrbitSigma_m);
-  orbit_.take_position(epoch.receiver_time, point.value().position_eci + late * velocity, sigma_m);
+  orbit_.take_position(epoch.receiver_time, early_s, point.value().position_eci, sigma_m);
   if (other == nullptr) {
     ++counters_.alone;
     return;

@@ -25,41 +25,43 @@ orbit::CartesianState state_of(const Vector6& x) {
 
 }  // namespace
 
-void OrbitFilter::take_position(GpsTime time, const Vector3& position_eci, double sigma_m) {
+void OrbitFilter::take_position(GpsTime time, double early_s, const Vector3& position_eci, double sigma_m) {
   if (started_ && time - epoch_ > kLongestCoast) reset();
   if (!started_) {
-    begin(time, position_eci, sigma_m);
+    begin(time, early_s, position_eci, sigma_m);
     return;
   }
   if (time < epoch_) return;
   advance_to(time);
   if (!started_) return;
+  const Vector3 position = position_eci + early_s * state().velocity_eci;
   bool fits = true;
   for (int axis = 0; axis < 3 && fits; ++axis) {
-    const double residual = position_eci(axis) - estimate_.mean(axis);
+    const double residual = position(axis) - estimate_.mean(axis);
     fits = residual * residual <= kGate * (estimate_.variance(axis) + sigma_m * sigma_m);
   }
   if (!fits) {
     ++refused_;
     if (++refused_in_a_row_ >= kMostRefused) {
       reset();
-      begin(time, position_eci, sigma_m);
+      begin(time, early_s, position_eci, sigma_m);
     }
     return;
   }
   refused_in_a_row_ = 0;
   for (int axis = 0; axis < 3; ++axis) {
     constexpr double kNoGate = 1e300;
-    estimate_.update(Vector6::Unit(axis), position_eci(axis) - estimate_.mean(axis), sigma_m * sigma_m, kNoGate);
+    estimate_.update(Vector6::Unit(axis), position(axis) - estimate_.mean(axis), sigma_m * sigma_m, kNoGate);
   }
 }
 
 /// Velocity from two positions: the chord, curved by the point mass.
-void OrbitFilter::begin(GpsTime time, const Vector3& position_eci, double sigma_m) {
-  const double baseline = has_first_ ? seconds(time - epoch_) : 0.0;
+void OrbitFilter::begin(GpsTime time, double early_s, const Vector3& position_eci, double sigma_m) {
+  const double baseline = has_first_ ? seconds(time - epoch_) - early_s + first_early_s_ : 0.0;
   if (baseline < kLeastBaseline || baseline > kMostBaseline) {
     if (!has_first_ || baseline > kMostBaseline || baseline < 0.0) {
       first_position_eci_ = position_eci;
+      first_early_s_ = early_s;
       epoch_ = time;
       has_first_ = true;
     }
@@ -70,8 +72,9 @@ void OrbitFilter::begin(GpsTime time, const Vector3& position_eci, double sigma_
   const Vector3 gravity = -orbit::kMu / (distance * distance * distance) * middle;
   const Vector3 velocity = (position_eci - first_position_eci_) / baseline + 0.5 * baseline * gravity;
   const double speed_sigma = kStartSpeedSigma + 2.0 * sigma_m / baseline;
+  const Vector3 position = position_eci + early_s * velocity;
   for (int axis = 0; axis < 3; ++axis) {
-    estimate_.reset(axis, position_eci(axis), sigma_m * sigma_m);
+    estimate_.reset(axis, position(axis), sigma_m * sigma_m);
     estimate_.reset(3 + axis, velocity(axis), speed_sigma * speed_sigma);
   }
   epoch_ = time;

@@ -13,9 +13,10 @@ class OrbitFilter {
   /// Forgets everything.
   void reset() { *this = OrbitFilter{}; }
 
-  /// A position (m, ECI) measured at `time`, not before the last one. The second one starts the filter; one that does
-  /// not fit (gate of 5 sigma an axis) is left out, and after kMostRefused of those in a row the filter starts anew.
-  void take_position(GpsTime time, const Vector3& position_eci, double sigma_m);
+  /// A position (m, ECI) measured `early_s` before `time` (milliseconds: a receiver's clock is ahead by that), which is
+  /// not before that of the last one. The second one starts the filter; one that does not fit (gate of 5 sigma an axis)
+  /// is left out, and after kMostRefused of those in a row the filter starts anew.
+  void take_position(GpsTime time, double early_s, const Vector3& position_eci, double sigma_m);
 
   /// Moves the estimate to `time`, at or after its epoch; an impulse (m/s, ECI) is added there.
   void advance_to(GpsTime time);
@@ -34,12 +35,13 @@ class OrbitFilter {
   static constexpr Duration kLongestCoast = duration_of_seconds(3600);
 
  private:
-  void begin(GpsTime time, const Vector3& position_eci, double sigma_m);
+  void begin(GpsTime time, double early_s, const Vector3& position_eci, double sigma_m);
 
   bool has_first_ = false;
   bool started_ = false;
   GpsTime epoch_;
   Vector3 first_position_eci_ = Vector3::Zero();
+  double first_early_s_ = 0.0;
   estimation::Estimate<6> estimate_;
   std::int32_t refused_ = 0;
   int refused_in_a_row_ = 0;
