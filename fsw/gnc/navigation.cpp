@@ -116,7 +116,8 @@ void Navigation::set_uncertainty(GpsTime now) {
   for (int axis = 0; axis < 3; ++axis) {
     const double position = math::sqrt(covariance(axis, axis));
     const double velocity = math::sqrt(covariance(3 + axis, 3 + axis));
-    state_.sigma_rtn(axis) = math::hypot(position + velocity * coast_s, 0.5 * unmodelled_acceleration * coast_s * coast_s);
+    state_.sigma_rtn(axis) =
+        math::hypot(position + velocity * coast_s, 0.5 * unmodelled_acceleration * coast_s * coast_s);
     state_.sigma_rtn(3 + axis) = math::hypot(velocity, unmodelled_acceleration * coast_s);
   }
 }

@@ -50,7 +50,7 @@ struct RelativeUpdate {
   std::int32_t phases_refused = 0;
   std::int32_t slips = 0;
   std::int32_t contradictions = 0;  ///< held channels given up although their receivers told of no loss
-  double code_nis = 0.0;  ///< sums over what was used; each is expected to be near the count
+  double code_nis = 0.0;            ///< sums over what was used; each is expected to be near the count
   double phase_nis = 0.0;
 };
 

@@ -37,9 +37,9 @@ INSTANTIATE_TEST_SUITE_P(From_s, Silence, ::testing::Values(600, 1800, 3300));
 TEST_P(Silence, OfTenMinutesIsCoastedToldAndRecoveredFrom) {
   constexpr double kSilence_s = 600.0;
   const double begin_s = GetParam();
-  const Flight flight = fly_experiment3(1, {fmt::format("links.crosslink.silence_begin_s={}", begin_s),
-                                            fmt::format("links.crosslink.silence_duration_s={}", kSilence_s),
-                                            "guidance.navigation_timeout_s=300.0"});
+  const Flight flight = fly_experiment3(
+      1, {fmt::format("links.crosslink.silence_begin_s={}", begin_s),
+          fmt::format("links.crosslink.silence_duration_s={}", kSilence_s), "guidance.navigation_timeout_s=300.0"});
   const report::RunRecord& record = flight.flown.record;
   const double start_s = record.truth.front().time_s;
   double fixed_again_s = 1e9, largest_m = 0.0;

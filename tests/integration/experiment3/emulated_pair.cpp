@@ -119,8 +119,7 @@ const twins::TruthSnapshot& EmulatedPair::truth_of_filter() const {
 
 fsw::Vector6 EmulatedPair::error() const {
   const twins::TruthSnapshot& then = truth_of_filter();
-  const auto truth =
-      fsw::orbit::relative_state_rtn(then.find("servicer")->orbit, then.find("target")->orbit);
+  const auto truth = fsw::orbit::relative_state_rtn(then.find("servicer")->orbit, then.find("target")->orbit);
   const auto estimate = fsw::orbit::relative_state_rtn(gnss().servicer(), gnss().target());
   fsw::Vector6 error;
   error << estimate.position_rtn - truth.position_rtn, estimate.velocity_rtn - truth.velocity_rtn;

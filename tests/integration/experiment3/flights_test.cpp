@@ -39,10 +39,11 @@ TEST(Experiment3, TenSeedsAreAsGoodAsThePaper) {
     }
     largest_dv_mps = std::max(largest_dv_mps, record.summary.dv_mps);
     latest_fix_s = std::max(latest_fix_s, flight.first_fix_s.value_or(1e9));
-    fmt::print("seed {:2d}: static floor {:4.1f} mm; position {:4.1f} mm, at waypoints {:4.1f} and {:4.1f}; "
-               "velocity {:.4f} mm/s; {:.3f} mm/s flown\n",
-               seed, 1e3 * floor.back(), 1e3 * mean.back(), 1e3 * at_9.back(), 1e3 * at_10.back(),
-               1e3 * velocity.back(), 1e3 * record.summary.dv_mps);
+    fmt::print(
+        "seed {:2d}: static floor {:4.1f} mm; position {:4.1f} mm, at waypoints {:4.1f} and {:4.1f}; "
+        "velocity {:.4f} mm/s; {:.3f} mm/s flown\n",
+        seed, 1e3 * floor.back(), 1e3 * mean.back(), 1e3 * at_9.back(), 1e3 * at_10.back(), 1e3 * velocity.back(),
+        1e3 * record.summary.dv_mps);
   }
   const std::string paper = "the paper's software in the loop; median of seeds 1 to 10";
   accuracy::expect_below("experiment 3: relative position once fixed, mean of the flight", paper, 1e3 * median(mean),
@@ -88,8 +89,8 @@ TEST(Experiment3, TheSameSeedIsTheSameFlight) {
 TEST(Experiment3, ReceiversOfOtherRatesDoAsWell) {
   for (const char* period : {"1.0", "5.0"}) {
     const std::string setting = std::string("sensors.gnss.period_s=") + period;
-    const Flight flight =
-        fly_experiment3(1, {"spacecraft.servicer." + setting, "spacecraft.target." + setting, "mission.duration_h=0.5"});
+    const Flight flight = fly_experiment3(
+        1, {"spacecraft.servicer." + setting, "spacecraft.target." + setting, "mission.duration_h=0.5"});
     EXPECT_LT(flight.first_fix_s.value_or(1e9), 300.0) << period;
     EXPECT_LT(flight.mean_position_m, 3.0 * static_floor_m(1)) << period;
   }

@@ -117,17 +117,22 @@ std::vector<Abuse> abuses() {
                    for (std::size_t at = kOemHeaderBytes + 4; at < message.size(); ++at)
                      message[at] = static_cast<std::uint8_t>((*random)());
                  })});
-  all.push_back({"another_sky", [steps = std::make_shared<int>(0)](ReceiverBytes& both) {
+  all.push_back({"another_sky",
+                 [steps = std::make_shared<int>(0)](ReceiverBytes& both) {
                    // All satellites of even numbers for five minutes, then all of odd.
                    const int parity = *steps < 30 ? 0 : 1;
                    ++*steps;
                    each_message([=](int id, Bytes& message) {
-                     if (id == kRange) keep_satellites(message, [=](int prn) { return prn % 2 == parity; }, 1000);
+                     if (id == kRange)
+                       keep_satellites(
+                           message, [=](int prn) { return prn % 2 == parity; }, 1000);
                    })(both);
                  },
                  false});
   all.push_back({"fewer_than_four_satellites", each_message([](int id, Bytes& message) {
-                   if (id == kRange) keep_satellites(message, [](int) { return true; }, 3);
+                   if (id == kRange)
+                     keep_satellites(
+                         message, [](int) { return true; }, 3);
                  }),
                  false});
   return all;
@@ -154,9 +159,10 @@ TEST_P(HostileBytes, AreSurvivedAndForgotten) {
   const std::vector<telemetry_gnss> gnss = telemetry_of<telemetry_gnss>(flight.flown);
   ASSERT_EQ(gnss.size(), record.estimates.size());
   const std::int32_t refused = gnss.back().messages_refused - gnss[kFirstBad - 1].messages_refused;
-  fmt::print("{}: {} messages refused, {} epochs without their other half, {} without a position; largest error {:.1f} "
-             "cm, fixed again after {:.0f} s\n",
-             GetParam().name, refused, gnss.back().alone, gnss.back().no_solution, 1e2 * largest_m, fixed_again_s);
+  fmt::print(
+      "{}: {} messages refused, {} epochs without their other half, {} without a position; largest error {:.1f} "
+      "cm, fixed again after {:.0f} s\n",
+      GetParam().name, refused, gnss.back().alone, gnss.back().no_solution, 1e2 * largest_m, fixed_again_s);
   if (GetParam().is_noticed) {
     EXPECT_GT(refused, 20);
   }
@@ -170,8 +176,8 @@ INSTANTIATE_TEST_SUITE_P(Abuse, HostileBytes, ::testing::ValuesIn(abuses()),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 // Not hostile, but rare: a flight across the end of a GPS week (BeiDou's ends 14 s later), and receivers whose clocks
-// stand up to ten milliseconds apart. (The servicer's velocity, known to 0.1 m/s at first, makes a millimetre of that;
-// of the hundred milliseconds that no receiver reaches it makes too much for integers.)
+// stand up to 20 ms apart, twenty times what receivers that set their clocks allow. (The servicer's velocity is known to
+// a decimetre a second at first: over 100 ms that is a centimetre, too much for a quick fix.)
 TEST(RareTimes, TheWeekEndsBetweenTheWaypoints) {
   // Starts on Saturday, 2011-07-23, 23:00 UTC.
   const Flight flight = fly_experiment3(1, {"mission.epoch_utc=2011-07-22T08:00:00Z"});
@@ -188,7 +194,7 @@ TEST(RareTimes, ClocksMayStandFarApart) {
   std::vector<std::string> overrides;
   for (const std::string spacecraft : {"servicer", "target"}) {
     const std::string clock = "spacecraft." + spacecraft + ".sensors.gnss.clock.";
-    overrides.push_back(clock + "initial_offset_ms=5.0");
+    overrides.push_back(clock + "initial_offset_ms=10.0");
     overrides.push_back(clock + "jump_threshold_ms=20.0");
   }
   overrides.push_back("mission.duration_h=0.5");

@@ -85,8 +85,7 @@ TEST(ManySeeds, TheForcesAreAsTheFilterIsTold) {
       return fsw::orbit::propagate_j2(epochs[k].find(name)->orbit, 10.0).value().velocity_eci;
     };
     const auto flown = [&](const char* name) -> fsw::Vector3 { return epochs[k + 1].find(name)->orbit.velocity_eci; };
-    const fsw::Vector3 gained_eci =
-        (flown("target") - flown("servicer")) - (coasted("target") - coasted("servicer"));
+    const fsw::Vector3 gained_eci = (flown("target") - flown("servicer")) - (coasted("target") - coasted("servicer"));
     const fsw::Vector3 acceleration = fsw::orbit::R_rtn_eci(epochs[k].find("servicer")->orbit) * gained_eci / 10.0;
     sum_of_squares += acceleration.cwiseAbs2();
     if (k > 0) largest_step = std::max(largest_step, (acceleration - before).norm());
