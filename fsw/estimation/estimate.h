@@ -7,9 +7,6 @@
 //
 // Products are Eigen's lazy ones: its blocked kernels for larger matrices keep a way to the heap in the object code.
 
-#include <array>
-#include <cstddef>
-
 #include <Eigen/Core>
 
 #include "fsw/core/result.h"
@@ -105,17 +102,10 @@ class Estimate {
     if (!(innovation.variance > 0.0) || !(innovation.nis() <= gate)) return innovation;
     innovation.accepted = true;
     mean_ += ph * (residual / innovation.variance);
-    // What is idle or independent of the measurement stays as it is.
-    std::array<int, static_cast<std::size_t>(N)> moved{};
-    int count = 0;
-    for (int i = 0; i < N; ++i) {
-      if (ph(i) != 0.0) moved[at(count++)] = i;
-    }
-    for (int a = 0; a < count; ++a) {
-      const int c = moved[at(a)];
+    for (int c = 0; c < N; ++c) {
+      if (ph(c) == 0.0) continue;
       const double gain = ph(c) / innovation.variance;
-      for (int b = a; b < count; ++b) {
-        const int r = moved[at(b)];
+      for (int r = c; r < N; ++r) {
         const double less = covariance_(r, c) - ph(r) * gain;
         covariance_(r, c) = less;
         covariance_(c, r) = less;
@@ -136,8 +126,6 @@ class Estimate {
   }
 
  private:
-  static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
   /// P h. A measurement sees few of the components; the columns of the others are left out.
   [[nodiscard]] Vector covariance_times(const Vector& h) const {
     Vector product = Vector::Zero();
