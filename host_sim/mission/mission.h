@@ -52,8 +52,8 @@ struct FlightComputer {
   std::string device;             ///< board on a serial link: the tty
   /// Serial link: the tty's rate (board: 921,600 unless said); for others the bridge slows the line down to it.
   std::optional<int> baud;
-  std::string address;            ///< board on UDP
-  int port = 0;                   ///< board on UDP
+  std::string address;  ///< board on UDP
+  int port = 0;         ///< board on UDP
 };
 
 enum class NavigationSource { kIdeal, kRecorded };

@@ -57,9 +57,8 @@ void epoch(benchmark::State& state) {
   const RelativeUpdate& last = pair.navigation->last_update();
   state.counters["phases"] = last.phases_used;
   state.counters["codes"] = last.codes_used;
-  state.counters["epoch"] =
-      benchmark::Counter(static_cast<double>(kEpochs * state.iterations()),
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["epoch"] = benchmark::Counter(static_cast<double>(kEpochs * state.iterations()),
+                                               benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 BENCHMARK(epoch)->Name("navigation/vbar/epoch")->Unit(benchmark::kMillisecond);
