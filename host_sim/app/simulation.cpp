@@ -319,7 +319,9 @@ void Simulation::summarise(double wall_s, bool complete) {
   summary.flight_software = surroundings_.flight_computer.description();
   summary.navigation = servicer_.gnss ? "gnss" : std::string(mission::name_of(servicer_.navigation->source));
   summary.gnss = servicer_.gnss ? "digital" : "";
-  summary.simulated_s = fsw::seconds(events_.now() - mission_.start_time());
+  summary.static_floor_m = gnss_static_floor_m(mission_, servicer_);
+  // What a link delivers after the end is of no interest.
+  summary.simulated_s = fsw::seconds(std::min(events_.now(), mission_.end_time()) - mission_.start_time());
   summary.wall_s = wall_s;
   summary.speed_factor = wall_s > 0.0 ? summary.simulated_s / wall_s : 0.0;
 

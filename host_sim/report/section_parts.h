@@ -44,6 +44,15 @@ inline std::vector<Moment> waypoint_moments(const View& view) {
   return moments;
 }
 
+/// When the executed maneuvers of a view were.
+inline std::vector<double> maneuver_events(const RunRecord& record, const View& view) {
+  std::vector<double> events;
+  for (const ManeuverRow& row : record.maneuvers) {
+    if (row.accepted && view.holds(row.execution_time_s)) events.push_back(hours(row.execution_time_s));
+  }
+  return events;
+}
+
 /// (time in hours, value(row)) of all rows inside the view.
 template <class Row, class Value>
 std::vector<Point> over_time(const std::vector<Row>& rows, const View& view, const Value& value) {
