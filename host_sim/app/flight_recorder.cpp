@@ -152,7 +152,7 @@ report::GnssRow FlightRecorder::gnss_row(double time_s, const telemetry_gnss& m)
   report::GnssRow row;
   row.time_s = time_s;
   row.step = m.step;
-  if (m.pairs > 0) row.epoch_s = mission_seconds(fsw::GpsTime{m.epoch_gps_ns});
+  if (m.epoch_gps_ns != 0) row.epoch_s = mission_seconds(fsw::GpsTime{m.epoch_gps_ns});
   row.pairs = m.pairs;
   row.alone = m.alone;
   row.too_late = m.too_late;

@@ -21,8 +21,7 @@ constexpr std::array<std::string_view, 14> kStatuses{
     "ok",        "invalid argument", "not finite", "out of range",   "did not converge", "singular", "full",
     "too short", "too long",         "wrong type", "wrong checksum", "out of sequence",  "unsafe",   "not ready"};
 
-constexpr std::array<std::string_view, 6> kObstacles{"none",      "too few", "success rate",
-                                                     "ratio", "residual", "search"};
+constexpr std::array<std::string_view, 6> kObstacles{"none", "too few", "success rate", "ratio", "residual", "search"};
 
 }  // namespace
 

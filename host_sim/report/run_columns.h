@@ -35,7 +35,7 @@ inline constexpr std::array<std::string_view, 3> kRtnMps{"r_mps", "t_mps", "n_mp
 inline constexpr std::array<std::string_view, 6> kRtnMAndMps{"r_m", "t_m", "n_m", "r_mps", "t_mps", "n_mps"};
 /// Rows and columns r, t, n, then their rates.
 inline constexpr std::array<std::string_view, 21> kRtnLowerTriangle{
-    "r_r",  "t_r",  "t_t",  "n_r",   "n_t",   "n_n",  "vr_r", "vr_t", "vr_n",  "vr_vr", "vt_r",
+    "r_r",  "t_r",  "t_t",   "n_r",   "n_t",  "n_n",  "vr_r", "vr_t",  "vr_n",  "vr_vr", "vt_r",
     "vt_t", "vt_n", "vt_vr", "vt_vt", "vn_r", "vn_t", "vn_n", "vn_vr", "vn_vt", "vn_vn"};
 inline constexpr std::array<std::string_view, 6> kRoeM{"da_m", "dlambda_m", "dex_m", "dey_m", "dix_m", "diy_m"};
 

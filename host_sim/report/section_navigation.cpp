@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -37,7 +36,7 @@ struct Component {
   [[nodiscard]] double bound(const NavigationError& e) const { return 3.0 * e.sigma_rtn[axis + (velocity ? 3 : 0)]; }
 };
 
-/// Before the first fix errors are a thousand times as large: the axis shows what comes after it.
+/// Of what comes once navigation has settled: before, errors are a thousand times as large.
 Range settled_range(const std::vector<NavigationError>& all, const View& view, double from_s, const Component& what) {
   double largest = 0.0;
   for (const NavigationError& e : all) {
@@ -54,8 +53,7 @@ Plot error_plot(const RunRecord& record, const std::vector<NavigationError>& all
   plot.x = time_axis(view);
   plot.y = {.name = fmt::format("{} error", kAxes[what.axis]),
             .unit = what.velocity ? Unit::kMetresPerSecond : Unit::kMetres};
-  const std::optional<double> fix_s = first_fix(record);
-  if (fix_s && *fix_s < view.end_s) plot.y.range = settled_range(all, view, *fix_s, what);
+  if (first_fix(record)) plot.y.range = settled_range(all, view, settled_from(record, view), what);
   plot.height = 220.0;
   plot.moments = waypoint_moments(view);
   plot.events = maneuver_events(record, view);
