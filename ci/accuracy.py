@@ -130,17 +130,46 @@ def row_line(row):
             with_unit(row["limit"], row["unit"], 3), f"[`{row['test']}`](../{row['source']})"]
 
 
+# Kernels of the truth model, in the page's order, and what a reader should know of each.
+COST = {
+    "truth": "A day of the servicer's orbit; `one_day_full`, `days`, `spacecraft` and `degree` with 60x60 gravity (or the degree"
+             " named), drag, radiation pressure, Sun and Moon at a tolerance of 1e-11; `threads`: sixteen spacecraft.",
+    "gravity": "One evaluation; `vbar_portable` without the processor's wide registers, the same bits.",
+    "nrlmsise00": "One density; `new_day`: the first of a day.",
+    "drag": "", "sun_moon": "One call of both.", "third_body": "", "solid_tides": "", "relativity": "", "earth_rotation": "",
+    "day_in_sunlight": "A day of 60x60 gravity, Sun, Moon and radiation pressure at a tolerance of 1e-12, by kind of shadow.",
+    "attitude": "",
+}
+# What Google Benchmark says of every case.
+BENCHMARK_FIELDS = {"name", "run_name", "run_type", "family_index", "per_family_instance_index", "repetitions",
+                    "repetition_index", "threads", "iterations", "real_time", "cpu_time", "time_unit", "error_occurred"}
+
+
+def where_time_goes(case):
+    """Counters that a case adds in ms, as one cell: largest first."""
+    shares = {k.removesuffix("_ms").replace("_", " "): v for k, v in case.items()
+              if k not in BENCHMARK_FIELDS and k.endswith("_ms")}
+    return ", ".join(f"{name} {share:.2g} ms" for name, share in sorted(shares.items(), key=lambda s: -s[1]))
+
+
 def cost_tables(file):
     """One table a kernel: names are kernel/who/size."""
-    kernels = {}
+    kernels = {kernel: [] for kernel in COST}
     for case in json.loads(pathlib.Path(file).read_text())["benchmarks"]:
         if case.get("run_type", "iteration") == "iteration" and not case.get("error_occurred"):
             kernel, _, rest = case["name"].partition("/")
-            kernels.setdefault(kernel, []).append(
-                [rest or kernel, *(f"{case[clock]:.4g} {case['time_unit']}" for clock in ("real_time", "cpu_time"))])
+            if kernel in kernels:
+                kernels[kernel].append(
+                    [rest or kernel, *(f"{case[clock]:.4g} {case['time_unit']}" for clock in ("real_time", "cpu_time")),
+                     where_time_goes(case)])
     text = ["## What it costs", "", f"By `vbar_bench`, one run, {platform.machine()}.", ""]
     for kernel, lines in kernels.items():
-        text += [f"### {kernel}", "", table(["who, size", "wall clock", "processor"], lines), ""]
+        if not lines:
+            continue
+        has_shares = any(line[3] for line in lines)
+        head = ["who, size", "wall clock", "processor", "of it"]
+        text += [f"### {kernel}", "", *([COST[kernel], ""] if COST[kernel] else []),
+                 table(head if has_shares else head[:3], [line if has_shares else line[:3] for line in lines]), ""]
     return text
 
 

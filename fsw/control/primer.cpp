@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "fsw/math/cholesky6.h"
 #include "fsw/control/primer_extract.h"
+#include "fsw/math/cholesky6.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::control {

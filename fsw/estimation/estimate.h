@@ -91,12 +91,12 @@ class Estimate {
   /// What a measurement with the linear(ised) model z = h x + noise would show: its innovation, not folded in.
   /// `residual`: measured minus predicted.
   [[nodiscard]] Innovation predict(const Vector& h, double residual, double noise_variance) const {
-    return {.value = residual, .variance = h.dot(covariance_.lazyProduct(h)) + noise_variance, .accepted = false};
+    return {.value = residual, .variance = h.dot(covariance_times(h)) + noise_variance, .accepted = false};
   }
 
   /// Folds it in unless nis() exceeds `gate`, or anything is not finite.
   Innovation update(const Vector& h, double residual, double noise_variance, double gate) {
-    const Vector ph = covariance_.lazyProduct(h);
+    const Vector ph = covariance_times(h);
     Innovation innovation{.value = residual, .variance = h.dot(ph) + noise_variance, .accepted = false};
     // Written so that a NaN is refused.
     if (!(innovation.variance > 0.0) || !(innovation.nis() <= gate)) return innovation;
@@ -126,6 +126,15 @@ class Estimate {
   }
 
  private:
+  /// P h. A measurement sees few of the components; the columns of the others are left out.
+  [[nodiscard]] Vector covariance_times(const Vector& h) const {
+    Vector product = Vector::Zero();
+    for (int c = 0; c < N; ++c) {
+      if (h(c) != 0.0) product += h(c) * covariance_.col(c);
+    }
+    return product;
+  }
+
   void symmetrise() {
     for (int c = 0; c < N; ++c) {
       for (int r = 0; r < c; ++r) {

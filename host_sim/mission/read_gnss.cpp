@@ -13,6 +13,9 @@ using twins::gnss::GpsEphemerisLog;
 using twins::gnss::SatelliteSet;
 using twins::gnss::StartMode;
 
+/// The emulator is the one source so far: the key is there so that a testbed is one word away.
+enum class GnssSource { kDigital };
+constexpr Names<GnssSource, 1> kGnssSources{{{"digital", GnssSource::kDigital}}};
 constexpr Names<StartMode, 3> kStartModes{
     {{"cold", StartMode::kCold}, {"warm", StartMode::kWarm}, {"hot", StartMode::kHot}}};
 constexpr Names<SatelliteSet, 3> kSatelliteSets{
@@ -103,8 +106,9 @@ void read_body_frame(const TableReader& section, twins::gnss::BodyFrameSettings&
 
 GnssSensor read_gnss_sensor(const TableReader& section, const std::string& spacecraft,
                             const std::vector<std::string>& names) {
-  section.accept_only({"partner", "period_s", "ephemeris_repeat_s", "corrections_repeat_s", "gps_ephemeris",
+  section.accept_only({"source", "partner", "period_s", "ephemeris_repeat_s", "corrections_repeat_s", "gps_ephemeris",
                        "ionosphere", "visibility", "link_budget", "tracking", "start", "clock", "body_frame"});
+  static_cast<void>(section.choice<GnssSource>("source", kGnssSources, GnssSource::kDigital));
   GnssSensor sensor;
   sensor.partner = section.text("partner", "");
   const bool is_known = std::find(names.begin(), names.end(), sensor.partner) != names.end();

@@ -16,7 +16,7 @@ from peer import ask, expect, skip
 
 HEADER_BYTES = 16
 CRC_BYTES = 2
-SIZES = {"int8_t": 1, "int32_t": 4, "int64_t": 8, "double": 8}
+SIZES = {"byte": 1, "int8_t": 1, "int32_t": 4, "int64_t": 8, "double": 8}
 
 
 def definitions(path):
@@ -65,6 +65,8 @@ def type_hash(structs, name):
 def random_value(kind, source):
     if kind == "double":
         return source.choice([0.0, -0.0, 5e-324, 1.7e308, source.uniform(-1e7, 1e7), source.gauss(0, 1e-3)])
+    if kind == "byte":
+        return source.randrange(256)
     bits = 8 * SIZES[kind] - 1
     return source.choice([-(2**bits), 2**bits - 1, 0, source.randrange(-(2**bits), 2**bits)])
 
@@ -74,7 +76,8 @@ def random_message(types, structs, name, source):
     for kind, field, length in structs[name]:
         make = ((lambda: random_value(kind, source)) if kind in SIZES else
                 (lambda: random_message(types, structs, kind, source)))
-        setattr(message, field, make() if length is None else [make() for _ in range(length)])
+        value = make() if length is None else [make() for _ in range(length)]
+        setattr(message, field, bytes(value) if kind == "byte" and length is not None else value)
     return message
 
 

@@ -52,7 +52,8 @@ std::optional<Declaration> declaration_in(const std::string& line) {
 std::map<std::string, Layout> layouts_of(const std::string& path) {
   std::ifstream file(path);
   EXPECT_TRUE(file) << path;
-  const std::map<std::string, std::size_t> sizes{{"int8_t", 1}, {"int32_t", 4}, {"int64_t", 8}, {"double", 8}};
+  const std::map<std::string, std::size_t> sizes{
+      {"byte", 1}, {"int8_t", 1}, {"int32_t", 4}, {"int64_t", 8}, {"double", 8}};
   std::map<std::string, Layout> layouts;
   std::string line;
   std::string name;

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "host_sim/truth/force_list.h"
 #include "host_sim/truth/forces/gravity_force.h"
 #include "host_sim/truth/spacecraft_propagator.h"
 #include "host_sim/truth/truth_model.h"
@@ -76,6 +77,36 @@ TEST(TruthAccuracy, VariationalEquationsAgainstCowellOverALeg) {
   EXPECT_LT(velocity_error, 1e-6);  // the position's error times the mean motion, 1e-3 1/s
   accuracy::expect_below("six hours of the variational equations, relative position of two spacecraft 10 m apart",
                          kReference, relative_error, 1e-4, "m");
+}
+
+TEST(TruthAccuracy, AllSmoothForcesAgainstCowellOverALeg) {
+  // As above with drag, Sun, Moon, tides and relativity (sunlight and its edges: edges_test.cpp), each spacecraft its
+  // own ballistic coefficient.
+  constexpr double kLeg = 21600.0;
+  TruthSettings settings = test::mission_settings();
+  settings.forces.drag = settings.forces.sun = settings.forces.moon = true;
+  settings.forces.solid_tides = settings.forces.relativity = true;
+  settings.end = after(kLeg);
+  const SpacecraftSettings servicer{"servicer", test::servicer_state(), {154.0, 1.3, 2.5, 2.5, 1.32}};
+  const SpacecraftSettings target{"target", test::target_state(10.0), {40.0, 0.38, 2.25, 0.55, 1.2}};
+  TruthModel model(settings);
+  const auto by_cowell = [&](const SpacecraftSettings& spacecraft) {
+    const auto dynamics = test::dynamics_with(make_forces(settings, model.data(), spacecraft));
+    dynamics->enter_interval(0.0);
+    return cowell(*dynamics, spacecraft.osculating, 0.0, kLeg);
+  };
+  const CartesianState servicer_end = by_cowell(servicer);
+  const CartesianState target_end = by_cowell(target);
+
+  model.add_spacecraft(servicer);
+  model.add_spacecraft(target);
+  model.advance_to(after(kLeg));
+  const Vector3 relative = model.state(1).position_eci - model.state(0).position_eci;
+  constexpr const char* kReference = "Cowell's equations by Fehlberg 7(8), the same forces";
+  accuracy::expect_below("six hours with 60x60 gravity, drag, Sun, Moon, tides, relativity: position", kReference,
+                         (model.state(0).position_eci - servicer_end.position_eci).norm(), 1e-3, "m");
+  accuracy::expect_below("the same: relative position of two unlike spacecraft from 10 m apart", kReference,
+                         (relative - (target_end.position_eci - servicer_end.position_eci)).norm(), 1e-4, "m");
 }
 
 TEST(TruthAccuracy, StatesBetweenStepsAreAsGood) {

@@ -16,9 +16,10 @@ IdealNavigation::Settings settings() {
 }
 
 TruthSnapshot truth_at(GpsTime time) {
-  TruthSnapshot truth{time, {}};
-  truth.spacecraft.push_back({"target", {{7.0e6, 1.0, 2.0}, {3.0, 7.5e3, 4.0}}});
-  truth.spacecraft.push_back({"servicer", {{7.1e6, -1.0, -2.0}, {-3.0, 7.4e3, -4.0}}});
+  TruthSnapshot truth;
+  truth.time = time;
+  truth.spacecraft.push_back({"target", {{7.0e6, 1.0, 2.0}, {3.0, 7.5e3, 4.0}}, {}});
+  truth.spacecraft.push_back({"servicer", {{7.1e6, -1.0, -2.0}, {-3.0, 7.4e3, -4.0}}, {}});
   return truth;
 }
 
