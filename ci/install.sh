@@ -5,7 +5,7 @@ set -euo pipefail
 packages=(
   # build
   build-essential cmake ninja-build ccache git ca-certificates pkg-config
-  clang clang-format clang-tidy
+  clang clang-format clang-tidy libclang-rt-14-dev
   # libraries of the host programs
   libeigen3-dev liblcm-dev liblcm-bin libboost-dev libboost-system-dev liberfa-dev libgeographiclib-dev librandom123-dev
   libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev

@@ -20,4 +20,10 @@ ctest --preset asan --parallel 2 --label-regex unit
 say "flight code and the program with the second compiler, all warnings errors"
 cmake --preset host-clang --log-level=WARNING
 cmake --build --preset host-clang --parallel --target flight_code vbar
+say "a minute of fuzzing: the decoder of receiver bytes"
+cmake --preset fuzz --log-level=WARNING
+cmake --build --preset fuzz --parallel
+found=$(mktemp -d)
+trap 'rm -rf "$found"' EXIT
+build/fuzz/tests/fuzz/vbar_fuzz_receiver -max_total_time=60 -print_final_stats=1 -verbosity=0 "$found" tests/fuzz/corpus/receiver
 say "all passed"

@@ -1,10 +1,8 @@
 #include "host_sim/truth/earth/earth_orientation.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -13,28 +11,14 @@
 #include <erfam.h>
 #include <fmt/format.h>
 
+#include "host_sim/truth/earth/daily_table.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/earth/utc_day.h"
 
 namespace vbar::truth {
 namespace {
 
-constexpr int kMjdOfGpsEpoch = 44244;
-constexpr int kLastMjd = 88068;  // 2099-12-31: beyond it a file is no record of observations
 constexpr std::string_view kColumns = "mjd_utc,x_arcsec,y_arcsec,ut1_minus_utc_s,dx_arcsec,dy_arcsec";
-
-/// The six numbers of a row; false if there are not exactly six.
-bool parse_row(std::string_view line, double (&values)[6]) {
-  const char* at = line.data();
-  const char* const end = at + line.size();
-  for (int column = 0; column < 6; ++column) {
-    const auto [next, error] = std::from_chars(at, end, values[column]);
-    if (error != std::errc{} || !std::isfinite(values[column])) return false;
-    at = next;
-    if (column < 5 && (at == end || *at++ != ',')) return false;
-  }
-  return at == end;
-}
 
 EarthOrientation& operator+=(EarthOrientation& sum, const EarthOrientation& term) {
   sum.ut1_minus_tai_s += term.ut1_minus_tai_s;
@@ -53,35 +37,13 @@ EarthOrientation operator*(double factor, const EarthOrientation& orientation) {
 }  // namespace
 
 EarthOrientationSeries EarthOrientationSeries::load(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot open the Earth orientation file", file.string()));
   std::vector<Day> days;
-  std::string line;
-  bool header_seen = false;
-  for (int number = 1; std::getline(in, line); ++number) {
-    if (line.starts_with('#')) continue;
-    if (!header_seen) {
-      if (line != kColumns) {
-        throw std::runtime_error(
-            fmt::format("{}:{}: found \"{}\", expected the columns {}", file.string(), number, line, kColumns));
-      }
-      header_seen = true;
-      continue;
-    }
-    double row[6];
-    if (!parse_row(line, row) || row[0] != std::floor(row[0]) || row[0] < kMjdOfGpsEpoch || row[0] > kLastMjd) {
-      throw std::runtime_error(
-          fmt::format("{}:{}: found \"{}\", expected six numbers: {}", file.string(), number, line, kColumns));
-    }
-    const int mjd_utc = static_cast<int>(row[0]);
-    if (!days.empty() && mjd_utc != days.back().mjd_utc + 1) {
-      throw std::runtime_error(fmt::format("{}:{}: day {} follows day {}; days must follow without gaps", file.string(),
-                                           number, mjd_utc, days.back().mjd_utc));
-    }
+  read_daily_table<6>(file, "Earth orientation", kColumns, [&](int mjd_utc, const std::array<double, 6>& row) {
     days.push_back({mjd_utc,
                     {row[3] - tai_minus_utc_s(mjd_utc), row[1] * ERFA_DAS2R, row[2] * ERFA_DAS2R, row[4] * ERFA_DAS2R,
                      row[5] * ERFA_DAS2R}});
-  }
+    return std::string();
+  });
   if (days.size() < 4) {
     throw std::runtime_error(
         fmt::format("{}: {} days of Earth orientation; at least four are needed", file.string(), days.size()));

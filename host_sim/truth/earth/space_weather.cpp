@@ -1,17 +1,15 @@
 #include "host_sim/truth/earth/space_weather.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "host_sim/truth/earth/daily_table.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/earth/utc_day.h"
 
@@ -27,33 +25,17 @@ constexpr std::size_t kColumnCount = 12;
 constexpr std::string_view kColumns =
     "mjd_utc,ap1,ap2,ap3,ap4,ap5,ap6,ap7,ap8,ap_daily,f107_observed,f107_observed_81d";
 
-// A row of GPS time's century, ap on its scale of 0 to 400, and a flux that a quiet Sun or a flare can have.
-constexpr double kFirstMjd = 44244.0;
-constexpr double kLastMjd = 88068.0;
+// ap on its scale, and a flux that a quiet Sun or a flare can have.
 constexpr double kLargestAp = 400.0;
 constexpr double kLargestFlux = 1000.0;
-constexpr std::string_view kAccepted = "an integer date, ap of 0 to 400 and fluxes above 0 and up to 1000";
+constexpr std::string_view kAccepted = "ap of 0 to 400 and fluxes above 0 and up to 1000";
 
 using Row = std::array<double, kColumnCount>;
-
-/// False if there are not exactly as many numbers as columns.
-bool parse_row(std::string_view line, Row& row) {
-  const char* at = line.data();
-  const char* const end = at + line.size();
-  for (std::size_t column = 0; column < kColumnCount; ++column) {
-    const auto [next, error] = std::from_chars(at, end, row[column]);
-    if (error != std::errc{} || !std::isfinite(row[column])) return false;
-    at = next;
-    if (column + 1 < kColumnCount && (at == end || *at++ != ',')) return false;
-  }
-  return at == end;
-}
 
 bool in_range(const Row& row) {
   const auto is_ap = [](double ap) { return ap >= 0.0 && ap <= kLargestAp; };
   const auto is_flux = [](double flux) { return flux > 0.0 && flux <= kLargestFlux; };
-  return row[0] == std::floor(row[0]) && row[0] >= kFirstMjd && row[0] <= kLastMjd &&
-         std::all_of(row.begin() + 1, row.begin() + 10, is_ap) && is_flux(row[10]) && is_flux(row[11]);
+  return std::all_of(row.begin() + 1, row.begin() + 10, is_ap) && is_flux(row[10]) && is_flux(row[11]);
 }
 
 SpaceWeather::Day day_of(const Row& row) {
@@ -75,36 +57,11 @@ int slot_of_day(fsw::GpsTime time, int mjd_utc) {
 }  // namespace
 
 SpaceWeather SpaceWeather::load(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot open the space weather file", file.string()));
   std::vector<Day> days;
-  std::string line;
-  bool header_seen = false;
-  for (int number = 1; std::getline(in, line); ++number) {
-    if (line.starts_with('#')) continue;
-    if (!header_seen) {
-      if (line != kColumns) {
-        throw std::runtime_error(
-            fmt::format("{}:{}: found \"{}\", expected the columns {}", file.string(), number, line, kColumns));
-      }
-      header_seen = true;
-      continue;
-    }
-    Row row{};
-    if (!parse_row(line, row)) {
-      throw std::runtime_error(
-          fmt::format("{}:{}: found \"{}\", expected twelve numbers: {}", file.string(), number, line, kColumns));
-    }
-    if (!in_range(row)) {
-      throw std::runtime_error(fmt::format("{}:{}: found \"{}\", expected {}", file.string(), number, line, kAccepted));
-    }
-    const Day day = day_of(row);
-    if (!days.empty() && day.mjd_utc != days.back().mjd_utc + 1) {
-      throw std::runtime_error(fmt::format("{}:{}: day {} follows day {}; days must follow without gaps", file.string(),
-                                           number, day.mjd_utc, days.back().mjd_utc));
-    }
-    days.push_back(day);
-  }
+  read_daily_table<kColumnCount>(file, "space weather", kColumns, [&](int /*mjd_utc*/, const Row& row) {
+    days.push_back(day_of(row));
+    return std::string(in_range(row) ? "" : kAccepted);
+  });
   if (days.size() < kFewestDays) {
     throw std::runtime_error(
         fmt::format("{}: {} days of space weather; at least {} are needed", file.string(), days.size(), kFewestDays));

@@ -113,11 +113,16 @@ TEST_F(EarthOrientationFile, ErrorsNameFileAndLine) {
   using testing::HasSubstr;
   EXPECT_THAT(message_for("a,b\n"), HasSubstr("vbar_eop_test.csv:1: found \"a,b\", expected the columns"));
   EXPECT_THAT(message_for(header_ + rows_ + "55005,0,0,0,0,0\n"), HasSubstr(":7: day 55005 follows day 55003"));
-  EXPECT_THAT(message_for(header_ + rows_ + "55004,0,0,0,0\n"), HasSubstr(":7: found \"55004,0,0,0,0\", expected six"));
-  EXPECT_THAT(message_for(header_ + rows_ + "55004,0,0,0,0,0,0\n"), HasSubstr("expected six"));
-  EXPECT_THAT(message_for(header_ + rows_ + "55004,0,0,nan,0,0\n"), HasSubstr("expected six"));
-  EXPECT_THAT(message_for(header_ + rows_ + "55004.5,0,0,0,0,0\n"), HasSubstr("expected six"));
-  EXPECT_THAT(message_for(header_ + rows_ + "1e99,0,0,0,0,0\n"), HasSubstr("expected six"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004,0,0,0,0\n"),
+              HasSubstr(":7: found \"55004,0,0,0,0\", expected a whole MJD from 1980 to 2099 and 5 numbers"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004,0,0,0,0,0,0\n"),
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 5 numbers"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004,0,0,nan,0,0\n"),
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 5 numbers"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004.5,0,0,0,0,0\n"),
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 5 numbers"));
+  EXPECT_THAT(message_for(header_ + rows_ + "1e99,0,0,0,0,0\n"),
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 5 numbers"));
   EXPECT_THAT(message_for(header_ + "55000,0,0,0,0,0\n"), HasSubstr("1 days of Earth orientation"));
   EXPECT_THROW(EarthOrientationSeries::load("/nonexistent/eop.csv"), std::runtime_error);
 }

@@ -144,12 +144,14 @@ TEST_F(SpaceWeatherFile, ErrorsNameFileAndLine) {
               HasSubstr(":7: day 55005 follows day 55003"));
   EXPECT_THAT(message_for(header_ + rows_ + "55004,1,2,3,4,5,6,7,8,5,70\n"), HasSubstr(":7: found \"55004,"));
   EXPECT_THAT(message_for(header_ + rows_ + "55004,1,2,3,4,5,6,7,8,5,70,71,72\n"),
-              HasSubstr("expected twelve numbers"));
-  EXPECT_THAT(message_for(header_ + rows_ + "55004,1,2,3,4,5,6,7,8,5,,71\n"), HasSubstr("expected twelve numbers"));
-  EXPECT_THAT(message_for(header_ + rows_ + "55004,1,2,3,4,5,6,7,8,5,nan,71\n"), HasSubstr("expected twelve numbers"));
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 11 numbers"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004,1,2,3,4,5,6,7,8,5,,71\n"),
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 11 numbers"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004,1,2,3,4,5,6,7,8,5,nan,71\n"),
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 11 numbers"));
   EXPECT_THAT(message_for(header_ + rows_ + "55004,1,2,3,4,5,6,7,8,5,0,71\n"), HasSubstr("fluxes above 0"));
   EXPECT_THAT(message_for(header_ + rows_ + "55004,-1,2,3,4,5,6,7,8,5,70,71\n"), HasSubstr("ap of 0 to 400"));
-  EXPECT_THAT(message_for(header_ + rows_ + "55004.5,1,2,3,4,5,6,7,8,5,70,71\n"), HasSubstr("an integer date"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004.5,1,2,3,4,5,6,7,8,5,70,71\n"), HasSubstr("a whole MJD"));
   EXPECT_THAT(message_for(header_), HasSubstr("0 days of space weather; at least 4 are needed"));
   EXPECT_THROW(SpaceWeather::load("/nonexistent/space_weather.csv"), std::runtime_error);
   EXPECT_THROW(SpaceWeather(std::vector<SpaceWeather::Day>(2)), std::invalid_argument);
