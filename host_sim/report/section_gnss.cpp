@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,68 +21,63 @@ constexpr double kMillimetres = 1e3;
 
 // ------------------------------------------------------------------------------------------------- table of the paper
 
-using Cells = std::vector<std::string>;
-
 std::string mean_and_deviation(const std::optional<MeanAndDeviation>& value, int decimals) {
   if (!value) return fixed(std::nullopt, decimals);
   return fmt::format("{} ± {}", fixed(kMillimetres * value->mean, decimals),
                      fixed(kMillimetres * value->std, decimals));
 }
 
-template <class Value>
-Cells waypoint_cells(const std::string& what, const RunRecord& record, const Value& value, int decimals) {
-  Cells cells{what, "this run"};
-  for (const WaypointRow& row : record.waypoints) cells.push_back(fixed(value(row), decimals));
-  return cells;
-}
-
 std::optional<double> in_millimetres(const std::optional<double>& value) {
   return value ? std::optional(kMillimetres * *value) : std::nullopt;
 }
 
-/// The paper's numbers under those of the run, where the run meets the paper's waypoints.
-template <class Value>
-Cells paper_cells(const RunRecord& record, const Value& value, int decimals, const std::string& whole) {
-  Cells cells{"", "paper, software in the loop"};
-  for (const WaypointRow& row : record.waypoints) {
-    const paper::Waypoint* const same = paper::waypoint(row);
-    cells.push_back(same != nullptr ? fixed(value(*same), decimals) : "–");
-  }
-  cells.push_back(whole);
-  return cells;
+/// A row of the table: a value at each waypoint and one of the whole run, as the run has them and as the paper does.
+struct Metric {
+  std::string name;
+  std::function<std::optional<double>(const WaypointRow&)> value;
+  std::function<std::optional<double>(const paper::Waypoint&)> papers_value;
+  std::string whole, papers_whole;
+};
+
+std::vector<Metric> metrics(const Summary& s) {
+  return {{"navigation error, mm", [](const WaypointRow& row) { return in_millimetres(row.navigation_error_m); },
+           [](const paper::Waypoint& row) { return row.navigation_error_mm; },
+           mean_and_deviation(s.navigation_error_m, 3), paper::kNavigationError_mm},
+          {"navigation velocity error, mm/s",
+           [](const WaypointRow& row) { return in_millimetres(row.navigation_velocity_error_mps); },
+           [](const paper::Waypoint& row) { return row.navigation_velocity_error_mmps; },
+           mean_and_deviation(s.navigation_velocity_error_mps, 3), paper::kNavigationVelocityError_mmps},
+          {"control error, m", [](const WaypointRow& row) { return row.control_error_m; },
+           [](const paper::Waypoint& row) { return row.control_error_m; }, "", ""},
+          {"delta-v so far, mm/s", [](const WaypointRow& row) { return kMillimetres * row.cumulative_dv_mps; },
+           [](const paper::Waypoint&) { return std::nullopt; },
+           fmt::format("{} in {} maneuvers", fixed(kMillimetres * s.dv_mps, 3), s.maneuvers), paper::kDeltaV_mmps}};
 }
 
+bool is_beside_the_paper(const RunRecord& record) {
+  return std::ranges::any_of(record.waypoints, [](const WaypointRow& row) { return paper::waypoint(row) != nullptr; });
+}
+
+/// The paper's numbers stand under those of a run that meets its waypoints.
 std::string performance_table(const RunRecord& record) {
   std::vector<Column> columns{{"", false}, {"", false}};
   for (const WaypointRow& row : record.waypoints) columns.push_back({fmt::format("waypoint {}", row.index)});
   columns.push_back({"whole run, mean ± std"});
 
-  const Summary& s = record.summary;
-  const bool beside_the_paper =
-      std::ranges::any_of(record.waypoints, [](const WaypointRow& row) { return paper::waypoint(row) != nullptr; });
-  std::vector<Cells> rows;
-  const auto add = [&](const char* what, int decimals, const std::string& whole, const std::string& papers_whole,
-                       const auto& value, const auto& papers) {
-    rows.push_back(waypoint_cells(what, record, value, decimals));
-    rows.back().push_back(whole);
-    if (beside_the_paper) rows.push_back(paper_cells(record, papers, decimals, papers_whole));
-  };
-  add(
-      "navigation error, mm", 3, mean_and_deviation(s.navigation_error_m, 3), paper::kNavigationError_mm,
-      [](const WaypointRow& row) { return in_millimetres(row.navigation_error_m); },
-      [](const paper::Waypoint& row) { return row.navigation_error_mm; });
-  add(
-      "navigation velocity error, mm/s", 3, mean_and_deviation(s.navigation_velocity_error_mps, 3),
-      paper::kNavigationVelocityError_mmps,
-      [](const WaypointRow& row) { return in_millimetres(row.navigation_velocity_error_mps); },
-      [](const paper::Waypoint& row) { return row.navigation_velocity_error_mmps; });
-  add(
-      "control error, m", 3, "", "", [](const WaypointRow& row) { return row.control_error_m; },
-      [](const paper::Waypoint& row) { return row.control_error_m; });
-  add(
-      "delta-v so far, mm/s", 3, fmt::format("{} in {} maneuvers", fixed(kMillimetres * s.dv_mps, 3), s.maneuvers),
-      paper::kDeltaV_mmps, [](const WaypointRow& row) { return std::optional(kMillimetres * row.cumulative_dv_mps); },
-      [](const paper::Waypoint&) { return std::optional<double>(); });
+  std::vector<std::vector<std::string>> rows;
+  for (const Metric& metric : metrics(record.summary)) {
+    std::vector<std::string> run{metric.name, "this run"};
+    std::vector<std::string> paper{"", "paper, software in the loop"};
+    for (const WaypointRow& row : record.waypoints) {
+      run.push_back(fixed(metric.value(row), 3));
+      const paper::Waypoint* const same = paper::waypoint(row);
+      paper.push_back(fixed(same != nullptr ? metric.papers_value(*same) : std::nullopt, 3));
+    }
+    run.push_back(metric.whole);
+    paper.push_back(metric.papers_whole);
+    rows.push_back(std::move(run));
+    if (is_beside_the_paper(record)) rows.push_back(std::move(paper));
+  }
   return table(columns, rows);
 }
 
@@ -232,8 +229,8 @@ std::string gnss_section(const RunRecord& record) {
   return section(
       "Carrier-phase navigation",
       performance_table(record) +
-          "<p class=\"note\">Means and standard deviations of navigation are over the steps from the first fix on. "
-          "Paper: table of experiment 3, software in the loop.</p>\n" +
+          "<p class=\"note\">Means and standard deviations of navigation are over the steps from the first fix "
+          "on.</p>\n" +
           facts(record) +
           "<p class=\"note\">Static floor: how far this run's antennas are from where navigation takes them to be, "
           "target against servicer, were their axes parallel. A navigation that took positions from phases alone "
