@@ -87,6 +87,7 @@ struct GnssNavigation {
   double acceleration_time_s = 0.0;
   double maneuver_sigma = 0.0;
   double maneuver_sigma_relative = 0.0;
+  friend bool operator==(const GnssNavigation&, const GnssNavigation&) = default;
 };
 
 /// A burn that the flight software is told of but did not ask for.
