@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
+#include "host_sim/report/code_names.h"
+#include "host_sim/report/maneuver_series.h"
+#include "host_sim/report/navigation_errors.h"
 
 namespace vbar::app {
 namespace {
@@ -16,6 +19,7 @@ using fsw::Vector3;
 using fsw::Vector6;
 using fsw::orbit::CartesianState;
 using fsw::orbit::QnsElements;
+using report::magnitude;
 
 report::Triple triple(const Vector3& v) {
   return {v.x(), v.y(), v.z()};
@@ -29,10 +33,6 @@ report::Sextuple sextuple(const Vector6& v) {
 }
 report::Sextuple sextuple(const double (&v)[6]) {
   return {v[0], v[1], v[2], v[3], v[4], v[5]};
-}
-
-double norm(const report::Triple& v) {
-  return std::hypot(v[0], v[1], v[2]);
 }
 
 double distance(const report::Triple& a, const report::Triple& b) {
@@ -143,7 +143,39 @@ void FlightRecorder::on_telemetry(report::EstimateRow& row, const fsw::packets::
     row.planned_dv_mps = m.planned_dv;
     row.passive_safety_distance_m = m.passive_safety_distance_m;
     row.commanded_dv_mps = m.commanded_dv;
+  } else if (const auto gnss = fsw::packets::decode<telemetry_gnss>(packet); gnss.ok()) {
+    record_.gnss.push_back(gnss_row(row.time_s, gnss.value()));
   }
+}
+
+report::GnssRow FlightRecorder::gnss_row(double time_s, const telemetry_gnss& m) const {
+  report::GnssRow row;
+  row.time_s = time_s;
+  row.step = m.step;
+  if (m.epoch_gps_ns != 0) row.epoch_s = mission_seconds(fsw::GpsTime{m.epoch_gps_ns});
+  row.pairs = m.pairs;
+  row.alone = m.alone;
+  row.too_late = m.too_late;
+  row.no_solution = m.no_solution;
+  row.tracked = m.tracked;
+  row.fixed = m.fixed;
+  row.fixes = m.fixes;
+  row.releases = m.releases;
+  row.slips = m.slips;
+  row.restarts = m.restarts;
+  row.obstacle = report::obstacle_name(m.obstacle);
+  row.success_rate = m.success_rate;
+  row.ratio = m.ratio;
+  row.codes_used = m.codes_used;
+  row.phases_used = m.phases_used;
+  row.codes_refused = m.codes_refused;
+  row.phases_refused = m.phases_refused;
+  row.code_nis = m.code_nis;
+  row.phase_nis = m.phase_nis;
+  std::ranges::copy(m.covariance_rtn, row.covariance_rtn.begin());
+  row.messages = m.messages;
+  row.messages_refused = m.messages_refused;
+  return row;
 }
 
 void FlightRecorder::on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet) {
@@ -179,24 +211,29 @@ void FlightRecorder::finish() {
   finish_legs();
 }
 
+// Statistics of carrier-phase navigation are those after the first fix, as the paper's are.
 void FlightRecorder::finish_navigation_errors() {
-  std::map<double, const report::TruthRow*> truth_at;
-  for (const report::TruthRow& row : record_.truth) truth_at[row.time_s] = &row;
-  std::vector<double> position_errors, velocity_errors;
-  for (const report::EstimateRow& estimate : record_.estimates) {
-    const auto truth = truth_at.find(estimate.time_s);
-    if (estimate.navigation_valid == 0 || truth == truth_at.end()) continue;
-    position_errors.push_back(distance(estimate.relative_position_rtn, truth->second->relative_position_rtn));
-    velocity_errors.push_back(distance(estimate.relative_velocity_rtn, truth->second->relative_velocity_rtn));
+  const std::optional<double> fix_s = report::first_fix(record_);
+  std::vector<double> position_errors, velocity_errors, nees;
+  for (const report::NavigationError& error : report::navigation_errors(record_)) {
+    const double position_error = magnitude(error.position_rtn);
+    const double velocity_error = magnitude(error.velocity_rtn);
     for (report::WaypointRow& waypoint : record_.waypoints) {
-      if (waypoint.time_s != estimate.time_s) continue;
-      waypoint.navigation_error_m = position_errors.back();
-      waypoint.navigation_velocity_error_mps = velocity_errors.back();
+      if (waypoint.time_s != error.time_s) continue;
+      waypoint.navigation_error_m = position_error;
+      waypoint.navigation_velocity_error_mps = velocity_error;
     }
+    if (fix_s && error.time_s < *fix_s) continue;
+    position_errors.push_back(position_error);
+    velocity_errors.push_back(velocity_error);
+    if (error.nees) nees.push_back(*error.nees);
   }
+  report::Summary& summary = record_.summary;
+  if (fix_s) summary.first_fix_s = *fix_s - fsw::seconds(mission_.start);
+  if (!nees.empty()) summary.navigation_nees = statistics(nees).mean;
   if (position_errors.empty()) return;
-  record_.summary.navigation_error_m = statistics(position_errors);
-  record_.summary.navigation_velocity_error_mps = statistics(velocity_errors);
+  summary.navigation_error_m = statistics(position_errors);
+  summary.navigation_velocity_error_mps = statistics(velocity_errors);
 }
 
 // A burn belongs to the leg of the waypoint it was commanded for: the last burn of a fuel-optimal leg stands at the
@@ -207,7 +244,7 @@ void FlightRecorder::finish_legs() {
   summary.maneuvers = 0;
   for (const report::ManeuverRow& maneuver : record_.maneuvers) {
     if (!maneuver.accepted) continue;
-    const double dv = norm(maneuver.executed_dv_rtn_mps);
+    const double dv = magnitude(maneuver.executed_dv_rtn_mps);
     summary.dv_mps += dv;
     ++summary.maneuvers;
     const auto leg = std::ranges::find_if(record_.waypoints, [&](const report::WaypointRow& waypoint) {

@@ -55,6 +55,7 @@ class FlightRecorder {
  private:
   [[nodiscard]] double mission_seconds(fsw::GpsTime time) const { return fsw::seconds(time - mission_.epoch); }
   void on_telemetry(report::EstimateRow& row, const fsw::packets::PacketView& packet);
+  [[nodiscard]] report::GnssRow gnss_row(double time_s, const telemetry_gnss& m) const;
   void on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet);
   void add_maneuver(fsw::GpsTime command_time, fsw::GpsTime burn_time, const maneuver_command& command);
   void finish_navigation_errors();

@@ -62,6 +62,16 @@ std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mi
   return sensors;
 }
 
+std::optional<double> gnss_static_floor_m(const mission::Mission& mission, const mission::Spacecraft& servicer) {
+  if (!servicer.gnss) return std::nullopt;
+  const mission::Spacecraft& partner = *mission.find_spacecraft(servicer.gnss->partner);
+  const twins::gnss::BodyFrameSettings& ours = servicer.gnss->receiver.body_frame;
+  const twins::gnss::BodyFrameSettings& theirs = partner.gnss->receiver.body_frame;
+  const auto our_errors = twins::gnss::draw_body_frame(ours, mission.seed, servicer.name);
+  const auto their_errors = twins::gnss::draw_body_frame(theirs, mission.seed, partner.name);
+  return twins::gnss::static_floor_m(ours, our_errors, theirs, their_errors).norm();
+}
+
 std::unique_ptr<twins::Actuator> make_thruster(const mission::Mission& mission, const mission::Spacecraft& spacecraft) {
   twins::IdealThruster::Settings settings;
   settings.spacecraft_number = spacecraft.number;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "host_sim/mission/mission.h"
@@ -16,6 +17,10 @@ namespace vbar::app {
 std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mission& mission,
                                                                const mission::Spacecraft& servicer,
                                                                const std::filesystem::path& data_directory);
+
+/// Distance (m) between where the antennas of `servicer` and its partner are and where navigation takes them to be,
+/// from the run's own draws, as if the bodies had parallel axes. For the report only. None without GNSS.
+std::optional<double> gnss_static_floor_m(const mission::Mission& mission, const mission::Spacecraft& servicer);
 
 /// `spacecraft` must have a thruster.
 std::unique_ptr<twins::Actuator> make_thruster(const mission::Mission& mission, const mission::Spacecraft& spacecraft);

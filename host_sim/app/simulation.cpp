@@ -25,21 +25,6 @@ engine::WallClock::Span wall_span(double s) {
   return std::chrono::duration_cast<engine::WallClock::Span>(std::chrono::duration<double>(s));
 }
 
-/// Both ends of relative navigation by GNSS have what it takes.
-void check_gnss_pair(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  const mission::Spacecraft* partner = mission.find_spacecraft(servicer.gnss->partner);
-  if (partner == nullptr || !partner->gnss) {
-    throw std::runtime_error("spacecraft \"" + servicer.name +
-                             "\": sensors.gnss.partner must name a spacecraft that has sensors.gnss too");
-  }
-  for (const mission::Spacecraft* spacecraft : {&servicer, partner}) {
-    if (!spacecraft->attitude) {
-      throw std::runtime_error("spacecraft \"" + spacecraft->name +
-                               "\" has sensors.gnss but no attitude; its antenna must point somewhere");
-    }
-  }
-}
-
 /// The spacecraft that the servicer's navigation is about.
 const std::string& observed_by(const mission::Spacecraft& servicer) {
   return servicer.gnss ? servicer.gnss->partner : servicer.navigation->target;
@@ -54,12 +39,11 @@ const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
                                "\" has a flight computer too; one in a mission is supported");
     }
   }
-  if (servicer.navigation.has_value() == servicer.gnss.has_value()) {
-    throw std::runtime_error("spacecraft \"" + servicer.name + "\" has " + (servicer.gnss ? "both" : "neither") +
-                             " sensors.navigation " + (servicer.gnss ? "and" : "nor") +
-                             " sensors.gnss; one of them is needed to navigate by");
+  if (!servicer.navigation && !servicer.gnss) {
+    throw std::runtime_error(
+        "spacecraft \"" + servicer.name +
+        "\" has neither sensors.navigation nor sensors.gnss; one of them is needed to navigate by");
   }
-  if (servicer.gnss) check_gnss_pair(mission, servicer);
   if (!servicer.thruster) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no thruster");
   return servicer;
 }
@@ -92,6 +76,7 @@ Simulation::Simulation(const mission::Mission& mission, const std::filesystem::p
       truth_(truth_settings(mission, data_directory)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
       earth_rotation_(truth_.data().earth_orientation, mission.epoch),
+      line_(*servicer_.flight_computer, mission.step, surroundings.flight_computer.statistics()),
       clock_(mission.clock, surroundings.wall),
       events_(mission.start_time()) {
   place_spacecraft(mission, truth_);
@@ -243,6 +228,7 @@ void Simulation::handle(const StepFlight&) {
   if (answer.report.present) cost_unit_ = answer.report.unit;
   flight_compute_s_ += answer.compute_wall_s;
   link_s_ += exchange_s - answer.compute_wall_s;
+  line_.after_step(surroundings_.flight_computer.statistics());
 
   for (PacketObserver* observer : surroundings_.observers) observer->on_step(step_, now, inputs, answer.packets);
   recorder_.on_answer(now, answer);
@@ -319,13 +305,16 @@ void Simulation::summarise(double wall_s, bool complete) {
   summary.flight_software = surroundings_.flight_computer.description();
   summary.navigation = servicer_.gnss ? "gnss" : std::string(mission::name_of(servicer_.navigation->source));
   summary.gnss = servicer_.gnss ? "digital" : "";
-  summary.simulated_s = fsw::seconds(events_.now() - mission_.start_time());
+  summary.static_floor_m = gnss_static_floor_m(mission_, servicer_);
+  // What a link delivers after the end is of no interest.
+  summary.simulated_s = fsw::seconds(std::min(events_.now(), mission_.end_time()) - mission_.start_time());
   summary.wall_s = wall_s;
   summary.speed_factor = wall_s > 0.0 ? summary.simulated_s / wall_s : 0.0;
 
   const pil::LinkStatistics link = surroundings_.flight_computer.statistics();
   summary.link = {link.bytes_sent + link.bytes_received, link.frames_resent, link.frames_rejected,
                   link.frames_duplicated, link.strangers_ignored};
+  line_.summarise(summary.link);
   const engine::DeadlineReport& deadlines = clock_.report();
   summary.deadlines = {deadlines.step_late.count, deadlines.woke_late.count, deadlines.link_late.count,
                        deadlines.simulation_late.count};

@@ -19,11 +19,13 @@ struct LatencyDistribution {
   double standard_deviation_s = 0.0;  ///< normal, before truncation
   double minimum_s = 0.0;             ///< uniform, normal (cut off there), exponential (shifted by it)
   double maximum_s = 0.0;             ///< uniform, normal (cut off there)
+  friend bool operator==(const LatencyDistribution&, const LatencyDistribution&) = default;
 };
 
 struct LinkSettings {
   LatencyDistribution latency;
   double loss_probability = 0.0;  ///< 0 to 1, independent from packet to packet
+  friend bool operator==(const LinkSettings&, const LinkSettings&) = default;
 };
 
 /// What became of one packet.

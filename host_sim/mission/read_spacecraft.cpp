@@ -93,7 +93,7 @@ FlightComputer read_flight_computer(const TableReader& section) {
     section.refuse_value("library", "nothing, unless target is in_process");
   computer.compute_latency = section.span("compute_latency_s", 1.0, from_to(0.0, 3600.0), 1.0);
   computer.device = section.text("device", "");
-  computer.baud = static_cast<int>(section.integer("baud", 1200, 4000000, computer.baud));
+  if (section.has("baud")) computer.baud = static_cast<int>(section.integer("baud", 1200, 4000000));
   computer.address = section.text("address", "");
   computer.port = static_cast<int>(section.integer("port", 0, 65535, 0));
   if (computer.target == FlightTarget::kBoard) {
@@ -163,6 +163,8 @@ Spacecraft read_one(TableReader& section, const Member& member, const std::vecto
   sensors.accept_only({"navigation", "gnss"});
   if (sensors.has("navigation")) spacecraft.navigation = read_navigation(sensors.table("navigation"), names, mission);
   if (sensors.has("gnss")) spacecraft.gnss = read_gnss_sensor(sensors.table("gnss"), spacecraft.name, names);
+  if (spacecraft.navigation && spacecraft.gnss)
+    sensors.refuse("gnss", "a second way to navigate", "navigation or gnss, not both");
   const TableReader actuators = section.table("actuators");
   actuators.accept_only({"thruster"});
   if (actuators.has("thruster")) spacecraft.thruster = read_thruster(actuators.table("thruster"));
@@ -176,6 +178,20 @@ void read_section(TableReader& section, const SpacecraftGroup& group, const std:
                        "flight_computer", "sensors", "actuators"});
   for (int index = 0; index < group.count(); ++index)
     mission.spacecraft.push_back(read_one(section, {group, index}, names, mission));
+}
+
+/// Both ends of relative navigation by GNSS have what it takes.
+void check_gnss_pair(const TableReader& section, const Spacecraft& servicer, const Mission& mission) {
+  if (!servicer.flight_computer || !servicer.gnss) return;
+  const TableReader gnss = section.table("sensors").table("gnss");
+  const Spacecraft* const partner = mission.find_spacecraft(servicer.gnss->partner);
+  if (partner == nullptr || !partner->gnss)
+    gnss.refuse("partner", partner == nullptr ? "nothing" : "the spacecraft \"" + partner->name + "\" without GNSS",
+                "a spacecraft that has sensors.gnss too");
+  for (const Spacecraft* spacecraft : {&servicer, partner})
+    if (!spacecraft->attitude)
+      gnss.refuse("", "no attitude of " + spacecraft->name,
+                  "both spacecraft with an attitude: antennas point somewhere");
 }
 
 void add_names(const TableReader& section, const SpacecraftGroup& group, std::vector<std::string>& names) {
@@ -201,6 +217,10 @@ void read_spacecraft(const TableReader& document, Mission& mission) {
     section.rename("spacecraft." + group.name());
   }
   for (std::size_t k = 0; k < sections.size(); ++k) read_section(sections[k], groups[k], names, mission);
+  for (std::size_t k = 0; k < sections.size(); ++k) {
+    for (int index = 0; index < groups[k].count(); ++index)
+      check_gnss_pair(sections[k], *mission.find_spacecraft(groups[k].member_name(index)), mission);
+  }
 }
 
 }  // namespace vbar::mission

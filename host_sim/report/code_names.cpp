@@ -21,6 +21,8 @@ constexpr std::array<std::string_view, 14> kStatuses{
     "ok",        "invalid argument", "not finite", "out of range",   "did not converge", "singular", "full",
     "too short", "too long",         "wrong type", "wrong checksum", "out of sequence",  "unsafe",   "not ready"};
 
+constexpr std::array<std::string_view, 6> kObstacles{"none", "too few", "success rate", "ratio", "residual", "search"};
+
 }  // namespace
 
 std::string mode_name(int mode) {
@@ -31,6 +33,9 @@ std::string solver_name(int solver) {
 }
 std::string status_name(int status) {
   return name_in(kStatuses, status);
+}
+std::string obstacle_name(int obstacle) {
+  return name_in(kObstacles, obstacle);
 }
 
 }  // namespace vbar::report

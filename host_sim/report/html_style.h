@@ -65,6 +65,7 @@ svg .tick { fill: var(--muted); font-size: 10.5px; } svg .name { fill: var(--mut
 svg .mid { text-anchor: middle; } svg .end { text-anchor: end; }
 svg .frame { fill: none; stroke: var(--frame); } svg .grid { stroke: var(--grid); }
 svg line.moment { stroke: var(--muted); stroke-dasharray: 2 3; } svg text.moment { fill: var(--muted); font-size: 10px; }
+svg .event { fill: none; stroke: var(--c4); stroke-width: 1.4; }
 svg .line { fill: none; stroke-width: 1.3; stroke-linejoin: round; }
 svg .broad { stroke-width: 4.5; stroke-opacity: 0.4; } svg .dashed { stroke-dasharray: 5 3; }
 svg .dots { fill: none; stroke-width: 3.4; stroke-linecap: round; }

@@ -21,6 +21,8 @@ void complete(View& view, const RunRecord& record) {
   }
   if (view.waypoints.empty()) {
     view.name = "whole run";
+  } else if (view.waypoints.size() == 1) {
+    view.name = fmt::format("waypoint {}", view.waypoints.front().index);
   } else {
     view.name = fmt::format("waypoints {} to {}", view.waypoints.front().index, view.waypoints.back().index);
   }

@@ -25,6 +25,9 @@ namespace vbar::report {
 /// Errors of navigation and their claimed bounds, residuals of its measurements (section_navigation.cpp).
 [[nodiscard]] std::string navigation_section(const RunRecord& record);
 
+/// Carrier-phase navigation: beside the paper, integers, consistency (section_gnss.cpp).
+[[nodiscard]] std::string gnss_section(const RunRecord& record);
+
 /// True attitudes and rates (section_attitude.cpp).
 [[nodiscard]] std::string attitude_section(const RunRecord& record);
 

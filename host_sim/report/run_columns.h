@@ -33,6 +33,10 @@ inline constexpr std::array<std::string_view, 4> kWxyz{"w", "x", "y", "z"};
 inline constexpr std::array<std::string_view, 3> kRtnM{"r_m", "t_m", "n_m"};
 inline constexpr std::array<std::string_view, 3> kRtnMps{"r_mps", "t_mps", "n_mps"};
 inline constexpr std::array<std::string_view, 6> kRtnMAndMps{"r_m", "t_m", "n_m", "r_mps", "t_mps", "n_mps"};
+/// Rows and columns r, t, n, then their rates.
+inline constexpr std::array<std::string_view, 21> kRtnLowerTriangle{
+    "r_r",  "t_r",  "t_t",   "n_r",   "n_t",  "n_n",  "vr_r", "vr_t",  "vr_n",  "vr_vr", "vt_r",
+    "vt_t", "vt_n", "vt_vr", "vt_vt", "vn_r", "vn_t", "vn_n", "vn_vr", "vn_vt", "vn_vn"};
 inline constexpr std::array<std::string_view, 6> kRoeM{"da_m", "dlambda_m", "dex_m", "dey_m", "dix_m", "diy_m"};
 
 template <class Visitor, class Values, std::size_t size>
@@ -92,6 +96,35 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"commanded_dv_mps"}, row.commanded_dv_mps);
   visit(ColumnName{"step_cost"}, row.step_cost);
   visit(ColumnName{"stack_bytes"}, row.stack_bytes);
+}
+
+template <columns::RowOf<GnssRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"step"}, row.step);
+  visit(ColumnName{"epoch_s"}, row.epoch_s);
+  visit(ColumnName{"pairs"}, row.pairs);
+  visit(ColumnName{"alone"}, row.alone);
+  visit(ColumnName{"too_late"}, row.too_late);
+  visit(ColumnName{"no_solution"}, row.no_solution);
+  visit(ColumnName{"tracked"}, row.tracked);
+  visit(ColumnName{"fixed"}, row.fixed);
+  visit(ColumnName{"fixes"}, row.fixes);
+  visit(ColumnName{"releases"}, row.releases);
+  visit(ColumnName{"slips"}, row.slips);
+  visit(ColumnName{"restarts"}, row.restarts);
+  visit(ColumnName{"obstacle"}, row.obstacle);
+  visit(ColumnName{"success_rate"}, row.success_rate);
+  visit(ColumnName{"ratio"}, row.ratio);
+  visit(ColumnName{"codes_used"}, row.codes_used);
+  visit(ColumnName{"phases_used"}, row.phases_used);
+  visit(ColumnName{"codes_refused"}, row.codes_refused);
+  visit(ColumnName{"phases_refused"}, row.phases_refused);
+  visit(ColumnName{"code_nis"}, row.code_nis);
+  visit(ColumnName{"phase_nis"}, row.phase_nis);
+  columns::group(visit, "covariance_rtn", columns::kRtnLowerTriangle, row.covariance_rtn);
+  visit(ColumnName{"messages"}, row.messages);
+  visit(ColumnName{"messages_refused"}, row.messages_refused);
 }
 
 template <columns::RowOf<ManeuverRow> Row, class Visitor>

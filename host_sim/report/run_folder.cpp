@@ -22,12 +22,13 @@ constexpr std::string_view kWaypoints = "waypoints.csv";
 constexpr std::string_view kTruth = "truth.csv";
 constexpr std::string_view kAttitude = "attitude.csv";
 constexpr std::string_view kEstimate = "estimate.csv";
+constexpr std::string_view kGnss = "gnss.csv";
 constexpr std::string_view kManeuvers = "maneuvers.csv";
 constexpr std::string_view kResiduals = "residuals.csv";
 constexpr std::string_view kPacketLog = "packets.lcmlog";
 constexpr std::string_view kReport = "report.html";
 
-constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,     kAttitude,  kEstimate,
+constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,     kAttitude,  kEstimate, kGnss,
                                          kManeuvers, kResiduals, kPacketLog, kReport};
 
 [[noreturn]] void fail(const fs::path& folder, std::string_view what) {
@@ -73,6 +74,7 @@ void RunFolder::finish(const RunRecord& record) const {
   write_rows(folder_ / kTruth, record.truth);
   if (!record.attitudes.empty()) write_rows(folder_ / kAttitude, record.attitudes);
   write_rows(folder_ / kEstimate, record.estimates);
+  if (!record.gnss.empty()) write_rows(folder_ / kGnss, record.gnss);
   write_rows(folder_ / kManeuvers, record.maneuvers);
   write_rows(folder_ / kResiduals, record.residuals);
   replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
@@ -91,6 +93,7 @@ RunRecord read_run(const fs::path& run_folder) {
   record.truth = read_rows<TruthRow>(run_folder / kTruth);
   if (fs::exists(run_folder / kAttitude)) record.attitudes = read_rows<AttitudeRow>(run_folder / kAttitude);
   record.estimates = read_rows<EstimateRow>(run_folder / kEstimate);
+  if (fs::exists(run_folder / kGnss)) record.gnss = read_rows<GnssRow>(run_folder / kGnss);
   record.maneuvers = read_rows<ManeuverRow>(run_folder / kManeuvers);
   record.residuals = read_rows<ResidualRow>(run_folder / kResiduals);
   return record;

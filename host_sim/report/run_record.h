@@ -13,6 +13,8 @@ namespace vbar::report {
 using Triple = std::array<double, 3>;
 using Sextuple = std::array<double, 6>;
 using Quadruple = std::array<double, 4>;
+/// A symmetric 6x6 matrix: lower triangle by rows.
+using LowerTriangle6 = std::array<double, 21>;
 
 /// Truth at a step (truth.csv).
 struct TruthRow {
@@ -47,6 +49,27 @@ struct EstimateRow {
   std::uint64_t step_cost = 0;  ///< instructions or cycles, 0 where the target cannot count them
   std::uint32_t stack_bytes = 0;
   friend bool operator==(const EstimateRow&, const EstimateRow&) = default;
+};
+
+/// What navigation by GNSS said of itself at a step (gnss.csv, only if a run has such navigation). Counts are since the
+/// start of the flight software.
+struct GnssRow {
+  double time_s = 0.0;
+  std::int64_t step = 0;
+  std::optional<double> epoch_s;  ///< of the last measurements folded in, as time_s
+  std::int32_t pairs = 0;         ///< epochs of both receivers folded in
+  std::int32_t alone = 0, too_late = 0, no_solution = 0;
+  std::int32_t tracked = 0;  ///< carriers that both receivers follow
+  std::int32_t fixed = 0;    ///< of them, held to integers
+  std::int32_t fixes = 0, releases = 0, slips = 0, restarts = 0;
+  std::string obstacle;  ///< what kept the last decision from holding all
+  double success_rate = 0.0, ratio = 0.0;
+  std::int32_t codes_used = 0, phases_used = 0;  ///< in the last epoch
+  std::int32_t codes_refused = 0, phases_refused = 0;
+  double code_nis = 0.0, phase_nis = 0.0;  ///< of the last epoch: sums of normalised innovations squared
+  LowerTriangle6 covariance_rtn{};         ///< of the relative state at epoch_s: m^2, m^2/s, m^2/s^2
+  std::int32_t messages = 0, messages_refused = 0;
+  friend bool operator==(const GnssRow&, const GnssRow&) = default;
 };
 
 /// A maneuver from command to execution (maneuvers.csv).
@@ -92,7 +115,16 @@ struct Summary {
   std::string incomplete_reason;
   std::string flight_computer, flight_software, camera, gnss, navigation;
   double simulated_s = 0.0, wall_s = 0.0, speed_factor = 0.0;
-  std::optional<MeanAndDeviation> navigation_error_m, navigation_velocity_error_mps, attitude_error_deg;
+  /// Over all steps with a valid estimate; from the first fix on if there was one.
+  std::optional<MeanAndDeviation> navigation_error_m, navigation_velocity_error_mps;
+  std::optional<MeanAndDeviation> attitude_error_deg;
+  // Navigation by GNSS only.
+  std::optional<double> first_fix_s;  ///< since the start: the first step whose estimate is by fixed ambiguities
+  /// Of this run's draws: the distance between the antennas' true places and those that navigation takes for true, as
+  /// of bodies with parallel axes. No navigation that does not estimate it can be better.
+  std::optional<double> static_floor_m;
+  /// Mean normalised estimation error squared of the relative state over the steps of navigation_error_m; 6 is honest.
+  std::optional<double> navigation_nees;
   double dv_mps = 0.0;
   int maneuvers = 0;
   std::string commands_sha256, telemetry_sha256;
@@ -105,6 +137,8 @@ struct Summary {
   } flight_step;
   struct Link {
     std::uint64_t bytes = 0, frames_resent = 0, frames_rejected = 0, frames_duplicated = 0, strangers_ignored = 0;
+    int baud = 0;                                        ///< of a serial line; 0: none, or as fast as it goes
+    double step_share_max = 0.0, step_share_mean = 0.0;  ///< of a step's period, that its bytes take at that rate
     friend bool operator==(const Link&, const Link&) = default;
   } link;
   struct Deadlines {
@@ -124,6 +158,7 @@ struct RunRecord {
   std::vector<TruthRow> truth;
   std::vector<AttitudeRow> attitudes;
   std::vector<EstimateRow> estimates;
+  std::vector<GnssRow> gnss;
   std::vector<ManeuverRow> maneuvers;
   std::vector<ResidualRow> residuals;
   friend bool operator==(const RunRecord&, const RunRecord&) = default;

@@ -94,6 +94,7 @@ std::vector<Row> read_rows(const std::filesystem::path& file) {
 template void write_rows(const std::filesystem::path&, const std::vector<TruthRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<AttitudeRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<EstimateRow>&);
+template void write_rows(const std::filesystem::path&, const std::vector<GnssRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<ManeuverRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<ResidualRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<WaypointRow>&);
@@ -101,6 +102,7 @@ template void write_rows(const std::filesystem::path&, const std::vector<Waypoin
 template std::vector<TruthRow> read_rows(const std::filesystem::path&);
 template std::vector<AttitudeRow> read_rows(const std::filesystem::path&);
 template std::vector<EstimateRow> read_rows(const std::filesystem::path&);
+template std::vector<GnssRow> read_rows(const std::filesystem::path&);
 template std::vector<ManeuverRow> read_rows(const std::filesystem::path&);
 template std::vector<ResidualRow> read_rows(const std::filesystem::path&);
 template std::vector<WaypointRow> read_rows(const std::filesystem::path&);

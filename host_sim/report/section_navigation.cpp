@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "host_sim/report/html_page.h"
+#include "host_sim/report/maneuver_series.h"
+#include "host_sim/report/navigation_errors.h"
 #include "host_sim/report/report_sections.h"
 #include "host_sim/report/section_parts.h"
 
@@ -14,59 +15,58 @@ namespace {
 
 constexpr const char* kAxes[] = {"R", "T", "N"};
 
-/// An estimate beside the truth of its time.
-struct Compared {
-  double time_s = 0.0;
-  Triple position_error{}, velocity_error{};
-  Sextuple sigma{};
-};
-
-std::vector<Compared> compare(const RunRecord& record) {
-  std::map<double, const TruthRow*> truth_at;
-  for (const TruthRow& row : record.truth) truth_at[row.time_s] = &row;
-  std::vector<Compared> all;
-  for (const EstimateRow& row : record.estimates) {
-    const auto truth = truth_at.find(row.time_s);
-    if (row.navigation_valid == 0 || truth == truth_at.end()) continue;
-    Compared& c = all.emplace_back();
-    c.time_s = row.time_s;
-    c.sigma = row.sigma_rtn;
-    for (std::size_t k = 0; k < 3; ++k) {
-      c.position_error[k] = row.relative_position_rtn[k] - truth->second->relative_position_rtn[k];
-      c.velocity_error[k] = row.relative_velocity_rtn[k] - truth->second->relative_velocity_rtn[k];
-    }
-  }
-  return all;
-}
-
 // Below these an estimate is the truth but for rounding: 1 um at 75 km is 1e-11 of the state.
 constexpr double kExactPosition_m = 1e-5;
 constexpr double kExactVelocity_mps = 1e-8;
 
-bool is_exact(const std::vector<Compared>& all) {
-  return std::ranges::all_of(all, [](const Compared& c) {
-    return std::hypot(c.position_error[0], c.position_error[1], c.position_error[2]) < kExactPosition_m &&
-           std::hypot(c.velocity_error[0], c.velocity_error[1], c.velocity_error[2]) < kExactVelocity_mps;
+bool is_exact(const std::vector<NavigationError>& all) {
+  return std::ranges::all_of(all, [](const NavigationError& e) {
+    return magnitude(e.position_rtn) < kExactPosition_m && magnitude(e.velocity_rtn) < kExactVelocity_mps;
   });
 }
 
-Plot error_plot(const std::vector<Compared>& all, const View& view, std::size_t axis, bool velocity) {
+/// What an error plot shows of one error.
+struct Component {
+  std::size_t axis = 0;
+  bool velocity = false;
+
+  [[nodiscard]] double error(const NavigationError& e) const {
+    return (velocity ? e.velocity_rtn : e.position_rtn)[axis];
+  }
+  [[nodiscard]] double bound(const NavigationError& e) const { return 3.0 * e.sigma_rtn[axis + (velocity ? 3 : 0)]; }
+};
+
+/// Of what comes once navigation has settled: before, errors are a thousand times as large.
+Range settled_range(const std::vector<NavigationError>& all, const View& view, double from_s, const Component& what) {
+  double largest = 0.0;
+  for (const NavigationError& e : all) {
+    if (e.time_s >= from_s && view.holds(e.time_s))
+      largest = std::max({largest, std::abs(what.error(e)), what.bound(e)});
+  }
+  return {-1.1 * largest, 1.1 * largest};
+}
+
+Plot error_plot(const RunRecord& record, const std::vector<NavigationError>& all, const View& view,
+                const Component& what) {
   Plot plot;
-  plot.title = fmt::format("{} {} error, {}", velocity ? "velocity" : "position", kAxes[axis], view.name);
+  plot.title = fmt::format("{} {} error, {}", what.velocity ? "velocity" : "position", kAxes[what.axis], view.name);
   plot.x = time_axis(view);
-  plot.y = {.name = fmt::format("{} error", kAxes[axis]), .unit = velocity ? Unit::kMetresPerSecond : Unit::kMetres};
+  plot.y = {.name = fmt::format("{} error", kAxes[what.axis]),
+            .unit = what.velocity ? Unit::kMetresPerSecond : Unit::kMetres};
+  if (first_fix(record)) plot.y.range = settled_range(all, view, settled_from(record, view), what);
   plot.height = 220.0;
   plot.moments = waypoint_moments(view);
-  const auto error = [&](const Compared& c) { return (velocity ? c.velocity_error : c.position_error)[axis]; };
-  const auto bound = [&](const Compared& c) { return 3.0 * c.sigma[axis + (velocity ? 3 : 0)]; };
+  plot.events = maneuver_events(record, view);
+  const auto error = [&](const NavigationError& e) { return what.error(e); };
+  const auto bound = [&](const NavigationError& e) { return what.bound(e); };
   plot.series = {{"estimated less true", 0, Mark::kLine, over_time(all, view, error)},
                  {"three sigma as the filter claims", 1, Mark::kDashedLine, over_time(all, view, bound)},
-                 {"", 1, Mark::kDashedLine, over_time(all, view, [&](const Compared& c) { return -bound(c); })}};
+                 {"", 1, Mark::kDashedLine, over_time(all, view, [&](const NavigationError& e) { return -bound(e); })}};
   return plot;
 }
 
 std::string error_plots(const RunRecord& record) {
-  const std::vector<Compared> all = compare(record);
+  const std::vector<NavigationError> all = navigation_errors(record);
   if (all.empty()) return "<p>The flight software never had a valid estimate.</p>\n";
   if (is_exact(all)) {
     return fmt::format("<p>The {} valid estimates are the truth: nearer than 0.01 mm and 0.00001 mm/s.</p>\n",
@@ -77,13 +77,14 @@ std::string error_plots(const RunRecord& record) {
   for (const View& view : mission_views(record)) {
     for (const bool velocity : {false, true}) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Plot plot = error_plot(all, view, axis, velocity);
+        const Plot plot = error_plot(record, all, view, {axis, velocity});
         keys = {plot.series[0], plot.series[1]};
         plots.push_back(svg(plot));
       }
     }
   }
-  return legend(keys) + figures(3, plots);
+  const std::string note = "<p class=\"note\">Dashed lines: waypoints. Strokes on the lower edge: maneuvers.</p>\n";
+  return note + legend(keys) + figures(3, plots);
 }
 
 std::string residual_plots(const RunRecord& record) {

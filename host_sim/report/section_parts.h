@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "host_sim/report/mission_views.h"
+#include "host_sim/report/navigation_errors.h"
 #include "host_sim/report/svg_plot.h"
 
 namespace vbar::report {
@@ -42,6 +44,24 @@ inline std::vector<Moment> waypoint_moments(const View& view) {
   std::vector<Moment> moments;
   for (const WaypointRow& row : view.waypoints) moments.push_back({hours(row.time_s), std::to_string(row.index)});
   return moments;
+}
+
+/// When the executed maneuvers of a view were.
+inline std::vector<double> maneuver_events(const RunRecord& record, const View& view) {
+  std::vector<double> events;
+  for (const ManeuverRow& row : record.maneuvers) {
+    if (row.accepted && view.holds(row.execution_time_s)) events.push_back(hours(row.execution_time_s));
+  }
+  return events;
+}
+
+/// When navigation's errors have come down to their lasting size, five minutes after the first fix; the start of a view
+/// that begins later or ends sooner. Axes of errors show what comes then.
+inline double settled_from(const RunRecord& record, const View& view) {
+  constexpr double kSettling_s = 300.0;
+  const std::optional<double> fix_s = first_fix(record);
+  if (!fix_s || *fix_s + kSettling_s >= view.end_s) return view.start_s;
+  return std::max(view.start_s, *fix_s + kSettling_s);
 }
 
 /// (time in hours, value(row)) of all rows inside the view.

@@ -25,10 +25,10 @@ std::vector<std::string> cells(const WaypointRow& row) {
 }
 
 std::string mean_and_deviation(const char* name, const std::optional<MeanAndDeviation>& value, double scale,
-                               const char* unit) {
+                               const char* unit, const char* over = "over all steps") {
   if (!value) return {};
-  return fmt::format("<p>{}: {} ± {} {} (mean and standard deviation over all steps)</p>\n", name,
-                     significant(value->mean * scale, 3), significant(value->std * scale, 3), unit);
+  return fmt::format("<p>{}: {} ± {} {} (mean and standard deviation {})</p>\n", name,
+                     significant(value->mean * scale, 3), significant(value->std * scale, 3), unit, over);
 }
 
 const std::vector<Column> kRoeColumns{{"waypoint"}, {"", false}, {"aδa, m"},  {"aδλ, m"},
@@ -52,8 +52,9 @@ std::string waypoint_section(const RunRecord& record) {
   }
   const Summary& s = record.summary;
   std::string out = table(kColumns, rows);
-  out += mean_and_deviation("Navigation error", s.navigation_error_m, 1.0, "m");
-  out += mean_and_deviation("Navigation velocity error", s.navigation_velocity_error_mps, 1e3, "mm/s");
+  const char* const over = s.first_fix_s ? "from the first fix on" : "over all steps";
+  out += mean_and_deviation("Navigation error", s.navigation_error_m, 1.0, "m", over);
+  out += mean_and_deviation("Navigation velocity error", s.navigation_velocity_error_mps, 1e3, "mm/s", over);
   out += mean_and_deviation("Attitude error", s.attitude_error_deg, 1.0, "deg");
   out +=
       "<p class=\"note\">Control error: true RTN position of the target against the one that the wanted mean ROE give "

@@ -46,6 +46,11 @@ std::string text(const Json& json) {
   return json.is_null() ? std::string() : json.get<std::string>();
 }
 
+std::optional<double> optional_number(const Json& json) {
+  if (json.is_null()) return std::nullopt;
+  return json.get<double>();
+}
+
 std::optional<MeanAndDeviation> mean_and_deviation(const Json& json) {
   if (json.at("mean").is_null()) return std::nullopt;
   return MeanAndDeviation{number(json.at("mean")), number(json.at("std"))};
@@ -68,6 +73,9 @@ Summary summary_from(const Json& json) {
   s.navigation_error_m = mean_and_deviation(json.at("navigation_error_m"));
   s.navigation_velocity_error_mps = mean_and_deviation(json.at("navigation_velocity_error_mps"));
   s.attitude_error_deg = mean_and_deviation(json.at("attitude_error_deg"));
+  s.first_fix_s = optional_number(json.at("first_fix_s"));
+  s.static_floor_m = optional_number(json.at("static_floor_m"));
+  s.navigation_nees = optional_number(json.at("navigation_nees"));
   s.dv_mps = number(json.at("dv_mps"));
   json.at("maneuvers").get_to(s.maneuvers);
   json.at("commands_sha256").get_to(s.commands_sha256);
@@ -86,6 +94,9 @@ Summary summary_from(const Json& json) {
   link.at("frames_rejected").get_to(s.link.frames_rejected);
   link.at("frames_duplicated").get_to(s.link.frames_duplicated);
   link.at("strangers_ignored").get_to(s.link.strangers_ignored);
+  link.at("baud").get_to(s.link.baud);
+  s.link.step_share_max = number(link.at("step_share_max"));
+  s.link.step_share_mean = number(link.at("step_share_mean"));
 
   const Json& deadlines = json.at("deadlines");
   deadlines.at("compute_overruns").get_to(s.deadlines.compute_overruns);
@@ -123,6 +134,9 @@ std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypo
       {"navigation_error_m", json_of(s.navigation_error_m)},
       {"navigation_velocity_error_mps", json_of(s.navigation_velocity_error_mps)},
       {"attitude_error_deg", json_of(s.attitude_error_deg)},
+      {"first_fix_s", json_of(s.first_fix_s)},
+      {"static_floor_m", json_of(s.static_floor_m)},
+      {"navigation_nees", json_of(s.navigation_nees)},
       {"dv_mps", s.dv_mps},
       {"maneuvers", s.maneuvers},
       {"commands_sha256", s.commands_sha256},
@@ -138,7 +152,10 @@ std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypo
         {"frames_resent", s.link.frames_resent},
         {"frames_rejected", s.link.frames_rejected},
         {"frames_duplicated", s.link.frames_duplicated},
-        {"strangers_ignored", s.link.strangers_ignored}}},
+        {"strangers_ignored", s.link.strangers_ignored},
+        {"baud", s.link.baud},
+        {"step_share_max", s.link.step_share_max},
+        {"step_share_mean", s.link.step_share_mean}}},
       {"deadlines",
        {{"compute_overruns", s.deadlines.compute_overruns},
         {"wakeups_late", s.deadlines.wakeups_late},

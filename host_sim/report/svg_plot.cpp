@@ -16,7 +16,8 @@ constexpr double kTitleHeight = 22.0;
 constexpr double kMomentTextHeight = 12.0;
 constexpr double kRightMargin = 12.0;
 constexpr double kBottomMargin = 42.0;
-constexpr double kCharacterWidth = 6.2;   // of the tick font
+constexpr double kCharacterWidth = 6.2;  // of the tick font
+constexpr double kEventHeight = 9.0;
 constexpr double kCurveTolerance = 0.25;  // pixels
 constexpr double kDotDistance = 1.0;      // pixels
 
@@ -102,6 +103,7 @@ class Drawing {
     append(
         R"(<svg x="{0:.1f}" y="{1:.1f}" width="{2:.1f}" height="{3:.1f}" viewBox="{0:.1f} {1:.1f} {2:.1f} {3:.1f}">)",
         left_, top_, x_.length, -y_.length);
+    draw_events();
     for (const Series& series : plot_.series) draw_series(series);
     out_ += "</svg>";
     for (const Ring& ring : plot_.rings) draw_ring(ring);
@@ -182,6 +184,13 @@ class Drawing {
       append(R"(<text class="moment mid" x="{:.1f}" y="{:.1f}">{}</text>)", x, top_ - 4.0, escaped(moment.text));
       free_from = x + half + 3.0;
     }
+  }
+
+  void draw_events() {
+    if (plot_.events.empty()) return;
+    out_ += R"(<path class="event" d=")";
+    for (const double x : plot_.events) append("M{:.1f} {:.1f}v{:g}", x_.pixel(x), y_.start, -kEventHeight);
+    out_ += "\"/>";
   }
 
   void draw_series(const Series& series) {

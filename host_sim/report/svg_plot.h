@@ -48,6 +48,7 @@ struct Plot {
   std::vector<Series> series;
   std::vector<Ring> rings;
   std::vector<Moment> moments;
+  std::vector<double> events;            ///< many of one kind: each a short stroke on the lower edge
   double width = 380.0, height = 250.0;  ///< pixels
 };
 

@@ -32,6 +32,7 @@ struct ConstellationSettings {
   double orbit_error_transverse_m = 1.5;
   double orbit_error_normal_m = 1.0;
   double clock_error_ns = 1.5;
+  friend bool operator==(const ConstellationSettings&, const ConstellationSettings&) = default;
 };
 
 /// Throws std::invalid_argument naming the setting, what was found and what is accepted.

@@ -18,6 +18,7 @@ struct CrosslinkSettings {
                             .loss_probability = 0.0};
   double silence_begin_s = 0.0;     ///< after the first message
   double silence_duration_s = 0.0;  ///< 0: none
+  friend bool operator==(const CrosslinkSettings&, const CrosslinkSettings&) = default;
 };
 
 /// Throws std::invalid_argument: the setting, what was found, what is accepted.

@@ -14,6 +14,7 @@ struct VisibilitySettings {
   double receiver_mask_deg = 190.0;       ///< A: full cone about the antenna's boresight
   double horizon_mask_deg = -20.0;        ///< A: least elevation above the local horizontal
   double occultation_altitude_km = 50.0;  ///< a line of sight that dips below this altitude is blocked
+  friend bool operator==(const VisibilitySettings&, const VisibilitySettings&) = default;
 };
 
 /// From transmitted power to C/N0. The satellites' antennas radiate alike in all directions (A: spherical gain).
@@ -24,6 +25,7 @@ struct LinkBudgetSettings {
   double lna_noise_figure_db = 2.0;
   double receiver_noise_figure_db = 8.0;  ///< behind the amplifier
   double losses_db = 2.0;                 ///< polarisation, cable, quantisation
+  friend bool operator==(const LinkBudgetSettings&, const LinkBudgetSettings&) = default;
 };
 
 /// Loops and what becomes of them. Noise: formulas of the coherent early-late and Costas loops.
@@ -37,6 +39,7 @@ struct TrackingSettings {
   double cycle_slips_per_hour = 0.02;  ///< of each signal; every slip is seen by the receiver: the lock time restarts
   double unseen_slip_fraction = 0.0;   ///< of those slips, the share that the receiver does not see
   double code_bias_sigma_m = 0.0;      ///< constant code delay of each signal in the receiver
+  friend bool operator==(const TrackingSettings&, const TrackingSettings&) = default;
 };
 
 enum class StartMode : std::uint8_t {
@@ -53,6 +56,7 @@ struct StartSettings {
   double reacquisition_least_s = 1.0;  ///< warm, hot, and every satellite that rises later
   double reacquisition_most_s = 8.0;
   double ephemeris_decoding_s = 30.0;  ///< a message's set has been received after so long in lock
+  friend bool operator==(const StartSettings&, const StartSettings&) = default;
 };
 
 /// Two-state crystal oscillator, not steered (CLOCKADJUST DISABLE: the harder case; a steering receiver stays within
@@ -63,6 +67,7 @@ struct ClockSettings {
   double h0_s = 2e-19;             ///< Allan coefficients of white frequency noise
   double h_minus2_per_s = 2e-20;   ///< and of random-walk frequency noise
   double jump_threshold_ms = 0.5;  ///< at least 0.5: a smaller one would jump back and forth
+  friend bool operator==(const ClockSettings&, const ClockSettings&) = default;
 };
 
 /// Where the antenna truly is (A, second table). Vectors in the body frame.
@@ -75,6 +80,7 @@ struct BodyFrameSettings {
   double pco_noise_mm = 1.0;                ///< A: each axis, each epoch, all signals alike
   double antenna_direction_arcsec = 30.0;   ///< A: each axis
   double attitude_knowledge_arcsec = 20.0;  ///< A: each axis; the body against the attitude it is thought to have
+  friend bool operator==(const BodyFrameSettings&, const BodyFrameSettings&) = default;
 };
 
 enum class GpsEphemerisLog : std::uint8_t { kRawEphem, kGpsEphem };
@@ -85,6 +91,7 @@ struct OutputSettings {
   double ephemeris_repeat_s = 300.0;    ///< each ephemeris again; new ones at once
   double corrections_repeat_s = 300.0;  ///< IONUTC
   GpsEphemerisLog gps_ephemeris = GpsEphemerisLog::kRawEphem;
+  friend bool operator==(const OutputSettings&, const OutputSettings&) = default;
 };
 
 struct GnssReceiverSettings {
@@ -96,6 +103,7 @@ struct GnssReceiverSettings {
   BodyFrameSettings body_frame;
   OutputSettings output;
   bool ionosphere = true;  ///< A: Klobuchar, delay of code and advance of phase
+  friend bool operator==(const GnssReceiverSettings&, const GnssReceiverSettings&) = default;
 };
 
 /// Throws std::invalid_argument: one sentence with the setting, what was found and what is accepted.

@@ -40,14 +40,17 @@ TEST_F(HtmlReport, TheCheckSeesFaults) {
 
 TEST_F(HtmlReport, TellsTheWholeRun) {
   const std::string html = html_report(synthetic_run());
-  for (const char* heading : {"Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation",
-                              "Attitude", "Guidance and passive safety", "Flight computer, link and time"}) {
+  for (const char* heading :
+       {"Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation", "Carrier-phase navigation",
+        "Attitude", "Guidance and passive safety", "Flight computer, link and time"}) {
     EXPECT_THAT(html, HasSubstr("<h2>" + std::string(heading) + "</h2>"));
   }
   EXPECT_THAT(html, HasSubstr("&lt;a &quot;test&quot; &amp; nothing else&gt;")) << "the flight software's own name";
   EXPECT_THAT(html, HasSubstr(std::string(64, 'a')));
   EXPECT_THAT(html, HasSubstr("did not converge"));
   EXPECT_THAT(html, HasSubstr("40 commanded, 39 executed, 1 not executed"));
+  EXPECT_THAT(html, HasSubstr("300 s after the start"));
+  EXPECT_THAT(html, HasSubstr("12.476 in 12 maneuvers")) << "the paper's, as the run meets its waypoints 9 and 10";
   EXPECT_THAT(html, HasSubstr("at most 350,000, on average 250,001 instructions; at most 21,000 bytes of stack"));
 }
 
@@ -76,9 +79,31 @@ TEST_F(HtmlReport, CopesWithASingleStep) {
   record.truth.resize(1);
   record.estimates.resize(1);
   record.waypoints.resize(1);
+  record.gnss.resize(1);
   record.maneuvers.clear();
   record.residuals.clear();
   EXPECT_EQ(complaints(html_report(record)), "");
+}
+
+TEST_F(HtmlReport, NamesThePaperOnlyBesideItsWaypoints) {
+  RunRecord record = synthetic_run();
+  for (WaypointRow& waypoint : record.waypoints) waypoint.a_roe_desired_m[1] -= 1.0;
+  EXPECT_THAT(html_report(record), testing::Not(HasSubstr("paper, software in the loop")));
+}
+
+TEST_F(HtmlReport, CopesWithGnssThatNeverSolved) {
+  RunRecord record = synthetic_run();
+  for (EstimateRow& row : record.estimates) row.navigation_source = row.navigation_valid = 0;
+  for (GnssRow& row : record.gnss) {
+    GnssRow silent;
+    silent.time_s = row.time_s;
+    row = silent;
+  }
+  record.summary.first_fix_s = record.summary.navigation_nees = std::nullopt;
+  EXPECT_EQ(complaints(html_report(record)), "");
+  EXPECT_THAT(html_report(record), HasSubstr("never"));
+  record.gnss.clear();
+  EXPECT_THAT(html_report(record), testing::Not(HasSubstr("Carrier-phase navigation")));
 }
 
 TEST_F(HtmlReport, CopesWithNumbersThatAreNone) {
@@ -90,6 +115,8 @@ TEST_F(HtmlReport, CopesWithNumbersThatAreNone) {
   record.waypoints[2].control_error_m = none;
   record.truth[100].relative_position_rtn = {none, none, none};
   record.truth[200].a_roe_mean_m.fill(std::numeric_limits<double>::infinity());
+  record.gnss[400].phase_nis = none;
+  record.gnss[500].covariance_rtn.fill(none);
   record.estimates[300].passive_safety_distance_m = none;
   record.maneuvers[5].executed_dv_rtn_mps = {none, 0.0, 0.0};
   EXPECT_EQ(complaints(html_report(record)), "");

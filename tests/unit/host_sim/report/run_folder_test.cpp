@@ -72,7 +72,7 @@ TEST_F(RunFolderTest, WritingWhatWasReadGivesTheSameFiles) {
   leave_a_run();
   const RunFolder again(scratch_ / "again", {});
   again.finish(read_run(run()));
-  for (const char* name : {"summary.json", "waypoints.csv", "truth.csv", "attitude.csv", "estimate.csv",
+  for (const char* name : {"summary.json", "waypoints.csv", "truth.csv", "attitude.csv", "estimate.csv", "gnss.csv",
                            "maneuvers.csv", "residuals.csv"}) {
     EXPECT_EQ(content(run() / name), content(again.path() / name)) << name;
     EXPECT_FALSE(content(run() / name).empty()) << name;
@@ -84,6 +84,7 @@ TEST_F(RunFolderTest, ColumnsAreAsAgreed) {
   const RunFolder folder(run(), {});
   RunRecord record;
   record.attitudes.emplace_back();
+  record.gnss.emplace_back();
   folder.finish(record);
   const auto group = [](std::string name, std::initializer_list<const char*> members) {
     std::string text;
@@ -123,6 +124,31 @@ TEST_F(RunFolderTest, ColumnsAreAsAgreed) {
                 "step_cost,stack_bytes");
 }
 
+TEST_F(RunFolderTest, ColumnsOfGnssAreAsAgreed) {
+  const RunFolder folder(run(), {});
+  RunRecord record;
+  record.gnss.emplace_back();
+  folder.finish(record);
+  std::string covariance;
+  const char* const kStates[] = {"r", "t", "n", "vr", "vt", "vn"};
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column <= row; ++column)
+      covariance += std::string("covariance_rtn_") + kStates[row] + "_" + kStates[column] + ",";
+  EXPECT_EQ(first_line(run() / "gnss.csv"),
+            "time_s,step,epoch_s,pairs,alone,too_late,no_solution,tracked,fixed,fixes,releases,slips,restarts,obstacle,"
+            "success_rate,ratio,codes_used,phases_used,codes_refused,phases_refused,code_nis,phase_nis," +
+                covariance + "messages,messages_refused");
+}
+
+TEST_F(RunFolderTest, GnssIsAFileOnlyWhereItNavigates) {
+  leave_a_run();
+  RunRecord record = synthetic_run();
+  record.gnss.clear();
+  RunFolder(run(), record.summary).finish(record);
+  EXPECT_FALSE(fs::exists(run() / "gnss.csv"));
+  EXPECT_TRUE(read_run(run()) == record);
+}
+
 // A mission without attitudes leaves the files it always left.
 TEST_F(RunFolderTest, AttitudesAreAFileOnlyWhereThereAreSome) {
   leave_a_run();
@@ -137,25 +163,35 @@ TEST_F(RunFolderTest, AttitudesAreAFileOnlyWhereThereAreSome) {
 TEST_F(RunFolderTest, SummaryIsAsAgreed) {
   leave_a_run();
   const Json json = Json::parse(content(run() / "summary.json"));
-  EXPECT_THAT(
-      keys(json),
-      ElementsAre("mission", "seed", "complete", "incomplete_reason", "flight_computer", "flight_software", "camera",
-                  "gnss", "navigation", "simulated_s", "wall_s", "speed_factor", "waypoints", "navigation_error_m",
-                  "navigation_velocity_error_mps", "attitude_error_deg", "dv_mps", "maneuvers", "commands_sha256",
-                  "telemetry_sha256", "flight_step", "link", "deadlines", "wall_share"));
+  EXPECT_THAT(keys(json),
+              ElementsAre("mission", "seed", "complete", "incomplete_reason", "flight_computer", "flight_software",
+                          "camera", "gnss", "navigation", "simulated_s", "wall_s", "speed_factor", "waypoints",
+                          "navigation_error_m", "navigation_velocity_error_mps", "attitude_error_deg", "first_fix_s",
+                          "static_floor_m", "navigation_nees", "dv_mps", "maneuvers", "commands_sha256",
+                          "telemetry_sha256", "flight_step", "link", "deadlines", "wall_share"));
   EXPECT_THAT(keys(json.at("waypoints").at(3)),
               ElementsAre("index", "time_s", "navigation_error_m", "navigation_velocity_error_mps", "control_error_m",
                           "leg_dv_mps", "cumulative_dv_mps", "leg_maneuvers"));
   EXPECT_THAT(keys(json.at("flight_step")), ElementsAre("count", "unit", "max", "mean", "stack_bytes_max"));
-  EXPECT_THAT(keys(json.at("link")),
-              ElementsAre("bytes", "frames_resent", "frames_rejected", "frames_duplicated", "strangers_ignored"));
+  EXPECT_THAT(keys(json.at("link")), ElementsAre("bytes", "frames_resent", "frames_rejected", "frames_duplicated",
+                                                 "strangers_ignored", "baud", "step_share_max", "step_share_mean"));
   EXPECT_THAT(keys(json.at("deadlines")),
               ElementsAre("compute_overruns", "wakeups_late", "link_late", "simulation_late"));
+  EXPECT_EQ(json.at("first_fix_s"), 300.0);
   EXPECT_TRUE(json.at("camera").is_null());
   EXPECT_TRUE(json.at("incomplete_reason").is_null());
   EXPECT_TRUE(json.at("attitude_error_deg").at("mean").is_null());
   EXPECT_TRUE(json.at("waypoints").at(0).at("navigation_error_m").is_null());
   EXPECT_EQ(json.at("seed").get<std::uint64_t>(), 18446744073709551615ULL);
+}
+
+TEST_F(RunFolderTest, SummaryWithoutGnssHasNulls) {
+  const RunFolder folder(run(), {});
+  folder.finish({});
+  const Json json = Json::parse(content(run() / "summary.json"));
+  for (const char* key : {"first_fix_s", "static_floor_m", "navigation_nees"})
+    EXPECT_TRUE(json.at(key).is_null()) << key;
+  EXPECT_FALSE(read_run(run()).summary.first_fix_s.has_value());
 }
 
 TEST_F(RunFolderTest, SaysIncompleteUntilFinished) {

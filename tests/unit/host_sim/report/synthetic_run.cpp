@@ -73,7 +73,7 @@ EstimateRow estimate_of(const TruthRow& truth, std::int64_t step) {
   EstimateRow row;
   row.time_s = truth.time_s;
   row.step = step;
-  row.navigation_source = 2;
+  row.navigation_source = step < 5 ? 3 : 4;
   row.navigation_valid = step % 97 == 0 ? 0 : 1;
   const double sigma = 1e-3 * norm(truth.relative_position_rtn);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -99,6 +99,32 @@ EstimateRow estimate_of(const TruthRow& truth, std::int64_t step) {
   row.commanded_dv_mps = 1e-5 * truth.time_s;
   row.step_cost = 150000 + static_cast<std::uint64_t>(100000.0 * (1.0 + wobble(truth.time_s, 3.0)));
   row.stack_bytes = 21000;
+  return row;
+}
+
+GnssRow gnss_of(const EstimateRow& estimate) {
+  GnssRow row;
+  row.time_s = estimate.time_s;
+  row.step = estimate.step;
+  row.obstacle = "none";
+  row.messages = static_cast<std::int32_t>(7 * estimate.step);
+  if (estimate.step < 5) return row;
+  row.epoch_s = estimate.time_s - 10.0;
+  row.pairs = static_cast<std::int32_t>(estimate.step - 4);
+  row.tracked = 30 + static_cast<std::int32_t>(estimate.step % 5);
+  row.fixed = row.tracked - 1;
+  row.fixes = 1 + static_cast<std::int32_t>(estimate.step / 100);
+  row.obstacle = estimate.step % 7 == 0 ? "ratio" : "none";
+  row.success_rate = 0.9999;
+  row.ratio = 12.5;
+  row.codes_used = row.phases_used = row.tracked;
+  row.code_nis = row.tracked * (1.0 + 0.3 * wobble(row.time_s, 8.0));
+  row.phase_nis = row.tracked * (1.0 + 0.3 * wobble(row.time_s, 9.0));
+  std::size_t place = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    place += k;
+    row.covariance_rtn[place++] = estimate.sigma_rtn[k] * estimate.sigma_rtn[k];
+  }
   return row;
 }
 
@@ -151,12 +177,15 @@ Summary summary() {
   s.speed_factor = s.simulated_s / s.wall_s;
   s.navigation_error_m = MeanAndDeviation{0.0087, 0.0032};
   s.navigation_velocity_error_mps = MeanAndDeviation{2.4e-5, 1.1e-5};
+  s.first_fix_s = 300.0;
+  s.static_floor_m = 0.0061;
+  s.navigation_nees = 5.9;
   s.dv_mps = 3.8345;
   s.maneuvers = 39;
   s.commands_sha256 = std::string(64, 'a');
   s.telemetry_sha256 = std::string(64, 'b');
   s.flight_step = {.count = 2476, .max = 350000, .mean = 250000.5, .unit = "instructions", .stack_bytes_max = 21000};
-  s.link = {2135034, 3, 2, 1, 4};
+  s.link = {2135034, 3, 2, 1, 4, 921600, 0.0125, 0.00625};
   s.deadlines = {5, 6, 7};
   s.wall_share = {0.12, 52.0, 0.1, 0.14};
   return s;
@@ -170,6 +199,7 @@ RunRecord synthetic_run() {
   for (std::int64_t step = 0; step <= 2475; ++step) {
     record.truth.push_back(truth_at(60.0 * static_cast<double>(step)));
     record.estimates.push_back(estimate_of(record.truth.back(), step));
+    record.gnss.push_back(gnss_of(record.estimates.back()));
     const double t = record.truth.back().time_s;
     if (step % 10 == 0) record.residuals.push_back({t, "camera, \"left\"", wobble(t, 5.0), 0.5 * wobble(t, 5.0), 0.4});
     if (step % 15 == 0) record.residuals.push_back({t, "gnss", 2.0 * wobble(t, 6.0), wobble(t, 6.0), 0.9});

@@ -1,0 +1,90 @@
+// What a flight by GNSS leaves in its record: the flight software's own words, and statistics that begin at the first
+// fix.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "host_sim/report/maneuver_series.h"
+#include "tests/integration/rendezvous/flown_mission.h"
+
+namespace vbar::test {
+namespace {
+
+constexpr int kFixedAmbiguities = 4;  // telemetry_navigation.source
+
+std::string body_frame(const char* spacecraft, const char* key, double value) {
+  return std::string("spacecraft.") + spacecraft + ".sensors.gnss.body_frame." + key + "=" + std::to_string(value);
+}
+
+/// Bodies without errors, but for the offset of the servicer's phase centre.
+std::vector<std::string> only_offset_mm(double offset_mm) {
+  std::vector<std::string> overrides{"mission.duration_h=0.01"};
+  for (const char* spacecraft : {"servicer", "target"})
+    for (const char* key : {"com_radius_mm", "pco_bias_mm", "antenna_direction_arcsec", "attitude_knowledge_arcsec"})
+      overrides.push_back(body_frame(spacecraft, key, 0.0));
+  overrides.push_back(body_frame("servicer", "pco_bias_mm", offset_mm));
+  return overrides;
+}
+
+TEST(GnssRecord, HasARowAStepAndStatisticsFromTheFirstFixOn) {
+  const FlownMission flown = fly("experiment3.toml", {"mission.duration_h=0.1"});
+  const report::RunRecord& record = flown.record;
+  ASSERT_EQ(record.estimates.size(), 37U) << "six minutes at 10 s, both ends";
+  ASSERT_EQ(record.gnss.size(), record.estimates.size());
+  ASSERT_EQ(record.truth.size(), record.estimates.size());
+  EXPECT_EQ(record.summary.simulated_s, 360.0) << "what the crosslink delivers after the end does not count";
+
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t k = 0; k < record.gnss.size(); ++k) {
+    const report::GnssRow& row = record.gnss[k];
+    EXPECT_EQ(row.step, static_cast<std::int64_t>(k));
+    EXPECT_EQ(row.time_s, record.truth[k].time_s);
+    EXPECT_LE(row.fixed, row.tracked);
+    // The target's half of an epoch comes after the step of its time.
+    EXPECT_TRUE(row.pairs == 0 || row.epoch_s.value() < row.time_s);
+    if (count == 0 && record.estimates[k].navigation_source != kFixedAmbiguities) continue;
+    const report::Triple& a = record.estimates[k].relative_position_rtn;
+    const report::Triple& b = record.truth[k].relative_position_rtn;
+    sum += std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    if (count == 0) {
+      EXPECT_EQ(record.summary.first_fix_s, row.time_s - record.gnss.front().time_s);
+    }
+    ++count;
+  }
+  ASSERT_GT(count, 0) << "never fixed";
+  // The same sum in the same order, but for the compiler's choice of instructions.
+  EXPECT_NEAR(record.summary.navigation_error_m.value().mean, sum / count, 1e-15);
+  EXPECT_GT(record.summary.navigation_nees.value(), 0.0);
+}
+
+// A vector of known length in one body only is the floor; rounding of metres.
+TEST(GnssRecord, StaticFloorIsThatOfTheRunsOwnAntennas) {
+  EXPECT_NEAR(fly("experiment3.toml", only_offset_mm(5.0)).record.summary.static_floor_m.value(), 5e-3, 1e-15);
+  EXPECT_NEAR(fly("experiment3.toml", only_offset_mm(0.0)).record.summary.static_floor_m.value(), 0.0, 1e-15);
+}
+
+TEST(GnssRecord, NavigationFliesAloneThroughPrescribedBurns) {
+  const FlownMission flown = fly("gnss_navigation_only.toml");
+  const report::RunRecord& record = flown.record;
+  EXPECT_TRUE(flown.commands.empty()) << "guidance is idle";
+  ASSERT_EQ(record.maneuvers.size(), 4U);
+  for (const report::ManeuverRow& maneuver : record.maneuvers) {
+    EXPECT_TRUE(maneuver.accepted);
+    EXPECT_EQ(maneuver.executed_dv_rtn_mps, maneuver.commanded_dv_rtn_mps) << "the thruster is ideal";
+  }
+  EXPECT_DOUBLE_EQ(report::magnitude(record.maneuvers[3].executed_dv_rtn_mps), 3e-3);
+  EXPECT_EQ(record.estimates.back().navigation_source, kFixedAmbiguities);
+}
+
+TEST(GnssRecord, IsEmptyWithoutGnss) {
+  const FlownMission flown = fly("ideal_navigation.toml", {"mission.duration_h=0.1"});
+  EXPECT_TRUE(flown.record.gnss.empty());
+  EXPECT_FALSE(flown.record.summary.first_fix_s.has_value());
+  EXPECT_FALSE(flown.record.summary.static_floor_m.has_value());
+  EXPECT_FALSE(flown.record.summary.navigation_nees.has_value());
+}
+
+}  // namespace
+}  // namespace vbar::test

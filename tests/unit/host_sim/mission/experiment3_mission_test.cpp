@@ -1,0 +1,117 @@
+// missions/experiment3.toml flies the paper's waypoints 8 to 10, explains every key of GNSS, and the values it shows
+// are the defaults that it says they are.
+
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/host_sim/mission/mission_text.h"
+
+namespace vbar::mission::test {
+namespace {
+
+constexpr const char* kFile = VBAR_SOURCE_DIR "/missions/experiment3.toml";
+
+std::string file_text() {
+  std::ostringstream text;
+  text << std::ifstream(kFile).rdbuf();
+  return text.str();
+}
+
+/// The keys that a table accepts, as the message about an unknown one lists them.
+std::vector<std::string> accepted_keys(const std::string& table) {
+  std::string message;
+  try {
+    static_cast<void>(load_mission(kFile, std::vector<std::string>{table + ".xyzzy=1"}));
+  } catch (const MissionError& error) {
+    message = error.what();
+  }
+  const std::string before = "accepted: ";
+  const std::size_t start = message.find(before);
+  EXPECT_NE(start, std::string::npos) << table << ": " << message;
+  if (start == std::string::npos) return {};
+  const std::string list = message.substr(start + before.size());
+  const std::regex word("[a-z0-9_]+");
+  std::vector<std::string> keys;
+  for (std::sregex_iterator it(list.begin(), list.end(), word), end; it != end; ++it)
+    if (it->str() != "or") keys.push_back(it->str());
+  return keys;
+}
+
+TEST(Experiment3Mission, WaypointsAreThePapers) {
+  // Table "End-to-end Mission ROE Waypoints".
+  const Mission mission = load_mission(kFile);
+  constexpr double kPaper[3][7] = {{39.0, -0.5, -10.0, 0.0, 2.0, 0.0, 1.0},
+                                   {40.0, 0.0, -7.0, 1.0, 0.0, 2.0, 0.0},
+                                   {41.25, 0.0, -8.5, 1.0, 0.0, 1.0, 0.0}};
+  ASSERT_EQ(mission.waypoints.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(mission.waypoints[k].index, 8 + static_cast<int>(k));
+    EXPECT_EQ((mission.waypoints[k].time - mission.epoch).ns, static_cast<std::int64_t>(kPaper[k][0] * 3600e9));
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(mission.waypoints[k].a_roe_m(i), kPaper[k][i + 1]) << k << ' ' << i;
+    EXPECT_EQ(mission.waypoints[k].solver, Solver::kKoenigDamico);
+  }
+  // "the maneuver planner was initiated at t = 20 minutes"
+  EXPECT_EQ(mission.guidance.planner_start - mission.start_time(), fsw::duration_of_seconds(1200));
+}
+
+TEST(Experiment3Mission, EveryKeyOfGnssIsExplained) {
+  const std::string sensor = "spacecraft.servicer.sensors.gnss";
+  const std::string text = file_text();
+  for (const std::string& table :
+       {sensor, sensor + ".visibility", sensor + ".link_budget", sensor + ".tracking", sensor + ".start",
+        sensor + ".clock", sensor + ".body_frame", std::string("gnss_navigation"), std::string("constellation"),
+        std::string("links.crosslink")}) {
+    const std::vector<std::string> keys = accepted_keys(table);
+    EXPECT_GE(keys.size(), 4U) << table;
+    for (const std::string& key : keys) {
+      const bool is_shown = text.find("\n" + key + " = ") != std::string::npos ||
+                            text.find("sensors.gnss." + key + "]") != std::string::npos;
+      EXPECT_TRUE(is_shown) << table << '.' << key;
+    }
+  }
+}
+
+// A mission without the tables has the same values, but for the loss of the crosslink, of which the file says so.
+TEST(Experiment3Mission, ShowsTheDefaults) {
+  const Mission shown = load_mission(kFile);
+  const twins::gnss::GnssReceiverSettings defaults;
+  EXPECT_TRUE(shown.find_spacecraft("servicer")->gnss->receiver == defaults);
+  EXPECT_TRUE(shown.find_spacecraft("target")->gnss->receiver == defaults);
+
+  const Mission bare = small_mission();
+  EXPECT_TRUE(shown.constellation == bare.constellation);
+  EXPECT_TRUE(shown.gnss_navigation == bare.gnss_navigation);
+  EXPECT_EQ(bare.crosslink.link.loss_probability, 0.0);
+  twins::gnss::CrosslinkSettings without_loss = shown.crosslink;
+  without_loss.link.loss_probability = 0.0;
+  EXPECT_TRUE(without_loss == bare.crosslink);
+  EXPECT_TRUE(bare.burns.empty());
+}
+
+// Appendix A: "GNSS Software Emulator" and "body-frame" tables.
+TEST(Experiment3Mission, ReceiverIsThePapers) {
+  const twins::gnss::GnssReceiverSettings receiver = load_mission(kFile).find_spacecraft("servicer")->gnss->receiver;
+  EXPECT_EQ(receiver.visibility.transmit_aperture_deg, 170.0);
+  EXPECT_EQ(receiver.visibility.receiver_mask_deg, 190.0);
+  EXPECT_EQ(receiver.visibility.horizon_mask_deg, -20.0);
+  EXPECT_EQ(receiver.link_budget.lna_gain_db, 33.0);
+  EXPECT_EQ(receiver.body_frame.mass_sigma_kg, 0.04);
+  EXPECT_EQ(receiver.body_frame.com_radius_mm, 3.0);
+  EXPECT_EQ(receiver.body_frame.pco_bias_mm, 5.0);
+  EXPECT_EQ(receiver.body_frame.pco_noise_mm, 1.0);
+  EXPECT_EQ(receiver.body_frame.antenna_direction_arcsec, 30.0);
+  EXPECT_EQ(receiver.body_frame.attitude_knowledge_arcsec, 20.0);
+}
+
+TEST(GnssNavigationOnlyMission, IsIdleWithBurns) {
+  const Mission mission = load_mission(VBAR_SOURCE_DIR "/missions/gnss_navigation_only.toml");
+  EXPECT_EQ(mission.guidance.mode, Mode::kIdle);
+  EXPECT_EQ(mission.burns.size(), 4U);
+  EXPECT_TRUE(mission.find_spacecraft("servicer")->gnss.has_value());
+}
+
+}  // namespace
+}  // namespace vbar::mission::test
