@@ -1,5 +1,6 @@
 #include "pil_bridge/byte_channels.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <thread>
@@ -134,9 +135,9 @@ class PacedChannel final : public ByteChannel {
       : channel_(std::move(channel)), byte_time_(std::chrono::duration<double>(kBitsPerByte / bits_per_s)) {}
 
   void write(std::span<const std::uint8_t> bytes, Clock::time_point deadline) override {
+    send_line_free_ = std::max(send_line_free_, Clock::now()) + time_of(bytes.size());
     std::this_thread::sleep_until(send_line_free_);
     channel_->write(bytes, deadline);
-    send_line_free_ = Clock::now() + time_of(bytes.size());
   }
 
   std::span<const std::uint8_t> read(Clock::time_point deadline) override {

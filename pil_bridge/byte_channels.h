@@ -36,7 +36,8 @@ struct Pty {
 /// A new pseudo-terminal in raw mode.
 Pty make_pty();
 
-/// Slows `channel` down, in both directions, to a serial line of `bits_per_s` with 10 bits a byte (8N1).
+/// Slows `channel` down, in both directions, to a serial line of `bits_per_s` with 10 bits a byte (8N1): what is
+/// written or read comes out at the other end once the last of its bytes would have.
 std::unique_ptr<ByteChannel> paced(std::unique_ptr<ByteChannel> channel, double bits_per_s);
 
 }  // namespace vbar::pil

@@ -27,7 +27,9 @@ std::unique_ptr<pil::FlightComputer> connect_flight_computer(const mission::Spac
   if (wanted.target == mission::FlightTarget::kBoard) {
     const bool serial = wanted.link == mission::FlightLink::kSerial;
     options.endpoint = serial ? wanted.device : wanted.address + ":" + std::to_string(wanted.port);
-    options.baud = static_cast<unsigned>(wanted.baud);
+    if (wanted.baud) options.baud = static_cast<unsigned>(*wanted.baud);
+  } else if (wanted.baud) {
+    options.paced_bits_per_s = *wanted.baud;
   }
   return pil::make_flight_computer(options);
 }

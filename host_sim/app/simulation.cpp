@@ -76,6 +76,7 @@ Simulation::Simulation(const mission::Mission& mission, const std::filesystem::p
       truth_(truth_settings(mission, data_directory)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
       earth_rotation_(truth_.data().earth_orientation, mission.epoch),
+      line_(*servicer_.flight_computer, mission.step, surroundings.flight_computer.statistics()),
       clock_(mission.clock, surroundings.wall),
       events_(mission.start_time()) {
   place_spacecraft(mission, truth_);
@@ -227,6 +228,7 @@ void Simulation::handle(const StepFlight&) {
   if (answer.report.present) cost_unit_ = answer.report.unit;
   flight_compute_s_ += answer.compute_wall_s;
   link_s_ += exchange_s - answer.compute_wall_s;
+  line_.after_step(surroundings_.flight_computer.statistics());
 
   for (PacketObserver* observer : surroundings_.observers) observer->on_step(step_, now, inputs, answer.packets);
   recorder_.on_answer(now, answer);
@@ -312,6 +314,7 @@ void Simulation::summarise(double wall_s, bool complete) {
   const pil::LinkStatistics link = surroundings_.flight_computer.statistics();
   summary.link = {link.bytes_sent + link.bytes_received, link.frames_resent, link.frames_rejected,
                   link.frames_duplicated, link.strangers_ignored};
+  line_.summarise(summary.link);
   const engine::DeadlineReport& deadlines = clock_.report();
   summary.deadlines = {deadlines.step_late.count, deadlines.woke_late.count, deadlines.link_late.count,
                        deadlines.simulation_late.count};

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "host_sim/app/flight_recorder.h"
+#include "host_sim/app/line_usage.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/event_queue.h"
 #include "host_sim/engine/link_model.h"
@@ -115,6 +116,7 @@ class Simulation {
   std::unique_ptr<twins::Actuator> thruster_;
   engine::LinkModel board_link_;
   truth::EarthRotation earth_rotation_;
+  LineUsage line_;
   engine::RunClock clock_;
   engine::EventQueue<Event> events_;
   std::vector<pil::Packet> arrived_;  ///< for the next step

@@ -50,9 +50,10 @@ struct FlightComputer {
   std::string library;            ///< shared library of another test article; empty: vbar's own
   fsw::Duration compute_latency;  ///< from a step to the moment its outputs take effect
   std::string device;             ///< board on a serial link: the tty
-  int baud = 921600;              ///< board on a serial link
-  std::string address;            ///< board on UDP
-  int port = 0;                   ///< board on UDP
+  /// Serial link: the tty's rate (board: 921,600 unless said); for others the bridge slows the line down to it.
+  std::optional<int> baud;
+  std::string address;  ///< board on UDP
+  int port = 0;         ///< board on UDP
 };
 
 enum class NavigationSource { kIdeal, kRecorded };

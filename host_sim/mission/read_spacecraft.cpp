@@ -93,7 +93,7 @@ FlightComputer read_flight_computer(const TableReader& section) {
     section.refuse_value("library", "nothing, unless target is in_process");
   computer.compute_latency = section.span("compute_latency_s", 1.0, from_to(0.0, 3600.0), 1.0);
   computer.device = section.text("device", "");
-  computer.baud = static_cast<int>(section.integer("baud", 1200, 4000000, computer.baud));
+  if (section.has("baud")) computer.baud = static_cast<int>(section.integer("baud", 1200, 4000000));
   computer.address = section.text("address", "");
   computer.port = static_cast<int>(section.integer("port", 0, 65535, 0));
   if (computer.target == FlightTarget::kBoard) {

@@ -138,6 +138,8 @@ struct Summary {
   } flight_step;
   struct Link {
     std::uint64_t bytes = 0, frames_resent = 0, frames_rejected = 0, frames_duplicated = 0, strangers_ignored = 0;
+    int baud = 0;                                        ///< of a serial line; 0: none, or as fast as it goes
+    double step_share_max = 0.0, step_share_mean = 0.0;  ///< of a step's period, that its bytes take at that rate
     friend bool operator==(const Link&, const Link&) = default;
   } link;
   struct Deadlines {

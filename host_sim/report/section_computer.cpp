@@ -32,6 +32,12 @@ std::string step_cost(const RunRecord& record) {
          figures(1, {svg(plot)});
 }
 
+std::string share_of_step(const Summary::Link& link) {
+  if (link.baud == 0) return "–";
+  return fmt::format("at most {} %, on average {} % at {} baud", fixed(100.0 * link.step_share_max, 2),
+                     fixed(100.0 * link.step_share_mean, 2), grouped(static_cast<std::uint64_t>(link.baud)));
+}
+
 std::string share(double seconds, double wall_s) {
   return wall_s > 0.0 ? fmt::format("{} s ({} %)", fixed(seconds, 2), fixed(100.0 * seconds / wall_s, 1))
                       : fixed(seconds, 2) + " s";
@@ -43,6 +49,7 @@ std::string computer_section(const RunRecord& record) {
   const Summary& s = record.summary;
   const std::vector<Fact> facts{
       {"bytes on the link", grouped(s.link.bytes)},
+      {"share of a step on the line", share_of_step(s.link)},
       {"frames sent again", grouped(s.link.frames_resent)},
       {"frames rejected", grouped(s.link.frames_rejected)},
       {"frames duplicated", grouped(s.link.frames_duplicated)},

@@ -94,6 +94,9 @@ Summary summary_from(const Json& json) {
   link.at("frames_rejected").get_to(s.link.frames_rejected);
   link.at("frames_duplicated").get_to(s.link.frames_duplicated);
   link.at("strangers_ignored").get_to(s.link.strangers_ignored);
+  link.at("baud").get_to(s.link.baud);
+  s.link.step_share_max = number(link.at("step_share_max"));
+  s.link.step_share_mean = number(link.at("step_share_mean"));
 
   const Json& deadlines = json.at("deadlines");
   deadlines.at("compute_overruns").get_to(s.deadlines.compute_overruns);
@@ -149,7 +152,10 @@ std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypo
         {"frames_resent", s.link.frames_resent},
         {"frames_rejected", s.link.frames_rejected},
         {"frames_duplicated", s.link.frames_duplicated},
-        {"strangers_ignored", s.link.strangers_ignored}}},
+        {"strangers_ignored", s.link.strangers_ignored},
+        {"baud", s.link.baud},
+        {"step_share_max", s.link.step_share_max},
+        {"step_share_mean", s.link.step_share_mean}}},
       {"deadlines",
        {{"compute_overruns", s.deadlines.compute_overruns},
         {"wakeups_late", s.deadlines.wakeups_late},

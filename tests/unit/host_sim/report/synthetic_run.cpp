@@ -185,7 +185,7 @@ Summary summary() {
   s.commands_sha256 = std::string(64, 'a');
   s.telemetry_sha256 = std::string(64, 'b');
   s.flight_step = {.count = 2476, .max = 350000, .mean = 250000.5, .unit = "instructions", .stack_bytes_max = 21000};
-  s.link = {2135034, 3, 2, 1, 4};
+  s.link = {2135034, 3, 2, 1, 4, 921600, 0.0125, 0.00625};
   s.deadlines = {5, 6, 7};
   s.wall_share = {0.12, 52.0, 0.1, 0.14};
   return s;

@@ -1,0 +1,34 @@
+#pragma once
+// How long each step's bytes take on the serial line to the flight computer: both directions after each other, for the
+// answer follows the last packet of the step.
+
+#include <cstdint>
+
+#include "host_sim/mission/mission.h"
+#include "host_sim/report/run_record.h"
+#include "pil_bridge/flight_computer.h"
+
+namespace vbar::app {
+
+class LineUsage {
+ public:
+  /// `before`: of the link before the first step. Nothing is told of a flight computer without a serial line, or with
+  /// one that is as fast as it goes.
+  LineUsage(const mission::FlightComputer& computer, fsw::Duration step_period, const pil::LinkStatistics& before);
+
+  /// `link`: as it stands after the step.
+  void after_step(const pil::LinkStatistics& link);
+
+  /// Rate and shares, into the run's summary.
+  void summarise(report::Summary::Link& summary) const;
+
+ private:
+  int baud_ = 0;
+  double step_period_s_ = 0.0;
+  std::uint64_t bytes_so_far_ = 0;
+  std::uint64_t steps_ = 0;
+  std::uint64_t bytes_ = 0;
+  std::uint64_t bytes_of_step_max_ = 0;
+};
+
+}  // namespace vbar::app
