@@ -68,7 +68,8 @@ struct GnssRow {
   std::int32_t codes_refused = 0, phases_refused = 0;
   double code_nis = 0.0, phase_nis = 0.0;  ///< of the last epoch: sums of normalised innovations squared
   LowerTriangle6 covariance_rtn{};         ///< of the relative state at epoch_s: m^2, m^2/s, m^2/s^2
-  std::int32_t messages = 0, messages_refused = 0;
+  std::int32_t messages = 0;               ///< of both receivers
+  std::int32_t messages_refused = 0;       ///< and what only looked like one, by a chance pattern of bytes
   friend bool operator==(const GnssRow&, const GnssRow&) = default;
 };
 

@@ -149,7 +149,8 @@ std::string facts(const RunRecord& record) {
        {"integers", fmt::format("{} decisions to hold, {} releases, {} cycle slips, {} restarts", last.fixes,
                                 last.releases, last.slips, last.restarts)},
        {"measurements refused", fmt::format("{} code, {} carrier phase", last.codes_refused, last.phases_refused)},
-       {"receiver messages", fmt::format("{}, {} refused", grouped_nearest(last.messages), last.messages_refused)}});
+       {"receiver messages", fmt::format("{}, {} refused (chance patterns included)", grouped_nearest(last.messages),
+                                         last.messages_refused)}});
 }
 
 // ----------------------------------------------------------------------------------------------------------------
