@@ -176,8 +176,8 @@ INSTANTIATE_TEST_SUITE_P(Abuse, HostileBytes, ::testing::ValuesIn(abuses()),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 // Not hostile, but rare: a flight across the end of a GPS week (BeiDou's ends 14 s later), and receivers whose clocks
-// stand up to 20 ms apart, twenty times what receivers that set their clocks allow. (The servicer's velocity is known to
-// a decimetre a second at first: over 100 ms that is a centimetre, too much for a quick fix.)
+// stand up to 20 ms apart, twenty times what receivers that set their clocks allow. (The servicer's velocity is known
+// to a decimetre a second at first: over 100 ms that is a centimetre, too much for a quick fix.)
 TEST(RareTimes, TheWeekEndsBetweenTheWaypoints) {
   // Starts on Saturday, 2011-07-23, 23:00 UTC.
   const Flight flight = fly_experiment3(1, {"mission.epoch_utc=2011-07-22T08:00:00Z"});

@@ -96,6 +96,31 @@ TEST(GnssNavigation, ASlipThatNobodyTellsIsFound) {
   }
 }
 
+// At 5 ms the orbit has moved on by 37 m between the instant a receiver means and that of its measurements.
+TEST(GnssNavigation, ClocksMayStandMillisecondsApart) {
+  CooperatingPair pair(13);
+  pair.servicer.clock_s = 5e-3;
+  pair.target.clock_s = -5e-3;
+  pair.fly(20);
+  EXPECT_TRUE(pair.navigation->ambiguities().is_fixed());
+  EXPECT_TRUE(pair.integers_are_true());
+  EXPECT_LT(pair.position_error(), 3e-3);
+  EXPECT_EQ(pair.navigation->counters().restarts, 0);
+}
+
+// One receiver is suddenly elsewhere, its phases begin anew: after five epochs nothing that was known counts.
+TEST(GnssNavigation, ARelativeStateThatTheCodesContradictIsGivenUp) {
+  CooperatingPair pair(14);
+  pair.fly(20);
+  pair.target.start.position_eci += orbit::R_rtn_eci(pair.target.start).transpose() * Vector3(0.0, 300.0, 0.0);
+  for (double& lock : pair.target.lock_start_s) lock = 1000.0 + seconds(pair.tag - test::start_time()) - 1.0;
+  pair.fly(20);
+  EXPECT_EQ(pair.navigation->counters().restarts, 1);
+  EXPECT_TRUE(pair.navigation->ambiguities().is_fixed());
+  EXPECT_TRUE(pair.integers_are_true());
+  EXPECT_LT(pair.position_error(), 3e-3);
+}
+
 TEST(GnssNavigation, BurnsAreFollowed) {
   CooperatingPair pair(7);
   pair.fly(20);
@@ -149,6 +174,7 @@ TEST(GnssNavigation, SilenceIsCoastedAndFixedAgain) {
     pair.navigation->update(pair.tag, {});
   }
   EXPECT_GE(pair.navigation->counters().alone, 55);
+  EXPECT_GE(seconds(pair.navigation->epoch() - pair.navigation->last_pair()), 550.0);
   const Matrix6 covariance = pair.navigation->covariance_rtn();
   const double variance = covariance(0, 0) + covariance(1, 1) + covariance(2, 2);
   EXPECT_GT(variance, 1e-6);  // it says so
