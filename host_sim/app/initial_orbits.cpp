@@ -4,6 +4,7 @@
 
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
+#include "host_sim/twins/gnss/body_frame.h"
 
 namespace vbar::app {
 namespace {
@@ -38,6 +39,18 @@ CartesianState state_at_waypoint(const mission::Mission& mission, const mission:
   return state_of(fsw::orbit::qns_from_roe(chief_mean, roe), spacecraft);
 }
 
+/// The mass that a spacecraft with a receiver truly has: what the body frame's draws add to the nominal one.
+truth::SurfaceProperties true_surface(const mission::Mission& mission, const mission::Spacecraft& spacecraft) {
+  truth::SurfaceProperties surface = spacecraft.surface;
+  if (spacecraft.gnss) {
+    const twins::gnss::BodyFrameSettings& settings = spacecraft.gnss->receiver.body_frame;
+    surface.mass_kg += twins::gnss::draw_body_frame(settings, mission.seed, spacecraft.name).mass_kg;
+    if (!(surface.mass_kg > 0.0))
+      throw std::runtime_error("spacecraft \"" + spacecraft.name + "\": its mass_sigma_kg left it without a mass");
+  }
+  return surface;
+}
+
 }  // namespace
 
 truth::TruthSettings truth_settings(const mission::Mission& mission, const std::filesystem::path& data_directory) {
@@ -49,14 +62,14 @@ truth::TruthSettings truth_settings(const mission::Mission& mission, const std::
 void place_spacecraft(const mission::Mission& mission, truth::TruthModel& truth) {
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (const auto* orbit = std::get_if<mission::OrbitByElements>(&spacecraft.orbit)) {
-      truth.add_spacecraft({spacecraft.name, state_at_epoch(*orbit, spacecraft), spacecraft.surface});
+      truth.add_spacecraft({spacecraft.name, state_at_epoch(*orbit, spacecraft), true_surface(mission, spacecraft)});
     }
   }
   truth.advance_to(mission.start_time());
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (const auto* orbit = std::get_if<mission::OrbitByWaypoint>(&spacecraft.orbit)) {
       truth.add_spacecraft(
-          {spacecraft.name, state_at_waypoint(mission, *orbit, spacecraft, truth), spacecraft.surface});
+          {spacecraft.name, state_at_waypoint(mission, *orbit, spacecraft, truth), true_surface(mission, spacecraft)});
     }
   }
 }

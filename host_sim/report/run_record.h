@@ -122,7 +122,8 @@ struct Summary {
   // Navigation by GNSS only.
   std::optional<double> first_fix_s;  ///< since the start: the first step whose estimate is by fixed ambiguities
   /// Of this run's draws: the distance between the antennas' true places and those that navigation takes for true, as
-  /// of bodies with parallel axes. No navigation that does not estimate it can be better.
+  /// of bodies with parallel axes. Navigation that takes the nominal places errs by it; one that estimates them from
+  /// the motion may do better.
   std::optional<double> static_floor_m;
   /// Mean normalised estimation error squared of the relative state over the steps of navigation_error_m; 6 is honest.
   std::optional<double> navigation_nees;

@@ -3,6 +3,9 @@
 #include "host_sim/app/initial_orbits.h"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -54,6 +57,35 @@ TEST(InitialOrbits, TheTargetStandsAtItsWaypoint) {
   EXPECT_LT(std::abs(difference.x()), 1e-3);  // half the reference's last digit, and the same of its elements'
   EXPECT_LT(std::abs(difference.y()), 0.064);
   EXPECT_LT(std::abs(difference.z()), 1e-3);
+}
+
+// The body frame's error of mass is that of the truth's forces: a sigma seven times the mass leaves some seeds without
+// one, and drag refuses that by name; the true mass otherwise stretches what sunlight and drag do over 39 h.
+TEST(InitialOrbits, ReceiversDrawTheTrueMass) {
+  const std::string root = VBAR_SOURCE_DIR;
+  const auto servicer_of = [&](int seed, const std::string& sigma_kg) {
+    const mission::Mission mission = mission::load_mission(
+        root + "/missions/experiment3.toml",
+        std::vector<std::string>{"mission.seed=" + std::to_string(seed),
+                                 "spacecraft.servicer.sensors.gnss.body_frame.mass_sigma_kg=" + sigma_kg});
+    truth::TruthModel truth(app::truth_settings(mission, root + "/data"));
+    app::place_spacecraft(mission, truth);
+    return truth.state("servicer").position_eci;
+  };
+  const double moved = (servicer_of(1, "10") - servicer_of(1, "0")).norm();
+  // Drag of 1e-7 m/s^2 over 39 h displaces by kilometres; a tenth of the mass is a tenth of that.
+  EXPECT_GT(moved, 1.0);
+  EXPECT_LT(moved, 1e4);
+  int without = 0;
+  for (int seed = 1; seed <= 20 && without == 0; ++seed) {
+    try {
+      servicer_of(seed, "1000");
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "spacecraft \"servicer\": its mass_sigma_kg left it without a mass");
+      ++without;
+    }
+  }
+  EXPECT_GT(without, 0);
 }
 
 // A run that starts 39 h in: the servicer has flown there unburned, the target is placed about it at waypoint 8. The
