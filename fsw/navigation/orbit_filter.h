@@ -27,7 +27,6 @@ class OrbitFilter {
   [[nodiscard]] orbit::CartesianState state() const {
     return {.position_eci = estimate_.mean().head<3>(), .velocity_eci = estimate_.mean().tail<3>()};
   }
-  [[nodiscard]] double position_sigma(int axis) const { return estimate_.sigma(axis); }
   [[nodiscard]] std::int32_t refused() const { return refused_; }
 
   static constexpr int kMostRefused = 5;

@@ -126,7 +126,6 @@ class RelativeFilter {
   }
   [[nodiscard]] Vector3 position_eci() const { return estimate_.mean().head<3>(); }
   [[nodiscard]] Vector3 velocity_eci() const { return estimate_.mean().segment<3>(3); }
-  [[nodiscard]] Vector3 acceleration_rtn() const { return estimate_.mean().segment<3>(6); }
 
  private:
   static constexpr int kHead = RelativeOrbit::kSize + EmpiricalAcceleration::kSize;  ///< sampled

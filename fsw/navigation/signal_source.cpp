@@ -1,7 +1,5 @@
 #include "fsw/navigation/signal_source.h"
 
-#include <Eigen/Geometry>
-
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::navigation {
@@ -19,11 +17,6 @@ Vector3 EarthFrame::eci_from_itrf(const Vector3& itrf, double seconds_later) con
   const double c = math::cos(angle);
   const Vector3 turned(c * itrf.x() - s * itrf.y(), s * itrf.x() + c * itrf.y(), itrf.z());
   return R_itrf_gcrf.transpose() * turned;
-}
-
-Vector3 EarthFrame::velocity_of_rotation_eci(const Vector3& position_eci) const {
-  const Vector3 axis_eci = R_itrf_gcrf.row(2).transpose();
-  return orbit::kEarthRotationRate * axis_eci.cross(position_eci);
 }
 
 Result<SignalSource> signal_source(gnss::SatelliteId satellite, double pseudorange_m, GpsTime receiver_time,

@@ -19,8 +19,6 @@ struct EarthFrame {
   }
   /// To ECI from the Earth-fixed frame of an instant `seconds_later` than `time`.
   [[nodiscard]] Vector3 eci_from_itrf(const Vector3& itrf, double seconds_later) const;
-  /// The velocity that a point at rest in the Earth-fixed frame has in ECI, subtracted or added by callers.
-  [[nodiscard]] Vector3 velocity_of_rotation_eci(const Vector3& position_eci) const;
 };
 
 struct SignalSource {
