@@ -34,7 +34,11 @@ class Estimate {
   [[nodiscard]] double mean(int i) const { return mean_(i); }
   [[nodiscard]] double variance(int i) const { return covariance_(i, i); }
   [[nodiscard]] double covariance(int i, int j) const { return covariance_(i, j); }
-  [[nodiscard]] double sigma(int i) const { return math::sqrt(covariance_(i, i)); }
+  /// Of the first M components.
+  template <int M>
+  [[nodiscard]] Eigen::Matrix<double, M, M> head_covariance() const {
+    return covariance_.template topLeftCorner<M, M>();
+  }
   [[nodiscard]] bool is_idle(int i) const { return covariance_(i, i) == 0.0; }
 
   /// Component i is `mean` with `variance`, independent of all others; variance 0 puts it to rest.
@@ -50,26 +54,6 @@ class Estimate {
 
   /// Independent noise on component i.
   void add_noise(int i, double variance) { covariance_(i, i) += variance; }
-
-  /// Correlated noise on components i and j.
-  void add_noise(int i, int j, double covariance) {
-    covariance_(i, j) += covariance;
-    covariance_(j, i) += covariance;
-  }
-
-  /// x_i <- factor x_i, as a first-order Gauss-Markov process decays.
-  void scale(int i, double factor) {
-    mean_(i) *= factor;
-    covariance_.row(i) *= factor;
-    covariance_.col(i) *= factor;
-  }
-
-  /// x_i <- x_i + factor x_j, as a bias grows by its drift.
-  void accumulate(int i, int j, double factor) {
-    mean_(i) += factor * mean_(j);
-    covariance_.row(i) += factor * covariance_.row(j);
-    covariance_.col(i) += factor * covariance_.col(j);
-  }
 
   /// The first M components move by x <- mean + A (x - old mean) plus independent noise of covariance Q.
   template <int M>

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "fsw/gnc/gnss_configuration.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
@@ -25,44 +26,6 @@ Vector3 vector(const double (&xyz)[3]) {
 
 // GNSS navigation lags its newest measurement by what the crosslink takes; older than this the state is a coast.
 constexpr double kFreshGnss_s = 30.0;
-
-/// What a telecommand asks for; kOutOfRange for figures that no filter can work with.
-Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_configuration& c) {
-  const auto positive = [](double x, double most) { return x > 0.0 && x <= most; };
-  const Vector3 servicer_antenna = vector(c.servicer_antenna_body_m);
-  const Vector3 target_antenna = vector(c.target_antenna_body_m);
-  const bool usable = (c.source == 0 || c.source == 1) && positive(c.min_success_rate, 1.0) && c.min_ratio >= 1.0 &&
-                      c.min_ratio <= 1e6 && is_usable(Duration{c.pair_wait_ns}) && servicer_antenna.norm() < 100.0 &&
-                      target_antenna.norm() < 100.0 && positive(c.antenna_offset_sigma_m, 10.0) &&
-                      positive(c.phase_centre_jitter_m, 1.0) && positive(c.code_bias_sigma_m, 1e3) &&
-                      positive(c.start_velocity_sigma, 1e3) && positive(c.acceleration_sigma, 1.0) &&
-                      positive(c.acceleration_time_s, 1e6) && positive(c.maneuver_sigma, 1.0) &&
-                      c.maneuver_sigma_relative >= 0.0 && c.maneuver_sigma_relative <= 1.0 &&
-                      is_usable(GpsTime{c.earth_epoch_ns}) && math::abs(c.ut1_minus_gps_s) < 100.0 &&
-                      math::abs(c.ut1_rate) < 1e-6 && math::abs(c.pole_x) < 1e-4 && math::abs(c.pole_y) < 1e-4;
-  if (!usable) return Status::kOutOfRange;
-  navigation::GnssNavigationSettings settings;
-  settings.relative = {.start_velocity_sigma = c.start_velocity_sigma,
-                       .acceleration_sigma = c.acceleration_sigma,
-                       .acceleration_time_s = c.acceleration_time_s,
-                       .antenna_offset_sigma_m = c.antenna_offset_sigma_m,
-                       .phase_centre_jitter_m = c.phase_centre_jitter_m,
-                       .code_bias_sigma_m = c.code_bias_sigma_m,
-                       .maneuver_sigma = c.maneuver_sigma,
-                       .maneuver_sigma_relative = c.maneuver_sigma_relative};
-  settings.ambiguities.enabled = c.resolve_ambiguities != 0;
-  settings.ambiguities.min_success_rate = c.min_success_rate;
-  settings.ambiguities.min_ratio = c.min_ratio;
-  settings.earth = {.epoch = GpsTime{c.earth_epoch_ns},
-                    .ut1_minus_gps_s = c.ut1_minus_gps_s,
-                    .ut1_rate = c.ut1_rate,
-                    .pole_x = c.pole_x,
-                    .pole_y = c.pole_y};
-  settings.servicer_antenna_body_m = servicer_antenna;
-  settings.target_antenna_body_m = target_antenna;
-  settings.pair_wait = Duration{c.pair_wait_ns};
-  return settings;
-}
 
 bool is_orbit(const orbit::CartesianState& state) {
   return orbit::qns_from_cartesian(state).ok();

@@ -1,6 +1,8 @@
 #pragma once
 // What filters propagate with: a spacecraft under point mass and J2, pushed by a constant acceleration in its own RTN.
 
+#include <Eigen/Core>
+
 #include "fsw/orbit/elements.h"
 
 namespace vbar::fsw::navigation {
@@ -9,5 +11,17 @@ namespace vbar::fsw::navigation {
 /// Classical Runge-Kutta 4, steps of at most 10 s: truncation below a micrometre a step. The caller answers for finite
 /// input.
 orbit::CartesianState propagate_pushed(const orbit::CartesianState& state, const Vector3& acceleration_rtn, double dt);
+
+/// Adds what white noise of the acceleration (power spectral density, m^2/s^3, each axis) does in `dt` seconds to the
+/// covariance of a state that begins with a position and a velocity: the double integrator's.
+template <int N>
+void add_acceleration_noise(Eigen::Matrix<double, N, N>& covariance, double psd, double dt) {
+  for (int axis = 0; axis < 3; ++axis) {
+    covariance(axis, axis) += psd * dt * dt * dt / 3.0;
+    covariance(axis, 3 + axis) += psd * dt * dt / 2.0;
+    covariance(3 + axis, axis) += psd * dt * dt / 2.0;
+    covariance(3 + axis, 3 + axis) += psd * dt;
+  }
+}
 
 }  // namespace vbar::fsw::navigation

@@ -59,17 +59,17 @@ void GnssNavigation::update(GpsTime now, std::span<const Burn> burns) {
     const GpsTime tag = epoch->receiver_time;
     const gnss::ObservationEpoch* other = theirs.find(tag);
     if (other == nullptr && now - tag <= settings_.pair_wait) break;
-    take_servicer_epoch(*epoch, burns);
+    take_epoch(*epoch, other, burns);
     ours.drop_through(tag);
     theirs.drop_through(tag);
   }
 }
 
-/// The servicer's orbit from its own receiver, and, if its other half is there, the relative orbit.
-void GnssNavigation::take_servicer_epoch(const gnss::ObservationEpoch& epoch, std::span<const Burn> burns) {
+/// The servicer's orbit from its own receiver, and, if the target's epoch of that tag is there, the relative orbit.
+void GnssNavigation::take_epoch(const gnss::ObservationEpoch& epoch, const gnss::ObservationEpoch* other,
+                                std::span<const Burn> burns) {
   const EarthFrame frame = EarthFrame::at(epoch.receiver_time, settings_.earth);
   const Result<SinglePoint> point = single_point(epoch, ephemerides_, frame);
-  const gnss::ObservationEpoch* other = waiting_[index_of(Receiver::kTarget)].find(epoch.receiver_time);
   if (!point.ok()) {
     ++counters_.no_solution;
     return;
@@ -166,11 +166,7 @@ Matrix6 GnssNavigation::covariance_rtn() const {
   map.topLeftCorner<3, 3>() = R_rtn;
   map.bottomRightCorner<3, 3>() = R_rtn;
   map.bottomLeftCorner<3, 3>() = -(turning * R_rtn);
-  Matrix6 eci;
-  for (int c = 0; c < 6; ++c) {
-    for (int r = 0; r < 6; ++r) eci(r, c) = relative_.estimate().covariance(r, c);
-  }
-  const Matrix6 half = map.lazyProduct(eci);
+  const Matrix6 half = map.lazyProduct(relative_.estimate().head_covariance<6>());
   return half.lazyProduct(map.transpose());
 }
 

@@ -77,7 +77,8 @@ class GnssNavigation {
 
  private:
   void advance_to(GpsTime time, std::span<const Burn> burns);
-  void take_servicer_epoch(const gnss::ObservationEpoch& epoch, std::span<const Burn> burns);
+  void take_epoch(const gnss::ObservationEpoch& epoch, const gnss::ObservationEpoch* other,
+                  std::span<const Burn> burns);
   void take_pair(const gnss::ObservationEpoch& ours, const gnss::ObservationEpoch& theirs, double servicer_clock_m,
                  const EarthFrame& frame);
 

@@ -41,7 +41,6 @@ void OrbitFilter::take_position(GpsTime time, double early_s, const Vector3& pos
     fits = residual * residual <= kGate * (estimate_.variance(axis) + sigma_m * sigma_m);
   }
   if (!fits) {
-    ++refused_;
     if (++refused_in_a_row_ >= kMostRefused) {
       reset();
       begin(time, early_s, position_eci, sigma_m);
@@ -86,11 +85,7 @@ void OrbitFilter::advance_to(GpsTime time) {
   const double dt = seconds(time - epoch_);
   if (!started_ || dt <= 0.0) return;
   Transform transform;
-  Matrix6 covariance;
-  for (int c = 0; c < 6; ++c) {
-    for (int r = 0; r < 6; ++r) covariance(r, c) = estimate_.covariance(r, c);
-  }
-  if (transform.start(estimate_.mean(), covariance) != Status::kOk) {
+  if (transform.start(estimate_.mean(), estimate_.head_covariance<6>()) != Status::kOk) {
     reset();
     return;
   }
@@ -101,12 +96,7 @@ void OrbitFilter::advance_to(GpsTime time) {
   }
   const auto regression = transform.regress<6>(moved);
   Matrix6 noise = regression.remainder;
-  for (int axis = 0; axis < 3; ++axis) {
-    noise(axis, axis) += kUnmodelledPsd * dt * dt * dt / 3.0;
-    noise(axis, 3 + axis) += kUnmodelledPsd * dt * dt / 2.0;
-    noise(3 + axis, axis) += kUnmodelledPsd * dt * dt / 2.0;
-    noise(3 + axis, 3 + axis) += kUnmodelledPsd * dt;
-  }
+  add_acceleration_noise(noise, kUnmodelledPsd, dt);
   estimate_.transform_head<6>(regression.mean, regression.slope, noise);
   epoch_ = time;
   if (!estimate_.is_sound()) reset();

@@ -27,7 +27,6 @@ class OrbitFilter {
   [[nodiscard]] orbit::CartesianState state() const {
     return {.position_eci = estimate_.mean().head<3>(), .velocity_eci = estimate_.mean().tail<3>()};
   }
-  [[nodiscard]] std::int32_t refused() const { return refused_; }
 
   static constexpr int kMostRefused = 5;
   /// A coast longer than this starts the filter anew.
@@ -42,7 +41,6 @@ class OrbitFilter {
   Vector3 first_position_eci_ = Vector3::Zero();
   double first_early_s_ = 0.0;
   estimation::Estimate<6> estimate_;
-  std::int32_t refused_ = 0;
   int refused_in_a_row_ = 0;
 };
 

@@ -96,12 +96,8 @@ void RelativeFilter::advance_to(GpsTime time, const orbit::CartesianState& servi
   if (!started_ || dt <= 0.0) return;
   using Transform = estimation::UnscentedTransform<kHead>;
   using Head = Transform::Vector;
-  Transform::Matrix covariance;
-  for (int c = 0; c < kHead; ++c) {
-    for (int r = 0; r < kHead; ++r) covariance(r, c) = estimate_.covariance(r, c);
-  }
   Transform transform;
-  if (transform.start(estimate_.mean().head<kHead>(), covariance) != Status::kOk) {
+  if (transform.start(estimate_.mean().head<kHead>(), estimate_.head_covariance<kHead>()) != Status::kOk) {
     reset();
     return;
   }
@@ -119,11 +115,8 @@ void RelativeFilter::advance_to(GpsTime time, const orbit::CartesianState& servi
   const auto regression = transform.regress<kHead>(moved);
   Transform::Matrix noise = regression.remainder;
   const double acceleration_variance = settings_.acceleration_sigma * settings_.acceleration_sigma;
+  add_acceleration_noise(noise, kVelocityPsd, dt);
   for (int axis = 0; axis < 3; ++axis) {
-    noise(kPosition + axis, kPosition + axis) += kVelocityPsd * dt * dt * dt / 3.0;
-    noise(kPosition + axis, kVelocity + axis) += kVelocityPsd * dt * dt / 2.0;
-    noise(kVelocity + axis, kPosition + axis) += kVelocityPsd * dt * dt / 2.0;
-    noise(kVelocity + axis, kVelocity + axis) += kVelocityPsd * dt;
     noise(kAcceleration + axis, kAcceleration + axis) += (1.0 - decay * decay) * acceleration_variance;
   }
   estimate_.transform_head<kHead>(regression.mean, regression.slope, noise);
@@ -169,12 +162,9 @@ Status RelativeFilter::linearise(const DifferentialEpoch& epoch, const ReceiverP
                                  const ReceiverPlatform& target) {
   using Transform = estimation::UnscentedTransform<kHead>;
   using Scalar = Eigen::Matrix<double, 1, 1>;
-  Transform::Matrix covariance;
-  for (int c = 0; c < kHead; ++c) {
-    for (int r = 0; r < kHead; ++r) covariance(r, c) = estimate_.covariance(r, c);
-  }
   Transform transform;
-  if (const Status status = transform.start(estimate_.mean().head<kHead>(), covariance); status != Status::kOk) {
+  if (const Status status = transform.start(estimate_.mean().head<kHead>(), estimate_.head_covariance<kHead>());
+      status != Status::kOk) {
     return status;
   }
   reference_ = estimate_.mean().head<kGeometry>();

@@ -57,13 +57,13 @@ Measurement GnssSensor::measure(const TruthSnapshot& truth) {
   if (spacecraft == nullptr) return failed(truth.time, "no spacecraft \"" + settings_.spacecraft + "\"");
   if (!spacecraft->attitude) return failed(truth.time, "\"" + settings_.spacecraft + "\" has no attitude");
 
-  std::vector<std::uint8_t> bytes = receiver_->bytes_at(body_truth(truth, *spacecraft));
+  const std::vector<std::uint8_t> bytes = receiver_->bytes_at(body_truth(truth, *spacecraft));
   Measurement measurement;
   measurement.status = MeasurementStatus::kReady;
   measurement.available = truth.time;
   bool finite = true;
   if (crosslink_) {
-    const std::optional<fsw::GpsTime> arrival = crosslink_->send(truth.time, bytes);
+    const std::optional<fsw::GpsTime> arrival = crosslink_->send(truth.time);
     if (!arrival) return measurement;
     measurement.available = *arrival;
     finite = append_packets<crosslink_gnss_bytes, crosslink_attitude>(truth.time, bytes, *spacecraft->attitude,

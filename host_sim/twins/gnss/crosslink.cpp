@@ -41,7 +41,7 @@ bool Crosslink::silent(fsw::GpsTime now) const {
   return elapsed_s >= settings_.silence_begin_s && elapsed_s < settings_.silence_begin_s + settings_.silence_duration_s;
 }
 
-std::optional<fsw::GpsTime> Crosslink::send(fsw::GpsTime now, std::vector<std::uint8_t> bytes) {
+std::optional<fsw::GpsTime> Crosslink::send(fsw::GpsTime now) {
   if (!first_) first_ = now;
   const engine::Transfer transfer = link_.send(now);
   ++counters_.sent;
@@ -49,16 +49,7 @@ std::optional<fsw::GpsTime> Crosslink::send(fsw::GpsTime now, std::vector<std::u
     ++counters_.lost;
     return std::nullopt;
   }
-  under_way_.emplace(transfer.delivery, CrosslinkDelivery{now, transfer.delivery, std::move(bytes)});
   return transfer.delivery;
-}
-
-std::vector<CrosslinkDelivery> Crosslink::take_arrived(fsw::GpsTime now) {
-  std::vector<CrosslinkDelivery> arrived;
-  const auto end = under_way_.upper_bound(now);
-  for (auto it = under_way_.begin(); it != end; ++it) arrived.push_back(std::move(it->second));
-  under_way_.erase(under_way_.begin(), end);
-  return arrived;
 }
 
 }  // namespace vbar::twins::gnss

@@ -1,11 +1,9 @@
 #pragma once
-// The radio between two spacecraft: carries whole messages of bytes, late or not at all.
+// The radio between two spacecraft: whole messages arrive late or not at all.
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string_view>
-#include <vector>
 
 #include "fsw/core/gps_time.h"
 #include "host_sim/engine/link_model.h"
@@ -24,24 +22,14 @@ struct CrosslinkSettings {
 /// Throws std::invalid_argument: the setting, what was found, what is accepted.
 void check(const CrosslinkSettings& settings);
 
-/// A message that arrives.
-struct CrosslinkDelivery {
-  fsw::GpsTime sent;
-  fsw::GpsTime arrival;
-  std::vector<std::uint8_t> bytes;
-};
-
 class Crosslink {
  public:
   /// Draws from the stream "crosslink/<name>" of `seed`. Throws as check().
   Crosslink(const CrosslinkSettings& settings, std::uint64_t seed, std::string_view name);
 
-  /// Sends one message; times must not go back. Messages may overtake one another. Returns when it will arrive, or
-  /// nothing if it never will.
-  std::optional<fsw::GpsTime> send(fsw::GpsTime now, std::vector<std::uint8_t> bytes);
-
-  /// Takes what has arrived by `now`, in order of arrival (of sending, where two arrive at once).
-  std::vector<CrosslinkDelivery> take_arrived(fsw::GpsTime now);
+  /// One message is sent; times must not go back. Returns when it will arrive, whole, or nothing if it never will.
+  /// Messages may overtake one another. Carrying them until then is the caller's.
+  std::optional<fsw::GpsTime> send(fsw::GpsTime now);
 
   [[nodiscard]] const engine::LinkCounters& counters() const { return counters_; }
 
@@ -52,7 +40,6 @@ class Crosslink {
   engine::LinkModel link_;
   engine::LinkCounters counters_;  ///< silence counted as loss
   std::optional<fsw::GpsTime> first_;
-  std::multimap<fsw::GpsTime, CrosslinkDelivery> under_way_;
 };
 
 }  // namespace vbar::twins::gnss

@@ -26,6 +26,13 @@ inline std::vector<std::vector<std::string>> csv_rows(const std::string& name) {
   return rows;
 }
 
+/// Every number of an ephemeris, in the order of the CSV file's columns.
+inline constexpr std::array<double Ephemeris::*, 20> kEphemerisNumbers{
+    &Ephemeris::sqrt_a,        &Ephemeris::e,   &Ephemeris::m0,    &Ephemeris::delta_n, &Ephemeris::omega0,
+    &Ephemeris::omega_dot,     &Ephemeris::i0,  &Ephemeris::i_dot, &Ephemeris::omega,   &Ephemeris::cuc,
+    &Ephemeris::cus,           &Ephemeris::cic, &Ephemeris::cis,   &Ephemeris::crc,     &Ephemeris::crs,
+    &Ephemeris::toe_of_week_s, &Ephemeris::af0, &Ephemeris::af1,   &Ephemeris::af2,     &Ephemeris::group_delay_s};
+
 inline std::vector<Ephemeris> broadcast_records() {
   std::vector<Ephemeris> records;
   for (const auto& row : csv_rows("broadcast_records.csv")) {
@@ -38,11 +45,7 @@ inline std::vector<Ephemeris> broadcast_records() {
     e.healthy = row[3] == "1";
     e.toe.ns = std::stoll(row[4]);
     e.toc.ns = std::stoll(row[5]);
-    const std::array<double*, 20> fields{&e.sqrt_a,        &e.e,   &e.m0,    &e.delta_n, &e.omega0,
-                                         &e.omega_dot,     &e.i0,  &e.i_dot, &e.omega,   &e.cuc,
-                                         &e.cus,           &e.cic, &e.cis,   &e.crc,     &e.crs,
-                                         &e.toe_of_week_s, &e.af0, &e.af1,   &e.af2,     &e.group_delay_s};
-    for (std::size_t k = 0; k < fields.size(); ++k) *fields[k] = std::stod(row[6 + k]);
+    for (std::size_t k = 0; k < kEphemerisNumbers.size(); ++k) e.*kEphemerisNumbers[k] = std::stod(row[6 + k]);
     records.push_back(e);
   }
   return records;

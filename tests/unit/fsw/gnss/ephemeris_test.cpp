@@ -114,26 +114,7 @@ TEST(EphemerisCheck, TakesRealOnes) {
 
 TEST(EphemerisCheck, RefusesWhatIsNotANumber) {
   const Ephemeris good = test::broadcast_records().front();
-  for (double Ephemeris::*field : {&Ephemeris::sqrt_a,
-                                   &Ephemeris::e,
-                                   &Ephemeris::m0,
-                                   &Ephemeris::delta_n,
-                                   &Ephemeris::omega0,
-                                   &Ephemeris::omega_dot,
-                                   &Ephemeris::i0,
-                                   &Ephemeris::i_dot,
-                                   &Ephemeris::omega,
-                                   &Ephemeris::cuc,
-                                   &Ephemeris::cus,
-                                   &Ephemeris::cic,
-                                   &Ephemeris::cis,
-                                   &Ephemeris::crc,
-                                   &Ephemeris::crs,
-                                   &Ephemeris::af0,
-                                   &Ephemeris::af1,
-                                   &Ephemeris::af2,
-                                   &Ephemeris::toe_of_week_s,
-                                   &Ephemeris::group_delay_s}) {
+  for (double Ephemeris::*field : test::kEphemerisNumbers) {
     Ephemeris bad = good;
     for (const double value : {kNaN, std::numeric_limits<double>::infinity()}) {
       bad.*field = value;

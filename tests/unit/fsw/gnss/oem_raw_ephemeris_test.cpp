@@ -102,26 +102,7 @@ TEST(RawEphemeris, GivesRealRecordsBack) {
     EXPECT_EQ(e.toe, record.toe);
     EXPECT_EQ(e.toc, record.toc);
     // The file has twelve digits and more.
-    for (double Ephemeris::*field : {&Ephemeris::sqrt_a,
-                                     &Ephemeris::e,
-                                     &Ephemeris::m0,
-                                     &Ephemeris::delta_n,
-                                     &Ephemeris::omega0,
-                                     &Ephemeris::omega_dot,
-                                     &Ephemeris::i0,
-                                     &Ephemeris::i_dot,
-                                     &Ephemeris::omega,
-                                     &Ephemeris::cuc,
-                                     &Ephemeris::cus,
-                                     &Ephemeris::cic,
-                                     &Ephemeris::cis,
-                                     &Ephemeris::crc,
-                                     &Ephemeris::crs,
-                                     &Ephemeris::af0,
-                                     &Ephemeris::af1,
-                                     &Ephemeris::af2,
-                                     &Ephemeris::toe_of_week_s,
-                                     &Ephemeris::group_delay_s}) {
+    for (double Ephemeris::*field : test::kEphemerisNumbers) {
       EXPECT_NEAR(e.*field, record.*field, 6e-12 * std::abs(record.*field));
     }
     ++count;
