@@ -55,11 +55,21 @@ Status Inbox::file(const PacketView& packet) {
       return decode_and_file(packet, mode_commands_);
     case Apid::kNavigationConfiguration:
       return decode_and_file(packet, navigation_configurations_);
+    case Apid::kCameraConfiguration:
+      return decode_and_file(packet, camera_configurations_);
+    case Apid::kAnglesOnlyConfiguration:
+      return decode_and_file(packet, angles_only_configurations_);
+    case Apid::kTargetApriori:
+      return decode_and_file(packet, target_aprioris_);
+    case Apid::kImageTile:
     case Apid::kManeuverCommand:
+    case Apid::kPointingCommand:
     case Apid::kTelemetryNavigation:
     case Apid::kTelemetryControl:
     case Apid::kTelemetryHealth:
     case Apid::kTelemetryGnss:
+    case Apid::kTelemetryImage:
+    case Apid::kTelemetryObjects:
     case Apid::kStepReport:
       break;
   }
@@ -106,6 +116,9 @@ void Inbox::clear() {
   configurations_.clear();
   mode_commands_.clear();
   navigation_configurations_.clear();
+  camera_configurations_.clear();
+  angles_only_configurations_.clear();
+  target_aprioris_.clear();
   gnss_bytes_.clear();
   crosslink_gnss_bytes_.clear();
   attitudes_.clear();

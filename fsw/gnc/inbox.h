@@ -71,6 +71,15 @@ class Inbox {
   [[nodiscard]] const TimeOrderedQueue<navigation_configuration, kTelecommands>& navigation_configurations() const {
     return navigation_configurations_;
   }
+  [[nodiscard]] const TimeOrderedQueue<camera_configuration, kTelecommands>& camera_configurations() const {
+    return camera_configurations_;
+  }
+  [[nodiscard]] const TimeOrderedQueue<angles_only_configuration, kTelecommands>& angles_only_configurations() const {
+    return angles_only_configurations_;
+  }
+  [[nodiscard]] const TimeOrderedQueue<target_apriori, kTelecommands>& target_aprioris() const {
+    return target_aprioris_;
+  }
   [[nodiscard]] const TimeOrderedQueue<gnss_bytes, kGnssPackets>& gnss_bytes_packets() const { return gnss_bytes_; }
   [[nodiscard]] const TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets>& crosslink_gnss_bytes_packets() const {
     return crosslink_gnss_bytes_;
@@ -95,6 +104,9 @@ class Inbox {
   TimeOrderedQueue<gnc_configuration, kTelecommands> configurations_;
   TimeOrderedQueue<mode_command, kTelecommands> mode_commands_;
   TimeOrderedQueue<navigation_configuration, kTelecommands> navigation_configurations_;
+  TimeOrderedQueue<camera_configuration, kTelecommands> camera_configurations_;
+  TimeOrderedQueue<angles_only_configuration, kTelecommands> angles_only_configurations_;
+  TimeOrderedQueue<target_apriori, kTelecommands> target_aprioris_;
   TimeOrderedQueue<gnss_bytes, kGnssPackets> gnss_bytes_;
   TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets> crosslink_gnss_bytes_;
   TimeOrderedQueue<attitude, kMeasurements> attitudes_;

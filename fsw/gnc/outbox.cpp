@@ -13,6 +13,12 @@ std::size_t Outbox::sequence_slot(packets::Apid apid) {
       return 3;
     case Apid::kTelemetryGnss:
       return 4;
+    case Apid::kPointingCommand:
+      return 5;
+    case Apid::kTelemetryImage:
+      return 6;
+    case Apid::kTelemetryObjects:
+      return 7;
     case Apid::kTelemetryHealth:
     case Apid::kTick:
     case Apid::kIdealNavigation:
@@ -20,11 +26,15 @@ std::size_t Outbox::sequence_slot(packets::Apid apid) {
     case Apid::kCrosslinkGnssBytes:
     case Apid::kAttitude:
     case Apid::kCrosslinkAttitude:
+    case Apid::kImageTile:
     case Apid::kExecutedManeuver:
     case Apid::kWaypointTable:
     case Apid::kGncConfiguration:
     case Apid::kModeCommand:
     case Apid::kNavigationConfiguration:
+    case Apid::kCameraConfiguration:
+    case Apid::kAnglesOnlyConfiguration:
+    case Apid::kTargetApriori:
     case Apid::kStepReport:
       break;
   }

@@ -3,44 +3,58 @@
 // A new message is a struct in vbar.lcm, an APID in packet.h, a line in VBAR_FOR_EACH_MESSAGE and an overload of
 // all_finite.
 
+#include <vbar/angles_only_configuration.hpp>
 #include <vbar/attitude.hpp>
+#include <vbar/camera_configuration.hpp>
 #include <vbar/crosslink_attitude.hpp>
 #include <vbar/crosslink_gnss_bytes.hpp>
 #include <vbar/executed_maneuver.hpp>
 #include <vbar/gnc_configuration.hpp>
 #include <vbar/gnss_bytes.hpp>
 #include <vbar/ideal_navigation.hpp>
+#include <vbar/image_tile.hpp>
 #include <vbar/maneuver_command.hpp>
 #include <vbar/mode_command.hpp>
 #include <vbar/navigation_configuration.hpp>
+#include <vbar/pointing_command.hpp>
 #include <vbar/step_report.hpp>
+#include <vbar/target_apriori.hpp>
 #include <vbar/telemetry_control.hpp>
 #include <vbar/telemetry_gnss.hpp>
 #include <vbar/telemetry_health.hpp>
+#include <vbar/telemetry_image.hpp>
 #include <vbar/telemetry_navigation.hpp>
+#include <vbar/telemetry_objects.hpp>
 #include <vbar/tick.hpp>
 #include <vbar/waypoint_table.hpp>
 
 #include "fsw/packets/packet.h"
 
 /// Expands X(message type, Apid enumerator) for every message that travels as a packet.
-#define VBAR_FOR_EACH_MESSAGE(X)                                \
-  X(::vbar::tick, kTick)                                        \
-  X(::vbar::ideal_navigation, kIdealNavigation)                 \
-  X(::vbar::gnss_bytes, kGnssBytes)                             \
-  X(::vbar::crosslink_gnss_bytes, kCrosslinkGnssBytes)          \
-  X(::vbar::attitude, kAttitude)                                \
-  X(::vbar::crosslink_attitude, kCrosslinkAttitude)             \
-  X(::vbar::executed_maneuver, kExecutedManeuver)               \
-  X(::vbar::waypoint_table, kWaypointTable)                     \
-  X(::vbar::gnc_configuration, kGncConfiguration)               \
-  X(::vbar::mode_command, kModeCommand)                         \
-  X(::vbar::navigation_configuration, kNavigationConfiguration) \
-  X(::vbar::maneuver_command, kManeuverCommand)                 \
-  X(::vbar::telemetry_navigation, kTelemetryNavigation)         \
-  X(::vbar::telemetry_control, kTelemetryControl)               \
-  X(::vbar::telemetry_health, kTelemetryHealth)                 \
-  X(::vbar::telemetry_gnss, kTelemetryGnss)                     \
+#define VBAR_FOR_EACH_MESSAGE(X)                                 \
+  X(::vbar::tick, kTick)                                         \
+  X(::vbar::ideal_navigation, kIdealNavigation)                  \
+  X(::vbar::gnss_bytes, kGnssBytes)                              \
+  X(::vbar::crosslink_gnss_bytes, kCrosslinkGnssBytes)           \
+  X(::vbar::attitude, kAttitude)                                 \
+  X(::vbar::crosslink_attitude, kCrosslinkAttitude)              \
+  X(::vbar::image_tile, kImageTile)                              \
+  X(::vbar::executed_maneuver, kExecutedManeuver)                \
+  X(::vbar::waypoint_table, kWaypointTable)                      \
+  X(::vbar::gnc_configuration, kGncConfiguration)                \
+  X(::vbar::mode_command, kModeCommand)                          \
+  X(::vbar::navigation_configuration, kNavigationConfiguration)  \
+  X(::vbar::camera_configuration, kCameraConfiguration)          \
+  X(::vbar::angles_only_configuration, kAnglesOnlyConfiguration) \
+  X(::vbar::target_apriori, kTargetApriori)                      \
+  X(::vbar::maneuver_command, kManeuverCommand)                  \
+  X(::vbar::pointing_command, kPointingCommand)                  \
+  X(::vbar::telemetry_navigation, kTelemetryNavigation)          \
+  X(::vbar::telemetry_control, kTelemetryControl)                \
+  X(::vbar::telemetry_health, kTelemetryHealth)                  \
+  X(::vbar::telemetry_gnss, kTelemetryGnss)                      \
+  X(::vbar::telemetry_image, kTelemetryImage)                    \
+  X(::vbar::telemetry_objects, kTelemetryObjects)                \
   X(::vbar::step_report, kStepReport)
 
 namespace vbar::fsw::packets {

@@ -13,10 +13,14 @@ bool finite(double value) {
   return (std::bit_cast<std::uint64_t>(value) & kExponentMask) != kExponentMask;
 }
 
-template <std::size_t kSize>
+bool finite(float value) {
+  return finite(static_cast<double>(value));
+}
+
+template <class Number, std::size_t kSize>
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays): a field of a packet type
-bool finite(const double (&values)[kSize]) {
-  for (const double value : values) {
+bool finite(const Number (&values)[kSize]) {
+  for (const Number value : values) {
     if (!finite(value)) return false;
   }
   return true;
@@ -53,6 +57,10 @@ bool all_finite(const crosslink_attitude& m) {
   return finite_fields(m.q_eci_body, m.rate_body);
 }
 
+bool all_finite(const image_tile& /*message*/) {
+  return true;
+}
+
 bool all_finite(const executed_maneuver& m) {
   return finite(m.dv_rtn);
 }
@@ -81,8 +89,28 @@ bool all_finite(const navigation_configuration& m) {
                        m.ut1_minus_gps_s, m.ut1_rate, m.pole_x, m.pole_y);
 }
 
+bool all_finite(const camera_configuration& m) {
+  return finite_fields(m.focal_length_px, m.principal_point_px, m.distortion, m.point_spread_sigma_px,
+                       m.zero_magnitude_dn, m.saturation_dn, m.gain_dn_per_electron, m.q_camera_body,
+                       m.position_body_m);
+}
+
+bool all_finite(const angles_only_configuration& m) {
+  return finite_fields(m.detection_sigmas, m.centroid_floor_px, m.pointing_tolerance, m.acceleration_psd,
+                       m.acceleration_psd_least, m.acceleration_psd_most, m.brightness_offset_m, m.maneuver_sigma,
+                       m.maneuver_sigma_relative);
+}
+
+bool all_finite(const target_apriori& m) {
+  return finite_fields(m.position_eci, m.velocity_eci, m.sigma_a_roe_m);
+}
+
 bool all_finite(const maneuver_command& m) {
   return finite(m.dv_rtn);
+}
+
+bool all_finite(const pointing_command& m) {
+  return finite_fields(m.boresight_rtn, m.boresight_rate_rtn);
 }
 
 bool all_finite(const telemetry_navigation& m) {
@@ -101,6 +129,15 @@ bool all_finite(const telemetry_health& /*message*/) {
 
 bool all_finite(const telemetry_gnss& m) {
   return finite_fields(m.success_rate, m.ratio, m.code_nis, m.phase_nis, m.covariance_rtn);
+}
+
+bool all_finite(const telemetry_image& m) {
+  return finite_fields(m.background_dn, m.noise_dn, m.q_eci_camera, m.attitude_sigma, m.bearing_eci, m.bearing_sigma,
+                       m.prefit, m.postfit, m.nis, m.covariance_a_roe, m.a_roe_osculating_m);
+}
+
+bool all_finite(const telemetry_objects& m) {
+  return finite_fields(m.x_px, m.y_px);
 }
 
 bool all_finite(const step_report& /*message*/) {

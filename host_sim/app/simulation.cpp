@@ -62,7 +62,7 @@ pil::Packet make_packet(GpsTime time, std::uint8_t spacecraft, std::uint16_t seq
 }
 
 // Order of things that happen at one instant (simulation.h).
-constexpr std::int32_t kPriorityOf[] = {0, 10, 20, 30, 40, 40};
+constexpr std::int32_t kPriorityOf[] = {0, 5, 10, 20, 30, 40, 40};
 
 }  // namespace
 
@@ -155,14 +155,27 @@ void Simulation::handle(const TakeMeasurement& taken) {
   truth_.advance_to(now);
   twins::Measurement measurement = measure_now(*sensors_[taken.sensor]);
   // A sensor that fails an epoch has nothing to say; the flight software coasts.
-  for (twins::Packet& packet : measurement.packets) {
-    if (measurement.bypasses_link) {
-      schedule(measurement.available, DeliverPacket{std::move(packet)});
-    } else {
-      send_to_flight(std::move(packet), measurement.available);
-    }
+  pass_on(std::move(measurement.packets), measurement.available, measurement.bypasses_link);
+  if (measurement.pending.valid()) {
+    using Pending = std::future<std::vector<twins::Packet>>;
+    schedule(measurement.available,
+             CollectPending{std::make_shared<Pending>(std::move(measurement.pending)), measurement.bypasses_link});
   }
   schedule_measurement(taken.sensor, now + fsw::Duration{1});
+}
+
+void Simulation::handle(const CollectPending& collected) {
+  pass_on(collected.packets->get(), events_.now(), collected.bypasses_link);
+}
+
+void Simulation::pass_on(std::vector<twins::Packet> packets, GpsTime available, bool bypasses_link) {
+  for (twins::Packet& packet : packets) {
+    if (bypasses_link) {
+      schedule(available, DeliverPacket{std::move(packet)});
+    } else {
+      send_to_flight(std::move(packet), available);
+    }
+  }
 }
 
 /// In lock-step simulated time waits for a sensor that needs longer.

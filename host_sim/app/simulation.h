@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <memory>
 #include <span>
 #include <variant>
@@ -65,6 +66,11 @@ class Simulation {
   struct TakeMeasurement {
     std::size_t sensor;
   };
+  /// What a sensor has been making since it measured.
+  struct CollectPending {
+    std::shared_ptr<std::future<std::vector<twins::Packet>>> packets;
+    bool bypasses_link;
+  };
   struct DeliverPacket {
     pil::Packet packet;
   };
@@ -79,10 +85,11 @@ class Simulation {
   struct ExecutePrescribedBurn {
     std::size_t index;
   };
-  using Event =
-      std::variant<TakeMeasurement, DeliverPacket, JudgeWaypoint, StepFlight, ExecuteBurn, ExecutePrescribedBurn>;
+  using Event = std::variant<TakeMeasurement, CollectPending, DeliverPacket, JudgeWaypoint, StepFlight, ExecuteBurn,
+                             ExecutePrescribedBurn>;
 
   void handle(const TakeMeasurement& taken);
+  void handle(const CollectPending& collected);
   void handle(const DeliverPacket&);
   void handle(const JudgeWaypoint&);
   void handle(const StepFlight&);
@@ -96,6 +103,7 @@ class Simulation {
   [[nodiscard]] twins::TruthSnapshot snapshot();
   void execute(const maneuver_command& command);
   [[nodiscard]] std::vector<NamedAttitude> all_attitudes() const;
+  void pass_on(std::vector<twins::Packet> packets, fsw::GpsTime available, bool bypasses_link);
   void send_to_flight(pil::Packet packet, fsw::GpsTime sent);
   void report_execution(const twins::Execution& execution);
   void queue_telecommands();

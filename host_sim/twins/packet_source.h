@@ -3,6 +3,7 @@
 // log.
 
 #include <cstdint>
+#include <future>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -54,6 +55,9 @@ enum class MeasurementStatus {
 struct Measurement {
   MeasurementStatus status = MeasurementStatus::kFailed;
   std::vector<Packet> packets;
+  /// More packets, still in the making on another thread: asked for at `available`, when the simulation waits for them.
+  /// They must be a pure function of what measure() was given, so that it does not matter when they were made.
+  std::future<std::vector<Packet>> pending;
   fsw::GpsTime available;  ///< when the packets leave the sensor: the epoch or later
   bool bypasses_link =
       false;  ///< at the flight computer by then already (recorded delivery, wired to the board): no link is simulated

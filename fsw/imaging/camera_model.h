@@ -1,0 +1,25 @@
+#pragma once
+// Between pixels and directions. Camera axes: z boresight, x right, y down in the image; pixel coordinates are the
+// detector's, and an integer is the centre of a pixel.
+
+#include <array>
+
+#include "fsw/core/result.h"
+#include "fsw/core/types.h"
+
+namespace vbar::fsw::imaging {
+
+/// Pinhole with Brown-Conrady distortion (Brown 1966; coefficients in the order k1, k2, p1, p2, k3).
+struct CameraModel {
+  Vector2 focal_length_px = Vector2::Zero();
+  Vector2 principal_point_px = Vector2::Zero();
+  std::array<double, 5> distortion{};
+};
+
+/// Unit vector in camera axes. kDidNotConverge where the distortion cannot be inverted.
+Result<Vector3> direction_of(const CameraModel& camera, const Vector2& pixel);
+
+/// kOutOfRange for directions not in front of the camera (z <= 0.1 of the norm).
+Result<Vector2> pixel_of(const CameraModel& camera, const Vector3& direction_camera);
+
+}  // namespace vbar::fsw::imaging

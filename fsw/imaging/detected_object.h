@@ -1,0 +1,23 @@
+#pragma once
+// What image processing finds in an image: stars, satellites, hot pixels, all alike so far.
+
+#include <cstddef>
+
+#include "fsw/core/types.h"
+
+namespace vbar::fsw::imaging {
+
+inline constexpr std::size_t kMaxObjects = 256;
+
+struct DetectedObject {
+  Vector2 centroid_px = Vector2::Zero();  ///< of brightness, on the detector; an integer is the centre of a pixel
+  double sigma_px = 0.0;                  ///< 1 sigma of the centroid, each axis, by photon and read noise
+  double flux_dn = 0.0;                   ///< above the background, all its pixels
+  int peak_dn = 0;                        ///< brightest pixel, background included
+  int pixels = 0;                         ///< above the threshold
+  double radius_px = 0.0;                 ///< root of the larger eigenvalue of its second moments
+  bool is_saturated = false;              ///< at least one pixel is
+  bool is_cut = false;                    ///< touches the edge of the image or a missing pixel
+};
+
+}  // namespace vbar::fsw::imaging

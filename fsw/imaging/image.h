@@ -1,0 +1,34 @@
+#pragma once
+// A camera image as flight software holds it: a region of the detector, 8 or 12 bits a pixel.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace vbar::fsw::imaging {
+
+inline constexpr std::size_t kMaxPixels = 400'000;
+/// Pixels in every tile but the last (vbar.lcm, image_tile).
+inline constexpr int kTilePixels12 = 868;
+inline constexpr int kTilePixels8 = 1302;
+
+/// Where an image lies on the detector.
+struct ImageFrame {
+  int width = 0;
+  int height = 0;
+  int origin_x = 0;  ///< of its first pixel on the detector
+  int origin_y = 0;
+  int bits = 12;
+  friend constexpr bool operator==(const ImageFrame&, const ImageFrame&) = default;
+};
+
+/// A pixel that never arrived. No detector says so: 12 bits end at 4095.
+inline constexpr std::uint16_t kMissingPixel = 0xFFFF;
+
+/// Rows from the top, pixels from the left. The pixels are the owner's.
+struct ImageView {
+  ImageFrame frame;
+  std::span<const std::uint16_t> pixels;  ///< width * height
+};
+
+}  // namespace vbar::fsw::imaging

@@ -1,0 +1,21 @@
+#pragma once
+// What light does to the detector, before any noise: expected photo-electrons a pixel of one exposure.
+
+#include <cstddef>
+#include <vector>
+
+#include "host_sim/twins/camera/camera_settings.h"
+
+namespace vbar::twins::camera {
+
+struct PhotonImage {
+  Region region;                 ///< of the detector
+  std::vector<float> electrons;  ///< rows from the top, pixels from the left; no upper limit
+
+  [[nodiscard]] float& at(int x, int y) {  ///< detector coordinates
+    return electrons[static_cast<std::size_t>(y - region.y) * static_cast<std::size_t>(region.width) +
+                     static_cast<std::size_t>(x - region.x)];
+  }
+};
+
+}  // namespace vbar::twins::camera
