@@ -54,4 +54,33 @@ inline std::vector<pil::Packet> fly(pil::FlightComputer& computer, std::uint32_t
   return outputs;
 }
 
+/// The tiles of a camera image of 500 x 800 px at 12 bits, and the tick of `step`.
+inline std::vector<pil::Packet> image_packets(std::uint32_t step) {
+  namespace packets = fsw::packets;
+  std::mt19937_64 random(step);
+  std::array<std::uint8_t, packets::kMaxPacketBytes> bytes{};
+  std::vector<pil::Packet> result;
+  packets::PacketHeader header;
+  header.time.ns = kFirstStepNs + step * kStepPeriodNs;
+  vbar::image_tile tile{};
+  tile.image = static_cast<std::int32_t>(step);
+  tile.tiles = 461;
+  tile.width = 500;
+  tile.height = 800;
+  tile.bits = 12;
+  for (; tile.tile < tile.tiles; ++tile.tile) {
+    tile.pixels = static_cast<std::int16_t>(tile.tile + 1 < tile.tiles ? 868 : 400'000 - 460 * 868);
+    for (std::uint8_t& byte : tile.data) byte = static_cast<std::uint8_t>(random() >> 56U);
+    header.sequence_count = static_cast<std::uint16_t>(tile.tile);
+    const auto size = packets::encode(header, tile, bytes);
+    result.emplace_back(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size.value()));
+  }
+  vbar::tick tick{};
+  tick.step = step;
+  tick.period_ns = kStepPeriodNs;
+  const auto size = packets::encode(header, tick, bytes);
+  result.emplace_back(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size.value()));
+  return result;
+}
+
 }  // namespace vbar::test
