@@ -40,7 +40,7 @@ class ImageAssembly {
   [[nodiscard]] bool has_image() const { return tiles_there_ > 0; }
   /// Pixels of missing tiles are kMissingPixel. Empty without an image, and valid until the next take().
   [[nodiscard]] ImageView view() const;
-  [[nodiscard]] GpsTime time() const { return time_; }
+  [[nodiscard]] GpsTime image_time() const { return time_; }
   [[nodiscard]] std::int32_t image_number() const { return number_; }
   [[nodiscard]] int tiles_missing() const { return tiles_ - tiles_there_; }
 
