@@ -8,6 +8,7 @@
 namespace vbar::fsw::imaging {
 
 inline constexpr std::size_t kMaxPixels = 400'000;
+inline constexpr int kMaxSide = 4096;  ///< of an image's width and height, px
 /// Pixels in every tile but the last (vbar.lcm, image_tile).
 inline constexpr int kTilePixels12 = 868;
 inline constexpr int kTilePixels8 = 1302;

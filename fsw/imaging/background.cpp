@@ -1,0 +1,289 @@
+#include "fsw/imaging/background.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "fsw/imaging/histogram.h"
+
+namespace vbar::fsw::imaging {
+namespace {
+
+constexpr int kOne = 256;
+constexpr std::int32_t kMostLevel = 4095 * kOne;
+constexpr std::int32_t kMostNoise = 255 * kOne;
+/// Of an image's pixels there must be one in 16, and one in 16 of those unsaturated.
+constexpr int kLeastPart = 16;
+/// Of a cell's samples one in 8 must count, and so many at least.
+constexpr int kLeastPartOfCell = 8;
+constexpr int kLeastSamples = 12;
+constexpr int kSegmentShift = 14;  // of the 20 bits of a position, with the six that a slope keeps beyond DN / 256
+
+bool is_image(const ImageView& image) {
+  const ImageFrame& f = image.frame;
+  if (f.width < 1 || f.height < 1 || f.width > kMaxSide || f.height > kMaxSide) return false;
+  const auto pixels = static_cast<std::size_t>(f.width) * static_cast<std::size_t>(f.height);
+  return pixels <= kMaxPixels && image.pixels.size() == pixels;
+}
+
+std::int32_t in_256ths(double value, std::int32_t most) {
+  return std::clamp(static_cast<std::int32_t>(value * kOne + 0.5), 0, most);
+}
+
+/// Between two nodes; `position` in 2^-20 of their distance.
+std::int32_t between(std::int32_t a, std::int32_t b, std::int32_t position) {
+  const std::int64_t part = position & ((1 << 20) - 1);
+  return a + static_cast<std::int32_t>((part * (b - a)) >> 20);
+}
+
+/// Of a few values, which get sorted; of an even number of them the darker middle one: what errs is too bright.
+std::int32_t middle_of(std::span<std::int32_t> values) {
+  for (std::size_t end = 1; end < values.size(); ++end) {
+    for (std::size_t k = end; k > 0 && values[k] < values[k - 1]; --k) std::swap(values[k], values[k - 1]);
+  }
+  return values[(values.size() - 1) / 2];
+}
+
+}  // namespace
+
+Background::Axis Background::axis_of(int pixels) {
+  const int cells = std::max(1, (pixels + kCell / 2) / kCell);
+  return {pixels, cells, (cells << 20) / pixels};
+}
+
+ImageCondition Background::measure(const ImageView& image, int saturation_dn) {
+  if (!is_image(image) || saturation_dn < 1 || saturation_dn > 4095) return ImageCondition::kInvalid;
+  x_ = axis_of(image.frame.width);
+  y_ = axis_of(image.frame.height);
+  if (const ImageCondition condition = measure_cells(image, saturation_dn); condition != ImageCondition::kGood) {
+    return condition;
+  }
+  if (!fill_gaps()) return ImageCondition::kTooLittle;
+  replace_outliers();
+  find_typical();
+  extend(level_, true);
+  extend(noise_, false);
+  int x = 0;
+  for (int k = 0; k < x_.cells + 2; ++k) {
+    while (x < x_.pixels && (x_.position(x) >> 20) < k) ++x;
+    segment_begin_[static_cast<std::size_t>(k)] = static_cast<std::int16_t>(x);
+  }
+  return ImageCondition::kGood;
+}
+
+ImageCondition Background::measure_cells(const ImageView& image, int saturation_dn) {
+  sampled_ = 0;
+  saturated_ = 0;
+  missing_ = 0;
+  darkest_ = static_cast<int>(kLevels);
+  brightest_ = -1;
+  level_count_.fill(0);
+  difference_count_.fill(0);
+  for (int row = 0; row < y_.cells; ++row) {
+    for (int column = 0; column < x_.cells; ++column) {
+      count_cell(image, saturation_dn, column, row);
+      measure_cell(column, row);
+    }
+  }
+  const int there = sampled_ - missing_;
+  if (there * kLeastPart < sampled_ || there == 0) return ImageCondition::kTooLittle;
+  if ((there - saturated_) * kLeastPart < there || there == saturated_) return ImageCondition::kSaturated;
+  return darkest_ == brightest_ ? ImageCondition::kBlank : ImageCondition::kGood;
+}
+
+/// Histograms of a quarter of the cell's pixels and of their differences to the right: enough for a level to 0.04 sigma.
+void Background::count_cell(const ImageView& image, int saturation_dn, int column, int row) {
+  levels_ = 0;
+  differences_ = 0;
+  lowest_ = static_cast<int>(kLevels);
+  highest_ = -1;
+  const int begin = x_.first_pixel(column);
+  const int end = x_.first_pixel(column + 1);
+  const int last_row = y_.first_pixel(row + 1);
+  for (int y = y_.first_pixel(row); y < last_row; y += 2) {
+    const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(x_.pixels);
+    for (int x = begin; x < end; x += 2) {
+      const std::size_t k = start + static_cast<std::size_t>(x);
+      const int value = image.pixels[k];
+      ++sampled_;
+      if (value >= saturation_dn) {
+        ++(value == kMissingPixel ? missing_ : saturated_);
+        continue;
+      }
+      ++levels_;
+      ++level_count_[static_cast<std::size_t>(value)];
+      lowest_ = std::min(lowest_, value);
+      highest_ = std::max(highest_, value);
+      if (x + 1 >= x_.pixels || image.pixels[k + 1] >= saturation_dn) continue;
+      const int difference = std::clamp(int{image.pixels[k + 1]} - value, -kMostDifference, kMostDifference);
+      ++differences_;
+      ++difference_count_[static_cast<std::size_t>(difference + kMostDifference)];
+    }
+  }
+  darkest_ = std::min(darkest_, lowest_);
+  brightest_ = std::max(brightest_, highest_);
+}
+
+/// Level and noise from the histograms, which are empty afterwards.
+void Background::measure_cell(int column, int row) {
+  const int width = x_.first_pixel(column + 1) - x_.first_pixel(column);
+  const int height = y_.first_pixel(row + 1) - y_.first_pixel(row);
+  const int least = std::max(kLeastSamples, width * height / (4 * kLeastPartOfCell));
+  const std::size_t k = node(column, row);
+  is_known_[k] = levels_ >= least && differences_ >= least;
+  if (is_known_[k]) {
+    const auto first = static_cast<std::size_t>(lowest_);
+    const auto count = static_cast<std::size_t>(highest_ - lowest_ + 1);
+    const double level = lowest_ + clipped_moments(std::span(level_count_).subspan(first, count), levels_).mean;
+    level_[k] = in_256ths(level, kMostLevel);
+    const double scatter = clipped_moments(difference_count_, differences_).sigma;
+    noise_[k] = in_256ths(scatter * 0.7071067811865476, kMostNoise);
+  }
+  if (levels_ > 0) std::fill(level_count_.begin() + lowest_, level_count_.begin() + highest_ + 1, std::uint16_t{0});
+  if (differences_ > 0) difference_count_.fill(0);
+}
+
+/// Cells without a value of their own get their neighbours', from the known ones outwards. False: no cell has any.
+bool Background::fill_gaps() {
+  for (int pass = 0; pass < x_.cells + y_.cells; ++pass) {
+    bool is_complete = true;
+    bool is_changed = false;
+    std::array<bool, kMaxNodes> known = is_known_;
+    for (int row = 0; row < y_.cells; ++row) {
+      for (int column = 0; column < x_.cells; ++column) {
+        if (is_known_[node(column, row)]) continue;
+        const bool is_filled = fill_gap(column, row);
+        known[node(column, row)] = is_filled;
+        is_changed = is_changed || is_filled;
+        is_complete = is_complete && is_filled;
+      }
+    }
+    is_known_ = known;
+    if (is_complete) return true;
+    if (!is_changed) return false;
+  }
+  return false;
+}
+
+bool Background::fill_gap(int column, int row) {
+  std::int64_t level = 0;
+  std::int64_t noise = 0;
+  int count = 0;
+  for (int r = std::max(row - 1, 0); r <= std::min(row + 1, y_.cells - 1); ++r) {
+    for (int c = std::max(column - 1, 0); c <= std::min(column + 1, x_.cells - 1); ++c) {
+      if (!is_known_[node(c, r)]) continue;
+      level += level_[node(c, r)];
+      noise += noise_[node(c, r)];
+      ++count;
+    }
+  }
+  if (count == 0) return false;
+  level_[node(column, row)] = static_cast<std::int32_t>(level / count);
+  noise_[node(column, row)] = static_cast<std::int32_t>(noise / count);
+  return true;
+}
+
+/// An object that fills a cell must not become background.
+void Background::replace_outliers() {
+  for (int row = 0; row < y_.cells; ++row) {
+    for (int column = 0; column < x_.cells; ++column) scratch_[node(column, row)] = agreed_level(column, row);
+  }
+  for (int row = 0; row < y_.cells; ++row) {
+    for (int column = 0; column < x_.cells; ++column) level_[node(column, row)] = scratch_[node(column, row)];
+  }
+}
+
+/// Median of the cell's own level and of what its neighbours say along every line through it: between two of them, or
+/// at the edge beyond two of them. All agree where the background is a plane, so a gradient stays as it is.
+std::int32_t Background::agreed_level(int column, int row) const {
+  constexpr std::array<std::array<int, 2>, 4> kLines{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
+  const auto is_inside = [this](int c, int r) { return c >= 0 && r >= 0 && c < x_.cells && r < y_.cells; };
+  std::array<std::int32_t, 5> said{level_[node(column, row)]};
+  std::size_t count = 1;
+  for (const auto& [dc, dr] : kLines) {
+    const bool has_before = is_inside(column - dc, row - dr);
+    const bool has_after = is_inside(column + dc, row + dr);
+    if (has_before && has_after) {
+      said[count++] = (level_[node(column - dc, row - dr)] + level_[node(column + dc, row + dr)]) / 2;
+    } else {
+      const int way = has_before ? -1 : 1;
+      if (!is_inside(column + 2 * way * dc, row + 2 * way * dr)) continue;
+      said[count++] =
+          2 * level_[node(column + way * dc, row + way * dr)] - level_[node(column + 2 * way * dc, row + 2 * way * dr)];
+    }
+  }
+  return std::clamp(middle_of(std::span(said).first(count)), 0, kMostLevel);
+}
+
+/// Nodes beyond the ends: on a line with the last two, or like the last.
+void Background::extend(Grid& grid, bool is_linear) const {
+  const auto beyond = [is_linear](std::int32_t last, std::int32_t before) {
+    return is_linear ? std::clamp(2 * last - before, 0, kMostLevel) : last;
+  };
+  for (int row = 0; row < y_.cells; ++row) {
+    const int second = std::min(1, x_.cells - 1);
+    grid[node(-1, row)] = beyond(grid[node(0, row)], grid[node(second, row)]);
+    grid[node(x_.cells, row)] = beyond(grid[node(x_.cells - 1, row)], grid[node(x_.cells - 1 - second, row)]);
+  }
+  for (int column = -1; column <= x_.cells; ++column) {
+    const int second = std::min(1, y_.cells - 1);
+    grid[node(column, -1)] = beyond(grid[node(column, 0)], grid[node(column, second)]);
+    grid[node(column, y_.cells)] = beyond(grid[node(column, y_.cells - 1)], grid[node(column, y_.cells - 1 - second)]);
+  }
+}
+
+void Background::find_typical() {
+  const auto median_dn = [this](const Grid& grid) {
+    std::ptrdiff_t count = 0;
+    for (int row = 0; row < y_.cells; ++row) {
+      for (int column = 0; column < x_.cells; ++column) scratch_[static_cast<std::size_t>(count++)] = grid[node(column, row)];
+    }
+    std::sort(scratch_.begin(), scratch_.begin() + count);
+    return static_cast<double>(scratch_[static_cast<std::size_t>(count / 2)]) / kOne;
+  };
+  typical_level_dn_ = median_dn(level_);
+  typical_noise_dn_ = median_dn(noise_);
+}
+
+void Background::row(int y, std::int32_t levels, std::int32_t noises_q4, RowNodes& nodes) const {
+  const std::int32_t position = y_.position(y);
+  const int above = (position >> 20) - 1;
+  for (int column = -1; column <= x_.cells; ++column) {
+    const std::size_t a = node(column, above);
+    const std::size_t b = node(column, above + 1);
+    const std::int32_t level = between(level_[a], level_[b], position);
+    const std::int32_t noise = between(noise_[a], noise_[b], position);
+    nodes[static_cast<std::size_t>(column + 1)] = levels * level + noises_q4 * noise / 16;
+  }
+}
+
+std::int32_t Background::at(const RowNodes& nodes, int x) const {
+  const std::int32_t position = x_.position(x);
+  const auto k = static_cast<std::size_t>(position >> 20);
+  return between(nodes[k], nodes[k + 1], position);
+}
+
+void Background::fill(const RowNodes& nodes, std::span<std::int32_t> out_dn) const {
+  for (std::size_t k = 0; k + 1 < static_cast<std::size_t>(x_.cells) + 2; ++k) {
+    const int begin = segment_begin_[k];
+    const int end = segment_begin_[k + 1];
+    if (begin == end) continue;
+    // 64ths of DN / 256 are enough: over a segment of at most 95 pixels the slope's rounding adds up to 0.006 DN.
+    std::int32_t value = at(nodes, begin) * 64;
+    const auto slope = static_cast<std::int32_t>((std::int64_t{nodes[k + 1] - nodes[k]} * x_.step) >> kSegmentShift);
+    for (int x = begin; x < end; ++x, value += slope) out_dn[static_cast<std::size_t>(x)] = value >> 14;
+  }
+}
+
+double Background::level_dn(int x, int y) const {
+  RowNodes nodes;
+  row(y, 1, 0, nodes);
+  return static_cast<double>(at(nodes, x)) / kOne;
+}
+
+double Background::noise_dn(int x, int y) const {
+  RowNodes nodes;
+  row(y, 0, 16, nodes);
+  return static_cast<double>(at(nodes, x)) / kOne;
+}
+
+}  // namespace vbar::fsw::imaging

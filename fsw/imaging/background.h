@@ -1,0 +1,108 @@
+#pragma once
+// What an image shows where there is nothing: level and noise on a coarse grid, interpolated between. The way of
+// SExtractor (Bertin and Arnouts 1996, section 3.2): clipped statistics of cells, and a cell that an object fills takes
+// the value of its neighbours. The noise is that of differences of neighbouring pixels, which no gradient of stray light
+// makes larger.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "fsw/imaging/image.h"
+
+namespace vbar::fsw::imaging {
+
+/// Whether there is anything to be found in an image.
+enum class ImageCondition : std::uint8_t {
+  kGood = 0,
+  kBlank,      ///< all pixels are alike: no detector reads out without noise
+  kSaturated,  ///< hardly a pixel is not saturated
+  kTooLittle,  ///< hardly a pixel is there
+  kInvalid,    ///< no image at all: sides and number of pixels disagree, or settings that no camera has
+};
+
+class Background {
+ public:
+  /// A sum of level and noise along one row of the image, DN / 256, at the nodes of the grid.
+  using RowNodes = std::array<std::int32_t, 68>;
+  static constexpr std::int32_t kMostNoises = 100 * 16;
+
+  /// Level and noise of the image. Saturated pixels (`saturation_dn`, 1 to 4095, and above) and missing ones do not
+  /// count. What the functions below say is about the last image that was kGood.
+  [[nodiscard]] ImageCondition measure(const ImageView& image, int saturation_dn);
+
+  /// levels * level + noises_q4 / 16 * noise (1 sigma of a pixel) along row y; at most 9 levels, kMostNoises.
+  void row(int y, std::int32_t levels, std::int32_t noises_q4, RowNodes& nodes) const;
+  /// That sum at pixel x of the row, DN / 256, rounded down.
+  [[nodiscard]] std::int32_t at(const RowNodes& nodes, int x) const;
+  /// That sum at every pixel of the row, DN, rounded down.
+  void fill(const RowNodes& nodes, std::span<std::int32_t> out_dn) const;
+
+  /// Level and 1 sigma at a pixel, DN.
+  [[nodiscard]] double level_dn(int x, int y) const;
+  [[nodiscard]] double noise_dn(int x, int y) const;
+
+  /// Medians over the image, DN.
+  [[nodiscard]] double typical_level_dn() const { return typical_level_dn_; }
+  [[nodiscard]] double typical_noise_dn() const { return typical_noise_dn_; }
+  /// Pixels that were looked at (a quarter of the image) and those of them that are saturated or missing.
+  [[nodiscard]] int sampled() const { return sampled_; }
+  [[nodiscard]] int saturated() const { return saturated_; }
+  [[nodiscard]] int missing() const { return missing_; }
+
+ private:
+  static constexpr int kCell = 64;  ///< px, about
+  /// Along one axis: so many cells, a node in the middle of each and one beyond either end.
+  struct Axis {
+    int pixels = 0;
+    int cells = 0;
+    std::int32_t step = 0;  ///< nodes a pixel, 2^-20
+    [[nodiscard]] int first_pixel(int cell) const { return cell * pixels / cells; }
+    [[nodiscard]] std::int32_t position(int pixel) const { return (2 * pixel + 1) * step / 2 + (1 << 19); }
+  };
+  static constexpr std::size_t kMaxNodes = 288;  ///< (w / 64 + 2.5) (h / 64 + 2.5) within kMaxPixels and kMaxSide
+  using Grid = std::array<std::int32_t, kMaxNodes>;
+
+  [[nodiscard]] static Axis axis_of(int pixels);
+  [[nodiscard]] std::size_t node(int column, int row) const {  ///< of a cell; -1 and `cells` are beyond the ends
+    return static_cast<std::size_t>((row + 1) * (x_.cells + 2) + column + 1);
+  }
+  [[nodiscard]] ImageCondition measure_cells(const ImageView& image, int saturation_dn);
+  void count_cell(const ImageView& image, int saturation_dn, int column, int row);
+  void measure_cell(int column, int row);
+  [[nodiscard]] bool fill_gaps();
+  [[nodiscard]] bool fill_gap(int column, int row);
+  void replace_outliers();
+  [[nodiscard]] std::int32_t agreed_level(int column, int row) const;
+  void extend(Grid& grid, bool is_linear) const;
+  void find_typical();
+
+  Axis x_;
+  Axis y_;
+  std::array<std::int16_t, 68> segment_begin_{};  ///< the first pixel of a row that lies beyond node k
+  Grid level_{};                                  ///< DN / 256
+  Grid noise_{};                                  ///< 1 sigma of a pixel, DN / 256
+  Grid scratch_{};
+  std::array<bool, kMaxNodes> is_known_{};
+  double typical_level_dn_ = 0.0;
+  double typical_noise_dn_ = 0.0;
+
+  // Of the cell in work
+  static constexpr std::size_t kLevels = 4096;
+  static constexpr int kMostDifference = 511;
+  std::array<std::uint16_t, kLevels> level_count_{};
+  std::array<std::uint16_t, 2 * kMostDifference + 1> difference_count_{};
+  int levels_ = 0;       ///< pixels counted
+  int differences_ = 0;  ///< pairs counted
+  int lowest_ = 0;       ///< level
+  int highest_ = 0;
+  // Of the image
+  int sampled_ = 0;
+  int saturated_ = 0;
+  int missing_ = 0;
+  int darkest_ = 0;
+  int brightest_ = 0;
+};
+
+}  // namespace vbar::fsw::imaging

@@ -1,0 +1,92 @@
+#pragma once
+// Connected components of the pixels above a threshold, in one pass over the image: runs of a row are joined with those
+// of the row before by union and find, and a component that the next row does not continue is complete (the one-pass
+// way of Bailey and Johnston 2007). So memory is bounded by a row and not by the image.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "fsw/imaging/detected_object.h"
+
+namespace vbar::fsw::imaging {
+
+/// Brightness above the background in DN / 16; coordinates from the image's first pixel.
+struct Component {
+  std::int32_t pixels = 0;
+  std::int32_t x_least = 0, x_most = 0, y_least = 0, y_most = 0;
+  std::int32_t peak_dn = 0;   ///< brightest pixel
+  std::int32_t peak_sum = 0;  ///< brightest neighbourhood of 3 x 3 pixels, DN, and its middle
+  std::int32_t peak_x = 0, peak_y = 0;
+  bool is_saturated = false;
+  bool is_cut = false;
+  std::int64_t x = 0, y = 0, xx = 0, yy = 0;  ///< sums over the pixels
+  std::int64_t flux = 0, flux_x = 0, flux_y = 0, flux_xx = 0, flux_xy = 0, flux_yy = 0;
+};
+
+/// Brightest first; where two are as bright, from the top and from the left.
+bool is_brighter(const Component& a, const Component& b);
+
+class Components {
+ public:
+  static constexpr std::size_t kMaxRunsOfRow = 512;
+
+  /// Before an image. Components of more than `largest_px` pixels are extended: counted, not kept.
+  void clear(std::int32_t largest_px);
+
+  /// The next run of row y, pixels begin to end - 1; rows from the top, runs from the left. Returns the component that
+  /// it belongs to so far, for the caller to add the run's pixels to; null if the row has too many runs.
+  Component* add_run(int y, int begin, int end);
+  /// No more runs of row y.
+  void end_row(int y);
+  /// No more rows. Sorts what was kept.
+  void finish();
+
+  /// After finish(): at most kMaxObjects, the brightest of all.
+  [[nodiscard]] std::span<const Component> kept() const { return std::span(kept_).first(kept_count_); }
+
+  [[nodiscard]] int found() const { return found_; }  ///< extended ones included
+  [[nodiscard]] int extended() const { return extended_; }
+  [[nodiscard]] int extended_pixels() const { return extended_pixels_; }
+  [[nodiscard]] int runs_dropped() const { return runs_dropped_; }
+  [[nodiscard]] bool is_extended(const Component& component) const { return component.pixels > largest_px_; }
+
+ private:
+  using Label = std::int16_t;
+  struct Run {
+    std::int16_t begin = 0;
+    std::int16_t end = 0;
+    Label label = 0;
+  };
+  /// Each run of two rows may have a label of its own.
+  static constexpr std::size_t kMaxLabels = 2 * kMaxRunsOfRow;
+
+  [[nodiscard]] Label root_of(Label label) const;
+  [[nodiscard]] Label new_label(int y, int begin, int end);
+  void unite(Label into, Label from);
+  void release(Label label) { free_[free_count_++] = label; }
+  void close(const Component& component);
+  void keep_brightest();
+  [[nodiscard]] Component& component(Label label) { return components_[static_cast<std::size_t>(label)]; }
+
+  std::int32_t largest_px_ = 0;
+  std::array<std::array<Run, kMaxRunsOfRow>, 2> runs_{};  ///< of this row and of the one before
+  std::array<std::size_t, 2> run_count_{};
+  std::size_t now_ = 0;     ///< which of the two is this row
+  std::size_t before_ = 0;  ///< first run of the row before that a later run of this one may touch
+  std::array<Component, kMaxLabels> components_{};
+  std::array<Label, kMaxLabels> parent_{};
+  std::array<Label, kMaxLabels> free_{};
+  std::size_t free_count_ = 0;
+  std::array<Label, kMaxLabels> united_{};  ///< labels of this row that gave way to another
+  std::size_t united_count_ = 0;
+  std::array<Component, 2 * kMaxObjects> kept_{};
+  std::size_t kept_count_ = 0;
+  int found_ = 0;
+  int extended_ = 0;
+  int extended_pixels_ = 0;
+  int runs_dropped_ = 0;
+};
+
+}  // namespace vbar::fsw::imaging

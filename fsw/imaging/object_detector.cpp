@@ -1,0 +1,228 @@
+#include "fsw/imaging/object_detector.h"
+
+#include <algorithm>
+
+#include "fsw/imaging/centroid.h"
+#include "fsw/math/math.h"
+
+namespace vbar::fsw::imaging {
+namespace {
+
+/// A point's image is at most so many times its own width, smear included; what is wider is measured as a whole.
+constexpr double kWidestPoint = 2.0;
+/// Around a bright object noise lifts bits of its halo above the threshold: within so many pixels, and so many times
+/// fainter than it.
+constexpr int kFragmentMargin = 3;
+constexpr std::int64_t kFragmentFlux = 100;
+
+bool is_within(double value, double least, double most) {
+  return value >= least && value <= most;  // false for a NaN
+}
+
+bool is_usable(const DetectorSettings& s) {
+  return is_within(s.detection_sigmas, 1.0, 30.0) && is_within(s.gain_dn_per_electron, 1e-6, 1e6) &&
+         is_within(s.point_spread_sigma_px, 0.3, 3.0) && s.largest_object_px >= 1;
+}
+
+}  // namespace
+
+DetectionReport ObjectDetector::detect(const ImageView& image, const DetectorSettings& settings) {
+  object_count_ = 0;
+  DetectionReport report;
+  if (!is_usable(settings)) return report;
+  report.condition = background_.measure(image, settings.saturation_dn);
+  if (report.condition != ImageCondition::kGood) return report;
+  image_ = image;
+  settings_ = settings;
+  find_components();
+  const std::span<const Component> kept = components_.kept();
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    if (is_fragment(k)) {
+      ++report.fragments;
+    } else {
+      objects_[object_count_++] = measure(kept[k]);
+    }
+  }
+  report.background_dn = background_.typical_level_dn();
+  report.noise_dn = background_.typical_noise_dn();
+  report.components = components_.found();
+  report.objects = static_cast<int>(object_count_);
+  report.extended = components_.extended();
+  report.pixels_rejected = components_.extended_pixels();
+  report.runs_dropped = runs_dropped_;
+  return report;
+}
+
+void ObjectDetector::find_components() {
+  components_.clear(settings_.largest_object_px);
+  runs_dropped_ = 0;
+  // The noise of nine pixels is three times that of one.
+  noises_q4_ = static_cast<std::int32_t>(settings_.detection_sigmas * 3.0 * 16.0 + 0.5);
+  for (int y = 1; y + 1 < image_.frame.height; ++y) {
+    rows_ = {image_row(y - 1), image_row(y), image_row(y + 1)};
+    is_patched_ = false;
+    Background::RowNodes nodes;
+    background_.row(y, 9, noises_q4_, nodes);
+    background_.fill(nodes, threshold_dn_);
+    if (!scan_row()) {
+      patch_rows(y);
+      static_cast<void>(scan_row());
+    }
+    if (run_count_ > 0) background_.row(y, 1, 0, level_);
+    for (std::size_t k = 0; k < run_count_; ++k) add_run(y, runs_[k]);
+    components_.end_row(y);
+  }
+  components_.finish();
+}
+
+/// Runs of pixels whose 3 x 3 sum exceeds the threshold. False if a sum is more than any nine pixels can be: a missing
+/// pixel is among them, and the rows must be patched. So an image without gaps is not searched for them.
+bool ObjectDetector::scan_row() {
+  const int last = image_.frame.width - 1;
+  const std::uint16_t* above = rows_[0];
+  const std::uint16_t* here = rows_[1];
+  const std::uint16_t* below = rows_[2];
+  run_count_ = 0;
+  if (last < 2) return true;
+  const auto column = [&](int x) { return std::int32_t{above[x]} + here[x] + below[x]; };
+  std::int32_t left = column(0);
+  std::int32_t middle = column(1);
+  int begin = -1;
+  for (int x = 1; x < last; ++x) {
+    const std::int32_t right = column(x + 1);
+    const std::int32_t sum = left + middle + right;
+    left = middle;
+    middle = right;
+    if (sum > threshold_dn_[static_cast<std::size_t>(x)]) {
+      if (sum >= kMissingPixel && !is_patched_) return false;
+      if (begin < 0) begin = x;
+    } else if (begin >= 0) {
+      push_run(begin, x);
+      begin = -1;
+    }
+  }
+  if (begin >= 0) push_run(begin, last);
+  return true;
+}
+
+void ObjectDetector::push_run(int begin, int end) {
+  if (run_count_ == runs_.size()) {
+    ++runs_dropped_;
+    return;
+  }
+  runs_[run_count_++] = {static_cast<std::int16_t>(begin), static_cast<std::int16_t>(end)};
+}
+
+/// Copies of the three rows with the background in place of what is missing.
+void ObjectDetector::patch_rows(int y) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    Background::RowNodes nodes;
+    background_.row(y - 1 + static_cast<int>(k), 1, 0, nodes);
+    for (int x = 0; x < image_.frame.width; ++x) {
+      const std::uint16_t pixel = rows_[k][x];
+      patched_[k][static_cast<std::size_t>(x)] =
+          pixel == kMissingPixel ? static_cast<std::uint16_t>((background_.at(nodes, x) + 128) / 256) : pixel;
+    }
+    rows_[k] = patched_[k].data();
+  }
+  is_patched_ = true;
+}
+
+void ObjectDetector::add_run(int y, const Run& run) {
+  Component* component = components_.add_run(y, run.begin, run.end);
+  if (component == nullptr) return;
+  const ImageFrame& f = image_.frame;
+  // The sums of these pixels reach the outermost ones.
+  const bool is_at_edge = run.begin == 1 || run.end == f.width - 1 || y == 1 || y == f.height - 2;
+  if (is_at_edge || (is_patched_ && touches_missing(y, run))) component->is_cut = true;
+  if (components_.is_extended(*component)) {
+    component->pixels += run.end - run.begin;  // nothing else of it will be asked for
+  } else {
+    add_pixels(*component, y, run);
+  }
+}
+
+void ObjectDetector::add_pixels(Component& component, int y, const Run& run) {
+  std::int64_t flux = 0;
+  std::int64_t flux_x = 0;
+  std::int64_t flux_xx = 0;
+  for (std::int64_t x = run.begin; x < run.end; ++x) {
+    const int column = static_cast<int>(x);
+    const std::int32_t pixel = rows_[1][x];
+    const std::int32_t light = 16 * pixel - background_.at(level_, column) / 16;
+    flux += light;
+    flux_x += light * x;
+    flux_xx += light * x * x;
+    component.x += x;
+    component.xx += x * x;
+    component.peak_dn = std::max(component.peak_dn, pixel);
+    const std::int32_t sum = sum_around(column);
+    if (sum > component.peak_sum) {
+      component.peak_sum = sum;
+      component.peak_x = column;
+      component.peak_y = y;
+    }
+  }
+  const std::int64_t pixels = run.end - run.begin;
+  component.pixels += static_cast<std::int32_t>(pixels);
+  component.is_saturated = component.is_saturated || component.peak_dn >= settings_.saturation_dn;
+  component.y += pixels * y;
+  component.yy += pixels * y * y;
+  component.flux += flux;
+  component.flux_x += flux_x;
+  component.flux_xx += flux_xx;
+  component.flux_y += flux * y;
+  component.flux_xy += flux_x * y;
+  component.flux_yy += flux * y * y;
+}
+
+std::int32_t ObjectDetector::sum_around(int x) const {
+  std::int32_t sum = 0;
+  for (const std::uint16_t* row : rows_) sum += std::int32_t{row[x - 1]} + row[x] + row[x + 1];
+  return sum;
+}
+
+bool ObjectDetector::touches_missing(int y, const Run& run) const {
+  for (int row = y - 1; row <= y + 1; ++row) {
+    for (int x = run.begin - 1; x <= run.end; ++x) {
+      if (image_row(row)[x] == kMissingPixel) return true;
+    }
+  }
+  return false;
+}
+
+/// Whether a component kept lies in or beside the box of one far brighter.
+bool ObjectDetector::is_fragment(std::size_t k) const {
+  const std::span<const Component> kept = components_.kept();
+  const Component& c = kept[k];
+  for (std::size_t j = 0; j < k && kept[j].flux > kFragmentFlux * c.flux; ++j) {
+    const Component& bright = kept[j];
+    if (c.peak_x >= bright.x_least - kFragmentMargin && c.peak_x <= bright.x_most + kFragmentMargin &&
+        c.peak_y >= bright.y_least - kFragmentMargin && c.peak_y <= bright.y_most + kFragmentMargin) {
+      return true;
+    }
+  }
+  return false;
+}
+
+DetectedObject ObjectDetector::measure(const Component& component) const {
+  DetectedObject object;
+  object.radius_px = component_radius(component);
+  const double point = math::sqrt(settings_.point_spread_sigma_px * settings_.point_spread_sigma_px + 1.0 / 12.0);
+  Centroid centroid;
+  if (!component.is_saturated && object.radius_px < kWidestPoint * point) {
+    centroid = windowed_centroid(image_, background_, component, settings_.point_spread_sigma_px,
+                                 settings_.gain_dn_per_electron);
+  }
+  if (!centroid.is_found) centroid = component_centroid(background_, component, settings_.gain_dn_per_electron);
+  object.centroid_px = {image_.frame.origin_x + centroid.x, image_.frame.origin_y + centroid.y};
+  object.sigma_px = centroid.sigma_px;
+  object.flux_dn = static_cast<double>(component.flux) / 16.0;
+  object.peak_dn = component.peak_dn;
+  object.pixels = component.pixels;
+  object.is_saturated = component.is_saturated;
+  object.is_cut = component.is_cut || centroid.is_cut;
+  return object;
+}
+
+}  // namespace vbar::fsw::imaging
