@@ -1,0 +1,43 @@
+#pragma once
+// Attitude from directions: the rotation that carries known directions nearest to measured ones (Wahba 1965), by
+// Davenport's q-method (Wertz 1978, 12.2.2), its covariance and a test of the residuals (Shuster & Oh 1981).
+
+#include <cstddef>
+#include <span>
+
+#include "fsw/core/result.h"
+#include "fsw/core/types.h"
+
+namespace vbar::fsw::stars {
+
+/// One direction in two frames, unit vectors, and the 1-sigma error of the measured one, each axis across it, rad.
+struct DirectionPair {
+  Vector3 camera = Vector3::Zero();
+  Vector3 eci = Vector3::Zero();
+  double sigma = 0.0;
+};
+
+struct AttitudeEstimate {
+  Matrix3 R_camera_eci = Matrix3::Identity();
+  Matrix3 covariance_camera = Matrix3::Zero();  ///< of the small rotation between estimated and true camera, rad^2
+  double chi_square = 0.0;                      ///< sum of squared residuals over their sigma
+  int degrees_of_freedom = 0;                   ///< 2 a direction, less 3
+};
+
+/// kInvalidArgument: fewer than two pairs or a sigma that is not positive; kNotFinite; kSingular: directions (nearly) on
+/// one line, or no best rotation.
+Result<AttitudeEstimate> determine_attitude(std::span<const DirectionPair> pairs);
+
+/// Value that a chi-square variable of `degrees` > 0 degrees of freedom exceeds once in 10,000 (Wilson & Hilferty 1931).
+double chi_square_limit(int degrees);
+
+/// The same, but where the residuals are larger than noise can be, the worst direction is dropped and the rest tried again,
+/// until they agree. Dropped pairs are moved to the end of `pairs` (order and `tags`, one a pair, change alike);
+/// `kept` is how many are left. Beside the above, kDidNotConverge: a third would have to be dropped, or fewer than three are left.
+struct RobustAttitude {
+  AttitudeEstimate estimate;
+  int kept = 0;
+};
+Result<RobustAttitude> determine_attitude_robustly(std::span<DirectionPair> pairs, std::span<int> tags);
+
+}  // namespace vbar::fsw::stars

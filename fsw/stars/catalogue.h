@@ -1,0 +1,28 @@
+#pragma once
+// The stars on board: ESA's Hipparcos catalogue to V 8 (data/stars), moved to one epoch when the program was built, with
+// pairs closer than 70 arcsec merged. A star is its number, 0 to catalogue_size() - 1.
+
+#include <cstddef>
+#include <span>
+
+#include "fsw/core/result.h"
+#include "fsw/core/types.h"
+
+namespace vbar::fsw::stars {
+
+int catalogue_size();
+/// Julian year of the positions.
+double catalogue_epoch();
+
+/// Unit vector in GCRF (to 1e-9) as from the solar system's barycentre: without aberration. `star` must be in range.
+Vector3 star_direction_eci(int star);
+/// Johnson V.
+double star_magnitude(int star);
+/// Hipparcos number; 0 for the few stars without one.
+int star_hipparcos(int star);
+
+/// Stars within `radius` (rad, at most 0.5) of a unit vector, written to `found` as far as it holds them; how many that
+/// are. kOutOfRange for a larger radius, kNotFinite.
+Result<int> stars_in_cone(const Vector3& axis_eci, double radius, std::span<int> found);
+
+}  // namespace vbar::fsw::stars

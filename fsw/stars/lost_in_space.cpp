@@ -1,0 +1,158 @@
+#include <algorithm>
+
+#include "fsw/math/math.h"
+#include "fsw/stars/star_identification.h"
+
+namespace vbar::fsw::stars {
+namespace {
+
+constexpr double kArcsecond = math::kPi / 648000.0;
+constexpr double kVaguest = 15.0 * kArcsecond;      // objects less precise make no patterns
+constexpr double kPairGate = 3.5;                   // sigma of a distance
+constexpr double kPairSlack = 6.0 * kArcsecond;     // aberration differs by up to 4 arcsec between two stars, doubles
+constexpr double kPlaceGate = 3.5;                  // sigma of a third object's place
+constexpr double kSuppositionSigma = 15.0 * kArcsecond;
+constexpr int kNeeded = 2;       // other objects with a star at their place, for a hypothesis to be looked at closely
+constexpr int kPatience = 14;    // objects without a star, and none with one, until it is given up
+constexpr MagnitudeGate kGate{};
+
+/// Axes of a pair: towards its middle, from the first to the second, and across both.
+Matrix3 pair_axes(const Vector3& first, const Vector3& second) {
+  Matrix3 axes;
+  axes.col(0) = (first + second).normalized();
+  axes.col(1) = (second - first).normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return axes;
+}
+
+int chord_step(double chord) {
+  const int step = static_cast<int>(chord / kChordStep) - kFirstChord;
+  return step < 0 ? 0 : step > kChordSteps ? kChordSteps : step;
+}
+
+}  // namespace
+
+Status check_objects(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci) {
+  if (objects.size() > imaging::kMaxObjects) return Status::kTooLong;
+  double sum = velocity_over_c_eci.sum() + field.centre_camera.sum() + field.radius_rad;
+  bool positive = field.radius_rad > 0.0;
+  for (const ObservedStar& object : objects) {
+    sum += object.direction_camera.sum() + object.sigma_rad + object.magnitude;
+    positive = positive && object.sigma_rad > 0.0;
+  }
+  if (!math::is_finite(sum)) return Status::kNotFinite;
+  return positive ? Status::kOk : Status::kInvalidArgument;
+}
+
+std::size_t StarIdentifier::sort_pattern_objects(std::span<const ObservedStar> objects) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    if (objects[k].sigma_rad <= kVaguest) order_[count++] = k;
+  }
+  std::sort(order_.data(), order_.data() + count, [&](std::size_t a, std::size_t b) {
+    return objects[a].magnitude != objects[b].magnitude ? objects[a].magnitude < objects[b].magnitude : a < b;
+  });
+  return count < kMaxPatternObjects ? count : kMaxPatternObjects;
+}
+
+void StarIdentifier::make_pattern(std::span<const ObservedStar> objects, std::size_t count, std::size_t i,
+                                  std::size_t j) {
+  const ObservedStar& first = objects[order_[i]];
+  const ObservedStar& second = objects[order_[j]];
+  pattern_.R_camera_pattern = pair_axes(first.direction_camera, second.direction_camera);
+  const double half_chord = 0.5 * (second.direction_camera - first.direction_camera).norm();
+  const double pair_variance = first.sigma_rad * first.sigma_rad + second.sigma_rad * second.sigma_rad;
+  pattern_.others = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    // From both ends of the order of brightness: bright objects may all be no stars, and so may faint ones.
+    const std::size_t place = k % 2 == 0 ? k / 2 : count - 1 - k / 2;
+    if (place == i || place == j) continue;
+    const ObservedStar& other = objects[order_[place]];
+    const Vector3 direction = pattern_.R_camera_pattern.transpose() * other.direction_camera;
+    // The pair's own error moves its middle, and turns it: that grows with the distance from the middle.
+    const double arm = math::hypot(direction.y(), direction.z()) / half_chord;
+    const double variance = other.sigma_rad * other.sigma_rad + 0.25 * pair_variance * (1.0 + arm * arm);
+    const double tolerance = kPlaceGate * math::sqrt(variance) + kPairSlack;
+    pattern_.object[pattern_.others] = order_[place];
+    pattern_.direction[pattern_.others] = direction;
+    pattern_.tolerance[pattern_.others++] = tolerance < kCellMargin ? tolerance : kCellMargin;
+  }
+}
+
+Status StarIdentifier::try_hypothesis(std::span<const ObservedStar> objects, const Field& field,
+                                      const Vector3& velocity_over_c_eci, const Vector3& first_eci,
+                                      const Vector3& second_eci) {
+  ++hypotheses_;
+  const Matrix3 R_eci_pattern = pair_axes(first_eci, second_eci);
+  int agreements = 0;
+  for (std::size_t k = 0; k < pattern_.others && agreements < kNeeded; ++k) {
+    if (agreements == 0 && k >= kPatience) return Status::kDidNotConverge;
+    const Vector3 place = without_aberration(R_eci_pattern * pattern_.direction[k], velocity_over_c_eci);
+    const double magnitude = objects[pattern_.object[k]].magnitude;
+    if (nearest_star(place, pattern_.tolerance[k], magnitude, kGate).star >= 0) ++agreements;
+  }
+  if (agreements < kNeeded) return Status::kDidNotConverge;
+  const Supposition supposed{.R_camera_eci = pattern_.R_camera_pattern * R_eci_pattern.transpose(),
+                             .sigma_rad = kSuppositionSigma,
+                             .agreements_spent = 2,
+                             .hypotheses = hypotheses_};
+  return verification_.verify(objects, field, velocity_over_c_eci, supposed, trial_);
+}
+
+Status StarIdentifier::try_pair(std::span<const ObservedStar> objects, const Field& field,
+                                const Vector3& velocity_over_c_eci, std::size_t i, std::size_t j) {
+  const ObservedStar& a = objects[order_[i]];
+  const ObservedStar& b = objects[order_[j]];
+  const double chord = (a.direction_camera - b.direction_camera).norm();
+  const double slack =
+      kPairGate * math::sqrt(a.sigma_rad * a.sigma_rad + b.sigma_rad * b.sigma_rad) + kPairSlack;
+  const auto begin = static_cast<std::size_t>(chord_step(chord - slack));
+  const auto end = static_cast<std::size_t>(chord_step(chord + slack + kChordStep));
+  const std::uint32_t first = vbar_star_tables.first_of_chord[begin];
+  const std::uint32_t last = vbar_star_tables.first_of_chord[end];
+  for (std::uint32_t k = first; k < last; ++k) {
+    const int bright = vbar_star_tables.pair[k][0];
+    const int faint = vbar_star_tables.pair[k][1];
+    const bool straight = kGate.admits(a.magnitude, star_magnitude(bright)) &&
+                          kGate.admits(b.magnitude, star_magnitude(faint));
+    const bool crossed = kGate.admits(b.magnitude, star_magnitude(bright)) &&
+                         kGate.admits(a.magnitude, star_magnitude(faint));
+    if (!straight && !crossed) continue;
+    const Vector3 bright_eci = with_aberration(star_direction_eci(bright), velocity_over_c_eci);
+    const Vector3 faint_eci = with_aberration(star_direction_eci(faint), velocity_over_c_eci);
+    if (straight && try_hypothesis(objects, field, velocity_over_c_eci, bright_eci, faint_eci) == Status::kOk) {
+      return Status::kOk;
+    }
+    if (crossed && try_hypothesis(objects, field, velocity_over_c_eci, faint_eci, bright_eci) == Status::kOk) {
+      return Status::kOk;
+    }
+    if (hypotheses_ >= kMaxHypotheses) return Status::kDidNotConverge;
+  }
+  return Status::kDidNotConverge;
+}
+
+Status StarIdentifier::lost_in_space(std::span<const ObservedStar> objects, const Field& field,
+                                     const Vector3& velocity_over_c_eci) {
+  const Status status = check_objects(objects, field, velocity_over_c_eci);
+  if (status != Status::kOk) return status;
+  const std::size_t count = sort_pattern_objects(objects);
+  hypotheses_ = 0;
+  // By the sum of their places in the order of brightness: no single false object is in all early pairs.
+  for (std::size_t sum = 1; sum + 2 < 2 * count; ++sum) {
+    for (std::size_t i = sum < count ? 0 : sum - count + 1; 2 * i < sum; ++i) {
+      const std::size_t j = sum - i;
+      const double chord =
+          (objects[order_[i]].direction_camera - objects[order_[j]].direction_camera).norm() / kChordStep;
+      if (chord < kFirstChord || chord > kLastChord) continue;
+      make_pattern(objects, count, i, j);
+      if (try_pair(objects, field, velocity_over_c_eci, i, j) == Status::kOk) {
+        fix_ = trial_;
+        return Status::kOk;
+      }
+      if (hypotheses_ >= kMaxHypotheses) return Status::kDidNotConverge;
+    }
+  }
+  return Status::kDidNotConverge;
+}
+
+}  // namespace vbar::fsw::stars

@@ -1,0 +1,87 @@
+#pragma once
+// Which objects of an image are which stars, and from that the camera's attitude: from nothing (lost in space) or near a
+// predicted attitude (tracking). Both suppose attitudes and let verification.h decide, so the same certainty holds for
+// both: objects that are no stars may be many and bright, and an identification that chance could have made is refused.
+
+#include <array>
+#include <span>
+
+#include "fsw/core/result.h"
+#include "fsw/stars/observation.h"
+#include "fsw/stars/verification.h"
+
+namespace vbar::fsw::stars {
+
+/// Work of one identification lost in space: pairs of objects are tried, brightest first, until one fits or this many
+/// pairs of stars have been laid over one.
+inline constexpr int kMaxHypotheses = 200'000;
+/// Of the brightest objects patterns are made.
+inline constexpr std::size_t kMaxPatternObjects = 48;
+/// Largest tolerance of a predicted attitude, rad (1 degree).
+inline constexpr double kLargestTolerance = 0.0175;
+
+/// With all it works on, 60 kB; what it holds between calls is only the last fix.
+class StarIdentifier {
+ public:
+  /// Attitude of a camera that may look anywhere. `velocity_over_c_eci`: the observer's, barycentric, for aberration.
+  /// kOk: fix() holds the attitude. kDidNotConverge: nothing that could be trusted. kTooLong: more than kMaxObjects;
+  /// kNotFinite; kInvalidArgument: a sigma or the field's radius is not positive.
+  /// Two stars of the catalogue's pair table that are as far apart as two objects give an attitude (Black 1974); the other
+  /// objects say which.
+  Status lost_in_space(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci);
+
+  /// Attitude near a predicted one, the camera turned from it by `tolerance_rad` about any axis at most. As above; and
+  /// kOutOfRange: tolerance above kLargestTolerance. Each object votes for the shifts that would carry a star of the
+  /// neighbourhood onto it; the shifts with most votes are verified.
+  Status track(std::span<const ObservedStar> objects, const Field& field, const Matrix3& predicted_R_camera_eci,
+               double tolerance_rad, const Vector3& velocity_over_c_eci);
+
+  /// Of the last call that returned kOk.
+  [[nodiscard]] const AttitudeFix& fix() const { return fix_; }
+
+ private:
+  struct Vote {
+    int object = 0;
+    int star = 0;
+    Vector2 shift = Vector2::Zero();
+    int support = 0;
+  };
+  static constexpr std::size_t kMaxVotes = 512;
+  static constexpr int kMaxSeeds = 5;
+
+  /// What is common to all hypotheses of a pair of objects.
+  struct Pattern {
+    Matrix3 R_camera_pattern = Matrix3::Identity();
+    std::size_t others = 0;
+    std::array<std::size_t, kMaxPatternObjects> object{};
+    std::array<Vector3, kMaxPatternObjects> direction{};  ///< pattern axes
+    std::array<double, kMaxPatternObjects> tolerance{};
+  };
+
+  std::size_t sort_pattern_objects(std::span<const ObservedStar> objects);
+  void make_pattern(std::span<const ObservedStar> objects, std::size_t count, std::size_t i, std::size_t j);
+  Status try_pair(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci,
+                  std::size_t i, std::size_t j);
+  Status try_hypothesis(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci,
+                        const Vector3& first_eci, const Vector3& second_eci);
+  std::size_t cast_votes(std::span<const ObservedStar> objects, const Field& field, const Matrix3& R_camera_eci,
+                         double tolerance, const Vector3& velocity_over_c_eci);
+  void count_support(std::size_t votes, double radius);
+  Status try_seed(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci,
+                  std::size_t votes, const Vote& seed, double radius);
+
+  AttitudeFix fix_;
+  AttitudeFix trial_;
+  Verification verification_;
+  int hypotheses_ = 0;
+  std::array<std::size_t, imaging::kMaxObjects> order_{};
+  Pattern pattern_;
+  std::array<Vote, kMaxVotes> vote_{};
+  std::array<int, 4096> in_cone_{};
+  std::array<DirectionPair, imaging::kMaxObjects> seed_pair_{};
+};
+
+/// What both ask of their input.
+Status check_objects(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci);
+
+}  // namespace vbar::fsw::stars
