@@ -1,0 +1,50 @@
+#pragma once
+// One account of which object of each image was the same satellite.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "fsw/tracking/relative_motion.h"
+
+namespace vbar::fsw::tracking {
+
+inline constexpr std::size_t kMaxHypotheses = 64;
+inline constexpr std::size_t kHistory = 8;  ///< images
+
+/// Entries of a hypothesis' history that are no index of a candidate.
+inline constexpr std::int16_t kMissed = -1;
+inline constexpr std::int16_t kUnborn = -2;
+
+struct Hypothesis {
+  RelativeMotion motion;
+  std::uint32_t track = 0;  ///< hypotheses of one track began with the same object
+  double score = 0.0;       ///< log-likelihood ratio against all of it being false detections (Sittler 1964)
+  double gain = 0.0;        ///< of the last image against having missed it
+  double misfit = 1.0;      ///< running mean of the normalised innovation squared, a degree of freedom
+  double log_flux = 0.0;    ///< running mean
+  double identity = 0.0;    ///< worst recent distance from the prediction (chi-square, 4 degrees of freedom)
+  double identity_now = 0.0;
+  std::int32_t hits = 0;              ///< in all
+  std::int32_t hits_since_gap = 0;    ///< since it was last unseen for long
+  std::int32_t images_since_hit = 0;  ///< in which it was expected
+  std::uint32_t recent = 0;           ///< a bit an image in which it was expected or seen, newest lowest: 1 seen
+  bool established = false;           ///< was once seen in M of N images with residuals as expected
+  std::array<std::int16_t, kHistory> history{};  ///< candidates by image, newest first
+};
+
+/// A step that one hypothesis may take in an image.
+struct Branch {
+  std::int16_t parent = -1;     ///< -1: a new track
+  std::int16_t candidate = -1;  ///< kMissed: none
+  bool established = false;     ///< of the parent
+  double score = 0.0;
+};
+
+/// True if both saw the same in the last `images` images and at least two objects.
+bool share_recent(const Hypothesis& a, const Hypothesis& b, std::size_t images);
+
+/// Of the lowest `count` bits.
+int hits_of(std::uint32_t bits, int count);
+
+}  // namespace vbar::fsw::tracking

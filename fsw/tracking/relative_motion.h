@@ -1,0 +1,81 @@
+#pragma once
+// The motion that a sequence of bearings shows, range left open: what every hypothesis of the tracker estimates.
+//
+// Bearings of a near-circular relative orbit tell the relative orbital elements up to their scale (Woffinden, Geller
+// 2009), so the state is s = [da, dex, dey, dix, diy] / dlambda. With u the servicer's argument of latitude the linear
+// map of D'Amico (2010) gives the slopes as exact ratios,
+//   y = path_slope - T / (2 a) + (s0 - s1 cos u - s2 sin u) / den,   z = (s3 sin u - s4 cos u) / den,
+//   den = 1 + 2 s1 sin u - 2 s2 cos u,
+// which multiplied by den are linear in s for a measured slope: a linear filter needs no starting value. T / (2 a) is
+// the bend of the orbit between the two. These are the regressors 1, t, cos u, sin u of bearing-only curve fitting with
+// their coefficients bound to one orbit, and right also where the range varies by a part of itself within an orbit.
+
+#include "fsw/tracking/candidate.h"
+#include "fsw/tracking/prediction.h"
+#include "fsw/tracking/servicer_view.h"
+
+namespace vbar::fsw::tracking {
+
+using Vector5 = Eigen::Matrix<double, 5, 1>;
+using Matrix5 = Eigen::Matrix<double, 5, 5>;
+using Matrix25 = Eigen::Matrix<double, 2, 5>;
+
+struct MotionSettings {
+  double shape_sigma = 0.08;     ///< of each element of s before the first bearing
+  double model_sigma = 5e-5;     ///< rad, added to each bearing: what the equations above leave out from image to image
+  double drift_sigma = 1e-4;     ///< of each element of s after an orbit: random walk
+  double drift_fraction = 3e-3;  ///< the same as a part of |s|: J2 turns the relative eccentricity and inclination
+};
+
+struct RelativeMotion {
+  Vector5 shape = Vector5::Zero();
+  Matrix5 covariance = Matrix5::Zero();
+};
+
+/// Where the measured slopes differ from the expected ones.
+struct Innovation {
+  Vector2 residual = Vector2::Zero();
+  Matrix2 covariance = Matrix2::Identity();
+  Matrix25 jacobian = Matrix25::Zero();
+  double distance = 0.0;     ///< residual' covariance^-1 residual
+  double determinant = 1.0;  ///< of the covariance
+};
+
+/// A candidate as the filter takes it.
+struct SlopeMeasurement {
+  Vector2 slopes = Vector2::Zero();
+  Vector2 variance = Vector2::Zero();
+};
+
+/// Bearing of a unit vector with 1 sigma (rad) of each axis. Errors of slopes_of; kOutOfRange for sigma <= 0.
+Result<SlopeMeasurement> slope_measurement(const Vector3& direction_rtn, double sigma, const MotionSettings& settings);
+
+/// Nothing known but the size of the elements.
+RelativeMotion unknown_motion(const MotionSettings& settings);
+
+/// `dt` seconds on. False if the target would pass the servicer: the state is then of no use.
+bool propagate(RelativeMotion& motion, double mean_motion, double dt, const MotionSettings& settings);
+
+/// An own burn at argument of latitude `latitude` (rad). Without `along_track_m` (0) the elements are nearly forgotten.
+void apply_burn(RelativeMotion& motion, const OwnBurn& burn, double latitude, const ServicerView& view,
+                const Prediction& prediction, const MotionSettings& settings);
+
+/// `bend`: -T / (2 a).
+Innovation innovation_of(const RelativeMotion& motion, const ServicerView& view, double bend,
+                         const SlopeMeasurement& measurement);
+
+/// Kalman update.
+void update(RelativeMotion& motion, const Innovation& innovation);
+
+/// Expected slopes and rates with covariance, as a prediction has them. `bend_rate`: of `bend`, 1/s.
+struct SlopeState {
+  Vector4 slopes = Vector4::Zero();
+  Matrix4 covariance = Matrix4::Zero();
+};
+SlopeState slope_state(const RelativeMotion& motion, const ServicerView& view, double bend, double bend_rate);
+
+/// (a - b)' (A + B + floor)^-1 (a - b) with 1-sigma floors of slopes and of rates (1/s); very large if not regular.
+double distance_between(const Vector4& a, const Matrix4& a_covariance, const Vector4& b, const Matrix4& b_covariance,
+                        double slope_floor, double rate_floor);
+
+}  // namespace vbar::fsw::tracking

@@ -1,0 +1,31 @@
+#pragma once
+// What target tracking needs to know of the servicer's orbit at an image.
+
+#include "fsw/core/result.h"
+#include "fsw/orbit/elements.h"
+
+namespace vbar::fsw::tracking {
+
+/// Directions near the -T or +T axis are told by two slopes, those of their R and N component against their T
+/// component: y = d_R / d_T, z = d_N / d_T. Their sign does not depend on whether the target is ahead or behind.
+struct ServicerView {
+  double latitude = 0.0;         ///< true argument of latitude, rad
+  double latitude_rate = 0.0;    ///< rad/s
+  double mean_motion = 0.0;      ///< rad/s, of the osculating orbit
+  double semi_major_axis = 0.0;  ///< m, osculating
+  /// Slope of the servicer's own path, v_R / v_T: there a target would be seen that follows or leads on the same orbit.
+  /// Eccentricity and the short-period terms of J2 move this direction by hundreds of arc seconds an orbit, whatever
+  /// the range.
+  double path_slope = 0.0;
+  double path_slope_rate = 0.0;  ///< 1/s
+};
+
+/// Of the servicer's osculating ECI state. Accelerations are those of point mass and J2. Errors of
+/// orbit::qns_from_cartesian (unbound, equatorial, not finite).
+Result<ServicerView> servicer_view(const orbit::CartesianState& servicer);
+
+/// Slopes y, z of a direction in RTN, not necessarily of unit length. kOutOfRange if it is more than 60 degrees from
+/// the T axis, either way; kNotFinite.
+Result<Vector2> slopes_of(const Vector3& direction_rtn);
+
+}  // namespace vbar::fsw::tracking

@@ -1,0 +1,148 @@
+#pragma once
+// Which object of an image is the target: multi-hypothesis tracking (Reid 1979; track-oriented, after Blackman 2004) of
+// everything that moves as a satellite near the servicer does, and the choice of the one that moves as navigation
+// expects the target to. What cannot be told apart is not chosen: no bearing is better than another object's.
+//
+// Kinematics make tracks, navigation names one of them. The two are kept apart because the noise of two satellites'
+// bearings says nothing about which of them is the target: tracks are scored without the prediction (beyond its gate),
+// and compared by how far each is from it in bearing and bearing rate, the worst of the last hour or two.
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/tracking/candidate.h"
+#include "fsw/tracking/hot_pixel_map.h"
+#include "fsw/tracking/hypothesis.h"
+#include "fsw/tracking/prediction.h"
+
+namespace vbar::fsw::tracking {
+
+struct TrackerSettings {
+  MotionSettings motion;
+  HotPixelSettings hot_pixels;
+  double field_sr = 0.0113;           ///< solid angle in which candidates are looked for: 4.8 by 7.7 degrees
+  double association_gate = 13.8;     ///< chi-square, 2 degrees of freedom: 99.9 %
+  double prediction_gate = 18.4;      ///< the same about the predicted bearing: 99.99 %
+  double identity_gate = 23.5;        ///< chi-square, 4 degrees of freedom: 99.99 %
+  double identity_memory_s = 6000.0;  ///< the worst distance fades by a factor e
+  double identity_margin = 6.0;       ///< log-likelihood by which the target beats all others
+  double slope_floor = 1.5e-4;        ///< 1 sigma by which predicted bearings may be better than they say, 30 arcsec
+  double rate_floor = 3e-7;           ///< 1/s
+  double certainty = 0.99;            ///< of the association in an image
+  double magnitude_sigma = 1.5;       ///< of a tumbling target from image to image
+  double small_object_loss = 2.3;     ///< log-likelihood: target's light falls on more than two pixels
+  int confirm_hits = 5;               ///< M
+  int confirm_images = 7;             ///< of N
+  int gap_images = 5;                 ///< unseen for longer: so many images
+  int hits_after_gap = 3;             ///< are needed again
+  int give_up_images = 15;            ///< unseen, though expected
+};
+
+struct TrackerInput {
+  GpsTime time;                           ///< middle of the exposure
+  orbit::CartesianState servicer;         ///< at that time, ECI, osculating
+  std::span<const Candidate> candidates;  ///< at most kMaxCandidates
+  std::span<const OwnBurn> burns;         ///< since the last image, in order of time
+  std::optional<Prediction> prediction;
+  double detection_probability = 0.9;  ///< that the target, if in the field, is among the candidates: 0 in eclipse
+};
+
+enum class TrackerState : std::uint8_t {
+  kSearching,  ///< no track is known to be the target
+  kTracking,   ///< one is
+  kCoasting,   ///< one is, but it is not seen in this image, or not for certain
+  kAmbiguous,  ///< two or more tracks may be the target
+};
+
+struct TrackerOutput {
+  TrackerState state = TrackerState::kSearching;
+  int candidate = -1;      ///< index of the target among the candidates, -1 none
+  bool confirmed = false;  ///< `candidate` is the target: never without one
+  int hypotheses = 0;
+  int tracks = 0;
+  int hot_pixels = 0;            ///< known
+  double score_margin = 0.0;     ///< log-likelihood of the best track's identity over the next one's; large if alone
+  double residual_sigmas = 0.0;  ///< root mean square of the target's recent residuals over their expectation
+};
+
+class TargetTracker {
+ public:
+  explicit TargetTracker(const TrackerSettings& settings = {})
+      : settings_(settings), hot_pixels_(settings.hot_pixels) {}
+
+  /// Folds in an image. kInvalidArgument: not after the last image, or a burn after it or before that; kTooLong: more
+  /// candidates than kMaxCandidates; kNotFinite, kOutOfRange: of state, candidates (sigma <= 0), burns, prediction or
+  /// probability. Nothing is changed then. Candidates more than 60 degrees from the T axis are passed over.
+  Result<TrackerOutput> step(const TrackerInput& input);
+
+  /// Forgets all tracks, for instance when the prediction turned out to be another's; hot pixels stay known.
+  void forget_tracks();
+
+  /// Whether the object is a known hot pixel, for telemetry.
+  [[nodiscard]] const HotPixelMap& hot_pixels() const { return hot_pixels_; }
+
+ private:
+  // Steps of an image, in this order.
+  [[nodiscard]] Status check(const TrackerInput& input) const;
+  void select_eligible(const TrackerInput& input);
+  void propagate_all(const TrackerInput& input);
+  void make_branches(const TrackerInput& input);
+  void grow();
+  void compare_with_prediction(double dt);
+  void prune();
+  void choose_target();
+  TrackerOutput report();
+
+  struct Eligible {
+    SlopeMeasurement measurement;
+    double log_flux = 0.0;
+    double handicap = 0.0;  ///< log-likelihood
+    std::int16_t index = 0;
+  };
+
+  [[nodiscard]] double gain_of(const Hypothesis& parent, const Innovation& innovation, const Eligible& candidate) const;
+  [[nodiscard]] Hypothesis child_of(const Branch& branch);
+  void erase_marked();
+  [[nodiscard]] const Hypothesis* best_of(std::uint32_t track) const;
+  [[nodiscard]] bool is_best_of_its_track(std::size_t k) const;
+  [[nodiscard]] double rival_gain(std::int16_t candidate) const;
+
+  static constexpr std::size_t kMaxBranches = 1024;
+
+  TrackerSettings settings_;
+  HotPixelMap hot_pixels_;
+  bool has_image_ = false;
+  GpsTime time_;
+  std::uint32_t next_track_ = 1;
+  std::uint32_t target_track_ = 0;  ///< 0: none
+  int images_watched_ = 0;          ///< in which the target was expected, since the tracks were last forgotten
+  int deposing_images_ = 0;
+  bool ambiguous_ = false;
+  double score_margin_ = 0.0;
+
+  std::size_t count_ = 0;
+  std::array<Hypothesis, kMaxHypotheses> hypotheses_{};
+
+  // Of the image in hand.
+  struct Workspace {
+    ServicerView view;
+    Prediction prediction;
+    bool has_prediction = false;
+    double bend = 0.0;
+    double bend_rate = 0.0;
+    double detection_probability = 0.0;
+    double log_miss = 0.0;
+    double log_density = 0.0;  ///< of false detections, 1/sr
+    std::size_t eligible_count = 0;
+    std::array<Eligible, kMaxCandidates> eligible{};
+    std::size_t branch_count = 0;
+    std::array<Branch, kMaxBranches> branches{};
+    std::size_t kept = 0;
+    std::array<bool, kMaxHypotheses> erased{};
+    std::array<Hypothesis, kMaxHypotheses> children{};
+  } work_;
+};
+
+}  // namespace vbar::fsw::tracking
