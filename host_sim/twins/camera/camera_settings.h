@@ -31,7 +31,7 @@ struct OpticsSettings {
 struct DetectorSettings {
   int width = 1920, height = 1200;
   double pixel_pitch_um = 5.86;
-  double quantum_efficiency = 0.7;  ///< mean over the band
+  double quantum_efficiency = 0.7;  ///< where the response is best; photometry.h
   double full_well_electrons = 32000.0;
   double gain_dn_per_electron = 0.125;
   int bits = 12;  ///< of a pixel on the link, 8 or 12
@@ -51,7 +51,8 @@ struct CameraSettings {
   DetectorSettings detector;
   Region region{710, 200, 500, 800};  ///< that is read and crosses the link
   double exposure_s = 0.2;
-  double zero_magnitude_photons = 2.6e10;  ///< of a star of magnitude 0 outside the atmosphere, 1/(m^2 s), in the band
+  double zero_magnitude_photons =
+      3.1e10;  ///< of a star of V = 0, B-V = 0 outside the atmosphere, 1/(m^2 s); photometry.h
 
   [[nodiscard]] double focal_length_px() const { return 1e3 * optics.focal_length_mm / detector.pixel_pitch_um; }
   /// Of the entrance pupil, m^2.

@@ -1,0 +1,45 @@
+#pragma once
+// The Earth before a camera: what it hides, and how bright it is. An ellipsoid (WGS 84, its pole along z of GCRF as in
+// truth/forces/shadow.h) with neither air nor weather, a Lambert surface of albedo 0.3 in the Sun's light, dark at
+// night.
+
+#include "fsw/core/types.h"
+
+namespace vbar::twins::camera {
+
+struct EarthSight {
+  double covered = 0.0;        ///< 0 above the limb, 1 below; linear over `blur` about it
+  double distance_m = 0.0;     ///< to the surface, or to the limb
+  double cosine_of_sun = 0.0;  ///< of the Sun's angle from the local vertical there; negative at night
+};
+
+class EarthDisc {
+ public:
+  /// `position_eci`: of the camera, outside the Earth; `sun_eci`: both geocentric, m.
+  EarthDisc(const fsw::Vector3& position_eci, const fsw::Vector3& sun_eci);
+
+  /// Along `direction_eci` (unit); `blur`: rad, positive.
+  [[nodiscard]] EarthSight look(const fsw::Vector3& direction_eci, double blur) const;
+
+  /// True if something at `distance_m` along `direction_eci` is behind the Earth.
+  [[nodiscard]] bool hides(const fsw::Vector3& direction_eci, double distance_m) const;
+
+  /// The smallest cone about the centre's direction that holds all of it: half angle, rad.
+  [[nodiscard]] double angular_radius() const { return angular_radius_; }
+  [[nodiscard]] const fsw::Vector3& centre_direction_eci() const { return centre_direction_eci_; }
+
+  /// Photons/(m^2 s sr) of a surface that looks at the Sun, for sunlight of so many photons/(m^2 s).
+  [[nodiscard]] static double radiance(double sun_photons_per_m2_s);
+
+  /// Light of the Earth at the camera: the sum of all its directions' light, each times its unit vector,
+  /// photons/(m^2 s), ECI axes. It points at the Earth's brightest part.
+  [[nodiscard]] fsw::Vector3 light_eci(double sun_photons_per_m2_s) const;
+
+ private:
+  fsw::Vector3 position_, sun_direction_;  // ECI
+  fsw::Vector3 stretched_position_;        // where the Earth is a sphere
+  fsw::Vector3 centre_direction_eci_;
+  double angular_radius_;
+};
+
+}  // namespace vbar::twins::camera

@@ -1,0 +1,28 @@
+#pragma once
+// What is asked of whoever renders the spacecraft before the camera.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fsw/core/types.h"
+#include "host_sim/twins/camera/light_sample.h"
+
+namespace vbar::twins::camera {
+
+/// A spacecraft before the camera and the light that falls on it; camera axes.
+struct ObjectView {
+  std::string model;                                     ///< its CAD file, data/models/<model>.obj
+  fsw::Vector3 position_camera = fsw::Vector3::UnitZ();  ///< of its body frame's origin, m
+  fsw::Matrix3 R_camera_body = fsw::Matrix3::Identity();
+  fsw::Vector3 sun_direction_camera = fsw::Vector3::UnitZ();    ///< unit
+  double sun_photons_per_m2_s = 0.0;                            ///< that reach it: none in the Earth's shadow
+  fsw::Vector3 earth_direction_camera = fsw::Vector3::UnitZ();  ///< to the middle of the Earth's light, unit
+  double earth_photons_per_m2_s = 0.0;                          ///< on a surface that looks there
+  double pixel_rad = 0.0;                                       ///< what a pixel of the camera sees
+};
+
+/// Appends the object's light to `out`. One call at a time.
+using ObjectRenderer = std::function<void(const ObjectView& view, std::vector<LightSample>& out)>;
+
+}  // namespace vbar::twins::camera

@@ -1,0 +1,63 @@
+#pragma once
+// All that a camera sees, as expected photo-electrons: stars, spacecraft, Sun, Moon, Earth and stray light.
+
+#include <filesystem>
+#include <vector>
+
+#include "host_sim/twins/camera/earth_disc.h"
+#include "host_sim/twins/camera/exposure.h"
+#include "host_sim/twins/camera/object_view.h"
+#include "host_sim/twins/camera/optics.h"
+#include "host_sim/twins/camera/photon_image.h"
+#include "host_sim/twins/camera/point_spread.h"
+#include "host_sim/twins/camera/star_sky.h"
+
+namespace vbar::twins::camera {
+
+/// Part of the light of Sun, Moon and Earth on the detector that lens and housing scatter evenly over all of it
+/// (veiling glare).
+inline constexpr double kVeilingGlare = 1e-3;
+
+/// Makes one image at a time.
+///
+/// - Stars, Sun and Moon move over the image by the camera's turning, objects by that and their own way; the Earth's
+/// limb
+///   stands still during an exposure, and has no spread.
+/// - Nothing hides anything but the Earth: a star behind a spacecraft shines through it (a spacecraft at 1 km is 4
+/// pixels
+///   wide, and a star in a thousand images is behind it).
+/// - Sun and Earth on the detector drown everything else, as they do in a real camera, by kVeilingGlare.
+class SceneRenderer {
+ public:
+  /// Reads the star catalogue of `data_directory`; throws std::runtime_error if that cannot be. `objects` renders
+  /// spacecraft; by default each is a matt sphere of 0.7 m and albedo 0.3.
+  SceneRenderer(const CameraSettings& settings, const std::filesystem::path& data_directory,
+                ObjectRenderer objects = {});
+
+  /// Expected photo-electrons of the region that is read, into `image`, whatever it held. No dark current, no noise.
+  void render(const Exposure& exposure, PhotonImage& image);
+
+ private:
+  struct View;  // what an exposure's parts have in common
+
+  [[nodiscard]] double electrons_of(const LightSample& light, const fsw::Vector2& pixel) const;
+  void add_stars(const View& view, PhotonImage& image);
+  void add_object(const View& view, const ObjectInView& object, PhotonImage& image);
+  double add_sun_and_moon(const View& view, PhotonImage& image);
+  double add_disc(const View& view, const fsw::Vector3& velocity, PhotonImage& image);
+  double add_earth(const View& view, PhotonImage& image) const;
+  void add_background(const View& view, double scattered, PhotonImage& image);
+  [[nodiscard]] double sun_in_sight(const View& view);
+
+  CameraSettings settings_;
+  Optics optics_;
+  PointSpread spread_;
+  StarSky sky_;
+  ObjectRenderer objects_;
+  Cone region_cone_, detector_cone_;
+  std::vector<ApparentStar> stars_;  // work space, as all below
+  std::vector<LightSample> samples_;
+  std::vector<ImagePoint> points_;
+};
+
+}  // namespace vbar::twins::camera
