@@ -11,7 +11,7 @@
 
 #include "fsw/core/types.h"
 #include "host_sim/twins/camera/model/cad_model.h"
-#include "host_sim/twins/camera/model/light_sample.h"
+#include "host_sim/twins/camera/light_sample.h"
 
 namespace vbar::twins::camera {
 
