@@ -11,10 +11,10 @@ struct BloomingSettings {
 };
 
 /// Spills and drains what exceeds the full well in `charge` (rows of `width`, electrons), in rounds, each of all pixels
-/// at once, so that no direction is preferred: a quarter of what spills goes to each neighbour, over the image's edge it
-/// is lost. Afterwards no pixel holds more than the full well. The rounds end when nothing exceeds it any more; after
-/// kBloomingRounds all that does is drained. Returns the electrons drained or lost: those kept and these are all there
-/// were.
+/// at once, so that no direction is preferred: a quarter of what spills goes to each neighbour, over the image's edge
+/// it is lost. Afterwards no pixel holds more than the full well. The rounds end when nothing exceeds it any more;
+/// after kBloomingRounds all that does is drained. Returns the electrons drained or lost: those kept and these are all
+/// there were.
 double bloom(const BloomingSettings& settings, int width, int height, std::vector<float>& charge);
 
 inline constexpr int kBloomingRounds = 200;

@@ -65,8 +65,8 @@ void Detector::draw_hot_pixels(std::uint64_t seed, std::string_view camera_name)
     const int row = std::min(static_cast<int>(stream.uniform(0.0, region.height)), region.height - 1);
     const double electrons_per_s = detector.hot_pixel_electrons_per_s * stream.exponential();
     hot_pixels_.push_back({region.x + column, region.y + row, electrons_per_s});
-    const auto pixel = static_cast<std::size_t>(row) * static_cast<std::size_t>(region.width) +
-                       static_cast<std::size_t>(column);
+    const auto pixel =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(region.width) + static_cast<std::size_t>(column);
     dark_electrons_[pixel] += static_cast<float>(electrons_per_s * settings_.exposure_s);
   }
 }

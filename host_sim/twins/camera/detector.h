@@ -30,8 +30,8 @@ class Detector {
   /// The region of `settings` must not be empty. `camera_name` names the detector's random numbers.
   Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name);
 
-  /// Exposes and reads the region: `dn` gets its pixels, rows from the top. Throws std::invalid_argument for an image of
-  /// another region. Expected electrons that are negative or not numbers count as none.
+  /// Exposes and reads the region: `dn` gets its pixels, rows from the top. Throws std::invalid_argument for an image
+  /// of another region. Expected electrons that are negative or not numbers count as none.
   void expose(const PhotonImage& image, std::int64_t exposure_number, std::vector<std::uint16_t>& dn);
 
   [[nodiscard]] std::span<const HotPixel> hot_pixels() const { return hot_pixels_; }

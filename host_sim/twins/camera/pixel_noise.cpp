@@ -33,8 +33,8 @@ void philox_round(Blocks& blocks, std::uint32_t key0, std::uint32_t key1) {
 
 // ----------------------------------------------------------------------------------------------------- normal numbers
 
-// The lower half of a word's range, m + 1/2 in units of 2^-32, is the probability of a tail. As a float its exponent and
-// its first four bits number a segment, the other 19 bits say where in it.
+// The lower half of a word's range, m + 1/2 in units of 2^-32, is the probability of a tail. As a float its exponent
+// and its first four bits number a segment, the other 19 bits say where in it.
 constexpr unsigned kBitsInSegment = 19;
 constexpr std::uint32_t kFirstSegment = std::bit_cast<std::uint32_t>(0.5F) >> kBitsInSegment;
 constexpr std::uint32_t kSegments = (std::bit_cast<std::uint32_t>(0x1p31F) >> kBitsInSegment) - kFirstSegment + 1;

@@ -38,8 +38,9 @@ void draw_words(const NoiseKey& key, NoiseKind kind, std::uint32_t chunk, ChunkW
 void normal_numbers(const ChunkWords& words, ChunkFloats& normal);
 
 /// Poisson numbers of the means given (0 for one that is negative or not a number). Below kGaussianMean by search
-/// through the distribution function, exact to 1e-7 in probability; from there on by the expansion of the quantile about
-/// the normal one (Giles 2016, algorithm 955), which is within 1e-4 in probability there and better with the mean.
+/// through the distribution function, exact to 1e-7 in probability; from there on by the expansion of the quantile
+/// about the normal one (Giles 2016, algorithm 955), which is within 1e-4 in probability there and better with the
+/// mean.
 void poisson_numbers(const ChunkWords& words, std::span<const float, kChunk> means, std::span<float, kChunk> numbers);
 
 inline constexpr float kGaussianMean = 12.0F;
