@@ -17,41 +17,40 @@ struct Region {
 struct OpticsSettings {
   double focal_length_mm = 35.0;
   double f_number = 1.9;
-  double transmission = 0.9;                               ///< of all glass together
+  double transmission = 0.9;                ///< of all glass together
   std::array<double, 2> principal_point_px{959.5, 599.5};  ///< an integer is the centre of a pixel
-  std::array<double, 5> distortion{};                      ///< Brown-Conrady k1, k2, p1, p2, k3, as OpenCV orders them
-  double point_spread_sigma_px = 0.8;                      ///< of the Gaussian core, before the pixel's own width
-  double halo_fraction = 0.01;  ///< of a point's light, in a wide second Gaussian (scatter in the lens)
+  std::array<double, 5> distortion{};       ///< Brown-Conrady k1, k2, p1, p2, k3, as OpenCV orders them
+  double point_spread_sigma_px = 0.8;       ///< of the Gaussian core, before the pixel's own width
+  double halo_fraction = 0.01;              ///< of a point's light, in a wide second Gaussian (scatter in the lens)
   double halo_sigma_px = 4.0;
-  double vignetting = 0.15;              ///< light lost in the corners of the detector, as the radius to the fourth
-  double sun_exclusion_deg = 30.0;       ///< nearer to the boresight than this the Sun lights the baffle: stray light
-  double stray_light_electrons = 2.0e4;  ///< a pixel and second, with the Sun at the edge of the field
+  double vignetting = 0.15;                 ///< light lost in the corners of the detector, as the radius to the fourth
+  double sun_exclusion_deg = 30.0;          ///< nearer to the boresight than this the Sun lights the baffle: stray light
+  double stray_light_electrons = 2.0e4;     ///< a pixel and second, with the Sun at the edge of the field
 };
 
 struct DetectorSettings {
   int width = 1920, height = 1200;
   double pixel_pitch_um = 5.86;
-  double quantum_efficiency = 0.7;  ///< mean over the band
+  double quantum_efficiency = 0.7;          ///< mean over the band
   double full_well_electrons = 32000.0;
   double gain_dn_per_electron = 0.125;
-  int bits = 12;  ///< of a pixel on the link, 8 or 12
+  int bits = 12;                            ///< of a pixel on the link, 8 or 12
   double offset_dn = 64.0;
   double read_noise_electrons = 7.0;
-  double dark_electrons_per_s = 5.0;            ///< a pixel
-  double dark_nonuniformity = 0.1;              ///< 1 sigma, relative, fixed pattern
+  double dark_electrons_per_s = 5.0;        ///< a pixel
+  double dark_nonuniformity = 0.1;          ///< 1 sigma, relative, fixed pattern
   double photo_response_nonuniformity = 0.005;  ///< 1 sigma, relative, fixed pattern
-  int hot_pixels = 20;                          ///< on the region that is read; places and sizes from the seed
-  double hot_pixel_electrons_per_s = 20000.0;   ///< mean of an exponential distribution
-  double blooming_fraction =
-      0.02;  ///< of the charge beyond the full well: spills to the neighbours; the rest is drained
+  int hot_pixels = 20;                      ///< on the region that is read; places and sizes from the seed
+  double hot_pixel_electrons_per_s = 20000.0;  ///< mean of an exponential distribution
+  double blooming_fraction = 0.02;          ///< of the charge beyond the full well: spills to the neighbours; the rest is drained
 };
 
 struct CameraSettings {
   OpticsSettings optics;
   DetectorSettings detector;
-  Region region{710, 200, 500, 800};  ///< that is read and crosses the link
+  Region region{710, 200, 500, 800};        ///< that is read and crosses the link
   double exposure_s = 0.2;
-  double zero_magnitude_photons = 2.6e10;  ///< of a star of magnitude 0 outside the atmosphere, 1/(m^2 s), in the band
+  double zero_magnitude_photons = 2.6e10;   ///< of a star of magnitude 0 outside the atmosphere, 1/(m^2 s), in the band
 
   [[nodiscard]] double focal_length_px() const { return 1e3 * optics.focal_length_mm / detector.pixel_pitch_um; }
   /// Of the entrance pupil, m^2.

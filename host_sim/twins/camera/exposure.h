@@ -15,8 +15,8 @@ namespace vbar::twins::camera {
 
 /// A spacecraft in view, or out of it.
 struct ObjectInView {
-  std::string name;                                  ///< of the spacecraft
-  std::string model;                                 ///< its CAD file, data/models/<model>.obj
+  std::string name;                                ///< of the spacecraft
+  std::string model;                               ///< its CAD file, data/models/<model>.obj
   fsw::Vector3 position_eci = fsw::Vector3::Zero();  ///< of its body frame's origin from the camera, m
   fsw::Vector3 velocity_eci = fsw::Vector3::Zero();  ///< the same, m/s
   Eigen::Quaterniond q_body_eci = Eigen::Quaterniond::Identity();
@@ -32,15 +32,15 @@ struct ObjectInView {
 /// object cancel, so objects are drawn where they are; stars, Sun and Moon are drawn where aberration puts them.
 struct Exposure {
   fsw::GpsTime time;
-  std::int64_t number = 0;                                           ///< from 0; numbers the noise
+  std::int64_t number = 0;                           ///< from 0; numbers the noise
   Eigen::Quaterniond q_camera_eci = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
-  fsw::Vector3 rate_camera = fsw::Vector3::Zero();  ///< of the camera with respect to ECI, in its own axes, rad/s
+  fsw::Vector3 rate_camera = fsw::Vector3::Zero();   ///< of the camera with respect to ECI, in its own axes, rad/s
   fsw::Vector3 camera_position_eci = fsw::Vector3::Zero();  ///< geocentric, m
   fsw::Vector3 camera_velocity_eci = fsw::Vector3::Zero();  ///< geocentric, m/s
   fsw::Vector3 earth_velocity_bcrs = fsw::Vector3::Zero();  ///< barycentric, m/s: for aberration
-  fsw::Vector3 sun_eci = fsw::Vector3::Zero();              ///< geocentric, m
-  fsw::Vector3 moon_eci = fsw::Vector3::Zero();             ///< geocentric, m
-  double years_since_j2000 = 0.0;                           ///< Julian years of TT: for proper motion
+  fsw::Vector3 sun_eci = fsw::Vector3::Zero();       ///< geocentric, m
+  fsw::Vector3 moon_eci = fsw::Vector3::Zero();      ///< geocentric, m
+  double years_since_j2000 = 0.0;                    ///< Julian years of TT: for proper motion
   std::vector<ObjectInView> objects;
 };
 
