@@ -12,8 +12,10 @@ namespace vbar::twins {
 
 class PacketEncoder {
  public:
-  /// `spacecraft` and `unit` as in fsw/packets/packet.h. One encoder a message kind: sequences count per APID.
-  PacketEncoder(std::uint8_t spacecraft, std::uint8_t unit) : spacecraft_(spacecraft), unit_(unit) {}
+  /// `spacecraft` and `unit` as in fsw/packets/packet.h. One encoder a message kind: sequences count per APID, from
+  /// `sequence_count` (14 bits) on.
+  PacketEncoder(std::uint8_t spacecraft, std::uint8_t unit, std::uint16_t sequence_count = 0)
+      : spacecraft_(spacecraft), unit_(unit), sequence_count_(sequence_count) {}
 
   /// The next packet. None if the message cannot be one (a NaN or an infinity); the sequence then has no gap.
   template <class Message>
@@ -33,7 +35,7 @@ class PacketEncoder {
  private:
   std::uint8_t spacecraft_;
   std::uint8_t unit_;
-  std::uint16_t sequence_count_ = 0;
+  std::uint16_t sequence_count_;
 };
 
 }  // namespace vbar::twins

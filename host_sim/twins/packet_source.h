@@ -58,6 +58,9 @@ struct Measurement {
   /// More packets, still in the making on another thread: asked for at `available`, when the simulation waits for them.
   /// They must be a pure function of what measure() was given, so that it does not matter when they were made.
   std::future<std::vector<Packet>> pending;
+  /// From what the pending packets can be made again (for images, an encoded vbar_host.image_recipe): a log may keep it
+  /// in their place. Empty: they cannot be.
+  std::vector<std::uint8_t> recipe;
   fsw::GpsTime available;  ///< when the packets leave the sensor: the epoch or later
   bool bypasses_link =
       false;  ///< at the flight computer by then already (recorded delivery, wired to the board): no link is simulated

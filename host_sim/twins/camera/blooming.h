@@ -1,0 +1,22 @@
+#pragma once
+// Charge that a full pixel cannot hold.
+
+#include <vector>
+
+namespace vbar::twins::camera {
+
+struct BloomingSettings {
+  double full_well_electrons = 0.0;
+  double spilled_fraction = 0.0;  ///< of the charge beyond the full well: to the four neighbours; the rest is drained
+};
+
+/// Spills and drains what exceeds the full well in `charge` (rows of `width`, electrons), in rounds, each of all pixels
+/// at once, so that no direction is preferred: a quarter of what spills goes to each neighbour, over the image's edge
+/// it is lost. Afterwards no pixel holds more than the full well. The rounds end when nothing exceeds it any more;
+/// after kBloomingRounds all that does is drained. Returns the electrons drained or lost: those kept and these are all
+/// there were.
+double bloom(const BloomingSettings& settings, int width, int height, std::vector<float>& charge);
+
+inline constexpr int kBloomingRounds = 200;
+
+}  // namespace vbar::twins::camera

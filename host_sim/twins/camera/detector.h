@@ -1,0 +1,58 @@
+#pragma once
+// The detector: from expected photo-electrons to the numbers that are read.
+//
+//   charge = Poisson(response * photo-electrons + dark electrons)      shot noise of light and dark current together
+//   charge beyond the full well spills to the neighbours or is drained (blooming.h)
+//   DN     = round(offset + gain * (charge + read noise)), cut off at 0 and 2^bits - 1
+//
+// Response and dark current are of the pixel (fixed pattern, hot pixels); their values are drawn from the seed and are
+// the same for the whole run. The noise of an exposure is a pure function of (seed, camera, exposure number, pixel).
+// The model is that of the EMVA standard 1288, with blooming added.
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "host_sim/twins/camera/camera_settings.h"
+#include "host_sim/twins/camera/photon_image.h"
+
+namespace vbar::twins::camera {
+
+/// A pixel whose dark current is far above the others'.
+struct HotPixel {
+  int x = 0, y = 0;  ///< on the detector
+  double electrons_per_s = 0.0;
+};
+
+class Detector {
+ public:
+  /// The region of `settings` must not be empty. `camera_name` names the detector's random numbers.
+  Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name);
+
+  /// Exposes and reads the region: `dn` gets its pixels, rows from the top. Throws std::invalid_argument for an image
+  /// of another region. Expected electrons that are negative or not numbers count as none.
+  void expose(const PhotonImage& image, std::int64_t exposure_number, std::vector<std::uint16_t>& dn);
+
+  [[nodiscard]] std::span<const HotPixel> hot_pixels() const { return hot_pixels_; }
+  /// Lost by blooming in the last exposure, electrons.
+  [[nodiscard]] double drained_electrons() const { return drained_electrons_; }
+
+ private:
+  void draw_fixed_pattern(std::uint64_t seed, std::string_view camera_name);
+  void draw_hot_pixels(std::uint64_t seed, std::string_view camera_name);
+  void collect(const PhotonImage& image, std::uint64_t exposure);
+  void read_out(std::uint64_t exposure, std::vector<std::uint16_t>& dn) const;
+
+  CameraSettings settings_;
+  std::size_t pixels_;
+  std::uint64_t noise_key_;
+  std::vector<HotPixel> hot_pixels_;
+  double drained_electrons_ = 0.0;
+  // A value a pixel, filled up to whole chunks.
+  std::vector<float> response_;        // relative to the mean pixel
+  std::vector<float> dark_electrons_;  // expected, of one exposure
+  std::vector<float> charge_;
+};
+
+}  // namespace vbar::twins::camera

@@ -1,0 +1,31 @@
+#pragma once
+// An exposure as bytes, for a log: with the camera's settings and the seed it is the whole image.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "host_sim/twins/camera/exposure.h"
+
+namespace vbar::twins::camera {
+
+/// What an LCM message vbar_host.image_recipe holds.
+inline constexpr std::size_t kMaxObjectsInView = 8;
+inline constexpr std::size_t kMaxNameBytes = 63;
+
+/// An exposure, and the headers of its packets.
+struct ImageRecipe {
+  std::uint8_t spacecraft = 0;
+  std::uint8_t unit = 0;
+  Exposure exposure;
+};
+
+/// The LCM message. Throws std::invalid_argument for more than kMaxObjectsInView objects and for a name of an object or
+/// a model longer than kMaxNameBytes.
+[[nodiscard]] std::vector<std::uint8_t> bytes_of(const ImageRecipe& recipe);
+
+/// The recipe, every number to the last bit; none if the bytes are not the whole of such a message.
+[[nodiscard]] std::optional<ImageRecipe> recipe_of(std::span<const std::uint8_t> bytes);
+
+}  // namespace vbar::twins::camera

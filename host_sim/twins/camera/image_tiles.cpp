@@ -1,0 +1,73 @@
+#include "host_sim/twins/camera/image_tiles.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "fsw/imaging/image.h"
+#include "host_sim/twins/packet_encoder.h"
+
+namespace vbar::twins::camera {
+namespace {
+
+void pack_8(std::span<const std::uint16_t> dn, std::uint8_t* out) {
+  for (const std::uint16_t pixel : dn) *out++ = static_cast<std::uint8_t>(pixel);
+}
+
+/// Two pixels in three bytes, big-endian; the last odd one alone in two.
+void pack_12(std::span<const std::uint16_t> dn, std::uint8_t* out) {
+  std::size_t k = 0;
+  for (; k + 1 < dn.size(); k += 2) {
+    const unsigned first = dn[k], second = dn[k + 1];
+    *out++ = static_cast<std::uint8_t>(first >> 4U);
+    *out++ = static_cast<std::uint8_t>((first & 0xFU) << 4U | second >> 8U);
+    *out++ = static_cast<std::uint8_t>(second);
+  }
+  if (k < dn.size()) {
+    *out++ = static_cast<std::uint8_t>(dn[k] >> 8U);
+    *out++ = static_cast<std::uint8_t>(dn[k]);
+  }
+}
+
+}  // namespace
+
+std::vector<Packet> image_tiles(const ImageLabel& label, const Region& region, int bits,
+                                std::span<const std::uint16_t> dn) {
+  if (bits != 8 && bits != 12) throw std::invalid_argument("a pixel on the link has 8 or 12 bits");
+  const std::size_t pixels = static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height);
+  if (dn.size() != pixels) throw std::invalid_argument("the image is not of the region that is sent");
+  const auto pixels_of_tile =
+      static_cast<std::size_t>(bits == 12 ? fsw::imaging::kTilePixels12 : fsw::imaging::kTilePixels8);
+  const std::size_t tiles = (pixels + pixels_of_tile - 1) / pixels_of_tile;
+  if (tiles > static_cast<std::size_t>(std::numeric_limits<std::int16_t>::max()))
+    throw std::invalid_argument("the image makes more tiles than their numbers can count");
+
+  image_tile message{};
+  message.image = static_cast<std::int32_t>(label.number & 0x7FFFFFFF);
+  message.tiles = static_cast<std::int16_t>(tiles);
+  message.width = static_cast<std::int16_t>(region.width);
+  message.height = static_cast<std::int16_t>(region.height);
+  message.origin_x = static_cast<std::int16_t>(region.x);
+  message.origin_y = static_cast<std::int16_t>(region.y);
+  message.bits = static_cast<std::int8_t>(bits);
+  const auto sent_before = static_cast<std::uint64_t>(label.number) * tiles;
+  PacketEncoder encoder(label.spacecraft, label.unit, static_cast<std::uint16_t>(sent_before & 0x3FFFU));
+  std::vector<Packet> packets;
+  packets.reserve(tiles);
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    const std::size_t begin = tile * pixels_of_tile;
+    const auto piece = dn.subspan(begin, std::min(pixels_of_tile, pixels - begin));
+    message.tile = static_cast<std::int16_t>(tile);
+    message.pixels = static_cast<std::int16_t>(piece.size());
+    if (piece.size() < pixels_of_tile) std::fill(std::begin(message.data), std::end(message.data), std::uint8_t{0});
+    if (bits == 12) {
+      pack_12(piece, message.data);
+    } else {
+      pack_8(piece, message.data);
+    }
+    packets.push_back(*encoder.encode(label.time, message));  // integers are always finite
+  }
+  return packets;
+}
+
+}  // namespace vbar::twins::camera

@@ -1,0 +1,29 @@
+#pragma once
+// An image as packets of the flight software.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "host_sim/twins/camera/camera_settings.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::twins::camera {
+
+/// Which image, and whose.
+struct ImageLabel {
+  fsw::GpsTime time;            ///< middle of the exposure
+  std::int64_t number = 0;      ///< of the exposure, 0 or above; the link counts it modulo 2^31
+  std::uint8_t spacecraft = 0;  ///< whose flight software gets it
+  std::uint8_t unit = 0;        ///< which of its cameras
+};
+
+/// `dn`: the pixels of `region`, rows from the top, of `bits` (8 or 12) each. One packet a tile, in order; sequence
+/// counts are those of a camera that has sent all its earlier images whole. Throws std::invalid_argument for other
+/// bits, for pixels that are not those of the region and for a region that makes more tiles than their numbers can
+/// count.
+std::vector<Packet> image_tiles(const ImageLabel& label, const Region& region, int bits,
+                                std::span<const std::uint16_t> dn);
+
+}  // namespace vbar::twins::camera

@@ -1,0 +1,55 @@
+// The detector's cost for one image of the region that is read: in the dark with a sky of stars, with stray light over
+// all of it, and with the target blooming in the middle.
+
+#include <cstdint>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "host_sim/twins/camera/detector.h"
+
+namespace {
+
+namespace camera = vbar::twins::camera;
+
+enum class Sky { kDark, kStrayLight, kBrightTarget };
+
+camera::PhotonImage image_of(const camera::CameraSettings& settings, Sky sky) {
+  camera::PhotonImage image{settings.region, {}};
+  const int width = settings.region.width, height = settings.region.height;
+  const float background = sky == Sky::kStrayLight ? 400.0F : 0.2F;
+  image.electrons.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), background);
+  for (int star = 0; star < 150; ++star) {  // three pixels across, of 100 to 10,000 electrons
+    const int x = settings.region.x + 5 + (star * 7919) % (width - 10);
+    const int y = settings.region.y + 5 + (star * 104729) % (height - 10);
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) image.at(x + dx, y + dy) += 100.0F * static_cast<float>(1 + star % 100) / 9.0F;
+  }
+  if (sky == Sky::kBrightTarget)
+    for (int dy = -20; dy <= 20; ++dy)
+      for (int dx = -20; dx <= 20; ++dx)
+        image.at(settings.region.x + width / 2 + dx, settings.region.y + height / 2 + dy) = 1e6F;
+  return image;
+}
+
+void expose(benchmark::State& state, Sky sky) {
+  const camera::CameraSettings settings;
+  const camera::PhotonImage image = image_of(settings, sky);
+  camera::Detector detector(settings, 1, "servicer/camera");
+  std::vector<std::uint16_t> dn;
+  std::int64_t number = 0;
+  for (auto _ : state) {
+    detector.expose(image, number++, dn);
+    benchmark::DoNotOptimize(dn.data());
+  }
+}
+
+BENCHMARK_CAPTURE(expose, dark, Sky::kDark)->Name("camera/detector/500x800_stars")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(expose, stray, Sky::kStrayLight)
+    ->Name("camera/detector/500x800_stray_light")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(expose, target, Sky::kBrightTarget)
+    ->Name("camera/detector/500x800_bright_target")
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
