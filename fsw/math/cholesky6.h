@@ -1,64 +1,10 @@
 #pragma once
-// Cholesky factor of a symmetric positive definite 6x6 matrix. Eigen's has a blocked branch for large matrices that
-// keeps a way to the heap in the object code even of a 6x6; this one has none.
 
 #include "fsw/core/types.h"
-#include "fsw/math/math.h"
+#include "fsw/math/cholesky.h"
 
 namespace vbar::fsw::math {
 
-/// A = L L'. Only the lower triangle of A is read.
-class Cholesky6 {
- public:
-  explicit Cholesky6(const Matrix6& a) {
-    for (int c = 0; c < 6; ++c) {
-      double pivot = a(c, c);
-      for (int k = 0; k < c; ++k) pivot -= lower_(c, k) * lower_(c, k);
-      if (!(pivot > 0.0) || !is_finite(pivot)) {
-        smallest_pivot_ = 0.0;
-        return;
-      }
-      if (c == 0 || pivot < smallest_pivot_) smallest_pivot_ = pivot;
-      lower_(c, c) = sqrt(pivot);
-      inverse_diagonal_(c) = 1.0 / lower_(c, c);
-      for (int r = c + 1; r < 6; ++r) {
-        double sum = a(r, c);
-        for (int k = 0; k < c; ++k) sum -= lower_(r, k) * lower_(c, k);
-        lower_(r, c) = sum * inverse_diagonal_(c);
-      }
-    }
-  }
-
-  /// False if A is not positive definite to rounding, or not finite; solve and the like are then meaningless.
-  [[nodiscard]] bool ok() const { return smallest_pivot_ > 0.0; }
-
-  /// The smallest squared diagonal element of L, 0 unless ok: how far the worst row of A is from depending on those
-  /// before.
-  [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
-
-  /// L^-1 b.
-  [[nodiscard]] Vector6 solve_lower(Vector6 b) const {
-    for (int r = 0; r < 6; ++r) {
-      for (int k = 0; k < r; ++k) b(r) -= lower_(r, k) * b(k);
-      b(r) *= inverse_diagonal_(r);
-    }
-    return b;
-  }
-
-  /// A^-1 b.
-  [[nodiscard]] Vector6 solve(const Vector6& b) const {
-    Vector6 x = solve_lower(b);
-    for (int r = 5; r >= 0; --r) {
-      for (int k = r + 1; k < 6; ++k) x(r) -= lower_(k, r) * x(k);
-      x(r) *= inverse_diagonal_(r);
-    }
-    return x;
-  }
-
- private:
-  Matrix6 lower_ = Matrix6::Zero();
-  Vector6 inverse_diagonal_ = Vector6::Zero();
-  double smallest_pivot_ = 0.0;
-};
+using Cholesky6 = Cholesky<6>;
 
 }  // namespace vbar::fsw::math

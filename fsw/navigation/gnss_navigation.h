@@ -9,6 +9,7 @@
 #include "fsw/gnss/ephemeris.h"
 #include "fsw/navigation/ambiguity_resolution.h"
 #include "fsw/navigation/attitude_history.h"
+#include "fsw/navigation/burn.h"
 #include "fsw/navigation/differential.h"
 #include "fsw/navigation/ephemeris_store.h"
 #include "fsw/navigation/epoch_buffer.h"
@@ -19,12 +20,6 @@
 namespace vbar::fsw::navigation {
 
 enum class Receiver : std::uint8_t { kServicer = 0, kTarget = 1 };
-
-/// A burn of the servicer, known or commanded.
-struct Burn {
-  GpsTime time;
-  Vector3 dv_rtn = Vector3::Zero();
-};
 
 struct GnssNavigationSettings {
   RelativeFilterSettings relative;

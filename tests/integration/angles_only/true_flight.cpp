@@ -1,0 +1,217 @@
+#include "tests/integration/angles_only/true_flight.h"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "fsw/math/math.h"
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
+#include "fsw/orbit/rtn.h"
+#include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/truth/earth/sun_moon.h"
+#include "host_sim/truth/earth/time_scales.h"
+#include "host_sim/truth/truth_model.h"
+
+namespace vbar::test {
+namespace {
+
+using fsw::Vector2;
+using fsw::Vector3;
+using fsw::Vector6;
+namespace nav = fsw::navigation;
+namespace orbit = fsw::orbit;
+
+constexpr double kDegree = fsw::math::kDegree;
+constexpr double kArcsec = kDegree / 3600.0;
+constexpr double kImagePeriod_s = 60.0;
+constexpr double kGnssPeriod_s = 10.0;
+constexpr double kTargetRadius_m = 0.35;
+
+template <class T>
+T must(const fsw::Result<T>& result) {
+  if (!result.ok()) throw std::runtime_error("no orbit");
+  return result.value();
+}
+
+std::vector<nav::Burn> load_burns(fsw::GpsTime start) {
+  std::ifstream file(std::string(VBAR_SOURCE_DIR) + "/tests/integration/angles_only/burns.csv");
+  std::vector<nav::Burn> burns;
+  for (std::string line; std::getline(file, line);) {
+    double t = 0.0;
+    Vector3 dv;
+    char comma = 0;
+    std::istringstream fields(line);
+    if (fields >> t >> comma >> dv(0) >> comma >> dv(1) >> comma >> dv(2)) {
+      burns.push_back({start + fsw::nearest_duration(t), dv});
+    }
+  }
+  if (burns.size() != 68) throw std::runtime_error("burns.csv is damaged");
+  return burns;
+}
+
+truth::SpacecraftSettings servicer_body() {
+  return {"servicer", {}, {.mass_kg = 154.0, .drag_area_m2 = 1.3, .drag_coefficient = 2.5, .radiation_area_m2 = 2.5,
+                           .radiation_coefficient = 1.32}};
+}
+
+truth::SpacecraftSettings target_body() {
+  return {"target", {}, {.mass_kg = 40.0, .drag_area_m2 = 0.38, .drag_coefficient = 2.25, .radiation_area_m2 = 0.55,
+                         .radiation_coefficient = 1.2}};
+}
+
+truth::TruthSettings truth_settings(double hours, bool all_forces) {
+  truth::TruthSettings settings;
+  settings.epoch = truth::gps_from_utc("2011-07-18T01:00:00Z");
+  settings.end = settings.epoch + fsw::nearest_duration(hours * 3600.0 + 600.0);
+  settings.data_directory = std::string(VBAR_SOURCE_DIR) + "/data";
+  if (all_forces) {
+    settings.forces = {.drag = true,
+                       .geomagnetic_index = truth::GeomagneticIndex::kThreeHourly,
+                       .radiation_pressure = true,
+                       .shadow = truth::Shadow::kConical,
+                       .sun = true,
+                       .moon = true,
+                       .solid_tides = true,
+                       .relativity = true};
+  }
+  return settings;
+}
+
+orbit::EarthOrientation telecommanded_earth(const truth::TruthModel& model, fsw::GpsTime start) {
+  const auto now = model.data().earth_orientation->at(start);
+  const auto later = model.data().earth_orientation->at(start, 86400.0);
+  return {.epoch = start,
+          .ut1_minus_gps_s = now.ut1_minus_tai_s + 19.0,
+          .ut1_rate = (later.ut1_minus_tai_s - now.ut1_minus_tai_s) / 86400.0,
+          .pole_x = now.pole_x,
+          .pole_y = now.pole_y};
+}
+
+}  // namespace
+
+TrueFlight fly_truly(double hours, bool all_forces) {
+  const truth::TruthSettings settings = truth_settings(hours, all_forces);
+  truth::TruthModel model(settings);
+  const orbit::QnsElements servicer{7087300.0, 0.0015, -4.17e-8, 98.18 * kDegree, 207.0 * kDegree, -0.69 * kDegree};
+  const orbit::QnsElements servicer_mean = must(orbit::mean_from_osculating(servicer));
+  Vector6 roe;
+  roe << -2000.0, -75000.0, 0.0, 0.0, 0.0, 0.0;
+  const orbit::QnsElements target_mean = orbit::qns_from_roe(servicer_mean, roe / 7078138.944);
+  truth::SpacecraftSettings first = servicer_body();
+  truth::SpacecraftSettings second = target_body();
+  first.osculating = must(orbit::cartesian_from_qns(servicer));
+  second.osculating = must(orbit::cartesian_from_qns(must(orbit::osculating_from_mean(target_mean))));
+  model.add_spacecraft(first);
+  model.add_spacecraft(second);
+
+  TrueFlight flight;
+  flight.burns = load_burns(settings.epoch);
+  flight.earth = telecommanded_earth(model, settings.epoch);
+  truth::SunMoonInterpolator ephemeris;
+  std::size_t next_burn = 0;
+  const auto count = static_cast<std::size_t>(hours * 3600.0 / kImagePeriod_s + 1.5);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double t = static_cast<double>(k) * kImagePeriod_s;
+    const fsw::GpsTime time = settings.epoch + fsw::nearest_duration(t);
+    TrueEpoch epoch;
+    epoch.time = time;
+    for (std::size_t fix = 0; fix < epoch.receiver.size(); ++fix) {
+      const double early = kGnssPeriod_s * static_cast<double>(epoch.receiver.size() - 1 - fix);
+      if (early > t) continue;
+      const fsw::GpsTime then = time - fsw::nearest_duration(early);
+      for (; next_burn < flight.burns.size() && flight.burns[next_burn].time < then; ++next_burn) {
+        model.advance_to(flight.burns[next_burn].time);
+        model.apply_impulse_rtn(0, flight.burns[next_burn].dv_rtn);
+      }
+      model.advance_to(then);
+      epoch.receiver[fix] = {then, model.state(0).position_eci};
+    }
+    epoch.servicer = model.state(0);
+    epoch.target = model.state(1);
+    epoch.sun_eci = ephemeris.at(truth::tt_of(settings.epoch, t)).sun_eci.normalized();
+    epoch.is_target_lit = nav::is_sunlit(epoch.target.position_eci, epoch.sun_eci);
+    flight.epochs.push_back(epoch);
+  }
+  return flight;
+}
+
+SimulatedSensors::SimulatedSensors(const TrueFlight& flight, const SensorErrors& errors, unsigned seed)
+    : flight_(flight), errors_(errors), random_(seed) {
+  const double angle = std::uniform_real_distribution<double>(0.0, 2.0 * M_PI)(random_);
+  bias_ = errors.bias_arcsec * kArcsec * Vector2(std::cos(angle), std::sin(angle));
+  brightness_offset_m_ = errors.brightness_offset_m * (1.0 + 0.5 * normal());
+  shape_ = {normal(), normal()};
+  gnss_slow_ = normal3();
+}
+
+/// The receiver's filter knows the burns, as flight software tells it.
+void SimulatedSensors::take_burns(fsw::GpsTime time) {
+  for (; next_burn_ < flight_.burns.size() && flight_.burns[next_burn_].time < time; ++next_burn_) {
+    const nav::Burn& burn = flight_.burns[next_burn_];
+    gnss_orbit_.advance_to(burn.time);
+    gnss_orbit_.add_impulse(orbit::R_rtn_eci(gnss_orbit_.state()).transpose() * burn.dv_rtn);
+  }
+}
+
+nav::AnglesOnlyEpoch SimulatedSensors::measure(std::size_t index) {
+  const TrueEpoch& truth = flight_.epochs[index];
+  nav::AnglesOnlyEpoch epoch;
+  epoch.time = truth.time;
+  epoch.sun_eci = truth.sun_eci;
+
+  for (const auto& [time, position_eci] : truth.receiver) {
+    if (time < flight_.epochs.front().time) continue;
+    take_burns(time);
+    const double keep = std::exp(-kGnssPeriod_s / 600.0);
+    gnss_slow_ = keep * gnss_slow_ + std::sqrt(1.0 - keep * keep) * normal3();
+    const Vector3 error = errors_.gnss_slow_m * gnss_slow_ + errors_.gnss_white_m * normal3();
+    gnss_orbit_.take_position(time, 0.0, position_eci + error, errors_.gnss_white_m + 0.5 * errors_.gnss_slow_m);
+  }
+  if (gnss_orbit_.started()) epoch.servicer_gnss = gnss_orbit_.state();
+
+  const double keep = std::exp(-kImagePeriod_s / errors_.shape_time_s);
+  shape_ = keep * shape_ + std::sqrt(1.0 - keep * keep) * Vector2(normal(), normal());
+  const Vector2 white(normal(), normal());
+  const double chance = std::uniform_real_distribution<double>(0.0, 1.0)(random_);
+  const Vector2 stray(std::uniform_real_distribution<double>(-1.0, 1.0)(random_),
+                      std::uniform_real_distribution<double>(-1.0, 1.0)(random_));
+  if (!truth.is_target_lit) return epoch;
+  const Vector3 centre = nav::centre_of_brightness(truth.target.position_eci, truth.servicer.position_eci,
+                                                   truth.sun_eci, brightness_offset_m_);
+  const Vector3 sight = centre - truth.servicer.position_eci;
+  const double radius = kTargetRadius_m / sight.norm();
+  Vector2 off = bias_ + errors_.bearing_arcsec * kArcsec * white + errors_.shape_share * radius * shape_;
+  if (chance < errors_.outlier_share) off += 1.0 * kDegree * stray;
+  const fsw::Matrix3 axes = nav::bearing_axes(sight.normalized(), truth.servicer);
+  nav::BearingMeasurement bearing;
+  bearing.time = truth.time;
+  bearing.direction_eci = (sight.normalized() + axes.topRows<2>().transpose() * off).normalized();
+  bearing.sigma = errors_.bearing_arcsec * kArcsec;
+  bearing.apparent_radius = radius;
+  epoch.bearing = bearing;
+  return epoch;
+}
+
+nav::TargetApriori SimulatedSensors::apriori() {
+  const TrueEpoch& truth = flight_.epochs.front();
+  const orbit::QnsElements servicer = must(orbit::qns_from_cartesian(truth.servicer));
+  Vector6 roe = must(nav::roe_of_target(truth.servicer, truth.target));
+  nav::TargetApriori apriori;
+  apriori.time = truth.time;
+  apriori.sigma_a_roe_m << 30.0, 1000.0, 200.0, 200.0, 200.0, 200.0;
+  for (int k = 0; k < 6; ++k) roe(k) += apriori.sigma_a_roe_m(k) / servicer.a * normal();
+  apriori.target = must(nav::target_from_roe(servicer, roe));
+  return apriori;
+}
+
+Vector3 true_position_rtn(const TrueEpoch& epoch) {
+  return orbit::relative_state_rtn(epoch.servicer, epoch.target).position_rtn;
+}
+
+Vector3 estimated_position_rtn(const nav::AnglesOnlyNavigation& navigation) {
+  return orbit::relative_state_rtn(navigation.servicer(), must(navigation.target())).position_rtn;
+}
+
+}  // namespace vbar::test

@@ -1,0 +1,82 @@
+#pragma once
+// The angles-only rendezvous as it truly goes, 75 km to 100 m in 36 h, under all forces and burns flown before; and what
+// a camera and a GNSS receiver would tell of it, without images.
+
+#include <array>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "fsw/navigation/angles_only_navigation.h"
+#include "fsw/navigation/orbit_filter.h"
+#include "fsw/orbit/earth_rotation.h"
+
+namespace vbar::test {
+
+/// The truth at an image's time.
+struct TrueEpoch {
+  fsw::GpsTime time;
+  fsw::orbit::CartesianState servicer;
+  fsw::orbit::CartesianState target;
+  fsw::Vector3 sun_eci = fsw::Vector3::Zero();  ///< unit vector
+  bool is_target_lit = true;
+  /// Where the servicer was at 10 s steps since the last image.
+  std::array<std::pair<fsw::GpsTime, fsw::Vector3>, 6> receiver{};
+};
+
+struct TrueFlight {
+  std::vector<TrueEpoch> epochs;
+  std::vector<fsw::navigation::Burn> burns;
+  fsw::orbit::EarthOrientation earth;
+
+  /// Index in `epochs` of hours after the start.
+  static std::size_t at_hours(double hours) { return static_cast<std::size_t>(hours * 60.0 + 0.5); }
+};
+
+/// From waypoint 0 on, an epoch a minute. `all_forces`: drag, sunlight, Sun, Moon, tides beside 60x60 gravity.
+TrueFlight fly_truly(double hours, bool all_forces = true);
+
+/// 1-sigma figures of the sensors.
+struct SensorErrors {
+  double bearing_arcsec = 12.0;         ///< each axis, white
+  double bias_arcsec = 3.0;             ///< length, constant in bearing_axes(), direction from the seed
+  double shape_share = 0.1;             ///< of the apparent radius, what the turning shape moves its centroid
+  double shape_time_s = 300.0;
+  double brightness_offset_m = 0.1;     ///< mean and half of it 1 sigma over seeds
+  double gnss_white_m = 1.5;            ///< each axis, at 10 s
+  double gnss_slow_m = 1.0;             ///< the same, correlated over ten minutes
+  double outlier_share = 0.0;           ///< of bearings, to somewhere within a degree
+};
+
+/// A measured epoch for AnglesOnlyNavigation, in order of time.
+class SimulatedSensors {
+ public:
+  SimulatedSensors(const TrueFlight& flight, const SensorErrors& errors, unsigned seed);
+
+  fsw::navigation::AnglesOnlyEpoch measure(std::size_t index);
+  /// Two-line-element quality: 1 sigma a * (da, dl, de, di) of 30, 1000, 200, 200 m.
+  fsw::navigation::TargetApriori apriori();
+
+ private:
+  void take_burns(fsw::GpsTime time);
+  double normal() { return standard_(random_); }
+  fsw::Vector3 normal3() { return {normal(), normal(), normal()}; }
+
+  const TrueFlight& flight_;
+  SensorErrors errors_;
+  std::mt19937 random_;
+  std::normal_distribution<double> standard_;
+  fsw::Vector2 bias_;
+  double brightness_offset_m_;
+  fsw::Vector2 shape_ = fsw::Vector2::Zero();
+  fsw::Vector3 gnss_slow_ = fsw::Vector3::Zero();
+  fsw::navigation::OrbitFilter gnss_orbit_;
+  std::size_t next_burn_ = 0;
+};
+
+/// The target's position in the servicer's RTN, m: true, and as navigation has it.
+fsw::Vector3 true_position_rtn(const TrueEpoch& epoch);
+fsw::Vector3 estimated_position_rtn(const fsw::navigation::AnglesOnlyNavigation& navigation);
+
+}  // namespace vbar::test
