@@ -1,5 +1,6 @@
 #include "fsw/gnc/gnc.h"
 
+#include "fsw/math/math.h"
 #include "fsw/orbit/rtn.h"
 
 namespace vbar::fsw::gnc {
@@ -13,6 +14,44 @@ void copy(const Vector3& from, double (&to)[3]) {
 void copy(const Vector6& from, double (&to)[6]) {
   for (int k = 0; k < 6; ++k) to[k] = from(k);
 }
+
+/// By rows.
+void copy_lower_triangle(const Matrix6& from, double (&to)[21]) {
+  std::size_t place = 0;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column <= row; ++column) to[place++] = from(row, column);
+  }
+}
+
+/// Hamilton quaternion w, x, y, z of a rotation matrix that turns components (Shepperd 1978): the largest of the four
+/// first.
+void copy_rotation(const Matrix3& R, double (&to)[4]) {
+  const double trace = R.trace();
+  int largest = 0;
+  double most = trace;
+  for (int k = 0; k < 3; ++k) {
+    if (R(k, k) > most) {
+      most = R(k, k);
+      largest = k + 1;
+    }
+  }
+  const double big = math::sqrt(1.0 + 2.0 * most - trace) * 0.5;
+  const double by = 0.25 / big;
+  if (largest == 0) {
+    to[0] = big;
+    to[1] = (R(2, 1) - R(1, 2)) * by;
+    to[2] = (R(0, 2) - R(2, 0)) * by;
+    to[3] = (R(1, 0) - R(0, 1)) * by;
+    return;
+  }
+  const int i = largest - 1;
+  const int j = (i + 1) % 3;
+  const int k = (i + 2) % 3;
+  to[0] = (R(k, j) - R(j, k)) * by;
+  to[1 + i] = big;
+  to[1 + j] = (R(j, i) + R(i, j)) * by;
+  to[1 + k] = (R(k, i) + R(i, k)) * by;
+}
 // NOLINTEND(cppcoreguidelines-avoid-c-arrays)
 
 }  // namespace
@@ -24,7 +63,7 @@ Status Gnc::step(GpsTime now) {
   const bool is_later = !stepped_ || now > now_;
   if (!is_later || !is_usable(now)) {
     faults_ |= kFaultClock;
-    inbox_.clear();
+    inbox_.clear(now_);
     return is_later ? Status::kOutOfRange : Status::kBadSequence;
   }
   now_ = now;
@@ -36,7 +75,7 @@ Status Gnc::step(GpsTime now) {
   control();
   report();
 
-  inbox_.clear();
+  inbox_.clear(now_ + inbox_.step_period());
   ++step_;
   return Status::kOk;
 }
@@ -78,6 +117,13 @@ void Gnc::report() {
   }
   report_navigation();
   if (navigation_.uses_gnss()) report_gnss();
+  if (navigation_.uses_camera()) {
+    point_camera();
+    if (navigation_.camera().has_image()) {
+      report_image();
+      report_objects();
+    }
+  }
   report_control();
   report_health();
 }
@@ -129,15 +175,87 @@ void Gnc::report_gnss() {
   message.code_nis = last.code_nis;
   message.phase_nis = last.phase_nis;
   if (gnss.valid()) {
-    const Matrix6 covariance = gnss.covariance_rtn();
-    std::size_t place = 0;
-    for (int row = 0; row < 6; ++row) {
-      for (int column = 0; column <= row; ++column) message.covariance_rtn[place++] = covariance(row, column);
-    }
+    copy_lower_triangle(gnss.covariance_rtn(), message.covariance_rtn);
   }
   message.messages = navigation_.receivers().messages();
   message.messages_refused = navigation_.receivers().refused();
   outbox_.send(now_, message);
+}
+
+/// At where the target is thought to be, not where the last image showed it: between images it moves.
+void Gnc::point_camera() {
+  const NavigationState& state = navigation_.state();
+  if (!state.has_target) return;
+  const Result<Pointing> pointing = pointing_at(now_, state.servicer, state.target);
+  if (!pointing.ok()) return;
+  navigation_.expect_pointing(pointing.value());
+  pointing_command message{};
+  copy(pointing.value().boresight_rtn, message.boresight_rtn);
+  copy(pointing.value().boresight_rate_rtn, message.boresight_rate_rtn);
+  outbox_.send(now_, message);
+}
+
+void Gnc::report_image() {
+  const CameraNavigation& camera = navigation_.camera();
+  const angles_only::Sighting& sighting = camera.tracking().sighting();
+  const navigation::AnglesOnlyNavigation& filter = camera.filter();
+  telemetry_image message{};
+  message.step = step_;
+  message.image = sighting.image;
+  message.status = static_cast<std::int8_t>(sighting.status);
+  message.star_method = static_cast<std::int8_t>(sighting.star_method);
+  message.tiles_missing = static_cast<std::int16_t>(sighting.tiles_missing);
+  message.objects = static_cast<std::int16_t>(sighting.objects);
+  message.stars = static_cast<std::int16_t>(sighting.stars);
+  message.hypotheses = static_cast<std::int16_t>(sighting.hypotheses);
+  message.target_object = static_cast<std::int16_t>(sighting.target);
+  message.background_dn = sighting.background_dn;
+  message.noise_dn = sighting.noise_dn;
+  copy_rotation(sighting.R_camera_eci.transpose(), message.q_eci_camera);
+  message.attitude_sigma = sighting.attitude_sigma;
+  copy(sighting.bearing.direction_eci, message.bearing_eci);
+  message.bearing_sigma = sighting.bearing.sigma;
+  const bool is_filtered =
+      camera.fate() == navigation::BearingFate::kFilter || camera.fate() == navigation::BearingFate::kRefused;
+  if (is_filtered) {
+    const navigation::BearingUpdate& update = filter.last_update();
+    for (int axis = 0; axis < 2; ++axis) {
+      message.prefit[axis] = update.prefit(axis);
+      message.postfit[axis] = update.postfit(axis);
+    }
+    message.nis = update.nis;
+  }
+  message.fate = static_cast<std::int8_t>(camera.fate());
+  message.filter_runs = filter.valid() ? 1 : 0;
+  if (filter.has_target()) {
+    copy(filter.a_roe_m(), message.a_roe_osculating_m);
+    copy_lower_triangle(filter.a_roe_covariance_m2(), message.covariance_a_roe);
+  }
+  message.bearings_used = filter.counters().bearings_used;
+  message.bearings_refused = filter.counters().bearings_refused;
+  message.images_without_stars = camera.images_without_stars();
+  message.tiles_refused = inbox_.image().counts().tiles_refused;
+  outbox_.send(sighting.time, message);
+}
+
+void Gnc::report_objects() {
+  const angles_only::AnglesOnlyTracking& tracking = navigation_.camera().tracking();
+  const angles_only::Sighting& sighting = tracking.sighting();
+  const auto objects = tracking.objects();
+  telemetry_objects message{};
+  message.step = step_;
+  message.image = sighting.image;
+  constexpr std::size_t kMost = sizeof message.kind / sizeof message.kind[0];
+  const std::size_t count =
+      static_cast<std::size_t>(sighting.objects) < kMost ? static_cast<std::size_t>(sighting.objects) : kMost;
+  message.count = static_cast<std::int16_t>(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    message.kind[k] = static_cast<std::int8_t>(sighting.kind[k]);
+    message.star[k] = sighting.hipparcos[k];
+    message.x_px[k] = static_cast<float>(objects[k].centroid_px.x());
+    message.y_px[k] = static_cast<float>(objects[k].centroid_px.y());
+  }
+  outbox_.send(sighting.time, message);
 }
 
 void Gnc::report_control() {

@@ -44,6 +44,9 @@ class Gnc {
 
   void report_navigation();
   void report_gnss();
+  void point_camera();
+  void report_image();
+  void report_objects();
   void report_control();
   void report_health();
 

@@ -61,7 +61,11 @@ Status Inbox::file(const PacketView& packet) {
       return decode_and_file(packet, angles_only_configurations_);
     case Apid::kTargetApriori:
       return decode_and_file(packet, target_aprioris_);
-    case Apid::kImageTile:
+    case Apid::kImageTile: {
+      const Result<image_tile> message = packets::decode<image_tile>(packet);
+      if (!message.ok()) return message.status();
+      return image_.take(packet.header.time, packet.header.unit, message.value());
+    }
     case Apid::kManeuverCommand:
     case Apid::kPointingCommand:
     case Apid::kTelemetryNavigation:
@@ -109,7 +113,9 @@ void Inbox::count(Status status) {
   }
 }
 
-void Inbox::clear() {
+void Inbox::clear(GpsTime next_step) {
+  if (image_.has_image()) image_.clear();
+  image_.accept_until(next_step);
   ideal_navigation_.clear();
   executed_maneuvers_.clear();
   waypoint_tables_.clear();

@@ -6,6 +6,7 @@
 
 #include "fsw/core/result.h"
 #include "fsw/core/time_ordered_queue.h"
+#include "fsw/imaging/image_assembly.h"
 #include "fsw/packets/messages.h"
 
 namespace vbar::fsw::gnc {
@@ -40,7 +41,7 @@ class Inbox {
   static constexpr std::size_t kTelecommands = 4;
   static constexpr std::size_t kGnssPackets = 64;  ///< of each receiver, 82 kB: twenty epochs of eighty signals
 
-  explicit Inbox(std::uint8_t spacecraft) : spacecraft_(spacecraft) {}
+  explicit Inbox(std::uint8_t spacecraft) : spacecraft_(spacecraft) { image_.accept_until(GpsTime{-1}); }
 
   /// Takes one packet; the status says why one was refused. Never reads past `bytes`.
   Status receive(std::span<const std::uint8_t> bytes);
@@ -51,8 +52,9 @@ class Inbox {
   /// Counts a telecommand whose content the step refused.
   void count_bad_content() { ++counters_.rejected_content; }
 
-  /// Forgets everything filed, at the end of a step.
-  void clear();
+  /// Forgets everything filed, at the end of a step. Until the next one, expected at `next_step`, image tiles later
+  /// than that are refused: one of a far future would shut out all before it.
+  void clear(GpsTime next_step);
 
   [[nodiscard]] const PacketCounters& counters() const { return counters_; }
   [[nodiscard]] const TimeOrderedQueue<ideal_navigation, kMeasurements>& ideal_navigation_states() const {
@@ -88,6 +90,8 @@ class Inbox {
   [[nodiscard]] const TimeOrderedQueue<crosslink_attitude, kMeasurements>& crosslink_attitudes() const {
     return crosslink_attitudes_;
   }
+  /// The image whose tiles came, whole or not.
+  [[nodiscard]] const imaging::ImageAssembly& image() const { return image_; }
   /// Time from the last tick to the next one; 0 before the first tick.
   [[nodiscard]] Duration step_period() const { return step_period_; }
 
@@ -111,6 +115,7 @@ class Inbox {
   TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets> crosslink_gnss_bytes_;
   TimeOrderedQueue<attitude, kMeasurements> attitudes_;
   TimeOrderedQueue<crosslink_attitude, kMeasurements> crosslink_attitudes_;
+  imaging::ImageAssembly image_;
 };
 
 }  // namespace vbar::fsw::gnc

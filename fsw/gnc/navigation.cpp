@@ -36,49 +36,71 @@ bool is_orbit(const orbit::CartesianState& state) {
 void Navigation::update(GpsTime now, Inbox& inbox) {
   take_configurations(now, inbox);
   take_maneuvers(now, inbox);
-  if (uses_gnss_) {
-    take_gnss(now, inbox);
-  } else {
-    take_measurements(now, inbox);
+  switch (sensors_) {
+    case Sensors::kIdeal:
+      take_measurements(now, inbox);
+      break;
+    case Sensors::kGnss:
+      take_gnss(now, inbox);
+      break;
+    case Sensors::kCamera:
+      take_camera(now, inbox);
+      break;
   }
   if (!anchored_) return;
   if (now - anchor_.epoch > kLongestDelay + kLongestDelay) move_anchor(now - kLongestDelay);
 
   const Result<Pair> present = flown_to(now);
   if (!present.ok()) {
-    anchored_ = false;  // too long a gap, or no orbit any more: start again from the next measurement
-    state_.valid = false;
+    let_go();  // too long a gap, or no orbit any more: start again from the next measurement
     return;
   }
-  state_.valid = true;
+  state_.valid = sensors_ != Sensors::kCamera || camera_.filter().valid();
+  state_.has_target = true;
   state_.epoch = now;
   state_.servicer = present.value().servicer;
   state_.target = present.value().target;
   set_uncertainty(now);
 }
 
+void Navigation::let_go() {
+  anchored_ = false;
+  state_.valid = false;
+  state_.has_target = false;
+}
+
 /// Of a coast from what the last measurement left; ideal navigation leaves nothing.
 void Navigation::set_uncertainty(GpsTime now) {
   const double age = seconds(now - state_.last_measurement);
+  const bool is_fresh = age <= kFreshGnss_s;
+  switch (sensors_) {
+    case Sensors::kIdeal:
+      state_.source = state_.last_measurement == now ? NavigationSource::kIdeal : NavigationSource::kPropagated;
+      set_uncertainty(Matrix6::Zero(), state_.last_measurement, now);
+      break;
+    case Sensors::kGnss:
+      state_.source = !is_fresh                        ? NavigationSource::kPropagated
+                      : gnss_.ambiguities().is_fixed() ? NavigationSource::kGnssFixed
+                                                       : NavigationSource::kGnssFloat;
+      // The covariance stands at the filters' epoch, which goes on with the servicer's receiver alone.
+      set_uncertainty(gnss_.covariance_rtn(), gnss_.epoch(), now);
+      break;
+    case Sensors::kCamera:
+      state_.source = camera_.filter().last_bearing() == camera_.filter().epoch() ? NavigationSource::kAnglesOnly
+                                                                                  : NavigationSource::kPropagated;
+      set_uncertainty(camera_.filter().covariance_rtn(), camera_.filter().epoch(), now);
+      break;
+  }
+}
+
+/// What a covariance of position and velocity, and what the model of a coast leaves out, come to since `epoch`.
+void Navigation::set_uncertainty(const Matrix6& covariance_rtn, GpsTime epoch, GpsTime now) {
+  const double coast_s = seconds(now - epoch);
   const double separation = (state_.target.position_eci - state_.servicer.position_eci).norm();
   const double unmodelled_acceleration = kUnmodelledGradient * separation;
-  if (!uses_gnss_) {
-    state_.source = state_.last_measurement == now ? NavigationSource::kIdeal : NavigationSource::kPropagated;
-    state_.sigma_rtn.head<3>().setConstant(0.5 * unmodelled_acceleration * age * age);
-    state_.sigma_rtn.tail<3>().setConstant(unmodelled_acceleration * age);
-    return;
-  }
-  // The covariance stands at the filters' epoch, which goes on with the servicer's receiver alone.
-  const double coast_s = seconds(now - gnss_.epoch());
-  const bool is_fixed = gnss_.ambiguities().is_fixed();
-  const bool is_fresh = age <= kFreshGnss_s;
-  state_.source = !is_fresh  ? NavigationSource::kPropagated
-                  : is_fixed ? NavigationSource::kGnssFixed
-                             : NavigationSource::kGnssFloat;
-  const Matrix6 covariance = gnss_.covariance_rtn();
   for (int axis = 0; axis < 3; ++axis) {
-    const double position = math::sqrt(covariance(axis, axis));
-    const double velocity = math::sqrt(covariance(3 + axis, 3 + axis));
+    const double position = math::sqrt(covariance_rtn(axis, axis));
+    const double velocity = math::sqrt(covariance_rtn(3 + axis, 3 + axis));
     state_.sigma_rtn(axis) =
         math::hypot(position + velocity * coast_s, 0.5 * unmodelled_acceleration * coast_s * coast_s);
     state_.sigma_rtn(3 + axis) = math::hypot(velocity, unmodelled_acceleration * coast_s);
@@ -97,31 +119,58 @@ void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
       inbox.count_bad_content();
       continue;
     }
-    uses_gnss_ = configurations[k].value.source == 1;
+    sensors_ = static_cast<Sensors>(configurations[k].value.source);  // checked with the settings
     gnss_.configure(settings.value());
-    anchored_ = false;
-    state_.valid = false;
+    earth_ = settings.value().earth;
+    let_go();
   }
+  const bool camera_changes = inbox.camera_configurations().size() > 0 ||
+                              inbox.angles_only_configurations().size() > 0 || inbox.target_aprioris().size() > 0;
+  if (camera_changes) {
+    camera_.configure(now, inbox, earth_);
+    if (sensors_ == Sensors::kCamera) let_go();
+  }
+}
+
+std::span<const navigation::Burn> Navigation::own_burns() {
+  for (std::size_t k = 0; k < maneuver_count_; ++k) burns_[k] = {maneuvers_[k].time, maneuvers_[k].dv_rtn};
+  return std::span(burns_).first(maneuver_count_);
+}
+
+/// A filter's estimate is the anchor if it is later than the one there is.
+void Navigation::anchor_at(const Pair& estimated) {
+  if (!is_orbit(estimated.servicer) || !is_orbit(estimated.target)) return;
+  if (anchored_ && estimated.epoch <= anchor_.epoch) return;
+  anchor_ = estimated;
+  anchored_ = true;
+  forget_before(estimated.epoch);
 }
 
 /// The filters' state at the last epoch folded in is the anchor; what was flown since follows as with any other source.
 void Navigation::take_gnss(GpsTime now, Inbox& inbox) {
   receivers_.feed(now, inbox, gnss_);
-  std::array<navigation::Burn, kMaxManeuvers> burns;
-  for (std::size_t k = 0; k < maneuver_count_; ++k) burns[k] = {maneuvers_[k].time, maneuvers_[k].dv_rtn};
-  gnss_.update(now, std::span(burns).first(maneuver_count_));
+  gnss_.update(now, own_burns());
   if (!gnss_.valid()) {
-    anchored_ = false;
-    state_.valid = false;
+    let_go();
     return;
   }
-  const Pair estimated{gnss_.epoch(), gnss_.servicer(), gnss_.target()};
-  if (!is_orbit(estimated.servicer) || !is_orbit(estimated.target)) return;
   state_.last_measurement = gnss_.last_pair();
-  if (anchored_ && estimated.epoch <= anchor_.epoch) return;
-  anchor_ = estimated;
-  anchored_ = true;
-  forget_before(estimated.epoch);
+  anchor_at({gnss_.epoch(), gnss_.servicer(), gnss_.target()});
+}
+
+/// The image is of some time ago: first the servicer's orbit up to then, with it the image, then the rest.
+void Navigation::take_camera(GpsTime now, Inbox& inbox) {
+  receivers_.feed(now, inbox, gnss_);
+  camera_.update(now, inbox, gnss_, own_burns());
+  gnss_.update(now, own_burns());
+  const navigation::AnglesOnlyNavigation& filter = camera_.filter();
+  const Result<orbit::CartesianState> target = filter.target();
+  if (!filter.has_target() || !target.ok()) {
+    let_go();
+    return;
+  }
+  state_.last_measurement = filter.last_bearing();
+  anchor_at({filter.epoch(), filter.servicer(), target.value()});
 }
 
 /// Ideal navigation knows everything, so the latest measurement is all that counts: it becomes the anchor.
@@ -234,6 +283,12 @@ void Navigation::forget_before(GpsTime time) {
 }
 
 Vector6 Navigation::sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const {
+  Vector6 sigma;
+  if (sensors_ == Sensors::kCamera) {
+    const Matrix6 covariance = camera_.filter().a_roe_covariance_m2();
+    for (int k = 0; k < 6; ++k) sigma(k) = math::sqrt(covariance(k, k));
+    return sigma;
+  }
   Vector6 variance = Vector6::Zero();
   for (int k = 0; k < 6; ++k) {
     Vector6 one_sigma = Vector6::Zero();
@@ -241,7 +296,6 @@ Vector6 Navigation::sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const
     const Vector6 a_roe = servicer_mean.a * orbit::roe_from_rtn_linear(servicer_mean, one_sigma);
     variance += a_roe.cwiseProduct(a_roe);
   }
-  Vector6 sigma;
   for (int k = 0; k < 6; ++k) sigma(k) = math::sqrt(variance(k));
   return sigma;
 }

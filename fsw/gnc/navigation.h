@@ -1,16 +1,18 @@
 #pragma once
 // navigate: the state of servicer and target at the step's time, from measurements folded in at their own times and own
-// maneuvers. A telecommand chooses the source: ideal navigation (true states in a packet), or the GNSS receivers of
-// both spacecraft; between measurements the state coasts under J2.
+// maneuvers. A telecommand chooses the source: ideal navigation (true states in a packet), the GNSS receivers of both
+// spacecraft, or a camera and the servicer's own receiver; between measurements the state coasts under J2.
 //
 // What arrives late is not lost: the state is built anew at each step from an anchor, the last measurement, and the own
 // maneuvers since. A commanded maneuver counts as flown as commanded until the actuator says otherwise, so that neither
 // a late nor a lost report makes guidance fly it twice.
 
 #include <array>
+#include <span>
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
+#include "fsw/gnc/camera_navigation.h"
 #include "fsw/gnc/gnss_receivers.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/navigation/gnss_navigation.h"
@@ -18,11 +20,19 @@
 
 namespace vbar::fsw::gnc {
 
-enum class NavigationSource : std::int8_t { kNone = 0, kPropagated = 1, kIdeal = 2, kGnssFloat = 3, kGnssFixed = 4 };
+enum class NavigationSource : std::int8_t {
+  kNone = 0,
+  kPropagated = 1,
+  kIdeal = 2,
+  kGnssFloat = 3,
+  kGnssFixed = 4,
+  kAnglesOnly = 5,
+};
 
 /// What navigation knows at `epoch`.
 struct NavigationState {
-  bool valid = false;
+  bool valid = false;       ///< good enough to plan with
+  bool has_target = false;  ///< there is at least something to point a camera at
   NavigationSource source = NavigationSource::kNone;
   GpsTime epoch;
   GpsTime last_measurement;
@@ -42,13 +52,20 @@ class Navigation {
 
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
-  /// Whether GNSS is the source, and what it knows of itself.
-  [[nodiscard]] bool uses_gnss() const { return uses_gnss_; }
+  /// Whether GNSS of both spacecraft is the source, and what it knows of itself.
+  [[nodiscard]] bool uses_gnss() const { return sensors_ == Sensors::kGnss; }
   [[nodiscard]] const navigation::GnssNavigation& gnss() const { return gnss_; }
   [[nodiscard]] const GnssReceivers& receivers() const { return receivers_; }
 
-  /// 1 sigma of a * ROE (m, six components) that `sigma_rtn` amounts to; the linear near-circular map, `servicer_mean`
-  /// at epoch.
+  /// Whether a camera is, and the same.
+  [[nodiscard]] bool uses_camera() const { return sensors_ == Sensors::kCamera; }
+  [[nodiscard]] const CameraNavigation& camera() const { return camera_; }
+
+  /// The camera is told this, after the last update.
+  void expect_pointing(const Pointing& pointing) { camera_.set_pointing(pointing); }
+
+  /// 1 sigma of a * ROE (m, six components). A filter on ROE knows it; of others it is what `sigma_rtn` amounts to by
+  /// the linear near-circular map, `servicer_mean` at epoch.
   [[nodiscard]] Vector6 sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const;
 
  private:
@@ -67,7 +84,12 @@ class Navigation {
   void take_configurations(GpsTime now, Inbox& inbox);
   void take_measurements(GpsTime now, Inbox& inbox);
   void take_gnss(GpsTime now, Inbox& inbox);
+  void take_camera(GpsTime now, Inbox& inbox);
+  void anchor_at(const Pair& estimated);
+  void let_go();
+  [[nodiscard]] std::span<const navigation::Burn> own_burns();
   void set_uncertainty(GpsTime now);
+  void set_uncertainty(const Matrix6& covariance_rtn, GpsTime epoch, GpsTime now);
   void take_maneuvers(GpsTime now, Inbox& inbox);
   void move_anchor(GpsTime time);
   [[nodiscard]] Result<Pair> flown_to(GpsTime time) const;
@@ -83,9 +105,13 @@ class Navigation {
   std::array<OwnManeuver, kMaxManeuvers> maneuvers_{};  ///< in order of time, none before the anchor
   std::size_t maneuver_count_ = 0;
 
-  bool uses_gnss_ = false;
+  enum class Sensors : std::int8_t { kIdeal = 0, kGnss = 1, kCamera = 2 };  ///< as navigation_configuration.source
+  Sensors sensors_ = Sensors::kIdeal;
   GnssReceivers receivers_;
   navigation::GnssNavigation gnss_;
+  CameraNavigation camera_;
+  orbit::EarthOrientation earth_;  ///< as telecommanded
+  std::array<navigation::Burn, kMaxManeuvers> burns_{};
 };
 
 }  // namespace vbar::fsw::gnc

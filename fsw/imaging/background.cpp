@@ -90,7 +90,8 @@ ImageCondition Background::measure_cells(const ImageView& image, int saturation_
   return darkest_ == brightest_ ? ImageCondition::kBlank : ImageCondition::kGood;
 }
 
-/// Histograms of a quarter of the cell's pixels and of their differences to the right: enough for a level to 0.04 sigma.
+/// Histograms of a quarter of the cell's pixels and of their differences to the right: enough for a level to 0.04
+/// sigma.
 void Background::count_cell(const ImageView& image, int saturation_dn, int column, int row) {
   levels_ = 0;
   differences_ = 0;
@@ -235,7 +236,8 @@ void Background::find_typical() {
   const auto median_dn = [this](const Grid& grid) {
     std::ptrdiff_t count = 0;
     for (int row = 0; row < y_.cells; ++row) {
-      for (int column = 0; column < x_.cells; ++column) scratch_[static_cast<std::size_t>(count++)] = grid[node(column, row)];
+      for (int column = 0; column < x_.cells; ++column)
+        scratch_[static_cast<std::size_t>(count++)] = grid[node(column, row)];
     }
     std::sort(scratch_.begin(), scratch_.begin() + count);
     return static_cast<double>(scratch_[static_cast<std::size_t>(count / 2)]) / kOne;

@@ -1,8 +1,8 @@
 #pragma once
 // What an image shows where there is nothing: level and noise on a coarse grid, interpolated between. The way of
 // SExtractor (Bertin and Arnouts 1996, section 3.2): clipped statistics of cells, and a cell that an object fills takes
-// the value of its neighbours. The noise is that of differences of neighbouring pixels, which no gradient of stray light
-// makes larger.
+// the value of its neighbours. The noise is that of differences of neighbouring pixels, which no gradient of stray
+// light makes larger.
 
 #include <array>
 #include <cstddef>

@@ -11,12 +11,12 @@ namespace {
 constexpr double kUnit = 16.0;  // of a component's brightness
 /// Sigma of the window over that of a point's image (pixel included).
 constexpr double kWindowWidth = 1.25;
-constexpr int kMostReach = 12;         // half a window, px
-constexpr double kReach = 4.0;         // half a window, its sigmas
+constexpr int kMostReach = 12;             // half a window, px
+constexpr double kReach = 4.0;             // half a window, its sigmas
 constexpr double kReachThatMatters = 2.0;  // a pixel beyond the edge is felt
 constexpr int kMostIterations = 12;
-constexpr double kSmallStep = 5e-4;    // px
-constexpr double kFurthest = 2.5;      // from the brightest 3 x 3 pixels, px
+constexpr double kSmallStep = 5e-4;  // px
+constexpr double kFurthest = 2.5;    // from the brightest 3 x 3 pixels, px
 
 /// exp(-(k - centre)^2 / (2 s^2)) at whole k from `first` on, by recurrence: the ratio of neighbours changes by a
 /// constant factor.
@@ -38,8 +38,8 @@ struct Weights {
 };
 
 struct Sums {
-  double light = 0.0;                  // weighted
-  double x = 0.0, y = 0.0;             // first moments about the centre
+  double light = 0.0;                         // weighted
+  double x = 0.0, y = 0.0;                    // first moments about the centre
   double variance_x = 0.0, variance_y = 0.0;  // of those
 };
 
@@ -157,11 +157,14 @@ Centroid component_centroid(const Background& background, const Component& compo
   const double n = component.pixels;
   const double noise_dn = background.noise_dn(component.peak_x, component.peak_y);
   // Sums of squared distances from the centroid: of all pixels alike, and by their light
-  const double spread_x = static_cast<double>(component.xx) - 2.0 * c.x * static_cast<double>(component.x) + n * c.x * c.x;
-  const double spread_y = static_cast<double>(component.yy) - 2.0 * c.y * static_cast<double>(component.y) + n * c.y * c.y;
+  const double spread_x =
+      static_cast<double>(component.xx) - 2.0 * c.x * static_cast<double>(component.x) + n * c.x * c.x;
+  const double spread_y =
+      static_cast<double>(component.yy) - 2.0 * c.y * static_cast<double>(component.y) + n * c.y * c.y;
   const double light_x = static_cast<double>(component.flux_xx) - flux * c.x * c.x;
   const double light_y = static_cast<double>(component.flux_yy) - flux * c.y * c.y;
-  const double variance = noise_dn * noise_dn * (spread_x + spread_y) + gain_dn_per_electron * (light_x + light_y) / kUnit;
+  const double variance =
+      noise_dn * noise_dn * (spread_x + spread_y) + gain_dn_per_electron * (light_x + light_y) / kUnit;
   c.sigma_px = math::sqrt(0.5 * std::max(variance, 0.0)) / (flux / kUnit);
   return c;
 }

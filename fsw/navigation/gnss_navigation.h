@@ -60,6 +60,8 @@ class GnssNavigation {
   [[nodiscard]] GpsTime epoch() const { return epoch_; }
   /// When both receivers were last heard of the same instant: since then the relative orbit coasts. At most epoch().
   [[nodiscard]] GpsTime last_pair() const { return last_pair_; }
+  /// The servicer's own orbit is there before the relative one, or without it.
+  [[nodiscard]] bool has_servicer() const { return orbit_.started(); }
   [[nodiscard]] orbit::CartesianState servicer() const { return orbit_.state(); }
   [[nodiscard]] orbit::CartesianState target() const;
   /// Covariance of the relative state in the servicer's RTN (velocity as seen in the turning frame), m and m/s.

@@ -98,7 +98,8 @@ void RoeFilter::advance(const Propagation& propagation, const orbit::CartesianSt
   noise.topLeftCorner<kSampled, kSampled>() += regression.remainder;
   const double brightness_decay = math::exp(-dt / settings_.brightness_offset_time_s);
   const double bias_decay = math::exp(-dt / settings_.bearing_bias_time_s);
-  mean(kBrightness) = settings_.brightness_offset_m + brightness_decay * (mean(kBrightness) - settings_.brightness_offset_m);
+  mean(kBrightness) =
+      settings_.brightness_offset_m + brightness_decay * (mean(kBrightness) - settings_.brightness_offset_m);
   slope(kBrightness, kBrightness) = brightness_decay;
   for (int axis = 0; axis < 2; ++axis) {
     mean(kBias + axis) *= bias_decay;
@@ -108,8 +109,8 @@ void RoeFilter::advance(const Propagation& propagation, const orbit::CartesianSt
   if (!estimate_.is_sound()) reset();
 }
 
-/// Of white accelerations in RTN, by Gauss's three points over the interval: Gamma takes an impulse to the elements, and
-/// only the mean longitude drifts on. The first-order processes get back what they lose.
+/// Of white accelerations in RTN, by Gauss's three points over the interval: Gamma takes an impulse to the elements,
+/// and only the mean longitude drifts on. The first-order processes get back what they lose.
 RoeFilter::Estimate::Matrix RoeFilter::process_noise(const orbit::QnsElements& servicer, double dt) const {
   constexpr std::array<double, 3> kAt = {0.1127016653792583, 0.5, 0.8872983346207417};
   constexpr std::array<double, 3> kWeight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
@@ -172,7 +173,9 @@ Result<RoeFilter::Model> RoeFilter::model_of(const Matrix3& axes, const Vector3&
         centre_of_brightness(target.value().position_eci, camera, sun_eci, estimate_.mean(kBrightness)) - camera;
     const double range = math::sqrt(sight.squaredNorm());
     values[k] = axes.topRows<2>() * sight / range;
-    if (k == 0) model.slope.col(kBrightness) = axes.topRows<2>() * (sun_eci - sight.dot(sun_eci) / (range * range) * sight) / range;
+    if (k == 0)
+      model.slope.col(kBrightness) =
+          axes.topRows<2>() * (sun_eci - sight.dot(sun_eci) / (range * range) * sight) / range;
   }
   const auto regression = transform.regress<2>(values);
   model.value = regression.mean + estimate_.mean().segment<2>(kBias);
@@ -201,8 +204,9 @@ BearingUpdate RoeFilter::take(const BearingMeasurement& bearing, const orbit::Ca
   const double determinant = innovation(0, 0) * innovation(1, 1) - innovation(0, 1) * innovation(1, 0);
   if (!(determinant > 0.0)) return update;
   const Vector2& r = update.prefit;
-  update.nis = (innovation(1, 1) * r(0) * r(0) - 2.0 * innovation(0, 1) * r(0) * r(1) + innovation(0, 0) * r(1) * r(1)) /
-               determinant;
+  update.nis =
+      (innovation(1, 1) * r(0) * r(0) - 2.0 * innovation(0, 1) * r(0) * r(1) + innovation(0, 0) * r(1) * r(1)) /
+      determinant;
   update.postfit = update.prefit;
   if (!(update.nis <= settings_.gate)) return update;
 

@@ -1,9 +1,9 @@
 #pragma once
 // The relative orbit from bearings: an unscented filter on the target's relative orbital elements.
 //
-// State: osculating ROE of the target with respect to the servicer; what pushes the two apart, along track and away from
-// the Sun; how far the centre of brightness stands from the centre of mass; and what all bearings have in common of
-// error, in the orbital plane and across it. The elements, not a position, because in them all but one of the
+// State: osculating ROE of the target with respect to the servicer; what pushes the two apart, along track and away
+// from the Sun; how far the centre of brightness stands from the centre of mass; and what all bearings have in common
+// of error, in the orbital plane and across it. The elements, not a position, because in them all but one of the
 // uncertainties stand still, and because the servicer's orbit then only carries the frame: a better estimate of it
 // moves the target along and leaves the relative orbit alone.
 //
@@ -22,15 +22,15 @@ namespace vbar::fsw::navigation {
 
 /// 1-sigma figures of what the filter starts from and does not model.
 struct RoeFilterSettings {
-  double acceleration_psd = 1e-14;        ///< m^2/s^3, relative, each RTN axis
-  double along_track_sigma = 1e-9;        ///< m/s^2, differential drag
-  double along_track_time_s = 6000.0;     ///< its correlation time
-  double from_sun_sigma = 3e-8;           ///< m/s^2, differential radiation pressure in sunlight
+  double acceleration_psd = 1e-14;     ///< m^2/s^3, relative, each RTN axis
+  double along_track_sigma = 1e-9;     ///< m/s^2, differential drag
+  double along_track_time_s = 6000.0;  ///< its correlation time
+  double from_sun_sigma = 3e-8;        ///< m/s^2, differential radiation pressure in sunlight
   double from_sun_time_s = 86400.0;
-  double brightness_offset_m = 0.0;       ///< towards the Sun (bearing.h)
+  double brightness_offset_m = 0.0;  ///< towards the Sun (bearing.h)
   double brightness_offset_sigma_m = 0.15;
   double brightness_offset_time_s = 20000.0;
-  double bearing_bias_sigma = 1.5e-5;     ///< rad, each axis: 3 arcsec
+  double bearing_bias_sigma = 1.5e-5;  ///< rad, each axis: 3 arcsec
   double bearing_bias_time_s = 43200.0;
   double resolved_share = 0.25;           ///< of the apparent radius that a centroid may be off, 1 sigma
   double maneuver_sigma = 2e-6;           ///< m/s, each axis of a burn

@@ -51,9 +51,11 @@ Star together(const Star& a, const Star& b) {
   const double flux_a = std::pow(10.0, -0.4 * a.magnitude);
   const double flux_b = std::pow(10.0, -0.4 * b.magnitude);
   const auto mean = [&](double x, double y) { return (flux_a * x + flux_b * y) / (flux_a + flux_b); };
-  Direction d{mean(a.direction.x, b.direction.x), mean(a.direction.y, b.direction.y), mean(a.direction.z, b.direction.z)};
+  Direction d{mean(a.direction.x, b.direction.x), mean(a.direction.y, b.direction.y),
+              mean(a.direction.z, b.direction.z)};
   const double length = std::hypot(d.x, d.y, d.z);
-  return {{d.x / length, d.y / length, d.z / length}, -2.5 * std::log10(flux_a + flux_b),
+  return {{d.x / length, d.y / length, d.z / length},
+          -2.5 * std::log10(flux_a + flux_b),
           a.hipparcos != 0 ? a.hipparcos : b.hipparcos};
 }
 
@@ -85,9 +87,8 @@ std::vector<Star> merge_unresolved(std::vector<Star> stars, double separation) {
 
 std::vector<std::uint16_t> sort_by_cell(std::vector<Star>& stars) {
   const auto cell = [](const Star& star) { return cell_of_direction(star.direction, kCoarseEdge); };
-  std::ranges::sort(stars, [&](const Star& a, const Star& b) {
-    return cell(a) != cell(b) ? cell(a) < cell(b) : brighter(a, b);
-  });
+  std::ranges::sort(
+      stars, [&](const Star& a, const Star& b) { return cell(a) != cell(b) ? cell(a) < cell(b) : brighter(a, b); });
   std::vector<std::uint16_t> first(kCoarseCells + 1, 0);
   for (const Star& star : stars) ++first[static_cast<std::size_t>(cell(star)) + 1];
   for (std::size_t c = 1; c < first.size(); ++c) first[c] = static_cast<std::uint16_t>(first[c] + first[c - 1]);
@@ -95,8 +96,8 @@ std::vector<std::uint16_t> sort_by_cell(std::vector<Star>& stars) {
 }
 
 CellTable make_cell_table(const std::vector<Star>& stars) {
-  // Cells are at least fifteen times as wide as the margin, so a circle of points finds all cells within it. The circle is 1
-  // per cent wider than the margin, since between two points it comes that much nearer.
+  // Cells are at least fifteen times as wide as the margin, so a circle of points finds all cells within it. The circle
+  // is 1 per cent wider than the margin, since between two points it comes that much nearer.
   constexpr int kPoints = 32;
   std::vector<std::vector<std::uint16_t>> cells(kFineCells);
   for (std::size_t k = 0; k < stars.size(); ++k) {

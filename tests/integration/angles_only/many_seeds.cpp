@@ -48,7 +48,8 @@ int main(int argc, char** argv) {
         ++updates;
       }
       if (waypoint < 7 && k == test::TrueFlight::at_hours(kHours[waypoint])) {
-        const fsw::Vector3 error = test::estimated_position_rtn(*navigation) - test::true_position_rtn(flight.epochs[k]);
+        const fsw::Vector3 error =
+            test::estimated_position_rtn(*navigation) - test::true_position_rtn(flight.epochs[k]);
         const fsw::Matrix6 covariance = navigation->covariance_rtn();
         const double sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
         std::printf(" | %8.2f (%7.2f)", error.norm(), sigma);
@@ -57,8 +58,9 @@ int main(int argc, char** argv) {
       }
     }
     const auto& counters = navigation->counters();
-    std::printf(" | nis %.3f used %d refused %d failed %d widened %d restarts %d\n", nis / updates, counters.bearings_used,
-                counters.bearings_refused, counters.batches_failed, counters.widened, counters.restarts);
+    std::printf(" | nis %.3f used %d refused %d failed %d widened %d restarts %d\n", nis / updates,
+                counters.bearings_used, counters.bearings_refused, counters.batches_failed, counters.widened,
+                counters.restarts);
   }
   std::printf("med");
   for (auto& of : errors) {

@@ -1,0 +1,85 @@
+#pragma once
+// Angles-only tracking (Kruger, D'Amico 2021): from an image to a bearing. Objects are found, stars among them
+// identified and used for the attitude, and of what is left the tracker says which is the target.
+//
+// The commanded pointing helps to recognise stars; where in the image the target lies is never taken for granted.
+
+#include <optional>
+#include <span>
+
+#include "fsw/angles_only/sighting.h"
+#include "fsw/core/result.h"
+#include "fsw/imaging/camera_model.h"
+#include "fsw/imaging/image.h"
+#include "fsw/imaging/object_detector.h"
+#include "fsw/orbit/elements.h"
+#include "fsw/stars/star_identification.h"
+#include "fsw/tracking/target_tracker.h"
+
+namespace vbar::fsw::angles_only {
+
+/// The camera as calibrated on the ground, and what is expected of it.
+struct CameraSettings {
+  imaging::ImageFrame frame;
+  imaging::CameraModel model;
+  imaging::DetectorSettings detector;
+  double zero_magnitude_dn = 0.0;  ///< of a star of magnitude 0
+  Matrix3 R_camera_body = Matrix3::Identity();
+  Vector3 position_body_m = Vector3::Zero();
+  double centroid_floor_px = 0.05;
+  double pointing_tolerance = 3e-3;  ///< rad, of the commanded pointing
+};
+
+/// What is known of the exposure's instant before the image is looked at.
+struct Circumstances {
+  bool is_orbit_known = false;
+  orbit::CartesianState servicer;
+  Vector3 velocity_over_c_eci = Vector3::Zero();  ///< of the camera against the Solar System, for aberration
+  std::optional<Matrix3> R_camera_eci;            ///< as commanded
+  std::optional<tracking::Prediction> target;     ///< where navigation expects it, as seen by the camera
+  double detection_probability = 0.95;            ///< of the target: less while it may be in the dark
+  std::span<const tracking::OwnBurn> burns;       ///< since the last image, in order of time
+};
+
+/// An image and what its tiles said of it.
+struct TakenImage {
+  GpsTime time;  ///< middle of the exposure
+  std::int32_t number = 0;
+  int tiles_missing = 0;
+  imaging::ImageView view;
+};
+
+class AnglesOnlyTracking {
+ public:
+  void configure(const CameraSettings& settings);
+
+  /// Images come in order of time.
+  const Sighting& process(const TakenImage& image, const Circumstances& circumstances);
+
+  [[nodiscard]] const Sighting& sighting() const { return sighting_; }
+  [[nodiscard]] std::span<const imaging::DetectedObject> objects() const { return detector_.objects(); }
+  [[nodiscard]] const CameraSettings& settings() const { return settings_; }
+
+ private:
+  SightingStatus look(const TakenImage& image, const Circumstances& circumstances);
+  SightingStatus find_objects(const imaging::ImageView& image);
+  bool identify_stars(const Circumstances& circumstances);
+  void mark_stars(const stars::AttitudeFix& fix);
+  std::size_t collect_candidates(const Circumstances& circumstances);
+  SightingStatus find_target(const TakenImage& image, const Circumstances& circumstances);
+  void measure_bearing(std::size_t object);
+  [[nodiscard]] double sigma_of(const imaging::DetectedObject& object) const;
+
+  CameraSettings settings_;
+  imaging::ObjectDetector detector_;
+  stars::StarIdentifier identifier_;
+  tracking::TargetTracker tracker_;
+  stars::Field field_;
+  std::size_t count_ = 0;  ///< of the objects that have a direction
+  std::array<stars::ObservedStar, imaging::kMaxObjects> seen_{};        ///< the objects, whatever they are
+  std::array<tracking::Candidate, imaging::kMaxObjects> candidates_{};  ///< those that are no stars
+  std::array<std::size_t, imaging::kMaxObjects> object_of_candidate_{};
+  Sighting sighting_;
+};
+
+}  // namespace vbar::fsw::angles_only

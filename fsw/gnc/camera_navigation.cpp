@@ -1,0 +1,190 @@
+#include "fsw/gnc/camera_navigation.h"
+
+#include <Eigen/Geometry>
+
+#include "fsw/math/math.h"
+#include "fsw/orbit/propagate.h"
+#include "fsw/orbit/rtn.h"
+#include "fsw/orbit/sun.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+constexpr double kSpeedOfLight = 299792458.0;  // m/s
+
+// An image may come so much after its time.
+constexpr Duration kLongestDelay = duration_of_seconds(600);
+
+// The target is seen when it is lit. Near an edge of the shadow it may be either.
+constexpr double kLitProbability = 0.95;
+constexpr double kEdgeProbability = 0.5;
+constexpr double kEdge_s = 20.0;
+
+double detection_probability(const orbit::CartesianState& target, const Vector3& sun_eci) {
+  const Vector3 on_the_way = kEdge_s * target.velocity_eci;
+  const bool was_lit = navigation::is_sunlit(target.position_eci - on_the_way, sun_eci);
+  const bool will_be_lit = navigation::is_sunlit(target.position_eci + on_the_way, sun_eci);
+  if (was_lit && will_be_lit) return kLitProbability;
+  return was_lit || will_be_lit ? kEdgeProbability : 0.0;
+}
+
+/// `from`'s state at `time`, at or after `epoch`, through the burns on the way; one at the very time is after it.
+Result<orbit::CartesianState> flown(orbit::CartesianState state, GpsTime epoch, GpsTime time,
+                                    std::span<const navigation::Burn> burns) {
+  for (const navigation::Burn& burn : burns) {
+    if (burn.time < epoch || burn.time >= time) continue;
+    const Result<orbit::CartesianState> coasted = orbit::propagate_j2(state, seconds(burn.time - epoch));
+    if (!coasted.ok()) return coasted.status();
+    state = orbit::apply_impulse_rtn(coasted.value(), burn.dv_rtn);
+    epoch = burn.time;
+  }
+  return orbit::propagate_j2(state, seconds(time - epoch));
+}
+
+}  // namespace
+
+Result<Pointing> pointing_at(GpsTime time, const orbit::CartesianState& servicer, const orbit::CartesianState& target) {
+  const orbit::RelativeState relative = orbit::relative_state_rtn(servicer, target);
+  const double range = relative.position_rtn.norm();
+  if (!(range > 1e-3)) return Status::kOutOfRange;
+  Pointing pointing;
+  pointing.time = time;
+  pointing.boresight_rtn = relative.position_rtn / range;
+  const Vector3 rate = relative.velocity_rtn / range;
+  pointing.boresight_rate_rtn = rate - pointing.boresight_rtn.dot(rate) * pointing.boresight_rtn;
+  return pointing;
+}
+
+Matrix3 R_body_eci_of(const Pointing& pointing, GpsTime time, const orbit::CartesianState& servicer) {
+  const Matrix3 R_rtn_eci = orbit::R_rtn_eci(servicer);
+  const Vector3 z = R_rtn_eci.transpose() * pointing.boresight_rtn_at(time);
+  const Vector3 zenith = servicer.position_eci.normalized();
+  const Vector3 x = z.cross(zenith).normalized();  // -y to the zenith: x = y cross z
+  Matrix3 R_body_eci;
+  R_body_eci.row(0) = x.transpose();
+  R_body_eci.row(1) = z.cross(x).transpose();
+  R_body_eci.row(2) = z.transpose();
+  return R_body_eci;
+}
+
+void CameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::EarthOrientation& earth) {
+  const auto newest = [&](const auto& queue, auto& kept) {
+    for (std::size_t k = 0; k < queue.size(); ++k) {
+      if (queue[k].tag.time > now) {
+        inbox.count_unusable_time();
+      } else {
+        kept = queue[k].value;
+      }
+    }
+  };
+  newest(inbox.camera_configurations(), camera_);
+  newest(inbox.angles_only_configurations(), angles_only_);
+  if (!camera_ || !angles_only_) return;
+  const auto camera = camera_settings(*camera_, *angles_only_);
+  const auto navigation = angles_only_settings(*angles_only_, earth);
+  if (!camera.ok() || !navigation.ok()) {
+    inbox.count_bad_content();
+    camera_.reset();
+    angles_only_.reset();
+    return;
+  }
+  tracking_.configure(camera.value());
+  filter_.configure(navigation.value());
+  had_image_ = false;
+  const auto& aprioris = inbox.target_aprioris();
+  for (std::size_t k = 0; k < aprioris.size(); ++k) {
+    const target_apriori& known = aprioris[k].value;
+    navigation::TargetApriori apriori;
+    apriori.time = aprioris[k].tag.time;
+    for (int axis = 0; axis < 3; ++axis) {
+      apriori.target.position_eci(axis) = known.position_eci[axis];
+      apriori.target.velocity_eci(axis) = known.velocity_eci[axis];
+    }
+    bool is_usable = apriori.time <= now && orbit::qns_from_cartesian(apriori.target).ok();
+    for (int element = 0; element < 6; ++element) {
+      apriori.sigma_a_roe_m(element) = known.sigma_a_roe_m[element];
+      is_usable = is_usable && known.sigma_a_roe_m[element] > 0.0 && known.sigma_a_roe_m[element] < 1e6;
+    }
+    if (is_usable) {
+      filter_.set_apriori(apriori);
+    } else {
+      inbox.count_bad_content();
+    }
+  }
+}
+
+void CameraNavigation::update(GpsTime now, Inbox& inbox, navigation::GnssNavigation& own_orbit,
+                              std::span<const navigation::Burn> burns) {
+  has_image_ = false;
+  fate_ = navigation::BearingFate::kNone;
+  const imaging::ImageAssembly& assembly = inbox.image();
+  if (!camera_ || !assembly.has_image()) return;
+  const bool is_timely = assembly.image_time() <= now && now - assembly.image_time() <= kLongestDelay &&
+                         (!had_image_ || assembly.image_time() > last_image_);
+  if (!is_timely) {
+    inbox.count_unusable_time();
+    return;
+  }
+  take_image({assembly.image_time(), assembly.image_number(), assembly.tiles_missing(), assembly.view()}, own_orbit, burns);
+}
+
+void CameraNavigation::take_image(const angles_only::TakenImage& image, navigation::GnssNavigation& own_orbit,
+                                  std::span<const navigation::Burn> burns) {
+  has_image_ = true;
+  own_orbit.update(image.time, burns);
+  const Vector3 sun_eci = orbit::sun_direction_eci(image.time);
+  navigation::AnglesOnlyEpoch epoch;
+  epoch.time = image.time;
+  epoch.sun_eci = sun_eci;
+  if (own_orbit.has_servicer() && own_orbit.epoch() <= image.time) {
+    const auto servicer = flown(own_orbit.servicer(), own_orbit.epoch(), image.time, burns);
+    if (servicer.ok()) epoch.servicer_gnss = servicer.value();
+  }
+  static_cast<void>(filter_.update(epoch, burns));
+  const angles_only::Sighting& sighting = tracking_.process(image, circumstances_of(image.time, sun_eci, burns));
+  if (sighting.status == angles_only::SightingStatus::kNoStars) ++images_without_stars_;
+  if (sighting.status == angles_only::SightingStatus::kBearing) {
+    epoch.servicer_gnss.reset();  // it is folded in already
+    epoch.bearing = sighting.bearing;
+    fate_ = filter_.update(epoch, burns);
+  }
+  last_image_ = image.time;
+  had_image_ = true;
+}
+
+angles_only::Circumstances CameraNavigation::circumstances_of(GpsTime time, const Vector3& sun_eci,
+                                                              std::span<const navigation::Burn> burns) {
+  angles_only::Circumstances circumstances;
+  circumstances.is_orbit_known = filter_.has_target();
+  if (!circumstances.is_orbit_known) return circumstances;
+  circumstances.servicer = filter_.servicer();
+  circumstances.velocity_over_c_eci =
+      (orbit::earth_velocity_eci(time) + circumstances.servicer.velocity_eci) / kSpeedOfLight;
+  const Matrix3& R_camera_body = tracking_.settings().R_camera_body;
+  Matrix3 R_body_eci = Matrix3::Identity();
+  if (pointing_) {
+    R_body_eci = R_body_eci_of(*pointing_, time, circumstances.servicer);
+    circumstances.R_camera_eci = R_camera_body * R_body_eci;
+  }
+  if (const Result<orbit::CartesianState> target = filter_.target(); target.ok()) {
+    orbit::RelativeState relative = orbit::relative_state_rtn(circumstances.servicer, target.value());
+    if (pointing_) {
+      const Vector3 camera_eci = R_body_eci.transpose() * tracking_.settings().position_body_m;
+      relative.position_rtn -= orbit::R_rtn_eci(circumstances.servicer) * camera_eci;
+    }
+    const auto prediction = tracking::prediction_of(relative, filter_.covariance_rtn());
+    if (prediction.ok()) circumstances.target = prediction.value();
+    circumstances.detection_probability = detection_probability(target.value(), sun_eci);
+  }
+  std::size_t count = 0;
+  for (const navigation::Burn& burn : burns) {
+    const bool is_since = had_image_ && burn.time >= last_image_ && burn.time < time;
+    if (is_since && count < burns_since_image_.size()) {
+      burns_since_image_[count++] = {burn.time, burn.dv_rtn, angles_only_->maneuver_sigma};
+    }
+  }
+  circumstances.burns = std::span(burns_since_image_).first(count);
+  return circumstances;
+}
+
+}  // namespace vbar::fsw::gnc
