@@ -24,16 +24,18 @@ struct AttitudeEstimate {
   int degrees_of_freedom = 0;                   ///< 2 a direction, less 3
 };
 
-/// kInvalidArgument: fewer than two pairs or a sigma that is not positive; kNotFinite; kSingular: directions (nearly) on
-/// one line, or no best rotation.
+/// kInvalidArgument: fewer than two pairs or a sigma that is not positive; kNotFinite; kSingular: directions (nearly)
+/// on one line, or no best rotation.
 Result<AttitudeEstimate> determine_attitude(std::span<const DirectionPair> pairs);
 
-/// Value that a chi-square variable of `degrees` > 0 degrees of freedom exceeds once in 10,000 (Wilson & Hilferty 1931).
+/// Value that a chi-square variable of `degrees` > 0 degrees of freedom exceeds once in 10,000 (Wilson & Hilferty
+/// 1931).
 double chi_square_limit(int degrees);
 
-/// The same, but where the residuals are larger than noise can be, the worst direction is dropped and the rest tried again,
-/// until they agree. Dropped pairs are moved to the end of `pairs` (order and `tags`, one a pair, change alike);
-/// `kept` is how many are left. Beside the above, kDidNotConverge: a third would have to be dropped, or fewer than three are left.
+/// The same, but where the residuals are larger than noise can be, the worst direction is dropped and the rest tried
+/// again, until they agree. Dropped pairs are moved to the end of `pairs` (order and `tags`, one a pair, change alike);
+/// `kept` is how many are left. Beside the above, kDidNotConverge: a third would have to be dropped, or fewer than
+/// three are left.
 struct RobustAttitude {
   AttitudeEstimate estimate;
   int kept = 0;

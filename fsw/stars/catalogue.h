@@ -1,6 +1,6 @@
 #pragma once
-// The stars on board: ESA's Hipparcos catalogue to V 8 (data/stars), moved to one epoch when the program was built, with
-// pairs closer than 70 arcsec merged. A star is its number, 0 to catalogue_size() - 1.
+// The stars on board: ESA's Hipparcos catalogue to V 8 (data/stars), moved to one epoch when the program was built,
+// with pairs closer than 70 arcsec merged. A star is its number, 0 to catalogue_size() - 1.
 
 #include <cstddef>
 #include <span>

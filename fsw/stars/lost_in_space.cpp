@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <Eigen/Geometry>
+
 #include "fsw/math/math.h"
 #include "fsw/stars/star_identification.h"
 
@@ -7,13 +9,13 @@ namespace vbar::fsw::stars {
 namespace {
 
 constexpr double kArcsecond = math::kPi / 648000.0;
-constexpr double kVaguest = 15.0 * kArcsecond;      // objects less precise make no patterns
-constexpr double kPairGate = 3.5;                   // sigma of a distance
-constexpr double kPairSlack = 6.0 * kArcsecond;     // aberration differs by up to 4 arcsec between two stars, doubles
-constexpr double kPlaceGate = 3.5;                  // sigma of a third object's place
+constexpr double kVaguest = 15.0 * kArcsecond;   // objects less precise make no patterns
+constexpr double kPairGate = 3.0;                // sigma of a distance
+constexpr double kPairSlack = 4.5 * kArcsecond;  // aberration differs by up to 4 arcsec between two stars, doubles
+constexpr double kPlaceGate = 3.5;               // sigma of a third object's place
 constexpr double kSuppositionSigma = 15.0 * kArcsecond;
-constexpr int kNeeded = 2;       // other objects with a star at their place, for a hypothesis to be looked at closely
-constexpr int kPatience = 14;    // objects without a star, and none with one, until it is given up
+constexpr int kNeeded = 2;    // other objects with a star at their place, for a hypothesis to be looked at closely
+constexpr int kPatience = 8;  // objects without a star, and none with one, until it is given up
 constexpr MagnitudeGate kGate{};
 
 /// Axes of a pair: towards its middle, from the first to the second, and across both.
@@ -104,8 +106,7 @@ Status StarIdentifier::try_pair(std::span<const ObservedStar> objects, const Fie
   const ObservedStar& a = objects[order_[i]];
   const ObservedStar& b = objects[order_[j]];
   const double chord = (a.direction_camera - b.direction_camera).norm();
-  const double slack =
-      kPairGate * math::sqrt(a.sigma_rad * a.sigma_rad + b.sigma_rad * b.sigma_rad) + kPairSlack;
+  const double slack = kPairGate * math::sqrt(a.sigma_rad * a.sigma_rad + b.sigma_rad * b.sigma_rad) + kPairSlack;
   const auto begin = static_cast<std::size_t>(chord_step(chord - slack));
   const auto end = static_cast<std::size_t>(chord_step(chord + slack + kChordStep));
   const std::uint32_t first = vbar_star_tables.first_of_chord[begin];
@@ -113,10 +114,10 @@ Status StarIdentifier::try_pair(std::span<const ObservedStar> objects, const Fie
   for (std::uint32_t k = first; k < last; ++k) {
     const int bright = vbar_star_tables.pair[k][0];
     const int faint = vbar_star_tables.pair[k][1];
-    const bool straight = kGate.admits(a.magnitude, star_magnitude(bright)) &&
-                          kGate.admits(b.magnitude, star_magnitude(faint));
-    const bool crossed = kGate.admits(b.magnitude, star_magnitude(bright)) &&
-                         kGate.admits(a.magnitude, star_magnitude(faint));
+    const bool straight =
+        kGate.admits(a.magnitude, star_magnitude(bright)) && kGate.admits(b.magnitude, star_magnitude(faint));
+    const bool crossed =
+        kGate.admits(b.magnitude, star_magnitude(bright)) && kGate.admits(a.magnitude, star_magnitude(faint));
     if (!straight && !crossed) continue;
     const Vector3 bright_eci = with_aberration(star_direction_eci(bright), velocity_over_c_eci);
     const Vector3 faint_eci = with_aberration(star_direction_eci(faint), velocity_over_c_eci);

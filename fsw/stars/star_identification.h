@@ -1,7 +1,8 @@
 #pragma once
-// Which objects of an image are which stars, and from that the camera's attitude: from nothing (lost in space) or near a
-// predicted attitude (tracking). Both suppose attitudes and let verification.h decide, so the same certainty holds for
-// both: objects that are no stars may be many and bright, and an identification that chance could have made is refused.
+// Which objects of an image are which stars, and from that the camera's attitude: from nothing (lost in space) or near
+// a predicted attitude (tracking). Both suppose attitudes and let verification.h decide, so the same certainty holds
+// for both: objects that are no stars may be many and bright, and an identification that chance could have made is
+// refused.
 
 #include <array>
 #include <span>
@@ -26,8 +27,8 @@ class StarIdentifier {
   /// Attitude of a camera that may look anywhere. `velocity_over_c_eci`: the observer's, barycentric, for aberration.
   /// kOk: fix() holds the attitude. kDidNotConverge: nothing that could be trusted. kTooLong: more than kMaxObjects;
   /// kNotFinite; kInvalidArgument: a sigma or the field's radius is not positive.
-  /// Two stars of the catalogue's pair table that are as far apart as two objects give an attitude (Black 1974); the other
-  /// objects say which.
+  /// Two stars of the catalogue's pair table that are as far apart as two objects give an attitude (Black 1974); the
+  /// other objects say which.
   Status lost_in_space(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci);
 
   /// Attitude near a predicted one, the camera turned from it by `tolerance_rad` about any axis at most. As above; and

@@ -6,8 +6,8 @@
 
 namespace vbar::fsw::stars {
 
-/// How well an observed magnitude must agree. Bright stars saturate a detector, so an object may be any amount too faint
-/// for a star brighter than kSaturating.
+/// How well an observed magnitude must agree. Bright stars saturate a detector, so an object may be any amount too
+/// faint for a star brighter than kSaturating.
 struct MagnitudeGate {
   double offset = 0.0;  ///< of observed magnitudes
   double width = 2.0;
@@ -19,6 +19,12 @@ struct MagnitudeGate {
   }
 };
 
+/// False: there is no star within kCellMargin of a direction.
+inline bool is_occupied(const Vector3& direction_eci) {
+  const int cell = cell_of(direction_eci.x(), direction_eci.y(), direction_eci.z(), kOccupancyEdge);
+  return (vbar_star_tables.occupied[static_cast<std::size_t>(cell / 32)] >> (cell % 32) & 1U) != 0;
+}
+
 struct Neighbour {
   int star = -1;  ///< none
   double squared_distance = 0.0;
@@ -29,7 +35,9 @@ struct Neighbour {
 inline Neighbour nearest_star(const Vector3& direction_eci, double tolerance, double magnitude,
                               const MagnitudeGate& gate) {
   Neighbour nearest{-1, tolerance * tolerance};
-  const auto cell = static_cast<std::size_t>(cell_of(direction_eci.x(), direction_eci.y(), direction_eci.z(), kFineEdge));
+  if (!is_occupied(direction_eci)) return nearest;
+  const auto cell =
+      static_cast<std::size_t>(cell_of(direction_eci.x(), direction_eci.y(), direction_eci.z(), kFineEdge));
   const std::uint32_t end = vbar_star_tables.first_of_cell[cell + 1];
   for (std::uint32_t entry = vbar_star_tables.first_of_cell[cell]; entry < end; ++entry) {
     const int star = vbar_star_tables.cell_star[entry];
@@ -39,8 +47,8 @@ inline Neighbour nearest_star(const Vector3& direction_eci, double tolerance, do
   return nearest;
 }
 
-/// Direction in which a star is seen by an observer moving at velocity / c (first order; 0.003 arcsec at Earth's speed),
-/// and back.
+/// Direction in which a star is seen by an observer moving at velocity / c (first order; 0.003 arcsec at Earth's
+/// speed), and back.
 inline Vector3 with_aberration(const Vector3& direction, const Vector3& velocity_over_c) {
   return (direction + velocity_over_c) * (1.0 - direction.dot(velocity_over_c));
 }

@@ -52,8 +52,7 @@ Status StarIdentifier::try_seed(std::span<const ObservedStar> objects, const Fie
     const Vote& vote = vote_[k];
     if ((vote.shift - seed.shift).squaredNorm() > radius * radius) continue;
     const ObservedStar& object = objects[static_cast<std::size_t>(vote.object)];
-    seed_pair_[count++] = {object.direction_camera,
-                           with_aberration(star_direction_eci(vote.star), velocity_over_c_eci),
+    seed_pair_[count++] = {object.direction_camera, with_aberration(star_direction_eci(vote.star), velocity_over_c_eci),
                            object.sigma_rad + kVoteSigma};
   }
   const Result<AttitudeEstimate> attitude = determine_attitude(std::span(seed_pair_).first(count));

@@ -8,7 +8,7 @@ namespace vbar::fsw::stars {
 namespace {
 
 constexpr double kArcsecond = math::kPi / 648000.0;
-constexpr double kGate = 4.0;                       // sigma; a true star is outside once in 3000
+constexpr double kGate = 4.0;                         // sigma; a true star is outside once in 3000
 constexpr double kCatalogueSigma = 1.0 * kArcsecond;  // proper motion, doubles' centre of light
 constexpr int kRounds = 4;
 
@@ -88,7 +88,8 @@ Status Verification::verify(std::span<const ObservedStar> objects, const Field& 
     for (std::size_t k = 0; k < count_; ++k) {
       const ObservedStar& object = objects[static_cast<std::size_t>(object_[k])];
       const double sigma = math::sqrt(object.sigma_rad * object.sigma_rad + kCatalogueSigma * kCatalogueSigma);
-      pair_[k] = {object.direction_camera, with_aberration(star_direction_eci(star_[k].star), velocity_over_c_eci), sigma};
+      pair_[k] = {object.direction_camera, with_aberration(star_direction_eci(star_[k].star), velocity_over_c_eci),
+                  sigma};
       tag_[k] = static_cast<int>(k);
     }
     const Result<RobustAttitude> found =

@@ -1,7 +1,7 @@
 #pragma once
-// Is a supposed attitude true? The catalogue is laid over the image: if more objects have a star at their place than chance
-// can put there, it is. Chance is counted: objects that are no stars agree with the catalogue's density times the area of
-// tolerance; the number of agreements is then bounded by Chernoff's inequality.
+// Is a supposed attitude true? The catalogue is laid over the image: if more objects have a star at their place than
+// chance can put there, it is. Chance is counted: objects that are no stars agree with the catalogue's density times
+// the area of tolerance; the number of agreements is then bounded by Chernoff's inequality.
 
 #include <array>
 #include <span>
@@ -31,8 +31,8 @@ inline constexpr int kFewestMatches = 4;
 
 class Verification {
  public:
-  /// Fills `fix` and returns kOk where the supposition is accepted; else kDidNotConverge, and `fix` is of no use. Objects
-  /// must be finite with positive sigma, at most kMaxObjects.
+  /// Fills `fix` and returns kOk where the supposition is accepted; else kDidNotConverge, and `fix` is of no use.
+  /// Objects must be finite with positive sigma, at most kMaxObjects.
   Status verify(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci,
                 const Supposition& supposed, AttitudeFix& fix);
 

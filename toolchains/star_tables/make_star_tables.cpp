@@ -60,7 +60,8 @@ void write(const std::string& path, const std::string& content) {
 
 void make(const std::string& star_file, double epoch, const std::string& tables_path, const std::string& sizes_path) {
   std::vector<Star> stars = merge_unresolved(read_star_file(star_file, epoch), kSeparation);
-  if (stars.size() > 65535) throw std::runtime_error(star_file + ": more than 65,535 stars, which the tables cannot number");
+  if (stars.size() > 65535)
+    throw std::runtime_error(star_file + ": more than 65,535 stars, which the tables cannot number");
   const std::vector<std::uint16_t> coarse = sort_by_cell(stars);
   const CellTable cells = make_cell_table(stars);
   const std::vector<std::uint16_t> guides = choose_guides(stars, kFaintestGuide, kGuideRadius, kGuideNeighbours);
@@ -74,6 +75,7 @@ void make(const std::string& star_file, double epoch, const std::string& tables_
   }
   for (const Star& star : stars) bytes.put(static_cast<std::int32_t>(star.hipparcos));
   for (const std::uint32_t first : cells.first) bytes.put(first);
+  for (const std::uint32_t word : make_occupancy(stars)) bytes.put(word);
   for (const std::uint32_t first : pairs.first) bytes.put(first);
   for (const auto& [a, b] : pairs.pairs) {
     bytes.put(a);
@@ -86,7 +88,8 @@ void make(const std::string& star_file, double epoch, const std::string& tables_
 
   char epoch_text[32];
   std::snprintf(epoch_text, sizeof epoch_text, "%.4f", epoch);
-  std::string sizes = "#pragma once\n// Made by toolchains/star_tables from data/stars.\n\nnamespace vbar::fsw::stars {\n\n";
+  std::string sizes =
+      "#pragma once\n// Made by toolchains/star_tables from data/stars.\n\nnamespace vbar::fsw::stars {\n\n";
   const auto constant = [&](const char* type, const char* name, const std::string& value) {
     sizes += std::string("inline constexpr ") + type + " " + name + " = " + value + ";\n";
   };

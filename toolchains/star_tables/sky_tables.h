@@ -22,12 +22,16 @@ struct CellTable {
 };
 CellTable make_cell_table(const std::vector<Star>& stars);
 
+/// A bit for each cell of occupancy, 32 a word from the lowest: whether a star is in it or within the margin of it.
+std::vector<std::uint32_t> make_occupancy(const std::vector<Star>& stars);
+
 /// Numbers of stars that serve to identify stars lost in space: to `faintest`, and only those with less than
 /// `neighbours` brighter chosen ones within `radius` (rad), so that they lie evenly over the sky.
-std::vector<std::uint16_t> choose_guides(const std::vector<Star>& stars, double faintest, double radius, int neighbours);
+std::vector<std::uint16_t> choose_guides(const std::vector<Star>& stars, double faintest, double radius,
+                                         int neighbours);
 
-/// Pairs of guides by length of chord: the brighter star first, and for each step of the chord the first pair that is not
-/// shorter (a k-vector, Mortari 1997, on a line of given slope).
+/// Pairs of guides by length of chord: the brighter star first, and for each step of the chord the first pair that is
+/// not shorter (a k-vector, Mortari 1997, on a line of given slope).
 struct PairTable {
   std::vector<std::uint32_t> first;  ///< a step of the chord; one more at the end
   std::vector<std::pair<std::uint16_t, std::uint16_t>> pairs;

@@ -41,7 +41,8 @@ struct Place {
 double number(std::string_view text, const Column& column, const Place& place) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !(value >= column.lowest && value <= column.highest)) {
+  if (error != std::errc{} || end != text.data() + text.size() ||
+      !(value >= column.lowest && value <= column.highest)) {
     place.refuse(std::string(column.name) + " is '" + std::string(text) + "', a number from " +
                  std::to_string(column.lowest) + " to " + std::to_string(column.highest) + " is accepted");
   }
@@ -64,8 +65,8 @@ std::array<double, kColumns> fields(std::string_view line, const Place& place) {
   return values;
 }
 
-/// Straight motion on the tangent plane; over some decades the bend of the path and the perspective effect stay below 0.1
-/// arcsec for the fastest star.
+/// Straight motion on the tangent plane; over some decades the bend of the path and the perspective effect stay below
+/// 0.1 arcsec for the fastest star.
 Star star_at(const std::array<double, kColumns>& row, double years) {
   const double ra = row[1] * kDegree;
   const double dec = row[2] * kDegree;
