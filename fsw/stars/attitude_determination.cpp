@@ -1,5 +1,7 @@
 #include "fsw/stars/attitude_determination.h"
 
+#include <Eigen/Geometry>
+
 #include "fsw/math/math.h"
 #include "fsw/math/symmetric_eigen.h"
 
@@ -67,8 +69,8 @@ Result<AttitudeEstimate> determine_attitude(std::span<const DirectionPair> pairs
   }
   // Two directions less than 1e-5 rad apart leave the rotation about them open.
   constexpr double kSmallest = 1e-10;
-  const double determinant = information.determinant() / (total * total * total);
-  if (!(determinant > kSmallest)) return Status::kSingular;
+  const double determinant = information.col(0).dot(information.col(1).cross(information.col(2)));
+  if (!(determinant > kSmallest * total * total * total)) return Status::kSingular;
   const Result<math::SymmetricEigen<4>> eigen = math::symmetric_eigen<4>(davenport(profile / total));
   if (!eigen.ok()) return eigen.status();
 
@@ -78,7 +80,7 @@ Result<AttitudeEstimate> determine_attitude(std::span<const DirectionPair> pairs
                              information.col(2).cross(information.col(0)).transpose(),
                              information.col(0).cross(information.col(1)).transpose())
                                 .finished();
-  estimate.covariance_camera = cofactors / information.determinant();
+  estimate.covariance_camera = cofactors / determinant;
   for (const DirectionPair& pair : pairs) estimate.chi_square += squared_residual(pair, estimate.R_camera_eci);
   estimate.degrees_of_freedom = 2 * static_cast<int>(pairs.size()) - 3;
   return estimate;

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <Eigen/Geometry>
+
 #include "fsw/math/math.h"
 #include "fsw/stars/star_identification.h"
 
@@ -8,12 +10,12 @@ namespace {
 
 constexpr double kArcsecond = math::kPi / 648000.0;
 constexpr double kVaguest = 15.0 * kArcsecond;   // objects less precise make no patterns
-constexpr double kPairGate = 3.5;                // sigma of a distance
-constexpr double kPairSlack = 6.0 * kArcsecond;  // aberration differs by up to 4 arcsec between two stars, doubles
+constexpr double kPairGate = 3.0;                // sigma of a distance
+constexpr double kPairSlack = 4.5 * kArcsecond;  // aberration differs by up to 4 arcsec between two stars, doubles
 constexpr double kPlaceGate = 3.5;               // sigma of a third object's place
 constexpr double kSuppositionSigma = 15.0 * kArcsecond;
-constexpr int kNeeded = 2;     // other objects with a star at their place, for a hypothesis to be looked at closely
-constexpr int kPatience = 14;  // objects without a star, and none with one, until it is given up
+constexpr int kNeeded = 2;    // other objects with a star at their place, for a hypothesis to be looked at closely
+constexpr int kPatience = 8;  // objects without a star, and none with one, until it is given up
 constexpr MagnitudeGate kGate{};
 
 /// Axes of a pair: towards its middle, from the first to the second, and across both.

@@ -19,6 +19,12 @@ struct MagnitudeGate {
   }
 };
 
+/// False: there is no star within kCellMargin of a direction.
+inline bool is_occupied(const Vector3& direction_eci) {
+  const int cell = cell_of(direction_eci.x(), direction_eci.y(), direction_eci.z(), kOccupancyEdge);
+  return (vbar_star_tables.occupied[static_cast<std::size_t>(cell / 32)] >> (cell % 32) & 1U) != 0;
+}
+
 struct Neighbour {
   int star = -1;  ///< none
   double squared_distance = 0.0;
@@ -29,6 +35,7 @@ struct Neighbour {
 inline Neighbour nearest_star(const Vector3& direction_eci, double tolerance, double magnitude,
                               const MagnitudeGate& gate) {
   Neighbour nearest{-1, tolerance * tolerance};
+  if (!is_occupied(direction_eci)) return nearest;
   const auto cell =
       static_cast<std::size_t>(cell_of(direction_eci.x(), direction_eci.y(), direction_eci.z(), kFineEdge));
   const std::uint32_t end = vbar_star_tables.first_of_cell[cell + 1];

@@ -10,6 +10,9 @@ namespace vbar::fsw::stars {
 /// here?", coarse ones "which stars are near here?".
 inline constexpr int kFineEdge = 128;
 inline constexpr int kCoarseEdge = 16;
+/// The finest say only whether there is a star at all: a bit each, which mostly answers the first question with no.
+inline constexpr int kOccupancyEdge = 512;
+inline constexpr int kOccupancyWords = 6 * kOccupancyEdge * kOccupancyEdge / 32;
 inline constexpr int kFineCells = 6 * kFineEdge * kFineEdge;
 inline constexpr int kCoarseCells = 6 * kCoarseEdge * kCoarseEdge;
 /// No point of a coarse cell is farther from its middle, rad: half the diagonal of a cell in the middle of a face,

@@ -75,6 +75,7 @@ void make(const std::string& star_file, double epoch, const std::string& tables_
   }
   for (const Star& star : stars) bytes.put(static_cast<std::int32_t>(star.hipparcos));
   for (const std::uint32_t first : cells.first) bytes.put(first);
+  for (const std::uint32_t word : make_occupancy(stars)) bytes.put(word);
   for (const std::uint32_t first : pairs.first) bytes.put(first);
   for (const auto& [a, b] : pairs.pairs) {
     bytes.put(a);

@@ -59,6 +59,27 @@ Star together(const Star& a, const Star& b) {
           a.hipparcos != 0 ? a.hipparcos : b.hipparcos};
 }
 
+/// Cells within the margin of a direction. Cells are at least four times as wide as the margin, so a circle of points finds
+/// them all. The circle is 1 per cent wider than the margin, since between two points it comes that much nearer.
+std::vector<int> cells_around(const Direction& d, int edge) {
+  constexpr int kPoints = 32;
+  const double across = std::hypot(d.x, d.y);
+  const Direction east = across > 0.0 ? Direction{-d.y / across, d.x / across, 0.0} : Direction{0.0, 1.0, 0.0};
+  const Direction north{-d.z * east.y, d.z * east.x, d.x * east.y - d.y * east.x};
+  std::vector<int> touched{cell_of_direction(d, edge)};
+  for (int point = 0; point < kPoints; ++point) {
+    const double angle = 2.0 * std::numbers::pi * point / kPoints;
+    const double e = 1.01 * kCellMargin * std::cos(angle);
+    const double n = 1.01 * kCellMargin * std::sin(angle);
+    touched.push_back(cell_of(d.x + e * east.x + n * north.x, d.y + e * east.y + n * north.y,
+                              d.z + e * east.z + n * north.z, edge));
+  }
+  std::ranges::sort(touched);
+  const auto repeated = std::ranges::unique(touched);
+  touched.erase(repeated.begin(), repeated.end());
+  return touched;
+}
+
 }  // namespace
 
 std::vector<Star> merge_unresolved(std::vector<Star> stars, double separation) {
@@ -96,27 +117,11 @@ std::vector<std::uint16_t> sort_by_cell(std::vector<Star>& stars) {
 }
 
 CellTable make_cell_table(const std::vector<Star>& stars) {
-  // Cells are at least fifteen times as wide as the margin, so a circle of points finds all cells within it. The circle
-  // is 1 per cent wider than the margin, since between two points it comes that much nearer.
-  constexpr int kPoints = 32;
   std::vector<std::vector<std::uint16_t>> cells(kFineCells);
   for (std::size_t k = 0; k < stars.size(); ++k) {
-    const Direction& d = stars[k].direction;
-    const double across = std::hypot(d.x, d.y);
-    const Direction east = across > 0.0 ? Direction{-d.y / across, d.x / across, 0.0} : Direction{0.0, 1.0, 0.0};
-    const Direction north{-d.z * east.y, d.z * east.x, d.x * east.y - d.y * east.x};
-    std::vector<int> touched{cell_of_direction(d, kFineEdge)};
-    for (int point = 0; point < kPoints; ++point) {
-      const double angle = 2.0 * std::numbers::pi * point / kPoints;
-      const double e = 1.01 * kCellMargin * std::cos(angle);
-      const double n = 1.01 * kCellMargin * std::sin(angle);
-      touched.push_back(cell_of(d.x + e * east.x + n * north.x, d.y + e * east.y + n * north.y,
-                                d.z + e * east.z + n * north.z, kFineEdge));
+    for (const int cell : cells_around(stars[k].direction, kFineEdge)) {
+      cells[static_cast<std::size_t>(cell)].push_back(static_cast<std::uint16_t>(k));
     }
-    std::ranges::sort(touched);
-    const auto repeated = std::ranges::unique(touched);
-    touched.erase(repeated.begin(), repeated.end());
-    for (const int cell : touched) cells[static_cast<std::size_t>(cell)].push_back(static_cast<std::uint16_t>(k));
   }
   CellTable table;
   table.first.push_back(0);
@@ -126,6 +131,16 @@ CellTable make_cell_table(const std::vector<Star>& stars) {
     table.first.push_back(static_cast<std::uint32_t>(table.stars.size()));
   }
   return table;
+}
+
+std::vector<std::uint32_t> make_occupancy(const std::vector<Star>& stars) {
+  std::vector<std::uint32_t> words(kOccupancyWords, 0);
+  for (const Star& star : stars) {
+    for (const int cell : cells_around(star.direction, kOccupancyEdge)) {
+      words[static_cast<std::size_t>(cell / 32)] |= std::uint32_t{1} << cell % 32;
+    }
+  }
+  return words;
 }
 
 std::vector<std::uint16_t> choose_guides(const std::vector<Star>& stars, double faintest, double radius,

@@ -22,6 +22,9 @@ struct CellTable {
 };
 CellTable make_cell_table(const std::vector<Star>& stars);
 
+/// A bit for each cell of occupancy, 32 a word from the lowest: whether a star is in it or within the margin of it.
+std::vector<std::uint32_t> make_occupancy(const std::vector<Star>& stars);
+
 /// Numbers of stars that serve to identify stars lost in space: to `faintest`, and only those with less than
 /// `neighbours` brighter chosen ones within `radius` (rad), so that they lie evenly over the sky.
 std::vector<std::uint16_t> choose_guides(const std::vector<Star>& stars, double faintest, double radius,
