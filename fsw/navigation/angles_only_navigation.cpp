@@ -93,8 +93,8 @@ void AnglesOnlyNavigation::advance(Flight& flight, GpsTime time, const Vector3& 
     coast_to(burn.time);
     const orbit::CartesianState servicer = flight.own_orbit.state();
     const Vector3 dv_eci = orbit::R_rtn_eci(servicer).transpose() * burn.dv_rtn;
-    const double sigma = settings_.filter.maneuver_sigma +
-                         settings_.filter.maneuver_sigma_relative * math::sqrt(dv_eci.squaredNorm());
+    const double sigma =
+        settings_.filter.maneuver_sigma + settings_.filter.maneuver_sigma_relative * math::sqrt(dv_eci.squaredNorm());
     flight.filter.add_servicer_impulse(servicer, dv_eci);
     flight.own_orbit.add_impulse(dv_eci, sigma);
     if (batch != nullptr) batch->add_burn(burn.time, dv_eci);
@@ -122,8 +122,8 @@ BearingFate AnglesOnlyNavigation::take_bearing(const AnglesOnlyEpoch& epoch, con
 
 /// A batch that does not come out is tried again with every further bearing.
 void AnglesOnlyNavigation::solve_batch(const Vector3& sun_eci) {
-  const auto solution = batch_.solve(flight_.own_orbit.state(), flight_.filter.roe(), flight_.filter.roe_covariance(), settings_.earth,
-                                     sun_eci, settings_.batch);
+  const auto solution = batch_.solve(flight_.own_orbit.state(), flight_.filter.roe(), flight_.filter.roe_covariance(),
+                                     settings_.earth, sun_eci, settings_.batch);
   if (!solution.ok()) {
     ++counters_.batches_failed;
     return;
@@ -173,7 +173,8 @@ Matrix6 AnglesOnlyNavigation::covariance_rtn() const {
     if (!plus.ok() || !minus.ok()) return Matrix6::Zero();
     const auto a = orbit::relative_state_rtn(servicer, plus.value());
     const auto b = orbit::relative_state_rtn(servicer, minus.value());
-    slope.col(k) << (a.position_rtn - b.position_rtn) / (2.0 * kLittle), (a.velocity_rtn - b.velocity_rtn) / (2.0 * kLittle);
+    slope.col(k) << (a.position_rtn - b.position_rtn) / (2.0 * kLittle),
+        (a.velocity_rtn - b.velocity_rtn) / (2.0 * kLittle);
   }
   return slope.lazyProduct(flight_.filter.roe_covariance()).lazyProduct(slope.transpose());
 }

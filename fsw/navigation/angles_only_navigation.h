@@ -73,7 +73,9 @@ class AnglesOnlyNavigation {
   [[nodiscard]] GpsTime last_bearing() const { return last_bearing_; }  ///< folded in
   [[nodiscard]] orbit::CartesianState servicer() const { return flight_.own_orbit.state(); }
   /// kNotReady unless has_target().
-  [[nodiscard]] Result<orbit::CartesianState> target() const { return flight_.filter.target(flight_.own_orbit.state()); }
+  [[nodiscard]] Result<orbit::CartesianState> target() const {
+    return flight_.filter.target(flight_.own_orbit.state());
+  }
 
   /// Osculating a * ROE, m, and its covariance, m^2; a: the servicer's.
   [[nodiscard]] Vector6 a_roe_m() const;

@@ -10,11 +10,11 @@ namespace vbar::fsw::navigation {
 /// Light time and aberration cancel for a target that flies along (its velocity is the camera's but for metres a
 /// second): the direction is that among the stars' places freed of aberration, uncorrected itself.
 struct BearingMeasurement {
-  GpsTime time;                                ///< middle of the exposure
-  Vector3 direction_eci = Vector3::Zero();     ///< unit vector to the centre of brightness
-  double sigma = 0.0;                          ///< rad, 1 sigma, each axis across it; attitude included
-  Vector3 origin_eci = Vector3::Zero();        ///< the camera's place from the servicer's centre of mass, m
-  double apparent_radius = 0.0;                ///< rad, of the target's disk; 0: a point
+  GpsTime time;                             ///< middle of the exposure
+  Vector3 direction_eci = Vector3::Zero();  ///< unit vector to the centre of brightness
+  double sigma = 0.0;                       ///< rad, 1 sigma, each axis across it; attitude included
+  Vector3 origin_eci = Vector3::Zero();     ///< the camera's place from the servicer's centre of mass, m
+  double apparent_radius = 0.0;             ///< rad, of the target's disk; 0: a point
 };
 
 /// Rows: two unit vectors across `direction` (unit), the first in the plane of the servicer's orbit, the second nearest

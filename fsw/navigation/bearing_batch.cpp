@@ -9,10 +9,10 @@ namespace vbar::fsw::navigation {
 namespace {
 
 constexpr int kMaxIterations = 15;
-constexpr double kLittle = 1e-5;         // an element's change for its slope: 70 m
-constexpr double kConverged = 1e-3;      // of a sigma, every unknown
-constexpr double kHuber = 3.0;           // residuals beyond so many sigma weigh as if they grew linearly
-constexpr double kOutlier = 5.0;         // and beyond these they do not count as used
+constexpr double kLittle = 1e-5;     // an element's change for its slope: 70 m
+constexpr double kConverged = 1e-3;  // of a sigma, every unknown
+constexpr double kHuber = 3.0;       // residuals beyond so many sigma weigh as if they grew linearly
+constexpr double kOutlier = 5.0;     // and beyond these they do not count as used
 constexpr Duration kSegment = duration_of_seconds(600);  // the Earth's orientation is renewed after
 
 }  // namespace

@@ -16,10 +16,10 @@
 namespace vbar::fsw::navigation {
 
 struct BearingBatchSettings {
-  int bearings = 40;                  ///< so many make an orbit; at most BearingBatch::kCapacity
-  double bias_sigma = 1.5e-5;         ///< rad, of what all bearings share, each axis
-  double least_share_used = 0.6;      ///< of the bearings, or the solution is none
-  double most_chi_square = 2.0;       ///< of a degree of freedom, of the bearings used
+  int bearings = 40;              ///< so many make an orbit; at most BearingBatch::kCapacity
+  double bias_sigma = 1.5e-5;     ///< rad, of what all bearings share, each axis
+  double least_share_used = 0.6;  ///< of the bearings, or the solution is none
+  double most_chi_square = 2.0;   ///< of a degree of freedom, of the bearings used
 };
 
 /// ROE of the target with respect to the servicer at the batch's last bearing (dimensionless), and what all bearings

@@ -10,8 +10,8 @@
 namespace vbar::fsw::navigation {
 
 struct OwnOrbitSettings {
-  double position_sigma_m = 2.0;  ///< of each axis of a position given; neighbours share part of their error
-  double acceleration_psd = 3e-9; ///< m^2/s^3: Sun, Moon and tides, 1.5e-6 m/s^2 that turn with the orbit
+  double position_sigma_m = 2.0;   ///< of each axis of a position given; neighbours share part of their error
+  double acceleration_psd = 3e-9;  ///< m^2/s^3: Sun, Moon and tides, 1.5e-6 m/s^2 that turn with the orbit
 };
 
 class OwnOrbit {

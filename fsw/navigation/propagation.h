@@ -1,6 +1,6 @@
 #pragma once
-// Both spacecraft under the same gravity of degree 20, so that what it still leaves out hardly parts them; the target is
-// pushed besides by what differs between the two.
+// Both spacecraft under the same gravity of degree 20, so that what it still leaves out hardly parts them; the target
+// is pushed besides by what differs between the two.
 
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/earth_rotation.h"

@@ -60,8 +60,7 @@ constexpr void add_gradient(Series& series) {
       above.y_cos -= half_up * s;
       above.y_sin += half_up * c;
       if (m == 0) continue;
-      const double half_down =
-          0.5 * square_root((m == 1 ? 2.0 : 1.0) * degree_ratio * ((n - m + 1.0) * (n - m + 2.0)));
+      const double half_down = 0.5 * square_root((m == 1 ? 2.0 : 1.0) * degree_ratio * ((n - m + 1.0) * (n - m + 2.0)));
       Term& below = series[term_index(n + 1, m - 1)];
       below.x_cos += half_down * c;
       below.x_sin += half_down * s;

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "tests/integration/angles_only/observability_bound.h"
 #include "tests/integration/angles_only/true_flight.h"
 
 int main(int argc, char** argv) {
@@ -18,6 +19,11 @@ int main(int argc, char** argv) {
   const test::TrueFlight flight = test::fly_truly(36.0);
   constexpr double kHours[] = {6.0, 12.0, 18.0, 24.0, 28.0, 32.0, 36.0};
   std::vector<std::vector<double>> errors(7);
+  std::vector<std::size_t> at;
+  for (const double hours : kHours) at.push_back(test::TrueFlight::at_hours(hours));
+  std::printf("bnd");
+  for (const double bound : test::position_bound(flight, at)) std::printf(" | %8.2f          ", bound);
+  std::printf("\n");
   for (unsigned seed = 1; seed <= seeds; ++seed) {
     test::SensorErrors sensor_errors;
     sensor_errors.bias_arcsec = option("BIAS", sensor_errors.bias_arcsec);
@@ -29,7 +35,7 @@ int main(int argc, char** argv) {
     nav::AnglesOnlySettings settings;
     settings.earth = flight.earth;
     settings.filter.brightness_offset_m = 0.1;
-    settings.filter.acceleration_psd = option("PSD", settings.filter.acceleration_psd);
+    settings.filter.acceleration.psd = option("PSD", settings.filter.acceleration.psd);
     settings.filter.bearing_bias_sigma = option("BIAS_SIGMA", 3.0) / 206264.8;
     settings.filter.maneuver_sigma_relative = option("MAN", settings.filter.maneuver_sigma_relative);
     settings.filter.resolved_share = option("RESOLVED", settings.filter.resolved_share);
@@ -48,7 +54,8 @@ int main(int argc, char** argv) {
         ++updates;
       }
       if (waypoint < 7 && k == test::TrueFlight::at_hours(kHours[waypoint])) {
-        const fsw::Vector3 error = test::estimated_position_rtn(*navigation) - test::true_position_rtn(flight.epochs[k]);
+        const fsw::Vector3 error =
+            test::estimated_position_rtn(*navigation) - test::true_position_rtn(flight.epochs[k]);
         const fsw::Matrix6 covariance = navigation->covariance_rtn();
         const double sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
         std::printf(" | %8.2f (%7.2f)", error.norm(), sigma);
@@ -57,7 +64,8 @@ int main(int argc, char** argv) {
       }
     }
     const auto& counters = navigation->counters();
-    std::printf(" | nis %.3f used %d refused %d failed %d widened %d restarts %d\n", nis / updates, counters.bearings_used,
+    std::printf(" | psd %.0e nis %.3f used %d refused %d failed %d widened %d restarts %d\n",
+                navigation->filter().acceleration_psd(), nis / updates, counters.bearings_used,
                 counters.bearings_refused, counters.batches_failed, counters.widened, counters.restarts);
   }
   std::printf("med");

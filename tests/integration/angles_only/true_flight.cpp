@@ -52,13 +52,23 @@ std::vector<nav::Burn> load_burns(fsw::GpsTime start) {
 }
 
 truth::SpacecraftSettings servicer_body() {
-  return {"servicer", {}, {.mass_kg = 154.0, .drag_area_m2 = 1.3, .drag_coefficient = 2.5, .radiation_area_m2 = 2.5,
-                           .radiation_coefficient = 1.32}};
+  return {"servicer",
+          {},
+          {.mass_kg = 154.0,
+           .drag_area_m2 = 1.3,
+           .drag_coefficient = 2.5,
+           .radiation_area_m2 = 2.5,
+           .radiation_coefficient = 1.32}};
 }
 
 truth::SpacecraftSettings target_body() {
-  return {"target", {}, {.mass_kg = 40.0, .drag_area_m2 = 0.38, .drag_coefficient = 2.25, .radiation_area_m2 = 0.55,
-                         .radiation_coefficient = 1.2}};
+  return {"target",
+          {},
+          {.mass_kg = 40.0,
+           .drag_area_m2 = 0.38,
+           .drag_coefficient = 2.25,
+           .radiation_area_m2 = 0.55,
+           .radiation_coefficient = 1.2}};
 }
 
 truth::TruthSettings truth_settings(double hours, bool all_forces) {

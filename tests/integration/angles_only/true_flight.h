@@ -1,6 +1,6 @@
 #pragma once
-// The angles-only rendezvous as it truly goes, 75 km to 100 m in 36 h, under all forces and burns flown before; and what
-// a camera and a GNSS receiver would tell of it, without images.
+// The angles-only rendezvous as it truly goes, 75 km to 100 m in 36 h, under all forces and burns flown before; and
+// what a camera and a GNSS receiver would tell of it, without images.
 
 #include <array>
 #include <cstdint>
@@ -39,14 +39,14 @@ TrueFlight fly_truly(double hours, bool all_forces = true);
 
 /// 1-sigma figures of the sensors.
 struct SensorErrors {
-  double bearing_arcsec = 12.0;         ///< each axis, white
-  double bias_arcsec = 3.0;             ///< length, constant in bearing_axes(), direction from the seed
-  double shape_share = 0.1;             ///< of the apparent radius, what the turning shape moves its centroid
+  double bearing_arcsec = 12.0;  ///< each axis, white
+  double bias_arcsec = 3.0;      ///< length, constant in bearing_axes(), direction from the seed
+  double shape_share = 0.1;      ///< of the apparent radius, what the turning shape moves its centroid
   double shape_time_s = 300.0;
-  double brightness_offset_m = 0.1;     ///< mean and half of it 1 sigma over seeds
-  double gnss_white_m = 1.5;            ///< each axis, at 10 s
-  double gnss_slow_m = 1.0;             ///< the same, correlated over ten minutes
-  double outlier_share = 0.0;           ///< of bearings, to somewhere within a degree
+  double brightness_offset_m = 0.1;  ///< mean and half of it 1 sigma over seeds
+  double gnss_white_m = 1.5;         ///< each axis, at 10 s
+  double gnss_slow_m = 1.0;          ///< the same, correlated over ten minutes
+  double outlier_share = 0.0;        ///< of bearings, to somewhere within a degree
 };
 
 /// A measured epoch for AnglesOnlyNavigation, in order of time.
