@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   const test::TrueFlight flight = test::fly_truly(36.0);
   constexpr double kHours[] = {6.0, 12.0, 18.0, 24.0, 28.0, 32.0, 36.0};
   std::vector<std::vector<double>> errors(7);
+  std::vector<double> nees(7, 0.0);
   std::vector<std::size_t> at;
   for (const double hours : kHours) at.push_back(test::TrueFlight::at_hours(hours));
   std::printf("bnd");
@@ -30,6 +31,8 @@ int main(int argc, char** argv) {
     sensor_errors.bearing_arcsec = option("NOISE", sensor_errors.bearing_arcsec);
     sensor_errors.shape_share = option("SHAPE", sensor_errors.shape_share);
     sensor_errors.gnss_slow_m = option("GNSS_SLOW", sensor_errors.gnss_slow_m);
+    sensor_errors.burn_relative = option("BURN", 0.0);
+    sensor_errors.outlier_share = option("OUTLIERS", 0.0);
     sensor_errors.gnss_white_m = option("GNSS_WHITE", sensor_errors.gnss_white_m);
     test::SimulatedSensors sensors(flight, sensor_errors, seed);
     nav::AnglesOnlySettings settings;
@@ -48,7 +51,7 @@ int main(int argc, char** argv) {
     int updates = 0;
     std::printf("%3u", seed);
     for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
-      navigation->update(sensors.measure(k), flight.burns);
+      navigation->update(sensors.measure(k), sensors.known_burns());
       if (navigation->last_update().accepted) {
         nis += navigation->last_update().nis;
         ++updates;
@@ -58,7 +61,8 @@ int main(int argc, char** argv) {
             test::estimated_position_rtn(*navigation) - test::true_position_rtn(flight.epochs[k]);
         const fsw::Matrix6 covariance = navigation->covariance_rtn();
         const double sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-        std::printf(" | %8.2f (%7.2f)", error.norm(), sigma);
+        std::printf(" | %8.2f (%7.2f) %4.1f", error.norm(), sigma, test::roe_nees(flight.epochs[k], *navigation));
+        nees[waypoint] += test::roe_nees(flight.epochs[k], *navigation) / seeds;
         errors[waypoint].push_back(error.norm());
         ++waypoint;
       }
@@ -73,5 +77,7 @@ int main(int argc, char** argv) {
     std::sort(of.begin(), of.end());
     std::printf(" | %8.2f          ", of.empty() ? 0.0 : 0.5 * (of[(of.size() - 1) / 2] + of[of.size() / 2]));
   }
+  std::printf("\nnees");
+  for (const double mean : nees) std::printf(" | %8.2f          ", mean);
   std::printf("\n");
 }
