@@ -14,6 +14,9 @@ constexpr int kFromSun = kAlongTrack + 1;
 constexpr int kBrightness = Filter::State::offset<Filter::BrightnessOffset>();
 constexpr int kBias = Filter::State::offset<Filter::BearingBias>();
 
+// Bearings further apart than this are no neighbours.
+constexpr Duration kNeighbours = duration_of_seconds(300);
+
 constexpr double square(double x) {
   return x * x;
 }
@@ -123,7 +126,7 @@ RoeFilter::Estimate::Matrix RoeFilter::process_noise(const orbit::QnsElements& s
     gamma.row(1) -= 1.5 * n * (1.0 - kAt[k]) * dt * gamma.row(0);
     for (int axis = 0; axis < 3; ++axis) {
       noise.topLeftCorner<6, 6>() +=
-          (kWeight[k] * dt * settings_.acceleration_psd * gamma.col(axis)).lazyProduct(gamma.col(axis).transpose());
+          (kWeight[k] * dt * noise_.psd() * gamma.col(axis)).lazyProduct(gamma.col(axis).transpose());
     }
   }
   const auto renewed = [dt](double sigma, double time) { return square(sigma) * (1.0 - math::exp(-2.0 * dt / time)); };
@@ -152,6 +155,7 @@ void RoeFilter::add_servicer_impulse(const orbit::CartesianState& servicer, cons
   const double sigma = settings_.maneuver_sigma + settings_.maneuver_sigma_relative * math::sqrt(dv_eci.squaredNorm());
   const Matrix6 noise = regression.remainder + (square(sigma) * gamma).lazyProduct(gamma.transpose());
   estimate_.transform_head<6>(regression.mean, regression.slope, noise);
+  noise_.interrupt();
   if (!estimate_.is_sound()) reset();
 }
 
@@ -204,6 +208,7 @@ BearingUpdate RoeFilter::take(const BearingMeasurement& bearing, const orbit::Ca
   const double determinant = innovation(0, 0) * innovation(1, 1) - innovation(0, 1) * innovation(1, 0);
   if (!(determinant > 0.0)) return update;
   const Vector2& r = update.prefit;
+  update.normalised = {r(0) / math::sqrt(innovation(0, 0)), r(1) / math::sqrt(innovation(1, 1))};
   update.nis =
       (innovation(1, 1) * r(0) * r(0) - 2.0 * innovation(0, 1) * r(0) * r(1) + innovation(0, 0) * r(1) * r(1)) /
       determinant;
@@ -221,8 +226,16 @@ BearingUpdate RoeFilter::take(const BearingMeasurement& bearing, const orbit::Ca
   estimate_.update(second, rest, noise(1, 1) - shared * noise(0, 1), kNoGate);
   update.accepted = true;
   update.postfit = r - h.lazyProduct(estimate_.mean() - old);
+  adapt(bearing, update);
   if (!estimate_.is_sound()) reset();
   return update;
+}
+
+/// Of bearings to a point only: the centroid of a disk wanders with the target's attitude, which looks like a lag.
+void RoeFilter::adapt(const BearingMeasurement& bearing, const BearingUpdate& update) {
+  if (bearing.time - last_bearing_ > kNeighbours) noise_.interrupt();
+  last_bearing_ = bearing.time;
+  if (settings_.resolved_share * bearing.apparent_radius < bearing.sigma) noise_.take(update.normalised);
 }
 
 Result<BearingPrediction> RoeFilter::predict(const orbit::CartesianState& servicer, const Vector3& origin_eci,

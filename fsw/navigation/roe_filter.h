@@ -14,6 +14,7 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/estimation/estimate.h"
 #include "fsw/estimation/layout.h"
+#include "fsw/navigation/adaptive_noise.h"
 #include "fsw/navigation/bearing.h"
 #include "fsw/navigation/propagation.h"
 #include "fsw/orbit/elements.h"
@@ -22,7 +23,7 @@ namespace vbar::fsw::navigation {
 
 /// 1-sigma figures of what the filter starts from and does not model.
 struct RoeFilterSettings {
-  double acceleration_psd = 1e-14;     ///< m^2/s^3, relative, each RTN axis
+  AdaptiveNoiseSettings acceleration;  ///< what nothing below describes
   double along_track_sigma = 1e-9;     ///< m/s^2, differential drag
   double along_track_time_s = 6000.0;  ///< its correlation time
   double from_sun_sigma = 3e-8;        ///< m/s^2, differential radiation pressure in sunlight
@@ -44,6 +45,7 @@ struct BearingUpdate {
   Vector2 prefit = Vector2::Zero();
   Vector2 postfit = Vector2::Zero();
   double nis = 0.0;
+  Vector2 normalised = Vector2::Zero();  ///< prefit over its expected standard deviation
 };
 
 /// Where a bearing is expected: direction and covariance (rad^2) in the first two rows of bearing_axes() of it, of the
@@ -70,10 +72,11 @@ class RoeFilter {
   using State = estimation::Layout<Roe, Pushes, BrightnessOffset, BearingBias>;
   using Estimate = estimation::Estimate<State::kSize>;
 
-  explicit RoeFilter(const RoeFilterSettings& settings = {}) : settings_(settings) {}
+  explicit RoeFilter(const RoeFilterSettings& settings = {}) { configure(settings); }
 
   void configure(const RoeFilterSettings& settings) {
     settings_ = settings;
+    noise_ = AdaptiveNoise(settings.acceleration);
     started_ = false;
   }
 
@@ -99,6 +102,8 @@ class RoeFilter {
   [[nodiscard]] Vector6 roe() const { return estimate_.mean().head<6>(); }
   [[nodiscard]] Matrix6 roe_covariance() const { return estimate_.head_covariance<6>(); }
   [[nodiscard]] const Estimate& estimate() const { return estimate_; }
+  /// Power spectral density of the relative acceleration that it takes for unknown, m^2/s^3.
+  [[nodiscard]] double acceleration_psd() const { return noise_.psd(); }
   /// kNotReady before begin().
   [[nodiscard]] Result<orbit::CartesianState> target(const orbit::CartesianState& servicer) const;
   /// From `origin_eci` beside the servicer's centre of mass.
@@ -118,7 +123,11 @@ class RoeFilter {
                                        const orbit::CartesianState& servicer, const Vector3& sun_eci) const;
   [[nodiscard]] Estimate::Matrix process_noise(const orbit::QnsElements& servicer, double dt) const;
 
+  void adapt(const BearingMeasurement& bearing, const BearingUpdate& update);
+
   RoeFilterSettings settings_;
+  AdaptiveNoise noise_;
+  GpsTime last_bearing_;
   bool started_ = false;
   Estimate estimate_;
 };

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "tests/integration/angles_only/observability_bound.h"
 #include "tests/integration/angles_only/true_flight.h"
 
 int main(int argc, char** argv) {
@@ -18,18 +19,26 @@ int main(int argc, char** argv) {
   const test::TrueFlight flight = test::fly_truly(36.0);
   constexpr double kHours[] = {6.0, 12.0, 18.0, 24.0, 28.0, 32.0, 36.0};
   std::vector<std::vector<double>> errors(7);
+  std::vector<double> nees(7, 0.0);
+  std::vector<std::size_t> at;
+  for (const double hours : kHours) at.push_back(test::TrueFlight::at_hours(hours));
+  std::printf("bnd");
+  for (const double bound : test::position_bound(flight, at)) std::printf(" | %8.2f          ", bound);
+  std::printf("\n");
   for (unsigned seed = 1; seed <= seeds; ++seed) {
     test::SensorErrors sensor_errors;
     sensor_errors.bias_arcsec = option("BIAS", sensor_errors.bias_arcsec);
     sensor_errors.bearing_arcsec = option("NOISE", sensor_errors.bearing_arcsec);
     sensor_errors.shape_share = option("SHAPE", sensor_errors.shape_share);
     sensor_errors.gnss_slow_m = option("GNSS_SLOW", sensor_errors.gnss_slow_m);
+    sensor_errors.burn_relative = option("BURN", 0.0);
+    sensor_errors.outlier_share = option("OUTLIERS", 0.0);
     sensor_errors.gnss_white_m = option("GNSS_WHITE", sensor_errors.gnss_white_m);
     test::SimulatedSensors sensors(flight, sensor_errors, seed);
     nav::AnglesOnlySettings settings;
     settings.earth = flight.earth;
     settings.filter.brightness_offset_m = 0.1;
-    settings.filter.acceleration_psd = option("PSD", settings.filter.acceleration_psd);
+    settings.filter.acceleration.psd = option("PSD", settings.filter.acceleration.psd);
     settings.filter.bearing_bias_sigma = option("BIAS_SIGMA", 3.0) / 206264.8;
     settings.filter.maneuver_sigma_relative = option("MAN", settings.filter.maneuver_sigma_relative);
     settings.filter.resolved_share = option("RESOLVED", settings.filter.resolved_share);
@@ -42,7 +51,7 @@ int main(int argc, char** argv) {
     int updates = 0;
     std::printf("%3u", seed);
     for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
-      navigation->update(sensors.measure(k), flight.burns);
+      navigation->update(sensors.measure(k), sensors.known_burns());
       if (navigation->last_update().accepted) {
         nis += navigation->last_update().nis;
         ++updates;
@@ -52,20 +61,23 @@ int main(int argc, char** argv) {
             test::estimated_position_rtn(*navigation) - test::true_position_rtn(flight.epochs[k]);
         const fsw::Matrix6 covariance = navigation->covariance_rtn();
         const double sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-        std::printf(" | %8.2f (%7.2f)", error.norm(), sigma);
+        std::printf(" | %8.2f (%7.2f) %4.1f", error.norm(), sigma, test::roe_nees(flight.epochs[k], *navigation));
+        nees[waypoint] += test::roe_nees(flight.epochs[k], *navigation) / seeds;
         errors[waypoint].push_back(error.norm());
         ++waypoint;
       }
     }
     const auto& counters = navigation->counters();
-    std::printf(" | nis %.3f used %d refused %d failed %d widened %d restarts %d\n", nis / updates,
-                counters.bearings_used, counters.bearings_refused, counters.batches_failed, counters.widened,
-                counters.restarts);
+    std::printf(" | psd %.0e nis %.3f used %d refused %d failed %d widened %d restarts %d\n",
+                navigation->filter().acceleration_psd(), nis / updates, counters.bearings_used,
+                counters.bearings_refused, counters.batches_failed, counters.widened, counters.restarts);
   }
   std::printf("med");
   for (auto& of : errors) {
     std::sort(of.begin(), of.end());
     std::printf(" | %8.2f          ", of.empty() ? 0.0 : 0.5 * (of[(of.size() - 1) / 2] + of[of.size() / 2]));
   }
+  std::printf("\nnees");
+  for (const double mean : nees) std::printf(" | %8.2f          ", mean);
   std::printf("\n");
 }

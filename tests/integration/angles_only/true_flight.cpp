@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "fsw/math/cholesky6.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
@@ -154,12 +155,16 @@ SimulatedSensors::SimulatedSensors(const TrueFlight& flight, const SensorErrors&
   brightness_offset_m_ = errors.brightness_offset_m * (1.0 + 0.5 * normal());
   shape_ = {normal(), normal()};
   gnss_slow_ = normal3();
+  for (nav::Burn burn : flight.burns) {
+    burn.dv_rtn += errors.burn_relative * burn.dv_rtn.norm() * normal3();
+    known_burns_.push_back(burn);
+  }
 }
 
 /// The receiver's filter knows the burns, as flight software tells it.
 void SimulatedSensors::take_burns(fsw::GpsTime time) {
-  for (; next_burn_ < flight_.burns.size() && flight_.burns[next_burn_].time < time; ++next_burn_) {
-    const nav::Burn& burn = flight_.burns[next_burn_];
+  for (; next_burn_ < known_burns_.size() && known_burns_[next_burn_].time < time; ++next_burn_) {
+    const nav::Burn& burn = known_burns_[next_burn_];
     gnss_orbit_.advance_to(burn.time);
     gnss_orbit_.add_impulse(orbit::R_rtn_eci(gnss_orbit_.state()).transpose() * burn.dv_rtn);
   }
@@ -218,6 +223,13 @@ nav::TargetApriori SimulatedSensors::apriori() {
 
 Vector3 true_position_rtn(const TrueEpoch& epoch) {
   return orbit::relative_state_rtn(epoch.servicer, epoch.target).position_rtn;
+}
+
+double roe_nees(const TrueEpoch& epoch, const nav::AnglesOnlyNavigation& navigation) {
+  const Vector6 true_roe = must(nav::roe_of_target(epoch.servicer, epoch.target));
+  const double a = must(orbit::qns_from_cartesian(epoch.servicer)).a;
+  const Vector6 error = navigation.a_roe_m() - a * true_roe;
+  return error.dot(fsw::math::Cholesky6(navigation.a_roe_covariance_m2()).solve(error));
 }
 
 Vector3 estimated_position_rtn(const nav::AnglesOnlyNavigation& navigation) {

@@ -46,6 +46,7 @@ struct SensorErrors {
   double brightness_offset_m = 0.1;  ///< mean and half of it 1 sigma over seeds
   double gnss_white_m = 1.5;         ///< each axis, at 10 s
   double gnss_slow_m = 1.0;          ///< the same, correlated over ten minutes
+  double burn_relative = 0.0;        ///< of a burn's size, each axis: what is known of it against what was flown
   double outlier_share = 0.0;        ///< of bearings, to somewhere within a degree
 };
 
@@ -57,6 +58,8 @@ class SimulatedSensors {
   fsw::navigation::AnglesOnlyEpoch measure(std::size_t index);
   /// Two-line-element quality: 1 sigma a * (da, dl, de, di) of 30, 1000, 200, 200 m.
   fsw::navigation::TargetApriori apriori();
+  /// As flight software knows them.
+  const std::vector<fsw::navigation::Burn>& known_burns() const { return known_burns_; }
 
  private:
   void take_burns(fsw::GpsTime time);
@@ -73,10 +76,13 @@ class SimulatedSensors {
   fsw::Vector3 gnss_slow_ = fsw::Vector3::Zero();
   fsw::navigation::OrbitFilter gnss_orbit_;
   std::size_t next_burn_ = 0;
+  std::vector<fsw::navigation::Burn> known_burns_;
 };
 
 /// The target's position in the servicer's RTN, m: true, and as navigation has it.
 fsw::Vector3 true_position_rtn(const TrueEpoch& epoch);
+/// Normalised error squared of the estimated ROE: six on average if the filter is honest.
+double roe_nees(const TrueEpoch& epoch, const fsw::navigation::AnglesOnlyNavigation& navigation);
 fsw::Vector3 estimated_position_rtn(const fsw::navigation::AnglesOnlyNavigation& navigation);
 
 }  // namespace vbar::test

@@ -1,0 +1,40 @@
+#include "fsw/navigation/adaptive_noise.h"
+
+#include <algorithm>
+
+namespace vbar::fsw::navigation {
+namespace {
+
+// The correlation of 60 pairs of white numbers has a standard deviation of 0.13: three of them, and one.
+constexpr double kLagging = 0.39;
+constexpr double kWhite = 0.13;
+constexpr double kRaise = 10.0;
+constexpr double kLower = 0.5;
+
+}  // namespace
+
+void AdaptiveNoise::take(const Vector2& normalised) {
+  if (has_last_) {
+    products_ += normalised.dot(last_);
+    squares_ += 0.5 * (normalised.squaredNorm() + last_.squaredNorm());
+    ++pairs_;
+  }
+  last_ = normalised;
+  has_last_ = true;
+  if (pairs_ < kWindow) return;
+  if (products_ > kLagging * squares_) {
+    psd_ = std::min(psd_ * kRaise, settings_.psd_most);
+  } else if (products_ < kWhite * squares_) {
+    psd_ = std::max(psd_ * kLower, settings_.psd_least);
+  }
+  interrupt();
+}
+
+void AdaptiveNoise::interrupt() {
+  has_last_ = false;
+  pairs_ = 0;
+  products_ = 0.0;
+  squares_ = 0.0;
+}
+
+}  // namespace vbar::fsw::navigation
