@@ -1,5 +1,6 @@
 #include "host_sim/mission/load.h"
 
+#include "host_sim/mission/extends.h"
 #include "host_sim/mission/overrides.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/mission/toml_file.h"
@@ -9,6 +10,7 @@ namespace vbar::mission {
 Mission parse_mission(std::string_view text, const std::filesystem::path& file,
                       std::span<const std::string> overrides) {
   toml::table table = parse_toml(text, file.string());
+  put_over_extended(table, file);
   for (const std::string& assignment : overrides) apply_override(table, assignment);
 
   const TableReader document(table, "", file.string());
