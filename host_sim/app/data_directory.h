@@ -1,12 +1,10 @@
 #pragma once
 // Where the project's data files are.
 
-#include <filesystem>
+#include "host_sim/mission/data_directory.h"
 
 namespace vbar::app {
 
-/// $VBAR_DATA if set, else the data folder of the source tree this program was built from. Throws std::runtime_error
-/// that names the folder if it is not there.
-std::filesystem::path data_directory();
+using mission::data_directory;
 
 }  // namespace vbar::app

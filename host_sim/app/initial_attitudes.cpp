@@ -29,6 +29,11 @@ struct SettingsOf {
   }
 
   truth::AttitudeSettings operator()(const truth::PointedSettings& pointed) const { return pointed; }
+
+  truth::AttitudeSettings operator()(const mission::Commanded& commanded) const {
+    return truth::CommandedSettings{
+        commanded.axes, mission::drawn_control_error(mission.seed, spacecraft.name, commanded.control_error)};
+  }
 };
 
 }  // namespace

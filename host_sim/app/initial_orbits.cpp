@@ -1,5 +1,6 @@
 #include "host_sim/app/initial_orbits.h"
 
+#include <optional>
 #include <stdexcept>
 
 #include "fsw/orbit/mean_osculating.h"
@@ -28,14 +29,23 @@ CartesianState state_at_epoch(const mission::OrbitByElements& orbit, const missi
   return value_or_throw(fsw::orbit::cartesian_from_qns(orbit.elements), spacecraft);
 }
 
-CartesianState state_at_waypoint(const mission::Mission& mission, const mission::OrbitByWaypoint& orbit,
-                                 const mission::Spacecraft& spacecraft, const truth::TruthModel& truth) {
-  const mission::Waypoint* waypoint = mission.find_waypoint(orbit.waypoint_index);
+/// Mean ROE of `spacecraft` with respect to another one; none if its orbit is given by elements.
+std::optional<mission::OrbitByRoe> relative_orbit(const mission::Mission& mission,
+                                                  const mission::Spacecraft& spacecraft) {
+  if (const auto* by_roe = std::get_if<mission::OrbitByRoe>(&spacecraft.orbit)) return *by_roe;
+  const auto* const by_waypoint = std::get_if<mission::OrbitByWaypoint>(&spacecraft.orbit);
+  if (by_waypoint == nullptr) return std::nullopt;
+  const mission::Waypoint* waypoint = mission.find_waypoint(by_waypoint->waypoint_index);
   if (waypoint == nullptr) throw std::runtime_error("spacecraft \"" + spacecraft.name + "\": no such waypoint");
+  return mission::OrbitByRoe{by_waypoint->to, waypoint->a_roe_m};
+}
+
+CartesianState state_about(const mission::Mission& mission, const mission::OrbitByRoe& orbit,
+                           const mission::Spacecraft& spacecraft, const truth::TruthModel& truth) {
   const QnsElements chief_osculating =
       value_or_throw(fsw::orbit::qns_from_cartesian(truth.state(orbit.to)), spacecraft);
   const QnsElements chief_mean = value_or_throw(fsw::orbit::mean_from_osculating(chief_osculating), spacecraft);
-  const fsw::Vector6 roe = waypoint->a_roe_m / mission.guidance.reference_semi_major_axis_m;
+  const fsw::Vector6 roe = orbit.a_roe_m / mission.guidance.reference_semi_major_axis_m;
   return state_of(fsw::orbit::qns_from_roe(chief_mean, roe), spacecraft);
 }
 
@@ -67,9 +77,9 @@ void place_spacecraft(const mission::Mission& mission, truth::TruthModel& truth)
   }
   truth.advance_to(mission.start_time());
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
-    if (const auto* orbit = std::get_if<mission::OrbitByWaypoint>(&spacecraft.orbit)) {
+    if (const auto orbit = relative_orbit(mission, spacecraft)) {
       truth.add_spacecraft(
-          {spacecraft.name, state_at_waypoint(mission, *orbit, spacecraft, truth), true_surface(mission, spacecraft)});
+          {spacecraft.name, state_about(mission, *orbit, spacecraft, truth), true_surface(mission, spacecraft)});
     }
   }
 }

@@ -56,14 +56,15 @@ std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mi
   if (servicer.gnss) {
     const auto sky = std::make_shared<const twins::gnss::Constellation>(data_directory, mission.constellation,
                                                                         mission.start_time(), mission.seed);
-    for (const mission::Spacecraft* spacecraft : {&servicer, mission.find_spacecraft(servicer.gnss->partner)})
-      sensors.push_back(make_gnss_sensor(mission, *spacecraft, servicer, sky, data_directory));
+    sensors.push_back(make_gnss_sensor(mission, servicer, servicer, sky, data_directory));
+    if (const mission::Spacecraft* const partner = mission.find_spacecraft(servicer.gnss->partner))
+      sensors.push_back(make_gnss_sensor(mission, *partner, servicer, sky, data_directory));
   }
   return sensors;
 }
 
 std::optional<double> gnss_static_floor_m(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  if (!servicer.gnss) return std::nullopt;
+  if (!servicer.gnss || servicer.gnss->partner.empty()) return std::nullopt;
   const mission::Spacecraft& partner = *mission.find_spacecraft(servicer.gnss->partner);
   const twins::gnss::BodyFrameSettings& ours = servicer.gnss->receiver.body_frame;
   const twins::gnss::BodyFrameSettings& theirs = partner.gnss->receiver.body_frame;

@@ -19,7 +19,7 @@ std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mi
                                                                const std::filesystem::path& data_directory);
 
 /// Distance (m) between where the antennas of `servicer` and its partner are and where navigation takes them to be,
-/// from the run's own draws, as if the bodies had parallel axes. For the report only. None without GNSS.
+/// from the run's own draws, as if the bodies had parallel axes. For the report only. None without a GNSS pair.
 std::optional<double> gnss_static_floor_m(const mission::Mission& mission, const mission::Spacecraft& servicer);
 
 /// `spacecraft` must have a thruster.

@@ -25,11 +25,6 @@ engine::WallClock::Span wall_span(double s) {
   return std::chrono::duration_cast<engine::WallClock::Span>(std::chrono::duration<double>(s));
 }
 
-/// The spacecraft that the servicer's navigation is about.
-const std::string& observed_by(const mission::Spacecraft& servicer) {
-  return servicer.gnss ? servicer.gnss->partner : servicer.navigation->target;
-}
-
 /// The spacecraft that flies, with all it needs to.
 const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
   const mission::Spacecraft& servicer = flying_spacecraft(mission);
@@ -82,7 +77,7 @@ Simulation::Simulation(const mission::Mission& mission, const std::filesystem::p
   place_spacecraft(mission, truth_);
   set_attitudes(mission, data_directory, truth_);
   servicer_index_ = truth_.index_of(servicer_.name);
-  target_index_ = truth_.index_of(observed_by(servicer_));
+  target_index_ = truth_.index_of(servicer_.observes());
   sensors_ = make_sensors(mission, servicer_, data_directory);
   thruster_ = make_thruster(mission, servicer_);
 }

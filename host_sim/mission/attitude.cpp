@@ -32,6 +32,21 @@ fsw::Vector3 drawn_rate(std::uint64_t seed, std::string_view spacecraft, double 
   return size * fsw::Vector3(across * std::cos(longitude), across * std::sin(longitude), height);
 }
 
+truth::ControlError drawn_control_error(std::uint64_t seed, std::string_view spacecraft, double sigma) {
+  constexpr double kShortest_s = 20.0, kLongest_s = 600.0;
+  engine::RandomStream random = stream(seed, spacecraft, "control_error");
+  truth::ControlError error;
+  for (auto& axis : error) {
+    // A sinusoid's mean square is half its amplitude's. Periods spread evenly over their logarithm.
+    const double amplitude = sigma * std::sqrt(2.0 / static_cast<double>(axis.size()));
+    for (truth::Sinusoid& one : axis) {
+      const double period_s = kShortest_s * std::pow(kLongest_s / kShortest_s, random.uniform());
+      one = {amplitude, kTwoPi / period_s, random.uniform(0.0, kTwoPi)};
+    }
+  }
+  return error;
+}
+
 truth::AttitudeState start_of(const Tumble& tumble, std::uint64_t seed, std::string_view spacecraft) {
   truth::AttitudeState start;
   start.q_body_eci = tumble.q_body_eci ? *tumble.q_body_eci : drawn_attitude(seed, spacecraft);

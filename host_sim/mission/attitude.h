@@ -31,14 +31,24 @@ struct Inertial {
   std::optional<Eigen::Quaterniond> q_body_eci;  ///< else drawn
 };
 
+/// profile = "commanded": the flight software says where the boresight goes.
+struct Commanded {
+  truth::CommandedAxes axes;
+  double control_error = 0.0;  ///< rad, 1 sigma of each axis over time
+};
+
 /// The profiles that point need nothing drawn.
-using Attitude = std::variant<Tumble, Inertial, truth::PointedSettings>;
+using Attitude = std::variant<Tumble, Inertial, truth::PointedSettings, Commanded>;
 
 /// An attitude drawn for a spacecraft: uniform over all rotations.
 [[nodiscard]] Eigen::Quaterniond drawn_attitude(std::uint64_t seed, std::string_view spacecraft);
 
 /// A rate in body axes, rad/s: about an axis uniform on the sphere, its size uniform from `slowest` to `fastest`.
 [[nodiscard]] fsw::Vector3 drawn_rate(std::uint64_t seed, std::string_view spacecraft, double slowest, double fastest);
+
+/// What attitude control misses, each body axis on its own: five sinusoids with periods of 20 to 600 s and phases of
+/// the seed's, equally strong, so that the root mean square over a long time is `sigma` (rad).
+[[nodiscard]] truth::ControlError drawn_control_error(std::uint64_t seed, std::string_view spacecraft, double sigma);
 
 /// The attitude at the start of the run, drawn where the file does not say it.
 [[nodiscard]] truth::AttitudeState start_of(const Tumble& tumble, std::uint64_t seed, std::string_view spacecraft);

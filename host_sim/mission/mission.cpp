@@ -6,6 +6,13 @@
 
 namespace vbar::mission {
 
+const std::string& Spacecraft::observes() const {
+  static const std::string nobody;
+  if (camera) return camera->target;
+  if (gnss) return gnss->partner;
+  return navigation ? navigation->target : nobody;
+}
+
 bool Mission::flies() const {
   return std::any_of(spacecraft.begin(), spacecraft.end(),
                      [](const Spacecraft& candidate) { return candidate.flight_computer.has_value(); });

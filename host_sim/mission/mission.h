@@ -17,6 +17,7 @@
 #include "host_sim/engine/link_model.h"
 #include "host_sim/mission/attitude.h"
 #include "host_sim/truth/truth_settings.h"
+#include "host_sim/twins/camera/camera_settings.h"
 #include "host_sim/twins/gnss/constellation.h"
 #include "host_sim/twins/gnss/crosslink.h"
 #include "host_sim/twins/gnss/gnss_settings.h"
@@ -36,6 +37,12 @@ struct OrbitByElements {
 struct OrbitByWaypoint {
   std::string to;
   int waypoint_index = 0;
+};
+
+/// Orbit given by mean ROE with respect to another spacecraft, at the start of the run.
+struct OrbitByRoe {
+  std::string to;
+  fsw::Vector6 a_roe_m = fsw::Vector6::Zero();  ///< times the reference a
 };
 
 using truth::SurfaceProperties;
@@ -69,8 +76,37 @@ struct NavigationSensor {
 /// sensors.gnss: a receiver and a star tracker.
 struct GnssSensor {
   twins::gnss::GnssReceiverSettings receiver;
-  /// The spacecraft whose receiver's data come by the crosslink; empty: this one's go to its partner.
+  /// The spacecraft whose receiver's data come by the crosslink; empty: this one's go to its partner, or they are all
+  /// there is, beside a camera.
   std::string partner;
+};
+
+/// sensors.camera: navigates by images of one spacecraft among all that have a CAD model.
+struct CameraSensor {
+  std::string camera;  ///< names its file in data/cameras, which `settings` began with
+  twins::camera::CameraSettings settings;
+  std::string target;     ///< the spacecraft it navigates to
+  fsw::Duration period;   ///< between exposures
+  fsw::Duration readout;  ///< from the middle of an exposure until the image leaves the camera
+  Eigen::Quaterniond q_camera_body = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
+  fsw::Vector3 position_body_m = fsw::Vector3::Zero();                ///< from the centre of mass
+};
+
+/// What angles-only navigation goes by, telecommanded; fields as in vbar.lcm, angles_only_configuration.
+struct AnglesOnly {
+  double detection_sigmas = 0.0;
+  double centroid_floor_px = 0.0;
+  double pointing_tolerance = 0.0;
+  double acceleration_psd = 0.0;
+  double acceleration_psd_least = 0.0;
+  double acceleration_psd_most = 0.0;
+  double brightness_offset_m = 0.0;
+  double maneuver_sigma = 0.0;
+  double maneuver_sigma_relative = 0.0;
+  int batch_images = 0;
+  /// Of the target's place that is telecommanded at the start: mean ROE times the reference a, 1 sigma.
+  fsw::Vector6 apriori_sigma_a_roe_m = fsw::Vector6::Zero();
+  friend bool operator==(const AnglesOnly&, const AnglesOnly&) = default;
 };
 
 /// What flight software navigates by, telecommanded; fields as in vbar.lcm, navigation_configuration.
@@ -106,12 +142,17 @@ struct Spacecraft {
   std::string name;
   std::uint8_t number = 0;  ///< as in packet headers
   SurfaceProperties surface;
-  std::variant<OrbitByElements, OrbitByWaypoint> orbit;
+  std::string model;  ///< CAD file that cameras see it by, data/models/<model>.obj; empty: no camera sees it
+  std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe> orbit;
   std::optional<Attitude> attitude;
   std::optional<FlightComputer> flight_computer;
   std::optional<NavigationSensor> navigation;
   std::optional<GnssSensor> gnss;
+  std::optional<CameraSensor> camera;
   std::optional<Thruster> thruster;
+
+  /// The spacecraft that its sensors navigate to; empty if it has none.
+  [[nodiscard]] const std::string& observes() const;
 };
 
 /// Which solver plans the leg that ends at a waypoint; numbers as in vbar.lcm.
@@ -168,6 +209,7 @@ struct Mission {
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
   GnssNavigation gnss_navigation;
+  AnglesOnly angles_only;
   std::vector<PrescribedBurn> burns;  ///< of the spacecraft that flies, in order of time
   std::vector<Waypoint> waypoints;    ///< in order of time
   engine::ClockSettings clock;

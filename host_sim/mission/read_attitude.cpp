@@ -21,14 +21,15 @@ using truth::TorqueKind;
 template <class Enum, std::size_t N>
 using Names = std::array<std::pair<std::string_view, Enum>, N>;
 
-enum class Profile { kNone, kTumble, kInertial, kZenith, kNadir, kAlongTrack, kTarget };
-constexpr Names<Profile, 7> kProfiles{{{"none", Profile::kNone},
+enum class Profile { kNone, kTumble, kInertial, kZenith, kNadir, kAlongTrack, kTarget, kCommanded };
+constexpr Names<Profile, 8> kProfiles{{{"none", Profile::kNone},
                                        {"tumble", Profile::kTumble},
                                        {"inertial", Profile::kInertial},
                                        {"zenith", Profile::kZenith},
                                        {"nadir", Profile::kNadir},
                                        {"along_track", Profile::kAlongTrack},
-                                       {"target", Profile::kTarget}}};
+                                       {"target", Profile::kTarget},
+                                       {"commanded", Profile::kCommanded}}};
 constexpr Names<Direction, 5> kSecondDirections{{{"orbit_normal", Direction::kOrbitNormal},
                                                  {"along_track", Direction::kAlongTrack},
                                                  {"zenith", Direction::kZenith},
@@ -46,16 +47,6 @@ constexpr double kUsualFastest_degps = 1.5;
 
 Vector3 vector(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
-}
-
-/// [w, x, y, z], to the digits that people write.
-std::optional<Eigen::Quaterniond> read_quaternion(const TableReader& section) {
-  if (!section.has("q_body_eci")) return std::nullopt;
-  const std::vector<double> q = section.numbers("q_body_eci", 4, 4, from_to(-1.0, 1.0));
-  const Eigen::Quaterniond quaternion(q[0], q[1], q[2], q[3]);
-  if (std::abs(quaternion.norm() - 1.0) > 1e-3)
-    section.refuse("q_body_eci", "a quaternion whose length is not 1", "[w, x, y, z] of length 1, to 0.001");
-  return quaternion.normalized();
 }
 
 void read_rate(const TableReader& section, Tumble& tumble) {
@@ -77,7 +68,7 @@ void read_rate(const TableReader& section, Tumble& tumble) {
 Tumble read_tumble(const TableReader& section, const std::string& usual_body) {
   section.accept_only({"profile", "q_body_eci", "rate_degps", "tumble_rate_degps", "body", "inertia_kgm2", "torques"});
   Tumble tumble;
-  tumble.q_body_eci = read_quaternion(section);
+  tumble.q_body_eci = read_quaternion(section, "q_body_eci");
   read_rate(section, tumble);
   tumble.body = section.name("body", usual_body);
   tumble.inertia_kgm2 = read_inertia(section);
@@ -98,23 +89,12 @@ Direction boresight_of(Profile profile) {
   }
 }
 
-std::string read_target(const TableReader& section, const std::string& own, const std::vector<std::string>& names) {
-  const std::string target = section.name("target", "target");
-  std::vector<std::string_view> others;
-  for (const std::string& name : names)
-    if (name != own) others.push_back(name);
-  if (std::find(others.begin(), others.end(), target) == others.end())
-    section.refuse("target", "the spacecraft \"" + target + "\"",
-                   others.empty() ? "a mission with another spacecraft" : listing_of(others));
-  return target;
-}
-
 truth::PointedSettings read_pointed(const TableReader& section, Profile profile, const std::string& own,
                                     const std::vector<std::string>& names) {
   truth::PointedSettings pointed;
   if (profile == Profile::kTarget) {
     section.accept_only({"profile", "target", "boresight_body", "second_body", "second_to"});
-    pointed.spacecraft = read_target(section, own, names);
+    pointed.spacecraft = read_other_spacecraft(section, own, names);
   } else {
     section.accept_only({"profile", "boresight_body", "second_body", "second_to"});
   }
@@ -130,6 +110,26 @@ truth::PointedSettings read_pointed(const TableReader& section, Profile profile,
   if (truth::are_one_line(pointing.boresight_to, pointing.second_to))
     section.refuse("second_to", "the line that the boresight follows", "another direction");
   return pointed;
+}
+
+constexpr double kArcsecond = kDegree / 3600.0;
+
+Commanded read_commanded(const TableReader& section) {
+  section.accept_only({"profile", "control_error_arcsec", "initial_boresight_rtn", "boresight_body", "second_body"});
+  Commanded commanded;
+  commanded.control_error = kArcsecond * section.number("control_error_arcsec", from_to(0.0, 36000.0), 30.0);
+  const Range component = from_to(-1.0, 1.0);
+  truth::CommandedAxes& axes = commanded.axes;
+  axes.initial_boresight_rtn = vector(section.three_numbers("initial_boresight_rtn", component, {{0.0, -1.0, 0.0}}));
+  axes.boresight_body = vector(section.three_numbers("boresight_body", component, {{0.0, 0.0, 1.0}}));
+  axes.second_body = vector(section.three_numbers("second_body", component, {{0.0, -1.0, 0.0}}));
+  if (!truth::are_two_axes(axes.boresight_body, axes.second_body))
+    section.refuse(section.has("boresight_body") ? "boresight_body" : "second_body", "an axis along the other one",
+                   "boresight_body and second_body in two different directions");
+  if (!truth::leaves_zenith_clear(axes.initial_boresight_rtn, Vector3::Zero()))
+    section.refuse("initial_boresight_rtn", "a boresight at the zenith or the nadir, or none",
+                   "a direction [R, T, N] that leaves the second axis a zenith to keep near to");
+  return commanded;
 }
 
 }  // namespace
@@ -153,6 +153,27 @@ std::optional<fsw::Matrix3> read_inertia(const TableReader& section) {
   return inertia;
 }
 
+std::optional<Eigen::Quaterniond> read_quaternion(const TableReader& section, std::string_view key) {
+  if (!section.has(key)) return std::nullopt;
+  const std::vector<double> q = section.numbers(key, 4, 4, from_to(-1.0, 1.0));
+  const Eigen::Quaterniond quaternion(q[0], q[1], q[2], q[3]);
+  if (std::abs(quaternion.norm() - 1.0) > 1e-3)
+    section.refuse(key, "a quaternion whose length is not 1", "[w, x, y, z] of length 1, to 0.001");
+  return quaternion.normalized();
+}
+
+std::string read_other_spacecraft(const TableReader& section, const std::string& own,
+                                  const std::vector<std::string>& names) {
+  const std::string target = section.name("target", "target");
+  std::vector<std::string_view> others;
+  for (const std::string& name : names)
+    if (name != own) others.push_back(name);
+  if (std::find(others.begin(), others.end(), target) == others.end())
+    section.refuse("target", "the spacecraft \"" + target + "\"",
+                   others.empty() ? "a mission with another spacecraft" : listing_of(others));
+  return target;
+}
+
 std::optional<Attitude> read_attitude(const TableReader& section, const std::string& own, const std::string& usual_body,
                                       const std::vector<std::string>& names) {
   const auto profile = section.choice<Profile>("profile", kProfiles, Profile::kNone);
@@ -164,7 +185,9 @@ std::optional<Attitude> read_attitude(const TableReader& section, const std::str
       return read_tumble(section, usual_body);
     case Profile::kInertial:
       section.accept_only({"profile", "q_body_eci"});
-      return Inertial{read_quaternion(section)};
+      return Inertial{read_quaternion(section, "q_body_eci")};
+    case Profile::kCommanded:
+      return read_commanded(section);
     default:
       return read_pointed(section, profile, own, names);
   }

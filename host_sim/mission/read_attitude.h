@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host_sim/mission/attitude.h"
@@ -13,6 +14,13 @@ namespace vbar::mission {
 /// inertia_kgm2 of the table: [xx, yy, zz] or [xx, yy, zz, xy, xz, yz]; nothing if it is missing. Throws MissionError
 /// for what is not the inertia of a body (truth::check_inertia).
 [[nodiscard]] std::optional<fsw::Matrix3> read_inertia(const TableReader& section);
+
+/// A rotation [w, x, y, z] under `key`, to the digits that people write; nothing if it is missing. Throws MissionError.
+[[nodiscard]] std::optional<Eigen::Quaterniond> read_quaternion(const TableReader& section, std::string_view key);
+
+/// The value of `target`, "target" if it is missing: another spacecraft than `own`. Throws MissionError.
+[[nodiscard]] std::string read_other_spacecraft(const TableReader& section, const std::string& own,
+                                                const std::vector<std::string>& names);
 
 /// `own`: the name of the spacecraft; `usual_body`: its body if the table names none; `names`: of all spacecraft of the
 /// mission. Nothing for profile = "none", the default. Throws MissionError.

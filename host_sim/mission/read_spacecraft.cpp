@@ -4,6 +4,7 @@
 #include "fsw/math/math.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_attitude.h"
+#include "host_sim/mission/read_camera.h"
 #include "host_sim/mission/read_gnss.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/mission/spacecraft_group.h"
@@ -61,21 +62,26 @@ OrbitByElements read_elements(const TableReader& section, const Member& member) 
   return orbit;
 }
 
-OrbitByWaypoint read_relative(const TableReader& section, const Mission& mission) {
-  section.accept_only({"to", "waypoint"});
-  OrbitByWaypoint orbit;
-  orbit.to = section.name("to");
+using Orbit = std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe>;
+
+Orbit read_relative(const TableReader& section, const Mission& mission) {
+  section.accept_only({"to", "waypoint", "a_roe_m"});
+  const std::string to = section.name("to");
   // Only one that stands above, so that the orbits can be made in order.
-  if (mission.find_spacecraft(orbit.to) == nullptr)
+  if (mission.find_spacecraft(to) == nullptr)
     section.refuse_value("to", "the name of a spacecraft further up in the file");
-  orbit.waypoint_index = static_cast<int>(section.integer("waypoint", 0, 9999));
+  if (section.has("a_roe_m")) {
+    if (section.has("waypoint")) section.refuse("a_roe_m", "both waypoint and a_roe_m", "one of them");
+    const auto a_roe_m = section.six_numbers("a_roe_m", from_to(-1e6, 1e6));
+    return OrbitByRoe{to, Eigen::Map<const fsw::Vector6>(a_roe_m.data())};
+  }
+  OrbitByWaypoint orbit{to, static_cast<int>(section.integer("waypoint", 0, 9999))};
   if (mission.find_waypoint(orbit.waypoint_index) == nullptr)
     section.refuse_value("waypoint", "the index of a waypoint");
   return orbit;
 }
 
-std::variant<OrbitByElements, OrbitByWaypoint> read_orbit(const TableReader& section, const Member& member,
-                                                          const Mission& mission) {
+Orbit read_orbit(const TableReader& section, const Member& member, const Mission& mission) {
   if (section.has("elements") == section.has("relative"))
     section.refuse("", section.has("elements") ? "both elements and relative" : "neither elements nor relative",
                    "exactly one of them");
@@ -153,6 +159,7 @@ Spacecraft read_one(TableReader& section, const Member& member, const std::vecto
   spacecraft.name = member.group.member_name(member.index);
   spacecraft.number = read_number(section, member, mission);
   spacecraft.surface = read_surface(section, member);
+  if (section.has("model")) spacecraft.model = section.name("model");
   spacecraft.orbit = read_orbit(section, member, mission);
   spacecraft.attitude = read_attitude(section.table("attitude"), spacecraft.name,
                                       member.group.name() == "target" ? "tango" : "mango", names);
@@ -160,11 +167,12 @@ Spacecraft read_one(TableReader& section, const Member& member, const std::vecto
     spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
 
   const TableReader sensors = section.table("sensors");
-  sensors.accept_only({"navigation", "gnss"});
+  sensors.accept_only({"navigation", "gnss", "camera"});
   if (sensors.has("navigation")) spacecraft.navigation = read_navigation(sensors.table("navigation"), names, mission);
   if (sensors.has("gnss")) spacecraft.gnss = read_gnss_sensor(sensors.table("gnss"), spacecraft.name, names);
   if (spacecraft.navigation && spacecraft.gnss)
     sensors.refuse("gnss", "a second way to navigate", "navigation or gnss, not both");
+  if (sensors.has("camera")) spacecraft.camera = read_camera(sensors.table("camera"), spacecraft.name, names, mission);
   const TableReader actuators = section.table("actuators");
   actuators.accept_only({"thruster"});
   if (actuators.has("thruster")) spacecraft.thruster = read_thruster(actuators.table("thruster"));
@@ -173,16 +181,37 @@ Spacecraft read_one(TableReader& section, const Member& member, const std::vecto
 
 void read_section(TableReader& section, const SpacecraftGroup& group, const std::vector<std::string>& names,
                   Mission& mission) {
-  section.accept_only({"name", "count", "spacing", "number", "mass_kg", "drag_area_m2", "drag_coefficient",
+  section.accept_only({"name", "count", "spacing", "number", "model", "mass_kg", "drag_area_m2", "drag_coefficient",
                        "radiation_area_m2", "radiation_coefficient", "elements", "relative", "attitude",
                        "flight_computer", "sensors", "actuators"});
   for (int index = 0; index < group.count(); ++index)
     mission.spacecraft.push_back(read_one(section, {group, index}, names, mission));
 }
 
+/// A camera navigates with the flight software and the receiver beside it, to something that it can see.
+void check_camera(const TableReader& section, const Spacecraft& servicer, const Mission& mission) {
+  if (!servicer.camera) return;
+  const TableReader sensors = section.table("sensors");
+  if (!servicer.flight_computer)
+    sensors.refuse("camera", "a camera without a flight computer", "a camera of a spacecraft that flies software");
+  if (!servicer.gnss)
+    sensors.refuse("camera", "a camera without sensors.gnss",
+                   "a GNSS receiver too: it tells the spacecraft's own orbit");
+  if (!servicer.gnss->partner.empty())
+    sensors.table("gnss").refuse_value("partner", "nothing, beside a camera: the target does not cooperate");
+  if (!servicer.attitude)
+    sensors.refuse("camera", "a camera without an attitude", "an attitude: a camera looks somewhere");
+  const Spacecraft& target = *mission.find_spacecraft(servicer.camera->target);
+  if (target.model.empty() || !target.attitude)
+    sensors.table("camera").refuse(
+        "target",
+        "the spacecraft \"" + target.name + "\" without " + (target.model.empty() ? "a model" : "an attitude"),
+        "a spacecraft with a model and an attitude, so that it can be seen");
+}
+
 /// Both ends of relative navigation by GNSS have what it takes.
 void check_gnss_pair(const TableReader& section, const Spacecraft& servicer, const Mission& mission) {
-  if (!servicer.flight_computer || !servicer.gnss) return;
+  if (!servicer.flight_computer || !servicer.gnss || servicer.camera) return;
   const TableReader gnss = section.table("sensors").table("gnss");
   const Spacecraft* const partner = mission.find_spacecraft(servicer.gnss->partner);
   if (partner == nullptr || !partner->gnss)
@@ -218,8 +247,11 @@ void read_spacecraft(const TableReader& document, Mission& mission) {
   }
   for (std::size_t k = 0; k < sections.size(); ++k) read_section(sections[k], groups[k], names, mission);
   for (std::size_t k = 0; k < sections.size(); ++k) {
-    for (int index = 0; index < groups[k].count(); ++index)
-      check_gnss_pair(sections[k], *mission.find_spacecraft(groups[k].member_name(index)), mission);
+    for (int index = 0; index < groups[k].count(); ++index) {
+      const Spacecraft& spacecraft = *mission.find_spacecraft(groups[k].member_name(index));
+      check_camera(sections[k], spacecraft, mission);
+      check_gnss_pair(sections[k], spacecraft, mission);
+    }
   }
 }
 

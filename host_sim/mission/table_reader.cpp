@@ -50,8 +50,9 @@ std::string location_of(const toml::node& node, const std::string& file) {
   const toml::node* located = first_with_location(node);
   if (located == nullptr) return file;
   const toml::source_region& source = located->source();
-  if (source.path && *source.path != file) return *source.path;
-  return file + ":" + std::to_string(source.begin.line);
+  const std::string& path = source.path ? *source.path : file;  // another one if the file extends it
+  if (path.starts_with("--set ")) return path;
+  return path + ":" + std::to_string(source.begin.line);
 }
 
 std::string description_of(const toml::node& node) {

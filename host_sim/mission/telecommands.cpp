@@ -1,11 +1,32 @@
 #include "host_sim/mission/telecommands.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "fsw/math/math.h"
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
+#include "host_sim/engine/random_stream.h"
 
 namespace vbar::mission {
+namespace {
+
+using fsw::orbit::QnsElements;
+
+constexpr const char* kNoOrbit =
+    "the target's a-priori state is no orbit: the sigmas of angles_only.apriori are too large";
+
+QnsElements mean_of(const fsw::orbit::CartesianState& state) {
+  const auto osculating = fsw::orbit::qns_from_cartesian(state);
+  if (!osculating.ok()) throw std::runtime_error(kNoOrbit);
+  const auto mean = fsw::orbit::mean_from_osculating(osculating.value());
+  if (!mean.ok()) throw std::runtime_error(kNoOrbit);
+  return mean.value();
+}
+
+}  // namespace
 
 vbar::waypoint_table waypoint_table_of(const Mission& mission) {
   vbar::waypoint_table table{};
@@ -44,9 +65,8 @@ vbar::gnc_configuration gnc_configuration_of(const Mission& mission) {
 vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer,
                                                            const truth::EarthOrientationSeries& orientation) {
   const GnssNavigation& navigation = mission.gnss_navigation;
-  const Spacecraft& target = *mission.find_spacecraft(servicer.gnss->partner);
   vbar::navigation_configuration configuration{};
-  configuration.source = 1;
+  configuration.source = servicer.camera ? 2 : 1;
   configuration.resolve_ambiguities = navigation.resolve_ambiguities ? 1 : 0;
   configuration.min_success_rate = navigation.min_success_rate;
   configuration.min_ratio = navigation.min_ratio;
@@ -56,7 +76,8 @@ vbar::navigation_configuration navigation_configuration_of(const Mission& missio
     std::copy(nominal.begin(), nominal.end(), antenna_m);
   };
   copy_antenna(servicer, configuration.servicer_antenna_body_m);
-  copy_antenna(target, configuration.target_antenna_body_m);
+  if (const Spacecraft* const partner = mission.find_spacecraft(servicer.gnss->partner))
+    copy_antenna(*partner, configuration.target_antenna_body_m);
   configuration.antenna_offset_sigma_m = navigation.antenna_offset_sigma_m;
   configuration.phase_centre_jitter_m = navigation.phase_centre_jitter_m;
   configuration.code_bias_sigma_m = navigation.code_bias_sigma_m;
@@ -77,6 +98,69 @@ vbar::navigation_configuration navigation_configuration_of(const Mission& missio
   configuration.pole_x = kTenMicroarcseconds * std::round(now.pole_x / kTenMicroarcseconds);
   configuration.pole_y = kTenMicroarcseconds * std::round(now.pole_y / kTenMicroarcseconds);
   return configuration;
+}
+
+vbar::camera_configuration camera_configuration_of(const Spacecraft& servicer) {
+  const CameraSensor& camera = *servicer.camera;
+  const twins::camera::CameraSettings& settings = camera.settings;
+  const twins::camera::DetectorSettings& detector = settings.detector;
+  vbar::camera_configuration configuration{};
+  configuration.width = static_cast<std::int16_t>(settings.region.width);
+  configuration.height = static_cast<std::int16_t>(settings.region.height);
+  configuration.origin_x = static_cast<std::int16_t>(settings.region.x);
+  configuration.origin_y = static_cast<std::int16_t>(settings.region.y);
+  configuration.bits = static_cast<std::int8_t>(detector.bits);
+  std::ranges::fill(configuration.focal_length_px, settings.focal_length_px());
+  std::ranges::copy(settings.optics.principal_point_px, configuration.principal_point_px);
+  std::ranges::copy(settings.optics.distortion, configuration.distortion);
+  configuration.point_spread_sigma_px = settings.optics.point_spread_sigma_px;
+  configuration.zero_magnitude_dn = settings.zero_magnitude_photons * settings.exposure_s *
+                                    settings.electrons_per_photon_m2() * detector.gain_dn_per_electron;
+  // A full pixel reads so much less a few sigma of noise; the converter's end comes first if the gain is high.
+  constexpr double kFull = 0.99;
+  const double full_dn = detector.offset_dn + kFull * detector.gain_dn_per_electron * detector.full_well_electrons;
+  configuration.saturation_dn = std::min(full_dn, (1 << detector.bits) - 1.0);
+  configuration.gain_dn_per_electron = detector.gain_dn_per_electron;
+  const Eigen::Quaterniond& q = camera.q_camera_body;
+  std::ranges::copy(std::array{q.w(), q.x(), q.y(), q.z()}, configuration.q_camera_body);
+  std::ranges::copy(camera.position_body_m, configuration.position_body_m);
+  return configuration;
+}
+
+vbar::angles_only_configuration angles_only_configuration_of(const Mission& mission) {
+  const AnglesOnly& navigation = mission.angles_only;
+  vbar::angles_only_configuration configuration{};
+  configuration.detection_sigmas = navigation.detection_sigmas;
+  configuration.centroid_floor_px = navigation.centroid_floor_px;
+  configuration.pointing_tolerance = navigation.pointing_tolerance;
+  configuration.acceleration_psd = navigation.acceleration_psd;
+  configuration.acceleration_psd_least = navigation.acceleration_psd_least;
+  configuration.acceleration_psd_most = navigation.acceleration_psd_most;
+  configuration.brightness_offset_m = navigation.brightness_offset_m;
+  configuration.maneuver_sigma = navigation.maneuver_sigma;
+  configuration.maneuver_sigma_relative = navigation.maneuver_sigma_relative;
+  configuration.batch_images = navigation.batch_images;
+  return configuration;
+}
+
+vbar::target_apriori target_apriori_of(const Mission& mission, const Spacecraft& servicer,
+                                       const fsw::orbit::CartesianState& servicer_state,
+                                       const fsw::orbit::CartesianState& target_state) {
+  const QnsElements chief = mean_of(servicer_state);
+  fsw::Vector6 roe = fsw::orbit::roe_from_qns(chief, mean_of(target_state));
+  const fsw::Vector6& sigma_m = mission.angles_only.apriori_sigma_a_roe_m;
+  engine::RandomStream random(mission.seed, servicer.name + "/target_apriori");
+  for (Eigen::Index k = 0; k < 6; ++k)
+    roe(k) += sigma_m(k) / mission.guidance.reference_semi_major_axis_m * random.normal();
+  const auto osculating = fsw::orbit::osculating_from_mean(fsw::orbit::qns_from_roe(chief, roe));
+  if (!osculating.ok()) throw std::runtime_error(kNoOrbit);
+  const auto state = fsw::orbit::cartesian_from_qns(osculating.value());
+  if (!state.ok()) throw std::runtime_error(kNoOrbit);
+  vbar::target_apriori apriori{};
+  std::ranges::copy(state.value().position_eci, apriori.position_eci);
+  std::ranges::copy(state.value().velocity_eci, apriori.velocity_eci);
+  std::ranges::copy(sigma_m, apriori.sigma_a_roe_m);
+  return apriori;
 }
 
 vbar::mode_command mode_command_of(const Mission& mission) {

@@ -13,10 +13,21 @@ namespace vbar::mission {
 
 [[nodiscard]] vbar::gnc_configuration gnc_configuration_of(const Mission& mission);
 
-/// `orientation`: the Earth's at the start, as the ground predicts it. Antennas are the nominal ones of the spacecraft
-/// that flies and its GNSS partner.
+/// For a spacecraft that navigates by GNSS or camera. `orientation`: the Earth's at the start, as the ground predicts
+/// it. Antennas are the nominal ones of the spacecraft that flies and its GNSS partner, if it has one.
 [[nodiscard]] vbar::navigation_configuration navigation_configuration_of(
     const Mission& mission, const Spacecraft& servicer, const truth::EarthOrientationSeries& orientation);
+
+/// `servicer` must have a camera, as calibrated on the ground: without error.
+[[nodiscard]] vbar::camera_configuration camera_configuration_of(const Spacecraft& servicer);
+
+[[nodiscard]] vbar::angles_only_configuration angles_only_configuration_of(const Mission& mission);
+
+/// Where the ground last knew the target to be, out of the true states of both at the start: mean ROE off by what the
+/// seed draws with the mission's sigmas. Throws std::runtime_error for states that are no orbits.
+[[nodiscard]] vbar::target_apriori target_apriori_of(const Mission& mission, const Spacecraft& servicer,
+                                                     const fsw::orbit::CartesianState& servicer_state,
+                                                     const fsw::orbit::CartesianState& target_state);
 
 [[nodiscard]] vbar::mode_command mode_command_of(const Mission& mission);
 

@@ -58,6 +58,9 @@ class SpacecraftPropagator {
   void set_attitude(std::unique_ptr<AttitudeMotion> attitude) { attitude_ = std::move(attitude); }
   bool has_attitude() const { return attitude_ != nullptr; }
 
+  /// Null if it has none.
+  AttitudeMotion* attitude() { return attitude_.get(); }
+
   /// Attitude at a time as in state_at. Throws std::logic_error if the spacecraft has none, std::domain_error, naming
   /// the spacecraft, where it is not defined.
   AttitudeState attitude_at(double seconds) const;

@@ -75,6 +75,12 @@ class TruthModel {
   /// (a body that is none, axes that are not two, a spacecraft to point at that is not there).
   void set_attitude(std::size_t index, const AttitudeSettings& settings);
 
+  /// Turns a spacecraft with a commanded attitude to a direction in its own RTN: a unit vector and its rate there
+  /// (1/s), at `time`. One that has passed counts from now on, where its line has led by now. False if it is refused
+  /// (CommandedAttitude::take). Throws std::logic_error if the spacecraft's attitude is not one that is commanded.
+  bool command_pointing(std::size_t index, fsw::GpsTime time, const fsw::Vector3& boresight_rtn,
+                        const fsw::Vector3& boresight_rate_rtn);
+
   bool has_attitude(std::size_t index) const { return spacecraft_.at(index)->has_attitude(); }
 
   /// Attitude at the current time. Throws std::logic_error if the spacecraft has none, std::domain_error where its

@@ -53,6 +53,18 @@ void TruthModel::set_attitude(std::size_t index, const AttitudeSettings& setting
   own->set_attitude(make_attitude(settings, std::move(surroundings)));
 }
 
+bool TruthModel::command_pointing(std::size_t index, fsw::GpsTime time, const fsw::Vector3& boresight_rtn,
+                                  const fsw::Vector3& boresight_rate_rtn) {
+  SpacecraftPropagator& spacecraft = *spacecraft_.at(index);
+  auto* const attitude = dynamic_cast<CommandedAttitude*>(spacecraft.attitude());
+  if (attitude == nullptr) {
+    throw std::logic_error(fmt::format("the attitude of spacecraft \"{}\" is not commanded", spacecraft.name()));
+  }
+  const fsw::GpsTime from = std::max(time, time_);
+  const double led_s = std::min(fsw::seconds(from - time), kLongestLine_s);
+  return attitude->take({seconds_after_epoch(from), boresight_rtn + led_s * boresight_rate_rtn, boresight_rate_rtn});
+}
+
 AttitudeState TruthModel::attitude_at(std::size_t index, fsw::GpsTime time) const {
   return spacecraft_.at(index)->attitude_at(seconds_after_epoch(time));
 }

@@ -7,6 +7,7 @@
 
 #include "host_sim/truth/attitude/attitude_state.h"
 #include "host_sim/truth/attitude/body.h"
+#include "host_sim/truth/attitude/commanded_attitude.h"
 #include "host_sim/truth/attitude/pointing_profile.h"
 
 namespace vbar::truth {
@@ -32,6 +33,12 @@ struct PointedSettings {
   std::string spacecraft;  ///< pointed at, if a direction of `pointing` is kSpacecraft
 };
 
-using AttitudeSettings = std::variant<TumbleSettings, InertialSettings, PointedSettings>;
+/// A body that points where it is told.
+struct CommandedSettings {
+  CommandedAxes axes;
+  ControlError control_error{};
+};
+
+using AttitudeSettings = std::variant<TumbleSettings, InertialSettings, PointedSettings, CommandedSettings>;
 
 }  // namespace vbar::truth

@@ -47,6 +47,10 @@ std::unique_ptr<AttitudeMotion> make(const PointedSettings& settings, AttitudeSu
   return std::make_unique<PointingProfile>(settings.pointing, surroundings.own, surroundings.other, surroundings.sun);
 }
 
+std::unique_ptr<AttitudeMotion> make(const CommandedSettings& settings, AttitudeSurroundings& surroundings) {
+  return std::make_unique<CommandedAttitude>(settings.axes, settings.control_error, surroundings.own);
+}
+
 }  // namespace
 
 std::unique_ptr<AttitudeMotion> make_attitude(const AttitudeSettings& settings, AttitudeSurroundings surroundings) {

@@ -59,6 +59,13 @@ TEST(InitialOrbits, TheTargetStandsAtItsWaypoint) {
   EXPECT_LT(std::abs(difference.z()), 1e-3);
 }
 
+TEST(InitialOrbits, ElementsAreAsGoodAsTheirWaypoint) {
+  const Pair at_waypoint = placed();
+  const Pair by_roe = placed({"spacecraft.target.relative={to='servicer', a_roe_m=[-2000, -75000, 0, 0, 0, 0]}"});
+  EXPECT_EQ(by_roe.target.position_eci, at_waypoint.target.position_eci);
+  EXPECT_EQ(by_roe.target.velocity_eci, at_waypoint.target.velocity_eci);
+}
+
 // The body frame's error of mass is that of the truth's forces: a sigma seven times the mass leaves some seeds without
 // one, and drag refuses that by name; the true mass otherwise stretches what sunlight and drag do over 39 h.
 TEST(InitialOrbits, ReceiversDrawTheTrueMass) {

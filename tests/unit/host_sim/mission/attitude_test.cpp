@@ -160,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadAttitude{"UnknownProfile", "profile = \"zenit\"",
                     ".profile: found the text \"zenit\" (did you mean zenith?); accepted: none, tumble, inertial, "
-                    "zenith, nadir, along_track or target"},
+                    "zenith, nadir, along_track, target or commanded"},
         BadAttitude{"KeyOfAnotherProfile", "profile = \"zenith\"\ninertia_kgm2 = [1, 1, 1]",
                     ".inertia_kgm2: found an unknown key; accepted: profile, boresight_body, second_body or second_to"},
         BadAttitude{"KeyWithoutProfile", "boresight_body = [1, 0, 0]",

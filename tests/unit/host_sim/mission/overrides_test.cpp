@@ -42,13 +42,11 @@ TEST(Overrides, FlightComputerAloneIsTheServicers) {
   }
 }
 
-// camera and gnss are the servicer's sensors of these names; a mission without such sensors says so, and names the
-// override.
+// camera and gnss are the servicer's sensors of these names.
 TEST(Overrides, CameraAndGnssAloneAreTheServicersSensors) {
-  EXPECT_EQ(
-      message_of(kSmall, {"camera.source=digital"}),
-      "--set camera.source=digital: spacecraft.servicer.sensors.camera: found an unknown key; accepted: navigation "
-      "or gnss");
+  EXPECT_EQ(message_of(kSmall, {"camera.source=seance"}),
+            "--set camera.source=seance: spacecraft.servicer.sensors.camera.source: found the text \"seance\"; "
+            "accepted: digital");
   EXPECT_EQ(message_of(kSmall, {"gnss.source=seance"}),
             "--set gnss.source=seance: spacecraft.servicer.sensors.gnss.source: found the text \"seance\"; accepted: "
             "digital");
@@ -90,7 +88,7 @@ TEST(Overrides, AreCheckedLikeTheFileAndNamedInTheMessage) {
        "duration_h, step_s or seed"},
       {"clok.mode=real_time",
        "clok: found an unknown key (did you mean clock?); accepted: mission, truth, spacecraft, guidance, "
-       "gnss_navigation, waypoint, burn, constellation, clock, links or lcm"},
+       "gnss_navigation, angles_only, waypoint, burn, constellation, clock, links or lcm"},
       {"waypoint.1.time_h=0",
        "waypoint.1.time_h: found the integer 0; accepted: a time after that of waypoint 0, which stands before it"},
       {"flight_computer.target=board",

@@ -1,9 +1,9 @@
-#include "host_sim/app/data_directory.h"
+#include "host_sim/mission/data_directory.h"
 
 #include <cstdlib>
 #include <stdexcept>
 
-namespace vbar::app {
+namespace vbar::mission {
 
 std::filesystem::path data_directory() {
   const char* chosen = std::getenv("VBAR_DATA");
@@ -14,4 +14,4 @@ std::filesystem::path data_directory() {
   return folder;
 }
 
-}  // namespace vbar::app
+}  // namespace vbar::mission

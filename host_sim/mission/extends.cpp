@@ -1,0 +1,86 @@
+#include "host_sim/mission/extends.h"
+
+#include <string_view>
+#include <utility>
+
+#include "host_sim/mission/mission_error.h"
+#include "host_sim/mission/table_reader.h"
+#include "host_sim/mission/toml_file.h"
+
+namespace vbar::mission {
+namespace {
+
+constexpr int kLongestChain = 4;
+
+void put_over(toml::table& base, toml::table& own);
+
+/// The key by which the elements of an array of tables are told apart; empty for other arrays.
+std::string_view label_key(std::string_view array) {
+  if (array == "spacecraft") return "name";
+  return array == "waypoint" ? "index" : "";
+}
+
+toml::table* same_element(toml::array& elements, const toml::table& wanted, std::string_view key) {
+  const toml::node* const label = wanted.get(key);
+  for (toml::node& element : elements) {
+    toml::table* const table = element.as_table();
+    const toml::node* const other = table == nullptr ? nullptr : table->get(key);
+    if (label == nullptr || other == nullptr) continue;
+    const auto text = label->value<std::string_view>(), other_text = other->value<std::string_view>();
+    if (text ? text == other_text : label->value<std::int64_t>() == other->value<std::int64_t>()) return table;
+  }
+  return nullptr;
+}
+
+void put_elements_over(toml::array& base, toml::array& own, std::string_view key) {
+  for (toml::node& element : own) {
+    toml::table* const table = element.as_table();
+    toml::table* const old = table == nullptr ? nullptr : same_element(base, *table, key);
+    if (old != nullptr) {
+      put_over(*old, *table);
+    } else {
+      // Moved, not copied: a copy forgets where it came from.
+      element.visit([&](auto&& value) { base.push_back(std::forward<decltype(value)>(value)); });
+    }
+  }
+}
+
+void put_over(toml::table& base, toml::table& own) {
+  for (auto&& [key, value] : own) {
+    toml::node* const old = base.get(key.str());
+    const std::string_view label = label_key(key.str());
+    if (old != nullptr && old->is_table() && value.is_table()) {
+      put_over(*old->as_table(), *value.as_table());
+    } else if (old != nullptr && old->is_array() && value.is_array() && !label.empty()) {
+      put_elements_over(*old->as_array(), *value.as_array(), label);
+    } else {
+      value.visit([&, &name = key](auto&& some) { base.insert_or_assign(name, std::move(some)); });
+    }
+  }
+}
+
+void resolve(toml::table& document, const std::filesystem::path& file, int depth) {
+  const TableReader reader(document, "", file.string());
+  if (!reader.has("extends")) return;
+  if (depth == kLongestChain) reader.refuse_value("extends", "a chain of at most four files");
+  const std::filesystem::path other = file.parent_path() / reader.text("extends");
+  toml::table base = [&] {
+    try {
+      return parse_toml(read_text_file(other, "a mission file (TOML)"), other.string());
+    } catch (const MissionError& error) {
+      reader.refuse("extends", std::string("a file that is none: ") + error.what(), "a mission file");
+    }
+  }();
+  document.erase("extends");
+  resolve(base, other, depth + 1);
+  put_over(base, document);
+  document = std::move(base);
+}
+
+}  // namespace
+
+void put_over_extended(toml::table& document, const std::filesystem::path& file) {
+  resolve(document, file, 0);
+}
+
+}  // namespace vbar::mission

@@ -1,0 +1,16 @@
+#pragma once
+// `extends = "other.toml"`: a mission file that says only what differs from another one.
+
+#include <filesystem>
+
+#include <toml++/toml.h>
+
+namespace vbar::mission {
+
+/// Replaces `document`, if it has the key `extends`, by the file it names (seen from `file`, which may extend another
+/// in turn) with `document` put over it: tables key by key; a [[spacecraft]] of the same name and a [[waypoint]] of the
+/// same index likewise, others are added behind; every other value, arrays included, takes the place of the old one.
+/// Throws MissionError for a file that cannot be read, and for a chain of more than four.
+void put_over_extended(toml::table& document, const std::filesystem::path& file);
+
+}  // namespace vbar::mission

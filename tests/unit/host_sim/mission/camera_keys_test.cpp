@@ -1,0 +1,334 @@
+// The keys of a camera and of angles-only navigation: what arrives in SI units, what is telecommanded, what is refused.
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
+#include "fsw/packets/messages.h"
+#include "host_sim/mission/camera_file.h"
+#include "host_sim/mission/telecommands.h"
+#include "tests/unit/host_sim/mission/mission_text.h"
+
+namespace vbar::mission::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+/// The small mission with a camera and a receiver instead of ideal navigation, and a decoy.
+std::string camera_mission() {
+  std::string text = changed(std::string(kSmallMission), "sensors.navigation = {}",
+                             "attitude = { profile = \"commanded\" }\nsensors.gnss = {}\nsensors.camera = {}");
+  text = changed(text, "relative = { to = \"servicer\", waypoint = 0 }",
+                 "model = \"tango\"\nattitude = { profile = \"tumble\" }\n"
+                 "relative = { to = \"servicer\", waypoint = 0 }\n[[spacecraft]]\nname = \"decoy\"\nmodel = \"tango\"\n"
+                 "relative = { to = \"servicer\", a_roe_m = [1, -9000, 2, 3, 4, 5] } # decoy");
+  return text;
+}
+
+Mission mission_with(const std::vector<std::string>& overrides = {}) {
+  return parse_mission(camera_mission(), "m.toml", overrides);
+}
+
+TEST(CameraKeys, DefaultIsTheOpticalStimulator) {
+  const Mission mission = mission_with();
+  const CameraSensor& camera = *mission.spacecraft[0].camera;
+  EXPECT_EQ(camera.camera, "optical_stimulator");
+  EXPECT_EQ(camera.target, "target");
+  EXPECT_EQ(mission.spacecraft[0].observes(), "target");
+  EXPECT_EQ(camera.period, mission.step);
+  EXPECT_EQ(camera.readout, fsw::duration_of_seconds(2));
+  EXPECT_EQ(camera.q_camera_body.coeffs(), Eigen::Quaterniond::Identity().coeffs());
+  // The paper's camera: 18.3 deg across, 500 x 800 of 1920 x 1200 pixels; 35 mm over 5.86 um.
+  EXPECT_NEAR(camera.settings.focal_length_px(), 5972.7, 0.05);
+  EXPECT_NEAR(2.0 * std::atan(960.0 / camera.settings.focal_length_px()) / kDegree, 18.3, 0.05);
+  EXPECT_EQ(camera.settings.region, (twins::camera::Region{710, 200, 500, 800}));
+  EXPECT_EQ(mission.spacecraft[1].model, "tango");
+  EXPECT_EQ(mission.spacecraft[0].model, "");
+}
+
+// What a camera file leaves out is the Optical Stimulator's: its own file says nothing else.
+TEST(CameraKeys, TheOpticalStimulatorsFileIsTheDefault) {
+  const auto file = load_camera(VBAR_SOURCE_DIR "/data/cameras/optical_stimulator.toml");
+  const twins::camera::CameraSettings usual;
+  EXPECT_EQ(file.optics.principal_point_px, usual.optics.principal_point_px);
+  EXPECT_EQ(file.optics.distortion, usual.optics.distortion);
+  EXPECT_EQ(file.region, usual.region);
+  const auto numbers = [](const twins::camera::CameraSettings& s) {
+    const auto& o = s.optics;
+    const auto& d = s.detector;
+    return std::vector<double>{s.exposure_s,
+                               s.zero_magnitude_photons,
+                               o.focal_length_mm,
+                               o.f_number,
+                               o.transmission,
+                               o.point_spread_sigma_px,
+                               o.halo_fraction,
+                               o.halo_sigma_px,
+                               o.vignetting,
+                               o.sun_exclusion_deg,
+                               o.stray_light_electrons,
+                               1.0 * d.width,
+                               1.0 * d.height,
+                               d.pixel_pitch_um,
+                               d.quantum_efficiency,
+                               d.full_well_electrons,
+                               d.gain_dn_per_electron,
+                               1.0 * d.bits,
+                               d.offset_dn,
+                               d.read_noise_electrons,
+                               d.dark_electrons_per_s,
+                               d.dark_nonuniformity,
+                               d.photo_response_nonuniformity,
+                               1.0 * d.hot_pixels,
+                               d.hot_pixel_electrons_per_s,
+                               d.blooming_fraction};
+  };
+  EXPECT_EQ(numbers(file), numbers(usual));
+}
+
+TEST(CameraKeys, EveryKeyArrives) {
+  const Mission mission = mission_with({"camera.camera=tron", "camera.period_s=30", "camera.readout_s=1.5",
+                                        "camera.exposure_s=0.1", "camera.region_px=[10, 20, 300, 400]",
+                                        "camera.q_camera_body=[0, 1, 0, 0]", "camera.position_body_m=[0.1, 0.2, 0.3]",
+                                        "camera.optics.f_number=2.8", "camera.detector.hot_pixels=7",
+                                        "camera.target=decoy", "spacecraft.decoy.attitude.profile=inertial"});
+  const CameraSensor& camera = *mission.spacecraft[0].camera;
+  EXPECT_NEAR(camera.settings.focal_length_px(), 2901.0, 0.1) << "of TRON's 17 mm";
+  EXPECT_EQ(camera.settings.optics.distortion[0], -0.22383);
+  EXPECT_EQ(camera.period, fsw::duration_of_seconds(30));
+  EXPECT_EQ(camera.readout.ns, 1500000000);
+  EXPECT_EQ(camera.settings.exposure_s, 0.1);
+  EXPECT_EQ(camera.settings.region, (twins::camera::Region{10, 20, 300, 400}));
+  EXPECT_EQ(camera.q_camera_body.coeffs(), Eigen::Quaterniond(0, 1, 0, 0).coeffs());
+  EXPECT_EQ(camera.position_body_m, fsw::Vector3(0.1, 0.2, 0.3));
+  EXPECT_EQ(camera.settings.optics.f_number, 2.8);
+  EXPECT_EQ(camera.settings.detector.hot_pixels, 7);
+  EXPECT_EQ(camera.target, "decoy");
+}
+
+TEST(CameraKeys, ADecoyHasItsOwnElements) {
+  const auto orbit = std::get<OrbitByRoe>(mission_with().spacecraft[2].orbit);
+  EXPECT_EQ(orbit.to, "servicer");
+  EXPECT_THAT(orbit.a_roe_m, ElementsAre(1, -9000, 2, 3, 4, 5));
+}
+
+TEST(CameraKeys, AnglesOnlyDefaultsAndUnits) {
+  const AnglesOnly navigation = mission_with().angles_only;
+  EXPECT_EQ(navigation.detection_sigmas, 5.0);
+  EXPECT_EQ(navigation.centroid_floor_px, 0.05);
+  EXPECT_DOUBLE_EQ(navigation.pointing_tolerance, 600.0 / 3600.0 * kDegree);
+  EXPECT_EQ(navigation.acceleration_psd, 1e-15);
+  EXPECT_EQ(navigation.acceleration_psd_least, 1e-18);
+  EXPECT_EQ(navigation.acceleration_psd_most, 1e-12);
+  EXPECT_EQ(navigation.brightness_offset_m, 0.15);
+  EXPECT_DOUBLE_EQ(navigation.maneuver_sigma, 2e-6);
+  EXPECT_DOUBLE_EQ(navigation.maneuver_sigma_relative, 2e-3);
+  EXPECT_EQ(navigation.batch_images, 30);
+  EXPECT_THAT(navigation.apriori_sigma_a_roe_m, ElementsAre(30, 1000, 200, 200, 200, 200));
+}
+
+TEST(CameraTelecommands, CameraIsAsCalibrated) {
+  const Mission mission = mission_with({"camera.q_camera_body=[0.6, 0.8, 0, 0]"});
+  const vbar::camera_configuration c = camera_configuration_of(mission.spacecraft[0]);
+  EXPECT_EQ(c.width, 500);
+  EXPECT_EQ(c.height, 800);
+  EXPECT_EQ(c.origin_x, 710);
+  EXPECT_EQ(c.origin_y, 200);
+  EXPECT_EQ(c.bits, 12);
+  EXPECT_NEAR(c.focal_length_px[1], 5972.696, 1e-3);
+  EXPECT_EQ(c.principal_point_px[0], 959.5);
+  // By hand: 2.6e10 / (m^2 s), 0.2 s, an aperture of 35 mm / 1.9 (2.66513e-4 m^2), 0.9 of it let through, 0.7 detected,
+  // an eighth of a number each.
+  EXPECT_NEAR(c.zero_magnitude_dn, 2.6e10 * 0.2 * 2.66513e-4 * 0.9 * 0.7 / 8.0, 2e4 * 1e-1);
+  EXPECT_NEAR(c.saturation_dn, 64.0 + 4000.0, 50.0) << "a full well, less some noise";
+  EXPECT_LT(c.saturation_dn, 64.0 + 4000.0 - 10.0);
+  EXPECT_THAT(c.q_camera_body, ElementsAre(0.6, 0.8, 0, 0));
+}
+
+TEST(CameraTelecommands, NavigationIsByCameraWithoutAPartner) {
+  const auto orientation = truth::EarthOrientationSeries::load(VBAR_SOURCE_DIR "/data/earth/eop_2009_2013.csv");
+  const Mission mission = mission_with({"gnss.body_frame.antenna_in_body_m=[0, -0.3, 0]"});
+  const auto c = navigation_configuration_of(mission, mission.spacecraft[0], orientation);
+  EXPECT_EQ(c.source, 2);
+  EXPECT_EQ(c.servicer_antenna_body_m[1], -0.3);
+  EXPECT_THAT(c.target_antenna_body_m, ElementsAre(0, 0, 0));
+  EXPECT_NEAR(c.ut1_minus_gps_s, -15.0 - 0.285, 0.01) << "2011-07-18: UT1-UTC about -0.285 s, 15 leap seconds";
+}
+
+/// Mean ROE of the a-priori target less those of the true one, in metres.
+fsw::Vector6 apriori_error_m(std::uint64_t seed) {
+  const Mission mission = mission_with({"mission.seed=" + std::to_string(seed)});
+  const fsw::orbit::QnsElements chief{7078000.0, 0.001, 2e-5, 98.2 * kDegree, 1.0, 0.5};
+  const double a = mission.guidance.reference_semi_major_axis_m;
+  fsw::Vector6 roe;
+  roe << -2000.0, -75000.0, 100.0, 0.0, -50.0, 0.0;
+  roe /= a;
+  const auto state = [](const fsw::orbit::QnsElements& mean) {
+    return fsw::orbit::cartesian_from_qns(fsw::orbit::osculating_from_mean(mean).value()).value();
+  };
+  const auto apriori =
+      target_apriori_of(mission, mission.spacecraft[0], state(chief), state(fsw::orbit::qns_from_roe(chief, roe)));
+  const fsw::orbit::CartesianState told{Eigen::Map<const fsw::Vector3>(apriori.position_eci),
+                                        Eigen::Map<const fsw::Vector3>(apriori.velocity_eci)};
+  const auto mean = fsw::orbit::mean_from_osculating(fsw::orbit::qns_from_cartesian(told).value()).value();
+  return a * (fsw::orbit::roe_from_qns(chief, mean) - roe);
+}
+
+// 400 seeds: the sum of squares of each over its variance is chi-square with 400 degrees; six of them inside 400 +- 113
+// (four standard deviations).
+TEST(CameraTelecommands, AprioriErrsByItsSigmas) {
+  constexpr int kSeeds = 400;
+  const double sigma_m[6] = {30, 1000, 200, 200, 200, 200};
+  fsw::Vector6 squares = fsw::Vector6::Zero(), sum = fsw::Vector6::Zero();
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const fsw::Vector6 error = apriori_error_m(static_cast<std::uint64_t>(seed));
+    for (int k = 0; k < 6; ++k) {
+      squares(k) += std::pow(error(k) / sigma_m[k], 2);
+      sum(k) += error(k) / sigma_m[k];
+    }
+  }
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_NEAR(squares(k), 400.0, 4.0 * std::sqrt(2.0 * 400.0)) << k;
+    EXPECT_NEAR(sum(k), 0.0, 4.0 * std::sqrt(400.0)) << k;
+  }
+  EXPECT_EQ(apriori_error_m(5), apriori_error_m(5));
+  EXPECT_NE(apriori_error_m(5), apriori_error_m(6));
+}
+
+TEST(CameraTelecommands, ArePackets) {
+  const Mission mission = mission_with();
+  std::array<std::uint8_t, fsw::packets::kMaxPacketBytes> buffer{};
+  EXPECT_TRUE(fsw::packets::encode({}, camera_configuration_of(mission.spacecraft[0]), buffer).ok());
+  EXPECT_TRUE(fsw::packets::encode({}, angles_only_configuration_of(mission), buffer).ok());
+}
+
+struct BadOverride {
+  const char* label;
+  std::vector<std::string> overrides;
+  const char* message;
+};
+
+void PrintTo(const BadOverride& bad, std::ostream* out) {
+  *out << bad.label;
+}
+
+class BadCameraMission : public testing::TestWithParam<BadOverride> {};
+
+TEST_P(BadCameraMission, EndsWithOneMessage) {
+  EXPECT_THAT(message_of(camera_mission(), GetParam().overrides), HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OneValue, BadCameraMission,
+    testing::Values(
+        BadOverride{
+            "UnknownSource", {"camera.source=tron"}, "camera.source: found the text \"tron\"; accepted: digital"},
+        BadOverride{"UnknownCamera",
+                    {"camera.camera=optical_simulator"},
+                    "camera.camera: found the text \"optical_simulator\" (did you mean optical_stimulator?); accepted: "
+                    "optical_stimulator or tron"},
+        BadOverride{
+            "UnknownKey", {"camera.optics.fnumber=2"}, "optics.fnumber: found an unknown key (did you mean f_number?)"},
+        BadOverride{"RegionOffTheDetector",
+                    {"camera.region_px=[1500, 0, 500, 800]"},
+                    "camera.region_px: found a region that does not lie on the detector; accepted: [x, y, width, "
+                    "height] inside 1920 x 1200 pixels"},
+        BadOverride{"RegionTooLarge",
+                    {"camera.region_px=[0, 0, 1920, 1200]"},
+                    "camera.region_px: found 2304000 pixels; accepted: at most the 400000 that the flight software "
+                    "holds"},
+        BadOverride{"RegionOfPartsOfPixels",
+                    {"camera.region_px=[0, 0.5, 500, 800]"},
+                    "camera.region_px: found a number that is no integer"},
+        BadOverride{"TenBits", {"camera.detector.bits=10"}, "detector.bits: found the integer 10; accepted: 8 or 12"},
+        BadOverride{"OffsetOfEightBits",
+                    {"camera.detector.bits=8", "camera.detector.offset_dn=200"},
+                    "detector.offset_dn: found an offset that leaves no room for light"},
+        BadOverride{"FasterThanItReads",
+                    {"camera.period_s=2"},
+                    "camera.period_s: found images that come faster than one is exposed and read"},
+        BadOverride{"NoRotation", {"camera.q_camera_body=[1, 1, 0, 0]"}, "camera.q_camera_body: found a quaternion"},
+        BadOverride{"LooksForNobody",
+                    {"camera.target=moon"},
+                    "camera.target: found the spacecraft \"moon\"; accepted: target or decoy"},
+        BadOverride{"LooksForTheUnseen",
+                    {"camera.target=decoy"},
+                    "camera.target: found the spacecraft \"decoy\" without an attitude; accepted: a spacecraft with a "
+                    "model and an attitude"},
+        BadOverride{"PartnerBesideACamera",
+                    {"gnss.partner=target"},
+                    "gnss.partner: found the text \"target\"; accepted: nothing, beside a camera"},
+        BadOverride{
+            "NoAttitude", {"spacecraft.servicer.attitude.profile=none"}, "camera: found a camera without an attitude"},
+        BadOverride{"PsdOutsideItsLimits",
+                    {"angles_only.acceleration_psd=1e-11"},
+                    "angles_only.acceleration_psd: found a start outside its limits"},
+        BadOverride{"NoBatch", {"angles_only.batch_images=2"}, "angles_only.batch_images: found the integer 2"},
+        BadOverride{"AprioriWithoutError",
+                    {"angles_only.apriori.sigma_a_da_m=0"},
+                    "angles_only.apriori.sigma_a_da_m: found the integer 0; accepted: a number above 0"}),
+    [](const auto& test) { return std::string(test.param.label); });
+
+TEST(BadCameraMission, SensorsThatDoNotGoTogether) {
+  EXPECT_THAT(message_of(changed(camera_mission(), "sensors.gnss = {}\n", "")),
+              HasSubstr("sensors.camera: found a camera without sensors.gnss; accepted: a GNSS receiver too"));
+  EXPECT_THAT(message_of(changed(camera_mission(), "flight_computer = {}\n", "")),
+              HasSubstr("sensors.camera: found a camera without a flight computer"));
+  EXPECT_THAT(message_of(changed(camera_mission(), ", a_roe_m = [1", ", waypoint = 0, a_roe_m = [1")),
+              HasSubstr("decoy.relative.a_roe_m: found both waypoint and a_roe_m; accepted: one of them"));
+  EXPECT_THAT(message_of(changed(camera_mission(), "[1, -9000, 2, 3, 4, 5]", "[1, -9000]")),
+              HasSubstr("decoy.relative.a_roe_m: found an array of 2; accepted: an array of 6 numbers"));
+}
+
+TEST(CommandedProfile, KeysAndDefaults) {
+  const auto usual = std::get<Commanded>(*mission_with().spacecraft[0].attitude);
+  EXPECT_DOUBLE_EQ(usual.control_error, 30.0 / 3600.0 * kDegree);
+  EXPECT_EQ(usual.axes.initial_boresight_rtn, fsw::Vector3(0, -1, 0));
+  EXPECT_EQ(usual.axes.boresight_body, fsw::Vector3(0, 0, 1));
+  EXPECT_EQ(usual.axes.second_body, fsw::Vector3(0, -1, 0));
+  const auto told = std::get<Commanded>(*mission_with({"spacecraft.servicer.attitude.control_error_arcsec=12",
+                                                       "spacecraft.servicer.attitude.initial_boresight_rtn=[0, 1, 0]",
+                                                       "spacecraft.servicer.attitude.boresight_body=[1, 0, 0]",
+                                                       "spacecraft.servicer.attitude.second_body=[0, 0, 1]"})
+                                             .spacecraft[0]
+                                             .attitude);
+  EXPECT_DOUBLE_EQ(told.control_error, 12.0 / 3600.0 * kDegree);
+  EXPECT_EQ(told.axes.initial_boresight_rtn, fsw::Vector3(0, 1, 0));
+  EXPECT_EQ(told.axes.boresight_body, fsw::Vector3(1, 0, 0));
+  EXPECT_THAT(message_of(camera_mission(), {"spacecraft.servicer.attitude.initial_boresight_rtn=[1, 0, 0]"}),
+              HasSubstr("initial_boresight_rtn: found a boresight at the zenith or the nadir, or none"));
+  EXPECT_THAT(message_of(camera_mission(), {"spacecraft.servicer.attitude.second_body=[0, 0, 1]"}),
+              HasSubstr("second_body: found an axis along the other one"));
+}
+
+// Root mean square over a day within 10 % of sigma (cross terms of nearby periods), zero mean, periods as told.
+TEST(CommandedProfile, DrawnErrorHasItsSigma) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const truth::ControlError error = drawn_control_error(seed, "servicer", 1e-4);
+    for (const auto& axis : error) {
+      double squares = 0.0, sum = 0.0;
+      constexpr int kSeconds = 86400;
+      for (int t = 0; t < kSeconds; t += 2) {
+        double value = 0.0;
+        for (const truth::Sinusoid& one : axis) value += one.amplitude * std::sin(one.rate_radps * t + one.phase);
+        squares += value * value;
+        sum += value;
+      }
+      EXPECT_NEAR(std::sqrt(2.0 * squares / kSeconds), 1e-4, 1e-5);
+      EXPECT_NEAR(2.0 * sum / kSeconds, 0.0, 1e-6);
+      for (const truth::Sinusoid& one : axis) {
+        EXPECT_GE(2.0 * M_PI / one.rate_radps, 20.0);
+        EXPECT_LE(2.0 * M_PI / one.rate_radps, 600.0);
+      }
+    }
+  }
+  EXPECT_NE(drawn_control_error(1, "servicer", 1.0)[0][0].phase, drawn_control_error(2, "servicer", 1.0)[0][0].phase);
+}
+
+}  // namespace
+}  // namespace vbar::mission::test

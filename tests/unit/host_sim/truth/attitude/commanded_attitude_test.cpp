@@ -1,0 +1,182 @@
+// Commanded pointing: where the boresight goes in RTN, that rates are the attitude's own derivative, and what a command
+// may not do.
+
+#include "host_sim/truth/attitude/commanded_attitude.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "fsw/orbit/rtn.h"
+#include "host_sim/truth/truth_model.h"
+#include "tests/support/accuracy.h"
+#include "tests/unit/host_sim/truth/truth_fixture.h"
+
+namespace vbar::truth::test {
+namespace {
+
+using Eigen::Quaterniond;
+using fsw::Vector3;
+
+constexpr double kArcsecond = kDegree / 3600.0;
+
+/// A motion in closed form that is no orbit: a circle with a term that tilts and stretches it.
+OrbitalMotion own(double t) {
+  const double n = 1.06e-3, k = 2.7e-3, u = n * t + 0.3;
+  const Vector3 a(7.0e6, 0.0, 0.0), b(0.0, 1.0e6, 6.9e6), c(3.0e4, -2.0e4, 5.0e4);
+  OrbitalMotion motion;
+  motion.position_eci = a * std::cos(u) + b * std::sin(u) + c * std::sin(k * t);
+  motion.velocity_eci = n * (-a * std::sin(u) + b * std::cos(u)) + k * c * std::cos(k * t);
+  motion.acceleration_eci = -n * n * (a * std::cos(u) + b * std::sin(u)) - k * k * c * std::sin(k * t);
+  return motion;
+}
+
+Vector3 in_rtn(double t, const Vector3& v_eci) {
+  return fsw::orbit::R_rtn_eci({own(t).position_eci, own(t).velocity_eci}) * v_eci;
+}
+
+/// Large and quick enough that terms of second order count: some arc minutes within a minute.
+ControlError some_error() {
+  ControlError error{};
+  error[0][0] = {400.0 * kArcsecond, 0.11, 0.4};
+  error[0][1] = {90.0 * kArcsecond, 0.31, 1.9};
+  error[1][0] = {300.0 * kArcsecond, 0.07, 2.0};
+  error[2][4] = {500.0 * kArcsecond, 0.19, -1.0};
+  return error;
+}
+
+TEST(CommandedAttitude, FollowsTheLineInRtnWithTheSecondAxisUp) {
+  CommandedAttitude attitude({}, {}, own);
+  const Vector3 boresight = Vector3(0.05, -1.0, 0.02).normalized(), rate(1e-4, 0.0, -2e-4);
+  ASSERT_TRUE(attitude.take({100.0, boresight, rate}));
+  for (const double t : {0.0, 99.9, 100.0, 130.0, 700.0, 800.0, 5000.0}) {
+    const double led_s = std::min(t - 100.0, 600.0);  // the line ends after ten minutes
+    const Vector3 wanted = t < 100.0 ? Vector3(0.0, -1.0, 0.0) : Vector3(boresight + led_s * rate).normalized();
+    const Quaterniond q_eci_body = attitude.state_at(t).q_body_eci.conjugate();
+    EXPECT_LT((in_rtn(t, q_eci_body * Vector3::UnitZ()) - wanted).norm(), 1e-14) << t;
+    // -y up: towards the zenith as far as the boresight lets it.
+    const Vector3 up = in_rtn(t, q_eci_body * -Vector3::UnitY());
+    EXPECT_NEAR(up.dot(wanted.cross(Vector3::UnitX())), 0.0, 1e-14) << t;
+    EXPECT_GT(up.x(), 0.9) << t;
+  }
+}
+
+TEST(CommandedAttitude, RateIsTheDerivativeOfTheAttitude) {
+  CommandedAttitude attitude({.boresight_body = {0.1, -0.3, 2.0}, .second_body = {0.2, -1.0, 0.4}}, some_error(), own);
+  ASSERT_TRUE(attitude.take({0.0, Vector3(0.1, -0.9, 0.3).normalized(), {2e-4, 1e-4, -3e-4}}));
+  double largest = 0.0;
+  for (double t = 5.0; t < 2000.0; t += 33.7) {
+    if (std::abs(t - kLongestLine_s) < 2.0) continue;  // there the line ends, and the rate jumps
+    // Rotation vector from -h to +h over 2 h, extrapolated (Richardson).
+    const auto differenced = [&](double h) -> Vector3 {
+      const Eigen::AngleAxisd turn(attitude.state_at(t + h).q_body_eci *
+                                   attitude.state_at(t - h).q_body_eci.conjugate());
+      return -turn.angle() / (2.0 * h) * turn.axis();
+    };
+    const Vector3 rate = (4.0 * differenced(0.25) - differenced(0.5)) / 3.0;
+    largest = std::max(largest, (attitude.state_at(t).rate_body - rate).norm());
+  }
+  // Errors of 2e-3 rad at 0.3 rad/s: h^4 w^5 A / 30 is 1e-9 rad/s for the fastest sinusoid (4.4e-4 rad).
+  accuracy::expect_below("attitude: rate of commanded pointing with control errors",
+                         "differenced attitude, 60 instants", largest, 2e-9, "rad/s");
+}
+
+TEST(CommandedAttitude, ErrorTurnsTheBodyAboutItsOwnAxes) {
+  ControlError error{};
+  error[2][0] = {0.001, 0.0, 3.14159265358979323846 / 2.0};  // a constant milliradian about the boresight
+  const CommandedAttitude with({}, error, own), without({}, {}, own);
+  const Quaterniond turn = with.state_at(50.0).q_body_eci * without.state_at(50.0).q_body_eci.conjugate();
+  // Body axes that have turned by +angle about z see what is still turned by -angle.
+  EXPECT_LT((turn * Vector3::UnitX() - Vector3(std::cos(0.001), -std::sin(0.001), 0.0)).norm(), 1e-14);
+}
+
+TEST(CommandedAttitude, LaterCommandsReplaceThoseThatHaveNotBegun) {
+  CommandedAttitude attitude({}, {}, own);
+  const auto boresight = [&](double t) {
+    return in_rtn(t, attitude.state_at(t).q_body_eci.conjugate() * Vector3::UnitZ());
+  };
+  ASSERT_TRUE(attitude.take({100.0, {0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}}));
+  ASSERT_TRUE(attitude.take({300.0, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}}));
+  ASSERT_TRUE(attitude.take({200.0, {0.0, 0.0, -1.0}, {0.0, 0.0, 0.0}}));
+  EXPECT_NEAR(boresight(150.0).y(), 1.0, 1e-14);
+  EXPECT_NEAR(boresight(250.0).z(), -1.0, 1e-14);
+  EXPECT_NEAR(boresight(350.0).z(), -1.0, 1e-14);
+}
+
+TEST(CommandedAttitude, RefusesWhatLeavesTheTurnOpen) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const Vector3 still = Vector3::Zero(), behind(0.0, -1.0, 0.0);
+  EXPECT_TRUE(leaves_zenith_clear(behind, still));
+  EXPECT_TRUE(leaves_zenith_clear({1.0, 0.02, 0.0}, still));
+  EXPECT_FALSE(leaves_zenith_clear({-1.0, 0.005, 0.0}, still)) << "nadir";
+  EXPECT_FALSE(leaves_zenith_clear(Vector3::Zero(), still));
+  EXPECT_FALSE(leaves_zenith_clear({0.0, -1.0, kNaN}, still));
+  EXPECT_FALSE(leaves_zenith_clear(behind, {0.0, kNaN, 0.0}));
+  EXPECT_FALSE(leaves_zenith_clear({1.0, -0.1, 0.0}, {0.0, 1e-3, 0.0})) << "passes the zenith after 100 s";
+  EXPECT_TRUE(leaves_zenith_clear({1.0, -0.1, 0.0}, {0.0, 1e-4, 0.0})) << "would after 1000 s, when the line has ended";
+  EXPECT_FALSE(leaves_zenith_clear({0.2, -0.1, 0.0}, {2e-3, 1e-3 / 6.0, 0.0})) << "ends there";
+
+  CommandedAttitude attitude({}, {}, own);
+  ASSERT_TRUE(attitude.take({100.0, behind, still}));
+  const Quaterniond before = attitude.state_at(200.0).q_body_eci;
+  EXPECT_FALSE(attitude.take({100.0, {1.0, 0.0, 0.0}, still}));
+  EXPECT_FALSE(attitude.take({kNaN, behind, still}));
+  EXPECT_EQ(attitude.state_at(200.0).q_body_eci.coeffs(), before.coeffs());
+
+  EXPECT_THROW(CommandedAttitude({.second_body = Vector3::UnitZ()}, {}, own), std::invalid_argument);
+  EXPECT_THROW(CommandedAttitude({.initial_boresight_rtn = Vector3::UnitX()}, {}, own), std::invalid_argument);
+  EXPECT_THROW(CommandedAttitude({}, {}, {}), std::invalid_argument);
+}
+
+fsw::GpsTime after(double seconds) {
+  return mission_epoch() + fsw::nearest_duration(seconds);
+}
+
+TruthModel model_with(bool commanded) {
+  TruthSettings settings = mission_settings();
+  settings.gravity_degree = settings.gravity_order = 10;
+  TruthModel model(settings);
+  model.add_spacecraft("servicer", servicer_state());
+  if (commanded) model.set_attitude(0, CommandedSettings{{}, some_error()});
+  return model;
+}
+
+TEST(CommandedAttitude, InTheTruthModelChangesNoOrbit) {
+  TruthModel with = model_with(true), without = model_with(false);
+  for (double t = 60.0; t <= 3000.0; t += 60.0) {
+    with.advance_to(after(t));
+    without.advance_to(after(t));
+    ASSERT_TRUE(with.command_pointing(0, after(t + 1.0), Vector3(std::sin(t), -1.0, 0.0).normalized(), {0, 0, 1e-4}));
+  }
+  EXPECT_TRUE(same_bits(with.state(0), without.state(0)));
+}
+
+TEST(CommandedAttitude, ACommandOfThePastCountsFromNowWhereItsLineHasLed) {
+  TruthModel model = model_with(true);
+  const Vector3 boresight(0.0, -1.0, 0.0), rate(3e-4, 0.0, 1e-4);
+  model.advance_to(after(100.0));
+  const Quaterniond told = model.attitude_at(0, after(90.0)).q_body_eci;
+  ASSERT_TRUE(model.command_pointing(0, after(40.0), boresight, rate));
+  EXPECT_EQ(model.attitude_at(0, after(90.0)).q_body_eci.coeffs(), told.coeffs());
+  model.advance_to(after(130.0));
+  const Vector3 wanted = (boresight + 90.0 * rate).normalized();
+  const Vector3 seen =
+      fsw::orbit::R_rtn_eci(model.state(0)) * (model.attitude(0).q_body_eci.conjugate() * Vector3::UnitZ());
+  // Control errors of this test: 490 and 300 arcsec about the axes across the boresight, added up.
+  EXPECT_LT((seen - wanted).norm(), 600.0 * kArcsecond);
+  EXPECT_GT((seen - boresight).norm(), 0.02);
+}
+
+TEST(CommandedAttitude, OtherAttitudesTakeNoCommands) {
+  TruthModel model = model_with(false);
+  EXPECT_THROW(static_cast<void>(model.command_pointing(0, after(0.0), {0, 1, 0}, {0, 0, 0})), std::logic_error);
+  model.set_attitude(0, PointedSettings{});
+  EXPECT_THROW(static_cast<void>(model.command_pointing(0, after(0.0), {0, 1, 0}, {0, 0, 0})), std::logic_error);
+  EXPECT_THROW(static_cast<void>(model.command_pointing(7, after(0.0), {0, 1, 0}, {0, 0, 0})), std::out_of_range);
+}
+
+}  // namespace
+}  // namespace vbar::truth::test
