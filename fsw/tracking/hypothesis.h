@@ -44,6 +44,9 @@ struct Branch {
 /// True if both saw the same in the last `images` images and at least two objects.
 bool share_recent(const Hypothesis& a, const Hypothesis& b, std::size_t images);
 
+/// True if their histories have at least two objects in common and never another object in the same image.
+bool agree(const Hypothesis& a, const Hypothesis& b);
+
 /// Of the lowest `count` bits.
 int hits_of(std::uint32_t bits, int count);
 

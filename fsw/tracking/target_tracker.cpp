@@ -18,7 +18,7 @@ constexpr double kDropScore = -7.0;
 constexpr int kPatience = 3;
 constexpr std::size_t kScan = 5;  // images after which only one account of a track remains
 constexpr std::size_t kSame = 3;  // images that two accounts must share to be one
-constexpr double kSameDistance = 16.0;
+constexpr double kSameDistance = 25.0;  // chi-square, 4 degrees of freedom: 5e-5
 constexpr double kAlone = 99.0;
 constexpr int kRivalHits = 3;
 constexpr int kDeposeAfter = 3;
@@ -295,25 +295,60 @@ void TargetTracker::prune() {
   }
   erase_marked();
 
-  // One of two that have become the same: the target's track stays, else an established one, else the better.
+  merge_accounts();
+  merge_tracks();
+}
+
+// Of two accounts of a track that share the last images the better stays.
+void TargetTracker::merge_accounts() {
   work_.erased.fill(false);
   for (std::size_t a = 0; a < count_; ++a) {
     for (std::size_t b = a + 1; b < count_ && !work_.erased[a]; ++b) {
-      if (work_.erased[b] || !share_recent(hypotheses_[a], hypotheses_[b], kSame)) continue;
-      const SlopeState left = slope_state(hypotheses_[a].motion, work_.view, work_.bend, work_.bend_rate);
-      const SlopeState right = slope_state(hypotheses_[b].motion, work_.view, work_.bend, work_.bend_rate);
-      const double distance =
-          distance_between(left.slopes, left.covariance, right.slopes, right.covariance, 1e-6, 1e-8);
-      if (distance > kSameDistance) continue;
-      const bool a_is_target = hypotheses_[a].track == target_track_;
-      const bool b_is_target = hypotheses_[b].track == target_track_;
-      bool a_stays = hypotheses_[a].score >= hypotheses_[b].score;
-      if (hypotheses_[a].established != hypotheses_[b].established) a_stays = hypotheses_[a].established;
-      if (a_is_target != b_is_target) a_stays = a_is_target;
-      work_.erased[a_stays ? b : a] = true;
+      const Hypothesis& left = hypotheses_[a];
+      const Hypothesis& right = hypotheses_[b];
+      if (work_.erased[b] || left.track != right.track || !share_recent(left, right, kSame)) continue;
+      work_.erased[left.score >= right.score ? b : a] = true;
     }
   }
   erase_marked();
+}
+
+// Of two tracks that have become the same the target's stays, else an established one, else the better: the other is a
+// ghost that lives on the first one's objects.
+void TargetTracker::merge_tracks() {
+  std::array<std::size_t, kMaxHypotheses> best{};
+  std::size_t tracks = 0;
+  for (std::size_t k = 0; k < count_; ++k) {
+    if (is_best_of_its_track(k)) best[tracks++] = k;
+  }
+  std::array<bool, kMaxHypotheses> is_ghost{};
+  for (std::size_t a = 0; a < tracks; ++a) {
+    for (std::size_t b = a + 1; b < tracks && !is_ghost[a]; ++b) {
+      const Hypothesis& left = hypotheses_[best[a]];
+      const Hypothesis& right = hypotheses_[best[b]];
+      if (is_ghost[b] || !agree(left, right) || !moves_as(left, right)) continue;
+      bool left_stays = left.score >= right.score;
+      if (left.established != right.established) left_stays = left.established;
+      if (left.track == target_track_ || right.track == target_track_) left_stays = left.track == target_track_;
+      is_ghost[left_stays ? b : a] = true;
+    }
+  }
+  work_.erased.fill(false);
+  for (std::size_t t = 0; t < tracks; ++t) {
+    if (!is_ghost[t]) continue;
+    const std::uint32_t ghost = hypotheses_[best[t]].track;
+    for (std::size_t k = 0; k < count_; ++k) {
+      if (hypotheses_[k].track == ghost) work_.erased[k] = true;
+    }
+  }
+  erase_marked();
+}
+
+bool TargetTracker::moves_as(const Hypothesis& a, const Hypothesis& b) const {
+  const SlopeState left = slope_state(a.motion, work_.view, work_.bend, work_.bend_rate);
+  const SlopeState right = slope_state(b.motion, work_.view, work_.bend, work_.bend_rate);
+  // The floors only keep the sum regular.
+  return distance_between(left.slopes, left.covariance, right.slopes, right.covariance, 1e-6, 1e-8) < kSameDistance;
 }
 
 void TargetTracker::choose_target() {

@@ -92,6 +92,8 @@ class TargetTracker {
   void grow();
   void compare_with_prediction(double dt);
   void prune();
+  void merge_accounts();
+  void merge_tracks();
   void choose_target();
   TrackerOutput report();
 
@@ -105,6 +107,7 @@ class TargetTracker {
   [[nodiscard]] double gain_of(const Hypothesis& parent, const Innovation& innovation, const Eligible& candidate) const;
   [[nodiscard]] Hypothesis child_of(const Branch& branch);
   void erase_marked();
+  [[nodiscard]] bool moves_as(const Hypothesis& a, const Hypothesis& b) const;
   [[nodiscard]] const Hypothesis* best_of(std::uint32_t track) const;
   [[nodiscard]] bool is_best_of_its_track(std::size_t k) const;
   [[nodiscard]] double rival_gain(std::int16_t candidate) const;

@@ -105,6 +105,8 @@ struct SceneMaker::Sky {
       const double sigma = settings.burn_error * burn.dv_rtn.norm();
       const Vector3 error(noise.normal(), noise.normal(), noise.normal());
       truth->apply_impulse_rtn(0, burn.dv_rtn + sigma * error);
+      // Navigation takes the burn as commanded, which to the relative motion is as if the target had made the error.
+      for (const std::size_t estimate : {2, 3}) truth->apply_impulse_rtn(estimate, sigma * error);
       scene.burns.push_back({at, burn.dv_rtn, sigma});
     }
     truth->advance_to(start + nearest_duration(to_s));
@@ -121,7 +123,6 @@ struct SceneMaker::Sky {
     const Vector6 sigma = part * settings.sigma_a_roe_m / mission::kReferenceA;
     const Vector6 variance = sigma.cwiseProduct(sigma);
     Matrix6 covariance = map * variance.asDiagonal() * map.transpose();
-    // A burn's error is in the true motion, but the estimates know of none.
     for (const SceneBurn& burn : settings.burns) {
       if (burn.time_s > elapsed_s) continue;
       const double since_s = elapsed_s - burn.time_s;
@@ -130,7 +131,7 @@ struct SceneMaker::Sky {
       const Matrix6 after = orbit::roe_transition_j2(then, since_s);
       for (int k = 0; k < 6; ++k) from_burn.col(k) = orbit::rtn_from_roe_linear(chief, after.col(k));
       const Matrix63 effect = from_burn * orbit::roe_control_matrix_near_circular(then);
-      const double size = settings.burn_error * burn.dv_rtn.norm() * (is_refined ? 1.0 : 1.0);
+      const double size = settings.burn_error * burn.dv_rtn.norm();
       covariance += size * size * effect * effect.transpose();
     }
     return must(tracking::prediction_of(expected, covariance));
