@@ -20,7 +20,6 @@ struct Hypothesis {
   RelativeMotion motion;
   std::uint32_t track = 0;  ///< hypotheses of one track began with the same object
   double score = 0.0;       ///< log-likelihood ratio against all of it being false detections (Sittler 1964)
-  double gain = 0.0;        ///< of the last image against having missed it
   double misfit = 1.0;      ///< running mean of the normalised innovation squared, a degree of freedom
   double log_flux = 0.0;    ///< running mean
   double identity = 0.0;    ///< worst recent distance from the prediction (chi-square, 4 degrees of freedom)

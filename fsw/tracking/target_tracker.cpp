@@ -20,6 +20,7 @@ constexpr std::size_t kScan = 5;  // images after which only one account of a tr
 constexpr std::size_t kSame = 3;  // images that two accounts must share to be one
 constexpr double kSameDistance = 25.0;  // chi-square, 4 degrees of freedom: 5e-5
 constexpr double kAlone = 99.0;
+constexpr double kNarrowGate = 0.02;  // false detections in it
 constexpr int kRivalHits = 3;
 constexpr int kDeposeAfter = 3;
 constexpr double kFluxGain = 0.2;
@@ -59,7 +60,7 @@ Result<TrackerOutput> TargetTracker::step(const TrackerInput& input) {
 
   select_eligible(input);
   propagate_all(input);
-  make_branches(input);
+  make_branches();
   grow();
   compare_with_prediction(dt);
   prune();
@@ -102,10 +103,14 @@ Status TargetTracker::check(const TrackerInput& input) const {
 void TargetTracker::select_eligible(const TrackerInput& input) {
   hot_pixels_.begin_image();
   work_.eligible_count = 0;
+  std::size_t hot = 0;
   const Vector2 predicted = work_.prediction.slopes.head<2>();
   for (std::size_t k = 0; k < input.candidates.size(); ++k) {
     const Candidate& candidate = input.candidates[k];
-    if (hot_pixels_.see(candidate.object)) continue;
+    if (hot_pixels_.see(candidate.object)) {
+      ++hot;
+      continue;
+    }
     const Result<SlopeMeasurement> measurement =
         slope_measurement(candidate.direction_rtn, candidate.sigma, settings_.motion);
     if (!measurement.ok()) continue;
@@ -126,7 +131,7 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
         candidate.object.pixels <= settings_.hot_pixels.most_pixels ? -settings_.small_object_loss : 0.0;
     eligible.index = static_cast<std::int16_t>(k);
   }
-  const double count = static_cast<double>(std::max<std::size_t>(input.candidates.size(), 1));
+  const double count = static_cast<double>(std::max<std::size_t>(input.candidates.size() - hot, 1));
   work_.log_density = math::log(count / settings_.field_sr);
 }
 
@@ -160,8 +165,7 @@ double TargetTracker::gain_of(const Hypothesis& parent, const Innovation& innova
   return likelihood + brightness + candidate.handicap;
 }
 
-void TargetTracker::make_branches(const TrackerInput& input) {
-  static_cast<void>(input);
+void TargetTracker::make_branches() {
   work_.branch_count = 0;
   const auto add = [this](std::int16_t parent, std::int16_t candidate, bool established, double score) {
     if (work_.branch_count < kMaxBranches) {
@@ -197,7 +201,6 @@ Hypothesis TargetTracker::child_of(const Branch& branch) {
   }
   const bool is_hit = branch.candidate >= 0;
   const bool is_expected = work_.detection_probability > kExpected;
-  if (!is_birth) child.gain = branch.score - (child.score + work_.log_miss);
   child.score = branch.score;
   std::copy(child.history.begin(), child.history.end() - 1, child.history.begin() + 1);
   child.history[0] = kMissed;
@@ -212,13 +215,17 @@ Hypothesis TargetTracker::child_of(const Branch& branch) {
   }
   const Eligible& candidate = work_.eligible[static_cast<std::size_t>(branch.candidate)];
   const Innovation innovation = innovation_of(child.motion, work_.view, work_.bend, candidate.measurement);
+  // After a gap a narrow gate, in which hardly anything else can be, needs no further proof.
+  const double gate_sr = math::kPi * settings_.association_gate * math::sqrt(innovation.determinant);
+  const bool is_narrow = gate_sr * math::exp(work_.log_density) < kNarrowGate;
   update(child.motion, innovation);
   child.history[0] = candidate.index;
   child.misfit += kMisfitGain * (0.5 * innovation.distance - child.misfit);
   child.log_flux += (is_birth ? 1.0 : kFluxGain) * (candidate.log_flux - child.log_flux);
   child.images_since_hit = 0;
   ++child.hits;
-  ++child.hits_since_gap;
+  child.hits_since_gap = is_narrow && child.established && child.hits_since_gap == 0 ? settings_.hits_after_gap
+                                                                                     : child.hits_since_gap + 1;
   if (hits_of(child.recent, settings_.confirm_images) >= settings_.confirm_hits && child.misfit < kMostMisfit) {
     child.established = true;
   }
@@ -395,15 +402,30 @@ void TargetTracker::choose_target() {
   }
 }
 
-// How much better than missing it an established track of another satellite explains the candidate.
-double TargetTracker::rival_gain(std::int16_t candidate) const {
-  double gain = -kAlone;
+// By how much a track's best account with the candidate in this image beats its best one without; no account with it
+// or none without: -kAlone or kAlone.
+double TargetTracker::claim(std::uint32_t track, std::int16_t candidate) const {
+  const Hypothesis* with = nullptr;
+  const Hypothesis* without = nullptr;
   for (std::size_t k = 0; k < count_; ++k) {
     const Hypothesis& h = hypotheses_[k];
-    if (h.track == target_track_ || !h.established || h.history[0] != candidate) continue;
-    gain = std::max(gain, h.gain);
+    if (h.track != track) continue;
+    const Hypothesis*& best = h.history[0] == candidate ? with : without;
+    if (best == nullptr || h.score > best->score) best = &h;
   }
-  return gain;
+  if (with == nullptr) return -kAlone;
+  return without == nullptr ? kAlone : with->score - without->score;
+}
+
+// The strongest claim of another satellite's track to the candidate.
+double TargetTracker::rival_claim(std::int16_t candidate) const {
+  double strongest = -kAlone;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (h.track == target_track_ || h.hits < kRivalHits || h.history[0] != candidate) continue;
+    strongest = std::max(strongest, claim(h.track, candidate));
+  }
+  return strongest;
 }
 
 TrackerOutput TargetTracker::report() {
@@ -434,7 +456,9 @@ TrackerOutput TargetTracker::report() {
     if (h.history[0] == seen) agreeing += weight;
   }
   const bool certain = agreeing >= settings_.certainty * all;
-  const bool own = target->gain > rival_gain(seen);
+  // Either the target shows and the rival is missed, or the other way round.
+  const double odds = math::log(settings_.certainty / (1.0 - settings_.certainty));
+  const bool own = claim(target_track_, seen) > rival_claim(seen) + odds;
   const bool fits = target->misfit < kMostMisfit && target->hits_since_gap >= settings_.hits_after_gap;
   output.candidate = seen;
   output.confirmed = certain && own && fits && deposing_images_ == 0;

@@ -88,7 +88,7 @@ class TargetTracker {
   [[nodiscard]] Status check(const TrackerInput& input) const;
   void select_eligible(const TrackerInput& input);
   void propagate_all(const TrackerInput& input);
-  void make_branches(const TrackerInput& input);
+  void make_branches();
   void grow();
   void compare_with_prediction(double dt);
   void prune();
@@ -110,7 +110,8 @@ class TargetTracker {
   [[nodiscard]] bool moves_as(const Hypothesis& a, const Hypothesis& b) const;
   [[nodiscard]] const Hypothesis* best_of(std::uint32_t track) const;
   [[nodiscard]] bool is_best_of_its_track(std::size_t k) const;
-  [[nodiscard]] double rival_gain(std::int16_t candidate) const;
+  [[nodiscard]] double claim(std::uint32_t track, std::int16_t candidate) const;
+  [[nodiscard]] double rival_claim(std::int16_t candidate) const;
 
   static constexpr std::size_t kMaxBranches = 1024;
 

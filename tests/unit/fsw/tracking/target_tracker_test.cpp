@@ -57,7 +57,7 @@ SceneSettings one_kilometre() {
   settings.target_a_roe_m = six(0.0, -1000.0, 0.0, 30.0, 0.0, 30.0);
   settings.sigma_a_roe_m = six(0.1, 10.0, 1.0, 1.0, 1.0, 1.0);
   settings.refined = 0.3;
-  settings.decoys_a_roe_m = {six(0.0, -9000.0, 100.0, 200.0, -200.0, 200.0), six(0.0, -3000.0, 60.0, 90.0, 0.0, 90.0)};
+  settings.decoys_a_roe_m = {six(0.0, -9000.0, 100.0, 200.0, -200.0, 200.0), six(0.0, -3000.0, -60.0, 90.0, 50.0, 60.0)};
   return settings;
 }
 
@@ -67,7 +67,7 @@ SceneSettings hundred_metres() {
   settings.sigma_a_roe_m = six(0.01, 1.0, 0.2, 0.2, 0.2, 0.2);
   settings.refined = 0.3;
   settings.noise_arcsec = 60.0;  // 41 pixels across, so its centre of brightness wanders
-  settings.decoys_a_roe_m = {six(0.0, -8100.0, 100.0, 200.0, -200.0, 200.0), six(0.0, -300.0, 6.0, 9.0, 0.0, 9.0)};
+  settings.decoys_a_roe_m = {six(0.0, -8100.0, 100.0, 200.0, -200.0, 200.0), six(0.0, -300.0, -6.0, 9.0, 5.0, 6.0)};
   return settings;
 }
 
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"fifty_kilometres", fifty_kilometres},
                       Case{"fifty_kilometres_dark_burning", [] { return dark(burning(fifty_kilometres(), 0.3)); }},
                       Case{"five_kilometres", five_kilometres},
-                      Case{"five_kilometres_dark_burning", [] { return dark(burning(five_kilometres(), 0.1)); }},
+                      Case{"five_kilometres_dark_burning", [] { return dark(burning(five_kilometres(), -0.1)); }},
                       Case{"one_kilometre", one_kilometre},
                       Case{"one_kilometre_dark_burning", [] { return dark(burning(one_kilometre(), 0.01)); }},
                       Case{"hundred_metres", hundred_metres},
