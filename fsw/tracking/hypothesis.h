@@ -46,6 +46,9 @@ bool share_recent(const Hypothesis& a, const Hypothesis& b, std::size_t images);
 /// True if their histories have at least two objects in common and never another object in the same image.
 bool agree(const Hypothesis& a, const Hypothesis& b);
 
+/// In how many images of its history `a` saw something that `b` did not.
+int objects_of_its_own(const Hypothesis& a, const Hypothesis& b);
+
 /// Of the lowest `count` bits.
 int hits_of(std::uint32_t bits, int count);
 

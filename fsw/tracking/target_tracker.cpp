@@ -22,6 +22,7 @@ constexpr double kSameDistance = 25.0;  // chi-square, 4 degrees of freedom: 5e-
 constexpr double kAlone = 99.0;
 constexpr double kNarrowGate = 0.02;  // false detections in it
 constexpr int kRivalHits = 3;
+constexpr int kOwnObjects = 2;
 constexpr int kDeposeAfter = 3;
 constexpr double kFluxGain = 0.2;
 constexpr double kMisfitGain = 0.15;
@@ -114,6 +115,7 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
     const Result<SlopeMeasurement> measurement =
         slope_measurement(candidate.direction_rtn, candidate.sigma, settings_.motion);
     if (!measurement.ok()) continue;
+    bool is_in_gate = true;
     if (work_.has_prediction) {
       const Vector2 offset = measurement.value().slopes - predicted;
       Matrix2 s = work_.prediction.covariance.topLeftCorner<2, 2>();
@@ -122,10 +124,12 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
       const double determinant = s(0, 0) * s(1, 1) - s(0, 1) * s(1, 0);
       const double square = s(1, 1) * offset.x() * offset.x() - 2.0 * s(0, 1) * offset.x() * offset.y() +
                             s(0, 0) * offset.y() * offset.y();
-      if (!(square <= settings_.prediction_gate * determinant)) continue;
+      is_in_gate = square <= settings_.prediction_gate * determinant;
+      if (!is_in_gate && !(offset.squaredNorm() < settings_.surroundings * settings_.surroundings)) continue;
     }
     Eligible& eligible = work_.eligible[work_.eligible_count++];
     eligible.measurement = measurement.value();
+    eligible.is_in_gate = is_in_gate;
     eligible.log_flux = math::log(candidate.object.flux_dn > 1.0 ? candidate.object.flux_dn : 1.0);
     eligible.handicap =
         candidate.object.pixels <= settings_.hot_pixels.most_pixels ? -settings_.small_object_loss : 0.0;
@@ -178,6 +182,7 @@ void TargetTracker::make_branches() {
     add(place, kMissed, parent.established, parent.score + work_.log_miss);
     for (std::size_t c = 0; c < work_.eligible_count; ++c) {
       const Eligible& candidate = work_.eligible[c];
+      if (parent.track == target_track_ && !candidate.is_in_gate) continue;
       const Innovation innovation = innovation_of(parent.motion, work_.view, work_.bend, candidate.measurement);
       if (!(innovation.distance <= settings_.association_gate) || !(innovation.determinant > 0.0)) continue;
       add(place, static_cast<std::int16_t>(c), parent.established,
@@ -417,12 +422,15 @@ double TargetTracker::claim(std::uint32_t track, std::int16_t candidate) const {
   return without == nullptr ? kAlone : with->score - without->score;
 }
 
-// The strongest claim of another satellite's track to the candidate.
-double TargetTracker::rival_claim(std::int16_t candidate) const {
+// The strongest claim of another satellite's track to the target's candidate. A short track is another satellite's if
+// it saw objects that the target's did not.
+double TargetTracker::rival_claim(const Hypothesis& target) const {
+  const std::int16_t candidate = target.history[0];
   double strongest = -kAlone;
   for (std::size_t k = 0; k < count_; ++k) {
     const Hypothesis& h = hypotheses_[k];
-    if (h.track == target_track_ || h.hits < kRivalHits || h.history[0] != candidate) continue;
+    if (h.track == target_track_ || h.history[0] != candidate) continue;
+    if (!h.established && objects_of_its_own(h, target) < kOwnObjects) continue;
     strongest = std::max(strongest, claim(h.track, candidate));
   }
   return strongest;
@@ -458,7 +466,7 @@ TrackerOutput TargetTracker::report() {
   const bool certain = agreeing >= settings_.certainty * all;
   // Either the target shows and the rival is missed, or the other way round.
   const double odds = math::log(settings_.certainty / (1.0 - settings_.certainty));
-  const bool own = claim(target_track_, seen) > rival_claim(seen) + odds;
+  const bool own = claim(target_track_, seen) > rival_claim(*target) + odds;
   const bool fits = target->misfit < kMostMisfit && target->hits_since_gap >= settings_.hits_after_gap;
   output.candidate = seen;
   output.confirmed = certain && own && fits && deposing_images_ == 0;
