@@ -20,7 +20,6 @@ struct Hypothesis {
   RelativeMotion motion;
   std::uint32_t track = 0;  ///< hypotheses of one track began with the same object
   double score = 0.0;       ///< log-likelihood ratio against all of it being false detections (Sittler 1964)
-  double gain = 0.0;        ///< of the last image against having missed it
   double misfit = 1.0;      ///< running mean of the normalised innovation squared, a degree of freedom
   double log_flux = 0.0;    ///< running mean
   double identity = 0.0;    ///< worst recent distance from the prediction (chi-square, 4 degrees of freedom)
@@ -43,6 +42,12 @@ struct Branch {
 
 /// True if both saw the same in the last `images` images and at least two objects.
 bool share_recent(const Hypothesis& a, const Hypothesis& b, std::size_t images);
+
+/// True if their histories have at least two objects in common and never another object in the same image.
+bool agree(const Hypothesis& a, const Hypothesis& b);
+
+/// In how many images of its history `a` saw something that `b` did not.
+int objects_of_its_own(const Hypothesis& a, const Hypothesis& b);
 
 /// Of the lowest `count` bits.
 int hits_of(std::uint32_t bits, int count);

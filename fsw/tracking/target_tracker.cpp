@@ -18,9 +18,11 @@ constexpr double kDropScore = -7.0;
 constexpr int kPatience = 3;
 constexpr std::size_t kScan = 5;  // images after which only one account of a track remains
 constexpr std::size_t kSame = 3;  // images that two accounts must share to be one
-constexpr double kSameDistance = 16.0;
+constexpr double kSameDistance = 25.0;  // chi-square, 4 degrees of freedom: 5e-5
 constexpr double kAlone = 99.0;
+constexpr double kNarrowGate = 0.02;  // false detections in it
 constexpr int kRivalHits = 3;
+constexpr int kOwnObjects = 2;
 constexpr int kDeposeAfter = 3;
 constexpr double kFluxGain = 0.2;
 constexpr double kMisfitGain = 0.15;
@@ -59,7 +61,7 @@ Result<TrackerOutput> TargetTracker::step(const TrackerInput& input) {
 
   select_eligible(input);
   propagate_all(input);
-  make_branches(input);
+  make_branches();
   grow();
   compare_with_prediction(dt);
   prune();
@@ -102,13 +104,18 @@ Status TargetTracker::check(const TrackerInput& input) const {
 void TargetTracker::select_eligible(const TrackerInput& input) {
   hot_pixels_.begin_image();
   work_.eligible_count = 0;
+  std::size_t hot = 0;
   const Vector2 predicted = work_.prediction.slopes.head<2>();
   for (std::size_t k = 0; k < input.candidates.size(); ++k) {
     const Candidate& candidate = input.candidates[k];
-    if (hot_pixels_.see(candidate.object)) continue;
+    if (hot_pixels_.see(candidate.object)) {
+      ++hot;
+      continue;
+    }
     const Result<SlopeMeasurement> measurement =
         slope_measurement(candidate.direction_rtn, candidate.sigma, settings_.motion);
     if (!measurement.ok()) continue;
+    bool is_in_gate = true;
     if (work_.has_prediction) {
       const Vector2 offset = measurement.value().slopes - predicted;
       Matrix2 s = work_.prediction.covariance.topLeftCorner<2, 2>();
@@ -117,16 +124,18 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
       const double determinant = s(0, 0) * s(1, 1) - s(0, 1) * s(1, 0);
       const double square = s(1, 1) * offset.x() * offset.x() - 2.0 * s(0, 1) * offset.x() * offset.y() +
                             s(0, 0) * offset.y() * offset.y();
-      if (!(square <= settings_.prediction_gate * determinant)) continue;
+      is_in_gate = square <= settings_.prediction_gate * determinant;
+      if (!is_in_gate && !(offset.squaredNorm() < settings_.surroundings * settings_.surroundings)) continue;
     }
     Eligible& eligible = work_.eligible[work_.eligible_count++];
     eligible.measurement = measurement.value();
+    eligible.is_in_gate = is_in_gate;
     eligible.log_flux = math::log(candidate.object.flux_dn > 1.0 ? candidate.object.flux_dn : 1.0);
     eligible.handicap =
         candidate.object.pixels <= settings_.hot_pixels.most_pixels ? -settings_.small_object_loss : 0.0;
     eligible.index = static_cast<std::int16_t>(k);
   }
-  const double count = static_cast<double>(std::max<std::size_t>(input.candidates.size(), 1));
+  const double count = static_cast<double>(std::max<std::size_t>(input.candidates.size() - hot, 1));
   work_.log_density = math::log(count / settings_.field_sr);
 }
 
@@ -160,8 +169,7 @@ double TargetTracker::gain_of(const Hypothesis& parent, const Innovation& innova
   return likelihood + brightness + candidate.handicap;
 }
 
-void TargetTracker::make_branches(const TrackerInput& input) {
-  static_cast<void>(input);
+void TargetTracker::make_branches() {
   work_.branch_count = 0;
   const auto add = [this](std::int16_t parent, std::int16_t candidate, bool established, double score) {
     if (work_.branch_count < kMaxBranches) {
@@ -174,6 +182,7 @@ void TargetTracker::make_branches(const TrackerInput& input) {
     add(place, kMissed, parent.established, parent.score + work_.log_miss);
     for (std::size_t c = 0; c < work_.eligible_count; ++c) {
       const Eligible& candidate = work_.eligible[c];
+      if (parent.track == target_track_ && !candidate.is_in_gate) continue;
       const Innovation innovation = innovation_of(parent.motion, work_.view, work_.bend, candidate.measurement);
       if (!(innovation.distance <= settings_.association_gate) || !(innovation.determinant > 0.0)) continue;
       add(place, static_cast<std::int16_t>(c), parent.established,
@@ -197,7 +206,6 @@ Hypothesis TargetTracker::child_of(const Branch& branch) {
   }
   const bool is_hit = branch.candidate >= 0;
   const bool is_expected = work_.detection_probability > kExpected;
-  if (!is_birth) child.gain = branch.score - (child.score + work_.log_miss);
   child.score = branch.score;
   std::copy(child.history.begin(), child.history.end() - 1, child.history.begin() + 1);
   child.history[0] = kMissed;
@@ -212,13 +220,17 @@ Hypothesis TargetTracker::child_of(const Branch& branch) {
   }
   const Eligible& candidate = work_.eligible[static_cast<std::size_t>(branch.candidate)];
   const Innovation innovation = innovation_of(child.motion, work_.view, work_.bend, candidate.measurement);
+  // After a gap a narrow gate, in which hardly anything else can be, needs no further proof.
+  const double gate_sr = math::kPi * settings_.association_gate * math::sqrt(innovation.determinant);
+  const bool is_narrow = gate_sr * math::exp(work_.log_density) < kNarrowGate;
   update(child.motion, innovation);
   child.history[0] = candidate.index;
   child.misfit += kMisfitGain * (0.5 * innovation.distance - child.misfit);
   child.log_flux += (is_birth ? 1.0 : kFluxGain) * (candidate.log_flux - child.log_flux);
   child.images_since_hit = 0;
   ++child.hits;
-  ++child.hits_since_gap;
+  child.hits_since_gap = is_narrow && child.established && child.hits_since_gap == 0 ? settings_.hits_after_gap
+                                                                                     : child.hits_since_gap + 1;
   if (hits_of(child.recent, settings_.confirm_images) >= settings_.confirm_hits && child.misfit < kMostMisfit) {
     child.established = true;
   }
@@ -295,25 +307,60 @@ void TargetTracker::prune() {
   }
   erase_marked();
 
-  // One of two that have become the same: the target's track stays, else an established one, else the better.
+  merge_accounts();
+  merge_tracks();
+}
+
+// Of two accounts of a track that share the last images the better stays.
+void TargetTracker::merge_accounts() {
   work_.erased.fill(false);
   for (std::size_t a = 0; a < count_; ++a) {
     for (std::size_t b = a + 1; b < count_ && !work_.erased[a]; ++b) {
-      if (work_.erased[b] || !share_recent(hypotheses_[a], hypotheses_[b], kSame)) continue;
-      const SlopeState left = slope_state(hypotheses_[a].motion, work_.view, work_.bend, work_.bend_rate);
-      const SlopeState right = slope_state(hypotheses_[b].motion, work_.view, work_.bend, work_.bend_rate);
-      const double distance =
-          distance_between(left.slopes, left.covariance, right.slopes, right.covariance, 1e-6, 1e-8);
-      if (distance > kSameDistance) continue;
-      const bool a_is_target = hypotheses_[a].track == target_track_;
-      const bool b_is_target = hypotheses_[b].track == target_track_;
-      bool a_stays = hypotheses_[a].score >= hypotheses_[b].score;
-      if (hypotheses_[a].established != hypotheses_[b].established) a_stays = hypotheses_[a].established;
-      if (a_is_target != b_is_target) a_stays = a_is_target;
-      work_.erased[a_stays ? b : a] = true;
+      const Hypothesis& left = hypotheses_[a];
+      const Hypothesis& right = hypotheses_[b];
+      if (work_.erased[b] || left.track != right.track || !share_recent(left, right, kSame)) continue;
+      work_.erased[left.score >= right.score ? b : a] = true;
     }
   }
   erase_marked();
+}
+
+// Of two tracks that have become the same the target's stays, else an established one, else the better: the other is a
+// ghost that lives on the first one's objects.
+void TargetTracker::merge_tracks() {
+  std::array<std::size_t, kMaxHypotheses> best{};
+  std::size_t tracks = 0;
+  for (std::size_t k = 0; k < count_; ++k) {
+    if (is_best_of_its_track(k)) best[tracks++] = k;
+  }
+  std::array<bool, kMaxHypotheses> is_ghost{};
+  for (std::size_t a = 0; a < tracks; ++a) {
+    for (std::size_t b = a + 1; b < tracks && !is_ghost[a]; ++b) {
+      const Hypothesis& left = hypotheses_[best[a]];
+      const Hypothesis& right = hypotheses_[best[b]];
+      if (is_ghost[b] || !agree(left, right) || !moves_as(left, right)) continue;
+      bool left_stays = left.score >= right.score;
+      if (left.established != right.established) left_stays = left.established;
+      if (left.track == target_track_ || right.track == target_track_) left_stays = left.track == target_track_;
+      is_ghost[left_stays ? b : a] = true;
+    }
+  }
+  work_.erased.fill(false);
+  for (std::size_t t = 0; t < tracks; ++t) {
+    if (!is_ghost[t]) continue;
+    const std::uint32_t ghost = hypotheses_[best[t]].track;
+    for (std::size_t k = 0; k < count_; ++k) {
+      if (hypotheses_[k].track == ghost) work_.erased[k] = true;
+    }
+  }
+  erase_marked();
+}
+
+bool TargetTracker::moves_as(const Hypothesis& a, const Hypothesis& b) const {
+  const SlopeState left = slope_state(a.motion, work_.view, work_.bend, work_.bend_rate);
+  const SlopeState right = slope_state(b.motion, work_.view, work_.bend, work_.bend_rate);
+  // The floors only keep the sum regular.
+  return distance_between(left.slopes, left.covariance, right.slopes, right.covariance, 1e-6, 1e-8) < kSameDistance;
 }
 
 void TargetTracker::choose_target() {
@@ -360,15 +407,33 @@ void TargetTracker::choose_target() {
   }
 }
 
-// How much better than missing it an established track of another satellite explains the candidate.
-double TargetTracker::rival_gain(std::int16_t candidate) const {
-  double gain = -kAlone;
+// By how much a track's best account with the candidate in this image beats its best one without; no account with it
+// or none without: -kAlone or kAlone.
+double TargetTracker::claim(std::uint32_t track, std::int16_t candidate) const {
+  const Hypothesis* with = nullptr;
+  const Hypothesis* without = nullptr;
   for (std::size_t k = 0; k < count_; ++k) {
     const Hypothesis& h = hypotheses_[k];
-    if (h.track == target_track_ || !h.established || h.history[0] != candidate) continue;
-    gain = std::max(gain, h.gain);
+    if (h.track != track) continue;
+    const Hypothesis*& best = h.history[0] == candidate ? with : without;
+    if (best == nullptr || h.score > best->score) best = &h;
   }
-  return gain;
+  if (with == nullptr) return -kAlone;
+  return without == nullptr ? kAlone : with->score - without->score;
+}
+
+// The strongest claim of another satellite's track to the target's candidate. A short track is another satellite's if
+// it saw objects that the target's did not.
+double TargetTracker::rival_claim(const Hypothesis& target) const {
+  const std::int16_t candidate = target.history[0];
+  double strongest = -kAlone;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (h.track == target_track_ || h.history[0] != candidate) continue;
+    if (!h.established && objects_of_its_own(h, target) < kOwnObjects) continue;
+    strongest = std::max(strongest, claim(h.track, candidate));
+  }
+  return strongest;
 }
 
 TrackerOutput TargetTracker::report() {
@@ -399,7 +464,9 @@ TrackerOutput TargetTracker::report() {
     if (h.history[0] == seen) agreeing += weight;
   }
   const bool certain = agreeing >= settings_.certainty * all;
-  const bool own = target->gain > rival_gain(seen);
+  // Either the target shows and the rival is missed, or the other way round.
+  const double odds = math::log(settings_.certainty / (1.0 - settings_.certainty));
+  const bool own = claim(target_track_, seen) > rival_claim(*target) + odds;
   const bool fits = target->misfit < kMostMisfit && target->hits_since_gap >= settings_.hits_after_gap;
   output.candidate = seen;
   output.confirmed = certain && own && fits && deposing_images_ == 0;

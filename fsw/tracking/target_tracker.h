@@ -23,6 +23,7 @@ struct TrackerSettings {
   MotionSettings motion;
   HotPixelSettings hot_pixels;
   double field_sr = 0.0113;           ///< solid angle in which candidates are looked for: 4.8 by 7.7 degrees
+  double surroundings = 0.03;  ///< rad about the predicted bearing in which other satellites are tracked as well
   double association_gate = 13.8;     ///< chi-square, 2 degrees of freedom: 99.9 %
   double prediction_gate = 18.4;      ///< the same about the predicted bearing: 99.99 %
   double identity_gate = 23.5;        ///< chi-square, 4 degrees of freedom: 99.99 %
@@ -88,10 +89,12 @@ class TargetTracker {
   [[nodiscard]] Status check(const TrackerInput& input) const;
   void select_eligible(const TrackerInput& input);
   void propagate_all(const TrackerInput& input);
-  void make_branches(const TrackerInput& input);
+  void make_branches();
   void grow();
   void compare_with_prediction(double dt);
   void prune();
+  void merge_accounts();
+  void merge_tracks();
   void choose_target();
   TrackerOutput report();
 
@@ -100,14 +103,17 @@ class TargetTracker {
     double log_flux = 0.0;
     double handicap = 0.0;  ///< log-likelihood
     std::int16_t index = 0;
+    bool is_in_gate = true;  ///< may be the target
   };
 
   [[nodiscard]] double gain_of(const Hypothesis& parent, const Innovation& innovation, const Eligible& candidate) const;
   [[nodiscard]] Hypothesis child_of(const Branch& branch);
   void erase_marked();
+  [[nodiscard]] bool moves_as(const Hypothesis& a, const Hypothesis& b) const;
   [[nodiscard]] const Hypothesis* best_of(std::uint32_t track) const;
   [[nodiscard]] bool is_best_of_its_track(std::size_t k) const;
-  [[nodiscard]] double rival_gain(std::int16_t candidate) const;
+  [[nodiscard]] double claim(std::uint32_t track, std::int16_t candidate) const;
+  [[nodiscard]] double rival_claim(const Hypothesis& target) const;
 
   static constexpr std::size_t kMaxBranches = 1024;
 

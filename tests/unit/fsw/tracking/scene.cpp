@@ -44,6 +44,27 @@ Matrix3 camera_rtn(const Vector3& boresight_rtn) {
   return rotation;
 }
 
+/// Satellites closer than two and a half pixels are one object, at their common centre of brightness; that with the
+/// target in it counts as the target.
+void merge_blobs(Scene& scene) {
+  for (std::size_t a = 0; a < scene.candidates.size(); ++a) {
+    for (std::size_t b = scene.candidates.size() - 1; b > a; --b) {
+      tracking::Candidate& kept = scene.candidates[a];
+      const tracking::Candidate& gone = scene.candidates[b];
+      if ((kept.object.centroid_px - gone.object.centroid_px).norm() > 2.5) continue;
+      const double flux = kept.object.flux_dn + gone.object.flux_dn;
+      const double part = gone.object.flux_dn / flux;
+      kept.direction_rtn = ((1.0 - part) * kept.direction_rtn + part * gone.direction_rtn).normalized();
+      kept.object.centroid_px += part * (gone.object.centroid_px - kept.object.centroid_px);
+      kept.object.flux_dn = flux;
+      kept.object.pixels += gone.object.pixels;
+      scene.source[a] = std::min(scene.source[a], scene.source[b]);
+      scene.candidates.erase(scene.candidates.begin() + static_cast<std::ptrdiff_t>(b));
+      scene.source.erase(scene.source.begin() + static_cast<std::ptrdiff_t>(b));
+    }
+  }
+}
+
 }  // namespace
 
 int Scene::target_index() const {
@@ -105,6 +126,8 @@ struct SceneMaker::Sky {
       const double sigma = settings.burn_error * burn.dv_rtn.norm();
       const Vector3 error(noise.normal(), noise.normal(), noise.normal());
       truth->apply_impulse_rtn(0, burn.dv_rtn + sigma * error);
+      // Navigation takes the burn as commanded, which to the relative motion is as if the target had made the error.
+      for (const std::size_t estimate : {2, 3}) truth->apply_impulse_rtn(estimate, sigma * error);
       scene.burns.push_back({at, burn.dv_rtn, sigma});
     }
     truth->advance_to(start + nearest_duration(to_s));
@@ -121,7 +144,6 @@ struct SceneMaker::Sky {
     const Vector6 sigma = part * settings.sigma_a_roe_m / mission::kReferenceA;
     const Vector6 variance = sigma.cwiseProduct(sigma);
     Matrix6 covariance = map * variance.asDiagonal() * map.transpose();
-    // A burn's error is in the true motion, but the estimates know of none.
     for (const SceneBurn& burn : settings.burns) {
       if (burn.time_s > elapsed_s) continue;
       const double since_s = elapsed_s - burn.time_s;
@@ -130,7 +152,7 @@ struct SceneMaker::Sky {
       const Matrix6 after = orbit::roe_transition_j2(then, since_s);
       for (int k = 0; k < 6; ++k) from_burn.col(k) = orbit::rtn_from_roe_linear(chief, after.col(k));
       const Matrix63 effect = from_burn * orbit::roe_control_matrix_near_circular(then);
-      const double size = settings.burn_error * burn.dv_rtn.norm() * (is_refined ? 1.0 : 1.0);
+      const double size = settings.burn_error * burn.dv_rtn.norm();
       covariance += size * size * effect * effect.transpose();
     }
     return must(tracking::prediction_of(expected, covariance));
@@ -202,6 +224,7 @@ Scene SceneMaker::next() {
     const Vector3 measured = sky.blurred(direction);
     if (shows) sky.see(scene, camera, measured, static_cast<int>(k), flux, 16);
   }
+  merge_blobs(scene);
   const int count = static_cast<int>(settings.false_detections + sky.noise.uniform());
   for (int k = 0; k < count; ++k) {
     const Vector3 in_camera(sky.noise.uniform(-kHalfWidth_px, kHalfWidth_px) * kPixel,
@@ -230,7 +253,12 @@ RunResult run_tracker(tracking::TargetTracker& tracker, SceneMaker& maker, int i
     if (output.confirmed) {
       if (k >= from) ++result.confirmed;
       if (result.first_confirmed < 0) result.first_confirmed = k;
-      if (output.candidate != target) ++result.wrong;
+      if (output.candidate != target) {
+        ++result.wrong;
+        const auto& chosen = scene.candidates[static_cast<std::size_t>(output.candidate)];
+        std::cout << "wrong: image " << k << " source " << scene.source[static_cast<std::size_t>(output.candidate)] << " seen " << target << " off arcsec "
+                  << std::acos(chosen.direction_rtn.dot(scene.target.position_rtn.normalized())) / kArcsec << " res " << output.residual_sigmas << "\n";
+      }
     }
     result.longest_hypotheses = std::max(result.longest_hypotheses, output.hypotheses);
     if (talks) {
