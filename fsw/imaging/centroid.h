@@ -14,10 +14,10 @@ struct Centroid {
   bool is_cut = false;    ///< what it rests on reaches beyond the image or into missing pixels
 };
 
-/// Iterated Gaussian-weighted centroid of a point source, from the brightest 3 x 3 pixels of its component on: SExtractor's
-/// windowed positions (docs of SExtractor 2.19, section 10.7.1; for a Gaussian source as good as a fit). The window is
-/// somewhat wider than the image of a point, which keeps the bias of sampling below 0.003 px at a width of 0.8 px.
-/// Not found if it wanders off or there is no light: then the component's own moments are better.
+/// Iterated Gaussian-weighted centroid of a point source, from the brightest 3 x 3 pixels of its component on:
+/// SExtractor's windowed positions (docs of SExtractor 2.19, section 10.7.1; for a Gaussian source as good as a fit).
+/// The window is somewhat wider than the image of a point, which keeps the bias of sampling below 0.003 px at a width
+/// of 0.8 px. Not found if it wanders off or there is no light: then the component's own moments are better.
 Centroid windowed_centroid(const ImageView& image, const Background& background, const Component& component,
                            double point_spread_sigma_px, double gain_dn_per_electron);
 

@@ -62,13 +62,13 @@ void ObjectDetector::find_components() {
     rows_ = {image_row(y - 1), image_row(y), image_row(y + 1)};
     is_patched_ = false;
     Background::RowNodes nodes;
-    background_.row(y, 9, noises_q4_, nodes);
+    background_.threshold_row(y, noises_q4_, nodes);
     background_.fill(nodes, threshold_dn_);
     if (!scan_row()) {
       patch_rows(y);
       static_cast<void>(scan_row());
     }
-    if (run_count_ > 0) background_.row(y, 1, 0, level_);
+    if (run_count_ > 0) background_.level_row(y, level_);
     for (std::size_t k = 0; k < run_count_; ++k) add_run(y, runs_[k]);
     components_.end_row(y);
   }
@@ -117,7 +117,7 @@ void ObjectDetector::push_run(int begin, int end) {
 void ObjectDetector::patch_rows(int y) {
   for (std::size_t k = 0; k < 3; ++k) {
     Background::RowNodes nodes;
-    background_.row(y - 1 + static_cast<int>(k), 1, 0, nodes);
+    background_.level_row(y - 1 + static_cast<int>(k), nodes);
     for (int x = 0; x < image_.frame.width; ++x) {
       const std::uint16_t pixel = rows_[k][x];
       patched_[k][static_cast<std::size_t>(x)] =

@@ -14,7 +14,10 @@ TEST(ObjectDetector, FindsSixtyStars) {
   std::uniform_real_distribution<double> u(0, 1);
   std::vector<test::Point> stars;
   for (int k = 0; k < 60; ++k) {
-    stars.push_back({.x = 20 + 460 * u(random), .y = 20 + 760 * u(random), .electrons = 900 * std::pow(10, 2 * u(random)), .smear_x_px = 1.2});
+    stars.push_back({.x = 20 + 460 * u(random),
+                     .y = 20 + 760 * u(random),
+                     .electrons = 900 * std::pow(10, 2 * u(random)),
+                     .smear_x_px = 1.2});
     scene.add(stars.back());
   }
   auto pixels = scene.expose({}, random);
