@@ -154,6 +154,9 @@ Centroid windowed_centroid(const ImageView& image, const Background& background,
   const double change_x = std::max(sums.light - sums.xx / (sigma * sigma), 0.5 * sums.light);
   const double change_y = std::max(sums.light - sums.yy / (sigma * sigma), 0.5 * sums.light);
   c.sigma_px = math::sqrt(0.5 * (sums.variance_x / (change_x * change_x) + sums.variance_y / (change_y * change_y)));
+  // The window makes the image narrower: 1 / seen^2 = 1 / true^2 + 1 / sigma^2.
+  const double seen = std::clamp(std::max(sums.xx, sums.yy) / sums.light, 0.0, 0.9 * sigma * sigma);
+  c.radius_px = math::sqrt(seen / (1.0 - seen / (sigma * sigma)));
   c.is_cut = window.is_cut(c.x, c.y);
   return c;
 }
