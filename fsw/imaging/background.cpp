@@ -16,6 +16,8 @@ constexpr int kLeastPart = 16;
 /// Of a cell's samples one in 8 must count, and so many at least.
 constexpr int kLeastPartOfCell = 8;
 constexpr int kLeastSamples = 12;
+/// A cell that is brighter by so many sigmas of a pixel than its neighbours agree on is filled by an object.
+constexpr std::int32_t kOutlierNoises = 8;
 constexpr int kSegmentShift = 14;  // of the 20 bits of a position, with the six that a slope keeps beyond DN / 256
 
 bool is_image(const ImageView& image) {
@@ -60,8 +62,11 @@ ImageCondition Background::measure(const ImageView& image, int saturation_dn) {
   if (!fill_gaps()) return ImageCondition::kTooLittle;
   replace_outliers();
   find_typical();
-  extend(level_, true);
-  extend(noise_, false);
+  find_doubt();
+  extend(level_, [](std::int32_t last, std::int32_t before) { return std::clamp(2 * last - before, 0, kMostLevel); });
+  extend(noise_, [](std::int32_t last, std::int32_t) { return last; });
+  // A line drawn on for half a cell errs by three times what one drawn between nodes does.
+  extend(doubt_, [](std::int32_t last, std::int32_t) { return std::min(3 * last, kMostLevel); });
   int x = 0;
   for (int k = 0; k < x_.cells + 2; ++k) {
     while (x < x_.pixels && (x_.position(x) >> 20) < k) ++x;
@@ -183,10 +188,14 @@ bool Background::fill_gap(int column, int row) {
   return true;
 }
 
-/// An object that fills a cell must not become background.
+/// An object that fills a cell must not become background; stray light, which is smoother, must.
 void Background::replace_outliers() {
   for (int row = 0; row < y_.cells; ++row) {
-    for (int column = 0; column < x_.cells; ++column) scratch_[node(column, row)] = agreed_level(column, row);
+    for (int column = 0; column < x_.cells; ++column) {
+      const std::size_t k = node(column, row);
+      const std::int32_t agreed = agreed_level(column, row);
+      scratch_[k] = level_[k] - agreed > kOutlierNoises * noise_[k] ? agreed : level_[k];
+    }
   }
   for (int row = 0; row < y_.cells; ++row) {
     for (int column = 0; column < x_.cells; ++column) level_[node(column, row)] = scratch_[node(column, row)];
@@ -215,11 +224,30 @@ std::int32_t Background::agreed_level(int column, int row) const {
   return std::clamp(middle_of(std::span(said).first(count)), 0, kMostLevel);
 }
 
-/// Nodes beyond the ends: on a line with the last two, or like the last.
-void Background::extend(Grid& grid, bool is_linear) const {
-  const auto beyond = [is_linear](std::int32_t last, std::int32_t before) {
-    return is_linear ? std::clamp(2 * last - before, 0, kMostLevel) : last;
-  };
+/// Linear interpolation errs by an eighth of the second difference, along either axis.
+void Background::find_doubt() {
+  const auto bend = [](std::int32_t a, std::int32_t b, std::int32_t c) { return (a - b) + (c - b); };
+  for (int row = 0; row < y_.cells; ++row) {
+    for (int column = 0; column < x_.cells; ++column) {
+      std::int32_t sum = 0;
+      if (x_.cells > 2) {
+        const int c = std::clamp(column, 1, x_.cells - 2);
+        const std::int32_t d = bend(level_[node(c - 1, row)], level_[node(c, row)], level_[node(c + 1, row)]);
+        sum += d < 0 ? -d : d;
+      }
+      if (y_.cells > 2) {
+        const int r = std::clamp(row, 1, y_.cells - 2);
+        const std::int32_t d = bend(level_[node(column, r - 1)], level_[node(column, r)], level_[node(column, r + 1)]);
+        sum += d < 0 ? -d : d;
+      }
+      doubt_[node(column, row)] = sum / 8;
+    }
+  }
+}
+
+/// Nodes beyond the ends from the last two: beyond(last, the one before).
+template <class Beyond>
+void Background::extend(Grid& grid, Beyond beyond) const {
   for (int row = 0; row < y_.cells; ++row) {
     const int second = std::min(1, x_.cells - 1);
     grid[node(-1, row)] = beyond(grid[node(0, row)], grid[node(second, row)]);
@@ -246,16 +274,23 @@ void Background::find_typical() {
   typical_noise_dn_ = median_dn(noise_);
 }
 
-void Background::row(int y, std::int32_t levels, std::int32_t noises_q4, RowNodes& nodes) const {
+template <class At>
+void Background::set_row(int y, RowNodes& nodes, At at_node) const {
   const std::int32_t position = y_.position(y);
   const int above = (position >> 20) - 1;
   for (int column = -1; column <= x_.cells; ++column) {
-    const std::size_t a = node(column, above);
-    const std::size_t b = node(column, above + 1);
-    const std::int32_t level = between(level_[a], level_[b], position);
-    const std::int32_t noise = between(noise_[a], noise_[b], position);
-    nodes[static_cast<std::size_t>(column + 1)] = levels * level + noises_q4 * noise / 16;
+    nodes[static_cast<std::size_t>(column + 1)] =
+        between(at_node(node(column, above)), at_node(node(column, above + 1)), position);
   }
+}
+
+void Background::level_row(int y, RowNodes& nodes) const {
+  set_row(y, nodes, [this](std::size_t k) { return level_[k]; });
+}
+
+void Background::threshold_row(int y, std::int32_t noises_q4, RowNodes& nodes) const {
+  set_row(y, nodes,
+          [this, noises_q4](std::size_t k) { return 9 * (level_[k] + doubt_[k]) + noises_q4 * noise_[k] / 16; });
 }
 
 std::int32_t Background::at(const RowNodes& nodes, int x) const {
@@ -278,13 +313,13 @@ void Background::fill(const RowNodes& nodes, std::span<std::int32_t> out_dn) con
 
 double Background::level_dn(int x, int y) const {
   RowNodes nodes;
-  row(y, 1, 0, nodes);
+  level_row(y, nodes);
   return static_cast<double>(at(nodes, x)) / kOne;
 }
 
 double Background::noise_dn(int x, int y) const {
   RowNodes nodes;
-  row(y, 0, 16, nodes);
+  set_row(y, nodes, [this](std::size_t k) { return noise_[k]; });
   return static_cast<double>(at(nodes, x)) / kOne;
 }
 

@@ -24,7 +24,7 @@ enum class ImageCondition : std::uint8_t {
 
 class Background {
  public:
-  /// A sum of level and noise along one row of the image, DN / 256, at the nodes of the grid.
+  /// A quantity along one row of the image, DN / 256, at the nodes of the grid.
   using RowNodes = std::array<std::int32_t, 68>;
   static constexpr std::int32_t kMostNoises = 100 * 16;
 
@@ -32,11 +32,14 @@ class Background {
   /// count. What the functions below say is about the last image that was kGood.
   [[nodiscard]] ImageCondition measure(const ImageView& image, int saturation_dn);
 
-  /// levels * level + noises_q4 / 16 * noise (1 sigma of a pixel) along row y; at most 9 levels, kMostNoises.
-  void row(int y, std::int32_t levels, std::int32_t noises_q4, RowNodes& nodes) const;
-  /// That sum at pixel x of the row, DN / 256, rounded down.
+  /// Level along row y.
+  void level_row(int y, RowNodes& nodes) const;
+  /// What the sum of nine pixels must exceed along row y to be more than background: nine levels, noises_q4 / 16 times
+  /// the noise (1 sigma) of one pixel, at most kMostNoises, and what a curved background may differ by from the grid.
+  void threshold_row(int y, std::int32_t noises_q4, RowNodes& nodes) const;
+  /// Either at pixel x of the row, DN / 256, rounded down.
   [[nodiscard]] std::int32_t at(const RowNodes& nodes, int x) const;
-  /// That sum at every pixel of the row, DN, rounded down.
+  /// Either at every pixel of the row, DN, rounded down.
   void fill(const RowNodes& nodes, std::span<std::int32_t> out_dn) const;
 
   /// Level and 1 sigma at a pixel, DN.
@@ -75,7 +78,11 @@ class Background {
   [[nodiscard]] bool fill_gap(int column, int row);
   void replace_outliers();
   [[nodiscard]] std::int32_t agreed_level(int column, int row) const;
-  void extend(Grid& grid, bool is_linear) const;
+  void find_doubt();
+  template <class Beyond>
+  void extend(Grid& grid, Beyond beyond) const;
+  template <class At>
+  void set_row(int y, RowNodes& nodes, At at_node) const;
   void find_typical();
 
   Axis x_;
@@ -83,6 +90,7 @@ class Background {
   std::array<std::int16_t, 68> segment_begin_{};  ///< the first pixel of a row that lies beyond node k
   Grid level_{};                                  ///< DN / 256
   Grid noise_{};                                  ///< 1 sigma of a pixel, DN / 256
+  Grid doubt_{};                                  ///< of the level between nodes, DN / 256
   Grid scratch_{};
   std::array<bool, kMaxNodes> is_known_{};
   double typical_level_dn_ = 0.0;

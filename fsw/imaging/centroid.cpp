@@ -9,8 +9,10 @@ namespace vbar::fsw::imaging {
 namespace {
 
 constexpr double kUnit = 16.0;  // of a component's brightness
-/// Sigma of the window over that of a point's image (pixel included).
+/// Sigma of the window over that of a point's image (pixel included), and its least, px: in a narrower window a few
+/// pixels decide, and the centroid leans towards their middles.
 constexpr double kWindowWidth = 1.25;
+constexpr double kLeastWidth = 1.0;
 constexpr int kMostReach = 12;             // half a window, px
 constexpr double kReach = 4.0;             // half a window, its sigmas
 constexpr double kReachThatMatters = 2.0;  // a pixel beyond the edge is felt
@@ -38,9 +40,11 @@ struct Weights {
 };
 
 struct Sums {
-  double light = 0.0;                         // weighted
-  double x = 0.0, y = 0.0;                    // first moments about the centre
-  double variance_x = 0.0, variance_y = 0.0;  // of those
+  double light = 0.0;       // weighted
+  double x = 0.0, y = 0.0;  // first moments about the centre
+  // If asked for:
+  double variance_x = 0.0, variance_y = 0.0;  // of the first moments
+  double xx = 0.0, yy = 0.0;                  // second moments
 };
 
 int nearest(double x) {
@@ -69,6 +73,7 @@ class Window {
       const double dy = y_first + j - y;
       double light = 0.0;
       double light_x = 0.0;
+      double light_xx = 0.0;
       double variance = 0.0;
       double variance_x = 0.0;
       for (int i = std::max(0, -x_first); i < std::min(count, image_.frame.width - x_first); ++i) {
@@ -83,11 +88,14 @@ class Window {
         const double v = weight * weight * (noise_variance_ + gain_ * std::max(above, 0.0));
         variance += v;
         variance_x += v * dx * dx;
+        light_xx += weight * above * dx * dx;
       }
       const double weight = y_weights.value[static_cast<std::size_t>(j)];
       all.light += weight * light;
       all.x += weight * light_x;
       all.y += weight * light * dy;
+      all.xx += weight * light_xx;
+      all.yy += weight * light * dy * dy;
       all.variance_x += weight * weight * variance_x;
       all.variance_y += weight * weight * variance * dy * dy;
     }
@@ -123,7 +131,8 @@ class Window {
 
 Centroid windowed_centroid(const ImageView& image, const Background& background, const Component& component,
                            double point_spread_sigma_px, double gain_dn_per_electron) {
-  const double sigma = kWindowWidth * math::sqrt(point_spread_sigma_px * point_spread_sigma_px + 1.0 / 12.0);
+  const double point = math::sqrt(point_spread_sigma_px * point_spread_sigma_px + 1.0 / 12.0);
+  const double sigma = std::max(kWindowWidth * point, kLeastWidth);
   const Window window(image, background, component, sigma, gain_dn_per_electron);
   Centroid c{.x = static_cast<double>(component.peak_x), .y = static_cast<double>(component.peak_y)};
   for (int k = 0; k < kMostIterations; ++k) {
@@ -141,7 +150,13 @@ Centroid windowed_centroid(const ImageView& image, const Background& background,
   }
   if (!c.is_found) return c;
   const Sums sums = window.sums(c.x, c.y, true);
-  c.sigma_px = 2.0 * math::sqrt(0.5 * (sums.variance_x + sums.variance_y)) / sums.light;
+  // What the first moments change by when the centre moves a pixel: of a point's image rather more than half the light.
+  const double change_x = std::max(sums.light - sums.xx / (sigma * sigma), 0.5 * sums.light);
+  const double change_y = std::max(sums.light - sums.yy / (sigma * sigma), 0.5 * sums.light);
+  c.sigma_px = math::sqrt(0.5 * (sums.variance_x / (change_x * change_x) + sums.variance_y / (change_y * change_y)));
+  // The window makes the image narrower: 1 / seen^2 = 1 / true^2 + 1 / sigma^2.
+  const double seen = std::clamp(std::max(sums.xx, sums.yy) / sums.light, 0.0, 0.9 * sigma * sigma);
+  c.radius_px = math::sqrt(seen / (1.0 - seen / (sigma * sigma)));
   c.is_cut = window.is_cut(c.x, c.y);
   return c;
 }

@@ -10,8 +10,9 @@ struct Centroid {
   bool is_found = false;
   double x = 0.0;  ///< px, from the image's first pixel
   double y = 0.0;
-  double sigma_px = 0.0;  ///< each axis, by photon and read noise
-  bool is_cut = false;    ///< what it rests on reaches beyond the image or into missing pixels
+  double sigma_px = 0.0;   ///< each axis, by photon and read noise
+  double radius_px = 0.0;  ///< sigma of the Gaussian that the light within the window has, along the wider axis
+  bool is_cut = false;     ///< what it rests on reaches beyond the image or into missing pixels
 };
 
 /// Iterated Gaussian-weighted centroid of a point source, from the brightest 3 x 3 pixels of its component on:

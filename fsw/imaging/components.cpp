@@ -1,6 +1,7 @@
 #include "fsw/imaging/components.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace vbar::fsw::imaging {
 namespace {
@@ -48,6 +49,7 @@ void Components::clear(std::int32_t largest_px) {
   for (std::size_t k = kMaxLabels; k > 0; --k) release(static_cast<Label>(k - 1));
   united_count_ = 0;
   kept_count_ = 0;
+  least_flux_ = std::numeric_limits<std::int64_t>::min();
   found_ = 0;
   extended_ = 0;
   extended_pixels_ = 0;
@@ -134,13 +136,16 @@ void Components::close(const Component& component) {
     extended_pixels_ += component.pixels;
     return;
   }
+  if (component.flux < least_flux_) return;
   if (kept_count_ == kept_.size()) keep_brightest();
   kept_[kept_count_++] = component;
 }
 
 void Components::keep_brightest() {
   std::sort(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(kept_count_), is_brighter);
-  kept_count_ = std::min(kept_count_, kMaxObjects);
+  if (kept_count_ < kMaxObjects) return;
+  kept_count_ = kMaxObjects;
+  least_flux_ = kept_[kMaxObjects - 1].flux;
 }
 
 }  // namespace vbar::fsw::imaging

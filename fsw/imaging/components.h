@@ -83,6 +83,7 @@ class Components {
   std::size_t united_count_ = 0;
   std::array<Component, 2 * kMaxObjects> kept_{};
   std::size_t kept_count_ = 0;
+  std::int64_t least_flux_ = 0;  ///< what is fainter is among the brightest no more
   int found_ = 0;
   int extended_ = 0;
   int extended_pixels_ = 0;

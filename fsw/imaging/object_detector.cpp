@@ -8,8 +8,13 @@
 namespace vbar::fsw::imaging {
 namespace {
 
-/// A point's image is at most so many times its own width, smear included; what is wider is measured as a whole.
+/// A point's image is at most so many times its own width, smear included; what is wider is measured as a whole, unless
+/// it is several points.
 constexpr double kWidestPoint = 2.0;
+/// From so many times a point's width on it may be several points, if it has no more pixels than these have: a
+/// spacecraft that is resolved has bright spots too.
+constexpr double kWiderThanPoint = 1.3;
+constexpr int kMostBlendedPixels = 250;
 /// Around a bright object noise lifts bits of its halo above the threshold: within so many pixels, and so many times
 /// fainter than it.
 constexpr int kFragmentMargin = 3;
@@ -22,6 +27,13 @@ bool is_within(double value, double least, double most) {
 bool is_usable(const DetectorSettings& s) {
   return is_within(s.detection_sigmas, 1.0, 30.0) && is_within(s.gain_dn_per_electron, 1e-6, 1e6) &&
          is_within(s.point_spread_sigma_px, 0.3, 3.0) && s.largest_object_px >= 1;
+}
+
+/// Brightest first; where two are as bright, from the top and from the left.
+bool is_first(const DetectedObject& a, const DetectedObject& b) {
+  if (a.flux_dn != b.flux_dn) return a.flux_dn > b.flux_dn;
+  if (a.centroid_px.y() != b.centroid_px.y()) return a.centroid_px.y() < b.centroid_px.y();
+  return a.centroid_px.x() < b.centroid_px.x();
 }
 
 }  // namespace
@@ -40,9 +52,10 @@ DetectionReport ObjectDetector::detect(const ImageView& image, const DetectorSet
     if (is_fragment(k)) {
       ++report.fragments;
     } else {
-      objects_[object_count_++] = measure(kept[k]);
+      measure(kept[k]);
     }
   }
+  std::sort(objects_.begin(), objects_.begin() + static_cast<std::ptrdiff_t>(object_count_), is_first);
   report.background_dn = background_.typical_level_dn();
   report.noise_dn = background_.typical_noise_dn();
   report.components = components_.found();
@@ -62,13 +75,13 @@ void ObjectDetector::find_components() {
     rows_ = {image_row(y - 1), image_row(y), image_row(y + 1)};
     is_patched_ = false;
     Background::RowNodes nodes;
-    background_.row(y, 9, noises_q4_, nodes);
+    background_.threshold_row(y, noises_q4_, nodes);
     background_.fill(nodes, threshold_dn_);
     if (!scan_row()) {
       patch_rows(y);
       static_cast<void>(scan_row());
     }
-    if (run_count_ > 0) background_.row(y, 1, 0, level_);
+    if (run_count_ > 0) background_.level_row(y, level_);
     for (std::size_t k = 0; k < run_count_; ++k) add_run(y, runs_[k]);
     components_.end_row(y);
   }
@@ -117,7 +130,7 @@ void ObjectDetector::push_run(int begin, int end) {
 void ObjectDetector::patch_rows(int y) {
   for (std::size_t k = 0; k < 3; ++k) {
     Background::RowNodes nodes;
-    background_.row(y - 1 + static_cast<int>(k), 1, 0, nodes);
+    background_.level_row(y - 1 + static_cast<int>(k), nodes);
     for (int x = 0; x < image_.frame.width; ++x) {
       const std::uint16_t pixel = rows_[k][x];
       patched_[k][static_cast<std::size_t>(x)] =
@@ -205,24 +218,71 @@ bool ObjectDetector::is_fragment(std::size_t k) const {
   return false;
 }
 
-DetectedObject ObjectDetector::measure(const Component& component) const {
-  DetectedObject object;
-  object.radius_px = component_radius(component);
+void ObjectDetector::measure(const Component& component) {
+  const double radius = component_radius(component);
   const double point = math::sqrt(settings_.point_spread_sigma_px * settings_.point_spread_sigma_px + 1.0 / 12.0);
-  Centroid centroid;
-  if (!component.is_saturated && object.radius_px < kWidestPoint * point) {
-    centroid = windowed_centroid(image_, background_, component, settings_.point_spread_sigma_px,
-                                 settings_.gain_dn_per_electron);
+  const bool is_small = !component.is_saturated && component.pixels <= kMostBlendedPixels;
+  Blend blend;
+  if (is_small && radius > kWiderThanPoint * point) {
+    blend = separate(image_, background_, component, settings_.gain_dn_per_electron, settings_.detection_sigmas);
   }
-  if (!centroid.is_found) centroid = component_centroid(background_, component, settings_.gain_dn_per_electron);
+  if (blend.count < 2) {
+    blend.count = 1;
+    blend.peaks[0] = {component.peak_x, component.peak_y, 1};
+    if (component.is_saturated || radius > kWidestPoint * point) return measure_whole(component);
+  }
+  if (!measure_points(component, blend)) measure_whole(component);
+}
+
+void ObjectDetector::measure_whole(const Component& component) {
+  tell(component, component_centroid(background_, component, settings_.gain_dn_per_electron),
+       component_radius(component));
+}
+
+/// Each peak as a point that has its share of the component's light and pixels. False if none of them is a point.
+bool ObjectDetector::measure_points(const Component& component, const Blend& blend) {
+  std::int64_t all = 0;
+  for (std::size_t k = 0; k < blend.count; ++k) all += blend.peaks[k].sum_dn;
+  const std::size_t before = object_count_;
+  for (std::size_t k = 0; k < blend.count; ++k) {
+    const Blend::Peak& peak = blend.peaks[k];
+    Component part = component;
+    part.peak_x = peak.x;
+    part.peak_y = peak.y;
+    if (blend.count > 1) {
+      part.flux = component.flux * peak.sum_dn / all;
+      part.pixels = static_cast<std::int32_t>(std::int64_t{component.pixels} * peak.sum_dn / all);
+      part.peak_dn = brightest_around(peak.x, peak.y);
+    }
+    const Centroid centroid =
+        windowed_centroid(image_, background_, part, settings_.point_spread_sigma_px, settings_.gain_dn_per_electron);
+    if (centroid.is_found) tell(part, centroid, blend.count > 1 ? centroid.radius_px : component_radius(component));
+  }
+  return object_count_ > before;
+}
+
+int ObjectDetector::brightest_around(int x, int y) const {
+  int most = 0;
+  for (int row = y - 1; row <= y + 1; ++row) {
+    for (int column = x - 1; column <= x + 1; ++column) {
+      const int pixel = image_row(row)[column];
+      if (pixel != kMissingPixel) most = std::max(most, pixel);
+    }
+  }
+  return most;
+}
+
+void ObjectDetector::tell(const Component& component, const Centroid& centroid, double radius_px) {
+  if (object_count_ == objects_.size()) return;
+  DetectedObject& object = objects_[object_count_++];
   object.centroid_px = {image_.frame.origin_x + centroid.x, image_.frame.origin_y + centroid.y};
   object.sigma_px = centroid.sigma_px;
   object.flux_dn = static_cast<double>(component.flux) / 16.0;
   object.peak_dn = component.peak_dn;
   object.pixels = component.pixels;
+  object.radius_px = radius_px;
   object.is_saturated = component.is_saturated;
   object.is_cut = component.is_cut || centroid.is_cut;
-  return object;
 }
 
 }  // namespace vbar::fsw::imaging

@@ -10,6 +10,8 @@
 #include <span>
 
 #include "fsw/imaging/background.h"
+#include "fsw/imaging/blend.h"
+#include "fsw/imaging/centroid.h"
 #include "fsw/imaging/components.h"
 #include "fsw/imaging/detected_object.h"
 #include "fsw/imaging/image.h"
@@ -29,7 +31,7 @@ struct DetectionReport {
   double background_dn = 0.0;                           ///< median over the image
   double noise_dn = 0.0;                                ///< 1 sigma of a pixel, median over the image
   int components = 0;                                   ///< all that was found
-  int objects = 0;                                      ///< of those, measured and told
+  int objects = 0;                                      ///< measured and told
   int extended = 0;                                     ///< of those, larger than largest_object_px
   int pixels_rejected = 0;                              ///< of the extended ones
   int fragments = 0;                                    ///< of those, bits of a bright object's halo, not told
@@ -60,7 +62,11 @@ class ObjectDetector {
   [[nodiscard]] std::int32_t sum_around(int x) const;
   [[nodiscard]] bool touches_missing(int y, const Run& run) const;
   [[nodiscard]] bool is_fragment(std::size_t k) const;
-  [[nodiscard]] DetectedObject measure(const Component& component) const;
+  void measure(const Component& component);
+  void measure_whole(const Component& component);
+  [[nodiscard]] bool measure_points(const Component& component, const Blend& blend);
+  [[nodiscard]] int brightest_around(int x, int y) const;
+  void tell(const Component& component, const Centroid& centroid, double radius_px);
   [[nodiscard]] const std::uint16_t* image_row(int y) const {
     return image_.pixels.data() + static_cast<std::ptrdiff_t>(y) * image_.frame.width;
   }

@@ -21,6 +21,7 @@ struct SyntheticDetector {
   double offset_dn = 64.0;
   double full_well_electrons = 32000.0;
   int most_dn = 4095;
+  bool has_photon_noise = true;
 };
 
 struct Point {
@@ -69,9 +70,9 @@ class SyntheticImage {
     for (const double light : electrons_) {
       const double mean = light + detector.dark_electrons;
       double charge = mean;
-      if (mean > 50.0) {
+      if (detector.has_photon_noise && mean > 50.0) {
         charge = mean + std::sqrt(mean) * normal(random);
-      } else if (mean > 0.0) {
+      } else if (detector.has_photon_noise && mean > 0.0) {
         charge = static_cast<double>(std::poisson_distribution<int>(mean)(random));
       }
       charge = std::min(charge, detector.full_well_electrons) + detector.read_noise_electrons * normal(random);

@@ -1,0 +1,104 @@
+#include "fsw/imaging/blend.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "fsw/math/math.h"
+
+namespace vbar::fsw::imaging {
+namespace {
+
+constexpr double kSignificance = 4.0;
+
+class Sums {
+ public:
+  Sums(const ImageView& image, const Background& background, const Component& component, double gain,
+       double detection_sigmas)
+      : image_(image), gain_(gain) {
+    level_ = static_cast<std::int32_t>(9.0 * background.level_dn(component.peak_x, component.peak_y) + 0.5);
+    const double noise = background.noise_dn(component.peak_x, component.peak_y);
+    variance_ = 9.0 * noise * noise;
+    threshold_ = static_cast<std::int32_t>(detection_sigmas * 3.0 * noise);
+  }
+
+  /// Of 3 x 3 pixels, above the background; missing pixels are background. A component keeps off the image's outermost
+  /// pixels, so all nine are there.
+  [[nodiscard]] std::int32_t at(int x, int y) const {
+    std::int32_t sum = -level_;
+    for (int j = y - 1; j <= y + 1; ++j) {
+      const std::uint16_t* row = image_.pixels.data() + static_cast<std::ptrdiff_t>(j) * image_.frame.width;
+      for (int i = x - 1; i <= x + 1; ++i) sum += row[i] == kMissingPixel ? level_ / 9 : row[i];
+    }
+    return sum;
+  }
+
+  /// Of its eight neighbours' none is greater, and of those that are as great none comes first.
+  [[nodiscard]] bool is_maximum(int x, int y, const Component& c) const {
+    const std::int32_t here = at(x, y);
+    for (int j = std::max(y - 1, c.y_least); j <= std::min(y + 1, c.y_most); ++j) {
+      for (int i = std::max(x - 1, c.x_least); i <= std::min(x + 1, c.x_most); ++i) {
+        const std::int32_t other = at(i, j);
+        const bool comes_first = j < y || (j == y && i < x);
+        if (other > here || (other == here && comes_first)) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Whether the fainter of two peaks stands out from the straight way between them.
+  [[nodiscard]] bool are_apart(const Blend::Peak& bright, const Blend::Peak& faint) const {
+    const int dx = faint.x - bright.x;
+    const int dy = faint.y - bright.y;
+    const int steps = std::max(dx < 0 ? -dx : dx, dy < 0 ? -dy : dy);
+    std::int32_t least = faint.sum_dn;
+    for (int k = 1; k < steps; ++k) {
+      const int x = bright.x + (2 * dx * k + (dx < 0 ? -steps : steps)) / (2 * steps);
+      const int y = bright.y + (2 * dy * k + (dy < 0 ? -steps : steps)) / (2 * steps);
+      least = std::min(least, at(x, y));
+    }
+    const double noise = math::sqrt(2.0 * (variance_ + gain_ * std::max(faint.sum_dn, 0)));
+    return least > threshold_ && faint.sum_dn - least > kSignificance * noise;
+  }
+
+ private:
+  ImageView image_;
+  double gain_;
+  std::int32_t level_ = 0;  // of nine pixels
+  std::int32_t threshold_ = 0;
+  double variance_ = 0.0;   // of nine pixels without light
+};
+
+/// The brightest maxima, in order.
+Blend maxima(const Sums& sums, const Component& c) {
+  Blend found;
+  for (int y = c.y_least; y <= c.y_most; ++y) {
+    for (int x = c.x_least; x <= c.x_most; ++x) {
+      if (!sums.is_maximum(x, y, c)) continue;
+      Blend::Peak peak{x, y, sums.at(x, y)};
+      for (std::size_t k = 0; k < found.count; ++k) {
+        if (peak.sum_dn > found.peaks[k].sum_dn) std::swap(peak, found.peaks[k]);
+      }
+      if (found.count < Blend::kMost) found.peaks[found.count++] = peak;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+Blend separate(const ImageView& image, const Background& background, const Component& component,
+               double gain_dn_per_electron, double detection_sigmas) {
+  const Sums sums(image, background, component, gain_dn_per_electron, detection_sigmas);
+  const Blend all = maxima(sums, component);
+  Blend apart;
+  for (std::size_t k = 0; k < all.count; ++k) {
+    const Blend::Peak& peak = all.peaks[k];
+    const auto stands_out = [&](const Blend::Peak& brighter) { return sums.are_apart(brighter, peak); };
+    if (std::all_of(apart.peaks.begin(), apart.peaks.begin() + static_cast<std::ptrdiff_t>(apart.count), stands_out)) {
+      apart.peaks[apart.count++] = peak;
+    }
+  }
+  return apart;
+}
+
+}  // namespace vbar::fsw::imaging

@@ -1,0 +1,29 @@
+#pragma once
+// Two points of light, or some more, in one component: told apart where the light between them is less than at either.
+
+#include <array>
+#include <cstddef>
+
+#include "fsw/imaging/background.h"
+#include "fsw/imaging/components.h"
+
+namespace vbar::fsw::imaging {
+
+struct Blend {
+  static constexpr std::size_t kMost = 4;
+  struct Peak {
+    int x = 0;  ///< px, from the image's first pixel
+    int y = 0;
+    std::int32_t sum_dn = 0;  ///< of the 3 x 3 pixels around, above the background
+  };
+  std::array<Peak, kMost> peaks{};  ///< brightest first
+  std::size_t count = 0;
+};
+
+/// The maxima of sums of 3 x 3 pixels within the component, of which each stands out from the straight way to every
+/// brighter one by four times the noise of that difference; the way itself exceeds the background by
+/// `detection_sigmas`, else it leads to another component. At most kMost, the brightest; 1 for a component of one point.
+Blend separate(const ImageView& image, const Background& background, const Component& component,
+               double gain_dn_per_electron, double detection_sigmas);
+
+}  // namespace vbar::fsw::imaging
