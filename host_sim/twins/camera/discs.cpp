@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include <Eigen/Geometry>
+
 #include "host_sim/twins/camera/photometry.h"
 
 namespace vbar::twins::camera {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "host_sim/truth/forces/shadow.h"
 
 namespace vbar::twins::camera {
@@ -61,7 +63,7 @@ double EarthDisc::radiance(double sun_photons_per_m2_s) {
 
 Vector3 EarthDisc::light_eci(double sun_photons_per_m2_s) const {
   // Midpoint rule over the disc: rings of equal solid angle, evenly spaced around.
-  constexpr int kRings = 16, kAround = 32;
+  constexpr int kRings = 24, kAround = 48;
   const Vector3 side = centre_direction_eci_.unitOrthogonal();
   const Vector3 other = centre_direction_eci_.cross(side);
   const double cap = 1.0 - std::cos(angular_radius_);

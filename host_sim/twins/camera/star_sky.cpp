@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "host_sim/twins/camera/aberration.h"

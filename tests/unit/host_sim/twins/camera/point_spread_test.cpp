@@ -1,0 +1,130 @@
+// A point's image against numerical integration of the moving Gaussians over every pixel, and what must hold of any sum
+// of points: flux and centroid.
+
+#include "host_sim/twins/camera/point_spread.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/camera_scene.h"
+
+namespace {
+
+using vbar::fsw::Vector2;
+using vbar::test::Blob;
+using vbar::test::measure;
+namespace camera = vbar::twins::camera;
+
+constexpr camera::Region kRegion{100, 200, 120, 100};
+const Vector2 kMiddle(160.0, 250.0);
+
+camera::PhotonImage black() {
+  return {kRegion, std::vector<float>(static_cast<std::size_t>(kRegion.width * kRegion.height), 0.0F)};
+}
+
+camera::PhotonImage image_of(const camera::ImagePoint& point, const Vector2& smear_px) {
+  camera::PhotonImage image = black();
+  camera::PointSpread(camera::OpticsSettings{}).add(point, smear_px, image);
+  return image;
+}
+
+Blob whole(const camera::PhotonImage& image) {
+  return measure(image, kMiddle, 60.0);
+}
+
+TEST(PointSpread, centroid_and_flux_hold_at_every_place_within_a_pixel) {
+  for (double u = 0.0; u < 1.0; u += 0.125)
+    for (double v = 0.0; v < 1.0; v += 0.25) {
+      const camera::ImagePoint point{kMiddle + Vector2(u, v), 1000.0};
+      for (const Vector2& smear : {Vector2(0.0, 0.0), Vector2(1.27, 0.0), Vector2(-0.4, 0.9), Vector2(13.0, 5.0)}) {
+        const Blob blob = whole(image_of(point, smear));
+        EXPECT_NEAR(blob.electrons, 1000.0, 0.1);                          // 1e-4
+        EXPECT_NEAR((blob.centroid - point.pixel).norm(), 0.0, 0.001);     // the project allows 0.02
+      }
+    }
+}
+
+// Second moments add: core and halo, the pixel's own 1/12, the smear's L^2/12.
+TEST(PointSpread, second_moments_are_those_of_spread_pixel_and_smear) {
+  const Vector2 smear(1.8, -0.9);
+  const Blob blob = whole(image_of({kMiddle + Vector2(0.3, -0.2), 1e7}, smear));
+  const double own = 0.99 * 0.64 + 0.01 * 16.0 + 1.0 / 12.0;
+  EXPECT_NEAR(blob.spread(0, 0), own + smear.x() * smear.x() / 12.0, 1e-3);
+  EXPECT_NEAR(blob.spread(1, 1), own + smear.y() * smear.y() / 12.0, 1e-3);
+  EXPECT_NEAR(blob.spread(0, 1), smear.x() * smear.y() / 12.0, 1e-3);
+}
+
+// Slow and simple: 20 x 20 places in a pixel, 400 instants.
+TEST(PointSpread, pixels_agree_with_numerical_integration) {
+  const Vector2 place = kMiddle + Vector2(0.37, -0.41), smear(2.1, 1.1);
+  const camera::PhotonImage image = image_of({place, 1e6}, smear);
+  const auto density = [](const Vector2& off, double sigma) {
+    return std::exp(-0.5 * off.squaredNorm() / (sigma * sigma)) / (2.0 * M_PI * sigma * sigma);
+  };
+  for (const Vector2& pixel : {Vector2(160, 250), Vector2(161, 249), Vector2(163, 251), Vector2(158, 247), Vector2(168, 250)}) {
+    double sum = 0.0;
+    for (int instant = 0; instant < 400; ++instant)
+      for (int i = 0; i < 20; ++i)
+        for (int j = 0; j < 20; ++j) {
+          const Vector2 in_pixel((i + 0.5) / 20.0 - 0.5, (j + 0.5) / 20.0 - 0.5);
+          const Vector2 off = pixel + in_pixel - place - ((instant + 0.5) / 400.0 - 0.5) * smear;
+          sum += 0.99 * density(off, 0.8) + 0.01 * density(off, 4.0);
+        }
+    const double expected = 1e6 * sum / (400.0 * 400.0);
+    const double found = measure(image, pixel, 0.1).electrons;
+    EXPECT_NEAR(found, expected, 1e-3 * expected + 0.05) << pixel.transpose();
+  }
+}
+
+TEST(PointSpread, a_bright_point_is_drawn_until_its_light_is_lost) {
+  const camera::PointSpread spread{camera::OpticsSettings{}};
+  EXPECT_GT(spread.reach_px(5e8), 19.0);  // a spacecraft at 1 km
+  EXPECT_LT(spread.reach_px(5e8), 30.0);
+  const camera::PhotonImage image = image_of({kMiddle, 5e8}, Vector2::Zero());
+  EXPECT_NEAR(whole(image).electrons / 5e8, 1.0, 1e-4);
+  // Halo at 17 px: 0.01 of the light, integrals of a normal distribution of sigma 4 over the pixel.
+  const double across = 0.5 * (std::erfc(16.5 / 4.0 * M_SQRT1_2) - std::erfc(17.5 / 4.0 * M_SQRT1_2));
+  const double down = std::erf(0.5 / 4.0 * M_SQRT1_2);
+  EXPECT_NEAR(measure(image, kMiddle + Vector2(17.0, 0.0), 0.1).electrons, 5e6 * across * down, 0.01);
+}
+
+TEST(PointSpread, only_the_part_within_the_region_is_drawn) {
+  // On the region's left edge, half way into a pixel: half of the light.
+  EXPECT_NEAR(whole(image_of({Vector2(99.5, 250.0), 1000.0}, Vector2::Zero())).electrons, 500.0, 0.1);
+  for (const Vector2& outside : {Vector2(-500.0, 250.0), Vector2(160.0, 1e6), Vector2(std::nan(""), 250.0)}) {
+    for (const float light : image_of({outside, 1000.0}, Vector2::Zero()).electrons) ASSERT_EQ(light, 0.0F);
+  }
+}
+
+TEST(PointSpread, many_points_give_the_image_of_each) {
+  camera::PointSpread spread{camera::OpticsSettings{}};
+  for (const double extent : {1e-4, 0.3, 5.0, 40.0}) {
+    std::vector<camera::ImagePoint> points;
+    for (int i = 0; i < 400; ++i)  // a lopsided cloud
+      points.push_back({kMiddle + extent * Vector2(std::sin(1.0 * i) * 0.5, std::cos(2.3 * i) * 0.4 + 0.05 * std::sin(9.0 * i)),
+                        10.0 + i % 7});
+    for (const Vector2& smear : {Vector2(0.0, 0.0), Vector2(1.3, 0.4)}) {
+      camera::PhotonImage together = black(), each = black();
+      spread.add(points, smear, together);
+      for (const camera::ImagePoint& point : points) spread.add(point, smear, each);
+      const Blob a = whole(together), b = whole(each);
+      EXPECT_NEAR(a.electrons / b.electrons, 1.0, 2e-4);
+      EXPECT_NEAR((a.centroid - b.centroid).norm(), 0.0, 0.001);
+      // Gathering widens by a twentieth of the core's variance at most.
+      EXPECT_NEAR((a.spread - b.spread).norm() / b.spread.norm(), 0.0, 0.03) << extent;
+    }
+  }
+}
+
+TEST(PointSpread, no_points_and_points_outside_change_nothing) {
+  camera::PointSpread spread{camera::OpticsSettings{}};
+  camera::PhotonImage image = black();
+  spread.add(std::vector<camera::ImagePoint>{}, Vector2::Zero(), image);
+  spread.add(std::vector<camera::ImagePoint>{{Vector2(-1e5, 3.0), 1e9}, {Vector2(std::nan(""), 3.0), 1.0}},
+             Vector2::Zero(), image);
+  for (const float light : image.electrons) ASSERT_EQ(light, 0.0F);
+}
+
+}  // namespace
