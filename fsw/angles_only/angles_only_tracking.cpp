@@ -1,5 +1,7 @@
 #include "fsw/angles_only/angles_only_tracking.h"
 
+#include <Eigen/Geometry>
+
 #include "fsw/math/math.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/stars/catalogue.h"

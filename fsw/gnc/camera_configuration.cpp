@@ -70,7 +70,7 @@ Result<navigation::AnglesOnlySettings> angles_only_settings(const angles_only_co
                          a.batch_images <= static_cast<std::int32_t>(navigation::BearingBatch::kCapacity);
   if (!is_usable) return Status::kOutOfRange;
   navigation::AnglesOnlySettings settings;
-  settings.filter.acceleration_psd = a.acceleration_psd;
+  settings.filter.acceleration = {a.acceleration_psd, a.acceleration_psd_least, a.acceleration_psd_most};
   settings.filter.brightness_offset_sigma_m = a.brightness_offset_m;
   settings.filter.maneuver_sigma = a.maneuver_sigma;
   settings.filter.maneuver_sigma_relative = a.maneuver_sigma_relative;

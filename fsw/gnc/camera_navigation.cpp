@@ -132,7 +132,7 @@ void CameraNavigation::take_image(const angles_only::TakenImage& image, navigati
                                   std::span<const navigation::Burn> burns) {
   has_image_ = true;
   own_orbit.update(image.time, burns);
-  const Vector3 sun_eci = orbit::sun_direction_eci(image.time);
+  const Vector3 sun_eci = orbit::sun_position_gcrf(image.time).normalized();
   navigation::AnglesOnlyEpoch epoch;
   epoch.time = image.time;
   epoch.sun_eci = sun_eci;
@@ -159,7 +159,7 @@ angles_only::Circumstances CameraNavigation::circumstances_of(GpsTime time, cons
   if (!circumstances.is_orbit_known) return circumstances;
   circumstances.servicer = filter_.servicer();
   circumstances.velocity_over_c_eci =
-      (orbit::earth_velocity_eci(time) + circumstances.servicer.velocity_eci) / kSpeedOfLight;
+      orbit::earth_velocity_over_c_gcrf(time) + circumstances.servicer.velocity_eci / kSpeedOfLight;
   const Matrix3& R_camera_body = tracking_.settings().R_camera_body;
   Matrix3 R_body_eci = Matrix3::Identity();
   if (pointing_) {

@@ -1,7 +1,12 @@
 #include "host_sim/app/make_twins.h"
 
+#include <set>
 #include <utility>
 
+#include "host_sim/mission/body_file.h"
+#include "host_sim/twins/camera/camera_sensor.h"
+#include "host_sim/twins/camera/model/cad_objects.h"
+#include "host_sim/twins/camera/scene.h"
 #include "host_sim/twins/gnss_sensor.h"
 #include "host_sim/twins/ideal_navigation.h"
 #include "host_sim/twins/ideal_thruster.h"
@@ -46,7 +51,52 @@ std::unique_ptr<twins::PacketSource> make_gnss_sensor(const mission::Mission& mi
   return std::make_unique<twins::GnssSensor>(sensor, std::move(receiver), std::move(crosslink));
 }
 
+std::unique_ptr<twins::PacketSource> make_camera_sensor(const mission::Mission& mission,
+                                                        const mission::Spacecraft& servicer,
+                                                        const std::filesystem::path& data_directory) {
+  const mission::CameraSensor& camera = *servicer.camera;
+  twins::camera::CameraSensor::Settings sensor;
+  sensor.image = image_settings(mission, servicer);
+  sensor.mount.spacecraft = servicer.name;
+  sensor.mount.q_camera_body = camera.q_camera_body;
+  sensor.mount.position_body = camera.position_body_m;
+  for (const mission::Spacecraft& other : mission.spacecraft) {
+    if (other.model.empty() || &other == &servicer) continue;
+    fsw::Vector3 centre_of_mass = fsw::Vector3::Zero();
+    if (const auto* tumble = other.attitude ? std::get_if<mission::Tumble>(&*other.attitude) : nullptr)
+      centre_of_mass = mission::load_body(data_directory / "bodies" / (tumble->body + ".toml")).centre_of_mass_m;
+    sensor.mount.models.push_back({other.name, other.model, centre_of_mass});
+  }
+  // The first image is taken one period after the first step, which tells the platform where to look.
+  sensor.start = mission.start_time() + camera.period;
+  sensor.period = camera.period;
+  sensor.readout = camera.readout;
+  return std::make_unique<twins::camera::CameraSensor>(sensor, make_scene_renderer(mission, servicer, data_directory));
+}
+
 }  // namespace
+
+twins::camera::ImageMaker::Settings image_settings(const mission::Mission& mission,
+                                                   const mission::Spacecraft& spacecraft) {
+  twins::camera::ImageMaker::Settings settings;
+  settings.camera = spacecraft.camera->settings;
+  settings.name = spacecraft.name + "/camera";
+  settings.seed = mission.seed;
+  settings.spacecraft = spacecraft.number;
+  return settings;
+}
+
+twins::camera::Renderer make_scene_renderer(const mission::Mission& mission, const mission::Spacecraft& spacecraft,
+                                            const std::filesystem::path& data_directory) {
+  std::set<std::string> models;
+  for (const mission::Spacecraft& other : mission.spacecraft)
+    if (!other.model.empty() && &other != &spacecraft) models.insert(other.model);
+  const auto scene = std::make_shared<twins::camera::SceneRenderer>(
+      spacecraft.camera->settings, data_directory, twins::camera::cad_objects(data_directory, models));
+  return [scene](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {
+    scene->render(exposure, image);
+  };
+}
 
 std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mission& mission,
                                                                const mission::Spacecraft& servicer,
@@ -60,6 +110,7 @@ std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mi
     if (const mission::Spacecraft* const partner = mission.find_spacecraft(servicer.gnss->partner))
       sensors.push_back(make_gnss_sensor(mission, *partner, servicer, sky, data_directory));
   }
+  if (servicer.camera) sensors.push_back(make_camera_sensor(mission, servicer, data_directory));
   return sensors;
 }
 

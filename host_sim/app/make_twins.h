@@ -8,6 +8,7 @@
 
 #include "host_sim/mission/mission.h"
 #include "host_sim/twins/actuator.h"
+#include "host_sim/twins/camera/image_maker.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::app {
@@ -24,5 +25,13 @@ std::optional<double> gnss_static_floor_m(const mission::Mission& mission, const
 
 /// `spacecraft` must have a thruster.
 std::unique_ptr<twins::Actuator> make_thruster(const mission::Mission& mission, const mission::Spacecraft& spacecraft);
+
+/// Of a spacecraft with a camera: what its images are made with, by the run and again by a replay.
+[[nodiscard]] twins::camera::ImageMaker::Settings image_settings(const mission::Mission& mission,
+                                                                 const mission::Spacecraft& spacecraft);
+/// Reads star catalogue and CAD files; throws std::runtime_error if one of them is missing or damaged.
+[[nodiscard]] twins::camera::Renderer make_scene_renderer(const mission::Mission& mission,
+                                                          const mission::Spacecraft& spacecraft,
+                                                          const std::filesystem::path& data_directory);
 
 }  // namespace vbar::app

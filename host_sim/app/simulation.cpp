@@ -136,6 +136,13 @@ void Simulation::queue_telecommands() {
         mission::navigation_configuration_of(mission_, servicer_, *truth_.data().earth_orientation);
     arrived_.push_back(make_packet(now, servicer_.number, 0, configuration));
   }
+  if (servicer_.camera) {
+    arrived_.push_back(make_packet(now, servicer_.number, 0, mission::camera_configuration_of(servicer_)));
+    arrived_.push_back(make_packet(now, servicer_.number, 0, mission::angles_only_configuration_of(mission_)));
+    const PairTruth truth = pair_truth();
+    const auto apriori = mission::target_apriori_of(mission_, servicer_, truth.servicer, truth.target);
+    arrived_.push_back(make_packet(now, servicer_.number, 0, apriori));
+  }
   arrived_.push_back(make_packet(now, servicer_.number, 0, mission::waypoint_table_of(mission_)));
   arrived_.push_back(make_packet(now, servicer_.number, 0, mission::mode_command_of(mission_)));
 }
@@ -258,7 +265,9 @@ void Simulation::take_commands(const pil::StepResult& answer) {
   const GpsTime effective = events_.now() + servicer_.flight_computer->compute_latency;
   for (const pil::Packet& bytes : answer.packets) {
     const auto packet = fsw::packets::parse_packet(bytes);
-    if (!packet.ok() || packet.value().header.apid != Apid::kManeuverCommand) continue;
+    if (!packet.ok()) continue;
+    if (packet.value().header.apid == Apid::kPointingCommand) point(packet.value(), effective);
+    if (packet.value().header.apid != Apid::kManeuverCommand) continue;
     const auto command = fsw::packets::decode<maneuver_command>(packet.value());
     if (!command.ok()) continue;
     const GpsTime time = packet.value().header.time;
@@ -268,6 +277,18 @@ void Simulation::take_commands(const pil::StepResult& answer) {
       schedule(time, ExecuteBurn{command.value()});
     }
   }
+}
+
+/// The platform follows from the moment it is told.
+void Simulation::point(const fsw::packets::PacketView& packet, GpsTime effective) {
+  const auto command = fsw::packets::decode<pointing_command>(packet);
+  if (!command.ok() || !servicer_.attitude || !std::holds_alternative<mission::Commanded>(*servicer_.attitude)) return;
+  const double(&boresight)[3] = command.value().boresight_rtn;
+  const double(&rate)[3] = command.value().boresight_rate_rtn;
+  const fsw::Vector3 rate_rtn(rate[0], rate[1], rate[2]);
+  const double late_s = fsw::seconds(effective - packet.header.time);
+  const fsw::Vector3 boresight_rtn = fsw::Vector3(boresight[0], boresight[1], boresight[2]) + late_s * rate_rtn;
+  static_cast<void>(truth_.command_pointing(servicer_index_, effective, boresight_rtn, rate_rtn));
 }
 
 void Simulation::handle(const ExecuteBurn& burn) {

@@ -108,6 +108,7 @@ class Simulation {
   void report_execution(const twins::Execution& execution);
   void queue_telecommands();
   void take_commands(const pil::StepResult& answer);
+  void point(const fsw::packets::PacketView& packet, fsw::GpsTime effective);
   [[nodiscard]] pil::Packet make_tick();
   [[nodiscard]] PairTruth pair_truth() const;
   void summarise(double wall_s, bool complete);

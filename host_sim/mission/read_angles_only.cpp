@@ -28,9 +28,9 @@ void read_angles_only(const TableReader& document, Mission& mission) {
   navigation.pointing_tolerance =
       kArcsecond * section.number("pointing_tolerance_arcsec", above_to(0.0, 36000.0), 600.0);
   const Range psd = above_to(0.0, 1e-3);
-  navigation.acceleration_psd = section.number("acceleration_psd", psd, 1e-15);
-  navigation.acceleration_psd_least = section.number("acceleration_psd_least", psd, 1e-18);
-  navigation.acceleration_psd_most = section.number("acceleration_psd_most", psd, 1e-12);
+  navigation.acceleration_psd = section.number("acceleration_psd", psd, 1e-14);
+  navigation.acceleration_psd_least = section.number("acceleration_psd_least", psd, 1e-15);
+  navigation.acceleration_psd_most = section.number("acceleration_psd_most", psd, 1e-11);
   if (navigation.acceleration_psd < navigation.acceleration_psd_least ||
       navigation.acceleration_psd > navigation.acceleration_psd_most)
     section.refuse("acceleration_psd", "a start outside its limits",

@@ -57,8 +57,12 @@ Exposure exposure_of_truth(const CameraMount& mount, const TruthSnapshot& truth,
     ObjectInView& object = exposure.objects.emplace_back();
     object.name = model.spacecraft;
     object.model = model.model;
-    object.position_eci = other->orbit.position_eci - exposure.camera_position_eci;
-    object.velocity_eci = other->orbit.velocity_eci - exposure.camera_velocity_eci;
+    // The orbit is the centre of mass's, the file's origin elsewhere.
+    const Eigen::Quaterniond q_eci_other = other->attitude->q_body_eci.conjugate();
+    const fsw::Vector3& centre = model.centre_of_mass_body;
+    const fsw::Vector3 turning = other->attitude->rate_body.cross(centre);
+    object.position_eci = other->orbit.position_eci - q_eci_other * centre - exposure.camera_position_eci;
+    object.velocity_eci = other->orbit.velocity_eci - q_eci_other * turning - exposure.camera_velocity_eci;
     object.q_body_eci = other->attitude->q_body_eci;
     object.sunlit = sunlit_fraction(other->orbit.position_eci, sky.sun_eci);
   }

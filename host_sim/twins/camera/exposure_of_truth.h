@@ -22,6 +22,7 @@ struct CameraMount {
   struct Model {
     std::string spacecraft;
     std::string model;  ///< its CAD file
+    fsw::Vector3 centre_of_mass_body = fsw::Vector3::Zero();  ///< from the origin of the file's axes, m
   };
   std::vector<Model> models;
 };

@@ -92,7 +92,7 @@ Scene scene_at(double minutes, double range_m, std::mt19937& random, std::int64_
   truth.spacecraft[1].attitude = truth::AttitudeState{Eigen::Quaterniond::Identity(), Vector3::Zero()};
   twins::camera::CameraMount mount;
   mount.spacecraft = "servicer";
-  mount.models = {{"target", "sphere"}};
+  mount.models = {{"target", "sphere", Vector3::Zero()}};
   scene.exposure = twins::camera::exposure_of_truth(mount, truth, number);
   return scene;
 }
