@@ -136,12 +136,15 @@ void AnglesOnlyTracking::mark_stars(const stars::AttitudeFix& fix) {
 std::size_t AnglesOnlyTracking::collect_candidates(const Circumstances& circumstances) {
   const Matrix3 R_rtn_camera = orbit::R_rtn_eci(circumstances.servicer) * sighting_.R_camera_eci.transpose();
   const auto objects = detector_.objects();
+  const double per_px = 1.0 / settings_.model.focal_length_px.x();
   std::size_t count = 0;
   for (std::size_t k = 0; k < count_; ++k) {
     if (sighting_.kind[k] == ObjectKind::kStar) continue;
     tracking::Candidate& candidate = candidates_[count];
     candidate.direction_rtn = R_rtn_camera * seen_[k].direction_camera;
-    candidate.sigma = math::hypot(seen_[k].sigma_rad, sighting_.attitude_sigma);
+    // Of a body that is no point the light's centre wanders about the body's.
+    const double size = apparent_radius_px(objects[k], settings_.detector.point_spread_sigma_px) * per_px;
+    candidate.sigma = math::hypot(math::hypot(seen_[k].sigma_rad, sighting_.attitude_sigma), size);
     candidate.object = objects[k];
     object_of_candidate_[count++] = k;
   }
