@@ -65,7 +65,7 @@ class Sums {
   double gain_;
   std::int32_t level_ = 0;  // of nine pixels
   std::int32_t threshold_ = 0;
-  double variance_ = 0.0;   // of nine pixels without light
+  double variance_ = 0.0;  // of nine pixels without light
 };
 
 /// The brightest maxima, in order.

@@ -22,7 +22,8 @@ struct Blend {
 
 /// The maxima of sums of 3 x 3 pixels within the component, of which each stands out from the straight way to every
 /// brighter one by four times the noise of that difference; the way itself exceeds the background by
-/// `detection_sigmas`, else it leads to another component. At most kMost, the brightest; 1 for a component of one point.
+/// `detection_sigmas`, else it leads to another component. At most kMost, the brightest; 1 for a component of one
+/// point.
 Blend separate(const ImageView& image, const Background& background, const Component& component,
                double gain_dn_per_electron, double detection_sigmas);
 

@@ -13,7 +13,8 @@ struct ClippedMoments {
 
 /// Moments within 3 sigma of the mean, found by iteration from median and quartiles; the sigma is that of the whole
 /// Gaussian, the tails beyond the clip put back. `counts[k]` numbers have the value k; `total` is their sum and at
-/// least 1. Exact to some parts in a thousand down to a sigma of 0.5.
+/// least 1. The sigma is good to half a per cent; below 0.9, where clipping at whole numbers is coarse,
+/// to two or three.
 ClippedMoments clipped_moments(std::span<const std::uint16_t> counts, int total);
 
 }  // namespace vbar::fsw::imaging

@@ -56,6 +56,8 @@ DetectionReport ObjectDetector::detect(const ImageView& image, const DetectorSet
     }
   }
   std::sort(objects_.begin(), objects_.begin() + static_cast<std::ptrdiff_t>(object_count_), is_first);
+  image_ = {};  // the caller's pixels may go
+  rows_ = {};
   report.background_dn = background_.typical_level_dn();
   report.noise_dn = background_.typical_noise_dn();
   report.components = components_.found();
@@ -251,7 +253,7 @@ bool ObjectDetector::measure_points(const Component& component, const Blend& ble
     part.peak_y = peak.y;
     if (blend.count > 1) {
       part.flux = component.flux * peak.sum_dn / all;
-      part.pixels = static_cast<std::int32_t>(std::int64_t{component.pixels} * peak.sum_dn / all);
+      part.pixels = std::max(1, static_cast<std::int32_t>(std::int64_t{component.pixels} * peak.sum_dn / all));
       part.peak_dn = brightest_around(peak.x, peak.y);
     }
     const Centroid centroid =

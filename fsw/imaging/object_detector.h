@@ -32,13 +32,18 @@ struct DetectionReport {
   double noise_dn = 0.0;                                ///< 1 sigma of a pixel, median over the image
   int components = 0;                                   ///< all that was found
   int objects = 0;                                      ///< measured and told
-  int extended = 0;                                     ///< of those, larger than largest_object_px
+  int extended = 0;                                     ///< of the components, larger than largest_object_px
   int pixels_rejected = 0;                              ///< of the extended ones
-  int fragments = 0;                                    ///< of those, bits of a bright object's halo, not told
+  int fragments = 0;                                    ///< of the components, bits of a bright object's halo: not told
   int runs_dropped = 0;                                 ///< not 0: a row so full that it was not read to its end
 };
 
-/// Some 400 kB, all of it work space: nothing of an image matters to the next.
+/// Some 300 kB, all of it work space: nothing of an image matters to the next.
+///
+/// A point that is neither saturated nor at an edge gets the centroid of centroid.h, windowed_centroid(); two that
+/// touch do so each. Whatever is saturated or wider gets the intensity-weighted mean of all its pixels: of a saturated
+/// point that is as good as the rounding of the bright disc's edge to whole pixels lets it be, 0.06 px, which its sigma
+/// leaves out.
 class ObjectDetector {
  public:
   /// Looks at the whole image with no preference for any place in it.

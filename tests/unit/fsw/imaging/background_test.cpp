@@ -1,0 +1,156 @@
+// Level and noise against those that an image was made with.
+
+#include "fsw/imaging/background.h"
+
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/synthetic_image.h"
+
+namespace vbar::fsw::imaging {
+namespace {
+
+constexpr int kSaturation = 4000;
+
+class BackgroundTest : public testing::Test {
+ protected:
+  ImageCondition measure(const test::SyntheticImage& scene) {
+    width = scene.width();
+    height = scene.height();
+    pixels = scene.expose(detector, random);
+    return measure_again();
+  }
+  ImageCondition measure_again() { return background->measure(test::view_of(pixels, width, height), kSaturation); }
+  /// 1 sigma of a pixel that has so many electrons of light: light, dark current, read-out, rounding.
+  [[nodiscard]] double expected_noise(double electrons) const {
+    const double gain = detector.gain_dn_per_electron;
+    const double read = detector.read_noise_electrons;
+    return std::sqrt(gain * gain * (electrons + detector.dark_electrons + read * read) + 1.0 / 12.0);
+  }
+  /// Largest difference from the scene's own level, DN.
+  double worst_level(test::SyntheticImage& scene) {
+    double worst = 0.0;
+    for (int y = 0; y < height; y += 7) {
+      for (int x = 0; x < width; x += 7) {
+        const double expected =
+            detector.offset_dn + detector.gain_dn_per_electron * (scene.at(x, y) + detector.dark_electrons);
+        worst = std::max(worst, std::abs(background->level_dn(x, y) - expected));
+      }
+    }
+    return worst;
+  }
+
+  test::SyntheticDetector detector;
+  std::mt19937_64 random{1};
+  std::unique_ptr<Background> background = std::make_unique<Background>();
+  std::vector<std::uint16_t> pixels;
+  int width = 0;
+  int height = 0;
+};
+
+/// A cell has some 980 samples: 1 sigma of its level is 0.03 DN, of its noise 2 % (differences of pixels that do not
+/// overlap: 3 %). Bounds for 104 cells: five of those, beyond the ends of the grid twice that.
+TEST_F(BackgroundTest, OfADarkField) {
+  test::SyntheticImage scene(500, 800);
+  ASSERT_EQ(measure(scene), ImageCondition::kGood);
+  EXPECT_LT(worst_level(scene), 0.2);
+  EXPECT_NEAR(background->typical_level_dn(), 64.125, 0.02);
+  EXPECT_NEAR(background->typical_noise_dn(), expected_noise(0.0), 0.02);
+  for (int y = 0; y < 800; y += 31) EXPECT_NEAR(background->noise_dn((y * 7) % 500, y), expected_noise(0.0), 0.15);
+}
+
+TEST_F(BackgroundTest, AGradientIsFollowedToTheEdgesAndIsNotNoise) {
+  test::SyntheticImage scene(500, 800);
+  scene.add_light([](int x, int y) { return 4.0 * x + 2.0 * y; });
+  ASSERT_EQ(measure(scene), ImageCondition::kGood);
+  // Noise is 7.5 DN at the bright end; 1 sigma of a level 0.25 DN there
+  EXPECT_LT(worst_level(scene), 2.5);
+  // Between the outermost nodes, in the middle of their cells: beyond them it is theirs.
+  for (const auto& [x, y] : {std::pair{31, 30}, {250, 400}, {468, 769}}) {
+    const double expected = expected_noise(4.0 * x + 2.0 * y);
+    EXPECT_NEAR(background->noise_dn(x, y), expected, 0.15 * expected);
+  }
+}
+
+TEST_F(BackgroundTest, StarsAndAnObjectThatFillsACellAreNotBackground) {
+  test::SyntheticImage scene(500, 800);
+  ASSERT_EQ(measure(scene), ImageCondition::kGood);
+  test::SyntheticImage crowded(500, 800);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int k = 0; k < 200; ++k) crowded.add({500.0 * uniform(random), 800.0 * uniform(random), 9000.0});
+  crowded.add_light([](int x, int y) { return std::abs(x - 220) < 40 && std::abs(y - 330) < 40 ? 5000.0 : 0.0; });
+  ASSERT_EQ(measure(crowded), ImageCondition::kGood);
+  // The object is 625 DN high. The stars' own light leaves less than a tenth of a DN.
+  EXPECT_LT(worst_level(scene), 0.5);
+}
+
+TEST_F(BackgroundTest, SmallAndNarrowImages) {
+  for (const auto& [w, h] : {std::pair{8, 8}, {20, 500}, {4096, 97}, {97, 4096}, {100, 4000}, {632, 632}}) {
+    test::SyntheticImage scene(w, h);
+    ASSERT_EQ(measure(scene), ImageCondition::kGood) << w << " x " << h;
+    EXPECT_LT(worst_level(scene), w < 10 ? 1.0 : 0.5);
+  }
+}
+
+TEST_F(BackgroundTest, WholeRowsAndSinglePixelsAgree) {
+  test::SyntheticImage scene(333, 200);
+  scene.add_light([](int x, int y) { return 3.0 * x + 0.02 * y * y; });
+  ASSERT_EQ(measure(scene), ImageCondition::kGood);
+  std::vector<std::int32_t> row(333);
+  for (const int y : {0, 57, 199}) {
+    Background::RowNodes nodes;
+    background->level_row(y, nodes);
+    background->fill(nodes, row);
+    for (int x = 0; x < 333; ++x) {
+      EXPECT_NEAR(row[static_cast<std::size_t>(x)], background->level_dn(x, y) - 0.5, 0.52);
+    }
+  }
+}
+
+TEST_F(BackgroundTest, HalfAnImageIsEnough) {
+  test::SyntheticImage scene(500, 800);
+  ASSERT_EQ(measure(scene), ImageCondition::kGood);
+  std::fill(pixels.begin(), pixels.begin() + 200'000, kMissingPixel);
+  ASSERT_EQ(measure_again(), ImageCondition::kGood);
+  EXPECT_NEAR(background->missing(), 50'000, 2000);  // every other pixel of every other row, from each cell's corner on
+  EXPECT_LT(worst_level(scene), 0.4);
+}
+
+TEST_F(BackgroundTest, SaysWhenThereIsNothingToBeFound) {
+  width = 500;
+  height = 800;
+  const auto condition_of = [&](std::uint16_t value) {
+    pixels.assign(400'000, value);
+    return measure_again();
+  };
+  EXPECT_EQ(condition_of(0), ImageCondition::kBlank);
+  EXPECT_EQ(condition_of(64), ImageCondition::kBlank);
+  EXPECT_EQ(condition_of(3999), ImageCondition::kBlank);
+  EXPECT_EQ(condition_of(4000), ImageCondition::kSaturated);
+  EXPECT_EQ(condition_of(4095), ImageCondition::kSaturated);
+  EXPECT_EQ(condition_of(kMissingPixel), ImageCondition::kTooLittle);
+  measure(test::SyntheticImage(500, 800));
+  std::fill(pixels.begin(), pixels.begin() + 380'000, kMissingPixel);
+  EXPECT_EQ(measure_again(), ImageCondition::kTooLittle);
+  measure(test::SyntheticImage(500, 800));
+  std::fill(pixels.begin(), pixels.begin() + 380'000, std::uint16_t{4090});
+  EXPECT_EQ(measure_again(), ImageCondition::kSaturated);
+}
+
+TEST_F(BackgroundTest, RefusesWhatIsNoImage) {
+  pixels.assign(100, 5);
+  EXPECT_EQ(background->measure({}, kSaturation), ImageCondition::kInvalid);
+  EXPECT_EQ(background->measure(test::view_of(pixels, 10, 11), kSaturation), ImageCondition::kInvalid);
+  EXPECT_EQ(background->measure(test::view_of(pixels, -10, -10), kSaturation), ImageCondition::kInvalid);
+  EXPECT_EQ(background->measure(test::view_of(pixels, 10, 10), 0), ImageCondition::kInvalid);
+  EXPECT_EQ(background->measure(test::view_of(pixels, 10, 10), 4096), ImageCondition::kInvalid);
+  pixels.assign(4097, 5);
+  EXPECT_EQ(background->measure(test::view_of(pixels, 4097, 1), kSaturation), ImageCondition::kInvalid);
+  pixels.assign(400'500, 5);
+  EXPECT_EQ(background->measure(test::view_of(pixels, 500, 801), kSaturation), ImageCondition::kInvalid);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::imaging
