@@ -12,6 +12,8 @@ namespace vbar::fsw::tracking {
 inline constexpr std::size_t kMaxHypotheses = 64;
 inline constexpr std::size_t kHistory = 8;  ///< images
 
+inline constexpr double kMostMisfit = 9.0;  ///< (3 sigma)^2, of Hypothesis::misfit
+
 /// Entries of a hypothesis' history that are no index of a candidate.
 inline constexpr std::int16_t kMissed = -1;
 inline constexpr std::int16_t kUnborn = -2;

@@ -13,20 +13,11 @@ constexpr double kMostProbability = 0.99;
 constexpr double kExpected = 0.5;
 // A new track's score before its first object: it is sooner a false detection.
 constexpr double kBirthScore = -2.0;
-constexpr double kDropScore = -7.0;
-// An unestablished track that was missed so often in a row is dropped.
-constexpr int kPatience = 3;
-constexpr std::size_t kScan = 5;  // images after which only one account of a track remains
-constexpr std::size_t kSame = 3;  // images that two accounts must share to be one
-constexpr double kSameDistance = 25.0;  // chi-square, 4 degrees of freedom: 5e-5
-constexpr double kAlone = 99.0;
 constexpr double kNarrowGate = 0.02;  // false detections in it
-constexpr int kRivalHits = 3;
-constexpr int kOwnObjects = 2;
-constexpr int kDeposeAfter = 3;
 constexpr double kFluxGain = 0.2;
+// However odd its brightness, the target may show it: a glint, a penumbra.
+constexpr double kMostDislike = 4.5;
 constexpr double kMisfitGain = 0.15;
-constexpr double kMostMisfit = 9.0;  // (3 sigma)^2
 
 bool is_direction(const Vector3& d) {
   const double norm = d.squaredNorm();
@@ -164,7 +155,7 @@ double TargetTracker::gain_of(const Hypothesis& parent, const Innovation& innova
   if (parent.hits > 0) {
     constexpr double kMagnitudesPerLog = 1.0857362047581296;  // 2.5 / ln 10
     const double off = (candidate.log_flux - parent.log_flux) * kMagnitudesPerLog / settings_.magnitude_sigma;
-    brightness = -std::min(0.5 * off * off, 2.0);
+    brightness = -std::min(0.5 * off * off, kMostDislike);
   }
   return likelihood + brightness + candidate.handicap;
 }
@@ -229,8 +220,8 @@ Hypothesis TargetTracker::child_of(const Branch& branch) {
   child.log_flux += (is_birth ? 1.0 : kFluxGain) * (candidate.log_flux - child.log_flux);
   child.images_since_hit = 0;
   ++child.hits;
-  child.hits_since_gap = is_narrow && child.established && child.hits_since_gap == 0 ? settings_.hits_after_gap
-                                                                                     : child.hits_since_gap + 1;
+  child.hits_since_gap =
+      is_narrow && child.established && child.hits_since_gap == 0 ? settings_.hits_after_gap : child.hits_since_gap + 1;
   if (hits_of(child.recent, settings_.confirm_images) >= settings_.confirm_hits && child.misfit < kMostMisfit) {
     child.established = true;
   }
@@ -250,232 +241,6 @@ void TargetTracker::grow() {
   for (std::size_t k = 0; k < kept; ++k) work_.children[k] = child_of(work_.branches[k]);
   std::copy_n(work_.children.begin(), kept, hypotheses_.begin());
   count_ = kept;
-}
-
-void TargetTracker::compare_with_prediction(double dt) {
-  const double faded = math::exp(-dt / settings_.identity_memory_s);
-  for (std::size_t k = 0; k < count_; ++k) {
-    Hypothesis& hypothesis = hypotheses_[k];
-    if (!work_.has_prediction) continue;
-    const SlopeState state = slope_state(hypothesis.motion, work_.view, work_.bend, work_.bend_rate);
-    hypothesis.identity_now =
-        distance_between(state.slopes, state.covariance, work_.prediction.slopes, work_.prediction.covariance,
-                         settings_.slope_floor, settings_.rate_floor);
-    hypothesis.identity = std::max(hypothesis.identity * faded, hypothesis.identity_now);
-  }
-}
-
-void TargetTracker::erase_marked() {
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < count_; ++k) {
-    if (work_.erased[k]) continue;
-    if (kept != k) hypotheses_[kept] = hypotheses_[k];
-    ++kept;
-  }
-  count_ = kept;
-}
-
-bool TargetTracker::is_best_of_its_track(std::size_t k) const {
-  for (std::size_t j = 0; j < count_; ++j) {
-    if (hypotheses_[j].track != hypotheses_[k].track || j == k) continue;
-    if (hypotheses_[j].score > hypotheses_[k].score || (hypotheses_[j].score == hypotheses_[k].score && j < k)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-const Hypothesis* TargetTracker::best_of(std::uint32_t track) const {
-  const Hypothesis* best = nullptr;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Hypothesis& hypothesis = hypotheses_[k];
-    if (hypothesis.track == track && (best == nullptr || hypothesis.score > best->score)) best = &hypothesis;
-  }
-  return best;
-}
-
-void TargetTracker::prune() {
-  work_.erased.fill(false);
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Hypothesis& hypothesis = hypotheses_[k];
-    const int patience = hypothesis.established ? settings_.give_up_images : kPatience;
-    const bool hopeless = !hypothesis.established && hypothesis.score < kDropScore;
-    const Hypothesis* best = best_of(hypothesis.track);
-    // Accounts that parted from the track's best one more than kScan images ago.
-    const bool parted = best != nullptr && hypothesis.history[kScan - 1] != best->history[kScan - 1];
-    if (hopeless || parted || hypothesis.images_since_hit >= patience) work_.erased[k] = true;
-  }
-  erase_marked();
-
-  merge_accounts();
-  merge_tracks();
-}
-
-// Of two accounts of a track that share the last images the better stays.
-void TargetTracker::merge_accounts() {
-  work_.erased.fill(false);
-  for (std::size_t a = 0; a < count_; ++a) {
-    for (std::size_t b = a + 1; b < count_ && !work_.erased[a]; ++b) {
-      const Hypothesis& left = hypotheses_[a];
-      const Hypothesis& right = hypotheses_[b];
-      if (work_.erased[b] || left.track != right.track || !share_recent(left, right, kSame)) continue;
-      work_.erased[left.score >= right.score ? b : a] = true;
-    }
-  }
-  erase_marked();
-}
-
-// Of two tracks that have become the same the target's stays, else an established one, else the better: the other is a
-// ghost that lives on the first one's objects.
-void TargetTracker::merge_tracks() {
-  std::array<std::size_t, kMaxHypotheses> best{};
-  std::size_t tracks = 0;
-  for (std::size_t k = 0; k < count_; ++k) {
-    if (is_best_of_its_track(k)) best[tracks++] = k;
-  }
-  std::array<bool, kMaxHypotheses> is_ghost{};
-  for (std::size_t a = 0; a < tracks; ++a) {
-    for (std::size_t b = a + 1; b < tracks && !is_ghost[a]; ++b) {
-      const Hypothesis& left = hypotheses_[best[a]];
-      const Hypothesis& right = hypotheses_[best[b]];
-      if (is_ghost[b] || !agree(left, right) || !moves_as(left, right)) continue;
-      bool left_stays = left.score >= right.score;
-      if (left.established != right.established) left_stays = left.established;
-      if (left.track == target_track_ || right.track == target_track_) left_stays = left.track == target_track_;
-      is_ghost[left_stays ? b : a] = true;
-    }
-  }
-  work_.erased.fill(false);
-  for (std::size_t t = 0; t < tracks; ++t) {
-    if (!is_ghost[t]) continue;
-    const std::uint32_t ghost = hypotheses_[best[t]].track;
-    for (std::size_t k = 0; k < count_; ++k) {
-      if (hypotheses_[k].track == ghost) work_.erased[k] = true;
-    }
-  }
-  erase_marked();
-}
-
-bool TargetTracker::moves_as(const Hypothesis& a, const Hypothesis& b) const {
-  const SlopeState left = slope_state(a.motion, work_.view, work_.bend, work_.bend_rate);
-  const SlopeState right = slope_state(b.motion, work_.view, work_.bend, work_.bend_rate);
-  // The floors only keep the sum regular.
-  return distance_between(left.slopes, left.covariance, right.slopes, right.covariance, 1e-6, 1e-8) < kSameDistance;
-}
-
-void TargetTracker::choose_target() {
-  // The track nearest to the prediction, and the nearest of its rivals.
-  const Hypothesis* best = nullptr;
-  const Hypothesis* second = nullptr;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Hypothesis& h = hypotheses_[k];
-    if (h.hits < kRivalHits || !is_best_of_its_track(k)) continue;
-    if (best == nullptr || h.identity < best->identity) {
-      second = best;
-      best = &h;
-    } else if (second == nullptr || h.identity < second->identity) {
-      second = &h;
-    }
-  }
-  score_margin_ = 0.0;
-  ambiguous_ = false;
-  if (best == nullptr) {
-    target_track_ = 0;
-    return;
-  }
-  score_margin_ = second == nullptr ? kAlone : std::min(0.5 * (second->identity - best->identity), kAlone);
-
-  const Hypothesis* target = target_track_ == 0 ? nullptr : best_of(target_track_);
-  if (target == nullptr) {
-    target_track_ = 0;
-    deposing_images_ = 0;
-    ambiguous_ = second != nullptr && score_margin_ < settings_.identity_margin;
-    if (best->established && !ambiguous_ && best->identity < settings_.identity_gate &&
-        images_watched_ >= settings_.confirm_images) {
-      target_track_ = best->track;
-    }
-    return;
-  }
-  // A target stays the target unless the prediction speaks against it for some time.
-  const bool misplaced = target->history[0] >= 0 && target->identity_now > settings_.identity_gate;
-  const bool beaten = best->track != target_track_ && best->established &&
-                      0.5 * (target->identity_now - best->identity) > settings_.identity_margin;
-  deposing_images_ = misplaced || beaten ? deposing_images_ + 1 : 0;
-  if (deposing_images_ >= kDeposeAfter) {
-    target_track_ = 0;
-    deposing_images_ = 0;
-  }
-}
-
-// By how much a track's best account with the candidate in this image beats its best one without; no account with it
-// or none without: -kAlone or kAlone.
-double TargetTracker::claim(std::uint32_t track, std::int16_t candidate) const {
-  const Hypothesis* with = nullptr;
-  const Hypothesis* without = nullptr;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Hypothesis& h = hypotheses_[k];
-    if (h.track != track) continue;
-    const Hypothesis*& best = h.history[0] == candidate ? with : without;
-    if (best == nullptr || h.score > best->score) best = &h;
-  }
-  if (with == nullptr) return -kAlone;
-  return without == nullptr ? kAlone : with->score - without->score;
-}
-
-// The strongest claim of another satellite's track to the target's candidate. A short track is another satellite's if
-// it saw objects that the target's did not.
-double TargetTracker::rival_claim(const Hypothesis& target) const {
-  const std::int16_t candidate = target.history[0];
-  double strongest = -kAlone;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Hypothesis& h = hypotheses_[k];
-    if (h.track == target_track_ || h.history[0] != candidate) continue;
-    if (!h.established && objects_of_its_own(h, target) < kOwnObjects) continue;
-    strongest = std::max(strongest, claim(h.track, candidate));
-  }
-  return strongest;
-}
-
-TrackerOutput TargetTracker::report() {
-  TrackerOutput output;
-  output.hypotheses = static_cast<int>(count_);
-  output.hot_pixels = static_cast<int>(hot_pixels_.known());
-  output.score_margin = score_margin_;
-  for (std::size_t k = 0; k < count_; ++k) {
-    if (is_best_of_its_track(k)) ++output.tracks;
-  }
-  const Hypothesis* target = target_track_ == 0 ? nullptr : best_of(target_track_);
-  if (target == nullptr) {
-    output.state = ambiguous_ ? TrackerState::kAmbiguous : TrackerState::kSearching;
-    return output;
-  }
-  output.state = TrackerState::kCoasting;
-  output.residual_sigmas = math::sqrt(target->misfit);
-  const std::int16_t seen = target->history[0];
-  if (seen < 0) return output;
-
-  double agreeing = 0.0;
-  double all = 0.0;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Hypothesis& h = hypotheses_[k];
-    if (h.track != target_track_) continue;
-    const double weight = math::exp(std::max(h.score - target->score, -50.0));
-    all += weight;
-    if (h.history[0] == seen) agreeing += weight;
-  }
-  const bool certain = agreeing >= settings_.certainty * all;
-  // Either the target shows and the rival is missed, or the other way round.
-  const double odds = math::log(settings_.certainty / (1.0 - settings_.certainty));
-  const bool own = claim(target_track_, seen) > rival_claim(*target) + odds;
-  const bool fits = target->misfit < kMostMisfit && target->hits_since_gap >= settings_.hits_after_gap;
-  output.candidate = seen;
-  output.confirmed = certain && own && fits && deposing_images_ == 0;
-  if (output.confirmed) {
-    output.state = TrackerState::kTracking;
-  } else {
-    output.candidate = -1;
-  }
-  return output;
 }
 
 }  // namespace vbar::fsw::tracking

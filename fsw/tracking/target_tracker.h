@@ -23,7 +23,7 @@ struct TrackerSettings {
   MotionSettings motion;
   HotPixelSettings hot_pixels;
   double field_sr = 0.0113;           ///< solid angle in which candidates are looked for: 4.8 by 7.7 degrees
-  double surroundings = 0.03;  ///< rad about the predicted bearing in which other satellites are tracked as well
+  double surroundings = 0.03;         ///< rad about the predicted bearing in which other satellites are tracked as well
   double association_gate = 13.8;     ///< chi-square, 2 degrees of freedom: 99.9 %
   double prediction_gate = 18.4;      ///< the same about the predicted bearing: 99.99 %
   double identity_gate = 23.5;        ///< chi-square, 4 degrees of freedom: 99.99 %

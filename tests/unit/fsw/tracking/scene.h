@@ -74,17 +74,14 @@ class SceneMaker {
   std::unique_ptr<Sky> sky_;
 };
 
-/// How the tracker did in a run of so many images.
+/// How the tracker did.
 struct RunResult {
-  int images = 0;
-  int target_seen = 0;
+  int target_seen = 0;  ///< images in which the target was among the candidates
   int confirmed = 0;
-  int wrong = 0;
+  int wrong = 0;  ///< confirmed, and not the target
   int first_confirmed = -1;
-  int longest_hypotheses = 0;
 };
 
-/// Images from `from` on count for `target_seen`, `confirmed`; all for `wrong`.
-RunResult run_tracker(fsw::tracking::TargetTracker& tracker, SceneMaker& maker, int images, int from = 0);
+RunResult run_tracker(fsw::tracking::TargetTracker& tracker, SceneMaker& maker, int images);
 
 }  // namespace vbar::testing
