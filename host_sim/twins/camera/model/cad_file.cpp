@@ -1,0 +1,130 @@
+// Reading of CAD files, with what assimp lets pass in silence: an OBJ file's material that no MTL file defines.
+
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include "host_sim/twins/camera/model/cad_model.h"
+
+namespace vbar::twins::camera {
+namespace {
+
+using fsw::Vector3;
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
+  throw std::runtime_error(file.string() + ": " + what);
+}
+
+// The rest of a line after its first word, without blanks around.
+std::string rest_of(std::istringstream& line) {
+  std::string rest;
+  std::getline(line >> std::ws, rest);
+  rest.erase(rest.find_last_not_of(" \t\r") + 1);
+  return rest;
+}
+
+// Adds the names of the materials that an MTL file defines with a diffuse colour.
+void read_material_names(const std::filesystem::path& file, std::set<std::string>& defined) {
+  std::ifstream stream(file);
+  if (!stream) refuse(file, "no such material file");
+  std::string text, word, material;
+  while (std::getline(stream, text)) {
+    std::istringstream line(text);
+    if (!(line >> word)) continue;
+    if (word == "newmtl") material = rest_of(line);
+    if (word == "Kd") defined.insert(material);
+  }
+}
+
+// What assimp does not say, or not plainly: it replaces a material that it cannot find by a grey one and goes on.
+void check_obj(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::set<std::string> defined;
+  std::string text, word, material;
+  bool faces = false;
+  for (std::size_t number = 1; std::getline(stream, text); ++number) {
+    std::istringstream line(text);
+    if (!(line >> word)) continue;
+    if (word == "mtllib") read_material_names(file.parent_path() / rest_of(line), defined);
+    if (word == "usemtl") {
+      material = rest_of(line);
+      if (!defined.contains(material))
+        refuse(file,
+               fmt::format("line {}: material \"{}\" has no Kd in a material file named before", number, material));
+    }
+    if (word != "f") continue;
+    faces = true;
+    if (material.empty())
+      refuse(file, fmt::format("line {}: a face without material; a usemtl line must come before", number));
+  }
+  if (!faces) refuse(file, "no faces");
+}
+
+std::array<double, 3> rgb(const aiColor3D& c) {
+  return {c.r, c.g, c.b};
+}
+
+Material material_of(const std::filesystem::path& file, const aiMaterial& from) {
+  Material material;
+  material.name = from.GetName().C_Str();
+  aiColor3D diffuse, specular;
+  if (from.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse) != AI_SUCCESS || material.name == AI_DEFAULT_MATERIAL_NAME)
+    refuse(file, fmt::format("material \"{}\" has no diffuse colour", material.name));
+  material.diffuse = rgb(diffuse);
+  if (from.Get(AI_MATKEY_COLOR_SPECULAR, specular) == AI_SUCCESS) material.specular = rgb(specular);
+  ai_real exponent = 0.0F;
+  if (from.Get(AI_MATKEY_SHININESS, exponent) == AI_SUCCESS) material.exponent = exponent;
+  return material;
+}
+
+Vector3 vector_of(const aiVector3D& v) {
+  return {v.x, v.y, v.z};
+}
+
+void add_triangles(const aiMesh& mesh, std::size_t material, std::vector<Triangle>& triangles) {
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    Triangle triangle;
+    triangle.material = material;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.corners[k] = vector_of(mesh.mVertices[face.mIndices[k]]);
+      triangle.normals[k] = mesh.HasNormals() ? vector_of(mesh.mNormals[face.mIndices[k]]) : Vector3::Zero();
+    }
+    triangles.push_back(triangle);
+  }
+}
+
+}  // namespace
+
+CadModel load_cad_model(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) refuse(file, "no such file");
+  if (file.extension() == ".obj") check_obj(file);
+  Assimp::Importer importer;
+  // Points and lines are no surface: they go. Transformations of a scene's parts are applied.
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* const scene =
+      importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
+  if (scene == nullptr) refuse(file, fmt::format("no CAD file that can be read: {}", importer.GetErrorString()));
+  std::vector<Material> materials;
+  std::vector<Triangle> triangles;
+  std::map<unsigned, std::size_t> index;  // of the materials that faces use; assimp adds a default to every file
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene->mMeshes[m];
+    const auto [place, added] = index.try_emplace(mesh.mMaterialIndex, materials.size());
+    if (added) materials.push_back(material_of(file, *scene->mMaterials[mesh.mMaterialIndex]));
+    add_triangles(mesh, place->second, triangles);
+  }
+  return make_cad_model(file.string(), std::move(triangles), std::move(materials));
+}
+
+}  // namespace vbar::twins::camera

@@ -1,0 +1,57 @@
+#pragma once
+// A spacecraft's shape and surface, from a CAD file that assimp can read (OBJ with MTL and others).
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fsw/core/types.h"
+
+namespace vbar::twins::camera {
+
+/// How a surface reflects. Red, green, blue, linear; a monochrome camera sees the mean of the three.
+struct Material {
+  std::string name;
+  std::array<double, 3> diffuse{};   ///< albedo of the Lambert part (Kd of an MTL file)
+  std::array<double, 3> specular{};  ///< reflectivity of the glossy part at normal incidence (Ks)
+  double exponent = 0.0;             ///< of the glossy lobe (Ns): 0 dull, 1000 nearly a mirror
+
+  [[nodiscard]] double grey_diffuse() const { return (diffuse[0] + diffuse[1] + diffuse[2]) / 3.0; }
+  [[nodiscard]] double grey_specular() const { return (specular[0] + specular[1] + specular[2]) / 3.0; }
+};
+
+struct Triangle {
+  std::array<fsw::Vector3, 3> corners;  ///< body frame, m
+  std::array<fsw::Vector3, 3> normals;  ///< of the smooth surface at the corners, unit vectors; zero: the face is flat
+  std::size_t material = 0;             ///< index of CadModel::materials
+};
+
+struct CadModel {
+  std::string source;  ///< what messages call it: the file
+  std::vector<Material> materials;
+  std::vector<Triangle> triangles;
+  fsw::Vector3 centre = fsw::Vector3::Zero();  ///< of a sphere around everything, body frame, m
+  double radius_m = 0.0;
+  std::size_t faces_without_area = 0;  ///< that the file had and `triangles` has not
+};
+
+inline constexpr std::size_t kMaxMaterials = 64;
+inline constexpr double kMinModelRadiusM = 0.05;
+inline constexpr double kMaxModelRadiusM = 100.0;
+
+/// A model of these triangles, its sphere found, its faces without area left out. Throws std::runtime_error, naming
+/// `source` and what is wrong: no faces, a corner that is no finite number, more than 1 % of the faces without area, a
+/// sphere outside kMinModelRadiusM to kMaxModelRadiusM, no or too many materials.
+CadModel make_cad_model(std::string source, std::vector<Triangle> triangles, std::vector<Material> materials);
+
+/// Throws std::runtime_error, naming `source` and the material, unless reflectivities lie in 0 to 1, the grey of both
+/// together reflects no more than all light, and the exponent lies in 0 to 10,000.
+void check_materials(const std::string& source, const std::vector<Material>& materials);
+
+/// Reads a CAD file in metres. Throws std::runtime_error with one message that names the file and what is wrong: as
+/// make_cad_model, and: no such file, a file assimp does not understand, a face whose material no file defines.
+CadModel load_cad_model(const std::filesystem::path& file);
+
+}  // namespace vbar::twins::camera

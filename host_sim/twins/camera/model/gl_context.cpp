@@ -1,0 +1,47 @@
+#include "host_sim/twins/camera/model/gl_context.h"
+
+#include <cstdlib>
+#include <mutex>
+#include <stdexcept>
+
+#include <GL/osmesa.h>
+
+namespace vbar::twins::camera {
+
+GlContext::GlContext() {
+  static std::once_flag once;
+  std::call_once(once, [] { setenv("MESA_SHADER_CACHE_DISABLE", "true", 0); });
+  constexpr std::array<int, 15> kAttributes{OSMESA_FORMAT,
+                                            OSMESA_RGBA,
+                                            OSMESA_DEPTH_BITS,
+                                            0,
+                                            OSMESA_STENCIL_BITS,
+                                            0,
+                                            OSMESA_ACCUM_BITS,
+                                            0,
+                                            OSMESA_PROFILE,
+                                            OSMESA_CORE_PROFILE,
+                                            OSMESA_CONTEXT_MAJOR_VERSION,
+                                            3,
+                                            OSMESA_CONTEXT_MINOR_VERSION,
+                                            3,
+                                            0};
+  handle_ = OSMesaCreateContextAttribs(kAttributes.data(), nullptr);
+  if (handle_ == nullptr) throw std::runtime_error("OSMesa gives no OpenGL 3.3 core context");
+}
+
+GlContext::~GlContext() {
+  OSMesaDestroyContext(static_cast<OSMesaContext>(handle_));
+}
+
+GlContext::Current::Current(GlContext& context) {
+  if (OSMesaMakeCurrent(static_cast<OSMesaContext>(context.handle_), context.surface_.data(), GL_UNSIGNED_BYTE, 1, 1) !=
+      GL_TRUE)
+    throw std::runtime_error("OSMesa cannot make its context current");
+}
+
+GlContext::Current::~Current() {
+  OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0);
+}
+
+}  // namespace vbar::twins::camera

@@ -1,0 +1,80 @@
+#pragma once
+// The few OpenGL objects of the target renderer, as owners. All need the context that made them current, in their
+// constructors, destructors and calls.
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/gl.h>
+#include <GL/glext.h>
+
+namespace vbar::twins::camera {
+
+/// A linked vertex and fragment shader. Throws std::runtime_error with the compiler's words.
+class GlProgram {
+ public:
+  GlProgram(std::string_view vertex_source, std::string_view fragment_source);
+  ~GlProgram();
+  GlProgram(const GlProgram&) = delete;
+  GlProgram& operator=(const GlProgram&) = delete;
+
+  void use() const;
+  [[nodiscard]] GLint uniform(const char* name) const;  ///< place of a uniform; throws if the program has none
+
+ private:
+  GLuint id_ = 0;
+};
+
+/// Triangles on the drawing side: interleaved attributes of `widths` floats each, at locations 0, 1, ...
+class GlTriangles {
+ public:
+  GlTriangles(std::span<const float> interleaved, std::span<const int> widths);
+  ~GlTriangles();
+  GlTriangles(const GlTriangles&) = delete;
+  GlTriangles& operator=(const GlTriangles&) = delete;
+
+  void draw() const;
+
+ private:
+  GLuint array_ = 0, buffer_ = 0;
+  GLsizei vertices_ = 0;
+};
+
+/// A square of depths that a shader can compare with: what a parallel light sees first.
+class GlShadowMap {
+ public:
+  explicit GlShadowMap(int size);
+  ~GlShadowMap();
+  GlShadowMap(const GlShadowMap&) = delete;
+  GlShadowMap& operator=(const GlShadowMap&) = delete;
+
+  void bind_and_clear() const;  ///< to draw into
+  void bind_texture() const;    ///< to texture unit 0
+  [[nodiscard]] int size() const { return size_; }
+
+ private:
+  GLuint framebuffer_ = 0, texture_ = 0;
+  int size_ = 0;
+};
+
+/// A square picture of one float a texel, drawn with four samples a texel.
+class GlPicture {
+ public:
+  explicit GlPicture(int size);
+  ~GlPicture();
+  GlPicture(const GlPicture&) = delete;
+  GlPicture& operator=(const GlPicture&) = delete;
+
+  void bind_and_clear() const;
+  void read(std::vector<float>& texels) const;  ///< means of the samples, rows from the lowest clip-space y
+  [[nodiscard]] int size() const { return size_; }
+
+ private:
+  GLuint drawn_ = 0, resolved_ = 0;           // framebuffers
+  GLuint colour_ = 0, depth_ = 0, mean_ = 0;  // renderbuffers
+  int size_ = 0;
+};
+
+}  // namespace vbar::twins::camera

@@ -1,0 +1,230 @@
+#include "host_sim/twins/camera/model/target_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "host_sim/twins/camera/model/gl_context.h"
+#include "host_sim/twins/camera/model/gl_objects.h"
+#include "host_sim/twins/camera/model/target_shaders.h"
+
+namespace vbar::twins::camera {
+namespace {
+
+using fsw::Matrix3;
+using fsw::Vector3;
+using Matrix3f = Eigen::Matrix<float, 3, 3>;
+using Matrix4f = Eigen::Matrix<float, 4, 4>;
+
+constexpr double kMinRoughness = 0.02;  // a mirror image of the Sun, half a degree wide, is no narrower
+
+// The picture's axes: z to the middle of the sphere, x and y near the camera's.
+Matrix3 axes_towards(const Vector3& direction) {
+  const Vector3 across = std::abs(direction.x()) < 0.9 ? Vector3::UnitX() : Vector3::UnitY();
+  const Vector3 x = (across - across.dot(direction) * direction).normalized();
+  Matrix3 R_picture_camera;
+  R_picture_camera << x.transpose(), direction.cross(x).transpose(), direction.transpose();
+  return R_picture_camera;
+}
+
+// Sizes of pictures: powers of two and one and a half times them, so that framebuffers are seldom made anew.
+int texels_for(double wanted) {
+  int size = TargetRenderer::kMinTexels;
+  while (size < wanted && size < TargetRenderer::kMaxTexels) size = size % 3 == 0 ? size / 3 * 4 : size / 2 * 3;
+  return size;
+}
+
+// From the middle of the sphere, in radii.
+std::vector<float> surface_of(const CadModel& model) {
+  std::vector<float> floats;
+  const auto add = [&floats](const Vector3& v) {
+    for (int i = 0; i < 3; ++i) floats.push_back(static_cast<float>(v[i]));
+  };
+  for (const Triangle& t : model.triangles) {
+    const Vector3 flat = (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).normalized();
+    for (std::size_t k = 0; k < 3; ++k) {
+      add((t.corners[k] - model.centre) / model.radius_m);
+      add(t.normals[k]);
+      add(flat);
+      floats.push_back(static_cast<float>(t.material));
+    }
+  }
+  return floats;
+}
+
+// What the shader takes: albedo, reflectivity, the same at grazing incidence, roughness. A reflectivity below 4 %,
+// glass with a coating or plain paint, rises less at grazing incidence; none stays none. Roughness from the exponent:
+// Walter et al. (2007), section 5.2.
+std::array<float, 4> shader_material(const Material& m) {
+  const double specular = m.grey_specular();
+  const double roughness = std::clamp(std::sqrt(2.0 / (m.exponent + 2.0)), kMinRoughness, 1.0);
+  return {static_cast<float>(m.grey_diffuse()), static_cast<float>(specular),
+          static_cast<float>(std::min(1.0, 25.0 * specular)), static_cast<float>(roughness)};
+}
+
+void check(const TargetView& view) {
+  const double sum = view.position_camera.sum() + view.R_camera_body.sum() + view.sun_camera.sum() +
+                     view.nadir_camera.sum() + view.sun_photons_per_m2_s + view.sunlit + view.earth_photons_per_m2_s +
+                     view.earth_half_angle + view.texel_pitch;
+  if (!std::isfinite(sum)) throw std::invalid_argument("a number of a view of the target is not finite");
+}
+
+}  // namespace
+
+struct TargetRenderer::Drawing {
+  explicit Drawing(const CadModel& model) : centre(model.centre), radius_m(model.radius_m) {
+    const GlContext::Current current(context);
+    shadow_program.emplace(kShadowVertexShader, kShadowFragmentShader);
+    surface_program.emplace(kSurfaceVertexShader, kSurfaceFragmentShader);
+    triangles.emplace(surface_of(model), std::array{3, 3, 4});
+  }
+  ~Drawing() {
+    const GlContext::Current current(context);
+    picture.reset();
+    shadow_map.reset();
+    triangles.reset();
+    surface_program.reset();
+    shadow_program.reset();
+  }
+  Drawing(const Drawing&) = delete;
+  Drawing& operator=(const Drawing&) = delete;
+
+  void draw_shadow(const Matrix3& R_sun_body) const;
+  void draw_surface(const TargetView& view, const Vector3& centre_camera, const Matrix3& R_picture_camera,
+                    double tan_half, const Matrix3& R_sun_body, double scale) const;
+
+  Vector3 centre;
+  double radius_m;
+  std::vector<std::array<float, 4>> materials;
+  GlContext context;
+  std::optional<GlProgram> shadow_program, surface_program;
+  std::optional<GlTriangles> triangles;
+  std::optional<GlShadowMap> shadow_map;
+  std::optional<GlPicture> picture;
+  std::vector<float> texels;
+};
+
+void TargetRenderer::Drawing::draw_shadow(const Matrix3& R_sun_body) const {
+  shadow_map->bind_and_clear();
+  glEnable(GL_DEPTH_TEST);
+  shadow_program->use();
+  const Matrix3f rotation = R_sun_body.cast<float>();
+  glUniformMatrix3fv(shadow_program->uniform("R_sun_body"), 1, GL_FALSE, rotation.data());
+  triangles->draw();
+}
+
+void TargetRenderer::Drawing::draw_surface(const TargetView& view, const Vector3& centre_camera,
+                                           const Matrix3& R_picture_camera, double tan_half, const Matrix3& R_sun_body,
+                                           double scale) const {
+  // From body axes in radii to clip space. Everything is relative to the distance of the middle, so single precision
+  // is enough at any range; depth runs from -1 to 1 through the sphere.
+  const double reach = radius_m / centre_camera.norm();
+  const Matrix3 R_picture_body = R_picture_camera * view.R_camera_body;
+  Eigen::Matrix<double, 4, 4> clip_from_body = Eigen::Matrix<double, 4, 4>::Zero();
+  clip_from_body.topLeftCorner<2, 3>() = reach / tan_half * R_picture_body.topRows<2>();
+  clip_from_body.block<1, 3>(2, 0) = R_picture_body.row(2);
+  clip_from_body(2, 3) = reach;
+  clip_from_body.block<1, 3>(3, 0) = reach * R_picture_body.row(2);
+  clip_from_body(3, 3) = 1.0;
+  const Matrix4f clip = clip_from_body.cast<float>();
+  const Matrix3f sun_rotation = R_sun_body.cast<float>();
+  const auto set_vector = [this](const char* name, const Vector3& v) {
+    glUniform3f(surface_program->uniform(name), static_cast<float>(v.x()), static_cast<float>(v.y()),
+                static_cast<float>(v.z()));
+  };
+  const auto set_number = [this](const char* name, double value) {
+    glUniform1f(surface_program->uniform(name), static_cast<float>(value));
+  };
+  picture->bind_and_clear();
+  glEnable(GL_DEPTH_TEST);
+  surface_program->use();
+  glUniformMatrix4fv(surface_program->uniform("clip_from_body"), 1, GL_FALSE, clip.data());
+  glUniformMatrix3fv(surface_program->uniform("R_sun_body"), 1, GL_FALSE, sun_rotation.data());
+  glUniform4fv(surface_program->uniform("materials"), static_cast<GLsizei>(materials.size()), materials[0].data());
+  glUniform1i(surface_program->uniform("shadow_map"), 0);
+  set_vector("camera", -view.R_camera_body.transpose() * centre_camera / radius_m);
+  set_vector("sun", -R_sun_body.row(2).transpose());
+  set_vector("nadir", view.R_camera_body.transpose() * view.nadir_camera.normalized());
+  set_number("sun_irradiance", view.sunlit * view.sun_photons_per_m2_s / scale);
+  set_number("earth_irradiance", view.earth_photons_per_m2_s / scale);
+  const double sine_earth = std::sin(std::clamp(view.earth_half_angle, 1e-3, 1.5707963));
+  set_number("sin2_earth", sine_earth * sine_earth);
+  set_number("shadow_texel", 2.0 / shadow_map->size());
+  shadow_map->bind_texture();
+  triangles->draw();
+}
+
+TargetRenderer::TargetRenderer(const CadModel& model) : drawing_(std::make_unique<Drawing>(model)) {
+  set_materials(model.materials);
+}
+
+TargetRenderer::~TargetRenderer() = default;
+
+void TargetRenderer::set_materials(std::span<const Material> materials) {
+  check_materials("materials of a target", {materials.begin(), materials.end()});
+  if (!drawing_->materials.empty() && materials.size() != drawing_->materials.size())
+    throw std::runtime_error("materials of a target: " + std::to_string(materials.size()) + " given, the model has " +
+                             std::to_string(drawing_->materials.size()));
+  drawing_->materials.clear();
+  for (const Material& m : materials) drawing_->materials.push_back(shader_material(m));
+}
+
+int TargetRenderer::texels() const {
+  return drawing_->picture ? drawing_->picture->size() : 0;
+}
+
+void TargetRenderer::render(const TargetView& view, std::vector<LightSample>& out) {
+  check(view);
+  out.clear();
+  Drawing& d = *drawing_;
+  const Vector3 centre_camera = view.position_camera + view.R_camera_body * d.centre;
+  const double distance = centre_camera.norm();
+  if (distance < 1.01 * d.radius_m)
+    throw std::invalid_argument("the camera is inside the sphere around the target, " + std::to_string(d.radius_m) +
+                                " m in radius");
+  const double scale = std::max(view.sunlit * view.sun_photons_per_m2_s, view.earth_photons_per_m2_s);
+  if (scale <= 0.0) return;
+  const double sin_half = d.radius_m / distance;
+  const double tan_half = 1.002 * sin_half / std::sqrt(1.0 - sin_half * sin_half);  // a margin for single precision
+  const Matrix3 R_picture_camera = axes_towards(centre_camera / distance);
+  const Matrix3 R_sun_body = axes_towards(-view.sun_camera.normalized()) * view.R_camera_body;
+  const int n = texels_for(view.texel_pitch > 0.0 ? 2.0 * tan_half / view.texel_pitch : 0.0);
+
+  {
+    const GlContext::Current current(d.context);
+    if (!d.picture || d.picture->size() != n) {
+      d.picture.reset();
+      d.picture.emplace(n);
+    }
+    const int shadow_size = std::clamp(2 * n, 1024, 2048);
+    if (!d.shadow_map || d.shadow_map->size() != shadow_size) {
+      d.shadow_map.reset();
+      d.shadow_map.emplace(shadow_size);
+    }
+    d.draw_shadow(R_sun_body);
+    d.draw_surface(view, centre_camera, R_picture_camera, tan_half, R_sun_body, scale);
+    d.picture->read(d.texels);
+  }
+
+  // A texel's solid angle: its area on the plane at unit distance times the cube of the cosine of the angle to the
+  // axis.
+  const Matrix3 R_camera_picture = R_picture_camera.transpose();
+  const double pitch = 2.0 * tan_half / n;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const double radiance = static_cast<double>(
+          d.texels[static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)]);
+      if (!(radiance > 0.0)) continue;
+      const Vector3 at((i + 0.5) * pitch - tan_half, (j + 0.5) * pitch - tan_half, 1.0);
+      const double length = at.norm();
+      out.push_back({R_camera_picture * (at / length), scale * radiance * pitch * pitch / (length * length * length)});
+    }
+}
+
+}  // namespace vbar::twins::camera

@@ -1,0 +1,59 @@
+#pragma once
+// Light of a spacecraft near or far: its CAD model drawn at its own scale, in linear radiometric units.
+//
+// The picture is fitted to the sphere around the body and has a number of texels that follows from how large the body
+// looks; a body of a hundredth of a pixel is drawn as carefully as a near one, so its brightness varies with attitude
+// and phase as a real one's does.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "fsw/core/types.h"
+#include "host_sim/twins/camera/model/cad_model.h"
+#include "host_sim/twins/camera/light_sample.h"
+
+namespace vbar::twins::camera {
+
+/// One body before the camera. Camera axes: z boresight, x right, y down; they need not look at the body.
+struct TargetView {
+  fsw::Vector3 position_camera = fsw::Vector3::Zero();  ///< of the body frame's origin from the camera, m
+  fsw::Matrix3 R_camera_body = fsw::Matrix3::Identity();
+  fsw::Vector3 sun_camera = fsw::Vector3::UnitZ();    ///< unit vector from the body towards the Sun
+  double sun_photons_per_m2_s = 0.0;                  ///< on an area that faces the Sun, out of any shadow
+  double sunlit = 1.0;                                ///< share of the Sun's disc that the body sees, 0 to 1
+  fsw::Vector3 nadir_camera = fsw::Vector3::UnitY();  ///< unit vector from the body to the Earth's centre
+  double earth_photons_per_m2_s = 0.0;                ///< from the Earth, on an area that faces the nadir
+  double earth_half_angle = 1.1;                      ///< that the Earth's disc subtends, rad, up to pi/2
+  double texel_pitch = 0.0;                           ///< largest wanted, rad; 0 for the coarsest picture
+};
+
+class TargetRenderer {
+ public:
+  static constexpr int kMinTexels = 128;   ///< on a side of the picture
+  static constexpr int kMaxTexels = 2048;  ///< larger bodies get larger texels than asked for
+
+  /// Copies what it needs of the model. Throws std::runtime_error if there is no OpenGL.
+  explicit TargetRenderer(const CadModel& model);
+  ~TargetRenderer();
+  TargetRenderer(const TargetRenderer&) = delete;
+  TargetRenderer& operator=(const TargetRenderer&) = delete;
+
+  /// Replaces `out` by the light of every texel that is not dark, in rows of the picture. Self-shadowing by the Sun is
+  /// in; light from one part of the body to another, and the body's shadow in the Earth's light, are not. Same bits for
+  /// the same view on the same processor. From any thread, one at a time. Throws std::invalid_argument if a number is
+  /// not finite or the camera is inside the sphere around the body.
+  void render(const TargetView& view, std::vector<LightSample>& out);
+
+  /// Other materials for the faces, as many as the model has. Throws std::runtime_error as check_materials does.
+  void set_materials(std::span<const Material> materials);
+
+  /// Of the last picture, on a side.
+  [[nodiscard]] int texels() const;
+
+ private:
+  struct Drawing;
+  std::unique_ptr<Drawing> drawing_;
+};
+
+}  // namespace vbar::twins::camera
