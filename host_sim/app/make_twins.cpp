@@ -1,6 +1,5 @@
 #include "host_sim/app/make_twins.h"
 
-#include <set>
 #include <utility>
 
 #include "host_sim/mission/body_file.h"
@@ -88,9 +87,9 @@ twins::camera::ImageMaker::Settings image_settings(const mission::Mission& missi
 
 twins::camera::Renderer make_scene_renderer(const mission::Mission& mission, const mission::Spacecraft& spacecraft,
                                             const std::filesystem::path& data_directory) {
-  std::set<std::string> models;
+  std::vector<std::string> models;
   for (const mission::Spacecraft& other : mission.spacecraft)
-    if (!other.model.empty() && &other != &spacecraft) models.insert(other.model);
+    if (!other.model.empty() && &other != &spacecraft) models.push_back(other.model);
   const auto scene = std::make_shared<twins::camera::SceneRenderer>(
       spacecraft.camera->settings, data_directory, twins::camera::cad_objects(data_directory, models));
   return [scene](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {

@@ -28,8 +28,8 @@ inline Eigen::Quaterniond camera_attitude(const fsw::Vector3& boresight, const f
   return Eigen::Quaterniond(R_camera_eci);
 }
 
-/// 709 km above the Earth, looking along `boresight_eci` with the Earth below it (or behind it, if it looks up); the Sun
-/// and the Moon are behind the camera.
+/// 709 km above the Earth, looking along `boresight_eci` with the Earth below it (or behind it, if it looks up); the
+/// Sun and the Moon are behind the camera.
 inline twins::camera::Exposure quiet_exposure(const fsw::Vector3& boresight_eci) {
   using fsw::Vector3;
   const Vector3 boresight = boresight_eci.normalized();
@@ -73,10 +73,9 @@ inline Blob measure(const twins::camera::PhotonImage& image, const fsw::Vector2&
     for (int y = image.region.y; y < image.region.y + image.region.height; ++y)
       for (int x = image.region.x; x < image.region.x + image.region.width; ++x)
         if (std::abs(x - middle.x()) <= half_width && std::abs(y - middle.y()) <= half_width)
-          take(Vector2(x, y), static_cast<double>(
-                                  image.electrons[static_cast<std::size_t>(y - image.region.y) *
-                                                      static_cast<std::size_t>(image.region.width) +
-                                                  static_cast<std::size_t>(x - image.region.x)]));
+          take(Vector2(x, y), static_cast<double>(image.electrons[static_cast<std::size_t>(y - image.region.y) *
+                                                                      static_cast<std::size_t>(image.region.width) +
+                                                                  static_cast<std::size_t>(x - image.region.x)]));
   };
   each([&](const Vector2& at, double light) {
     blob.electrons += light;
@@ -92,8 +91,7 @@ inline Blob measure(const twins::camera::PhotonImage& image, const fsw::Vector2&
 }
 
 /// The electrons of what the image holds in `a` beyond `b`.
-inline twins::camera::PhotonImage difference(const twins::camera::PhotonImage& a,
-                                             const twins::camera::PhotonImage& b) {
+inline twins::camera::PhotonImage difference(const twins::camera::PhotonImage& a, const twins::camera::PhotonImage& b) {
   twins::camera::PhotonImage image = a;
   for (std::size_t i = 0; i < image.electrons.size(); ++i) image.electrons[i] -= b.electrons[i];
   return image;

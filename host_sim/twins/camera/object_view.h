@@ -19,6 +19,7 @@ struct ObjectView {
   double sun_photons_per_m2_s = 0.0;                            ///< that reach it: none in the Earth's shadow
   fsw::Vector3 earth_direction_camera = fsw::Vector3::UnitZ();  ///< to the middle of the Earth's light, unit
   double earth_photons_per_m2_s = 0.0;                          ///< on a surface that looks there
+  double earth_half_angle = 1.1;                                ///< of the Earth's disc as the object sees it, rad
   double pixel_rad = 0.0;                                       ///< what a pixel of the camera sees
 };
 

@@ -40,7 +40,8 @@ struct SceneRenderer::View {
         sun(from.sun_eci - from.camera_position_eci),
         moon(from.moon_eci - from.camera_position_eci),
         sun_photons(camera::sun_photons(settings.zero_magnitude_photons, sun.norm())),
-        pixel_rad(1.0 / settings.focal_length_px()) {
+        pixel_rad(1.0 / settings.focal_length_px()),
+        moon_radius(std::asin(std::min(1.0, kMoonRadiusM / moon.norm()))) {
     earth_in_field = angle_between(R_camera_eci * earth.centre_direction_eci(), detector_cone.axis) <
                      earth.angular_radius() + detector_cone.half_angle;
   }
@@ -56,6 +57,7 @@ struct SceneRenderer::View {
   Vector3 sun, moon;  // from the camera, ECI, m
   double sun_photons;
   double pixel_rad;
+  double moon_radius;  // rad
   bool earth_in_field = false;
 };
 
@@ -97,6 +99,7 @@ void SceneRenderer::add_stars(const View& view, PhotonImage& image) {
     const Vector3 direction = view.R_camera_eci * star.direction_eci;
     const auto pixel = optics_.project(direction);
     if (!pixel) continue;
+    if (angle_between(star.direction_eci, view.moon) < view.moon_radius) continue;
     const double passed = view.earth_in_field ? view.passed_by_earth(star.direction_eci) : 1.0;
     if (passed == 0.0) continue;
     const Vector2 smear_px =
@@ -124,6 +127,7 @@ void SceneRenderer::add_object(const View& view, const ObjectInView& object, Pho
   const Vector3 earth_light = view.R_camera_eci * view.earth.light_eci(view.sun_photons);
   asked.earth_photons_per_m2_s = earth_light.norm();
   if (asked.earth_photons_per_m2_s > 0.0) asked.earth_direction_camera = earth_light.normalized();
+  asked.earth_half_angle = view.earth.angular_radius();
   asked.pixel_rad = view.pixel_rad;
   samples_.clear();
   objects_(asked, samples_);

@@ -45,11 +45,12 @@ void read_material_names(const std::filesystem::path& file, std::set<std::string
   }
 }
 
-// assimp replaces a material it cannot find by a grey one and goes on.
-void check_obj_materials(const std::filesystem::path& file) {
+// What assimp does not say, or not plainly: it replaces a material that it cannot find by a grey one and goes on.
+void check_obj(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::set<std::string> defined;
   std::string text, word, material;
+  bool faces = false;
   for (std::size_t number = 1; std::getline(stream, text); ++number) {
     std::istringstream line(text);
     if (!(line >> word)) continue;
@@ -60,9 +61,12 @@ void check_obj_materials(const std::filesystem::path& file) {
         refuse(file,
                fmt::format("line {}: material \"{}\" has no Kd in a material file named before", number, material));
     }
-    if (word == "f" && material.empty())
+    if (word != "f") continue;
+    faces = true;
+    if (material.empty())
       refuse(file, fmt::format("line {}: a face without material; a usemtl line must come before", number));
   }
+  if (!faces) refuse(file, "no faces");
 }
 
 std::array<double, 3> rgb(const aiColor3D& c) {
@@ -104,7 +108,7 @@ void add_triangles(const aiMesh& mesh, std::size_t material, std::vector<Triangl
 
 CadModel load_cad_model(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) refuse(file, "no such file");
-  if (file.extension() == ".obj") check_obj_materials(file);
+  if (file.extension() == ".obj") check_obj(file);
   Assimp::Importer importer;
   // Points and lines are no surface: they go. Transformations of a scene's parts are applied.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

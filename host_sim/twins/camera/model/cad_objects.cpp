@@ -5,16 +5,22 @@
 #include <stdexcept>
 #include <vector>
 
-#include "host_sim/twins/camera/model/cad_model.h"
+#include <fmt/format.h>
+
 #include "host_sim/twins/camera/model/target_renderer.h"
 
 namespace vbar::twins::camera {
 namespace {
 
-// A camera pixel is drawn by so many texels along a side.
-constexpr double kTexelsAPixel = 2.0;
+struct Models {
+  std::map<std::string, TargetRenderer, std::less<>> renderers;
+  std::vector<LightSample> samples;  // work space
+};
 
-TargetView target_view(const ObjectView& view) {
+void render(Models& models, const ObjectView& view, std::vector<LightSample>& out) {
+  const auto found = models.renderers.find(view.model);
+  if (found == models.renderers.end())
+    throw std::invalid_argument(fmt::format("no CAD model \"{}\" was loaded for the camera", view.model));
   TargetView target;
   target.position_camera = view.position_camera;
   target.R_camera_body = view.R_camera_body;
@@ -22,25 +28,20 @@ TargetView target_view(const ObjectView& view) {
   target.sun_photons_per_m2_s = view.sun_photons_per_m2_s;
   target.nadir_camera = view.earth_direction_camera;
   target.earth_photons_per_m2_s = view.earth_photons_per_m2_s;
-  target.texel_pitch = view.pixel_rad / kTexelsAPixel;
-  return target;
+  target.earth_half_angle = view.earth_half_angle;
+  target.texel_pitch = 0.5 * view.pixel_rad;
+  found->second.render(target, models.samples);
+  out.insert(out.end(), models.samples.begin(), models.samples.end());
 }
 
 }  // namespace
 
-ObjectRenderer cad_objects(const std::filesystem::path& data_directory, const std::set<std::string>& models) {
-  using Renderers = std::map<std::string, TargetRenderer>;
-  const auto renderers = std::make_shared<Renderers>();
+ObjectRenderer cad_objects(const std::filesystem::path& data_directory, std::span<const std::string> models) {
+  const auto loaded = std::make_shared<Models>();
   for (const std::string& model : models)
-    renderers->try_emplace(model, load_cad_model(data_directory / "models" / (model + ".obj")));
-  // The work space is the closure's own: it is called by one thread at a time, as it says.
-  const auto samples = std::make_shared<std::vector<LightSample>>();
-  return [renderers, samples](const ObjectView& view, std::vector<LightSample>& out) {
-    const auto found = renderers->find(view.model);
-    if (found == renderers->end()) throw std::invalid_argument("no CAD model \"" + view.model + "\" was loaded");
-    found->second.render(target_view(view), *samples);
-    out.insert(out.end(), samples->begin(), samples->end());
-  };
+    if (!loaded->renderers.contains(model))
+      loaded->renderers.try_emplace(model, load_cad_model(data_directory / "models" / (model + ".obj")));
+  return [loaded](const ObjectView& view, std::vector<LightSample>& out) { render(*loaded, view, out); };
 }
 
 }  // namespace vbar::twins::camera

@@ -1,16 +1,17 @@
 #pragma once
-// The spacecraft before a camera, each drawn from its CAD file.
+// Spacecraft drawn from their CAD files, for the scene renderer.
 
 #include <filesystem>
-#include <set>
+#include <span>
 #include <string>
 
 #include "host_sim/twins/camera/object_view.h"
 
 namespace vbar::twins::camera {
 
-/// Draws the models of these names, data_directory/models/<name>.obj. Files are read here: throws std::runtime_error as
-/// load_cad_model does, and if there is no OpenGL. A view of another model throws std::invalid_argument.
-ObjectRenderer cad_objects(const std::filesystem::path& data_directory, const std::set<std::string>& models);
+/// Loads data_directory/models/<model>.obj of every model; throws std::runtime_error as load_cad_model and
+/// TargetRenderer do. The renderer that comes back throws std::invalid_argument for a model that is none of these, and
+/// for a camera inside the sphere around a body. Copies of it share the models; one call at a time among them all.
+ObjectRenderer cad_objects(const std::filesystem::path& data_directory, std::span<const std::string> models);
 
 }  // namespace vbar::twins::camera

@@ -202,7 +202,7 @@ void TargetRenderer::render(const TargetView& view, std::vector<LightSample>& ou
       d.picture.reset();
       d.picture.emplace(n);
     }
-    const int shadow_size = std::clamp(2 * n, 512, 2048);
+    const int shadow_size = std::clamp(2 * n, 1024, 2048);
     if (!d.shadow_map || d.shadow_map->size() != shadow_size) {
       d.shadow_map.reset();
       d.shadow_map.emplace(shadow_size);

@@ -30,7 +30,7 @@ struct TargetView {
 
 class TargetRenderer {
  public:
-  static constexpr int kMinTexels = 64;    ///< on a side of the picture
+  static constexpr int kMinTexels = 128;   ///< on a side of the picture
   static constexpr int kMaxTexels = 2048;  ///< larger bodies get larger texels than asked for
 
   /// Copies what it needs of the model. Throws std::runtime_error if there is no OpenGL.

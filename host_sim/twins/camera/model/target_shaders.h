@@ -84,17 +84,21 @@ float reflected(vec3 n, vec3 l, vec3 v, vec4 m) {
   return (lambert + glossy) * nl;
 }
 
-// Share of the Sun that reaches p: nine comparisons, each of four texels. The place is lifted off the surface by what
-// the filter reaches on a slanting face.
+// Share of the Sun that reaches p: nine comparisons, each of four texels. Each compares with the depth that the plane of
+// the face has there, and is nearer by what that changes within the four: no face shades itself, and the edges of
+// shadows stay where they are. Where the Sun only grazes a face the slope is limited, and so is the light.
 float sunlight(vec3 flat_normal) {
-  float c = dot(flat_normal, sun);
-  vec3 lifted = p + flat_normal * shadow_texel * (0.5 + 2.5 * sqrt(max(0.0, 1.0 - c * c)));
-  vec3 place = 0.5 * (R_sun_body * lifted) + 0.5;
+  vec3 normal_sun = R_sun_body * flat_normal;
+  vec2 slope = normal_sun.xy / max(-normal_sun.z, 0.05);
+  vec3 place = 0.5 * (R_sun_body * p) + 0.5;
   float texel = 0.5 * shadow_texel;
+  float nearer = texel * (abs(slope.x) + abs(slope.y) + 0.5);
   float sum = 0.0;
   for (int i = -1; i <= 1; ++i)
-    for (int j = -1; j <= 1; ++j)
-      sum += texture(shadow_map, vec3(place.xy + texel * vec2(float(i), float(j)), place.z));
+    for (int j = -1; j <= 1; ++j) {
+      vec2 off = texel * vec2(float(i), float(j));
+      sum += texture(shadow_map, vec3(place.xy + off, place.z + dot(slope, off) - nearer));
+    }
   return sum / 9.0;
 }
 

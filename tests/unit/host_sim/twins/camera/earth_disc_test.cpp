@@ -64,8 +64,8 @@ TEST(EarthDisc, hides_what_is_behind_it_and_nothing_before_it) {
 TEST(EarthDisc, its_light_is_that_of_a_lambert_sphere) {
   for (const double phase : {0.0, 1.0, 2.0}) {
     const camera::EarthDisc earth(3e9 * Vector3(std::cos(phase), std::sin(phase), 0.0), kSun);
-    const double expected = 2.0 / 3.0 * 0.3 * std::pow(kRadius / 3e9, 2) *
-                            (std::sin(phase) + (M_PI - phase) * std::cos(phase)) / M_PI;
+    const double expected =
+        2.0 / 3.0 * 0.3 * std::pow(kRadius / 3e9, 2) * (std::sin(phase) + (M_PI - phase) * std::cos(phase)) / M_PI;
     EXPECT_NEAR(earth.light_eci(1.0).norm() / expected, 1.0, 0.01) << phase;
   }
 }

@@ -25,8 +25,8 @@ TEST(Optics, projects_as_the_formulas_of_brown_and_conrady) {
   const camera::CameraSettings settings = distorted();
   const camera::Optics optics(settings);
   const double f = 35e-3 / 5.86e-6;
-  for (const auto& d : {Vector3(0.0, 0.0, 1.0), Vector3(0.12, -0.05, 1.0), Vector3(-0.15, 0.09, 0.9),
-                        Vector3(0.02, 0.099, 1.1)}) {
+  for (const auto& d :
+       {Vector3(0.0, 0.0, 1.0), Vector3(0.12, -0.05, 1.0), Vector3(-0.15, 0.09, 0.9), Vector3(0.02, 0.099, 1.1)}) {
     const double x = d.x() / d.z(), y = d.y() / d.z(), r2 = x * x + y * y;
     const double radial = 1.0 - 0.12 * r2 + 0.08 * r2 * r2 + 0.02 * r2 * r2 * r2;
     const double u = x * radial + 2.0 * 1.5e-3 * x * y - 7e-4 * (r2 + 2.0 * x * x);
@@ -61,7 +61,8 @@ TEST(Optics, image_velocity_is_the_change_of_the_projection) {
   const Vector3 direction = Vector3(0.13, -0.08, 1.0).normalized();
   const Vector3 rate = direction.cross(Vector3(2e-3, -1e-3, 5e-3));
   const double dt = 1e-4;
-  const Vector2 expected = (*optics.project(direction + dt * rate) - *optics.project(direction - dt * rate)) / (2.0 * dt);
+  const Vector2 expected =
+      (*optics.project(direction + dt * rate) - *optics.project(direction - dt * rate)) / (2.0 * dt);
   EXPECT_NEAR((optics.image_velocity(direction, rate) - expected).norm(), 0.0, 1e-6);
 }
 

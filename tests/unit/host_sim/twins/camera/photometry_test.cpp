@@ -44,7 +44,8 @@ TEST(Photometry, the_sun_shines_like_a_black_body_of_5772_kelvin) {
   double photons = 0.0;  // of a surface into the hemisphere, 1/(m^2 s)
   for (double nm = 400.5; nm < 900.0; nm += 1.0) {
     const double wave = nm * 1e-9;
-    const double radiance = 2.0 * kLight / std::pow(wave, 4) / std::expm1(kPlanck * kLight / (wave * kBoltzmann * 5772.0));
+    const double radiance =
+        2.0 * kLight / std::pow(wave, 4) / std::expm1(kPlanck * kLight / (wave * kBoltzmann * 5772.0));
     photons += M_PI * radiance * 1e-9 * response(nm);
   }
   photons *= std::pow(6.957e8 / 1.495978707e11, 2);

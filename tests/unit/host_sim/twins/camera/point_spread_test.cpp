@@ -40,8 +40,8 @@ TEST(PointSpread, centroid_and_flux_hold_at_every_place_within_a_pixel) {
       const camera::ImagePoint point{kMiddle + Vector2(u, v), 1000.0};
       for (const Vector2& smear : {Vector2(0.0, 0.0), Vector2(1.27, 0.0), Vector2(-0.4, 0.9), Vector2(13.0, 5.0)}) {
         const Blob blob = whole(image_of(point, smear));
-        EXPECT_NEAR(blob.electrons, 1000.0, 0.1);                          // 1e-4
-        EXPECT_NEAR((blob.centroid - point.pixel).norm(), 0.0, 0.001);     // the project allows 0.02
+        EXPECT_NEAR(blob.electrons, 1000.0, 0.1);                       // 1e-4
+        EXPECT_NEAR((blob.centroid - point.pixel).norm(), 0.0, 0.001);  // the project allows 0.02
       }
     }
 }
@@ -63,7 +63,8 @@ TEST(PointSpread, pixels_agree_with_numerical_integration) {
   const auto density = [](const Vector2& off, double sigma) {
     return std::exp(-0.5 * off.squaredNorm() / (sigma * sigma)) / (2.0 * M_PI * sigma * sigma);
   };
-  for (const Vector2& pixel : {Vector2(160, 250), Vector2(161, 249), Vector2(163, 251), Vector2(158, 247), Vector2(168, 250)}) {
+  for (const Vector2& pixel :
+       {Vector2(160, 250), Vector2(161, 249), Vector2(163, 251), Vector2(158, 247), Vector2(168, 250)}) {
     double sum = 0.0;
     for (int instant = 0; instant < 400; ++instant)
       for (int i = 0; i < 20; ++i)
@@ -103,8 +104,9 @@ TEST(PointSpread, many_points_give_the_image_of_each) {
   for (const double extent : {1e-4, 0.3, 5.0, 40.0}) {
     std::vector<camera::ImagePoint> points;
     for (int i = 0; i < 400; ++i)  // a lopsided cloud
-      points.push_back({kMiddle + extent * Vector2(std::sin(1.0 * i) * 0.5, std::cos(2.3 * i) * 0.4 + 0.05 * std::sin(9.0 * i)),
-                        10.0 + i % 7});
+      points.push_back(
+          {kMiddle + extent * Vector2(std::sin(1.0 * i) * 0.5, std::cos(2.3 * i) * 0.4 + 0.05 * std::sin(9.0 * i)),
+           10.0 + i % 7});
     for (const Vector2& smear : {Vector2(0.0, 0.0), Vector2(1.3, 0.4)}) {
       camera::PhotonImage together = black(), each = black();
       spread.add(points, smear, together);

@@ -1,20 +1,19 @@
 // Spacecraft in the image: their light, their place, and that nothing jumps between a point and a disc.
 
-#include <png.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "host_sim/twins/camera/lambert_sphere.h"
 #include "host_sim/twins/camera/scene.h"
+#include "tests/support/camera_picture.h"
 #include "tests/support/camera_scene.h"
 
 namespace {
@@ -54,8 +53,8 @@ Vector2 pinhole(const Vector3& position_camera) {
 /// The Sun at `phase` (rad) from the camera, as seen from the object ahead: 0 is straight behind the camera.
 camera::Exposure lit_at(double phase) {
   camera::Exposure exposure = quiet_exposure(Vector3(0.2, 1.0, 0.1));
-  exposure.sun_eci = vbar::test::kSunDistance *
-                     (exposure.q_camera_eci.conjugate() * Vector3(0.0, -std::sin(phase), -std::cos(phase)));
+  exposure.sun_eci =
+      vbar::test::kSunDistance * (exposure.q_camera_eci.conjugate() * Vector3(0.0, -std::sin(phase), -std::cos(phase)));
   return exposure;
 }
 
@@ -101,8 +100,8 @@ TEST(SceneObjects, an_object_that_crosses_is_drawn_out) {
   EXPECT_NEAR((moving.centroid - still.centroid).norm(), 0.0, 0.002);
 }
 
-// From 10 km to 100 m in steps of 2 per cent the same code draws 0.4 px and 42 px: flux times range^2 and the centroid's
-// place against the disc's (in radii of the disc) may change only as they should, slowly.
+// From 10 km to 100 m in steps of 2 per cent the same code draws 0.4 px and 42 px: flux times range^2 and the
+// centroid's place against the disc's (in radii of the disc) may change only as they should, slowly.
 TEST(SceneObjects, nothing_jumps_between_point_and_disc) {
   double before_flux = 0.0;
   for (double range = 10e3; range > 100.0; range *= 0.96) {
@@ -133,8 +132,8 @@ TEST(SceneObjects, nothing_jumps_between_point_and_disc) {
 }
 
 TEST(SceneObjects, out_of_the_field_or_behind_the_camera_nothing_is_drawn) {
-  for (const Vector3& position : {Vector3(0.0, 20e3, 75e3), Vector3(0.0, 0.0, -75e3), Vector3(75e3, 0.0, 0.0),
-                                  Vector3(0.0, 0.0, 0.0)}) {
+  for (const Vector3& position :
+       {Vector3(0.0, 20e3, 75e3), Vector3(0.0, 0.0, -75e3), Vector3(75e3, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)}) {
     camera::Exposure exposure = lit_at(0.5);
     exposure.objects.push_back(object_at(exposure, position));
     for (const float light : objects_of(exposure).electrons) ASSERT_EQ(light, 0.0F);
@@ -160,19 +159,7 @@ TEST(SceneObjects, the_earth_s_shadow_darkens_an_object) {
   for (const float light : objects_of(exposure).electrons) ASSERT_EQ(light, 0.0F);
 }
 
-// A picture for whoever wants to look: build/<preset>/camera_example_<pid>.png, square root of the light.
-void write_png(const camera::PhotonImage& image, const std::filesystem::path& file) {
-  std::vector<std::uint8_t> grey;
-  for (const float light : image.electrons)
-    grey.push_back(static_cast<std::uint8_t>(std::min(255.0, 255.0 * std::sqrt(light / 2000.0))));
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  png.width = static_cast<png_uint_32>(image.region.width);
-  png.height = static_cast<png_uint_32>(image.region.height);
-  png.format = PNG_FORMAT_GRAY;
-  ASSERT_TRUE(png_image_write_to_file(&png, file.c_str(), 0, grey.data(), 0, nullptr)) << png.message;
-}
-
+// A picture to look at where VBAR_KEEP_IMAGES is set: build/<preset>/camera_example_<pid>.png.
 TEST(SceneObjects, an_example_frame_of_orion_with_three_spacecraft) {
   camera::Exposure exposure = quiet_exposure(Vector3(std::cos(1.4704), std::sin(1.4704), -0.03));  // the belt
   exposure.rate_camera = Vector3(1.06e-3, 0.0, 0.0);
@@ -183,7 +170,7 @@ TEST(SceneObjects, an_example_frame_of_orion_with_three_spacecraft) {
   renderer().render(exposure, image);
   const std::filesystem::path file =
       std::filesystem::path(VBAR_BINARY_DIR) / ("camera_example_" + std::to_string(getpid()) + ".png");
-  write_png(image, file);
+  ASSERT_TRUE(vbar::test::write_picture(image, 2000.0, file));
   if (std::getenv("VBAR_KEEP_IMAGES") == nullptr) std::filesystem::remove(file);
   // The belt's three stars, V 1.7 to 2.2, blue: 3.1e10 * 10^(-0.4 * 1.7) * 3.358e-5 electrons and less.
   std::size_t bright = 0;

@@ -68,8 +68,8 @@ TEST(SceneSky, a_star_stands_where_motion_and_aberration_put_it) {
   EXPECT_GT((expected - kMiddle).norm(), 0.3);  // it is not just the middle
 }
 
-// Turning with the orbit about the camera's x axis: stars are drawn out along y by 1.06e-3 * 0.2 * 5972.7 = 1.266 px, but
-// their middle stays.
+// Turning with the orbit about the camera's x axis: stars are drawn out along y by 1.06e-3 * 0.2 * 5972.7 = 1.266 px,
+// but their middle stays.
 TEST(SceneSky, stars_are_drawn_out_by_the_camera_s_turning) {
   const Blob still = measure(image_of(quiet_exposure(kVega)), kMiddle, 8.0);
   camera::Exposure exposure = quiet_exposure(kVega);
@@ -98,8 +98,8 @@ TEST(SceneSky, the_same_exposure_gives_the_same_bits) {
   EXPECT_EQ(image_of(exposure).electrons, first.electrons);
 }
 
-// Stray light falls with the square from the field's edge (10.7 deg) to nothing at 30 deg; with the Sun at 20.4 deg half
-// way, a quarter of 2e4 * 0.2 electrons.
+// Stray light falls with the square from the field's edge (10.7 deg) to nothing at 30 deg; with the Sun at 20.4 deg
+// half way, a quarter of 2e4 * 0.2 electrons.
 TEST(SceneSky, the_sun_near_the_field_lights_the_baffle) {
   const camera::PhotonImage quiet = image_of(quiet_exposure(kVega));
   const auto with_sun_at = [](double off_deg) {
@@ -116,12 +116,14 @@ TEST(SceneSky, the_sun_near_the_field_lights_the_baffle) {
   EXPECT_EQ(with_sun_at(31.0).electrons, quiet.electrons);
   EXPECT_NEAR(middle_level(with_sun_at(0.5 * (30.0 + edge_deg))), 1000.0, 10.0);
   const camera::PhotonImage stray = vbar::test::difference(with_sun_at(12.0), quiet);
-  EXPECT_GT(measure(stray, Vector2(959.5, 250.0), 40.0).electrons, 1.2 * measure(stray, Vector2(959.5, 950.0), 40.0).electrons);
+  EXPECT_GT(measure(stray, Vector2(959.5, 250.0), 40.0).electrons,
+            1.2 * measure(stray, Vector2(959.5, 950.0), 40.0).electrons);
 }
 
 TEST(SceneSky, the_sun_in_the_field_saturates_all_of_it) {
   camera::Exposure exposure = quiet_exposure(kVega);
-  exposure.sun_eci = vbar::test::kSunDistance * (exposure.q_camera_eci.conjugate() * Vector3(0.03, 0.02, 1.0).normalized());
+  exposure.sun_eci =
+      vbar::test::kSunDistance * (exposure.q_camera_eci.conjugate() * Vector3(0.03, 0.02, 1.0).normalized());
   EXPECT_GT(least(image_of(exposure)), 1e6);  // a full well is 32,000
 }
 
@@ -150,8 +152,8 @@ TEST(SceneSky, the_moon_is_a_disc_of_its_magnitude) {
   // Only the camera's way around the Earth moves it: 7.5 km/s along the boresight, not at all.
   EXPECT_NEAR((moon.centroid - kMiddle).norm(), 0.0, 0.05);
   // Veiling glare: a thousandth of the light, spread over all the detector.
-  EXPECT_NEAR(measure(image, Vector2(730.0, 230.0), 10.0).electrons / 441.0,
-              1e-3 * moon.electrons / (1920.0 * 1200.0), 0.02 * 1e-3 * moon.electrons / (1920.0 * 1200.0));
+  EXPECT_NEAR(measure(image, Vector2(730.0, 230.0), 10.0).electrons / 441.0, 1e-3 * moon.electrons / (1920.0 * 1200.0),
+              0.02 * 1e-3 * moon.electrons / (1920.0 * 1200.0));
 }
 
 camera::Exposure towards_the_limb(const Vector3& sun_direction) {
@@ -164,8 +166,8 @@ camera::Exposure towards_the_limb(const Vector3& sun_direction) {
   return exposure;
 }
 
-// Sun above the camera. Where the line of sight meets the ground, the Sun is as far from the zenith as that place is from
-// the point below the camera.
+// Sun above the camera. Where the line of sight meets the ground, the Sun is as far from the zenith as that place is
+// from the point below the camera.
 TEST(SceneSky, the_earth_s_day_side_ends_at_the_limb) {
   const camera::PhotonImage image = image_of(towards_the_limb(Vector3::UnitX()));
   const double above = measure(image, kMiddle - Vector2(0.0, 40.0), 10.0).electrons / 400.0;
@@ -181,11 +183,11 @@ TEST(SceneSky, the_earth_s_day_side_ends_at_the_limb) {
 
 TEST(SceneSky, the_earth_s_night_side_hides_stars_and_objects) {
   camera::Exposure exposure = towards_the_limb(-Vector3::UnitX());
-  exposure.objects.push_back(vbar::test::object_at(exposure, Vector3(0.0, 300.0, 75e3)));  // before the Earth
+  exposure.objects.push_back(vbar::test::object_at(exposure, Vector3(0.0, 300.0, 75e3)));   // before the Earth
   exposure.objects.push_back(vbar::test::object_at(exposure, Vector3(0.0, 2.0e5, 2.0e7)));  // behind it
   const camera::PhotonImage image = image_of(exposure);
   const auto lit_in = [&](double y, double half) { return measure(image, Vector2(959.5, y), half).electrons; };
-  EXPECT_GT(lit_in(400.0, 190.0), 0.0);  // stars above the limb
+  EXPECT_GT(lit_in(400.0, 190.0), 0.0);          // stars above the limb
   EXPECT_GT(lit_in(599.5 + 24.0, 8.0), 1000.0);  // the object before the Earth
   EXPECT_EQ(lit_in(599.5 + 60.0, 10.0), 0.0);
   EXPECT_EQ(lit_in(850.0, 140.0), 0.0);

@@ -2,8 +2,6 @@
 
 #include "host_sim/twins/camera/star_sky.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include <erfa.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "host_sim/twins/camera/aberration.h"
 #include "tests/support/camera_scene.h"
@@ -65,7 +64,8 @@ const camera::StarSky& sky() {
 
 // As a barycentric observer with this velocity sees it, `years` after J2000.0: ERFA's proper motion and aberration. The
 // Sun's field is put so far away that it does nothing.
-Vector3 seen_by_erfa(double ra, double dec, double pm_ra_mas, double pm_dec_mas, double years, const Vector3& velocity) {
+Vector3 seen_by_erfa(double ra, double dec, double pm_ra_mas, double pm_dec_mas, double years,
+                     const Vector3& velocity) {
   const double mas = kArcsecond / 1000.0;
   double ra_now, dec_now, pm_ra_now, pm_dec_now, parallax, radial;
   eraPmsafe(ra, dec, pm_ra_mas * mas / std::cos(dec), pm_dec_mas * mas, 0.0, 0.0, 2451545.0, 0.0, 2451545.0,
@@ -93,7 +93,7 @@ TEST(StarSky, twenty_named_stars_are_where_erfa_puts_them) {
         v = star.star->v;
       }
     EXPECT_LT(nearest / kArcsecond, 0.5) << named.name;  // 0.01 px; Castor is a double star
-    EXPECT_NEAR(v, named.v, 0.2) << named.name;  // several vary, as Betelgeuse and Antares
+    EXPECT_NEAR(v, named.v, 0.2) << named.name;          // several vary, as Betelgeuse and Antares
   }
 }
 
@@ -109,8 +109,7 @@ TEST(StarSky, proper_motion_and_aberration_agree_with_erfa) {
     double row[5];
     char* at = line.data();
     for (double& value : row) value = std::strtod(at, &at);
-    const Vector3 expected =
-        seen_by_erfa(row[1] * M_PI / 180.0, row[2] * M_PI / 180.0, row[3], row[4], -9.0, velocity);
+    const Vector3 expected = seen_by_erfa(row[1] * M_PI / 180.0, row[2] * M_PI / 180.0, row[3], row[4], -9.0, velocity);
     std::vector<camera::ApparentStar> found;
     sky().find(expected, 1e-5, -9.0, velocity, found);
     double nearest = 1.0;
@@ -182,10 +181,12 @@ TEST(StarSky, a_damaged_catalogue_is_refused_with_file_and_line) {
   using testing::HasSubstr;
   const CatalogueFile file;
   EXPECT_THAT(file.complaint(), HasSubstr("hipparcos_v8.csv: cannot open"));
-  const std::string head = "# ESA\nhip,ra_deg,dec_deg,pm_ra_mas,pm_dec_mas,v,b_v\n32349,101.2,-16.7,-546.01,-1223.07,-1.44,0.01\n";
+  const std::string head =
+      "# ESA\nhip,ra_deg,dec_deg,pm_ra_mas,pm_dec_mas,v,b_v\n32349,101.2,-16.7,-546.01,-1223.07,-1.44,0.01\n";
   EXPECT_EQ(file.complaint_about(head + "7,1.0,2.0,3,4,8.00,0.5\n"), "none");
   EXPECT_THAT(file.complaint_about(head), HasSubstr("hipparcos_v8.csv:3: the star catalogue ends at magnitude -1.44"));
-  EXPECT_THAT(file.complaint_about(head + "30438,95.98,-52."), HasSubstr("hipparcos_v8.csv:4: found \"30438,95.98,-52.\""));
+  EXPECT_THAT(file.complaint_about(head + "30438,95.98,-52."),
+              HasSubstr("hipparcos_v8.csv:4: found \"30438,95.98,-52.\""));
   EXPECT_THAT(file.complaint_about(head + "7,1.0,2.0,3,4,8.00,0.5"), HasSubstr("cut short"));  // 0.55, perhaps
   EXPECT_THAT(file.complaint_about(head + "7,1.0,2.0,3,4,8.00\n"), HasSubstr(":4: "));
   EXPECT_THAT(file.complaint_about(head + "7,1.0,x,3,4,8.00,0.5\n"), HasSubstr(":4: "));

@@ -31,16 +31,39 @@ std::vector<double> pixels(const std::vector<LightSample>& samples, int size, do
   return image;
 }
 
-void write_png(const std::filesystem::path& file, const std::vector<double>& image, int size, double white) {
-  std::vector<png_byte> grey;
-  for (const double value : image)
-    grey.push_back(static_cast<png_byte>(255.0 * std::pow(std::min(1.0, value / white), 1.0 / 2.2)));
-  png_image header{};
-  header.version = PNG_IMAGE_VERSION;
-  header.width = header.height = static_cast<png_uint_32>(size);
-  header.format = PNG_FORMAT_GRAY;
-  png_image_write_to_file(&header, file.c_str(), 0, grey.data(), 0, nullptr);
-}
+// Pictures beside and above each other, three in a row, each pixel drawn `zoom` times as large.
+class Sheet {
+ public:
+  Sheet(int count, int size, int zoom)
+      : size_(size),
+        zoom_(zoom),
+        width_(3 * size * zoom),
+        height_((count + 2) / 3 * size * zoom),
+        grey_(static_cast<std::size_t>(width_ * height_)) {}
+
+  void put(int number, const std::vector<double>& image, double white) {
+    const int left = number % 3 * size_ * zoom_, top = number / 3 * size_ * zoom_;
+    for (int j = 0; j < size_ * zoom_; ++j)
+      for (int i = 0; i < size_ * zoom_; ++i) {
+        const double value = image[static_cast<std::size_t>(j / zoom_ * size_ + i / zoom_)] / white;
+        grey_[static_cast<std::size_t>((top + j) * width_ + left + i)] =
+            static_cast<png_byte>(255.0 * std::pow(std::min(1.0, value), 1.0 / 2.2));
+      }
+  }
+
+  void write(const std::filesystem::path& file) const {
+    png_image header{};
+    header.version = PNG_IMAGE_VERSION;
+    header.width = static_cast<png_uint_32>(width_);
+    header.height = static_cast<png_uint_32>(height_);
+    header.format = PNG_FORMAT_GRAY;
+    png_image_write_to_file(&header, file.c_str(), 0, grey_.data(), 0, nullptr);
+  }
+
+ private:
+  int size_, zoom_, width_, height_;
+  std::vector<png_byte> grey_;
+};
 
 // Views from around the body, the Sun over the camera's right shoulder; below, the Earth.
 TargetView view_of(int number, double range_m) {
@@ -71,20 +94,21 @@ int main(int argc, char** argv) {
   TargetRenderer renderer(load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj"));
   std::vector<LightSample> samples;
   constexpr double kPixel = 1.0 / 5972.7;
-  for (const double range : {5.0, 20.0, 100.0})
+  for (const double range : {5.0, 20.0, 100.0}) {
+    const double pitch = range > 50.0 ? kPixel : range < 10.0 ? 3.6 * kPixel : 0.9 * kPixel;
+    const int size = range > 50.0 ? 100 : 512;
+    Sheet sheet(6, size, 512 / size);
     for (int number = 0; number < 6; ++number) {
-      const double pitch = range > 50.0 ? kPixel : range < 10.0 ? 3.6 * kPixel : 0.9 * kPixel;
-      const int size = range > 50.0 ? 100 : 512;
       TargetView view = view_of(number, range);
       view.texel_pitch = 0.5 * pitch;
       renderer.render(view, samples);
-      const auto image = pixels(samples, size, pitch);
-      write_png(std::filesystem::path(argv[1]) / fmt::format("tango_{:03.0f}m_{}.png", range, number), image, size,
-                0.25 * pitch * pitch);
+      sheet.put(number, pixels(samples, size, pitch), 0.25 * pitch * pitch);
       double flux = 0.0;
       for (const LightSample& s : samples) flux += s.photons_per_m2_s;
       fmt::print("{:5.0f} m, view {}: {} texels across, {} lit, magnitude at 75 km {:.2f}\n", range, number,
                  renderer.texels(), samples.size(),
                  -26.74 - 2.5 * std::log10(flux * range * range / (75.0e3 * 75.0e3)));
     }
+    sheet.write(std::filesystem::path(argv[1]) / fmt::format("tango_{:.0f}m.png", range));
+  }
 }

@@ -1,0 +1,167 @@
+// CAD files that are none, and what is said of them; Tango's against its keypoints.
+
+#include "host_sim/twins/camera/model/cad_model.h"
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+namespace vbar::twins::camera {
+namespace {
+
+using fsw::Vector3;
+using testing::AllOf;
+using testing::HasSubstr;
+
+// A folder of its own for files that a test makes.
+class CadFiles : public testing::Test {
+ protected:
+  CadFiles()
+      : folder_(std::filesystem::temp_directory_path() /
+                ("vbar_cad_" + std::to_string(getpid()) + "_" +
+                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    std::filesystem::create_directories(folder_);
+    write("white.mtl", "newmtl white\nKd 0.8 0.8 0.8\nKs 0.1 0.1 0.1\nNs 20\n");
+  }
+  ~CadFiles() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+
+  // What is said of an OBJ file with this text; it must name the file.
+  std::string complaint(const std::string& text) const {
+    const std::filesystem::path file = write("body.obj", text);
+    try {
+      const CadModel model = load_cad_model(file);
+      return "no complaint, " + std::to_string(model.triangles.size()) + " triangles";
+    } catch (const std::runtime_error& error) {
+      const std::string what = error.what();
+      return what.find(folder_.string()) == 0 ? what : "the file is not named: " + what;
+    }
+  }
+
+  std::filesystem::path folder_;
+};
+
+const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+const std::string kFaces = "f 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n";
+
+TEST_F(CadFiles, AGoodFileIsRead) {
+  const CadModel model = load_cad_model(write("body.obj", "mtllib white.mtl\n" + kCorners + "usemtl white\n" + kFaces));
+  ASSERT_EQ(model.triangles.size(), 4U);
+  ASSERT_EQ(model.materials.size(), 1U);
+  EXPECT_EQ(model.materials[0].name, "white");
+  EXPECT_NEAR(model.materials[0].grey_diffuse(), 0.8, 1e-6);
+  EXPECT_NEAR(model.materials[0].grey_specular(), 0.1, 1e-6);
+  EXPECT_NEAR(model.materials[0].exponent, 20.0, 1e-6);
+  EXPECT_NEAR(std::abs(model.triangles[0].normals[0].z()), 1.0, 1e-12) << "the file has no normals: those of the faces";
+  for (const Vector3& corner : {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)})
+    EXPECT_LT((corner - model.centre).norm(), model.radius_m + 1e-12);
+  EXPECT_LT(model.radius_m, 1.0) << "the smallest sphere has 0.816 m";
+}
+
+TEST_F(CadFiles, WithoutFaces) {
+  EXPECT_THAT(complaint("mtllib white.mtl\n" + kCorners), HasSubstr("face"));
+}
+
+TEST_F(CadFiles, OfPointsAndLinesOnly) {
+  EXPECT_THAT(complaint("mtllib white.mtl\n" + kCorners + "usemtl white\nl 1 2\nl 2 3\n"), HasSubstr("no faces"));
+}
+
+TEST_F(CadFiles, InMillimetres) {
+  EXPECT_THAT(complaint("mtllib white.mtl\nv 0 0 0\nv 700 0 0\nv 0 700 0\nusemtl white\nf 1 2 3\n"),
+              AllOf(HasSubstr("sphere of radius 495 m"), HasSubstr("0.05 m to 100 m"), HasSubstr("metres")));
+}
+
+TEST_F(CadFiles, InKilometres) {
+  EXPECT_THAT(complaint("mtllib white.mtl\nv 0 0 0\nv 0.0007 0 0\nv 0 0.0007 0\nusemtl white\nf 1 2 3\n"),
+              HasSubstr("0.05 m to 100 m"));
+}
+
+TEST_F(CadFiles, WhoseMaterialFileIsMissing) {
+  EXPECT_THAT(complaint("mtllib gone.mtl\n" + kCorners + "usemtl white\n" + kFaces),
+              AllOf(HasSubstr("gone.mtl"), HasSubstr("no such material file")));
+}
+
+TEST_F(CadFiles, WhoseMaterialIsNotDefined) {
+  EXPECT_THAT(complaint("mtllib white.mtl\n" + kCorners + "usemtl whyte\n" + kFaces),
+              AllOf(HasSubstr("body.obj"), HasSubstr("line 6"), HasSubstr("\"whyte\"")));
+}
+
+TEST_F(CadFiles, WithoutMaterials) {
+  EXPECT_THAT(complaint(kCorners + kFaces), AllOf(HasSubstr("line 5"), HasSubstr("a face without material")));
+}
+
+TEST_F(CadFiles, WhoseMaterialReflectsTooMuch) {
+  write("white.mtl", "newmtl white\nKd 0.8 0.8 0.8\nKs 0.4 0.4 0.4\nNs 20\n");
+  EXPECT_THAT(complaint("mtllib white.mtl\n" + kCorners + "usemtl white\n" + kFaces),
+              AllOf(HasSubstr("\"white\""), HasSubstr("reflects more than it receives")));
+}
+
+TEST_F(CadFiles, WithACornerThatIsNoNumber) {
+  EXPECT_THAT(complaint("mtllib white.mtl\nv 0 0 0\nv 1 nan 0\nv 0 1 0\nusemtl white\nf 1 2 3\n"),
+              AllOf(HasSubstr("body.obj"), HasSubstr("no finite number")));
+}
+
+TEST_F(CadFiles, WithFacesWithoutArea) {
+  EXPECT_THAT(complaint("mtllib white.mtl\n" + kCorners + "usemtl white\n" + kFaces + "f 1 1 2\n"),
+              HasSubstr("1 of 5 triangles have no area"));
+}
+
+TEST_F(CadFiles, WithAFaceOfMissingCorners) {
+  EXPECT_THAT(complaint("mtllib white.mtl\n" + kCorners + "usemtl white\nf 1 2 9\n"), HasSubstr("body.obj"));
+}
+
+TEST_F(CadFiles, ThatAreNone) {
+  EXPECT_THAT(complaint("this is a letter, not a body\n"), HasSubstr("face"));
+  try {
+    load_cad_model(folder_ / "nobody.obj");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("nobody.obj"), HasSubstr("no such file")));
+  }
+  try {
+    load_cad_model(write("body.xyz", "1 2 3\n"));
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("body.xyz"), HasSubstr("no CAD file that can be read")));
+  }
+}
+
+TEST(TangoModel, HasItsKeypointsAndALimitedNumberOfFaces) {
+  const CadModel model = load_cad_model(std::filesystem::path(VBAR_SOURCE_DIR) / "data/models/tango.obj");
+  EXPECT_GT(model.triangles.size(), 1000U);
+  EXPECT_LT(model.triangles.size(), 5000U);
+  EXPECT_EQ(model.faces_without_area, 0U);
+  std::set<std::size_t> used;
+  for (const Triangle& t : model.triangles) used.insert(t.material);
+  EXPECT_EQ(used.size(), 13U) << "materials of its script";
+  // Published with the SPEED and SPEED+ data sets: corners of the panel, corners of the bottom, antenna tips.
+  for (const Vector3& keypoint :
+       {Vector3(-0.37, -0.385, 0.3215), Vector3(-0.37, 0.385, 0.3215), Vector3(0.37, 0.385, 0.3215),
+        Vector3(0.37, -0.385, 0.3215), Vector3(-0.37, -0.264, 0.0), Vector3(-0.37, 0.304, 0.0),
+        Vector3(0.37, 0.304, 0.0), Vector3(0.37, -0.264, 0.0), Vector3(-0.5427, 0.4877, 0.2535),
+        Vector3(0.5427, 0.4877, 0.2591), Vector3(0.3050, -0.5790, 0.2515)}) {
+    double nearest = 1.0;
+    for (const Triangle& t : model.triangles)
+      for (const Vector3& corner : t.corners) nearest = std::min(nearest, (corner - keypoint).norm());
+    EXPECT_LT(nearest, 2e-5) << keypoint.transpose();  // of the file's digits, 1e-5 m
+  }
+  // Nothing but antennas reaches far beyond the hull: fittings stand out by less than a decimetre.
+  for (const Triangle& t : model.triangles)
+    for (const Vector3& corner : t.corners) {
+      EXPECT_LT(std::abs(corner.x()), 0.5478);
+      EXPECT_GT(corner.z(), -0.06);
+      EXPECT_LT(corner.z(), 0.36);
+    }
+}
+
+}  // namespace
+}  // namespace vbar::twins::camera

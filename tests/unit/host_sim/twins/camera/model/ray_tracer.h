@@ -1,0 +1,73 @@
+#pragma once
+// The slow way to a body's light: rays from the camera, rays to the Sun, every triangle asked. Lambert surfaces only.
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include <Eigen/Geometry>
+
+#include "host_sim/twins/camera/model/cad_model.h"
+#include "host_sim/twins/camera/model/target_renderer.h"
+
+namespace vbar::twins::camera {
+
+struct Hit {
+  double distance = std::numeric_limits<double>::infinity();
+  const Triangle* triangle = nullptr;
+};
+
+/// Nearest triangle along a ray. Moeller and Trumbore (1997).
+inline Hit nearest_hit(const CadModel& model, const fsw::Vector3& from, const fsw::Vector3& direction) {
+  Hit hit;
+  for (const Triangle& t : model.triangles) {
+    const fsw::Vector3 a = t.corners[1] - t.corners[0], b = t.corners[2] - t.corners[0], p = direction.cross(b);
+    const double determinant = a.dot(p);
+    if (std::abs(determinant) < 1e-14) continue;
+    const fsw::Vector3 s = from - t.corners[0], q = s.cross(a);
+    const double u = s.dot(p) / determinant, v = direction.dot(q) / determinant, d = b.dot(q) / determinant;
+    if (u < 0.0 || v < 0.0 || u + v > 1.0 || d <= 1e-6 || d >= hit.distance) continue;
+    hit = {d, &t};
+  }
+  return hit;
+}
+
+struct TracedLight {
+  double flux = 0.0, flux_without_shadows = 0.0;  // photons/(m^2 s) at the lens
+  fsw::Vector3 direction = fsw::Vector3::Zero();  // mean, camera axes
+};
+
+/// `rays` by `rays` of them, even over the tangents of the angles from the middle of the body's sphere.
+inline TracedLight trace(const CadModel& model, const TargetView& view, int rays) {
+  const fsw::Matrix3 R_body_camera = view.R_camera_body.transpose();
+  const fsw::Vector3 camera = -R_body_camera * view.position_camera, sun = R_body_camera * view.sun_camera;
+  const fsw::Vector3 axis = (model.centre - camera).normalized();
+  const fsw::Vector3 x = axis.unitOrthogonal(), y = axis.cross(x);
+  const double reach = std::tan(std::asin(model.radius_m / (model.centre - camera).norm())), pitch = 2.0 * reach / rays;
+  TracedLight light;
+  for (int i = 0; i < rays; ++i)
+    for (int j = 0; j < rays; ++j) {
+      const fsw::Vector3 on_plane = axis + ((i + 0.5) * pitch - reach) * x + ((j + 0.5) * pitch - reach) * y;
+      const fsw::Vector3 ray = on_plane.normalized();
+      const Hit hit = nearest_hit(model, camera, ray);
+      if (hit.triangle == nullptr) continue;
+      const auto& c = hit.triangle->corners;
+      fsw::Vector3 normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+      if (normal.dot(ray) > 0.0) normal = -normal;
+      const double incidence = normal.dot(sun);
+      if (incidence <= 0.0) continue;
+      const double solid_angle = pitch * pitch / std::pow(on_plane.norm(), 3);
+      const double flux = view.sun_photons_per_m2_s * incidence *
+                          model.materials[hit.triangle->material].grey_diffuse() / std::numbers::pi * solid_angle;
+      light.flux_without_shadows += flux;
+      const fsw::Vector3 point = camera + hit.distance * ray + 1e-5 * normal;
+      if (nearest_hit(model, point, sun).triangle != nullptr) continue;
+      light.flux += flux;
+      light.direction += flux * (view.R_camera_body * ray);
+    }
+  light.direction /= light.flux;
+  return light;
+}
+
+}  // namespace vbar::twins::camera

@@ -1,0 +1,108 @@
+// Where the body's points appear: its antenna tips against their projection, and not against a mirrored one.
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "host_sim/twins/camera/model/target_renderer.h"
+#include "tests/unit/host_sim/twins/camera/model/light_sums.h"
+#include "tests/unit/host_sim/twins/camera/model/ray_tracer.h"
+
+namespace vbar::twins::camera {
+namespace {
+
+using fsw::Matrix3;
+using fsw::Vector3;
+
+// Keypoints 8, 9 and 10 of the SPEED and SPEED+ data sets, body frame, m.
+const std::array kTips{Vector3(-0.5427, 0.4877, 0.2535), Vector3(0.5427, 0.4877, 0.2591),
+                       Vector3(0.3050, -0.5790, 0.2515)};
+
+double flux_near(const std::vector<LightSample>& samples, const Vector3& direction, double angle) {
+  double flux = 0.0;
+  for (const LightSample& s : samples)
+    if (s.direction_camera.cross(direction).norm() < angle) flux += s.photons_per_m2_s;
+  return flux;
+}
+
+// True if neither the ray from the camera nor eight about it, 12 mm off, meet the body.
+bool free_around(const CadModel& model, const Vector3& camera, const Vector3& ray) {
+  const Vector3 direction = ray.normalized(), across = direction.unitOrthogonal();
+  for (int i = 0; i < 9; ++i) {
+    const Vector3 off = Eigen::AngleAxisd(i * M_PI / 4.0, direction) * across;
+    const Vector3 near = i == 8 ? ray : Vector3(ray + 0.012 * off);
+    if (nearest_hit(model, camera, near.normalized()).triangle != nullptr) return false;
+  }
+  return true;
+}
+
+TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
+  const CadModel model = load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj");
+  TargetRenderer renderer(model);
+  std::vector<LightSample> samples;
+  int seen = 0, empty = 0;
+  for (int k = 0; k < 12; ++k) {
+    // Off the boresight, any attitude; light from behind the camera all over the sky, so that nothing is dark.
+    const double range = k % 2 == 0 ? 6.0 : 80.0;
+    TargetView view;
+    view.position_camera = range * Vector3(0.1 * std::cos(k), 0.15 * std::sin(2.0 * k), 1.0).normalized();
+    view.R_camera_body = (Eigen::AngleAxisd(0.7 * k, Vector3::UnitX()) * Eigen::AngleAxisd(1.3 * k, Vector3::UnitY()) *
+                          Eigen::AngleAxisd(0.4 + k, Vector3::UnitZ()))
+                             .toRotationMatrix();
+    view.nadir_camera = -view.position_camera.normalized();
+    view.earth_half_angle = 1.5;
+    view.earth_photons_per_m2_s = 1e20;
+    const double texel_m = 0.004;  // across the line of sight
+    view.texel_pitch = texel_m / range;
+    renderer.render(view, samples);
+    const Vector3 camera_body = -view.R_camera_body.transpose() * view.position_camera;
+    for (const Vector3& tip : kTips) {
+      const Vector3 to_tip = tip - camera_body;
+      const Hit hit = nearest_hit(model, camera_body, to_tip.normalized());
+      const bool hidden = hit.distance < to_tip.norm() - 0.03;
+      const Vector3 direction = (view.R_camera_body * to_tip).normalized();
+      if (!hidden) {
+        // The tip is a disc of 5 mm radius about the keypoint; at least a quarter of it is within 6 mm in any view.
+        EXPECT_GT(flux_near(samples, direction, 0.006 / range), 0.0) << "view " << k;
+        ++seen;
+      }
+      // Half a decimetre beyond the tip there is nothing, unless another part of the body is behind.
+      const Vector3 beyond = tip + 0.05 * (tip - model.centre).normalized() - camera_body;
+      if (free_around(model, camera_body, beyond)) {
+        EXPECT_EQ(flux_near(samples, (view.R_camera_body * beyond).normalized(), 0.006 / range), 0.0) << "view " << k;
+        ++empty;
+      }
+    }
+  }
+  EXPECT_GT(seen, 20);
+  EXPECT_GT(empty, 20);
+}
+
+TEST(TargetGeometry, IsNotMirrored) {
+  // From above, the body's y to the right and x down in the picture: tip 10 is at the left, below the middle.
+  TargetRenderer renderer(load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj"));
+  TargetView view;
+  view.R_camera_body << 0, 1, 0,  //
+      1, 0, 0,                    //
+      0, 0, -1;
+  view.position_camera = Vector3(0.0, 0.0, 10.0);
+  view.nadir_camera = -Vector3::UnitZ();
+  view.earth_photons_per_m2_s = 1e20;
+  view.texel_pitch = 0.004 / 10.0;
+  std::vector<LightSample> samples;
+  renderer.render(view, samples);
+  const auto light_at = [&samples](double right_m, double down_m) {
+    return flux_near(samples, Vector3(right_m, down_m, 9.75).normalized(), 0.0006);
+  };
+  EXPECT_GT(light_at(-0.575, 0.305), 0.0);
+  EXPECT_EQ(light_at(-0.575, -0.305), 0.0);
+  EXPECT_EQ(light_at(0.575, 0.305), 0.0);
+  EXPECT_EQ(light_at(0.575, -0.305), 0.0);
+}
+
+}  // namespace
+}  // namespace vbar::twins::camera
