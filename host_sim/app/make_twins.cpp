@@ -1,5 +1,6 @@
 #include "host_sim/app/make_twins.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include "host_sim/twins/gnss_sensor.h"
@@ -60,6 +61,13 @@ std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mi
       sensors.push_back(make_gnss_sensor(mission, *spacecraft, servicer, sky, data_directory));
   }
   return sensors;
+}
+
+twins::camera::TileRestorer::MakeImage make_image_maker(const mission::Mission& /*mission*/,
+                                                        const mission::Spacecraft& servicer,
+                                                        const std::filesystem::path& /*data_directory*/) {
+  throw std::runtime_error("spacecraft \"" + servicer.name +
+                           "\" has no digital camera that could make the images of the log again");
 }
 
 std::optional<double> gnss_static_floor_m(const mission::Mission& mission, const mission::Spacecraft& servicer) {
