@@ -136,6 +136,7 @@ Stretch stretch_for(const CameraPicture& picture) {
   const double sigma = std::max(median - static_cast<double>(sorted[sorted.size() * 16 / 100]), 1.0);
   Stretch stretch;
   stretch.black_dn = median + 2.0 * sigma;
+  stretch.softness = 1000.0;  // a star a hundredth as bright as the brightest shows as a third of white
   stretch.white_dn = std::max(static_cast<double>(sorted.back()), stretch.black_dn + 20.0 * sigma);
   return stretch;
 }

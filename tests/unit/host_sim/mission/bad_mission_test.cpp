@@ -151,7 +151,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "links.board.loss_probability: found the number 1.5; accepted: a number from 0 to 1"},
         BadChange{"NoLcmUrl", "[mission]", "[lcm]\nurl = \"loopback\"\n[mission]", "url",
                   "lcm.url: found the text \"loopback\"; accepted: an LCM provider, e.g. "
-                  "udpm://239.255.76.67:7667?ttl=0"}),
+                  "udpm://239.255.76.67:7667?ttl=0"},
+        BadChange{"ImagesInLog", "[mission]", "[record]\nimages = \"pixels\"\n[mission]", "images",
+                  "record.images: found the text \"pixels\"; accepted: recipes or tiles"}),
     [](const testing::TestParamInfo<BadChange>& test) { return std::string(test.param.label); });
 
 TEST(BadMissionFile, SmallMissionIsGoodBeforeItIsChanged) {
