@@ -1,5 +1,6 @@
 #include "host_sim/app/make_twins.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include "host_sim/mission/body_file.h"
@@ -50,6 +51,28 @@ std::unique_ptr<twins::PacketSource> make_gnss_sensor(const mission::Mission& mi
   return std::make_unique<twins::GnssSensor>(sensor, std::move(receiver), std::move(crosslink));
 }
 
+twins::camera::ImageMaker::Settings image_settings(const mission::Mission& mission,
+                                                   const mission::Spacecraft& spacecraft) {
+  twins::camera::ImageMaker::Settings settings;
+  settings.camera = spacecraft.camera->settings;
+  settings.name = spacecraft.name + "/camera";
+  settings.seed = mission.seed;
+  settings.spacecraft = spacecraft.number;
+  return settings;
+}
+
+twins::camera::Renderer make_scene_renderer(const mission::Mission& mission, const mission::Spacecraft& spacecraft,
+                                            const std::filesystem::path& data_directory) {
+  std::vector<std::string> models;
+  for (const mission::Spacecraft& other : mission.spacecraft)
+    if (!other.model.empty() && &other != &spacecraft) models.push_back(other.model);
+  const auto scene = std::make_shared<twins::camera::SceneRenderer>(
+      spacecraft.camera->settings, data_directory, twins::camera::cad_objects(data_directory, models));
+  return [scene](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {
+    scene->render(exposure, image);
+  };
+}
+
 std::unique_ptr<twins::PacketSource> make_camera_sensor(const mission::Mission& mission,
                                                         const mission::Spacecraft& servicer,
                                                         const std::filesystem::path& data_directory) {
@@ -75,28 +98,6 @@ std::unique_ptr<twins::PacketSource> make_camera_sensor(const mission::Mission& 
 
 }  // namespace
 
-twins::camera::ImageMaker::Settings image_settings(const mission::Mission& mission,
-                                                   const mission::Spacecraft& spacecraft) {
-  twins::camera::ImageMaker::Settings settings;
-  settings.camera = spacecraft.camera->settings;
-  settings.name = spacecraft.name + "/camera";
-  settings.seed = mission.seed;
-  settings.spacecraft = spacecraft.number;
-  return settings;
-}
-
-twins::camera::Renderer make_scene_renderer(const mission::Mission& mission, const mission::Spacecraft& spacecraft,
-                                            const std::filesystem::path& data_directory) {
-  std::vector<std::string> models;
-  for (const mission::Spacecraft& other : mission.spacecraft)
-    if (!other.model.empty() && &other != &spacecraft) models.push_back(other.model);
-  const auto scene = std::make_shared<twins::camera::SceneRenderer>(
-      spacecraft.camera->settings, data_directory, twins::camera::cad_objects(data_directory, models));
-  return [scene](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {
-    scene->render(exposure, image);
-  };
-}
-
 std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mission& mission,
                                                                const mission::Spacecraft& servicer,
                                                                const std::filesystem::path& data_directory) {
@@ -111,6 +112,18 @@ std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mi
   }
   if (servicer.camera) sensors.push_back(make_camera_sensor(mission, servicer, data_directory));
   return sensors;
+}
+
+twins::camera::TileRestorer::MakeImage make_image_maker(const mission::Mission& mission,
+                                                        const mission::Spacecraft& servicer,
+                                                        const std::filesystem::path& data_directory) {
+  if (!servicer.camera) {
+    throw std::runtime_error("spacecraft \"" + servicer.name +
+                             "\" has no digital camera that could make the images of the log again");
+  }
+  const auto maker = std::make_shared<twins::camera::ImageMaker>(
+      image_settings(mission, servicer), make_scene_renderer(mission, servicer, data_directory));
+  return [maker](const twins::camera::Exposure& exposure) { return maker->packets_of(exposure); };
 }
 
 std::optional<double> gnss_static_floor_m(const mission::Mission& mission, const mission::Spacecraft& servicer) {

@@ -3,7 +3,7 @@
 #include "host_sim/report/lcm_mirror.h"
 #include "host_sim/report/output_hash.h"
 #include "host_sim/report/run_folder.h"
-#include "host_sim/twins/packet_log.h"
+#include "host_sim/twins/camera/recipe_log.h"
 
 namespace vbar::app {
 namespace {
@@ -20,14 +20,19 @@ void for_each_record(std::uint32_t step, fsw::GpsTime time, std::span<const pil:
 
 class PacketKeepers::Log final : public PacketObserver {
  public:
-  explicit Log(const std::filesystem::path& file) : writer_(file) {}
+  Log(const std::filesystem::path& file, mission::ImagesInLog images) : writer_(file), images_(images) {}
   void on_step(std::uint32_t step, fsw::GpsTime time, std::span<const pil::Packet> inputs,
                std::span<const pil::Packet> outputs) override {
     for_each_record(step, time, inputs, outputs, [this](const twins::PacketRecord& record) { writer_.write(record); });
+    writer_.end_step();
+  }
+  void on_recipe(fsw::GpsTime time, std::span<const std::uint8_t> recipe) override {
+    if (images_ == mission::ImagesInLog::kRecipes) writer_.write_recipe(time, recipe);
   }
 
  private:
-  twins::PacketLogWriter writer_;
+  twins::camera::RecipeLogWriter writer_;
+  mission::ImagesInLog images_;
 };
 
 class PacketKeepers::Hash final : public PacketObserver {
@@ -56,7 +61,8 @@ class PacketKeepers::Mirror final : public PacketObserver {
 };
 
 PacketKeepers::PacketKeepers(const mission::Mission& mission, const std::filesystem::path& folder)
-    : log_(std::make_unique<Log>(report::packet_log_file(folder))), hash_(std::make_unique<Hash>()) {
+    : log_(std::make_unique<Log>(report::packet_log_file(folder), mission.record.images)),
+      hash_(std::make_unique<Hash>()) {
   if (mission.lcm.mirror) mirror_ = std::make_unique<Mirror>(mission.lcm.url);
   observers_ = {log_.get(), hash_.get()};
   if (mirror_) observers_.push_back(mirror_.get());

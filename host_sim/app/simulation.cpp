@@ -156,6 +156,8 @@ void Simulation::handle(const TakeMeasurement& taken) {
   const GpsTime now = events_.now();
   truth_.advance_to(now);
   twins::Measurement measurement = measure_now(*sensors_[taken.sensor]);
+  if (!measurement.recipe.empty())
+    for (PacketObserver* observer : surroundings_.observers) observer->on_recipe(now, measurement.recipe);
   // A sensor that fails an epoch has nothing to say; the flight software coasts.
   pass_on(std::move(measurement.packets), measurement.available, measurement.bypasses_link);
   if (measurement.pending.valid()) {

@@ -38,6 +38,8 @@ class PacketObserver {
   /// All packets of a step, the tick last, and the answer to them.
   virtual void on_step(std::uint32_t step, fsw::GpsTime time, std::span<const pil::Packet> inputs,
                        std::span<const pil::Packet> outputs) = 0;
+  /// From what packets that are yet to come can be made again (twins::Measurement::recipe).
+  virtual void on_recipe(fsw::GpsTime /*time*/, std::span<const std::uint8_t> /*recipe*/) {}
 };
 
 class Simulation {

@@ -15,7 +15,7 @@ Mission parse_mission(std::string_view text, const std::filesystem::path& file,
 
   const TableReader document(table, "", file.string());
   document.accept_only({"mission", "truth", "spacecraft", "guidance", "gnss_navigation", "angles_only", "waypoint",
-                        "burn", "constellation", "clock", "links", "lcm"});
+                        "burn", "constellation", "clock", "links", "lcm", "record"});
   Mission mission;
   mission.file = file;
   read_general(document, mission);
@@ -30,6 +30,7 @@ Mission parse_mission(std::string_view text, const std::filesystem::path& file,
   read_clock(document, mission);
   read_links(document, mission);
   read_lcm(document, mission);
+  read_record(document, mission);
   return mission;
 }
 

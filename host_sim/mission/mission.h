@@ -196,6 +196,16 @@ struct LcmMirror {
   std::string url;
 };
 
+/// What the log of a run keeps of a digital camera's images.
+enum class ImagesInLog {
+  kRecipes,  ///< from what they can be made again
+  kTiles,    ///< their packets
+};
+
+struct Record {
+  ImagesInLog images = ImagesInLog::kRecipes;
+};
+
 struct Mission {
   std::filesystem::path file;
   std::string name;
@@ -218,6 +228,7 @@ struct Mission {
   twins::gnss::CrosslinkSettings crosslink;
   twins::gnss::ConstellationSettings constellation;
   LcmMirror lcm;
+  Record record;
 
   [[nodiscard]] fsw::GpsTime start_time() const { return epoch + start; }
   [[nodiscard]] fsw::GpsTime end_time() const { return epoch + start + duration; }

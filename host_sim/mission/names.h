@@ -29,6 +29,8 @@ inline constexpr Names<Mode, 4> kModes{{{"idle", Mode::kIdle},
                                         {"approach", Mode::kApproach},
                                         {"station_keeping", Mode::kStationKeeping},
                                         {"hold", Mode::kHold}}};
+inline constexpr Names<ImagesInLog, 2> kImagesInLog{
+    {{"recipes", ImagesInLog::kRecipes}, {"tiles", ImagesInLog::kTiles}}};
 inline constexpr Names<engine::ClockMode, 2> kClockModes{
     {{"lock_step", engine::ClockMode::kLockStep}, {"real_time", engine::ClockMode::kRealTime}}};
 inline constexpr Names<engine::LatencyKind, 4> kLatencyKinds{{{"constant", engine::LatencyKind::kConstant},

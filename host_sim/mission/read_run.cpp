@@ -87,4 +87,10 @@ void read_lcm(const TableReader& document, Mission& mission) {
     section.refuse_value("url", "an LCM provider, e.g. udpm://239.255.76.67:7667?ttl=0");
 }
 
+void read_record(const TableReader& document, Mission& mission) {
+  const TableReader section = document.table("record");
+  section.accept_only({"images"});
+  mission.record.images = section.choice<ImagesInLog>("images", kImagesInLog, ImagesInLog::kRecipes);
+}
+
 }  // namespace vbar::mission

@@ -22,5 +22,6 @@ void read_burns(const TableReader& document, Mission& mission);            // [[
 void read_clock(const TableReader& document, Mission& mission);            // [clock]
 void read_links(const TableReader& document, Mission& mission);            // [links.*]
 void read_lcm(const TableReader& document, Mission& mission);              // [lcm]
+void read_record(const TableReader& document, Mission& mission);           // [record]
 
 }  // namespace vbar::mission

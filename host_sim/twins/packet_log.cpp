@@ -7,6 +7,7 @@
 
 #include <lcm/eventlog.h>
 #include <vbar_host/packet_record.hpp>
+#include <vbar_host/tile_run.hpp>
 
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/message_traits.h"
@@ -22,6 +23,13 @@ std::int64_t lcm_timestamp(fsw::GpsTime time) {
   return kGpsOriginInUnixMicroseconds + time.ns / 1000;
 }
 
+template <class Message>
+std::vector<std::uint8_t> bytes_of(const Message& message) {
+  std::vector<std::uint8_t> data(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(data.data(), 0, static_cast<int>(data.size()));
+  return data;
+}
+
 std::vector<std::uint8_t> encode_record(const PacketRecord& record) {
   vbar_host::packet_record message;
   message.step = record.step;
@@ -29,9 +37,20 @@ std::vector<std::uint8_t> encode_record(const PacketRecord& record) {
   message.to_flight = record.to_flight ? 1 : 0;
   message.size = static_cast<std::int32_t>(record.packet.size());
   message.packet = record.packet;
-  std::vector<std::uint8_t> data(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(data.data(), 0, static_cast<int>(data.size()));
-  return data;
+  return bytes_of(message);
+}
+
+std::vector<std::uint8_t> encode_tiles(const PacketRecord& record) {
+  vbar_host::tile_run message;
+  message.step = record.step;
+  message.gps_time_ns = record.time.ns;
+  message.spacecraft = record.tiles->spacecraft;
+  message.unit = record.tiles->unit;
+  message.image = record.tiles->image;
+  message.first_tile = record.tiles->first_tile;
+  message.tiles = record.tiles->tiles;
+  message.checksum = static_cast<std::int64_t>(record.tiles->checksum);
+  return bytes_of(message);
 }
 
 struct LogCloser {
@@ -67,11 +86,33 @@ bool claims_its_size(const lcm_eventlog_event_t& event) {
          fsw::packets::read_big_endian<std::uint32_t>(bytes, kSizeAt) == bytes.size() - kPacketAt;
 }
 
+bool is_step(std::int64_t number) {
+  return number >= 0 && number <= std::numeric_limits<std::uint32_t>::max();
+}
+
+bool fits_header(std::int16_t number) {
+  return number >= 0 && number <= std::numeric_limits<std::uint8_t>::max();
+}
+
+PacketRecord tiles_of(const lcm_eventlog_event_t& event, const std::filesystem::path& file) {
+  vbar_host::tile_run message;
+  const bool good = message.decode(event.data, 0, event.datalen) == event.datalen && is_step(message.step) &&
+                    fits_header(message.spacecraft) && fits_header(message.unit) && message.image >= 0 &&
+                    message.first_tile >= 0 && message.tiles > 0;
+  if (!good) fail(file, "event " + std::to_string(event.eventnum) + " is a damaged record of image tiles");
+  const TileRun run{static_cast<std::uint8_t>(message.spacecraft),
+                    static_cast<std::uint8_t>(message.unit),
+                    message.image,
+                    message.first_tile,
+                    message.tiles,
+                    static_cast<std::uint64_t>(message.checksum)};
+  return {static_cast<std::uint32_t>(message.step), {message.gps_time_ns}, true, {}, run};
+}
+
 PacketRecord record_of(const lcm_eventlog_event_t& event, const std::filesystem::path& file) {
   vbar_host::packet_record message;
   const bool good = claims_its_size(event) && message.decode(event.data, 0, event.datalen) == event.datalen &&
-                    message.step >= 0 && message.step <= std::numeric_limits<std::uint32_t>::max() &&
-                    (message.to_flight == 0 || message.to_flight == 1);
+                    is_step(message.step) && (message.to_flight == 0 || message.to_flight == 1);
   if (!good) fail(file, "event " + std::to_string(event.eventnum) + " is a damaged packet record");
   return {static_cast<std::uint32_t>(message.step),
           {message.gps_time_ns},
@@ -79,10 +120,24 @@ PacketRecord record_of(const lcm_eventlog_event_t& event, const std::filesystem:
           std::move(message.packet)};
 }
 
+void take(const lcm_eventlog_event_t& event, const std::filesystem::path& file, PacketLog& log) {
+  const std::string_view channel(event.channel);
+  if (channel == kPacketChannel) log.records.push_back(record_of(event, file));
+  if (channel == kTilesChannel) log.records.push_back(tiles_of(event, file));
+  if (channel == kRecipeChannel) {
+    const std::span bytes(static_cast<const std::uint8_t*>(event.data), static_cast<std::size_t>(event.datalen));
+    log.recipes.emplace_back(bytes.begin(), bytes.end());
+  }
+}
+
 }  // namespace
 
 std::vector<LcmEvent> lcm_events_of(const PacketRecord& record) {
   std::vector<LcmEvent> events;
+  if (record.tiles) {
+    events.push_back({kTilesChannel, encode_tiles(record)});
+    return events;
+  }
   events.push_back({kPacketChannel, encode_record(record)});
   const auto view = fsw::packets::parse_packet(record.packet);
   if (!view.ok() || view.value().header.flags != fsw::packets::SequenceFlags::kUnsegmented) return events;
@@ -109,15 +164,21 @@ PacketLogWriter::PacketLogWriter(const std::filesystem::path& file)
 PacketLogWriter::~PacketLogWriter() = default;
 
 void PacketLogWriter::write(const PacketRecord& record) {
-  for (LcmEvent& event : lcm_events_of(record)) {
-    lcm_eventlog_event_t raw{};
-    raw.timestamp = lcm_timestamp(record.time);
-    raw.channellen = static_cast<std::int32_t>(event.channel.size());
-    raw.channel = event.channel.data();
-    raw.datalen = static_cast<std::int32_t>(event.data.size());
-    raw.data = event.data.data();
-    if (lcm_eventlog_write_event(log_->handle.get(), &raw) != 0) fail(log_->file, "cannot be written");
-  }
+  for (LcmEvent& event : lcm_events_of(record)) write_event(record.time, std::move(event));
+}
+
+void PacketLogWriter::write_recipe(fsw::GpsTime time, std::vector<std::uint8_t> recipe) {
+  write_event(time, {kRecipeChannel, std::move(recipe)});
+}
+
+void PacketLogWriter::write_event(fsw::GpsTime time, LcmEvent event) {
+  lcm_eventlog_event_t raw{};
+  raw.timestamp = lcm_timestamp(time);
+  raw.channellen = static_cast<std::int32_t>(event.channel.size());
+  raw.channel = event.channel.data();
+  raw.datalen = static_cast<std::int32_t>(event.data.size());
+  raw.data = event.data.data();
+  if (lcm_eventlog_write_event(log_->handle.get(), &raw) != 0) fail(log_->file, "cannot be written");
 }
 
 void PacketLogWriter::flush() {
@@ -134,7 +195,7 @@ PacketLog read_packet_log(const std::filesystem::path& file) {
   long whole = 0;  // where the last whole event ends
   while (const EventHandle event{lcm_eventlog_read_next_event(log.get())}) {
     whole = std::ftell(log->f);
-    if (std::string_view(event->channel) == kPacketChannel) result.records.push_back(record_of(*event, file));
+    take(*event, file, result);
   }
   result.cut_short = static_cast<std::uintmax_t>(whole) != std::filesystem::file_size(file);
   return result;

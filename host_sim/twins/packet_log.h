@@ -4,21 +4,29 @@
 //   VBAR_PACKET                               a vbar_host.packet_record: the whole space packet, its step and direction
 //   vbar/<message>/<spacecraft>/<unit>        the LCM message inside it, for lcm-spy and other LCM programs that only
 //   listen
-// Only the first is read back. Event times are the simulated GPS time, so that the same run makes the same log.
+// Of a digital camera's images there may stand instead
+//   VBAR_IMAGE_RECIPE                         a vbar_host.image_recipe: from what an image can be made again
+//   VBAR_IMAGE_TILES                          a vbar_host.tile_run: in the place of some of its tiles
+// Only the channels in capitals are read back. Event times are the simulated GPS time, so that the same run makes the
+// same log.
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
 #include "host_sim/twins/packet_source.h"
+#include "host_sim/twins/tile_run.h"
 
 namespace vbar::twins {
 
 inline constexpr const char* kPacketChannel = "VBAR_PACKET";
+inline constexpr const char* kRecipeChannel = "VBAR_IMAGE_RECIPE";
+inline constexpr const char* kTilesChannel = "VBAR_IMAGE_TILES";
 
 /// A packet as it crossed the border of a flight computer.
 struct PacketRecord {
@@ -26,6 +34,8 @@ struct PacketRecord {
   fsw::GpsTime time;       ///< of that step
   bool to_flight = false;
   Packet packet;
+  /// Packets that are not in the log, in the place of `packet`, which is empty then.
+  std::optional<TileRun> tiles = std::nullopt;
 };
 
 /// What goes out on LCM for a packet.
@@ -47,18 +57,23 @@ class PacketLogWriter {
 
   /// Throws std::runtime_error if the file takes no more.
   void write(const PacketRecord& record);
+  /// The same of a recipe (Measurement::recipe) of this time.
+  void write_recipe(fsw::GpsTime time, std::vector<std::uint8_t> recipe);
 
   /// Everything written is in the file. Throws as write.
   void flush();
 
  private:
   struct Log;
+  void write_event(fsw::GpsTime time, LcmEvent event);
+
   std::unique_ptr<Log> log_;
 };
 
 struct PacketLog {
-  std::vector<PacketRecord> records;  ///< in the order of the file
-  bool cut_short = false;             ///< the file ends within an event, as that of a killed run may
+  std::vector<PacketRecord> records;               ///< in the order of the file
+  std::vector<std::vector<std::uint8_t>> recipes;  ///< as encoded
+  bool cut_short = false;                          ///< the file ends within an event, as that of a killed run may
 };
 
 /// Reads all packets of a log; events of other channels are passed over. Throws std::runtime_error that names the file

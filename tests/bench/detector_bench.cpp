@@ -1,5 +1,6 @@
 // The detector's cost for one image of the region that is read: in the dark with a sky of stars, with stray light over
-// all of it, and with the target blooming in the middle.
+// all of it, and with the target blooming in the middle. And that of its packets: making them, and knowing them again
+// when a log leaves them out.
 
 #include <cstdint>
 #include <vector>
@@ -7,6 +8,8 @@
 #include <benchmark/benchmark.h>
 
 #include "host_sim/twins/camera/detector.h"
+#include "host_sim/twins/camera/image_tiles.h"
+#include "host_sim/twins/tile_run.h"
 
 namespace {
 
@@ -51,5 +54,24 @@ BENCHMARK_CAPTURE(expose, stray, Sky::kStrayLight)
 BENCHMARK_CAPTURE(expose, target, Sky::kBrightTarget)
     ->Name("camera/detector/500x800_bright_target")
     ->Unit(benchmark::kMillisecond);
+
+std::vector<vbar::twins::Packet> tiles_of_noise() {
+  const camera::CameraSettings settings;
+  std::vector<std::uint16_t> dn(500 * 800);
+  for (std::size_t k = 0; k < dn.size(); ++k) dn[k] = static_cast<std::uint16_t>(64 + k * 2654435761U % 7);
+  return camera::image_tiles({}, settings.region, 12, dn);
+}
+
+void make_tiles(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(tiles_of_noise());
+}
+BENCHMARK(make_tiles)->Name("camera/make_tiles/500x800")->Unit(benchmark::kMillisecond);
+
+void recognise_tiles(benchmark::State& state) {
+  const std::vector<vbar::twins::Packet> packets = tiles_of_noise();
+  for (auto _ : state)
+    for (const vbar::twins::Packet& packet : packets) benchmark::DoNotOptimize(vbar::twins::tile_run_of(packet));
+}
+BENCHMARK(recognise_tiles)->Name("camera/recognise_tiles/500x800")->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -14,7 +14,7 @@ void pack_8(std::span<const std::uint16_t> dn, std::uint8_t* out) {
   for (const std::uint16_t pixel : dn) *out++ = static_cast<std::uint8_t>(pixel);
 }
 
-/// Two pixels in three bytes, big-endian; the last odd one alone in two.
+/// Two pixels in three bytes, big-endian; the last odd one alone in the upper bits of two.
 void pack_12(std::span<const std::uint16_t> dn, std::uint8_t* out) {
   std::size_t k = 0;
   for (; k + 1 < dn.size(); k += 2) {
@@ -24,8 +24,8 @@ void pack_12(std::span<const std::uint16_t> dn, std::uint8_t* out) {
     *out++ = static_cast<std::uint8_t>(second);
   }
   if (k < dn.size()) {
-    *out++ = static_cast<std::uint8_t>(dn[k] >> 8U);
-    *out++ = static_cast<std::uint8_t>(dn[k]);
+    *out++ = static_cast<std::uint8_t>(dn[k] >> 4U);
+    *out++ = static_cast<std::uint8_t>((dn[k] & 0xFU) << 4U);
   }
 }
 
@@ -43,7 +43,7 @@ std::vector<Packet> image_tiles(const ImageLabel& label, const Region& region, i
     throw std::invalid_argument("the image makes more tiles than their numbers can count");
 
   image_tile message{};
-  message.image = static_cast<std::int32_t>(label.number & 0x7FFFFFFF);
+  message.image = image_number_on_link(label.number);
   message.tiles = static_cast<std::int16_t>(tiles);
   message.width = static_cast<std::int16_t>(region.width);
   message.height = static_cast<std::int16_t>(region.height);

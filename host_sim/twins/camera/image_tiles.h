@@ -11,6 +11,11 @@
 
 namespace vbar::twins::camera {
 
+/// The number that an image has in its packets.
+constexpr std::int32_t image_number_on_link(std::int64_t exposure_number) {
+  return static_cast<std::int32_t>(exposure_number & 0x7FFFFFFF);
+}
+
 /// Which image, and whose.
 struct ImageLabel {
   fsw::GpsTime time;            ///< middle of the exposure

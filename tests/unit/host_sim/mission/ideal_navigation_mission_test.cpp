@@ -111,6 +111,7 @@ TEST(IdealNavigationMission, CommentsTellTheDefaults) {
   EXPECT_EQ(shown.board_link.loss_probability, defaults.board_link.loss_probability);
   EXPECT_EQ(shown.lcm.mirror, defaults.lcm.mirror);
   EXPECT_EQ(shown.lcm.url, defaults.lcm.url);
+  EXPECT_EQ(shown.record.images, defaults.record.images);
 }
 
 }  // namespace
