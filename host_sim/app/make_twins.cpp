@@ -123,7 +123,7 @@ twins::camera::TileRestorer::MakeImage make_image_maker(const mission::Mission& 
   }
   const auto maker = std::make_shared<twins::camera::ImageMaker>(
       image_settings(mission, servicer), make_scene_renderer(mission, servicer, data_directory));
-  return [maker](const twins::camera::Exposure& exposure) { return maker->packets_of(exposure); };
+  return [maker](const twins::camera::ImageRecipe& recipe) { return maker->packets_of(recipe.exposure); };
 }
 
 std::optional<double> gnss_static_floor_m(const mission::Mission& mission, const mission::Spacecraft& servicer) {
