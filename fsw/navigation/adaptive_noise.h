@@ -13,7 +13,7 @@
 namespace vbar::fsw::navigation {
 
 struct AdaptiveNoiseSettings {
-  double psd = 1e-14;        ///< m^2/s^3, where it starts
+  double psd = 1e-14;  ///< m^2/s^3, where it starts
   double psd_least = 1e-15;
   double psd_most = 1e-11;
 };

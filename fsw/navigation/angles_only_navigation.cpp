@@ -1,5 +1,7 @@
 #include "fsw/navigation/angles_only_navigation.h"
 
+#include <array>
+
 #include "fsw/math/math.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
@@ -11,10 +13,12 @@ constexpr Duration kSegment = duration_of_seconds(600);  // coasts go by these: 
 constexpr int kMaxSegments = 1000;
 constexpr Duration kFarthestAhead = duration_of_seconds(7200);
 
-// Bearings refused in a row that make the covariance give, by how much, and how often before all is begun anew.
-constexpr int kRefusedBeforeWidening = 5;
-constexpr double kWidening = 16.0;
-constexpr int kMostWidenings = 3;
+// So many bearings refused in a row put the estimate in doubt, the second time more than the first; the third time it
+// is no more than what was known beforehand, and a batch begins. The bearings that were believed before the first
+// refusal have by then spoilt the range, so that is doubted with the rest.
+constexpr int kRefusedBeforeDoubt = 5;
+constexpr std::array<double, 3> kDoubtedVelocity = {0.1, 1.0, 1.0};     // m/s
+constexpr std::array<double, 3> kDoubtedLongitude = {0.02, 0.05, 0.1};  // of itself
 
 }  // namespace
 
@@ -25,7 +29,7 @@ void AnglesOnlyNavigation::configure(const AnglesOnlySettings& settings) {
   batch_.clear();
   filter_runs_ = false;
   refused_in_a_row_ = 0;
-  widened_in_a_row_ = 0;
+  doubts_in_a_row_ = 0;
 }
 
 void AnglesOnlyNavigation::set_apriori(const TargetApriori& apriori) {
@@ -115,7 +119,7 @@ BearingFate AnglesOnlyNavigation::take_bearing(const AnglesOnlyEpoch& epoch, con
   }
   ++counters_.bearings_used;
   refused_in_a_row_ = 0;
-  widened_in_a_row_ = 0;
+  doubts_in_a_row_ = 0;
   last_bearing_ = bearing.time;
   return BearingFate::kFilter;
 }
@@ -138,15 +142,18 @@ void AnglesOnlyNavigation::solve_batch(const Vector3& sun_eci) {
 
 void AnglesOnlyNavigation::count_refusal() {
   ++counters_.bearings_refused;
-  if (++refused_in_a_row_ < kRefusedBeforeWidening) return;
+  if (++refused_in_a_row_ < kRefusedBeforeDoubt) return;
   refused_in_a_row_ = 0;
-  if (++widened_in_a_row_ > kMostWidenings) {
-    flight_.filter.reset();
-    widened_in_a_row_ = 0;
-    return;
-  }
-  ++counters_.widened;
-  flight_.filter.widen(kWidening);
+  flight_.filter.doubt(flight_.own_orbit.state(), kDoubtedVelocity[doubts_in_a_row_],
+                       kDoubtedLongitude[doubts_in_a_row_]);
+  // If it was a burn, the servicer's orbit does not know of it either.
+  flight_.own_orbit.add_impulse(Vector3::Zero(), kDoubtedVelocity[doubts_in_a_row_]);
+  ++counters_.doubts;
+  if (++doubts_in_a_row_ < kDoubtedVelocity.size()) return;
+  doubts_in_a_row_ = 0;
+  ++counters_.restarts;
+  filter_runs_ = false;
+  batch_.clear();
 }
 
 Vector6 AnglesOnlyNavigation::a_roe_m() const {

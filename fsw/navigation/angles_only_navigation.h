@@ -36,7 +36,7 @@ struct AnglesOnlyCounters {
   std::int32_t bearings_used = 0;
   std::int32_t bearings_refused = 0;
   std::int32_t batches_failed = 0;
-  std::int32_t widened = 0;   ///< times that the covariance had to give
+  std::int32_t doubts = 0;    ///< times that refusals in a row widened the covariance
   std::int32_t restarts = 0;  ///< of the filter, after it had begun
 };
 
@@ -114,7 +114,7 @@ class AnglesOnlyNavigation {
   bool filter_runs_ = false;
   GpsTime last_bearing_;
   int refused_in_a_row_ = 0;
-  int widened_in_a_row_ = 0;
+  std::size_t doubts_in_a_row_ = 0;
   BearingUpdate last_update_;
   AnglesOnlyCounters counters_;
 };

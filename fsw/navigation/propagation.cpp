@@ -8,7 +8,7 @@
 namespace vbar::fsw::navigation {
 namespace {
 
-constexpr double kMaxStep_s = 30.0;
+constexpr double kMaxStep_s = 20.0;
 constexpr int kMaxSteps = static_cast<int>(Propagation::kLongest / kMaxStep_s);
 
 orbit::CartesianState moved(const orbit::CartesianState& s, double h, const Vector3& velocity, const Vector3& rate) {

@@ -21,8 +21,8 @@ class Propagation {
   Propagation(GpsTime start, const orbit::EarthOrientation& earth, const Vector3& sun_eci);
 
   /// The state `dt` seconds (either sign, at most kLongest) after the start. Classical Runge-Kutta 4, steps of at most
-  /// 30 s: a centimetre an orbit, and a hundredth of that between two spacecraft 75 km apart. Beyond kLongest it stops
-  /// there. The caller answers for finite input.
+  /// 20 s: a quarter of a metre an orbit, and a hundredth of that between two spacecraft 75 km apart. Beyond kLongest
+  /// it stops there. The caller answers for finite input.
   [[nodiscard]] orbit::CartesianState coast(const orbit::CartesianState& state, double dt, const Push& push = {}) const;
 
   static constexpr double kLongest = 7200.0;

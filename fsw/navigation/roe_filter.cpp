@@ -259,10 +259,14 @@ Result<BearingPrediction> RoeFilter::predict(const orbit::CartesianState& servic
   return prediction;
 }
 
-void RoeFilter::widen(double factor) {
-  if (!started_) return;
-  const double grow = math::sqrt(factor);
-  estimate_.transform_head<6>(roe(), grow * Matrix6::Identity(), Matrix6::Zero());
+void RoeFilter::doubt(const orbit::CartesianState& servicer, double velocity_sigma, double longitude_share) {
+  const auto chief = orbit::qns_from_cartesian(servicer);
+  if (!started_ || !chief.ok()) return;
+  const Matrix63 gamma = orbit::roe_control_matrix(chief.value());
+  Matrix6 noise = (square(velocity_sigma) * gamma).lazyProduct(gamma.transpose());
+  noise(1, 1) += square(longitude_share * roe()(1));
+  estimate_.transform_head<6>(roe(), Matrix6::Identity(), noise);
+  noise_.interrupt();
 }
 
 }  // namespace vbar::fsw::navigation

@@ -96,8 +96,9 @@ class RoeFilter {
   /// Folds a bearing in; the filter must stand at its time. Refused if it does not fit (settings.gate).
   BearingUpdate take(const BearingMeasurement& bearing, const orbit::CartesianState& servicer, const Vector3& sun_eci);
 
-  /// Makes the elements' covariance `factor` times as large: the bearings no longer fit them.
-  void widen(double factor);
+  /// The bearings no longer fit: as after a burn of `velocity_sigma` (m/s, each axis) that nobody told of, and with the
+  /// mean longitude in doubt by a share of itself.
+  void doubt(const orbit::CartesianState& servicer, double velocity_sigma, double longitude_share);
 
   [[nodiscard]] Vector6 roe() const { return estimate_.mean().head<6>(); }
   [[nodiscard]] Matrix6 roe_covariance() const { return estimate_.head_covariance<6>(); }

@@ -72,8 +72,9 @@ std::vector<double> position_bound(const TrueFlight& flight, const std::vector<s
     if (k != epochs[bounds.size()]) continue;
     // Metres and radians: scaled to a unit diagonal before the inverse.
     const Eigen::Matrix<double, 8, 1> scale = information.diagonal().cwiseSqrt().cwiseInverse();
-    const Information covariance =
-        scale.asDiagonal() * Information(scale.asDiagonal() * information * scale.asDiagonal()).inverse() * scale.asDiagonal();
+    const Information covariance = scale.asDiagonal() *
+                                   Information(scale.asDiagonal() * information * scale.asDiagonal()).inverse() *
+                                   scale.asDiagonal();
     bounds.push_back(std::sqrt((moves * covariance.topLeftCorner<6, 6>() * moves.transpose()).trace()));
   }
   if (bounds.size() != epochs.size()) throw std::invalid_argument("an epoch beyond the flight");

@@ -1,0 +1,44 @@
+#include "fsw/navigation/adaptive_noise.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/fsw/navigation/angles_only_scene.h"
+
+namespace vbar::fsw::navigation {
+namespace {
+
+constexpr AdaptiveNoiseSettings kSettings{.psd = 1e-13, .psd_least = 1e-14, .psd_most = 1e-11};
+
+/// First-order correlated pairs, as a filter that lags leaves them. `scale`: their standard deviation.
+void feed(AdaptiveNoise& noise, double correlation, double scale, int count, bool interrupted = false) {
+  test::Noise random(3);
+  Vector2 value = random.normal2();
+  for (int k = 0; k < count; ++k) {
+    value = correlation * value + std::sqrt(1.0 - correlation * correlation) * random.normal2();
+    noise.take(scale * value);
+    if (interrupted && k % 20 == 19) noise.interrupt();
+  }
+}
+
+TEST(AdaptiveNoise, RisesToItsBoundWhereInnovationsAreCorrelated) {
+  AdaptiveNoise noise(kSettings);
+  feed(noise, 0.7, 1.5, 200);
+  EXPECT_EQ(noise.psd(), kSettings.psd_most);
+}
+
+TEST(AdaptiveNoise, FallsToItsBoundWhereTheyAreWhiteEvenIfTheyAreLarge) {
+  for (const double scale : {1.0, 3.0}) {
+    AdaptiveNoise noise(kSettings);
+    feed(noise, 0.0, scale, 1000);
+    EXPECT_EQ(noise.psd(), kSettings.psd_least);
+  }
+}
+
+TEST(AdaptiveNoise, AWindowThatIsInterruptedSaysNothing) {
+  AdaptiveNoise noise(kSettings);
+  feed(noise, 0.9, 1.5, 400, true);  // 19 pairs between interruptions, fewer than a window
+  EXPECT_EQ(noise.psd(), kSettings.psd);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::navigation
