@@ -139,7 +139,8 @@ std::size_t AnglesOnlyTracking::collect_candidates(const Circumstances& circumst
   const double per_px = 1.0 / settings_.model.focal_length_px.x();
   std::size_t count = 0;
   for (std::size_t k = 0; k < count_; ++k) {
-    if (sighting_.kind[k] == ObjectKind::kStar) continue;
+    // Of an object that is only partly there the light's centre is not to be known.
+    if (sighting_.kind[k] == ObjectKind::kStar || objects[k].is_cut) continue;
     tracking::Candidate& candidate = candidates_[count];
     candidate.direction_rtn = R_rtn_camera * seen_[k].direction_camera;
     // Of a body that is no point the light's centre wanders about the body's.
