@@ -9,15 +9,15 @@ namespace vbar::fsw::imaging {
 namespace {
 
 constexpr int kOne = 256;
-constexpr std::int32_t kMostLevel = 4095 * kOne;
-constexpr std::int32_t kMostNoise = 255 * kOne;
+constexpr int kMostLevel = 4095 * kOne;
+constexpr int kMostNoise = 255 * kOne;
 /// Of an image's pixels there must be one in 16, and one in 16 of those unsaturated.
 constexpr int kLeastPart = 16;
 /// Of a cell's samples one in 8 must count, and so many at least.
 constexpr int kLeastPartOfCell = 8;
 constexpr int kLeastSamples = 12;
 /// A cell that is brighter by so many sigmas of a pixel than its neighbours agree on is filled by an object.
-constexpr std::int32_t kOutlierNoises = 8;
+constexpr int kOutlierNoises = 8;
 constexpr int kSegmentShift = 14;  // of the 20 bits of a position, with the six that a slope keeps beyond DN / 256
 
 bool is_image(const ImageView& image) {
@@ -27,18 +27,18 @@ bool is_image(const ImageView& image) {
   return pixels <= kMaxPixels && image.pixels.size() == pixels;
 }
 
-std::int32_t in_256ths(double value, std::int32_t most) {
-  return std::clamp(static_cast<std::int32_t>(value * kOne + 0.5), 0, most);
+int in_256ths(double value, int most) {
+  return std::clamp(static_cast<int>(value * kOne + 0.5), 0, most);
 }
 
 /// Between two nodes; `position` in 2^-20 of their distance.
-std::int32_t between(std::int32_t a, std::int32_t b, std::int32_t position) {
+int between(int a, int b, int position) {
   const std::int64_t part = position & ((1 << 20) - 1);
-  return a + static_cast<std::int32_t>((part * (b - a)) >> 20);
+  return a + static_cast<int>((part * (b - a)) >> 20);
 }
 
 /// Of a few values, which get sorted; of an even number of them the darker middle one: what errs is too bright.
-std::int32_t middle_of(std::span<std::int32_t> values) {
+int middle_of(std::span<int> values) {
   for (std::size_t end = 1; end < values.size(); ++end) {
     for (std::size_t k = end; k > 0 && values[k] < values[k - 1]; --k) std::swap(values[k], values[k - 1]);
   }
@@ -63,10 +63,10 @@ ImageCondition Background::measure(const ImageView& image, int saturation_dn) {
   replace_outliers();
   find_typical();
   find_doubt();
-  extend(level_, [](std::int32_t last, std::int32_t before) { return std::clamp(2 * last - before, 0, kMostLevel); });
-  extend(noise_, [](std::int32_t last, std::int32_t) { return last; });
+  extend(level_, [](int last, int before) { return std::clamp(2 * last - before, 0, kMostLevel); });
+  extend(noise_, [](int last, int) { return last; });
   // A line drawn on for half a cell errs by three times what one drawn between nodes does.
-  extend(doubt_, [](std::int32_t last, std::int32_t) { return std::min(3 * last, kMostLevel); });
+  extend(doubt_, [](int last, int) { return std::min(3 * last, kMostLevel); });
   int x = 0;
   for (int k = 0; k < x_.cells + 2; ++k) {
     while (x < x_.pixels && (x_.position(x) >> 20) < k) ++x;
@@ -183,8 +183,8 @@ bool Background::fill_gap(int column, int row) {
     }
   }
   if (count == 0) return false;
-  level_[node(column, row)] = static_cast<std::int32_t>(level / count);
-  noise_[node(column, row)] = static_cast<std::int32_t>(noise / count);
+  level_[node(column, row)] = static_cast<int>(level / count);
+  noise_[node(column, row)] = static_cast<int>(noise / count);
   return true;
 }
 
@@ -193,7 +193,7 @@ void Background::replace_outliers() {
   for (int row = 0; row < y_.cells; ++row) {
     for (int column = 0; column < x_.cells; ++column) {
       const std::size_t k = node(column, row);
-      const std::int32_t agreed = agreed_level(column, row);
+      const int agreed = agreed_level(column, row);
       scratch_[k] = level_[k] - agreed > kOutlierNoises * noise_[k] ? agreed : level_[k];
     }
   }
@@ -204,10 +204,10 @@ void Background::replace_outliers() {
 
 /// Median of the cell's own level and of what its neighbours say along every line through it: between two of them, or
 /// at the edge beyond two of them. All agree where the background is a plane, so a gradient stays as it is.
-std::int32_t Background::agreed_level(int column, int row) const {
+int Background::agreed_level(int column, int row) const {
   constexpr std::array<std::array<int, 2>, 4> kLines{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
   const auto is_inside = [this](int c, int r) { return c >= 0 && r >= 0 && c < x_.cells && r < y_.cells; };
-  std::array<std::int32_t, 5> said{level_[node(column, row)]};
+  std::array<int, 5> said{level_[node(column, row)]};
   std::size_t count = 1;
   for (const auto& [dc, dr] : kLines) {
     const bool has_before = is_inside(column - dc, row - dr);
@@ -226,18 +226,18 @@ std::int32_t Background::agreed_level(int column, int row) const {
 
 /// Linear interpolation errs by an eighth of the second difference, along either axis.
 void Background::find_doubt() {
-  const auto bend = [](std::int32_t a, std::int32_t b, std::int32_t c) { return (a - b) + (c - b); };
+  const auto bend = [](int a, int b, int c) { return (a - b) + (c - b); };
   for (int row = 0; row < y_.cells; ++row) {
     for (int column = 0; column < x_.cells; ++column) {
-      std::int32_t sum = 0;
+      int sum = 0;
       if (x_.cells > 2) {
         const int c = std::clamp(column, 1, x_.cells - 2);
-        const std::int32_t d = bend(level_[node(c - 1, row)], level_[node(c, row)], level_[node(c + 1, row)]);
+        const int d = bend(level_[node(c - 1, row)], level_[node(c, row)], level_[node(c + 1, row)]);
         sum += d < 0 ? -d : d;
       }
       if (y_.cells > 2) {
         const int r = std::clamp(row, 1, y_.cells - 2);
-        const std::int32_t d = bend(level_[node(column, r - 1)], level_[node(column, r)], level_[node(column, r + 1)]);
+        const int d = bend(level_[node(column, r - 1)], level_[node(column, r)], level_[node(column, r + 1)]);
         sum += d < 0 ? -d : d;
       }
       doubt_[node(column, row)] = sum / 8;
@@ -276,7 +276,7 @@ void Background::find_typical() {
 
 template <class At>
 void Background::set_row(int y, RowNodes& nodes, At at_node) const {
-  const std::int32_t position = y_.position(y);
+  const int position = y_.position(y);
   const int above = (position >> 20) - 1;
   for (int column = -1; column <= x_.cells; ++column) {
     nodes[static_cast<std::size_t>(column + 1)] =
@@ -288,25 +288,25 @@ void Background::level_row(int y, RowNodes& nodes) const {
   set_row(y, nodes, [this](std::size_t k) { return level_[k]; });
 }
 
-void Background::threshold_row(int y, std::int32_t noises_q4, RowNodes& nodes) const {
+void Background::threshold_row(int y, int noises_q4, RowNodes& nodes) const {
   set_row(y, nodes,
           [this, noises_q4](std::size_t k) { return 9 * (level_[k] + doubt_[k]) + noises_q4 * noise_[k] / 16; });
 }
 
-std::int32_t Background::at(const RowNodes& nodes, int x) const {
-  const std::int32_t position = x_.position(x);
+int Background::at(const RowNodes& nodes, int x) const {
+  const int position = x_.position(x);
   const auto k = static_cast<std::size_t>(position >> 20);
   return between(nodes[k], nodes[k + 1], position);
 }
 
-void Background::fill(const RowNodes& nodes, std::span<std::int32_t> out_dn) const {
+void Background::fill(const RowNodes& nodes, std::span<int> out_dn) const {
   for (std::size_t k = 0; k + 1 < static_cast<std::size_t>(x_.cells) + 2; ++k) {
     const int begin = segment_begin_[k];
     const int end = segment_begin_[k + 1];
     if (begin == end) continue;
     // 64ths of DN / 256 are enough: over a segment of at most 95 pixels the slope's rounding adds up to 0.006 DN.
-    std::int32_t value = at(nodes, begin) * 64;
-    const auto slope = static_cast<std::int32_t>((std::int64_t{nodes[k + 1] - nodes[k]} * x_.step) >> kSegmentShift);
+    int value = at(nodes, begin) * 64;
+    const auto slope = static_cast<int>((std::int64_t{nodes[k + 1] - nodes[k]} * x_.step) >> kSegmentShift);
     for (int x = begin; x < end; ++x, value += slope) out_dn[static_cast<std::size_t>(x)] = value >> 14;
   }
 }

@@ -25,8 +25,8 @@ enum class ImageCondition : std::uint8_t {
 class Background {
  public:
   /// A quantity along one row of the image, DN / 256, at the nodes of the grid.
-  using RowNodes = std::array<std::int32_t, 68>;
-  static constexpr std::int32_t kMostNoises = 100 * 16;
+  using RowNodes = std::array<int, 68>;
+  static constexpr int kMostNoises = 100 * 16;
 
   /// Level and noise of the image. Saturated pixels (`saturation_dn`, 1 to 4095, and above) and missing ones do not
   /// count. What the functions below say is about the last image that was kGood.
@@ -36,11 +36,11 @@ class Background {
   void level_row(int y, RowNodes& nodes) const;
   /// What the sum of nine pixels must exceed along row y to be more than background: nine levels, noises_q4 / 16 times
   /// the noise (1 sigma) of one pixel, at most kMostNoises, and what a curved background may differ by from the grid.
-  void threshold_row(int y, std::int32_t noises_q4, RowNodes& nodes) const;
+  void threshold_row(int y, int noises_q4, RowNodes& nodes) const;
   /// Either at pixel x of the row, DN / 256, rounded down.
-  [[nodiscard]] std::int32_t at(const RowNodes& nodes, int x) const;
+  [[nodiscard]] int at(const RowNodes& nodes, int x) const;
   /// Either at every pixel of the row, DN, rounded down.
-  void fill(const RowNodes& nodes, std::span<std::int32_t> out_dn) const;
+  void fill(const RowNodes& nodes, std::span<int> out_dn) const;
 
   /// Level and 1 sigma at a pixel, DN.
   [[nodiscard]] double level_dn(int x, int y) const;
@@ -60,12 +60,12 @@ class Background {
   struct Axis {
     int pixels = 0;
     int cells = 0;
-    std::int32_t step = 0;  ///< nodes a pixel, 2^-20
+    int step = 0;  ///< nodes a pixel, 2^-20
     [[nodiscard]] int first_pixel(int cell) const { return cell * pixels / cells; }
-    [[nodiscard]] std::int32_t position(int pixel) const { return (2 * pixel + 1) * step / 2 + (1 << 19); }
+    [[nodiscard]] int position(int pixel) const { return (2 * pixel + 1) * step / 2 + (1 << 19); }
   };
   static constexpr std::size_t kMaxNodes = 288;  ///< (w / 64 + 2.5) (h / 64 + 2.5) within kMaxPixels and kMaxSide
-  using Grid = std::array<std::int32_t, kMaxNodes>;
+  using Grid = std::array<int, kMaxNodes>;
 
   [[nodiscard]] static Axis axis_of(int pixels);
   [[nodiscard]] std::size_t node(int column, int row) const {  ///< of a cell; -1 and `cells` are beyond the ends
@@ -77,7 +77,7 @@ class Background {
   [[nodiscard]] bool fill_gaps();
   [[nodiscard]] bool fill_gap(int column, int row);
   void replace_outliers();
-  [[nodiscard]] std::int32_t agreed_level(int column, int row) const;
+  [[nodiscard]] int agreed_level(int column, int row) const;
   void find_doubt();
   template <class Beyond>
   void extend(Grid& grid, Beyond beyond) const;

@@ -15,16 +15,16 @@ class Sums {
   Sums(const ImageView& image, const Background& background, const Component& component, double gain,
        double detection_sigmas)
       : image_(image), gain_(gain) {
-    level_ = static_cast<std::int32_t>(9.0 * background.level_dn(component.peak_x, component.peak_y) + 0.5);
+    level_ = static_cast<int>(9.0 * background.level_dn(component.peak_x, component.peak_y) + 0.5);
     const double noise = background.noise_dn(component.peak_x, component.peak_y);
     variance_ = 9.0 * noise * noise;
-    threshold_ = static_cast<std::int32_t>(detection_sigmas * 3.0 * noise);
+    threshold_ = static_cast<int>(detection_sigmas * 3.0 * noise);
   }
 
   /// Of 3 x 3 pixels, above the background; missing pixels are background. A component keeps off the image's outermost
   /// pixels, so all nine are there.
-  [[nodiscard]] std::int32_t at(int x, int y) const {
-    std::int32_t sum = -level_;
+  [[nodiscard]] int at(int x, int y) const {
+    int sum = -level_;
     for (int j = y - 1; j <= y + 1; ++j) {
       const std::uint16_t* row = image_.pixels.data() + static_cast<std::ptrdiff_t>(j) * image_.frame.width;
       for (int i = x - 1; i <= x + 1; ++i) sum += row[i] == kMissingPixel ? level_ / 9 : row[i];
@@ -34,10 +34,10 @@ class Sums {
 
   /// Of its eight neighbours' none is greater, and of those that are as great none comes first.
   [[nodiscard]] bool is_maximum(int x, int y, const Component& c) const {
-    const std::int32_t here = at(x, y);
+    const int here = at(x, y);
     for (int j = std::max(y - 1, c.y_least); j <= std::min(y + 1, c.y_most); ++j) {
       for (int i = std::max(x - 1, c.x_least); i <= std::min(x + 1, c.x_most); ++i) {
-        const std::int32_t other = at(i, j);
+        const int other = at(i, j);
         const bool comes_first = j < y || (j == y && i < x);
         if (other > here || (other == here && comes_first)) return false;
       }
@@ -50,7 +50,7 @@ class Sums {
     const int dx = faint.x - bright.x;
     const int dy = faint.y - bright.y;
     const int steps = std::max(dx < 0 ? -dx : dx, dy < 0 ? -dy : dy);
-    std::int32_t least = faint.sum_dn;
+    int least = faint.sum_dn;
     for (int k = 1; k < steps; ++k) {
       const int x = bright.x + (2 * dx * k + (dx < 0 ? -steps : steps)) / (2 * steps);
       const int y = bright.y + (2 * dy * k + (dy < 0 ? -steps : steps)) / (2 * steps);
@@ -63,8 +63,8 @@ class Sums {
  private:
   ImageView image_;
   double gain_;
-  std::int32_t level_ = 0;  // of nine pixels
-  std::int32_t threshold_ = 0;
+  int level_ = 0;  // of nine pixels
+  int threshold_ = 0;
   double variance_ = 0.0;  // of nine pixels without light
 };
 

@@ -14,7 +14,7 @@ struct Blend {
   struct Peak {
     int x = 0;  ///< px, from the image's first pixel
     int y = 0;
-    std::int32_t sum_dn = 0;  ///< of the 3 x 3 pixels around, above the background
+    int sum_dn = 0;  ///< of the 3 x 3 pixels around, above the background
   };
   std::array<Peak, kMost> peaks{};  ///< brightest first
   std::size_t count = 0;

@@ -40,7 +40,7 @@ bool is_brighter(const Component& a, const Component& b) {
   return a.x_least < b.x_least;
 }
 
-void Components::clear(std::int32_t largest_px) {
+void Components::clear(int largest_px) {
   largest_px_ = largest_px;
   run_count_.fill(0);
   now_ = 0;

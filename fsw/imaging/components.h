@@ -14,11 +14,11 @@ namespace vbar::fsw::imaging {
 
 /// Brightness above the background in DN / 16; coordinates from the image's first pixel.
 struct Component {
-  std::int32_t pixels = 0;
-  std::int32_t x_least = 0, x_most = 0, y_least = 0, y_most = 0;
-  std::int32_t peak_dn = 0;   ///< brightest pixel
-  std::int32_t peak_sum = 0;  ///< brightest neighbourhood of 3 x 3 pixels, DN, and its middle
-  std::int32_t peak_x = 0, peak_y = 0;
+  int pixels = 0;
+  int x_least = 0, x_most = 0, y_least = 0, y_most = 0;
+  int peak_dn = 0;   ///< brightest pixel
+  int peak_sum = 0;  ///< brightest neighbourhood of 3 x 3 pixels, DN, and its middle
+  int peak_x = 0, peak_y = 0;
   bool is_saturated = false;
   bool is_cut = false;
   std::int64_t x = 0, y = 0, xx = 0, yy = 0;  ///< sums over the pixels
@@ -33,7 +33,7 @@ class Components {
   static constexpr std::size_t kMaxRunsOfRow = 512;
 
   /// Before an image. Components of more than `largest_px` pixels are extended: counted, not kept.
-  void clear(std::int32_t largest_px);
+  void clear(int largest_px);
 
   /// The next run of row y, pixels begin to end - 1; rows from the top, runs from the left. Returns the component that
   /// it belongs to so far, for the caller to add the run's pixels to; null if the row has too many runs.
@@ -70,7 +70,7 @@ class Components {
   void keep_brightest();
   [[nodiscard]] Component& component(Label label) { return components_[static_cast<std::size_t>(label)]; }
 
-  std::int32_t largest_px_ = 0;
+  int largest_px_ = 0;
   std::array<std::array<Run, kMaxRunsOfRow>, 2> runs_{};  ///< of this row and of the one before
   std::array<std::size_t, 2> run_count_{};
   std::size_t now_ = 0;     ///< which of the two is this row

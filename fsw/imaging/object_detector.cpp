@@ -72,7 +72,7 @@ void ObjectDetector::find_components() {
   components_.clear(settings_.largest_object_px);
   runs_dropped_ = 0;
   // The noise of nine pixels is three times that of one.
-  noises_q4_ = static_cast<std::int32_t>(settings_.detection_sigmas * 3.0 * 16.0 + 0.5);
+  noises_q4_ = static_cast<int>(settings_.detection_sigmas * 3.0 * 16.0 + 0.5);
   for (int y = 1; y + 1 < image_.frame.height; ++y) {
     rows_ = {image_row(y - 1), image_row(y), image_row(y + 1)};
     is_patched_ = false;
@@ -99,13 +99,13 @@ bool ObjectDetector::scan_row() {
   const std::uint16_t* below = rows_[2];
   run_count_ = 0;
   if (last < 2) return true;
-  const auto column = [&](int x) { return std::int32_t{above[x]} + here[x] + below[x]; };
-  std::int32_t left = column(0);
-  std::int32_t middle = column(1);
+  const auto column = [&](int x) { return int{above[x]} + here[x] + below[x]; };
+  int left = column(0);
+  int middle = column(1);
   int begin = -1;
   for (int x = 1; x < last; ++x) {
-    const std::int32_t right = column(x + 1);
-    const std::int32_t sum = left + middle + right;
+    const int right = column(x + 1);
+    const int sum = left + middle + right;
     left = middle;
     middle = right;
     if (sum > threshold_dn_[static_cast<std::size_t>(x)]) {
@@ -163,15 +163,15 @@ void ObjectDetector::add_pixels(Component& component, int y, const Run& run) {
   std::int64_t flux_xx = 0;
   for (std::int64_t x = run.begin; x < run.end; ++x) {
     const int column = static_cast<int>(x);
-    const std::int32_t pixel = rows_[1][x];
-    const std::int32_t light = 16 * pixel - background_.at(level_, column) / 16;
+    const int pixel = rows_[1][x];
+    const int light = 16 * pixel - background_.at(level_, column) / 16;
     flux += light;
     flux_x += light * x;
     flux_xx += light * x * x;
     component.x += x;
     component.xx += x * x;
     component.peak_dn = std::max(component.peak_dn, pixel);
-    const std::int32_t sum = sum_around(column);
+    const int sum = sum_around(column);
     if (sum > component.peak_sum) {
       component.peak_sum = sum;
       component.peak_x = column;
@@ -179,7 +179,7 @@ void ObjectDetector::add_pixels(Component& component, int y, const Run& run) {
     }
   }
   const std::int64_t pixels = run.end - run.begin;
-  component.pixels += static_cast<std::int32_t>(pixels);
+  component.pixels += static_cast<int>(pixels);
   component.is_saturated = component.is_saturated || component.peak_dn >= settings_.saturation_dn;
   component.y += pixels * y;
   component.yy += pixels * y * y;
@@ -191,9 +191,9 @@ void ObjectDetector::add_pixels(Component& component, int y, const Run& run) {
   component.flux_yy += flux * y * y;
 }
 
-std::int32_t ObjectDetector::sum_around(int x) const {
-  std::int32_t sum = 0;
-  for (const std::uint16_t* row : rows_) sum += std::int32_t{row[x - 1]} + row[x] + row[x + 1];
+int ObjectDetector::sum_around(int x) const {
+  int sum = 0;
+  for (const std::uint16_t* row : rows_) sum += int{row[x - 1]} + row[x] + row[x + 1];
   return sum;
 }
 
@@ -253,7 +253,7 @@ bool ObjectDetector::measure_points(const Component& component, const Blend& ble
     part.peak_y = peak.y;
     if (blend.count > 1) {
       part.flux = component.flux * peak.sum_dn / all;
-      part.pixels = std::max(1, static_cast<std::int32_t>(std::int64_t{component.pixels} * peak.sum_dn / all));
+      part.pixels = std::max(1, static_cast<int>(std::int64_t{component.pixels} * peak.sum_dn / all));
       part.peak_dn = brightest_around(peak.x, peak.y);
     }
     const Centroid centroid =

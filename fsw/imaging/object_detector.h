@@ -64,7 +64,7 @@ class ObjectDetector {
   void patch_rows(int y);
   void add_run(int y, const Run& run);
   void add_pixels(Component& component, int y, const Run& run);
-  [[nodiscard]] std::int32_t sum_around(int x) const;
+  [[nodiscard]] int sum_around(int x) const;
   [[nodiscard]] bool touches_missing(int y, const Run& run) const;
   [[nodiscard]] bool is_fragment(std::size_t k) const;
   void measure(const Component& component);
@@ -84,13 +84,13 @@ class ObjectDetector {
   // Of the image in work
   ImageView image_;
   DetectorSettings settings_;
-  std::int32_t noises_q4_ = 0;  ///< threshold above the background of nine pixels, in sigmas of one / 16
+  int noises_q4_ = 0;  ///< threshold above the background of nine pixels, in sigmas of one / 16
 
   // Of the row in work
   std::array<const std::uint16_t*, 3> rows_{};  ///< above, this, below
   std::array<std::array<std::uint16_t, kMaxSide>, 3> patched_{};
   bool is_patched_ = false;
-  std::array<std::int32_t, kMaxSide> threshold_dn_{};
+  std::array<int, kMaxSide> threshold_dn_{};
   std::array<Run, Components::kMaxRunsOfRow> runs_{};
   std::size_t run_count_ = 0;
   int runs_dropped_ = 0;  ///< since the image began
