@@ -40,7 +40,7 @@ double jupiter_longitude(double t) {
 }
 
 constexpr double kSemiMajorAxis = 149'598'261e3;
-constexpr double kCircularSpeed = 29'784.7;      // of the barycentre of Earth and Moon
+constexpr double kCircularSpeed = 29'784.7;       // of the barycentre of Earth and Moon
 constexpr double kEarthFromBarycentre = 4.671e6;  // mean
 constexpr double kEarthSpeedByMoon = 12.43;
 constexpr double kSunSpeedByJupiter = 12.47;

@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxPatternObjects = 48;
 /// Largest tolerance of a predicted attitude, rad (1 degree).
 inline constexpr double kLargestTolerance = 0.0175;
 
-/// With all it works on, 60 kB; what it holds between calls is only the last fix.
+/// With all it works on, 95 kB; what it holds between calls is only the last fix.
 class StarIdentifier {
  public:
   /// Attitude of a camera that may look anywhere. `velocity_over_c_eci`: the observer's, barycentric, for aberration.

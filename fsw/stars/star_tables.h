@@ -3,12 +3,11 @@
 // catalogue.h. The bytes are little-endian, as all targets are.
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
+#include "fsw/stars/star_table_sizes.h"  // generated
 #include "fsw/stars/table_layout.h"
-#include "star_table_sizes.h"
 
 namespace vbar::fsw::stars {
 
@@ -28,7 +27,7 @@ struct StarTables {
   std::array<std::uint16_t, kTableCellEntries> cell_star;
 };
 
-static_assert(std::endian::native == std::endian::little);
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
 static_assert(sizeof(StarTables) == kTableBytes, "toolchains/star_tables writes another layout");
 
 extern "C" const StarTables vbar_star_tables;

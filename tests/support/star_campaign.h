@@ -36,7 +36,8 @@ struct Tally {
 /// Normalised squared error of an attitude, chi-square of 3 degrees of freedom.
 inline double normalised_squared_error(const fsw::stars::AttitudeFix& fix, const Eigen::Matrix3d& R_camera_eci) {
   const Eigen::Matrix3d turn = fix.R_camera_eci * R_camera_eci.transpose();
-  const Eigen::Vector3d angle = 0.5 * Eigen::Vector3d(turn(1, 2) - turn(2, 1), turn(2, 0) - turn(0, 2), turn(0, 1) - turn(1, 0));
+  const Eigen::Vector3d angle =
+      0.5 * Eigen::Vector3d(turn(1, 2) - turn(2, 1), turn(2, 0) - turn(0, 2), turn(0, 1) - turn(1, 0));
   return angle.dot(fix.covariance_camera.inverse() * angle);
 }
 

@@ -148,8 +148,7 @@ Scene draw_scene(const std::vector<TrueStar>& sky, const SceneSettings& settings
   for (std::size_t k = objects.size(); k > 1; --k) std::swap(objects[k - 1], objects[random() % k]);
   Scene scene{R_camera_eci, velocity_over_c, {}, {}, {}};
   for (const Object& object : objects) {
-    scene.direction.push_back(
-        Eigen::Vector3d(object.pixel.x(), object.pixel.y(), camera.focal_length_px).normalized());
+    scene.direction.push_back(Eigen::Vector3d(object.pixel.x(), object.pixel.y(), camera.focal_length_px).normalized());
     scene.magnitude.push_back(object.magnitude);
     scene.truth.push_back(object.truth);
   }

@@ -38,7 +38,7 @@ struct Scene {
 };
 
 struct SceneSettings {
-  Camera camera;
+  Camera camera = kRegion;
   double faintest = 7.5;
   double noise_px = 0.1;
   double magnitude_noise = 0.3;

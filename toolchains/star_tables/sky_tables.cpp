@@ -59,8 +59,8 @@ Star together(const Star& a, const Star& b) {
           a.hipparcos != 0 ? a.hipparcos : b.hipparcos};
 }
 
-/// Cells within the margin of a direction. Cells are at least four times as wide as the margin, so a circle of points finds
-/// them all. The circle is 1 per cent wider than the margin, since between two points it comes that much nearer.
+/// Cells within the margin of a direction. Cells are at least four times as wide as the margin, so a circle of points
+/// finds them all. The circle is 1 per cent wider than the margin, since between two points it comes that much nearer.
 std::vector<int> cells_around(const Direction& d, int edge) {
   constexpr int kPoints = 32;
   const double across = std::hypot(d.x, d.y);
@@ -71,8 +71,8 @@ std::vector<int> cells_around(const Direction& d, int edge) {
     const double angle = 2.0 * std::numbers::pi * point / kPoints;
     const double e = 1.01 * kCellMargin * std::cos(angle);
     const double n = 1.01 * kCellMargin * std::sin(angle);
-    touched.push_back(cell_of(d.x + e * east.x + n * north.x, d.y + e * east.y + n * north.y,
-                              d.z + e * east.z + n * north.z, edge));
+    touched.push_back(
+        cell_of(d.x + e * east.x + n * north.x, d.y + e * east.y + n * north.y, d.z + e * east.z + n * north.z, edge));
   }
   std::ranges::sort(touched);
   const auto repeated = std::ranges::unique(touched);

@@ -13,8 +13,8 @@ namespace vbar::fsw::orbit {
 namespace {
 
 struct Earth {
-  Vector3 sun_position;       ///< m
-  Vector3 velocity_over_c;    ///< barycentric
+  Vector3 sun_position;     ///< m
+  Vector3 velocity_over_c;  ///< barycentric
 };
 
 Earth erfa_earth(GpsTime time) {
@@ -37,7 +37,8 @@ TEST(OnboardSun, AgreesWithErfaFrom2000To2040) {
     velocity = std::max(velocity, (earth_velocity_over_c_gcrf(time) - expected.velocity_over_c).norm());
   }
   // What the header promises: terms left out, together.
-  accuracy::expect_below("on-board Sun, direction 2000 to 2040", "ERFA eraEpv00, 4800 instants", direction, 15.0, "arcsec");
+  accuracy::expect_below("on-board Sun, direction 2000 to 2040", "ERFA eraEpv00, 4800 instants", direction, 15.0,
+                         "arcsec");
   EXPECT_LT(distance, 1e-4);
   accuracy::expect_below("on-board aberration by the Earth's motion 2000 to 2040", "ERFA eraEpv00, 4800 instants",
                          velocity / ERFA_DAS2R, 0.006, "arcsec");
