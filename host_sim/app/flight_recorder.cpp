@@ -8,6 +8,8 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
+#include "host_sim/app/image_rows.h"
+#include "host_sim/app/image_truth.h"
 #include "host_sim/report/code_names.h"
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/navigation_errors.h"
@@ -101,24 +103,34 @@ void FlightRecorder::on_waypoint(const mission::Waypoint& waypoint, const PairTr
   record_.waypoints.push_back(row);
 }
 
+void FlightRecorder::on_measured(const twins::TruthSnapshot& truth) {
+  constexpr std::size_t kKept = 64;
+  if (!servicer_.camera || (!measured_.empty() && measured_.back().time == truth.time)) return;
+  measured_.push_back(truth);
+  if (measured_.size() > kKept) measured_.pop_front();
+}
+
 void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer) {
   report::EstimateRow row;
   row.time_s = mission_seconds(time);
   row.step_cost = answer.report.count;
   row.stack_bytes = answer.report.stack_bytes;
+  ImageTelemetry told;
   for (const pil::Packet& bytes : answer.packets) {
     const auto packet = fsw::packets::parse_packet(bytes);
     if (!packet.ok()) continue;  // hashed and logged as it came; it only has no row
     if (packet.value().header.apid == fsw::packets::Apid::kManeuverCommand) {
       on_command(time, packet.value());
     } else {
-      on_telemetry(row, packet.value());
+      on_telemetry(row, told, packet.value());
     }
   }
+  if (told.image) on_image(row, told);
   record_.estimates.push_back(row);
 }
 
-void FlightRecorder::on_telemetry(report::EstimateRow& row, const fsw::packets::PacketView& packet) {
+void FlightRecorder::on_telemetry(report::EstimateRow& row, ImageTelemetry& told,
+                                  const fsw::packets::PacketView& packet) {
   if (const auto navigation = fsw::packets::decode<telemetry_navigation>(packet); navigation.ok()) {
     const telemetry_navigation& m = navigation.value();
     row.step = m.step;
@@ -147,7 +159,23 @@ void FlightRecorder::on_telemetry(report::EstimateRow& row, const fsw::packets::
     if (std::getenv("VBAR_PRINT")) { const auto& m = im.value(); constexpr double as = 3.14159265358979 / 648000; printf("IMG %d st %d meth %d obj %d stars %d hyp %d tgt %d fate %d runs %d pre %.1f %.1f post %.1f %.1f nis %.2f sig %.1f dl %.1f sdl %.1f\n", m.image, m.status, m.star_method, m.objects, m.stars, m.hypotheses, m.target_object, m.fate, m.filter_runs, m.prefit[0]/as, m.prefit[1]/as, m.postfit[0]/as, m.postfit[1]/as, m.nis, m.bearing_sigma/as, m.a_roe_osculating_m[1], std::sqrt(m.covariance_a_roe[2])); }
   } else if (const auto gnss = fsw::packets::decode<telemetry_gnss>(packet); gnss.ok()) {
     record_.gnss.push_back(gnss_row(row.time_s, gnss.value()));
+  } else if (const auto image = fsw::packets::decode<telemetry_image>(packet); image.ok()) {
+    told.exposure = packet.header.time;
+    told.image = image.value();
+  } else if (const auto objects = fsw::packets::decode<telemetry_objects>(packet); objects.ok()) {
+    told.objects = objects.value();
   }
+}
+
+void FlightRecorder::on_image(const report::EstimateRow& step, const ImageTelemetry& told) {
+  report::ImageRow row = image_row(mission_seconds(told.exposure), step.time_s, *told.image);
+  const telemetry_objects* const objects =
+      told.objects && told.objects->image == told.image->image ? &*told.objects : nullptr;
+  const auto truth = std::ranges::find(measured_, told.exposure, &twins::TruthSnapshot::time);
+  if (truth != measured_.end()) add_truth(row, *told.image, objects, mission_, servicer_, *truth);
+  if (row.used != 0) append_residuals(row, record_.residuals);
+  if (objects != nullptr) append_objects(row.time_s, *objects, record_.objects);
+  record_.images.push_back(row);
 }
 
 report::GnssRow FlightRecorder::gnss_row(double time_s, const telemetry_gnss& m) const {
@@ -211,6 +239,7 @@ void FlightRecorder::on_execution(fsw::GpsTime time, const executed_maneuver& ex
 void FlightRecorder::finish() {
   finish_navigation_errors();
   finish_legs();
+  summarise_images(record_.images, servicer_.observes(), record_.summary);
 }
 
 // Statistics of carrier-phase navigation are those after the first fix, as the paper's are.

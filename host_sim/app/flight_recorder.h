@@ -2,6 +2,8 @@
 // Turns what happens in a run into the rows of its record: truth, what the flight software said, maneuvers, waypoints
 // met.
 
+#include <deque>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
 #include "host_sim/truth/attitude/attitude_state.h"
+#include "host_sim/twins/packet_source.h"
 #include "pil_bridge/flight_computer.h"
 
 namespace vbar::app {
@@ -29,7 +32,12 @@ struct NamedAttitude {
 
 class FlightRecorder {
  public:
-  FlightRecorder(const mission::Mission& mission, report::RunRecord& record) : mission_(mission), record_(record) {}
+  /// `servicer`: the spacecraft of the mission whose flight software speaks.
+  FlightRecorder(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunRecord& record)
+      : mission_(mission), servicer_(servicer), record_(record) {}
+
+  /// Truth when a sensor measured: what an image showed is told steps later. The last few are kept.
+  void on_measured(const twins::TruthSnapshot& truth);
 
   /// Truth at the time of a flight step.
   void on_truth(fsw::GpsTime time, const PairTruth& truth);
@@ -54,7 +62,15 @@ class FlightRecorder {
 
  private:
   [[nodiscard]] double mission_seconds(fsw::GpsTime time) const { return fsw::seconds(time - mission_.epoch); }
-  void on_telemetry(report::EstimateRow& row, const fsw::packets::PacketView& packet);
+  /// What a step said of an image, in two packets.
+  struct ImageTelemetry {
+    fsw::GpsTime exposure;
+    std::optional<telemetry_image> image;
+    std::optional<telemetry_objects> objects;
+  };
+
+  void on_telemetry(report::EstimateRow& row, ImageTelemetry& told, const fsw::packets::PacketView& packet);
+  void on_image(const report::EstimateRow& step, const ImageTelemetry& told);
   [[nodiscard]] report::GnssRow gnss_row(double time_s, const telemetry_gnss& m) const;
   void on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet);
   void add_maneuver(fsw::GpsTime command_time, fsw::GpsTime burn_time, const maneuver_command& command);
@@ -62,6 +78,8 @@ class FlightRecorder {
   void finish_legs();
 
   const mission::Mission& mission_;
+  const mission::Spacecraft& servicer_;
+  std::deque<twins::TruthSnapshot> measured_;  ///< oldest first
   report::RunRecord& record_;
 };
 

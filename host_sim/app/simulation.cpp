@@ -67,7 +67,7 @@ Simulation::Simulation(const mission::Mission& mission, const std::filesystem::p
       servicer_(complete_servicer(mission)),
       surroundings_(surroundings),
       record_(record),
-      recorder_(mission, record),
+      recorder_(mission, servicer_, record),
       truth_(truth_settings(mission, data_directory)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
       earth_rotation_(truth_.data().earth_orientation, mission.epoch),
@@ -185,6 +185,7 @@ void Simulation::pass_on(std::vector<twins::Packet> packets, GpsTime available, 
 /// In lock-step simulated time waits for a sensor that needs longer.
 twins::Measurement Simulation::measure_now(twins::PacketSource& sensor) {
   const twins::TruthSnapshot truth = snapshot();
+  recorder_.on_measured(truth);
   while (true) {
     twins::Measurement measurement = sensor.measure(truth);
     if (measurement.status != twins::MeasurementStatus::kLater) return measurement;
@@ -334,8 +335,11 @@ void Simulation::summarise(double wall_s, bool complete) {
   summary.complete = complete;
   summary.flight_computer = mission::name_of(servicer_.flight_computer->target);
   summary.flight_software = surroundings_.flight_computer.description();
-  summary.navigation = servicer_.gnss ? "gnss" : std::string(mission::name_of(servicer_.navigation->source));
+  summary.navigation = servicer_.camera ? "angles_only"
+                       : servicer_.gnss ? "gnss"
+                                        : std::string(mission::name_of(servicer_.navigation->source));
   summary.gnss = servicer_.gnss ? "digital" : "";
+  summary.camera = servicer_.camera ? "digital" : "";
   summary.static_floor_m = gnss_static_floor_m(mission_, servicer_);
   // What a link delivers after the end is of no interest.
   summary.simulated_s = fsw::seconds(std::min(events_.now(), mission_.end_time()) - mission_.start_time());

@@ -56,6 +56,7 @@ details { margin: 8px 0; } summary { cursor: pointer; color: var(--muted); }
   .of2 { grid-template-columns: repeat(2, minmax(0, 1fr)); } .of3 { grid-template-columns: repeat(3, minmax(0, 1fr)); }
 }
 figure { margin: 0; }
+img.picture { width: 100%; height: auto; } figcaption { font-size: 13px; color: var(--muted); }
 .legend { font-size: 13px; color: var(--muted); display: flex; flex-wrap: wrap; gap: 2px 20px; margin: 4px 0; }
 .swatch { width: 24px; height: 10px; margin-right: 6px; }
 svg.plot { display: block; width: 100%; height: auto; font-size: 11px; }

@@ -22,6 +22,8 @@ DisplayUnit display_unit(Unit unit, double largest) {
       return {180.0 / M_PI, "deg"};
     case Unit::kRadiansPerSecond:
       return {180.0 / M_PI, "deg/s"};
+    case Unit::kArcseconds:
+      return {1.0, "arcsec"};
     case Unit::kNone:
       break;
   }

@@ -8,8 +8,8 @@
 
 namespace vbar::report {
 
-/// What the numbers of an axis measure, in SI; hours for time.
-enum class Unit { kNone, kHours, kMetres, kMetresPerSecond, kRadians, kRadiansPerSecond, kSigmas };
+/// What the numbers of an axis measure, in SI; hours for time, arcseconds for small angles.
+enum class Unit { kNone, kHours, kMetres, kMetresPerSecond, kRadians, kRadiansPerSecond, kSigmas, kArcseconds };
 
 /// The form in which numbers of that size are best read: 75000 m as 75 km, 0.004 m/s as 4 mm/s, angles in degrees.
 struct DisplayUnit {

@@ -28,6 +28,9 @@ namespace vbar::report {
 /// Carrier-phase navigation: beside the paper, integers, consistency (section_gnss.cpp).
 [[nodiscard]] std::string gnss_section(const RunRecord& record);
 
+/// Angles-only navigation: beside the paper, bearings, star attitude, range, pictures (section_angles_only.cpp).
+[[nodiscard]] std::string angles_only_section(const RunRecord& record);
+
 /// True attitudes and rates (section_attitude.cpp).
 [[nodiscard]] std::string attitude_section(const RunRecord& record);
 

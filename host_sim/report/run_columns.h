@@ -37,6 +37,13 @@ inline constexpr std::array<std::string_view, 6> kRtnMAndMps{"r_m", "t_m", "n_m"
 inline constexpr std::array<std::string_view, 21> kRtnLowerTriangle{
     "r_r",  "t_r",  "t_t",   "n_r",   "n_t",  "n_n",  "vr_r", "vr_t",  "vr_n",  "vr_vr", "vt_r",
     "vt_t", "vt_n", "vt_vr", "vt_vt", "vn_r", "vn_t", "vn_n", "vn_vr", "vn_vt", "vn_vn"};
+inline constexpr std::array<std::string_view, 3> kXyz{"x", "y", "z"};
+inline constexpr std::array<std::string_view, 2> kXyArcsec{"x_arcsec", "y_arcsec"};
+/// Rows and columns da, dlambda, dex, dey, dix, diy.
+inline constexpr std::array<std::string_view, 21> kRoeLowerTriangle{
+    "da_da",   "dl_da",   "dl_dl",   "dex_da",  "dex_dl",  "dex_dex", "dey_da",
+    "dey_dl",  "dey_dex", "dey_dey", "dix_da",  "dix_dl",  "dix_dex", "dix_dey",
+    "dix_dix", "diy_da",  "diy_dl",  "diy_dex", "diy_dey", "diy_dix", "diy_diy"};
 inline constexpr std::array<std::string_view, 6> kRoeM{"da_m", "dlambda_m", "dex_m", "dey_m", "dix_m", "diy_m"};
 
 template <class Visitor, class Values, std::size_t size>
@@ -125,6 +132,64 @@ void visit_columns(Row& row, Visitor& visit) {
   columns::group(visit, "covariance_rtn", columns::kRtnLowerTriangle, row.covariance_rtn);
   visit(ColumnName{"messages"}, row.messages);
   visit(ColumnName{"messages_refused"}, row.messages_refused);
+}
+
+template <columns::RowOf<ImageRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"step_time_s"}, row.step_time_s);
+  visit(ColumnName{"step"}, row.step);
+  visit(ColumnName{"image"}, row.image);
+  visit(ColumnName{"status"}, row.status);
+  visit(ColumnName{"star_method"}, row.star_method);
+  visit(ColumnName{"tiles_missing"}, row.tiles_missing);
+  visit(ColumnName{"objects"}, row.objects);
+  visit(ColumnName{"stars"}, row.stars);
+  visit(ColumnName{"hypotheses"}, row.hypotheses);
+  visit(ColumnName{"target_object"}, row.target_object);
+  visit(ColumnName{"true_object"}, row.true_object);
+  visit(ColumnName{"chosen"}, row.chosen);
+  visit(ColumnName{"background_dn"}, row.background_dn);
+  visit(ColumnName{"noise_dn"}, row.noise_dn);
+  columns::group(visit, "q_eci_camera", columns::kWxyz, row.q_eci_camera);
+  visit(ColumnName{"attitude_sigma_arcsec"}, row.attitude_sigma_arcsec);
+  columns::group(visit, "bearing_eci", columns::kXyz, row.bearing_eci);
+  visit(ColumnName{"bearing_sigma_arcsec"}, row.bearing_sigma_arcsec);
+  columns::group(visit, "prefit", columns::kXyArcsec, row.prefit_arcsec);
+  columns::group(visit, "postfit", columns::kXyArcsec, row.postfit_arcsec);
+  visit(ColumnName{"nis"}, row.nis);
+  visit(ColumnName{"used"}, row.used);
+  columns::group(visit, "covariance_a_roe_m2", columns::kRoeLowerTriangle, row.covariance_a_roe_m2);
+  columns::group(visit, "a_roe_osculating", columns::kRoeM, row.a_roe_osculating_m);
+  visit(ColumnName{"bearings_used"}, row.bearings_used);
+  visit(ColumnName{"bearings_refused"}, row.bearings_refused);
+  visit(ColumnName{"images_without_stars"}, row.images_without_stars);
+  visit(ColumnName{"tiles_refused"}, row.tiles_refused);
+  visit(ColumnName{"range_m"}, row.range_m);
+  visit(ColumnName{"bearing_error_x_arcsec"}, row.bearing_error_x_arcsec);
+  visit(ColumnName{"bearing_error_y_arcsec"}, row.bearing_error_y_arcsec);
+  visit(ColumnName{"attitude_error_across_arcsec"}, row.attitude_error_across_arcsec);
+  visit(ColumnName{"attitude_error_roll_arcsec"}, row.attitude_error_roll_arcsec);
+  visit(ColumnName{"nees"}, row.nees);
+}
+
+template <columns::RowOf<ObjectRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"image"}, row.image);
+  visit(ColumnName{"object"}, row.object);
+  visit(ColumnName{"kind"}, row.kind);
+  visit(ColumnName{"star"}, row.star);
+  visit(ColumnName{"x_px"}, row.x_px);
+  visit(ColumnName{"y_px"}, row.y_px);
+}
+
+/// The picture itself is a file of its own.
+template <columns::RowOf<GalleryImage> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"image"}, row.image);
+  visit(ColumnName{"caption"}, row.caption);
 }
 
 template <columns::RowOf<ManeuverRow> Row, class Visitor>

@@ -23,13 +23,17 @@ constexpr std::string_view kTruth = "truth.csv";
 constexpr std::string_view kAttitude = "attitude.csv";
 constexpr std::string_view kEstimate = "estimate.csv";
 constexpr std::string_view kGnss = "gnss.csv";
+constexpr std::string_view kImages = "images.csv";
+constexpr std::string_view kObjects = "objects.csv";
+constexpr std::string_view kGallery = "gallery.csv";
+constexpr std::string_view kPictures = "gallery";  // a folder
 constexpr std::string_view kManeuvers = "maneuvers.csv";
 constexpr std::string_view kResiduals = "residuals.csv";
 constexpr std::string_view kPacketLog = "packets.lcmlog";
 constexpr std::string_view kReport = "report.html";
 
-constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,     kAttitude,  kEstimate, kGnss,
-                                         kManeuvers, kResiduals, kPacketLog, kReport};
+constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,   kAttitude,  kEstimate,  kGnss,      kImages,
+                                         kObjects,   kGallery, kManeuvers, kResiduals, kPacketLog, kReport};
 
 [[noreturn]] void fail(const fs::path& folder, std::string_view what) {
   throw std::runtime_error(fmt::format("{}: {}", folder.string(), what));
@@ -40,6 +44,26 @@ void check_may_be_replaced(const fs::path& folder) {
   if (!fs::is_directory(folder)) fail(folder, "is a file; a run needs a folder");
   if (fs::is_empty(folder) || is_summary(folder / kSummary)) return;
   fail(folder, "holds something other than a run; remove it or name another folder with --out");
+}
+
+fs::path picture_file(const fs::path& folder, const GalleryImage& image) {
+  return folder / kPictures / fmt::format("{:05}.png", image.image);
+}
+
+void write_gallery(const fs::path& folder, const std::vector<GalleryImage>& gallery) {
+  fs::create_directories(folder / kPictures);
+  for (const GalleryImage& image : gallery)
+    replace_text_file(picture_file(folder, image), std::string(image.png.begin(), image.png.end()));
+  write_rows(folder / kGallery, gallery);
+}
+
+std::vector<GalleryImage> read_gallery(const fs::path& folder) {
+  std::vector<GalleryImage> gallery = read_rows<GalleryImage>(folder / kGallery);
+  for (GalleryImage& image : gallery) {
+    const std::string bytes = read_text_file(picture_file(folder, image));
+    image.png.assign(bytes.begin(), bytes.end());
+  }
+  return gallery;
 }
 
 }  // namespace
@@ -64,6 +88,7 @@ RunFolder::RunFolder(fs::path folder, const Summary& start) : folder_(std::move(
     running.incomplete_reason = "running";
     replace_text_file(folder_ / kSummary, summary_json(running, {}));
     for (const std::string_view name : kFilesBesideSummary) fs::remove(folder_ / name);
+    fs::remove_all(folder_ / kPictures);
   } catch (const fs::filesystem_error& error) {
     fail(folder_, "cannot be made: " + error.code().message());
   }
@@ -75,6 +100,9 @@ void RunFolder::finish(const RunRecord& record) const {
   if (!record.attitudes.empty()) write_rows(folder_ / kAttitude, record.attitudes);
   write_rows(folder_ / kEstimate, record.estimates);
   if (!record.gnss.empty()) write_rows(folder_ / kGnss, record.gnss);
+  if (!record.images.empty()) write_rows(folder_ / kImages, record.images);
+  if (!record.objects.empty()) write_rows(folder_ / kObjects, record.objects);
+  if (!record.gallery.empty()) write_gallery(folder_, record.gallery);
   write_rows(folder_ / kManeuvers, record.maneuvers);
   write_rows(folder_ / kResiduals, record.residuals);
   replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
@@ -94,6 +122,9 @@ RunRecord read_run(const fs::path& run_folder) {
   if (fs::exists(run_folder / kAttitude)) record.attitudes = read_rows<AttitudeRow>(run_folder / kAttitude);
   record.estimates = read_rows<EstimateRow>(run_folder / kEstimate);
   if (fs::exists(run_folder / kGnss)) record.gnss = read_rows<GnssRow>(run_folder / kGnss);
+  if (fs::exists(run_folder / kImages)) record.images = read_rows<ImageRow>(run_folder / kImages);
+  if (fs::exists(run_folder / kObjects)) record.objects = read_rows<ObjectRow>(run_folder / kObjects);
+  if (fs::exists(run_folder / kGallery)) record.gallery = read_gallery(run_folder);
   record.maneuvers = read_rows<ManeuverRow>(run_folder / kManeuvers);
   record.residuals = read_rows<ResidualRow>(run_folder / kResiduals);
   return record;

@@ -10,6 +10,7 @@
 
 namespace vbar::report {
 
+using Pair = std::array<double, 2>;
 using Triple = std::array<double, 3>;
 using Sextuple = std::array<double, 6>;
 using Quadruple = std::array<double, 4>;
@@ -73,6 +74,58 @@ struct GnssRow {
   friend bool operator==(const GnssRow&, const GnssRow&) = default;
 };
 
+/// What angles-only navigation said of an image (fsw/packets/vbar.lcm, telemetry_image), and what was true at its
+/// exposure (images.csv, only if a run has such navigation). Counts at the end are since the start.
+struct ImageRow {
+  double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
+  double step_time_s = 0.0;  ///< of the step that told of it
+  std::int64_t step = 0;
+  std::int32_t image = 0;
+  int status = 0;  ///< why no bearing came of it; 0: one did
+  int star_method = 0;
+  int tiles_missing = 0, objects = 0, stars = 0, hypotheses = 0;
+  int target_object = -1;  ///< the flight software's choice, an index in objects.csv; -1: none
+  int true_object = -1;    ///< the one that is really the target; -1: none is, or nobody can tell
+  std::string chosen;      ///< the spacecraft that the choice really is, "nothing" if none; empty without a choice
+  double background_dn = 0.0, noise_dn = 0.0;
+  Quadruple q_eci_camera{1.0, 0.0, 0.0, 0.0};  ///< from the stars; w, x, y, z
+  double attitude_sigma_arcsec = 0.0;
+  Triple bearing_eci{};
+  double bearing_sigma_arcsec = 0.0;
+  Pair prefit_arcsec{}, postfit_arcsec{};  ///< in the camera's x and y
+  double nis = 0.0;                        ///< two degrees of freedom
+  int used = 0;                            ///< 0: navigation refused it, 1: filter, 2: batch
+  LowerTriangle6 covariance_a_roe_m2{};
+  Sextuple a_roe_osculating_m{};
+  std::int32_t bearings_used = 0, bearings_refused = 0, images_without_stars = 0, tiles_refused = 0;
+  // The truth. Errors are estimated less true; absent where the flight software gave nothing.
+  std::optional<double> range_m;
+  std::optional<double> bearing_error_x_arcsec, bearing_error_y_arcsec;            ///< against the centre of mass
+  std::optional<double> attitude_error_across_arcsec, attitude_error_roll_arcsec;  ///< of the boresight, and about it
+  std::optional<double> nees;  ///< of the osculating ROE, six degrees of freedom; of images that the filter used
+  friend bool operator==(const ImageRow&, const ImageRow&) = default;
+};
+
+/// What the flight software took an object of an image for (objects.csv).
+struct ObjectRow {
+  double time_s = 0.0;
+  std::int32_t image = 0;
+  int object = 0;  ///< brightest first
+  int kind = 0;    ///< 0 not matched, 1 star, 2 target, 3 hot pixel
+  std::int32_t star = 0;
+  float x_px = 0.0F, y_px = 0.0F;  ///< on the detector
+  friend bool operator==(const ObjectRow&, const ObjectRow&) = default;
+};
+
+/// An image worth looking at, with marks about what was found in it (gallery.csv and gallery/<image>.png).
+struct GalleryImage {
+  double time_s = 0.0;
+  std::int32_t image = 0;
+  std::string caption;
+  std::vector<std::uint8_t> png;  ///< the file's bytes
+  friend bool operator==(const GalleryImage&, const GalleryImage&) = default;
+};
+
 /// A maneuver from command to execution (maneuvers.csv).
 struct ManeuverRow {
   int maneuver_id = 0, waypoint_index = -1, solver = -1;
@@ -82,7 +135,7 @@ struct ManeuverRow {
   friend bool operator==(const ManeuverRow&, const ManeuverRow&) = default;
 };
 
-/// A residual of navigation (residuals.csv); none with ideal navigation.
+/// A residual of navigation (residuals.csv); none with ideal navigation. In the unit that the sensor's name ends in.
 struct ResidualRow {
   double time_s = 0.0;
   std::string sensor;
@@ -108,6 +161,21 @@ struct MeanAndDeviation {
   friend bool operator==(const MeanAndDeviation&, const MeanAndDeviation&) = default;
 };
 
+/// Of the bearings to a target that is no larger than a pixel.
+struct BearingError {
+  double mean = 0.0;  ///< size
+  double std = 0.0;   ///< of each axis about the bias
+  double bias = 0.0;  ///< size of the mean
+  friend bool operator==(const BearingError&, const BearingError&) = default;
+};
+
+struct ImageCounts {
+  int images = 0;
+  int with_bearing = 0;
+  int wrong_targets = 0;  ///< images whose choice is not the target
+  friend bool operator==(const ImageCounts&, const ImageCounts&) = default;
+};
+
 /// summary.json.
 struct Summary {
   std::string mission;
@@ -125,8 +193,13 @@ struct Summary {
   /// of bodies with parallel axes. Navigation that takes the nominal places errs by it; one that estimates them from
   /// the motion may do better.
   std::optional<double> static_floor_m;
-  /// Mean normalised estimation error squared of the relative state over the steps of navigation_error_m; 6 is honest.
+  /// Mean normalised estimation error squared of the relative state over the steps of navigation_error_m, or over the
+  /// images that angles-only navigation used; 6 is honest.
   std::optional<double> navigation_nees;
+  // Angles-only navigation only.
+  std::optional<BearingError> bearing_error_arcsec;
+  std::optional<MeanAndDeviation> star_attitude_error_arcsec;  ///< of the boresight
+  std::optional<ImageCounts> images;
   double dv_mps = 0.0;
   int maneuvers = 0;
   std::string commands_sha256, telemetry_sha256;
@@ -161,6 +234,9 @@ struct RunRecord {
   std::vector<AttitudeRow> attitudes;
   std::vector<EstimateRow> estimates;
   std::vector<GnssRow> gnss;
+  std::vector<ImageRow> images;
+  std::vector<ObjectRow> objects;
+  std::vector<GalleryImage> gallery;
   std::vector<ManeuverRow> maneuvers;
   std::vector<ResidualRow> residuals;
   friend bool operator==(const RunRecord&, const RunRecord&) = default;

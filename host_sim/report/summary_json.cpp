@@ -23,6 +23,15 @@ Json json_of(const std::optional<MeanAndDeviation>& value) {
   return {{"mean", value->mean}, {"std", value->std}};
 }
 
+Json json_of(const std::optional<BearingError>& value) {
+  if (!value) return {{"mean", nullptr}, {"std", nullptr}, {"bias", nullptr}};
+  return {{"mean", value->mean}, {"std", value->std}, {"bias", value->bias}};
+}
+
+Json count_or_null(const std::optional<ImageCounts>& counts, int ImageCounts::*count) {
+  return counts ? Json((*counts).*count) : Json(nullptr);
+}
+
 Json text_or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
@@ -56,6 +65,17 @@ std::optional<MeanAndDeviation> mean_and_deviation(const Json& json) {
   return MeanAndDeviation{number(json.at("mean")), number(json.at("std"))};
 }
 
+std::optional<BearingError> bearing_error(const Json& json) {
+  if (json.at("mean").is_null()) return std::nullopt;
+  return BearingError{number(json.at("mean")), number(json.at("std")), number(json.at("bias"))};
+}
+
+std::optional<ImageCounts> image_counts(const Json& json) {
+  if (json.at("images").is_null()) return std::nullopt;
+  return ImageCounts{json.at("images").get<int>(), json.at("images_with_bearing").get<int>(),
+                     json.at("wrong_targets").get<int>()};
+}
+
 Summary summary_from(const Json& json) {
   Summary s;
   json.at("mission").get_to(s.mission);
@@ -76,6 +96,9 @@ Summary summary_from(const Json& json) {
   s.first_fix_s = optional_number(json.at("first_fix_s"));
   s.static_floor_m = optional_number(json.at("static_floor_m"));
   s.navigation_nees = optional_number(json.at("navigation_nees"));
+  s.bearing_error_arcsec = bearing_error(json.at("bearing_error_arcsec"));
+  s.star_attitude_error_arcsec = mean_and_deviation(json.at("star_attitude_error_arcsec"));
+  s.images = image_counts(json);
   s.dv_mps = number(json.at("dv_mps"));
   json.at("maneuvers").get_to(s.maneuvers);
   json.at("commands_sha256").get_to(s.commands_sha256);
@@ -137,6 +160,11 @@ std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypo
       {"first_fix_s", json_of(s.first_fix_s)},
       {"static_floor_m", json_of(s.static_floor_m)},
       {"navigation_nees", json_of(s.navigation_nees)},
+      {"bearing_error_arcsec", json_of(s.bearing_error_arcsec)},
+      {"star_attitude_error_arcsec", json_of(s.star_attitude_error_arcsec)},
+      {"images", count_or_null(s.images, &ImageCounts::images)},
+      {"images_with_bearing", count_or_null(s.images, &ImageCounts::with_bearing)},
+      {"wrong_targets", count_or_null(s.images, &ImageCounts::wrong_targets)},
       {"dv_mps", s.dv_mps},
       {"maneuvers", s.maneuvers},
       {"commands_sha256", s.commands_sha256},

@@ -42,7 +42,7 @@ TEST_F(HtmlReport, TellsTheWholeRun) {
   const std::string html = html_report(synthetic_run());
   for (const char* heading :
        {"Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation", "Carrier-phase navigation",
-        "Attitude", "Guidance and passive safety", "Flight computer, link and time"}) {
+        "Angles-only navigation", "Attitude", "Guidance and passive safety", "Flight computer, link and time"}) {
     EXPECT_THAT(html, HasSubstr("<h2>" + std::string(heading) + "</h2>"));
   }
   EXPECT_THAT(html, HasSubstr("&lt;a &quot;test&quot; &amp; nothing else&gt;")) << "the flight software's own name";
@@ -50,6 +50,10 @@ TEST_F(HtmlReport, TellsTheWholeRun) {
   EXPECT_THAT(html, HasSubstr("did not converge"));
   EXPECT_THAT(html, HasSubstr("40 commanded, 39 executed, 1 not executed"));
   EXPECT_THAT(html, HasSubstr("300 s after the start"));
+  EXPECT_THAT(html, HasSubstr("4.75 in 90 maneuvers")) << "the paper's, as the run meets its waypoints 1 to 7";
+  EXPECT_THAT(html, HasSubstr("noise 11.25 arcsec an axis, bias 2.50 arcsec"));
+  EXPECT_THAT(html, HasSubstr("2476, 2122 with a bearing, 353 without stars"));
+  EXPECT_THAT(html, HasSubstr("data:image/png;base64,iVBORw0KGgo")) << "the signature of every PNG";
   EXPECT_THAT(html, HasSubstr("12.476 in 12 maneuvers")) << "the paper's, as the run meets its waypoints 9 and 10";
   EXPECT_THAT(html, HasSubstr("at most 350,000, on average 250,001 instructions; at most 21,000 bytes of stack"));
 }
@@ -80,6 +84,7 @@ TEST_F(HtmlReport, CopesWithASingleStep) {
   record.estimates.resize(1);
   record.waypoints.resize(1);
   record.gnss.resize(1);
+  record.images.resize(1);
   record.maneuvers.clear();
   record.residuals.clear();
   EXPECT_EQ(complaints(html_report(record)), "");
@@ -89,6 +94,22 @@ TEST_F(HtmlReport, NamesThePaperOnlyBesideItsWaypoints) {
   RunRecord record = synthetic_run();
   for (WaypointRow& waypoint : record.waypoints) waypoint.a_roe_desired_m[1] -= 1.0;
   EXPECT_THAT(html_report(record), testing::Not(HasSubstr("paper, software in the loop")));
+}
+
+TEST_F(HtmlReport, CopesWithACameraThatSawNothing) {
+  RunRecord record = synthetic_run();
+  for (ImageRow& row : record.images) {
+    ImageRow dark;
+    dark.time_s = row.time_s;
+    dark.status = 1;
+    row = dark;
+  }
+  record.summary.bearing_error_arcsec = std::nullopt;
+  record.summary.star_attitude_error_arcsec = std::nullopt;
+  record.gallery.clear();
+  EXPECT_EQ(complaints(html_report(record)), "");
+  record.images.clear();
+  EXPECT_THAT(html_report(record), testing::Not(HasSubstr("Angles-only navigation")));
 }
 
 TEST_F(HtmlReport, CopesWithGnssThatNeverSolved) {
@@ -116,6 +137,9 @@ TEST_F(HtmlReport, CopesWithNumbersThatAreNone) {
   record.truth[100].relative_position_rtn = {none, none, none};
   record.truth[200].a_roe_mean_m.fill(std::numeric_limits<double>::infinity());
   record.gnss[400].phase_nis = none;
+  record.images[100].nis = none;
+  record.images[110].prefit_arcsec = {none, none};
+  record.images[120].bearing_error_x_arcsec = none;
   record.gnss[500].covariance_rtn.fill(none);
   record.estimates[300].passive_safety_distance_m = none;
   record.maneuvers[5].executed_dv_rtn_mps = {none, 0.0, 0.0};

@@ -72,8 +72,9 @@ TEST_F(RunFolderTest, WritingWhatWasReadGivesTheSameFiles) {
   leave_a_run();
   const RunFolder again(scratch_ / "again", {});
   again.finish(read_run(run()));
-  for (const char* name : {"summary.json", "waypoints.csv", "truth.csv", "attitude.csv", "estimate.csv", "gnss.csv",
-                           "maneuvers.csv", "residuals.csv"}) {
+  for (const char* name :
+       {"summary.json", "waypoints.csv", "truth.csv", "attitude.csv", "estimate.csv", "gnss.csv", "images.csv",
+        "objects.csv", "gallery.csv", "gallery/00003.png", "maneuvers.csv", "residuals.csv"}) {
     EXPECT_EQ(content(run() / name), content(again.path() / name)) << name;
     EXPECT_FALSE(content(run() / name).empty()) << name;
   }
@@ -140,6 +141,51 @@ TEST_F(RunFolderTest, ColumnsOfGnssAreAsAgreed) {
                 covariance + "messages,messages_refused");
 }
 
+TEST_F(RunFolderTest, ColumnsOfImagesAreAsAgreed) {
+  const RunFolder folder(run(), {});
+  RunRecord record;
+  record.images.emplace_back();
+  record.objects.emplace_back();
+  record.gallery.emplace_back();
+  folder.finish(record);
+  std::string covariance;
+  const char* const kElements[] = {"da", "dl", "dex", "dey", "dix", "diy"};
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column <= row; ++column)
+      covariance += std::string("covariance_a_roe_m2_") + kElements[row] + "_" + kElements[column] + ",";
+  EXPECT_EQ(first_line(run() / "images.csv"),
+            "time_s,step_time_s,step,image,status,star_method,tiles_missing,objects,stars,hypotheses,target_object,"
+            "true_object,chosen,background_dn,noise_dn,q_eci_camera_w,q_eci_camera_x,q_eci_camera_y,q_eci_camera_z,"
+            "attitude_sigma_arcsec,bearing_eci_x,bearing_eci_y,bearing_eci_z,bearing_sigma_arcsec,prefit_x_arcsec,"
+            "prefit_y_arcsec,postfit_x_arcsec,postfit_y_arcsec,nis,used," +
+                covariance +
+                "a_roe_osculating_da_m,a_roe_osculating_dlambda_m,a_roe_osculating_dex_m,a_roe_osculating_dey_m,"
+                "a_roe_osculating_dix_m,a_roe_osculating_diy_m,bearings_used,bearings_refused,images_without_stars,"
+                "tiles_refused,range_m,bearing_error_x_arcsec,bearing_error_y_arcsec,attitude_error_across_arcsec,"
+                "attitude_error_roll_arcsec,nees");
+  EXPECT_EQ(first_line(run() / "objects.csv"), "time_s,image,object,kind,star,x_px,y_px");
+  EXPECT_EQ(first_line(run() / "gallery.csv"), "time_s,image,caption");
+}
+
+TEST_F(RunFolderTest, ImagesAreFilesOnlyWhereACameraNavigates) {
+  leave_a_run();
+  EXPECT_TRUE(fs::exists(run() / "gallery" / "00403.png"));
+  RunRecord record = synthetic_run();
+  record.images.clear();
+  record.objects.clear();
+  record.gallery.clear();
+  RunFolder(run(), record.summary).finish(record);
+  for (const char* name : {"images.csv", "objects.csv", "gallery.csv", "gallery"})
+    EXPECT_FALSE(fs::exists(run() / name)) << name;
+  EXPECT_TRUE(read_run(run()) == record);
+}
+
+TEST_F(RunFolderTest, APictureThatIsGoneIsNamed) {
+  leave_a_run();
+  fs::remove(run() / "gallery" / "00403.png");
+  EXPECT_THAT(error_of_reading(), HasSubstr("gallery/00403.png: no such file"));
+}
+
 TEST_F(RunFolderTest, GnssIsAFileOnlyWhereItNavigates) {
   leave_a_run();
   RunRecord record = synthetic_run();
@@ -167,7 +213,8 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
               ElementsAre("mission", "seed", "complete", "incomplete_reason", "flight_computer", "flight_software",
                           "camera", "gnss", "navigation", "simulated_s", "wall_s", "speed_factor", "waypoints",
                           "navigation_error_m", "navigation_velocity_error_mps", "attitude_error_deg", "first_fix_s",
-                          "static_floor_m", "navigation_nees", "dv_mps", "maneuvers", "commands_sha256",
+                          "static_floor_m", "navigation_nees", "bearing_error_arcsec", "star_attitude_error_arcsec",
+                          "images", "images_with_bearing", "wrong_targets", "dv_mps", "maneuvers", "commands_sha256",
                           "telemetry_sha256", "flight_step", "link", "deadlines", "wall_share"));
   EXPECT_THAT(keys(json.at("waypoints").at(3)),
               ElementsAre("index", "time_s", "navigation_error_m", "navigation_velocity_error_mps", "control_error_m",
@@ -178,6 +225,11 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
   EXPECT_THAT(keys(json.at("deadlines")),
               ElementsAre("compute_overruns", "wakeups_late", "link_late", "simulation_late"));
   EXPECT_EQ(json.at("first_fix_s"), 300.0);
+  EXPECT_THAT(keys(json.at("bearing_error_arcsec")), ElementsAre("mean", "std", "bias"));
+  EXPECT_EQ(json.at("bearing_error_arcsec").at("bias"), 2.5);
+  EXPECT_THAT(keys(json.at("star_attitude_error_arcsec")), ElementsAre("mean", "std"));
+  EXPECT_EQ(json.at("images"), 2476);
+  EXPECT_EQ(json.at("wrong_targets"), 43);
   EXPECT_TRUE(json.at("camera").is_null());
   EXPECT_TRUE(json.at("incomplete_reason").is_null());
   EXPECT_TRUE(json.at("attitude_error_deg").at("mean").is_null());
@@ -192,6 +244,10 @@ TEST_F(RunFolderTest, SummaryWithoutGnssHasNulls) {
   for (const char* key : {"first_fix_s", "static_floor_m", "navigation_nees"})
     EXPECT_TRUE(json.at(key).is_null()) << key;
   EXPECT_FALSE(read_run(run()).summary.first_fix_s.has_value());
+  for (const char* key : {"images", "images_with_bearing", "wrong_targets"}) EXPECT_TRUE(json.at(key).is_null()) << key;
+  EXPECT_TRUE(json.at("bearing_error_arcsec").at("bias").is_null());
+  EXPECT_FALSE(read_run(run()).summary.images.has_value());
+  EXPECT_FALSE(read_run(run()).summary.bearing_error_arcsec.has_value());
 }
 
 TEST_F(RunFolderTest, SaysIncompleteUntilFinished) {

@@ -128,6 +128,61 @@ GnssRow gnss_of(const EstimateRow& estimate) {
   return row;
 }
 
+/// An image a minute; every seventh is dark, in every fiftieth the decoy is taken for the target.
+ImageRow image_of(const EstimateRow& estimate) {
+  ImageRow row;
+  row.step = estimate.step;
+  row.time_s = estimate.time_s - 60.0;
+  row.step_time_s = estimate.time_s;
+  row.image = static_cast<std::int32_t>(estimate.step);
+  row.objects = 60 + static_cast<int>(estimate.step % 9);
+  row.background_dn = 66.5;
+  row.noise_dn = 1.25;
+  row.images_without_stars = static_cast<std::int32_t>(estimate.step / 7);
+  row.tiles_refused = 1;
+  row.tiles_missing = estimate.step == 40 ? 3 : 0;
+  row.range_m = 75000.0 * std::exp(-3e-5 * row.time_s);
+  row.status = estimate.step % 7 == 0 ? 4 : 0;
+  row.bearings_used = static_cast<std::int32_t>(estimate.step - estimate.step / 7);
+  row.bearings_refused = 2;
+  if (row.status != 0) return row;
+  row.star_method = 2;
+  row.stars = 40 + static_cast<int>(estimate.step % 5);
+  row.hypotheses = 3;
+  row.target_object = 5;
+  row.true_object = estimate.step % 50 == 1 ? 6 : 5;
+  row.chosen = estimate.step % 50 == 1 ? "decoy, \"behind\"" : "target";
+  row.q_eci_camera = {0.5, -0.5, 0.5, 0.5};
+  row.attitude_sigma_arcsec = 4.0;
+  row.bearing_eci = {0.6, -0.8, 1e-300};
+  row.bearing_sigma_arcsec = 12.0;
+  row.prefit_arcsec = {30.0 * wobble(row.time_s, 10.0), 20.0 * wobble(row.time_s, 11.0)};
+  row.postfit_arcsec = {15.0 * wobble(row.time_s, 10.0), 12.0 * wobble(row.time_s, 11.0)};
+  row.nis = 1.0 + wobble(row.time_s, 12.0);
+  row.used = estimate.step < 40 ? 2 : 1;
+  row.covariance_a_roe_m2.fill(0.25);
+  row.a_roe_osculating_m = estimate.a_roe_mean_m;
+  row.bearing_error_x_arcsec = 2.0 + 12.0 * wobble(row.time_s, 13.0);
+  row.bearing_error_y_arcsec = 12.0 * wobble(row.time_s, 14.0);
+  row.attitude_error_across_arcsec = 4.0 + wobble(row.time_s, 15.0);
+  row.attitude_error_roll_arcsec = 20.0 + wobble(row.time_s, 16.0);
+  if (row.used == 1) row.nees = 6.0 + wobble(row.time_s, 17.0);
+  return row;
+}
+
+void add_objects(RunRecord& record, const ImageRow& image) {
+  for (int k = 0; k < 3; ++k)
+    record.objects.push_back(
+        {image.time_s, image.image, k, k, k == 1 ? 32349 : 0, 712.34F + 10.0F * static_cast<float>(k), 500.5F});
+}
+
+/// A black pixel as PNG: what a picture's bytes are does not matter here, but zeros and line ends among them do.
+const std::vector<std::uint8_t> kPicture{
+    0x89, 'P',  'N',  'G',  '\r', '\n', 0x1A, '\n', 0,    0,    0,    0x0D, 'I',  'H',  'D',  'R',  0,
+    0,    0,    1,    0,    0,    0,    1,    8,    0,    0,    0,    0,    0x3A, 0x7E, 0x9B, 0x55, 0,
+    0,    0,    0x0A, 'I',  'D',  'A',  'T',  0x08, 0xD7, 0x63, 0x60, 0,    0,    0,    0x02, 0,    1,
+    0xE2, 0x21, 0xBC, 0x33, 0,    0,    0,    0,    'I',  'E',  'N',  'D',  0xAE, 0x42, 0x60, 0x82};
+
 void add_waypoints(RunRecord& record) {
   double cumulative = 0.0;
   for (int k = 0; k <= kLast; ++k) {
@@ -180,6 +235,9 @@ Summary summary() {
   s.first_fix_s = 300.0;
   s.static_floor_m = 0.0061;
   s.navigation_nees = 5.9;
+  s.bearing_error_arcsec = BearingError{14.5, 11.25, 2.5};
+  s.star_attitude_error_arcsec = MeanAndDeviation{4.5, 1.5};
+  s.images = ImageCounts{2476, 2122, 43};
   s.dv_mps = 3.8345;
   s.maneuvers = 39;
   s.commands_sha256 = std::string(64, 'a');
@@ -200,6 +258,11 @@ RunRecord synthetic_run() {
     record.truth.push_back(truth_at(60.0 * static_cast<double>(step)));
     record.estimates.push_back(estimate_of(record.truth.back(), step));
     record.gnss.push_back(gnss_of(record.estimates.back()));
+    record.images.push_back(image_of(record.estimates.back()));
+    if (step % 400 == 3) {
+      add_objects(record, record.images.back());
+      record.gallery.push_back({record.images.back().time_s, record.images.back().image, "target & <decoy>", kPicture});
+    }
     const double t = record.truth.back().time_s;
     if (step % 10 == 0) record.residuals.push_back({t, "camera, \"left\"", wobble(t, 5.0), 0.5 * wobble(t, 5.0), 0.4});
     if (step % 15 == 0) record.residuals.push_back({t, "gnss", 2.0 * wobble(t, 6.0), wobble(t, 6.0), 0.9});

@@ -1,0 +1,20 @@
+#pragma once
+// Telemetry about images as rows of a record.
+
+#include <vector>
+
+#include "fsw/packets/messages.h"
+#include "host_sim/report/run_record.h"
+
+namespace vbar::app {
+
+/// Times are seconds after the mission's epoch: the exposure's, and that of the step that told of it. The truth stays
+/// out.
+[[nodiscard]] report::ImageRow image_row(double exposure_s, double step_s, const telemetry_image& image);
+
+void append_objects(double exposure_s, const telemetry_objects& objects, std::vector<report::ObjectRow>& rows);
+
+/// The residuals of an image's bearing, an axis of the camera each, in arcseconds.
+void append_residuals(const report::ImageRow& row, std::vector<report::ResidualRow>& rows);
+
+}  // namespace vbar::app

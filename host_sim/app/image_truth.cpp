@@ -1,0 +1,184 @@
+#include "host_sim/app/image_truth.h"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include "fsw/orbit/roe.h"
+
+namespace vbar::app {
+namespace {
+
+using Eigen::Quaterniond;
+using fsw::Vector3;
+using fsw::Vector6;
+
+constexpr double kArcsecond = M_PI / 648000.0;
+/// Of a spacecraft: its bearing is somewhere inside.
+constexpr double kRadius_m = 0.6;
+/// About three pixels of the Optical Stimulator: a bearing farther off is one of something else.
+constexpr double kSameObject_rad = 100.0 * kArcsecond;
+/// The target, 0.7 m, is a pixel of 35 arcsec there.
+constexpr double kUnresolvedRange_m = 5000.0;
+
+Vector3 vector(const double (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+double angle_between(const Vector3& a, const Vector3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// A camera in orbit at the middle of an exposure.
+struct TrueCamera {
+  Vector3 position_eci;
+  Quaterniond q_camera_eci;
+
+  [[nodiscard]] Vector3 towards(const twins::SpacecraftTruth& other) const {
+    return other.orbit.position_eci - position_eci;
+  }
+};
+
+TrueCamera true_camera(const mission::CameraSensor& camera, const twins::SpacecraftTruth& servicer) {
+  const Quaterniond& q_body_eci = servicer.attitude->q_body_eci;
+  return {servicer.orbit.position_eci + q_body_eci.conjugate() * camera.position_body_m,
+          camera.q_camera_body * q_body_eci};
+}
+
+/// Pinhole and Brown-Conrady distortion, forwards (Brown 1966).
+std::optional<Eigen::Vector2d> pixel_of(const twins::camera::CameraSettings& settings, const Vector3& los_camera) {
+  if (!(los_camera.z() > 0.1 * los_camera.norm())) return std::nullopt;
+  const auto& [k1, k2, p1, p2, k3] = settings.optics.distortion;
+  const double x = los_camera.x() / los_camera.z(), y = los_camera.y() / los_camera.z(), r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  const double f = settings.focal_length_px();
+  return Eigen::Vector2d(
+      settings.optics.principal_point_px[0] + f * (x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x)),
+      settings.optics.principal_point_px[1] + f * (y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y));
+}
+
+/// The object nearest to where the target really is, if it is near enough to be it; -1: none.
+int true_object(const telemetry_objects& objects, const Eigen::Vector2d& target_px, double tolerance_px) {
+  int nearest = -1;
+  double least = tolerance_px;
+  for (int k = 0; k < objects.count && k < 96; ++k) {
+    const double distance = (Eigen::Vector2d(objects.x_px[k], objects.y_px[k]) - target_px).norm();
+    if (distance > least) continue;
+    least = distance;
+    nearest = k;
+  }
+  return nearest;
+}
+
+/// The spacecraft in the direction of a bearing, nearest first by what its size allows.
+std::string spacecraft_at(const Vector3& bearing_eci, const TrueCamera& camera, const std::string& servicer,
+                          const twins::TruthSnapshot& truth) {
+  std::string found = "nothing";
+  double least = 1.0;
+  for (const twins::SpacecraftTruth& other : truth.spacecraft) {
+    if (other.name == servicer) continue;
+    const Vector3 los = camera.towards(other);
+    const double share = angle_between(bearing_eci, los) / (kSameObject_rad + kRadius_m / los.norm());
+    if (share > least) continue;
+    least = share;
+    found = other.name;
+  }
+  return found;
+}
+
+void add_bearing_error(report::ImageRow& row, const Vector3& bearing_eci, const Vector3& los_eci,
+                       const Quaterniond& q_camera_eci) {
+  const Vector3 los = (q_camera_eci * los_eci).normalized(), bearing = q_camera_eci * bearing_eci;
+  const Vector3 x = Vector3::UnitY().cross(los).normalized(), y = los.cross(x);
+  row.bearing_error_x_arcsec = std::atan2(bearing.dot(x), bearing.dot(los)) / kArcsecond;
+  row.bearing_error_y_arcsec = std::atan2(bearing.dot(y), bearing.dot(los)) / kArcsecond;
+}
+
+void add_attitude_error(report::ImageRow& row, const Quaterniond& q_eci_camera, const Quaterniond& q_camera_eci) {
+  const Eigen::AngleAxisd turn(q_camera_eci * q_eci_camera.normalized());
+  const Vector3 error = turn.angle() * turn.axis();
+  row.attitude_error_across_arcsec = std::hypot(error.x(), error.y()) / kArcsecond;
+  row.attitude_error_roll_arcsec = std::abs(error.z()) / kArcsecond;
+}
+
+std::optional<double> nees(const telemetry_image& image, const fsw::orbit::CartesianState& servicer,
+                           const fsw::orbit::CartesianState& target, double a) {
+  const auto chief = fsw::orbit::qns_from_cartesian(servicer), deputy = fsw::orbit::qns_from_cartesian(target);
+  if (!chief.ok() || !deputy.ok()) return std::nullopt;
+  fsw::Matrix6 covariance;
+  std::size_t place = 0;
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column <= row; ++column)
+      covariance(row, column) = covariance(column, row) = image.covariance_a_roe[place++];
+  const Eigen::LLT<fsw::Matrix6> factor(covariance);
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  const Vector6 error =
+      Eigen::Map<const Vector6>(image.a_roe_osculating_m) - a * fsw::orbit::roe_from_qns(chief.value(), deputy.value());
+  return factor.matrixL().solve(error).squaredNorm();
+}
+
+report::MeanAndDeviation statistics(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0;
+  for (const double v : values) sum += v;
+  const double mean = sum / static_cast<double>(values.size());
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  return {mean, std::sqrt(squares / static_cast<double>(values.size()))};
+}
+
+}  // namespace
+
+void add_truth(report::ImageRow& row, const telemetry_image& image, const telemetry_objects* objects,
+               const mission::Mission& mission, const mission::Spacecraft& servicer,
+               const twins::TruthSnapshot& truth) {
+  const twins::SpacecraftTruth* const own = truth.find(servicer.name);
+  const twins::SpacecraftTruth* const target = truth.find(servicer.observes());
+  if (!servicer.camera || own == nullptr || target == nullptr || !own->attitude) return;
+  const TrueCamera camera = true_camera(*servicer.camera, *own);
+  const Vector3 los_eci = camera.towards(*target);
+  row.range_m = los_eci.norm();
+  const Vector3 bearing_eci = vector(image.bearing_eci);
+  if (image.status == 0 && bearing_eci.norm() > 0.5) {
+    add_bearing_error(row, bearing_eci, los_eci, camera.q_camera_eci);
+    row.chosen = spacecraft_at(bearing_eci, camera, servicer.name, truth);
+  }
+  if (image.star_method != 0) {
+    const double(&q)[4] = image.q_eci_camera;
+    add_attitude_error(row, {q[0], q[1], q[2], q[3]}, camera.q_camera_eci);
+  }
+  const twins::camera::CameraSettings& settings = servicer.camera->settings;
+  const auto target_px = pixel_of(settings, camera.q_camera_eci * los_eci);
+  if (objects != nullptr && target_px) {
+    const double tolerance_px = settings.focal_length_px() * (kSameObject_rad + kRadius_m / *row.range_m);
+    row.true_object = true_object(*objects, *target_px, tolerance_px);
+  }
+  if (image.used == 1) row.nees = nees(image, own->orbit, target->orbit, mission.guidance.reference_semi_major_axis_m);
+}
+
+void summarise_images(const std::vector<report::ImageRow>& images, const std::string& target,
+                      report::Summary& summary) {
+  if (images.empty()) return;
+  report::ImageCounts counts;
+  counts.images = static_cast<int>(images.size());
+  std::vector<double> x, y, size, across, all_nees;
+  for (const report::ImageRow& row : images) {
+    if (row.status == 0) ++counts.with_bearing;
+    if (!row.chosen.empty() && row.chosen != target) ++counts.wrong_targets;
+    if (row.attitude_error_across_arcsec) across.push_back(*row.attitude_error_across_arcsec);
+    if (row.nees) all_nees.push_back(*row.nees);
+    // A wrong choice is counted as one; its bearing says nothing of the target's.
+    if (!row.bearing_error_x_arcsec || row.chosen != target || !(row.range_m > kUnresolvedRange_m)) continue;
+    x.push_back(*row.bearing_error_x_arcsec);
+    y.push_back(*row.bearing_error_y_arcsec);
+    size.push_back(std::hypot(x.back(), y.back()));
+  }
+  summary.images = counts;
+  if (!across.empty()) summary.star_attitude_error_arcsec = statistics(across);
+  if (!all_nees.empty()) summary.navigation_nees = statistics(all_nees).mean;
+  if (size.empty()) return;
+  const report::MeanAndDeviation of_x = statistics(x), of_y = statistics(y);
+  summary.bearing_error_arcsec = report::BearingError{statistics(size).mean, std::hypot(of_x.std, of_y.std) / M_SQRT2,
+                                                      std::hypot(of_x.mean, of_y.mean)};
+}
+
+}  // namespace vbar::app

@@ -1,0 +1,24 @@
+#pragma once
+// What was true of an image that flight software says it has looked at: where the target really was, and how far off
+// bearing, attitude and estimate are.
+
+#include <optional>
+
+#include "fsw/packets/messages.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/report/run_record.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::app {
+
+/// Fills the true part of `row` (range, errors, which object and which spacecraft the choice really is, NEES) from the
+/// truth at the exposure. `servicer` must have a camera, and it and what it observes must be in the truth; without
+/// that, or without an attitude, `row` stays as it is. `objects`: of the same image, null if they were not told.
+void add_truth(report::ImageRow& row, const telemetry_image& image, const telemetry_objects* objects,
+               const mission::Mission& mission, const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
+
+/// The summary's figures of images, bearings and attitude by the stars; bearings count while the target is no larger
+/// than a pixel, beyond 5 km.
+void summarise_images(const std::vector<report::ImageRow>& images, const std::string& target, report::Summary& summary);
+
+}  // namespace vbar::app

@@ -1,0 +1,199 @@
+// Telemetry of an image against a truth that can be worked out by hand: camera axes along ECI, target straight ahead.
+
+#include "host_sim/app/image_truth.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "fsw/orbit/roe.h"
+#include "host_sim/app/image_rows.h"
+#include "host_sim/mission/load.h"
+
+namespace vbar::app {
+namespace {
+
+using fsw::Vector3;
+
+constexpr double kArcsecond = 3.14159265358979323846 / 648000.0;
+constexpr double kPixel = 1.0 / 5972.696;  // rad, of 5.86 um behind 35 mm
+
+constexpr const char* kMission = R"(
+[mission]
+duration_h = 1.0
+[guidance]
+mode = "idle"
+[[spacecraft]]
+name = "servicer"
+flight_computer = {}
+sensors.gnss = {}
+sensors.camera = { position_body_m = [0.0, 0.0, 0.5] }
+actuators.thruster = {}
+attitude = { profile = "commanded" }
+elements = { kind = "mean", semi_major_axis_km = 7000, ex = 0, ey = 0, inclination_deg = 90, raan_deg = 0, mean_argument_of_latitude_deg = 0 }
+[[spacecraft]]
+name = "target"
+model = "tango"
+attitude = { profile = "tumble" }
+relative = { to = "servicer", a_roe_m = [0, -1e4, 0, 0, 0, 0] }
+[[spacecraft]]
+name = "decoy"
+model = "tango"
+relative = { to = "servicer", a_roe_m = [0, -2e4, 0, 0, 0, 0] }
+)";
+
+class ImageTruth : public testing::Test {
+ protected:
+  void SetUp() override {
+    truth_.spacecraft = {{"servicer", {kPlace, kVelocity}, truth::AttitudeState{}},
+                         {"target", {kPlace + Vector3(0.0, 0.0, 1e4 + 0.5), kVelocity}, std::nullopt},
+                         {"decoy", {kPlace + Vector3(30.0, 0.0, 2e4 + 0.5), kVelocity}, std::nullopt}};
+    image_.bearing_eci[2] = 1.0;
+    image_.q_eci_camera[0] = 1.0;
+    image_.star_method = 1;
+  }
+
+  [[nodiscard]] report::ImageRow row(const telemetry_objects* objects = nullptr) const {
+    report::ImageRow row = image_row(100.0, 160.0, image_);
+    add_truth(row, image_, objects, mission_, mission_.spacecraft[0], truth_);
+    return row;
+  }
+
+  void point(const Vector3& direction) {
+    const Vector3 unit = direction.normalized();
+    std::copy(unit.begin(), unit.end(), image_.bearing_eci);
+  }
+
+  const Vector3 kPlace{7.0e6, 0.0, 0.0};
+  const Vector3 kVelocity{0.0, 100.0, 7546.0};
+  mission::Mission mission_ = mission::parse_mission(kMission, "m.toml");
+  twins::TruthSnapshot truth_;
+  telemetry_image image_{};
+};
+
+TEST_F(ImageTruth, BearingErrorIsInTheCamerasAxes) {
+  point({std::tan(20.0 * kArcsecond), std::tan(-7.0 * kArcsecond), 1.0});
+  const report::ImageRow seen = row();
+  EXPECT_NEAR(seen.bearing_error_x_arcsec.value(), 20.0, 1e-6);
+  EXPECT_NEAR(seen.bearing_error_y_arcsec.value(), -7.0, 1e-6);
+  EXPECT_NEAR(seen.range_m.value(), 1e4, 1e-6) << "from the camera, half a metre nearer than the centre of mass";
+  EXPECT_EQ(seen.chosen, "target");
+}
+
+TEST_F(ImageTruth, AttitudeErrorIsThatOfTheBoresightAndAboutIt) {
+  const Eigen::Quaterniond q(Eigen::AngleAxisd(5.0 * kArcsecond, Vector3::UnitX()) *
+                             Eigen::AngleAxisd(30.0 * kArcsecond, Vector3::UnitZ()));
+  const double wxyz[] = {q.w(), q.x(), q.y(), q.z()};
+  std::copy(wxyz, wxyz + 4, image_.q_eci_camera);
+  EXPECT_NEAR(row().attitude_error_across_arcsec.value(), 5.0, 1e-3);  // the product of both turns, 4e-4 arcsec
+  EXPECT_NEAR(row().attitude_error_roll_arcsec.value(), 30.0, 1e-3);
+  image_.star_method = 0;
+  EXPECT_FALSE(row().attitude_error_across_arcsec.has_value());
+}
+
+TEST_F(ImageTruth, ChoicesAreNamed) {
+  point({30.0, 0.0, 2e4});  // 309 arcsec beside the target
+  EXPECT_EQ(row().chosen, "decoy");
+  point({-1.0, 0.0, 100.0});
+  EXPECT_EQ(row().chosen, "nothing");
+  image_.status = 3;
+  EXPECT_EQ(row().chosen, "");
+  EXPECT_FALSE(row().bearing_error_x_arcsec.has_value());
+}
+
+TEST_F(ImageTruth, FindsTheObjectThatIsTheTarget) {
+  telemetry_objects objects{};
+  objects.count = 3;
+  const float x[] = {700.0F, 959.5F + static_cast<float>(30.0 / 2e4 / kPixel), 960.4F};
+  for (int k = 0; k < 3; ++k) {
+    objects.x_px[k] = x[k];
+    objects.y_px[k] = 599.0F;
+  }
+  EXPECT_EQ(row(&objects).true_object, 2) << "the second is the decoy, 9 pixels beside it";
+  objects.count = 2;
+  EXPECT_EQ(row(&objects).true_object, -1);
+  EXPECT_EQ(row().true_object, -1);
+}
+
+// Each of six independent components off by its sigma.
+TEST_F(ImageTruth, NeesOfOneSigmaEachIsSix) {
+  const auto elements = [](const fsw::orbit::CartesianState& state) {
+    return fsw::orbit::qns_from_cartesian(state).value();
+  };
+  truth_.spacecraft[1].orbit.position_eci = kPlace + Vector3(10.0, 20.0, 1e4);
+  const fsw::Vector6 roe =
+      mission_.guidance.reference_semi_major_axis_m *
+      fsw::orbit::roe_from_qns(elements(truth_.spacecraft[0].orbit), elements(truth_.spacecraft[1].orbit));
+  std::size_t place = 0;
+  for (int k = 0; k < 6; ++k) {
+    place += static_cast<std::size_t>(k);
+    const double sigma = 1.0 + k;
+    image_.covariance_a_roe[place++] = sigma * sigma;
+    image_.a_roe_osculating_m[k] = roe(k) + (k % 2 == 0 ? sigma : -sigma);
+  }
+  EXPECT_FALSE(row().nees.has_value()) << "navigation did not use the image";
+  image_.used = 1;
+  EXPECT_NEAR(row().nees.value(), 6.0, 1e-9);
+  image_.covariance_a_roe[0] = -1.0;
+  EXPECT_FALSE(row().nees.has_value());
+}
+
+TEST_F(ImageTruth, WithoutTheTruthThereAreNoErrors) {
+  truth_.spacecraft[0].attitude.reset();
+  EXPECT_TRUE(row() == image_row(100.0, 160.0, image_));
+}
+
+TEST_F(ImageTruth, SummaryTakesTheUnresolvedTargetOnly) {
+  std::vector<report::ImageRow> rows;
+  for (const double x_arcsec : {12.0, -8.0, 12.0, -8.0}) {
+    point({x_arcsec * kArcsecond, 3.0 * kArcsecond, 1.0});
+    rows.push_back(row());
+  }
+  rows.push_back(rows.back());
+  rows.back().range_m = 1000.0;
+  rows.back().bearing_error_x_arcsec = 1e3;
+  rows.push_back(rows.front());
+  rows.back().chosen = "decoy";
+  rows.push_back({});
+  rows.back().status = 2;
+  report::Summary summary;
+  summarise_images(rows, "target", summary);
+  EXPECT_EQ(summary.images, (report::ImageCounts{7, 6, 1}));
+  EXPECT_NEAR(summary.bearing_error_arcsec->bias, std::hypot(2.0, 3.0), 1e-6);
+  EXPECT_NEAR(summary.bearing_error_arcsec->std, 10.0 / std::sqrt(2.0), 1e-6) << "of two axes, one of them still";
+  EXPECT_NEAR(summary.bearing_error_arcsec->mean, 0.5 * (std::hypot(12.0, 3.0) + std::hypot(8.0, 3.0)), 1e-6);
+  EXPECT_EQ(summary.star_attitude_error_arcsec->mean, 0.0);
+
+  report::Summary none;
+  summarise_images({}, "target", none);
+  EXPECT_FALSE(none.images.has_value());
+}
+
+TEST(ImageRows, ResidualsAndObjectsAreRows) {
+  telemetry_image image{};
+  image.prefit[1] = 30.0 * kArcsecond;
+  image.postfit[0] = -5.0 * kArcsecond;
+  image.bearing_sigma = 12.0 * kArcsecond;
+  std::vector<report::ResidualRow> residuals;
+  append_residuals(image_row(60.0, 120.0, image), residuals);
+  ASSERT_EQ(residuals.size(), 2U);
+  EXPECT_EQ(residuals[0].sensor, "bearing_x_arcsec");
+  EXPECT_NEAR(residuals[0].postfit, -5.0, 1e-12);
+  EXPECT_NEAR(residuals[1].prefit, 30.0, 1e-12);
+  EXPECT_NEAR(residuals[1].sigma, 12.0, 1e-12);
+
+  telemetry_objects objects{};
+  objects.count = 2;
+  objects.kind[1] = 1;
+  objects.star[1] = 32349;
+  std::vector<report::ObjectRow> rows;
+  append_objects(60.0, objects, rows);
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[1].star, 32349);
+  objects.count = 1000;  // what no flight software says
+  append_objects(60.0, objects, rows);
+  EXPECT_EQ(rows.size(), 98U);
+}
+
+}  // namespace
+}  // namespace vbar::app
