@@ -155,8 +155,6 @@ void FlightRecorder::on_telemetry(report::EstimateRow& row, ImageTelemetry& told
     row.planned_dv_mps = m.planned_dv;
     row.passive_safety_distance_m = m.passive_safety_distance_m;
     row.commanded_dv_mps = m.commanded_dv;
-  } else if (const auto im = fsw::packets::decode<telemetry_image>(packet); im.ok()) {
-    if (std::getenv("VBAR_PRINT")) { const auto& m = im.value(); constexpr double as = 3.14159265358979 / 648000; printf("IMG %d st %d meth %d obj %d stars %d hyp %d tgt %d fate %d runs %d pre %.1f %.1f post %.1f %.1f nis %.2f sig %.1f dl %.1f sdl %.1f\n", m.image, m.status, m.star_method, m.objects, m.stars, m.hypotheses, m.target_object, m.fate, m.filter_runs, m.prefit[0]/as, m.prefit[1]/as, m.postfit[0]/as, m.postfit[1]/as, m.nis, m.bearing_sigma/as, m.a_roe_osculating_m[1], std::sqrt(m.covariance_a_roe[2])); }
   } else if (const auto gnss = fsw::packets::decode<telemetry_gnss>(packet); gnss.ok()) {
     record_.gnss.push_back(gnss_row(row.time_s, gnss.value()));
   } else if (const auto image = fsw::packets::decode<telemetry_image>(packet); image.ok()) {

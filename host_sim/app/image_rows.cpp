@@ -37,7 +37,7 @@ report::ImageRow image_row(double exposure_s, double step_s, const telemetry_ima
   row.prefit_arcsec = in_arcsec(m.prefit);
   row.postfit_arcsec = in_arcsec(m.postfit);
   row.nis = m.nis;
-  row.used = m.used;
+  row.used = m.fate >= 2 ? m.fate - 1 : 0;  // none and refused are alike here
   std::ranges::copy(m.covariance_a_roe, row.covariance_a_roe_m2.begin());
   std::ranges::copy(m.a_roe_osculating_m, row.a_roe_osculating_m.begin());
   row.bearings_used = m.bearings_used;

@@ -152,7 +152,7 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
     const double tolerance_px = settings.focal_length_px() * (kSameObject_rad + kRadius_m / *row.range_m);
     row.true_object = true_object(*objects, *target_px, tolerance_px);
   }
-  if (image.used == 1) row.nees = nees(image, own->orbit, target->orbit, mission.guidance.reference_semi_major_axis_m);
+  if (image.fate == 2) row.nees = nees(image, own->orbit, target->orbit, mission.guidance.reference_semi_major_axis_m);
 }
 
 void summarise_images(const std::vector<report::ImageRow>& images, const std::string& target,

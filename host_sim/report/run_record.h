@@ -92,7 +92,7 @@ struct ImageRow {
   double attitude_sigma_arcsec = 0.0;
   Triple bearing_eci{};
   double bearing_sigma_arcsec = 0.0;
-  Pair prefit_arcsec{}, postfit_arcsec{};  ///< in the camera's x and y
+  Pair prefit_arcsec{}, postfit_arcsec{};  ///< in the plane of the orbit and across it
   double nis = 0.0;                        ///< two degrees of freedom
   int used = 0;                            ///< 0: navigation refused it, 1: filter, 2: batch
   LowerTriangle6 covariance_a_roe_m2{};

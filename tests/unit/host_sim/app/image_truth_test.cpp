@@ -132,7 +132,7 @@ TEST_F(ImageTruth, NeesOfOneSigmaEachIsSix) {
     image_.a_roe_osculating_m[k] = roe(k) + (k % 2 == 0 ? sigma : -sigma);
   }
   EXPECT_FALSE(row().nees.has_value()) << "navigation did not use the image";
-  image_.used = 1;
+  image_.fate = 2;
   EXPECT_NEAR(row().nees.value(), 6.0, 1e-9);
   image_.covariance_a_roe[0] = -1.0;
   EXPECT_FALSE(row().nees.has_value());
