@@ -14,9 +14,11 @@
 #include "host_sim/app/progress.h"
 #include "host_sim/app/simulation.h"
 #include "host_sim/app/stop_request.h"
+#include "host_sim/mission/extends.h"
 #include "host_sim/mission/load.h"
 #include "host_sim/report/html_report.h"
 #include "host_sim/report/run_folder.h"
+#include "host_sim/report/text_file.h"
 #include "host_sim/report/waypoint_table.h"
 
 namespace vbar::app {
@@ -31,7 +33,7 @@ report::Summary start_of(const mission::Mission& mission) {
 
 /// The mission file as it was flown, for the replay.
 void keep_mission(const mission::Mission& mission, const RunOptions& options, const std::filesystem::path& folder) {
-  std::filesystem::copy_file(mission.file, folder / kMissionCopy, std::filesystem::copy_options::overwrite_existing);
+  report::replace_text_file(folder / kMissionCopy, mission::whole_mission_text(mission.file));
   std::ofstream overrides(folder / kOverridesCopy);
   for (const std::string& line : options.overrides) overrides << line << '\n';
   if (!overrides) throw std::runtime_error((folder / kOverridesCopy).string() + ": cannot be written");

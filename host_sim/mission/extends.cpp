@@ -1,5 +1,6 @@
 #include "host_sim/mission/extends.h"
 
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -81,6 +82,16 @@ void resolve(toml::table& document, const std::filesystem::path& file, int depth
 
 void put_over_extended(toml::table& document, const std::filesystem::path& file) {
   resolve(document, file, 0);
+}
+
+std::string whole_mission_text(const std::filesystem::path& file) {
+  std::string own = read_text_file(file, "a mission file (TOML)");
+  toml::table document = parse_toml(own, file.string());
+  if (!document.contains("extends")) return own;
+  put_over_extended(document, file);
+  std::ostringstream text;
+  text << document << '\n';
+  return text.str();
 }
 
 }  // namespace vbar::mission

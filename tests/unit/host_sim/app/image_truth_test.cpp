@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "fsw/orbit/roe.h"
+#include "host_sim/app/flight_recorder.h"
 #include "host_sim/app/image_rows.h"
 #include "host_sim/mission/load.h"
 
@@ -167,6 +168,50 @@ TEST_F(ImageTruth, SummaryTakesTheUnresolvedTargetOnly) {
   report::Summary none;
   summarise_images({}, "target", none);
   EXPECT_FALSE(none.images.has_value());
+}
+
+pil::Packet packet_of(fsw::GpsTime time, const auto& message) {
+  fsw::packets::PacketHeader header;
+  header.time = time;
+  pil::Packet packet(fsw::packets::kMaxPacketBytes);
+  packet.resize(fsw::packets::encode(header, message, packet).value());
+  return packet;
+}
+
+// Telemetry of an image comes a step after the image; its header says which truth it is about.
+TEST_F(ImageTruth, TheRecorderTakesTheTruthOfTheExposure) {
+  report::RunRecord record;
+  FlightRecorder recorder(mission_, mission_.spacecraft[0], record);
+  const fsw::GpsTime exposure = mission_.epoch + fsw::duration_of_seconds(60);
+  truth_.time = exposure;
+  recorder.on_measured(truth_);
+  truth_.time = exposure + fsw::duration_of_seconds(60);
+  truth_.spacecraft[1].orbit.position_eci += Vector3(500.0, 0.0, 0.0);
+  recorder.on_measured(truth_);
+
+  image_.image = 7;
+  image_.used = 1;
+  telemetry_objects objects{};
+  objects.image = 7;
+  objects.count = 1;
+  objects.x_px[0] = 959.5F;
+  objects.y_px[0] = 599.5F;
+  pil::StepResult answer;
+  answer.packets = {packet_of(exposure, objects), packet_of(exposure, image_)};
+  recorder.on_answer(truth_.time, answer);
+  recorder.finish();
+  ASSERT_EQ(record.images.size(), 1U);
+  EXPECT_EQ(record.images[0].time_s, 60.0);
+  EXPECT_EQ(record.images[0].step_time_s, 120.0);
+  EXPECT_EQ(record.images[0].true_object, 0);
+  EXPECT_NEAR(record.images[0].bearing_error_x_arcsec.value(), 0.0, 1e-9);
+  EXPECT_EQ(record.objects.size(), 1U);
+  EXPECT_EQ(record.residuals.size(), 2U);
+  EXPECT_EQ(record.summary.images, (report::ImageCounts{1, 1, 0}));
+
+  answer.packets = {packet_of(exposure + fsw::duration_of_seconds(1), image_)};  // no truth was kept of that
+  recorder.on_answer(truth_.time, answer);
+  EXPECT_FALSE(record.images[1].range_m.has_value());
 }
 
 TEST(ImageRows, ResidualsAndObjectsAreRows) {

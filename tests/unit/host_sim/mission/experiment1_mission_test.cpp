@@ -16,7 +16,7 @@
 
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/rtn.h"
-#include "host_sim/mission/camera_file.h"
+#include "host_sim/mission/extends.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/earth/sun_moon.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
@@ -251,6 +251,22 @@ TEST_F(Extends, MessagesNameTheFileThatSaysIt) {
   write("bad.toml", changed(std::string(kSmallMission), "duration_h = 2.0", "duration_h = -2.0"));
   write("own.toml", "\nextends = \"bad.toml\"\n");
   EXPECT_THAT(message("own.toml"), testing::StartsWith((folder_ / "bad.toml").string() + ":3: mission.duration_h: "));
+}
+
+// What a run folder keeps for the replay must not need the files beside the mission's.
+TEST_F(Extends, TheWholeStandsAlone) {
+  EXPECT_EQ(whole_mission_text(folder_ / "base.toml"), kSmallMission);
+  write("whole.toml", whole_mission_text(kAsPrinted));
+  const Mission whole = load_mission(folder_ / "whole.toml"), original = load_mission(kAsPrinted);
+  EXPECT_EQ(whole.name, original.name);
+  EXPECT_EQ(servicer_orbit(whole).elements.a, servicer_orbit(original).elements.a);
+  EXPECT_EQ(servicer_orbit(whole).elements.ey, servicer_orbit(original).elements.ey);
+  EXPECT_EQ(servicer_orbit(whole).elements.raan, servicer_orbit(original).elements.raan);
+  EXPECT_EQ(whole.guidance.reference_semi_major_axis_m, original.guidance.reference_semi_major_axis_m);
+  ASSERT_EQ(whole.waypoints.size(), 8U);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(whole.waypoints[k].a_roe_m, original.waypoints[k].a_roe_m);
+  EXPECT_TRUE(whole.angles_only == original.angles_only);
+  EXPECT_EQ(whole.spacecraft.size(), original.spacecraft.size());
 }
 
 TEST_F(Extends, BadFilesEndWithOneMessage) {
