@@ -12,6 +12,8 @@ namespace {
 // Of a factor e of flux.
 constexpr double kMagnitude = 1.0857362047581296;
 
+constexpr double kLeastFlux_dn = 1.0;
+
 /// The cone about an image's middle that reaches its corners.
 stars::Field field_of(const CameraSettings& settings) {
   const imaging::ImageFrame& frame = settings.frame;
@@ -95,7 +97,9 @@ SightingStatus AnglesOnlyTracking::find_objects(const imaging::ImageView& image)
     // Where the lens model ends nothing can be said of a direction; the boresight's own never is a star's to a pixel.
     seen.direction_camera = direction.ok() ? direction.value() : Vector3(Vector3::UnitZ());
     seen.sigma_rad = sigma_of(object);
-    seen.magnitude = -kMagnitude * math::log(object.flux_dn / settings_.zero_magnitude_dn);
+    // Beside a bright neighbour the window of a faint object may hold less than the background.
+    const double flux_dn = object.flux_dn > kLeastFlux_dn ? object.flux_dn : kLeastFlux_dn;
+    seen.magnitude = -kMagnitude * math::log(flux_dn / settings_.zero_magnitude_dn);
   }
   return SightingStatus::kBearing;
 }

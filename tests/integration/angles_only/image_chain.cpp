@@ -106,9 +106,9 @@ Scene SceneMaker::make(double minutes, const CartesianState& target, const Vecto
   return scene;
 }
 
-ImageChain::ImageChain()
+ImageChain::ImageChain(std::uint64_t seed)
     : renderer_(camera_, VBAR_SOURCE_DIR "/data"),
-      maker_({camera_, "servicer/camera", 1, 1, 0},
+      maker_({camera_, "servicer/camera", seed, 1, 0},
              [this](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {
                renderer_.render(exposure, image);
              }) {

@@ -2,6 +2,7 @@
 // From light to bearing without an orbit in between: images as the digital camera makes them, through tiles, into
 // angles-only tracking, which is told the servicer's orbit, the commanded pointing and an expected place of the target.
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <random>
@@ -55,7 +56,8 @@ class SceneMaker {
 /// Camera and flight software.
 class ImageChain {
  public:
-  ImageChain();
+  /// `seed`: of the camera's hot pixels and noise.
+  explicit ImageChain(std::uint64_t seed = 1);
 
   using Spoil = std::function<void(std::vector<image_tile>&)>;
 

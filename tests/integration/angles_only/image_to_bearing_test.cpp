@@ -57,13 +57,24 @@ TEST(ImageToBearing, AttitudeAndBearingOfAnUnresolvedTarget) {
     const Errors errors = errors_of(chain, scenes, 50, 1e3 * range_km);
     // A quarter of an hour in a hundred minutes is dark, and what was not seen for long must be seen three times.
     EXPECT_GE(errors.bearings, 28) << range_km;
-    EXPECT_GE(errors.attitudes, 47) << range_km;
+    EXPECT_EQ(errors.attitudes, 50) << range_km;
     EXPECT_EQ(errors.wrong, 0) << range_km;
     const std::string at = ", target " + std::to_string(range_km) + " km away";
     const std::string reference = "the truth, 50 images of 500x800 px";
     accuracy::expect_below("attitude from stars" + at, reference, errors.boresight_arcsec, 5.0, "arcsec");
     accuracy::expect_below("noise of bearings" + at, reference, errors.noise_arcsec, 15.0, "arcsec");
     accuracy::expect_below("bias of bearings" + at, reference, errors.bias_arcsec.norm(), 3.0, "arcsec");
+  }
+}
+
+// Every camera has its own hot pixels, and none of them may keep the stars from being known.
+TEST(ImageToBearing, EveryCameraKnowsItsStars) {
+  for (std::uint64_t seed = 2; seed <= 6; ++seed) {
+    ImageChain chain(seed);
+    SceneMaker scenes(static_cast<unsigned>(seed));
+    const Errors errors = errors_of(chain, scenes, 20, 60e3);
+    EXPECT_EQ(errors.attitudes, 20) << "seed " << seed;
+    EXPECT_EQ(errors.wrong, 0) << "seed " << seed;
   }
 }
 
