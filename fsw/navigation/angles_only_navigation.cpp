@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include <Eigen/Geometry>
+
 #include "fsw/math/math.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
@@ -20,6 +22,25 @@ constexpr int kRefusedBeforeDoubt = 5;
 constexpr std::array<double, 3> kDoubtedVelocity = {0.1, 1.0, 1.0};     // m/s
 constexpr std::array<double, 3> kDoubtedLongitude = {0.02, 0.05, 0.1};  // of itself
 
+/// Change of the target's ROE by a change of the servicer's inertial state (m, m/s), to O(e).
+Matrix6 roe_slope(const orbit::CartesianState& servicer, const orbit::QnsElements& elements) {
+  const Matrix3 R_rtn_eci = orbit::R_rtn_eci(servicer);
+  const double radius2 = servicer.position_eci.squaredNorm();
+  const Vector3 turning(0.0, 0.0, servicer.position_eci.cross(servicer.velocity_eci).norm() / radius2);
+  Matrix6 slope;
+  for (int k = 0; k < 6; ++k) {
+    const Vector3 axis = R_rtn_eci.col(k % 3);
+    Vector6 rtn = Vector6::Zero();
+    if (k < 3) {
+      rtn << -axis, turning.cross(axis);
+    } else {
+      rtn.tail<3>() = -axis;
+    }
+    slope.col(k) = orbit::roe_from_rtn_linear(elements, rtn);
+  }
+  return slope;
+}
+
 }  // namespace
 
 void AnglesOnlyNavigation::configure(const AnglesOnlySettings& settings) {
@@ -34,6 +55,9 @@ void AnglesOnlyNavigation::configure(const AnglesOnlySettings& settings) {
 
 void AnglesOnlyNavigation::set_apriori(const TargetApriori& apriori) {
   apriori_ = apriori;
+  apriori_target_ = apriori.target;
+  apriori_reached_ = apriori.time;
+  rests_on_apriori_ = false;
   flight_.filter.reset();
   batch_.clear();
   filter_runs_ = false;
@@ -51,32 +75,43 @@ BearingFate AnglesOnlyNavigation::update(const AnglesOnlyEpoch& epoch, std::span
   }
   if (!flight_.own_orbit.started()) return BearingFate::kNone;
   if (!flight_.filter.started()) begin(epoch);
+  if (rests_on_apriori_) rest_on_apriori(epoch);
   if (!flight_.filter.started() || !epoch.bearing.has_value()) return BearingFate::kNone;
   return take_bearing(epoch, *epoch.bearing);
 }
 
-/// What was known beforehand, brought to the epoch; the filter carries it on until the batch is full.
+/// From what was known beforehand.
 void AnglesOnlyNavigation::begin(const AnglesOnlyEpoch& epoch) {
   if (filter_runs_) ++counters_.restarts;
   filter_runs_ = false;
   batch_.clear();
-  if (!apriori_.has_value() || apriori_->time > epoch.time) return;
-  orbit::CartesianState target = apriori_->target;
-  GpsTime reached = apriori_->time;
-  for (int segment = 0; segment < kMaxSegments && reached < epoch.time; ++segment) {
-    const GpsTime next = epoch.time - reached > kSegment ? reached + kSegment : epoch.time;
-    target = Propagation(reached, settings_.earth, epoch.sun_eci).coast(target, seconds(next - reached));
-    reached = next;
+  rests_on_apriori_ = apriori_.has_value() && apriori_->time <= epoch.time;
+}
+
+/// What was known beforehand is where the target is, not where it is from the servicer, and the servicer's orbit is
+/// still being learned: a decimetre a second of it makes 200 m of a * da. So until a batch is worked out the elements
+/// are formed anew at each epoch, and the servicer's uncertainty is theirs too.
+void AnglesOnlyNavigation::rest_on_apriori(const AnglesOnlyEpoch& epoch) {
+  for (int segment = 0; segment < kMaxSegments && apriori_reached_ < epoch.time; ++segment) {
+    const Duration left = epoch.time - apriori_reached_;
+    const GpsTime next = left > kSegment ? apriori_reached_ + kSegment : epoch.time;
+    const Propagation propagation(apriori_reached_, settings_.earth, epoch.sun_eci);
+    apriori_target_ = propagation.coast(apriori_target_, seconds(next - apriori_reached_));
+    apriori_reached_ = next;
   }
-  const auto roe = roe_of_target(flight_.own_orbit.state(), target);
-  const auto servicer = orbit::qns_from_cartesian(flight_.own_orbit.state());
-  if (reached < epoch.time || !roe.ok() || !servicer.ok()) return;
+  const orbit::CartesianState own = flight_.own_orbit.state();
+  const auto roe = roe_of_target(own, apriori_target_);
+  const auto servicer = orbit::qns_from_cartesian(own);
+  if (apriori_reached_ < epoch.time || !roe.ok() || !servicer.ok()) return;
   const double a = servicer.value().a;
   Matrix6 drift = Matrix6::Identity();
   drift(1, 0) = -1.5 * orbit::mean_motion(a) * seconds(epoch.time - apriori_->time);
   Matrix6 covariance = Matrix6::Zero();
   covariance.diagonal() = (apriori_->sigma_a_roe_m / a).cwiseAbs2();
-  flight_.filter.begin(roe.value(), drift.lazyProduct(covariance).lazyProduct(drift.transpose()));
+  const Matrix6 known = drift.lazyProduct(covariance).lazyProduct(drift.transpose());
+  const Matrix6 slope = roe_slope(own, servicer.value());
+  flight_.filter.begin(
+      roe.value(), known + slope.lazyProduct(flight_.own_orbit.covariance()).lazyProduct(slope.transpose()));
 }
 
 void AnglesOnlyNavigation::advance(Flight& flight, GpsTime time, const Vector3& sun_eci, std::span<const Burn> burns,
@@ -135,6 +170,7 @@ void AnglesOnlyNavigation::solve_batch(const Vector3& sun_eci) {
   flight_.filter.begin(solution.value().roe, solution.value().bias, solution.value().covariance);
   if (!flight_.filter.started()) return;
   filter_runs_ = true;
+  rests_on_apriori_ = false;
   counters_.bearings_used += solution.value().used;
   last_bearing_ = batch_.last_time();
   batch_.clear();

@@ -100,6 +100,7 @@ class AnglesOnlyNavigation {
   };
 
   void begin(const AnglesOnlyEpoch& epoch);
+  void rest_on_apriori(const AnglesOnlyEpoch& epoch);
   /// `batch`: who else is told of the burns, or null.
   void advance(Flight& flight, GpsTime time, const Vector3& sun_eci, std::span<const Burn> burns,
                BearingBatch* batch) const;
@@ -109,6 +110,9 @@ class AnglesOnlyNavigation {
 
   AnglesOnlySettings settings_;
   std::optional<TargetApriori> apriori_;
+  orbit::CartesianState apriori_target_;  ///< at apriori_reached_, coasted
+  GpsTime apriori_reached_;
+  bool rests_on_apriori_ = false;  ///< no bearing has changed what was known beforehand
   Flight flight_;
   BearingBatch batch_;
   bool filter_runs_ = false;

@@ -26,6 +26,9 @@ class OwnOrbit {
     return {.position_eci = estimate_.mean().head<3>(), .velocity_eci = estimate_.mean().tail<3>()};
   }
 
+  /// Of the inertial state, m and m/s.
+  [[nodiscard]] Matrix6 covariance() const { return estimate_.head_covariance<6>(); }
+
   void advance(const Propagation& propagation, double dt);
   void add_impulse(const Vector3& dv_eci, double sigma);
   /// Folds a position in (m, ECI); one beyond 6 sigma an axis is left out, and the sixth of those in a row makes the
