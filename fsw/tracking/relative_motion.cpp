@@ -171,6 +171,7 @@ SlopeState slope_state(const RelativeMotion& motion, const ServicerView& view, d
   fill(1, rows.normal, rows.normal_turn);
   state.slopes[0] += view.path_slope + bend;
   state.slopes[2] += view.path_slope_rate + bend_rate;
+  state.slopes[3] += view.plane_turn_rate;
   const Eigen::Matrix<double, 4, 5> spread = jacobian * motion.covariance;
   state.covariance = spread * jacobian.transpose();
   return state;

@@ -67,7 +67,8 @@ Innovation innovation_of(const RelativeMotion& motion, const ServicerView& view,
 /// Kalman update.
 void update(RelativeMotion& motion, const Innovation& innovation);
 
-/// Expected slopes and rates with covariance, as a prediction has them. `bend_rate`: of `bend`, 1/s.
+/// Expected slopes and rates with covariance, as a prediction has them (in axes that turn about N only). `bend_rate`:
+/// of `bend`, 1/s.
 struct SlopeState {
   Vector4 slopes = Vector4::Zero();
   Matrix4 covariance = Matrix4::Zero();

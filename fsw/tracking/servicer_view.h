@@ -18,6 +18,8 @@ struct ServicerView {
   /// the range.
   double path_slope = 0.0;
   double path_slope_rate = 0.0;  ///< 1/s
+  /// Rate at which J2 turns RTN about R, rad/s. Relative velocities of fsw/orbit/rtn.h leave this turn out.
+  double plane_turn_rate = 0.0;
 };
 
 /// Of the servicer's osculating ECI state. Accelerations are those of point mass and J2. Errors of
