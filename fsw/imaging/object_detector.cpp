@@ -281,6 +281,8 @@ void ObjectDetector::tell(const Component& component, const Centroid& centroid, 
   object.sigma_px = centroid.sigma_px;
   object.flux_dn = static_cast<double>(component.flux) / 16.0;
   object.peak_dn = component.peak_dn;
+  const double peak_dn = component.peak_dn - background_.level_dn(component.peak_x, component.peak_y);
+  object.sharpness = object.flux_dn > 0.0 ? std::min(peak_dn / object.flux_dn, 1.0) : 1.0;
   object.pixels = component.pixels;
   object.radius_px = radius_px;
   object.is_saturated = component.is_saturated;

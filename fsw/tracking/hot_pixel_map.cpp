@@ -5,7 +5,7 @@
 namespace vbar::fsw::tracking {
 
 bool HotPixelMap::see(const imaging::DetectedObject& object) {
-  if (!is_small(object) || !math::is_finite(object.centroid_px.sum())) return false;
+  if (!is_sharp(object) || !math::is_finite(object.centroid_px.sum())) return false;
   std::size_t k = find(object.centroid_px);
   if (k == kCapacity) {
     k = free_place();
@@ -20,7 +20,7 @@ bool HotPixelMap::see(const imaging::DetectedObject& object) {
 }
 
 int HotPixelMap::sightings_of(const imaging::DetectedObject& object) const {
-  if (!is_small(object)) return 0;
+  if (!is_sharp(object)) return 0;
   const std::size_t k = find(object.centroid_px);
   return k == kCapacity ? 0 : entries_[k].sightings;
 }

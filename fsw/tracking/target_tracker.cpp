@@ -123,7 +123,7 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
     eligible.is_in_gate = is_in_gate;
     eligible.log_flux = math::log(candidate.object.flux_dn > 1.0 ? candidate.object.flux_dn : 1.0);
     eligible.handicap =
-        candidate.object.pixels <= settings_.hot_pixels.most_pixels ? -settings_.small_object_loss : 0.0;
+        candidate.object.sharpness >= settings_.hot_pixels.least_sharpness ? -settings_.sharp_object_loss : 0.0;
     eligible.index = static_cast<std::int16_t>(k);
   }
   const double count = static_cast<double>(std::max<std::size_t>(input.candidates.size() - hot, 1));

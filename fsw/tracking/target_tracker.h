@@ -33,7 +33,7 @@ struct TrackerSettings {
   double rate_floor = 3e-7;           ///< 1/s
   double certainty = 0.99;            ///< of the association in an image
   double magnitude_sigma = 1.5;       ///< of a tumbling target from image to image
-  double small_object_loss = 2.3;     ///< log-likelihood: target's light falls on more than two pixels
+  double sharp_object_loss = 2.3;     ///< log-likelihood: the target's light falls on more than one pixel
   int confirm_hits = 5;               ///< M
   int confirm_images = 7;             ///< of N
   int gap_images = 5;                 ///< unseen for longer: so many images

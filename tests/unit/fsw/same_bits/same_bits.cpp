@@ -16,6 +16,7 @@
 #include "fsw/safety/passive_safety.h"
 #include "tests/unit/fsw/same_bits/ambiguity_digest.h"
 #include "tests/unit/fsw/same_bits/gnss_digest.h"
+#include "tests/unit/fsw/same_bits/imaging_digest.h"
 #include "tests/unit/fsw/same_bits/libm_sweeps.h"
 #include "tests/unit/fsw/same_bits/solver_digest.h"
 #include "tests/unit/fsw/same_bits/stars_digest.h"
@@ -132,6 +133,10 @@ int main() {
   std::printf("%-6s %016" PRIx64 "\n", "solver", solver_digest());
   std::printf("%-6s %016" PRIx64 "\n", "gnss", gnss_digest());
   std::printf("%-6s %016" PRIx64 "\n", "lambda", ambiguity_digest());
+<<<<<<< HEAD
   std::printf("%-6s %016" PRIx64 "\n", "stars", stars_digest());
+=======
+  std::printf("%-6s %016" PRIx64 "\n", "imaging", imaging_digest());
+>>>>>>> imaging
   return same ? 0 : 1;
 }

@@ -14,6 +14,7 @@ DetectedObject object_at(double x, double y, int pixels) {
   DetectedObject object;
   object.centroid_px = Vector2(x, y);
   object.pixels = pixels;
+  object.sharpness = 1.0 / pixels;
   return object;
 }
 

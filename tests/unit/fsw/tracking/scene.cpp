@@ -56,7 +56,7 @@ void merge_blobs(Scene& scene) {
       kept.direction_rtn = ((1.0 - part) * kept.direction_rtn + part * gone.direction_rtn).normalized();
       kept.object.centroid_px += part * (gone.object.centroid_px - kept.object.centroid_px);
       kept.object.flux_dn = flux;
-      kept.object.pixels += gone.object.pixels;
+      kept.object.sharpness = std::max((1.0 - part) * kept.object.sharpness, part * gone.object.sharpness);
       scene.source[a] = std::min(scene.source[a], scene.source[b]);
       scene.candidates.erase(scene.candidates.begin() + static_cast<std::ptrdiff_t>(b));
       scene.source.erase(scene.source.begin() + static_cast<std::ptrdiff_t>(b));
@@ -168,6 +168,7 @@ struct SceneMaker::Sky {
     candidate.object.centroid_px = kCentre_px + offset;
     candidate.object.flux_dn = flux;
     candidate.object.pixels = pixels;
+    candidate.object.sharpness = pixels <= 2 ? 0.9 : 0.2;  // a hot pixel, or light
     scene.candidates.push_back(candidate);
     scene.source.push_back(source);
   }
