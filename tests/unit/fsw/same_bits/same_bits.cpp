@@ -133,10 +133,7 @@ int main() {
   std::printf("%-6s %016" PRIx64 "\n", "solver", solver_digest());
   std::printf("%-6s %016" PRIx64 "\n", "gnss", gnss_digest());
   std::printf("%-6s %016" PRIx64 "\n", "lambda", ambiguity_digest());
-<<<<<<< HEAD
   std::printf("%-6s %016" PRIx64 "\n", "stars", stars_digest());
-=======
   std::printf("%-6s %016" PRIx64 "\n", "imaging", imaging_digest());
->>>>>>> imaging
   return same ? 0 : 1;
 }
