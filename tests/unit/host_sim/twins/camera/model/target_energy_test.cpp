@@ -30,8 +30,7 @@ double reflected_share(TargetRenderer& renderer, double incidence, double lobe, 
   const Vector3 sun(-std::sin(incidence), 0.0, std::cos(incidence)), mirrored(-sun.x(), 0.0, sun.z());
   const double kappa = 1.0 / (lobe * lobe);  // von Mises and Fisher's distribution on the sphere
   const auto density = [&](const Vector3& v) {
-    const double about =
-        kappa / (2.0 * kPi * (1.0 - std::exp(-2.0 * kappa))) * std::exp(kappa * (v.dot(mirrored) - 1.0));
+    const double about = kappa / (2.0 * kPi * (1.0 - std::exp(-2.0 * kappa))) * std::exp(kappa * (v.dot(mirrored) - 1.0));
     return 0.5 * v.z() / kPi + 0.5 * about;
   };
   const Eigen::Quaterniond to_mirrored = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), mirrored);
@@ -71,8 +70,7 @@ TEST(TargetEnergy, ReflectedIsNoMoreThanReceived) {
     const double lobe = std::max(0.15, 2.0 * std::sqrt(2.0 / (c.exponent + 2.0)));
     for (const double incidence : {0.2, 0.8, 1.3}) {
       const double share = reflected_share(renderer, incidence, lobe, 300);
-      EXPECT_LT(share, 1.02) << "Kd " << c.diffuse << " Ks " << c.specular << " Ns " << c.exponent << " at "
-                             << incidence;
+      EXPECT_LT(share, 1.02) << "Kd " << c.diffuse << " Ks " << c.specular << " Ns " << c.exponent << " at " << incidence;
       if (incidence == 0.2) {
         EXPECT_GT(share, c.least) << "Kd " << c.diffuse << " Ks " << c.specular << " Ns " << c.exponent;
       }
@@ -91,8 +89,8 @@ TEST(TargetEnergy, TheGlintIsAtTheMirroredDirection) {
   for (int k = -60; k <= 60; ++k) {
     const double emission = 0.02 * k;  // towards +x
     TargetView view;
-    const Eigen::Quaterniond q_camera_body =
-        Eigen::Quaterniond::FromTwoVectors(Vector3(std::sin(emission), 0.0, std::cos(emission)), -Vector3::UnitZ());
+    const Eigen::Quaterniond q_camera_body = Eigen::Quaterniond::FromTwoVectors(
+        Vector3(std::sin(emission), 0.0, std::cos(emission)), -Vector3::UnitZ());
     view.R_camera_body = q_camera_body.toRotationMatrix();
     view.position_camera = Vector3(0.0, 0.0, 500.0);
     view.sun_camera = q_camera_body * Vector3(-std::sin(incidence), 0.0, std::cos(incidence));
