@@ -96,7 +96,7 @@ TEST(SceneModel, an_example_frame_of_tango_near_and_far) {
   renderer().render(exposure, image);
   const std::filesystem::path file =
       std::filesystem::path(VBAR_BINARY_DIR) / ("camera_tango_" + std::to_string(getpid()) + ".png");
-  ASSERT_TRUE(vbar::test::write_picture(image, 3e6, file));
+  ASSERT_TRUE(vbar::test::write_picture(image, 1e8, file));
   if (std::getenv("VBAR_KEEP_IMAGES") == nullptr) std::filesystem::remove(file);
   EXPECT_GT(measure(image, kMiddle + kFocalPx * Vector2(-0.02, -0.02), 80.0).electrons,
             5.0 * measure(image, kMiddle + kFocalPx * Vector2(0.015, -0.045), 40.0).electrons);  // 11 times in truth

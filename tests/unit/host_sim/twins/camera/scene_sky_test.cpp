@@ -21,7 +21,6 @@ using vbar::test::quiet_exposure;
 namespace camera = vbar::twins::camera;
 
 const Vector2 kMiddle(959.5, 599.5);
-constexpr double kEverywhere = 1000.0;
 
 camera::SceneRenderer& renderer() {
   static camera::SceneRenderer made(camera::CameraSettings{}, vbar::test::camera_data());
