@@ -172,19 +172,21 @@ std::vector<Plot> residual_plots(const RunRecord& record, const View& view) {
   return plots;
 }
 
+/// On a logarithmic scale: what reflects light is some decimetres beside the centre of mass, 1 arcsec of the first
+/// image's range and 300 of the last one's.
 Plot bearing_error_plot(const RunRecord& record, const View& view) {
   Plot plot = empty_plot(record, view, "Error of the measured bearing", "error", Unit::kArcseconds);
-  const auto sigma = [&](double sign) {
-    return points_of(record, view, [sign](const ImageRow& row) {
-      return row.bearing_error_x_arcsec ? std::optional(sign * row.bearing_sigma_arcsec) : std::nullopt;
+  plot.y.logarithmic = true;
+  const auto of_bearings = [&](const auto& value) {
+    return points_of(record, view, [&](const ImageRow& row) {
+      return row.bearing_error_x_arcsec ? std::optional<double>(value(row)) : std::nullopt;
     });
   };
-  plot.series = {
-      {"camera x", 0, Mark::kDots, points_of(record, view, [](const ImageRow& r) { return r.bearing_error_x_arcsec; })},
-      {"camera y", 3, Mark::kDots, points_of(record, view, [](const ImageRow& r) { return r.bearing_error_y_arcsec; })},
-      {"one sigma as it claims", 1, Mark::kDashedLine, sigma(1.0)},
-      {"", 1, Mark::kDashedLine, sigma(-1.0)}};
-  plot.y.range = range_of_most(plot.series);
+  plot.series = {{"size", 0, Mark::kDots, of_bearings([](const ImageRow& row) {
+                    return std::hypot(*row.bearing_error_x_arcsec, row.bearing_error_y_arcsec.value_or(0.0));
+                  })},
+                 {"one sigma of an axis as it claims", 1, Mark::kDashedLine,
+                  of_bearings([](const ImageRow& row) { return row.bearing_sigma_arcsec; })}};
   return plot;
 }
 
@@ -258,8 +260,9 @@ std::string gallery(const RunRecord& record) {
                     "<figcaption>{0}</figcaption>",
                     escaped(caption), base64(image.png)));
   }
-  return "<h3>Images</h3>\n<p class=\"note\">As the flight software got them, with its own findings: circles are stars "
-         "that it identified, the triangle is its target, boxes are what it did not match.</p>\n" +
+  return "<h3>Images</h3>\n<p class=\"note\">As the flight software got them, with its own findings: red boxes are "
+         "stars that it identified, the green circle is its target, blue triangles are objects that it did not "
+         "match.</p>\n" +
          figures(3, pictures);
 }
 
@@ -276,12 +279,12 @@ std::string angles_only_section(const RunRecord& record) {
       performance_table(record) + facts(record) +
           "<p class=\"note\">Errors of bearings are against the target's centre of mass; what reflects light lies up "
           "to "
-          "some decimetres beside it, which shows at close range. Plots leave out the largest hundredth of their dots. "
+          "some decimetres beside it, which shows at close range. Linear plots leave out the largest hundredth of "
+          "their dots. "
           "Dashed lines: waypoints. Strokes on the lower edge: maneuvers.</p>\n" +
-          legend(residuals[0].series) + figures(2, {svg(residuals[0]), svg(residuals[1])}) +
-          legend({bearing.series[0], bearing.series[1], bearing.series[2]}) + legend(attitude.series) +
-          figures(2, {svg(bearing), svg(attitude)}) + legend(range.series) + legend(objects.series) +
-          figures(2, {svg(range), svg(objects)}) + gallery(record));
+          legend(residuals[0].series) + figures(2, {svg(residuals[0]), svg(residuals[1])}) + legend(bearing.series) +
+          legend(attitude.series) + figures(2, {svg(bearing), svg(attitude)}) + legend(range.series) +
+          legend(objects.series) + figures(2, {svg(range), svg(objects)}) + gallery(record));
 }
 
 }  // namespace vbar::report
