@@ -132,6 +132,26 @@ void GlShadowMap::bind_texture() const {
   glBindTexture(GL_TEXTURE_2D, texture_);
 }
 
+GlTable::GlTable() {
+  glGenTextures(1, &texture_);
+  bind_texture();
+  glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+}
+
+GlTable::~GlTable() { glDeleteTextures(1, &texture_); }
+
+void GlTable::set(std::span<const float> numbers) {
+  bind_texture();
+  glTexImage1D(GL_TEXTURE_1D, 0, GL_R32F, static_cast<GLsizei>(numbers.size()), 0, GL_RED, GL_FLOAT, numbers.data());
+}
+
+void GlTable::bind_texture() const {
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_1D, texture_);
+}
+
 GlPicture::GlPicture(int size) : size_(size) {
   const auto renderbuffer = [size](GLuint& id, int samples, GLenum format) {
     glGenRenderbuffers(1, &id);

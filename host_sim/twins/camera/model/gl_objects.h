@@ -59,6 +59,21 @@ class GlShadowMap {
   int size_ = 0;
 };
 
+/// A row of numbers that a shader interpolates in.
+class GlTable {
+ public:
+  GlTable();
+  ~GlTable();
+  GlTable(const GlTable&) = delete;
+  GlTable& operator=(const GlTable&) = delete;
+
+  void set(std::span<const float> numbers);
+  void bind_texture() const;  ///< to texture unit 1
+
+ private:
+  GLuint texture_ = 0;
+};
+
 /// A square picture of one float a texel, drawn with four samples a texel.
 class GlPicture {
  public:

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -22,6 +23,9 @@ using fsw::Vector3;
 using Matrix3f = Eigen::Matrix<float, 3, 3>;
 using Matrix4f = Eigen::Matrix<float, 4, 4>;
 
+constexpr double kPi = std::numbers::pi;
+constexpr int kEarthSteps = 512;
+constexpr int kFinePicture = 256;  // texels on a side; in finer ones shadows get a wider filter
 constexpr double kMinRoughness = 0.02;  // a mirror image of the Sun, half a degree wide, is no narrower
 
 // The picture's axes: z to the middle of the sphere, x and y near the camera's.
@@ -68,6 +72,26 @@ std::array<float, 4> shader_material(const Material& m) {
           static_cast<float>(std::min(1.0, 25.0 * specular)), static_cast<float>(roughness)};
 }
 
+// Irradiance by the Earth of an area whose normal makes an angle of this cosine with the nadir, in units of that of an
+// area which faces it. A sphere of even radiance, horizon included: Snyder (1996), "Area light sources for real-time
+// graphics", in the form of Lagarde and de Rousiers (2014), "Moving Frostbite to physically based rendering", listing 7.
+double earth_factor(double cosine, double sine_earth) {
+  if (cosine >= sine_earth) return cosine;
+  if (cosine <= -sine_earth) return 0.0;
+  const double sin2 = sine_earth * sine_earth, sine = std::sqrt(1.0 - cosine * cosine);
+  const double x = std::sqrt(std::max(0.0, 1.0 / sin2 - 1.0)), y = std::clamp(-x * cosine / sine, -1.0, 1.0);
+  const double s = sine * std::sqrt(1.0 - y * y);
+  return std::max(0.0, ((cosine * std::acos(y) - x * s) * sin2 + std::atan2(s, x)) / (kPi * sin2));
+}
+
+// The same at even steps of the cosine from -1 to 1.
+std::vector<float> earth_table(double sine_earth) {
+  std::vector<float> table(kEarthSteps);
+  for (int i = 0; i < kEarthSteps; ++i)
+    table[static_cast<std::size_t>(i)] = static_cast<float>(earth_factor(2.0 * i / (kEarthSteps - 1) - 1.0, sine_earth));
+  return table;
+}
+
 void check(const TargetView& view) {
   const double sum = view.position_camera.sum() + view.R_camera_body.sum() + view.sun_camera.sum() +
                      view.nadir_camera.sum() + view.sun_photons_per_m2_s + view.sunlit + view.earth_photons_per_m2_s +
@@ -83,11 +107,13 @@ struct TargetRenderer::Drawing {
     shadow_program.emplace(kShadowVertexShader, kShadowFragmentShader);
     surface_program.emplace(kSurfaceVertexShader, kSurfaceFragmentShader);
     triangles.emplace(surface_of(model), std::array{3, 3, 4});
+    earth_light.emplace();
   }
   ~Drawing() {
     const GlContext::Current current(context);
     picture.reset();
     shadow_map.reset();
+    earth_light.reset();
     triangles.reset();
     surface_program.reset();
     shadow_program.reset();
@@ -97,7 +123,7 @@ struct TargetRenderer::Drawing {
 
   void draw_shadow(const Matrix3& R_sun_body) const;
   void draw_surface(const TargetView& view, const Vector3& centre_camera, const Matrix3& R_picture_camera,
-                    double tan_half, const Matrix3& R_sun_body, double scale) const;
+                    double tan_half, const Matrix3& R_sun_body, double scale);
 
   Vector3 centre;
   double radius_m;
@@ -106,6 +132,8 @@ struct TargetRenderer::Drawing {
   std::optional<GlProgram> shadow_program, surface_program;
   std::optional<GlTriangles> triangles;
   std::optional<GlShadowMap> shadow_map;
+  std::optional<GlTable> earth_light;  // for the Earth's half-angle whose sine is:
+  double earth_table_sine = -1.0;
   std::optional<GlPicture> picture;
   std::vector<float> texels;
 };
@@ -121,7 +149,7 @@ void TargetRenderer::Drawing::draw_shadow(const Matrix3& R_sun_body) const {
 
 void TargetRenderer::Drawing::draw_surface(const TargetView& view, const Vector3& centre_camera,
                                            const Matrix3& R_picture_camera, double tan_half, const Matrix3& R_sun_body,
-                                           double scale) const {
+                                           double scale) {
   // From body axes in radii to clip space. Everything is relative to the distance of the middle, so single precision
   // is enough at any range; depth runs from -1 to 1 through the sphere.
   const double reach = radius_m / centre_camera.norm();
@@ -153,10 +181,18 @@ void TargetRenderer::Drawing::draw_surface(const TargetView& view, const Vector3
   set_vector("nadir", view.R_camera_body.transpose() * view.nadir_camera.normalized());
   set_number("sun_irradiance", view.sunlit * view.sun_photons_per_m2_s / scale);
   set_number("earth_irradiance", view.earth_photons_per_m2_s / scale);
-  const double sine_earth = std::sin(std::clamp(view.earth_half_angle, 1e-3, 1.5707963));
-  set_number("sin2_earth", sine_earth * sine_earth);
+  const double earth_edge = std::clamp(view.earth_half_angle, 1e-3, 0.5 * kPi), sine_earth = std::sin(earth_edge);
+  set_number("earth_edge", earth_edge);
+  set_number("earth_radiance", 1.0 / (kPi * sine_earth * sine_earth));
+  if (sine_earth != earth_table_sine) {
+    earth_light->set(earth_table(sine_earth));
+    earth_table_sine = sine_earth;
+  }
   set_number("shadow_texel", 2.0 / shadow_map->size());
+  glUniform1i(surface_program->uniform("shadow_reach"), picture->size() > kFinePicture ? 1 : 0);
+  glUniform1i(surface_program->uniform("earth_light"), 1);
   shadow_map->bind_texture();
+  earth_light->bind_texture();
   triangles->draw();
 }
 
@@ -202,7 +238,7 @@ void TargetRenderer::render(const TargetView& view, std::vector<LightSample>& ou
       d.picture.reset();
       d.picture.emplace(n);
     }
-    const int shadow_size = std::clamp(2 * n, 1024, 2048);
+    const int shadow_size = std::clamp(4 * n, 512, 2048);
     if (!d.shadow_map || d.shadow_map->size() != shadow_size) {
       d.shadow_map.reset();
       d.shadow_map.emplace(shadow_size);

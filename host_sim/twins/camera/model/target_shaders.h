@@ -21,13 +21,20 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 flat_normal_and_material;
 uniform mat4 clip_from_body;
+uniform vec4 materials[64];  // albedo, reflectivity, reflectivity at grazing incidence, roughness
+uniform float earth_edge;    // half-angle of the Earth's disc
 centroid out vec3 p;
 centroid out vec3 smooth_normal;
-flat out vec4 flat_and_material;
+flat out vec3 plane_normal;
+flat out vec4 material;
+flat out vec2 mirror_edge;   // cosines between which the Earth comes into a mirror this rough
 void main() {
   p = position;
   smooth_normal = normal;
-  flat_and_material = flat_normal_and_material;
+  plane_normal = flat_normal_and_material.xyz;
+  material = materials[int(flat_normal_and_material.w + 0.5)];
+  float blur = 1.5 * material.w;
+  mirror_edge = vec2(cos(min(earth_edge + blur, 3.14159)), cos(max(earth_edge - blur, 0.0)));
   gl_Position = clip_from_body * vec4(position, 1.0);
 }
 )glsl";
@@ -39,29 +46,34 @@ void main() {
 // (GGX, eqs. 33 and 34) and Schlick's (1994) Fresnel term. What the surface mirrors at grazing angles it does not
 // scatter: the Lambert part fades as the Fresnel term rises, in both directions, so that reciprocity holds.
 //
-// The Earth: irradiance of a tilted area by a sphere of even radiance, horizon included: Snyder (1996), "Area light
-// sources for real-time graphics", in the form of Lagarde and de Rousiers (2014), "Moving Frostbite to physically based
-// rendering", listing 7. Its mirror image: the part of the lobe about the mirrored view that falls on the disc.
+// The Earth is a disc of even radiance: its light scattered by the Lambert part, horizon included, and its mirror image,
+// as much of the lobe about the mirrored view as falls on the disc.
 inline constexpr std::string_view kSurfaceFragmentShader = R"glsl(#version 330 core
 centroid in vec3 p;
 centroid in vec3 smooth_normal;
-flat in vec4 flat_and_material;
+flat in vec3 plane_normal;
+flat in vec4 material;
+flat in vec2 mirror_edge;
 out float radiance;
 
-uniform vec4 materials[64];    // albedo, reflectivity, reflectivity at grazing incidence, roughness
 uniform vec3 camera;           // where it is
 uniform vec3 sun;              // unit, towards it
 uniform float sun_irradiance;
 uniform vec3 nadir;            // unit, towards the Earth's centre
-uniform float sin2_earth;      // of the Earth's half-angle
+uniform float earth_radiance;  // of its disc, per irradiance
+uniform sampler1D earth_light; // irradiance by it over the cosine of a normal to the nadir, from -1 to 1
 uniform float earth_irradiance;  // on an area that faces the nadir
 uniform mat3 R_sun_body;
 uniform float shadow_texel;    // side of a texel of the shadow map
+uniform int shadow_reach;      // comparisons on each side of the middle one
 uniform sampler2DShadow shadow_map;
 
 const float kPi = 3.14159265358979;
 
-float grazing(float cosine) { return pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0); }
+float grazing(float cosine) {
+  float c = clamp(1.0 - cosine, 0.0, 1.0), c2 = c * c;
+  return c2 * c2 * c;
+}
 
 // Smith's masking of one direction, GGX.
 float masking(float cosine, float alpha2) {
@@ -84,7 +96,7 @@ float reflected(vec3 n, vec3 l, vec3 v, vec4 m) {
   return (lambert + glossy) * nl;
 }
 
-// Share of the Sun that reaches p: nine comparisons, each of four texels. Each compares with the depth that the plane of
+// Share of the Sun that reaches p: one or nine comparisons, each of four texels. Each compares with the depth that the plane of
 // the face has there, and is nearer by what that changes within the four: no face shades itself, and the edges of
 // shadows stay where they are. Where the Sun only grazes a face the slope is limited, and so is the light.
 float sunlight(vec3 flat_normal) {
@@ -94,42 +106,28 @@ float sunlight(vec3 flat_normal) {
   float texel = 0.5 * shadow_texel;
   float nearer = texel * (abs(slope.x) + abs(slope.y) + 0.5);
   float sum = 0.0;
-  for (int i = -1; i <= 1; ++i)
-    for (int j = -1; j <= 1; ++j) {
+  for (int i = -shadow_reach; i <= shadow_reach; ++i)
+    for (int j = -shadow_reach; j <= shadow_reach; ++j) {
       vec2 off = texel * vec2(float(i), float(j));
       sum += texture(shadow_map, vec3(place.xy + off, place.z + dot(slope, off) - nearer));
     }
-  return sum / 9.0;
-}
-
-// Irradiance by the Earth of an area whose normal makes an angle of this cosine with the nadir, in units of that of an
-// area which faces it.
-float earth_factor(float cosine) {
-  float sine_earth = sqrt(sin2_earth);
-  if (cosine >= sine_earth) return cosine;
-  if (cosine <= -sine_earth) return 0.0;
-  float sine = sqrt(1.0 - cosine * cosine);
-  float x = sqrt(1.0 / sin2_earth - 1.0);
-  float y = -x * cosine / sine;
-  float s = sine * sqrt(max(0.0, 1.0 - y * y));
-  return max(0.0, ((cosine * acos(clamp(y, -1.0, 1.0)) - x * s) * sin2_earth + atan(s / max(x, 1e-6))) /
-                      (kPi * sin2_earth));
+  return sum / float((2 * shadow_reach + 1) * (2 * shadow_reach + 1));
 }
 
 float earthshine(vec3 n, vec3 v, vec4 m) {
   float nv = max(dot(n, v), 1e-4);
-  float lambert = m.x / kPi * (1.0 - m.z * grazing(nv)) * earth_factor(dot(n, nadir));
-  float from_centre = acos(clamp(dot(reflect(-v, n), nadir), -1.0, 1.0));
-  float edge = asin(sqrt(sin2_earth));
-  float covered = 1.0 - smoothstep(edge - 1.5 * m.w, edge + 1.5 * m.w, from_centre);
+  float size = float(textureSize(earth_light, 0));
+  float place = (0.5 + (size - 1.0) * (0.5 + 0.5 * dot(n, nadir))) / size;
+  float lambert = m.x / kPi * (1.0 - m.z * grazing(nv)) * texture(earth_light, place).r;
+  float covered = smoothstep(mirror_edge.x, mirror_edge.y, dot(reflect(-v, n), nadir));
   float fresnel = m.y + (m.z - m.y) * grazing(nv);
-  return lambert + fresnel * covered / (kPi * sin2_earth);
+  return lambert + fresnel * covered * earth_radiance;
 }
 
 void main() {
-  vec4 m = materials[int(flat_and_material.w + 0.5)];
+  vec4 m = material;
   vec3 v = normalize(camera - p);
-  vec3 flat_normal = flat_and_material.xyz;
+  vec3 flat_normal = plane_normal;
   if (dot(flat_normal, v) < 0.0) flat_normal = -flat_normal;  // thin sheets are seen from both sides
   vec3 n = normalize(smooth_normal);
   if (dot(n, flat_normal) < 0.0) n = -n;

@@ -1,6 +1,7 @@
 // No surface sends back more light than falls on it, and a glossy one little less than its reflectivity.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -61,20 +62,26 @@ TEST(TargetEnergy, ReflectedIsNoMoreThanReceived) {
   shapes::add_plate(triangles, Vector3(-0.5, -0.5, 0.0), Vector3::UnitX(), Vector3::UnitY());
   TargetRenderer renderer(shapes::model_of(triangles));
   struct Case {
-    double diffuse, specular, exponent, least;  // least: share at 0.2 rad that is surely reflected
+    double diffuse, specular, exponent;
+    std::array<double, 3> expected;  // at the three incidences; 0: only no more than everything
   };
-  // A lobe of microfacets that shade each other without light bouncing between them loses some per cent when rough.
-  for (const Case& c : {Case{1.0, 0.0, 0.0, 0.98}, Case{0.0, 1.0, 300.0, 0.96}, Case{0.0, 1.0, 0.0, 0.5},
-                        Case{0.5, 0.5, 40.0, 0.9}, Case{0.9, 0.1, 10.0, 0.85}, Case{0.0, 0.5, 100.0, 0.47}}) {
+  // A white mirror's are integrals of the lobe over the hemisphere by a rule of 1000 x 2000 midpoints, made elsewhere:
+  // what is missing to 1 is light that microfacets keep from each other.
+  for (const Case& c : {Case{1.0, 0.0, 0.0, {1.0, 1.0, 1.0}}, Case{0.0, 1.0, 300.0, {0.9923, 0.9879, 0.9455}},
+                        Case{0.0, 1.0, 40.0, {0.9356, 0.9094, 0.8429}}, Case{0.0, 1.0, 0.0, {0.3099, 0.3617, 0.4842}},
+                        Case{0.5, 0.5, 40.0, {}}, Case{0.9, 0.1, 10.0, {}}}) {
     renderer.set_materials(std::array{material(c.diffuse, c.specular, c.exponent)});
     const double lobe = std::max(0.15, 2.0 * std::sqrt(2.0 / (c.exponent + 2.0)));
-    for (const double incidence : {0.2, 0.8, 1.3}) {
-      const double share = reflected_share(renderer, incidence, lobe, 300);
-      EXPECT_LT(share, 1.02) << "Kd " << c.diffuse << " Ks " << c.specular << " Ns " << c.exponent << " at " << incidence;
-      if (incidence == 0.2) {
-        EXPECT_GT(share, c.least) << "Kd " << c.diffuse << " Ks " << c.specular << " Ns " << c.exponent;
+    constexpr std::array kIncidences{0.2, 0.8, 1.3};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double share = reflected_share(renderer, kIncidences[k], lobe, 200);
+      EXPECT_LT(share, 1.01) << "Kd " << c.diffuse << " Ks " << c.specular << " Ns " << c.exponent;
+      EXPECT_GT(share, 0.7 * (c.diffuse + 0.4 * c.specular)) << "Kd " << c.diffuse << " Ks " << c.specular;
+      if (c.expected[k] > 0.0) {
+        // A hundredth: 200 directions looked from, and edges of the picture.
+        EXPECT_NEAR(share, c.expected[k], 0.01) << "Kd " << c.diffuse << " Ks " << c.specular << " Ns " << c.exponent;
       }
-      std::printf("%g %g %g at %g: %.4f\n", c.diffuse, c.specular, c.exponent, incidence, share);
+      std::printf("%g %g %g at %g: %.4f\n", c.diffuse, c.specular, c.exponent, kIncidences[k], share);
     }
   }
 }
