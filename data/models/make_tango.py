@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Writes tango.obj and tango.mtl, the project's model of PRISMA's Tango, into the folder of this script.
+"""Writes tango.obj and tango.mtl, the project's model of PRISMA's Tango, into the folder of this script or another one:
+
+    make_tango.py [FOLDER]
 
 Only the eleven keypoints are published figures (SPEED and SPEED+ data sets: corners of the top panel and of the bottom,
 tips of three antennas); everything else is drawn to look like the photographs and to make every side unlike the others.
@@ -8,6 +10,7 @@ Body frame: that of the keypoints, metres, z towards the top panel. The same byt
 
 import math
 import pathlib
+import sys
 
 TOP = [(-0.37, -0.385, 0.3215), (-0.37, 0.385, 0.3215), (0.37, 0.385, 0.3215), (0.37, -0.385, 0.3215)]
 BOTTOM = [(-0.37, -0.264, 0.0), (-0.37, 0.304, 0.0), (0.37, 0.304, 0.0), (0.37, -0.264, 0.0)]
@@ -298,7 +301,7 @@ def write_materials(path):
 
 
 def main():
-    folder = pathlib.Path(__file__).resolve().parent
+    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent
     mesh = Mesh()
     solar_panel(mesh)
     body(mesh)

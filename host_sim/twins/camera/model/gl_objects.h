@@ -42,7 +42,7 @@ class GlTriangles {
   GLsizei vertices_ = 0;
 };
 
-/// A square of depths that a shader can compare with: what a parallel light sees first.
+/// A square of depths that a shader can read: how far a parallel light comes.
 class GlShadowMap {
  public:
   explicit GlShadowMap(int size);

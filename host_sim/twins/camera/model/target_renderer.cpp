@@ -25,7 +25,7 @@ using Matrix4f = Eigen::Matrix<float, 4, 4>;
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kEarthSteps = 512;
-constexpr int kFinePicture = 256;  // texels on a side; in finer ones shadows get a wider filter
+constexpr int kFinePicture = 256;       // texels on a side; in finer ones shadows get a wider filter
 constexpr double kMinRoughness = 0.02;  // a mirror image of the Sun, half a degree wide, is no narrower
 
 // The picture's axes: z to the middle of the sphere, x and y near the camera's.
@@ -74,7 +74,8 @@ std::array<float, 4> shader_material(const Material& m) {
 
 // Irradiance by the Earth of an area whose normal makes an angle of this cosine with the nadir, in units of that of an
 // area which faces it. A sphere of even radiance, horizon included: Snyder (1996), "Area light sources for real-time
-// graphics", in the form of Lagarde and de Rousiers (2014), "Moving Frostbite to physically based rendering", listing 7.
+// graphics", in the form of Lagarde and de Rousiers (2014), "Moving Frostbite to physically based rendering",
+// listing 7.
 double earth_factor(double cosine, double sine_earth) {
   if (cosine >= sine_earth) return cosine;
   if (cosine <= -sine_earth) return 0.0;
@@ -88,7 +89,8 @@ double earth_factor(double cosine, double sine_earth) {
 std::vector<float> earth_table(double sine_earth) {
   std::vector<float> table(kEarthSteps);
   for (int i = 0; i < kEarthSteps; ++i)
-    table[static_cast<std::size_t>(i)] = static_cast<float>(earth_factor(2.0 * i / (kEarthSteps - 1) - 1.0, sine_earth));
+    table[static_cast<std::size_t>(i)] =
+        static_cast<float>(earth_factor(2.0 * i / (kEarthSteps - 1) - 1.0, sine_earth));
   return table;
 }
 
@@ -188,7 +190,6 @@ void TargetRenderer::Drawing::draw_surface(const TargetView& view, const Vector3
     earth_light->set(earth_table(sine_earth));
     earth_table_sine = sine_earth;
   }
-  set_number("shadow_texel", 2.0 / shadow_map->size());
   glUniform1i(surface_program->uniform("shadow_reach"), picture->size() > kFinePicture ? 1 : 0);
   glUniform1i(surface_program->uniform("earth_light"), 1);
   shadow_map->bind_texture();

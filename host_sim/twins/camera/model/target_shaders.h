@@ -46,8 +46,8 @@ void main() {
 // (GGX, eqs. 33 and 34) and Schlick's (1994) Fresnel term. What the surface mirrors at grazing angles it does not
 // scatter: the Lambert part fades as the Fresnel term rises, in both directions, so that reciprocity holds.
 //
-// The Earth is a disc of even radiance: its light scattered by the Lambert part, horizon included, and its mirror image,
-// as much of the lobe about the mirrored view as falls on the disc.
+// The Earth is a disc of even radiance: its light scattered by the Lambert part, horizon included, and its mirror
+// image, as much of the lobe about the mirrored view as falls on the disc.
 inline constexpr std::string_view kSurfaceFragmentShader = R"glsl(#version 330 core
 centroid in vec3 p;
 centroid in vec3 smooth_normal;
@@ -64,9 +64,8 @@ uniform float earth_radiance;  // of its disc, per irradiance
 uniform sampler1D earth_light; // irradiance by it over the cosine of a normal to the nadir, from -1 to 1
 uniform float earth_irradiance;  // on an area that faces the nadir
 uniform mat3 R_sun_body;
-uniform float shadow_texel;    // side of a texel of the shadow map
-uniform int shadow_reach;      // comparisons on each side of the middle one
-uniform sampler2DShadow shadow_map;
+uniform int shadow_reach;      // of the mean, in texels: 0 for 2 x 2 of them, 1 for 4 x 4
+uniform sampler2D shadow_map;  // depths, 0 to 1 through the sphere
 
 const float kPi = 3.14159265358979;
 
@@ -96,22 +95,29 @@ float reflected(vec3 n, vec3 l, vec3 v, vec4 m) {
   return (lambert + glossy) * nl;
 }
 
-// Share of the Sun that reaches p: one or nine comparisons, each of four texels. Each compares with the depth that the plane of
-// the face has there, and is nearer by what that changes within the four: no face shades itself, and the edges of
-// shadows stay where they are. Where the Sun only grazes a face the slope is limited, and so is the light.
+// Share of the Sun that reaches p: a mean over the texels of the shadow map around it, their weights moving with p. Each
+// texel is compared with the depth that the plane of the face has at the texel's middle: no face shades itself, and
+// shadows begin where bodies touch. Where the Sun only grazes a face the slope is limited, and so is the light.
 float sunlight(vec3 flat_normal) {
   vec3 normal_sun = R_sun_body * flat_normal;
-  vec2 slope = normal_sun.xy / max(-normal_sun.z, 0.05);
+  vec2 slope = normal_sun.xy / max(-normal_sun.z, 0.02);
   vec3 place = 0.5 * (R_sun_body * p) + 0.5;
-  float texel = 0.5 * shadow_texel;
-  float nearer = texel * (abs(slope.x) + abs(slope.y) + 0.5);
+  int size = textureSize(shadow_map, 0).x;
+  float texel = 1.0 / float(size);
+  vec2 at = place.xy * float(size) - 0.5;
+  ivec2 first = ivec2(floor(at));
+  vec2 part = at - vec2(first);
+  float depth = place.z - 0.1 * texel * (1.0 + abs(slope.x) + abs(slope.y));
+  int r = shadow_reach;
   float sum = 0.0;
-  for (int i = -shadow_reach; i <= shadow_reach; ++i)
-    for (int j = -shadow_reach; j <= shadow_reach; ++j) {
-      vec2 off = texel * vec2(float(i), float(j));
-      sum += texture(shadow_map, vec3(place.xy + off, place.z + dot(slope, off) - nearer));
+  for (int i = -r; i <= r + 1; ++i)
+    for (int j = -r; j <= r + 1; ++j) {
+      float across = i == -r ? 1.0 - part.x : i > r ? part.x : 1.0;
+      float along = j == -r ? 1.0 - part.y : j > r ? part.y : 1.0;
+      float seen = texelFetch(shadow_map, clamp(first + ivec2(i, j), 0, size - 1), 0).r;
+      sum += depth + texel * dot(slope, vec2(float(i), float(j)) - part) <= seen ? across * along : 0.0;
     }
-  return sum / float((2 * shadow_reach + 1) * (2 * shadow_reach + 1));
+  return sum / float((2 * r + 1) * (2 * r + 1));
 }
 
 float earthshine(vec3 n, vec3 v, vec4 m) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include <Eigen/Geometry>
 
@@ -38,34 +37,35 @@ struct TracedLight {
   fsw::Vector3 direction = fsw::Vector3::Zero();  // mean, camera axes
 };
 
-/// `rays` by `rays` of them, even over the tangents of the angles from the middle of the body's sphere.
+/// By this many rays, evenly strewn over the tangents of the angles from the middle of the body's sphere: Roberts's R2
+/// sequence, so that no edge or grid of the body falls in with them.
 inline TracedLight trace(const CadModel& model, const TargetView& view, int rays) {
   const fsw::Matrix3 R_body_camera = view.R_camera_body.transpose();
   const fsw::Vector3 camera = -R_body_camera * view.position_camera, sun = R_body_camera * view.sun_camera;
   const fsw::Vector3 axis = (model.centre - camera).normalized();
   const fsw::Vector3 x = axis.unitOrthogonal(), y = axis.cross(x);
-  const double reach = std::tan(std::asin(model.radius_m / (model.centre - camera).norm())), pitch = 2.0 * reach / rays;
+  const double reach = std::tan(std::asin(model.radius_m / (model.centre - camera).norm()));
   TracedLight light;
-  for (int i = 0; i < rays; ++i)
-    for (int j = 0; j < rays; ++j) {
-      const fsw::Vector3 on_plane = axis + ((i + 0.5) * pitch - reach) * x + ((j + 0.5) * pitch - reach) * y;
-      const fsw::Vector3 ray = on_plane.normalized();
-      const Hit hit = nearest_hit(model, camera, ray);
-      if (hit.triangle == nullptr) continue;
-      const auto& c = hit.triangle->corners;
-      fsw::Vector3 normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
-      if (normal.dot(ray) > 0.0) normal = -normal;
-      const double incidence = normal.dot(sun);
-      if (incidence <= 0.0) continue;
-      const double solid_angle = pitch * pitch / std::pow(on_plane.norm(), 3);
-      const double flux = view.sun_photons_per_m2_s * incidence *
-                          model.materials[hit.triangle->material].grey_diffuse() / std::numbers::pi * solid_angle;
-      light.flux_without_shadows += flux;
-      const fsw::Vector3 point = camera + hit.distance * ray + 1e-5 * normal;
-      if (nearest_hit(model, point, sun).triangle != nullptr) continue;
-      light.flux += flux;
-      light.direction += flux * (view.R_camera_body * ray);
-    }
+  for (int k = 0; k < rays; ++k) {
+    const double u = 2.0 * std::fmod(0.5 + 0.7548776662466927 * k, 1.0) - 1.0;
+    const double v = 2.0 * std::fmod(0.5 + 0.5698402909980532 * k, 1.0) - 1.0;
+    const fsw::Vector3 on_plane = axis + reach * (u * x + v * y), ray = on_plane.normalized();
+    const Hit hit = nearest_hit(model, camera, ray);
+    if (hit.triangle == nullptr) continue;
+    const auto& c = hit.triangle->corners;
+    fsw::Vector3 normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+    if (normal.dot(ray) > 0.0) normal = -normal;
+    const double incidence = normal.dot(sun);
+    if (incidence <= 0.0) continue;
+    const double solid_angle = 4.0 * reach * reach / rays / std::pow(on_plane.norm(), 3);
+    const double flux = view.sun_photons_per_m2_s * incidence * model.materials[hit.triangle->material].grey_diffuse() /
+                        std::numbers::pi * solid_angle;
+    light.flux_without_shadows += flux;
+    const fsw::Vector3 point = camera + hit.distance * ray + 1e-5 * normal;
+    if (nearest_hit(model, point, sun).triangle != nullptr) continue;
+    light.flux += flux;
+    light.direction += flux * (view.R_camera_body * ray);
+  }
   light.direction /= light.flux;
   return light;
 }

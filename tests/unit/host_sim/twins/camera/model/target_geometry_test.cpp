@@ -50,10 +50,9 @@ TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
     const double range = k % 2 == 0 ? 6.0 : 80.0;
     TargetView view;
     view.position_camera = range * Vector3(0.1 * std::cos(k), 0.15 * std::sin(2.0 * k), 1.0).normalized();
-    view.R_camera_body =
-        (Eigen::AngleAxisd(0.7 * k, Vector3::UnitX()) * Eigen::AngleAxisd(1.3 * k, Vector3::UnitY()) *
-         Eigen::AngleAxisd(0.4 + k, Vector3::UnitZ()))
-            .toRotationMatrix();
+    view.R_camera_body = (Eigen::AngleAxisd(0.7 * k, Vector3::UnitX()) * Eigen::AngleAxisd(1.3 * k, Vector3::UnitY()) *
+                          Eigen::AngleAxisd(0.4 + k, Vector3::UnitZ()))
+                             .toRotationMatrix();
     view.nadir_camera = -view.position_camera.normalized();
     view.earth_half_angle = 1.5;
     view.earth_photons_per_m2_s = 1e20;

@@ -24,11 +24,11 @@ Matrix3 turned(double about_x, double about_y, double about_z) {
       .toRotationMatrix();
 }
 
-// Two plates that make an L, the upright one shading the other.
+// Two plates that make an L, the upright one shading the other, and wider.
 CadModel l_shape() {
   std::vector<Triangle> triangles;
   shapes::add_plate(triangles, Vector3(0.0, 0.0, 0.0), Vector3(0.8, 0.0, 0.0), Vector3(0.0, 0.6, 0.0));
-  shapes::add_plate(triangles, Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.6, 0.0), Vector3(0.0, 0.0, 0.5));
+  shapes::add_plate(triangles, Vector3(0.0, -0.1, 0.0), Vector3(0.0, 0.8, 0.0), Vector3(0.0, 0.0, 0.5));
   return shapes::model_of(triangles, shapes::lambert(0.5));
 }
 
@@ -56,16 +56,17 @@ TEST(TargetShadow, OfTwoPlatesIsTheRayTracers) {
   const CadModel model = l_shape();
   TargetRenderer renderer(model);
   std::vector<LightSample> samples;
-  for (const double phase : {0.4, 0.9, 1.4}) {
-    TargetView view = view_at(300.0, phase);
-    view.R_camera_body = turned(M_PI - 0.5, 0.3, 0.4);
-    const TracedLight traced = trace(model, view, 500);
+  double shaded = 0.0;
+  for (const double turn : {0.0, 0.6, 1.2}) {
+    TargetView view = view_at(300.0, 0.9);
+    view.R_camera_body = turned(M_PI - 0.4, -0.3 - turn, 0.4);
+    const TracedLight traced = trace(model, view, 200000);
+    shaded = std::max(shaded, 1.0 - traced.flux / traced.flux_without_shadows);
     renderer.render(view, samples);
-    EXPECT_NEAR(sum_of(samples).flux / traced.flux, 1.0, 0.015) << "phase " << phase;
-    EXPECT_LT((sum_of(samples).direction - traced.direction).norm() * 300.0, 0.005) << "phase " << phase;
-    std::printf("%.4f %.4f %.5f\n", sum_of(samples).flux / traced.flux, traced.flux / traced.flux_without_shadows,
-                (sum_of(samples).direction - traced.direction).norm() * 300.0);
+    EXPECT_NEAR(sum_of(samples).flux / traced.flux, 1.0, 0.015) << "turn " << turn;
+    EXPECT_LT((sum_of(samples).direction - traced.direction).norm() * 300.0, 0.005) << "turn " << turn;
   }
+  EXPECT_GT(shaded, 0.2) << "or nothing is tested";
 }
 
 TEST(TargetShadow, OfMattTangoIsTheRayTracers) {
@@ -80,14 +81,12 @@ TEST(TargetShadow, OfMattTangoIsTheRayTracers) {
     TargetView view = view_at(30.0, 1.0);
     view.R_camera_body = turned(turn, 0.5 * turn, 0.7);
     view.texel_pitch = 0.01 / 30.0;
-    const TracedLight traced = trace(model, view, 120);
+    const TracedLight traced = trace(model, view, 10000);
     shaded = std::max(shaded, 1.0 - traced.flux / traced.flux_without_shadows);
     renderer.render(view, samples);
-    // 14,400 rays, 13 mm apart: edges and thin parts leave the reference itself half a per cent uncertain.
-    EXPECT_NEAR(sum_of(samples).flux / traced.flux, 1.0, 0.02) << "turn " << turn;
-    EXPECT_LT((sum_of(samples).direction - traced.direction).norm() * 30.0, 0.005) << "turn " << turn;
-    std::printf("%.4f %.4f %.5f\n", sum_of(samples).flux / traced.flux, traced.flux / traced.flux_without_shadows,
-                (sum_of(samples).direction - traced.direction).norm() * 30.0);
+    // 10,000 rays leave the reference itself half a per cent and 2 mm uncertain.
+    EXPECT_NEAR(sum_of(samples).flux / traced.flux, 1.0, 0.015) << "turn " << turn;
+    EXPECT_LT((sum_of(samples).direction - traced.direction).norm() * 30.0, 0.004) << "turn " << turn;
   }
   EXPECT_GT(shaded, 0.03) << "or nothing is tested";
 }
