@@ -22,11 +22,15 @@ using fsw::Vector3;
 std::vector<double> pixels(const std::vector<LightSample>& samples, int size, double pitch) {
   std::vector<double> image(static_cast<std::size_t>(size * size));
   for (const LightSample& s : samples) {
-    const double x = s.direction_camera.x() / s.direction_camera.z() / pitch + 0.5 * size;
-    const double y = s.direction_camera.y() / s.direction_camera.z() / pitch + 0.5 * size;
+    // Shared among the four pixels around it, or the picture shows how many texels fall into each pixel.
+    const double x = s.direction_camera.x() / s.direction_camera.z() / pitch + 0.5 * (size - 1);
+    const double y = s.direction_camera.y() / s.direction_camera.z() / pitch + 0.5 * (size - 1);
     const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-    if (i < 0 || j < 0 || i >= size || j >= size) continue;
-    image[static_cast<std::size_t>(j * size + i)] += s.photons_per_m2_s;
+    if (i < 0 || j < 0 || i + 1 >= size || j + 1 >= size) continue;
+    for (int down = 0; down < 2; ++down)
+      for (int right = 0; right < 2; ++right)
+        image[static_cast<std::size_t>((j + down) * size + i + right)] +=
+            s.photons_per_m2_s * (right == 0 ? 1.0 - (x - i) : x - i) * (down == 0 ? 1.0 - (y - j) : y - j);
   }
   return image;
 }
