@@ -30,18 +30,19 @@ double flux_near(const std::vector<LightSample>& samples, const Vector3& directi
 }
 
 // True if neither the ray from the camera nor eight about it, 12 mm off, meet the body.
-bool free_around(const CadModel& model, const Vector3& camera, const Vector3& ray) {
+bool free_around(const CadModel& model, const Spheres& spheres, const Vector3& camera, const Vector3& ray) {
   const Vector3 direction = ray.normalized(), across = direction.unitOrthogonal();
   for (int i = 0; i < 9; ++i) {
     const Vector3 off = Eigen::AngleAxisd(i * M_PI / 4.0, direction) * across;
     const Vector3 near = i == 8 ? ray : Vector3(ray + 0.012 * off);
-    if (nearest_hit(model, camera, near.normalized()).triangle != nullptr) return false;
+    if (nearest_hit(model, spheres, camera, near.normalized()).triangle != nullptr) return false;
   }
   return true;
 }
 
 TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
   const CadModel model = load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj");
+  const Spheres spheres(model);
   TargetRenderer renderer(model);
   std::vector<LightSample> samples;
   int seen = 0, empty = 0;
@@ -62,7 +63,7 @@ TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
     const Vector3 camera_body = -view.R_camera_body.transpose() * view.position_camera;
     for (const Vector3& tip : kTips) {
       const Vector3 to_tip = tip - camera_body;
-      const Hit hit = nearest_hit(model, camera_body, to_tip.normalized());
+      const Hit hit = nearest_hit(model, spheres, camera_body, to_tip.normalized());
       const bool hidden = hit.distance < to_tip.norm() - 0.03;
       const Vector3 direction = (view.R_camera_body * to_tip).normalized();
       if (!hidden) {
@@ -72,7 +73,7 @@ TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
       }
       // Half a decimetre beyond the tip there is nothing, unless another part of the body is behind.
       const Vector3 beyond = tip + 0.05 * (tip - model.centre).normalized() - camera_body;
-      if (free_around(model, camera_body, beyond)) {
+      if (free_around(model, spheres, camera_body, beyond)) {
         EXPECT_EQ(flux_near(samples, (view.R_camera_body * beyond).normalized(), 0.006 / range), 0.0) << "view " << k;
         ++empty;
       }
