@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "fsw/core/types.h"
-#include "host_sim/twins/camera/model/cad_model.h"
 #include "host_sim/twins/camera/light_sample.h"
+#include "host_sim/twins/camera/model/cad_model.h"
 
 namespace vbar::twins::camera {
 

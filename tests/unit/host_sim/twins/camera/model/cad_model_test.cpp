@@ -67,7 +67,9 @@ TEST_F(CadFiles, AGoodFileIsRead) {
   EXPECT_LT(model.radius_m, 1.0) << "the smallest sphere has 0.816 m";
 }
 
-TEST_F(CadFiles, WithoutFaces) { EXPECT_THAT(complaint("mtllib white.mtl\n" + kCorners), HasSubstr("face")); }
+TEST_F(CadFiles, WithoutFaces) {
+  EXPECT_THAT(complaint("mtllib white.mtl\n" + kCorners), HasSubstr("face"));
+}
 
 TEST_F(CadFiles, OfPointsAndLinesOnly) {
   EXPECT_THAT(complaint("mtllib white.mtl\n" + kCorners + "usemtl white\nl 1 2\nl 2 3\n"), HasSubstr("no faces"));
@@ -144,9 +146,9 @@ TEST(TangoModel, HasItsKeypointsAndALimitedNumberOfFaces) {
   // Published with the SPEED and SPEED+ data sets: corners of the panel, corners of the bottom, antenna tips.
   for (const Vector3& keypoint :
        {Vector3(-0.37, -0.385, 0.3215), Vector3(-0.37, 0.385, 0.3215), Vector3(0.37, 0.385, 0.3215),
-        Vector3(0.37, -0.385, 0.3215), Vector3(-0.37, -0.264, 0.0), Vector3(-0.37, 0.304, 0.0), Vector3(0.37, 0.304, 0.0),
-        Vector3(0.37, -0.264, 0.0), Vector3(-0.5427, 0.4877, 0.2535), Vector3(0.5427, 0.4877, 0.2591),
-        Vector3(0.3050, -0.5790, 0.2515)}) {
+        Vector3(0.37, -0.385, 0.3215), Vector3(-0.37, -0.264, 0.0), Vector3(-0.37, 0.304, 0.0),
+        Vector3(0.37, 0.304, 0.0), Vector3(0.37, -0.264, 0.0), Vector3(-0.5427, 0.4877, 0.2535),
+        Vector3(0.5427, 0.4877, 0.2591), Vector3(0.3050, -0.5790, 0.2515)}) {
     double nearest = 1.0;
     for (const Triangle& t : model.triangles)
       for (const Vector3& corner : t.corners) nearest = std::min(nearest, (corner - keypoint).norm());

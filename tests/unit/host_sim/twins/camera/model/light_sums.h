@@ -9,7 +9,7 @@
 namespace vbar::twins::camera {
 
 struct Light {
-  double flux = 0.0;                               // photons/(m^2 s)
+  double flux = 0.0;                              // photons/(m^2 s)
   fsw::Vector3 direction = fsw::Vector3::Zero();  // mean, weighted with flux
 };
 

@@ -1,9 +1,12 @@
 #pragma once
 // The slow way to a body's light: rays from the camera, rays to the Sun, every triangle asked. Lambert surfaces only.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -17,10 +20,35 @@ struct Hit {
   const Triangle* triangle = nullptr;
 };
 
-/// Nearest triangle along a ray. Moeller and Trumbore (1997).
-inline Hit nearest_hit(const CadModel& model, const fsw::Vector3& from, const fsw::Vector3& direction) {
+/// A sphere around each triangle of a model, as plain numbers: most triangles need no more to be ruled out.
+class Spheres {
+ public:
+  explicit Spheres(const CadModel& model) {
+    for (const Triangle& t : model.triangles) {
+      const fsw::Vector3 middle = (t.corners[0] + t.corners[1] + t.corners[2]) / 3.0;
+      double square = 0.0;
+      for (const fsw::Vector3& corner : t.corners) square = std::max(square, (corner - middle).squaredNorm());
+      spheres_.push_back({middle.x(), middle.y(), middle.z(), 1.0001 * square});
+    }
+  }
+  [[nodiscard]] bool met(std::size_t i, const fsw::Vector3& from, const fsw::Vector3& direction) const {
+    const std::array<double, 4>& s = spheres_[i];
+    const double x = s[0] - from[0], y = s[1] - from[1], z = s[2] - from[2];
+    const double along = x * direction[0] + y * direction[1] + z * direction[2];
+    return x * x + y * y + z * z - along * along <= s[3] + 1e-9;
+  }
+
+ private:
+  std::vector<std::array<double, 4>> spheres_;
+};
+
+/// Nearest triangle along a ray, a unit vector. Moeller and Trumbore (1997).
+inline Hit nearest_hit(const CadModel& model, const Spheres& spheres, const fsw::Vector3& from,
+                       const fsw::Vector3& direction) {
   Hit hit;
-  for (const Triangle& t : model.triangles) {
+  for (std::size_t i = 0; i < model.triangles.size(); ++i) {
+    if (!spheres.met(i, from, direction)) continue;
+    const Triangle& t = model.triangles[i];
     const fsw::Vector3 a = t.corners[1] - t.corners[0], b = t.corners[2] - t.corners[0], p = direction.cross(b);
     const double determinant = a.dot(p);
     if (std::abs(determinant) < 1e-14) continue;
@@ -45,12 +73,13 @@ inline TracedLight trace(const CadModel& model, const TargetView& view, int rays
   const fsw::Vector3 axis = (model.centre - camera).normalized();
   const fsw::Vector3 x = axis.unitOrthogonal(), y = axis.cross(x);
   const double reach = std::tan(std::asin(model.radius_m / (model.centre - camera).norm()));
+  const Spheres spheres(model);
   TracedLight light;
   for (int k = 0; k < rays; ++k) {
     const double u = 2.0 * std::fmod(0.5 + 0.7548776662466927 * k, 1.0) - 1.0;
     const double v = 2.0 * std::fmod(0.5 + 0.5698402909980532 * k, 1.0) - 1.0;
     const fsw::Vector3 on_plane = axis + reach * (u * x + v * y), ray = on_plane.normalized();
-    const Hit hit = nearest_hit(model, camera, ray);
+    const Hit hit = nearest_hit(model, spheres, camera, ray);
     if (hit.triangle == nullptr) continue;
     const auto& c = hit.triangle->corners;
     fsw::Vector3 normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
@@ -62,7 +91,7 @@ inline TracedLight trace(const CadModel& model, const TargetView& view, int rays
                         std::numbers::pi * solid_angle;
     light.flux_without_shadows += flux;
     const fsw::Vector3 point = camera + hit.distance * ray + 1e-5 * normal;
-    if (nearest_hit(model, point, sun).triangle != nullptr) continue;
+    if (nearest_hit(model, spheres, point, sun).triangle != nullptr) continue;
     light.flux += flux;
     light.direction += flux * (view.R_camera_body * ray);
   }

@@ -1,4 +1,5 @@
-// Light of plates and spheres against formulas, of Tango against itself: the inverse square, finer pictures, repetition.
+// Light of plates and spheres against formulas, of Tango against itself: the inverse square, finer pictures,
+// repetition.
 
 #include <array>
 #include <cmath>
@@ -23,7 +24,9 @@ using fsw::Vector3;
 
 constexpr double kPi = std::numbers::pi;
 
-CadModel tango() { return load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj"); }
+CadModel tango() {
+  return load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj");
+}
 
 CadModel sphere(double radius, double albedo) {
   std::vector<Triangle> triangles;

@@ -30,18 +30,19 @@ double flux_near(const std::vector<LightSample>& samples, const Vector3& directi
 }
 
 // True if neither the ray from the camera nor eight about it, 12 mm off, meet the body.
-bool free_around(const CadModel& model, const Vector3& camera, const Vector3& ray) {
+bool free_around(const CadModel& model, const Spheres& spheres, const Vector3& camera, const Vector3& ray) {
   const Vector3 direction = ray.normalized(), across = direction.unitOrthogonal();
   for (int i = 0; i < 9; ++i) {
     const Vector3 off = Eigen::AngleAxisd(i * M_PI / 4.0, direction) * across;
     const Vector3 near = i == 8 ? ray : Vector3(ray + 0.012 * off);
-    if (nearest_hit(model, camera, near.normalized()).triangle != nullptr) return false;
+    if (nearest_hit(model, spheres, camera, near.normalized()).triangle != nullptr) return false;
   }
   return true;
 }
 
 TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
   const CadModel model = load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj");
+  const Spheres spheres(model);
   TargetRenderer renderer(model);
   std::vector<LightSample> samples;
   int seen = 0, empty = 0;
@@ -50,10 +51,9 @@ TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
     const double range = k % 2 == 0 ? 6.0 : 80.0;
     TargetView view;
     view.position_camera = range * Vector3(0.1 * std::cos(k), 0.15 * std::sin(2.0 * k), 1.0).normalized();
-    view.R_camera_body =
-        (Eigen::AngleAxisd(0.7 * k, Vector3::UnitX()) * Eigen::AngleAxisd(1.3 * k, Vector3::UnitY()) *
-         Eigen::AngleAxisd(0.4 + k, Vector3::UnitZ()))
-            .toRotationMatrix();
+    view.R_camera_body = (Eigen::AngleAxisd(0.7 * k, Vector3::UnitX()) * Eigen::AngleAxisd(1.3 * k, Vector3::UnitY()) *
+                          Eigen::AngleAxisd(0.4 + k, Vector3::UnitZ()))
+                             .toRotationMatrix();
     view.nadir_camera = -view.position_camera.normalized();
     view.earth_half_angle = 1.5;
     view.earth_photons_per_m2_s = 1e20;
@@ -63,7 +63,7 @@ TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
     const Vector3 camera_body = -view.R_camera_body.transpose() * view.position_camera;
     for (const Vector3& tip : kTips) {
       const Vector3 to_tip = tip - camera_body;
-      const Hit hit = nearest_hit(model, camera_body, to_tip.normalized());
+      const Hit hit = nearest_hit(model, spheres, camera_body, to_tip.normalized());
       const bool hidden = hit.distance < to_tip.norm() - 0.03;
       const Vector3 direction = (view.R_camera_body * to_tip).normalized();
       if (!hidden) {
@@ -73,7 +73,7 @@ TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
       }
       // Half a decimetre beyond the tip there is nothing, unless another part of the body is behind.
       const Vector3 beyond = tip + 0.05 * (tip - model.centre).normalized() - camera_body;
-      if (free_around(model, camera_body, beyond)) {
+      if (free_around(model, spheres, camera_body, beyond)) {
         EXPECT_EQ(flux_near(samples, (view.R_camera_body * beyond).normalized(), 0.006 / range), 0.0) << "view " << k;
         ++empty;
       }

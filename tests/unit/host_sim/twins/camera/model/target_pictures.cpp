@@ -39,7 +39,10 @@ std::vector<double> pixels(const std::vector<LightSample>& samples, int size, do
 class Sheet {
  public:
   Sheet(int count, int size, int zoom)
-      : size_(size), zoom_(zoom), width_(3 * size * zoom), height_((count + 2) / 3 * size * zoom),
+      : size_(size),
+        zoom_(zoom),
+        width_(3 * size * zoom),
+        height_((count + 2) / 3 * size * zoom),
         grey_(static_cast<std::size_t>(width_ * height_)) {}
 
   void put(int number, const std::vector<double>& image, double white) {
@@ -107,7 +110,8 @@ int main(int argc, char** argv) {
       double flux = 0.0;
       for (const LightSample& s : samples) flux += s.photons_per_m2_s;
       fmt::print("{:5.0f} m, view {}: {} texels across, {} lit, magnitude at 75 km {:.2f}\n", range, number,
-                 renderer.texels(), samples.size(), -26.74 - 2.5 * std::log10(flux * range * range / (75.0e3 * 75.0e3)));
+                 renderer.texels(), samples.size(),
+                 -26.74 - 2.5 * std::log10(flux * range * range / (75.0e3 * 75.0e3)));
     }
     sheet.write(std::filesystem::path(argv[1]) / fmt::format("tango_{:.0f}m.png", range));
   }

@@ -60,7 +60,7 @@ TEST(TargetShadow, OfTwoPlatesIsTheRayTracers) {
   for (const double turn : {0.0, 0.6, 1.2}) {
     TargetView view = view_at(300.0, 0.9);
     view.R_camera_body = turned(M_PI - 0.4, -0.3 - turn, 0.4);
-    const TracedLight traced = trace(model, view, 200000);
+    const TracedLight traced = trace(model, view, 100000);
     shaded = std::max(shaded, 1.0 - traced.flux / traced.flux_without_shadows);
     renderer.render(view, samples);
     EXPECT_NEAR(sum_of(samples).flux / traced.flux, 1.0, 0.015) << "turn " << turn;
