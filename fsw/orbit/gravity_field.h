@@ -1,6 +1,6 @@
 #pragma once
 // The Earth's attraction as flight software takes it where J2 is not enough: degree and order 20. What lies beyond
-// turns within five minutes of a low orbit and parts two spacecraft 75 km from each other by centimetres in six hours.
+// turns within five minutes of a low orbit and parts two spacecraft 75 km from each other by half a metre in six hours.
 
 #include "fsw/core/types.h"
 

@@ -97,11 +97,12 @@ TEST(AnglesOnly, KnowsTheTargetAtTheWaypoints) {
   std::vector<std::size_t> epochs;
   for (const double hours : kWaypointHours) epochs.push_back(TrueFlight::at_hours(hours));
   const std::vector<double> bound = position_bound(whole_flight(), epochs);
-  std::vector<std::vector<std::string>> table = {{"waypoint", "median error, m", "Cramer-Rao bound, m", "mean NEES (6)"}};
+  std::vector<std::vector<std::string>> table = {
+      {"waypoint", "median error, m", "Cramer-Rao bound, m", "mean NEES (6)"}};
   for (std::size_t w = 0; w < 7; ++w) {
     const std::string name = std::to_string(w + 1);
-    accuracy::expect_below("angles-only navigation at waypoint " + name, "truth, all forces, simulated bearings, 4 seeds",
-                           median(error[w]), kAsked[w], "m");
+    accuracy::expect_below("angles-only navigation at waypoint " + name,
+                           "truth, all forces, simulated bearings, 4 seeds", median(error[w]), kAsked[w], "m");
     // Chi-square of 24 degrees of freedom: 99.9 % below 51. Far below six would be a filter that does not trust itself.
     EXPECT_LT(nees[w], 51.2 / kSeeds) << name;
     EXPECT_GT(nees[w], 1.0) << name;

@@ -47,8 +47,7 @@ inline BearingMeasurement bearing_of(GpsTime time, const orbit::CartesianState& 
   BearingMeasurement bearing;
   bearing.time = time;
   const Vector3 direction = (target.position_eci - servicer.position_eci).normalized();
-  bearing.direction_eci =
-      (direction + bearing_axes(direction, servicer).topRows<2>().transpose() * error).normalized();
+  bearing.direction_eci = (direction + bearing_axes(direction, servicer).topRows<2>().transpose() * error).normalized();
   bearing.sigma = sigma;
   return bearing;
 }

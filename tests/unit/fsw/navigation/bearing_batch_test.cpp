@@ -41,7 +41,8 @@ struct Arc {
         batch->add_burn(now, dv_eci);
       }
     }
-    true_roe = orbit::roe_from_qns(orbit::qns_from_cartesian(servicer).value(), orbit::qns_from_cartesian(target).value());
+    true_roe =
+        orbit::roe_from_qns(orbit::qns_from_cartesian(servicer).value(), orbit::qns_from_cartesian(target).value());
     prior_covariance = (prior_sigma / kA).cwiseAbs2().asDiagonal();
     prior_roe = true_roe + (prior_sigma / kA).cwiseProduct(noise.normal6());
   }

@@ -17,7 +17,8 @@ namespace vbar::fsw::orbit {
 namespace {
 
 truth::GravityCoefficients published() {
-  return truth::load_gravity_coefficients(std::string(VBAR_SOURCE_DIR) + "/data/gravity/ggm05s_120.txt", kGravityDegree);
+  return truth::load_gravity_coefficients(std::string(VBAR_SOURCE_DIR) + "/data/gravity/ggm05s_120.txt",
+                                          kGravityDegree);
 }
 
 TEST(OnboardGravity, CoefficientsAreThoseOfTheFile) {
