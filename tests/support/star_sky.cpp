@@ -125,10 +125,14 @@ Scene draw_scene(const std::vector<TrueStar>& sky, const SceneSettings& settings
   std::vector<Object> objects;
   const Eigen::Vector3d axis = R_camera_eci.row(2);
   const double reach = std::cos(camera.radius() + 0.001);
+  const double height = axis.z();
+  const double height_reach = camera.radius() + 0.001;
   double velocity[3] = {velocity_over_c.x(), velocity_over_c.y(), velocity_over_c.z()};
   const double inverse_gamma = std::sqrt(1.0 - velocity_over_c.squaredNorm());
   for (const TrueStar& star : sky) {
-    if (star.magnitude > settings.faintest || star.direction.dot(axis) < reach) continue;
+    // Height first: it spares most of the sky the rest.
+    if (star.magnitude > settings.faintest || std::abs(star.direction.data()[2] - height) > height_reach) continue;
+    if (star.direction.dot(axis) < reach) continue;
     double natural[3] = {star.direction.x(), star.direction.y(), star.direction.z()};
     double apparent[3];
     eraAb(natural, velocity, 1.0, inverse_gamma, apparent);

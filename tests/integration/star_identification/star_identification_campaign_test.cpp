@@ -11,11 +11,7 @@ namespace vbar {
 namespace {
 
 constexpr double kArcsecond = 4.84813681109536e-6;
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kAttitudes = 1'000;  // a sanitizer looks at the code, which the rest do not show it again
-#else
-constexpr int kAttitudes = 10'000;
-#endif
+constexpr int kAttitudes = sky::share_under_sanitizers(10'000);
 
 const std::vector<sky::TrueStar>& the_sky() {
   static const auto stars = sky::read_sky(VBAR_SOURCE_DIR "/data/stars/hipparcos_v8.csv", 2011.55);

@@ -14,8 +14,9 @@
 namespace vbar::same_bits {
 
 inline fsw::Matrix3 random_camera(Arguments& arguments) {
+  // Braces: drawn from left to right, which parentheses leave to the compiler.
   const auto draw = [&arguments] {
-    return fsw::Vector3(arguments.between(-1.0, 1.0), arguments.between(-1.0, 1.0), arguments.between(-1.0, 1.0));
+    return fsw::Vector3{arguments.between(-1.0, 1.0), arguments.between(-1.0, 1.0), arguments.between(-1.0, 1.0)};
   };
   const fsw::Vector3 z = draw().normalized();
   const fsw::Vector3 x = z.cross(draw()).normalized();
@@ -50,7 +51,7 @@ inline std::uint64_t stars_digest() {
     const int near = fsw::stars::stars_in_cone(R_camera_eci.row(2), field.radius_rad, in_cone).value();
     std::size_t count = 0;
     const auto place = [&](const fsw::Vector3& direction, double magnitude) {
-      const fsw::Vector3 noise(arguments.between(-kSigma, kSigma), arguments.between(-kSigma, kSigma), 0.0);
+      const fsw::Vector3 noise{arguments.between(-kSigma, kSigma), arguments.between(-kSigma, kSigma), 0.0};
       if (count < objects.size()) objects[count++] = {(direction + noise).normalized(), kSigma, magnitude};
     };
     for (int k = 0; k < near; ++k) {
@@ -58,7 +59,8 @@ inline std::uint64_t stars_digest() {
       place(R_camera_eci * (fsw::stars::star_direction_eci(star) + velocity), fsw::stars::star_magnitude(star));
     }
     for (int k = 0; k < 8; ++k) {
-      place({arguments.between(-0.05, 0.05), arguments.between(-0.05, 0.05), 1.0}, arguments.between(2.0, 8.0));
+      const fsw::Vector3 direction{arguments.between(-0.05, 0.05), arguments.between(-0.05, 0.05), 1.0};
+      place(direction, arguments.between(2.0, 8.0));
     }
     const std::span<const fsw::stars::ObservedStar> seen(objects.data(), count);
     add_fix(digest, identifier.lost_in_space(seen, field, velocity), identifier.fix());
