@@ -81,7 +81,7 @@ void EmulatedPair::fly(int epochs) {
     if (tamper_) tamper_(static_cast<int>(next_), packets);
     for (const twins::Packet& packet : packets) static_cast<void>(inbox_.receive(packet));
     navigation_->update(truth.time, inbox_);
-    inbox_.clear();
+    inbox_.clear(GpsTime{});
   }
 }
 

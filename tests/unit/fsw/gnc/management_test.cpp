@@ -38,7 +38,7 @@ class ManagementTest : public ::testing::Test {
   }
   void step(std::int64_t ns) {
     management_.update({ns}, inbox_);
-    inbox_.clear();
+    inbox_.clear(GpsTime{});
   }
 
   Inbox inbox_{kServicer};

@@ -36,7 +36,7 @@ class NavigationTest : public ::testing::Test {
  protected:
   void update(std::int64_t seconds) {
     navigation_.update({seconds * kSecond}, inbox_);
-    inbox_.clear();
+    inbox_.clear(GpsTime{});
   }
   Inbox inbox_{kServicer};
   Navigation navigation_;

@@ -190,7 +190,7 @@ TEST_F(ImageTruth, TheRecorderTakesTheTruthOfTheExposure) {
   recorder.on_measured(truth_);
 
   image_.image = 7;
-  image_.used = 1;
+  image_.fate = 2;
   telemetry_objects objects{};
   objects.image = 7;
   objects.count = 1;
