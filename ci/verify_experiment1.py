@@ -1,4 +1,5 @@
 """Experiment 1 over ten seeds, with both nodes, and on the emulated Zynq: a section of docs/verification.md."""
+import concurrent.futures
 import json
 import statistics
 import subprocess
@@ -45,13 +46,12 @@ def waypoint_rows(flown, factor):
     return rows
 
 
-def other_rows(flown):
+def other_rows(flown, alone):
     """(what, median, worst, limit, met)."""
     def row(what, values, limit, digits, unit):
         found = statistics.median(values)
         return (what, f"{found:.{digits}f} {unit}", f"{max(values):.{digits}f} {unit}", f"{limit:g} {unit}", found <= limit)
 
-    speeds = [s["speed_factor"] for s in flown]
     nees = [s["navigation_nees"] for s in flown]
     wrong = sum(s["wrong_targets"] for s in flown)
     return [
@@ -62,9 +62,9 @@ def other_rows(flown):
             20.0, 2, "arcsec"),
         ("bearings to another object than the target", str(wrong), "", "0", wrong == 0),
         ("mean NEES of the ROE, 6 degrees of freedom", f"{statistics.median(nees):.2f}",
-         f"{min(nees):.2f} to {max(nees):.2f}", "see below", True),
-        ("times real time, in process", f"{statistics.median(speeds):,.0f}", f"{min(speeds):,.0f}", "at least 1000",
-         statistics.median(speeds) >= 1000.0),
+         f"{max(nees):.2f}", "6.5", statistics.median(nees) <= 6.5),
+        ("times real time, in process, seed 1 alone", f"{alone['speed_factor']:,.0f}", "", "at least 1000",
+         alone["speed_factor"] >= 1000.0),
     ]
 
 
@@ -72,21 +72,22 @@ def section(build, root, runs, table):
     """The section's lines and whether everything in it is met. `table(head, rows)` writes a table."""
     yes = lambda good: "yes" if good else "**no**"
     flown = {}
-    for mission in (MISSION, AS_PRINTED):
-        flown[mission] = []
-        for seed in SEEDS:
-            print(f"flying: {mission}, seed {seed}", flush=True)
-            flown[mission].append(fly(build, root, mission, seed, runs / f"experiment1-{len(flown)}-{seed}"))
-    print("flying: experiment 1 on the emulated Zynq, Ethernet", flush=True)
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        for mission in (MISSION, AS_PRINTED):
+            print(f"flying: {mission}, ten seeds", flush=True)
+            folders = [runs / f"experiment1-{len(flown)}-{seed}" for seed in SEEDS]
+            flown[mission] = list(pool.map(lambda seed, folder: fly(build, root, mission, seed, folder), SEEDS, folders))
+    print("flying: experiment 1 alone, for its speed, and on the emulated Zynq, Ethernet", flush=True)
+    alone = fly(build, root, MISSION, 1, runs / "experiment1-alone")
     zynq = fly(build, root, MISSION, 1, runs / "experiment1-zynq", ZYNQ)
     reference = flown[MISSION][0]
     hashes = ("commands_sha256", "telemetry_sha256")
-    same = all(zynq[key] == reference[key] for key in hashes)
+    same = all(other[key] == reference[key] for key in hashes for other in (alone, zynq))
 
     head = ["waypoint", "navigation error", "worst", "limit", "paper", "control error", "worst", "limit", "paper", "met"]
     printed = lambda rows: [(*row[:-1], yes(row[-1])) for row in rows]
     nominal, as_printed = waypoint_rows(flown[MISSION], 1.0), waypoint_rows(flown[AS_PRINTED], 2.0)
-    others = other_rows(flown[MISSION])
+    others = other_rows(flown[MISSION], alone)
     complete = all(s["complete"] for summaries in flown.values() for s in summaries)
     ok = complete and same and all(row[-1] for row in (*nominal, *as_printed, *others))
     images = [s["images_with_bearing"] / s["images"] for s in flown[MISSION]]
@@ -102,6 +103,9 @@ def section(build, root, runs, table):
         table(["what", "median", "worst", "limit", "met"], printed(others)),
         "",
         f"A bearing came of {100 * statistics.median(images):.0f} % of the images; the target is dark in 15 of 100.",
+        "",
+        "The filter is told of a camera and of thrusters as they are built, centroids to 0.05 px and burns to 0.1 %; the twin's"
+        " are better than that, so its NEES stays below 6. Of errors of the stated size the test AnglesOnly holds it in band.",
         "",
         "With the printed node, dark for 34 minutes each orbit (limits doubled):",
         "",
