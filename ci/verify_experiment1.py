@@ -7,6 +7,7 @@ import subprocess
 MISSION = "missions/experiment1.toml"
 AS_PRINTED = "missions/experiment1_as_printed.toml"
 SEEDS = range(1, 11)
+AS_PRINTED_SEEDS = range(1, 6)
 WAYPOINTS = range(1, 8)
 # Medians over the seeds, m. The paper's software in the loop: navigation and control.
 NAVIGATION_LIMITS = (40.0, 20.0, 3.0, 1.0, 1.5, 0.7, 1.0)
@@ -74,9 +75,10 @@ def section(build, root, runs, table):
     flown = {}
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         for mission in (MISSION, AS_PRINTED):
-            print(f"flying: {mission}, ten seeds", flush=True)
-            folders = [runs / f"experiment1-{len(flown)}-{seed}" for seed in SEEDS]
-            flown[mission] = list(pool.map(lambda seed, folder: fly(build, root, mission, seed, folder), SEEDS, folders))
+            print(f"flying: {mission}", flush=True)
+            seeds = SEEDS if mission == MISSION else AS_PRINTED_SEEDS
+            folders = [runs / f"experiment1-{len(flown)}-{seed}" for seed in seeds]
+            flown[mission] = list(pool.map(lambda seed, folder: fly(build, root, mission, seed, folder), seeds, folders))
     print("flying: experiment 1 alone, for its speed, and on the emulated Zynq, Ethernet", flush=True)
     alone = fly(build, root, MISSION, 1, runs / "experiment1-alone")
     zynq = fly(build, root, MISSION, 1, runs / "experiment1-zynq", ZYNQ)
@@ -107,7 +109,7 @@ def section(build, root, runs, table):
         "The filter is told of a camera and of thrusters as they are built, centroids to 0.05 px and burns to 0.1 %; the twin's"
         " are better than that, so its NEES stays below 6. Of errors of the stated size the test AnglesOnly holds it in band.",
         "",
-        "With the printed node, dark for 34 minutes each orbit (limits doubled):",
+        "With the printed node, dark for 34 minutes each orbit, seeds 1 to 5 (limits doubled):",
         "",
         table(head, printed(as_printed)),
         "",
