@@ -16,7 +16,7 @@ from peer import ask, expect, skip
 
 HEADER_BYTES = 16
 CRC_BYTES = 2
-SIZES = {"byte": 1, "int8_t": 1, "int32_t": 4, "int64_t": 8, "double": 8}
+SIZES = {"byte": 1, "int8_t": 1, "int16_t": 2, "int32_t": 4, "int64_t": 8, "float": 4, "double": 8}
 
 
 def definitions(path):
@@ -65,6 +65,8 @@ def type_hash(structs, name):
 def random_value(kind, source):
     if kind == "double":
         return source.choice([0.0, -0.0, 5e-324, 1.7e308, source.uniform(-1e7, 1e7), source.gauss(0, 1e-3)])
+    if kind == "float":
+        return source.choice([0.0, -0.0, 0.5, -1024.25, float(source.randrange(-(2**20), 2**20))])
     if kind == "byte":
         return source.randrange(256)
     bits = 8 * SIZES[kind] - 1

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <bit>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -53,7 +54,8 @@ std::map<std::string, Layout> layouts_of(const std::string& path) {
   std::ifstream file(path);
   EXPECT_TRUE(file) << path;
   const std::map<std::string, std::size_t> sizes{
-      {"byte", 1}, {"int8_t", 1}, {"int32_t", 4}, {"int64_t", 8}, {"double", 8}};
+      {"byte", 1},    {"int8_t", 1}, {"int16_t", 2}, {"int32_t", 4},
+                                                 {"int64_t", 8}, {"float", 4},  {"double", 8}};
   std::map<std::string, Layout> layouts;
   std::string line;
   std::string name;
@@ -167,8 +169,8 @@ TEST_F(Messages, ASegmentIsNotAMessage) {
   }
 }
 
-// Every double of every message, found by the definition: a NaN or an infinity there is refused, and the same bits in
-// an integer are not. So no field can be forgotten when a message grows.
+// Every double and float of every message, found by the definition: a NaN or an infinity there is refused, and the same
+// bits in an integer are not. So no field can be forgotten when a message grows.
 TEST_F(Messages, NoDoubleMayBeNanOrInfinite) {
   const std::vector<double> refused{std::numeric_limits<double>::quiet_NaN(),
                                     std::numeric_limits<double>::signaling_NaN(),
@@ -179,14 +181,16 @@ TEST_F(Messages, NoDoubleMayBeNanOrInfinite) {
     for (const Field& field : layouts_.at(Message::getTypeName())) {
       for (const double value : refused) {
         Bytes payload = zero;
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &value, sizeof bits);
+        std::uint64_t bits = std::bit_cast<std::uint64_t>(value);
+        if (field.type == "float") {
+          bits = std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(value))} << 32U;
+        }
         for (std::size_t i = 0; i < field.size; ++i) {
           payload[kHashBytes + field.offset + i] = static_cast<std::uint8_t>(bits >> (56U - 8U * i));
         }
-        const bool is_double = field.type == "double";
-        doubles += is_double ? 1 : 0;
-        EXPECT_EQ(decode_status<Message>(payload), is_double ? Status::kNotFinite : Status::kOk)
+        const bool is_number = field.type == "double" || field.type == "float";
+        doubles += is_number ? 1 : 0;
+        EXPECT_EQ(decode_status<Message>(payload), is_number ? Status::kNotFinite : Status::kOk)
             << Message::getTypeName() << '.' << field.name << " at " << field.offset;
       }
     }

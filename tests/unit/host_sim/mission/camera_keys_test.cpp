@@ -122,9 +122,9 @@ TEST(CameraKeys, AnglesOnlyDefaultsAndUnits) {
   EXPECT_EQ(navigation.detection_sigmas, 5.0);
   EXPECT_EQ(navigation.centroid_floor_px, 0.05);
   EXPECT_DOUBLE_EQ(navigation.pointing_tolerance, 600.0 / 3600.0 * kDegree);
-  EXPECT_EQ(navigation.acceleration_psd, 1e-15);
-  EXPECT_EQ(navigation.acceleration_psd_least, 1e-18);
-  EXPECT_EQ(navigation.acceleration_psd_most, 1e-12);
+  EXPECT_EQ(navigation.acceleration_psd, 1e-14);
+  EXPECT_EQ(navigation.acceleration_psd_least, 1e-15);
+  EXPECT_EQ(navigation.acceleration_psd_most, 1e-11);
   EXPECT_EQ(navigation.brightness_offset_m, 0.15);
   EXPECT_DOUBLE_EQ(navigation.maneuver_sigma, 2e-6);
   EXPECT_DOUBLE_EQ(navigation.maneuver_sigma_relative, 2e-3);
@@ -266,7 +266,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{
             "NoAttitude", {"spacecraft.servicer.attitude.profile=none"}, "camera: found a camera without an attitude"},
         BadOverride{"PsdOutsideItsLimits",
-                    {"angles_only.acceleration_psd=1e-11"},
+                    {"angles_only.acceleration_psd=1e-10"},
                     "angles_only.acceleration_psd: found a start outside its limits"},
         BadOverride{"NoBatch", {"angles_only.batch_images=2"}, "angles_only.batch_images: found the integer 2"},
         BadOverride{"AprioriWithoutError",

@@ -134,7 +134,9 @@ TEST(Experiment1Mission, DecoysAreInTheFieldAndCrossIt) {
     const auto crossing = place_in_field_deg(mission, "decoy_crossing", u);
     if (std::abs(crossing[0]) < 2.40 && std::abs(crossing[1]) < 3.84) ++crossing_inside;
   }
-  EXPECT_LT(behind_farthest, 0.7) << "about the target, where a guess might take the one for the other";
+  // A guess might take the one for the other; what was known beforehand (200 m, 0.15 degrees, 1 sigma) may not.
+  EXPECT_LT(behind_farthest, 1.1);
+  EXPECT_GT(behind_farthest, 0.6);
   EXPECT_GT(nearest, 0.02) << "but never the same point: 2 pixels";
   EXPECT_GT(crossing_inside, kLooks / 20);
   EXPECT_LT(crossing_inside, kLooks / 3);
@@ -201,7 +203,10 @@ TEST(Experiment1Mission, EveryKeyIsExplained) {
 }
 
 TEST(Experiment1Mission, ShowsTheDefaults) {
-  EXPECT_TRUE(load_mission(kFile).angles_only == small_mission().angles_only);
+  AnglesOnly shown = load_mission(kFile).angles_only;
+  EXPECT_EQ(shown.maneuver_sigma_relative, 1e-3);  // the file says that this one is not
+  shown.maneuver_sigma_relative = small_mission().angles_only.maneuver_sigma_relative;
+  EXPECT_TRUE(shown == small_mission().angles_only);
 }
 
 // ------------------------------------------------------------------------------------------------------------- extends
