@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "fsw/imaging/histogram.h"
+#include "fsw/math/math.h"
 
 namespace vbar::fsw::imaging {
 namespace {
@@ -28,7 +29,7 @@ bool is_image(const ImageView& image) {
 }
 
 int in_256ths(double value, int most) {
-  return std::clamp(static_cast<int>(value * kOne + 0.5), 0, most);
+  return std::clamp(static_cast<int>(math::floor(value * kOne + 0.5)), 0, most);
 }
 
 /// Between two nodes; `position` in 2^-20 of their distance.
@@ -122,7 +123,8 @@ void Background::count_cell(const ImageView& image, int saturation_dn, int colum
       if (x + 1 >= x_.pixels || image.pixels[k + 1] >= saturation_dn) continue;
       const int difference = std::clamp(int{image.pixels[k + 1]} - value, -kMostDifference, kMostDifference);
       ++differences_;
-      ++difference_count_[static_cast<std::size_t>(difference + kMostDifference)];
+      const int bin = difference + kMostDifference;
+      ++difference_count_[static_cast<std::size_t>(bin)];
     }
   }
   darkest_ = std::min(darkest_, lowest_);
@@ -138,7 +140,7 @@ void Background::measure_cell(int column, int row) {
   is_known_[k] = levels_ >= least && differences_ >= least;
   if (is_known_[k]) {
     const auto first = static_cast<std::size_t>(lowest_);
-    const auto count = static_cast<std::size_t>(highest_ - lowest_ + 1);
+    const std::size_t count = static_cast<std::size_t>(highest_) - first + 1;
     const double level = lowest_ + clipped_moments(std::span(level_count_).subspan(first, count), levels_).mean;
     level_[k] = in_256ths(level, kMostLevel);
     const double scatter = clipped_moments(difference_count_, differences_).sigma;
@@ -278,9 +280,10 @@ template <class At>
 void Background::set_row(int y, RowNodes& nodes, At at_node) const {
   const int position = y_.position(y);
   const int above = (position >> 20) - 1;
-  for (int column = -1; column <= x_.cells; ++column) {
-    nodes[static_cast<std::size_t>(column + 1)] =
-        between(at_node(node(column, above)), at_node(node(column, above + 1)), position);
+  const std::size_t first = node(-1, above);
+  const std::size_t count = node(-1, above + 1) - first;
+  for (std::size_t k = 0; k < count; ++k) {
+    nodes[k] = between(at_node(first + k), at_node(first + count + k), position);
   }
 }
 

@@ -69,7 +69,8 @@ class Background {
 
   [[nodiscard]] static Axis axis_of(int pixels);
   [[nodiscard]] std::size_t node(int column, int row) const {  ///< of a cell; -1 and `cells` are beyond the ends
-    return static_cast<std::size_t>((row + 1) * (x_.cells + 2) + column + 1);
+    const int k = (row + 1) * (x_.cells + 2) + column + 1;
+    return static_cast<std::size_t>(k);
   }
   [[nodiscard]] ImageCondition measure_cells(const ImageView& image, int saturation_dn);
   void count_cell(const ImageView& image, int saturation_dn, int column, int row);

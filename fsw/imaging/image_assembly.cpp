@@ -89,7 +89,7 @@ bool ImageAssembly::is_of_this_image(const image_tile& tile) const {
 }
 
 bool ImageAssembly::has_same_pixels(const image_tile& tile) const {
-  std::array<std::uint16_t, kTilePixels8> pixels;  // the larger of the two sizes
+  std::array<std::uint16_t, kTilePixels8> pixels{};  // the larger of the two sizes
   const auto count = static_cast<std::size_t>(tile.pixels);
   const std::size_t first = static_cast<std::size_t>(tile.tile) * static_cast<std::size_t>(pixels_of_tile(frame_.bits));
   unpack_pixels(tile.data, frame_.bits, std::span(pixels).first(count));

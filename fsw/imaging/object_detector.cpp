@@ -72,7 +72,7 @@ void ObjectDetector::find_components() {
   components_.clear(settings_.largest_object_px);
   runs_dropped_ = 0;
   // The noise of nine pixels is three times that of one.
-  noises_q4_ = static_cast<int>(settings_.detection_sigmas * 3.0 * 16.0 + 0.5);
+  noises_q4_ = static_cast<int>(settings_.detection_sigmas * 3.0 * 16.0);
   for (int y = 1; y + 1 < image_.frame.height; ++y) {
     rows_ = {image_row(y - 1), image_row(y), image_row(y + 1)};
     is_patched_ = false;
