@@ -174,6 +174,7 @@ void FlightRecorder::on_image(const report::EstimateRow& step, const ImageTeleme
   if (row.used != 0) append_residuals(row, record_.residuals);
   if (objects != nullptr) append_objects(row.time_s, *objects, record_.objects);
   record_.images.push_back(row);
+  gallery_.on_image({told.exposure, row, objects}, record_.gallery);
 }
 
 report::GnssRow FlightRecorder::gnss_row(double time_s, const telemetry_gnss& m) const {
@@ -237,6 +238,7 @@ void FlightRecorder::on_execution(fsw::GpsTime time, const executed_maneuver& ex
 void FlightRecorder::finish() {
   finish_navigation_errors();
   finish_legs();
+  gallery_.finish(record_.gallery);
   summarise_images(record_.images, servicer_.observes(), record_.summary);
 }
 

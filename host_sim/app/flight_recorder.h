@@ -10,6 +10,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/packets/messages.h"
+#include "host_sim/app/gallery_keeper.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
 #include "host_sim/truth/attitude/attitude_state.h"
@@ -34,7 +35,7 @@ class FlightRecorder {
  public:
   /// `servicer`: the spacecraft of the mission whose flight software speaks.
   FlightRecorder(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunRecord& record)
-      : mission_(mission), servicer_(servicer), record_(record) {}
+      : mission_(mission), servicer_(servicer), record_(record), gallery_(mission, servicer) {}
 
   /// Truth when a sensor measured: what an image showed is told steps later. The last few are kept.
   void on_measured(const twins::TruthSnapshot& truth);
@@ -47,6 +48,9 @@ class FlightRecorder {
 
   /// Truth at the time of a waypoint, before any burn of that instant.
   void on_waypoint(const mission::Waypoint& waypoint, const PairTruth& truth);
+
+  /// What the flight software got with the step at `time`, before its answer.
+  void on_inputs(fsw::GpsTime time, std::span<const pil::Packet> inputs) { gallery_.on_inputs(time, inputs); }
 
   /// The flight software's answer to a step: its telemetry becomes a row, its commands maneuvers yet to be executed.
   void on_answer(fsw::GpsTime time, const pil::StepResult& answer);
@@ -81,6 +85,7 @@ class FlightRecorder {
   const mission::Spacecraft& servicer_;
   std::deque<twins::TruthSnapshot> measured_;  ///< oldest first
   report::RunRecord& record_;
+  GalleryKeeper gallery_;
 };
 
 }  // namespace vbar::app

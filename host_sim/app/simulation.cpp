@@ -10,6 +10,7 @@
 #include "host_sim/app/initial_orbits.h"
 #include "host_sim/app/make_twins.h"
 #include "host_sim/mission/telecommands.h"
+#include "host_sim/twins/camera/camera_sensor.h"
 
 namespace vbar::app {
 namespace {
@@ -249,6 +250,7 @@ void Simulation::handle(const StepFlight&) {
   line_.after_step(surroundings_.flight_computer.statistics());
 
   for (PacketObserver* observer : surroundings_.observers) observer->on_step(step_, now, inputs, answer.packets);
+  recorder_.on_inputs(now, inputs);
   recorder_.on_answer(now, answer);
   take_commands(answer);
   ++step_;
@@ -357,6 +359,14 @@ void Simulation::summarise(double wall_s, bool complete) {
   summary.wall_share.flight_s = flight_compute_s_;
   summary.wall_share.link_s = link_s_;
   summary.wall_share.other_s = wall_s - summary.wall_share.truth_s - flight_compute_s_ - link_s_;
+  for (const auto& sensor : sensors_) {
+    auto* const camera = dynamic_cast<twins::camera::CameraSensor*>(sensor.get());
+    if (camera == nullptr) continue;
+    const twins::camera::ImagingTime spent = camera->time_spent();
+    summary.wall_share.render_s = spent.render_s;
+    summary.wall_share.detector_s = spent.detector_s;
+    summary.wall_share.packing_s = spent.packing_s;
+  }
 }
 
 }  // namespace vbar::app

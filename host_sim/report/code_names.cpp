@@ -22,6 +22,14 @@ constexpr std::array<std::string_view, 14> kStatuses{
     "too short", "too long",         "wrong type", "wrong checksum", "out of sequence",  "unsafe",   "not ready"};
 
 constexpr std::array<std::string_view, 6> kObstacles{"none", "too few", "success rate", "ratio", "residual", "search"};
+constexpr std::array<std::string_view, 8> kSightings{"bearing",
+                                                     "wrong frame",
+                                                     "blank",
+                                                     "too little of it arrived",
+                                                     "no stars identified",
+                                                     "no target",
+                                                     "target not confirmed",
+                                                     "own orbit not known"};
 
 }  // namespace
 
@@ -33,6 +41,9 @@ std::string solver_name(int solver) {
 }
 std::string status_name(int status) {
   return name_in(kStatuses, status);
+}
+std::string sighting_name(int status) {
+  return name_in(kSightings, status);
 }
 std::string obstacle_name(int obstacle) {
   return name_in(kObstacles, obstacle);

@@ -77,7 +77,7 @@ void draw_polygon(Canvas& canvas, Point centre, double radius, int corners, doub
   for (int k = 0; k < corners; ++k) draw_line(canvas, corner(k), corner(k + 1), colour);
 }
 
-void draw_mark(Canvas& canvas, const Mark& mark, const CameraPicture& picture, int enlargement) {
+void draw_mark(Canvas& canvas, const ImageMark& mark, const CameraPicture& picture, int enlargement) {
   constexpr double kEighth = 0.25 * 3.14159265358979323846;
   const double scale = enlargement;
   // The centre of an enlarged pixel lies half of what it grew by further on.
@@ -141,14 +141,14 @@ Stretch stretch_for(const CameraPicture& picture) {
   return stretch;
 }
 
-std::vector<std::uint8_t> png_of(const CameraPicture& picture, const Stretch& stretch, std::span<const Mark> marks,
+std::vector<std::uint8_t> png_of(const CameraPicture& picture, const Stretch& stretch, std::span<const ImageMark> marks,
                                  int enlargement) {
   const bool has_pixels =
       picture.width > 0 && picture.height > 0 && enlargement > 0 &&
       picture.dn.size() == static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
   if (!has_pixels) throw std::invalid_argument("a picture must have the pixels that its size says");
   Canvas canvas = make_canvas(picture, stretch, enlargement);
-  for (const Mark& mark : marks) draw_mark(canvas, mark, picture, enlargement);
+  for (const ImageMark& mark : marks) draw_mark(canvas, mark, picture, enlargement);
   return encode(canvas);
 }
 

@@ -30,7 +30,7 @@ struct Stretch {
 
 enum class MarkShape { kBox, kCircle, kTriangle };  ///< red, green, blue
 
-struct Mark {
+struct ImageMark {
   MarkShape shape = MarkShape::kBox;
   double x_px = 0.0, y_px = 0.0;
   double radius_px = 8.0;  ///< of the circle, and of the one inside box and triangle
@@ -40,7 +40,7 @@ struct Mark {
 /// outside or at no number are left out. Throws
 /// std::invalid_argument for a picture without pixels, or with another number of them than its size says.
 [[nodiscard]] std::vector<std::uint8_t> png_of(const CameraPicture& picture, const Stretch& stretch,
-                                               std::span<const Mark> marks, int enlargement = 1);
+                                               std::span<const ImageMark> marks, int enlargement = 1);
 
 /// data:image/png;base64,... for a page that holds its pictures itself.
 [[nodiscard]] std::string png_data_uri(std::span<const std::uint8_t> png);

@@ -222,6 +222,8 @@ struct Summary {
   } deadlines;
   struct WallShare {
     double truth_s = 0.0, flight_s = 0.0, link_s = 0.0, other_s = 0.0;
+    // Of a digital camera, on a thread of its own: beside the others, not part of their sum.
+    double render_s = 0.0, detector_s = 0.0, packing_s = 0.0;
     friend bool operator==(const WallShare&, const WallShare&) = default;
   } wall_share;
   friend bool operator==(const Summary&, const Summary&) = default;

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include "host_sim/report/html_page.h"
+#include "host_sim/report/image_png.h"
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/navigation_errors.h"
 #include "host_sim/report/number_text.h"
@@ -241,14 +241,6 @@ Plot range_plot(const RunRecord& record, const View& view) {
 
 // ------------------------------------------------------------------------------------------------------------- gallery
 
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int length =
-      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), bytes.data(), static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
-  return text;
-}
-
 std::string gallery(const RunRecord& record) {
   if (record.gallery.empty()) return {};
   std::vector<std::string> pictures;
@@ -256,13 +248,13 @@ std::string gallery(const RunRecord& record) {
     const std::string caption =
         fmt::format("image {} at {} h: {}", image.image, fixed(hours(image.time_s), 2), image.caption);
     pictures.push_back(
-        fmt::format("<img class=\"picture\" alt=\"{0}\" src=\"data:image/png;base64,{1}\"/>"
+        fmt::format("<img class=\"picture\" alt=\"{0}\" src=\"{1}\"/>"
                     "<figcaption>{0}</figcaption>",
-                    escaped(caption), base64(image.png)));
+                    escaped(caption), png_data_uri(image.png)));
   }
   return "<h3>Images</h3>\n<p class=\"note\">As the flight software got them, with its own findings: red boxes are "
          "stars that it identified, the green circle is its target, blue triangles are objects that it did not "
-         "match.</p>\n" +
+         "match. Dark violet did not arrive.</p>\n" +
          figures(3, pictures);
 }
 

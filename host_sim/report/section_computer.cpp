@@ -47,7 +47,7 @@ std::string share(double seconds, double wall_s) {
 
 std::string computer_section(const RunRecord& record) {
   const Summary& s = record.summary;
-  const std::vector<Fact> facts{
+  std::vector<Fact> facts{
       {"bytes on the link", grouped(s.link.bytes)},
       {"share of a step on the line", share_of_step(s.link)},
       {"frames sent again", grouped(s.link.frames_resent)},
@@ -63,6 +63,11 @@ std::string computer_section(const RunRecord& record) {
       {"wall clock: link", share(s.wall_share.link_s, s.wall_s)},
       {"wall clock: elsewhere", share(s.wall_share.other_s, s.wall_s)},
   };
+  if (!s.camera.empty()) {
+    facts.push_back({"camera's own thread: rendering", share(s.wall_share.render_s, s.wall_s)});
+    facts.push_back({"camera's own thread: detector", share(s.wall_share.detector_s, s.wall_s)});
+    facts.push_back({"camera's own thread: packing", share(s.wall_share.packing_s, s.wall_s)});
+  }
   return section("Flight computer, link and time", step_cost(record) + fact_list(facts));
 }
 

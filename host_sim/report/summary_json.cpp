@@ -132,6 +132,9 @@ Summary summary_from(const Json& json) {
   s.wall_share.flight_s = number(share.at("flight_s"));
   s.wall_share.link_s = number(share.at("link_s"));
   s.wall_share.other_s = number(share.at("other_s"));
+  s.wall_share.render_s = number(share.at("render_s"));
+  s.wall_share.detector_s = number(share.at("detector_s"));
+  s.wall_share.packing_s = number(share.at("packing_s"));
   return s;
 }
 
@@ -193,7 +196,10 @@ std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypo
        {{"truth_s", s.wall_share.truth_s},
         {"flight_s", s.wall_share.flight_s},
         {"link_s", s.wall_share.link_s},
-        {"other_s", s.wall_share.other_s}}},
+        {"other_s", s.wall_share.other_s},
+        {"render_s", s.wall_share.render_s},
+        {"detector_s", s.wall_share.detector_s},
+        {"packing_s", s.wall_share.packing_s}}},
   };
   // Text that is not UTF-8 (a library's own name for itself) is written with replacement characters, never refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

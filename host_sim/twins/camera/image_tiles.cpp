@@ -5,31 +5,10 @@
 #include <stdexcept>
 
 #include "fsw/imaging/image.h"
+#include "fsw/imaging/tile_packing.h"
 #include "host_sim/twins/packet_encoder.h"
 
 namespace vbar::twins::camera {
-namespace {
-
-void pack_8(std::span<const std::uint16_t> dn, std::uint8_t* out) {
-  for (const std::uint16_t pixel : dn) *out++ = static_cast<std::uint8_t>(pixel);
-}
-
-/// Two pixels in three bytes, big-endian; the last odd one alone in the upper bits of two.
-void pack_12(std::span<const std::uint16_t> dn, std::uint8_t* out) {
-  std::size_t k = 0;
-  for (; k + 1 < dn.size(); k += 2) {
-    const unsigned first = dn[k], second = dn[k + 1];
-    *out++ = static_cast<std::uint8_t>(first >> 4U);
-    *out++ = static_cast<std::uint8_t>((first & 0xFU) << 4U | second >> 8U);
-    *out++ = static_cast<std::uint8_t>(second);
-  }
-  if (k < dn.size()) {
-    *out++ = static_cast<std::uint8_t>(dn[k] >> 4U);
-    *out++ = static_cast<std::uint8_t>((dn[k] & 0xFU) << 4U);
-  }
-}
-
-}  // namespace
 
 std::vector<Packet> image_tiles(const ImageLabel& label, const Region& region, int bits,
                                 std::span<const std::uint16_t> dn) {
@@ -60,11 +39,8 @@ std::vector<Packet> image_tiles(const ImageLabel& label, const Region& region, i
     message.tile = static_cast<std::int16_t>(tile);
     message.pixels = static_cast<std::int16_t>(piece.size());
     if (piece.size() < pixels_of_tile) std::fill(std::begin(message.data), std::end(message.data), std::uint8_t{0});
-    if (bits == 12) {
-      pack_12(piece, message.data);
-    } else {
-      pack_8(piece, message.data);
-    }
+    if (fsw::imaging::pack_pixels(piece, bits, message.data) == 0)
+      throw std::invalid_argument("a pixel of the image has more bits than the link carries");
     packets.push_back(*encoder.encode(label.time, message));  // integers are always finite
   }
   return packets;

@@ -69,9 +69,9 @@ TEST(ImagePng, EnlargesAndShowsMissingPixels) {
 TEST(ImagePng, MarksStandAboutWhatTheyMark) {
   const std::vector<std::uint16_t> dn(100 * 80, 100);
   const CameraPicture picture{100, 80, 700, 200, dn};
-  const std::vector<Mark> marks{{MarkShape::kBox, 720.0, 220.0, 5.0},
-                                {MarkShape::kCircle, 750.0, 230.0, 8.0},
-                                {MarkShape::kTriangle, 780.0, 250.0, 6.0}};
+  const std::vector<ImageMark> marks{{MarkShape::kBox, 720.0, 220.0, 5.0},
+                                     {MarkShape::kCircle, 750.0, 230.0, 8.0},
+                                     {MarkShape::kTriangle, 780.0, 250.0, 6.0}};
   const Decoded decoded = decode(png_of(picture, kStretch, marks));
   const auto is = [&](int x, int y, char colour) {
     const Rgb p = decoded.at(x - 700, y - 200);
@@ -94,10 +94,10 @@ TEST(ImagePng, MarksOverTheEdgeAndAtNoPlaceDoNoHarm) {
   const std::vector<std::uint16_t> dn(20 * 20, 100);
   const CameraPicture picture{20, 20, 0, 0, dn};
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Mark> marks{{MarkShape::kBox, 0.0, 0.0, 5.0},
-                                {MarkShape::kCircle, 1e30, 0.0, 5.0},
-                                {MarkShape::kCircle, nan, 3.0, 5.0},
-                                {MarkShape::kTriangle, 5.0, 3.0, std::numeric_limits<double>::infinity()}};
+  const std::vector<ImageMark> marks{{MarkShape::kBox, 0.0, 0.0, 5.0},
+                                     {MarkShape::kCircle, 1e30, 0.0, 5.0},
+                                     {MarkShape::kCircle, nan, 3.0, 5.0},
+                                     {MarkShape::kTriangle, 5.0, 3.0, std::numeric_limits<double>::infinity()}};
   const Decoded decoded = decode(png_of(picture, kStretch, marks));
   EXPECT_GT(decoded.at(5, 0).r, 200);
   EXPECT_EQ(decoded.at(15, 15), (Rgb{0, 0, 0}));

@@ -224,6 +224,9 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
                                                  "strangers_ignored", "baud", "step_share_max", "step_share_mean"));
   EXPECT_THAT(keys(json.at("deadlines")),
               ElementsAre("compute_overruns", "wakeups_late", "link_late", "simulation_late"));
+  EXPECT_THAT(keys(json.at("wall_share")),
+              ElementsAre("truth_s", "flight_s", "link_s", "other_s", "render_s", "detector_s", "packing_s"));
+  EXPECT_EQ(json.at("wall_share").at("detector_s"), 12.25);
   EXPECT_EQ(json.at("first_fix_s"), 300.0);
   EXPECT_THAT(keys(json.at("bearing_error_arcsec")), ElementsAre("mean", "std", "bias"));
   EXPECT_EQ(json.at("bearing_error_arcsec").at("bias"), 2.5);

@@ -245,7 +245,7 @@ Summary summary() {
   s.flight_step = {.count = 2476, .max = 350000, .mean = 250000.5, .unit = "instructions", .stack_bytes_max = 21000};
   s.link = {2135034, 3, 2, 1, 4, 921600, 0.0125, 0.00625};
   s.deadlines = {5, 6, 7};
-  s.wall_share = {0.12, 52.0, 0.1, 0.14};
+  s.wall_share = {0.12, 52.0, 0.1, 0.14, 30.5, 12.25, 0.75};
   return s;
 }
 

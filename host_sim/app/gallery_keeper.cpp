@@ -1,0 +1,140 @@
+#include "host_sim/app/gallery_keeper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "fsw/angles_only/sighting.h"
+#include "host_sim/report/code_names.h"
+
+namespace vbar::app {
+namespace {
+
+using fsw::GpsTime;
+using fsw::angles_only::ObjectKind;
+using fsw::angles_only::SightingStatus;
+
+// Radii of the marks, px: of the target's so much that it does not hide in its neighbours' boxes, and near by as much
+// as a spacecraft of this size takes.
+constexpr double kStarRadius = 8.0;
+constexpr double kTargetRadius = 13.0;
+constexpr double kSpacecraftRadiusM = 0.8;
+
+bool has_bearing(const report::ImageRow& row) {
+  return row.status == static_cast<int>(SightingStatus::kBearing);
+}
+
+std::string range_text(double range_m) {
+  return range_m < 1e4 ? fmt::format("{:.1f} m", range_m) : fmt::format("{:.2f} km", 1e-3 * range_m);
+}
+
+/// The time of the exposure is the report's own to tell.
+std::string caption(const report::ImageRow& row) {
+  std::string text = row.range_m ? "true range " + range_text(*row.range_m) + ", " : "";
+  text += fmt::format("{} objects, {} stars, {}", row.objects, row.stars, report::sighting_name(row.status));
+  if (has_bearing(row)) text += row.used != 0 ? ", used" : ", refused by the filter";
+  if (row.tiles_missing > 0) text += fmt::format(", {} tiles missing", row.tiles_missing);
+  return text;
+}
+
+}  // namespace
+
+GalleryKeeper::GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer) {
+  if (!servicer.camera) return;
+  assembly_ = std::make_unique<fsw::imaging::ImageAssembly>();
+  before_ = fsw::Duration{kExposuresBefore * servicer.camera->period.ns};
+  focal_length_px_ = servicer.camera->settings.focal_length_px();
+  for (const mission::Waypoint& waypoint : mission.waypoints)
+    if (waypoint.time > mission.start_time() && waypoint.time < mission.end_time()) moments_.push_back(waypoint.time);
+  moments_.push_back(mission.end_time());
+}
+
+// Tiles come after the exposure, so steps after a moment count too.
+bool GalleryKeeper::may_be_wanted(GpsTime now) const {
+  return !has_bearing_ || std::ranges::any_of(moments_, [&](GpsTime moment) {
+    return now >= moment - before_ && now <= moment + before_;
+  });
+}
+
+std::optional<GpsTime> GalleryKeeper::moment_of(GpsTime exposure) const {
+  const auto moment = std::ranges::lower_bound(moments_, exposure);
+  if (moment == moments_.end() || exposure <= *moment - before_) return std::nullopt;
+  return *moment;
+}
+
+void GalleryKeeper::on_inputs(GpsTime now, std::span<const pil::Packet> inputs) {
+  if (!assembly_ || !may_be_wanted(now)) return;
+  for (const pil::Packet& bytes : inputs) {
+    const auto packet = fsw::packets::parse_packet(bytes);
+    if (!packet.ok()) continue;
+    const auto tile = fsw::packets::decode<image_tile>(packet.value());
+    if (!tile.ok()) continue;
+    // What the assembly refuses, the flight software refuses too, and says so.
+    static_cast<void>(assembly_->take(packet.value().header.time, packet.value().header.unit, tile.value()));
+  }
+}
+
+void GalleryKeeper::on_image(const ImageFindings& found, std::vector<report::GalleryImage>& gallery) {
+  if (best_ && found.exposure > best_->moment) finish(gallery);
+  const bool is_here = assembly_ && assembly_->has_image() && assembly_->image_time() == found.exposure &&
+                       assembly_->image_number() == found.row.image;
+  if (!is_here) return;
+  if (!has_bearing_ && has_bearing(found.row)) {
+    has_bearing_ = true;
+    best_.reset();  // of the same moment, without a bearing
+    gallery.push_back(picture(candidate(found, found.exposure)));
+    return;
+  }
+  const std::optional<GpsTime> moment = moment_of(found.exposure);
+  if (!moment || (best_ && has_bearing(best_->row) && !has_bearing(found.row))) return;
+  best_ = candidate(found, *moment);
+}
+
+void GalleryKeeper::finish(std::vector<report::GalleryImage>& gallery) {
+  if (best_) gallery.push_back(picture(*best_));
+  best_.reset();
+}
+
+GalleryKeeper::Candidate GalleryKeeper::candidate(const ImageFindings& found, GpsTime moment) const {
+  const fsw::imaging::ImageView view = assembly_->view();
+  return {moment, found.row, view.frame, {view.pixels.begin(), view.pixels.end()}, marks_of(found)};
+}
+
+// The target last, so that nothing lies over its circle.
+std::vector<report::ImageMark> GalleryKeeper::marks_of(const ImageFindings& found) const {
+  std::vector<report::ImageMark> marks, target;
+  if (found.objects == nullptr) return marks;
+  const telemetry_objects& objects = *found.objects;
+  const int count = std::clamp<int>(objects.count, 0, static_cast<int>(std::size(objects.kind)));
+  for (int k = 0; k < count; ++k) {
+    const double x = objects.x_px[k], y = objects.y_px[k];
+    switch (static_cast<ObjectKind>(objects.kind[k])) {
+      case ObjectKind::kStar:
+        marks.push_back({report::MarkShape::kBox, x, y, kStarRadius});
+        break;
+      case ObjectKind::kTarget: {
+        const double size_px = found.row.range_m ? kSpacecraftRadiusM * focal_length_px_ / *found.row.range_m : 0.0;
+        target.push_back({report::MarkShape::kCircle, x, y, std::max(kTargetRadius, size_px)});
+        break;
+      }
+      case ObjectKind::kUnmatched:
+        marks.push_back({report::MarkShape::kTriangle, x, y, kStarRadius});
+        break;
+      case ObjectKind::kHotPixel:
+        break;
+    }
+  }
+  marks.insert(marks.end(), target.begin(), target.end());
+  return marks;
+}
+
+report::GalleryImage GalleryKeeper::picture(const Candidate& candidate) {
+  const report::CameraPicture picture{candidate.frame.width, candidate.frame.height, candidate.frame.origin_x,
+                                      candidate.frame.origin_y, candidate.dn};
+  return {candidate.row.time_s, candidate.row.image, caption(candidate.row),
+          report::png_of(picture, report::stretch_for(picture), candidate.marks)};
+}
+
+}  // namespace vbar::app

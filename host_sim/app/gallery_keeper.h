@@ -1,0 +1,73 @@
+#pragma once
+// Keeps a few of a run's camera images for its report, as the flight software got them and with its own findings.
+//
+// Which ones is known beforehand from the times of exposure, so that the pixels of all others need never be looked at:
+// the first image that has a bearing, and the last one before each waypoint and before the end of the run. For these
+// the last images before that time are looked at, and the last one with a bearing is taken, or the last one if none
+// has, because the target spends a part of each orbit in the dark.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/imaging/image_assembly.h"
+#include "fsw/packets/messages.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/report/image_png.h"
+#include "host_sim/report/run_record.h"
+#include "pil_bridge/flight_computer.h"
+
+namespace vbar::app {
+
+/// What the flight software said of an image (telemetry_image, telemetry_objects).
+struct ImageFindings {
+  fsw::GpsTime exposure;
+  report::ImageRow row;
+  const telemetry_objects* objects = nullptr;  ///< null if it said nothing of them
+};
+
+class GalleryKeeper {
+ public:
+  static constexpr int kExposuresBefore = 20;  ///< that are looked at before a waypoint
+
+  /// Keeps nothing if `servicer` has no camera.
+  GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer);
+
+  /// The packets that the flight software got with the step at `now`: tiles among them are assembled if they may be
+  /// wanted. One image is kept, as in the flight software.
+  void on_inputs(fsw::GpsTime now, std::span<const pil::Packet> inputs);
+
+  /// After on_inputs() of the same step. Images come in order of time.
+  void on_image(const ImageFindings& found, std::vector<report::GalleryImage>& gallery);
+
+  /// Puts what is still kept into the gallery, at the end of the run.
+  void finish(std::vector<report::GalleryImage>& gallery);
+
+ private:
+  /// An image that goes into the gallery unless a better one comes before `moment`.
+  struct Candidate {
+    fsw::GpsTime moment;
+    report::ImageRow row;
+    fsw::imaging::ImageFrame frame;
+    std::vector<std::uint16_t> dn;
+    std::vector<report::ImageMark> marks;
+  };
+
+  [[nodiscard]] bool may_be_wanted(fsw::GpsTime now) const;
+  /// The first one at or after an exposure, if the exposure is among the last before it.
+  [[nodiscard]] std::optional<fsw::GpsTime> moment_of(fsw::GpsTime exposure) const;
+  [[nodiscard]] std::vector<report::ImageMark> marks_of(const ImageFindings& found) const;
+  [[nodiscard]] Candidate candidate(const ImageFindings& found, fsw::GpsTime moment) const;
+  static report::GalleryImage picture(const Candidate& candidate);
+
+  std::unique_ptr<fsw::imaging::ImageAssembly> assembly_;  ///< null without a camera; large
+  std::vector<fsw::GpsTime> moments_;                      ///< in order
+  fsw::Duration before_;
+  double focal_length_px_ = 0.0;
+  bool has_bearing_ = false;
+  std::optional<Candidate> best_;
+};
+
+}  // namespace vbar::app

@@ -1,0 +1,152 @@
+// Which images of a run go into its gallery, and what they show. Images are patterns that differ by number; what the
+// gallery should hold is drawn from the same patterns.
+
+#include "host_sim/app/gallery_keeper.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "host_sim/mission/load.h"
+#include "host_sim/twins/camera/image_tiles.h"
+
+namespace vbar::app {
+namespace {
+
+using testing::HasSubstr;
+
+// Waypoints at one and two hours; the run ends half an hour later. An exposure every minute, from minute one.
+constexpr const char* kMission = R"(
+[mission]
+step_s = 60.0
+duration_h = 2.5
+[guidance]
+mode = "idle"
+[[spacecraft]]
+name = "servicer"
+flight_computer = {}
+sensors.gnss = {}
+sensors.camera = { period_s = 60.0 }
+actuators.thruster = {}
+attitude = { profile = "commanded" }
+elements = { kind = "mean", semi_major_axis_km = 7000, ex = 0, ey = 0, inclination_deg = 90, raan_deg = 0, mean_argument_of_latitude_deg = 0 }
+[[spacecraft]]
+name = "target"
+model = "tango"
+attitude = { profile = "tumble" }
+relative = { to = "servicer", waypoint = 0 }
+[[waypoint]]
+index = 0
+time_h = 0.0
+a_roe_m = [0, -1e4, 0, 0, 0, 0]
+[[waypoint]]
+index = 1
+time_h = 1.0
+a_roe_m = [0, -5e3, 0, 0, 0, 0]
+[[waypoint]]
+index = 2
+time_h = 2.0
+a_roe_m = [0, -1e3, 0, 0, 0, 0]
+)";
+
+constexpr int kBearing = 0, kNoTarget = 5;
+constexpr twins::camera::Region kRegion{710, 200, 80, 50};  // 4000 pixels: 4 tiles of 868 and one of 528
+constexpr fsw::Duration kMinute{60'000'000'000};
+
+std::vector<std::uint16_t> pattern(int number) {
+  std::vector<std::uint16_t> dn;
+  for (int k = 0; k < kRegion.width * kRegion.height; ++k)
+    dn.push_back(static_cast<std::uint16_t>((k * 37 + number * 101) % 4096));
+  return dn;
+}
+
+std::vector<std::uint8_t> png(std::vector<std::uint16_t> dn, const std::vector<report::ImageMark>& marks) {
+  const report::CameraPicture picture{kRegion.width, kRegion.height, kRegion.x, kRegion.y, dn};
+  return report::png_of(picture, report::stretch_for(picture), marks);
+}
+
+class Gallery : public testing::Test {
+ protected:
+  /// The image of a minute and what is said of it, at the step of the minute after.
+  void fly_image(int minute, int status, const telemetry_objects* objects = nullptr, int lost_tile = -1) {
+    const fsw::GpsTime exposure{mission_.start_time().ns + minute * kMinute.ns};
+    const int number = minute - 1;
+    auto tiles = twins::camera::image_tiles({exposure, number, 1, 0}, kRegion, 12, pattern(number));
+    if (lost_tile >= 0) tiles.erase(tiles.begin() + lost_tile);
+    keeper_.on_inputs(exposure + kMinute, tiles);
+    report::ImageRow row;
+    row.time_s = 60.0 * minute;
+    row.image = number;
+    row.status = status;
+    row.tiles_missing = lost_tile >= 0 ? 1 : 0;
+    row.range_m = 12345.6;
+    keeper_.on_image({exposure, row, objects}, pictures_);
+  }
+
+  [[nodiscard]] std::vector<int> minutes() const {
+    std::vector<int> all;
+    for (const report::GalleryImage& picture : pictures_) all.push_back(picture.image + 1);
+    return all;
+  }
+
+  const mission::Mission mission_ = mission::parse_mission(kMission, "m.toml");
+  GalleryKeeper keeper_{mission_, mission_.spacecraft[0]};
+  std::vector<report::GalleryImage> pictures_;
+};
+
+TEST_F(Gallery, HoldsTheFirstBearingAndTheLastOnesBeforeWaypoints) {
+  for (int minute = 1; minute < 150; ++minute) {
+    const bool is_dark = minute < 5 || (minute > 51 && minute < 70) || (minute > 90 && minute < 130);
+    fly_image(minute, is_dark ? kNoTarget : kBearing);
+  }
+  keeper_.finish(pictures_);
+  // Before the second waypoint all that are looked at are dark: 101 to 120.
+  EXPECT_THAT(minutes(), testing::ElementsAre(5, 51, 120, 149));
+  for (const report::GalleryImage& picture : pictures_) {
+    EXPECT_EQ(picture.time_s, 60.0 * (picture.image + 1));
+    EXPECT_EQ(picture.png, png(pattern(picture.image), {}));
+  }
+  EXPECT_THAT(pictures_[1].caption, HasSubstr("range 12.35 km"));
+  EXPECT_THAT(pictures_[2].caption, HasSubstr("no target"));
+}
+
+TEST_F(Gallery, TakesTheImageOfTheWaypointsOwnTime) {
+  for (int minute = 1; minute <= 61; ++minute) fly_image(minute, kBearing);
+  EXPECT_THAT(minutes(), testing::ElementsAre(1, 60));
+}
+
+TEST_F(Gallery, MarksWhatTheObjectsAre) {
+  telemetry_objects objects{};
+  objects.count = 4;
+  for (int k = 0; k < 4; ++k) {
+    objects.kind[k] = static_cast<std::int8_t>(k);  // unmatched, star, target, hot pixel
+    objects.x_px[k] = 725.0F + 15.0F * static_cast<float>(k);
+    objects.y_px[k] = 220.0F;
+  }
+  fly_image(1, kBearing, &objects);
+  ASSERT_EQ(pictures_.size(), 1U);
+  EXPECT_EQ(pictures_[0].png, png(pattern(0), {{report::MarkShape::kTriangle, 725.0, 220.0, 8.0},
+                                               {report::MarkShape::kBox, 740.0, 220.0, 8.0},
+                                               {report::MarkShape::kCircle, 755.0, 220.0, 13.0}}));
+}
+
+TEST_F(Gallery, PixelsOfALostTileAreMissing) {
+  fly_image(1, kBearing, nullptr, 2);
+  ASSERT_EQ(pictures_.size(), 1U);
+  std::vector<std::uint16_t> dn = pattern(0);
+  std::fill(dn.begin() + 2 * 868, dn.begin() + 3 * 868, std::uint16_t{0xFFFF});
+  EXPECT_EQ(pictures_[0].png, png(dn, {}));
+  EXPECT_THAT(pictures_[0].caption, HasSubstr("1 tiles missing"));
+}
+
+TEST_F(Gallery, NeedsACamera) {
+  mission::Mission blind = mission_;
+  blind.spacecraft[0].camera.reset();
+  GalleryKeeper keeper(blind, blind.spacecraft[0]);
+  keeper.on_inputs(blind.start_time(), {});
+  keeper.on_image({blind.start_time(), {}, nullptr}, pictures_);
+  keeper.finish(pictures_);
+  EXPECT_TRUE(pictures_.empty());
+}
+
+}  // namespace
+}  // namespace vbar::app
