@@ -44,7 +44,7 @@ TEST(StarIdentification, TrackingFromAPredictionInTheRegion) {
       sky::fly(
           the_sky(),
           {.scene = {.camera = sky::kRegion}, .attitudes = kThousand, .seed = 3, .prediction_error = 300 * kArcsecond}),
-      1000, 0.999);
+      kThousand, 0.999);
 }
 
 TEST(StarIdentification, TrackingFromAPredictionInTheWholeField) {
