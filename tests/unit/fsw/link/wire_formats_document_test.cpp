@@ -1,12 +1,17 @@
-// The worked example of docs/wire_formats.md is what the code says and reads.
+// The worked examples of docs/wire_formats.md are what the code says and reads, and its table of APIDs has them all.
 
+#include <array>
 #include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "fsw/imaging/tile_packing.h"
 #include "fsw/link/cobs.h"
 #include "fsw/link/frame.h"
 #include "fsw/packets/messages.h"
@@ -67,6 +72,34 @@ TEST(WireFormatsDocument, StreamIsRight) {
   Bytes stream(link::kMaxCobsFrameBytes);
   stream.resize(link::cobs_encode(example_frame(), stream).value());
   EXPECT_EQ(block("stream"), stream);
+}
+
+TEST(WireFormatsDocument, PixelsAreRight) {
+  const std::array<std::uint16_t, 2> pixels{0xabc, 0x123};
+  Bytes packed(3);
+  ASSERT_EQ(imaging::pack_pixels(pixels, 12, packed), packed.size());
+  EXPECT_EQ(block("pixels"), packed);
+}
+
+/// By APID, the messages of the table's rows: "| 0x001 | `tick` |", two to a line.
+std::map<int, std::string> table_of_apids() {
+  std::ifstream file(VBAR_SOURCE_DIR "/docs/wire_formats.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::regex row(R"(\| 0x([0-9a-f]{3}) \| `(\w+)` )");
+  std::map<int, std::string> table;
+  for (std::sregex_iterator hit(text.begin(), text.end(), row), end; hit != end; ++hit) {
+    table[std::stoi((*hit)[1], nullptr, 16)] = (*hit)[2];
+  }
+  return table;
+}
+
+TEST(WireFormatsDocument, TableHasEveryMessageUnderItsApid) {
+  std::map<int, std::string> expected;
+#define VBAR_EXPECT_MESSAGE(type, apid) \
+  expected[static_cast<int>(packets::Apid::apid)] = std::string(#type).substr(std::string("::vbar::").size());
+  VBAR_FOR_EACH_MESSAGE(VBAR_EXPECT_MESSAGE)
+#undef VBAR_EXPECT_MESSAGE
+  EXPECT_EQ(table_of_apids(), expected);
 }
 
 }  // namespace
