@@ -107,7 +107,12 @@ def section(build, root, runs, table):
         f"A bearing came of {100 * statistics.median(images):.0f} % of the images; the target is dark in 15 of 100.",
         "",
         "The filter is told of a camera and of thrusters as they are built, centroids to 0.05 px and burns to 0.1 %; the twin's"
-        " are better than that, so its NEES stays below 6. Of errors of the stated size the test AnglesOnly holds it in band.",
+        " are better than that, but nothing tells the filter of harmonics beyond degree 20. Of errors of the stated size the test"
+        " AnglesOnly holds NEES in band.",
+        "",
+        "A bearing counts for another object if another spacecraft is nearer to it than the target. Where a decoy passes within two"
+        " pixels of the target, both are one object: that one is the right one, but its centre lies between them, and the filter's"
+        " gate has to refuse it (column `used` of images.csv).",
         "",
         "With the printed node, dark for 34 minutes each orbit, seeds 1 to 5 (limits doubled):",
         "",

@@ -171,7 +171,8 @@ SightingStatus AnglesOnlyTracking::find_target(const TakenImage& image, const Ci
   const auto objects = detector_.objects();
   for (std::size_t k = 0; k < candidates; ++k) {
     const std::size_t object = object_of_candidate_[k];
-    if (tracker_.hot_pixels().sightings_of(objects[object]) >= kKnownHotPixel) sighting_.kind[object] = ObjectKind::kHotPixel;
+    if (tracker_.hot_pixels().sightings_of(objects[object]) >= kKnownHotPixel)
+      sighting_.kind[object] = ObjectKind::kHotPixel;
   }
   if (tracked.value().candidate < 0) return SightingStatus::kNoTarget;
   const std::size_t object = object_of_candidate_[static_cast<std::size_t>(tracked.value().candidate)];
@@ -188,9 +189,8 @@ void AnglesOnlyTracking::measure_bearing(std::size_t object) {
   bearing.direction_eci = R_eci_camera * seen_[object].direction_camera;
   bearing.sigma = math::hypot(seen_[object].sigma_rad, sighting_.attitude_sigma);
   bearing.origin_eci = R_eci_camera * (settings_.R_camera_body * settings_.position_body_m);
-  bearing.apparent_radius =
-      apparent_radius_px(detector_.objects()[object], settings_.detector.point_spread_sigma_px) /
-      settings_.model.focal_length_px.x();
+  bearing.apparent_radius = apparent_radius_px(detector_.objects()[object], settings_.detector.point_spread_sigma_px) /
+                            settings_.model.focal_length_px.x();
 }
 
 }  // namespace vbar::fsw::angles_only

@@ -75,7 +75,7 @@ class AnglesOnlyTracking {
   stars::StarIdentifier identifier_;
   tracking::TargetTracker tracker_;
   stars::Field field_;
-  std::size_t count_ = 0;  ///< of the objects that have a direction
+  std::size_t count_ = 0;                                               ///< of the objects that have a direction
   std::array<stars::ObservedStar, imaging::kMaxObjects> seen_{};        ///< the objects, whatever they are
   std::array<tracking::Candidate, imaging::kMaxObjects> candidates_{};  ///< those that are no stars
   std::array<std::size_t, imaging::kMaxObjects> object_of_candidate_{};

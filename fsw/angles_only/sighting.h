@@ -13,14 +13,14 @@ namespace vbar::fsw::angles_only {
 
 /// Why no bearing came of an image; numbers of telemetry_image.status.
 enum class SightingStatus : std::int8_t {
-  kBearing = 0,        ///< one did
-  kWrongFrame = 1,     ///< size, place or depth of the image are not the configured camera's
-  kBlank = 2,          ///< no light, or nothing but light
-  kTooLittle = 3,      ///< most of it never arrived
-  kNoStars = 4,        ///< the stars in it could not be identified: no attitude
-  kNoTarget = 5,       ///< nothing in it may be the target
-  kNotConfirmed = 6,   ///< a target candidate, not yet trusted
-  kNoOrbit = 7,        ///< the servicer's own orbit is not known yet
+  kBearing = 0,       ///< one did
+  kWrongFrame = 1,    ///< size, place or depth of the image are not the configured camera's
+  kBlank = 2,         ///< no light, or nothing but light
+  kTooLittle = 3,     ///< most of it never arrived
+  kNoStars = 4,       ///< the stars in it could not be identified: no attitude
+  kNoTarget = 5,      ///< nothing in it may be the target
+  kNotConfirmed = 6,  ///< a target candidate, not yet trusted
+  kNoOrbit = 7,       ///< the servicer's own orbit is not known yet
 };
 
 enum class StarMethod : std::int8_t { kNone = 0, kLostInSpace = 1, kPredicted = 2 };

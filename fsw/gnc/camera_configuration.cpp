@@ -32,10 +32,10 @@ Result<angles_only::CameraSettings> camera_settings(const camera_configuration& 
   const double norm2 = c.q_camera_body[0] * c.q_camera_body[0] + c.q_camera_body[1] * c.q_camera_body[1] +
                        c.q_camera_body[2] * c.q_camera_body[2] + c.q_camera_body[3] * c.q_camera_body[3];
   const Vector3 position(c.position_body_m[0], c.position_body_m[1], c.position_body_m[2]);
-  const bool frame_is_usable = c.width > 0 && c.height > 0 && c.origin_x >= 0 && c.origin_y >= 0 &&
-                               static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height) <=
-                                   imaging::kMaxPixels &&
-                               (c.bits == 8 || c.bits == 12);
+  const bool frame_is_usable =
+      c.width > 0 && c.height > 0 && c.origin_x >= 0 && c.origin_y >= 0 &&
+      static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height) <= imaging::kMaxPixels &&
+      (c.bits == 8 || c.bits == 12);
   const bool is_usable =
       frame_is_usable && is_between(c.focal_length_px[0], 10.0, 1e6) && is_between(c.focal_length_px[1], 10.0, 1e6) &&
       is_between(c.principal_point_px[0], -1e5, 1e5) && is_between(c.principal_point_px[1], -1e5, 1e5) &&

@@ -125,7 +125,8 @@ void CameraNavigation::update(GpsTime now, Inbox& inbox, navigation::GnssNavigat
     inbox.count_unusable_time();
     return;
   }
-  take_image({assembly.image_time(), assembly.image_number(), assembly.tiles_missing(), assembly.view()}, own_orbit, burns);
+  take_image({assembly.image_time(), assembly.image_number(), assembly.tiles_missing(), assembly.view()}, own_orbit,
+             burns);
 }
 
 void CameraNavigation::take_image(const angles_only::TakenImage& image, navigation::GnssNavigation& own_orbit,

@@ -17,9 +17,9 @@ struct DetectedObject {
   int pixels = 0;                         ///< above the threshold
   /// Share of the light in the brightest pixel: a quarter at most for a point in focus, nearly all for a hot pixel.
   double sharpness = 0.0;
-  double radius_px = 0.0;                 ///< root of the larger eigenvalue of its second moments
-  bool is_saturated = false;              ///< at least one pixel is
-  bool is_cut = false;                    ///< touches the edge of the image or a missing pixel
+  double radius_px = 0.0;     ///< root of the larger eigenvalue of its second moments
+  bool is_saturated = false;  ///< at least one pixel is
+  bool is_cut = false;        ///< touches the edge of the image or a missing pixel
 };
 
 }  // namespace vbar::fsw::imaging

@@ -110,8 +110,8 @@ void AnglesOnlyNavigation::rest_on_apriori(const AnglesOnlyEpoch& epoch) {
   covariance.diagonal() = (apriori_->sigma_a_roe_m / a).cwiseAbs2();
   const Matrix6 known = drift.lazyProduct(covariance).lazyProduct(drift.transpose());
   const Matrix6 slope = roe_slope(own, servicer.value());
-  flight_.filter.begin(
-      roe.value(), known + slope.lazyProduct(flight_.own_orbit.covariance()).lazyProduct(slope.transpose()));
+  flight_.filter.begin(roe.value(),
+                       known + slope.lazyProduct(flight_.own_orbit.covariance()).lazyProduct(slope.transpose()));
 }
 
 void AnglesOnlyNavigation::advance(Flight& flight, GpsTime time, const Vector3& sun_eci, std::span<const Burn> burns,

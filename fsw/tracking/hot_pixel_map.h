@@ -14,9 +14,9 @@ namespace vbar::fsw::tracking {
 
 struct HotPixelSettings {
   double least_sharpness = 0.5;  ///< share of its light in one pixel
-  double place_px = 0.6;  ///< its centroid stays within this of the first, each axis
-  int sightings = 4;      ///< so many make it known
-  int forget_after = 60;  ///< images without it
+  double place_px = 0.6;         ///< its centroid stays within this of the first, each axis
+  int sightings = 4;             ///< so many make it known
+  int forget_after = 60;         ///< images without it
 };
 
 class HotPixelMap {

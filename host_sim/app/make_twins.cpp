@@ -66,8 +66,8 @@ twins::camera::Renderer make_scene_renderer(const mission::Mission& mission, con
   std::vector<std::string> models;
   for (const mission::Spacecraft& other : mission.spacecraft)
     if (!other.model.empty() && &other != &spacecraft) models.push_back(other.model);
-  const auto scene = std::make_shared<twins::camera::SceneRenderer>(
-      spacecraft.camera->settings, data_directory, twins::camera::cad_objects(data_directory, models));
+  const auto scene = std::make_shared<twins::camera::SceneRenderer>(spacecraft.camera->settings, data_directory,
+                                                                    twins::camera::cad_objects(data_directory, models));
   return [scene](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {
     scene->render(exposure, image);
   };

@@ -21,7 +21,7 @@ struct CameraMount {
   /// A spacecraft that has a shape.
   struct Model {
     std::string spacecraft;
-    std::string model;  ///< its CAD file
+    std::string model;                                        ///< its CAD file
     fsw::Vector3 centre_of_mass_body = fsw::Vector3::Zero();  ///< from the origin of the file's axes, m
   };
   std::vector<Model> models;

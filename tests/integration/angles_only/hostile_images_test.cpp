@@ -54,7 +54,8 @@ TEST_F(HostileImages, AllWhite) {
 
 TEST_F(HostileImages, MissingTile) {
   const Scene scene = scenes_.next(kRange_m);
-  const Sighting& sighting = chain_.look(scene, [](std::vector<image_tile>& tiles) { tiles.erase(tiles.begin() + 100); });
+  const Sighting& sighting =
+      chain_.look(scene, [](std::vector<image_tile>& tiles) { tiles.erase(tiles.begin() + 100); });
   EXPECT_EQ(sighting.tiles_missing, 1);
   EXPECT_GT(sighting.stars, 3);
   expect_right(scene, sighting);
@@ -62,8 +63,7 @@ TEST_F(HostileImages, MissingTile) {
 
 TEST_F(HostileImages, HalfMissing) {
   const Scene scene = scenes_.next(kRange_m);
-  const Sighting& sighting =
-      chain_.look(scene, [](std::vector<image_tile>& tiles) { tiles.resize(tiles.size() / 2); });
+  const Sighting& sighting = chain_.look(scene, [](std::vector<image_tile>& tiles) { tiles.resize(tiles.size() / 2); });
   EXPECT_EQ(sighting.tiles_missing, 231);
   expect_right(scene, sighting);
   expect_good(scenes_.next(kRange_m));
@@ -81,9 +81,8 @@ TEST_F(HostileImages, EverySecondTileMissing) {
 // Two tiles that stand in each other's place: their pixels are elsewhere, and stars with them.
 TEST_F(HostileImages, SwappedTiles) {
   const Scene scene = scenes_.next(kRange_m);
-  const Sighting& sighting = chain_.look(scene, [](std::vector<image_tile>& tiles) {
-    std::swap(tiles[50].tile, tiles[300].tile);
-  });
+  const Sighting& sighting =
+      chain_.look(scene, [](std::vector<image_tile>& tiles) { std::swap(tiles[50].tile, tiles[300].tile); });
   EXPECT_EQ(sighting.tiles_missing, 0);
   EXPECT_GT(sighting.stars, 3);
   expect_right(scene, sighting);

@@ -85,8 +85,7 @@ Scene SceneMaker::make(double minutes, const CartesianState& target, const Vecto
   scene.R_commanded_eci = camera_axes(boresight_eci, scene.servicer.position_eci.normalized());
   std::normal_distribution<double> normal(0.0, 40.0 * kArcsec);
   const Vector3 error(normal(random_), normal(random_), normal(random_));
-  scene.R_camera_eci =
-      Eigen::AngleAxisd(error.norm(), error.normalized()).toRotationMatrix() * scene.R_commanded_eci;
+  scene.R_camera_eci = Eigen::AngleAxisd(error.norm(), error.normalized()).toRotationMatrix() * scene.R_commanded_eci;
 
   twins::TruthSnapshot truth;
   truth.time = time_of(minutes);
@@ -139,16 +138,15 @@ const fsw::angles_only::Sighting& ImageChain::process(const Scene& scene, const 
   fsw::angles_only::Circumstances circumstances;
   circumstances.is_orbit_known = true;
   circumstances.servicer = scene.servicer;
-  circumstances.velocity_over_c_eci =
-      (scene.exposure.earth_velocity_bcrs + scene.servicer.velocity_eci) / 299792458.0;
+  circumstances.velocity_over_c_eci = (scene.exposure.earth_velocity_bcrs + scene.servicer.velocity_eci) / 299792458.0;
   circumstances.R_camera_eci = scene.R_commanded_eci;
   // A thousandth of the range, and a part in a million of it a second.
   const double range = (scene.target.position_eci - scene.servicer.position_eci).norm();
   fsw::Matrix6 covariance = fsw::Matrix6::Zero();
   covariance.diagonal().head<3>().setConstant(1e-6 * range * range);
   covariance.diagonal().tail<3>().setConstant(1e-12 * range * range);
-  const auto prediction = fsw::tracking::prediction_of(
-      fsw::orbit::relative_state_rtn(scene.servicer, scene.target), covariance);
+  const auto prediction =
+      fsw::tracking::prediction_of(fsw::orbit::relative_state_rtn(scene.servicer, scene.target), covariance);
   if (prediction.ok()) circumstances.target = prediction.value();
   circumstances.detection_probability = scene.exposure.objects.at(0).sunlit > 0.5 ? 0.95 : 0.0;
   const auto& sighting = tracking_->process(

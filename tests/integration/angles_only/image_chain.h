@@ -22,7 +22,7 @@ inline constexpr double kArcsec = 3.14159265358979323846 / 648000.0;
 struct Scene {
   fsw::orbit::CartesianState servicer;
   fsw::orbit::CartesianState target;
-  fsw::Matrix3 R_camera_eci = fsw::Matrix3::Identity();   ///< true
+  fsw::Matrix3 R_camera_eci = fsw::Matrix3::Identity();  ///< true
   fsw::Matrix3 R_commanded_eci = fsw::Matrix3::Identity();
   twins::camera::Exposure exposure;
 

@@ -4,10 +4,10 @@
 #include "fsw/packets/messages.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <bit>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -53,8 +53,7 @@ std::optional<Declaration> declaration_in(const std::string& line) {
 std::map<std::string, Layout> layouts_of(const std::string& path) {
   std::ifstream file(path);
   EXPECT_TRUE(file) << path;
-  const std::map<std::string, std::size_t> sizes{
-      {"byte", 1},    {"int8_t", 1}, {"int16_t", 2}, {"int32_t", 4},
+  const std::map<std::string, std::size_t> sizes{{"byte", 1},    {"int8_t", 1}, {"int16_t", 2}, {"int32_t", 4},
                                                  {"int64_t", 8}, {"float", 4},  {"double", 8}};
   std::map<std::string, Layout> layouts;
   std::string line;
