@@ -1,6 +1,7 @@
 #include "host_sim/twins/camera/model/gl_objects.h"
 
 #include <array>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -79,12 +80,12 @@ GlTriangles::GlTriangles(std::span<const float> interleaved, std::span<const int
   glBindBuffer(GL_ARRAY_BUFFER, buffer_);
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(interleaved.size_bytes()), interleaved.data(), GL_STATIC_DRAW);
   constexpr int kFloat = sizeof(float);
-  int offset = 0;
+  std::uintptr_t offset = 0;  // OpenGL takes it in the form of a pointer
   for (GLuint location = 0; location < widths.size(); ++location) {
     glEnableVertexAttribArray(location);
     glVertexAttribPointer(location, widths[location], GL_FLOAT, GL_FALSE, stride * kFloat,
-                          static_cast<const char*>(nullptr) + offset * kFloat);
-    offset += widths[location];
+                          reinterpret_cast<const void*>(offset));
+    offset += static_cast<std::uintptr_t>(widths[location] * kFloat);
   }
 }
 
