@@ -1,0 +1,46 @@
+#pragma once
+// What the keypoint network is shown: a square of the image around the target, brought to a fixed size and brightness.
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "fsw/core/result.h"
+#include "fsw/core/types.h"
+#include "fsw/imaging/image.h"
+
+namespace vbar::fsw::pose {
+
+inline constexpr int kCropSide = 128;  ///< samples
+inline constexpr std::size_t kCropSamples = static_cast<std::size_t>(kCropSide) * kCropSide;
+
+/// A square on the detector; an integer is the centre of a pixel.
+struct CropRegion {
+  Vector2 centre_px = Vector2::Zero();
+  double side_px = 0.0;
+
+  /// Where on the detector a place of the crop lies, in samples of `samples` a side (128 of the crop itself, 32 of a
+  /// heatmap); an integer is the centre of a sample.
+  [[nodiscard]] Vector2 pixel_of(const Vector2& place, int samples) const {
+    return centre_px + side_px * ((place.array() + 0.5) / samples - 0.5).matrix();
+  }
+  /// And back.
+  [[nodiscard]] Vector2 place_of(const Vector2& pixel, int samples) const {
+    return ((pixel - centre_px).array() / side_px + 0.5).matrix() * samples - Vector2::Constant(0.5);
+  }
+};
+
+/// Rows from the top, samples from the left.
+using CropSamples = std::array<float, kCropSamples>;
+
+/// Cuts `region` out of the image. A sample is the root of the mean of the pixels it covers, in parts where it covers
+/// them in part, above `dark_level_dn`; the root because photon noise is then alike everywhere, and shadows count beside
+/// glints. What the image does not hold (beside it, missing tiles) is dark.
+///
+/// With `standardise` the samples are brought to mean 0 and deviation 1 over the crop; of a crop that is almost even
+/// (less than half a root of a DN) noise is not blown up. kOutOfRange unless the region is 16 to 4096 px a side, with
+/// its centre at most as far from the image's.
+Status cut_crop(const imaging::ImageView& image, const CropRegion& region, double dark_level_dn, CropSamples& out,
+                bool standardise = true);
+
+}  // namespace vbar::fsw::pose

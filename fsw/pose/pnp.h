@@ -1,0 +1,42 @@
+#pragma once
+// The pose of the target from keypoints of one image (perspective n points).
+
+#include <cstdint>
+
+#include "fsw/core/result.h"
+#include "fsw/core/types.h"
+#include "fsw/imaging/camera_model.h"
+#include "fsw/pose/keypoint.h"
+
+namespace vbar::fsw::pose {
+
+/// The target against the camera.
+struct TargetPose {
+  Matrix3 R_camera_body = Matrix3::Identity();
+  Vector3 position_camera_m = Vector3::UnitZ();  ///< of its centre of mass
+};
+
+struct PnpSolution {
+  TargetPose pose;
+  /// Of a small turn about the camera's axes (rad, R_true = exp(turn) R) and of the position (m).
+  Matrix6 covariance = Matrix6::Zero();
+  std::array<bool, network::kKeypoints> is_inlier{};
+  int inliers = 0;
+  double mean_square = 0.0;  ///< of the whitened residuals of the inliers: 1 if the keypoints' covariances are true
+};
+
+struct PnpSettings {
+  double inlier_sigmas = 3.0;
+  double inlier_floor_px = 2.0;  ///< what fits to this is an inlier, however small its covariance
+  int least_inliers = 6;
+  double nearest_m = 1.0;
+  double farthest_m = 100.0;
+};
+
+/// Of the usable keypoints: random minimal sets (RANSAC; the sets follow from `seed`), a closed form (EPnP or SQPnP), and
+/// a Gauss-Newton refinement of all inliers whitened by their covariances, with Huber weights. kNotReady with too few
+/// usable, kDidNotConverge where no pose gets enough inliers, kOutOfRange for one outside the settings' distances.
+Result<PnpSolution> solve_pnp(const Keypoints& keypoints, const KeypointShape& shape,
+                              const imaging::CameraModel& camera, const PnpSettings& settings, std::uint32_t seed);
+
+}  // namespace vbar::fsw::pose
