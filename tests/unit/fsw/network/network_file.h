@@ -1,0 +1,99 @@
+#pragma once
+// Weights files made for tests, and a crop for them.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "fsw/network/architecture.h"
+#include "fsw/packets/crc.h"
+
+namespace vbar::test {
+
+using WeightsFile = std::vector<std::byte>;
+using Crop = std::array<float, fsw::network::kInputSamples>;
+
+template <class T>
+void put(WeightsFile& file, std::size_t offset, T value) {
+  std::memcpy(file.data() + offset, &value, sizeof value);
+}
+
+/// Makes the checksum right again after a change.
+inline void seal(WeightsFile& file) {
+  const std::size_t covered = file.size() - fsw::network::kChecksumBytes;
+  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(file.data()), covered);
+  put(file, covered, fsw::packets::crc32_ieee(bytes));
+}
+
+/// All weights 0.
+inline WeightsFile blank_file() {
+  using namespace fsw::network;
+  WeightsFile file(kFileBytes);
+  std::memcpy(file.data(), kMagic, kMagicBytes);
+  std::size_t offset = kMagicBytes;
+  const auto word = [&](int value) {
+    put(file, offset, static_cast<std::uint32_t>(value));
+    offset += 4;
+  };
+  for (const int value : {kLayerCount, kInputSide, kMapSide, kKeypoints}) word(value);
+  for (const Layer& l : kLayers) {
+    for (const int value : {l.in, l.out, l.kernel, l.stride, l.is_rectified ? 1 : 0, 0, 0, 0}) word(value);
+  }
+  for (const float value : {1.25F, 0.0625F, 1.0F, 0.125F}) {
+    put(file, offset, value);
+    offset += 4;
+  }
+  seal(file);
+  return file;
+}
+
+/// Weight or bias number k of a layer, counted as the file has them.
+inline std::size_t place_of_weight(int layer, std::size_t k) {
+  return fsw::network::offset_of_layer(layer) + sizeof(float) * k;
+}
+
+/// Weights such that numbers neither grow nor fade from layer to layer (He et al. 2015), and small biases.
+inline WeightsFile random_file(unsigned seed) {
+  using namespace fsw::network;
+  WeightsFile file = blank_file();
+  std::mt19937 random(seed);
+  for (int l = 0; l < kLayerCount; ++l) {
+    const Layer& layer = kLayers[static_cast<std::size_t>(l)];
+    std::normal_distribution<float> weight(0.0F, std::sqrt(2.0F / static_cast<float>(layer.kernel * layer.kernel * layer.in)));
+    std::normal_distribution<float> bias(0.0F, 0.05F);
+    for (std::size_t k = 0; k < layer.weights(); ++k) put(file, place_of_weight(l, k), weight(random));
+    for (std::size_t k = 0; k < static_cast<std::size_t>(layer.out); ++k) {
+      put(file, place_of_weight(l, layer.weights() + k), bias(random));
+    }
+  }
+  seal(file);
+  return file;
+}
+
+/// Mean 0 and deviation 1, as crops are.
+inline Crop random_crop(unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> sample;
+  Crop crop;
+  for (float& s : crop) s = sample(random);
+  return crop;
+}
+
+/// A bright quadrangle with a shadow across it before a dark sky.
+inline Crop structured_crop() {
+  Crop crop;
+  for (int y = 0; y < fsw::network::kInputSide; ++y) {
+    for (int x = 0; x < fsw::network::kInputSide; ++x) {
+      const bool inside = x + y > 70 && x - y < 50 && y < 100 && x > 20;
+      const bool shaded = x + 2 * y > 180 && x + 2 * y < 220;
+      crop[static_cast<std::size_t>(y * fsw::network::kInputSide + x)] = !inside ? -0.6F : shaded ? 0.1F : 1.5F;
+    }
+  }
+  return crop;
+}
+
+}  // namespace vbar::test
