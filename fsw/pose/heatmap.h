@@ -16,11 +16,11 @@ namespace vbar::fsw::pose {
 
 /// What a map says, in cells; an integer is the centre of a cell.
 struct MapPeak {
-  Vector2 place = Vector2::Zero();            ///< mean within the window
-  Matrix2 second_moments = Matrix2::Zero();   ///< about it, cells^2; those of the training's own Gaussian are in them
-  double peak = 0.0;                          ///< share of the map in the highest cell and its neighbours, 0 to 1
-  double second = 0.0;                        ///< highest cell outside the window over the highest of all
-  bool is_at_border = false;                  ///< the highest cell is in the map's first or last row or column
+  Vector2 place = Vector2::Zero();           ///< mean within the window
+  Matrix2 second_moments = Matrix2::Zero();  ///< about it, cells^2; those of the training's own Gaussian are in them
+  double peak = 0.0;                         ///< share of the map in the highest cell and its neighbours, 0 to 1
+  double second = 0.0;                       ///< highest cell outside the window over the highest of all
+  bool is_at_border = false;                 ///< the highest cell is in the map's first or last row or column
 };
 
 /// All zero, at the border, of logits of which one is not finite.

@@ -215,8 +215,8 @@ Result<PnpSolution> solution_of(const Problem& problem, const Judged& judged, co
 Result<PnpSolution> solve_pnp(const Keypoints& keypoints, const KeypointShape& shape,
                               const imaging::CameraModel& camera, const PnpSettings& settings, std::uint32_t seed) {
   const Problem problem = problem_of(keypoints, shape, camera);
-  const int least = settings.least_inliers > static_cast<int>(kMinimalSet) ? settings.least_inliers
-                                                                           : static_cast<int>(kMinimalSet);
+  const int least =
+      settings.least_inliers > static_cast<int>(kMinimalSet) ? settings.least_inliers : static_cast<int>(kMinimalSet);
   if (static_cast<int>(problem.count) < least) return Status::kNotReady;
 
   // Mostly all keypoints agree, and no set need be drawn.

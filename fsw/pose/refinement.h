@@ -23,8 +23,8 @@ inline constexpr double kHuberSigmas = 3.0;
 
 struct RefinedPose {
   TargetPose pose;
-  double cost = 0.0;                       ///< half of the whitened squares, by Huber
-  Matrix6 information = Matrix6::Zero();   ///< J'J of turn (about the camera's axes, rad) and position (m)
+  double cost = 0.0;                      ///< half of the whitened squares, by Huber
+  Matrix6 information = Matrix6::Zero();  ///< J'J of turn (about the camera's axes, rad) and position (m)
 };
 
 /// Where the pose puts the keypoint, less where it was seen, px. kOutOfRange if it is not before the camera.

@@ -18,8 +18,8 @@ inline Matrix3 cross_matrix(const Vector3& v) {
 inline Matrix3 rotation_by(const Vector3& turn) {
   const double square = turn.squaredNorm();
   const double angle = math::sqrt(square);
-  double along = 1.0 - square / 6.0;         // sin(a) / a
-  double across = 0.5 - square / 24.0;       // (1 - cos(a)) / a^2
+  double along = 1.0 - square / 6.0;    // sin(a) / a
+  double across = 0.5 - square / 24.0;  // (1 - cos(a)) / a^2
   if (angle > 1e-4) {
     const double half = math::sin(0.5 * angle);
     along = math::sin(angle) / angle;
@@ -47,8 +47,7 @@ inline Result<Matrix3> nearest_rotation(const Matrix3& m) {
   if (!eigen.ok()) return eigen.status();
   const Vector3 v = eigen.value().vectors.col(3).head<3>();
   const double w = eigen.value().vectors(3, 3);
-  return Matrix3((w * w - v.squaredNorm()) * Matrix3::Identity() + 2.0 * v * v.transpose() +
-                 2.0 * w * cross_matrix(v));
+  return Matrix3((w * w - v.squaredNorm()) * Matrix3::Identity() + 2.0 * v * v.transpose() + 2.0 * w * cross_matrix(v));
 }
 
 }  // namespace vbar::fsw::pose

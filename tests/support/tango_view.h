@@ -18,9 +18,9 @@ namespace vbar::test {
 inline fsw::pose::KeypointShape tango_shape() {
   using fsw::Vector3;
   fsw::pose::KeypointShape shape{
-      Vector3(-0.37, -0.385, 0.3215), Vector3(-0.37, 0.385, 0.3215),    Vector3(0.37, 0.385, 0.3215),
-      Vector3(0.37, -0.385, 0.3215),  Vector3(-0.37, -0.264, 0.0),      Vector3(-0.37, 0.304, 0.0),
-      Vector3(0.37, 0.304, 0.0),      Vector3(0.37, -0.264, 0.0),       Vector3(-0.5427, 0.4877, 0.2535),
+      Vector3(-0.37, -0.385, 0.3215),  Vector3(-0.37, 0.385, 0.3215), Vector3(0.37, 0.385, 0.3215),
+      Vector3(0.37, -0.385, 0.3215),   Vector3(-0.37, -0.264, 0.0),   Vector3(-0.37, 0.304, 0.0),
+      Vector3(0.37, 0.304, 0.0),       Vector3(0.37, -0.264, 0.0),    Vector3(-0.5427, 0.4877, 0.2535),
       Vector3(0.5427, 0.4877, 0.2591), Vector3(0.305, -0.579, 0.2515)};
   for (Vector3& point : shape) point -= Vector3(0.0, 0.018823529411764704, 0.160794117647059);
   return shape;

@@ -85,8 +85,8 @@ TEST(PnpPeer, WithoutNoiseTheSamePoseAsOpenCv) {
     const TargetPose& pose = found.value().pose;
     const TargetPose theirs = opencv_pose(keypoints, true);
     largest_turn = std::max(largest_turn, test::turn_between(theirs.R_camera_body, pose.R_camera_body).norm());
-    largest_shift = std::max(largest_shift, (pose.position_camera_m - theirs.position_camera_m).norm() /
-                                                theirs.position_camera_m.norm());
+    largest_shift = std::max(
+        largest_shift, (pose.position_camera_m - theirs.position_camera_m).norm() / theirs.position_camera_m.norm());
     largest_true = std::max(largest_true, test::turn_between(truth.R_camera_body, pose.R_camera_body).norm());
   }
   accuracy::expect_below("attitude from keypoints without noise", "OpenCV SQPnP refined, 1000 poses of Tango",
