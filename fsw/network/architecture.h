@@ -43,19 +43,19 @@ inline constexpr int kLayerCount = 13;
 inline constexpr int kMapChannels = 12;
 
 inline constexpr std::array<Layer, kLayerCount> kLayers{{
-    {.in = 1, .out = 24, .kernel = 3, .stride = 2},                             // 0: to 64 a side
-    {.in = 24, .out = 40, .kernel = 3, .stride = 2},                            // 1: to 32
-    {.in = 40, .out = 40, .kernel = 3},                                         // 2: kept for layer 10
-    {.in = 40, .out = 64, .kernel = 3, .stride = 2},                            // 3: to 16
-    {.in = 64, .out = 64, .kernel = 3},                                         // 4: kept for layer 8
-    {.in = 64, .out = 128, .kernel = 3, .stride = 2},                           // 5: to 8
-    {.in = 128, .out = 128, .kernel = 3},                                       // 6
-    {.in = 128, .out = 128, .kernel = 3},                                       // 7
-    {.in = 128, .out = 64, .kernel = 1, .is_rectified = false},                 // 8: at 8, added to 4 at 16
-    {.in = 64, .out = 64, .kernel = 3},                                         // 9
-    {.in = 64, .out = 40, .kernel = 1, .is_rectified = false},                  // 10: at 16, added to 2 at 32
-    {.in = 40, .out = 40, .kernel = 3},                                         // 11
-    {.in = 40, .out = kMapChannels, .kernel = 1, .is_rectified = false},        // 12: the maps
+    {.in = 1, .out = 24, .kernel = 3, .stride = 2},                       // 0: to 64 a side
+    {.in = 24, .out = 40, .kernel = 3, .stride = 2},                      // 1: to 32
+    {.in = 40, .out = 40, .kernel = 3},                                   // 2: kept for layer 10
+    {.in = 40, .out = 64, .kernel = 3, .stride = 2},                      // 3: to 16
+    {.in = 64, .out = 64, .kernel = 3},                                   // 4: kept for layer 8
+    {.in = 64, .out = 128, .kernel = 3, .stride = 2},                     // 5: to 8
+    {.in = 128, .out = 128, .kernel = 3},                                 // 6
+    {.in = 128, .out = 128, .kernel = 3},                                 // 7
+    {.in = 128, .out = 64, .kernel = 1, .is_rectified = false},           // 8: at 8, added to 4 at 16
+    {.in = 64, .out = 64, .kernel = 3},                                   // 9
+    {.in = 64, .out = 40, .kernel = 1, .is_rectified = false},            // 10: at 16, added to 2 at 32
+    {.in = 40, .out = 40, .kernel = 3},                                   // 11
+    {.in = 40, .out = kMapChannels, .kernel = 1, .is_rectified = false},  // 12: the maps
 }};
 
 inline constexpr std::size_t kMagicBytes = 16;

@@ -24,14 +24,15 @@ double relative_difference(const KeypointNetwork& network, vbar::test::PlainMap 
     for (int cell = 0; cell < kMapSide * kMapSide; ++cell) {
       const double expected = maps.at(cell / kMapSide, cell % kMapSide, k);
       largest = std::max(largest, std::abs(expected));
-      difference = std::max(difference, std::abs(static_cast<double>(logits[static_cast<std::size_t>(cell)]) - expected));
+      difference =
+          std::max(difference, std::abs(static_cast<double>(logits[static_cast<std::size_t>(cell)]) - expected));
     }
   }
   return difference / largest;
 }
 
-// Thirteen layers of single-precision sums of up to 1152 products: each rounds to 6e-8 of the running sum, at random, so
-// some sqrt(1152) of that a layer: 2e-6. A product in the wrong place is off by a hundredth and more.
+// Thirteen layers of single-precision sums of up to 1152 products: each rounds to 6e-8 of the running sum, at random,
+// so some sqrt(1152) of that a layer: 2e-6. A product in the wrong place is off by a hundredth and more.
 constexpr double kRoundingOfTheNetwork = 1e-5;
 
 TEST(KeypointNetwork, GivesWhatItsDefinitionGivesInDoublePrecision) {

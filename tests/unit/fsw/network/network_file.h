@@ -63,7 +63,8 @@ inline WeightsFile random_file(unsigned seed) {
   std::mt19937 random(seed);
   for (int l = 0; l < kLayerCount; ++l) {
     const Layer& layer = kLayers[static_cast<std::size_t>(l)];
-    std::normal_distribution<float> weight(0.0F, std::sqrt(2.0F / static_cast<float>(layer.kernel * layer.kernel * layer.in)));
+    std::normal_distribution<float> weight(
+        0.0F, std::sqrt(2.0F / static_cast<float>(layer.kernel * layer.kernel * layer.in)));
     std::normal_distribution<float> bias(0.0F, 0.05F);
     for (std::size_t k = 0; k < layer.weights(); ++k) put(file, place_of_weight(l, k), weight(random));
     for (std::size_t k = 0; k < static_cast<std::size_t>(layer.out); ++k) {
