@@ -1,7 +1,7 @@
 // Telecommands of camera and angles-only navigation, checked.
 
 #include "fsw/gnc/camera_navigation.h"
-#include "fsw/math/math.h"
+#include "fsw/gnc/message_fields.h"
 
 namespace vbar::fsw::gnc {
 namespace {
@@ -14,24 +14,10 @@ bool is_above(double x, double most) {
   return x > 0.0 && x <= most;
 }
 
-/// Passive rotation of a Hamilton quaternion w, x, y, z: components in the second frame to those in the first.
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays): a field of a packet type
-Matrix3 rotation(const double (&q)[4], double norm2) {
-  const double w = q[0], x = q[1], y = q[2], z = q[3];
-  const double s = 2.0 / norm2;
-  Matrix3 R;
-  R << 1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
-      s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),   //
-      s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
-  return R;
-}
-
 }  // namespace
 
 Result<angles_only::CameraSettings> camera_settings(const camera_configuration& c, const angles_only_configuration& a) {
-  const double norm2 = c.q_camera_body[0] * c.q_camera_body[0] + c.q_camera_body[1] * c.q_camera_body[1] +
-                       c.q_camera_body[2] * c.q_camera_body[2] + c.q_camera_body[3] * c.q_camera_body[3];
-  const Vector3 position(c.position_body_m[0], c.position_body_m[1], c.position_body_m[2]);
+  const Vector3 position = vector(c.position_body_m);
   const bool frame_is_usable =
       c.width > 0 && c.height > 0 && c.origin_x >= 0 && c.origin_y >= 0 &&
       static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height) <= imaging::kMaxPixels &&
@@ -41,7 +27,7 @@ Result<angles_only::CameraSettings> camera_settings(const camera_configuration& 
       is_between(c.principal_point_px[0], -1e5, 1e5) && is_between(c.principal_point_px[1], -1e5, 1e5) &&
       is_between(c.point_spread_sigma_px, 0.3, 3.0) && is_above(c.zero_magnitude_dn, 1e12) &&
       is_between(c.saturation_dn, 1.0, c.bits == 12 ? 4095.0 : 255.0) && is_above(c.gain_dn_per_electron, 1e3) &&
-      math::abs(norm2 - 1.0) < 2e-3 && position.norm() < 100.0 && is_between(a.detection_sigmas, 1.0, 30.0) &&
+      is_rotation(c.q_camera_body) && position.norm() < 100.0 && is_between(a.detection_sigmas, 1.0, 30.0) &&
       is_between(a.centroid_floor_px, 0.0, 10.0) && is_above(a.pointing_tolerance, stars::kLargestTolerance);
   if (!is_usable) return Status::kOutOfRange;
   angles_only::CameraSettings settings;
@@ -54,7 +40,7 @@ Result<angles_only::CameraSettings> camera_settings(const camera_configuration& 
   settings.detector.saturation_dn = static_cast<int>(c.saturation_dn);
   settings.detector.point_spread_sigma_px = c.point_spread_sigma_px;
   settings.zero_magnitude_dn = c.zero_magnitude_dn;
-  settings.R_camera_body = rotation(c.q_camera_body, norm2);
+  settings.R_camera_body = rotation(c.q_camera_body);
   settings.position_body_m = position;
   settings.centroid_floor_px = a.centroid_floor_px;
   settings.pointing_tolerance = a.pointing_tolerance;

@@ -1,9 +1,6 @@
 #include "fsw/gnc/camera_navigation.h"
 
-#include <Eigen/Geometry>
-
 #include "fsw/math/math.h"
-#include "fsw/orbit/propagate.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/orbit/sun.h"
 
@@ -28,44 +25,7 @@ double detection_probability(const orbit::CartesianState& target, const Vector3&
   return was_lit || will_be_lit ? kEdgeProbability : 0.0;
 }
 
-/// `from`'s state at `time`, at or after `epoch`, through the burns on the way; one at the very time is after it.
-Result<orbit::CartesianState> flown(orbit::CartesianState state, GpsTime epoch, GpsTime time,
-                                    std::span<const navigation::Burn> burns) {
-  for (const navigation::Burn& burn : burns) {
-    if (burn.time < epoch || burn.time >= time) continue;
-    const Result<orbit::CartesianState> coasted = orbit::propagate_j2(state, seconds(burn.time - epoch));
-    if (!coasted.ok()) return coasted.status();
-    state = orbit::apply_impulse_rtn(coasted.value(), burn.dv_rtn);
-    epoch = burn.time;
-  }
-  return orbit::propagate_j2(state, seconds(time - epoch));
-}
-
 }  // namespace
-
-Result<Pointing> pointing_at(GpsTime time, const orbit::CartesianState& servicer, const orbit::CartesianState& target) {
-  const orbit::RelativeState relative = orbit::relative_state_rtn(servicer, target);
-  const double range = relative.position_rtn.norm();
-  if (!(range > 1e-3)) return Status::kOutOfRange;
-  Pointing pointing;
-  pointing.time = time;
-  pointing.boresight_rtn = relative.position_rtn / range;
-  const Vector3 rate = relative.velocity_rtn / range;
-  pointing.boresight_rate_rtn = rate - pointing.boresight_rtn.dot(rate) * pointing.boresight_rtn;
-  return pointing;
-}
-
-Matrix3 R_body_eci_of(const Pointing& pointing, GpsTime time, const orbit::CartesianState& servicer) {
-  const Matrix3 R_rtn_eci = orbit::R_rtn_eci(servicer);
-  const Vector3 z = R_rtn_eci.transpose() * pointing.boresight_rtn_at(time);
-  const Vector3 zenith = servicer.position_eci.normalized();
-  const Vector3 x = z.cross(zenith).normalized();  // -y to the zenith: x = y cross z
-  Matrix3 R_body_eci;
-  R_body_eci.row(0) = x.transpose();
-  R_body_eci.row(1) = z.cross(x).transpose();
-  R_body_eci.row(2) = z.transpose();
-  return R_body_eci;
-}
 
 void CameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::EarthOrientation& earth) {
   const auto newest = [&](const auto& queue, auto& kept) {
@@ -137,10 +97,7 @@ void CameraNavigation::take_image(const angles_only::TakenImage& image, navigati
   navigation::AnglesOnlyEpoch epoch;
   epoch.time = image.time;
   epoch.sun_eci = sun_eci;
-  if (own_orbit.has_servicer() && own_orbit.epoch() <= image.time) {
-    const auto servicer = flown(own_orbit.servicer(), own_orbit.epoch(), image.time, burns);
-    if (servicer.ok()) epoch.servicer_gnss = servicer.value();
-  }
+  epoch.servicer_gnss = servicer_at(image.time, own_orbit, burns);
   static_cast<void>(filter_.update(epoch, burns));
   const angles_only::Sighting& sighting = tracking_.process(image, circumstances_of(image.time, sun_eci, burns));
   if (sighting.status == angles_only::SightingStatus::kNoStars) ++images_without_stars_;

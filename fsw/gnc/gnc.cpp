@@ -1,61 +1,9 @@
 #include "fsw/gnc/gnc.h"
 
-#include "fsw/math/math.h"
+#include "fsw/gnc/message_fields.h"
 #include "fsw/orbit/rtn.h"
 
 namespace vbar::fsw::gnc {
-namespace {
-
-// NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays): fields of packet types
-void copy(const Vector3& from, double (&to)[3]) {
-  for (int k = 0; k < 3; ++k) to[k] = from(k);
-}
-
-void copy(const Vector6& from, double (&to)[6]) {
-  for (int k = 0; k < 6; ++k) to[k] = from(k);
-}
-
-/// By rows.
-void copy_lower_triangle(const Matrix6& from, double (&to)[21]) {
-  std::size_t place = 0;
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column <= row; ++column) to[place++] = from(row, column);
-  }
-}
-
-/// Hamilton quaternion w, x, y, z of a rotation matrix that turns components (Shepperd 1978): the largest of the four
-/// first.
-void copy_rotation(const Matrix3& R, double (&to)[4]) {
-  const double trace = R.trace();
-  int largest = 0;
-  double most = trace;
-  for (int k = 0; k < 3; ++k) {
-    if (R(k, k) > most) {
-      most = R(k, k);
-      largest = k + 1;
-    }
-  }
-  const double big = math::sqrt(1.0 + 2.0 * most - trace) * 0.5;
-  const double by = 0.25 / big;
-  if (largest == 0) {
-    to[0] = big;
-    to[1] = (R(2, 1) - R(1, 2)) * by;
-    to[2] = (R(0, 2) - R(2, 0)) * by;
-    to[3] = (R(1, 0) - R(0, 1)) * by;
-    return;
-  }
-  const int i = largest - 1;
-  const int j = (i + 1) % 3;
-  const int k = (i + 2) % 3;
-  to[0] = (R(k, j) - R(j, k)) * by;
-  to[1 + i] = big;
-  to[1 + j] = (R(j, i) + R(i, j)) * by;
-  to[1 + k] = (R(k, i) + R(i, k)) * by;
-}
-// NOLINTEND(cppcoreguidelines-avoid-c-arrays)
-
-}  // namespace
-
 Gnc::Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context)
     : inbox_(spacecraft), outbox_(spacecraft, sink, sink_context) {}
 

@@ -1,18 +1,10 @@
 #include "fsw/gnc/gnss_configuration.h"
 
 #include "fsw/gnc/inbox.h"
+#include "fsw/gnc/message_fields.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::gnc {
-namespace {
-
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays): a field of a packet type
-Vector3 vector(const double (&xyz)[3]) {
-  return {xyz[0], xyz[1], xyz[2]};
-}
-
-}  // namespace
-
 Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_configuration& c) {
   const auto positive = [](double x, double most) { return x > 0.0 && x <= most; };
   const Vector3 servicer_antenna = vector(c.servicer_antenna_body_m);

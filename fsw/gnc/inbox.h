@@ -82,6 +82,9 @@ class Inbox {
   [[nodiscard]] const TimeOrderedQueue<target_apriori, kTelecommands>& target_aprioris() const {
     return target_aprioris_;
   }
+  [[nodiscard]] const TimeOrderedQueue<pose_configuration, kTelecommands>& pose_configurations() const {
+    return pose_configurations_;
+  }
   [[nodiscard]] const TimeOrderedQueue<gnss_bytes, kGnssPackets>& gnss_bytes_packets() const { return gnss_bytes_; }
   [[nodiscard]] const TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets>& crosslink_gnss_bytes_packets() const {
     return crosslink_gnss_bytes_;
@@ -111,6 +114,7 @@ class Inbox {
   TimeOrderedQueue<camera_configuration, kTelecommands> camera_configurations_;
   TimeOrderedQueue<angles_only_configuration, kTelecommands> angles_only_configurations_;
   TimeOrderedQueue<target_apriori, kTelecommands> target_aprioris_;
+  TimeOrderedQueue<pose_configuration, kTelecommands> pose_configurations_;
   TimeOrderedQueue<gnss_bytes, kGnssPackets> gnss_bytes_;
   TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets> crosslink_gnss_bytes_;
   TimeOrderedQueue<attitude, kMeasurements> attitudes_;

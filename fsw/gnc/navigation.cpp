@@ -3,6 +3,7 @@
 #include <span>
 
 #include "fsw/gnc/gnss_configuration.h"
+#include "fsw/gnc/message_fields.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
@@ -18,11 +19,6 @@ constexpr double kUnmodelledGradient = 1e-10;  // 1/s^2, 1 sigma, constant over 
 
 // A report or measurement may come so much after its time and still be used.
 constexpr Duration kLongestDelay = duration_of_seconds(600);
-
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays): a field of a packet type
-Vector3 vector(const double (&xyz)[3]) {
-  return {xyz[0], xyz[1], xyz[2]};
-}
 
 // GNSS navigation lags its newest measurement by what the crosslink takes; older than this the state is a coast.
 constexpr double kFreshGnss_s = 30.0;
