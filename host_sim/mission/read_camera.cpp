@@ -27,8 +27,9 @@ CameraSensor read_camera(const TableReader& section, const std::string& own, con
   CameraSensor camera;
   camera.camera =
       name_in(kCameraPresets, section.choice<CameraPreset>("camera", kCameraPresets, CameraPreset::kOpticalStimulator));
-  camera.settings = load_camera(data_directory() / "cameras" / (camera.camera + ".toml"));
-  read_camera_settings(section, camera.settings);
+  CameraFile file = load_camera(data_directory() / "cameras" / (camera.camera + ".toml"));
+  read_camera_settings(section, file);
+  camera.settings = file.settings();
   camera.target = read_other_spacecraft(section, own, names);
   camera.period = section.span("period_s", 1.0, from_to(0.1, 3600.0), fsw::seconds(mission.step));
   camera.readout = section.span("readout_s", 1.0, from_to(0.0, 3600.0), 2.0);
