@@ -11,7 +11,6 @@
 //   u32          CRC-32 (IEEE 802.3) of everything before
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -19,7 +18,7 @@
 
 namespace vbar::fsw::network {
 
-static_assert(std::endian::native == std::endian::little, "weights are used as the file has them");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "weights are used as the file has them");
 
 struct Layer {
   int in = 0;   ///< channels
@@ -43,19 +42,19 @@ inline constexpr int kLayerCount = 13;
 inline constexpr int kMapChannels = 12;
 
 inline constexpr std::array<Layer, kLayerCount> kLayers{{
-    {.in = 1, .out = 24, .kernel = 3, .stride = 2},                             // 0: to 64 a side
-    {.in = 24, .out = 40, .kernel = 3, .stride = 2},                            // 1: to 32
-    {.in = 40, .out = 40, .kernel = 3},                                         // 2: kept for layer 10
-    {.in = 40, .out = 64, .kernel = 3, .stride = 2},                            // 3: to 16
-    {.in = 64, .out = 64, .kernel = 3},                                         // 4: kept for layer 8
-    {.in = 64, .out = 128, .kernel = 3, .stride = 2},                           // 5: to 8
-    {.in = 128, .out = 128, .kernel = 3},                                       // 6
-    {.in = 128, .out = 128, .kernel = 3},                                       // 7
-    {.in = 128, .out = 64, .kernel = 1, .is_rectified = false},                 // 8: at 8, added to 4 at 16
-    {.in = 64, .out = 64, .kernel = 3},                                         // 9
-    {.in = 64, .out = 40, .kernel = 1, .is_rectified = false},                  // 10: at 16, added to 2 at 32
-    {.in = 40, .out = 40, .kernel = 3},                                         // 11
-    {.in = 40, .out = kMapChannels, .kernel = 1, .is_rectified = false},        // 12: the maps
+    {.in = 1, .out = 24, .kernel = 3, .stride = 2},                       // 0: to 64 a side
+    {.in = 24, .out = 40, .kernel = 3, .stride = 2},                      // 1: to 32
+    {.in = 40, .out = 40, .kernel = 3},                                   // 2: kept for layer 10
+    {.in = 40, .out = 64, .kernel = 3, .stride = 2},                      // 3: to 16
+    {.in = 64, .out = 64, .kernel = 3},                                   // 4: kept for layer 8
+    {.in = 64, .out = 128, .kernel = 3, .stride = 2},                     // 5: to 8
+    {.in = 128, .out = 128, .kernel = 3},                                 // 6
+    {.in = 128, .out = 128, .kernel = 3},                                 // 7
+    {.in = 128, .out = 64, .kernel = 1, .is_rectified = false},           // 8: at 8, added to 4 at 16
+    {.in = 64, .out = 64, .kernel = 3},                                   // 9
+    {.in = 64, .out = 40, .kernel = 1, .is_rectified = false},            // 10: at 16, added to 2 at 32
+    {.in = 40, .out = 40, .kernel = 3},                                   // 11
+    {.in = 40, .out = kMapChannels, .kernel = 1, .is_rectified = false},  // 12: the maps
 }};
 
 inline constexpr std::size_t kMagicBytes = 16;

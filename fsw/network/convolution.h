@@ -24,8 +24,8 @@ struct WeightPanel {
   alignas(16) std::array<float, kPanelChannels> biases{};
 };
 
-/// out = rectified convolution of in. `weights` are the layer's bytes in the file. The shapes must be the layer's: as many
-/// channels, out.side = in.side / stride a multiple of four.
+/// out = rectified convolution of in. `weights` are the layer's bytes in the file. The shapes must be the layer's: as
+/// many channels, out.side = in.side / stride a multiple of four.
 void convolve_rectified(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
                         const FeatureMap& out, WeightPanel& panel);
 

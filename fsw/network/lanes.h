@@ -1,10 +1,10 @@
 #pragma once
-// Four single-precision numbers side by side. Every operation rounds as IEEE 754 says, one operation at a time: the same
-// bits on every target.
+// Four single-precision numbers side by side. Every operation rounds as IEEE 754 says, one operation at a time: the
+// same bits on every target.
 //
 // On 32-bit ARM these are NEON's instructions: the compiler writes floating point into NEON only where it is told to,
-// because NEON flushes denormal numbers to zero (the network has none: number_range.h). VMLA of the Cortex-A9 rounds the
-// product and then the sum; VFMA, which rounds once, is never used. Elsewhere they are the compiler's own vectors.
+// because NEON flushes denormal numbers to zero (the network has none: number_range.h). VMLA of the Cortex-A9 rounds
+// the product and then the sum; VFMA, which rounds once, is never used. Elsewhere they are the compiler's own vectors.
 
 #include <cstdint>
 
