@@ -34,8 +34,8 @@ struct CropRegion {
 using CropSamples = std::array<float, kCropSamples>;
 
 /// Cuts `region` out of the image. A sample is the root of the mean of the pixels it covers, in parts where it covers
-/// them in part, above `dark_level_dn`; the root because photon noise is then alike everywhere, and shadows count beside
-/// glints. What the image does not hold (beside it, missing tiles) is dark.
+/// them in part, above `dark_level_dn`; the root because photon noise is then alike everywhere, and shadows count
+/// beside glints. What the image does not hold (beside it, missing tiles) is dark.
 ///
 /// With `standardise` the samples are brought to mean 0 and deviation 1 over the crop; of a crop that is almost even
 /// (less than half a root of a DN) noise is not blown up. kOutOfRange unless the region is 16 to 4096 px a side, with

@@ -33,9 +33,9 @@ struct PnpSettings {
   double farthest_m = 100.0;
 };
 
-/// Of the usable keypoints: random minimal sets (RANSAC; the sets follow from `seed`), a closed form (EPnP or SQPnP), and
-/// a Gauss-Newton refinement of all inliers whitened by their covariances, with Huber weights. kNotReady with too few
-/// usable, kDidNotConverge where no pose gets enough inliers, kOutOfRange for one outside the settings' distances.
+/// Of the usable keypoints: random minimal sets (RANSAC; the sets follow from `seed`), a closed form (EPnP or SQPnP),
+/// and a Gauss-Newton refinement of all inliers whitened by their covariances, with Huber weights. kNotReady with too
+/// few usable, kDidNotConverge where no pose gets enough inliers, kOutOfRange for one outside the settings' distances.
 Result<PnpSolution> solve_pnp(const Keypoints& keypoints, const KeypointShape& shape,
                               const imaging::CameraModel& camera, const PnpSettings& settings, std::uint32_t seed);
 

@@ -26,13 +26,13 @@ struct PoseCameraSettings {
 };
 
 enum class SightingStatus : std::uint8_t {
-  kPose = 0,      ///< keypoints and a pose
-  kKeypoints,     ///< keypoints (at least one usable), but no pose that they agree on
-  kNoKeypoints,   ///< the network saw none
-  kNoTarget,      ///< nothing in the image that could be the target
-  kDark,          ///< no light but noise
-  kBlinded,       ///< more of the image saturated than a target can
-  kInvalid,       ///< not the frame of the settings, or no network
+  kPose = 0,     ///< keypoints and a pose
+  kKeypoints,    ///< keypoints (at least one usable), but no pose that they agree on
+  kNoKeypoints,  ///< the network saw none
+  kNoTarget,     ///< nothing in the image that could be the target
+  kDark,         ///< no light but noise
+  kBlinded,      ///< more of the image saturated than a target can
+  kInvalid,      ///< not the frame of the settings, or no network
 };
 
 struct PoseSighting {

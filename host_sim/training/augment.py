@@ -20,7 +20,7 @@ def standardised(samples):
 
 
 def samples_of(images):
-    return torch.from_numpy(images).unsqueeze(1).float() / BYTES_A_SAMPLE
+    return torch.tensor(images).unsqueeze(1).float() / BYTES_A_SAMPLE
 
 
 def turned(images, cells, turns):

@@ -23,14 +23,14 @@ inline constexpr double kNominalExposureS = 47e-6;
 struct Circumstances {
   fsw::Vector3 centre_of_mass_camera = fsw::Vector3::Zero();  ///< of the target, m
   fsw::Matrix3 R_camera_body = fsw::Matrix3::Identity();
-  fsw::Vector3 sun_camera = fsw::Vector3::UnitZ();      ///< unit
-  fsw::Vector3 nadir_camera = fsw::Vector3::UnitY();    ///< unit
+  fsw::Vector3 sun_camera = fsw::Vector3::UnitZ();                   ///< unit
+  fsw::Vector3 nadir_camera = fsw::Vector3::UnitY();                 ///< unit
   Eigen::Quaterniond q_camera_eci = Eigen::Quaterniond::Identity();  ///< turns the sky
-  double phase_angle = 0.0;          ///< Sun, target, camera; rad
-  double sunlit = 1.0;               ///< share of the Sun's disc
-  double exposure = 1.0;             ///< in kNominalExposureS
+  double phase_angle = 0.0;                                          ///< Sun, target, camera; rad
+  double sunlit = 1.0;                                               ///< share of the Sun's disc
+  double exposure = 1.0;                                             ///< in kNominalExposureS
   double point_spread_sigma_px = 0.8;
-  double glow_electrons = 0.0;       ///< even stray light, a pixel
+  double glow_electrons = 0.0;                     ///< even stray light, a pixel
   fsw::Vector2 glow_slope = fsw::Vector2::Zero();  ///< its change over the crop, relative
   fsw::pose::CropRegion region;
 };

@@ -202,8 +202,7 @@ void CropMaker::draw_target(const Circumstances& c, const CameraSettings& camera
   soften(sigma_px, width, window_.height, covered_);
   const auto halo = static_cast<float>(camera.optics.halo_fraction);
   for (std::size_t p = 0; p < target_.size(); ++p)
-    photons_.electrons[p] =
-        photons_.electrons[p] * (1.0F - covered_[p]) + (1.0F - halo) * target_[p] + halo * halo_[p];
+    photons_.electrons[p] = photons_.electrons[p] * (1.0F - covered_[p]) + (1.0F - halo) * target_[p] + halo * halo_[p];
 }
 
 /// Stray light over all of it.

@@ -1,8 +1,8 @@
 #pragma once
 // Crops for training: drawn, lit, exposed and read as the camera twin does it, cut by the flight software.
 //
-// The light of the target, the sky, the Earth and the detector are the twin's. Only the lens differs, for speed: light is
-// gathered on whole pixels and softened there, the target on one and a half to three texels a sample of the crop.
+// The light of the target, the sky, the Earth and the detector are the twin's. Only the lens differs, for speed: light
+// is gathered on whole pixels and softened there, the target on one and a half to three texels a sample of the crop.
 
 #include <cstdint>
 #include <filesystem>

@@ -1,5 +1,5 @@
-// vbar_training_crops: labelled crops for the keypoint network, in shards of a folder. Shards that are there already stay,
-// so an interrupted run goes on where it was, and several processes can share the work.
+// vbar_training_crops: labelled crops for the keypoint network, in shards of a folder. Shards that are there already
+// stay, so an interrupted run goes on where it was, and several processes can share the work.
 
 #include <algorithm>
 #include <chrono>
@@ -59,12 +59,13 @@ void make_shards(const Order& order) {
 int main(int argc, char** argv) {
   Order order;
   CLI::App app("Labelled crops for the keypoint network");
-  const std::map<std::string, CropKind> kinds{{"training", CropKind::kTraining},
-                                              {"calibration", CropKind::kCalibration},
-                                              {"held_out", CropKind::kHeldOut}};
+  const std::map<std::string, CropKind> kinds{
+      {"training", CropKind::kTraining}, {"calibration", CropKind::kCalibration}, {"held_out", CropKind::kHeldOut}};
   app.add_option("--seed", order.seed, "of the draws")->capture_default_str();
   app.add_option("--count", order.count, "crops in all")->check(CLI::Range(1, 10'000'000))->capture_default_str();
-  app.add_option("--shard-size", order.shard_size, "crops a file")->check(CLI::Range(1, 100'000))->capture_default_str();
+  app.add_option("--shard-size", order.shard_size, "crops a file")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
   app.add_option("--kind", order.kind, "training, calibration or held_out")->transform(CLI::CheckedTransformer(kinds));
   app.add_option("--part", order.part, "of the work, from 0")->check(CLI::Range(0, 63))->capture_default_str();
   app.add_option("--parts", order.parts, "that share it")->check(CLI::Range(1, 64))->capture_default_str();

@@ -73,8 +73,9 @@ void Silhouette::draw(const twins::camera::Optics& optics, const Vector3& origin
   covered.resize(static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height));
   for (int y = 0; y < region.height; ++y)
     for (int x = 0; x < region.width; ++x) {
-      const unsigned char* const point = &points_[static_cast<std::size_t>(kPoints * y) * static_cast<std::size_t>(points_across_) +
-                                                  static_cast<std::size_t>(kPoints * x)];
+      const unsigned char* const point =
+          &points_[static_cast<std::size_t>(kPoints * y) * static_cast<std::size_t>(points_across_) +
+                   static_cast<std::size_t>(kPoints * x)];
       const int sum = point[0] + point[1] + point[points_across_] + point[points_across_ + 1];
       covered[static_cast<std::size_t>(y) * static_cast<std::size_t>(region.width) + static_cast<std::size_t>(x)] =
           0.25F * static_cast<float>(sum);

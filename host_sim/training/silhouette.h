@@ -14,8 +14,8 @@ class Silhouette {
  public:
   explicit Silhouette(const twins::camera::CadModel& model);
 
-  /// Covered shares, 0 to 1 in quarters (2 x 2 points a pixel), rows of `region`. `origin_camera`: of the model, m, all of it in
-  /// front of the camera.
+  /// Covered shares, 0 to 1 in quarters (2 x 2 points a pixel), rows of `region`. `origin_camera`: of the model, m, all
+  /// of it in front of the camera.
   void draw(const twins::camera::Optics& optics, const fsw::Vector3& origin_camera, const fsw::Matrix3& R_camera_body,
             const twins::camera::Region& region, std::vector<float>& covered);
 

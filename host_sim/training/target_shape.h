@@ -7,8 +7,8 @@
 
 namespace vbar::training {
 
-/// Tango's eleven keypoints (published with the SPEED and SPEED+ data sets: Sharma and D'Amico 2019, Park et al. 2022) in
-/// the frame of its CAD file, m.
+/// Tango's eleven keypoints (published with the SPEED and SPEED+ data sets: Sharma and D'Amico 2019, Park et al. 2022)
+/// in the frame of its CAD file, m.
 [[nodiscard]] fsw::pose::KeypointShape published_keypoints();
 
 /// The target in body axes, everything from the centre of mass, m.

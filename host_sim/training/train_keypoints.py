@@ -20,7 +20,7 @@ import crops
 import decode
 import keypoint_network
 
-BATCH = 64
+BATCH = 32
 TARGET_SIGMA_CELLS = 1.0
 AVERAGE = 0.998  # of the weights, kept each step
 CHECKPOINT_S = 180.0
@@ -187,7 +187,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, required=True, help="weights file; the checkpoint lies beside it")
     parser.add_argument("--minutes", type=float, default=50.0)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--rate", type=float, default=3e-3, help="of learning, at its highest")
+    parser.add_argument("--rate", type=float, default=2e-3, help="of learning, at its highest")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--least-crops", type=int, default=3000, help="to begin with")
     parser.add_argument("--export-every", type=float, default=1e9, help="minutes")
