@@ -26,8 +26,9 @@ Material grey(const Material& like, double diffuse, double specular, double expo
 Material near(const Material& own, engine::RandomStream& stream) {
   // Inside of what training leaves out, also after rounding.
   constexpr double kNear = 0.999 * kOwnFamily;
-  const double diffuse = own.grey_diffuse() * stream.uniform(1.0 - kNear, 1.0 + kNear);
+  const double wanted = own.grey_diffuse() * stream.uniform(1.0 - kNear, 1.0 + kNear);
   const double specular = own.grey_specular() * stream.uniform(1.0 - kNear, 1.0 + kNear);
+  const double diffuse = std::min(wanted, kMostReflected - specular);  // grey() would make both darker
   const double exponent = own.exponent * stream.uniform(1.0 - kNear, 1.0 + kNear);
   return grey(own, diffuse, specular, exponent);
 }
