@@ -43,13 +43,11 @@ const PoseSighting& SpacecraftPoseNetwork::process(GpsTime time, std::int32_t im
 }
 
 SightingStatus SpacecraftPoseNetwork::look(const imaging::ImageView& image, const std::optional<Vector3>& predicted) {
-  const std::size_t pixels =
-      static_cast<std::size_t>(image.frame.width) * static_cast<std::size_t>(image.frame.height);
+  const std::size_t pixels = static_cast<std::size_t>(image.frame.width) * static_cast<std::size_t>(image.frame.height);
   if (!network_.is_loaded() || !(image.frame == settings_.frame) || image.pixels.size() != pixels) {
     return SightingStatus::kInvalid;
   }
-  const Finding finding =
-      finder_.find(image, {settings_.dark_level_dn, settings_.noise_dn, settings_.saturation_dn});
+  const Finding finding = finder_.find(image, {settings_.dark_level_dn, settings_.noise_dn, settings_.saturation_dn});
   if (finding == Finding::kDark) return SightingStatus::kDark;
   if (finding == Finding::kBlinded) return SightingStatus::kBlinded;
   CropRegion region;
