@@ -61,9 +61,10 @@ FrontEndErrors::FrontEndErrors(std::span<const std::byte> weights, const fsw::po
 
 void FrontEndErrors::add(const LabelledView& view) {
   if (network_->run(view.samples) != fsw::Status::kOk) throw std::runtime_error("the keypoint network refuses a crop");
+  const auto sigma = static_cast<double>(network_->calibration().target_sigma_cells);
   Keypoints keypoints;
   for (std::size_t k = 0; k < keypoints.size(); ++k) {
-    const auto peak = fsw::pose::read_map(network_->logits(static_cast<int>(k)));
+    const auto peak = fsw::pose::read_map(network_->logits(static_cast<int>(k)), sigma);
     keypoints[k] = fsw::pose::keypoint_of(peak, network_->calibration(), view.region);
     add_keypoint(keypoints[k], view, k);
   }
@@ -140,10 +141,10 @@ std::string FrontEndErrors::report() const {
                       100.0 * false_share());
   text += fmt::format("keypoint error, samples: median {:.2f}, 90 % {:.2f}, 99 % {:.2f}; px: median {:.2f}\n",
                       quantile(samples, 0.5), quantile(samples, 0.9), quantile(samples, 0.99), quantile(px, 0.5));
-  text += fmt::format(
-      "  normalised: median {:.2f} (1.39), mean {:.2f} (2), 90 % {:.2f} (4.61), beyond 9.21 {:.1f} % (1)\n",
-      quantile(normalised, 0.5), mean(normalised), quantile(normalised, 0.9),
-      100.0 * share_of(normalised, [](double x) { return x > 9.21; }));
+  text +=
+      fmt::format("  normalised: median {:.2f} (1.39), mean {:.2f} (2), 90 % {:.2f} (4.61), beyond 9.21 {:.1f} % (1)\n",
+                  quantile(normalised, 0.5), mean(normalised), quantile(normalised, 0.9),
+                  100.0 * share_of(normalised, [](double x) { return x > 9.21; }));
   text += fmt::format("poses {:.1f} %, beyond 10 deg {:.2f} % of them\n", 100.0 * accepted_share(),
                       100.0 * share_beyond(10.0));
   text += fmt::format("  attitude, deg: median {:.2f}, 90 % {:.2f}; position, m: median {:.3f}, 90 % {:.3f}\n",
@@ -162,8 +163,7 @@ std::string FrontEndErrors::acceptance_table() const {
         return p.is_there && p.inliers >= least && p.mean_square <= most;
       };
       const double taken = share_of(poses_, is_taken);
-      const double wrong =
-          share_of(poses_, [&](const PoseError& p) { return is_taken(p) && p.attitude_deg > 10.0; });
+      const double wrong = share_of(poses_, [&](const PoseError& p) { return is_taken(p) && p.attitude_deg > 10.0; });
       text += fmt::format("{:7}  {:11.3g}  {:10.1f}  {:15.2f}\n", least, most, 100.0 * taken,
                           taken > 0.0 ? 100.0 * wrong / taken : 0.0);
     }
