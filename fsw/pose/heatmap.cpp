@@ -106,8 +106,10 @@ CutGaussian cut_gaussian(double centre, double sigma, int first, int last) {
 void allow_for_cut(double sigma, int first, int last, double& mean, double& variance) {
   double centre = mean;
   CutGaussian cut = cut_gaussian(centre, sigma, first, last);
-  for (int k = 0; k < 4; ++k) {  // each step leaves a tenth of the miss where a quarter of the Gaussian is cut off
-    centre += mean - cut.mean;
+  constexpr double kLeastSlope = 0.3;  // of the cut mean by the centre; beside the edge it is 0.5
+  for (int k = 0; k < 4; ++k) {
+    const double slope = cut.variance / (sigma * sigma);
+    centre += (mean - cut.mean) / (slope > kLeastSlope ? slope : kLeastSlope);
     cut = cut_gaussian(centre, sigma, first, last);
   }
   mean = centre;
