@@ -11,7 +11,6 @@
 //   u32          CRC-32 (IEEE 802.3) of everything before
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -19,7 +18,7 @@
 
 namespace vbar::fsw::network {
 
-static_assert(std::endian::native == std::endian::little, "weights are used as the file has them");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "weights are used as the file has them");
 
 struct Layer {
   int in = 0;   ///< channels

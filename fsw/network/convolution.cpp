@@ -10,10 +10,10 @@ namespace {
 
 constexpr int kBlockCells = 4;
 
-/// Output of four neighbouring cells, kGroups times four channels.
-template <int kGroups>
-struct Block {
-  Lanes sums[kBlockCells][static_cast<std::size_t>(kGroups)];
+/// Four lanes of each of four neighbouring cells. Written out, not an array with a loop over it, so that it stays in
+/// registers whatever the compiler makes of loops.
+struct Cells {
+  Lanes a, b, c, d;
 };
 
 /// What a block of output reads.
@@ -25,60 +25,78 @@ struct Window {
   int run = 0;                   ///< numbers of a kernel's row: its columns and their channels lie side by side
 };
 
-template <int k, int kGroups>
-inline void add_products(Block<kGroups>& block, const float* weights, const Lanes (&x)[kBlockCells]) {
-  for (int group = 0; group < kGroups; ++group) {
-    const Lanes w = load(weights + group * kLanes);
-    for (int cell = 0; cell < kBlockCells; ++cell) {
-      block.sums[cell][group] = add_product<k>(block.sums[cell][group], w, x[cell]);
-    }
-  }
+/// Sums of four cells, kGroups times four channels.
+template <int kGroups>
+struct Block {
+  Cells groups[static_cast<std::size_t>(kGroups)];
+};
+
+/// Lane k of the cells with four channels' weights.
+template <int k>
+inline void add_products(Cells& sums, Lanes w, const Cells& x) {
+  sums.a = add_product<k>(sums.a, w, x.a);
+  sums.b = add_product<k>(sums.b, w, x.b);
+  sums.c = add_product<k>(sums.c, w, x.c);
+  sums.d = add_product<k>(sums.d, w, x.d);
 }
 
-/// `weights` in the panel's order. The run must be a multiple of four.
+template <int k>
+inline void add_products(Block<1>& block, const float* weights, const Cells& x) {
+  add_products<k>(block.groups[0], load(weights), x);
+}
+
+template <int k>
+inline void add_products(Block<2>& block, const float* weights, const Cells& x) {
+  add_products<k>(block.groups[0], load(weights), x);
+  add_products<k>(block.groups[1], load(weights + kLanes), x);
+}
+
+/// The sums go in and out by value: then no store in the loop, for fear that they lie where it reads. `weights` in the
+/// panel's order. The run must be a multiple of four.
 template <int kGroups>
-inline void add_window(Block<kGroups>& block, const Window& window, const float* weights) {
+inline Block<kGroups> add_window(Block<kGroups> block, const Window& window, const float* weights) {
+  constexpr int kStep = kGroups * kLanes;
+  const std::ptrdiff_t step = window.cell_step;
   for (int row = 0; row < window.rows; ++row) {
     const float* in = window.first + row * window.row_step;
     for (int i = 0; i < window.run; i += kLanes) {
-      Lanes x[kBlockCells];
-      for (int cell = 0; cell < kBlockCells; ++cell) x[cell] = load(in + cell * window.cell_step + i);
+      const Cells x{load(in), load(in + step), load(in + 2 * step), load(in + 3 * step)};
       add_products<0>(block, weights, x);
-      add_products<1>(block, weights + kGroups * kLanes, x);
-      add_products<2>(block, weights + 2 * kGroups * kLanes, x);
-      add_products<3>(block, weights + 3 * kGroups * kLanes, x);
-      weights += kLanes * kGroups * kLanes;
+      add_products<1>(block, weights + kStep, x);
+      add_products<2>(block, weights + 2 * kStep, x);
+      add_products<3>(block, weights + 3 * kStep, x);
+      in += kLanes;
+      weights += kLanes * kStep;
     }
   }
+  return block;
 }
 
 /// The same for the first layer, whose one channel does not fill four lanes.
 template <int kGroups>
-inline void add_grey_window(Block<kGroups>& block, const Window& window, const float* weights) {
+inline Block<kGroups> add_grey_window(Block<kGroups> block, const Window& window, const float* weights) {
+  const std::ptrdiff_t step = window.cell_step;
   for (int row = 0; row < window.rows; ++row) {
     const float* in = window.first + row * window.row_step;
     for (int i = 0; i < window.run; ++i) {
-      Lanes x[kBlockCells];
-      for (int cell = 0; cell < kBlockCells; ++cell) x[cell] = all(in[cell * window.cell_step + i]);
+      const Cells x{all(in[0]), all(in[step]), all(in[2 * step]), all(in[3 * step])};
       add_products<0>(block, weights, x);
+      ++in;
       weights += kGroups * kLanes;
     }
   }
+  return block;
 }
 
 template <int kGroups>
 Block<kGroups> block_of(const Window& window, const WeightPanel& panel) {
-  Block<kGroups> block;
+  Block<kGroups> biases;
   for (int group = 0; group < kGroups; ++group) {
     const Lanes bias = load(panel.biases.data() + group * kLanes);
-    for (int cell = 0; cell < kBlockCells; ++cell) block.sums[cell][group] = bias;
+    biases.groups[group] = {bias, bias, bias, bias};
   }
-  if (window.run % kLanes == 0) {
-    add_window(block, window, panel.weights.data());
-  } else {
-    add_grey_window(block, window, panel.weights.data());
-  }
-  return block;
+  return window.run % kLanes == 0 ? add_window(biases, window, panel.weights.data())
+                                  : add_grey_window(biases, window, panel.weights.data());
 }
 
 /// Puts the weights of kGroups times four channels from `channel` on side by side.
@@ -109,10 +127,13 @@ void convolve_channels(const Layer& layer, const FeatureMap& in, int channel, co
     for (int column = 0; column < side; column += kBlockCells) {
       window.first = in.cell(row * layer.stride - margin, column * layer.stride - margin);
       const Block<kGroups> block = block_of<kGroups>(window, panel);
-      for (int cell = 0; cell < kBlockCells; ++cell) {
-        for (int group = 0; group < kGroups; ++group) {
-          sink(row, column + cell, channel + group * kLanes, block.sums[cell][group]);
-        }
+      for (int group = 0; group < kGroups; ++group) {
+        const Cells& sums = block.groups[group];
+        const int first = channel + group * kLanes;
+        sink(row, column, first, sums.a);
+        sink(row, column + 1, first, sums.b);
+        sink(row, column + 2, first, sums.c);
+        sink(row, column + 3, first, sums.d);
       }
     }
   }

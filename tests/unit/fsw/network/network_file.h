@@ -43,7 +43,7 @@ inline WeightsFile blank_file() {
   for (const Layer& l : kLayers) {
     for (const int value : {l.in, l.out, l.kernel, l.stride, l.is_rectified ? 1 : 0, 0, 0, 0}) word(value);
   }
-  for (const float value : {1.25F, 0.0625F, 1.0F, 0.125F}) {
+  for (const float value : {1.25F, 0.0625F, 1.5F, 0.125F}) {
     put(file, offset, value);
     offset += 4;
   }
@@ -56,23 +56,28 @@ inline std::size_t place_of_weight(int layer, std::size_t k) {
   return fsw::network::offset_of_layer(layer) + sizeof(float) * k;
 }
 
-/// Weights such that numbers neither grow nor fade from layer to layer (He et al. 2015), and small biases.
-inline WeightsFile random_file(unsigned seed) {
+/// `number(layer, k)` for every weight k of a layer and, from layer.weights() on, every bias.
+template <class Number>
+WeightsFile file_of(Number&& number) {
   using namespace fsw::network;
   WeightsFile file = blank_file();
-  std::mt19937 random(seed);
   for (int l = 0; l < kLayerCount; ++l) {
     const Layer& layer = kLayers[static_cast<std::size_t>(l)];
-    std::normal_distribution<float> weight(
-        0.0F, std::sqrt(2.0F / static_cast<float>(layer.kernel * layer.kernel * layer.in)));
-    std::normal_distribution<float> bias(0.0F, 0.05F);
-    for (std::size_t k = 0; k < layer.weights(); ++k) put(file, place_of_weight(l, k), weight(random));
-    for (std::size_t k = 0; k < static_cast<std::size_t>(layer.out); ++k) {
-      put(file, place_of_weight(l, layer.weights() + k), bias(random));
+    for (std::size_t k = 0; k < layer.weights() + static_cast<std::size_t>(layer.out); ++k) {
+      put(file, place_of_weight(l, k), static_cast<float>(number(layer, k)));
     }
   }
   seal(file);
   return file;
+}
+
+/// Random weights such that numbers neither grow nor fade from layer to layer (He et al. 2015).
+inline WeightsFile random_file(unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  return file_of([&](const fsw::network::Layer& layer, std::size_t) {
+    return normal(random) * std::sqrt(2.0 / (layer.kernel * layer.kernel * layer.in));
+  });
 }
 
 /// Mean 0 and deviation 1, as crops are.
