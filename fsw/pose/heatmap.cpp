@@ -57,7 +57,13 @@ class Likelihood {
   double highest_;
 };
 
-void take_moments(const Likelihood& map, const Window& window, MapPeak& peak) {
+/// In cells, within a window.
+struct Moments {
+  Vector2 mean = Vector2::Zero();
+  Matrix2 second = Matrix2::Zero();  ///< about the mean
+};
+
+Moments moments_of(const Likelihood& map, const Window& window) {
   double sum = 0.0;
   Vector2 first = Vector2::Zero();
   Matrix2 second = Matrix2::Zero();
@@ -72,8 +78,42 @@ void take_moments(const Likelihood& map, const Window& window, MapPeak& peak) {
     }
   }
   const Vector2 mean = first / sum;
-  peak.place = mean + Vector2(window.left, window.top);
-  peak.second_moments = second / sum - mean * mean.transpose();
+  return {mean + Vector2(window.left, window.top), second / sum - mean * mean.transpose()};
+}
+
+/// Of a Gaussian at `centre` in the cells `first` to `last` of one axis.
+struct CutGaussian {
+  double mean = 0.0;
+  double variance = 0.0;
+};
+CutGaussian cut_gaussian(double centre, double sigma, int first, int last) {
+  double sum = 0.0;
+  double one = 0.0;
+  double two = 0.0;
+  for (int cell = first; cell <= last; ++cell) {
+    const double off = cell - centre;
+    const double weight = math::exp(-0.5 * off * off / (sigma * sigma));
+    sum += weight;
+    one += weight * off;
+    two += weight * off * off;
+  }
+  const double mean = one / sum;
+  return {centre + mean, two / sum - mean * mean};
+}
+
+/// Replaces the mean of one axis by the centre of the Gaussian that would have it, and takes that Gaussian's variance
+/// off.
+void allow_for_cut(double sigma, int first, int last, double& mean, double& variance) {
+  double centre = mean;
+  CutGaussian cut = cut_gaussian(centre, sigma, first, last);
+  constexpr double kLeastSlope = 0.3;  // of the cut mean by the centre; beside the edge it is 0.5
+  for (int k = 0; k < 4; ++k) {
+    const double slope = cut.variance / (sigma * sigma);
+    centre += (mean - cut.mean) / (slope > kLeastSlope ? slope : kLeastSlope);
+    cut = cut_gaussian(centre, sigma, first, last);
+  }
+  mean = centre;
+  variance -= cut.variance;
 }
 
 /// The cell that a place lies in; places are within the map.
@@ -83,7 +123,7 @@ Cell cell_of(const Vector2& place) {
 
 }  // namespace
 
-MapPeak read_map(Logits logits) {
+MapPeak read_map(Logits logits, double target_sigma_cells) {
   MapPeak peak;
   peak.is_at_border = true;
   std::size_t highest = 0;
@@ -105,17 +145,19 @@ MapPeak read_map(Logits logits) {
     }
   }
   peak.peak = map.sum(Window(top, 1)) / total;
-  take_moments(map, around, peak);
   // Once more around the mean: a window that cuts one side of the peak more than the other draws the mean away from it.
-  take_moments(map, Window(cell_of(peak.place), kReach), peak);
+  const Window window(cell_of(moments_of(map, around).mean), kReach);
+  const Moments moments = moments_of(map, window);
+  peak.place = moments.mean;
+  peak.excess = moments.second;
+  allow_for_cut(target_sigma_cells, window.left, window.right, peak.place.x(), peak.excess(0, 0));
+  allow_for_cut(target_sigma_cells, window.top, window.bottom, peak.place.y(), peak.excess(1, 1));
   return peak;
 }
 
 Matrix2 place_covariance(const MapPeak& peak, const network::Calibration& calibration) {
-  const double sigma = static_cast<double>(calibration.target_sigma_cells);
-  const Matrix2 excess = peak.second_moments - sigma * sigma * Matrix2::Identity();
   Matrix2 covariance = static_cast<double>(calibration.covariance_floor) * Matrix2::Identity();
-  const Result<math::SymmetricEigen<2>> eigen = math::symmetric_eigen<2>(excess);
+  const Result<math::SymmetricEigen<2>> eigen = math::symmetric_eigen<2>(peak.excess);
   if (!eigen.ok()) return covariance;
   for (int k = 0; k < 2; ++k) {
     const double value = eigen.value().values(k);

@@ -12,7 +12,9 @@ namespace {
 
 constexpr std::size_t kMost = network::kKeypoints;
 constexpr std::size_t kMinimalSet = 4;
-constexpr std::uint32_t kMostSets = 64;
+constexpr int kMostSets = 64;
+/// Enough sets are drawn when with this chance at most none of them was free of outliers.
+constexpr double kMostDoubt = 1e-4;
 /// Limits of an inlier widened by so much for poses of minimal sets, in which four keypoints' noise is all.
 constexpr double kLoose = 2.0;
 
@@ -152,11 +154,22 @@ class Draws {
   std::uint32_t count_ = 1;
 };
 
+/// Chance that none of so many sets is of inliers alone, if so many of all keypoints are.
+double doubt_after(int sets, int inliers, std::size_t keypoints) {
+  double chance = 1.0;
+  for (std::size_t k = 0; k < kMinimalSet; ++k) {
+    chance *= (inliers - static_cast<double>(k)) / static_cast<double>(keypoints - k);
+  }
+  double doubt = 1.0;
+  for (int k = 0; k < sets; ++k) doubt *= 1.0 - chance;
+  return doubt;
+}
+
 Guess guess_by_sets(const Problem& problem, const imaging::CameraModel& camera, const PnpSettings& settings,
                     std::uint32_t seed) {
   Draws draws(seed);
   Guess best;
-  for (std::uint32_t set = 0; set < kMostSets; ++set) {
+  for (int set = 0; set < kMostSets; ++set) {
     std::array<SeenPoint, kMost> points = problem.points;
     for (std::size_t k = 0; k < kMinimalSet; ++k) {
       const std::size_t other = k + draws.below(problem.count - k);
@@ -165,6 +178,7 @@ Guess guess_by_sets(const Problem& problem, const imaging::CameraModel& camera, 
       points[k] = drawn;
     }
     guess_from(std::span(points).first(kMinimalSet), problem, camera, settings, best);
+    if (best.is_there && doubt_after(set + 1, best.verdict.inliers, problem.count) < kMostDoubt) break;
   }
   return best;
 }

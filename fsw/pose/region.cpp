@@ -1,5 +1,6 @@
-#include "fsw/math/math.h"
 #include "fsw/pose/region.h"
+
+#include "fsw/math/math.h"
 
 namespace vbar::fsw::pose {
 

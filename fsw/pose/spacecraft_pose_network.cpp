@@ -43,13 +43,11 @@ const PoseSighting& SpacecraftPoseNetwork::process(GpsTime time, std::int32_t im
 }
 
 SightingStatus SpacecraftPoseNetwork::look(const imaging::ImageView& image, const std::optional<Vector3>& predicted) {
-  const std::size_t pixels =
-      static_cast<std::size_t>(image.frame.width) * static_cast<std::size_t>(image.frame.height);
+  const std::size_t pixels = static_cast<std::size_t>(image.frame.width) * static_cast<std::size_t>(image.frame.height);
   if (!network_.is_loaded() || !(image.frame == settings_.frame) || image.pixels.size() != pixels) {
     return SightingStatus::kInvalid;
   }
-  const Finding finding =
-      finder_.find(image, {settings_.dark_level_dn, settings_.noise_dn, settings_.saturation_dn});
+  const Finding finding = finder_.find(image, {settings_.dark_level_dn, settings_.noise_dn, settings_.saturation_dn});
   if (finding == Finding::kDark) return SightingStatus::kDark;
   if (finding == Finding::kBlinded) return SightingStatus::kBlinded;
   CropRegion region;
@@ -74,9 +72,10 @@ SightingStatus SpacecraftPoseNetwork::look_at(const imaging::ImageView& image, c
   sighting_.pnp.reset();
   if (cut_crop(image, region, settings_.dark_level_dn, crop_) != Status::kOk) return SightingStatus::kNoTarget;
   if (network_.run(crop_) != Status::kOk) return SightingStatus::kNoKeypoints;
+  const auto sigma = static_cast<double>(network_.calibration().target_sigma_cells);
   bool is_any = false;
   for (std::size_t k = 0; k < sighting_.keypoints.size(); ++k) {
-    const MapPeak peak = read_map(network_.logits(static_cast<int>(k)));
+    const MapPeak peak = read_map(network_.logits(static_cast<int>(k)), sigma);
     sighting_.keypoints[k] = keypoint_of(peak, network_.calibration(), region);
     is_any = is_any || sighting_.keypoints[k].is_usable;
   }

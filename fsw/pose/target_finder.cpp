@@ -7,11 +7,11 @@ namespace {
 
 constexpr double kMostSaturated = 0.4;  ///< of the pixels
 constexpr int kReach = 2;               ///< blocks: one without light between two is no gap
-constexpr int kLeastLit = 5;  ///< blocks: no speck is so large
+constexpr int kLeastLit = 5;            ///< blocks: no speck is so large
 constexpr int kLeastBlocks = 12;
-constexpr int kLeastSide = 6;      ///< blocks: 48 px
-constexpr int kMostSide = 80;      ///< blocks: 640 px
-constexpr double kMostAtEdge = 0.5;  ///< blocks at the image's edge, of the structure's longer side
+constexpr int kLeastSide = 6;          ///< blocks: 48 px
+constexpr int kMostSide = 80;          ///< blocks: 640 px
+constexpr double kMostAtEdge = 0.5;    ///< blocks at the image's edge, of the structure's longer side
 constexpr double kLeastFilled = 0.12;  ///< of its rectangle
 constexpr double kNoises = 6.0;
 constexpr int kMostLevels = 8;
@@ -165,11 +165,10 @@ CropRegion TargetFinder::region_around(const Structure& structure, const imaging
 
 Finding TargetFinder::find(const imaging::ImageView& image, const DetectorLevels& levels) {
   const imaging::ImageFrame& frame = image.frame;
-  const bool is_image = frame.width > 0 && frame.height > 0 && frame.width <= imaging::kMaxSide &&
-                        frame.height <= imaging::kMaxSide &&
-                        static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height) ==
-                            image.pixels.size() &&
-                        image.pixels.size() <= imaging::kMaxPixels;
+  const bool is_image =
+      frame.width > 0 && frame.height > 0 && frame.width <= imaging::kMaxSide && frame.height <= imaging::kMaxSide &&
+      static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height) == image.pixels.size() &&
+      image.pixels.size() <= imaging::kMaxPixels;
   if (!is_image || !(levels.noise_dn > 0.0) || !math::is_finite(levels.dark_level_dn + levels.noise_dn)) {
     return Finding::kNothing;
   }

@@ -1,5 +1,6 @@
 #pragma once
-// Where in an image a large bright structure is that could be the target, without knowing anything of where it should be.
+// Where in an image a large bright structure is that could be the target, without knowing anything of where it should
+// be.
 //
 // The image in blocks of 8 x 8 px: stars and hot pixels vanish in them, and a shadow's faint light stands out of the
 // noise. Blocks well above the image's dark part, gaps of one block bridged, make structures; the largest is the target
@@ -57,15 +58,17 @@ class TargetFinder {
   [[nodiscard]] Structure grow_from(int column, int row);
   [[nodiscard]] bool is_like_target(const Structure& structure) const;
   [[nodiscard]] CropRegion region_around(const Structure& structure, const imaging::ImageFrame& frame) const;
-  [[nodiscard]] std::size_t place(int column, int row) const { return static_cast<std::size_t>(row * columns_ + column); }
+  [[nodiscard]] std::size_t place(int column, int row) const {
+    return static_cast<std::size_t>(row * columns_ + column);
+  }
 
   int columns_ = 0;
   int rows_ = 0;
   int pixels_there_ = 0;
   int saturated_ = 0;
-  bool is_large_ = false;                         ///< of the level in work: a structure was more than a speck
-  std::array<double, kMaxBlocks> light_{};        ///< above the dark level, DN
-  std::array<bool, kMaxBlocks> is_open_{};        ///< above the level in work and in no structure yet
+  bool is_large_ = false;                   ///< of the level in work: a structure was more than a speck
+  std::array<double, kMaxBlocks> light_{};  ///< above the dark level, DN
+  std::array<bool, kMaxBlocks> is_open_{};  ///< above the level in work and in no structure yet
   std::array<std::int16_t, kMaxBlocks> to_visit_{};
   CropRegion region_;
 };

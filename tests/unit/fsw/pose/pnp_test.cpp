@@ -6,9 +6,8 @@
 #include <limits>
 #include <random>
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Cholesky>
+#include <gtest/gtest.h>
 
 #include "tests/support/tango_view.h"
 
@@ -139,7 +138,8 @@ TEST(Pnp, KeypointsWithoutATargetAgreeOnNothing) {
   int poses = 0;
   for (int n = 0; n < 300; ++n) {
     Keypoints keypoints = test::seen_keypoints(test::random_pose(random, 8.0, 9.0), 0.0, 1.5, random);
-    for (Keypoint& keypoint : keypoints) keypoint.pixel = Vector2(480.0, 300.0) + 90.0 * Vector2(uniform(random), uniform(random));
+    for (Keypoint& keypoint : keypoints)
+      keypoint.pixel = Vector2(480.0, 300.0) + 90.0 * Vector2(uniform(random), uniform(random));
     poses += solve(keypoints).ok() ? 1 : 0;
   }
   EXPECT_LE(poses, 3);

@@ -58,7 +58,8 @@ TEST_F(PoseNetworkTest, TheEarthAlone) {
 /// Keypoints that a network sees in what is not its target agree on no pose.
 TEST_F(PoseNetworkTest, ABrightBlobIsNoTarget) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const auto pixels = CloseImage(seed).box({.width = 150.0, .height = 150.0, .turn = 0.2 * static_cast<double>(seed)}).expose();
+    const auto pixels =
+        CloseImage(seed).box({.width = 150.0, .height = 150.0, .turn = 0.2 * static_cast<double>(seed)}).expose();
     EXPECT_NE(process(pixels), SightingStatus::kPose) << seed;
     EXPECT_NE(process(pixels, ahead), SightingStatus::kPose) << seed;
   }

@@ -41,7 +41,8 @@ class TargetFinderTest : public testing::Test {
 TEST_F(TargetFinderTest, TheTargetAmongStarsAndHotPixels) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const double s = static_cast<double>(seed);
-    const LitBox box{.x = 300.0 + 20.0 * s, .y = 250.0, .width = 90.0 + 30.0 * s, .height = 80.0 + 20.0 * s, .turn = 0.3 * s};
+    const LitBox box{
+        .x = 300.0 + 20.0 * s, .y = 250.0, .width = 90.0 + 30.0 * s, .height = 80.0 + 20.0 * s, .turn = 0.3 * s};
     EXPECT_EQ(find(CloseImage(seed).box(box).stars_and_hot_pixels().expose()), Finding::kTarget);
     expect_around(box);
   }
@@ -84,7 +85,8 @@ TEST_F(TargetFinderTest, OnItsPlaceOfTheDetector) {
   const auto pixels = CloseImage(1).box(box).expose();
   ASSERT_EQ(find(pixels), Finding::kTarget);
   const CropRegion here = finder->region();
-  ASSERT_EQ(finder->find(test::view_of(pixels, test::kCloseWidth, test::kCloseHeight, 80, 50), levels), Finding::kTarget);
+  ASSERT_EQ(finder->find(test::view_of(pixels, test::kCloseWidth, test::kCloseHeight, 80, 50), levels),
+            Finding::kTarget);
   EXPECT_EQ(finder->region().centre_px, here.centre_px + Vector2(80.0, 50.0));
 }
 
