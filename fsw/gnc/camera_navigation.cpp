@@ -1,9 +1,6 @@
 #include "fsw/gnc/camera_navigation.h"
 
-#include <Eigen/Geometry>
-
 #include "fsw/math/math.h"
-#include "fsw/orbit/propagate.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/orbit/sun.h"
 
@@ -28,57 +25,11 @@ double detection_probability(const orbit::CartesianState& target, const Vector3&
   return was_lit || will_be_lit ? kEdgeProbability : 0.0;
 }
 
-/// `from`'s state at `time`, at or after `epoch`, through the burns on the way; one at the very time is after it.
-Result<orbit::CartesianState> flown(orbit::CartesianState state, GpsTime epoch, GpsTime time,
-                                    std::span<const navigation::Burn> burns) {
-  for (const navigation::Burn& burn : burns) {
-    if (burn.time < epoch || burn.time >= time) continue;
-    const Result<orbit::CartesianState> coasted = orbit::propagate_j2(state, seconds(burn.time - epoch));
-    if (!coasted.ok()) return coasted.status();
-    state = orbit::apply_impulse_rtn(coasted.value(), burn.dv_rtn);
-    epoch = burn.time;
-  }
-  return orbit::propagate_j2(state, seconds(time - epoch));
-}
-
 }  // namespace
 
-Result<Pointing> pointing_at(GpsTime time, const orbit::CartesianState& servicer, const orbit::CartesianState& target) {
-  const orbit::RelativeState relative = orbit::relative_state_rtn(servicer, target);
-  const double range = relative.position_rtn.norm();
-  if (!(range > 1e-3)) return Status::kOutOfRange;
-  Pointing pointing;
-  pointing.time = time;
-  pointing.boresight_rtn = relative.position_rtn / range;
-  const Vector3 rate = relative.velocity_rtn / range;
-  pointing.boresight_rate_rtn = rate - pointing.boresight_rtn.dot(rate) * pointing.boresight_rtn;
-  return pointing;
-}
-
-Matrix3 R_body_eci_of(const Pointing& pointing, GpsTime time, const orbit::CartesianState& servicer) {
-  const Matrix3 R_rtn_eci = orbit::R_rtn_eci(servicer);
-  const Vector3 z = R_rtn_eci.transpose() * pointing.boresight_rtn_at(time);
-  const Vector3 zenith = servicer.position_eci.normalized();
-  const Vector3 x = z.cross(zenith).normalized();  // -y to the zenith: x = y cross z
-  Matrix3 R_body_eci;
-  R_body_eci.row(0) = x.transpose();
-  R_body_eci.row(1) = z.cross(x).transpose();
-  R_body_eci.row(2) = z.transpose();
-  return R_body_eci;
-}
-
 void CameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::EarthOrientation& earth) {
-  const auto newest = [&](const auto& queue, auto& kept) {
-    for (std::size_t k = 0; k < queue.size(); ++k) {
-      if (queue[k].tag.time > now) {
-        inbox.count_unusable_time();
-      } else {
-        kept = queue[k].value;
-      }
-    }
-  };
-  newest(inbox.camera_configurations(), camera_);
-  newest(inbox.angles_only_configurations(), angles_only_);
+  inbox.keep_newest(inbox.camera_configurations(), now, camera_);
+  inbox.keep_newest(inbox.angles_only_configurations(), now, angles_only_);
   if (!camera_ || !angles_only_) return;
   const auto camera = camera_settings(*camera_, *angles_only_);
   const auto navigation = angles_only_settings(*angles_only_, earth);
@@ -90,7 +41,7 @@ void CameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::EarthOr
   }
   tracking_.configure(camera.value());
   filter_.configure(navigation.value());
-  had_image_ = false;
+  last_image_.reset();
   const auto& aprioris = inbox.target_aprioris();
   for (std::size_t k = 0; k < aprioris.size(); ++k) {
     const target_apriori& known = aprioris[k].value;
@@ -120,7 +71,7 @@ void CameraNavigation::update(GpsTime now, Inbox& inbox, navigation::GnssNavigat
   const imaging::ImageAssembly& assembly = inbox.image();
   if (!camera_ || !assembly.has_image()) return;
   const bool is_timely = assembly.image_time() <= now && now - assembly.image_time() <= kLongestDelay &&
-                         (!had_image_ || assembly.image_time() > last_image_);
+                         (!last_image_ || assembly.image_time() > *last_image_);
   if (!is_timely) {
     inbox.count_unusable_time();
     return;
@@ -137,10 +88,7 @@ void CameraNavigation::take_image(const angles_only::TakenImage& image, navigati
   navigation::AnglesOnlyEpoch epoch;
   epoch.time = image.time;
   epoch.sun_eci = sun_eci;
-  if (own_orbit.has_servicer() && own_orbit.epoch() <= image.time) {
-    const auto servicer = flown(own_orbit.servicer(), own_orbit.epoch(), image.time, burns);
-    if (servicer.ok()) epoch.servicer_gnss = servicer.value();
-  }
+  epoch.servicer_gnss = servicer_at(image.time, own_orbit, burns);
   static_cast<void>(filter_.update(epoch, burns));
   const angles_only::Sighting& sighting = tracking_.process(image, circumstances_of(image.time, sun_eci, burns));
   if (sighting.status == angles_only::SightingStatus::kNoStars) ++images_without_stars_;
@@ -150,7 +98,6 @@ void CameraNavigation::take_image(const angles_only::TakenImage& image, navigati
     fate_ = filter_.update(epoch, burns);
   }
   last_image_ = image.time;
-  had_image_ = true;
 }
 
 angles_only::Circumstances CameraNavigation::circumstances_of(GpsTime time, const Vector3& sun_eci,
@@ -179,7 +126,7 @@ angles_only::Circumstances CameraNavigation::circumstances_of(GpsTime time, cons
   }
   std::size_t count = 0;
   for (const navigation::Burn& burn : burns) {
-    const bool is_since = had_image_ && burn.time >= last_image_ && burn.time < time;
+    const bool is_since = last_image_ && burn.time >= *last_image_ && burn.time < time;
     if (is_since && count < burns_since_image_.size()) {
       burns_since_image_[count++] = {burn.time, burn.dv_rtn, angles_only_->maneuver_sigma};
     }

@@ -1,6 +1,6 @@
 #include "fsw/gnc/gnss_receivers.h"
 
-#include "fsw/math/math.h"
+#include "fsw/gnc/message_fields.h"
 
 namespace vbar::fsw::gnc {
 namespace {
@@ -17,15 +17,9 @@ constexpr double kGreatestRate = 10.0;
 /// False for a quaternion that is not of unit length to a part in a thousand, or an impossible rate.
 template <class Message>
 bool attitude_of(const Message& message, navigation::AttitudeSample& sample) {
-  const double w = message.q_eci_body[0], x = message.q_eci_body[1], y = message.q_eci_body[2],
-               z = message.q_eci_body[3];
-  const double norm2 = w * w + x * x + y * y + z * z;
-  if (!(math::abs(norm2 - 1.0) < 2e-3)) return false;
-  const double s = 2.0 / norm2;
-  sample.R_eci_body << 1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
-      s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),                   //
-      s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
-  sample.rate_body = {message.rate_body[0], message.rate_body[1], message.rate_body[2]};
+  if (!is_rotation(message.q_eci_body)) return false;
+  sample.R_eci_body = rotation(message.q_eci_body);
+  sample.rate_body = vector(message.rate_body);
   return sample.rate_body.squaredNorm() <= kGreatestRate * kGreatestRate;
 }
 

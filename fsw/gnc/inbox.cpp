@@ -61,6 +61,8 @@ Status Inbox::file(const PacketView& packet) {
       return decode_and_file(packet, angles_only_configurations_);
     case Apid::kTargetApriori:
       return decode_and_file(packet, target_aprioris_);
+    case Apid::kPoseConfiguration:
+      return decode_and_file(packet, pose_configurations_);
     case Apid::kImageTile: {
       const Result<image_tile> message = packets::decode<image_tile>(packet);
       if (!message.ok()) return message.status();
@@ -74,6 +76,7 @@ Status Inbox::file(const PacketView& packet) {
     case Apid::kTelemetryGnss:
     case Apid::kTelemetryImage:
     case Apid::kTelemetryObjects:
+    case Apid::kTelemetryPose:
     case Apid::kStepReport:
       break;
   }
@@ -125,6 +128,7 @@ void Inbox::clear(GpsTime next_step) {
   camera_configurations_.clear();
   angles_only_configurations_.clear();
   target_aprioris_.clear();
+  pose_configurations_.clear();
   gnss_bytes_.clear();
   crosslink_gnss_bytes_.clear();
   attitudes_.clear();

@@ -2,6 +2,7 @@
 // receive: decode, check and file each packet by its time tag. Nothing else happens to a packet until the step.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "fsw/core/result.h"
@@ -49,6 +50,19 @@ class Inbox {
   /// Counts an entry that turned out to be unusable at the step (late, of the future).
   void count_unusable_time() { ++counters_.rejected_time; }
 
+  /// Puts the newest of a queue's entries into `kept`, which stays as it is without one. Those tagged after `now` are
+  /// counted as unusable.
+  template <class Message, std::size_t kCapacity>
+  void keep_newest(const TimeOrderedQueue<Message, kCapacity>& queue, GpsTime now, std::optional<Message>& kept) {
+    for (std::size_t k = 0; k < queue.size(); ++k) {
+      if (queue[k].tag.time > now) {
+        count_unusable_time();
+      } else {
+        kept = queue[k].value;
+      }
+    }
+  }
+
   /// Counts a telecommand whose content the step refused.
   void count_bad_content() { ++counters_.rejected_content; }
 
@@ -82,6 +96,9 @@ class Inbox {
   [[nodiscard]] const TimeOrderedQueue<target_apriori, kTelecommands>& target_aprioris() const {
     return target_aprioris_;
   }
+  [[nodiscard]] const TimeOrderedQueue<pose_configuration, kTelecommands>& pose_configurations() const {
+    return pose_configurations_;
+  }
   [[nodiscard]] const TimeOrderedQueue<gnss_bytes, kGnssPackets>& gnss_bytes_packets() const { return gnss_bytes_; }
   [[nodiscard]] const TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets>& crosslink_gnss_bytes_packets() const {
     return crosslink_gnss_bytes_;
@@ -111,6 +128,7 @@ class Inbox {
   TimeOrderedQueue<camera_configuration, kTelecommands> camera_configurations_;
   TimeOrderedQueue<angles_only_configuration, kTelecommands> angles_only_configurations_;
   TimeOrderedQueue<target_apriori, kTelecommands> target_aprioris_;
+  TimeOrderedQueue<pose_configuration, kTelecommands> pose_configurations_;
   TimeOrderedQueue<gnss_bytes, kGnssPackets> gnss_bytes_;
   TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets> crosslink_gnss_bytes_;
   TimeOrderedQueue<attitude, kMeasurements> attitudes_;

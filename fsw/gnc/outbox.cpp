@@ -19,6 +19,8 @@ std::size_t Outbox::sequence_slot(packets::Apid apid) {
       return 6;
     case Apid::kTelemetryObjects:
       return 7;
+    case Apid::kTelemetryPose:
+      return 8;
     case Apid::kTelemetryHealth:
     case Apid::kTick:
     case Apid::kIdealNavigation:
@@ -35,6 +37,7 @@ std::size_t Outbox::sequence_slot(packets::Apid apid) {
     case Apid::kCameraConfiguration:
     case Apid::kAnglesOnlyConfiguration:
     case Apid::kTargetApriori:
+    case Apid::kPoseConfiguration:
     case Apid::kStepReport:
       break;
   }

@@ -43,7 +43,7 @@ class Outbox {
  private:
   static std::size_t sequence_slot(packets::Apid apid);
 
-  static constexpr std::size_t kSlots = 8;  ///< kinds of message the flight software sends
+  static constexpr std::size_t kSlots = 9;  ///< kinds of message the flight software sends
   std::uint8_t spacecraft_;
   vbar_packet_sink sink_;
   void* context_;

@@ -17,6 +17,7 @@
 #include <vbar/mode_command.hpp>
 #include <vbar/navigation_configuration.hpp>
 #include <vbar/pointing_command.hpp>
+#include <vbar/pose_configuration.hpp>
 #include <vbar/step_report.hpp>
 #include <vbar/target_apriori.hpp>
 #include <vbar/telemetry_control.hpp>
@@ -25,6 +26,7 @@
 #include <vbar/telemetry_image.hpp>
 #include <vbar/telemetry_navigation.hpp>
 #include <vbar/telemetry_objects.hpp>
+#include <vbar/telemetry_pose.hpp>
 #include <vbar/tick.hpp>
 #include <vbar/waypoint_table.hpp>
 
@@ -47,6 +49,7 @@
   X(::vbar::camera_configuration, kCameraConfiguration)          \
   X(::vbar::angles_only_configuration, kAnglesOnlyConfiguration) \
   X(::vbar::target_apriori, kTargetApriori)                      \
+  X(::vbar::pose_configuration, kPoseConfiguration)              \
   X(::vbar::maneuver_command, kManeuverCommand)                  \
   X(::vbar::pointing_command, kPointingCommand)                  \
   X(::vbar::telemetry_navigation, kTelemetryNavigation)          \
@@ -55,6 +58,7 @@
   X(::vbar::telemetry_gnss, kTelemetryGnss)                      \
   X(::vbar::telemetry_image, kTelemetryImage)                    \
   X(::vbar::telemetry_objects, kTelemetryObjects)                \
+  X(::vbar::telemetry_pose, kTelemetryPose)                      \
   X(::vbar::step_report, kStepReport)
 
 namespace vbar::fsw::packets {

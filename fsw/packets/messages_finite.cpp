@@ -105,6 +105,12 @@ bool all_finite(const target_apriori& m) {
   return finite_fields(m.position_eci, m.velocity_eci, m.sigma_a_roe_m);
 }
 
+bool all_finite(const pose_configuration& m) {
+  return finite_fields(m.dark_level_dn, m.noise_dn, m.keypoints_body_m, m.inertia_kgm2, m.keypoint_sigma_scale,
+                       m.keypoint_floor_px, m.acceleration_psd, m.acceleration_psd_least, m.acceleration_psd_most,
+                       m.angular_acceleration_psd, m.maneuver_sigma, m.maneuver_sigma_relative);
+}
+
 bool all_finite(const maneuver_command& m) {
   return finite(m.dv_rtn);
 }
@@ -138,6 +144,12 @@ bool all_finite(const telemetry_image& m) {
 
 bool all_finite(const telemetry_objects& m) {
   return finite_fields(m.x_px, m.y_px);
+}
+
+bool all_finite(const telemetry_pose& m) {
+  return finite_fields(m.region_px, m.x_px, m.y_px, m.covariance_px2, m.peak, m.pnp_q_camera_body,
+                       m.pnp_position_camera_m, m.pnp_mean_square, m.q_camera_body, m.position_camera_m, m.rate_body,
+                       m.covariance_attitude, m.covariance_a_roe, m.a_roe_osculating_m, m.nis, m.acceleration_psd);
 }
 
 bool all_finite(const step_report& /*message*/) {

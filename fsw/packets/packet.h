@@ -42,6 +42,7 @@ enum class Apid : std::uint16_t {
   kCameraConfiguration = 0x105,
   kAnglesOnlyConfiguration = 0x106,
   kTargetApriori = 0x107,
+  kPoseConfiguration = 0x108,
   kManeuverCommand = 0x401,
   kPointingCommand = 0x402,
   kTelemetryNavigation = 0x501,
@@ -50,6 +51,7 @@ enum class Apid : std::uint16_t {
   kTelemetryGnss = 0x504,
   kTelemetryImage = 0x505,
   kTelemetryObjects = 0x506,
+  kTelemetryPose = 0x507,
   kStepReport = 0x601,
 };
 

@@ -26,13 +26,6 @@ bool is_direction(const Vector3& d) {
 
 }  // namespace
 
-void TargetTracker::forget_tracks() {
-  count_ = 0;
-  target_track_ = 0;
-  images_watched_ = 0;
-  deposing_images_ = 0;
-}
-
 Result<TrackerOutput> TargetTracker::step(const TrackerInput& input) {
   const Status checked = check(input);
   if (checked != Status::kOk) return checked;

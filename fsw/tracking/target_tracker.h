@@ -78,9 +78,6 @@ class TargetTracker {
   /// probability. Nothing is changed then. Candidates more than 60 degrees from the T axis are passed over.
   Result<TrackerOutput> step(const TrackerInput& input);
 
-  /// Forgets all tracks, for instance when the prediction turned out to be another's; hot pixels stay known.
-  void forget_tracks();
-
   /// Whether the object is a known hot pixel, for telemetry.
   [[nodiscard]] const HotPixelMap& hot_pixels() const { return hot_pixels_; }
 

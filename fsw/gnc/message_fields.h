@@ -1,0 +1,37 @@
+#pragma once
+// Vectors, matrices and rotations in the fields of packets, and out of them.
+
+#include "fsw/core/types.h"
+
+namespace vbar::fsw::gnc {
+
+// NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays): fields of packet types
+
+inline Vector3 vector(const double (&xyz)[3]) {
+  return {xyz[0], xyz[1], xyz[2]};
+}
+
+inline void copy(const Vector3& from, double (&to)[3]) {
+  for (int k = 0; k < 3; ++k) to[k] = from(k);
+}
+
+inline void copy(const Vector6& from, double (&to)[6]) {
+  for (int k = 0; k < 6; ++k) to[k] = from(k);
+}
+
+/// By rows.
+void copy_lower_triangle(const Matrix6& from, double (&to)[21]);
+
+/// Hamilton quaternion w, x, y, z of a rotation matrix that turns components (Shepperd 1978).
+void copy_rotation(const Matrix3& R, double (&to)[4]);
+
+/// Whether the quaternion is of unit length to a part in a thousand.
+bool is_rotation(const double (&q)[4]);
+
+/// The rotation matrix of a Hamilton quaternion w, x, y, z, whatever its length: `q_a_b` turns components in b to those
+/// in a.
+Matrix3 rotation(const double (&q)[4]);
+
+// NOLINTEND(cppcoreguidelines-avoid-c-arrays)
+
+}  // namespace vbar::fsw::gnc
