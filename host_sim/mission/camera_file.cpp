@@ -5,6 +5,7 @@
 
 #include "fsw/imaging/image.h"
 #include "host_sim/mission/toml_file.h"
+#include "host_sim/twins/camera/binning.h"
 
 namespace vbar::mission {
 namespace {
@@ -47,18 +48,33 @@ void read_optics(const TableReader& section, OpticsSettings& optics) {
   read(section, "stray_light_electrons", from_to(0.0, 1e9), optics.stray_light_electrons);
 }
 
+/// A gain is a sum's where there are sums, whatever the order of the keys.
+void read_binning_and_gain(const TableReader& section, CameraFile& camera) {
+  if (section.has("binning")) {
+    camera.binning = static_cast<int>(section.integer("binning", 1, 4));
+    if (camera.binning == 3) section.refuse_value("binning", "1, 2 or 4");
+    camera.gain_dn_per_electron.reset();
+    camera.region.reset();
+  }
+  const Range gain = above_to(0.0, 1e3);
+  if (!section.has("gain_dn_per_electron")) return;
+  if (camera.binning == 1)
+    camera.single.detector.gain_dn_per_electron = section.number("gain_dn_per_electron", gain);
+  else
+    camera.gain_dn_per_electron = section.number("gain_dn_per_electron", gain);
+}
+
 void read_detector(const TableReader& section, DetectorSettings& detector) {
   section.accept_only({"width", "height", "pixel_pitch_um", "quantum_efficiency", "full_well_electrons",
                        "gain_dn_per_electron", "bits", "offset_dn", "read_noise_electrons", "dark_electrons_per_s",
                        "dark_nonuniformity", "photo_response_nonuniformity", "hot_pixels", "hot_pixel_electrons_per_s",
-                       "blooming_fraction"});
+                       "blooming_fraction", "binning"});
   const Range share = from_to(0.0, 1.0);
   read(section, "width", 1, kLargestDetector_px, detector.width);
   read(section, "height", 1, kLargestDetector_px, detector.height);
   read(section, "pixel_pitch_um", above_to(0.0, 1e3), detector.pixel_pitch_um);
   read(section, "quantum_efficiency", above_to(0.0, 1.0), detector.quantum_efficiency);
   read(section, "full_well_electrons", above_to(0.0, 1e7), detector.full_well_electrons);
-  read(section, "gain_dn_per_electron", above_to(0.0, 1e3), detector.gain_dn_per_electron);
   read(section, "bits", 8, 12, detector.bits);
   if (detector.bits != 8 && detector.bits != 12) section.refuse_value("bits", "8 or 12");
   read(section, "offset_dn", from_to(0.0, 4095.0), detector.offset_dn);
@@ -71,14 +87,17 @@ void read_detector(const TableReader& section, DetectorSettings& detector) {
   read(section, "blooming_fraction", share, detector.blooming_fraction);
 }
 
-void read_region(const TableReader& section, const DetectorSettings& detector, Region& region) {
-  if (section.has("region_px")) {
-    const std::vector<double> r = section.numbers("region_px", 4, 4, from_to(0.0, kLargestDetector_px));
-    region = {static_cast<int>(r[0]), static_cast<int>(r[1]), static_cast<int>(r[2]), static_cast<int>(r[3])};
-    if (!std::ranges::equal(
-            r, std::array<double, 4>{1.0 * region.x, 1.0 * region.y, 1.0 * region.width, 1.0 * region.height}))
-      section.refuse("region_px", "a number that is no integer", "whole pixels: [x, y, width, height]");
-  }
+Region read_region(const TableReader& section) {
+  const std::vector<double> r = section.numbers("region_px", 4, 4, from_to(0.0, kLargestDetector_px));
+  const Region region = {static_cast<int>(r[0]), static_cast<int>(r[1]), static_cast<int>(r[2]),
+                         static_cast<int>(r[3])};
+  if (!std::ranges::equal(
+          r, std::array<double, 4>{1.0 * region.x, 1.0 * region.y, 1.0 * region.width, 1.0 * region.height}))
+    section.refuse("region_px", "a number that is no integer", "whole pixels: [x, y, width, height]");
+  return region;
+}
+
+void check_region(const TableReader& section, const DetectorSettings& detector, const Region& region) {
   if (region.width < 1 || region.height < 1 || region.x + region.width > detector.width ||
       region.y + region.height > detector.height)
     section.refuse("region_px", "a region that does not lie on the detector",
@@ -92,26 +111,42 @@ void read_region(const TableReader& section, const DetectorSettings& detector, R
 
 }  // namespace
 
-void read_camera_settings(const TableReader& section, CameraSettings& settings) {
-  read(section, "exposure_s", from_to(1e-5, 60.0), settings.exposure_s);
-  read(section, "zero_magnitude_photons", above_to(0.0, 1e15), settings.zero_magnitude_photons);
-  read_optics(section.table("optics"), settings.optics);
-  const TableReader detector = section.table("detector");
-  read_detector(detector, settings.detector);
-  const double brightest_dn = (1 << settings.detector.bits) - 1;
-  if (!(settings.detector.offset_dn < 0.5 * brightest_dn))
-    detector.refuse("offset_dn", "an offset that leaves no room for light",
-                    "less than half of the largest number of `bits`");
-  read_region(section, settings.detector, settings.region);
+CameraSettings CameraFile::settings() const {
+  CameraSettings sums = twins::camera::binned(single, binning);
+  if (gain_dn_per_electron) sums.detector.gain_dn_per_electron = *gain_dn_per_electron;
+  if (region) sums.region = *region;
+  return sums;
 }
 
-CameraSettings load_camera(const std::filesystem::path& file) {
+void read_camera_settings(const TableReader& section, CameraFile& camera) {
+  CameraSettings& single = camera.single;
+  read(section, "exposure_s", from_to(1e-5, 60.0), single.exposure_s);
+  read(section, "zero_magnitude_photons", above_to(0.0, 1e15), single.zero_magnitude_photons);
+  read_optics(section.table("optics"), single.optics);
+  const TableReader detector = section.table("detector");
+  read_detector(detector, single.detector);
+  read_binning_and_gain(detector, camera);
+  const double brightest_dn = (1 << single.detector.bits) - 1;
+  if (!(single.detector.offset_dn < 0.5 * brightest_dn))
+    detector.refuse("offset_dn", "an offset that leaves no room for light",
+                    "less than half of the largest number of `bits`");
+  if (section.has("region_px")) {
+    if (camera.binning == 1)
+      single.region = read_region(section);
+    else
+      camera.region = read_region(section);
+  }
+  const CameraSettings sums = camera.settings();
+  check_region(section, sums.detector, sums.region);
+}
+
+CameraFile load_camera(const std::filesystem::path& file) {
   const toml::table table = parse_toml(read_text_file(file, "a camera file (TOML)"), file.string());
   const TableReader document(table, "", file.string());
   document.accept_only({"exposure_s", "region_px", "zero_magnitude_photons", "optics", "detector"});
-  CameraSettings settings;
-  read_camera_settings(document, settings);
-  return settings;
+  CameraFile camera;
+  read_camera_settings(document, camera);
+  return camera;
 }
 
 }  // namespace vbar::mission

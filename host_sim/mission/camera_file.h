@@ -2,18 +2,31 @@
 // A camera file (data/cameras, TOML): optics and detector of a camera, without where it is mounted.
 
 #include <filesystem>
+#include <optional>
 
 #include "host_sim/mission/table_reader.h"
 #include "host_sim/twins/camera/camera_settings.h"
 
 namespace vbar::mission {
 
-/// The camera in the file. What a file leaves out is the Optical Stimulator's. Throws MissionError.
-[[nodiscard]] twins::camera::CameraSettings load_camera(const std::filesystem::path& file);
+/// A camera as files say it: pixel by pixel, and how many of them are summed.
+struct CameraFile {
+  twins::camera::CameraSettings single;  ///< of single pixels
+  int binning = 1;                       ///< so many pixels each way are summed into one: 1, 2 or 4
+  /// Said for sums where binning was in force already: they stand as they are.
+  std::optional<double> gain_dn_per_electron;
+  std::optional<twins::camera::Region> region;
 
-/// The keys of a camera that a file and a mission have in common, over what `settings` holds already: exposure_s,
+  /// The camera whose pixels are the sums: the one that the rest of the program knows.
+  [[nodiscard]] twins::camera::CameraSettings settings() const;
+};
+
+/// The camera in the file. What a file leaves out is the Optical Stimulator's. Throws MissionError.
+[[nodiscard]] CameraFile load_camera(const std::filesystem::path& file);
+
+/// The keys of a camera that a file and a mission have in common, over what `camera` holds already: exposure_s,
 /// region_px, zero_magnitude_photons, the tables optics and detector. Throws MissionError for one that is out of
 /// range, and for settings that do not fit together.
-void read_camera_settings(const TableReader& section, twins::camera::CameraSettings& settings);
+void read_camera_settings(const TableReader& section, CameraFile& camera);
 
 }  // namespace vbar::mission

@@ -53,7 +53,7 @@ TEST(CameraKeys, DefaultIsTheOpticalStimulator) {
 
 // What a camera file leaves out is the Optical Stimulator's: its own file says nothing else.
 TEST(CameraKeys, TheOpticalStimulatorsFileIsTheDefault) {
-  const auto file = load_camera(VBAR_SOURCE_DIR "/data/cameras/optical_stimulator.toml");
+  const auto file = load_camera(VBAR_SOURCE_DIR "/data/cameras/optical_stimulator.toml").settings();
   const twins::camera::CameraSettings usual;
   EXPECT_EQ(file.optics.principal_point_px, usual.optics.principal_point_px);
   EXPECT_EQ(file.optics.distortion, usual.optics.distortion);
@@ -109,6 +109,35 @@ TEST(CameraKeys, EveryKeyArrives) {
   EXPECT_EQ(camera.settings.optics.f_number, 2.8);
   EXPECT_EQ(camera.settings.detector.hot_pixels, 7);
   EXPECT_EQ(camera.target, "decoy");
+}
+
+// Two by two of TRON's pixels: 2 x 5.86 um, a quarter of them; the corner of the detector stays where it is.
+TEST(CameraKeys, BinnedPixelsAreTheCamerasPixels) {
+  const Mission mission = mission_with({"camera.camera=tron", "camera.detector.binning=2", "camera.detector.bits=12",
+                                        "camera.detector.offset_dn=64", "camera.detector.gain_dn_per_electron=0.03",
+                                        "camera.region_px=[80, 50, 800, 500]"});
+  const twins::camera::CameraSettings& settings = mission.spacecraft[0].camera->settings;
+  EXPECT_EQ(settings.detector.width, 960);
+  EXPECT_EQ(settings.detector.height, 600);
+  EXPECT_EQ(settings.region, (twins::camera::Region{80, 50, 800, 500}));
+  EXPECT_EQ(settings.detector.gain_dn_per_electron, 0.03);
+  EXPECT_EQ(settings.detector.full_well_electrons, 128000.0);
+  const vbar::camera_configuration c = camera_configuration_of(mission.spacecraft[0]);
+  EXPECT_NEAR(c.focal_length_px[0], 17.0 / 11.72e-3, 1e-9);
+  EXPECT_EQ(c.principal_point_px[0], 479.5);
+  EXPECT_EQ(c.principal_point_px[1], 299.5);
+  EXPECT_EQ(c.point_spread_sigma_px, 0.3);
+  EXPECT_EQ(c.gain_dn_per_electron, 0.03);
+  EXPECT_EQ(c.width, 800);
+  EXPECT_NEAR(c.saturation_dn, 64.0 + 0.03 * 128000.0, 50.0);
+}
+
+TEST(CameraKeys, BinningTakesGainAndRegionOfTheCameraFileAlong) {
+  const auto settings =
+      mission_with({"camera.camera=tron", "camera.detector.binning=4"}).spacecraft[0].camera->settings;
+  EXPECT_EQ(settings.region, (twins::camera::Region{165, 75, 150, 150}));
+  EXPECT_DOUBLE_EQ(settings.detector.gain_dn_per_electron, 0.0078 / 16.0);
+  EXPECT_DOUBLE_EQ(settings.optics.principal_point_px[0], 239.5);
 }
 
 TEST(CameraKeys, ADecoyHasItsOwnElements) {
@@ -245,6 +274,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"RegionOfPartsOfPixels",
                     {"camera.region_px=[0, 0.5, 500, 800]"},
                     "camera.region_px: found a number that is no integer"},
+        BadOverride{"ThreeByThree",
+                    {"camera.detector.binning=3"},
+                    "detector.binning: found the integer 3; accepted: 1, 2 or 4"},
+        BadOverride{"RegionOfSinglePixels",
+                    {"camera.detector.binning=4", "camera.region_px=[400, 0, 300, 200]"},
+                    "camera.region_px: found a region that does not lie on the detector; accepted: [x, y, width, "
+                    "height] inside 480 x 300 pixels"},
         BadOverride{"TenBits", {"camera.detector.bits=10"}, "detector.bits: found the integer 10; accepted: 8 or 12"},
         BadOverride{"OffsetOfEightBits",
                     {"camera.detector.bits=8", "camera.detector.offset_dn=200"},

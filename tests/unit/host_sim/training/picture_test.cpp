@@ -44,7 +44,8 @@ TEST(SoftPicture, WithoutSpreadNothingChanges) {
 twins::camera::CadModel plate(double width_m, double height_m) {
   const Vector3 a(-0.5 * width_m, -0.5 * height_m, 0.0), b(0.5 * width_m, -0.5 * height_m, 0.0);
   const std::array<Vector3, 3> flat{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
-  return twins::camera::make_cad_model("plate", {{{a, b, -a}, flat, 0}, {{a, -a, -b}, flat, 0}}, {{"white", {}, {}, 0.0}});
+  return twins::camera::make_cad_model("plate", {{{a, b, -a}, flat, 0}, {{a, -a, -b}, flat, 0}},
+                                       {{"white", {}, {}, 0.0}});
 }
 
 // A plate square to the boresight: its size in pixels is focal length times size over range.
