@@ -6,8 +6,8 @@
 // parameters, body axes) from a reference quaternion (USQUE, Crassidis and Markley 2003); its rate; what pushes the two
 // apart, as in roe_filter.h; and what the keypoints of neighbouring images have in common of error. A network sees the
 // same view twice and errs the same way twice, so a filter that took its errors for white would soon believe itself
-// ten times better than it is: a shift and a stretch of all keypoints, and a share of each keypoint's own error, are
-// states that fade within a minute.
+// ten times better than it is. So a share of each keypoint's own error, and a shift of all, are states that fade within
+// a minute. A stretch of all is another range, and stays: a burn of known size tells the two apart.
 //
 // Orbit and attitude do not act on each other between images, so each is sampled alone; a measurement depends on ROE
 // and attitude only, so the rest is not sampled there. By the transform as a regression this is the filter that samples
@@ -42,8 +42,9 @@ struct PoseFilterSettings {
   double correlated_share = 0.7;  ///< of a keypoint's variance: lasts from image to image
   double correlated_time_s = 30.0;
   double shift_sigma_px = 0.15;  ///< of all keypoints together, each axis; attitude knowledge of 20 arcsec included
-  double stretch_sigma = 2e-3;   ///< of the target's apparent size
-  double common_time_s = 60.0;   ///< of both
+  double shift_time_s = 60.0;
+  double stretch_sigma = 5e-3;  ///< of the target's apparent size
+  double stretch_time_s = 3600.0;
 
   double gate = 9.21;               ///< of a keypoint's normalised innovation squared: 99 % of two degrees of freedom
   double most_noise_scale = 16.0;   ///< what the keypoints' covariances may be raised by when all together misfit
@@ -191,6 +192,7 @@ class PoseFilter {
   AdaptiveNoise acceleration_noise_;
   AdaptiveNoise angular_noise_;
   bool started_ = false;
+  double since_update_s_ = 0.0;
   AttitudeState attitude_;  ///< the reference, and the rate: the same as the estimate's
   Estimate estimate_;
   PoseUpdate update_;

@@ -19,6 +19,9 @@ constexpr int kCommon = Filter::State::offset<Filter::Common>();
 constexpr int kErrors = Filter::State::offset<Filter::KeypointError>();
 constexpr double kNoGate = 1e300;
 
+// Images further apart than this are no neighbours.
+constexpr double kNeighbours_s = 20.0;
+
 // Points at 1.8 standard deviations; the central point's weight in a covariance stays above zero.
 constexpr estimation::UnscentedParameters kPoints = {.alpha = 0.6, .beta = 2.0, .kappa = 0.0};
 
@@ -82,6 +85,7 @@ const PoseUpdate& PoseFilter::take(const pose::Keypoints& keypoints, const Camer
     update_.noise_scale = std::min(update_.nis / count, settings_.most_noise_scale);
   }
   adapt(rows, count, camera);
+  since_update_s_ = 0.0;
   fold_in(keypoints);
   update_.accepted = true;
   if (!estimate_.is_sound()) reset();
@@ -252,11 +256,11 @@ void PoseFilter::fold_in(const pose::Keypoints& keypoints) {
 void PoseFilter::adapt(const std::array<int, kRows>& rows, int count, const CameraPlace& camera) {
   constexpr int kFitted = 5;
   constexpr int kLeastRows = 10;
-  if (count < kLeastRows) {
+  if (count < kLeastRows || since_update_s_ > kNeighbours_s) {
     acceleration_noise_.interrupt();
     angular_noise_.interrupt();
-    return;
   }
+  if (count < kLeastRows) return;
   const Matrix3 R_body_camera = (camera.R_camera_eci * attitude_.q_eci_body.toRotationMatrix()).transpose();
   Eigen::Matrix<double, kRows, kFitted> slope = Eigen::Matrix<double, kRows, kFitted>::Zero();
   for (int r = 0; r < count; ++r) {
