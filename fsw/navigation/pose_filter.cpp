@@ -58,6 +58,7 @@ Status PoseFilter::configure(const PoseFilterSettings& settings) {
   inertia_ = inertia.value();
   acceleration_noise_ = AdaptiveNoise(settings.acceleration);
   angular_noise_ = AdaptiveNoise(settings.angular_acceleration);
+  learned_scale_ = 1.0;
   update_ = {};
   return Status::kOk;
 }
