@@ -14,7 +14,7 @@ packages=(
   gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib newlib-source
   g++-arm-linux-gnueabihf qemu-system-arm qemu-user
   # independent programs the tests compare with
-  tshark iproute2 python3 python3-crcmod python3-numpy python3-cvxopt rtklib librtklib-dev libopencv-dev
+  tshark iproute2 python3 python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev libopencv-dev
 )
 # Only where another npm is not already there (a vendor's node conflicts with Debian's).
 command -v npm >/dev/null 2>&1 || packages+=(nodejs npm)

@@ -52,6 +52,13 @@ class Estimate {
   /// Shifts the mean: a known change, as a burn.
   void shift(int i, double by) { mean_(i) += by; }
 
+  /// Component i shrinks to `factor` of itself, as one that fades.
+  void scale(int i, double factor) {
+    mean_(i) *= factor;
+    covariance_.row(i) *= factor;
+    covariance_.col(i) *= factor;
+  }
+
   /// Independent noise on component i.
   void add_noise(int i, double variance) { covariance_(i, i) += variance; }
 

@@ -1,7 +1,7 @@
-// Telecommands of camera and angles-only navigation, checked.
+#include "fsw/gnc/camera_configuration.h"
 
-#include "fsw/gnc/camera_navigation.h"
 #include "fsw/gnc/message_fields.h"
+#include "fsw/math/symmetric_eigen.h"
 
 namespace vbar::fsw::gnc {
 namespace {
@@ -14,9 +14,31 @@ bool is_above(double x, double most) {
   return x > 0.0 && x <= most;
 }
 
+/// A body's: positive, and no moment larger than the other two together, in whatever axes.
+bool is_inertia(const Matrix3& inertia) {
+  const auto eigen = math::symmetric_eigen(inertia);
+  if (!eigen.ok()) return false;
+  const Vector3& moments = eigen.value().values;  // increasing
+  return moments(0) > 1e-6 && moments(2) < 1e7 && moments(2) <= 1.0001 * (moments(0) + moments(1));
+}
+
+/// kOutOfRange if the points lie nearly in one place or on one line, or too far out for any target.
+Result<pose::KeypointShape> keypoint_shape(const pose_configuration& p) {
+  pose::KeypointShape shape{};
+  Matrix3 spread = Matrix3::Zero();
+  for (std::size_t k = 0; k < shape.size(); ++k) {
+    for (int axis = 0; axis < 3; ++axis) shape[k](axis) = p.keypoints_body_m[3 * k + static_cast<std::size_t>(axis)];
+    if (!(shape[k].norm() < 100.0)) return Status::kOutOfRange;
+    spread += shape[k] * shape[k].transpose();
+  }
+  const auto eigen = math::symmetric_eigen(spread);
+  if (!eigen.ok() || !(eigen.value().values(1) > 1e-4)) return Status::kOutOfRange;
+  return shape;
+}
+
 }  // namespace
 
-Result<angles_only::CameraSettings> camera_settings(const camera_configuration& c, const angles_only_configuration& a) {
+Result<CalibratedCamera> calibrated_camera(const camera_configuration& c) {
   const Vector3 position = vector(c.position_body_m);
   const bool frame_is_usable =
       c.width > 0 && c.height > 0 && c.origin_x >= 0 && c.origin_y >= 0 &&
@@ -27,21 +49,35 @@ Result<angles_only::CameraSettings> camera_settings(const camera_configuration& 
       is_between(c.principal_point_px[0], -1e5, 1e5) && is_between(c.principal_point_px[1], -1e5, 1e5) &&
       is_between(c.point_spread_sigma_px, 0.3, 3.0) && is_above(c.zero_magnitude_dn, 1e12) &&
       is_between(c.saturation_dn, 1.0, c.bits == 12 ? 4095.0 : 255.0) && is_above(c.gain_dn_per_electron, 1e3) &&
-      is_rotation(c.q_camera_body) && position.norm() < 100.0 && is_between(a.detection_sigmas, 1.0, 30.0) &&
-      is_between(a.centroid_floor_px, 0.0, 10.0) && is_above(a.pointing_tolerance, stars::kLargestTolerance);
+      is_rotation(c.q_camera_body) && position.norm() < 100.0;
+  if (!is_usable) return Status::kOutOfRange;
+  CalibratedCamera camera;
+  camera.frame = {c.width, c.height, c.origin_x, c.origin_y, c.bits};
+  camera.model.focal_length_px = {c.focal_length_px[0], c.focal_length_px[1]};
+  camera.model.principal_point_px = {c.principal_point_px[0], c.principal_point_px[1]};
+  for (std::size_t k = 0; k < camera.model.distortion.size(); ++k) camera.model.distortion[k] = c.distortion[k];
+  camera.R_camera_body = rotation(c.q_camera_body);
+  camera.position_body_m = position;
+  camera.saturation_dn = static_cast<int>(c.saturation_dn);
+  return camera;
+}
+
+Result<angles_only::CameraSettings> camera_settings(const camera_configuration& c, const angles_only_configuration& a) {
+  const Result<CalibratedCamera> camera = calibrated_camera(c);
+  const bool is_usable = camera.ok() && is_between(a.detection_sigmas, 1.0, 30.0) &&
+                         is_between(a.centroid_floor_px, 0.0, 10.0) &&
+                         is_above(a.pointing_tolerance, stars::kLargestTolerance);
   if (!is_usable) return Status::kOutOfRange;
   angles_only::CameraSettings settings;
-  settings.frame = {c.width, c.height, c.origin_x, c.origin_y, c.bits};
-  settings.model.focal_length_px = {c.focal_length_px[0], c.focal_length_px[1]};
-  settings.model.principal_point_px = {c.principal_point_px[0], c.principal_point_px[1]};
-  for (std::size_t k = 0; k < settings.model.distortion.size(); ++k) settings.model.distortion[k] = c.distortion[k];
+  settings.frame = camera.value().frame;
+  settings.model = camera.value().model;
   settings.detector.detection_sigmas = a.detection_sigmas;
   settings.detector.gain_dn_per_electron = c.gain_dn_per_electron;
-  settings.detector.saturation_dn = static_cast<int>(c.saturation_dn);
+  settings.detector.saturation_dn = camera.value().saturation_dn;
   settings.detector.point_spread_sigma_px = c.point_spread_sigma_px;
   settings.zero_magnitude_dn = c.zero_magnitude_dn;
-  settings.R_camera_body = rotation(c.q_camera_body);
-  settings.position_body_m = position;
+  settings.R_camera_body = camera.value().R_camera_body;
+  settings.position_body_m = camera.value().position_body_m;
   settings.centroid_floor_px = a.centroid_floor_px;
   settings.pointing_tolerance = a.pointing_tolerance;
   return settings;
@@ -62,6 +98,53 @@ Result<navigation::AnglesOnlySettings> angles_only_settings(const angles_only_co
   settings.filter.maneuver_sigma_relative = a.maneuver_sigma_relative;
   settings.batch.bearings = a.batch_images;
   settings.earth = earth;
+  return settings;
+}
+
+Result<pose::PoseCameraSettings> pose_camera_settings(const camera_configuration& c, const pose_configuration& p) {
+  const Result<CalibratedCamera> camera = calibrated_camera(c);
+  const bool is_usable =
+      camera.ok() && is_between(p.dark_level_dn, 0.0, 4095.0) && is_above(p.noise_dn, 1e3);
+  if (!is_usable) return Status::kOutOfRange;
+  pose::PoseCameraSettings settings;
+  settings.frame = camera.value().frame;
+  settings.model = camera.value().model;
+  settings.dark_level_dn = p.dark_level_dn;
+  settings.noise_dn = p.noise_dn;
+  settings.saturation_dn = camera.value().saturation_dn;
+  const Result<pose::KeypointShape> shape = keypoint_shape(p);
+  if (!shape.ok()) return shape.status();
+  settings.shape = shape.value();
+  return settings;
+}
+
+Result<navigation::PoseSettings> pose_settings(const camera_configuration& c, const pose_configuration& p,
+                                               const orbit::EarthOrientation& earth) {
+  const Result<CalibratedCamera> camera = calibrated_camera(c);
+  const Result<pose::KeypointShape> shape = keypoint_shape(p);
+  Matrix3 inertia;
+  inertia << p.inertia_kgm2[0], p.inertia_kgm2[3], p.inertia_kgm2[4],  //
+      p.inertia_kgm2[3], p.inertia_kgm2[1], p.inertia_kgm2[5],         //
+      p.inertia_kgm2[4], p.inertia_kgm2[5], p.inertia_kgm2[2];
+  const bool is_usable =
+      camera.ok() && shape.ok() && is_inertia(inertia) && is_above(p.keypoint_sigma_scale, 100.0) &&
+      is_between(p.keypoint_floor_px, 0.0, 100.0) && is_above(p.acceleration_psd, 1.0) &&
+      is_above(p.acceleration_psd_least, p.acceleration_psd) &&
+      is_between(p.acceleration_psd_most, p.acceleration_psd, 1.0) && is_above(p.angular_acceleration_psd, 1.0) &&
+      is_between(p.maneuver_sigma, 0.0, 1.0) && is_between(p.maneuver_sigma_relative, 0.0, 1.0) &&
+      p.start_images >= 1 && p.start_images <= static_cast<std::int32_t>(navigation::PoseStart::kMost);
+  if (!is_usable) return Status::kOutOfRange;
+  navigation::PoseSettings settings;
+  settings.earth = earth;
+  settings.camera_position_camera_m = camera.value().R_camera_body * camera.value().position_body_m;
+  settings.start.least_images = p.start_images;
+  settings.filter.camera = camera.value().model;
+  settings.filter.shape = shape.value();
+  settings.filter.inertia = inertia;
+  settings.filter.acceleration = {p.acceleration_psd, p.acceleration_psd_least, p.acceleration_psd_most};
+  settings.filter.angular_acceleration.psd = p.angular_acceleration_psd;
+  settings.filter.maneuver_sigma = p.maneuver_sigma;
+  settings.filter.maneuver_sigma_relative = p.maneuver_sigma_relative;
   return settings;
 }
 

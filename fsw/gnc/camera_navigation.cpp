@@ -28,17 +28,8 @@ double detection_probability(const orbit::CartesianState& target, const Vector3&
 }  // namespace
 
 void CameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::EarthOrientation& earth) {
-  const auto newest = [&](const auto& queue, auto& kept) {
-    for (std::size_t k = 0; k < queue.size(); ++k) {
-      if (queue[k].tag.time > now) {
-        inbox.count_unusable_time();
-      } else {
-        kept = queue[k].value;
-      }
-    }
-  };
-  newest(inbox.camera_configurations(), camera_);
-  newest(inbox.angles_only_configurations(), angles_only_);
+  inbox.keep_newest(inbox.camera_configurations(), now, camera_);
+  inbox.keep_newest(inbox.angles_only_configurations(), now, angles_only_);
   if (!camera_ || !angles_only_) return;
   const auto camera = camera_settings(*camera_, *angles_only_);
   const auto navigation = angles_only_settings(*angles_only_, earth);
@@ -50,7 +41,7 @@ void CameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::EarthOr
   }
   tracking_.configure(camera.value());
   filter_.configure(navigation.value());
-  had_image_ = false;
+  last_image_.reset();
   const auto& aprioris = inbox.target_aprioris();
   for (std::size_t k = 0; k < aprioris.size(); ++k) {
     const target_apriori& known = aprioris[k].value;
@@ -80,7 +71,7 @@ void CameraNavigation::update(GpsTime now, Inbox& inbox, navigation::GnssNavigat
   const imaging::ImageAssembly& assembly = inbox.image();
   if (!camera_ || !assembly.has_image()) return;
   const bool is_timely = assembly.image_time() <= now && now - assembly.image_time() <= kLongestDelay &&
-                         (!had_image_ || assembly.image_time() > last_image_);
+                         (!last_image_ || assembly.image_time() > *last_image_);
   if (!is_timely) {
     inbox.count_unusable_time();
     return;
@@ -107,7 +98,6 @@ void CameraNavigation::take_image(const angles_only::TakenImage& image, navigati
     fate_ = filter_.update(epoch, burns);
   }
   last_image_ = image.time;
-  had_image_ = true;
 }
 
 angles_only::Circumstances CameraNavigation::circumstances_of(GpsTime time, const Vector3& sun_eci,
@@ -136,7 +126,7 @@ angles_only::Circumstances CameraNavigation::circumstances_of(GpsTime time, cons
   }
   std::size_t count = 0;
   for (const navigation::Burn& burn : burns) {
-    const bool is_since = had_image_ && burn.time >= last_image_ && burn.time < time;
+    const bool is_since = last_image_ && burn.time >= *last_image_ && burn.time < time;
     if (is_since && count < burns_since_image_.size()) {
       burns_since_image_[count++] = {burn.time, burn.dv_rtn, angles_only_->maneuver_sigma};
     }

@@ -7,18 +7,13 @@
 
 #include "fsw/angles_only/angles_only_tracking.h"
 #include "fsw/core/gps_time.h"
+#include "fsw/gnc/camera_configuration.h"
 #include "fsw/gnc/camera_pointing.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/navigation/angles_only_navigation.h"
 #include "fsw/navigation/gnss_navigation.h"
 
 namespace vbar::fsw::gnc {
-
-/// The settings of telecommands. kOutOfRange for a value no field may have.
-Result<angles_only::CameraSettings> camera_settings(const camera_configuration& camera,
-                                                    const angles_only_configuration& angles_only);
-Result<navigation::AnglesOnlySettings> angles_only_settings(const angles_only_configuration& configuration,
-                                                            const orbit::EarthOrientation& earth);
 
 class CameraNavigation {
  public:
@@ -54,8 +49,7 @@ class CameraNavigation {
   std::optional<angles_only_configuration> angles_only_;
   std::optional<Pointing> pointing_;
   std::array<tracking::OwnBurn, 64> burns_since_image_{};
-  GpsTime last_image_;
-  bool had_image_ = false;
+  std::optional<GpsTime> last_image_;
   bool has_image_ = false;
   navigation::BearingFate fate_ = navigation::BearingFate::kNone;
   std::int32_t images_without_stars_ = 0;

@@ -47,6 +47,7 @@ class Gnc {
   void point_camera();
   void report_image();
   void report_objects();
+  void report_pose();
   void report_control();
   void report_health();
 

@@ -9,7 +9,7 @@ Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_config
   const auto positive = [](double x, double most) { return x > 0.0 && x <= most; };
   const Vector3 servicer_antenna = vector(c.servicer_antenna_body_m);
   const Vector3 target_antenna = vector(c.target_antenna_body_m);
-  const bool usable = c.source >= 0 && c.source <= 2 && positive(c.min_success_rate, 1.0) && c.min_ratio >= 1.0 &&
+  const bool usable = c.source >= 0 && c.source <= 3 && positive(c.min_success_rate, 1.0) && c.min_ratio >= 1.0 &&
                       c.min_ratio <= 1e6 && is_usable(Duration{c.pair_wait_ns}) && servicer_antenna.norm() < 100.0 &&
                       target_antenna.norm() < 100.0 && positive(c.antenna_offset_sigma_m, 10.0) &&
                       positive(c.phase_centre_jitter_m, 1.0) && positive(c.code_bias_sigma_m, 1e3) &&

@@ -2,6 +2,7 @@
 // receive: decode, check and file each packet by its time tag. Nothing else happens to a packet until the step.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "fsw/core/result.h"
@@ -48,6 +49,19 @@ class Inbox {
 
   /// Counts an entry that turned out to be unusable at the step (late, of the future).
   void count_unusable_time() { ++counters_.rejected_time; }
+
+  /// Puts the newest of a queue's entries into `kept`, which stays as it is without one. Those tagged after `now` are
+  /// counted as unusable.
+  template <class Message, std::size_t kCapacity>
+  void keep_newest(const TimeOrderedQueue<Message, kCapacity>& queue, GpsTime now, std::optional<Message>& kept) {
+    for (std::size_t k = 0; k < queue.size(); ++k) {
+      if (queue[k].tag.time > now) {
+        count_unusable_time();
+      } else {
+        kept = queue[k].value;
+      }
+    }
+  }
 
   /// Counts a telecommand whose content the step refused.
   void count_bad_content() { ++counters_.rejected_content; }

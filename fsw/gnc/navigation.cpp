@@ -39,8 +39,11 @@ void Navigation::update(GpsTime now, Inbox& inbox) {
     case Sensors::kGnss:
       take_gnss(now, inbox);
       break;
-    case Sensors::kCamera:
-      take_camera(now, inbox);
+    case Sensors::kBearings:
+      take_bearings(now, inbox);
+      break;
+    case Sensors::kPose:
+      take_pose(now, inbox);
       break;
   }
   if (!anchored_) return;
@@ -51,7 +54,7 @@ void Navigation::update(GpsTime now, Inbox& inbox) {
     let_go();  // too long a gap, or no orbit any more: start again from the next measurement
     return;
   }
-  state_.valid = sensors_ != Sensors::kCamera || camera_.filter().valid();
+  state_.valid = sensors_ != Sensors::kBearings || camera_.filter().valid();
   state_.has_target = true;
   state_.epoch = now;
   state_.servicer = present.value().servicer;
@@ -81,7 +84,12 @@ void Navigation::set_uncertainty(GpsTime now) {
       // The covariance stands at the filters' epoch, which goes on with the servicer's receiver alone.
       set_uncertainty(gnss_.covariance_rtn(), gnss_.epoch(), now);
       break;
-    case Sensors::kCamera:
+    case Sensors::kPose:
+      state_.source = pose_.filter().last_measurement() == pose_.filter().epoch() ? NavigationSource::kPose
+                                                                                  : NavigationSource::kPropagated;
+      set_uncertainty(pose_.filter().covariance_rtn(), pose_.filter().epoch(), now);
+      break;
+    case Sensors::kBearings:
       state_.source = camera_.filter().last_bearing() == camera_.filter().epoch() ? NavigationSource::kAnglesOnly
                                                                                   : NavigationSource::kPropagated;
       set_uncertainty(camera_.filter().covariance_rtn(), camera_.filter().epoch(), now);
@@ -121,10 +129,15 @@ void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
     let_go();
   }
   const bool camera_changes = inbox.camera_configurations().size() > 0 ||
-                              inbox.angles_only_configurations().size() > 0 || inbox.target_aprioris().size() > 0;
+                              inbox.angles_only_configurations().size() > 0 || inbox.target_aprioris().size() > 0 ||
+                              inbox.pose_configurations().size() > 0;
   if (camera_changes) {
-    camera_.configure(now, inbox, earth_);
-    if (sensors_ == Sensors::kCamera) let_go();
+    if (sensors_ == Sensors::kPose) {
+      pose_.configure(now, inbox, earth_);
+    } else {
+      camera_.configure(now, inbox, earth_);
+    }
+    if (uses_camera()) let_go();
   }
 }
 
@@ -155,17 +168,28 @@ void Navigation::take_gnss(GpsTime now, Inbox& inbox) {
 }
 
 /// The image is of some time ago: first the servicer's orbit up to then, with it the image, then the rest.
-void Navigation::take_camera(GpsTime now, Inbox& inbox) {
+void Navigation::take_bearings(GpsTime now, Inbox& inbox) {
   receivers_.feed(now, inbox, gnss_);
   camera_.update(now, inbox, gnss_, own_burns());
   gnss_.update(now, own_burns());
-  const navigation::AnglesOnlyNavigation& filter = camera_.filter();
+  anchor_at_estimate(camera_.filter(), camera_.filter().last_bearing());
+}
+
+void Navigation::take_pose(GpsTime now, Inbox& inbox) {
+  receivers_.feed(now, inbox, gnss_);
+  pose_.update(now, inbox, gnss_, own_burns());
+  gnss_.update(now, own_burns());
+  anchor_at_estimate(pose_.filter(), pose_.filter().last_measurement());
+}
+
+template <class Filter>
+void Navigation::anchor_at_estimate(const Filter& filter, GpsTime last_measurement) {
   const Result<orbit::CartesianState> target = filter.target();
   if (!filter.has_target() || !target.ok()) {
     let_go();
     return;
   }
-  state_.last_measurement = filter.last_bearing();
+  state_.last_measurement = last_measurement;
   anchor_at({filter.epoch(), filter.servicer(), target.value()});
 }
 
@@ -280,8 +304,9 @@ void Navigation::forget_before(GpsTime time) {
 
 Vector6 Navigation::sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const {
   Vector6 sigma;
-  if (sensors_ == Sensors::kCamera) {
-    const Matrix6 covariance = camera_.filter().a_roe_covariance_m2();
+  if (uses_camera()) {
+    const Matrix6 covariance =
+        uses_pose() ? pose_.filter().a_roe_covariance_m2() : camera_.filter().a_roe_covariance_m2();
     for (int k = 0; k < 6; ++k) sigma(k) = math::sqrt(covariance(k, k));
     return sigma;
   }

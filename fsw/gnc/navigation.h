@@ -1,7 +1,7 @@
 #pragma once
 // navigate: the state of servicer and target at the step's time, from measurements folded in at their own times and own
 // maneuvers. A telecommand chooses the source: ideal navigation (true states in a packet), the GNSS receivers of both
-// spacecraft, or a camera and the servicer's own receiver; between measurements the state coasts under J2.
+// spacecraft, or the servicer's own receiver and a camera, for bearings or for poses; between measurements the state coasts under J2.
 //
 // What arrives late is not lost: the state is built anew at each step from an anchor, the last measurement, and the own
 // maneuvers since. A commanded maneuver counts as flown as commanded until the actuator says otherwise, so that neither
@@ -15,6 +15,7 @@
 #include "fsw/gnc/camera_navigation.h"
 #include "fsw/gnc/gnss_receivers.h"
 #include "fsw/gnc/inbox.h"
+#include "fsw/gnc/pose_camera_navigation.h"
 #include "fsw/navigation/gnss_navigation.h"
 #include "fsw/orbit/elements.h"
 
@@ -27,6 +28,7 @@ enum class NavigationSource : std::int8_t {
   kGnssFloat = 3,
   kGnssFixed = 4,
   kAnglesOnly = 5,
+  kPose = 6,
 };
 
 /// What navigation knows at `epoch`.
@@ -57,12 +59,21 @@ class Navigation {
   [[nodiscard]] const navigation::GnssNavigation& gnss() const { return gnss_; }
   [[nodiscard]] const GnssReceivers& receivers() const { return receivers_; }
 
-  /// Whether a camera is, and the same.
-  [[nodiscard]] bool uses_camera() const { return sensors_ == Sensors::kCamera; }
+  /// Whether bearings by a camera are, and the same.
+  [[nodiscard]] bool uses_bearings() const { return sensors_ == Sensors::kBearings; }
   [[nodiscard]] const CameraNavigation& camera() const { return camera_; }
 
+  /// Whether the pose network is, and the same.
+  [[nodiscard]] bool uses_pose() const { return sensors_ == Sensors::kPose; }
+  [[nodiscard]] const PoseCameraNavigation& pose() const { return pose_; }
+
+  [[nodiscard]] bool uses_camera() const { return uses_bearings() || uses_pose(); }
+
   /// The camera is told this, after the last update.
-  void expect_pointing(const Pointing& pointing) { camera_.set_pointing(pointing); }
+  void expect_pointing(const Pointing& pointing) {
+    camera_.set_pointing(pointing);
+    pose_.set_pointing(pointing);
+  }
 
   /// 1 sigma of a * ROE (m, six components). A filter on ROE knows it; of others it is what `sigma_rtn` amounts to by
   /// the linear near-circular map, `servicer_mean` at epoch.
@@ -84,7 +95,10 @@ class Navigation {
   void take_configurations(GpsTime now, Inbox& inbox);
   void take_measurements(GpsTime now, Inbox& inbox);
   void take_gnss(GpsTime now, Inbox& inbox);
-  void take_camera(GpsTime now, Inbox& inbox);
+  void take_bearings(GpsTime now, Inbox& inbox);
+  void take_pose(GpsTime now, Inbox& inbox);
+  template <class Filter>
+  void anchor_at_estimate(const Filter& filter, GpsTime last_measurement);
   void anchor_at(const Pair& estimated);
   void let_go();
   [[nodiscard]] std::span<const navigation::Burn> own_burns();
@@ -105,11 +119,13 @@ class Navigation {
   std::array<OwnManeuver, kMaxManeuvers> maneuvers_{};  ///< in order of time, none before the anchor
   std::size_t maneuver_count_ = 0;
 
-  enum class Sensors : std::int8_t { kIdeal = 0, kGnss = 1, kCamera = 2 };  ///< as navigation_configuration.source
+  /// As navigation_configuration.source.
+  enum class Sensors : std::int8_t { kIdeal = 0, kGnss = 1, kBearings = 2, kPose = 3 };
   Sensors sensors_ = Sensors::kIdeal;
   GnssReceivers receivers_;
   navigation::GnssNavigation gnss_;
   CameraNavigation camera_;
+  PoseCameraNavigation pose_;
   orbit::EarthOrientation earth_;  ///< as telecommanded
   std::array<navigation::Burn, kMaxManeuvers> burns_{};
 };

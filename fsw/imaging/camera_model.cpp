@@ -72,4 +72,16 @@ Result<Vector2> pixel_of(const CameraModel& camera, const Vector3& direction_cam
   return Vector2(camera.principal_point_px + seen.cwiseProduct(camera.focal_length_px));
 }
 
+Result<Projection> project(const CameraModel& camera, const Vector3& point_camera_m) {
+  const Result<Vector2> pixel = pixel_of(camera, point_camera_m);
+  if (!pixel.ok()) return pixel.status();
+  const Vector2 p = point_camera_m.head<2>() / point_camera_m.z();
+  const Matrix2 bent = distort(camera.distortion, p).derivative / point_camera_m.z();
+  Projection seen;
+  seen.pixel = pixel.value();
+  seen.derivative.leftCols<2>() = camera.focal_length_px.asDiagonal() * bent;
+  seen.derivative.col(2) = -(seen.derivative.leftCols<2>() * p);
+  return seen;
+}
+
 }  // namespace vbar::fsw::imaging

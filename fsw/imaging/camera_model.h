@@ -22,4 +22,11 @@ Result<Vector3> direction_of(const CameraModel& camera, const Vector2& pixel);
 /// kOutOfRange for directions not in front of the camera (z <= 0.1 of the norm).
 Result<Vector2> pixel_of(const CameraModel& camera, const Vector3& direction_camera);
 
+/// The same of a point in camera axes (m), and how its pixel moves with it.
+struct Projection {
+  Vector2 pixel = Vector2::Zero();
+  Eigen::Matrix<double, 2, 3> derivative = Eigen::Matrix<double, 2, 3>::Zero();  ///< px / m
+};
+Result<Projection> project(const CameraModel& camera, const Vector3& point_camera_m);
+
 }  // namespace vbar::fsw::imaging

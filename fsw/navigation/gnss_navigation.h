@@ -67,6 +67,10 @@ class GnssNavigation {
   /// Covariance of the relative state in the servicer's RTN (velocity as seen in the turning frame), m and m/s.
   [[nodiscard]] Matrix6 covariance_rtn() const;
 
+  /// By a spacecraft's own sensors; none without a sample near `time` (attitude_history.h).
+  [[nodiscard]] std::optional<Matrix3> R_eci_body_at(Receiver receiver, GpsTime time) const {
+    return attitudes_[static_cast<std::size_t>(receiver)].R_eci_body_at(time);
+  }
   [[nodiscard]] const RelativeFilter& relative() const { return relative_; }
   [[nodiscard]] const AmbiguityResolution& ambiguities() const { return ambiguities_; }
   [[nodiscard]] const GnssNavigationCounters& counters() const { return counters_; }

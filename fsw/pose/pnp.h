@@ -29,13 +29,15 @@ struct PnpSettings {
   double inlier_sigmas = 3.0;
   double inlier_floor_px = 2.0;  ///< what fits to this is an inlier, however small its covariance
   int least_inliers = 6;
+  double most_mean_square = 1e9;  ///< of PnpSolution: inliers that fit worse are no pose
   double nearest_m = 1.0;
   double farthest_m = 100.0;
 };
 
 /// Of the usable keypoints: random minimal sets (RANSAC; the sets follow from `seed`), a closed form (EPnP or SQPnP),
 /// and a Gauss-Newton refinement of all inliers whitened by their covariances, with Huber weights. kNotReady with too
-/// few usable, kDidNotConverge where no pose gets enough inliers, kOutOfRange for one outside the settings' distances.
+/// few usable, kDidNotConverge where no pose gets enough inliers or they fit badly, kOutOfRange for one outside the
+/// settings' distances.
 Result<PnpSolution> solve_pnp(const Keypoints& keypoints, const KeypointShape& shape,
                               const imaging::CameraModel& camera, const PnpSettings& settings, std::uint32_t seed);
 

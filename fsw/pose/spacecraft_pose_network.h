@@ -11,6 +11,8 @@
 #include "fsw/pose/crop.h"
 #include "fsw/pose/keypoint.h"
 #include "fsw/pose/pnp.h"
+#include "fsw/pose/region.h"
+#include "fsw/pose/target_finder.h"
 
 namespace vbar::fsw::pose {
 
@@ -45,22 +47,34 @@ struct PoseSighting {
   std::optional<PnpSolution> pnp;
 };
 
+/// Some 2 MB, nearly all of it the network's.
 class SpacecraftPoseNetwork {
  public:
   /// Replaces the settings; loads the weights on board if that is not done yet.
   void configure(const PoseCameraSettings& settings);
 
-  /// `predicted`: where navigation expects the target, camera axes. Without it the target is found in the image alone,
-  /// in two rounds: the second cuts out anew what the first made of it.
+  /// `predicted`: where navigation expects the target, camera axes. Without it, or where the image cannot hold what it
+  /// says, the target is found in the image alone, in two rounds: the second cuts out anew what the first made of it.
+  /// Poses of the two that contradict each other are none.
   const PoseSighting& process(GpsTime time, std::int32_t image_number, const imaging::ImageView& image,
                               const std::optional<Vector3>& predicted_position_camera_m);
 
-  [[nodiscard]] const PoseSighting& sighting() const;
-  [[nodiscard]] const network::KeypointNetwork& keypoint_network() const;  ///< its maps of the last image
-};
+  [[nodiscard]] const PoseSighting& sighting() const { return sighting_; }
+  /// Its maps of the last image.
+  [[nodiscard]] const network::KeypointNetwork& keypoint_network() const { return network_; }
 
-/// The crop for a target there: the square around all its keypoints, however it is turned. kOutOfRange if behind.
-Result<CropRegion> region_of(const Vector3& position_camera_m, const imaging::CameraModel& model,
-                             const KeypointShape& shape);
+ private:
+  [[nodiscard]] SightingStatus look(const imaging::ImageView& image, const std::optional<Vector3>& predicted);
+  [[nodiscard]] SightingStatus look_at(const imaging::ImageView& image, const CropRegion& region);
+  [[nodiscard]] SightingStatus look_twice(const imaging::ImageView& image);
+  [[nodiscard]] bool predict(const std::optional<Vector3>& predicted, CropRegion& region) const;
+  [[nodiscard]] CropRegion second_region() const;
+
+  PoseCameraSettings settings_;
+  network::KeypointNetwork network_;
+  TargetFinder finder_;
+  CropSamples crop_{};
+  PoseSighting sighting_;
+};
 
 }  // namespace vbar::fsw::pose

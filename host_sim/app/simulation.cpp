@@ -139,10 +139,14 @@ void Simulation::queue_telecommands() {
   }
   if (servicer_.camera) {
     arrived_.push_back(make_packet(now, servicer_.number, 0, mission::camera_configuration_of(servicer_)));
-    arrived_.push_back(make_packet(now, servicer_.number, 0, mission::angles_only_configuration_of(mission_)));
-    const PairTruth truth = pair_truth();
-    const auto apriori = mission::target_apriori_of(mission_, servicer_, truth.servicer, truth.target);
-    arrived_.push_back(make_packet(now, servicer_.number, 0, apriori));
+    if (servicer_.camera->navigation == mission::CameraNavigation::kPose) {
+      arrived_.push_back(make_packet(now, servicer_.number, 0, mission::pose_configuration_of(mission_, servicer_)));
+    } else {
+      arrived_.push_back(make_packet(now, servicer_.number, 0, mission::angles_only_configuration_of(mission_)));
+      const PairTruth truth = pair_truth();
+      const auto apriori = mission::target_apriori_of(mission_, servicer_, truth.servicer, truth.target);
+      arrived_.push_back(make_packet(now, servicer_.number, 0, apriori));
+    }
   }
   arrived_.push_back(make_packet(now, servicer_.number, 0, mission::waypoint_table_of(mission_)));
   arrived_.push_back(make_packet(now, servicer_.number, 0, mission::mode_command_of(mission_)));
@@ -337,7 +341,9 @@ void Simulation::summarise(double wall_s, bool complete) {
   summary.complete = complete;
   summary.flight_computer = mission::name_of(servicer_.flight_computer->target);
   summary.flight_software = surroundings_.flight_computer.description();
-  summary.navigation = servicer_.camera ? "angles_only"
+  const bool is_by_pose = servicer_.camera && servicer_.camera->navigation == mission::CameraNavigation::kPose;
+  summary.navigation = is_by_pose         ? "pose"
+                       : servicer_.camera ? "angles_only"
                        : servicer_.gnss ? "gnss"
                                         : std::string(mission::name_of(servicer_.navigation->source));
   summary.gnss = servicer_.gnss ? "digital" : "";

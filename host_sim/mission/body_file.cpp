@@ -59,4 +59,18 @@ truth::Body load_body(const std::filesystem::path& file) {
   return body;
 }
 
+std::vector<Vector3> load_keypoints(const std::filesystem::path& file, std::size_t count) {
+  const toml::table table = parse_toml(read_text_file(file, "a file of keypoints (TOML)"), file.string());
+  const TableReader document(table, "", file.string());
+  document.accept_only({"keypoints"});
+  std::vector<Vector3> keypoints_m;
+  for (const TableReader& keypoint : document.tables("keypoints")) {
+    keypoint.accept_only({"at_m"});
+    keypoints_m.push_back(read_point(keypoint, "at_m"));
+  }
+  if (keypoints_m.size() != count)
+    document.refuse("keypoints", std::to_string(keypoints_m.size()) + " of them", std::to_string(count));
+  return keypoints_m;
+}
+
 }  // namespace vbar::mission

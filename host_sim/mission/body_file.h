@@ -2,6 +2,7 @@
 // A body file (data/bodies, TOML): inertia, centre of mass and surface of a spacecraft.
 
 #include <filesystem>
+#include <vector>
 
 #include "host_sim/truth/attitude/body.h"
 
@@ -12,5 +13,9 @@ namespace vbar::mission {
 /// [[facet]] with `corners`, `specular` and `diffuse`. Lengths in m from the origin of the body frame; they come back
 /// from the centre of mass, as Body has them. Throws MissionError.
 [[nodiscard]] truth::Body load_body(const std::filesystem::path& file);
+
+/// The keypoints in a file of data/models: `keypoints`, an array of `count` tables with at_m. m, from the origin of the
+/// body frame. Throws MissionError.
+[[nodiscard]] std::vector<fsw::Vector3> load_keypoints(const std::filesystem::path& file, std::size_t count);
 
 }  // namespace vbar::mission

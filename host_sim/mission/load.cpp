@@ -14,7 +14,7 @@ Mission parse_mission(std::string_view text, const std::filesystem::path& file,
   for (const std::string& assignment : overrides) apply_override(table, assignment);
 
   const TableReader document(table, "", file.string());
-  document.accept_only({"mission", "truth", "spacecraft", "guidance", "gnss_navigation", "angles_only", "waypoint",
+  document.accept_only({"mission", "truth", "spacecraft", "guidance", "gnss_navigation", "angles_only", "pose", "waypoint",
                         "burn", "constellation", "clock", "links", "lcm", "record"});
   Mission mission;
   mission.file = file;
@@ -25,6 +25,7 @@ Mission parse_mission(std::string_view text, const std::filesystem::path& file,
   read_guidance(document, mission);
   read_gnss_navigation(document, mission);
   read_angles_only(document, mission);
+  read_pose(document, mission);
   read_constellation(document, mission);
   read_burns(document, mission);
   read_clock(document, mission);

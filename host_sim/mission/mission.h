@@ -81,11 +81,15 @@ struct GnssSensor {
   std::string partner;
 };
 
+/// What navigation makes of a camera's images.
+enum class CameraNavigation { kAnglesOnly, kPose };
+
 /// sensors.camera: navigates by images of one spacecraft among all that have a CAD model.
 struct CameraSensor {
   std::string camera;  ///< names its file in data/cameras, which `settings` began with
   twins::camera::CameraSettings settings;
-  std::string target;     ///< the spacecraft it navigates to
+  std::string target;  ///< the spacecraft it navigates to
+  CameraNavigation navigation = CameraNavigation::kAnglesOnly;
   fsw::Duration period;   ///< between exposures
   fsw::Duration readout;  ///< from the middle of an exposure until the image leaves the camera
   Eigen::Quaterniond q_camera_body = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
@@ -107,6 +111,20 @@ struct AnglesOnly {
   /// Of the target's place that is telecommanded at the start: mean ROE times the reference a, 1 sigma.
   fsw::Vector6 apriori_sigma_a_roe_m = fsw::Vector6::Zero();
   friend bool operator==(const AnglesOnly&, const AnglesOnly&) = default;
+};
+
+/// What navigation by the pose network goes by, telecommanded; fields as in vbar.lcm, pose_configuration.
+struct PoseNavigation {
+  double keypoint_sigma_scale = 0.0;
+  double keypoint_floor_px = 0.0;
+  double acceleration_psd = 0.0;
+  double acceleration_psd_least = 0.0;
+  double acceleration_psd_most = 0.0;
+  double angular_acceleration_psd = 0.0;
+  double maneuver_sigma = 0.0;
+  double maneuver_sigma_relative = 0.0;
+  int start_images = 0;
+  friend bool operator==(const PoseNavigation&, const PoseNavigation&) = default;
 };
 
 /// What flight software navigates by, telecommanded; fields as in vbar.lcm, navigation_configuration.
@@ -220,6 +238,7 @@ struct Mission {
   Guidance guidance;
   GnssNavigation gnss_navigation;
   AnglesOnly angles_only;
+  PoseNavigation pose;
   std::vector<PrescribedBurn> burns;  ///< of the spacecraft that flies, in order of time
   std::vector<Waypoint> waypoints;    ///< in order of time
   engine::ClockSettings clock;

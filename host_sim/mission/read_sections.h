@@ -17,6 +17,7 @@ void read_spacecraft(const TableReader& document, Mission& mission);       // [[
 void read_guidance(const TableReader& document, Mission& mission);         // [guidance]
 void read_gnss_navigation(const TableReader& document, Mission& mission);  // [gnss_navigation]
 void read_angles_only(const TableReader& document, Mission& mission);      // [angles_only]
+void read_pose(const TableReader& document, Mission& mission);             // [pose]
 void read_constellation(const TableReader& document, Mission& mission);    // [constellation]
 void read_burns(const TableReader& document, Mission& mission);            // [[burn]]
 void read_clock(const TableReader& document, Mission& mission);            // [clock]

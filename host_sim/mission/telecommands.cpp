@@ -9,6 +9,8 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "host_sim/engine/random_stream.h"
+#include "host_sim/mission/body_file.h"
+#include "host_sim/mission/data_directory.h"
 
 namespace vbar::mission {
 namespace {
@@ -62,11 +64,20 @@ vbar::gnc_configuration gnc_configuration_of(const Mission& mission) {
   return configuration;
 }
 
+namespace {
+
+std::int8_t source_of(const Spacecraft& servicer) {
+  if (!servicer.camera) return 1;
+  return servicer.camera->navigation == CameraNavigation::kPose ? 3 : 2;
+}
+
+}  // namespace
+
 vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer,
                                                            const truth::EarthOrientationSeries& orientation) {
   const GnssNavigation& navigation = mission.gnss_navigation;
   vbar::navigation_configuration configuration{};
-  configuration.source = servicer.camera ? 2 : 1;
+  configuration.source = source_of(servicer);
   configuration.resolve_ambiguities = navigation.resolve_ambiguities ? 1 : 0;
   configuration.min_success_rate = navigation.min_success_rate;
   configuration.min_ratio = navigation.min_ratio;
@@ -140,6 +151,42 @@ vbar::angles_only_configuration angles_only_configuration_of(const Mission& miss
   configuration.maneuver_sigma = navigation.maneuver_sigma;
   configuration.maneuver_sigma_relative = navigation.maneuver_sigma_relative;
   configuration.batch_images = navigation.batch_images;
+  return configuration;
+}
+
+vbar::pose_configuration pose_configuration_of(const Mission& mission, const Spacecraft& servicer) {
+  const PoseNavigation& navigation = mission.pose;
+  const twins::camera::CameraSettings& camera = servicer.camera->settings;
+  const twins::camera::DetectorSettings& detector = camera.detector;
+  vbar::pose_configuration configuration{};
+  const double dark_electrons = detector.dark_electrons_per_s * camera.exposure_s;
+  configuration.dark_level_dn = detector.offset_dn + detector.gain_dn_per_electron * dark_electrons;
+  constexpr double kRounding = 1.0 / 12.0;  // variance, DN^2
+  const double read_dn = detector.gain_dn_per_electron * detector.read_noise_electrons;
+  configuration.noise_dn =
+      std::sqrt(read_dn * read_dn +
+                detector.gain_dn_per_electron * detector.gain_dn_per_electron * dark_electrons + kRounding);
+  const Spacecraft& target = *mission.find_spacecraft(servicer.camera->target);
+  const Tumble& tumble = std::get<Tumble>(*target.attitude);  // the loader sees to it
+  const truth::Body body = load_body(data_directory() / "bodies" / (tumble.body + ".toml"));
+  constexpr std::size_t kKeypoints = sizeof configuration.keypoints_body_m / (3 * sizeof(double));
+  const auto keypoints_m =
+      load_keypoints(data_directory() / "models" / (target.model + "_keypoints.toml"), kKeypoints);
+  for (std::size_t k = 0; k < kKeypoints; ++k) {
+    const fsw::Vector3 from_centre_of_mass = keypoints_m[k] - body.centre_of_mass_m;
+    std::ranges::copy(from_centre_of_mass, configuration.keypoints_body_m + 3 * k);
+  }
+  const fsw::Matrix3 I = tumble.inertia_kgm2.value_or(body.inertia_kgm2);
+  std::ranges::copy(std::array{I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)}, configuration.inertia_kgm2);
+  configuration.keypoint_sigma_scale = navigation.keypoint_sigma_scale;
+  configuration.keypoint_floor_px = navigation.keypoint_floor_px;
+  configuration.acceleration_psd = navigation.acceleration_psd;
+  configuration.acceleration_psd_least = navigation.acceleration_psd_least;
+  configuration.acceleration_psd_most = navigation.acceleration_psd_most;
+  configuration.angular_acceleration_psd = navigation.angular_acceleration_psd;
+  configuration.maneuver_sigma = navigation.maneuver_sigma;
+  configuration.maneuver_sigma_relative = navigation.maneuver_sigma_relative;
+  configuration.start_images = navigation.start_images;
   return configuration;
 }
 

@@ -23,6 +23,10 @@ namespace vbar::mission {
 
 [[nodiscard]] vbar::angles_only_configuration angles_only_configuration_of(const Mission& mission);
 
+/// The target that `servicer`'s camera looks at, as the ground knows it: keypoints of its model, inertia of its body.
+/// Throws MissionError for files that cannot be read.
+[[nodiscard]] vbar::pose_configuration pose_configuration_of(const Mission& mission, const Spacecraft& servicer);
+
 /// Where the ground last knew the target to be, out of the true states of both at the start: mean ROE off by what the
 /// seed draws with the mission's sigmas. Throws std::runtime_error for states that are no orbits.
 [[nodiscard]] vbar::target_apriori target_apriori_of(const Mission& mission, const Spacecraft& servicer,

@@ -14,11 +14,12 @@ HEADERS = set("""
     algorithm array bit compare concepts cstddef cstdint cstring limits new optional span type_traits utility
     stddef.h stdint.h Eigen/Core Eigen/Geometry Eigen/LU
 """.split())
-# Beside these, by folder: interrupt handlers share words with the main loop; libm's names are renamed where they are declared;
+# Beside these, by folder: ARM's vector instructions; interrupt handlers share words with the main loop; libm's names are renamed where they are declared;
 # LCM's generated types are met in the library that encodes them.
 FOLDER_HEADERS = {
     "boards/zynq7000": {"atomic"},
     "fsw/math/newlib": {"math.h", "sys/types.h"},
+    "fsw/network": {"arm_neon.h"},
     "fsw/packets": None,
 }
 GENERATED_HEADER = re.compile(r"vbar/\w+\.hpp|lcm/lcm_coretypes\.h")

@@ -18,6 +18,7 @@
 #include "tests/unit/fsw/same_bits/gnss_digest.h"
 #include "tests/unit/fsw/same_bits/imaging_digest.h"
 #include "tests/unit/fsw/same_bits/libm_sweeps.h"
+#include "tests/unit/fsw/same_bits/network_digest.h"
 #include "tests/unit/fsw/same_bits/solver_digest.h"
 #include "tests/unit/fsw/same_bits/stars_digest.h"
 
@@ -135,5 +136,6 @@ int main() {
   std::printf("%-6s %016" PRIx64 "\n", "lambda", ambiguity_digest());
   std::printf("%-6s %016" PRIx64 "\n", "stars", stars_digest());
   std::printf("%-6s %016" PRIx64 "\n", "imaging", imaging_digest());
+  std::printf("%-6s %016" PRIx64 "\n", "network", network_digest());
   return same ? 0 : 1;
 }

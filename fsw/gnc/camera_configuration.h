@@ -1,0 +1,35 @@
+#pragma once
+// Telecommands of cameras and of navigation with them, checked. kOutOfRange for a value no field may have.
+
+#include "fsw/angles_only/angles_only_tracking.h"
+#include "fsw/core/result.h"
+#include "fsw/navigation/angles_only_navigation.h"
+#include "fsw/navigation/pose_navigation.h"
+#include "fsw/orbit/earth_rotation.h"
+#include "fsw/packets/messages.h"
+#include "fsw/pose/spacecraft_pose_network.h"
+
+namespace vbar::fsw::gnc {
+
+/// A camera as calibrated on the ground.
+struct CalibratedCamera {
+  imaging::ImageFrame frame;
+  imaging::CameraModel model;
+  Matrix3 R_camera_body = Matrix3::Identity();
+  Vector3 position_body_m = Vector3::Zero();
+  int saturation_dn = 0;
+};
+Result<CalibratedCamera> calibrated_camera(const camera_configuration& camera);
+
+Result<angles_only::CameraSettings> camera_settings(const camera_configuration& camera,
+                                                    const angles_only_configuration& angles_only);
+Result<navigation::AnglesOnlySettings> angles_only_settings(const angles_only_configuration& configuration,
+                                                            const orbit::EarthOrientation& earth);
+
+Result<pose::PoseCameraSettings> pose_camera_settings(const camera_configuration& camera,
+                                                      const pose_configuration& configuration);
+Result<navigation::PoseSettings> pose_settings(const camera_configuration& camera,
+                                               const pose_configuration& configuration,
+                                               const orbit::EarthOrientation& earth);
+
+}  // namespace vbar::fsw::gnc

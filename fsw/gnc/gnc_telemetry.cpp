@@ -1,0 +1,249 @@
+// report: what the flight software tells of a step.
+
+#include "fsw/gnc/gnc.h"
+#include "fsw/gnc/message_fields.h"
+#include "fsw/orbit/rtn.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+/// Number of telemetry_pose.keypoint_fate.
+std::int8_t keypoint_fate(const pose::Keypoint& seen, const navigation::KeypointUpdate& update) {
+  if (update.accepted) return 2;
+  if (update.is_usable) return 1;
+  return seen.is_usable ? 3 : 0;
+}
+
+}  // namespace
+
+void Gnc::report_navigation() {
+  const NavigationState& state = navigation_.state();
+  telemetry_navigation message{};
+  message.step = step_;
+  message.source = static_cast<std::int8_t>(state.source);
+  message.valid = state.valid ? 1 : 0;
+  if (state.valid) {
+    message.age_s = seconds(now_ - state.last_measurement);
+    copy(state.servicer.position_eci, message.servicer_position_eci);
+    copy(state.servicer.velocity_eci, message.servicer_velocity_eci);
+    const orbit::RelativeState relative = orbit::relative_state_rtn(state.servicer, state.target);
+    copy(relative.position_rtn, message.relative_position_rtn);
+    copy(relative.velocity_rtn, message.relative_velocity_rtn);
+    copy(state.sigma_rtn, message.sigma_rtn);
+    copy(management_.reference_semi_major_axis() * guidance_.report().roe, message.a_roe_mean_m);
+  }
+  outbox_.send(now_, message);
+}
+
+void Gnc::report_gnss() {
+  const navigation::GnssNavigation& gnss = navigation_.gnss();
+  const navigation::GnssNavigationCounters& counters = gnss.counters();
+  const navigation::AmbiguityReport& ambiguities = gnss.ambiguities().report();
+  const navigation::RelativeUpdate& last = gnss.last_update();
+  telemetry_gnss message{};
+  message.step = step_;
+  message.epoch_gps_ns = gnss.epoch().ns;
+  message.pairs = counters.pairs;
+  message.alone = counters.alone;
+  message.too_late = counters.too_late;
+  message.no_solution = counters.no_solution;
+  message.codes_refused = counters.codes_refused;
+  message.phases_refused = counters.phases_refused;
+  message.slips = counters.slips;
+  message.restarts = counters.restarts;
+  message.tracked = ambiguities.tracked;
+  message.fixed = ambiguities.fixed;
+  message.fixes = ambiguities.fixes;
+  message.releases = ambiguities.releases;
+  message.obstacle = static_cast<std::int8_t>(ambiguities.obstacle);
+  message.success_rate = ambiguities.success_rate;
+  message.ratio = ambiguities.ratio;
+  message.codes_used = last.codes_used;
+  message.phases_used = last.phases_used;
+  message.code_nis = last.code_nis;
+  message.phase_nis = last.phase_nis;
+  if (gnss.valid()) {
+    copy_lower_triangle(gnss.covariance_rtn(), message.covariance_rtn);
+  }
+  message.messages = navigation_.receivers().messages();
+  message.messages_refused = navigation_.receivers().refused();
+  outbox_.send(now_, message);
+}
+
+/// At where the target is thought to be, not where the last image showed it: between images it moves.
+void Gnc::point_camera() {
+  const NavigationState& state = navigation_.state();
+  if (!state.has_target) return;
+  const Result<Pointing> pointing = pointing_at(now_, state.servicer, state.target);
+  if (!pointing.ok()) return;
+  navigation_.expect_pointing(pointing.value());
+  pointing_command message{};
+  copy(pointing.value().boresight_rtn, message.boresight_rtn);
+  copy(pointing.value().boresight_rate_rtn, message.boresight_rate_rtn);
+  outbox_.send(now_, message);
+}
+
+void Gnc::report_image() {
+  const CameraNavigation& camera = navigation_.camera();
+  const angles_only::Sighting& sighting = camera.tracking().sighting();
+  const navigation::AnglesOnlyNavigation& filter = camera.filter();
+  telemetry_image message{};
+  message.step = step_;
+  message.image = sighting.image;
+  message.status = static_cast<std::int8_t>(sighting.status);
+  message.star_method = static_cast<std::int8_t>(sighting.star_method);
+  message.tiles_missing = static_cast<std::int16_t>(sighting.tiles_missing);
+  message.objects = static_cast<std::int16_t>(sighting.objects);
+  message.stars = static_cast<std::int16_t>(sighting.stars);
+  message.hypotheses = static_cast<std::int16_t>(sighting.hypotheses);
+  message.target_object = static_cast<std::int16_t>(sighting.target);
+  message.background_dn = sighting.background_dn;
+  message.noise_dn = sighting.noise_dn;
+  copy_rotation(sighting.R_camera_eci.transpose(), message.q_eci_camera);
+  message.attitude_sigma = sighting.attitude_sigma;
+  copy(sighting.bearing.direction_eci, message.bearing_eci);
+  message.bearing_sigma = sighting.bearing.sigma;
+  const bool is_filtered =
+      camera.fate() == navigation::BearingFate::kFilter || camera.fate() == navigation::BearingFate::kRefused;
+  if (is_filtered) {
+    const navigation::BearingUpdate& update = filter.last_update();
+    for (int axis = 0; axis < 2; ++axis) {
+      message.prefit[axis] = update.prefit(axis);
+      message.postfit[axis] = update.postfit(axis);
+    }
+    message.nis = update.nis;
+  }
+  message.fate = static_cast<std::int8_t>(camera.fate());
+  message.filter_runs = filter.valid() ? 1 : 0;
+  if (filter.has_target()) {
+    copy(filter.a_roe_m(), message.a_roe_osculating_m);
+    copy_lower_triangle(filter.a_roe_covariance_m2(), message.covariance_a_roe);
+  }
+  message.bearings_used = filter.counters().bearings_used;
+  message.bearings_refused = filter.counters().bearings_refused;
+  message.images_without_stars = camera.images_without_stars();
+  message.tiles_refused = inbox_.image().counts().tiles_refused;
+  outbox_.send(sighting.time, message);
+}
+
+void Gnc::report_objects() {
+  const angles_only::AnglesOnlyTracking& tracking = navigation_.camera().tracking();
+  const angles_only::Sighting& sighting = tracking.sighting();
+  const auto objects = tracking.objects();
+  telemetry_objects message{};
+  message.step = step_;
+  message.image = sighting.image;
+  constexpr std::size_t kMost = sizeof message.kind / sizeof message.kind[0];
+  const std::size_t count =
+      static_cast<std::size_t>(sighting.objects) < kMost ? static_cast<std::size_t>(sighting.objects) : kMost;
+  message.count = static_cast<std::int16_t>(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    message.kind[k] = static_cast<std::int8_t>(sighting.kind[k]);
+    message.star[k] = sighting.hipparcos[k];
+    message.x_px[k] = static_cast<float>(objects[k].centroid_px.x());
+    message.y_px[k] = static_cast<float>(objects[k].centroid_px.y());
+  }
+  outbox_.send(sighting.time, message);
+}
+
+void Gnc::report_pose() {
+  const PoseCameraNavigation& camera = navigation_.pose();
+  const pose::PoseSighting& sighting = camera.sighting();
+  const navigation::PoseNavigation& filter = camera.filter();
+  const navigation::PoseUpdate& update = filter.last_update();
+  telemetry_pose message{};
+  message.step = step_;
+  message.image = sighting.image;
+  message.status = static_cast<std::int8_t>(sighting.status);
+  message.region_is_predicted = sighting.region_is_predicted ? 1 : 0;
+  message.fate = static_cast<std::int8_t>(camera.fate());
+  message.filter_runs = filter.valid() ? 1 : 0;
+  message.has_attitude = filter.has_attitude() ? 1 : 0;
+  message.tiles_missing = static_cast<std::int16_t>(camera.tiles_missing());
+  message.region_px[0] = sighting.region.centre_px.x();
+  message.region_px[1] = sighting.region.centre_px.y();
+  message.region_px[2] = sighting.region.side_px;
+  for (std::size_t k = 0; k < sighting.keypoints.size(); ++k) {
+    const pose::Keypoint& keypoint = sighting.keypoints[k];
+    message.x_px[k] = static_cast<float>(keypoint.pixel.x());
+    message.y_px[k] = static_cast<float>(keypoint.pixel.y());
+    message.covariance_px2[3 * k] = static_cast<float>(keypoint.covariance_px2(0, 0));
+    message.covariance_px2[3 * k + 1] = static_cast<float>(keypoint.covariance_px2(1, 0));
+    message.covariance_px2[3 * k + 2] = static_cast<float>(keypoint.covariance_px2(1, 1));
+    message.peak[k] = static_cast<float>(keypoint.peak);
+    message.keypoint_fate[k] = keypoint_fate(keypoint, update.keypoints[k]);
+  }
+  if (sighting.pnp) {
+    message.pnp_inliers = static_cast<std::int8_t>(sighting.pnp->inliers);
+    copy_rotation(sighting.pnp->pose.R_camera_body, message.pnp_q_camera_body);
+    copy(sighting.pnp->pose.position_camera_m, message.pnp_position_camera_m);
+    message.pnp_mean_square = sighting.pnp->mean_square;
+  }
+  if (camera.estimated_pose()) {
+    copy_rotation(camera.estimated_pose()->R_camera_body, message.q_camera_body);
+    copy(camera.estimated_pose()->position_camera_m, message.position_camera_m);
+    copy(filter.rate_body(), message.rate_body);
+    copy_lower_triangle(filter.attitude_covariance(), message.covariance_attitude);
+    copy_lower_triangle(filter.a_roe_covariance_m2(), message.covariance_a_roe);
+    copy(filter.a_roe_m(), message.a_roe_osculating_m);
+  }
+  message.nis = update.nis;
+  message.nis_degrees = 2 * update.used;
+  message.acceleration_psd = filter.filter().acceleration_psd();
+  const navigation::PoseCounters& counters = filter.counters();
+  message.images_used = counters.images_used;
+  message.images_refused = counters.images_refused;
+  message.keypoints_used = counters.keypoints_used;
+  message.keypoints_refused = counters.keypoints_refused;
+  message.attitude_restarts = counters.attitudes_reset;
+  message.restarts = counters.restarts;
+  message.tiles_refused = inbox_.image().counts().tiles_refused;
+  outbox_.send(sighting.time, message);
+}
+
+void Gnc::report_control() {
+  const GuidanceReport& guidance = guidance_.report();
+  const double a = management_.reference_semi_major_axis();
+  telemetry_control message{};
+  message.step = step_;
+  message.mode = static_cast<std::int8_t>(management_.mode());
+  message.active_solver = static_cast<std::int8_t>(guidance.active_solver);
+  message.koenig_damico_status = static_cast<std::int8_t>(guidance.koenig_damico);
+  message.closed_form_status = static_cast<std::int8_t>(guidance.closed_form);
+  message.least_squares_status = static_cast<std::int8_t>(guidance.least_squares);
+  message.safety_status = static_cast<std::int8_t>(guidance.safety);
+  message.waypoint_index = guidance.waypoint_index;
+  copy(a * guidance.roe_desired, message.a_roe_desired_m);
+  copy(a * guidance.predicted_roe_error, message.predicted_a_roe_error_m);
+  const control::Plan& plan = guidance_.plan();
+  message.planned_burns = static_cast<std::int32_t>(plan.count);
+  message.planned_dv = plan.total_dv();
+  message.next_burn_gps_ns = plan.count > 0 ? plan.burns[0].time.ns : 0;
+  message.passive_safety_distance_m = guidance.passive_safety_distance;
+  message.commanded_dv = guidance_.commanded_dv();
+  message.commanded_maneuvers = guidance_.commanded_maneuvers();
+  outbox_.send(now_, message);
+}
+
+void Gnc::report_health() {
+  const PacketCounters& packets = inbox_.counters();
+  const GuidanceReport& guidance = guidance_.report();
+  telemetry_health message{};
+  message.step = step_;
+  message.packets_accepted = packets.accepted;
+  message.rejected_checksum = packets.rejected_checksum;
+  message.rejected_type = packets.rejected_type;
+  message.rejected_length = packets.rejected_length;
+  message.rejected_content = packets.rejected_content;
+  message.rejected_time = packets.rejected_time;
+  message.rejected_other = packets.rejected_other;
+  message.inbox_dropped = packets.dropped_full;
+  message.outbox_dropped = outbox_.dropped();
+  message.solver_fallbacks = guidance.solver_fallbacks;
+  message.plans_unsafe = guidance.plans_unsafe;
+  message.holds = guidance.holds;
+  message.faults = faults_;
+  outbox_.send(now_, message);
+}
+
+}  // namespace vbar::fsw::gnc

@@ -1,0 +1,109 @@
+#include "fsw/gnc/pose_camera_navigation.h"
+
+#include "fsw/gnc/camera_configuration.h"
+#include "fsw/gnc/message_fields.h"
+#include "fsw/orbit/sun.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+// An image may come so much after its time.
+constexpr Duration kLongestDelay = duration_of_seconds(600);
+
+}  // namespace
+
+void PoseCameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::EarthOrientation& earth) {
+  inbox.keep_newest(inbox.camera_configurations(), now, camera_);
+  inbox.keep_newest(inbox.pose_configurations(), now, pose_);
+  if (!camera_ || !pose_) return;
+  const auto network = pose_camera_settings(*camera_, *pose_);
+  const auto navigation = pose_settings(*camera_, *pose_, earth);
+  if (!network.ok() || !navigation.ok()) {
+    inbox.count_bad_content();
+    camera_.reset();
+    pose_.reset();
+    return;
+  }
+  network_.configure(network.value());
+  static_cast<void>(filter_.configure(navigation.value()));  // checked with the settings
+  R_camera_body_ = rotation(camera_->q_camera_body);
+  last_image_.reset();
+}
+
+void PoseCameraNavigation::update(GpsTime now, Inbox& inbox, navigation::GnssNavigation& own_orbit,
+                                  std::span<const navigation::Burn> burns) {
+  has_image_ = false;
+  fate_ = navigation::PoseFate::kNone;
+  estimated_pose_.reset();
+  const imaging::ImageAssembly& image = inbox.image();
+  if (!camera_ || !pose_ || !image.has_image()) return;
+  const bool is_timely = image.image_time() <= now && now - image.image_time() <= kLongestDelay &&
+                         (!last_image_ || image.image_time() > *last_image_);
+  if (!is_timely) {
+    inbox.count_unusable_time();
+    return;
+  }
+  take_image(image, own_orbit, burns);
+}
+
+void PoseCameraNavigation::take_image(const imaging::ImageAssembly& image, navigation::GnssNavigation& own_orbit,
+                                      std::span<const navigation::Burn> burns) {
+  const GpsTime time = image.image_time();
+  has_image_ = true;
+  tiles_missing_ = image.tiles_missing();
+  last_image_ = time;
+  own_orbit.update(time, burns);
+
+  navigation::PoseEpoch epoch;
+  epoch.time = time;
+  epoch.sun_eci = orbit::sun_position_gcrf(time).normalized();
+  epoch.servicer_gnss = servicer_at(time, own_orbit, burns);
+  // First to the image's time, then where to look in it, then what it shows.
+  static_cast<void>(filter_.update(epoch, burns));
+  epoch.R_camera_eci = R_camera_eci_at(time, own_orbit, epoch.servicer_gnss);
+  std::optional<pose::TargetPose> expected;
+  if (epoch.R_camera_eci) expected = pose_of_estimate(*epoch.R_camera_eci);
+  const pose::PoseSighting& sighting =
+      network_.process(time, image.image_number(), image.view(),
+                       expected ? std::optional(expected->position_camera_m) : std::nullopt);
+  if (!epoch.R_camera_eci || sighting.status > pose::SightingStatus::kKeypoints) return;
+  epoch.servicer_gnss.reset();  // it is folded in already
+  keypoints_ = widened(sighting.keypoints);
+  epoch.keypoints = &keypoints_;
+  epoch.pnp = sighting.pnp;
+  fate_ = filter_.update(epoch, burns);
+  estimated_pose_ = pose_of_estimate(*epoch.R_camera_eci);
+}
+
+/// The network's own covariances are those of images that it was trained for; other light may deserve less trust.
+pose::Keypoints PoseCameraNavigation::widened(pose::Keypoints keypoints) const {
+  const double by = pose_->keypoint_sigma_scale * pose_->keypoint_sigma_scale;
+  const double floor = pose_->keypoint_floor_px * pose_->keypoint_floor_px;
+  for (pose::Keypoint& keypoint : keypoints) {
+    keypoint.covariance_px2 = by * keypoint.covariance_px2 + floor * Matrix2::Identity();
+  }
+  return keypoints;
+}
+
+/// By the star tracker, or as commanded where it is silent.
+std::optional<Matrix3> PoseCameraNavigation::R_camera_eci_at(
+    GpsTime time, const navigation::GnssNavigation& own_orbit,
+    const std::optional<orbit::CartesianState>& servicer) const {
+  if (const auto R_eci_body = own_orbit.R_eci_body_at(navigation::Receiver::kServicer, time)) {
+    return Matrix3(R_camera_body_ * R_eci_body->transpose());
+  }
+  if (!pointing_ || !servicer) return std::nullopt;
+  return Matrix3(R_camera_body_ * R_body_eci_of(*pointing_, time, *servicer));
+}
+
+std::optional<pose::TargetPose> PoseCameraNavigation::pose_of_estimate(const Matrix3& R_camera_eci) const {
+  const Result<orbit::CartesianState> target = filter_.target();
+  if (!filter_.valid() || !target.ok()) return std::nullopt;
+  const Vector3 apart_eci = target.value().position_eci - filter_.servicer().position_eci;
+  pose::TargetPose estimate;
+  estimate.position_camera_m = R_camera_eci * apart_eci - filter_.settings().camera_position_camera_m;
+  estimate.R_camera_body = R_camera_eci * filter_.R_eci_body();
+  return estimate;
+}
+
+}  // namespace vbar::fsw::gnc

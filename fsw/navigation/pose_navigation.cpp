@@ -1,0 +1,264 @@
+#include "fsw/navigation/pose_navigation.h"
+
+#include "fsw/math/cholesky.h"
+#include "fsw/math/math.h"
+#include "fsw/navigation/roe_filter.h"
+#include "fsw/orbit/rtn.h"
+
+namespace vbar::fsw::navigation {
+namespace {
+
+constexpr Duration kSegment = duration_of_seconds(20);
+constexpr int kMaxSegments = 4000;
+constexpr Duration kSegmentAhead = duration_of_seconds(60);
+constexpr Duration kFarthestAhead = duration_of_seconds(7200);
+
+// Most keypoints refused in so many images in a row: the attitude is wrong.
+constexpr int kRefusedBeforeAttitude = 3;
+// And so many without an attitude that images agree on, or with their positions elsewhere: all is.
+constexpr int kRefusedBeforeRestart = 20;
+constexpr int kFarBeforeRestart = 5;
+
+}  // namespace
+
+Status PoseNavigation::configure(const PoseSettings& settings) {
+  settings_ = settings;
+  own_orbit_ = OwnOrbit(settings.own_orbit);
+  apriori_.reset();
+  refused_in_a_row_ = 0;
+  far_in_a_row_ = 0;
+  last_update_ = {};
+  const Status status = filter_.configure(settings.filter);
+  start_.configure(settings.start, filter_.inertia());
+  return status;
+}
+
+PoseFate PoseNavigation::update(const PoseEpoch& epoch, std::span<const Burn> burns) {
+  last_update_ = {};
+  if (own_orbit_.started()) {
+    if (epoch.time < epoch_) return PoseFate::kNone;
+    advance(epoch.time, epoch.sun_eci, burns);
+    if (epoch.servicer_gnss.has_value()) own_orbit_.take(*epoch.servicer_gnss);
+  } else if (epoch.servicer_gnss.has_value()) {
+    own_orbit_.begin(*epoch.servicer_gnss);
+    epoch_ = epoch.time;
+  }
+  if (epoch.apriori_target.has_value()) apriori_ = epoch.apriori_target;
+  if (!own_orbit_.started() || !epoch.R_camera_eci.has_value()) return PoseFate::kNone;
+  CameraPlace camera;
+  camera.R_camera_eci = *epoch.R_camera_eci;
+  camera.origin_eci = camera.R_camera_eci.transpose() * settings_.camera_position_camera_m;
+  if (epoch.pnp.has_value()) start_.add(sample_of(epoch, camera));
+  if (!filter_.started()) return epoch.pnp.has_value() ? begin() : PoseFate::kNone;
+  if (!has_attitude() && !(epoch.pnp.has_value() && renew_attitude())) return take_position_only(epoch, camera);
+  if (epoch.keypoints == nullptr) return PoseFate::kNone;
+  return take_keypoints(epoch, camera);
+}
+
+void PoseNavigation::advance(GpsTime time, const Vector3& sun_eci, std::span<const Burn> burns) {
+  const auto coast_to = [&](GpsTime goal) {
+    for (int segment = 0; segment < kMaxSegments && epoch_ < goal; ++segment) {
+      const GpsTime next = goal - epoch_ > kSegment ? epoch_ + kSegment : goal;
+      const Propagation propagation(epoch_, settings_.earth, sun_eci);
+      const double dt = seconds(next - epoch_);
+      filter_.advance(own_orbit_.state(), sun_eci, dt);
+      own_orbit_.advance(propagation, dt);
+      if (apriori_.has_value()) apriori_ = propagation.coast(*apriori_, dt);
+      epoch_ = next;
+    }
+  };
+  for (const Burn& burn : burns) {
+    if (burn.time < epoch_) continue;
+    if (burn.time >= time) break;
+    coast_to(burn.time);
+    const orbit::CartesianState servicer = own_orbit_.state();
+    const Vector3 dv_eci = orbit::R_rtn_eci(servicer).transpose() * burn.dv_rtn;
+    const double sigma =
+        settings_.filter.maneuver_sigma + settings_.filter.maneuver_sigma_relative * math::sqrt(dv_eci.squaredNorm());
+    filter_.add_servicer_impulse(servicer, dv_eci);
+    own_orbit_.add_impulse(dv_eci, sigma);
+    start_.interrupt_orbit();
+  }
+  coast_to(time);
+}
+
+PoseSample PoseNavigation::sample_of(const PoseEpoch& epoch, const CameraPlace& camera) const {
+  const pose::PnpSolution& pnp = *epoch.pnp;
+  const Matrix3 R_eci_camera = camera.R_camera_eci.transpose();
+  PoseSample sample;
+  sample.time = epoch.time;
+  sample.servicer = own_orbit_.state();
+  sample.relative_eci = R_eci_camera * pnp.pose.position_camera_m + camera.origin_eci;
+  sample.covariance_eci = R_eci_camera * pnp.covariance.bottomRightCorner<3, 3>() * camera.R_camera_eci;
+  sample.q_eci_body = Eigen::Quaterniond(Matrix3(R_eci_camera * pnp.pose.R_camera_body)).normalized();
+  sample.attitude_sigma = math::sqrt(pnp.covariance.topLeftCorner<3, 3>().trace() / 3.0);
+  return sample;
+}
+
+PoseFate PoseNavigation::begin() {
+  const auto attitude = start_.attitude();
+  const auto orbit = start_.orbit();
+  if (!attitude.ok() || !orbit.ok()) return PoseFate::kStart;
+  filter_.begin(orbit.value().roe, orbit.value().covariance, attitude.value().attitude, attitude.value().covariance);
+  refused_in_a_row_ = 0;
+  far_in_a_row_ = 0;
+  if (filter_.started()) last_measurement_ = epoch_;
+  return PoseFate::kStart;
+}
+
+/// From what the last images agree on; the image at hand is among them.
+bool PoseNavigation::renew_attitude() {
+  const auto attitude = start_.attitude();
+  if (!attitude.ok()) return false;
+  filter_.set_attitude(attitude.value().attitude, attitude.value().covariance);
+  ++counters_.attitudes_reset;
+  return true;
+}
+
+bool PoseNavigation::is_far_from_filter(const PoseSample& sample) const {
+  const auto seen = filter_.target(own_orbit_.state());
+  if (!seen.ok()) return true;
+  const Vector3 range_sigma = settings_.start.range_sigma_share * sample.relative_eci;
+  const Matrix3 covariance = filter_.position_covariance(own_orbit_.state()) + sample.covariance_eci +
+                             range_sigma * range_sigma.transpose() + 1e-4 * Matrix3::Identity();
+  const math::Cholesky<3> factor(covariance);
+  if (!factor.ok()) return true;
+  const Vector3 miss = sample.relative_eci - (seen.value().position_eci - own_orbit_.state().position_eci);
+  return !(factor.solve_lower(miss).squaredNorm() <= settings_.position_gate);
+}
+
+PoseFate PoseNavigation::take_position_only(const PoseEpoch& epoch, const CameraPlace& camera) {
+  if (!epoch.pnp.has_value()) return PoseFate::kNone;
+  const PoseSample sample = sample_of(epoch, camera);
+  if (is_far_from_filter(sample)) {
+    count_refusal(true);
+    return PoseFate::kRefused;
+  }
+  far_in_a_row_ = 0;
+  // Neighbouring images err alike.
+  const Vector3 range_sigma = settings_.start.range_sigma_share * sample.relative_eci;
+  const Matrix3 covariance =
+      4.0 * sample.covariance_eci + range_sigma * range_sigma.transpose() + 1e-4 * Matrix3::Identity();
+  filter_.take_position(sample.relative_eci, covariance, own_orbit_.state());
+  ++counters_.positions_used;
+  last_measurement_ = epoch.time;
+  return PoseFate::kPosition;
+}
+
+PoseFate PoseNavigation::take_keypoints(const PoseEpoch& epoch, const CameraPlace& camera) {
+  last_update_ = filter_.take(*epoch.keypoints, camera, own_orbit_.state());
+  if (last_update_.usable == 0) return PoseFate::kNone;
+  counters_.keypoints_used += last_update_.accepted ? last_update_.used : 0;
+  counters_.keypoints_refused += last_update_.usable - (last_update_.accepted ? last_update_.used : 0);
+  if (last_update_.accepted) {
+    ++counters_.images_used;
+    refused_in_a_row_ = 0;
+    far_in_a_row_ = 0;
+    last_measurement_ = epoch.time;
+    return PoseFate::kFilter;
+  }
+  if (last_update_.is_mostly_refused(settings_.filter.most_refused_share)) {
+    count_refusal(epoch.pnp.has_value() && is_far_from_filter(sample_of(epoch, camera)));
+  }
+  return PoseFate::kRefused;
+}
+
+void PoseNavigation::count_refusal(bool is_position_far) {
+  ++counters_.images_refused;
+  ++refused_in_a_row_;
+  far_in_a_row_ = is_position_far ? far_in_a_row_ + 1 : 0;
+  if (far_in_a_row_ >= kFarBeforeRestart || refused_in_a_row_ >= kRefusedBeforeRestart) return restart();
+  if (!is_position_far && refused_in_a_row_ >= kRefusedBeforeAttitude && renew_attitude()) refused_in_a_row_ = 0;
+}
+
+void PoseNavigation::restart() {
+  ++counters_.restarts;
+  filter_.reset();
+  refused_in_a_row_ = 0;
+  far_in_a_row_ = 0;
+  static_cast<void>(begin());
+}
+
+Result<orbit::CartesianState> PoseNavigation::target() const {
+  if (!has_target()) return Status::kNotReady;
+  if (filter_.started()) return filter_.target(own_orbit_.state());
+  return *apriori_;
+}
+
+Vector6 PoseNavigation::a_roe_m() const {
+  const auto servicer = orbit::qns_from_cartesian(own_orbit_.state());
+  if (!servicer.ok() || !has_target()) return Vector6::Zero();
+  if (filter_.started()) return servicer.value().a * filter_.roe();
+  const auto roe = roe_of_target(own_orbit_.state(), *apriori_);
+  return roe.ok() ? Vector6(servicer.value().a * roe.value()) : Vector6(Vector6::Zero());
+}
+
+Matrix6 PoseNavigation::a_roe_covariance_m2() const {
+  const auto servicer = orbit::qns_from_cartesian(own_orbit_.state());
+  if (!servicer.ok() || !valid()) return Matrix6::Zero();
+  return servicer.value().a * servicer.value().a * filter_.roe_covariance();
+}
+
+/// By the slope of the exact map, by differences.
+Matrix6 PoseNavigation::covariance_rtn() const {
+  constexpr double kLittle = 1e-7;
+  const orbit::CartesianState servicer = own_orbit_.state();
+  const auto chief = orbit::qns_from_cartesian(servicer);
+  if (!chief.ok() || !valid()) return Matrix6::Zero();
+  Matrix6 slope;
+  for (int k = 0; k < 6; ++k) {
+    const auto plus = target_from_roe(chief.value(), filter_.roe() + kLittle * Vector6::Unit(k));
+    const auto minus = target_from_roe(chief.value(), filter_.roe() - kLittle * Vector6::Unit(k));
+    if (!plus.ok() || !minus.ok()) return Matrix6::Zero();
+    const auto a = orbit::relative_state_rtn(servicer, plus.value());
+    const auto b = orbit::relative_state_rtn(servicer, minus.value());
+    slope.col(k) << (a.position_rtn - b.position_rtn) / (2.0 * kLittle),
+        (a.velocity_rtn - b.velocity_rtn) / (2.0 * kLittle);
+  }
+  return slope.lazyProduct(filter_.roe_covariance()).lazyProduct(slope.transpose());
+}
+
+Result<PosePrediction> PoseNavigation::predict(GpsTime time, const Vector3& sun_eci,
+                                               std::span<const Burn> burns) const {
+  const auto now = target();
+  if (!now.ok()) return now.status();
+  if (time < epoch_ || time - epoch_ > kFarthestAhead) return Status::kOutOfRange;
+  PosePrediction prediction;
+  prediction.servicer = own_orbit_.state();
+  prediction.has_attitude = has_attitude();
+  prediction.attitude = filter_.attitude();
+  orbit::CartesianState target = now.value();
+  GpsTime reached = epoch_;
+  const auto coast_to = [&](GpsTime goal) {
+    for (int segment = 0; segment < kMaxSegments && reached < goal; ++segment) {
+      const GpsTime next = goal - reached > kSegmentAhead ? reached + kSegmentAhead : goal;
+      const Propagation propagation(reached, settings_.earth, sun_eci);
+      const double dt = seconds(next - reached);
+      if (prediction.has_attitude) {
+        const GravityGradient gradient = gravity_gradient_at(target.position_eci + 0.5 * dt * target.velocity_eci);
+        prediction.attitude = turned_on(prediction.attitude, filter_.inertia(), gradient, dt);
+      }
+      prediction.servicer = propagation.coast(prediction.servicer, dt);
+      target = propagation.coast(target, dt);
+      reached = next;
+    }
+  };
+  for (const Burn& burn : burns) {
+    if (burn.time < reached) continue;
+    if (burn.time >= time) break;
+    coast_to(burn.time);
+    prediction.servicer = orbit::apply_impulse_rtn(prediction.servicer, burn.dv_rtn);
+  }
+  coast_to(time);
+  prediction.relative_eci = target.position_eci - prediction.servicer.position_eci;
+  return prediction;
+}
+
+Result<Vector3> PoseNavigation::predicted_position_camera(GpsTime time, const Matrix3& R_camera_eci,
+                                                          const Vector3& sun_eci, std::span<const Burn> burns) const {
+  const auto prediction = predict(time, sun_eci, burns);
+  if (!prediction.ok()) return prediction.status();
+  return Vector3(R_camera_eci * prediction.value().relative_eci - settings_.camera_position_camera_m);
+}
+
+}  // namespace vbar::fsw::navigation

@@ -1,0 +1,187 @@
+#include "fsw/network/convolution.h"
+
+#include <cstring>
+
+#include "fsw/network/lanes.h"
+#include "fsw/network/number_range.h"
+
+namespace vbar::fsw::network {
+namespace {
+
+constexpr int kBlockCells = 4;
+
+/// Four lanes of each of four neighbouring cells. Written out, not an array with a loop over it, so that it stays in
+/// registers whatever the compiler makes of loops.
+struct Cells {
+  Lanes a, b, c, d;
+};
+
+/// What a block of output reads.
+struct Window {
+  const float* first = nullptr;  ///< first channel under the first cell's kernel
+  std::ptrdiff_t row_step = 0;
+  std::ptrdiff_t cell_step = 0;  ///< from one output cell to the next
+  int rows = 0;                  ///< of the kernel
+  int run = 0;                   ///< numbers of a kernel's row: its columns and their channels lie side by side
+};
+
+/// Sums of four cells, kGroups times four channels.
+template <int kGroups>
+struct Block {
+  Cells groups[static_cast<std::size_t>(kGroups)];
+};
+
+/// Lane k of the cells with four channels' weights.
+template <int k>
+inline void add_products(Cells& sums, Lanes w, const Cells& x) {
+  sums.a = add_product<k>(sums.a, w, x.a);
+  sums.b = add_product<k>(sums.b, w, x.b);
+  sums.c = add_product<k>(sums.c, w, x.c);
+  sums.d = add_product<k>(sums.d, w, x.d);
+}
+
+template <int k>
+inline void add_products(Block<1>& block, const float* weights, const Cells& x) {
+  add_products<k>(block.groups[0], load(weights), x);
+}
+
+template <int k>
+inline void add_products(Block<2>& block, const float* weights, const Cells& x) {
+  add_products<k>(block.groups[0], load(weights), x);
+  add_products<k>(block.groups[1], load(weights + kLanes), x);
+}
+
+/// The sums go in and out by value: then no store in the loop, for fear that they lie where it reads. `weights` in the
+/// panel's order. The run must be a multiple of four.
+template <int kGroups>
+inline Block<kGroups> add_window(Block<kGroups> block, const Window& window, const float* weights) {
+  constexpr int kStep = kGroups * kLanes;
+  const std::ptrdiff_t step = window.cell_step;
+  for (int row = 0; row < window.rows; ++row) {
+    const float* in = window.first + row * window.row_step;
+    for (int i = 0; i < window.run; i += kLanes) {
+      const Cells x{load(in), load(in + step), load(in + 2 * step), load(in + 3 * step)};
+      add_products<0>(block, weights, x);
+      add_products<1>(block, weights + kStep, x);
+      add_products<2>(block, weights + 2 * kStep, x);
+      add_products<3>(block, weights + 3 * kStep, x);
+      in += kLanes;
+      weights += kLanes * kStep;
+    }
+  }
+  return block;
+}
+
+/// The same for the first layer, whose one channel does not fill four lanes.
+template <int kGroups>
+inline Block<kGroups> add_grey_window(Block<kGroups> block, const Window& window, const float* weights) {
+  const std::ptrdiff_t step = window.cell_step;
+  for (int row = 0; row < window.rows; ++row) {
+    const float* in = window.first + row * window.row_step;
+    for (int i = 0; i < window.run; ++i) {
+      const Cells x{all(in[0]), all(in[step]), all(in[2 * step]), all(in[3 * step])};
+      add_products<0>(block, weights, x);
+      ++in;
+      weights += kGroups * kLanes;
+    }
+  }
+  return block;
+}
+
+template <int kGroups>
+Block<kGroups> block_of(const Window& window, const WeightPanel& panel) {
+  Block<kGroups> biases;
+  for (int group = 0; group < kGroups; ++group) {
+    const Lanes bias = load(panel.biases.data() + group * kLanes);
+    biases.groups[group] = {bias, bias, bias, bias};
+  }
+  return window.run % kLanes == 0 ? add_window(biases, window, panel.weights.data())
+                                  : add_grey_window(biases, window, panel.weights.data());
+}
+
+/// Puts the weights of kGroups times four channels from `channel` on side by side.
+template <int kGroups>
+void fill_panel(const Layer& layer, std::span<const std::byte> weights, int channel, WeightPanel& panel) {
+  constexpr std::size_t kWidth = kGroups * kLanes * sizeof(float);
+  const std::size_t row_bytes = static_cast<std::size_t>(layer.out) * sizeof(float);
+  const std::byte* from = weights.data() + static_cast<std::size_t>(channel) * sizeof(float);
+  float* to = panel.weights.data();
+  for (int row = 0; row < layer.kernel * layer.kernel * layer.in; ++row) {
+    std::memcpy(to, from, kWidth);
+    from += row_bytes;
+    to += kGroups * kLanes;
+  }
+  std::memcpy(panel.biases.data(), from, kWidth);
+}
+
+template <int kGroups, class Sink>
+void convolve_channels(const Layer& layer, const FeatureMap& in, int channel, const WeightPanel& panel,
+                       const Sink& sink) {
+  const int margin = layer.kernel / 2;
+  const int side = in.side / layer.stride;
+  Window window{.row_step = in.row_step(),
+                .cell_step = static_cast<std::ptrdiff_t>(layer.stride) * in.channels,
+                .rows = layer.kernel,
+                .run = layer.kernel * in.channels};
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; column += kBlockCells) {
+      window.first = in.cell(row * layer.stride - margin, column * layer.stride - margin);
+      const Block<kGroups> block = block_of<kGroups>(window, panel);
+      for (int group = 0; group < kGroups; ++group) {
+        const Cells& sums = block.groups[group];
+        const int first = channel + group * kLanes;
+        sink(row, column, first, sums.a);
+        sink(row, column + 1, first, sums.b);
+        sink(row, column + 2, first, sums.c);
+        sink(row, column + 3, first, sums.d);
+      }
+    }
+  }
+}
+
+/// `sink(row, column, first channel, four channels)` gets all of the convolution.
+template <class Sink>
+void convolve(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in, WeightPanel& panel,
+              const Sink& sink) {
+  int channel = 0;
+  for (; channel + 2 * kLanes <= layer.out; channel += 2 * kLanes) {
+    fill_panel<2>(layer, weights, channel, panel);
+    convolve_channels<2>(layer, in, channel, panel, sink);
+  }
+  for (; channel < layer.out; channel += kLanes) {
+    fill_panel<1>(layer, weights, channel, panel);
+    convolve_channels<1>(layer, in, channel, panel, sink);
+  }
+}
+
+}  // namespace
+
+void convolve_rectified(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
+                        const FeatureMap& out, WeightPanel& panel) {
+  convolve(layer, weights, in, panel, [&out](int row, int column, int channel, Lanes x) {
+    store(out.cell(row, column) + channel, where_above(x, kLeastActivation));
+  });
+}
+
+void convolve_and_add_enlarged(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
+                               const FeatureMap& sum_map, WeightPanel& panel) {
+  convolve(layer, weights, in, panel, [&sum_map](int row, int column, int channel, Lanes x) {
+    for (int part = 0; part < 4; ++part) {
+      float* const place = sum_map.cell(2 * row + part / 2, 2 * column + part % 2) + channel;
+      store(place, where_beyond(sum(load(place), x), kLeastActivation));
+    }
+  });
+}
+
+void convolve_to_maps(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
+                      std::span<std::array<float, kMapCells>> maps, WeightPanel& panel) {
+  convolve(layer, weights, in, panel, [&](int row, int column, int channel, Lanes x) {
+    const std::size_t place = static_cast<std::size_t>(row * in.side + column);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto map = static_cast<std::size_t>(channel + lane);
+      if (map < maps.size()) maps[map][place] = x[lane];
+    }
+  });
+}
+
+}  // namespace vbar::fsw::network

@@ -1,0 +1,40 @@
+#pragma once
+// Convolution of a feature map with a layer's kernels.
+//
+// Every output number is one sum: its bias, then the products in the order of the weights file, rows of the kernel, its
+// columns, channels in. Four output channels are four lanes; eight of them, over four cells of a row, are worked out
+// together, so that what is loaded is used several times.
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "fsw/network/architecture.h"
+#include "fsw/network/feature_map.h"
+
+namespace vbar::fsw::network {
+
+inline constexpr int kPanelChannels = 8;
+
+/// The weights of eight output channels, put side by side: they are read once for each four cells.
+struct WeightPanel {
+  static constexpr std::size_t kRows = 9 * 128;
+
+  alignas(16) std::array<float, kRows * kPanelChannels> weights{};
+  alignas(16) std::array<float, kPanelChannels> biases{};
+};
+
+/// out = rectified convolution of in. `weights` are the layer's bytes in the file. The shapes must be the layer's: as
+/// many channels, out.side = in.side / stride a multiple of four.
+void convolve_rectified(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
+                        const FeatureMap& out, WeightPanel& panel);
+
+/// sum += convolution of in, each of its cells for two by two of the sum's, which has twice its side.
+void convolve_and_add_enlarged(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
+                               const FeatureMap& sum, WeightPanel& panel);
+
+/// The convolution of in, channel by channel, rows from the top; channels beyond the maps are left out.
+void convolve_to_maps(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
+                      std::span<std::array<float, kMapCells>> maps, WeightPanel& panel);
+
+}  // namespace vbar::fsw::network

@@ -1,0 +1,14 @@
+#pragma once
+// What goes into the keypoint network and what comes out.
+
+#include <cstddef>
+
+namespace vbar::fsw::network {
+
+inline constexpr int kInputSide = 128;  ///< samples of the crop
+inline constexpr int kMapSide = 32;     ///< cells
+inline constexpr int kKeypoints = 11;
+inline constexpr std::size_t kInputSamples = static_cast<std::size_t>(kInputSide) * kInputSide;
+inline constexpr std::size_t kMapCells = static_cast<std::size_t>(kMapSide) * kMapSide;
+
+}  // namespace vbar::fsw::network

@@ -1,0 +1,37 @@
+#pragma once
+// The pose that fits keypoints best on the distorted image, each weighted by its covariance: Gauss-Newton on the left
+// perturbations of a pose, damped (Levenberg 1944, Marquardt 1963), with Huber's weights (1964).
+
+#include <span>
+
+#include "fsw/core/result.h"
+#include "fsw/core/types.h"
+#include "fsw/imaging/camera_model.h"
+#include "fsw/pose/pnp.h"
+
+namespace vbar::fsw::pose {
+
+/// A keypoint on the detector and on the target (m).
+struct Observation {
+  Vector2 pixel = Vector2::Zero();
+  Matrix2 whitening = Matrix2::Identity();  ///< times a miss in px has unit covariance
+  Vector3 body = Vector3::Zero();
+};
+
+/// Residuals beyond so many sigmas weigh by their length, not its square.
+inline constexpr double kHuberSigmas = 3.0;
+
+struct RefinedPose {
+  TargetPose pose;
+  double cost = 0.0;                      ///< half of the whitened squares, by Huber
+  Matrix6 information = Matrix6::Zero();  ///< J'J of turn (about the camera's axes, rad) and position (m)
+};
+
+/// Where the pose puts the keypoint, less where it was seen, px. kOutOfRange if it is not before the camera.
+Result<Vector2> miss_of(const Observation& observation, const TargetPose& pose, const imaging::CameraModel& camera);
+
+/// From a pose with all points before the camera, else kOutOfRange. kSingular where the points leave the pose open.
+Result<RefinedPose> refine_pose(std::span<const Observation> observations, const imaging::CameraModel& camera,
+                                const TargetPose& start);
+
+}  // namespace vbar::fsw::pose

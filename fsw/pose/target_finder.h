@@ -1,0 +1,76 @@
+#pragma once
+// Where in an image a large bright structure is that could be the target, without knowing anything of where it should
+// be.
+//
+// The image in blocks of 8 x 8 px: stars and hot pixels vanish in them, and a shadow's faint light stands out of the
+// noise. Blocks well above the image's dark part, gaps of one block bridged, make structures; the largest is the target
+// unless it is too small, too large or along the image's edge, as the Earth's limb and glare from beside are. Where
+// nothing will do the level is raised: stray light that falls off across the image then falls apart.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "fsw/imaging/image.h"
+#include "fsw/pose/crop.h"
+
+namespace vbar::fsw::pose {
+
+enum class Finding : std::uint8_t {
+  kTarget = 0,
+  kNothing,  ///< light, but not the target's
+  kDark,     ///< no more than noise and specks
+  kBlinded,  ///< more of the image saturated than a target can
+};
+
+/// What the detector gives without light, and with too much.
+struct DetectorLevels {
+  double dark_level_dn = 64.0;
+  double noise_dn = 2.0;  ///< 1 sigma of a pixel
+  int saturation_dn = 4000;
+};
+
+/// Some 100 kB, all of it work space.
+class TargetFinder {
+ public:
+  /// The image has width * height pixels. Bad levels find nothing.
+  Finding find(const imaging::ImageView& image, const DetectorLevels& levels);
+
+  /// After kTarget: the square around it, a margin included.
+  [[nodiscard]] const CropRegion& region() const { return region_; }
+
+ private:
+  static constexpr int kBlock = 8;  ///< px
+  /// (w / 8 + 1) (h / 8 + 1) within kMaxPixels and kMaxSide.
+  static constexpr std::size_t kMaxBlocks = 6800;
+
+  /// Of blocks, the last ones included.
+  struct Structure {
+    int left = 0, right = 0, top = 0, bottom = 0;
+    int blocks = 0;
+    int at_edge = 0;  ///< of them, at the image's edge
+  };
+
+  void average_blocks(const imaging::ImageView& image, const DetectorLevels& levels);
+  void average_block(const imaging::ImageView& image, const DetectorLevels& levels, int column, int row);
+  [[nodiscard]] double level_below(double share) const;
+  [[nodiscard]] bool find_above(double level, Structure& best);
+  [[nodiscard]] Structure grow_from(int column, int row);
+  [[nodiscard]] bool is_like_target(const Structure& structure) const;
+  [[nodiscard]] CropRegion region_around(const Structure& structure, const imaging::ImageFrame& frame) const;
+  [[nodiscard]] std::size_t place(int column, int row) const {
+    return static_cast<std::size_t>(row * columns_ + column);
+  }
+
+  int columns_ = 0;
+  int rows_ = 0;
+  int pixels_there_ = 0;
+  int saturated_ = 0;
+  bool is_large_ = false;                   ///< of the level in work: a structure was more than a speck
+  std::array<double, kMaxBlocks> light_{};  ///< above the dark level, DN
+  std::array<bool, kMaxBlocks> is_open_{};  ///< above the level in work and in no structure yet
+  std::array<std::int16_t, kMaxBlocks> to_visit_{};
+  CropRegion region_;
+};
+
+}  // namespace vbar::fsw::pose

@@ -1,0 +1,128 @@
+"""How far the network's maps can be trusted: fits the calibration on crops that training never saw, writes it into the
+weights file, and the figures on held-out crops into a file beside it."""
+
+import argparse
+import pathlib
+
+import numpy
+import torch
+
+import augment
+import crops
+import decode
+import keypoint_network
+
+TARGET_SIGMA_CELLS = 1.0
+GROSS_CELLS = 3.0  # farther off than this a keypoint is wrong, not inexact
+MOST_GROSS = 0.02  # of the keypoints that are accepted
+CHI_SQUARE_MEDIAN = 1.3863  # of two degrees of freedom; their mean is 2
+CLASSES = 6  # of sharpness, all to have the right median
+
+
+def seen(layers, table):
+    """Errors (cells, n x 2), second moments and peaks of the keypoints that count."""
+    with torch.no_grad():
+        logits = torch.cat([keypoint_network.run_folded(layers, augment.standardised(augment.samples_of(images)))
+                            for images in numpy.array_split(table["image"], max(1, len(table) // 100))])
+    places, moments, peaks = decode.decode(logits)
+    counts = table["counts"] > 0.5
+    return (places - table["cells"])[counts], moments[counts], peaks[counts]
+
+
+def least_peak(errors, peaks):
+    """The least peak above which no more than MOST_GROSS are wrong."""
+    is_gross = numpy.linalg.norm(errors, axis=1) > GROSS_CELLS
+    for least in numpy.arange(0.10, 0.70, 0.01):
+        accepted = peaks >= least
+        if accepted.any() and is_gross[accepted].mean() <= MOST_GROSS:
+            break
+    return float(least)
+
+
+def normalised(errors, moments, scale, floor):
+    covariance = decode.covariances(moments, scale, floor, TARGET_SIGMA_CELLS)
+    return numpy.einsum("ni,nij,nj->n", errors, numpy.linalg.inv(covariance), errors)
+
+
+def fit_covariance(errors, moments):
+    """Scale and floor (cells^2) that give classes of sharpness medians, and all of them a mean, like chi-square's. The
+    mean is of what is below 20: the tail beyond is the tracker's to reject."""
+    spread = numpy.trace(moments, axis1=1, axis2=2)
+    classes = numpy.array_split(numpy.argsort(spread), CLASSES)
+    best = None
+    for floor in numpy.geomspace(0.001, 0.5, 40):
+        for scale in numpy.geomspace(0.02, 5.0, 40):
+            square = normalised(errors, moments, scale, floor)
+            cost = sum(numpy.log(numpy.median(square[c]) / CHI_SQUARE_MEDIAN)**2 for c in classes) / CLASSES
+            cost += 0.5 * numpy.log(square[square < 20.0].mean() / 2.0)**2
+            if best is None or cost < best[0]:
+                best = (cost, float(scale), float(floor))
+    return best[1:]
+
+
+def figures(errors, moments, peaks, calibration):
+    """Of held-out keypoints."""
+    scale, floor, _, least = calibration
+    accepted = peaks >= least
+    length = 4.0 * numpy.linalg.norm(errors, axis=1)
+    square = normalised(errors[accepted], moments[accepted], scale, floor)
+    return {
+        "keypoints": len(errors),
+        "median_error_samples": numpy.median(length),
+        "error_90_samples": numpy.quantile(length, 0.9),
+        "rejected_share": 1.0 - accepted.mean(),
+        "accepted_median_error_samples": numpy.median(length[accepted]),
+        "accepted_error_90_samples": numpy.quantile(length[accepted], 0.9),
+        "accepted_gross_share": (length[accepted] > 4.0 * GROSS_CELLS).mean(),
+        "normalised_square_median": numpy.median(square),
+        "normalised_square_mean_below_20": square[square < 20.0].mean(),
+        "normalised_square_share_above_20": (square >= 20.0).mean(),
+    }
+
+
+def tables_of(folder, kind):
+    return numpy.concatenate([crops.read_shard(path) for path in crops.shards(folder, kind)])
+
+
+def page(options, calibration, counts, held_out):
+    lines = ["# How data/networks/tango_keypoints.bin was made, and what it does. Written by host_sim/training/calibrate.py.",
+             f'command = "{options.command}"', f"training_crops = {counts[0]}", f"calibration_crops = {counts[1]}",
+             f"held_out_crops = {counts[2]}", f"seconds_of_training = {options.trained_s:.0f}",
+             f"images_shown = {options.images}", "", "[calibration]",
+             f"covariance_scale = {calibration[0]:.4f}", f"covariance_floor_cells2 = {calibration[1]:.5f}",
+             f"target_sigma_cells = {calibration[2]:.1f}", f"least_peak = {calibration[3]:.2f}", "",
+             "# Errors in samples of the crop, 128 a side; a cell of a map is four.", "[held_out]"]
+    lines += [f"{name} = {value:.4g}" if isinstance(value, float) else f"{name} = {value}" for name, value in held_out.items()]
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--crops", type=pathlib.Path, required=True)
+    parser.add_argument("--weights", type=pathlib.Path, required=True, help="read, and with --out written there")
+    parser.add_argument("--out", type=pathlib.Path, help="calibrated weights; its figures get the same name and .toml")
+    parser.add_argument("--checkpoint", type=pathlib.Path, help="of the training, for how long it took")
+    parser.add_argument("--command", default="ci/train.sh")
+    options = parser.parse_args()
+    kept = torch.load(options.checkpoint) if options.checkpoint else {"step": 0, "elapsed_s": 0.0}
+    options.trained_s, options.images = kept["elapsed_s"], 32 * kept["step"]
+    layers, _ = keypoint_network.read_weights(options.weights.read_bytes())
+    calibration_table, held_out_table = tables_of(options.crops, "calibration"), tables_of(options.crops, "held_out")
+    errors, moments, peaks = seen(layers, calibration_table)
+    least = least_peak(errors, peaks)
+    inexact = (peaks >= least) & (numpy.linalg.norm(errors, axis=1) <= GROSS_CELLS)
+    calibration = (*fit_covariance(errors[inexact], moments[inexact]), TARGET_SIGMA_CELLS, least)
+    # As the file holds them.
+    calibration = tuple(float(numpy.float32(value)) for value in calibration)
+    held_out = {name: float(value) if not isinstance(value, int) else value
+                for name, value in figures(*seen(layers, held_out_table), calibration).items()}
+    count = sum(len(crops.read_shard(path)) for path in crops.shards(options.crops, "training"))
+    text = page(options, calibration, (count, len(calibration_table), len(held_out_table)), held_out)
+    print(text)
+    if options.out:
+        options.out.write_bytes(keypoint_network.weights_file(layers, calibration))
+        options.out.with_suffix(".toml").write_text(text)
+
+
+if __name__ == "__main__":
+    main()

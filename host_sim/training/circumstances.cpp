@@ -1,0 +1,101 @@
+#include "host_sim/training/circumstances.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host_sim/mission/camera_file.h"
+#include "host_sim/training/draws.h"
+#include "host_sim/twins/camera/optics.h"
+
+namespace vbar::training {
+namespace {
+
+using fsw::Matrix3;
+using fsw::Vector2;
+using fsw::Vector3;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kEarthRadiusM = 6378137.0;
+constexpr double kCropRadii = 2.2;  // a crop's side in radii of the target as it looks
+
+/// Where the target's centre lies on the detector: mostly where all of it is in the image if it fits, else anywhere.
+Vector2 draw_centre(const twins::camera::Region& region, double radius_px, engine::RandomStream& stream) {
+  const bool is_whole = stream.uniform() < 0.7;
+  const auto along = [&](int first, int pixels) {
+    const double least = 0.1 * pixels;
+    const double half = is_whole ? std::max(least, 0.5 * pixels - radius_px) : 0.5 * pixels;
+    return first + 0.5 * (pixels - 1) + stream.uniform(-half, half);
+  };
+  const double x = along(region.x, region.width);
+  return {x, along(region.y, region.height)};
+}
+
+/// Turns the sky at random about the camera, with the Earth's centre along nadir_camera and the pole somewhere.
+Eigen::Quaterniond draw_sky(engine::RandomStream& stream) {
+  return attitude(stream);
+}
+
+void draw_light(Circumstances& drawn, engine::RandomStream& stream) {
+  const double earth_radius = std::asin(kEarthRadiusM / (kEarthRadiusM + kAltitudeM));
+  const double limb_in_field = earth_radius + 12.0 * kDegree;
+  const Vector3 to_camera = -drawn.centre_of_mass_camera.normalized();
+  const bool is_level = stream.uniform() < 0.7;
+  const bool is_behind = stream.uniform() < 0.04;
+  constexpr int kTries = 200;
+  for (int i = 0; i < kTries; ++i) {
+    const double down = is_level ? stream.uniform(limb_in_field, 115.0 * kDegree) : stream.uniform(0.0, limb_in_field);
+    drawn.nadir_camera = at_angle(Vector3::UnitZ(), down, stream);
+    drawn.phase_angle = (is_behind ? stream.uniform(130.0, 150.0) : stream.uniform(0.0, 130.0)) * kDegree;
+    drawn.sun_camera = at_angle(to_camera, drawn.phase_angle, stream);
+    const double from_nadir = std::acos(std::clamp(drawn.sun_camera.dot(drawn.nadir_camera), -1.0, 1.0));
+    const double from_boresight = std::acos(std::clamp(drawn.sun_camera.z(), -1.0, 1.0));
+    if (from_nadir > earth_radius && from_boresight > 25.0 * kDegree) break;
+  }
+  drawn.sunlit = stream.uniform() < 0.05 ? stream.uniform(0.05, 1.0) : 1.0;
+  drawn.glow_electrons = stream.uniform() < 0.3 ? log_uniform(5.0, 2000.0, stream) : 0.0;
+  drawn.glow_slope.x() = stream.uniform(-0.4, 0.4);
+  drawn.glow_slope.y() = stream.uniform(-0.4, 0.4);
+}
+
+}  // namespace
+
+twins::camera::CameraSettings close_range_camera(const std::filesystem::path& data_directory) {
+  twins::camera::CameraSettings camera = mission::load_camera(data_directory / "cameras" / "tron.toml");
+  constexpr int kBinning = 2;
+  twins::camera::DetectorSettings& detector = camera.detector;
+  detector.width /= kBinning;
+  detector.height /= kBinning;
+  detector.pixel_pitch_um *= kBinning;
+  detector.full_well_electrons *= kBinning * kBinning;
+  detector.read_noise_electrons *= kBinning;
+  detector.dark_electrons_per_s *= kBinning * kBinning;
+  detector.bits = 12;
+  detector.offset_dn = 64.0;
+  detector.gain_dn_per_electron = 0.03125;
+  for (double& c : camera.optics.principal_point_px) c = (c + 0.5) / kBinning - 0.5;
+  camera.region = {(detector.width - 800) / 2, (detector.height - 500) / 2, 800, 500};
+  camera.exposure_s = kNominalExposureS;
+  return camera;
+}
+
+Circumstances draw_circumstances(const twins::camera::CameraSettings& camera, const TargetShape& shape,
+                                 engine::RandomStream& stream) {
+  const twins::camera::Optics optics(camera);
+  Circumstances drawn;
+  const double range = stream.uniform(kLeastRangeM, kMostRangeM);
+  const double radius_px = shape.radius_m * optics.focal_length_px() / range;
+  const Vector2 centre_px = draw_centre(camera.region, radius_px, stream);
+  drawn.centre_of_mass_camera = range * optics.direction_of(centre_px);
+  drawn.R_camera_body = attitude(stream).toRotationMatrix();
+  draw_light(drawn, stream);
+  drawn.q_camera_eci = draw_sky(stream);
+  drawn.exposure = log_uniform(0.35, 3.0, stream);
+  drawn.point_spread_sigma_px = stream.uniform(0.5, 1.3);
+  drawn.region.side_px = kCropRadii * radius_px * log_uniform(0.8, 1.4, stream);
+  const double off_x = stream.uniform(-0.12, 0.12), off_y = stream.uniform(-0.12, 0.12);
+  drawn.region.centre_px = centre_px + drawn.region.side_px * Vector2(off_x, off_y);
+  return drawn;
+}
+
+}  // namespace vbar::training

@@ -1,0 +1,23 @@
+#pragma once
+// What crops are for.
+
+#include <string_view>
+
+namespace vbar::training {
+
+/// Held-out crops show materials near those of the target's own file, which no crop of the other kinds does.
+enum class CropKind { kTraining, kCalibration, kHeldOut };
+
+[[nodiscard]] constexpr std::string_view name_of(CropKind kind) {
+  switch (kind) {
+    case CropKind::kCalibration:
+      return "calibration";
+    case CropKind::kHeldOut:
+      return "held_out";
+    case CropKind::kTraining:
+      break;
+  }
+  return "training";
+}
+
+}  // namespace vbar::training

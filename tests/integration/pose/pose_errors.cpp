@@ -1,0 +1,73 @@
+// vbar_pose_errors: the pose network's front end on crops of known poses (shards of vbar_training_crops): how large its
+// errors are, and whether its covariances are true.
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "tests/integration/pose/front_end_errors.h"
+#include "tests/support/tango_view.h"
+
+namespace {
+
+using namespace vbar;
+
+struct Order {
+  std::vector<std::filesystem::path> shards;
+  std::string weights;
+  std::size_t most = 1'000'000;
+  bool shows_acceptance = false;
+  fsw::pose::PnpSettings pnp;
+};
+
+std::vector<char> file_bytes(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error(file + ": cannot be read");
+  return std::vector<char>(std::istreambuf_iterator<char>(in), {});
+}
+
+void judge(const Order& order) {
+  const std::vector<char> own = order.weights.empty() ? std::vector<char>() : file_bytes(order.weights);
+  const auto weights = own.empty() ? fsw::network::weights_on_board() : std::as_bytes(std::span(own));
+  test::FrontEndErrors errors(weights, test::tango_shape(), order.pnp);
+  for (const auto& shard : order.shards) {
+    for (const test::LabelledView& view : test::read_shard(shard)) {
+      if (errors.poses().size() < order.most) errors.add(view);
+    }
+  }
+  fmt::print("{}", errors.report());
+  if (order.shows_acceptance) fmt::print("\n{}", errors.acceptance_table());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Order order;
+  CLI::App app("Errors of the pose network's front end on labelled crops");
+  app.add_option("shards", order.shards, "files of vbar_training_crops")->required()->check(CLI::ExistingFile);
+  app.add_option("--weights", order.weights, "file of weights; else those on board");
+  app.add_option("--most", order.most, "crops");
+  app.add_option("--least-inliers", order.pnp.least_inliers, "of a pose")->capture_default_str();
+  app.add_option("--most-mean-square", order.pnp.most_mean_square, "of a pose's whitened residuals")
+      ->capture_default_str();
+  app.add_option("--inlier-sigmas", order.pnp.inlier_sigmas, "of an inlier")->capture_default_str();
+  app.add_option("--inlier-floor-px", order.pnp.inlier_floor_px, "of an inlier")->capture_default_str();
+  app.add_flag("--acceptance", order.shows_acceptance, "a table of other limits");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    judge(order);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "vbar_pose_errors: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,222 @@
+#include "tests/integration/pose_filter/close_flight.h"
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include <Eigen/Dense>
+
+#include "fsw/math/cholesky6.h"
+#include "fsw/math/math.h"
+#include "fsw/navigation/roe_filter.h"
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
+#include "fsw/orbit/rtn.h"
+#include "fsw/orbit/secular.h"
+#include "host_sim/truth/attitude/gravity_gradient_torque.h"
+#include "host_sim/truth/attitude/rigid_body.h"
+#include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/truth/earth/sun_moon.h"
+#include "host_sim/truth/earth/time_scales.h"
+#include "host_sim/truth/truth_model.h"
+
+namespace vbar::test {
+namespace {
+
+using fsw::Vector3;
+using fsw::Vector6;
+namespace nav = fsw::navigation;
+namespace orbit = fsw::orbit;
+
+constexpr double kDegree = fsw::math::kDegree;
+constexpr double kA = 7078138.944;
+
+template <class T>
+T must(const fsw::Result<T>& result) {
+  if (!result.ok()) throw std::runtime_error("no orbit");
+  return result.value();
+}
+
+Vector6 metres(double da, double dl, double dex, double dey, double dix, double diy) {
+  return (Vector6() << da, dl, dex, dey, dix, diy).finished();
+}
+
+/// From one waypoint to the next by burns at equal times: of all that lead there, those of the least sum of squares.
+void plan_leg(const orbit::QnsElements& servicer_mean, double from_s, double to_s, const Vector6& start,
+              const Vector6& goal, fsw::GpsTime epoch, std::vector<nav::Burn>& burns) {
+  constexpr int kBurns = 5;
+  Eigen::MatrixXd reach(6, 3 * kBurns);
+  const auto at = [&](double t) { return orbit::propagate_secular(servicer_mean, t); };
+  const auto moved = [&](double t) { return orbit::roe_transition_j2(at(t), to_s - t); };
+  std::array<double, kBurns> times{};
+  for (int k = 0; k < kBurns; ++k) {
+    times[static_cast<std::size_t>(k)] = from_s + (k + 0.37) / kBurns * (to_s - from_s);
+    const double t = times[static_cast<std::size_t>(k)];
+    reach.middleCols<3>(3 * k) = -moved(t) * orbit::roe_control_matrix_near_circular(at(t));
+  }
+  const Vector6 needed = (goal - moved(from_s) * start) / kA;
+  const Eigen::VectorXd dv = reach.completeOrthogonalDecomposition().solve(needed);
+  for (int k = 0; k < kBurns; ++k) {
+    const double t = std::round(times[static_cast<std::size_t>(k)]);
+    burns.push_back({epoch + fsw::nearest_duration(t), dv.segment<3>(3 * k)});
+  }
+}
+
+truth::TruthSettings truth_settings(double hours) {
+  truth::TruthSettings settings;
+  settings.epoch = truth::gps_from_utc("2011-07-19T16:00:00Z");
+  settings.end = settings.epoch + fsw::nearest_duration(hours * 3600.0 + 600.0);
+  settings.data_directory = std::string(VBAR_SOURCE_DIR) + "/data";
+  settings.forces = {.drag = true,
+                     .geomagnetic_index = truth::GeomagneticIndex::kThreeHourly,
+                     .radiation_pressure = true,
+                     .shadow = truth::Shadow::kConical,
+                     .sun = true,
+                     .moon = true,
+                     .solid_tides = true,
+                     .relativity = true};
+  return settings;
+}
+
+fsw::Matrix3 tango_inertia() {
+  fsw::Matrix3 inertia;
+  inertia << 2.685703125, 0.0, 0.0, 0.0, 3.410185625, -0.1206, 0.0, -0.1206, 3.154350833333333;
+  return inertia;
+}
+
+}  // namespace
+
+CloseFlight fly_closely(double hours) {
+  const truth::TruthSettings settings = truth_settings(hours);
+  truth::TruthModel model(settings);
+  const orbit::QnsElements servicer{7087300.0, 0.0015, 0.0, 98.18 * kDegree, 207.0 * kDegree, -122.38 * kDegree};
+  const orbit::QnsElements servicer_mean = must(orbit::mean_from_osculating(servicer));
+  const Vector6 eight = metres(-0.5, -10.0, 0.0, 2.0, 0.0, 1.0);
+  const orbit::QnsElements target_mean = orbit::qns_from_roe(servicer_mean, eight / kA);
+  truth::SpacecraftSettings first{"servicer",
+                                  {},
+                                  {.mass_kg = 154.0,
+                                   .drag_area_m2 = 1.3,
+                                   .drag_coefficient = 2.5,
+                                   .radiation_area_m2 = 2.5,
+                                   .radiation_coefficient = 1.32}};
+  truth::SpacecraftSettings second{"target",
+                                   {},
+                                   {.mass_kg = 40.0,
+                                    .drag_area_m2 = 0.38,
+                                    .drag_coefficient = 2.25,
+                                    .radiation_area_m2 = 0.55,
+                                    .radiation_coefficient = 1.2}};
+  first.osculating = must(orbit::cartesian_from_qns(servicer));
+  second.osculating = must(orbit::cartesian_from_qns(must(orbit::osculating_from_mean(target_mean))));
+  model.add_spacecraft(first);
+  model.add_spacecraft(second);
+
+  CloseFlight flight;
+  const Vector6 nine = metres(0.0, -7.0, 1.0, 0.0, 2.0, 0.0);
+  const Vector6 ten = metres(0.0, -8.5, 1.0, 0.0, 1.0, 0.0);
+  plan_leg(servicer_mean, 0.0, 3600.0, eight, nine, settings.epoch, flight.burns);
+  plan_leg(servicer_mean, 3600.0, 8100.0, nine, ten, settings.epoch, flight.burns);
+  const auto now = model.data().earth_orientation->at(settings.epoch);
+  const auto later = model.data().earth_orientation->at(settings.epoch, 86400.0);
+  flight.earth = {.epoch = settings.epoch,
+                  .ut1_minus_gps_s = now.ut1_minus_tai_s + 19.0,
+                  .ut1_rate = (later.ut1_minus_tai_s - now.ut1_minus_tai_s) / 86400.0,
+                  .pole_x = now.pole_x,
+                  .pole_y = now.pole_y};
+
+  truth::SunMoonInterpolator ephemeris;
+  std::size_t next_burn = 0;
+  const auto count = static_cast<std::size_t>(hours * 3600.0 / kImagePeriod_s + 1.5);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double t = static_cast<double>(k) * kImagePeriod_s;
+    CloseEpoch epoch;
+    epoch.time = settings.epoch + fsw::nearest_duration(t);
+    for (; next_burn < flight.burns.size() && flight.burns[next_burn].time < epoch.time; ++next_burn) {
+      model.advance_to(flight.burns[next_burn].time);
+      model.apply_impulse_rtn(0, flight.burns[next_burn].dv_rtn);
+    }
+    model.advance_to(epoch.time);
+    epoch.servicer = model.state(0);
+    epoch.target = model.state(1);
+    epoch.sun_eci = ephemeris.at(truth::tt_of(settings.epoch, t)).sun_eci.normalized();
+    epoch.is_target_lit = nav::is_sunlit(epoch.target.position_eci, epoch.sun_eci);
+    flight.epochs.push_back(epoch);
+  }
+  return flight;
+}
+
+std::vector<nav::AttitudeState> tumble(const CloseFlight& flight, double rate_deg_s, unsigned seed) {
+  std::mt19937 random(seed + 1000);
+  std::normal_distribution<double> normal;
+  const auto draw = [&] { return normal(random); };
+  truth::AttitudeState start;
+  start.q_body_eci.coeffs() << draw(), draw(), draw(), draw();
+  start.q_body_eci.normalize();
+  Vector3 axis;
+  axis << draw(), draw(), draw();
+  start.rate_body = rate_deg_s * kDegree * axis.normalized();
+
+  const auto orbit_at = [&flight](double seconds) {
+    const double place = std::max(seconds, 0.0) / kImagePeriod_s;
+    const auto k = std::min(static_cast<std::size_t>(place), flight.epochs.size() - 1);
+    const double past = seconds - kImagePeriod_s * static_cast<double>(k);
+    const orbit::CartesianState& state = flight.epochs[k].target;
+    truth::ForceInput input{};
+    input.position_eci = state.position_eci + past * state.velocity_eci;
+    input.velocity_eci = state.velocity_eci;
+    return input;
+  };
+  std::vector<std::unique_ptr<truth::Torque>> torques;
+  torques.push_back(std::make_unique<truth::GravityGradientTorque>(3.986004415e14, tango_inertia()));
+  truth::RigidBody body(tango_inertia(), std::move(torques), orbit_at, 1e-9, 0.0, start);
+  std::vector<nav::AttitudeState> attitudes;
+  for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
+    const double t = kImagePeriod_s * static_cast<double>(k);
+    body.advance_to(t);
+    const truth::AttitudeState state = body.state_at(t);
+    attitudes.push_back({state.q_body_eci.conjugate(), state.rate_body});
+  }
+  return attitudes;
+}
+
+nav::PoseSettings pose_settings(const CloseFlight& flight) {
+  nav::PoseSettings settings;
+  settings.earth = flight.earth;
+  settings.filter.camera.focal_length_px = {1450.5, 1450.5};
+  settings.filter.camera.principal_point_px = {479.5, 299.5};
+  settings.filter.camera.distortion = {-0.22383, 0.514098, -0.000664997, -0.000214048, -0.131243};
+  settings.filter.inertia = tango_inertia();
+  settings.camera_position_camera_m = {0.1, -0.05, 0.35};
+  const double published[11][3] = {{-.37, -.385, .3215},  {-.37, .385, .3215}, {.37, .385, .3215},
+                                   {.37, -.385, .3215},   {-.37, -.264, 0},    {-.37, .304, 0},
+                                   {.37, .304, 0},        {.37, -.264, 0},     {-.5427, .4877, .2535},
+                                   {.5427, .4877, .2591}, {.305, -.579, .2515}};
+  const Vector3 centre_of_mass(0.0, 0.018823529411764704, 0.160794117647059);
+  for (std::size_t k = 0; k < settings.filter.shape.size(); ++k) {
+    settings.filter.shape[k] = Vector3(published[k][0], published[k][1], published[k][2]) - centre_of_mass;
+  }
+  return settings;
+}
+
+PoseError pose_error(const CloseEpoch& epoch, const nav::AttitudeState& attitude,
+                     const nav::PoseNavigation& navigation) {
+  PoseError error;
+  const auto estimated = orbit::relative_state_rtn(navigation.servicer(), must(navigation.target()));
+  error.position_rtn = estimated.position_rtn - orbit::relative_state_rtn(epoch.servicer, epoch.target).position_rtn;
+  error.position_m = error.position_rtn.norm();
+  const Eigen::Quaterniond estimate(navigation.R_eci_body());
+  const Eigen::AngleAxisd turn(estimate.conjugate() * attitude.q_eci_body);
+  error.attitude = turn.angle();
+  Vector6 attitude_error;
+  attitude_error << turn.angle() * turn.axis(), attitude.rate_body - navigation.rate_body();
+  error.rate = attitude_error.tail<3>().norm();
+  error.attitude_nees =
+      attitude_error.dot(fsw::math::Cholesky6(navigation.attitude_covariance()).solve(attitude_error));
+  const Vector6 roe_error = navigation.a_roe_m() - must(orbit::qns_from_cartesian(epoch.servicer)).a *
+                                                       must(nav::roe_of_target(epoch.servicer, epoch.target));
+  error.roe_nees = roe_error.dot(fsw::math::Cholesky6(navigation.a_roe_covariance_m2()).solve(roe_error));
+  return error;
+}
+
+}  // namespace vbar::test

@@ -1,0 +1,98 @@
+#pragma once
+// The keypoint network written down as its definition says: double precision, one loop an index, nothing shared with
+// flight code but the table of layers.
+
+#include <array>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "fsw/network/architecture.h"
+
+namespace vbar::test {
+
+/// [row][column][channel]
+struct PlainMap {
+  int side = 0;
+  int channels = 0;
+  std::vector<double> numbers;
+
+  PlainMap(int side_cells, int channel_count)
+      : side(side_cells),
+        channels(channel_count),
+        numbers(static_cast<std::size_t>(side_cells * side_cells * channel_count)) {}
+  double& at(int row, int column, int channel) {
+    return numbers[static_cast<std::size_t>((row * side + column) * channels + channel)];
+  }
+  [[nodiscard]] double beyond_edge_zero(int row, int column, int channel) const {
+    if (row < 0 || column < 0 || row >= side || column >= side) return 0.0;
+    return numbers[static_cast<std::size_t>((row * side + column) * channels + channel)];
+  }
+};
+
+class PlainNetwork {
+ public:
+  explicit PlainNetwork(std::span<const std::byte> file) : file_(file) {}
+
+  /// The maps, kMapChannels channels.
+  PlainMap run(std::span<const float> crop) const {
+    PlainMap input(fsw::network::kInputSide, 1);
+    for (std::size_t k = 0; k < crop.size(); ++k) input.numbers[k] = static_cast<double>(crop[k]);
+    const PlainMap kept_32 = layer(2, layer(1, layer(0, input)));
+    const PlainMap kept_16 = layer(4, layer(3, kept_32));
+    const PlainMap deepest = layer(7, layer(6, layer(5, kept_16)));
+    const PlainMap up_16 = layer(9, added(enlarged(layer(8, deepest)), kept_16));
+    const PlainMap up_32 = layer(11, added(enlarged(layer(10, up_16)), kept_32));
+    return layer(12, up_32);
+  }
+
+ private:
+  [[nodiscard]] double weight(int l, std::size_t k) const {
+    float value;
+    std::memcpy(&value, file_.data() + fsw::network::offset_of_layer(l) + sizeof(float) * k, sizeof value);
+    return static_cast<double>(value);
+  }
+
+  [[nodiscard]] PlainMap layer(int l, const PlainMap& in) const {
+    const fsw::network::Layer& shape = fsw::network::kLayers[static_cast<std::size_t>(l)];
+    PlainMap out(in.side / shape.stride, shape.out);
+    const int margin = shape.kernel == 3 ? 1 : 0;
+    for (int row = 0; row < out.side; ++row) {
+      for (int column = 0; column < out.side; ++column) {
+        for (int channel = 0; channel < shape.out; ++channel) {
+          double sum = weight(l, shape.weights() + static_cast<std::size_t>(channel));
+          for (int ky = 0; ky < shape.kernel; ++ky) {
+            for (int kx = 0; kx < shape.kernel; ++kx) {
+              for (int c = 0; c < shape.in; ++c) {
+                const int k = ((ky * shape.kernel + kx) * shape.in + c) * shape.out + channel;
+                sum += weight(l, static_cast<std::size_t>(k)) *
+                       in.beyond_edge_zero(row * shape.stride + ky - margin, column * shape.stride + kx - margin, c);
+              }
+            }
+          }
+          out.at(row, column, channel) = shape.is_rectified && sum < 0.0 ? 0.0 : sum;
+        }
+      }
+    }
+    return out;
+  }
+
+  static PlainMap enlarged(const PlainMap& in) {
+    PlainMap out(2 * in.side, in.channels);
+    for (int row = 0; row < out.side; ++row) {
+      for (int column = 0; column < out.side; ++column) {
+        for (int c = 0; c < in.channels; ++c) out.at(row, column, c) = in.beyond_edge_zero(row / 2, column / 2, c);
+      }
+    }
+    return out;
+  }
+
+  static PlainMap added(PlainMap a, const PlainMap& b) {
+    for (std::size_t k = 0; k < a.numbers.size(); ++k) a.numbers[k] += b.numbers[k];
+    return a;
+  }
+
+  std::span<const std::byte> file_;
+};
+
+}  // namespace vbar::test

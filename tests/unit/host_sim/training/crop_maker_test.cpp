@@ -1,0 +1,125 @@
+#include "host_sim/training/crop_maker.h"
+
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "host_sim/mission/data_directory.h"
+
+#ifdef VBAR_HAVE_OPENCV
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#endif
+
+namespace vbar::training {
+namespace {
+
+CropMaker& maker() {
+  static CropMaker one(mission::data_directory(), CropKind::kTraining, 1);
+  return one;
+}
+
+TEST(CropMaker, CropDependsOnSeedAndNumberOnly) {
+  LabelledCrop first, again, other_seed;
+  maker().make(7, first);
+  maker().make(3, again);
+  maker().make(7, again);
+  EXPECT_EQ(first.samples, again.samples);
+  EXPECT_EQ(first.cells, again.cells);
+  CropMaker fresh(mission::data_directory(), CropKind::kTraining, 1);
+  fresh.make(7, again);
+  EXPECT_EQ(first.samples, again.samples);
+  CropMaker other(mission::data_directory(), CropKind::kTraining, 2);
+  other.make(7, other_seed);
+  EXPECT_NE(first.samples, other_seed.samples);
+}
+
+TEST(CropMaker, KindsShareNothing) {
+  LabelledCrop training, held_out;
+  maker().make(0, training);
+  CropMaker other(mission::data_directory(), CropKind::kHeldOut, 1);
+  other.make(0, held_out);
+  EXPECT_NE(training.circumstances.centre_of_mass_camera, held_out.circumstances.centre_of_mass_camera);
+}
+
+// Keypoints of the CAD frame and the way to its origin by OpenCV's pinhole camera with distortion; in cells by hand.
+TEST(CropMaker, LabelsAreOpenCvsProjection) {
+#ifdef VBAR_HAVE_OPENCV
+  const auto& camera = maker().camera();
+  const cv::Matx33d matrix(17.0 / 0.01172, 0.0, 479.5, 0.0, 17.0 / 0.01172, 299.5, 0.0, 0.0, 1.0);
+  const std::vector<double> distortion(camera.optics.distortion.begin(), camera.optics.distortion.end());
+  const double published[11][3] = {{-.37, -.385, .3215}, {-.37, .385, .3215}, {.37, .385, .3215},  {.37, -.385, .3215},
+                                   {-.37, -.264, 0},     {-.37, .304, 0},     {.37, .304, 0},      {.37, -.264, 0},
+                                   {-.5427, .4877, .2535}, {.5427, .4877, .2591}, {.305, -.579, .2515}};
+  std::vector<cv::Point3d> points;
+  for (const auto& p : published) points.emplace_back(p[0], p[1], p[2]);
+  LabelledCrop crop;
+  for (int index = 0; index < 20; ++index) {
+    maker().make(index, crop);
+    const Circumstances& c = crop.circumstances;
+    const fsw::Vector3 centre_of_mass(0.0, 0.018823529411764704, 0.160794117647059);  // data/bodies/tango.toml
+    const fsw::Vector3 t = c.centre_of_mass_camera - c.R_camera_body * centre_of_mass;
+    cv::Matx33d rotation;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) rotation(i, j) = c.R_camera_body(i, j);
+    cv::Mat turn;
+    cv::Rodrigues(rotation, turn);
+    std::vector<cv::Point2d> pixels;
+    cv::projectPoints(points, turn, cv::Vec3d(t.x(), t.y(), t.z()), matrix, distortion, pixels);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      EXPECT_NEAR(crop.pixels[k].x(), pixels[k].x, 1e-6);
+      EXPECT_NEAR(crop.pixels[k].y(), pixels[k].y, 1e-6);
+      // A crop of side s about c: its left edge c - s/2 is the left edge of cell 0, at -0.5.
+      const double column = (pixels[k].x - c.region.centre_px.x()) / c.region.side_px * 32.0 + 15.5;
+      const double row = (pixels[k].y - c.region.centre_px.y()) / c.region.side_px * 32.0 + 15.5;
+      EXPECT_NEAR(crop.cells[k].x(), column, 1e-6);
+      EXPECT_NEAR(crop.cells[k].y(), row, 1e-6);
+      EXPECT_EQ(crop.counts[k], column >= -1.0 && column <= 32.0 && row >= -1.0 && row <= 32.0);
+    }
+  }
+#else
+  GTEST_SKIP() << "without OpenCV";
+#endif
+}
+
+/// Mean of the samples within `reach` cells of a place.
+double mean_about(const LabelledCrop& crop, const fsw::Vector2& cell, double reach) {
+  double sum = 0.0;
+  int count = 0;
+  for (int j = 0; j < fsw::pose::kCropSide; ++j)
+    for (int i = 0; i < fsw::pose::kCropSide; ++i) {
+      const fsw::Vector2 at((i + 0.5) / 4.0 - 0.5, (j + 0.5) / 4.0 - 0.5);
+      if ((at - cell).norm() > reach) continue;
+      sum += static_cast<double>(crop.samples[static_cast<std::size_t>(j * fsw::pose::kCropSide + i)]);
+      ++count;
+    }
+  return count > 0 ? sum / count : 0.0;
+}
+
+// What is drawn stands where the labels say: about the middle of the eight corners there is more light than at the
+// crop's edge, and mirrored labels would not all have it so. Only crops with a dark sky and the Sun behind the camera.
+TEST(CropMaker, TargetStandsWhereTheLabelsSay) {
+  LabelledCrop crop;
+  int looked_at = 0;
+  for (int index = 0; index < 60; ++index) {
+    maker().make(index, crop);
+    const Circumstances& c = crop.circumstances;
+    if (c.phase_angle > 1.2 || c.glow_electrons > 0.0 || c.nadir_camera.z() > 0.2) continue;
+    const auto& link = maker().camera().region;
+    bool is_inside = true;
+    fsw::Vector2 middle = fsw::Vector2::Zero();
+    for (std::size_t k = 0; k < 8; ++k) {
+      middle += 0.125 * crop.cells[k];
+      is_inside = is_inside && crop.counts[k] && crop.pixels[k].x() > link.x && crop.pixels[k].y() > link.y &&
+                  crop.pixels[k].x() < link.x + link.width && crop.pixels[k].y() < link.y + link.height;
+    }
+    if (!is_inside) continue;
+    ++looked_at;
+    EXPECT_GT(mean_about(crop, middle, 3.0), 3.0 * mean_about(crop, {0.0, 0.0}, 2.0)) << index;
+  }
+  EXPECT_GT(looked_at, 8);
+}
+
+}  // namespace
+}  // namespace vbar::training
