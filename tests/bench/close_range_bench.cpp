@@ -74,8 +74,7 @@ void draw(benchmark::State& state, double range_m) {
   std::vector<camera::LightSample> samples;
   int image = 0;
   for (auto _ : state) {
-    view.R_camera_body =
-        Eigen::AngleAxisd(0.1 * ++image, Vector3(0.3, 0.8, 0.5).normalized()).toRotationMatrix();
+    view.R_camera_body = Eigen::AngleAxisd(0.1 * ++image, Vector3(0.3, 0.8, 0.5).normalized()).toRotationMatrix();
     samples.clear();
     objects(view, samples);
     benchmark::DoNotOptimize(samples.data());

@@ -10,8 +10,8 @@ namespace {
 
 using fsw::Vector2;
 
-// Points come in rows up to half a pixel apart. A coarser grid than this beats with them, and the spread no longer takes
-// that away.
+// Points come in rows up to half a pixel apart. A coarser grid than this beats with them, and the spread no longer
+// takes that away.
 constexpr double kCoarsestStep = 0.67;  // sigmas of the core
 
 /// Integrals over pixel 0 of a Gaussian at `offset` pixels, for offsets of -reach to reach by steps of 1 / nodes; the
@@ -34,8 +34,8 @@ std::vector<float> pixel_weights(double sigma, int nodes, int reach_nodes) {
   return normalised;
 }
 
-/// Shares of the nodes before, at and after a point that lies `u` from the middle one, -1/2 to 1/2: a quadratic B-spline.
-/// Its sum is 1, its mean u and its variance a quarter wherever the point lies.
+/// Shares of the nodes before, at and after a point that lies `u` from the middle one, -1/2 to 1/2: a quadratic
+/// B-spline. Its sum is 1, its mean u and its variance a quarter wherever the point lies.
 std::array<float, 3> spline_weights(float u) {
   return {0.5F * (0.5F - u) * (0.5F - u), 0.75F - u * u, 0.5F * (0.5F + u) * (0.5F + u)};
 }
@@ -103,8 +103,10 @@ void WideSpread::gather(std::span<const ImagePoint> points, const Vector2& smear
     const auto light = static_cast<float>(point.electrons / pieces);
     for (int piece = 0; piece < pieces; ++piece) {
       const Vector2 place = nodes * (point.pixel + ((piece + 0.5) / pieces - 0.5) * smear_px - origin);
-      const auto i = std::clamp(static_cast<std::size_t>(std::max(place.x() + 0.5, 0.0)), std::size_t{1}, grid_width_ - 2);
-      const auto j = std::clamp(static_cast<std::size_t>(std::max(place.y() + 0.5, 0.0)), std::size_t{1}, grid_height_ - 2);
+      const auto i =
+          std::clamp(static_cast<std::size_t>(std::max(place.x() + 0.5, 0.0)), std::size_t{1}, grid_width_ - 2);
+      const auto j =
+          std::clamp(static_cast<std::size_t>(std::max(place.y() + 0.5, 0.0)), std::size_t{1}, grid_height_ - 2);
       const std::array<float, 3> across = spline_weights(static_cast<float>(place.x() - static_cast<double>(i)));
       const std::array<float, 3> down = spline_weights(static_cast<float>(place.y() - static_cast<double>(j)));
       float* node = &grid_[(j - 1) * grid_width_ + i - 1];

@@ -29,8 +29,8 @@ class WideSpread {
   /// Whether the halo is wide enough to be made of the core.
   [[nodiscard]] bool can_spread() const { return halo_variance_ >= 1.0 || settings_.halo_fraction == 0.0; }
 
-  /// Adds the points, each spread over `core_reach` and `halo_reach` pixels at most. `smear_px`: their common way during
-  /// the exposure, at constant speed. Sums and centroids are exact but for what is beyond the reaches.
+  /// Adds the points, each spread over `core_reach` and `halo_reach` pixels at most. `smear_px`: their common way
+  /// during the exposure, at constant speed. Sums and centroids are exact but for what is beyond the reaches.
   void add(std::span<const ImagePoint> points, const fsw::Vector2& smear_px, double core_reach, double halo_reach,
            PhotonImage& image);
 

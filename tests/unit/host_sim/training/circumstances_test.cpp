@@ -40,7 +40,8 @@ TEST(Circumstances, NominalExposureFillsSixTenthsWithWhite) {
   const double sun = twins::camera::sun_photons(camera.zero_magnitude_photons, twins::camera::kAstronomicalUnit);
   const double pixel_rad = 0.01172 / 17.0;
   constexpr double kWhite = 0.78;
-  const double electrons = sun * kWhite / M_PI * pixel_rad * pixel_rad * camera.electrons_per_photon_m2() * kNominalExposureS;
+  const double electrons =
+      sun * kWhite / M_PI * pixel_rad * pixel_rad * camera.electrons_per_photon_m2() * kNominalExposureS;
   EXPECT_NEAR(electrons / 128000.0, 0.6, 0.02);
 }
 

@@ -49,9 +49,10 @@ TEST(CropMaker, LabelsAreOpenCvsProjection) {
   const auto& camera = maker().camera();
   const cv::Matx33d matrix(17.0 / 0.01172, 0.0, 479.5, 0.0, 17.0 / 0.01172, 299.5, 0.0, 0.0, 1.0);
   const std::vector<double> distortion(camera.optics.distortion.begin(), camera.optics.distortion.end());
-  const double published[11][3] = {{-.37, -.385, .3215}, {-.37, .385, .3215}, {.37, .385, .3215},  {.37, -.385, .3215},
-                                   {-.37, -.264, 0},     {-.37, .304, 0},     {.37, .304, 0},      {.37, -.264, 0},
-                                   {-.5427, .4877, .2535}, {.5427, .4877, .2591}, {.305, -.579, .2515}};
+  const double published[11][3] = {{-.37, -.385, .3215},  {-.37, .385, .3215}, {.37, .385, .3215},
+                                   {.37, -.385, .3215},   {-.37, -.264, 0},    {-.37, .304, 0},
+                                   {.37, .304, 0},        {.37, -.264, 0},     {-.5427, .4877, .2535},
+                                   {.5427, .4877, .2591}, {.305, -.579, .2515}};
   std::vector<cv::Point3d> points;
   for (const auto& p : published) points.emplace_back(p[0], p[1], p[2]);
   LabelledCrop crop;

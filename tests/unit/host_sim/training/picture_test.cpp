@@ -6,8 +6,8 @@
 
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/training/circumstances.h"
-#include "host_sim/training/silhouette.h"
 #include "host_sim/training/soft_picture.h"
+#include "host_sim/twins/camera/model/silhouette.h"
 
 namespace vbar::training {
 namespace {
@@ -44,7 +44,8 @@ TEST(SoftPicture, WithoutSpreadNothingChanges) {
 twins::camera::CadModel plate(double width_m, double height_m) {
   const Vector3 a(-0.5 * width_m, -0.5 * height_m, 0.0), b(0.5 * width_m, -0.5 * height_m, 0.0);
   const std::array<Vector3, 3> flat{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
-  return twins::camera::make_cad_model("plate", {{{a, b, -a}, flat, 0}, {{a, -a, -b}, flat, 0}}, {{"white", {}, {}, 0.0}});
+  return twins::camera::make_cad_model("plate", {{{a, b, -a}, flat, 0}, {{a, -a, -b}, flat, 0}},
+                                       {{"white", {}, {}, 0.0}});
 }
 
 // A plate square to the boresight: its size in pixels is focal length times size over range.
@@ -52,7 +53,7 @@ TEST(Silhouette, PlateCoversWhatItShould) {
   auto camera = close_range_camera(mission::data_directory());
   camera.optics.distortion = {};
   const twins::camera::Optics optics(camera);
-  Silhouette silhouette(plate(0.8, 0.4));
+  twins::camera::Silhouette silhouette(plate(0.8, 0.4));
   const twins::camera::Region region{380, 200, 200, 200};
   std::vector<float> covered;
   silhouette.draw(optics, Vector3(0.0, 0.0, 8.0), fsw::Matrix3::Identity(), region, covered);
