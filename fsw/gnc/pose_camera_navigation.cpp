@@ -61,10 +61,11 @@ void PoseCameraNavigation::take_image(const imaging::ImageAssembly& image, navig
   // First to the image's time, then where to look in it, then what it shows.
   static_cast<void>(filter_.update(epoch, burns));
   epoch.R_camera_eci = R_camera_eci_at(time, own_orbit, epoch.servicer_gnss);
-  std::optional<pose::TargetPose> expected;
-  if (epoch.R_camera_eci) expected = pose_of_estimate(*epoch.R_camera_eci);
-  const pose::PoseSighting& sighting = network_.process(
-      time, image.image_number(), image.view(), expected ? std::optional(expected->position_camera_m) : std::nullopt);
+  if (epoch.R_camera_eci) estimated_pose_ = pose_of_estimate(*epoch.R_camera_eci);
+  const auto expected_position =
+      estimated_pose_ ? std::optional(estimated_pose_->position_camera_m) : std::nullopt;
+  const pose::PoseSighting& sighting =
+      network_.process(time, image.image_number(), image.view(), expected_position);
   if (!epoch.R_camera_eci || sighting.status > pose::SightingStatus::kKeypoints) return;
   epoch.servicer_gnss.reset();  // it is folded in already
   keypoints_ = widened(sighting.keypoints);
