@@ -103,8 +103,7 @@ Result<navigation::AnglesOnlySettings> angles_only_settings(const angles_only_co
 
 Result<pose::PoseCameraSettings> pose_camera_settings(const camera_configuration& c, const pose_configuration& p) {
   const Result<CalibratedCamera> camera = calibrated_camera(c);
-  const bool is_usable =
-      camera.ok() && is_between(p.dark_level_dn, 0.0, 4095.0) && is_above(p.noise_dn, 1e3);
+  const bool is_usable = camera.ok() && is_between(p.dark_level_dn, 0.0, 4095.0) && is_above(p.noise_dn, 1e3);
   if (!is_usable) return Status::kOutOfRange;
   pose::PoseCameraSettings settings;
   settings.frame = camera.value().frame;
@@ -126,13 +125,13 @@ Result<navigation::PoseSettings> pose_settings(const camera_configuration& c, co
   inertia << p.inertia_kgm2[0], p.inertia_kgm2[3], p.inertia_kgm2[4],  //
       p.inertia_kgm2[3], p.inertia_kgm2[1], p.inertia_kgm2[5],         //
       p.inertia_kgm2[4], p.inertia_kgm2[5], p.inertia_kgm2[2];
-  const bool is_usable =
-      camera.ok() && shape.ok() && is_inertia(inertia) && is_above(p.keypoint_sigma_scale, 100.0) &&
-      is_between(p.keypoint_floor_px, 0.0, 100.0) && is_above(p.acceleration_psd, 1.0) &&
-      is_above(p.acceleration_psd_least, p.acceleration_psd) &&
-      is_between(p.acceleration_psd_most, p.acceleration_psd, 1.0) && is_above(p.angular_acceleration_psd, 1.0) &&
-      is_between(p.maneuver_sigma, 0.0, 1.0) && is_between(p.maneuver_sigma_relative, 0.0, 1.0) &&
-      p.start_images >= 1 && p.start_images <= static_cast<std::int32_t>(navigation::PoseStart::kMost);
+  const bool is_usable = camera.ok() && shape.ok() && is_inertia(inertia) && is_above(p.keypoint_sigma_scale, 100.0) &&
+                         is_between(p.keypoint_floor_px, 0.0, 100.0) && is_above(p.acceleration_psd, 1.0) &&
+                         is_above(p.acceleration_psd_least, p.acceleration_psd) &&
+                         is_between(p.acceleration_psd_most, p.acceleration_psd, 1.0) &&
+                         is_above(p.angular_acceleration_psd, 1.0) && is_between(p.maneuver_sigma, 0.0, 1.0) &&
+                         is_between(p.maneuver_sigma_relative, 0.0, 1.0) && p.start_images >= 1 &&
+                         p.start_images <= static_cast<std::int32_t>(navigation::PoseStart::kMost);
   if (!is_usable) return Status::kOutOfRange;
   navigation::PoseSettings settings;
   settings.earth = earth;

@@ -1,7 +1,8 @@
 #pragma once
 // navigate: the state of servicer and target at the step's time, from measurements folded in at their own times and own
 // maneuvers. A telecommand chooses the source: ideal navigation (true states in a packet), the GNSS receivers of both
-// spacecraft, or the servicer's own receiver and a camera, for bearings or for poses; between measurements the state coasts under J2.
+// spacecraft, or the servicer's own receiver and a camera, for bearings or for poses; between measurements the state
+// coasts under J2.
 //
 // What arrives late is not lost: the state is built anew at each step from an anchor, the last measurement, and the own
 // maneuvers since. A commanded maneuver counts as flown as commanded until the actuator says otherwise, so that neither

@@ -63,9 +63,8 @@ void PoseCameraNavigation::take_image(const imaging::ImageAssembly& image, navig
   epoch.R_camera_eci = R_camera_eci_at(time, own_orbit, epoch.servicer_gnss);
   std::optional<pose::TargetPose> expected;
   if (epoch.R_camera_eci) expected = pose_of_estimate(*epoch.R_camera_eci);
-  const pose::PoseSighting& sighting =
-      network_.process(time, image.image_number(), image.view(),
-                       expected ? std::optional(expected->position_camera_m) : std::nullopt);
+  const pose::PoseSighting& sighting = network_.process(
+      time, image.image_number(), image.view(), expected ? std::optional(expected->position_camera_m) : std::nullopt);
   if (!epoch.R_camera_eci || sighting.status > pose::SightingStatus::kKeypoints) return;
   epoch.servicer_gnss.reset();  // it is folded in already
   keypoints_ = widened(sighting.keypoints);

@@ -10,9 +10,12 @@
 #include "fsw/orbit/rtn.h"
 #include "host_sim/app/image_rows.h"
 #include "host_sim/app/image_truth.h"
+#include "host_sim/app/pose_truth.h"
+#include "host_sim/mission/telecommands.h"
 #include "host_sim/report/code_names.h"
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/navigation_errors.h"
+#include "host_sim/report/statistics.h"
 
 namespace vbar::app {
 namespace {
@@ -49,16 +52,14 @@ QnsElements mean_elements(const CartesianState& state) {
   return mean.value();
 }
 
-report::MeanAndDeviation statistics(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v;
-  const double mean = sum / static_cast<double>(values.size());
-  double squares = 0.0;
-  for (const double v : values) squares += (v - mean) * (v - mean);
-  return {mean, std::sqrt(squares / static_cast<double>(values.size()))};
-}
-
 }  // namespace
+
+FlightRecorder::FlightRecorder(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                               report::RunRecord& record)
+    : mission_(mission), servicer_(servicer), record_(record), gallery_(mission, servicer) {
+  if (servicer.camera && servicer.camera->navigation == mission::CameraNavigation::kPose)
+    known_target_ = mission::pose_configuration_of(mission, servicer);
+}
 
 void FlightRecorder::on_truth(fsw::GpsTime time, const PairTruth& truth) {
   report::TruthRow row;
@@ -126,6 +127,7 @@ void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer)
     }
   }
   if (told.image) on_image(row, told);
+  if (told.pose) on_pose(row, told);
   record_.estimates.push_back(row);
 }
 
@@ -162,6 +164,9 @@ void FlightRecorder::on_telemetry(report::EstimateRow& row, ImageTelemetry& told
     told.image = image.value();
   } else if (const auto objects = fsw::packets::decode<telemetry_objects>(packet); objects.ok()) {
     told.objects = objects.value();
+  } else if (const auto pose = fsw::packets::decode<telemetry_pose>(packet); pose.ok()) {
+    told.exposure = packet.header.time;
+    told.pose = pose.value();
   }
 }
 
@@ -175,6 +180,16 @@ void FlightRecorder::on_image(const report::EstimateRow& step, const ImageTeleme
   if (objects != nullptr) append_objects(row.time_s, *objects, record_.objects);
   record_.images.push_back(row);
   gallery_.on_image({told.exposure, row, objects}, record_.gallery);
+}
+
+void FlightRecorder::on_pose(const report::EstimateRow& step, const ImageTelemetry& told) {
+  const double exposure_s = mission_seconds(told.exposure);
+  report::PoseRow row = pose_row(exposure_s, step.time_s, *told.pose);
+  append_keypoints(exposure_s, *told.pose, record_.keypoints);
+  const auto truth = std::ranges::find(measured_, told.exposure, &twins::TruthSnapshot::time);
+  if (truth != measured_.end() && known_target_)
+    add_truth(row, record_.keypoints, *told.pose, known_target_->keypoints_body_m, mission_, servicer_, *truth);
+  record_.poses.push_back(row);
 }
 
 report::GnssRow FlightRecorder::gnss_row(double time_s, const telemetry_gnss& m) const {
@@ -240,6 +255,7 @@ void FlightRecorder::finish() {
   finish_legs();
   gallery_.finish(record_.gallery);
   summarise_images(record_.images, servicer_.observes(), record_.summary);
+  summarise_poses(record_, record_.summary);
 }
 
 // Statistics of carrier-phase navigation are those after the first fix, as the paper's are.
@@ -261,10 +277,10 @@ void FlightRecorder::finish_navigation_errors() {
   }
   report::Summary& summary = record_.summary;
   if (fix_s) summary.first_fix_s = *fix_s - fsw::seconds(mission_.start);
-  if (!nees.empty()) summary.navigation_nees = statistics(nees).mean;
+  if (!nees.empty()) summary.navigation_nees = report::statistics(nees).mean;
   if (position_errors.empty()) return;
-  summary.navigation_error_m = statistics(position_errors);
-  summary.navigation_velocity_error_mps = statistics(velocity_errors);
+  summary.navigation_error_m = report::statistics(position_errors);
+  summary.navigation_velocity_error_mps = report::statistics(velocity_errors);
 }
 
 // A burn belongs to the leg of the waypoint it was commanded for: the last burn of a fuel-optimal leg stands at the

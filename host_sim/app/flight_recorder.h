@@ -34,8 +34,7 @@ struct NamedAttitude {
 class FlightRecorder {
  public:
   /// `servicer`: the spacecraft of the mission whose flight software speaks.
-  FlightRecorder(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunRecord& record)
-      : mission_(mission), servicer_(servicer), record_(record), gallery_(mission, servicer) {}
+  FlightRecorder(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunRecord& record);
 
   /// Truth when a sensor measured: what an image showed is told steps later. The last few are kept.
   void on_measured(const twins::TruthSnapshot& truth);
@@ -71,10 +70,12 @@ class FlightRecorder {
     fsw::GpsTime exposure;
     std::optional<telemetry_image> image;
     std::optional<telemetry_objects> objects;
+    std::optional<telemetry_pose> pose;
   };
 
   void on_telemetry(report::EstimateRow& row, ImageTelemetry& told, const fsw::packets::PacketView& packet);
   void on_image(const report::EstimateRow& step, const ImageTelemetry& told);
+  void on_pose(const report::EstimateRow& step, const ImageTelemetry& told);
   [[nodiscard]] report::GnssRow gnss_row(double time_s, const telemetry_gnss& m) const;
   void on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet);
   void add_maneuver(fsw::GpsTime command_time, fsw::GpsTime burn_time, const maneuver_command& command);
@@ -84,6 +85,7 @@ class FlightRecorder {
   const mission::Mission& mission_;
   const mission::Spacecraft& servicer_;
   std::deque<twins::TruthSnapshot> measured_;  ///< oldest first
+  std::optional<pose_configuration> known_target_;  ///< as telecommanded, with navigation by the pose network
   report::RunRecord& record_;
   GalleryKeeper gallery_;
 };

@@ -2,17 +2,16 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
-#include "fsw/orbit/roe.h"
+#include "host_sim/app/true_camera.h"
+#include "host_sim/report/statistics.h"
 
 namespace vbar::app {
 namespace {
 
 using Eigen::Quaterniond;
 using fsw::Vector3;
-using fsw::Vector6;
 
 constexpr double kArcsecond = M_PI / 648000.0;
 /// Of a spacecraft: its bearing is somewhere inside.
@@ -28,34 +27,6 @@ Vector3 vector(const double (&v)[3]) {
 
 double angle_between(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// A camera in orbit at the middle of an exposure.
-struct TrueCamera {
-  Vector3 position_eci;
-  Quaterniond q_camera_eci;
-
-  [[nodiscard]] Vector3 towards(const twins::SpacecraftTruth& other) const {
-    return other.orbit.position_eci - position_eci;
-  }
-};
-
-TrueCamera true_camera(const mission::CameraSensor& camera, const twins::SpacecraftTruth& servicer) {
-  const Quaterniond& q_body_eci = servicer.attitude->q_body_eci;
-  return {servicer.orbit.position_eci + q_body_eci.conjugate() * camera.position_body_m,
-          camera.q_camera_body * q_body_eci};
-}
-
-/// Pinhole and Brown-Conrady distortion, forwards (Brown 1966).
-std::optional<Eigen::Vector2d> pixel_of(const twins::camera::CameraSettings& settings, const Vector3& los_camera) {
-  if (!(los_camera.z() > 0.1 * los_camera.norm())) return std::nullopt;
-  const auto& [k1, k2, p1, p2, k3] = settings.optics.distortion;
-  const double x = los_camera.x() / los_camera.z(), y = los_camera.y() / los_camera.z(), r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  const double f = settings.focal_length_px();
-  return Eigen::Vector2d(
-      settings.optics.principal_point_px[0] + f * (x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x)),
-      settings.optics.principal_point_px[1] + f * (y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y));
 }
 
 /// The object nearest to where the target really is, if it is near enough to be it; -1: none.
@@ -102,30 +73,6 @@ void add_attitude_error(report::ImageRow& row, const Quaterniond& q_eci_camera, 
   row.attitude_error_roll_arcsec = std::abs(error.z()) / kArcsecond;
 }
 
-std::optional<double> nees(const telemetry_image& image, const fsw::orbit::CartesianState& servicer,
-                           const fsw::orbit::CartesianState& target, double a) {
-  const auto chief = fsw::orbit::qns_from_cartesian(servicer), deputy = fsw::orbit::qns_from_cartesian(target);
-  if (!chief.ok() || !deputy.ok()) return std::nullopt;
-  fsw::Matrix6 covariance;
-  std::size_t place = 0;
-  for (int row = 0; row < 6; ++row)
-    for (int column = 0; column <= row; ++column)
-      covariance(row, column) = covariance(column, row) = image.covariance_a_roe[place++];
-  const Eigen::LLT<fsw::Matrix6> factor(covariance);
-  if (factor.info() != Eigen::Success) return std::nullopt;
-  const Vector6 error =
-      Eigen::Map<const Vector6>(image.a_roe_osculating_m) - a * fsw::orbit::roe_from_qns(chief.value(), deputy.value());
-  return factor.matrixL().solve(error).squaredNorm();
-}
-
-report::MeanAndDeviation statistics(const std::vector<double>& values) {
-  double sum = 0.0, squares = 0.0;
-  for (const double v : values) sum += v;
-  const double mean = sum / static_cast<double>(values.size());
-  for (const double v : values) squares += (v - mean) * (v - mean);
-  return {mean, std::sqrt(squares / static_cast<double>(values.size()))};
-}
-
 }  // namespace
 
 void add_truth(report::ImageRow& row, const telemetry_image& image, const telemetry_objects* objects,
@@ -152,7 +99,9 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
     const double tolerance_px = settings.focal_length_px() * (kSameObject_rad + kRadius_m / *row.range_m);
     row.true_object = true_object(*objects, *target_px, tolerance_px);
   }
-  if (image.fate == 2) row.nees = nees(image, own->orbit, target->orbit, mission.guidance.reference_semi_major_axis_m);
+  if (image.fate == 2)
+    row.nees = nees_of_roe(image.a_roe_osculating_m, image.covariance_a_roe, own->orbit, target->orbit,
+                           mission.guidance.reference_semi_major_axis_m);
 }
 
 void summarise_images(const std::vector<report::ImageRow>& images, const std::string& target,
@@ -173,11 +122,11 @@ void summarise_images(const std::vector<report::ImageRow>& images, const std::st
     size.push_back(std::hypot(x.back(), y.back()));
   }
   summary.images = counts;
-  if (!across.empty()) summary.star_attitude_error_arcsec = statistics(across);
-  if (!all_nees.empty()) summary.navigation_nees = statistics(all_nees).mean;
+  if (!across.empty()) summary.star_attitude_error_arcsec = report::statistics(across);
+  if (!all_nees.empty()) summary.navigation_nees = report::statistics(all_nees).mean;
   if (size.empty()) return;
-  const report::MeanAndDeviation of_x = statistics(x), of_y = statistics(y);
-  summary.bearing_error_arcsec = report::BearingError{statistics(size).mean, std::hypot(of_x.std, of_y.std) / M_SQRT2,
+  const report::MeanAndDeviation of_x = report::statistics(x), of_y = report::statistics(y);
+  summary.bearing_error_arcsec = report::BearingError{report::statistics(size).mean, std::hypot(of_x.std, of_y.std) / M_SQRT2,
                                                       std::hypot(of_x.mean, of_y.mean)};
 }
 

@@ -67,7 +67,8 @@ twins::camera::Renderer make_scene_renderer(const mission::Mission& mission, con
   for (const mission::Spacecraft& other : mission.spacecraft)
     if (!other.model.empty() && &other != &spacecraft) models.push_back(other.model);
   const auto scene = std::make_shared<twins::camera::SceneRenderer>(spacecraft.camera->settings, data_directory,
-                                                                    twins::camera::cad_objects(data_directory, models));
+                                                                    twins::camera::cad_objects(data_directory, models),
+                                                                    twins::camera::cad_covers(data_directory, models));
   return [scene](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {
     scene->render(exposure, image);
   };

@@ -344,8 +344,8 @@ void Simulation::summarise(double wall_s, bool complete) {
   const bool is_by_pose = servicer_.camera && servicer_.camera->navigation == mission::CameraNavigation::kPose;
   summary.navigation = is_by_pose         ? "pose"
                        : servicer_.camera ? "angles_only"
-                       : servicer_.gnss ? "gnss"
-                                        : std::string(mission::name_of(servicer_.navigation->source));
+                       : servicer_.gnss   ? "gnss"
+                                          : std::string(mission::name_of(servicer_.navigation->source));
   summary.gnss = servicer_.gnss ? "digital" : "";
   summary.camera = servicer_.camera ? "digital" : "";
   summary.static_floor_m = gnss_static_floor_m(mission_, servicer_);

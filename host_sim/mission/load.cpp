@@ -14,8 +14,8 @@ Mission parse_mission(std::string_view text, const std::filesystem::path& file,
   for (const std::string& assignment : overrides) apply_override(table, assignment);
 
   const TableReader document(table, "", file.string());
-  document.accept_only({"mission", "truth", "spacecraft", "guidance", "gnss_navigation", "angles_only", "pose", "waypoint",
-                        "burn", "constellation", "clock", "links", "lcm", "record"});
+  document.accept_only({"mission", "truth", "spacecraft", "guidance", "gnss_navigation", "angles_only", "pose",
+                        "waypoint", "burn", "constellation", "clock", "links", "lcm", "record"});
   Mission mission;
   mission.file = file;
   read_general(document, mission);

@@ -24,8 +24,8 @@ constexpr Names<CameraNavigation, 2> kCameraNavigations{
 
 CameraSensor read_camera(const TableReader& section, const std::string& own, const std::vector<std::string>& names,
                          const Mission& mission) {
-  section.accept_only({"source", "camera", "target", "navigation", "period_s", "readout_s", "q_camera_body", "position_body_m",
-                       "exposure_s", "region_px", "zero_magnitude_photons", "optics", "detector"});
+  section.accept_only({"source", "camera", "target", "navigation", "period_s", "readout_s", "q_camera_body",
+                       "position_body_m", "exposure_s", "region_px", "zero_magnitude_photons", "optics", "detector"});
   static_cast<void>(section.choice<CameraSource>("source", kCameraSources, CameraSource::kDigital));
   CameraSensor camera;
   camera.camera =
@@ -34,8 +34,7 @@ CameraSensor read_camera(const TableReader& section, const std::string& own, con
   read_camera_settings(section, file);
   camera.settings = file.settings();
   camera.target = read_other_spacecraft(section, own, names);
-  camera.navigation =
-      section.choice<CameraNavigation>("navigation", kCameraNavigations, CameraNavigation::kAnglesOnly);
+  camera.navigation = section.choice<CameraNavigation>("navigation", kCameraNavigations, CameraNavigation::kAnglesOnly);
   camera.period = section.span("period_s", 1.0, from_to(0.1, 3600.0), fsw::seconds(mission.step));
   camera.readout = section.span("readout_s", 1.0, from_to(0.0, 3600.0), 2.0);
   if (fsw::seconds(camera.readout) + camera.settings.exposure_s > fsw::seconds(camera.period))

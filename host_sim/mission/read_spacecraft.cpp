@@ -208,8 +208,9 @@ void check_camera(const TableReader& section, const Spacecraft& servicer, const 
         "the spacecraft \"" + target.name + "\" without " + (target.model.empty() ? "a model" : "an attitude"),
         "a spacecraft with a model and an attitude, so that it can be seen");
   if (servicer.camera->navigation == CameraNavigation::kPose && !std::holds_alternative<Tumble>(*target.attitude))
-    sensors.table("camera").refuse("target", "the spacecraft \"" + target.name + "\", which does not tumble",
-                                   "with navigation = \"pose\": a spacecraft that tumbles, by laws that are known on board");
+    sensors.table("camera").refuse(
+        "target", "the spacecraft \"" + target.name + "\", which does not tumble",
+        "with navigation = \"pose\": a spacecraft that tumbles, by laws that are known on board");
 }
 
 /// Both ends of relative navigation by GNSS have what it takes.

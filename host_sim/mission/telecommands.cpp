@@ -163,15 +163,13 @@ vbar::pose_configuration pose_configuration_of(const Mission& mission, const Spa
   configuration.dark_level_dn = detector.offset_dn + detector.gain_dn_per_electron * dark_electrons;
   constexpr double kRounding = 1.0 / 12.0;  // variance, DN^2
   const double read_dn = detector.gain_dn_per_electron * detector.read_noise_electrons;
-  configuration.noise_dn =
-      std::sqrt(read_dn * read_dn +
-                detector.gain_dn_per_electron * detector.gain_dn_per_electron * dark_electrons + kRounding);
+  configuration.noise_dn = std::sqrt(
+      read_dn * read_dn + detector.gain_dn_per_electron * detector.gain_dn_per_electron * dark_electrons + kRounding);
   const Spacecraft& target = *mission.find_spacecraft(servicer.camera->target);
   const Tumble& tumble = std::get<Tumble>(*target.attitude);  // the loader sees to it
   const truth::Body body = load_body(data_directory() / "bodies" / (tumble.body + ".toml"));
   constexpr std::size_t kKeypoints = sizeof configuration.keypoints_body_m / (3 * sizeof(double));
-  const auto keypoints_m =
-      load_keypoints(data_directory() / "models" / (target.model + "_keypoints.toml"), kKeypoints);
+  const auto keypoints_m = load_keypoints(data_directory() / "models" / (target.model + "_keypoints.toml"), kKeypoints);
   for (std::size_t k = 0; k < kKeypoints; ++k) {
     const fsw::Vector3 from_centre_of_mass = keypoints_m[k] - body.centre_of_mass_m;
     std::ranges::copy(from_centre_of_mass, configuration.keypoints_body_m + 3 * k);

@@ -44,6 +44,12 @@ inline constexpr std::array<std::string_view, 21> kRoeLowerTriangle{
     "da_da",   "dl_da",   "dl_dl",   "dex_da",  "dex_dl",  "dex_dex", "dey_da",
     "dey_dl",  "dey_dex", "dey_dey", "dix_da",  "dix_dl",  "dix_dex", "dix_dey",
     "dix_dix", "diy_da",  "diy_dl",  "diy_dex", "diy_dey", "diy_dix", "diy_diy"};
+/// A square on the detector.
+inline constexpr std::array<std::string_view, 3> kSquarePx{"x_px", "y_px", "side_px"};
+/// Rows and columns turn about x, y, z (rad), rate about x, y, z (rad/s).
+inline constexpr std::array<std::string_view, 21> kAttitudeLowerTriangle{
+    "x_x",  "y_x",  "y_y",   "z_x",  "z_y",  "z_z",  "wx_x", "wx_y",  "wx_z",  "wx_wx", "wy_x",
+    "wy_y", "wy_z", "wy_wx", "wy_wy", "wz_x", "wz_y", "wz_z", "wz_wx", "wz_wy", "wz_wz"};
 inline constexpr std::array<std::string_view, 6> kRoeM{"da_m", "dlambda_m", "dex_m", "dey_m", "dix_m", "diy_m"};
 
 template <class Visitor, class Values, std::size_t size>
@@ -182,6 +188,70 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"star"}, row.star);
   visit(ColumnName{"x_px"}, row.x_px);
   visit(ColumnName{"y_px"}, row.y_px);
+}
+
+template <columns::RowOf<PoseRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"step_time_s"}, row.step_time_s);
+  visit(ColumnName{"step"}, row.step);
+  visit(ColumnName{"image"}, row.image);
+  visit(ColumnName{"status"}, row.status);
+  visit(ColumnName{"region_is_predicted"}, row.region_is_predicted);
+  visit(ColumnName{"fate"}, row.fate);
+  visit(ColumnName{"filter_runs"}, row.filter_runs);
+  visit(ColumnName{"has_attitude"}, row.has_attitude);
+  visit(ColumnName{"tiles_missing"}, row.tiles_missing);
+  columns::group(visit, "region", columns::kSquarePx, row.region_px);
+  visit(ColumnName{"pnp_inliers"}, row.pnp_inliers);
+  columns::group(visit, "pnp_q_camera_body", columns::kWxyz, row.pnp_q_camera_body);
+  columns::group(visit, "pnp_position_camera", columns::kXyzM, row.pnp_position_camera_m);
+  visit(ColumnName{"pnp_mean_square"}, row.pnp_mean_square);
+  columns::group(visit, "q_camera_body", columns::kWxyz, row.q_camera_body);
+  columns::group(visit, "position_camera", columns::kXyzM, row.position_camera_m);
+  columns::group(visit, "rate_body", columns::kXyzRadps, row.rate_body_radps);
+  columns::group(visit, "covariance_attitude", columns::kAttitudeLowerTriangle, row.covariance_attitude);
+  columns::group(visit, "covariance_a_roe_m2", columns::kRoeLowerTriangle, row.covariance_a_roe_m2);
+  columns::group(visit, "a_roe_osculating", columns::kRoeM, row.a_roe_osculating_m);
+  visit(ColumnName{"nis"}, row.nis);
+  visit(ColumnName{"nis_degrees"}, row.nis_degrees);
+  visit(ColumnName{"acceleration_psd"}, row.acceleration_psd);
+  visit(ColumnName{"images_used"}, row.images_used);
+  visit(ColumnName{"images_refused"}, row.images_refused);
+  visit(ColumnName{"keypoints_used"}, row.keypoints_used);
+  visit(ColumnName{"keypoints_refused"}, row.keypoints_refused);
+  visit(ColumnName{"attitude_restarts"}, row.attitude_restarts);
+  visit(ColumnName{"restarts"}, row.restarts);
+  visit(ColumnName{"tiles_refused"}, row.tiles_refused);
+  visit(ColumnName{"range_m"}, row.range_m);
+  visit(ColumnName{"sunlit"}, row.sunlit);
+  visit(ColumnName{"pnp_error_x_m"}, row.pnp_error_x_m);
+  visit(ColumnName{"pnp_error_y_m"}, row.pnp_error_y_m);
+  visit(ColumnName{"pnp_error_z_m"}, row.pnp_error_z_m);
+  visit(ColumnName{"pnp_error_deg"}, row.pnp_error_deg);
+  visit(ColumnName{"attitude_error_deg"}, row.attitude_error_deg);
+  visit(ColumnName{"attitude_error_x_deg"}, row.attitude_error_x_deg);
+  visit(ColumnName{"attitude_error_y_deg"}, row.attitude_error_y_deg);
+  visit(ColumnName{"attitude_error_z_deg"}, row.attitude_error_z_deg);
+  visit(ColumnName{"rate_error_radps"}, row.rate_error_radps);
+  visit(ColumnName{"nees"}, row.nees);
+  visit(ColumnName{"attitude_nees"}, row.attitude_nees);
+}
+
+template <columns::RowOf<KeypointRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"image"}, row.image);
+  visit(ColumnName{"keypoint"}, row.keypoint);
+  visit(ColumnName{"fate"}, row.fate);
+  visit(ColumnName{"peak"}, row.peak);
+  visit(ColumnName{"x_px"}, row.x_px);
+  visit(ColumnName{"y_px"}, row.y_px);
+  visit(ColumnName{"covariance_xx_px2"}, row.covariance_xx_px2);
+  visit(ColumnName{"covariance_xy_px2"}, row.covariance_xy_px2);
+  visit(ColumnName{"covariance_yy_px2"}, row.covariance_yy_px2);
+  visit(ColumnName{"error_x_px"}, row.error_x_px);
+  visit(ColumnName{"error_y_px"}, row.error_y_px);
 }
 
 /// The picture itself is a file of its own.

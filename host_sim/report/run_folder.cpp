@@ -25,6 +25,8 @@ constexpr std::string_view kEstimate = "estimate.csv";
 constexpr std::string_view kGnss = "gnss.csv";
 constexpr std::string_view kImages = "images.csv";
 constexpr std::string_view kObjects = "objects.csv";
+constexpr std::string_view kPoses = "poses.csv";
+constexpr std::string_view kKeypoints = "keypoints.csv";
 constexpr std::string_view kGallery = "gallery.csv";
 constexpr std::string_view kPictures = "gallery";  // a folder
 constexpr std::string_view kManeuvers = "maneuvers.csv";
@@ -33,7 +35,7 @@ constexpr std::string_view kPacketLog = "packets.lcmlog";
 constexpr std::string_view kReport = "report.html";
 
 constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,   kAttitude,  kEstimate,  kGnss,      kImages,
-                                         kObjects,   kGallery, kManeuvers, kResiduals, kPacketLog, kReport};
+                                         kObjects,   kPoses,   kKeypoints, kGallery, kManeuvers, kResiduals, kPacketLog, kReport};
 
 [[noreturn]] void fail(const fs::path& folder, std::string_view what) {
   throw std::runtime_error(fmt::format("{}: {}", folder.string(), what));
@@ -102,6 +104,8 @@ void RunFolder::finish(const RunRecord& record) const {
   if (!record.gnss.empty()) write_rows(folder_ / kGnss, record.gnss);
   if (!record.images.empty()) write_rows(folder_ / kImages, record.images);
   if (!record.objects.empty()) write_rows(folder_ / kObjects, record.objects);
+  if (!record.poses.empty()) write_rows(folder_ / kPoses, record.poses);
+  if (!record.keypoints.empty()) write_rows(folder_ / kKeypoints, record.keypoints);
   if (!record.gallery.empty()) write_gallery(folder_, record.gallery);
   write_rows(folder_ / kManeuvers, record.maneuvers);
   write_rows(folder_ / kResiduals, record.residuals);
@@ -124,6 +128,8 @@ RunRecord read_run(const fs::path& run_folder) {
   if (fs::exists(run_folder / kGnss)) record.gnss = read_rows<GnssRow>(run_folder / kGnss);
   if (fs::exists(run_folder / kImages)) record.images = read_rows<ImageRow>(run_folder / kImages);
   if (fs::exists(run_folder / kObjects)) record.objects = read_rows<ObjectRow>(run_folder / kObjects);
+  if (fs::exists(run_folder / kPoses)) record.poses = read_rows<PoseRow>(run_folder / kPoses);
+  if (fs::exists(run_folder / kKeypoints)) record.keypoints = read_rows<KeypointRow>(run_folder / kKeypoints);
   if (fs::exists(run_folder / kGallery)) record.gallery = read_gallery(run_folder);
   record.maneuvers = read_rows<ManeuverRow>(run_folder / kManeuvers);
   record.residuals = read_rows<ResidualRow>(run_folder / kResiduals);

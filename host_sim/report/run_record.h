@@ -117,6 +117,53 @@ struct ObjectRow {
   friend bool operator==(const ObjectRow&, const ObjectRow&) = default;
 };
 
+/// What navigation by the pose network said of an image (fsw/packets/vbar.lcm, telemetry_pose), and what was true at its
+/// exposure (poses.csv, only if a run has such navigation). Counts are since the start.
+struct PoseRow {
+  double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
+  double step_time_s = 0.0;  ///< of the step that told of it
+  std::int64_t step = 0;
+  std::int32_t image = 0;
+  int status = 0;  ///< what came of it; 0: a pose
+  int region_is_predicted = 0, fate = 0, filter_runs = 0, has_attitude = 0, tiles_missing = 0;
+  Triple region_px{};                             ///< of the crop: centre, side
+  int pnp_inliers = 0;                            ///< 0: no pose
+  Quadruple pnp_q_camera_body{1.0, 0.0, 0.0, 0.0};  ///< to camera axes from the target's body; w, x, y, z
+  Triple pnp_position_camera_m{};                 ///< of the target's centre of mass
+  double pnp_mean_square = 0.0;                   ///< of whitened residuals
+  Quadruple q_camera_body{1.0, 0.0, 0.0, 0.0};    ///< as navigation has it after the image
+  Triple position_camera_m{}, rate_body_radps{};
+  LowerTriangle6 covariance_attitude{};  ///< turn about the body axes (rad), rate (rad/s)
+  LowerTriangle6 covariance_a_roe_m2{};
+  Sextuple a_roe_osculating_m{};
+  double nis = 0.0;  ///< of all keypoints folded in
+  std::int32_t nis_degrees = 0;
+  double acceleration_psd = 0.0;
+  std::int32_t images_used = 0, images_refused = 0, keypoints_used = 0, keypoints_refused = 0;
+  std::int32_t attitude_restarts = 0, restarts = 0, tiles_refused = 0;
+  // The truth. Errors are estimated less true; absent where the flight software gave nothing.
+  std::optional<double> range_m, sunlit;
+  std::optional<double> pnp_error_x_m, pnp_error_y_m, pnp_error_z_m, pnp_error_deg;  ///< in camera axes
+  std::optional<double> attitude_error_deg;                                          ///< in all
+  std::optional<double> attitude_error_x_deg, attitude_error_y_deg, attitude_error_z_deg;  ///< about body axes
+  std::optional<double> rate_error_radps;
+  std::optional<double> nees, attitude_nees;  ///< of osculating ROE, of turn and rate: six degrees of freedom each
+  friend bool operator==(const PoseRow&, const PoseRow&) = default;
+};
+
+/// A keypoint of such an image (keypoints.csv).
+struct KeypointRow {
+  double time_s = 0.0;
+  std::int32_t image = 0;
+  int keypoint = 0;
+  int fate = 0;  ///< 0 not usable, 1 refused, 2 folded in, 3 usable, but no filter to take it
+  float peak = 0.0F;
+  float x_px = 0.0F, y_px = 0.0F;  ///< on the detector
+  float covariance_xx_px2 = 0.0F, covariance_xy_px2 = 0.0F, covariance_yy_px2 = 0.0F;
+  std::optional<double> error_x_px, error_y_px;
+  friend bool operator==(const KeypointRow&, const KeypointRow&) = default;
+};
+
 /// An image worth looking at, with marks about what was found in it (gallery.csv and gallery/<image>.png).
 struct GalleryImage {
   double time_s = 0.0;
@@ -176,6 +223,20 @@ struct ImageCounts {
   friend bool operator==(const ImageCounts&, const ImageCounts&) = default;
 };
 
+/// Of navigation by the pose network.
+struct PoseFigures {
+  int images = 0;
+  int with_pose = 0;                 ///< by PnP
+  int poses_over_10_deg = 0;         ///< of them, more than 10 deg off
+  double keypoint_error_px = 0.0;    ///< median of those usable
+  double keypoint_chi_square = 0.0;  ///< median normalised squared error of those usable; 1.39 is honest
+  /// Position error over the images of a lit target alone, m.
+  MeanAndDeviation lit_navigation_error_m;
+  std::optional<double> attitude_nees;  ///< mean; turn and rate, 6 is honest
+  int attitude_restarts = 0, restarts = 0;
+  friend bool operator==(const PoseFigures&, const PoseFigures&) = default;
+};
+
 /// summary.json.
 struct Summary {
   std::string mission;
@@ -200,6 +261,8 @@ struct Summary {
   std::optional<BearingError> bearing_error_arcsec;
   std::optional<MeanAndDeviation> star_attitude_error_arcsec;  ///< of the boresight
   std::optional<ImageCounts> images;
+  // Navigation by the pose network only.
+  std::optional<PoseFigures> pose;
   double dv_mps = 0.0;
   int maneuvers = 0;
   std::string commands_sha256, telemetry_sha256;
@@ -238,6 +301,8 @@ struct RunRecord {
   std::vector<GnssRow> gnss;
   std::vector<ImageRow> images;
   std::vector<ObjectRow> objects;
+  std::vector<PoseRow> poses;
+  std::vector<KeypointRow> keypoints;
   std::vector<GalleryImage> gallery;
   std::vector<ManeuverRow> maneuvers;
   std::vector<ResidualRow> residuals;

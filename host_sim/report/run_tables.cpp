@@ -97,6 +97,8 @@ template void write_rows(const std::filesystem::path&, const std::vector<Estimat
 template void write_rows(const std::filesystem::path&, const std::vector<GnssRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<ImageRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<ObjectRow>&);
+template void write_rows(const std::filesystem::path&, const std::vector<PoseRow>&);
+template void write_rows(const std::filesystem::path&, const std::vector<KeypointRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<GalleryImage>&);
 template void write_rows(const std::filesystem::path&, const std::vector<ManeuverRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<ResidualRow>&);
@@ -108,6 +110,8 @@ template std::vector<EstimateRow> read_rows(const std::filesystem::path&);
 template std::vector<GnssRow> read_rows(const std::filesystem::path&);
 template std::vector<ImageRow> read_rows(const std::filesystem::path&);
 template std::vector<ObjectRow> read_rows(const std::filesystem::path&);
+template std::vector<PoseRow> read_rows(const std::filesystem::path&);
+template std::vector<KeypointRow> read_rows(const std::filesystem::path&);
 template std::vector<GalleryImage> read_rows(const std::filesystem::path&);
 template std::vector<ManeuverRow> read_rows(const std::filesystem::path&);
 template std::vector<ResidualRow> read_rows(const std::filesystem::path&);

@@ -28,6 +28,20 @@ Json json_of(const std::optional<BearingError>& value) {
   return {{"mean", value->mean}, {"std", value->std}, {"bias", value->bias}};
 }
 
+Json json_of(const std::optional<PoseFigures>& value) {
+  if (!value) return nullptr;
+  return {{"images", value->images},
+          {"with_pose", value->with_pose},
+          {"poses_over_10_deg", value->poses_over_10_deg},
+          {"keypoint_error_px", value->keypoint_error_px},
+          {"keypoint_chi_square", value->keypoint_chi_square},
+          {"lit_navigation_error_m",
+           {{"mean", value->lit_navigation_error_m.mean}, {"std", value->lit_navigation_error_m.std}}},
+          {"attitude_nees", json_of(value->attitude_nees)},
+          {"attitude_restarts", value->attitude_restarts},
+          {"restarts", value->restarts}};
+}
+
 Json count_or_null(const std::optional<ImageCounts>& counts, int ImageCounts::*count) {
   return counts ? Json((*counts).*count) : Json(nullptr);
 }
@@ -76,6 +90,22 @@ std::optional<ImageCounts> image_counts(const Json& json) {
                      json.at("wrong_targets").get<int>()};
 }
 
+std::optional<PoseFigures> pose_figures(const Json& json) {
+  if (json.is_null()) return std::nullopt;
+  PoseFigures figures;
+  json.at("images").get_to(figures.images);
+  json.at("with_pose").get_to(figures.with_pose);
+  json.at("poses_over_10_deg").get_to(figures.poses_over_10_deg);
+  figures.keypoint_error_px = number(json.at("keypoint_error_px"));
+  figures.keypoint_chi_square = number(json.at("keypoint_chi_square"));
+  const Json& lit = json.at("lit_navigation_error_m");
+  figures.lit_navigation_error_m = {number(lit.at("mean")), number(lit.at("std"))};
+  figures.attitude_nees = optional_number(json.at("attitude_nees"));
+  json.at("attitude_restarts").get_to(figures.attitude_restarts);
+  json.at("restarts").get_to(figures.restarts);
+  return figures;
+}
+
 Summary summary_from(const Json& json) {
   Summary s;
   json.at("mission").get_to(s.mission);
@@ -99,6 +129,7 @@ Summary summary_from(const Json& json) {
   s.bearing_error_arcsec = bearing_error(json.at("bearing_error_arcsec"));
   s.star_attitude_error_arcsec = mean_and_deviation(json.at("star_attitude_error_arcsec"));
   s.images = image_counts(json);
+  s.pose = pose_figures(json.at("pose"));
   s.dv_mps = number(json.at("dv_mps"));
   json.at("maneuvers").get_to(s.maneuvers);
   json.at("commands_sha256").get_to(s.commands_sha256);
@@ -168,6 +199,7 @@ std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypo
       {"images", count_or_null(s.images, &ImageCounts::images)},
       {"images_with_bearing", count_or_null(s.images, &ImageCounts::with_bearing)},
       {"wrong_targets", count_or_null(s.images, &ImageCounts::wrong_targets)},
+      {"pose", json_of(s.pose)},
       {"dv_mps", s.dv_mps},
       {"maneuvers", s.maneuvers},
       {"commands_sha256", s.commands_sha256},

@@ -11,8 +11,8 @@
 
 #include "host_sim/training/circumstances.h"
 #include "host_sim/training/crop_kind.h"
-#include "host_sim/training/silhouette.h"
 #include "host_sim/twins/camera/detector.h"
+#include "host_sim/twins/camera/model/silhouette.h"
 #include "host_sim/twins/camera/model/target_renderer.h"
 #include "host_sim/twins/camera/star_sky.h"
 
@@ -56,7 +56,7 @@ class CropMaker {
   TargetShape shape_;
   twins::camera::CadModel model_;
   twins::camera::TargetRenderer renderer_;
-  Silhouette silhouette_;
+  twins::camera::Silhouette silhouette_;
   twins::camera::StarSky sky_;
   std::map<int, twins::camera::Detector> detectors_;  // by the side of their window
 

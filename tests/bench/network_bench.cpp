@@ -50,7 +50,8 @@ void run_opencv(benchmark::State& state) {
   }
   const std::span<const float> logits = vbar_network->logits(3);
   for (std::size_t cell = 0; cell < kMapCells; ++cell) {
-    if (std::abs(logits[cell] - maps.ptr<float>(0, 3)[cell]) > 1e-3F) return state.SkipWithError("not the same network");
+    if (std::abs(logits[cell] - maps.ptr<float>(0, 3)[cell]) > 1e-3F)
+      return state.SkipWithError("not the same network");
   }
   for (auto _ : state) maps = network.run(crop);
 }

@@ -22,14 +22,14 @@ fsw::Vector3 earth_velocity_bcrs(truth::JulianDate tt) {
   return {scale * barycentric[1][0], scale * barycentric[1][1], scale * barycentric[1][2]};
 }
 
+}  // namespace
+
 double sunlit_fraction(const fsw::Vector3& position_eci, const fsw::Vector3& sun_eci) {
   const truth::SkyDisks disks = truth::sky_disks(position_eci, sun_eci, truth::EarthFigure{});
   if (truth::penumbra_outer_edge(disks) > 0.0) return 1.0;
   return truth::penumbra_inner_edge(disks) > 0.0 ? truth::penumbra_sunlit_fraction(disks)
                                                  : truth::inner_sunlit_fraction(disks);
 }
-
-}  // namespace
 
 Exposure exposure_of_truth(const CameraMount& mount, const TruthSnapshot& truth, std::int64_t number) {
   const SpacecraftTruth* own = truth.find(mount.spacecraft);

@@ -7,6 +7,7 @@
 
 #include "fsw/core/types.h"
 #include "host_sim/twins/camera/light_sample.h"
+#include "host_sim/twins/camera/optics.h"
 
 namespace vbar::twins::camera {
 
@@ -25,5 +26,10 @@ struct ObjectView {
 
 /// Appends the object's light to `out`. One call at a time.
 using ObjectRenderer = std::function<void(const ObjectView& view, std::vector<LightSample>& out)>;
+
+/// Replaces `covered` by the share of each pixel of `region`, in rows, behind which nothing is seen of what is farther
+/// away than the object. One call at a time.
+using ObjectCover = std::function<void(const ObjectView& view, const Optics& optics, const Region& region,
+                                       std::vector<float>& covered)>;
 
 }  // namespace vbar::twins::camera

@@ -21,7 +21,8 @@ float* row_of(PhotonImage& image, int y) {
 // Least reaches, a square's half width: beyond 4.5 sigma lies 1.4e-5 of the core, beyond 3.3 sigma 2e-3 of the halo.
 PointSpread::PointSpread(const OpticsSettings& optics)
     : components_{Component{1.0 - optics.halo_fraction, optics.point_spread_sigma_px, 4.5},
-                  Component{optics.halo_fraction, optics.halo_sigma_px, 3.3}} {}
+                  Component{optics.halo_fraction, optics.halo_sigma_px, 3.3}},
+      wide_({optics.point_spread_sigma_px, optics.halo_sigma_px, optics.halo_fraction}) {}
 
 double PointSpread::reach_px(const Component& component, double electrons) {
   const double peak = electrons * component.fraction / (2.0 * M_PI * component.sigma_px * component.sigma_px);
@@ -88,7 +89,30 @@ void PointSpread::add(const ImagePoint& point, const Vector2& smear_px, PhotonIm
 }
 
 void PointSpread::add(std::span<const ImagePoint> points, const Vector2& smear_px, PhotonImage& image) {
+  if (add_wide(points, smear_px, image)) return;
   for (const Component& component : components_) add_component(component, points, smear_px, image);
+}
+
+/// False, and nothing is added, if the points that can be seen are not wide.
+bool PointSpread::add_wide(std::span<const ImagePoint> points, const Vector2& smear_px, PhotonImage& image) {
+  if (!wide_.can_spread()) return false;
+  double electrons = 0.0;
+  for (const ImagePoint& point : points) electrons += point.electrons;
+  const Region& region = image.region;
+  const Vector2 margin = Vector2::Constant(reach_px(electrons) + 1.0) + 0.5 * smear_px.cwiseAbs();
+  const Vector2 least = Vector2(region.x, region.y) - margin;
+  const Vector2 most = Vector2(region.x + region.width, region.y + region.height) + margin;
+  Vector2 low = most, high = least;
+  near_points_.clear();
+  for (const ImagePoint& point : points) {
+    if (!((point.pixel.array() >= least.array()).all() && (point.pixel.array() <= most.array()).all())) continue;
+    near_points_.push_back(point);
+    low = low.cwiseMin(point.pixel);
+    high = high.cwiseMax(point.pixel);
+  }
+  if (near_points_.empty() || (high - low).maxCoeff() <= kWide_px) return false;
+  wide_.add(near_points_, smear_px, reach_px(components_[0], electrons), reach_px(components_[1], electrons), image);
+  return true;
 }
 
 void PointSpread::add_component(const Component& component, std::span<const ImagePoint> points, const Vector2& smear_px,

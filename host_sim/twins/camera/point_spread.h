@@ -7,15 +7,11 @@
 #include <vector>
 
 #include "fsw/core/types.h"
+#include "host_sim/twins/camera/image_point.h"
 #include "host_sim/twins/camera/photon_image.h"
+#include "host_sim/twins/camera/wide_spread.h"
 
 namespace vbar::twins::camera {
-
-/// A point of an image.
-struct ImagePoint {
-  fsw::Vector2 pixel = fsw::Vector2::Zero();  ///< at the middle of the exposure
-  double electrons = 0.0;                     ///< all that it gives
-};
 
 class PointSpread {
  public:
@@ -26,8 +22,11 @@ class PointSpread {
 
   /// Adds many points that move alike and belong together: an object, a disc. They are first gathered on a grid, of a
   /// 64th of their extent or a third of the spread, whichever is less, by bilinear weights: sums and centroids stay
-  /// exact, and nothing changes as an object grows from a point to many pixels.
+  /// exact, and nothing changes as an object grows from a point to many pixels. Beyond kWide_px the grid divides pixels
+  /// evenly (wide_spread.h).
   void add(std::span<const ImagePoint> points, const fsw::Vector2& smear_px, PhotonImage& image);
+
+  static constexpr double kWide_px = 96.0;
 
   /// Pixels from a point of so many electrons at which its light is lost: 0.05 electrons a pixel, 1e-4 of all of it.
   [[nodiscard]] double reach_px(double electrons) const;
@@ -50,14 +49,17 @@ class PointSpread {
   [[nodiscard]] static double reach_px(const Component& component, double electrons);
   void place_smear_nodes(const fsw::Vector2& smear_px, double sigma_px);
   static void fill(Profile& profile, double centre, double reach, double sigma_px, int begin, int end);
+  bool add_wide(std::span<const ImagePoint> points, const fsw::Vector2& smear_px, PhotonImage& image);
   void add_component(const Component& component, std::span<const ImagePoint> points, const fsw::Vector2& smear_px,
                      PhotonImage& image);
 
   std::array<Component, 2> components_;
+  WideSpread wide_;
   std::vector<SmearNode> nodes_;  // work space, as all below
   Profile across_, down_;
   std::vector<float> grid_, row_sums_;
   std::vector<Profile> columns_;
+  std::vector<ImagePoint> near_points_;
 };
 
 }  // namespace vbar::twins::camera

@@ -62,12 +62,13 @@ struct SceneRenderer::View {
 };
 
 SceneRenderer::SceneRenderer(const CameraSettings& settings, const std::filesystem::path& data_directory,
-                             ObjectRenderer objects)
+                             ObjectRenderer objects, ObjectCover covers)
     : settings_(settings),
       optics_(settings),
       spread_(settings.optics),
       sky_(StarSky::load(data_directory, settings.zero_magnitude_photons)),
       objects_(objects ? std::move(objects) : lambert_sphere(0.35, 0.3)),
+      covers_(std::move(covers)),
       region_cone_(optics_.cone_of(settings.region, kMarginPx)),
       detector_cone_(optics_.cone_of({0, 0, settings.detector.width, settings.detector.height}, kMarginPx)) {}
 
@@ -77,9 +78,18 @@ void SceneRenderer::render(const Exposure& exposure, PhotonImage& image) {
       static_cast<std::size_t>(settings_.region.width) * static_cast<std::size_t>(settings_.region.height), 0.0F);
   const View view(exposure, settings_, detector_cone_);
   add_stars(view, image);
-  for (const ObjectInView& object : exposure.objects) add_object(view, object, image);
+  const bool one_hides =
+      std::ranges::any_of(exposure.objects, [&](const ObjectInView& object) { return hides(view, object); });
+  const auto add_objects = [&] {
+    for (const ObjectInView& object : exposure.objects) add_object(view, object, image);
+  };
+  if (!one_hides) add_objects();
   double scattered = add_sun_and_moon(view, image);
   if (view.earth_in_field) scattered += add_earth(view, image);
+  if (one_hides) {
+    for (const ObjectInView& object : exposure.objects) hide_behind(view, object, image);
+    add_objects();
+  }
   add_background(view, scattered, image);
 }
 
@@ -109,15 +119,32 @@ void SceneRenderer::add_stars(const View& view, PhotonImage& image) {
   }
 }
 
-void SceneRenderer::add_object(const View& view, const ObjectInView& object, PhotonImage& image) {
+bool SceneRenderer::is_in_view(const View& view, const ObjectInView& object) const {
   const double distance = object.position_eci.norm();
-  if (!(distance > 0.0)) return;
+  if (!(distance > 0.0)) return false;
   const Vector3 direction_eci = object.position_eci / distance;
   const Vector3 direction = view.R_camera_eci * direction_eci;
   const double radius = std::asin(std::min(1.0, kLargestObject / distance));
-  if (angle_between(direction, region_cone_.axis) > region_cone_.half_angle + radius) return;
-  if (view.earth.hides(direction_eci, distance)) return;
+  if (angle_between(direction, region_cone_.axis) > region_cone_.half_angle + radius) return false;
+  return !view.earth.hides(direction_eci, distance);
+}
 
+bool SceneRenderer::hides(const View& view, const ObjectInView& object) const {
+  constexpr double kHides_m = 0.01;  // a pixel
+  return covers_ && object.position_eci.norm() * view.pixel_rad < kHides_m && is_in_view(view, object);
+}
+
+void SceneRenderer::hide_behind(const View& view, const ObjectInView& object, PhotonImage& image) {
+  constexpr float kNoticed = 0.5F;  // electrons
+  const bool is_noticed = std::ranges::any_of(image.electrons, [](float electrons) { return electrons > kNoticed; });
+  if (!is_noticed || !hides(view, object)) return;
+  covers_(view_of(view, object), optics_, image.region, covered_);
+  for (std::size_t k = 0; k < covered_.size(); ++k) image.electrons[k] *= 1.0F - covered_[k];
+}
+
+ObjectView SceneRenderer::view_of(const View& view, const ObjectInView& object) const {
+  const double distance = object.position_eci.norm();
+  const Vector3 direction = view.R_camera_eci * (object.position_eci / distance);
   ObjectView asked;
   asked.model = object.model;
   asked.position_camera = distance * direction;
@@ -129,8 +156,16 @@ void SceneRenderer::add_object(const View& view, const ObjectInView& object, Pho
   if (asked.earth_photons_per_m2_s > 0.0) asked.earth_direction_camera = earth_light.normalized();
   asked.earth_half_angle = view.earth.angular_radius();
   asked.pixel_rad = view.pixel_rad;
+  return asked;
+}
+
+void SceneRenderer::add_object(const View& view, const ObjectInView& object, PhotonImage& image) {
+  if (!is_in_view(view, object)) return;
+  const double distance = object.position_eci.norm();
+  const Vector3 direction_eci = object.position_eci / distance;
+  const Vector3 direction = view.R_camera_eci * direction_eci;
   samples_.clear();
-  objects_(asked, samples_);
+  objects_(view_of(view, object), samples_);
 
   points_.clear();
   for (const LightSample& sample : samples_)

@@ -23,16 +23,17 @@ inline constexpr double kVeilingGlare = 1e-3;
 /// - Stars, Sun and Moon move over the image by the camera's turning, objects by that and their own way; the Earth's
 /// limb
 ///   stands still during an exposure, and has no spread.
-/// - Nothing hides anything but the Earth: a star behind a spacecraft shines through it (a spacecraft at 1 km is 4
-/// pixels
-///   wide, and a star in a thousand images is behind it).
+/// - The Earth hides what is behind it, and so does a spacecraft so near that a pixel sees less than a centimetre of
+/// it.
+///   A star behind a farther one shines through it (a spacecraft at 1 km is 4 pixels wide, and a star in a thousand
+///   images is behind it). Spacecraft do not hide each other.
 /// - Sun and Earth on the detector drown everything else, as they do in a real camera, by kVeilingGlare.
 class SceneRenderer {
  public:
   /// Reads the star catalogue of `data_directory`; throws std::runtime_error if that cannot be. `objects` renders
-  /// spacecraft; by default each is a matt sphere of 0.7 m and albedo 0.3.
+  /// spacecraft; by default each is a matt sphere of 0.7 m and albedo 0.3. Without `covers` they hide nothing.
   SceneRenderer(const CameraSettings& settings, const std::filesystem::path& data_directory,
-                ObjectRenderer objects = {});
+                ObjectRenderer objects = {}, ObjectCover covers = {});
 
   /// Expected photo-electrons of the region that is read, into `image`, whatever it held. No dark current, no noise.
   void render(const Exposure& exposure, PhotonImage& image);
@@ -42,6 +43,10 @@ class SceneRenderer {
 
   [[nodiscard]] double electrons_of(const LightSample& light, const fsw::Vector2& pixel) const;
   void add_stars(const View& view, PhotonImage& image);
+  [[nodiscard]] bool is_in_view(const View& view, const ObjectInView& object) const;
+  [[nodiscard]] ObjectView view_of(const View& view, const ObjectInView& object) const;
+  [[nodiscard]] bool hides(const View& view, const ObjectInView& object) const;
+  void hide_behind(const View& view, const ObjectInView& object, PhotonImage& image);
   void add_object(const View& view, const ObjectInView& object, PhotonImage& image);
   double add_sun_and_moon(const View& view, PhotonImage& image);
   double add_disc(const View& view, const fsw::Vector3& velocity, PhotonImage& image);
@@ -54,10 +59,12 @@ class SceneRenderer {
   PointSpread spread_;
   StarSky sky_;
   ObjectRenderer objects_;
+  ObjectCover covers_;
   Cone region_cone_, detector_cone_;
   std::vector<ApparentStar> stars_;  // work space, as all below
   std::vector<LightSample> samples_;
   std::vector<ImagePoint> points_;
+  std::vector<float> covered_;
 };
 
 }  // namespace vbar::twins::camera

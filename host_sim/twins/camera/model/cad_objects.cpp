@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/twins/camera/model/silhouette.h"
 #include "host_sim/twins/camera/model/target_renderer.h"
 
 namespace vbar::twins::camera {
@@ -17,10 +18,16 @@ struct Models {
   std::vector<LightSample> samples;  // work space
 };
 
+template <class Map>
+auto loaded_model(Map& models, const std::string& name) {
+  const auto found = models.find(name);
+  if (found == models.end())
+    throw std::invalid_argument(fmt::format("no CAD model \"{}\" was loaded for the camera", name));
+  return found;
+}
+
 void render(Models& models, const ObjectView& view, std::vector<LightSample>& out) {
-  const auto found = models.renderers.find(view.model);
-  if (found == models.renderers.end())
-    throw std::invalid_argument(fmt::format("no CAD model \"{}\" was loaded for the camera", view.model));
+  const auto found = loaded_model(models.renderers, view.model);
   TargetView target;
   target.position_camera = view.position_camera;
   target.R_camera_body = view.R_camera_body;
@@ -42,6 +49,17 @@ ObjectRenderer cad_objects(const std::filesystem::path& data_directory, std::spa
     if (!loaded->renderers.contains(model))
       loaded->renderers.try_emplace(model, load_cad_model(data_directory / "models" / (model + ".obj")));
   return [loaded](const ObjectView& view, std::vector<LightSample>& out) { render(*loaded, view, out); };
+}
+
+ObjectCover cad_covers(const std::filesystem::path& data_directory, std::span<const std::string> models) {
+  using Silhouettes = std::map<std::string, Silhouette, std::less<>>;
+  const auto loaded = std::make_shared<Silhouettes>();
+  for (const std::string& model : models)
+    if (!loaded->contains(model))
+      loaded->try_emplace(model, load_cad_model(data_directory / "models" / (model + ".obj")));
+  return [loaded](const ObjectView& view, const Optics& optics, const Region& region, std::vector<float>& covered) {
+    loaded_model(*loaded, view.model)->second.draw(optics, view.position_camera, view.R_camera_body, region, covered);
+  };
 }
 
 }  // namespace vbar::twins::camera

@@ -14,4 +14,7 @@ namespace vbar::twins::camera {
 /// for a camera inside the sphere around a body. Copies of it share the models; one call at a time among them all.
 ObjectRenderer cad_objects(const std::filesystem::path& data_directory, std::span<const std::string> models);
 
+/// Their outlines; likewise.
+ObjectCover cad_covers(const std::filesystem::path& data_directory, std::span<const std::string> models);
+
 }  // namespace vbar::twins::camera

@@ -8,8 +8,6 @@
 namespace vbar::twins::camera {
 namespace {
 
-constexpr int kSamples = 4;
-
 class Shader {
  public:
   Shader(GLenum stage, std::string_view source) : id_(glCreateShader(stage)) {
@@ -151,20 +149,21 @@ void GlTable::bind_texture() const {
   glBindTexture(GL_TEXTURE_1D, texture_);
 }
 
-GlPicture::GlPicture(int size) : size_(size) {
-  const auto renderbuffer = [size](GLuint& id, int samples, GLenum format) {
+GlPicture::GlPicture(int size, int samples) : size_(size) {
+  const auto renderbuffer = [size](GLuint& id, int of_a_texel, GLenum format) {
     glGenRenderbuffers(1, &id);
     glBindRenderbuffer(GL_RENDERBUFFER, id);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, size, size);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, of_a_texel, format, size, size);
   };
-  renderbuffer(colour_, kSamples, GL_R32F);
-  renderbuffer(depth_, kSamples, GL_DEPTH_COMPONENT32F);
+  const int multisamples = samples > 1 ? samples : 0;
+  renderbuffer(colour_, multisamples, GL_R32F);
+  renderbuffer(depth_, multisamples, GL_DEPTH_COMPONENT32F);
   renderbuffer(mean_, 0, GL_R32F);
   glGenFramebuffers(1, &drawn_);
   glBindFramebuffer(GL_FRAMEBUFFER, drawn_);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
-  check_framebuffer("four samples a texel");
+  check_framebuffer("a picture");
   glGenFramebuffers(1, &resolved_);
   glBindFramebuffer(GL_FRAMEBUFFER, resolved_);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, mean_);

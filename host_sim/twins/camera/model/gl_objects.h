@@ -74,10 +74,10 @@ class GlTable {
   GLuint texture_ = 0;
 };
 
-/// A square picture of one float a texel, drawn with four samples a texel.
+/// A square picture of one float a texel, drawn with four samples a texel or (`samples` 1) one.
 class GlPicture {
  public:
-  explicit GlPicture(int size);
+  GlPicture(int size, int samples);
   ~GlPicture();
   GlPicture(const GlPicture&) = delete;
   GlPicture& operator=(const GlPicture&) = delete;

@@ -25,7 +25,8 @@ using Matrix4f = Eigen::Matrix<float, 4, 4>;
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kEarthSteps = 512;
-constexpr int kFinePicture = 256;       // texels on a side; in finer ones shadows get a wider filter
+constexpr int kFinePicture = 256;       // texels on a side; finer ones have texels enough without several samples each
+constexpr int kFinestShadow = 2048;     // texels on a side of the shadow map
 constexpr double kMinRoughness = 0.02;  // a mirror image of the Sun, half a degree wide, is no narrower
 
 // The picture's axes: z to the middle of the sphere, x and y near the camera's.
@@ -42,6 +43,12 @@ int texels_for(double wanted) {
   int size = TargetRenderer::kMinTexels;
   while (size < wanted && size < TargetRenderer::kMaxTexels) size = size % 3 == 0 ? size / 3 * 4 : size / 2 * 3;
   return size;
+}
+
+// A shadow's edge need not be much finer than a texel of the picture.
+int shadow_size_for(int texels) {
+  if (texels > kFinePicture) return std::clamp(3 * texels / 2, 4 * kFinePicture, kFinestShadow);
+  return std::max(4 * texels, 512);
 }
 
 // From the middle of the sphere, in radii.
@@ -190,7 +197,7 @@ void TargetRenderer::Drawing::draw_surface(const TargetView& view, const Vector3
     earth_light->set(earth_table(sine_earth));
     earth_table_sine = sine_earth;
   }
-  glUniform1i(surface_program->uniform("shadow_reach"), picture->size() > kFinePicture ? 1 : 0);
+  glUniform1i(surface_program->uniform("shadow_reach"), picture->size() < shadow_map->size() ? 0 : 1);
   glUniform1i(surface_program->uniform("earth_light"), 1);
   shadow_map->bind_texture();
   earth_light->bind_texture();
@@ -237,9 +244,9 @@ void TargetRenderer::render(const TargetView& view, std::vector<LightSample>& ou
     const GlContext::Current current(d.context);
     if (!d.picture || d.picture->size() != n) {
       d.picture.reset();
-      d.picture.emplace(n);
+      d.picture.emplace(n, n > kFinePicture ? 1 : 4);
     }
-    const int shadow_size = std::clamp(4 * n, 512, 2048);
+    const int shadow_size = shadow_size_for(n);
     if (!d.shadow_map || d.shadow_map->size() != shadow_size) {
       d.shadow_map.reset();
       d.shadow_map.emplace(shadow_size);

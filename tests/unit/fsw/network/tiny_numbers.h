@@ -9,8 +9,8 @@
 
 namespace vbar::test {
 
-/// Most weights are nothing, so that small numbers are not lost in sums with larger ones. In a sum some are of the size 1
-/// and positive, so that numbers live on from layer to layer, and some of the smallest there can be.
+/// Most weights are nothing, so that small numbers are not lost in sums with larger ones. In a sum some are of the size
+/// 1 and positive, so that numbers live on from layer to layer, and some of the smallest there can be.
 inline WeightsFile tiny_file(std::uint64_t seed) {
   same_bits::Arguments arguments(seed);
   return file_of([&](const fsw::network::Layer& layer, std::size_t k) {

@@ -1,5 +1,5 @@
-// From maps to the pose: Gaussian maps around where Tango's keypoints are, as a network that makes errors of a known size
-// would give them.
+// From maps to the pose: Gaussian maps around where Tango's keypoints are, as a network that makes errors of a known
+// size would give them.
 
 #include <cmath>
 #include <random>

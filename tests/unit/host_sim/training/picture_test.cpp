@@ -6,8 +6,8 @@
 
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/training/circumstances.h"
-#include "host_sim/training/silhouette.h"
 #include "host_sim/training/soft_picture.h"
+#include "host_sim/twins/camera/model/silhouette.h"
 
 namespace vbar::training {
 namespace {
@@ -53,7 +53,7 @@ TEST(Silhouette, PlateCoversWhatItShould) {
   auto camera = close_range_camera(mission::data_directory());
   camera.optics.distortion = {};
   const twins::camera::Optics optics(camera);
-  Silhouette silhouette(plate(0.8, 0.4));
+  twins::camera::Silhouette silhouette(plate(0.8, 0.4));
   const twins::camera::Region region{380, 200, 200, 200};
   std::vector<float> covered;
   silhouette.draw(optics, Vector3(0.0, 0.0, 8.0), fsw::Matrix3::Identity(), region, covered);

@@ -43,7 +43,8 @@ TEST_P(Binning, APointFallsOnTheSumOfItsPixels) {
   const int binning = GetParam();
   const camera::CameraSettings single = single_pixels(), sums = camera::binned(single, binning);
   const Vector3 direction(0.005, -0.012, 1.0);
-  const Vector2 on_single = *camera::Optics(single).project(direction), on_sums = *camera::Optics(sums).project(direction);
+  const Vector2 on_single = *camera::Optics(single).project(direction),
+                on_sums = *camera::Optics(sums).project(direction);
   EXPECT_NEAR((on_single - ((on_sums.array() + 0.5) * binning - 0.5).matrix()).norm(), 0.0, 1e-9);
 
   const auto image_of = [](const camera::CameraSettings& settings, const Vector2& place) {

@@ -3,6 +3,7 @@
 
 #include "host_sim/twins/camera/point_spread.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -117,6 +118,64 @@ TEST(PointSpread, many_points_give_the_image_of_each) {
       // Gathering widens by a twentieth of the core's variance at most.
       EXPECT_NEAR((a.spread - b.spread).norm() / b.spread.norm(), 0.0, 0.03) << extent;
     }
+  }
+}
+
+// Beyond kWide_px another grid takes over: each pixel against the sum of its points, with the wide lens of one camera
+// and the fine one of another, across the change and far beyond it.
+TEST(PointSpread, wide_things_give_the_image_of_each_of_their_points) {
+  constexpr camera::Region kLarge{100, 200, 320, 260};
+  const Vector2 middle(262.3, 330.6);
+  for (const double sigma : {0.3, 0.8}) {
+    camera::OpticsSettings optics;
+    optics.point_spread_sigma_px = sigma;
+    optics.halo_sigma_px = 2.5;
+    camera::PointSpread spread(optics);
+    for (const double extent : {95.0, 97.0, 250.0, 400.0})  // the last hangs over all four edges
+      for (const Vector2& smear : {Vector2(0.0, 0.0), Vector2(1.3, 0.4)}) {
+        std::vector<camera::ImagePoint> points;
+        for (int i = 0; i < 60; ++i)
+          for (int j = 0; j < 60; ++j)
+            points.push_back({middle + extent * Vector2(i / 59.0 - 0.5, 0.8 * (j / 59.0 - 0.5)), 2e3 + (i * j) % 700});
+        camera::PhotonImage together{kLarge, std::vector<float>(320 * 260, 0.0F)}, each = together;
+        spread.add(points, smear, together);
+        for (const camera::ImagePoint& point : points) spread.add(point, smear, each);
+        double sum_together = 0.0, sum_each = 0.0, brightest = 0.0, squares = 0.0;
+        Vector2 first_together = Vector2::Zero(), first_each = Vector2::Zero();
+        for (int y = 0; y < kLarge.height; ++y)
+          for (int x = 0; x < kLarge.width; ++x) {
+            const double a = together.at(kLarge.x + x, kLarge.y + y), b = each.at(kLarge.x + x, kLarge.y + y);
+            sum_together += a;
+            sum_each += b;
+            first_together += a * Vector2(x, y);
+            first_each += b * Vector2(x, y);
+            squares += (a - b) * (a - b);
+            brightest = std::max(brightest, b);
+          }
+        EXPECT_NEAR(sum_together / sum_each, 1.0, 2e-4) << extent << ' ' << sigma;
+        EXPECT_NEAR((first_together / sum_together - first_each / sum_each).norm(), 0.0, 0.01)
+            << extent << ' ' << sigma;
+        // Each point stands alone here, so gathering shows: by a few per cent of a point's peak, as above.
+        EXPECT_LT(std::sqrt(squares / (320.0 * 260.0)), 0.02 * brightest) << extent << ' ' << sigma;
+      }
+  }
+}
+
+// An even face, its points in rows half a pixel apart, more or less: no ripple where grid and rows beat.
+TEST(PointSpread, an_even_face_is_even) {
+  constexpr camera::Region kLarge{0, 0, 200, 200};
+  camera::OpticsSettings optics;
+  optics.point_spread_sigma_px = 0.3;
+  optics.halo_fraction = 0.0;
+  camera::PointSpread spread(optics);
+  for (const double pitch : {0.37, 0.41, 0.45, 0.5}) {
+    std::vector<camera::ImagePoint> points;
+    for (double x = 20.0; x < 180.0; x += pitch)
+      for (double y = 20.0; y < 180.0; y += pitch) points.push_back({{x, y}, 1e4 * pitch * pitch});
+    camera::PhotonImage image{kLarge, std::vector<float>(200 * 200, 0.0F)};
+    spread.add(points, Vector2::Zero(), image);
+    for (int y = 40; y < 160; ++y)
+      for (int x = 40; x < 160; ++x) ASSERT_NEAR(image.at(x, y), 1e4, 30.0) << pitch;  // shot noise is 100
   }
 }
 

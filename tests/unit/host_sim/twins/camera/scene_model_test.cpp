@@ -73,6 +73,35 @@ TEST(SceneModel, tango_grows_from_a_point_to_a_disc_without_a_jump) {
   }
 }
 
+// The Earth's day side fills the image behind Tango in the dark: light and no light, and of the Earth's as much is
+// missing as a plate of the hull's outline hides. Seen along z, the top panel's 0.74 m x 0.77 m is the outline but for
+// the antennas and what sticks out, less than a tenth of it.
+TEST(SceneModel, the_earth_does_not_shine_through_tango) {
+  const std::vector<std::string> models{"tango"};
+  camera::CameraSettings settings;
+  settings.optics.focal_length_mm = 8.5;  // 6 mm a pixel at 8 m and more
+  settings.exposure_s = 1e-3;
+  camera::SceneRenderer seen(settings, vbar::test::camera_data(),
+                             camera::cad_objects(vbar::test::camera_data(), models),
+                             camera::cad_covers(vbar::test::camera_data(), models));
+  camera::Exposure exposure = vbar::test::quiet_exposure(Vector3(0.0, 1.0, 0.0));
+  exposure.camera_position_eci = Vector3(7.0e6, 0.0, 0.0);
+  exposure.q_camera_eci = vbar::test::camera_attitude(-Vector3::UnitX(), Vector3::UnitY());
+  exposure.sun_eci = vbar::test::kSunDistance * Vector3::UnitX();
+  camera::PhotonImage earth, both;
+  seen.render(exposure, earth);
+  const double range = 8.0, pixel_m = range / settings.focal_length_px();
+  exposure.objects.push_back(vbar::test::object_at(exposure, Vector3(0.0, 0.0, range)));
+  exposure.objects[0].model = "tango";
+  exposure.objects[0].q_body_eci = exposure.q_camera_eci;  // the side that looks away from the Earth
+  exposure.objects[0].sunlit = 0.0;
+  seen.render(exposure, both);
+  double hidden = 0.0;
+  for (std::size_t k = 0; k < both.electrons.size(); ++k)
+    if (both.electrons[k] < 0.5F * earth.electrons[k]) hidden += pixel_m * pixel_m;
+  EXPECT_NEAR(hidden, 0.74 * 0.77, 0.1 * 0.74 * 0.77);
+}
+
 TEST(SceneModel, a_model_that_was_not_loaded_is_refused) {
   camera::Exposure exposure = with_tango(Vector3(0.0, 0.0, 1e3));
   exposure.objects[0].model = "mango";

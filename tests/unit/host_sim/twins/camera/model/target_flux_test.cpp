@@ -157,13 +157,18 @@ TEST(TargetFlux, AndCentroidStayWithFinerPictures) {
     view.texel_pitch = 2.0 * 0.75 / range / 250.0;
     const Light middle = light_of(renderer, view);
     ASSERT_EQ(renderer.texels(), 256);
+    view.texel_pitch *= 0.5;  // one sample a texel from here on: no more of them than in the middle picture
+    const Light single = light_of(renderer, view);
+    ASSERT_EQ(renderer.texels(), 512);
     view.texel_pitch *= 0.5;
     const Light fine = light_of(renderer, view);
-    ASSERT_EQ(renderer.texels(), 512);
+    ASSERT_EQ(renderer.texels(), 1024);
     EXPECT_NEAR(coarse.flux / fine.flux, 1.0, 0.01) << turn;
     EXPECT_NEAR(middle.flux / fine.flux, 1.0, 0.005) << turn;
+    EXPECT_NEAR(single.flux / fine.flux, 1.0, 0.005) << turn;
     EXPECT_LT((coarse.direction - fine.direction).norm() * range, 0.002) << turn;
     EXPECT_LT((middle.direction - fine.direction).norm() * range, 0.001) << turn;
+    EXPECT_LT((single.direction - fine.direction).norm() * range, 0.001) << turn;
   }
 }
 

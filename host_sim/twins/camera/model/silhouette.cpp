@@ -1,10 +1,10 @@
-#include "host_sim/training/silhouette.h"
+#include "host_sim/twins/camera/model/silhouette.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace vbar::training {
+namespace vbar::twins::camera {
 namespace {
 
 using fsw::Vector2;
@@ -18,8 +18,8 @@ double cross(const Vector2& a, const Vector2& b) {
 
 }  // namespace
 
-Silhouette::Silhouette(const twins::camera::CadModel& model) {
-  for (const twins::camera::Triangle& triangle : model.triangles)
+Silhouette::Silhouette(const CadModel& model) {
+  for (const Triangle& triangle : model.triangles)
     corners_body_.insert(corners_body_.end(), triangle.corners.begin(), triangle.corners.end());
 }
 
@@ -52,9 +52,8 @@ void Silhouette::fill(const std::array<Vector2, 3>& corners) {
   }
 }
 
-void Silhouette::draw(const twins::camera::Optics& optics, const Vector3& origin_camera,
-                      const fsw::Matrix3& R_camera_body, const twins::camera::Region& region,
-                      std::vector<float>& covered) {
+void Silhouette::draw(const Optics& optics, const Vector3& origin_camera, const fsw::Matrix3& R_camera_body,
+                      const Region& region, std::vector<float>& covered) {
   points_across_ = kPoints * region.width;
   points_down_ = kPoints * region.height;
   points_.assign(static_cast<std::size_t>(points_across_) * static_cast<std::size_t>(points_down_), 0);
@@ -82,4 +81,4 @@ void Silhouette::draw(const twins::camera::Optics& optics, const Vector3& origin
     }
 }
 
-}  // namespace vbar::training
+}  // namespace vbar::twins::camera

@@ -8,16 +8,16 @@
 #include "host_sim/twins/camera/model/cad_model.h"
 #include "host_sim/twins/camera/optics.h"
 
-namespace vbar::training {
+namespace vbar::twins::camera {
 
 class Silhouette {
  public:
-  explicit Silhouette(const twins::camera::CadModel& model);
+  explicit Silhouette(const CadModel& model);
 
   /// Covered shares, 0 to 1 in quarters (2 x 2 points a pixel), rows of `region`. `origin_camera`: of the model, m, all
   /// of it in front of the camera.
-  void draw(const twins::camera::Optics& optics, const fsw::Vector3& origin_camera, const fsw::Matrix3& R_camera_body,
-            const twins::camera::Region& region, std::vector<float>& covered);
+  void draw(const Optics& optics, const fsw::Vector3& origin_camera, const fsw::Matrix3& R_camera_body,
+            const Region& region, std::vector<float>& covered);
 
  private:
   void fill(const std::array<fsw::Vector2, 3>& corners);
@@ -27,4 +27,4 @@ class Silhouette {
   int points_across_ = 0, points_down_ = 0;
 };
 
-}  // namespace vbar::training
+}  // namespace vbar::twins::camera

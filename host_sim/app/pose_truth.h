@@ -1,0 +1,28 @@
+#pragma once
+// What the flight software said of a pose and its keypoints, and what was true of them.
+
+#include <vector>
+
+#include "fsw/packets/messages.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/report/run_record.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::app {
+
+/// Times in seconds since the mission's epoch; nothing of the truth yet.
+[[nodiscard]] report::PoseRow pose_row(double exposure_s, double step_s, const telemetry_pose& pose);
+
+/// Eleven rows, nothing of the truth yet.
+void append_keypoints(double exposure_s, const telemetry_pose& pose, std::vector<report::KeypointRow>& rows);
+
+/// Sets what was true at the exposure beside the row and the last eleven of `keypoints`, the row's own.
+/// `keypoints_body_m`: from the target's centre of mass, as telecommanded. Nothing where the truth lacks an attitude.
+void add_truth(report::PoseRow& row, std::vector<report::KeypointRow>& keypoints, const telemetry_pose& pose,
+               const double (&keypoints_body_m)[33], const mission::Mission& mission,
+               const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
+
+/// Over all images. Nothing without any.
+void summarise_poses(const report::RunRecord& record, report::Summary& summary);
+
+}  // namespace vbar::app

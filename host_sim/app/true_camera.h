@@ -1,0 +1,44 @@
+#pragma once
+// What was true of a camera and its target at an exposure, to judge by what the flight software made of the image.
+
+#include <array>
+#include <optional>
+
+#include <Eigen/Geometry>
+
+#include "fsw/core/types.h"
+#include "fsw/orbit/elements.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::app {
+
+/// A camera in orbit at the middle of an exposure.
+struct TrueCamera {
+  fsw::Vector3 position_eci = fsw::Vector3::Zero();
+  Eigen::Quaterniond q_camera_eci = Eigen::Quaterniond::Identity();
+
+  [[nodiscard]] fsw::Vector3 towards(const twins::SpacecraftTruth& other) const {
+    return other.orbit.position_eci - position_eci;
+  }
+};
+
+/// `servicer` must have an attitude.
+[[nodiscard]] TrueCamera true_camera(const mission::CameraSensor& camera, const twins::SpacecraftTruth& servicer);
+
+/// Pinhole and Brown-Conrady distortion, forwards (Brown 1966); none behind the camera.
+[[nodiscard]] std::optional<Eigen::Vector2d> pixel_of(const twins::camera::CameraSettings& settings,
+                                                      const fsw::Vector3& los_camera);
+
+/// The symmetric matrix whose lower triangle by rows a packet carries.
+[[nodiscard]] fsw::Matrix6 symmetric(const double (&lower_triangle)[21]);
+
+/// Error' covariance^-1 error; none for a covariance that is not positive definite.
+[[nodiscard]] std::optional<double> normalised_square(const fsw::Vector6& error, const fsw::Matrix6& covariance);
+
+/// Normalised estimation error squared of osculating ROE (m, times `a`), six degrees of freedom.
+[[nodiscard]] std::optional<double> nees_of_roe(const double (&a_roe_m)[6], const double (&covariance_m2)[21],
+                                                const fsw::orbit::CartesianState& servicer,
+                                                const fsw::orbit::CartesianState& target, double a);
+
+}  // namespace vbar::app

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "fsw/core/types.h"
+
+namespace vbar::twins::camera {
+
+/// A point of an image.
+struct ImagePoint {
+  fsw::Vector2 pixel = fsw::Vector2::Zero();  ///< at the middle of the exposure
+  double electrons = 0.0;                     ///< all that it gives
+};
+
+}  // namespace vbar::twins::camera

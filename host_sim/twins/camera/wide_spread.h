@@ -1,0 +1,57 @@
+#pragma once
+// The spread of something large: many thousand points that fill tens of pixels each way.
+//
+// The points are gathered on a grid whose nodes divide the pixels evenly, by the weights of a quadratic
+// B-spline (Hockney and Eastwood 1981, "triangular-shaped cloud"), so that the spread of a node over the pixels is the
+// same for all nodes at the same place of a pixel: one set of weights for rows and columns. The spline widens by a
+// quarter of a step's square; the Gaussian is so much narrower. A wide halo is the
+// spread of what the narrow core has left on the pixels.
+
+#include <span>
+#include <vector>
+
+#include "fsw/core/types.h"
+#include "host_sim/twins/camera/image_point.h"
+#include "host_sim/twins/camera/photon_image.h"
+
+namespace vbar::twins::camera {
+
+class WideSpread {
+ public:
+  struct Settings {
+    double core_sigma_px = 0.0;
+    double halo_sigma_px = 0.0;
+    double halo_fraction = 0.0;
+  };
+
+  explicit WideSpread(const Settings& settings);
+
+  /// Whether the halo is wide enough to be made of the core.
+  [[nodiscard]] bool can_spread() const { return halo_variance_ >= 1.0 || settings_.halo_fraction == 0.0; }
+
+  /// Adds the points, each spread over `core_reach` and `halo_reach` pixels at most. `smear_px`: their common way
+  /// during the exposure, at constant speed. Sums and centroids are exact but for what is beyond the reaches.
+  void add(std::span<const ImagePoint> points, const fsw::Vector2& smear_px, double core_reach, double halo_reach,
+           PhotonImage& image);
+
+ private:
+  /// Pixels x to before x + width, rows likewise.
+  struct Box {
+    int x = 0, y = 0, width = 0, height = 0;
+  };
+
+  void gather(std::span<const ImagePoint> points, const fsw::Vector2& smear_px, const Box& box);
+  void spread_core(const Box& from, const Box& canvas, double reach);
+  void spread_halo(const Box& canvas, double reach);
+  void add_canvas(const std::vector<float>& light, double fraction, const Box& canvas, PhotonImage& image) const;
+
+  Settings settings_;
+  int nodes_a_pixel_;
+  double core_sigma_;  // less what gathering adds
+  double halo_variance_;
+  // Work space.
+  std::vector<float> grid_, row_, phases_, canvas_, halo_, half_;
+  std::size_t grid_width_ = 0, grid_height_ = 0;
+};
+
+}  // namespace vbar::twins::camera
