@@ -84,7 +84,7 @@ class FlightRecorder {
 
   const mission::Mission& mission_;
   const mission::Spacecraft& servicer_;
-  std::deque<twins::TruthSnapshot> measured_;  ///< oldest first
+  std::deque<twins::TruthSnapshot> measured_;       ///< oldest first
   std::optional<pose_configuration> known_target_;  ///< as telecommanded, with navigation by the pose network
   report::RunRecord& record_;
   GalleryKeeper gallery_;
