@@ -126,8 +126,8 @@ void summarise_images(const std::vector<report::ImageRow>& images, const std::st
   if (!all_nees.empty()) summary.navigation_nees = report::statistics(all_nees).mean;
   if (size.empty()) return;
   const report::MeanAndDeviation of_x = report::statistics(x), of_y = report::statistics(y);
-  summary.bearing_error_arcsec = report::BearingError{report::statistics(size).mean, std::hypot(of_x.std, of_y.std) / M_SQRT2,
-                                                      std::hypot(of_x.mean, of_y.mean)};
+  summary.bearing_error_arcsec = report::BearingError{
+      report::statistics(size).mean, std::hypot(of_x.std, of_y.std) / M_SQRT2, std::hypot(of_x.mean, of_y.mean)};
 }
 
 }  // namespace vbar::app

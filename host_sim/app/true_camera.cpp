@@ -27,8 +27,7 @@ fsw::Matrix6 symmetric(const double (&lower_triangle)[21]) {
   fsw::Matrix6 matrix;
   std::size_t place = 0;
   for (int row = 0; row < 6; ++row)
-    for (int column = 0; column <= row; ++column)
-      matrix(row, column) = matrix(column, row) = lower_triangle[place++];
+    for (int column = 0; column <= row; ++column) matrix(row, column) = matrix(column, row) = lower_triangle[place++];
   return matrix;
 }
 

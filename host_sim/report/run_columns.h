@@ -48,7 +48,7 @@ inline constexpr std::array<std::string_view, 21> kRoeLowerTriangle{
 inline constexpr std::array<std::string_view, 3> kSquarePx{"x_px", "y_px", "side_px"};
 /// Rows and columns turn about x, y, z (rad), rate about x, y, z (rad/s).
 inline constexpr std::array<std::string_view, 21> kAttitudeLowerTriangle{
-    "x_x",  "y_x",  "y_y",   "z_x",  "z_y",  "z_z",  "wx_x", "wx_y",  "wx_z",  "wx_wx", "wy_x",
+    "x_x",  "y_x",  "y_y",   "z_x",   "z_y",  "z_z",  "wx_x", "wx_y",  "wx_z",  "wx_wx", "wy_x",
     "wy_y", "wy_z", "wy_wx", "wy_wy", "wz_x", "wz_y", "wz_z", "wz_wx", "wz_wy", "wz_wz"};
 inline constexpr std::array<std::string_view, 6> kRoeM{"da_m", "dlambda_m", "dex_m", "dey_m", "dix_m", "diy_m"};
 

@@ -34,8 +34,9 @@ constexpr std::string_view kResiduals = "residuals.csv";
 constexpr std::string_view kPacketLog = "packets.lcmlog";
 constexpr std::string_view kReport = "report.html";
 
-constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,   kAttitude,  kEstimate,  kGnss,      kImages,
-                                         kObjects,   kPoses,   kKeypoints, kGallery, kManeuvers, kResiduals, kPacketLog, kReport};
+constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,     kAttitude,  kEstimate,  kGnss,
+                                         kImages,    kObjects,   kPoses,     kKeypoints, kGallery,
+                                         kManeuvers, kResiduals, kPacketLog, kReport};
 
 [[noreturn]] void fail(const fs::path& folder, std::string_view what) {
   throw std::runtime_error(fmt::format("{}: {}", folder.string(), what));

@@ -117,8 +117,8 @@ struct ObjectRow {
   friend bool operator==(const ObjectRow&, const ObjectRow&) = default;
 };
 
-/// What navigation by the pose network said of an image (fsw/packets/vbar.lcm, telemetry_pose), and what was true at its
-/// exposure (poses.csv, only if a run has such navigation). Counts are since the start.
+/// What navigation by the pose network said of an image (fsw/packets/vbar.lcm, telemetry_pose), and what was true at
+/// its exposure (poses.csv, only if a run has such navigation). Counts are since the start.
 struct PoseRow {
   double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
   double step_time_s = 0.0;  ///< of the step that told of it
@@ -126,12 +126,12 @@ struct PoseRow {
   std::int32_t image = 0;
   int status = 0;  ///< what came of it; 0: a pose
   int region_is_predicted = 0, fate = 0, filter_runs = 0, has_attitude = 0, tiles_missing = 0;
-  Triple region_px{};                             ///< of the crop: centre, side
-  int pnp_inliers = 0;                            ///< 0: no pose
+  Triple region_px{};                               ///< of the crop: centre, side
+  int pnp_inliers = 0;                              ///< 0: no pose
   Quadruple pnp_q_camera_body{1.0, 0.0, 0.0, 0.0};  ///< to camera axes from the target's body; w, x, y, z
-  Triple pnp_position_camera_m{};                 ///< of the target's centre of mass
-  double pnp_mean_square = 0.0;                   ///< of whitened residuals
-  Quadruple q_camera_body{1.0, 0.0, 0.0, 0.0};    ///< as navigation has it after the image
+  Triple pnp_position_camera_m{};                   ///< of the target's centre of mass
+  double pnp_mean_square = 0.0;                     ///< of whitened residuals
+  Quadruple q_camera_body{1.0, 0.0, 0.0, 0.0};      ///< as navigation has it after the image
   Triple position_camera_m{}, rate_body_radps{};
   LowerTriangle6 covariance_attitude{};  ///< turn about the body axes (rad), rate (rad/s)
   LowerTriangle6 covariance_a_roe_m2{};
@@ -143,8 +143,8 @@ struct PoseRow {
   std::int32_t attitude_restarts = 0, restarts = 0, tiles_refused = 0;
   // The truth. Errors are estimated less true; absent where the flight software gave nothing.
   std::optional<double> range_m, sunlit;
-  std::optional<double> pnp_error_x_m, pnp_error_y_m, pnp_error_z_m, pnp_error_deg;  ///< in camera axes
-  std::optional<double> attitude_error_deg;                                          ///< in all
+  std::optional<double> pnp_error_x_m, pnp_error_y_m, pnp_error_z_m, pnp_error_deg;        ///< in camera axes
+  std::optional<double> attitude_error_deg;                                                ///< in all
   std::optional<double> attitude_error_x_deg, attitude_error_y_deg, attitude_error_z_deg;  ///< about body axes
   std::optional<double> rate_error_radps;
   std::optional<double> nees, attitude_nees;  ///< of osculating ROE, of turn and rate: six degrees of freedom each
