@@ -50,13 +50,15 @@ Status PoseFilter::configure(const PoseFilterSettings& settings) {
   const auto inertia = inertia_of(settings.inertia);
   if (!inertia.ok()) return inertia.status();
   const bool is_sensible = is_positive(settings.along_track_time_s) && is_positive(settings.from_sun_time_s) &&
-                           is_positive(settings.correlated_time_s) && is_positive(settings.common_time_s) &&
-                           settings.correlated_share >= 0.0 && settings.correlated_share < 1.0;
+                           is_positive(settings.correlated_time_s) && is_positive(settings.shift_time_s) &&
+                           is_positive(settings.stretch_time_s) && settings.correlated_share >= 0.0 &&
+                           settings.correlated_share < 1.0;
   if (!is_sensible) return Status::kOutOfRange;
   settings_ = settings;
   inertia_ = inertia.value();
   acceleration_noise_ = AdaptiveNoise(settings.acceleration);
   angular_noise_ = AdaptiveNoise(settings.angular_acceleration);
+  learned_scale_ = 1.0;
   update_ = {};
   return Status::kOk;
 }
@@ -138,6 +140,7 @@ void PoseFilter::advance(const orbit::CartesianState& servicer, const Vector3& s
   estimate_.transform_head<kMoving>(mean, slope, noise);
   absorb_turn();
   fade_errors(dt);
+  since_update_s_ += dt;
   if (!estimate_.is_sound()) reset();
 }
 
@@ -239,18 +242,16 @@ void PoseFilter::absorb_turn() {
 }
 
 void PoseFilter::fade_errors(double dt) {
-  const double common = math::exp(-dt / settings_.common_time_s);
+  const auto fade = [&](int component, double sigma, double factor) {
+    estimate_.scale(component, factor);
+    estimate_.add_noise(component, square(sigma) * (1.0 - square(factor)));
+  };
+  const double shift = math::exp(-dt / settings_.shift_time_s);
+  fade(kCommon, settings_.shift_sigma_px, shift);
+  fade(kCommon + 1, settings_.shift_sigma_px, shift);
+  fade(kCommon + 2, settings_.stretch_sigma, math::exp(-dt / settings_.stretch_time_s));
   const double own = math::exp(-dt / settings_.correlated_time_s);
-  const double common_renewed = 1.0 - square(common);
-  for (int axis = 0; axis < 3; ++axis) {
-    estimate_.scale(kCommon + axis, common);
-    const double sigma = axis < 2 ? settings_.shift_sigma_px : settings_.stretch_sigma;
-    estimate_.add_noise(kCommon + axis, square(sigma) * common_renewed);
-  }
-  for (int k = 0; k < KeypointError::kSize; ++k) {
-    estimate_.scale(kErrors + k, own);
-    estimate_.add_noise(kErrors + k, 1.0 - square(own));
-  }
+  for (int k = 0; k < KeypointError::kSize; ++k) fade(kErrors + k, 1.0, own);
 }
 
 void PoseFilter::add_servicer_impulse(const orbit::CartesianState& servicer, const Vector3& dv_eci) {

@@ -6,8 +6,8 @@
 // parameters, body axes) from a reference quaternion (USQUE, Crassidis and Markley 2003); its rate; what pushes the two
 // apart, as in roe_filter.h; and what the keypoints of neighbouring images have in common of error. A network sees the
 // same view twice and errs the same way twice, so a filter that took its errors for white would soon believe itself
-// ten times better than it is: a shift and a stretch of all keypoints, and a share of each keypoint's own error, are
-// states that fade within a minute.
+// ten times better than it is. So a share of each keypoint's own error, and a shift of all, are states that fade within
+// a minute. A stretch of all is another range, and stays: a burn of known size tells the two apart.
 //
 // Orbit and attitude do not act on each other between images, so each is sampled alone; a measurement depends on ROE
 // and attitude only, so the rest is not sampled there. By the transform as a regression this is the filter that samples
@@ -32,8 +32,8 @@ struct PoseFilterSettings {
   pose::KeypointShape shape{};            ///< body axes from the centre of mass, m
   Matrix3 inertia = Matrix3::Identity();  ///< kg m^2; only its ratios matter
 
-  AdaptiveNoiseSettings acceleration{.psd = 1e-13, .psd_least = 1e-14, .psd_most = 1e-11};         ///< m^2/s^3
-  AdaptiveNoiseSettings angular_acceleration{.psd = 1e-11, .psd_least = 1e-13, .psd_most = 1e-8};  ///< rad^2/s^3
+  AdaptiveNoiseSettings acceleration{.psd = 1e-13, .psd_least = 1e-14, .psd_most = 1e-11};          ///< m^2/s^3
+  AdaptiveNoiseSettings angular_acceleration{.psd = 1e-11, .psd_least = 1e-13, .psd_most = 1e-10};  ///< rad^2/s^3
   double along_track_sigma = 1e-9;  ///< m/s^2, differential drag
   double along_track_time_s = 6000.0;
   double from_sun_sigma = 3e-8;  ///< m/s^2, differential radiation pressure in sunlight
@@ -42,11 +42,12 @@ struct PoseFilterSettings {
   double correlated_share = 0.7;  ///< of a keypoint's variance: lasts from image to image
   double correlated_time_s = 30.0;
   double shift_sigma_px = 0.15;  ///< of all keypoints together, each axis; attitude knowledge of 20 arcsec included
-  double stretch_sigma = 2e-3;   ///< of the target's apparent size
-  double common_time_s = 60.0;   ///< of both
+  double shift_time_s = 60.0;
+  double stretch_sigma = 5e-3;  ///< of the target's apparent size
+  double stretch_time_s = 3600.0;
 
-  double gate = 9.21;               ///< of a keypoint's normalised innovation squared: 99 % of two degrees of freedom
-  double most_noise_scale = 16.0;   ///< what the keypoints' covariances may be raised by when all together misfit
+  double gate = 9.21;             ///< of a keypoint's normalised innovation squared: 99 % of two degrees of freedom
+  double most_noise_scale = 9.0;  ///< what keypoints' covariances may be raised by: for good, and as much for one image
   double most_refused_share = 0.6;  ///< of the keypoints; beyond it none is believed
   int least_keypoints = 3;
   double maneuver_sigma = 2e-6;           ///< m/s, each axis of a burn
@@ -73,8 +74,8 @@ struct PoseUpdate {
   bool accepted = false;
   int usable = 0;
   int used = 0;
-  double nis = 0.0;  ///< of the accepted ones together: 2 * used on average
-  double noise_scale = 1.0;
+  double nis = 0.0;          ///< of the accepted ones together: 2 * used on average
+  double noise_scale = 1.0;  ///< keypoints' covariances were raised by
   std::array<KeypointUpdate, network::kKeypoints> keypoints{};
 
   [[nodiscard]] bool is_mostly_refused(double share) const { return usable > 0 && usable - used > share * usable; }
@@ -140,6 +141,8 @@ class PoseFilter {
   [[nodiscard]] const Inertia& inertia() const { return inertia_; }
   [[nodiscard]] const Estimate& estimate() const { return estimate_; }
   [[nodiscard]] const PoseUpdate& last_update() const { return update_; }
+  /// How much larger keypoints' covariances are than they are told, by how all images so far fit.
+  [[nodiscard]] double learned_noise_scale() const { return learned_scale_; }
   [[nodiscard]] double acceleration_psd() const { return acceleration_noise_.psd(); }
   [[nodiscard]] double angular_acceleration_psd() const { return angular_noise_.psd(); }
   /// kNotReady before begin().
@@ -183,7 +186,8 @@ class PoseFilter {
   void gate_keypoints();
   bool factorise(const Square& matrix, const std::array<int, kRows>& rows, int count);
   [[nodiscard]] double joint_nis(const std::array<int, kRows>& rows, int count);
-  void fold_in(const pose::Keypoints& keypoints);
+  void fold_in(const pose::Keypoints& keypoints, double raised);
+  void learn_scale(int count);
   void adapt(const std::array<int, kRows>& rows, int count, const CameraPlace& camera);
 
   PoseFilterSettings settings_;
@@ -191,6 +195,8 @@ class PoseFilter {
   AdaptiveNoise acceleration_noise_;
   AdaptiveNoise angular_noise_;
   bool started_ = false;
+  double since_update_s_ = 0.0;
+  double learned_scale_ = 1.0;
   AttitudeState attitude_;  ///< the reference, and the rate: the same as the estimate's
   Estimate estimate_;
   PoseUpdate update_;

@@ -19,6 +19,9 @@ constexpr int kCommon = Filter::State::offset<Filter::Common>();
 constexpr int kErrors = Filter::State::offset<Filter::KeypointError>();
 constexpr double kNoGate = 1e300;
 
+// Images further apart than this are no neighbours.
+constexpr double kNeighbours_s = 20.0;
+
 // Points at 1.8 standard deviations; the central point's weight in a covariance stays above zero.
 constexpr estimation::UnscentedParameters kPoints = {.alpha = 0.6, .beta = 2.0, .kappa = 0.0};
 
@@ -78,11 +81,13 @@ const PoseUpdate& PoseFilter::take(const pose::Keypoints& keypoints, const Camer
     if (update_.keypoints[at(row / 2)].accepted) rows[at(count++)] = row;
   }
   update_.nis = joint_nis(rows, count);
-  if (update_.nis > most_expected(count)) {
-    update_.noise_scale = std::min(update_.nis / count, settings_.most_noise_scale);
-  }
+  const bool is_misfit = update_.nis > most_expected(count);
+  const double raised = is_misfit ? std::min(update_.nis / count, settings_.most_noise_scale) : 1.0;
+  update_.noise_scale = raised * learned_scale_;
   adapt(rows, count, camera);
-  fold_in(keypoints);
+  since_update_s_ = 0.0;
+  fold_in(keypoints, raised);
+  learn_scale(count);
   update_.accepted = true;
   if (!estimate_.is_sound()) reset();
   return update_;
@@ -141,7 +146,7 @@ void PoseFilter::model_errors(const pose::Keypoints& keypoints, const Vector2& c
     if (!update_.keypoints[at(k)].is_usable) continue;
     ++update_.usable;
     const int row = 2 * k;
-    const Matrix2& covariance = keypoints[at(k)].covariance_px2;
+    const Matrix2 covariance = learned_scale_ * keypoints[at(k)].covariance_px2;
     work_.slope.block<2, 2>(row, kErrors + row) = lasting * root_of(covariance);
     work_.slope.block<2, 2>(row, kCommon) = Matrix2::Identity();
     work_.slope.block<2, 1>(row, kCommon + 2) = work_.predicted.segment<2>(row) - centre_px;
@@ -212,14 +217,14 @@ double PoseFilter::joint_nis(const std::array<int, kRows>& rows, int count) {
 }
 
 /// The accepted rows freed of the noise they share, then one by one.
-void PoseFilter::fold_in(const pose::Keypoints& keypoints) {
+void PoseFilter::fold_in(const pose::Keypoints& keypoints, double raised) {
   std::array<int, kRows> rows{};
   int count = 0;
   for (int k = 0; k < network::kKeypoints; ++k) {
     if (!update_.keypoints[at(k)].accepted) continue;
     rows[at(count++)] = 2 * k;
     rows[at(count++)] = 2 * k + 1;
-    work_.noise.block<2, 2>(2 * k, 2 * k) += (update_.noise_scale - 1.0) * keypoints[at(k)].covariance_px2;
+    work_.noise.block<2, 2>(2 * k, 2 * k) += (raised - 1.0) * learned_scale_ * keypoints[at(k)].covariance_px2;
   }
   if (!factorise(work_.noise, rows, count)) return;
   const Estimate::Vector old = estimate_.mean();
@@ -247,16 +252,25 @@ void PoseFilter::fold_in(const pose::Keypoints& keypoints) {
   absorb_turn();
 }
 
+/// A network is often surer than it should be. Slowly, a tenth of a misfit in ten images, so that no bad image teaches
+/// it; never below what is told. What passes the gate has by itself 0.95 of its expectation.
+void PoseFilter::learn_scale(int count) {
+  constexpr double kShare = 0.02;
+  constexpr double kBehindTheGate = 0.953;
+  const double ratio = std::clamp(update_.nis / (kBehindTheGate * count), 0.25, 4.0);
+  learned_scale_ = std::clamp(learned_scale_ * (1.0 + kShare * (ratio - 1.0)), 1.0, settings_.most_noise_scale);
+}
+
 /// By least squares the innovations are a shift of the whole (where the target lags) and a turn (where its attitude
 /// does), each over its expected standard deviation. Of the turn, two of the camera's axes: across it and along it.
 void PoseFilter::adapt(const std::array<int, kRows>& rows, int count, const CameraPlace& camera) {
   constexpr int kFitted = 5;
   constexpr int kLeastRows = 10;
-  if (count < kLeastRows) {
+  if (count < kLeastRows || since_update_s_ > kNeighbours_s) {
     acceleration_noise_.interrupt();
     angular_noise_.interrupt();
-    return;
   }
+  if (count < kLeastRows) return;
   const Matrix3 R_body_camera = (camera.R_camera_eci * attitude_.q_eci_body.toRotationMatrix()).transpose();
   Eigen::Matrix<double, kRows, kFitted> slope = Eigen::Matrix<double, kRows, kFitted>::Zero();
   for (int r = 0; r < count; ++r) {

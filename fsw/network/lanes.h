@@ -79,7 +79,7 @@ inline Lanes where_above(Lanes x, float limit) {
 }
 /// The same of its size.
 inline Lanes where_beyond(Lanes x, float limit) {
-  return (x > all(limit)) | (x < all(-limit)) ? x : all(0.0F);
+  return ((x > all(limit)) | (x < all(-limit))) ? x : all(0.0F);
 }
 
 #endif

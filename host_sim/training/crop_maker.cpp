@@ -63,7 +63,8 @@ void CropMaker::make(std::int64_t index, LabelledCrop& crop) {
   engine::RandomStream stream(seed_, fmt::format("crops/{}/{}", name_of(kind_), index));
   crop.circumstances = draw_circumstances(camera_, shape_, stream);
   const Circumstances& c = crop.circumstances;
-  renderer_.set_materials(draw_materials(kind_, model_.materials, stream));
+  crop.materials = draw_materials(kind_, model_.materials, stream);
+  renderer_.set_materials(crop.materials);
   label(crop);
 
   CameraSettings camera = camera_;

@@ -22,6 +22,7 @@ namespace vbar::training {
 struct LabelledCrop {
   fsw::pose::CropSamples samples;  ///< not standardised
   Circumstances circumstances;
+  std::vector<twins::camera::Material> materials;
   std::array<fsw::Vector2, fsw::network::kKeypoints> pixels;  ///< of the keypoints on the detector
   std::array<fsw::Vector2, fsw::network::kKeypoints> cells;   ///< the same in cells of a map
   std::array<bool, fsw::network::kKeypoints> counts;          ///< no more than half a cell outside the map

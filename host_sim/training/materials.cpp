@@ -26,10 +26,14 @@ Material grey(const Material& like, double diffuse, double specular, double expo
 Material near(const Material& own, engine::RandomStream& stream) {
   // Inside of what training leaves out, also after rounding.
   constexpr double kNear = 0.999 * kOwnFamily;
-  const double wanted = own.grey_diffuse() * stream.uniform(1.0 - kNear, 1.0 + kNear);
-  const double specular = own.grey_specular() * stream.uniform(1.0 - kNear, 1.0 + kNear);
-  const double diffuse = std::min(wanted, kMostReflected - specular);  // grey() would make both darker
+  double diffuse = stream.uniform(-kNear, kNear) * own.grey_diffuse();
+  double specular = stream.uniform(-kNear, kNear) * own.grey_specular();
   const double exponent = own.exponent * stream.uniform(1.0 - kNear, 1.0 + kNear);
+  // No brighter than can be: then part of the way.
+  const double own_sum = own.grey_diffuse() + own.grey_specular();
+  const double part = std::min(1.0, (kMostReflected - own_sum) / std::max(diffuse + specular, 1e-9));
+  diffuse = own.grey_diffuse() + part * diffuse;
+  specular = own.grey_specular() + part * specular;
   return grey(own, diffuse, specular, exponent);
 }
 

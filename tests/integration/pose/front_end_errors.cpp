@@ -1,6 +1,7 @@
 #include "tests/integration/pose/front_end_errors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -100,6 +101,7 @@ void FrontEndErrors::add_pose(const Keypoints& keypoints, const LabelledView& vi
     error.is_there = true;
     error.inliers = s.inliers;
     error.mean_square = s.mean_square;
+    error.attitude_sigma_deg = std::sqrt(s.covariance.topLeftCorner<3, 3>().trace()) / kDegree;
     error.attitude_deg = miss.head<3>().norm() / kDegree;
     error.position_m = miss.tail<3>().norm();
     error.normalised = miss.dot(Vector6(covariance.llt().solve(miss)));

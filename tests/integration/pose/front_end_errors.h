@@ -25,6 +25,7 @@ struct PoseError {
   int usable = 0;
   int inliers = 0;
   double mean_square = 0.0;
+  double attitude_sigma_deg = 0.0;  ///< by its covariance, root of the sum of the axes'
   double attitude_deg = 0.0;
   double position_m = 0.0;
   double normalised = 0.0;  ///< squared, by its covariance: chi-square of 6 degrees

@@ -25,6 +25,7 @@ struct Order {
   std::vector<std::filesystem::path> shards;
   std::string weights;
   std::size_t most = 1'000'000;
+  std::string list;
   bool shows_acceptance = false;
   fsw::pose::PnpSettings pnp;
 };
@@ -33,6 +34,16 @@ std::vector<char> file_bytes(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error(file + ": cannot be read");
   return std::vector<char>(std::istreambuf_iterator<char>(in), {});
+}
+
+/// A line a crop.
+void write_list(const std::vector<test::PoseError>& poses, const std::string& file) {
+  std::ofstream out(file);
+  out << "is_there,usable,inliers,mean_square,attitude_sigma_deg,attitude_deg,position_m,normalised\n";
+  for (const test::PoseError& p : poses) {
+    out << fmt::format("{:d},{},{},{},{},{},{},{}\n", p.is_there, p.usable, p.inliers, p.mean_square,
+                       p.attitude_sigma_deg, p.attitude_deg, p.position_m, p.normalised);
+  }
 }
 
 void judge(const Order& order) {
@@ -45,6 +56,7 @@ void judge(const Order& order) {
     }
   }
   fmt::print("{}", errors.report());
+  if (!order.list.empty()) write_list(errors.poses(), order.list);
   if (order.shows_acceptance) fmt::print("\n{}", errors.acceptance_table());
 }
 
@@ -61,6 +73,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--inlier-sigmas", order.pnp.inlier_sigmas, "of an inlier")->capture_default_str();
   app.add_option("--inlier-floor-px", order.pnp.inlier_floor_px, "of an inlier")->capture_default_str();
+  app.add_option("--list", order.list, "file for a line a crop (CSV)");
   app.add_flag("--acceptance", order.shows_acceptance, "a table of other limits");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -84,6 +84,18 @@ fsw::Matrix3 tango_inertia() {
   return inertia;
 }
 
+class ConstantTorque final : public truth::Torque {
+ public:
+  explicit ConstantTorque(const Vector3& torque) : torque_(torque) {}
+  [[nodiscard]] std::string_view name() const override { return "constant"; }
+  [[nodiscard]] Vector3 torque_body(const truth::ForceInput& /*orbit*/, const truth::AttitudeState& /*a*/) override {
+    return torque_;
+  }
+
+ private:
+  Vector3 torque_;
+};
+
 }  // namespace
 
 CloseFlight fly_closely(double hours) {
@@ -146,7 +158,7 @@ CloseFlight fly_closely(double hours) {
   return flight;
 }
 
-std::vector<nav::AttitudeState> tumble(const CloseFlight& flight, double rate_deg_s, unsigned seed) {
+std::vector<nav::AttitudeState> tumble(const CloseFlight& flight, double rate_deg_s, unsigned seed, double torque_nm) {
   std::mt19937 random(seed + 1000);
   std::normal_distribution<double> normal;
   const auto draw = [&] { return normal(random); };
@@ -169,6 +181,8 @@ std::vector<nav::AttitudeState> tumble(const CloseFlight& flight, double rate_de
   };
   std::vector<std::unique_ptr<truth::Torque>> torques;
   torques.push_back(std::make_unique<truth::GravityGradientTorque>(3.986004415e14, tango_inertia()));
+  const Vector3 direction(draw(), draw(), draw());
+  torques.push_back(std::make_unique<ConstantTorque>(torque_nm * direction.normalized()));
   truth::RigidBody body(tango_inertia(), std::move(torques), orbit_at, 1e-9, 0.0, start);
   std::vector<nav::AttitudeState> attitudes;
   for (std::size_t k = 0; k < flight.epochs.size(); ++k) {

@@ -33,7 +33,9 @@ struct CloseFlight {
 CloseFlight fly_closely(double hours);
 
 /// The target's attitude at each epoch: a rigid body in the Earth's gravity gradient, rate and axis from the seed.
-std::vector<fsw::navigation::AttitudeState> tumble(const CloseFlight& flight, double rate_deg_s, unsigned seed);
+/// `torque_nm`: a constant torque besides, in body axes, direction from the seed.
+std::vector<fsw::navigation::AttitudeState> tumble(const CloseFlight& flight, double rate_deg_s, unsigned seed,
+                                                   double torque_nm = 0.0);
 
 /// 1-sigma figures of the sensors.
 struct KeypointErrors {

@@ -40,13 +40,14 @@ int main(int argc, char** argv) {
   double all_attitude_nees = 0.0;
   for (unsigned seed = 1; seed <= seeds; ++seed) {
     const double rate_deg_s = rate > 0.0 ? rate : 0.3 + 1.2 * (seed % 7) / 6.0;
-    const auto attitudes = test::tumble(flight, rate_deg_s, seed);
+    const auto attitudes = test::tumble(flight, rate_deg_s, seed, option("TORQUE", 0.0));
     test::SimulatedNetwork network(flight, attitudes, errors, seed);
     fsw::navigation::PoseSettings settings = test::pose_settings(flight);
     auto& filter = settings.filter;
     filter.correlated_share = option("F_SHARE", filter.correlated_share);
     filter.correlated_time_s = option("F_TIME", filter.correlated_time_s);
     filter.stretch_sigma = option("F_STRETCH", filter.stretch_sigma);
+    filter.stretch_time_s = option("F_STRETCH_TIME", filter.stretch_time_s);
     filter.shift_sigma_px = option("F_SHIFT", filter.shift_sigma_px);
     filter.acceleration.psd_most = option("F_ACC_MOST", filter.acceleration.psd_most);
     filter.angular_acceleration.psd_least = option("F_ANG_LEAST", filter.angular_acceleration.psd_least);

@@ -47,30 +47,35 @@ class PlainNetwork {
   }
 
  private:
-  [[nodiscard]] double weight(int l, std::size_t k) const {
-    float value;
-    std::memcpy(&value, file_.data() + fsw::network::offset_of_layer(l) + sizeof(float) * k, sizeof value);
-    return static_cast<double>(value);
+  /// A layer's weights and then its biases.
+  [[nodiscard]] std::vector<double> numbers_of(int l) const {
+    std::vector<float> stored(fsw::network::kLayers[static_cast<std::size_t>(l)].bytes() / sizeof(float));
+    std::memcpy(stored.data(), file_.data() + fsw::network::offset_of_layer(l), stored.size() * sizeof(float));
+    return {stored.begin(), stored.end()};
   }
 
   [[nodiscard]] PlainMap layer(int l, const PlainMap& in) const {
     const fsw::network::Layer& shape = fsw::network::kLayers[static_cast<std::size_t>(l)];
-    PlainMap out(in.side / shape.stride, shape.out);
+    const std::vector<double> numbers = numbers_of(l);
+    const double* const biases = numbers.data() + shape.weights();
     const int margin = shape.kernel == 3 ? 1 : 0;
+    PlainMap out(in.side / shape.stride, shape.out);
     for (int row = 0; row < out.side; ++row) {
       for (int column = 0; column < out.side; ++column) {
-        for (int channel = 0; channel < shape.out; ++channel) {
-          double sum = weight(l, shape.weights() + static_cast<std::size_t>(channel));
-          for (int ky = 0; ky < shape.kernel; ++ky) {
-            for (int kx = 0; kx < shape.kernel; ++kx) {
-              for (int c = 0; c < shape.in; ++c) {
-                const int k = ((ky * shape.kernel + kx) * shape.in + c) * shape.out + channel;
-                sum += weight(l, static_cast<std::size_t>(k)) *
-                       in.beyond_edge_zero(row * shape.stride + ky - margin, column * shape.stride + kx - margin, c);
-              }
+        double* const sums = &out.at(row, column, 0);
+        for (int channel = 0; channel < shape.out; ++channel) sums[channel] = biases[channel];
+        const double* weight = numbers.data();
+        for (int ky = 0; ky < shape.kernel; ++ky) {
+          for (int kx = 0; kx < shape.kernel; ++kx) {
+            for (int c = 0; c < shape.in; ++c) {
+              const double x =
+                  in.beyond_edge_zero(row * shape.stride + ky - margin, column * shape.stride + kx - margin, c);
+              for (int channel = 0; channel < shape.out; ++channel) sums[channel] += *weight++ * x;
             }
           }
-          out.at(row, column, channel) = shape.is_rectified && sum < 0.0 ? 0.0 : sum;
+        }
+        for (int channel = 0; channel < shape.out && shape.is_rectified; ++channel) {
+          if (sums[channel] < 0.0) sums[channel] = 0.0;
         }
       }
     }
