@@ -56,7 +56,11 @@ QnsElements mean_elements(const CartesianState& state) {
 
 FlightRecorder::FlightRecorder(const mission::Mission& mission, const mission::Spacecraft& servicer,
                                report::RunRecord& record)
-    : mission_(mission), servicer_(servicer), record_(record), gallery_(mission, servicer) {
+    : mission_(mission),
+      servicer_(servicer),
+      record_(record),
+      gallery_(mission, servicer),
+      pose_gallery_(mission, servicer) {
   if (servicer.camera && servicer.camera->navigation == mission::CameraNavigation::kPose)
     known_target_ = mission::pose_configuration_of(mission, servicer);
 }
@@ -190,6 +194,7 @@ void FlightRecorder::on_pose(const report::EstimateRow& step, const ImageTelemet
   if (truth != measured_.end() && known_target_)
     add_truth(row, record_.keypoints, *told.pose, known_target_->keypoints_body_m, mission_, servicer_, *truth);
   record_.poses.push_back(row);
+  pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
 }
 
 report::GnssRow FlightRecorder::gnss_row(double time_s, const telemetry_gnss& m) const {

@@ -11,6 +11,7 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/app/gallery_keeper.h"
+#include "host_sim/app/pose_gallery.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
 #include "host_sim/truth/attitude/attitude_state.h"
@@ -49,7 +50,10 @@ class FlightRecorder {
   void on_waypoint(const mission::Waypoint& waypoint, const PairTruth& truth);
 
   /// What the flight software got with the step at `time`, before its answer.
-  void on_inputs(fsw::GpsTime time, std::span<const pil::Packet> inputs) { gallery_.on_inputs(time, inputs); }
+  void on_inputs(fsw::GpsTime time, std::span<const pil::Packet> inputs) {
+    gallery_.on_inputs(time, inputs);
+    pose_gallery_.on_inputs(time, inputs);
+  }
 
   /// The flight software's answer to a step: its telemetry becomes a row, its commands maneuvers yet to be executed.
   void on_answer(fsw::GpsTime time, const pil::StepResult& answer);
@@ -88,6 +92,7 @@ class FlightRecorder {
   std::optional<pose_configuration> known_target_;  ///< as telecommanded, with navigation by the pose network
   report::RunRecord& record_;
   GalleryKeeper gallery_;
+  PoseGallery pose_gallery_;
 };
 
 }  // namespace vbar::app

@@ -42,7 +42,7 @@ std::string caption(const report::ImageRow& row) {
 }  // namespace
 
 GalleryKeeper::GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  if (!servicer.camera) return;
+  if (!servicer.camera || servicer.camera->navigation != mission::CameraNavigation::kAnglesOnly) return;
   assembly_ = std::make_unique<fsw::imaging::ImageAssembly>();
   before_ = fsw::Duration{kExposuresBefore * servicer.camera->period.ns};
   focal_length_px_ = servicer.camera->settings.focal_length_px();

@@ -32,7 +32,7 @@ class GalleryKeeper {
  public:
   static constexpr int kExposuresBefore = 20;  ///< that are looked at before a waypoint
 
-  /// Keeps nothing if `servicer` has no camera.
+  /// Keeps nothing unless `servicer` has a camera that navigates by angles only.
   GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer);
 
   /// The packets that the flight software got with the step at `now`: tiles among them are assembled if they may be

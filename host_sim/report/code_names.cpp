@@ -30,6 +30,8 @@ constexpr std::array<std::string_view, 8> kSightings{"bearing",
                                                      "no target",
                                                      "target not confirmed",
                                                      "own orbit not known"};
+constexpr std::array<std::string_view, 7> kPoseSightings{
+    "pose", "keypoints, no pose", "no keypoints", "no target", "dark", "blinded", "invalid"};
 
 }  // namespace
 
@@ -44,6 +46,9 @@ std::string status_name(int status) {
 }
 std::string sighting_name(int status) {
   return name_in(kSightings, status);
+}
+std::string pose_sighting_name(int status) {
+  return name_in(kPoseSightings, status);
 }
 std::string obstacle_name(int obstacle) {
   return name_in(kObstacles, obstacle);

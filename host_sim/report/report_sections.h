@@ -31,6 +31,10 @@ namespace vbar::report {
 /// Angles-only navigation: beside the paper, bearings, star attitude, range, pictures (section_angles_only.cpp).
 [[nodiscard]] std::string angles_only_section(const RunRecord& record);
 
+/// Navigation by the pose network: beside the paper, attitude, poses of single images, keypoints, pictures
+/// (section_pose.cpp).
+[[nodiscard]] std::string pose_section(const RunRecord& record);
+
 /// True attitudes and rates (section_attitude.cpp).
 [[nodiscard]] std::string attitude_section(const RunRecord& record);
 

@@ -40,9 +40,9 @@ TEST_F(HtmlReport, TheCheckSeesFaults) {
 
 TEST_F(HtmlReport, TellsTheWholeRun) {
   const std::string html = html_report(synthetic_run());
-  for (const char* heading :
-       {"Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation", "Carrier-phase navigation",
-        "Angles-only navigation", "Attitude", "Guidance and passive safety", "Flight computer, link and time"}) {
+  for (const char* heading : {"Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation",
+                              "Carrier-phase navigation", "Angles-only navigation", "Navigation by the pose network",
+                              "Attitude", "Guidance and passive safety", "Flight computer, link and time"}) {
     EXPECT_THAT(html, HasSubstr("<h2>" + std::string(heading) + "</h2>"));
   }
   EXPECT_THAT(html, HasSubstr("&lt;a &quot;test&quot; &amp; nothing else&gt;")) << "the flight software's own name";
@@ -53,6 +53,8 @@ TEST_F(HtmlReport, TellsTheWholeRun) {
   EXPECT_THAT(html, HasSubstr("4.75 in 90 maneuvers")) << "the paper's, as the run meets its waypoints 1 to 7";
   EXPECT_THAT(html, HasSubstr("noise 11.25 arcsec an axis, bias 2.50 arcsec"));
   EXPECT_THAT(html, HasSubstr("2476, 2122 with a bearing, 353 without stars"));
+  EXPECT_THAT(html, HasSubstr("0.1250 ± 0.0956")) << "the paper's of experiment 2, by the same waypoints";
+  EXPECT_THAT(html, HasSubstr("136, 120 (88.2 %) with a pose by PnP, 7 of them more than 10 deg off"));
   EXPECT_THAT(html, HasSubstr("data:image/png;base64,iVBORw0KGgo")) << "the signature of every PNG";
   EXPECT_THAT(html, HasSubstr("12.476 in 12 maneuvers")) << "the paper's, as the run meets its waypoints 9 and 10";
   EXPECT_THAT(html, HasSubstr("at most 350,000, on average 250,001 instructions; at most 21,000 bytes of stack"));
@@ -112,6 +114,23 @@ TEST_F(HtmlReport, CopesWithACameraThatSawNothing) {
   EXPECT_THAT(html_report(record), testing::Not(HasSubstr("Angles-only navigation")));
 }
 
+TEST_F(HtmlReport, CopesWithANetworkThatSawNothing) {
+  RunRecord record = synthetic_run();
+  for (PoseRow& row : record.poses) {
+    PoseRow blind;
+    blind.time_s = row.time_s;
+    blind.status = 6;
+    row = blind;
+  }
+  record.keypoints.clear();
+  record.gallery.clear();
+  record.summary.pose = std::nullopt;
+  EXPECT_EQ(complaints(html_report(record)), "");
+  EXPECT_THAT(html_report(record), HasSubstr("invalid"));
+  record.poses.clear();
+  EXPECT_THAT(html_report(record), testing::Not(HasSubstr("pose network")));
+}
+
 TEST_F(HtmlReport, CopesWithGnssThatNeverSolved) {
   RunRecord record = synthetic_run();
   for (EstimateRow& row : record.estimates) row.navigation_source = row.navigation_valid = 0;
@@ -140,6 +159,10 @@ TEST_F(HtmlReport, CopesWithNumbersThatAreNone) {
   record.images[100].nis = none;
   record.images[110].prefit_arcsec = {none, none};
   record.images[120].bearing_error_x_arcsec = none;
+  record.poses[20].attitude_error_deg = none;
+  record.poses[30].covariance_attitude.fill(none);
+  record.keypoints[40].error_x_px = none;
+  record.keypoints[41].covariance_xx_px2 = std::numeric_limits<float>::quiet_NaN();
   record.gnss[500].covariance_rtn.fill(none);
   record.estimates[300].passive_safety_distance_m = none;
   record.maneuvers[5].executed_dv_rtn_mps = {none, 0.0, 0.0};

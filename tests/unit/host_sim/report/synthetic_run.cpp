@@ -176,6 +176,74 @@ void add_objects(RunRecord& record, const ImageRow& image) {
         {image.time_s, image.image, k, k, k == 1 ? 32349 : 0, 712.34F + 10.0F * static_cast<float>(k), 500.5F});
 }
 
+/// An image of the close range a minute; every ninth in the dark, every fifth refused.
+PoseRow pose_of(const EstimateRow& estimate) {
+  PoseRow row;
+  row.step = estimate.step;
+  row.time_s = estimate.time_s - 3.0;
+  row.step_time_s = estimate.time_s;
+  row.image = static_cast<std::int32_t>(estimate.step);
+  row.images_used = row.image;
+  row.keypoints_used = 9 * row.image;
+  row.attitude_restarts = 2;
+  row.range_m = 8.0 + wobble(row.time_s, 18.0);
+  row.sunlit = row.image % 9 == 0 ? 0.0 : 1.0;
+  row.status = row.image % 9 == 0 ? 4 : 0;
+  row.filter_runs = 1;
+  if (row.status != 0) return row;
+  row.fate = row.image % 5 == 0 ? 1 : 2;
+  row.has_attitude = 1;
+  row.region_px = {400.5, 250.25, 300.0};
+  row.pnp_inliers = 9;
+  row.pnp_q_camera_body = row.q_camera_body = {0.5, 0.5, -0.5, 0.5};
+  row.pnp_position_camera_m = row.position_camera_m = {0.1, -0.2, *row.range_m};
+  row.pnp_mean_square = 1.1;
+  row.rate_body_radps = {0.01, -0.02, 0.005};
+  std::size_t place = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    place += k;
+    row.covariance_attitude[place++] = k < 3 ? 4e-4 : 1e-8;
+  }
+  row.covariance_a_roe_m2.fill(0.125);
+  row.a_roe_osculating_m = estimate.a_roe_mean_m;
+  row.nis = 18.0 + wobble(row.time_s, 19.0);
+  row.nis_degrees = 18;
+  row.acceleration_psd = 1e-13;
+  row.pnp_error_x_m = 0.01 * wobble(row.time_s, 20.0);
+  row.pnp_error_y_m = 0.01 * wobble(row.time_s, 21.0);
+  row.pnp_error_z_m = 0.05 * wobble(row.time_s, 22.0);
+  row.pnp_error_deg = 3.0 + wobble(row.time_s, 23.0);
+  row.attitude_error_x_deg = wobble(row.time_s, 24.0);
+  row.attitude_error_y_deg = wobble(row.time_s, 25.0);
+  row.attitude_error_z_deg = wobble(row.time_s, 26.0);
+  row.attitude_error_deg = std::hypot(*row.attitude_error_x_deg, *row.attitude_error_y_deg, *row.attitude_error_z_deg);
+  row.rate_error_radps = 1e-4;
+  row.nees = 6.0 + wobble(row.time_s, 27.0);
+  row.attitude_nees = 6.0 + wobble(row.time_s, 28.0);
+  return row;
+}
+
+void add_keypoints(RunRecord& record, const PoseRow& pose) {
+  for (int k = 0; k < 11; ++k) {
+    KeypointRow row;
+    row.time_s = pose.time_s;
+    row.image = pose.image;
+    row.keypoint = k;
+    row.peak = 0.25F;
+    row.x_px = 400.0F + 10.0F * static_cast<float>(k);
+    row.y_px = 250.5F;
+    row.covariance_xx_px2 = 1.0F;
+    row.covariance_xy_px2 = 0.25F;
+    row.covariance_yy_px2 = 2.0F;
+    row.fate = pose.status != 0 || k == 10 ? 0 : k == 9 ? 1 : 2;
+    if (row.fate != 0) {
+      row.error_x_px = wobble(pose.time_s, 30.0 + k);
+      row.error_y_px = 1.5 * wobble(pose.time_s, 50.0 + k);
+    }
+    record.keypoints.push_back(row);
+  }
+}
+
 /// A black pixel as PNG: what a picture's bytes are does not matter here, but zeros and line ends among them do.
 const std::vector<std::uint8_t> kPicture{
     0x89, 'P',  'N',  'G',  '\r', '\n', 0x1A, '\n', 0,    0,    0,    0x0D, 'I',  'H',  'D',  'R',  0,
@@ -238,6 +306,8 @@ Summary summary() {
   s.bearing_error_arcsec = BearingError{14.5, 11.25, 2.5};
   s.star_attitude_error_arcsec = MeanAndDeviation{4.5, 1.5};
   s.images = ImageCounts{2476, 2122, 43};
+  s.attitude_error_deg = MeanAndDeviation{2.5, 1.25};
+  s.pose = PoseFigures{136, 120, 7, 0.75, 1.5, {0.0445, 0.0125}, 5.5, 2, 1};
   s.dv_mps = 3.8345;
   s.maneuvers = 39;
   s.commands_sha256 = std::string(64, 'a');
@@ -262,6 +332,10 @@ RunRecord synthetic_run() {
     if (step % 400 == 3) {
       add_objects(record, record.images.back());
       record.gallery.push_back({record.images.back().time_s, record.images.back().image, "target & <decoy>", kPicture});
+    }
+    if (step >= 2340) {
+      record.poses.push_back(pose_of(record.estimates.back()));
+      add_keypoints(record, record.poses.back());
     }
     const double t = record.truth.back().time_s;
     if (step % 10 == 0) record.residuals.push_back({t, "camera, \"left\"", wobble(t, 5.0), 0.5 * wobble(t, 5.0), 0.4});

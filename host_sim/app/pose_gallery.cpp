@@ -1,0 +1,59 @@
+#include "host_sim/app/pose_gallery.h"
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "host_sim/app/pose_picture.h"
+#include "host_sim/mission/telecommands.h"
+#include "host_sim/report/code_names.h"
+
+namespace vbar::app {
+namespace {
+
+std::string caption(const report::PoseRow& row) {
+  std::string text = row.range_m ? fmt::format("true range {:.1f} m, ", *row.range_m) : "";
+  text += report::pose_sighting_name(row.status);
+  if (row.pnp_inliers > 0) text += fmt::format(" by {} keypoints", row.pnp_inliers);
+  if (row.pnp_error_deg) text += fmt::format(", PnP {:.1f} deg off", *row.pnp_error_deg);
+  if (row.attitude_error_deg) text += fmt::format(", filter {:.1f} deg off", *row.attitude_error_deg);
+  if (row.sunlit && *row.sunlit < 1.0) text += fmt::format(", {:.0f} % of the Sun in sight", 100.0 * *row.sunlit);
+  return text;
+}
+
+}  // namespace
+
+PoseGallery::PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer) {
+  if (!servicer.camera || servicer.camera->navigation != mission::CameraNavigation::kPose) return;
+  work_ = std::make_unique<Work>();
+  static_cast<void>(work_->network.load(fsw::network::weights_on_board()));  // without it, pictures without maps
+  const pose_configuration configuration = mission::pose_configuration_of(mission, servicer);
+  dark_level_dn_ = configuration.dark_level_dn;
+  noise_dn_ = configuration.noise_dn;
+  for (int k = 0; k < kPictures; ++k)
+    moments_.push_back(mission.start_time() + fsw::Duration{mission.duration.ns / kPictures * k});
+}
+
+void PoseGallery::on_inputs(fsw::GpsTime now, std::span<const pil::Packet> inputs) {
+  if (!work_ || next_ == moments_.size() || now < moments_[next_]) return;
+  for (const pil::Packet& bytes : inputs) {
+    const auto packet = fsw::packets::parse_packet(bytes);
+    if (!packet.ok()) continue;
+    const auto tile = fsw::packets::decode<image_tile>(packet.value());
+    if (!tile.ok()) continue;
+    // What the assembly refuses, the flight software refuses too, and says so.
+    static_cast<void>(work_->assembly.take(packet.value().header.time, packet.value().header.unit, tile.value()));
+  }
+}
+
+void PoseGallery::on_pose(fsw::GpsTime exposure, const telemetry_pose& pose, const report::PoseRow& row,
+                          std::vector<report::GalleryImage>& gallery) {
+  if (!work_ || next_ == moments_.size() || exposure < moments_[next_]) return;
+  const fsw::imaging::ImageAssembly& assembly = work_->assembly;
+  if (!assembly.has_image() || assembly.image_time() != exposure || assembly.image_number() != pose.image) return;
+  gallery.push_back({row.time_s, row.image, caption(row),
+                     pose_picture(assembly.view(), pose, dark_level_dn_, noise_dn_, work_->network)});
+  while (next_ < moments_.size() && exposure >= moments_[next_]) ++next_;
+}
+
+}  // namespace vbar::app

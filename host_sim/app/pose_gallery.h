@@ -1,0 +1,47 @@
+#pragma once
+// Keeps a few of a run's images for its report, with what the pose network made of them: the first image after each of
+// some even times, the last of a run left out that would come after its end.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/imaging/image_assembly.h"
+#include "fsw/network/keypoint_network.h"
+#include "fsw/packets/messages.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/report/run_record.h"
+#include "pil_bridge/flight_computer.h"
+
+namespace vbar::app {
+
+class PoseGallery {
+ public:
+  static constexpr int kPictures = 9;
+
+  /// Keeps nothing unless the camera of `servicer` navigates by poses.
+  PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer);
+
+  /// The packets that the flight software got with the step at `now`.
+  void on_inputs(fsw::GpsTime now, std::span<const pil::Packet> inputs);
+
+  /// After on_inputs() of the same step: what the flight software said of an image, and its row.
+  void on_pose(fsw::GpsTime exposure, const telemetry_pose& pose, const report::PoseRow& row,
+               std::vector<report::GalleryImage>& gallery);
+
+ private:
+  /// Large, and only of use where there is a pose network.
+  struct Work {
+    fsw::imaging::ImageAssembly assembly;
+    fsw::network::KeypointNetwork network;
+  };
+
+  std::unique_ptr<Work> work_;
+  double dark_level_dn_ = 0.0;
+  double noise_dn_ = 0.0;
+  std::vector<fsw::GpsTime> moments_;  ///< in order
+  std::size_t next_ = 0;
+};
+
+}  // namespace vbar::app
