@@ -13,13 +13,10 @@ ci/build.sh host zynq zynq-linux
 say "tests"
 timeout 120 tests/peers/wire_formats/install_npm.sh || echo "npm package cobs not fetched: its test will be skipped"
 ctest --preset host --parallel 2
-say "unit tests under the address and undefined-behaviour sanitizers"
+say "the second compiler, all warnings errors, and unit tests under its address and undefined-behaviour sanitizers"
 cmake --preset asan --log-level=WARNING
-cmake --build --preset asan --parallel --target unit_tests
+cmake --build --preset asan --parallel --target flight_code vbar unit_tests
 ctest --preset asan --parallel 2 --label-regex unit
-say "flight code and the program with the second compiler, all warnings errors"
-cmake --preset host-clang --log-level=WARNING
-cmake --build --preset host-clang --parallel --target flight_code vbar
 say "a minute of fuzzing: the decoder of receiver bytes"
 cmake --preset fuzz --log-level=WARNING
 cmake --build --preset fuzz --parallel

@@ -43,8 +43,6 @@ target_compile_options(vbar_options INTERFACE
 if(VBAR_SANITIZE)
   target_compile_options(vbar_options INTERFACE -fsanitize=${VBAR_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(vbar_options INTERFACE -fsanitize=${VBAR_SANITIZE})
-  # GCC documents that sanitizers make this warning err: it then sees uninitialised members inside <regex>.
-  target_compile_options(vbar_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
 
 # Flight code besides: no exceptions, no run-time types, no implicit conversion that can lose a value.
