@@ -116,7 +116,8 @@ TEST(PoseFilter, KnowsThePoseFromANetworkThatErrsAlikeInNeighbouringImages) {
   accuracy::expect_below("pose filter, mean error of the position at 5 to 10 m",
                          "truth, all forces, simulated keypoints of 2 px, 8 seeds", mean.position_m, 0.023, "m");
   accuracy::expect_below("pose filter, mean error of the target's attitude",
-                         "truth, gravity gradient, simulated keypoints of 2 px, 8 seeds", mean.attitude_deg, 1.0, "deg");
+                         "truth, gravity gradient, simulated keypoints of 2 px, 8 seeds", mean.attitude_deg, 1.0,
+                         "deg");
   EXPECT_GT(mean.roe_nees, 0.5);
   EXPECT_LT(mean.roe_nees, kMostNees);
   EXPECT_GT(mean.attitude_nees, 0.5);

@@ -26,7 +26,8 @@ class PoseStarts : public testing::Test {
     PoseSample seen;
     seen.time = now;
     seen.servicer = servicer;
-    seen.relative_eci = target.position_eci - servicer.position_eci + 0.01 * Vector3(noise.normal(), noise.normal(), 0.0);
+    seen.relative_eci =
+        target.position_eci - servicer.position_eci + 0.01 * Vector3(noise.normal(), noise.normal(), 0.0);
     seen.covariance_eci = 1e-4 * Matrix3::Identity();
     seen.q_eci_body = first * Eigen::Quaterniond(Eigen::AngleAxisd(kSpin * elapsed, Vector3::UnitZ()));
     seen.attitude_sigma = 0.01;
