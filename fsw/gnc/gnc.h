@@ -2,6 +2,7 @@
 // The flight software: packets in, a step, packets out. Its whole state is this one object.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "fsw/core/gps_time.h"
@@ -45,6 +46,7 @@ class Gnc {
   void report_navigation();
   void report_gnss();
   void point_camera();
+  [[nodiscard]] std::optional<Pointing> pointing_to_target() const;
   void report_image();
   void report_objects();
   void report_pose();

@@ -70,16 +70,25 @@ void Gnc::report_gnss() {
   outbox_.send(now_, message);
 }
 
+std::optional<Pointing> Gnc::pointing_to_target() const {
+  const NavigationState& state = navigation_.state();
+  if (state.has_target) {
+    const Result<Pointing> pointing = pointing_at(now_, state.servicer, state.target);
+    return pointing.ok() ? std::optional(pointing.value()) : std::nullopt;
+  }
+  const auto& last_seen_rtn = navigation_.pose().last_seen_rtn();
+  if (!navigation_.uses_pose() || !last_seen_rtn) return std::nullopt;
+  return Pointing{.time = now_, .boresight_rtn = *last_seen_rtn};
+}
+
 /// At where the target is thought to be, not where the last image showed it: between images it moves.
 void Gnc::point_camera() {
-  const NavigationState& state = navigation_.state();
-  if (!state.has_target) return;
-  const Result<Pointing> pointing = pointing_at(now_, state.servicer, state.target);
-  if (!pointing.ok()) return;
-  navigation_.expect_pointing(pointing.value());
+  const std::optional<Pointing> pointing = pointing_to_target();
+  if (!pointing) return;
+  navigation_.expect_pointing(*pointing);
   pointing_command message{};
-  copy(pointing.value().boresight_rtn, message.boresight_rtn);
-  copy(pointing.value().boresight_rate_rtn, message.boresight_rate_rtn);
+  copy(pointing->boresight_rtn, message.boresight_rtn);
+  copy(pointing->boresight_rate_rtn, message.boresight_rate_rtn);
   outbox_.send(now_, message);
 }
 

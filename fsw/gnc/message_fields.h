@@ -11,6 +11,12 @@ inline Vector3 vector(const double (&xyz)[3]) {
   return {xyz[0], xyz[1], xyz[2]};
 }
 
+inline Vector6 vector(const double (&six)[6]) {
+  Vector6 v;
+  for (int k = 0; k < 6; ++k) v(k) = six[k];
+  return v;
+}
+
 inline void copy(const Vector3& from, double (&to)[3]) {
   for (int k = 0; k < 3; ++k) to[k] = from(k);
 }

@@ -2,6 +2,8 @@
 
 #include "fsw/gnc/camera_configuration.h"
 #include "fsw/gnc/message_fields.h"
+#include "fsw/navigation/propagation.h"
+#include "fsw/orbit/rtn.h"
 #include "fsw/orbit/sun.h"
 
 namespace vbar::fsw::gnc {
@@ -9,6 +11,16 @@ namespace {
 
 // An image may come so much after its time.
 constexpr Duration kLongestDelay = duration_of_seconds(600);
+
+// So many images in a row without the target, though it is lit, and it is elsewhere.
+constexpr int kUnseenBeforeLost = 12;
+constexpr double kEdge_s = 20.0;  // of the Earth's shadow
+
+bool is_surely_lit(const orbit::CartesianState& target, const Vector3& sun_eci) {
+  const Vector3 on_the_way = kEdge_s * target.velocity_eci;
+  return navigation::is_sunlit(target.position_eci - on_the_way, sun_eci) &&
+         navigation::is_sunlit(target.position_eci + on_the_way, sun_eci);
+}
 
 }  // namespace
 
@@ -27,6 +39,7 @@ void PoseCameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::Ear
   network_.configure(network.value());
   static_cast<void>(filter_.configure(navigation.value()));  // checked with the settings
   R_camera_body_ = rotation(camera_->q_camera_body);
+  camera_model_ = network.value().model;
   last_image_.reset();
 }
 
@@ -61,10 +74,12 @@ void PoseCameraNavigation::take_image(const imaging::ImageAssembly& image, navig
   // First to the image's time, then where to look in it, then what it shows.
   static_cast<void>(filter_.update(epoch, burns));
   epoch.R_camera_eci = R_camera_eci_at(time, own_orbit, epoch.servicer_gnss);
-  std::optional<pose::TargetPose> expected;
-  if (epoch.R_camera_eci) expected = pose_of_estimate(*epoch.R_camera_eci);
-  const pose::PoseSighting& sighting = network_.process(
-      time, image.image_number(), image.view(), expected ? std::optional(expected->position_camera_m) : std::nullopt);
+  if (epoch.R_camera_eci) estimated_pose_ = pose_of_estimate(*epoch.R_camera_eci);
+  const auto expected_position =
+      estimated_pose_ ? std::optional(estimated_pose_->position_camera_m) : std::nullopt;
+  const pose::PoseSighting& sighting =
+      network_.process(time, image.image_number(), image.view(), expected_position);
+  watch_for_target(epoch);
   if (!epoch.R_camera_eci || sighting.status > pose::SightingStatus::kKeypoints) return;
   epoch.servicer_gnss.reset();  // it is folded in already
   keypoints_ = widened(sighting.keypoints);
@@ -72,6 +87,24 @@ void PoseCameraNavigation::take_image(const imaging::ImageAssembly& image, navig
   epoch.pnp = sighting.pnp;
   fate_ = filter_.update(epoch, burns);
   estimated_pose_ = pose_of_estimate(*epoch.R_camera_eci);
+}
+
+/// A target that is lit and before the camera is seen; one that is not is elsewhere, and what is known of it is wrong.
+void PoseCameraNavigation::watch_for_target(const navigation::PoseEpoch& epoch) {
+  const pose::PoseSighting& sighting = network_.sighting();
+  if (sighting.status <= pose::SightingStatus::kKeypoints) {
+    unseen_in_a_row_ = 0;
+    const auto direction = imaging::direction_of(camera_model_, sighting.region.centre_px);
+    if (!epoch.R_camera_eci || !epoch.servicer_gnss || !direction.ok()) return;
+    last_seen_rtn_ = orbit::R_rtn_eci(*epoch.servicer_gnss) * epoch.R_camera_eci->transpose() * direction.value();
+    return;
+  }
+  const Result<orbit::CartesianState> target = filter_.target();
+  if (!filter_.valid() || !target.ok() || !is_surely_lit(target.value(), epoch.sun_eci)) return;
+  if (++unseen_in_a_row_ < kUnseenBeforeLost) return;
+  unseen_in_a_row_ = 0;
+  filter_.lose_target();
+  estimated_pose_.reset();
 }
 
 /// The network's own covariances are those of images that it was trained for; other light may deserve less trust.

@@ -35,6 +35,9 @@ class PoseCameraNavigation {
   /// Of the target against the camera at the image's time, as navigation has it after the image.
   [[nodiscard]] const std::optional<pose::TargetPose>& estimated_pose() const { return estimated_pose_; }
 
+  /// While nothing is known of the target: the direction, in the servicer's RTN, in which it was seen last.
+  [[nodiscard]] const std::optional<Vector3>& last_seen_rtn() const { return last_seen_rtn_; }
+
   [[nodiscard]] const navigation::PoseNavigation& filter() const { return filter_; }
 
  private:
@@ -43,6 +46,7 @@ class PoseCameraNavigation {
   [[nodiscard]] pose::Keypoints widened(pose::Keypoints keypoints) const;
   [[nodiscard]] std::optional<Matrix3> R_camera_eci_at(GpsTime time, const navigation::GnssNavigation& own_orbit,
                                                        const std::optional<orbit::CartesianState>& servicer) const;
+  void watch_for_target(const navigation::PoseEpoch& epoch);
   [[nodiscard]] std::optional<pose::TargetPose> pose_of_estimate(const Matrix3& R_camera_eci) const;
 
   pose::SpacecraftPoseNetwork network_;
@@ -50,12 +54,15 @@ class PoseCameraNavigation {
   std::optional<camera_configuration> camera_;
   std::optional<pose_configuration> pose_;
   Matrix3 R_camera_body_ = Matrix3::Identity();
+  imaging::CameraModel camera_model_;
   std::optional<Pointing> pointing_;
   std::optional<GpsTime> last_image_;
   bool has_image_ = false;
   int tiles_missing_ = 0;
   navigation::PoseFate fate_ = navigation::PoseFate::kNone;
   std::optional<pose::TargetPose> estimated_pose_;
+  std::optional<Vector3> last_seen_rtn_;
+  int unseen_in_a_row_ = 0;      ///< images that should have shown the target and did not
   pose::Keypoints keypoints_{};  ///< as the filter took them
 };
 

@@ -65,7 +65,7 @@ Status PoseFilter::configure(const PoseFilterSettings& settings) {
 
 void PoseFilter::begin(const Vector6& roe, const Matrix6& roe_covariance, const AttitudeState& attitude,
                        const Matrix6& attitude_covariance) {
-  estimate_ = Estimate{};
+  for (int k = 0; k < State::kSize; ++k) estimate_.reset(k, 0.0, 0.0);
   estimate_.transform_head<6>(roe, Matrix6::Identity(), roe_covariance);
   estimate_.reset(kPushes, 0.0, square(settings_.along_track_sigma));
   estimate_.reset(kPushes + 1, 0.0, square(settings_.from_sun_sigma));

@@ -142,7 +142,7 @@ class PoseFilter {
   [[nodiscard]] const Estimate& estimate() const { return estimate_; }
   [[nodiscard]] const PoseUpdate& last_update() const { return update_; }
   /// How much larger keypoints' covariances are than they are told, by how all images so far fit.
-  [[nodiscard]] double learned_noise_scale() const { return learned_scale_; }
+  [[nodiscard]] double learned_noise_scale() const { return learned_scale_ > 1.0 ? learned_scale_ : 1.0; }
   [[nodiscard]] double acceleration_psd() const { return acceleration_noise_.psd(); }
   [[nodiscard]] double angular_acceleration_psd() const { return angular_noise_.psd(); }
   /// kNotReady before begin().

@@ -83,7 +83,7 @@ const PoseUpdate& PoseFilter::take(const pose::Keypoints& keypoints, const Camer
   update_.nis = joint_nis(rows, count);
   const bool is_misfit = update_.nis > most_expected(count);
   const double raised = is_misfit ? std::min(update_.nis / count, settings_.most_noise_scale) : 1.0;
-  update_.noise_scale = raised * learned_scale_;
+  update_.noise_scale = raised * learned_noise_scale();
   adapt(rows, count, camera);
   since_update_s_ = 0.0;
   fold_in(keypoints, raised);
@@ -146,7 +146,7 @@ void PoseFilter::model_errors(const pose::Keypoints& keypoints, const Vector2& c
     if (!update_.keypoints[at(k)].is_usable) continue;
     ++update_.usable;
     const int row = 2 * k;
-    const Matrix2 covariance = learned_scale_ * keypoints[at(k)].covariance_px2;
+    const Matrix2 covariance = learned_noise_scale() * keypoints[at(k)].covariance_px2;
     work_.slope.block<2, 2>(row, kErrors + row) = lasting * root_of(covariance);
     work_.slope.block<2, 2>(row, kCommon) = Matrix2::Identity();
     work_.slope.block<2, 1>(row, kCommon + 2) = work_.predicted.segment<2>(row) - centre_px;
@@ -224,7 +224,7 @@ void PoseFilter::fold_in(const pose::Keypoints& keypoints, double raised) {
     if (!update_.keypoints[at(k)].accepted) continue;
     rows[at(count++)] = 2 * k;
     rows[at(count++)] = 2 * k + 1;
-    work_.noise.block<2, 2>(2 * k, 2 * k) += (raised - 1.0) * learned_scale_ * keypoints[at(k)].covariance_px2;
+    work_.noise.block<2, 2>(2 * k, 2 * k) += (raised - 1.0) * learned_noise_scale() * keypoints[at(k)].covariance_px2;
   }
   if (!factorise(work_.noise, rows, count)) return;
   const Estimate::Vector old = estimate_.mean();
@@ -257,8 +257,9 @@ void PoseFilter::fold_in(const pose::Keypoints& keypoints, double raised) {
 void PoseFilter::learn_scale(int count) {
   constexpr double kShare = 0.02;
   constexpr double kBehindTheGate = 0.953;
+  constexpr double kLeast = 0.8;  // in memory; covariances are never scaled by less than one
   const double ratio = std::clamp(update_.nis / (kBehindTheGate * count), 0.25, 4.0);
-  learned_scale_ = std::clamp(learned_scale_ * (1.0 + kShare * (ratio - 1.0)), 1.0, settings_.most_noise_scale);
+  learned_scale_ = std::clamp(learned_scale_ * (1.0 + kShare * (ratio - 1.0)), kLeast, settings_.most_noise_scale);
 }
 
 /// By least squares the innovations are a shift of the whole (where the target lags) and a turn (where its attitude

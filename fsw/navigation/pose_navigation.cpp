@@ -179,6 +179,15 @@ void PoseNavigation::restart() {
   static_cast<void>(begin());
 }
 
+void PoseNavigation::lose_target() {
+  if (!filter_.started()) return;
+  ++counters_.restarts;
+  filter_.reset();
+  start_.clear();
+  refused_in_a_row_ = 0;
+  far_in_a_row_ = 0;
+}
+
 Result<orbit::CartesianState> PoseNavigation::target() const {
   if (!has_target()) return Status::kNotReady;
   if (filter_.started()) return filter_.target(own_orbit_.state());

@@ -80,6 +80,9 @@ class PoseNavigation {
   /// An epoch before the last is ignored; one at the same time is not.
   PoseFate update(const PoseEpoch& epoch, std::span<const Burn> burns);
 
+  /// The target is not where it is expected to be: what is known of it is given up, and the filter starts anew.
+  void lose_target();
+
   /// Whether the filter runs.
   [[nodiscard]] bool valid() const { return own_orbit_.started() && filter_.started(); }
   /// Whether its attitude is known, too: not after a long time in the dark.

@@ -167,6 +167,12 @@ Result<OrbitStart> PoseStart::orbit() const {
     ++used;
   }
 
+  Matrix6 formation = Matrix6::Zero();
+  for (int element = 0; element < 6; ++element) {
+    const Vector6 slope = chief.value().a / settings_.sigma_a_roe_m(element) * roe_slope.row(element).transpose();
+    formation += slope * slope.transpose();
+  }
+
   OrbitStart start;
   for (int round = 0; round < kRounds; ++round) {
     if (used < settings_.least_images) return Status::kDidNotConverge;
@@ -174,8 +180,8 @@ Result<OrbitStart> PoseStart::orbit() const {
     Vector6 right = Vector6::Zero();
     for (int axis = 0; axis < 3; ++axis) {
       normal(axis, axis) = 1.0 / square(kPriorPosition_m);
-      normal(3 + axis, 3 + axis) = 1.0 / square(settings_.speed_sigma);
     }
+    normal += formation;
     for (std::size_t k = orbit_from_; k < size_; ++k) {
       if (!is_in[k]) continue;
       normal += rows[k].transpose().lazyProduct(rows[k]);

@@ -20,7 +20,9 @@ struct PoseStartSettings {
   double most_rate = 0.1;           ///< rad/s; a faster turn is none
   double attitude_sigma = 0.06;     ///< rad, of one image's attitude beside what it says itself
   double range_sigma_share = 0.02;  ///< of one image's distance beside what it says itself
-  double speed_sigma = 0.05;        ///< m/s, each axis of the relative velocity, known beforehand to be about 0
+  /// What the formation may be, known beforehand: 1 sigma about none at all of the mean a * ROE, m. Above all the
+  /// difference in semi-major axis, which makes the two drift apart: in a quarter of a minute poses say little of it.
+  Vector6 sigma_a_roe_m{1.0, 100.0, 5.0, 5.0, 5.0, 5.0};
   double position_gate = 25.0;      ///< of a position's normalised residual squared
 };
 

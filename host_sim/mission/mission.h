@@ -123,6 +123,7 @@ struct PoseNavigation {
   double angular_acceleration_psd = 0.0;
   double maneuver_sigma = 0.0;
   double maneuver_sigma_relative = 0.0;
+  fsw::Vector6 start_sigma_a_roe_m = fsw::Vector6::Zero();  ///< of the formation, known beforehand
   int start_images = 0;
   friend bool operator==(const PoseNavigation&, const PoseNavigation&) = default;
 };

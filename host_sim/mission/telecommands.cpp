@@ -184,6 +184,7 @@ vbar::pose_configuration pose_configuration_of(const Mission& mission, const Spa
   configuration.angular_acceleration_psd = navigation.angular_acceleration_psd;
   configuration.maneuver_sigma = navigation.maneuver_sigma;
   configuration.maneuver_sigma_relative = navigation.maneuver_sigma_relative;
+  std::ranges::copy(navigation.start_sigma_a_roe_m, configuration.start_sigma_a_roe_m);
   configuration.start_images = navigation.start_images;
   return configuration;
 }

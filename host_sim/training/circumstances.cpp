@@ -61,19 +61,13 @@ void draw_light(Circumstances& drawn, engine::RandomStream& stream) {
 }  // namespace
 
 twins::camera::CameraSettings close_range_camera(const std::filesystem::path& data_directory) {
-  twins::camera::CameraSettings camera = mission::load_camera(data_directory / "cameras" / "tron.toml");
-  constexpr int kBinning = 2;
+  mission::CameraFile file = mission::load_camera(data_directory / "cameras" / "tron.toml");
+  file.binning = 2;
+  twins::camera::CameraSettings camera = file.settings();
   twins::camera::DetectorSettings& detector = camera.detector;
-  detector.width /= kBinning;
-  detector.height /= kBinning;
-  detector.pixel_pitch_um *= kBinning;
-  detector.full_well_electrons *= kBinning * kBinning;
-  detector.read_noise_electrons *= kBinning;
-  detector.dark_electrons_per_s *= kBinning * kBinning;
   detector.bits = 12;
   detector.offset_dn = 64.0;
   detector.gain_dn_per_electron = 0.03125;
-  for (double& c : camera.optics.principal_point_px) c = (c + 0.5) / kBinning - 0.5;
   camera.region = {(detector.width - 800) / 2, (detector.height - 500) / 2, 800, 500};
   camera.exposure_s = kNominalExposureS;
   return camera;

@@ -7,17 +7,14 @@
 
 namespace vbar::training {
 
-/// Tango's eleven keypoints (published with the SPEED and SPEED+ data sets: Sharma and D'Amico 2019, Park et al. 2022)
-/// in the frame of its CAD file, m.
-[[nodiscard]] fsw::pose::KeypointShape published_keypoints();
-
 /// The target in body axes, everything from the centre of mass, m.
 struct TargetShape {
   fsw::pose::KeypointShape keypoints;
   fsw::Vector3 model_origin = fsw::Vector3::Zero();  ///< of the CAD file
   double radius_m = 0.0;                             ///< of the farthest keypoint
 
-  /// Of Tango; throws mission::MissionError if data_directory/bodies/tango.toml cannot be read.
+  /// Of Tango, from models/tango_keypoints.toml and bodies/tango.toml of `data_directory`; throws
+  /// mission::MissionError.
   static TargetShape load(const std::filesystem::path& data_directory);
 };
 
