@@ -91,8 +91,8 @@ void draw_keypoints(const telemetry_pose& pose, const CropRegion& region, int le
   const double scale = kSamplePx * kCropSide / region.side_px;
   for (int k = 0; k < kKeypoints; ++k) {
     if (pose.keypoint_fate[k] == 0) continue;
-    const Vector2 place = region.place_of(
-        Vector2(static_cast<double>(pose.x_px[k]), static_cast<double>(pose.y_px[k])), kCropSide * kSamplePx);
+    const Vector2 place = region.place_of(Vector2(static_cast<double>(pose.x_px[k]), static_cast<double>(pose.y_px[k])),
+                                          kCropSide * kSamplePx);
     const Colour colour = colour_of_fate(pose.keypoint_fate[k]);
     picture.cross(left + place.x(), place.y(), kCrossPx, colour);
     const auto covariance = [&](int which) {

@@ -59,10 +59,10 @@ std::string performance_table(const RunRecord& record) {
       own.push_back(fixed(is_navigation ? row.navigation_error_m : std::optional(row.control_error_m), 4));
     own.push_back(is_navigation ? plus_minus(record.summary.navigation_error_m, 4) : "");
     if (!is_beside_the_paper) continue;
-    rows.push_back(
-        papers_row(record, "paper, software in the loop", paper2::kSoftware, &paper2::Waypoint::software, is_navigation));
-    rows.push_back(
-        papers_row(record, "paper, hardware in the loop", paper2::kHardware, &paper2::Waypoint::hardware, is_navigation));
+    rows.push_back(papers_row(record, "paper, software in the loop", paper2::kSoftware, &paper2::Waypoint::software,
+                              is_navigation));
+    rows.push_back(papers_row(record, "paper, hardware in the loop", paper2::kHardware, &paper2::Waypoint::hardware,
+                              is_navigation));
   }
   const auto total = [&](const char* name, const char* of, const std::string& value) {
     Cells& cells = rows.emplace_back(Cells{name, of});
@@ -118,9 +118,8 @@ std::string facts(const RunRecord& record) {
        {"NIS over its degrees of freedom, 1 expected", nis_text(record)},
        {"NEES of the orbit, 6 expected", fixed(record.summary.navigation_nees, 2)},
        {"NEES of attitude and rate, 6 expected", fixed(f.attitude_nees, 2)},
-       {"navigation error, target lit", f.lit_navigation_error_m.mean > 0.0
-                                            ? plus_minus(f.lit_navigation_error_m, 4) + " m"
-                                            : std::string("–")},
+       {"navigation error, target lit",
+        f.lit_navigation_error_m.mean > 0.0 ? plus_minus(f.lit_navigation_error_m, 4) + " m" : std::string("–")},
        {"begun anew", fmt::format("attitude {} times, the whole filter {} times", f.attitude_restarts, f.restarts)},
        {"tiles refused", std::to_string(last.tiles_refused)}});
 }
@@ -169,8 +168,8 @@ std::string keypoint_table(const RunRecord& record) {
   std::vector<Cells> rows;
   for (std::size_t k = 0; k < of.size(); ++k) {
     Of& keypoint = of[k];
-    Cells cells{std::to_string(k), percent(keypoint.usable, keypoint.images),
-                percent(keypoint.used, keypoint.images), percent(keypoint.refused, keypoint.images)};
+    Cells cells{std::to_string(k), percent(keypoint.usable, keypoint.images), percent(keypoint.used, keypoint.images),
+                percent(keypoint.refused, keypoint.images)};
     std::ranges::sort(keypoint.errors);
     std::ranges::sort(keypoint.sigmas);
     for (const double share : {0.5, 0.95})
@@ -244,16 +243,17 @@ double attitude_sigma(const PoseRow& row, std::size_t axis) {
 Plot attitude_plot(const RunRecord& record, const View& view) {
   Plot plot = empty_plot(record, view, "Attitude error, in all", "angle", Unit::kRadians);
   plot.y.logarithmic = true;
-  plot.series = {
-      {"estimated less true", 0, Mark::kLine, line_of(record, [](const PoseRow& row) -> std::optional<double> {
-         if (!row.attitude_error_deg) return std::nullopt;
-         return kRadian * *row.attitude_error_deg;
-       })},
-      {"three sigma as the filter claims", 1, Mark::kDashedLine,
-       line_of(record, [](const PoseRow& row) -> std::optional<double> {
-         if (!row.attitude_error_deg) return std::nullopt;
-         return 3.0 * std::hypot(attitude_sigma(row, 0), attitude_sigma(row, 1), attitude_sigma(row, 2));
-       })}};
+  plot.series = {{"estimated less true", 0, Mark::kLine,
+                  line_of(record,
+                          [](const PoseRow& row) -> std::optional<double> {
+                            if (!row.attitude_error_deg) return std::nullopt;
+                            return kRadian * *row.attitude_error_deg;
+                          })},
+                 {"three sigma as the filter claims", 1, Mark::kDashedLine,
+                  line_of(record, [](const PoseRow& row) -> std::optional<double> {
+                    if (!row.attitude_error_deg) return std::nullopt;
+                    return 3.0 * std::hypot(attitude_sigma(row, 0), attitude_sigma(row, 1), attitude_sigma(row, 2));
+                  })}};
   return plot;
 }
 
@@ -263,7 +263,8 @@ std::vector<Plot> attitude_component_plots(const RunRecord& record, const View& 
       &PoseRow::attitude_error_x_deg, &PoseRow::attitude_error_y_deg, &PoseRow::attitude_error_z_deg};
   std::vector<Plot> plots;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    Plot plot = empty_plot(record, view, fmt::format("Attitude error about body {}", kAxes[axis]), "angle", Unit::kRadians);
+    Plot plot =
+        empty_plot(record, view, fmt::format("Attitude error about body {}", kAxes[axis]), "angle", Unit::kRadians);
     plot.height = 220.0;
     const auto error = [&](const PoseRow& row) -> std::optional<double> {
       const std::optional<double>& deg = row.*kErrors[axis];
@@ -357,7 +358,8 @@ Plot consistency_plot(const RunRecord& record) {
   constexpr double kMost = 15.0, kStep = 0.1;
   plot.x = {.name = "squared error over claimed variance", .range = Range{0.0, kMost}};
   plot.y = {.name = "share of keypoints below", .range = Range{0.0, 1.0}};
-  Series measured{"keypoints of this run", 0, Mark::kLine, {}}, expected{"two degrees of freedom", 1, Mark::kDashedLine, {}};
+  Series measured{"keypoints of this run", 0, Mark::kLine, {}},
+      expected{"two degrees of freedom", 1, Mark::kDashedLine, {}};
   for (double square = 0.0; square <= kMost; square += kStep) {
     const auto below = std::ranges::upper_bound(squares, square) - squares.begin();
     if (!squares.empty())
@@ -382,9 +384,8 @@ std::string gallery(const RunRecord& record) {
   for (const GalleryImage& image : record.gallery) {
     const std::string caption =
         fmt::format("image {} at {} h: {}", image.image, fixed(hours(image.time_s), 2), image.caption);
-    pictures.push_back(
-        fmt::format("<img class=\"picture\" alt=\"{0}\" src=\"{1}\"/><figcaption>{0}</figcaption>", escaped(caption),
-                    png_data_uri(image.png)));
+    pictures.push_back(fmt::format("<img class=\"picture\" alt=\"{0}\" src=\"{1}\"/><figcaption>{0}</figcaption>",
+                                   escaped(caption), png_data_uri(image.png)));
   }
   return "<h3>Images</h3>\n<p class=\"note\">Left, as the flight software got it, with its crop. Right, the crop as "
          "the network saw it, with the network&#39;s maps, a colour a keypoint; crosses are the keypoints that came of "
@@ -407,7 +408,8 @@ std::string pose_section(const RunRecord& record) {
           legend(attitude.series) + figures(3, svgs({attitude, rate_plot(record, view), range_plot(record, view)})) +
           figures(3, svgs(attitude_component_plots(record, view))) + "<h3>Poses of single images</h3>\n" +
           figures(4, svgs(pnp_plots(record, view))) + "<h3>Keypoints</h3>\n" + keypoint_table(record) +
-          legend(counts.series) + legend(consistency.series) + figures(2, svgs({counts, consistency})) + gallery(record));
+          legend(counts.series) + legend(consistency.series) + figures(2, svgs({counts, consistency})) +
+          gallery(record));
 }
 
 }  // namespace vbar::report

@@ -19,7 +19,7 @@ TEST(ColourPicture, ComesBackAsItWasDrawn) {
   picture.set(4, 2, kRed);
   picture.set(0, 0, kWhite);
   picture.blend(0, 0, kRed, 0.25);
-  picture.set(5, 0, kRed);   // outside, as the next
+  picture.set(5, 0, kRed);  // outside, as the next
   picture.set(0, -1, kRed);
   const std::vector<std::uint8_t> png = picture.png();
   png_image image{};

@@ -214,8 +214,8 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
                           "camera", "gnss", "navigation", "simulated_s", "wall_s", "speed_factor", "waypoints",
                           "navigation_error_m", "navigation_velocity_error_mps", "attitude_error_deg", "first_fix_s",
                           "static_floor_m", "navigation_nees", "bearing_error_arcsec", "star_attitude_error_arcsec",
-                          "images", "images_with_bearing", "wrong_targets", "dv_mps", "maneuvers", "commands_sha256",
-                          "telemetry_sha256", "flight_step", "link", "deadlines", "wall_share"));
+                          "images", "images_with_bearing", "wrong_targets", "pose", "dv_mps", "maneuvers",
+                          "commands_sha256", "telemetry_sha256", "flight_step", "link", "deadlines", "wall_share"));
   EXPECT_THAT(keys(json.at("waypoints").at(3)),
               ElementsAre("index", "time_s", "navigation_error_m", "navigation_velocity_error_mps", "control_error_m",
                           "leg_dv_mps", "cumulative_dv_mps", "leg_maneuvers"));
@@ -235,7 +235,9 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
   EXPECT_EQ(json.at("wrong_targets"), 43);
   EXPECT_TRUE(json.at("camera").is_null());
   EXPECT_TRUE(json.at("incomplete_reason").is_null());
-  EXPECT_TRUE(json.at("attitude_error_deg").at("mean").is_null());
+  EXPECT_EQ(json.at("attitude_error_deg").at("mean"), 2.5);
+  EXPECT_EQ(json.at("pose").at("images"), 136);
+  EXPECT_EQ(json.at("pose").at("lit_navigation_error_m").at("mean"), 0.0445);
   EXPECT_TRUE(json.at("waypoints").at(0).at("navigation_error_m").is_null());
   EXPECT_EQ(json.at("seed").get<std::uint64_t>(), 18446744073709551615ULL);
 }
@@ -249,6 +251,8 @@ TEST_F(RunFolderTest, SummaryWithoutGnssHasNulls) {
   EXPECT_FALSE(read_run(run()).summary.first_fix_s.has_value());
   for (const char* key : {"images", "images_with_bearing", "wrong_targets"}) EXPECT_TRUE(json.at(key).is_null()) << key;
   EXPECT_TRUE(json.at("bearing_error_arcsec").at("bias").is_null());
+  EXPECT_TRUE(json.at("pose").is_null());
+  EXPECT_TRUE(json.at("attitude_error_deg").at("mean").is_null());
   EXPECT_FALSE(read_run(run()).summary.images.has_value());
   EXPECT_FALSE(read_run(run()).summary.bearing_error_arcsec.has_value());
 }
