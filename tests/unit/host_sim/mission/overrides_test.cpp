@@ -88,7 +88,7 @@ TEST(Overrides, AreCheckedLikeTheFileAndNamedInTheMessage) {
        "duration_h, step_s or seed"},
       {"clok.mode=real_time",
        "clok: found an unknown key (did you mean clock?); accepted: mission, truth, spacecraft, guidance, "
-       "gnss_navigation, angles_only, waypoint, burn, constellation, clock, links, lcm or record"},
+       "gnss_navigation, angles_only, pose, waypoint, burn, constellation, clock, links, lcm or record"},
       {"waypoint.1.time_h=0",
        "waypoint.1.time_h: found the integer 0; accepted: a time after that of waypoint 0, which stands before it"},
       {"flight_computer.target=board",
