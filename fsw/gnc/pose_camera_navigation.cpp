@@ -75,10 +75,8 @@ void PoseCameraNavigation::take_image(const imaging::ImageAssembly& image, navig
   static_cast<void>(filter_.update(epoch, burns));
   epoch.R_camera_eci = R_camera_eci_at(time, own_orbit, epoch.servicer_gnss);
   if (epoch.R_camera_eci) estimated_pose_ = pose_of_estimate(*epoch.R_camera_eci);
-  const auto expected_position =
-      estimated_pose_ ? std::optional(estimated_pose_->position_camera_m) : std::nullopt;
-  const pose::PoseSighting& sighting =
-      network_.process(time, image.image_number(), image.view(), expected_position);
+  const auto expected_position = estimated_pose_ ? std::optional(estimated_pose_->position_camera_m) : std::nullopt;
+  const pose::PoseSighting& sighting = network_.process(time, image.image_number(), image.view(), expected_position);
   watch_for_target(epoch);
   if (!epoch.R_camera_eci || sighting.status > pose::SightingStatus::kKeypoints) return;
   epoch.servicer_gnss.reset();  // it is folded in already

@@ -23,7 +23,7 @@ struct PoseStartSettings {
   /// What the formation may be, known beforehand: 1 sigma about none at all of the mean a * ROE, m. Above all the
   /// difference in semi-major axis, which makes the two drift apart: in a quarter of a minute poses say little of it.
   Vector6 sigma_a_roe_m{1.0, 100.0, 5.0, 5.0, 5.0, 5.0};
-  double position_gate = 25.0;      ///< of a position's normalised residual squared
+  double position_gate = 25.0;  ///< of a position's normalised residual squared
 };
 
 /// One image's pose.

@@ -6,8 +6,8 @@ void read_pose(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("pose");
   section.accept_only({"keypoint_sigma_scale", "keypoint_floor_px", "acceleration_psd", "acceleration_psd_least",
                        "acceleration_psd_most", "angular_acceleration_psd", "maneuver_sigma_mmps",
-                       "maneuver_sigma_percent", "start_images", "start_sigma_a_da_m",
-                       "start_sigma_a_dlambda_m", "start_sigma_a_de_m", "start_sigma_a_di_m"});
+                       "maneuver_sigma_percent", "start_images", "start_sigma_a_da_m", "start_sigma_a_dlambda_m",
+                       "start_sigma_a_de_m", "start_sigma_a_di_m"});
   PoseNavigation& navigation = mission.pose;
   navigation.keypoint_sigma_scale = section.number("keypoint_sigma_scale", above_to(0.0, 100.0), 1.0);
   navigation.keypoint_floor_px = section.number("keypoint_floor_px", from_to(0.0, 100.0), 0.2);
@@ -23,7 +23,8 @@ void read_pose(const TableReader& document, Mission& mission) {
   navigation.maneuver_sigma = 1e-3 * section.number("maneuver_sigma_mmps", above_to(0.0, 1e3), 0.002);
   navigation.maneuver_sigma_relative = 1e-2 * section.number("maneuver_sigma_percent", from_to(0.0, 100.0), 0.2);
   const Range sigma = above_to(0.0, 1e5);
-  const double e = section.number("start_sigma_a_de_m", sigma, 5.0), i = section.number("start_sigma_a_di_m", sigma, 5.0);
+  const double e = section.number("start_sigma_a_de_m", sigma, 5.0),
+               i = section.number("start_sigma_a_di_m", sigma, 5.0);
   navigation.start_sigma_a_roe_m << section.number("start_sigma_a_da_m", sigma, 1.0),
       section.number("start_sigma_a_dlambda_m", sigma, 100.0), e, e, i, i;
   navigation.start_images = static_cast<int>(section.integer("start_images", 1, 12, 3));

@@ -53,9 +53,10 @@ INSTANTIATE_TEST_SUITE_P(
                   "lcm.mirror: found the integer 1; accepted: true or false"},
         BadChange{"WrongTypeTable", "[mission]", "truth = 3\n[mission]", "truth",
                   "truth: found the integer 3; accepted: a table"},
-        BadChange{"WrongTypeOfArrayOfTables", "[mission]", "waypoint2 = 1\n[mission]", "waypoint2",
-                  "waypoint2: found an unknown key (did you mean waypoint?); accepted: mission, truth, spacecraft, "
-                  "guidance, gnss_navigation, angles_only, pose, waypoint, burn, constellation, clock, links, lcm or record"},
+        BadChange{
+            "WrongTypeOfArrayOfTables", "[mission]", "waypoint2 = 1\n[mission]", "waypoint2",
+            "waypoint2: found an unknown key (did you mean waypoint?); accepted: mission, truth, spacecraft, "
+            "guidance, gnss_navigation, angles_only, pose, waypoint, burn, constellation, clock, links, lcm or record"},
         BadChange{"MissingRequiredKey", "duration_h = 2.0\n", "", "[mission]",
                   "mission.duration_h: found nothing; accepted: a number above 0, up to 2000"},
         BadChange{"NotANumber", "duration_h = 2.0", "duration_h = nan", "duration_h",
