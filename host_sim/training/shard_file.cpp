@@ -30,7 +30,8 @@ void append_crop(const LabelledCrop& crop, const twins::camera::CameraSettings& 
   for (const fsw::Vector2& cell : crop.cells)
     for (const double place : cell) add(place);
   for (const bool counts : crop.counts) add(counts ? 1.0 : 0.0);
-  for (const double q : Eigen::Quaterniond(c.R_camera_body).coeffs()) add(q);
+  const Eigen::Quaterniond q_camera_body(c.R_camera_body);
+  for (const double q : q_camera_body.coeffs()) add(q);
   for (const double x : c.centre_of_mass_camera) add(x);
   for (const double x : c.region.centre_px) add(x);
   add(c.region.side_px);

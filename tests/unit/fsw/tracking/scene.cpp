@@ -110,9 +110,27 @@ struct SceneMaker::Sky {
       add("decoy " + std::to_string(k), settings.decoys_a_roe_m[k]);
     }
     for (int k = 0; k < settings.hot_pixels; ++k) {
-      hot.emplace_back(kCentre_px + Vector2(std::round(noise.uniform(-kHalfWidth_px, kHalfWidth_px)) + 0.5,
-                                            std::round(noise.uniform(-kHalfHeight_px, kHalfHeight_px)) + 0.5));
+      const Vector2 place = drawn_place();
+      hot.emplace_back(kCentre_px + Vector2(std::round(place.x()) + 0.5, std::round(place.y()) + 0.5));
     }
+  }
+
+  // One draw a line: in what order arguments are worked out is each compiler's own.
+  Vector2 drawn_normals() {
+    const double y = noise.normal();
+    const double x = noise.normal();
+    return {x, y};
+  }
+  Vector3 drawn_normals_of_three() {
+    const double z = noise.normal();
+    const Vector2 xy = drawn_normals();
+    return {xy.x(), xy.y(), z};
+  }
+  /// From the middle of the image.
+  Vector2 drawn_place() {
+    const double y = noise.uniform(-kHalfHeight_px, kHalfHeight_px);
+    const double x = noise.uniform(-kHalfWidth_px, kHalfWidth_px);
+    return {x, y};
   }
 
   void advance(Scene& scene) {
@@ -123,7 +141,7 @@ struct SceneMaker::Sky {
       const GpsTime at = start + nearest_duration(burn.time_s);
       truth->advance_to(at);
       const double sigma = settings.burn_error * burn.dv_rtn.norm();
-      const Vector3 error(noise.normal(), noise.normal(), noise.normal());
+      const Vector3 error = drawn_normals_of_three();
       truth->apply_impulse_rtn(0, burn.dv_rtn + sigma * error);
       // Navigation takes the burn as commanded, which to the relative motion is as if the target had made the error.
       for (const std::size_t estimate : {2, 3}) truth->apply_impulse_rtn(estimate, sigma * error);
@@ -176,7 +194,8 @@ struct SceneMaker::Sky {
   Vector3 blurred(const Vector3& direction) {
     const double sigma = settings.noise_arcsec * kArcsec;
     // Across the direction, which is near T.
-    return (direction + Vector3(sigma * noise.normal(), 0.0, sigma * noise.normal())).normalized();
+    const Vector2 off = sigma * drawn_normals();
+    return (direction + Vector3(off.x(), 0.0, off.y())).normalized();
   }
 
   SceneSettings settings;
@@ -211,7 +230,8 @@ Scene SceneMaker::next() {
   Vector3 boresight(scene.prediction.slopes.x(), 1.0, scene.prediction.slopes.y());
   boresight *= scene.prediction.along_track_m < 0.0 ? -1.0 : 1.0;
   const double jitter = settings.jitter_arcsec * kArcsec;
-  boresight = (boresight.normalized() + Vector3(jitter * sky.noise.normal(), 0.0, jitter * sky.noise.normal()));
+  const Vector2 off = jitter * sky.drawn_normals();
+  boresight = boresight.normalized() + Vector3(off.x(), 0.0, off.y());
   const Matrix3 camera = camera_rtn(boresight.normalized());
 
   // Sunlit satellites of one size, brighter the nearer, until the detector is saturated; tumbling, they vary.
@@ -228,14 +248,14 @@ Scene SceneMaker::next() {
   merge_blobs(scene);
   const int count = static_cast<int>(settings.false_detections + sky.noise.uniform());
   for (int k = 0; k < count; ++k) {
-    const Vector3 in_camera(sky.noise.uniform(-kHalfWidth_px, kHalfWidth_px) * kPixel,
-                            sky.noise.uniform(-kHalfHeight_px, kHalfHeight_px) * kPixel, 1.0);
+    const Vector2 place = sky.drawn_place();
+    const Vector3 in_camera(place.x() * kPixel, place.y() * kPixel, 1.0);
     sky.see(scene, camera, camera.transpose() * in_camera.normalized(), -1, 1e3 * std::exp(2.0 * sky.noise.normal()),
             6);
   }
   for (const Vector2& place : sky.hot) {
     if (sky.noise.uniform() > 0.95) continue;
-    const Vector2 offset = place - kCentre_px + 0.03 * Vector2(sky.noise.normal(), sky.noise.normal());
+    const Vector2 offset = place - kCentre_px + 0.03 * sky.drawn_normals();
     const Vector3 in_camera(offset.x() * kPixel, offset.y() * kPixel, 1.0);
     sky.see(scene, camera, camera.transpose() * in_camera.normalized(), -2, 2000.0, 1);
   }

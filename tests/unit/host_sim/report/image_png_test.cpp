@@ -105,9 +105,9 @@ TEST(ImagePng, MarksOverTheEdgeAndAtNoPlaceDoNoHarm) {
 
 TEST(ImagePng, PictureWithoutItsPixelsIsRefused) {
   const std::vector<std::uint16_t> dn(10);
-  EXPECT_THROW(png_of({0, 0, 0, 0, {}}, kStretch, {}), std::invalid_argument);
-  EXPECT_THROW(png_of({3, 3, 0, 0, dn}, kStretch, {}), std::invalid_argument);
-  EXPECT_THROW(png_of({5, 2, 0, 0, dn}, kStretch, {}, 0), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(png_of({0, 0, 0, 0, {}}, kStretch, {})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(png_of({3, 3, 0, 0, dn}, kStretch, {})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(png_of({5, 2, 0, 0, dn}, kStretch, {}, 0)), std::invalid_argument);
 }
 
 TEST(ImagePng, StretchLiesAboveTheNoiseAndReachesTheBrightest) {
