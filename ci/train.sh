@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Makes the crops, trains the keypoint network and calibrates it: data/networks/tango_keypoints.{bin,toml}. Some 90
+# Makes the crops, trains the keypoint network and calibrates it: data/networks/tango_keypoints.{bin,toml}. Meant for 90
 # minutes on two idle cores. An interrupted run goes on where it was (folder build/training).
-#   ci/train.sh [minutes of training]     default 60
+#   ci/train.sh [minutes of training]     default 55
 set -euo pipefail
 cd "$(dirname "$0")/.."
-minutes=${1:-60}
+minutes=${1:-55}
 
 # Beside what ci/install.sh installs. Debian's Python, whatever else is called python3.
 python=/usr/bin/python3
@@ -24,8 +24,8 @@ render=build/host/vbar_training_crops
 
 # Two processes share the crops for training; what comes from another seed comes first and last.
 "$render" --kind held_out --seed 3 --count 2000 --shard-size 500 --out "$crops"
-"$render" --kind training --seed 1 --count 36000 --part 0 --parts 2 --out "$crops" &
-"$render" --kind training --seed 1 --count 36000 --part 1 --parts 2 --out "$crops"
+"$render" --kind training --seed 1 --count 54000 --part 0 --parts 2 --out "$crops" &
+"$render" --kind training --seed 1 --count 54000 --part 1 --parts 2 --out "$crops"
 wait $!
 "$render" --kind calibration --seed 2 --count 2000 --shard-size 500 --out "$crops"
 

@@ -5,6 +5,7 @@
 #include "fsw/navigation/dynamics.h"
 #include "fsw/navigation/propagation.h"
 #include "fsw/navigation/roe_filter.h"
+#include "fsw/navigation/roe_impulse.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 
@@ -256,20 +257,8 @@ void PoseFilter::fade_errors(double dt) {
 
 void PoseFilter::add_servicer_impulse(const orbit::CartesianState& servicer, const Vector3& dv_eci) {
   if (!started_) return;
-  using Transform = estimation::UnscentedTransform<6>;
-  Transform transform;
-  const auto before = orbit::qns_from_cartesian(servicer);
-  const auto after = orbit::qns_from_cartesian({servicer.position_eci, servicer.velocity_eci + dv_eci});
-  if (!before.ok() || !after.ok() || transform.start(roe(), roe_covariance()) != Status::kOk) return reset();
-  std::array<Vector6, Transform::kPoints> moved;
-  for (std::size_t k = 0; k < Transform::kPoints; ++k) {
-    moved[k] = orbit::roe_from_qns(after.value(), orbit::qns_from_roe(before.value(), transform.point(k)));
-  }
-  const auto regression = transform.regress<6>(moved);
-  const Matrix63 gamma = orbit::roe_control_matrix(before.value());
   const double sigma = settings_.maneuver_sigma + settings_.maneuver_sigma_relative * math::sqrt(dv_eci.squaredNorm());
-  const Matrix6 noise = regression.remainder + (square(sigma) * gamma).lazyProduct(gamma.transpose());
-  estimate_.transform_head<6>(regression.mean, regression.slope, noise);
+  if (!move_frame_of_roe(estimate_, servicer, dv_eci, sigma)) return reset();
   acceleration_noise_.interrupt();
   if (!estimate_.is_sound()) reset();
 }

@@ -10,8 +10,6 @@ namespace {
 
 constexpr Duration kSegment = duration_of_seconds(20);
 constexpr int kMaxSegments = 4000;
-constexpr Duration kSegmentAhead = duration_of_seconds(60);
-constexpr Duration kFarthestAhead = duration_of_seconds(7200);
 
 // Most keypoints refused in so many images in a row: the attitude is wrong.
 constexpr int kRefusedBeforeAttitude = 3;
@@ -225,49 +223,6 @@ Matrix6 PoseNavigation::covariance_rtn() const {
         (a.velocity_rtn - b.velocity_rtn) / (2.0 * kLittle);
   }
   return slope.lazyProduct(filter_.roe_covariance()).lazyProduct(slope.transpose());
-}
-
-Result<PosePrediction> PoseNavigation::predict(GpsTime time, const Vector3& sun_eci,
-                                               std::span<const Burn> burns) const {
-  const auto now = target();
-  if (!now.ok()) return now.status();
-  if (time < epoch_ || time - epoch_ > kFarthestAhead) return Status::kOutOfRange;
-  PosePrediction prediction;
-  prediction.servicer = own_orbit_.state();
-  prediction.has_attitude = has_attitude();
-  prediction.attitude = filter_.attitude();
-  orbit::CartesianState target = now.value();
-  GpsTime reached = epoch_;
-  const auto coast_to = [&](GpsTime goal) {
-    for (int segment = 0; segment < kMaxSegments && reached < goal; ++segment) {
-      const GpsTime next = goal - reached > kSegmentAhead ? reached + kSegmentAhead : goal;
-      const Propagation propagation(reached, settings_.earth, sun_eci);
-      const double dt = seconds(next - reached);
-      if (prediction.has_attitude) {
-        const GravityGradient gradient = gravity_gradient_at(target.position_eci + 0.5 * dt * target.velocity_eci);
-        prediction.attitude = turned_on(prediction.attitude, filter_.inertia(), gradient, dt);
-      }
-      prediction.servicer = propagation.coast(prediction.servicer, dt);
-      target = propagation.coast(target, dt);
-      reached = next;
-    }
-  };
-  for (const Burn& burn : burns) {
-    if (burn.time < reached) continue;
-    if (burn.time >= time) break;
-    coast_to(burn.time);
-    prediction.servicer = orbit::apply_impulse_rtn(prediction.servicer, burn.dv_rtn);
-  }
-  coast_to(time);
-  prediction.relative_eci = target.position_eci - prediction.servicer.position_eci;
-  return prediction;
-}
-
-Result<Vector3> PoseNavigation::predicted_position_camera(GpsTime time, const Matrix3& R_camera_eci,
-                                                          const Vector3& sun_eci, std::span<const Burn> burns) const {
-  const auto prediction = predict(time, sun_eci, burns);
-  if (!prediction.ok()) return prediction.status();
-  return Vector3(R_camera_eci * prediction.value().relative_eci - settings_.camera_position_camera_m);
 }
 
 }  // namespace vbar::fsw::navigation

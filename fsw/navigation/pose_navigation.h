@@ -61,14 +61,6 @@ enum class PoseFate : std::uint8_t {
   kStart,     ///< kept for a start
 };
 
-/// Both spacecraft as expected at a time.
-struct PosePrediction {
-  orbit::CartesianState servicer;
-  Vector3 relative_eci = Vector3::Zero();  ///< target from servicer, centres of mass, m
-  bool has_attitude = false;
-  AttitudeState attitude;  ///< of the target
-};
-
 class PoseNavigation {
  public:
   PoseNavigation() = default;
@@ -105,12 +97,6 @@ class PoseNavigation {
   [[nodiscard]] Matrix3 R_eci_body() const { return filter_.attitude().q_eci_body.toRotationMatrix(); }
   [[nodiscard]] Vector3 rate_body() const { return filter_.attitude().rate_body; }
   [[nodiscard]] Matrix6 attitude_covariance() const { return filter_.attitude_covariance(); }
-
-  /// What is expected at `time`, not before the epoch and within two hours of it.
-  [[nodiscard]] Result<PosePrediction> predict(GpsTime time, const Vector3& sun_eci, std::span<const Burn> burns) const;
-  /// The target in the axes of a camera that stands so at `time`, m.
-  [[nodiscard]] Result<Vector3> predicted_position_camera(GpsTime time, const Matrix3& R_camera_eci,
-                                                          const Vector3& sun_eci, std::span<const Burn> burns) const;
 
   /// Of the last epoch; empty if it had no keypoints for the filter.
   [[nodiscard]] const PoseUpdate& last_update() const { return last_update_; }

@@ -13,7 +13,7 @@ struct Calibration {
   float covariance_scale = 1.0F;    ///< of a map's second moments, less the training target's own
   float covariance_floor = 0.0F;    ///< added to each axis, cells^2
   float target_sigma_cells = 1.0F;  ///< of the Gaussian maps that training asked for
-  float least_peak = 0.0F;          ///< a map whose highest cell holds less tells nothing
+  float least_peak = 0.0F;          ///< a map whose highest 3 x 3 cells hold less tells nothing
 };
 
 /// Is it such a file, of this architecture, whole, and every number in its range? What load() answers.

@@ -45,22 +45,22 @@ def happens(count, share):
 
 
 def blurred(x):
-    """A tenth to all of the way to a 3 x 3 binomial mean, of a third of the crops."""
+    """A tenth to all of the way to a 3 x 3 binomial mean, of a quarter of the crops."""
     kernel = torch.tensor([1.0, 2.0, 1.0]) / 4.0
     soft = functional.conv2d(functional.pad(x, (1, 1, 1, 1), mode="replicate"), torch.outer(kernel, kernel)[None, None])
-    part = uniform(len(x), 0.1, 1.0) * happens(len(x), 0.33)
+    part = uniform(len(x), 0.1, 1.0) * happens(len(x), 0.25)
     return x + part * (soft - x)
 
 
 def with_patches(x):
-    """A bar or patch of an even brightness over a fifth of the crops."""
+    """A bar or patch of an even brightness over a tenth of the crops."""
     count, side = len(x), x.shape[-1]
     place = torch.arange(side)
     middle = torch.rand(count, 2) * side
     half = torch.exp(torch.rand(count, 2) * math.log(20.0)) * 1.5
     rows = (place[None] - middle[:, :1]).abs() < half[:, :1]
     columns = (place[None] - middle[:, 1:]).abs() < half[:, 1:]
-    inside = (rows[:, :, None] & columns[:, None, :])[:, None] & happens(count, 0.2)
+    inside = (rows[:, :, None] & columns[:, None, :])[:, None] & happens(count, 0.1)
     return torch.where(inside, uniform(count, 0.0, 50.0).expand_as(x), x)
 
 
@@ -75,6 +75,6 @@ def augmented(images, cells):
     x = 64.0 * (x / 64.0).clamp(min=1e-4)**torch.where(happens(count, 0.5), uniform(count, 0.7, 1.4), torch.ones(1))
     x = blurred(x)
     x = x * torch.where(happens(count, 0.3), log_uniform(count, 0.5, 1.5), torch.ones(1))
-    noise = log_uniform(count, 0.03, 1.5) * happens(count, 0.6)
+    noise = log_uniform(count, 0.03, 1.5) * happens(count, 0.5)
     x = (x + noise * torch.randn_like(x)).clamp(min=0.0)
     return standardised(x), cells

@@ -11,6 +11,7 @@ import augment
 import crops
 import decode
 import keypoint_network
+import train_keypoints
 
 TARGET_SIGMA_CELLS = 1.0
 GROSS_CELLS = 3.0  # farther off than this a keypoint is wrong, not inexact
@@ -105,7 +106,7 @@ def main():
     parser.add_argument("--command", default="ci/train.sh")
     options = parser.parse_args()
     kept = torch.load(options.checkpoint) if options.checkpoint else {"step": 0, "elapsed_s": 0.0}
-    options.trained_s, options.images = kept["elapsed_s"], 32 * kept["step"]
+    options.trained_s, options.images = kept["elapsed_s"], train_keypoints.BATCH * kept["step"]
     layers, _ = keypoint_network.read_weights(options.weights.read_bytes())
     calibration_table, held_out_table = tables_of(options.crops, "calibration"), tables_of(options.crops, "held_out")
     errors, moments, peaks = seen(layers, calibration_table)

@@ -21,7 +21,7 @@ constexpr double kCropRadii = 2.2;  // a crop's side in radii of the target as i
 
 /// Where the target's centre lies on the detector: mostly where all of it is in the image if it fits, else anywhere.
 Vector2 draw_centre(const twins::camera::Region& region, double radius_px, engine::RandomStream& stream) {
-  const bool is_whole = stream.uniform() < 0.7;
+  const bool is_whole = stream.uniform() < 0.9;
   const auto along = [&](int first, int pixels) {
     const double least = 0.1 * pixels;
     const double half = is_whole ? std::max(least, 0.5 * pixels - radius_px) : 0.5 * pixels;
@@ -41,19 +41,19 @@ void draw_light(Circumstances& drawn, engine::RandomStream& stream) {
   const double limb_in_field = earth_radius + 12.0 * kDegree;
   const Vector3 to_camera = -drawn.centre_of_mass_camera.normalized();
   const bool is_level = stream.uniform() < 0.7;
-  const bool is_behind = stream.uniform() < 0.04;
+  const bool is_behind = stream.uniform() < 0.03;
   constexpr int kTries = 200;
   for (int i = 0; i < kTries; ++i) {
     const double down = is_level ? stream.uniform(limb_in_field, 115.0 * kDegree) : stream.uniform(0.0, limb_in_field);
     drawn.nadir_camera = at_angle(Vector3::UnitZ(), down, stream);
-    drawn.phase_angle = (is_behind ? stream.uniform(130.0, 150.0) : stream.uniform(0.0, 130.0)) * kDegree;
+    drawn.phase_angle = (is_behind ? stream.uniform(130.0, 150.0) : stream.uniform(15.0, 130.0)) * kDegree;
     drawn.sun_camera = at_angle(to_camera, drawn.phase_angle, stream);
     const double from_nadir = std::acos(std::clamp(drawn.sun_camera.dot(drawn.nadir_camera), -1.0, 1.0));
     const double from_boresight = std::acos(std::clamp(drawn.sun_camera.z(), -1.0, 1.0));
     if (from_nadir > earth_radius && from_boresight > 25.0 * kDegree) break;
   }
-  drawn.sunlit = stream.uniform() < 0.05 ? stream.uniform(0.05, 1.0) : 1.0;
-  drawn.glow_electrons = stream.uniform() < 0.3 ? log_uniform(5.0, 2000.0, stream) : 0.0;
+  drawn.sunlit = stream.uniform() < 0.02 ? stream.uniform(0.1, 1.0) : 1.0;
+  drawn.glow_electrons = stream.uniform() < 0.2 ? log_uniform(5.0, 2000.0, stream) : 0.0;
   drawn.glow_slope.x() = stream.uniform(-0.4, 0.4);
   drawn.glow_slope.y() = stream.uniform(-0.4, 0.4);
 }
@@ -84,10 +84,10 @@ Circumstances draw_circumstances(const twins::camera::CameraSettings& camera, co
   drawn.R_camera_body = attitude(stream).toRotationMatrix();
   draw_light(drawn, stream);
   drawn.q_camera_eci = draw_sky(stream);
-  drawn.exposure = log_uniform(0.35, 3.0, stream);
-  drawn.point_spread_sigma_px = stream.uniform(0.5, 1.3);
-  drawn.region.side_px = kCropRadii * radius_px * log_uniform(0.8, 1.4, stream);
-  const double off_x = stream.uniform(-0.12, 0.12), off_y = stream.uniform(-0.12, 0.12);
+  drawn.exposure = log_uniform(0.5, 2.0, stream);
+  drawn.point_spread_sigma_px = stream.uniform(0.25, 0.9);
+  drawn.region.side_px = kCropRadii * radius_px * log_uniform(0.85, 1.3, stream);
+  const double off_x = stream.uniform(-0.1, 0.1), off_y = stream.uniform(-0.1, 0.1);
   drawn.region.centre_px = centre_px + drawn.region.side_px * Vector2(off_x, off_y);
   return drawn;
 }

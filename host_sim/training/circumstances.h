@@ -35,7 +35,7 @@ struct Circumstances {
   fsw::pose::CropRegion region;
 };
 
-/// A camera 700 km up looks about level (seven in ten) or has the Earth in its field; the Sun stands 0 to 130 deg from
+/// A camera 700 km up looks about level (seven in ten) or has the Earth in its field; the Sun stands 15 to 130 deg from
 /// behind the camera as the target sees it, at times to 150 deg, and is never behind the Earth; range 4 to 15 m;
 /// attitudes and places in the image as they come. Of `shape` only the radius counts.
 [[nodiscard]] Circumstances draw_circumstances(const twins::camera::CameraSettings& camera, const TargetShape& shape,

@@ -20,7 +20,7 @@ import crops
 import decode
 import keypoint_network
 
-BATCH = 32
+BATCH = 64
 TARGET_SIGMA_CELLS = 1.0
 AVERAGE = 0.998  # of the weights, kept each step
 CHECKPOINT_S = 180.0
@@ -124,7 +124,9 @@ class Training:
             group["lr"] = self.rate()
         self.model.train()
         x = x.contiguous(memory_format=torch.channels_last)
-        loss = loss_of(self.model(x), places, torch.from_numpy(counts))
+        with torch.autocast("cpu", dtype=torch.bfloat16, enabled=self.options.bfloat16):
+            logits = self.model(x)
+        loss = loss_of(logits.float(), places, torch.from_numpy(counts))
         self.optimiser.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.model.parameters(), 5.0)
@@ -187,12 +189,14 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, required=True, help="weights file; the checkpoint lies beside it")
     parser.add_argument("--minutes", type=float, default=50.0)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--rate", type=float, default=2e-3, help="of learning, at its highest")
+    parser.add_argument("--rate", type=float, default=2.5e-3, help="of learning, at its highest")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--least-crops", type=int, default=3000, help="to begin with")
     parser.add_argument("--export-every", type=float, default=1e9, help="minutes")
     parser.add_argument("--report-s", type=float, default=120.0)
     options = parser.parse_args()
+    # Half the time where the processor multiplies bfloat16 itself, else much more.
+    options.bfloat16 = "avx512_bf16" in pathlib.Path("/proc/cpuinfo").read_text()
     torch.set_num_threads(options.threads)
     torch.set_flush_denormal(True)
     Training(options).run()

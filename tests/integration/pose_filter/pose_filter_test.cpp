@@ -251,18 +251,6 @@ TEST_F(Disturbed, TwentyMinutesWithoutAnImageAreSurvived) {
   EXPECT_LT(error.attitude, 2.0 * kDegree);
 }
 
-TEST_F(Disturbed, LooksAheadThroughABurn) {
-  while (next < 200) step();
-  const auto ahead = navigation->predict(flight.epochs[260].time, flight.epochs[199].sun_eci, burns);
-  ASSERT_TRUE(ahead.ok());
-  const auto& truth = flight.epochs[260];
-  // A burn of millimetres a second lies between; five minutes of an orbit known to a tenth of a millimetre a second.
-  EXPECT_LT((ahead.value().relative_eci - (truth.target.position_eci - truth.servicer.position_eci)).norm(), 0.05);
-  EXPECT_TRUE(ahead.value().has_attitude);
-  EXPECT_LT(ahead.value().attitude.q_eci_body.angularDistance(attitudes[260].q_eci_body), 3.0 * kDegree);
-  EXPECT_EQ(navigation->predict(flight.epochs[10].time, {}, {}).status(), fsw::Status::kOutOfRange);
-}
-
 TEST_F(Disturbed, NumbersThatAreNoneChangeNothing) {
   while (next < 30) step();
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -189,8 +189,9 @@ Statistics gather(std::uint64_t seed, const Decide& decide) {
   Statistics statistics;
   for (int model = 0; model < 400; ++model) {
     const Eigen::Index n = std::uniform_int_distribution<Eigen::Index>(4, 24)(random);
-    const double weakened = std::pow(10.0, problems::uniform(random, 0.0, 3.5));
-    const Matrix q = weakened * problems::random_session_covariance(n, random);
+    // One draw a line: in what order operands are worked out is each compiler's own.
+    const Matrix session = problems::random_session_covariance(n, random);
+    const Matrix q = std::pow(10.0, problems::uniform(random, 0.0, 3.5)) * session;
     for (int draw = 0; draw < 60; ++draw) {
       const Problem problem = problems::draw(q, random);
       const AmbiguityDecision decision = decide(problem);
@@ -204,7 +205,7 @@ Statistics gather(std::uint64_t seed, const Decide& decide) {
   // The rate of wrong ones says something only if it fixes, wholly and partly, and not always.
   EXPECT_GT(statistics.part(statistics.fixed), 0.3);
   EXPECT_LT(statistics.part(statistics.fixed), 0.9);
-  EXPECT_GT(statistics.part(statistics.partly), 0.02);
+  EXPECT_GT(statistics.part(statistics.partly), 0.03);
   return statistics;
 }
 

@@ -97,25 +97,42 @@ Exact exact_drift(const Vector6& roe, double horizon) {
   return exact;
 }
 
-TEST(Drift, AgreesWithTheExactMapWithinItsStatedError) {
-  const double e = std::hypot(mission::kServicerMean.ex, mission::kServicerMean.ey);
-  std::vector<Vector6> starts;
-  for (const mission::Waypoint& waypoint : mission::kWaypoints) starts.push_back(waypoint.roe());
-  std::mt19937_64 generator(7);
+/// Random drifts of 3 m to 3 km. One draw a line, the last component first: in what order arguments are worked out is
+/// each compiler's own.
+std::vector<Vector6> random_drifts(std::uint64_t seed, int count) {
+  std::mt19937_64 generator(seed);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  for (int k = 0; k < 30; ++k) {
+  std::vector<Vector6> drifts;
+  for (int k = 0; k < count; ++k) {
     const double size = std::pow(10.0, 2.0 + 1.5 * unit(generator));
-    Vector6 u;  // one draw a line: in what order arguments are worked out is each compiler's own
-    for (double& component : u) component = unit(generator);
-    starts.push_back(size * roe_of(0.1 * u(0), 3.0 * u(1), u(2), u(3), u(4), u(5)));
+    Vector6 u;
+    for (int component = 5; component >= 0; --component) u(component) = unit(generator);
+    drifts.push_back(size * roe_of(0.1 * u(0), 3.0 * u(1), u(2), u(3), u(4), u(5)));
   }
+  return drifts;
+}
+
+/// `share`: of (e + J2) times the largest separation on the way.
+void expect_agreement(const std::vector<Vector6>& starts, double share) {
+  const double e = std::hypot(mission::kServicerMean.ex, mission::kServicerMean.ey);
   for (const Vector6& roe : starts) {
     const DriftSafety drift = assess_drift(mission::kServicerMean, roe, 2.0 * kRevolution).value();
     const Exact exact = exact_drift(roe, 2.0 * kRevolution);
-    const double stated = 0.65 * (e + orbit::kJ2) * exact.farthest;
+    const double stated = share * (e + orbit::kJ2) * exact.farthest;
     EXPECT_NEAR(drift.spatial.distance, exact.spatial, stated) << (kA * roe).transpose();
     EXPECT_NEAR(drift.radial_normal.distance, exact.radial_normal, stated) << (kA * roe).transpose();
   }
+}
+
+TEST(Drift, AgreesWithTheExactMapWithinItsStatedError) {
+  std::vector<Vector6> starts = random_drifts(7, 30);
+  for (const mission::Waypoint& waypoint : mission::kWaypoints) starts.push_back(waypoint.roe());
+  expect_agreement(starts, 0.6);
+}
+
+// The worst of 1,500 was 0.845.
+TEST(Drift, IsSeldomFartherOffThanThat) {
+  expect_agreement(random_drifts(8, 150), 0.85);
 }
 
 TEST(Drift, FindsTheMinimumBetweenItsSamples) {
