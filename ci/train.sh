@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the crops, trains the keypoint network and calibrates it: data/networks/tango_keypoints.{bin,toml}. Meant for 90
+# Makes the crops, trains the keypoint network and calibrates it: data/networks/tango_keypoints.{bin,toml}. Some 75
 # minutes on two idle cores. An interrupted run goes on where it was (folder build/training).
 #   ci/train.sh [minutes of training]     default 55
 set -euo pipefail

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Flies the missions at full length on every flight computer and writes what it found to docs/verification.md.
 
-usage: ci/verify.py [--build build/host] [--experiment1 | --experiment3]     (ci/verify.sh builds first)
+usage: ci/verify.py [--build build/host] [--experiment1 | --experiment2 | --experiment3]     (ci/verify.sh builds first)
 
---experiment1 and --experiment3 fly that one only, and replace its section alone.
+--experiment1, 2 and 3 fly that one only, and replace its section alone.
 """
 import argparse
 import json
@@ -15,6 +15,7 @@ import sys
 import time
 
 import verify_experiment1
+import verify_experiment2
 import verify_experiment3
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -95,21 +96,21 @@ def replace_section(page, lines):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/host")
-    parser.add_argument("--experiment1", action="store_true")
-    parser.add_argument("--experiment3", action="store_true")
+    experiments = {"experiment1": verify_experiment1, "experiment2": verify_experiment2, "experiment3": verify_experiment3}
+    for name in experiments:
+        parser.add_argument(f"--{name}", action="store_true")
     options = parser.parse_args()
     build = options.build.resolve()
     runs = ROOT / "runs/verify"
-    for asked, experiment in ((options.experiment1, verify_experiment1), (options.experiment3, verify_experiment3)):
-        if not asked:
+    for name, experiment in experiments.items():
+        if not getattr(options, name):
             continue
         lines, met = experiment.section(build, ROOT, runs, table)
         PAGE.write_text(replace_section(PAGE.read_text(), lines))
         print("\n".join(lines))
         print("verified" if met else "NOT verified: see above")
         return 0 if met else 1
-    experiment1, experiment1_ok = verify_experiment1.section(build, ROOT, runs, table)
-    experiment3, experiment3_ok = verify_experiment3.section(build, ROOT, runs, table)
+    sections = [experiment.section(build, ROOT, runs, table) for experiment in experiments.values()]
 
     flown = []
     for number, (name, overrides) in enumerate(FLIGHT_COMPUTERS):
@@ -129,7 +130,7 @@ def main():
         replays.append((name, result.returncode == 0, (result.stdout + result.stderr).strip()))
 
     rows = mission_rows(reference)
-    ok = experiment1_ok and experiment3_ok and all(r[3] for r in rows) and all(same(s) for _, s in flown) and all(r[1] for r in replays)
+    ok = all(met for _, met in sections) and all(r[3] for r in rows) and all(same(s) for _, s in flown) and all(r[1] for r in replays)
     yes = lambda good: "yes" if good else "**no**"
     text = [
         "# Verification",
@@ -153,7 +154,8 @@ def main():
         table(["into", "identical", "vbar says"], [(name, yes(good), said) for name, good, said in replays]),
         "",
     ]
-    text += experiment1 + experiment3
+    for lines, _ in sections:
+        text += lines
     PAGE.write_text("\n".join(text))
     print("\n".join(text))
     print("verified" if ok else "NOT verified: see above")

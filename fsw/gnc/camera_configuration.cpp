@@ -126,9 +126,14 @@ Result<navigation::PoseSettings> pose_settings(const camera_configuration& c, co
       p.inertia_kgm2[3], p.inertia_kgm2[1], p.inertia_kgm2[5],         //
       p.inertia_kgm2[4], p.inertia_kgm2[5], p.inertia_kgm2[2];
   const Vector6 start_sigma_a_roe_m = vector(p.start_sigma_a_roe_m);
-  const bool is_usable = camera.ok() && shape.ok() && is_inertia(inertia) && is_above(p.keypoint_sigma_scale, 100.0) &&
-                         is_between(p.keypoint_floor_px, 0.0, 100.0) && is_above(p.acceleration_psd, 1.0) &&
-                         is_above(p.acceleration_psd_least, p.acceleration_psd) &&
+  const Vector6 apriori_sigma_a_roe_m = vector(p.apriori_sigma_a_roe_m);
+  const bool has_apriori = !apriori_sigma_a_roe_m.isZero(0.0);
+  const bool apriori_is_usable = (apriori_sigma_a_roe_m.array() > 0.0).all() &&
+                                 (apriori_sigma_a_roe_m.array() < 1e6).all() &&
+                                 (vector(p.apriori_a_roe_m).array().abs() < 1e6).all();
+  const bool is_usable = camera.ok() && shape.ok() && is_inertia(inertia) && (!has_apriori || apriori_is_usable) &&
+                         is_above(p.keypoint_sigma_scale, 100.0) && is_between(p.keypoint_floor_px, 0.0, 100.0) &&
+                         is_above(p.acceleration_psd, 1.0) && is_above(p.acceleration_psd_least, p.acceleration_psd) &&
                          is_between(p.acceleration_psd_most, p.acceleration_psd, 1.0) &&
                          is_above(p.angular_acceleration_psd, 1.0) && is_between(p.maneuver_sigma, 0.0, 1.0) &&
                          is_between(p.maneuver_sigma_relative, 0.0, 1.0) && p.start_images >= 1 &&
@@ -138,6 +143,11 @@ Result<navigation::PoseSettings> pose_settings(const camera_configuration& c, co
   navigation::PoseSettings settings;
   settings.earth = earth;
   settings.camera_position_camera_m = camera.value().R_camera_body * camera.value().position_body_m;
+  if (has_apriori) {
+    settings.apriori = navigation::PoseApriori{.time = GpsTime{p.apriori_epoch_ns},
+                                               .a_roe_m = vector(p.apriori_a_roe_m),
+                                               .sigma_a_roe_m = apriori_sigma_a_roe_m};
+  }
   settings.start.least_images = p.start_images;
   settings.start.sigma_a_roe_m = start_sigma_a_roe_m;
   settings.filter.camera = camera.value().model;

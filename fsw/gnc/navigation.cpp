@@ -185,7 +185,7 @@ void Navigation::take_pose(GpsTime now, Inbox& inbox) {
 template <class Filter>
 void Navigation::anchor_at_estimate(const Filter& filter, GpsTime last_measurement) {
   const Result<orbit::CartesianState> target = filter.target();
-  if (!filter.has_target() || !target.ok()) {
+  if (!target.ok()) {
     let_go();
     return;
   }

@@ -14,6 +14,8 @@ constexpr Duration kLongestDelay = duration_of_seconds(600);
 
 // So many images in a row without the target, though it is lit, and it is elsewhere.
 constexpr int kUnseenBeforeLost = 12;
+// Of its distance, 1 sigma: what the target's place may be in doubt by to cut the image by it.
+constexpr double kKnownShare = 0.05;
 constexpr double kEdge_s = 20.0;  // of the Earth's shadow
 
 bool is_surely_lit(const orbit::CartesianState& target, const Vector3& sun_eci) {
@@ -75,8 +77,7 @@ void PoseCameraNavigation::take_image(const imaging::ImageAssembly& image, navig
   static_cast<void>(filter_.update(epoch, burns));
   epoch.R_camera_eci = R_camera_eci_at(time, own_orbit, epoch.servicer_gnss);
   if (epoch.R_camera_eci) estimated_pose_ = pose_of_estimate(*epoch.R_camera_eci);
-  const auto expected_position = estimated_pose_ ? std::optional(estimated_pose_->position_camera_m) : std::nullopt;
-  const pose::PoseSighting& sighting = network_.process(time, image.image_number(), image.view(), expected_position);
+  const pose::PoseSighting& sighting = network_.process(time, image.image_number(), image.view(), expected_position());
   watch_for_target(epoch);
   if (!epoch.R_camera_eci || sighting.status > pose::SightingStatus::kKeypoints) return;
   epoch.servicer_gnss.reset();  // it is folded in already
@@ -85,6 +86,15 @@ void PoseCameraNavigation::take_image(const imaging::ImageAssembly& image, navig
   epoch.pnp = sighting.pnp;
   fate_ = filter_.update(epoch, burns);
   estimated_pose_ = pose_of_estimate(*epoch.R_camera_eci);
+}
+
+/// Where to cut the image, if that is known so well that the target fills the crop as in training.
+std::optional<Vector3> PoseCameraNavigation::expected_position() const {
+  if (!estimated_pose_) return std::nullopt;
+  const Vector3& position = estimated_pose_->position_camera_m;
+  const Matrix3 covariance = filter_.filter().position_covariance(filter_.servicer());
+  return covariance.trace() <= kKnownShare * kKnownShare * position.squaredNorm() ? std::optional(position)
+                                                                                  : std::nullopt;
 }
 
 /// A target that is lit and before the camera is seen; one that is not is elsewhere, and what is known of it is wrong.

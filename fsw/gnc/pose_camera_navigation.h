@@ -46,6 +46,7 @@ class PoseCameraNavigation {
   [[nodiscard]] pose::Keypoints widened(pose::Keypoints keypoints) const;
   [[nodiscard]] std::optional<Matrix3> R_camera_eci_at(GpsTime time, const navigation::GnssNavigation& own_orbit,
                                                        const std::optional<orbit::CartesianState>& servicer) const;
+  [[nodiscard]] std::optional<Vector3> expected_position() const;
   void watch_for_target(const navigation::PoseEpoch& epoch);
   [[nodiscard]] std::optional<pose::TargetPose> pose_of_estimate(const Matrix3& R_camera_eci) const;
 

@@ -89,6 +89,11 @@ void PoseFilter::set_attitude(const AttitudeState& attitude, const Matrix6& atti
   angular_noise_.interrupt();
 }
 
+void PoseFilter::doubt_place(double sigma_m, double semi_major_axis_m) {
+  constexpr int kAlongTrack = 1;
+  estimate_.add_noise(kAlongTrack, square(sigma_m / semi_major_axis_m));
+}
+
 void PoseFilter::rest_errors() {
   for (int axis = 0; axis < 2; ++axis) estimate_.reset(kCommon + axis, 0.0, square(settings_.shift_sigma_px));
   estimate_.reset(kCommon + 2, 0.0, square(settings_.stretch_sigma));

@@ -115,6 +115,8 @@ class PoseFilter {
              const Matrix6& attitude_covariance);
   /// Attitude and rate anew; the orbit stays, what was learned of keypoints' errors goes.
   void set_attitude(const AttitudeState& attitude, const Matrix6& attitude_covariance);
+  /// Widens what is believed of the place along track by `sigma_m`, where something spoke against it.
+  void doubt_place(double sigma_m, double semi_major_axis_m);
   void reset() { started_ = false; }
   [[nodiscard]] bool started() const { return started_; }
 

@@ -3,6 +3,8 @@
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
 #include "fsw/navigation/roe_filter.h"
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 
 namespace vbar::fsw::navigation {
@@ -17,12 +19,27 @@ constexpr int kRefusedBeforeAttitude = 3;
 constexpr int kRefusedBeforeRestart = 20;
 constexpr int kFarBeforeRestart = 5;
 
+constexpr double kHalfLight_s = 15.0;  // either side of the edge of a shadow without half light
+
+constexpr Duration kOldestApriori = duration_of_seconds(600);
+
+// 1 sigma of an attitude and rate that nothing is known of: wide enough for has_attitude() to say so, and no wider than
+// the filter's points can stand for.
+constexpr double kUnknownTurn = 0.8;
+constexpr double kUnknownRate = 0.02;
+
+Matrix6 unknown_attitude() {
+  Vector6 variance;
+  variance.head<3>().setConstant(kUnknownTurn * kUnknownTurn);
+  variance.tail<3>().setConstant(kUnknownRate * kUnknownRate);
+  return variance.asDiagonal();
+}
+
 }  // namespace
 
 Status PoseNavigation::configure(const PoseSettings& settings) {
   settings_ = settings;
   own_orbit_ = OwnOrbit(settings.own_orbit);
-  apriori_.reset();
   refused_in_a_row_ = 0;
   far_in_a_row_ = 0;
   last_update_ = {};
@@ -40,15 +57,17 @@ PoseFate PoseNavigation::update(const PoseEpoch& epoch, std::span<const Burn> bu
   } else if (epoch.servicer_gnss.has_value()) {
     own_orbit_.begin(*epoch.servicer_gnss);
     epoch_ = epoch.time;
+    begin_apriori();
   }
-  if (epoch.apriori_target.has_value()) apriori_ = epoch.apriori_target;
+  if (filter_.started() && !has_attitude()) filter_.set_attitude(filter_.attitude(), unknown_attitude());
   if (!own_orbit_.started() || !epoch.R_camera_eci.has_value()) return PoseFate::kNone;
   CameraPlace camera;
   camera.R_camera_eci = *epoch.R_camera_eci;
   camera.origin_eci = camera.R_camera_eci.transpose() * settings_.camera_position_camera_m;
-  if (epoch.pnp.has_value()) start_.add(sample_of(epoch, camera));
-  if (!filter_.started()) return epoch.pnp.has_value() ? begin() : PoseFate::kNone;
-  if (!has_attitude() && !(epoch.pnp.has_value() && renew_attitude())) return take_position_only(epoch, camera);
+  has_sample_ = is_fit_for_start(epoch);
+  if (has_sample_) start_.add(sample_of(epoch, camera));
+  if (!filter_.started()) return has_sample_ ? begin() : PoseFate::kNone;
+  if (!has_attitude() && !renew_attitude()) return take_position_only(epoch, camera);
   if (epoch.keypoints == nullptr) return PoseFate::kNone;
   return take_keypoints(epoch, camera);
 }
@@ -61,7 +80,6 @@ void PoseNavigation::advance(GpsTime time, const Vector3& sun_eci, std::span<con
       const double dt = seconds(next - epoch_);
       filter_.advance(own_orbit_.state(), sun_eci, dt);
       own_orbit_.advance(propagation, dt);
-      if (apriori_.has_value()) apriori_ = propagation.coast(*apriori_, dt);
       epoch_ = next;
     }
   };
@@ -80,6 +98,19 @@ void PoseNavigation::advance(GpsTime time, const Vector3& sun_eci, std::span<con
   coast_to(time);
 }
 
+/// One with enough keypoints, or sure of its attitude; not in the half light at the edge of the Earth's shadow.
+bool PoseNavigation::is_fit_for_start(const PoseEpoch& epoch) const {
+  if (!epoch.pnp.has_value()) return false;
+  const orbit::CartesianState& servicer = own_orbit_.state();
+  const Vector3 on_the_way = kHalfLight_s * servicer.velocity_eci;
+  const bool is_at_edge = is_sunlit(servicer.position_eci - on_the_way, epoch.sun_eci) !=
+                          is_sunlit(servicer.position_eci + on_the_way, epoch.sun_eci);
+  if (is_at_edge) return false;
+  const double variance = epoch.pnp->covariance.topLeftCorner<3, 3>().trace() / 3.0;
+  return epoch.pnp->inliers >= settings_.start_inliers ||
+         variance <= settings_.start_attitude_sigma * settings_.start_attitude_sigma;
+}
+
 PoseSample PoseNavigation::sample_of(const PoseEpoch& epoch, const CameraPlace& camera) const {
   const pose::PnpSolution& pnp = *epoch.pnp;
   const Matrix3 R_eci_camera = camera.R_camera_eci.transpose();
@@ -93,6 +124,26 @@ PoseSample PoseNavigation::sample_of(const PoseEpoch& epoch, const CameraPlace& 
   return sample;
 }
 
+/// The orbit as it is known beforehand; images have yet to tell the attitude.
+void PoseNavigation::begin_apriori() {
+  if (!settings_.apriori.has_value()) return;
+  const PoseApriori& known = *settings_.apriori;
+  const auto chief = orbit::qns_from_cartesian(own_orbit_.state());
+  if (!chief.ok() || known.time > epoch_ || epoch_ - known.time > kOldestApriori) return;
+  const auto chief_mean = orbit::mean_from_osculating(chief.value());
+  if (!chief_mean.ok()) return;
+  const double a = chief_mean.value().a;
+  Matrix6 drift = Matrix6::Identity();
+  drift(1, 0) = -1.5 * orbit::mean_motion(a) * seconds(epoch_ - known.time);
+  const Vector6 roe = drift * known.a_roe_m / a;
+  const auto target = orbit::osculating_from_mean(orbit::qns_from_roe(chief_mean.value(), roe));
+  if (!target.ok()) return;
+  const Vector6 variance = (known.sigma_a_roe_m / a).cwiseAbs2();
+  const Matrix6 covariance = drift.lazyProduct(variance.asDiagonal().toDenseMatrix()).lazyProduct(drift.transpose());
+  filter_.begin(orbit::roe_from_qns(chief.value(), target.value()), covariance, AttitudeState{}, unknown_attitude());
+  if (filter_.started()) last_measurement_ = known.time;
+}
+
 PoseFate PoseNavigation::begin() {
   const auto attitude = start_.attitude();
   const auto orbit = start_.orbit();
@@ -104,8 +155,9 @@ PoseFate PoseNavigation::begin() {
   return PoseFate::kStart;
 }
 
-/// From what the last images agree on; the image at hand is among them.
+/// From what the last images agree on, the image at hand among them.
 bool PoseNavigation::renew_attitude() {
+  if (!has_sample_) return false;
   const auto attitude = start_.attitude();
   if (!attitude.ok()) return false;
   filter_.set_attitude(attitude.value().attitude, attitude.value().covariance);
@@ -166,7 +218,20 @@ void PoseNavigation::count_refusal(bool is_position_far) {
   ++refused_in_a_row_;
   far_in_a_row_ = is_position_far ? far_in_a_row_ + 1 : 0;
   if (far_in_a_row_ >= kFarBeforeRestart || refused_in_a_row_ >= kRefusedBeforeRestart) return restart();
-  if (!is_position_far && refused_in_a_row_ >= kRefusedBeforeAttitude && renew_attitude()) refused_in_a_row_ = 0;
+  if (!is_position_far && refused_in_a_row_ >= kRefusedBeforeAttitude && renew_attitude()) {
+    doubt_place();
+    refused_in_a_row_ = 0;
+  }
+}
+
+/// An attitude that was wrong has drawn the place along with it: keypoints of another side look larger or smaller.
+void PoseNavigation::doubt_place() {
+  constexpr double kShare = 0.03;  // of the distance
+  const auto seen = filter_.target(own_orbit_.state());
+  const auto chief = orbit::qns_from_cartesian(own_orbit_.state());
+  if (!seen.ok() || !chief.ok()) return;
+  const Vector3 apart = seen.value().position_eci - own_orbit_.state().position_eci;
+  filter_.doubt_place(kShare * math::sqrt(apart.squaredNorm()), chief.value().a);
 }
 
 void PoseNavigation::restart() {
@@ -174,7 +239,7 @@ void PoseNavigation::restart() {
   filter_.reset();
   refused_in_a_row_ = 0;
   far_in_a_row_ = 0;
-  static_cast<void>(begin());
+  if (has_sample_) static_cast<void>(begin());
 }
 
 void PoseNavigation::lose_target() {
@@ -187,17 +252,14 @@ void PoseNavigation::lose_target() {
 }
 
 Result<orbit::CartesianState> PoseNavigation::target() const {
-  if (!has_target()) return Status::kNotReady;
-  if (filter_.started()) return filter_.target(own_orbit_.state());
-  return *apriori_;
+  if (!valid()) return Status::kNotReady;
+  return filter_.target(own_orbit_.state());
 }
 
 Vector6 PoseNavigation::a_roe_m() const {
   const auto servicer = orbit::qns_from_cartesian(own_orbit_.state());
-  if (!servicer.ok() || !has_target()) return Vector6::Zero();
-  if (filter_.started()) return servicer.value().a * filter_.roe();
-  const auto roe = roe_of_target(own_orbit_.state(), *apriori_);
-  return roe.ok() ? Vector6(servicer.value().a * roe.value()) : Vector6(Vector6::Zero());
+  if (!servicer.ok() || !valid()) return Vector6::Zero();
+  return servicer.value().a * filter_.roe();
 }
 
 Matrix6 PoseNavigation::a_roe_covariance_m2() const {

@@ -19,12 +19,23 @@
 
 namespace vbar::fsw::navigation {
 
+/// Where the target is known beforehand to be, from whatever navigated before.
+struct PoseApriori {
+  GpsTime time;
+  Vector6 a_roe_m = Vector6::Zero();        ///< mean a * ROE
+  Vector6 sigma_a_roe_m = Vector6::Zero();  ///< 1 sigma
+};
+
 struct PoseSettings {
   OwnOrbitSettings own_orbit;
   PoseFilterSettings filter;
   PoseStartSettings start;
+  std::optional<PoseApriori> apriori;  ///< none: the first images say it all
   orbit::EarthOrientation earth;
   Vector3 camera_position_camera_m = Vector3::Zero();  ///< from the servicer's centre of mass, camera axes
+  /// Beside what `start` asks: poses of fewer keypoints count there only if they are so sure of their attitude, rad.
+  int start_inliers = 8;
+  double start_attitude_sigma = 0.05;
   /// 1 sigma, rad: an attitude more in doubt is not mended by keypoints but taken anew.
   double widest_attitude = 0.35;
   double position_gate = 25.0;  ///< of the normalised distance squared of a single image's position from the filter's
@@ -48,8 +59,6 @@ struct PoseEpoch {
   std::optional<Matrix3> R_camera_eci;                 ///< at the image
   const pose::Keypoints* keypoints = nullptr;          ///< none: no image, or none that shows the target
   std::optional<pose::PnpSolution> pnp;                ///< of the same keypoints
-  /// Where the target is known beforehand to be, to point at until there is something better; kept and moved along.
-  std::optional<orbit::CartesianState> apriori_target;
 };
 
 /// What became of its image.
@@ -79,15 +88,13 @@ class PoseNavigation {
   [[nodiscard]] bool valid() const { return own_orbit_.started() && filter_.started(); }
   /// Whether its attitude is known, too: not after a long time in the dark.
   [[nodiscard]] bool has_attitude() const { return valid() && filter_.attitude_sigma() <= settings_.widest_attitude; }
-  /// Whether there is anything to point at: at least what was known beforehand.
-  [[nodiscard]] bool has_target() const { return own_orbit_.started() && (filter_.started() || apriori_.has_value()); }
   [[nodiscard]] GpsTime epoch() const { return epoch_; }
   [[nodiscard]] GpsTime last_measurement() const { return last_measurement_; }  ///< folded in
   [[nodiscard]] orbit::CartesianState servicer() const { return own_orbit_.state(); }
-  /// kNotReady unless has_target().
+  /// kNotReady unless valid().
   [[nodiscard]] Result<orbit::CartesianState> target() const;
 
-  /// Osculating a * ROE, m, and its covariance, m^2; a: the servicer's. Zero unless has_target(), covariance: valid().
+  /// Osculating a * ROE, m, and its covariance, m^2; a: the servicer's. Zero unless valid().
   [[nodiscard]] Vector6 a_roe_m() const;
   [[nodiscard]] Matrix6 a_roe_covariance_m2() const;
   /// Covariance of the target's state in the servicer's RTN (velocity as seen in the turning frame), m and m/s.
@@ -107,9 +114,12 @@ class PoseNavigation {
  private:
   void advance(GpsTime time, const Vector3& sun_eci, std::span<const Burn> burns);
   PoseFate begin();
+  void begin_apriori();
   PoseFate take_keypoints(const PoseEpoch& epoch, const CameraPlace& camera);
   PoseFate take_position_only(const PoseEpoch& epoch, const CameraPlace& camera);
   bool renew_attitude();
+  void doubt_place();
+  [[nodiscard]] bool is_fit_for_start(const PoseEpoch& epoch) const;
   [[nodiscard]] bool is_far_from_filter(const PoseSample& sample) const;
   [[nodiscard]] PoseSample sample_of(const PoseEpoch& epoch, const CameraPlace& camera) const;
   void count_refusal(bool is_position_far);
@@ -120,8 +130,8 @@ class PoseNavigation {
   OwnOrbit own_orbit_;
   PoseFilter filter_;
   PoseStart start_;
-  std::optional<orbit::CartesianState> apriori_;  ///< at epoch_
   GpsTime last_measurement_;
+  bool has_sample_ = false;  ///< of the image at hand, for a start
   int refused_in_a_row_ = 0;
   int far_in_a_row_ = 0;
   PoseUpdate last_update_;

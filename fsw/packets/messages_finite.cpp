@@ -108,7 +108,8 @@ bool all_finite(const target_apriori& m) {
 bool all_finite(const pose_configuration& m) {
   return finite_fields(m.dark_level_dn, m.noise_dn, m.keypoints_body_m, m.inertia_kgm2, m.keypoint_sigma_scale,
                        m.keypoint_floor_px, m.acceleration_psd, m.acceleration_psd_least, m.acceleration_psd_most,
-                       m.angular_acceleration_psd, m.maneuver_sigma, m.maneuver_sigma_relative, m.start_sigma_a_roe_m);
+                       m.angular_acceleration_psd, m.maneuver_sigma, m.maneuver_sigma_relative, m.apriori_a_roe_m,
+                       m.apriori_sigma_a_roe_m, m.start_sigma_a_roe_m);
 }
 
 bool all_finite(const maneuver_command& m) {

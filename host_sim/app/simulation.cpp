@@ -140,7 +140,10 @@ void Simulation::queue_telecommands() {
   if (servicer_.camera) {
     arrived_.push_back(make_packet(now, servicer_.number, 0, mission::camera_configuration_of(servicer_)));
     if (servicer_.camera->navigation == mission::CameraNavigation::kPose) {
-      arrived_.push_back(make_packet(now, servicer_.number, 0, mission::pose_configuration_of(mission_, servicer_)));
+      auto configuration = mission::pose_configuration_of(mission_, servicer_);
+      const PairTruth truth = pair_truth();
+      mission::add_apriori(mission_, servicer_, truth.servicer, truth.target, configuration);
+      arrived_.push_back(make_packet(now, servicer_.number, 0, configuration));
     } else {
       arrived_.push_back(make_packet(now, servicer_.number, 0, mission::angles_only_configuration_of(mission_)));
       const PairTruth truth = pair_truth();

@@ -123,7 +123,9 @@ struct PoseNavigation {
   double angular_acceleration_psd = 0.0;
   double maneuver_sigma = 0.0;
   double maneuver_sigma_relative = 0.0;
-  fsw::Vector6 start_sigma_a_roe_m = fsw::Vector6::Zero();  ///< of the formation, known beforehand
+  /// Of where the target is telecommanded to be at the start: mean ROE times the reference a, 1 sigma; zero: it is not.
+  fsw::Vector6 apriori_sigma_a_roe_m = fsw::Vector6::Zero();
+  fsw::Vector6 start_sigma_a_roe_m = fsw::Vector6::Zero();  ///< of a formation that nothing is known of
   int start_images = 0;
   friend bool operator==(const PoseNavigation&, const PoseNavigation&) = default;
 };

@@ -1,4 +1,5 @@
 #include "fsw/math/math.h"
+#include "host_sim/mission/read_apriori.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
@@ -7,13 +8,7 @@ namespace {
 constexpr double kArcsecond = fsw::math::kDegree / 3600.0;
 
 // The mission's choice: a relative state of two-line-element quality, 1 km along track and 200 m across.
-void read_apriori(const TableReader& section, fsw::Vector6& sigma_a_roe_m) {
-  section.accept_only({"sigma_a_da_m", "sigma_a_dlambda_m", "sigma_a_de_m", "sigma_a_di_m"});
-  const Range sigma = above_to(0.0, 1e5);
-  const double e = section.number("sigma_a_de_m", sigma, 200.0), i = section.number("sigma_a_di_m", sigma, 200.0);
-  sigma_a_roe_m << section.number("sigma_a_da_m", sigma, 30.0), section.number("sigma_a_dlambda_m", sigma, 1000.0), e,
-      e, i, i;
-}
+const fsw::Vector6 kTwoLineElements{30.0, 1000.0, 200.0, 200.0, 200.0, 200.0};
 
 }  // namespace
 
@@ -39,7 +34,7 @@ void read_angles_only(const TableReader& document, Mission& mission) {
   navigation.maneuver_sigma = 1e-3 * section.number("maneuver_sigma_mmps", above_to(0.0, 1e3), 0.002);
   navigation.maneuver_sigma_relative = 1e-2 * section.number("maneuver_sigma_percent", from_to(0.0, 100.0), 0.2);
   navigation.batch_images = static_cast<int>(section.integer("batch_images", 3, 1000, 30));
-  read_apriori(section.table("apriori"), navigation.apriori_sigma_a_roe_m);
+  navigation.apriori_sigma_a_roe_m = read_apriori(section.table("apriori"), kTwoLineElements);
 }
 
 }  // namespace vbar::mission

@@ -1,13 +1,20 @@
+#include "host_sim/mission/read_apriori.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
+namespace {
+
+// What navigation by angles only leaves at some tens of metres (docs/verification.md), with room.
+const fsw::Vector6 kHandedOver{0.1, 2.0, 0.3, 0.3, 0.3, 0.3};
+
+}  // namespace
 
 void read_pose(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("pose");
   section.accept_only({"keypoint_sigma_scale", "keypoint_floor_px", "acceleration_psd", "acceleration_psd_least",
                        "acceleration_psd_most", "angular_acceleration_psd", "maneuver_sigma_mmps",
                        "maneuver_sigma_percent", "start_images", "start_sigma_a_da_m", "start_sigma_a_dlambda_m",
-                       "start_sigma_a_de_m", "start_sigma_a_di_m"});
+                       "start_sigma_a_de_m", "start_sigma_a_di_m", "apriori"});
   PoseNavigation& navigation = mission.pose;
   navigation.keypoint_sigma_scale = section.number("keypoint_sigma_scale", above_to(0.0, 100.0), 1.0);
   navigation.keypoint_floor_px = section.number("keypoint_floor_px", from_to(0.0, 100.0), 0.2);
@@ -27,6 +34,8 @@ void read_pose(const TableReader& document, Mission& mission) {
                i = section.number("start_sigma_a_di_m", sigma, 5.0);
   navigation.start_sigma_a_roe_m << section.number("start_sigma_a_da_m", sigma, 1.0),
       section.number("start_sigma_a_dlambda_m", sigma, 100.0), e, e, i, i;
+  navigation.apriori_sigma_a_roe_m.setZero();
+  if (section.has("apriori")) navigation.apriori_sigma_a_roe_m = read_apriori(section.table("apriori"), kHandedOver);
   navigation.start_images = static_cast<int>(section.integer("start_images", 1, 12, 3));
 }
 

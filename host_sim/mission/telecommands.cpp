@@ -18,7 +18,7 @@ namespace {
 using fsw::orbit::QnsElements;
 
 constexpr const char* kNoOrbit =
-    "the target's a-priori state is no orbit: the sigmas of angles_only.apriori are too large";
+    "the target's a-priori state is no orbit: the sigmas of the section apriori are too large";
 
 QnsElements mean_of(const fsw::orbit::CartesianState& state) {
   const auto osculating = fsw::orbit::qns_from_cartesian(state);
@@ -26,6 +26,16 @@ QnsElements mean_of(const fsw::orbit::CartesianState& state) {
   const auto mean = fsw::orbit::mean_from_osculating(osculating.value());
   if (!mean.ok()) throw std::runtime_error(kNoOrbit);
   return mean.value();
+}
+
+/// Off by what the seed draws.
+fsw::Vector6 drawn_roe(const QnsElements& chief_mean, const fsw::orbit::CartesianState& target_state,
+                       const fsw::Vector6& sigma_a_roe_m, const Mission& mission, const Spacecraft& servicer) {
+  fsw::Vector6 roe = fsw::orbit::roe_from_qns(chief_mean, mean_of(target_state));
+  engine::RandomStream random(mission.seed, servicer.name + "/target_apriori");
+  for (Eigen::Index k = 0; k < 6; ++k)
+    roe(k) += sigma_a_roe_m(k) / mission.guidance.reference_semi_major_axis_m * random.normal();
+  return roe;
 }
 
 }  // namespace
@@ -189,15 +199,23 @@ vbar::pose_configuration pose_configuration_of(const Mission& mission, const Spa
   return configuration;
 }
 
+void add_apriori(const Mission& mission, const Spacecraft& servicer, const fsw::orbit::CartesianState& servicer_state,
+                 const fsw::orbit::CartesianState& target_state, vbar::pose_configuration& configuration) {
+  const fsw::Vector6& sigma_m = mission.pose.apriori_sigma_a_roe_m;
+  if (sigma_m.isZero(0.0)) return;
+  const QnsElements chief = mean_of(servicer_state);
+  const fsw::Vector6 a_roe_m = chief.a * drawn_roe(chief, target_state, sigma_m, mission, servicer);
+  configuration.apriori_epoch_ns = mission.start_time().ns;
+  std::ranges::copy(a_roe_m, configuration.apriori_a_roe_m);
+  std::ranges::copy(sigma_m, configuration.apriori_sigma_a_roe_m);
+}
+
 vbar::target_apriori target_apriori_of(const Mission& mission, const Spacecraft& servicer,
                                        const fsw::orbit::CartesianState& servicer_state,
                                        const fsw::orbit::CartesianState& target_state) {
   const QnsElements chief = mean_of(servicer_state);
-  fsw::Vector6 roe = fsw::orbit::roe_from_qns(chief, mean_of(target_state));
   const fsw::Vector6& sigma_m = mission.angles_only.apriori_sigma_a_roe_m;
-  engine::RandomStream random(mission.seed, servicer.name + "/target_apriori");
-  for (Eigen::Index k = 0; k < 6; ++k)
-    roe(k) += sigma_m(k) / mission.guidance.reference_semi_major_axis_m * random.normal();
+  const fsw::Vector6 roe = drawn_roe(chief, target_state, sigma_m, mission, servicer);
   const auto osculating = fsw::orbit::osculating_from_mean(fsw::orbit::qns_from_roe(chief, roe));
   if (!osculating.ok()) throw std::runtime_error(kNoOrbit);
   const auto state = fsw::orbit::cartesian_from_qns(osculating.value());

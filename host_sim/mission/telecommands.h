@@ -27,6 +27,12 @@ namespace vbar::mission {
 /// Throws MissionError for files that cannot be read.
 [[nodiscard]] vbar::pose_configuration pose_configuration_of(const Mission& mission, const Spacecraft& servicer);
 
+/// Where navigation before the mission left the target, out of the true states of both at the start: mean ROE off by
+/// what the seed draws with the mission's sigmas; nothing without those. Throws std::runtime_error for states that are
+/// no orbits.
+void add_apriori(const Mission& mission, const Spacecraft& servicer, const fsw::orbit::CartesianState& servicer_state,
+                 const fsw::orbit::CartesianState& target_state, vbar::pose_configuration& configuration);
+
 /// Where the ground last knew the target to be, out of the true states of both at the start: mean ROE off by what the
 /// seed draws with the mission's sigmas. Throws std::runtime_error for states that are no orbits.
 [[nodiscard]] vbar::target_apriori target_apriori_of(const Mission& mission, const Spacecraft& servicer,

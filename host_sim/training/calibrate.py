@@ -21,39 +21,39 @@ CLASSES = 6  # of sharpness, all to have the right median
 
 
 def seen(layers, table):
-    """Errors (cells, n x 2), second moments and peaks of the keypoints that count."""
+    """Errors (cells, n x 2) and peaks of the keypoints that count."""
     with torch.no_grad():
         logits = torch.cat([keypoint_network.run_folded(layers, augment.standardised(augment.samples_of(images)))
                             for images in numpy.array_split(table["image"], max(1, len(table) // 100))])
-    places, moments, peaks = decode.decode(logits)
+    peaks = decode.decode(logits, TARGET_SIGMA_CELLS)
     counts = table["counts"] > 0.5
-    return (places - table["cells"])[counts], moments[counts], peaks[counts]
+    return (peaks.places - table["cells"])[counts], peaks[counts]
 
 
 def least_peak(errors, peaks):
     """The least peak above which no more than MOST_GROSS are wrong."""
     is_gross = numpy.linalg.norm(errors, axis=1) > GROSS_CELLS
     for least in numpy.arange(0.10, 0.70, 0.01):
-        accepted = peaks >= least
+        accepted = peaks.accepted(least)
         if accepted.any() and is_gross[accepted].mean() <= MOST_GROSS:
             break
     return float(least)
 
 
-def normalised(errors, moments, scale, floor):
-    covariance = decode.covariances(moments, scale, floor, TARGET_SIGMA_CELLS)
+def normalised(errors, excess, scale, floor):
+    covariance = decode.covariances(excess, scale, floor)
     return numpy.einsum("ni,nij,nj->n", errors, numpy.linalg.inv(covariance), errors)
 
 
-def fit_covariance(errors, moments):
+def fit_covariance(errors, excess):
     """Scale and floor (cells^2) that give classes of sharpness medians, and all of them a mean, like chi-square's. The
     mean is of what is below 20: the tail beyond is the tracker's to reject."""
-    spread = numpy.trace(moments, axis1=1, axis2=2)
+    spread = numpy.trace(excess, axis1=1, axis2=2)
     classes = numpy.array_split(numpy.argsort(spread), CLASSES)
     best = None
     for floor in numpy.geomspace(0.001, 0.5, 40):
         for scale in numpy.geomspace(0.02, 5.0, 40):
-            square = normalised(errors, moments, scale, floor)
+            square = normalised(errors, excess, scale, floor)
             cost = sum(numpy.log(numpy.median(square[c]) / CHI_SQUARE_MEDIAN)**2 for c in classes) / CLASSES
             cost += 0.5 * numpy.log(square[square < 20.0].mean() / 2.0)**2
             if best is None or cost < best[0]:
@@ -61,12 +61,12 @@ def fit_covariance(errors, moments):
     return best[1:]
 
 
-def figures(errors, moments, peaks, calibration):
+def figures(errors, peaks, calibration):
     """Of held-out keypoints."""
     scale, floor, _, least = calibration
-    accepted = peaks >= least
+    accepted = peaks.accepted(least)
     length = 4.0 * numpy.linalg.norm(errors, axis=1)
-    square = normalised(errors[accepted], moments[accepted], scale, floor)
+    square = normalised(errors[accepted], peaks.excess[accepted], scale, floor)
     return {
         "keypoints": len(errors),
         "median_error_samples": numpy.median(length),
@@ -109,10 +109,10 @@ def main():
     options.trained_s, options.images = kept["elapsed_s"], train_keypoints.BATCH * kept["step"]
     layers, _ = keypoint_network.read_weights(options.weights.read_bytes())
     calibration_table, held_out_table = tables_of(options.crops, "calibration"), tables_of(options.crops, "held_out")
-    errors, moments, peaks = seen(layers, calibration_table)
+    errors, peaks = seen(layers, calibration_table)
     least = least_peak(errors, peaks)
-    inexact = (peaks >= least) & (numpy.linalg.norm(errors, axis=1) <= GROSS_CELLS)
-    calibration = (*fit_covariance(errors[inexact], moments[inexact]), TARGET_SIGMA_CELLS, least)
+    inexact = peaks.accepted(least) & (numpy.linalg.norm(errors, axis=1) <= GROSS_CELLS)
+    calibration = (*fit_covariance(errors[inexact], peaks.excess[inexact]), TARGET_SIGMA_CELLS, least)
     # As the file holds them.
     calibration = tuple(float(numpy.float32(value)) for value in calibration)
     held_out = {name: float(value) if not isinstance(value, int) else value

@@ -213,6 +213,14 @@ nav::PoseSettings pose_settings(const CloseFlight& flight) {
   return settings;
 }
 
+Vector6 mean_a_roe_m(const orbit::CartesianState& servicer, const orbit::CartesianState& target) {
+  const auto mean_of = [](const orbit::CartesianState& state) {
+    return must(orbit::mean_from_osculating(must(orbit::qns_from_cartesian(state))));
+  };
+  const orbit::QnsElements chief = mean_of(servicer);
+  return chief.a * orbit::roe_from_qns(chief, mean_of(target));
+}
+
 PoseError pose_error(const CloseEpoch& epoch, const nav::AttitudeState& attitude,
                      const nav::PoseNavigation& navigation) {
   PoseError error;

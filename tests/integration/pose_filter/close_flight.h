@@ -55,6 +55,9 @@ struct KeypointErrors {
 
 fsw::navigation::PoseSettings pose_settings(const CloseFlight& flight);
 
+/// Mean ROE of the target times the servicer's mean a.
+fsw::Vector6 mean_a_roe_m(const fsw::orbit::CartesianState& servicer, const fsw::orbit::CartesianState& target);
+
 /// A measured epoch, in order of time. It stays true until the next is asked for.
 class SimulatedNetwork {
  public:

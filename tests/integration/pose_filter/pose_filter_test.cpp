@@ -174,7 +174,7 @@ class Disturbed : public testing::Test {
 
 TEST_F(Disturbed, BeginsWithThreeImages) {
   EXPECT_EQ(step(), nav::PoseFate::kStart);
-  EXPECT_FALSE(navigation->has_target());
+  EXPECT_FALSE(navigation->valid());
   EXPECT_EQ(step(), nav::PoseFate::kStart);
   EXPECT_EQ(navigation->target().status(), fsw::Status::kNotReady);
   EXPECT_EQ(step(), nav::PoseFate::kStart);
@@ -187,19 +187,63 @@ TEST_F(Disturbed, BeginsWithThreeImages) {
   EXPECT_LT(error.attitude, 3.0 * kDegree);
 }
 
-TEST_F(Disturbed, PointsByWhatIsKnownBeforehandUntilItBegins) {
-  nav::PoseEpoch epoch = network.measure(0);
+// Handed over half a metre off along track, 10 cm in a * da.
+TEST_F(Disturbed, BeginsWithWhatWasHandedOver) {
+  nav::PoseSettings settings = pose_settings(flight);
+  nav::PoseApriori& known = settings.apriori.emplace();
+  const auto& start = flight.epochs[0];
+  known.time = start.time;
+  known.a_roe_m = mean_a_roe_m(start.servicer, start.target) + fsw::Vector6(0.1, 0.5, 0.0, 0.0, 0.0, 0.0);
+  known.sigma_a_roe_m << 0.1, 2.0, 0.3, 0.3, 0.3, 0.3;
+  navigation = navigation_with(settings);
+  nav::PoseEpoch epoch = network.measure(next++);
   epoch.keypoints = nullptr;
   epoch.pnp.reset();
-  epoch.apriori_target = flight.epochs[0].target;
   EXPECT_EQ(navigation->update(epoch, {}), nav::PoseFate::kNone);
-  epoch = network.measure(12);
-  epoch.keypoints = nullptr;
-  epoch.pnp.reset();
-  EXPECT_EQ(navigation->update(epoch, {}), nav::PoseFate::kNone);
+  ASSERT_TRUE(navigation->valid());
+  EXPECT_FALSE(navigation->has_attitude());
+  const fsw::Vector3 apart = navigation->target().value().position_eci - navigation->servicer().position_eci;
+  const fsw::Vector3 truth = start.target.position_eci - start.servicer.position_eci;
+  EXPECT_NEAR((apart - truth).norm(), 0.5, 0.1);
+  EXPECT_EQ(step(), nav::PoseFate::kPosition);
+  EXPECT_EQ(step(), nav::PoseFate::kPosition);
+  EXPECT_EQ(step(), nav::PoseFate::kFilter);
+  EXPECT_TRUE(navigation->has_attitude());
+  for (int k = 0; k < 10; ++k) step();
+  EXPECT_LT(error.position_m, 0.1);
+  EXPECT_LT(error.attitude, 3.0 * kDegree);
+  EXPECT_EQ(navigation->counters().restarts, 0);
+}
+
+// Ten minutes without light, and the attitude is still none; what was handed over in time stays.
+TEST_F(Disturbed, WaitsForLightWithWhatWasHandedOver) {
+  nav::PoseSettings settings = pose_settings(flight);
+  nav::PoseApriori& known = settings.apriori.emplace();
+  const auto& start = flight.epochs[0];
+  known.time = start.time;
+  known.a_roe_m = mean_a_roe_m(start.servicer, start.target);
+  known.sigma_a_roe_m << 0.1, 2.0, 0.3, 0.3, 0.3, 0.3;
+  navigation = navigation_with(settings);
+  for (; next < 120; ++next) {
+    nav::PoseEpoch epoch = network.measure(next);
+    epoch.keypoints = nullptr;
+    epoch.pnp.reset();
+    EXPECT_EQ(navigation->update(epoch, burns), nav::PoseFate::kNone);
+    ASSERT_TRUE(navigation->valid()) << next;
+    EXPECT_FALSE(navigation->has_attitude());
+  }
+  for (int k = 0; k < 20; ++k) step();
+  EXPECT_EQ(navigation->counters().restarts, 0);
+  EXPECT_LT(error.position_m, 0.2);
+  EXPECT_LT(error.attitude, 3.0 * kDegree);
+}
+
+TEST_F(Disturbed, WhatWasHandedOverLongAgoIsNotUsed) {
+  nav::PoseSettings settings = pose_settings(flight);
+  settings.apriori.emplace().time = flight.epochs[0].time - fsw::duration_of_seconds(601);
+  navigation = navigation_with(settings);
+  EXPECT_EQ(step(), nav::PoseFate::kStart);
   EXPECT_FALSE(navigation->valid());
-  ASSERT_TRUE(navigation->has_target());
-  EXPECT_LT((navigation->target().value().position_eci - flight.epochs[12].target.position_eci).norm(), 0.01);
 }
 
 class Flipped : public Disturbed, public testing::WithParamInterface<int> {};
