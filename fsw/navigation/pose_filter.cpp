@@ -52,8 +52,8 @@ Status PoseFilter::configure(const PoseFilterSettings& settings) {
   if (!inertia.ok()) return inertia.status();
   const bool is_sensible = is_positive(settings.along_track_time_s) && is_positive(settings.from_sun_time_s) &&
                            is_positive(settings.correlated_time_s) && is_positive(settings.shift_time_s) &&
-                           is_positive(settings.stretch_time_s) && settings.correlated_share >= 0.0 &&
-                           settings.correlated_share < 1.0;
+                           is_positive(settings.stretch_time_s) && is_positive(settings.lasting_stretch_time_s) &&
+                           settings.correlated_share >= 0.0 && settings.correlated_share < 1.0;
   if (!is_sensible) return Status::kOutOfRange;
   settings_ = settings;
   inertia_ = inertia.value();
@@ -97,6 +97,7 @@ void PoseFilter::doubt_place(double sigma_m, double semi_major_axis_m) {
 void PoseFilter::rest_errors() {
   for (int axis = 0; axis < 2; ++axis) estimate_.reset(kCommon + axis, 0.0, square(settings_.shift_sigma_px));
   estimate_.reset(kCommon + 2, 0.0, square(settings_.stretch_sigma));
+  estimate_.reset(kCommon + 3, 0.0, square(settings_.lasting_stretch_sigma));
   for (int k = 0; k < KeypointError::kSize; ++k) estimate_.reset(kErrors + k, 0.0, 1.0);
 }
 
@@ -256,6 +257,7 @@ void PoseFilter::fade_errors(double dt) {
   fade(kCommon, settings_.shift_sigma_px, shift);
   fade(kCommon + 1, settings_.shift_sigma_px, shift);
   fade(kCommon + 2, settings_.stretch_sigma, math::exp(-dt / settings_.stretch_time_s));
+  fade(kCommon + 3, settings_.lasting_stretch_sigma, math::exp(-dt / settings_.lasting_stretch_time_s));
   const double own = math::exp(-dt / settings_.correlated_time_s);
   for (int k = 0; k < KeypointError::kSize; ++k) fade(kErrors + k, 1.0, own);
 }

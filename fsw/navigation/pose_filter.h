@@ -6,8 +6,9 @@
 // parameters, body axes) from a reference quaternion (USQUE, Crassidis and Markley 2003); its rate; what pushes the two
 // apart, as in roe_filter.h; and what the keypoints of neighbouring images have in common of error. A network sees the
 // same view twice and errs the same way twice, so a filter that took its errors for white would soon believe itself
-// ten times better than it is. So a share of each keypoint's own error, and a shift of all, are states that fade within
-// a minute. A stretch of all is another range, and stays: a burn of known size tells the two apart.
+// ten times better than it is. So a share of each keypoint's own error, and a shift and stretch of all, are states that
+// fade within a quarter of a minute. A part of the stretch stays: it is another range, and only burns of known size
+// tell the two apart.
 //
 // Orbit and attitude do not act on each other between images, so each is sampled alone; a measurement depends on ROE
 // and attitude only, so the rest is not sampled there. By the transform as a regression this is the filter that samples
@@ -39,12 +40,14 @@ struct PoseFilterSettings {
   double from_sun_sigma = 3e-8;  ///< m/s^2, differential radiation pressure in sunlight
   double from_sun_time_s = 86400.0;
 
-  double correlated_share = 0.7;  ///< of a keypoint's variance: lasts from image to image
-  double correlated_time_s = 30.0;
-  double shift_sigma_px = 0.15;  ///< of all keypoints together, each axis; attitude knowledge of 20 arcsec included
-  double shift_time_s = 60.0;
-  double stretch_sigma = 5e-3;  ///< of the target's apparent size
-  double stretch_time_s = 3600.0;
+  double correlated_share = 0.8;  ///< of a keypoint's variance: lasts from image to image
+  double correlated_time_s = 15.0;
+  double shift_sigma_px = 0.8;  ///< of all keypoints together, each axis
+  double shift_time_s = 15.0;
+  double stretch_sigma = 1e-2;  ///< of the target's apparent size
+  double stretch_time_s = 15.0;
+  double lasting_stretch_sigma = 3e-3;  ///< likewise
+  double lasting_stretch_time_s = 3600.0;
 
   double gate = 9.21;             ///< of a keypoint's normalised innovation squared: 99 % of two degrees of freedom
   double most_noise_scale = 9.0;  ///< what keypoints' covariances may be raised by: for good, and as much for one image
@@ -96,7 +99,7 @@ class PoseFilter {
     static constexpr int kSize = 2;  ///< m/s^2: along track, away from the Sun
   };
   struct Common {
-    static constexpr int kSize = 3;  ///< px, px and a share: shift and stretch of all keypoints
+    static constexpr int kSize = 4;  ///< of all keypoints: shift (px, px), stretch and lasting stretch (shares)
   };
   struct KeypointError {
     static constexpr int kSize = 2 * network::kKeypoints;  ///< over its standard deviation: whitened, 1 at rest

@@ -150,9 +150,11 @@ void PoseFilter::model_errors(const pose::Keypoints& keypoints, const Vector2& c
     work_.slope.block<2, 2>(row, kErrors + row) = lasting * root_of(covariance);
     work_.slope.block<2, 2>(row, kCommon) = Matrix2::Identity();
     work_.slope.block<2, 1>(row, kCommon + 2) = work_.predicted.segment<2>(row) - centre_px;
+    work_.slope.block<2, 1>(row, kCommon + 3) = work_.slope.block<2, 1>(row, kCommon + 2);
     work_.noise.block<2, 2>(row, row) += (1.0 - settings_.correlated_share) * covariance;
-    const Vector2 errors = work_.slope.block<2, 3>(row, kCommon) * estimate_.mean().segment<3>(kCommon) +
-                           work_.slope.block<2, 2>(row, kErrors + row) * estimate_.mean().segment<2>(kErrors + row);
+    const Vector2 errors =
+        work_.slope.block<2, Common::kSize>(row, kCommon) * estimate_.mean().segment<Common::kSize>(kCommon) +
+        work_.slope.block<2, 2>(row, kErrors + row) * estimate_.mean().segment<2>(kErrors + row);
     work_.residual.segment<2>(row) = keypoints[at(k)].pixel - work_.predicted.segment<2>(row) - errors;
     update_.keypoints[at(k)].prefit = work_.residual.segment<2>(row);
     update_.keypoints[at(k)].postfit = work_.residual.segment<2>(row);

@@ -178,7 +178,7 @@ bool PoseNavigation::is_far_from_filter(const PoseSample& sample) const {
 }
 
 PoseFate PoseNavigation::take_position_only(const PoseEpoch& epoch, const CameraPlace& camera) {
-  if (!epoch.pnp.has_value()) return PoseFate::kNone;
+  if (!has_sample_) return PoseFate::kNone;
   const PoseSample sample = sample_of(epoch, camera);
   if (is_far_from_filter(sample)) {
     count_refusal(true);

@@ -3,10 +3,10 @@
 //
 // A weights file of data/networks, little endian:
 //
-//   16 bytes     "vbar keypoints 1"
+//   16 bytes     "vbar keypoints 2"
 //   4 u32        layers (13), side of the input (128), side of the maps (32), keypoints (11)
 //   13 x 8 u32   a layer: channels in, channels out, side of the kernel, stride, 1 if rectified, 0, 0, 0
-//   4 f32        calibration: covariance_scale, covariance_floor, target_sigma_cells, least_peak
+//   8 f32        calibration: covariance_scale, covariance_floor, target_sigma_cells, least_peak, stretch, 0, 0, 0
 //   per layer    f32 weights [row of the kernel][column][channel in][channel out], then f32 biases [channel out]
 //   u32          CRC-32 (IEEE 802.3) of everything before
 
@@ -58,11 +58,11 @@ inline constexpr std::array<Layer, kLayerCount> kLayers{{
 }};
 
 inline constexpr std::size_t kMagicBytes = 16;
-inline constexpr char kMagic[kMagicBytes + 1] = "vbar keypoints 1";
+inline constexpr char kMagic[kMagicBytes + 1] = "vbar keypoints 2";
 inline constexpr std::size_t kLayerWords = 8;
 inline constexpr std::size_t kCalibrationOffset = kMagicBytes + 4 * 4 + kLayerCount * kLayerWords * 4;
 /// All before the first layer's weights.
-inline constexpr std::size_t kHeaderBytes = kCalibrationOffset + 4 * sizeof(float);
+inline constexpr std::size_t kHeaderBytes = kCalibrationOffset + 8 * sizeof(float);
 inline constexpr std::size_t kChecksumBytes = 4;
 
 /// Of a layer's weights in the file; of the checksum for layer kLayerCount.

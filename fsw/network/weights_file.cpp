@@ -61,12 +61,12 @@ Status check_weights(std::span<const std::byte> file) {
 
 Status check_calibration(const Calibration& calibration) {
   for (const float x : {calibration.covariance_scale, calibration.covariance_floor, calibration.target_sigma_cells,
-                        calibration.least_peak}) {
+                        calibration.least_peak, calibration.stretch}) {
     if (!is_finite(x)) return Status::kNotFinite;
   }
   const bool good = calibration.covariance_scale > 0.0F && calibration.covariance_floor >= 0.0F &&
                     calibration.target_sigma_cells > 0.0F && calibration.least_peak >= 0.0F &&
-                    calibration.least_peak <= 1.0F;
+                    calibration.least_peak <= 1.0F && calibration.stretch > -0.2F && calibration.stretch < 0.2F;
   return good ? Status::kOk : Status::kOutOfRange;
 }
 
@@ -88,6 +88,7 @@ Calibration calibration_of(std::span<const std::byte> file) {
   calibration.covariance_floor = read<float>(file, kCalibrationOffset + 4);
   calibration.target_sigma_cells = read<float>(file, kCalibrationOffset + 8);
   calibration.least_peak = read<float>(file, kCalibrationOffset + 12);
+  calibration.stretch = read<float>(file, kCalibrationOffset + 16);
   return calibration;
 }
 

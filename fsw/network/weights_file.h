@@ -14,6 +14,9 @@ struct Calibration {
   float covariance_floor = 0.0F;    ///< added to each axis, cells^2
   float target_sigma_cells = 1.0F;  ///< of the Gaussian maps that training asked for
   float least_peak = 0.0F;          ///< a map whose highest 3 x 3 cells hold less tells nothing
+  /// Places are to be so much, as a share, farther from the crop's middle than the maps have them: a network that does
+  /// not know how large the target is leans towards the size it saw most.
+  float stretch = 0.0F;
 };
 
 /// Is it such a file, of this architecture, whole, and every number in its range? What load() answers.

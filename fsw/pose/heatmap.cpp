@@ -171,7 +171,9 @@ Matrix2 place_covariance(const MapPeak& peak, const network::Calibration& calibr
 Keypoint keypoint_of(const MapPeak& peak, const network::Calibration& calibration, const CropRegion& region) {
   const double cell_px = region.side_px / kSide;
   Keypoint keypoint;
-  keypoint.pixel = region.pixel_of(peak.place, kSide);
+  const Vector2 middle = Vector2::Constant(0.5 * (kSide - 1));
+  const Vector2 place = middle + (1.0 + static_cast<double>(calibration.stretch)) * (peak.place - middle);
+  keypoint.pixel = region.pixel_of(place, kSide);
   keypoint.covariance_px2 = cell_px * cell_px * place_covariance(peak, calibration);
   keypoint.peak = peak.peak;
   keypoint.is_usable =

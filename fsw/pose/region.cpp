@@ -6,8 +6,8 @@ namespace vbar::fsw::pose {
 
 namespace {
 
-/// Of the target's largest image to either side: what training's crops had on average.
-constexpr double kSides = 2.2;
+/// A crop's side in radii of the target as it looks: what training's crops had on average.
+constexpr double kSides = 2.3;
 
 }  // namespace
 

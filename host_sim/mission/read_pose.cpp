@@ -4,8 +4,8 @@
 namespace vbar::mission {
 namespace {
 
-// What navigation by angles only leaves at some tens of metres (docs/verification.md), with room.
-const fsw::Vector6 kHandedOver{0.1, 2.0, 0.3, 0.3, 0.3, 0.3};
+// What navigation by angles only leaves at 100 m, two to three times.
+const fsw::Vector6 kHandedOver{0.05, 1.0, 0.1, 0.1, 0.1, 0.1};
 
 }  // namespace
 

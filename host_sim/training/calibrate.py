@@ -18,16 +18,39 @@ GROSS_CELLS = 3.0  # farther off than this a keypoint is wrong, not inexact
 MOST_GROSS = 0.02  # of the keypoints that are accepted
 CHI_SQUARE_MEDIAN = 1.3863  # of two degrees of freedom; their mean is 2
 CLASSES = 6  # of sharpness, all to have the right median
+FLIGHT_SIDE_M = 2.3 * 0.722  # what a crop's side spans at the target in flight (fsw/pose/region.cpp; Tango's radius)
 
 
-def seen(layers, table):
-    """Errors (cells, n x 2) and peaks of the keypoints that count."""
+def peaks_of(layers, table):
     with torch.no_grad():
         logits = torch.cat([keypoint_network.run_folded(layers, augment.standardised(augment.samples_of(images)))
                             for images in numpy.array_split(table["image"], max(1, len(table) // 100))])
-    peaks = decode.decode(logits, TARGET_SIGMA_CELLS)
+    return decode.decode(logits, TARGET_SIGMA_CELLS)
+
+
+def errors_of(peaks, table, stretch):
+    """Errors (cells, n x 2) and peaks of the keypoints that count."""
     counts = table["counts"] > 0.5
-    return (peaks.places - table["cells"])[counts], peaks[counts]
+    return (decode.stretched(peaks.places, stretch) - table["cells"])[counts], peaks[counts]
+
+
+def fit_stretch(peaks, table, least):
+    """How much too near their middle the keypoints of a crop lie, for crops as they are cut in flight. A network that is
+    not sure of the target's size leans towards the usual one: a straight line over the logarithm of the size, read at
+    flight's."""
+    errors = peaks.places - table["cells"]
+    chosen = (table["counts"] > 0.5) & peaks.accepted(least) & (numpy.linalg.norm(errors, axis=2) <= GROSS_CELLS)
+    distance = numpy.linalg.norm(table["centre_of_mass_camera"], axis=1)
+    size = numpy.log(table["region"][:, 2] * distance / table["camera"][:, 0] / FLIGHT_SIDE_M)
+    normal, right = numpy.zeros((2, 2)), numpy.zeros(2)
+    for crop in numpy.flatnonzero(chosen.sum(1) >= 4):
+        cells, error = table["cells"][crop, chosen[crop]], errors[crop, chosen[crop]]
+        cells, error = cells - cells.mean(0), error - error.mean(0)
+        row = numpy.array([1.0, size[crop]])
+        normal += (cells * cells).sum() * numpy.outer(row, row)
+        right -= (cells * error).sum() * row
+    nearer = numpy.linalg.solve(normal, right)[0]
+    return nearer / (1.0 - nearer)
 
 
 def least_peak(errors, peaks):
@@ -63,7 +86,7 @@ def fit_covariance(errors, excess):
 
 def figures(errors, peaks, calibration):
     """Of held-out keypoints."""
-    scale, floor, _, least = calibration
+    scale, floor, _, least, _ = calibration
     accepted = peaks.accepted(least)
     length = 4.0 * numpy.linalg.norm(errors, axis=1)
     square = normalised(errors[accepted], peaks.excess[accepted], scale, floor)
@@ -91,7 +114,8 @@ def page(options, calibration, counts, held_out):
              f"held_out_crops = {counts[2]}", f"seconds_of_training = {options.trained_s:.0f}",
              f"images_shown = {options.images}", "", "[calibration]",
              f"covariance_scale = {calibration[0]:.4f}", f"covariance_floor_cells2 = {calibration[1]:.5f}",
-             f"target_sigma_cells = {calibration[2]:.1f}", f"least_peak = {calibration[3]:.2f}", "",
+             f"target_sigma_cells = {calibration[2]:.1f}", f"least_peak = {calibration[3]:.2f}",
+             f"stretch = {calibration[4]:.5f}", "",
              "# Errors in samples of the crop, 128 a side; a cell of a map is four.", "[held_out]"]
     lines += [f"{name} = {value:.4g}" if isinstance(value, float) else f"{name} = {value}" for name, value in held_out.items()]
     return "\n".join(lines) + "\n"
@@ -109,14 +133,17 @@ def main():
     options.trained_s, options.images = kept["elapsed_s"], train_keypoints.BATCH * kept["step"]
     layers, _ = keypoint_network.read_weights(options.weights.read_bytes())
     calibration_table, held_out_table = tables_of(options.crops, "calibration"), tables_of(options.crops, "held_out")
-    errors, peaks = seen(layers, calibration_table)
-    least = least_peak(errors, peaks)
+    all_peaks = peaks_of(layers, calibration_table)
+    least = least_peak(*errors_of(all_peaks, calibration_table, 0.0))
+    stretch = fit_stretch(all_peaks, calibration_table, least)
+    errors, peaks = errors_of(all_peaks, calibration_table, stretch)
     inexact = peaks.accepted(least) & (numpy.linalg.norm(errors, axis=1) <= GROSS_CELLS)
-    calibration = (*fit_covariance(errors[inexact], peaks.excess[inexact]), TARGET_SIGMA_CELLS, least)
+    calibration = (*fit_covariance(errors[inexact], peaks.excess[inexact]), TARGET_SIGMA_CELLS, least, stretch)
     # As the file holds them.
     calibration = tuple(float(numpy.float32(value)) for value in calibration)
+    held_out_errors = errors_of(peaks_of(layers, held_out_table), held_out_table, calibration[4])
     held_out = {name: float(value) if not isinstance(value, int) else value
-                for name, value in figures(*seen(layers, held_out_table), calibration).items()}
+                for name, value in figures(*held_out_errors, calibration).items()}
     count = sum(len(crops.read_shard(path)) for path in crops.shards(options.crops, "training"))
     text = page(options, calibration, (count, len(calibration_table), len(held_out_table)), held_out)
     print(text)

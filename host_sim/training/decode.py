@@ -91,6 +91,12 @@ def decode(logits, sigma=1.0):
                  is_clear.reshape(shape))
 
 
+def stretched(places, stretch):
+    """Farther from the crop's middle by a share."""
+    middle = 0.5 * (crops.MAP_SIDE - 1)
+    return middle + (1.0 + stretch) * (places - middle)
+
+
 def covariances(excess, scale, floor):
     """scale * excess+ + floor I: what is below zero along an axis is none."""
     values, axes = numpy.linalg.eigh(excess)

@@ -18,7 +18,8 @@ LAYERS = [(1, 24, 3, 2, 1), (24, 40, 3, 2, 1), (40, 40, 3, 1, 1), (40, 64, 3, 2,
           (64, 40, 1, 1, 0), (40, 40, 3, 1, 1), (40, MAPS, 1, 1, 0)]
 LEAST_SIZE = 2.0**-40  # of a weight that is not zero: no product is ever denormal
 MOST_SIZE = 2.0**20
-MAGIC = b"vbar keypoints 1"
+MAGIC = b"vbar keypoints 2"
+CALIBRATION = 5  # numbers, then three zeros
 
 
 def run(x, layer):
@@ -94,11 +95,12 @@ def run_folded(layers, x):
 
 
 def weights_file(layers, calibration):
-    """Bytes. `calibration`: covariance scale, covariance floor (cells^2), target's sigma (cells), least peak."""
+    """Bytes. `calibration`: covariance scale, covariance floor (cells^2), target's sigma (cells), least peak,
+    stretch."""
     data = MAGIC + struct.pack("<4I", len(LAYERS), INPUT_SIDE, MAP_SIDE, KEYPOINTS)
     for layer in LAYERS:
         data += struct.pack("<8I", *layer, 0, 0, 0)
-    data += struct.pack("<4f", *calibration)
+    data += struct.pack("<8f", *calibration, 0.0, 0.0, 0.0)
     for weight, bias in layers:
         data += weight.permute(2, 3, 1, 0).contiguous().numpy().astype("<f4").tobytes()
         data += bias.numpy().astype("<f4").tobytes()
@@ -110,8 +112,8 @@ def read_weights(data):
     if data[:16] != MAGIC or struct.unpack("<I", data[-4:])[0] != zlib.crc32(data[:-4]):
         raise ValueError("not a weights file, or a damaged one")
     at = 32 + 32 * len(LAYERS)
-    calibration = struct.unpack_from("<4f", data, at)
-    at += 16
+    calibration = struct.unpack_from(f"<{CALIBRATION}f", data, at)
+    at += 32
     layers = []
     for i, o, k, _, _ in LAYERS:
         weight = numpy.frombuffer(data, "<f4", k * k * i * o, at).reshape(k, k, i, o)

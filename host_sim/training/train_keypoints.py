@@ -106,7 +106,7 @@ class Training:
     def export(self):
         layers = keypoint_network.folded(self.averaged.eval())
         part = self.options.out.with_suffix(".part")
-        part.write_bytes(keypoint_network.weights_file(layers, (1.0, 0.05, TARGET_SIGMA_CELLS, 0.3)))
+        part.write_bytes(keypoint_network.weights_file(layers, (1.0, 0.05, TARGET_SIGMA_CELLS, 0.3, 0.0)))
         os.replace(part, self.options.out)
 
     def rate(self):
@@ -155,6 +155,7 @@ class Training:
         last = time.monotonic()
         saved = reported = exported = self.elapsed_s
         losses, seen = [], 0
+        available = shards.rescan()
         while self.elapsed_s < 60.0 * options.minutes:
             available = shards.rescan()
             order = generator.permutation(available)

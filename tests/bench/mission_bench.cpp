@@ -109,6 +109,10 @@ BENCHMARK_CAPTURE(whole_mission, experiment3, "experiment3")
     ->Name("mission/experiment3")
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+BENCHMARK_CAPTURE(whole_mission, experiment2, "experiment2")
+    ->Name("mission/experiment2")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 BENCHMARK_CAPTURE(gnc_step, ideal, "ideal_navigation")->Name("gnc/vbar/step")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(gnc_step, experiment3, "experiment3")
     ->Name("gnc/vbar/step_experiment3")

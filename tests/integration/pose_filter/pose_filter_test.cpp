@@ -95,6 +95,7 @@ TEST(PoseFilter, IsHonestInWhiteNoise) {
   nav::PoseSettings settings = pose_settings(whole_flight());
   settings.filter.correlated_share = 0.0;
   settings.filter.stretch_sigma = 1e-6;
+  settings.filter.lasting_stretch_sigma = 1e-6;
   settings.filter.shift_sigma_px = 0.05;
   const Outcome mean = mean_of_seeds(settings, {}, kSeeds);
   EXPECT_GT(mean.roe_nees, kLeastNees);

@@ -29,7 +29,7 @@ class Network(torch.nn.Module):
         count, input_side, self.map_side, self.keypoints = struct.unpack_from("<4I", file, 16)
         assert input_side == SIDE
         layers = [struct.unpack_from("<8I", file, 32 + 32 * layer) for layer in range(count)]
-        offset = 32 + 32 * count + 16
+        offset = 32 + 32 * count + 32
         self.convolutions = []
         for channels_in, channels_out, kernel, stride, rectified, *_ in layers:
             weights = numpy.frombuffer(file, "<f4", kernel * kernel * channels_in * channels_out, offset)

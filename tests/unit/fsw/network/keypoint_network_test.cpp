@@ -79,6 +79,7 @@ TEST(KeypointNetwork, TellsTheCalibrationOfItsFile) {
   EXPECT_EQ(network->calibration().covariance_floor, 0.0625F);
   EXPECT_EQ(network->calibration().target_sigma_cells, 1.5F);
   EXPECT_EQ(network->calibration().least_peak, 0.125F);
+  EXPECT_EQ(network->calibration().stretch, 0.03125F);
 }
 
 TEST(KeypointNetwork, RefusesSamplesThatAreNoNumbers) {

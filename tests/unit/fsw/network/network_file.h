@@ -43,7 +43,7 @@ inline WeightsFile blank_file() {
   for (const Layer& l : kLayers) {
     for (const int value : {l.in, l.out, l.kernel, l.stride, l.is_rectified ? 1 : 0, 0, 0, 0}) word(value);
   }
-  for (const float value : {1.25F, 0.0625F, 1.5F, 0.125F}) {
+  for (const float value : {1.25F, 0.0625F, 1.5F, 0.125F, 0.03125F}) {
     put(file, offset, value);
     offset += 4;
   }

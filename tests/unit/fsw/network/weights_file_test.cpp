@@ -44,7 +44,7 @@ TEST_F(WeightsFileCheck, TakesAGoodFileAndTheOneOnBoard) {
 
 // Thirteen layers of kernel^2 x in x out weights and out biases, added up outside this program.
 TEST_F(WeightsFileCheck, IsAsLongAsItsLayersAdded) {
-  EXPECT_EQ(kFileBytes, 16U + 16U + 13U * 32U + 16U + 4U * (514'296U + 836U) + 4U);
+  EXPECT_EQ(kFileBytes, 16U + 16U + 13U * 32U + 32U + 4U * (514'296U + 836U) + 4U);
 }
 
 TEST_F(WeightsFileCheck, CutShortAnywhereIsTooShort) {
@@ -117,6 +117,9 @@ TEST_F(WeightsFileCheck, CalibrationIsOneThatCanBe) {
   EXPECT_EQ(check_with_calibration(1, 0.0F), Status::kOk);
   EXPECT_EQ(check_with_calibration(2, 0.0F), Status::kOutOfRange);
   EXPECT_EQ(check_with_calibration(3, 1.1F), Status::kOutOfRange);  // a share of a map
+  EXPECT_EQ(check_with_calibration(4, -0.1F), Status::kOk);
+  EXPECT_EQ(check_with_calibration(4, 0.2F), Status::kOutOfRange);
+  EXPECT_EQ(check_with_calibration(4, kNan), Status::kNotFinite);
 }
 
 }  // namespace

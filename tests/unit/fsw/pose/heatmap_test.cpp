@@ -114,6 +114,17 @@ TEST(Heatmap, OnTheDetectorInPixels) {
   EXPECT_NEAR(keypoint.covariance_px2(0, 0), 100.0, 1e-12);
 }
 
+TEST(Heatmap, StretchedAboutTheMiddleOfTheCrop) {
+  network::Calibration calibration;
+  calibration.stretch = 0.0625F;
+  MapPeak peak;
+  peak.place = {31.5, 15.5};
+  peak.peak = 0.5;
+  const Keypoint keypoint = keypoint_of(peak, calibration, {{400.0, 300.0}, 320.0});
+  EXPECT_DOUBLE_EQ(keypoint.pixel.x(), 400.0 + 160.0 * 1.0625);
+  EXPECT_DOUBLE_EQ(keypoint.pixel.y(), 300.0);
+}
+
 TEST(Heatmap, WhatTellsNothing) {
   network::Calibration calibration;
   calibration.least_peak = 0.2F;
