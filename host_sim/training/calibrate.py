@@ -15,7 +15,7 @@ import train_keypoints
 
 TARGET_SIGMA_CELLS = 1.0
 GROSS_CELLS = 3.0  # farther off than this a keypoint is wrong, not inexact
-MOST_GROSS = 0.02  # of the keypoints that are accepted
+MOST_GROSS = 0.01  # of the keypoints that are accepted
 CHI_SQUARE_MEDIAN = 1.3863  # of two degrees of freedom; their mean is 2
 CLASSES = 6  # of sharpness, all to have the right median
 FLIGHT_SIDE_M = 2.3 * 0.722  # what a crop's side spans at the target in flight (fsw/pose/region.cpp; Tango's radius)
