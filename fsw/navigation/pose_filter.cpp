@@ -51,9 +51,9 @@ Status PoseFilter::configure(const PoseFilterSettings& settings) {
   const auto inertia = inertia_of(settings.inertia);
   if (!inertia.ok()) return inertia.status();
   const bool is_sensible = is_positive(settings.along_track_time_s) && is_positive(settings.from_sun_time_s) &&
-                           is_positive(settings.correlated_time_s) && is_positive(settings.shift_time_s) &&
-                           is_positive(settings.stretch_time_s) && is_positive(settings.lasting_stretch_time_s) &&
-                           settings.correlated_share >= 0.0 && settings.correlated_share < 1.0;
+                           is_positive(settings.correlated_turn) && is_positive(settings.longest_correlated_s) &&
+                           is_positive(settings.lasting_stretch_time_s) && settings.correlated_share >= 0.0 &&
+                           settings.correlated_share < 1.0;
   if (!is_sensible) return Status::kOutOfRange;
   settings_ = settings;
   inertia_ = inertia.value();
@@ -253,13 +253,13 @@ void PoseFilter::fade_errors(double dt) {
     estimate_.scale(component, factor);
     estimate_.add_noise(component, square(sigma) * (1.0 - square(factor)));
   };
-  const double shift = math::exp(-dt / settings_.shift_time_s);
-  fade(kCommon, settings_.shift_sigma_px, shift);
-  fade(kCommon + 1, settings_.shift_sigma_px, shift);
-  fade(kCommon + 2, settings_.stretch_sigma, math::exp(-dt / settings_.stretch_time_s));
+  const double rate = math::sqrt(attitude_.rate_body.squaredNorm());
+  const double view = math::exp(-dt * (rate / settings_.correlated_turn + 1.0 / settings_.longest_correlated_s));
+  fade(kCommon, settings_.shift_sigma_px, view);
+  fade(kCommon + 1, settings_.shift_sigma_px, view);
+  fade(kCommon + 2, settings_.stretch_sigma, view);
   fade(kCommon + 3, settings_.lasting_stretch_sigma, math::exp(-dt / settings_.lasting_stretch_time_s));
-  const double own = math::exp(-dt / settings_.correlated_time_s);
-  for (int k = 0; k < KeypointError::kSize; ++k) fade(kErrors + k, 1.0, own);
+  for (int k = 0; k < KeypointError::kSize; ++k) fade(kErrors + k, 1.0, view);
 }
 
 void PoseFilter::add_servicer_impulse(const orbit::CartesianState& servicer, const Vector3& dv_eci) {

@@ -168,7 +168,7 @@ bool PoseNavigation::renew_attitude() {
 bool PoseNavigation::is_far_from_filter(const PoseSample& sample) const {
   const auto seen = filter_.target(own_orbit_.state());
   if (!seen.ok()) return true;
-  const Vector3 range_sigma = settings_.start.range_sigma_share * sample.relative_eci;
+  const Vector3 range_sigma = settings_.pose_range_share * sample.relative_eci;
   const Matrix3 covariance = filter_.position_covariance(own_orbit_.state()) + sample.covariance_eci +
                              range_sigma * range_sigma.transpose() + 1e-4 * Matrix3::Identity();
   const math::Cholesky<3> factor(covariance);
@@ -178,7 +178,7 @@ bool PoseNavigation::is_far_from_filter(const PoseSample& sample) const {
 }
 
 PoseFate PoseNavigation::take_position_only(const PoseEpoch& epoch, const CameraPlace& camera) {
-  if (!has_sample_) return PoseFate::kNone;
+  if (!epoch.pnp.has_value()) return PoseFate::kNone;
   const PoseSample sample = sample_of(epoch, camera);
   if (is_far_from_filter(sample)) {
     count_refusal(true);
@@ -186,7 +186,7 @@ PoseFate PoseNavigation::take_position_only(const PoseEpoch& epoch, const Camera
   }
   far_in_a_row_ = 0;
   // Neighbouring images err alike.
-  const Vector3 range_sigma = settings_.start.range_sigma_share * sample.relative_eci;
+  const Vector3 range_sigma = settings_.pose_range_share * sample.relative_eci;
   const Matrix3 covariance =
       4.0 * sample.covariance_eci + range_sigma * range_sigma.transpose() + 1e-4 * Matrix3::Identity();
   filter_.take_position(sample.relative_eci, covariance, own_orbit_.state());

@@ -36,6 +36,7 @@ struct PoseSettings {
   /// Beside what `start` asks: poses of fewer keypoints count there only if they are so sure of their attitude, rad.
   int start_inliers = 8;
   double start_attitude_sigma = 0.05;
+  double pose_range_share = 0.1;  ///< 1 sigma of a single pose's distance: one with a wrong attitude is so far off
   /// 1 sigma, rad: an attitude more in doubt is not mended by keypoints but taken anew.
   double widest_attitude = 0.35;
   double position_gate = 25.0;  ///< of the normalised distance squared of a single image's position from the filter's

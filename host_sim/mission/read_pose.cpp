@@ -4,8 +4,8 @@
 namespace vbar::mission {
 namespace {
 
-// What navigation by angles only leaves at 100 m, two to three times.
-const fsw::Vector6 kHandedOver{0.05, 1.0, 0.1, 0.1, 0.1, 0.1};
+// From what navigation by angles only leaves at 100 m.
+const fsw::Vector6 kHandedOver{0.05, 0.5, 0.1, 0.1, 0.1, 0.1};
 
 }  // namespace
 

@@ -45,10 +45,9 @@ int main(int argc, char** argv) {
     fsw::navigation::PoseSettings settings = test::pose_settings(flight);
     auto& filter = settings.filter;
     filter.correlated_share = option("F_SHARE", filter.correlated_share);
-    filter.correlated_time_s = option("F_TIME", filter.correlated_time_s);
+    filter.correlated_turn = option("F_TURN", filter.correlated_turn);
     filter.stretch_sigma = option("F_STRETCH", filter.stretch_sigma);
     filter.lasting_stretch_sigma = option("F_LASTING_STRETCH", filter.lasting_stretch_sigma);
-    filter.stretch_time_s = option("F_STRETCH_TIME", filter.stretch_time_s);
     filter.shift_sigma_px = option("F_SHIFT", filter.shift_sigma_px);
     filter.acceleration.psd_most = option("F_ACC_MOST", filter.acceleration.psd_most);
     filter.angular_acceleration.psd_least = option("F_ANG_LEAST", filter.angular_acceleration.psd_least);
