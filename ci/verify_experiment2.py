@@ -52,12 +52,23 @@ FIGURES = [
 ]
 
 
+def value_of(summary, of, factor):
+    """Infinite where the target was lost at that time."""
+    value = of(summary)
+    return float("inf") if value is None else factor * value
+
+
+def text_of(value, digits):
+    return "lost" if value == float("inf") else f"{value:.{digits}f}"
+
+
 def figure_rows(flown):
     rows = []
     for what, of, limit, factor, digits, unit in FIGURES:
-        values = [factor * of(s) for s in flown]
+        values = [value_of(s, of, factor) for s in flown]
         found = statistics.median(values)
-        rows.append((what, f"{found:.{digits}f} {unit}", f"{min(values):.{digits}f} to {max(values):.{digits}f} {unit}",
+        rows.append((what, f"{text_of(found, digits)} {unit}",
+                     f"{text_of(min(values), digits)} to {text_of(max(values), digits)} {unit}",
                      f"{factor * limit:g} {unit}", found <= factor * limit))
     return rows
 
@@ -84,7 +95,7 @@ def honesty_rows(flown):
 def seed_rows(flown):
     rows = []
     for seed, s in zip(SEEDS, flown):
-        rows.append((seed, *(f"{factor * of(s):.{digits}f}" for _, of, _, factor, digits, _ in FIGURES)))
+        rows.append((seed, *(text_of(value_of(s, of, factor), digits) for _, of, _, factor, digits, _ in FIGURES)))
     return rows
 
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
 namespace vbar::twins::camera {
 namespace {
@@ -55,8 +56,23 @@ WideSpread::WideSpread(const Settings& settings)
   halo_variance_ = settings.halo_sigma_px * settings.halo_sigma_px - variance;
 }
 
-void WideSpread::add(std::span<const ImagePoint> points, const Vector2& smear_px, double core_reach, double halo_reach,
-                     PhotonImage& image) {
+/// A body beside the camera has points all over the half space before it; the grid is for those that matter.
+std::span<const ImagePoint> WideSpread::within_reach(std::span<const ImagePoint> points, double margin,
+                                                     const Region& region) {
+  const auto matters = [&](const ImagePoint& point) {
+    const double x = point.pixel.x() - region.x, y = point.pixel.y() - region.y;
+    return x > -margin && y > -margin && x < region.width + margin && y < region.height + margin;
+  };
+  if (std::ranges::all_of(points, matters)) return points;
+  near_.clear();
+  std::ranges::copy_if(points, std::back_inserter(near_), matters);
+  return near_;
+}
+
+void WideSpread::add(std::span<const ImagePoint> all_points, const Vector2& smear_px, double core_reach,
+                     double halo_reach, PhotonImage& image) {
+  const double margin = core_reach + halo_reach + 0.5 * smear_px.norm() + 2.0;
+  const std::span<const ImagePoint> points = within_reach(all_points, margin, image.region);
   if (points.empty()) return;
   Vector2 low = points[0].pixel, high = low;
   for (const ImagePoint& point : points) {

@@ -40,6 +40,7 @@ class WideSpread {
     int x = 0, y = 0, width = 0, height = 0;
   };
 
+  std::span<const ImagePoint> within_reach(std::span<const ImagePoint> points, double margin, const Region& region);
   void gather(std::span<const ImagePoint> points, const fsw::Vector2& smear_px, const Box& box);
   void spread_core(const Box& from, const Box& canvas, double reach);
   void spread_halo(const Box& canvas, double reach);
@@ -50,6 +51,7 @@ class WideSpread {
   double core_sigma_;  // less what gathering adds
   double halo_variance_;
   // Work space.
+  std::vector<ImagePoint> near_;
   std::vector<float> grid_, row_, phases_, canvas_, halo_, half_;
   std::size_t grid_width_ = 0, grid_height_ = 0;
 };

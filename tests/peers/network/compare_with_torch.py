@@ -25,7 +25,7 @@ LARGEST_DIFFERENCE = 1e-4
 class Network(torch.nn.Module):
     def __init__(self, file):
         super().__init__()
-        assert file[:16] == b"vbar keypoints 1" and zlib.crc32(file[:-4]) == struct.unpack("<I", file[-4:])[0]
+        assert file[:16] == b"vbar keypoints 2" and zlib.crc32(file[:-4]) == struct.unpack("<I", file[-4:])[0]
         count, input_side, self.map_side, self.keypoints = struct.unpack_from("<4I", file, 16)
         assert input_side == SIDE
         layers = [struct.unpack_from("<8I", file, 32 + 32 * layer) for layer in range(count)]

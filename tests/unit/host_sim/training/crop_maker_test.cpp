@@ -107,7 +107,7 @@ double mean_about(const LabelledCrop& crop, const fsw::Vector2& cell, double rea
 TEST(CropMaker, TargetStandsWhereTheLabelsSay) {
   LabelledCrop crop;
   int looked_at = 0;
-  for (int index = 0; index < 60; ++index) {
+  for (int index = 0; index < 80; ++index) {
     maker().make(index, crop);
     const Circumstances& c = crop.circumstances;
     if (c.phase_angle > 1.2 || c.glow_electrons > 0.0 || c.nadir_camera.z() > 0.2) continue;

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "host_sim/twins/camera/wide_spread.h"
 #include "tests/support/camera_scene.h"
 
 namespace {
@@ -186,6 +187,21 @@ TEST(PointSpread, no_points_and_points_outside_change_nothing) {
   spread.add(std::vector<camera::ImagePoint>{{Vector2(-1e5, 3.0), 1e9}, {Vector2(std::nan(""), 3.0), 1.0}},
              Vector2::Zero(), image);
   for (const float light : image.electrons) ASSERT_EQ(light, 0.0F);
+}
+
+// A body right beside the camera has corners at pixels a million away; only those near the region cost anything.
+TEST(WideSpread, points_far_aside_change_nothing) {
+  const camera::OpticsSettings optics;
+  camera::WideSpread spread({optics.point_spread_sigma_px, optics.halo_sigma_px, optics.halo_fraction});
+  std::vector<camera::ImagePoint> points{{kMiddle, 1000.0}, {kMiddle + Vector2(30.2, 4.7), 500.0}};
+  camera::PhotonImage alone = black();
+  spread.add(points, Vector2::Zero(), 5.0, 20.0, alone);
+  points.push_back({Vector2(3e6, -2e6), 1e6});
+  points.push_back({Vector2(-4e6, 1e6), 1e6});
+  camera::PhotonImage with_others = black();
+  spread.add(points, Vector2::Zero(), 5.0, 20.0, with_others);
+  EXPECT_EQ(with_others.electrons, alone.electrons);
+  EXPECT_NEAR(whole(alone).electrons, 1500.0, 1.0);
 }
 
 }  // namespace
