@@ -69,8 +69,11 @@ std::span<const ImagePoint> WideSpread::within_reach(std::span<const ImagePoint>
   return near_;
 }
 
-void WideSpread::add(std::span<const ImagePoint> all_points, const Vector2& smear_px, double core_reach,
+void WideSpread::add(std::span<const ImagePoint> all_points, const Vector2& all_smear_px, double core_reach,
                      double halo_reach, PhotonImage& image) {
+  // Nor has such a body a way on the detector that says anything.
+  const double longest = image.region.width + image.region.height;
+  const Vector2 smear_px = all_smear_px.norm() < longest ? all_smear_px : Vector2(Vector2::Zero());
   const double margin = core_reach + halo_reach + 0.5 * smear_px.norm() + 2.0;
   const std::span<const ImagePoint> points = within_reach(all_points, margin, image.region);
   if (points.empty()) return;

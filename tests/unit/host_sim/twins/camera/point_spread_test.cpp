@@ -201,6 +201,9 @@ TEST(WideSpread, points_far_aside_change_nothing) {
   camera::PhotonImage with_others = black();
   spread.add(points, Vector2::Zero(), 5.0, 20.0, with_others);
   EXPECT_EQ(with_others.electrons, alone.electrons);
+  camera::PhotonImage far_smeared = black();
+  spread.add(points, Vector2(3e7, -1e7), 5.0, 20.0, far_smeared);
+  EXPECT_EQ(far_smeared.electrons, alone.electrons);
   EXPECT_NEAR(whole(alone).electrons, 1500.0, 1.0);
 }
 
