@@ -96,7 +96,7 @@ class Experiment2OnTheZynq(unittest.TestCase):
             self.skipTest(missing(ZYNQ_IMAGE))
         with scratch() as folder:
             here = fly(folder / "here", *SHORT, mission=EXPERIMENT2)
-            there = fly(folder / "zynq", *SHORT, *ZYNQ, mission=EXPERIMENT2)
+            there = fly(folder / "zynq", *SHORT, *ZYNQ, mission=EXPERIMENT2, timeout=1200)
             self.assertGreaterEqual(sum(float(row["sunlit"]) > 0.0 for row in poses(folder / "here")), 180)
             self.assertGreater(here["maneuvers"], 0)
             self.assertEqual(hashes(there), hashes(here))

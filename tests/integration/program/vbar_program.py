@@ -45,9 +45,9 @@ def overrides(*settings):
     return [part for setting in settings for part in ("--set", setting)]
 
 
-def fly(folder, *settings, mission=MISSION):
+def fly(folder, *settings, mission=MISSION, timeout=300):
     """Flies a mission that has to succeed; its summary."""
-    result = vbar("run", mission, "--out", folder, *overrides(*settings))
+    result = vbar("run", mission, "--out", folder, *overrides(*settings), timeout=timeout)
     if result.returncode != 0:
         raise AssertionError(f"vbar run failed: {result.stderr}")
     return summary_of(folder)
