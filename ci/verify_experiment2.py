@@ -67,8 +67,8 @@ def figure_rows(flown):
     for what, of, limit, factor, digits, unit in FIGURES:
         values = [value_of(s, of, factor) for s in flown]
         found = statistics.median(values)
-        rows.append((what, f"{text_of(found, digits)} {unit}",
-                     f"{text_of(min(values), digits)} to {text_of(max(values), digits)} {unit}",
+        text = lambda value: text_of(value, digits) + ("" if value == float("inf") else f" {unit}")
+        rows.append((what, text(found), f"{text_of(min(values), digits)} to {text(max(values))}",
                      f"{factor * limit:g} {unit}", found <= factor * limit))
     return rows
 
