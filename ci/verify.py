@@ -6,7 +6,6 @@ usage: ci/verify.py [--build build/host] [--experiment1 | --experiment2 | --expe
 --experiment1, 2 and 3 fly that one only, and replace its section alone.
 """
 import argparse
-import json
 import pathlib
 import platform
 import re
@@ -17,6 +16,7 @@ import time
 import verify_experiment1
 import verify_experiment2
 import verify_experiment3
+from flights import fly
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/verification.md"
@@ -44,16 +44,6 @@ CONTROL_ERROR_LIMITS = [((1, 2, 3), 2.0), ((4, 5, 6, 7), 0.5), ((8, 9, 10), 0.01
 
 def vbar(build, *arguments):
     return subprocess.run([str(build / "vbar"), *arguments], cwd=ROOT, capture_output=True, text=True, timeout=3600)
-
-
-def fly(build, name, overrides, folder):
-    command = ["run", MISSION, "--out", str(folder)]
-    for override in overrides:
-        command += ["--set", override]
-    result = vbar(build, *command)
-    if result.returncode != 0:
-        sys.exit(f"{name}: {result.stderr.strip()}")
-    return json.loads((folder / "summary.json").read_text())
 
 
 def short(sha256):
@@ -115,7 +105,7 @@ def main():
     flown = []
     for number, (name, overrides) in enumerate(FLIGHT_COMPUTERS):
         print(f"flying: {name}", flush=True)
-        flown.append((name, fly(build, name, overrides, runs / str(number))))
+        flown.append((name, fly(build, ROOT, MISSION, runs / str(number), overrides=overrides)))
     reference = flown[0][1]
     same = lambda s: (s["commands_sha256"], s["telemetry_sha256"]) == (reference["commands_sha256"], reference["telemetry_sha256"])
 

@@ -1,8 +1,8 @@
 """Experiment 1 over ten seeds, with both nodes, and on the emulated Zynq: a section of docs/verification.md."""
 import concurrent.futures
-import json
 import statistics
-import subprocess
+
+from flights import ZYNQ, fly
 
 MISSION = "missions/experiment1.toml"
 AS_PRINTED = "missions/experiment1_as_printed.toml"
@@ -15,17 +15,6 @@ CONTROL_LIMITS = (24.0, 10.0, 2.5, 1.5, 1.5, 1.5, 1.5)
 PAPER_NAVIGATION = (80.04, 50.75, 3.18, 2.57, 4.57, 1.33, 3.89)
 PAPER_CONTROL = (24.40, 10.26, 2.47, 3.91, 8.01, 3.64, 8.77)
 DV_LIMIT = 4.2
-ZYNQ = ["flight_computer.target=zynq_qemu", "flight_computer.link=udp"]
-
-
-def fly(build, root, mission, seed, folder, overrides=()):
-    command = [str(build / "vbar"), "run", mission, "--seed", str(seed), "--out", str(folder)]
-    for override in overrides:
-        command += ["--set", override]
-    result = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=3600)
-    if result.returncode != 0:
-        raise SystemExit(f"{mission}, seed {seed}: {result.stderr.strip()}")
-    return json.loads((folder / "summary.json").read_text())
 
 
 def at_waypoints(flown, key):
@@ -78,10 +67,10 @@ def section(build, root, runs, table):
             print(f"flying: {mission}", flush=True)
             seeds = SEEDS if mission == MISSION else AS_PRINTED_SEEDS
             folders = [runs / f"experiment1-{len(flown)}-{seed}" for seed in seeds]
-            flown[mission] = list(pool.map(lambda seed, folder: fly(build, root, mission, seed, folder), seeds, folders))
+            flown[mission] = list(pool.map(lambda seed, folder: fly(build, root, mission, folder, seed), seeds, folders))
     print("flying: experiment 1 alone, for its speed, and on the emulated Zynq, Ethernet", flush=True)
-    alone = fly(build, root, MISSION, 1, runs / "experiment1-alone")
-    zynq = fly(build, root, MISSION, 1, runs / "experiment1-zynq", ZYNQ)
+    alone = fly(build, root, MISSION, runs / "experiment1-alone", 1)
+    zynq = fly(build, root, MISSION, runs / "experiment1-zynq", 1, ZYNQ)
     reference = flown[MISSION][0]
     hashes = ("commands_sha256", "telemetry_sha256")
     same = all(other[key] == reference[key] for key in hashes for other in (alone, zynq))

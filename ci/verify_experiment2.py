@@ -1,27 +1,14 @@
 """Experiment 2 over ten seeds, and on the emulated Zynq: a section of docs/verification.md."""
 import concurrent.futures
 import csv
-import json
 import statistics
-import subprocess
+
+from flights import ZYNQ, fly
 
 MISSION = "missions/experiment2.toml"
 AS_PRINTED = "missions/experiment2_as_printed.toml"
 SEEDS = range(1, 11)
 AS_PRINTED_SEEDS = range(1, 4)
-ZYNQ = ["flight_computer.target=zynq_qemu", "flight_computer.link=udp"]
-
-
-def fly(build, root, mission, seed, folder, overrides=()):
-    command = [str(build / "vbar"), "run", mission, "--seed", str(seed), "--out", str(folder)]
-    for override in overrides:
-        command += ["--set", override]
-    result = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=3600)
-    if result.returncode != 0:
-        raise SystemExit(f"{mission}, seed {seed}: {result.stderr.strip()}")
-    summary = json.loads((folder / "summary.json").read_text())
-    summary["nis_share"] = nis_share(folder)
-    return summary
 
 
 def nis_share(folder):
@@ -73,7 +60,7 @@ def figure_rows(flown):
     return rows
 
 
-def honesty_rows(flown):
+def honesty_rows(flown, nis_shares):
     """Without limits: what they are expected to be is said."""
     def row(what, values, expected):
         return (what, f"{statistics.median(values):.2f}", f"{min(values):.2f} to {max(values):.2f}", expected)
@@ -81,7 +68,7 @@ def honesty_rows(flown):
     return [
         row("NEES of the orbit, mean over images folded in", [s["navigation_nees"] for s in flown], "6"),
         row("NEES of attitude and rate", [s["pose"]["attitude_nees"] for s in flown], "6"),
-        row("NIS over its degrees of freedom", [s["nis_share"] for s in flown], "1"),
+        row("NIS over its degrees of freedom", nis_shares, "1"),
         row("keypoints: normalised error squared, median", [s["pose"]["keypoint_chi_square"] for s in flown], "1.39"),
         row("keypoints: error, median, px of the image", [s["pose"]["keypoint_error_px"] for s in flown], ""),
         row("images with a pose of their own, %", [100 * s["pose"]["with_pose"] / s["pose"]["images"] for s in flown], ""),
@@ -107,10 +94,12 @@ def section(build, root, runs, table):
         for mission, seeds in ((MISSION, SEEDS), (AS_PRINTED, AS_PRINTED_SEEDS)):
             print(f"flying: {mission}", flush=True)
             folders = [runs / f"experiment2-{len(flown)}-{seed}" for seed in seeds]
-            flown[mission] = list(pool.map(lambda seed, folder: fly(build, root, mission, seed, folder), seeds, folders))
+            flown[mission] = list(pool.map(lambda seed, folder: fly(build, root, mission, folder, seed), seeds, folders))
+            if mission == MISSION:
+                shares = [nis_share(folder) for folder in folders]
     print("flying: experiment 2 alone, for its speed, and on the emulated Zynq, Ethernet", flush=True)
-    alone = fly(build, root, MISSION, 1, runs / "experiment2-alone")
-    zynq = fly(build, root, MISSION, 1, runs / "experiment2-zynq", ZYNQ)
+    alone = fly(build, root, MISSION, runs / "experiment2-alone", 1)
+    zynq = fly(build, root, MISSION, runs / "experiment2-zynq", 1, ZYNQ)
     reference = flown[MISSION][0]
     hashes = ("commands_sha256", "telemetry_sha256")
     same = all(other[key] == reference[key] for key in hashes for other in (alone, zynq))
@@ -132,13 +121,13 @@ def section(build, root, runs, table):
         "",
         table(["what", "median", "seeds", "limit", "met"], printed(rows)),
         "",
-        table(["what", "median", "seeds", "expected"], honesty_rows(flown[MISSION])),
+        table(["what", "median", "seeds", "expected"], honesty_rows(flown[MISSION], shares)),
         "",
         "The filter is too sure of the attitude. It begins in the last minute before the dark, where the Sun lights one face and"
         " the images' own poses agree on an attitude that may be 25 deg wrong; the dark leaves a quarter of an hour to be wrong in."
-        " Later its errors of half a degree to one and a half are some twice what it says: they are the same whenever a view comes back,"
-        " and it takes them for forgotten after 12 deg of turning. With keypoints that err as told NEES is in its band"
-        " (test PoseFilter).",
+        " Later its errors of half a degree to one and a half are some twice what it says: they come back with the view, while it takes"
+        " them for forgotten after 12 deg of turning. Of the seeds that turn once in four minutes the attitude error four minutes later"
+        " was alike by a correlation of 0.6 to 0.7. With keypoints that err as told NEES is in its band (test PoseFilter).",
         "",
         "Seed by seed, in the units above:",
         "",
@@ -146,7 +135,7 @@ def section(build, root, runs, table):
               seed_rows(flown[MISSION])),
         "",
         f"With the printed node, dark for half an hour each orbit, seeds 1 to {AS_PRINTED_SEEDS[-1]} (a seed that has lost the"
-        " target drifts away from it, burning nothing):",
+        " target drifts away from it after the first burn):",
         "",
         table(["what", "median", "seeds"], as_printed),
         "",

@@ -1,9 +1,9 @@
 """Experiment 3 over ten seeds, and over crosslinks that lose, delay and fall silent: a section of docs/verification.md."""
 import csv
-import json
 import math
 import statistics
-import subprocess
+
+from flights import fly
 
 MISSION = "missions/experiment3.toml"
 SEEDS = range(1, 11)
@@ -29,9 +29,8 @@ def relative(row, kind, unit):
     return [float(row[f"relative_{kind}_rtn_{axis}_{unit}"]) for axis in "rtn"]
 
 
-def judge(folder):
+def judge(summary, folder):
     """The figures of one run: errors in m and m/s from the first fix on, times in s after the start."""
-    summary = json.loads((folder / "summary.json").read_text())
     truth, estimates = rows_of(folder / "truth.csv"), rows_of(folder / "estimate.csv")
     start = float(truth[0]["time_s"])
     sources = [(float(row["time_s"]) - start, int(row["navigation_source"])) for row in estimates]
@@ -57,16 +56,6 @@ def judge(folder):
                            default=math.inf) - silence_end,
         "speed": summary["speed_factor"],
     }
-
-
-def fly(build, root, overrides, seed, folder):
-    command = [str(build / "vbar"), "run", MISSION, "--seed", str(seed), "--out", str(folder)]
-    for override in overrides:
-        command += ["--set", override]
-    result = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=600)
-    if result.returncode != 0:
-        raise SystemExit(f"{MISSION}, seed {seed}: {result.stderr.strip()}")
-    return judge(folder)
 
 
 def rows_against_limits(flown):
@@ -118,7 +107,8 @@ def section(build, root, runs, table):
     flown = {}
     for case, overrides in CASES.items():
         print(f"flying: experiment 3, {case}", flush=True)
-        flown[case] = [fly(build, root, overrides, seed, runs / f"experiment3_{seed}") for seed in SEEDS]
+        folder = runs / "experiment3"
+        flown[case] = [judge(fly(build, root, MISSION, folder, seed, overrides), folder) for seed in SEEDS]
     limits, cases = rows_against_limits(flown["nominal"]), rows_of_cases(flown)
     complete = all(figures["complete"] for all_figures in flown.values() for figures in all_figures)
     yes = lambda good: "yes" if good else "**no**"

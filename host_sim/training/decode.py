@@ -29,9 +29,9 @@ class Peaks:
         return self.is_clear & (self.shares >= least_share)
 
 
-def in_window(middle):
+def near(middle, reach):
     """Which cells of an axis lie within reach of `middle` (n): n x 32."""
-    return numpy.abs(numpy.arange(crops.MAP_SIDE)[None] - middle[:, None]) <= REACH
+    return numpy.abs(numpy.arange(crops.MAP_SIDE)[None] - middle[:, None]) <= reach
 
 
 def axis_moments(weights):
@@ -64,9 +64,6 @@ def decode(logits, sigma=1.0):
     row, column = highest // side, highest % side
     axis = numpy.arange(side)
 
-    def near(at, reach):
-        return numpy.abs(axis[None] - at[:, None]) <= reach
-
     share = (p * near(row, 1)[:, :, None] * near(column, 1)[:, None, :]).sum((1, 2))
     around = near(row, REACH)[:, :, None] & near(column, REACH)[:, None, :]
     top = p.reshape(len(p), -1).max(1)
@@ -76,8 +73,8 @@ def decode(logits, sigma=1.0):
     # Once more around the mean: a window that cuts one side of the peak draws the mean away from it.
     first = p * around
     total = first.sum((1, 2))
-    rows = in_window(numpy.floor((first.sum(2) * axis).sum(1) / total + 0.5))
-    columns = in_window(numpy.floor((first.sum(1) * axis).sum(1) / total + 0.5))
+    rows = near(numpy.floor((first.sum(2) * axis).sum(1) / total + 0.5), REACH)
+    columns = near(numpy.floor((first.sum(1) * axis).sum(1) / total + 0.5), REACH)
     window = p * rows[:, :, None] * columns[:, None, :]
     x, xx = axis_moments(window.sum(1))
     y, yy = axis_moments(window.sum(2))
