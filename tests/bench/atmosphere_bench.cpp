@@ -10,13 +10,14 @@
 #include "host_sim/truth/atmosphere/nrlmsise00.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/forces/drag_force.h"
+#include "tests/support/paths.h"
 
 namespace {
 
 namespace truth = vbar::truth;
 using truth::GeomagneticIndex;
 
-const std::filesystem::path kData = std::filesystem::path(VBAR_SOURCE_DIR) / "data";
+const std::filesystem::path kData = std::filesystem::path(vbar::tests::source_path("data"));
 
 std::shared_ptr<const truth::Nrlmsise00Tables> tables() {
   return std::make_shared<const truth::Nrlmsise00Tables>(

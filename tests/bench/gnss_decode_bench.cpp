@@ -10,6 +10,7 @@
 #include <benchmark/benchmark.h>
 
 #include "fsw/gnss/receiver_decoder.h"
+#include "tests/support/paths.h"
 
 namespace {
 
@@ -17,7 +18,7 @@ using namespace vbar::fsw::gnss;
 using Bytes = std::vector<std::uint8_t>;
 
 Bytes real_log() {
-  std::ifstream file(VBAR_SOURCE_DIR "/tests/data/receiver/oemv_200911218.gps", std::ios::binary);
+  std::ifstream file(vbar::tests::source_path("tests/data/receiver/oemv_200911218.gps"), std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 

@@ -10,6 +10,7 @@
 
 #include "fsw/link/cobs.h"
 #include "pil_bridge/make_flight_computer.h"
+#include "tests/support/paths.h"
 #include "tests/support/step_packets.h"
 
 namespace {
@@ -49,7 +50,7 @@ void step(benchmark::State& state, Target target, LinkKind kind, const char* ima
   FlightComputerOptions options;
   options.target = target;
   options.link = kind;
-  options.library = VBAR_BINARY_DIR "/libvbar_echo_article.so";
+  options.library = vbar::tests::build_path("libvbar_echo_article.so");
   options.image = image;
   std::unique_ptr<FlightComputer> computer;
   try {
@@ -94,11 +95,11 @@ void image_step(benchmark::State& state, Target target, LinkKind kind, const cha
   state.SetBytesProcessed(bytes);
 }
 
-constexpr const char* kHostFlight = VBAR_BINARY_DIR "/vbar_flight";
-constexpr const char* kZynqFlight = VBAR_SOURCE_DIR "/build/zynq/vbar_zynq7000.elf";
-constexpr const char* kHost = VBAR_BINARY_DIR "/vbar_flight_echo";
-constexpr const char* kZynq = VBAR_SOURCE_DIR "/build/zynq/vbar_zynq7000_echo.elf";
-constexpr const char* kArmLinux = VBAR_SOURCE_DIR "/build/zynq-linux/vbar_flight_echo";
+const std::string kHostFlight = vbar::tests::build_path("vbar_flight");
+const std::string kZynqFlight = vbar::tests::source_path("build/zynq/vbar_zynq7000.elf");
+const std::string kHost = vbar::tests::build_path("vbar_flight_echo");
+const std::string kZynq = vbar::tests::source_path("build/zynq/vbar_zynq7000_echo.elf");
+const std::string kArmLinux = vbar::tests::source_path("build/zynq-linux/vbar_flight_echo");
 
 BENCHMARK(cobs_round_trip)->Name("link/cobs/1400");
 BENCHMARK(frame_check)->Name("link/frame_crc/1400");

@@ -14,13 +14,14 @@
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/simulation.h"
 #include "host_sim/mission/load.h"
+#include "tests/support/paths.h"
 
 namespace {
 
 namespace app = vbar::app;
 namespace mission = vbar::mission;
 
-const std::string kRoot = VBAR_SOURCE_DIR;
+const std::string kRoot = vbar::tests::source_path();
 
 mission::Mission load(const char* name) {
   return mission::load_mission(kRoot + "/missions/" + name + ".toml");

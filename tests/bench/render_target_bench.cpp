@@ -8,6 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include "host_sim/twins/camera/model/target_renderer.h"
+#include "tests/support/paths.h"
 
 namespace {
 
@@ -15,7 +16,7 @@ using vbar::fsw::Vector3;
 namespace camera = vbar::twins::camera;
 
 void render_target(benchmark::State& state, double range_m) {
-  camera::TargetRenderer renderer(camera::load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj"));
+  camera::TargetRenderer renderer(camera::load_cad_model(vbar::tests::source_path("data/models/tango.obj")));
   camera::TargetView view;
   view.position_camera = Vector3(0.0, 0.0, range_m);
   view.sun_camera = Vector3(0.7, -0.5, -0.7).normalized();

@@ -7,6 +7,7 @@
 #include <benchmark/benchmark.h>
 
 #include "fsw/stars/star_identification.h"
+#include "tests/support/paths.h"
 #include "tests/support/star_campaign.h"
 
 namespace {
@@ -21,7 +22,7 @@ struct Image {
 };
 
 std::vector<Image> draw_images(const sky::SceneSettings& settings, bool with_stars) {
-  const auto stars = with_stars ? sky::read_sky(VBAR_SOURCE_DIR "/data/stars/hipparcos_v8.csv", 2011.55)
+  const auto stars = with_stars ? sky::read_sky(vbar::tests::source_path("data/stars/hipparcos_v8.csv"), 2011.55)
                                 : std::vector<sky::TrueStar>{};
   sky::Random random(1);
   std::vector<Image> images;

@@ -14,13 +14,14 @@
 #include "host_sim/truth/forces/third_body_force.h"
 #include "host_sim/truth/orbit_geometry.h"
 #include "host_sim/truth/spacecraft_propagator.h"
+#include "tests/support/paths.h"
 
 namespace {
 
 using vbar::fsw::Vector3;
 namespace truth = vbar::truth;
 
-const std::string kData = std::string(VBAR_SOURCE_DIR) + "/data";
+const std::string kData = vbar::tests::source_path("data");
 constexpr double kDay = 2455760.5;
 constexpr double kMinute = 1.0 / 1440.0;
 

@@ -9,6 +9,7 @@
 #include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/forces/relativity_force.h"
 #include "host_sim/truth/forces/solid_tides_force.h"
+#include "tests/support/paths.h"
 
 namespace {
 
@@ -36,7 +37,7 @@ void solid_tides(benchmark::State& state) {
   truth::SolidTidesForce force(
       kGm, kRadius, truth::TideSystem::kZeroTide, truth::gps_from_utc("2011-07-18T01:00:00Z"),
       std::make_shared<const truth::EarthOrientationSeries>(
-          truth::EarthOrientationSeries::load(std::string(VBAR_SOURCE_DIR) + "/data/earth/eop_2009_2013.csv")));
+          truth::EarthOrientationSeries::load(vbar::tests::source_path("data/earth/eop_2009_2013.csv"))));
   along_an_orbit(state, force);
 }
 

@@ -11,13 +11,14 @@
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/forces/gravity_field.h"
 #include "host_sim/truth/truth_model.h"
+#include "tests/support/paths.h"
 
 namespace {
 
 using vbar::fsw::Vector3;
 namespace truth = vbar::truth;
 
-const std::string kData = std::string(VBAR_SOURCE_DIR) + "/data";
+const std::string kData = vbar::tests::source_path("data");
 const Vector3 kLowOrbit(4.0e6, -3.0e6, 5.0e6);
 
 truth::GravityCoefficients coefficients(int degree) {

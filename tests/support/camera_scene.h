@@ -9,6 +9,7 @@
 
 #include "host_sim/twins/camera/exposure.h"
 #include "host_sim/twins/camera/photon_image.h"
+#include "tests/support/paths.h"
 
 namespace vbar::test {
 
@@ -16,7 +17,7 @@ inline constexpr double kSunDistance = 1.5e11;   // m
 inline constexpr double kMoonDistance = 3.85e8;  // m
 
 inline std::filesystem::path camera_data() {
-  return std::filesystem::path(VBAR_SOURCE_DIR) / "data";
+  return std::filesystem::path(vbar::tests::source_path("data"));
 }
 
 /// The camera's axes: z along `boresight`, y as near to `down` as can be.

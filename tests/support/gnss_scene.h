@@ -12,6 +12,7 @@
 
 #include "host_sim/twins/gnss/gnss_receiver.h"
 #include "host_sim/twins/gnss/system_time.h"
+#include "tests/support/paths.h"
 
 namespace vbar::test {
 
@@ -21,7 +22,7 @@ using twins::gnss::BodyTruth;
 inline constexpr fsw::GpsTime kGnssStart = twins::gnss::gps_time_of(twins::gnss::System::kGps, 1645, 2 * 86400 + 57600);
 
 inline std::filesystem::path data_directory() {
-  return std::filesystem::path(VBAR_SOURCE_DIR) / "data";
+  return std::filesystem::path(vbar::tests::source_path("data"));
 }
 
 /// The truth about a body with this motion (ECI) `t_s` after kGnssStart; body z to the zenith, x ahead.

@@ -22,10 +22,14 @@ endif()
 set(CMAKE_CXX_FLAGS_RELEASE "${optimisation} -g1")
 set(CMAKE_C_FLAGS_RELEASE "${optimisation} -g1")
 
+# Paths are hashed relative to the checkout, so that all checkouts on a computer share one cache. The precompiled header of
+# the tests needs the sloppiness that ccache's manual names for it (section "Precompiled headers").
 find_program(VBAR_CCACHE ccache)
 if(VBAR_CCACHE)
-  set(CMAKE_C_COMPILER_LAUNCHER ${VBAR_CCACHE})
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${VBAR_CCACHE})
+  set(ccache env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+      CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${VBAR_CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${ccache})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${ccache})
 endif()
 
 find_path(VBAR_EIGEN_INCLUDE Eigen/Core PATHS /usr/include/eigen3 NO_CMAKE_FIND_ROOT_PATH REQUIRED)
@@ -70,16 +74,22 @@ function(vbar_host_library name)
   target_link_libraries(${name} PUBLIC vbar_options ${ARG_DEPENDS})
 endfunction()
 
-# vbar_test(name SOURCES ... DEPENDS ... [LABELS ...]): a googletest program, one ctest entry a test case.
+# vbar_test(name SOURCES ... DEPENDS ... [LABELS ...]): a googletest program, one ctest entry a test case. Without LABELS it
+# is a unit test. Its module (tests/unit/fsw/gnss: fsw/gnss) is a label as well: ctest -L '^fsw/gnss$'.
 function(vbar_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE vbar_options ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
-  target_compile_definitions(${name} PRIVATE VBAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" VBAR_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  target_link_libraries(${name} PRIVATE vbar_options vbar_test_support ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
+  target_compile_options(${name} PRIVATE ${VBAR_TEST_OPTIONS})
+  target_precompile_headers(${name} REUSE_FROM vbar_test_support)
+  file(RELATIVE_PATH module ${PROJECT_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REGEX REPLACE "^unit/" "" module ${module})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
     add_dependencies(unit_tests ${name})
+    set_property(GLOBAL APPEND PROPERTY VBAR_UNIT_TEST_MODULES "${module} ${name}")
   endif()
+  list(APPEND ARG_LABELS ${module})
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
 endfunction()
 

@@ -11,6 +11,7 @@
 #include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/twins/camera/exposure_of_truth.h"
+#include "tests/support/paths.h"
 
 namespace vbar::test {
 namespace {
@@ -106,7 +107,7 @@ Scene SceneMaker::make(double minutes, const CartesianState& target, const Vecto
 }
 
 ImageChain::ImageChain(std::uint64_t seed)
-    : renderer_(camera_, VBAR_SOURCE_DIR "/data"),
+    : renderer_(camera_, vbar::tests::source_path("data")),
       maker_({camera_, "servicer/camera", seed, 1, 0},
              [this](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {
                renderer_.render(exposure, image);

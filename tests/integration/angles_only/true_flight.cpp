@@ -14,6 +14,7 @@
 #include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/truth_model.h"
+#include "tests/support/paths.h"
 
 namespace vbar::test {
 namespace {
@@ -37,7 +38,7 @@ T must(const fsw::Result<T>& result) {
 }
 
 std::vector<nav::Burn> load_burns(fsw::GpsTime start) {
-  std::ifstream file(std::string(VBAR_SOURCE_DIR) + "/tests/integration/angles_only/burns.csv");
+  std::ifstream file(vbar::tests::source_path("tests/integration/angles_only/burns.csv"));
   std::vector<nav::Burn> burns;
   for (std::string line; std::getline(file, line);) {
     double t = 0.0;
@@ -76,7 +77,7 @@ truth::TruthSettings truth_settings(double hours, bool all_forces) {
   truth::TruthSettings settings;
   settings.epoch = truth::gps_from_utc("2011-07-18T01:00:00Z");
   settings.end = settings.epoch + fsw::nearest_duration(hours * 3600.0 + 600.0);
-  settings.data_directory = std::string(VBAR_SOURCE_DIR) + "/data";
+  settings.data_directory = vbar::tests::source_path("data");
   if (all_forces) {
     settings.forces = {.drag = true,
                        .geomagnetic_index = truth::GeomagneticIndex::kThreeHourly,

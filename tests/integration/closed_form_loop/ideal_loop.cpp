@@ -13,6 +13,7 @@
 #include "fsw/orbit/secular.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/truth_model.h"
+#include "tests/support/paths.h"
 #include "tests/unit/fsw/orbit/mission.h"
 
 namespace vbar::testing {
@@ -49,7 +50,7 @@ class Loop {
     truth_settings.gravity_degree = settings.gravity_degree;
     truth_settings.gravity_order = settings.gravity_degree;
     truth_settings.tolerance = 1e-12;
-    truth_settings.data_directory = std::string(VBAR_SOURCE_DIR) + "/data";
+    truth_settings.data_directory = vbar::tests::source_path("data");
     truth_ = std::make_unique<truth::TruthModel>(truth_settings);
     start_ = truth_settings.epoch;
 

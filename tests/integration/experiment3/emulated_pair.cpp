@@ -14,6 +14,7 @@
 #include "host_sim/mission/telecommands.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/twins/packet_encoder.h"
+#include "tests/support/paths.h"
 
 namespace vbar::test {
 namespace {
@@ -23,7 +24,7 @@ using fsw::navigation::kPhaseChannels;
 using fsw::navigation::PhaseChannel;
 using fsw::navigation::RelativeFilter;
 
-const std::string kRoot = VBAR_SOURCE_DIR;
+const std::string kRoot = vbar::tests::source_path();
 constexpr std::uint8_t kServicerNumber = 1;
 
 mission::Mission experiment3(std::vector<std::string> overrides, const std::vector<std::string>& more) {

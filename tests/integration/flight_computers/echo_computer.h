@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "pil_bridge/make_flight_computer.h"
+#include "tests/support/paths.h"
 #include "tests/support/step_packets.h"
 
 namespace vbar::pil::test {
@@ -20,9 +21,9 @@ inline FlightComputerOptions echo_options(Target target, LinkKind link) {
   options.link = link;
   options.spacecraft = kSpacecraft;
   options.article = linked_test_article();
-  if (target == Target::kHostProcess) options.image = VBAR_BINARY_DIR "/vbar_flight_echo";
-  if (target == Target::kZynqQemu) options.image = VBAR_SOURCE_DIR "/build/zynq/vbar_zynq7000_echo.elf";
-  if (target == Target::kZynqLinuxQemu) options.image = VBAR_SOURCE_DIR "/build/zynq-linux/vbar_flight_echo";
+  if (target == Target::kHostProcess) options.image = vbar::tests::build_path("vbar_flight_echo");
+  if (target == Target::kZynqQemu) options.image = vbar::tests::source_path("build/zynq/vbar_zynq7000_echo.elf");
+  if (target == Target::kZynqLinuxQemu) options.image = vbar::tests::source_path("build/zynq-linux/vbar_flight_echo");
   return options;
 }
 

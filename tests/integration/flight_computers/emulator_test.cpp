@@ -7,6 +7,7 @@
 
 #include "pil_bridge/remote_computer.h"
 #include "tests/integration/flight_computers/echo_computer.h"
+#include "tests/support/paths.h"
 
 namespace vbar::pil {
 namespace {
@@ -103,7 +104,7 @@ TEST_F(Emulator, KilledInMidRunIsOneClearError) {
 
 TEST_F(Emulator, AnImageThatNeverAnswersIsGivenUp) {
   auto options = echo_options(Target::kZynqQemu, LinkKind::kSerial);
-  options.image = VBAR_SOURCE_DIR "/LICENSE";  // the emulator loads anything
+  options.image = vbar::tests::source_path("LICENSE");  // the emulator loads anything
   options.timing.boot_limit = std::chrono::milliseconds(500);
   try {
     (void)make_flight_computer(options);

@@ -15,6 +15,7 @@
 #include "pil_bridge/remote_computer.h"
 #include "pil_bridge/udp_transport.h"
 #include "tests/integration/flight_computers/echo_computer.h"
+#include "tests/support/paths.h"
 
 namespace vbar::pil {
 namespace {
@@ -107,7 +108,7 @@ TEST(SlowSerialLine, FliesAtTheRateOfItsBaud) {
 TEST(Stranger, IsIgnoredAndCountedByTheBoard) {
   const std::uint16_t port = bind_udp_loopback().port;
   const std::string address = "127.0.0.1:" + std::to_string(port);
-  const ChildProcess board({VBAR_BINARY_DIR "/vbar_flight_echo", "--udp", address}, {});
+  const ChildProcess board({vbar::tests::build_path("vbar_flight_echo"), "--udp", address}, {});
   auto options = echo_options(Target::kBoard, LinkKind::kUdp);
   options.endpoint = address;
   const auto computer = make_flight_computer(options);

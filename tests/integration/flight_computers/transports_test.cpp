@@ -9,6 +9,7 @@
 #include "pil_bridge/stream_transport.h"
 #include "pil_bridge/udp_transport.h"
 #include "tests/integration/flight_computers/echo_computer.h"
+#include "tests/support/paths.h"
 
 namespace vbar::pil {
 namespace {
@@ -73,7 +74,7 @@ TEST(Board, OnASerialDevice) {
   Pty pty = make_pty();
   std::vector<FileDescriptor> inherited;
   inherited.push_back(std::move(pty.master));
-  const ChildProcess board({VBAR_BINARY_DIR "/vbar_flight_echo", "--stream", "3"}, std::move(inherited));
+  const ChildProcess board({vbar::tests::build_path("vbar_flight_echo"), "--stream", "3"}, std::move(inherited));
   auto options = echo_options(Target::kBoard, LinkKind::kSerial);
   options.endpoint = pty.slave_path;
   EXPECT_EQ(fly(*make_flight_computer(options), kSteps), expected_outputs(kSteps));
@@ -82,7 +83,7 @@ TEST(Board, OnASerialDevice) {
 // The other way round: the flight software opens the device, by name and rate.
 TEST(Board, OpensItsSerialDeviceItself) {
   Pty pty = make_pty();
-  const ChildProcess board({VBAR_BINARY_DIR "/vbar_flight_echo", "--serial", pty.slave_path, "--baud", "115200"}, {});
+  const ChildProcess board({vbar::tests::build_path("vbar_flight_echo"), "--serial", pty.slave_path, "--baud", "115200"}, {});
   StreamTransport line(adopt_pty(std::move(pty.master), "pseudo-terminal"));
   StepBarrier barrier(line, 1, BarrierTiming{}, [] {});
   EXPECT_EQ(barrier.connect(test::kSpacecraft), "host process");
@@ -91,7 +92,7 @@ TEST(Board, OpensItsSerialDeviceItself) {
 TEST(Board, OnUdpAnswersWhoeverSaysHelloAndIsReadyForTheNextRun) {
   const std::uint16_t port = bind_udp_loopback().port;
   const std::string address = "127.0.0.1:" + std::to_string(port);
-  const ChildProcess board({VBAR_BINARY_DIR "/vbar_flight_echo", "--udp", address}, {});
+  const ChildProcess board({vbar::tests::build_path("vbar_flight_echo"), "--udp", address}, {});
   auto options = echo_options(Target::kBoard, LinkKind::kUdp);
   options.endpoint = address;
   const auto first = fly(*make_flight_computer(options), kSteps);
@@ -118,7 +119,7 @@ TEST(Board, ThatIsNotThereIsAnErrorAfterABoundedTime) {
 // ---- the program itself
 
 int exit_status_of(const std::vector<std::string>& arguments, std::string& output) {
-  std::vector<std::string> all{VBAR_BINARY_DIR "/vbar_flight_echo"};
+  std::vector<std::string> all{vbar::tests::build_path("vbar_flight_echo")};
   all.insert(all.end(), arguments.begin(), arguments.end());
   ChildProcess program(all, {});
   if (!program.wait_for_end(std::chrono::seconds(10))) return -1;
@@ -150,7 +151,7 @@ TEST(FlightProgram, EndsWhenItsHostIsGone) {
   auto [ours, theirs] = make_socket_pair();
   std::vector<FileDescriptor> inherited;
   inherited.push_back(std::move(theirs));
-  ChildProcess program({VBAR_BINARY_DIR "/vbar_flight_echo", "--stream", "3"}, std::move(inherited));
+  ChildProcess program({vbar::tests::build_path("vbar_flight_echo"), "--stream", "3"}, std::move(inherited));
   EXPECT_FALSE(program.wait_for_end(std::chrono::milliseconds(20)));
   ours.reset();
   EXPECT_TRUE(program.wait_for_end(std::chrono::seconds(10)));
@@ -161,7 +162,7 @@ TEST(FlightProgram, EndsWhenItsTerminalHangsUp) {
   Pty pty = make_pty();
   std::vector<FileDescriptor> inherited;
   inherited.push_back(std::move(pty.slave));
-  ChildProcess program({VBAR_BINARY_DIR "/vbar_flight_echo", "--stream", "3"}, std::move(inherited));
+  ChildProcess program({vbar::tests::build_path("vbar_flight_echo"), "--stream", "3"}, std::move(inherited));
   EXPECT_FALSE(program.wait_for_end(std::chrono::milliseconds(20)));
   pty.master.reset();
   EXPECT_TRUE(program.wait_for_end(std::chrono::seconds(10)));

@@ -19,6 +19,7 @@
 #include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/truth_model.h"
+#include "tests/support/paths.h"
 
 namespace vbar::test {
 namespace {
@@ -66,7 +67,7 @@ truth::TruthSettings truth_settings(double hours) {
   truth::TruthSettings settings;
   settings.epoch = truth::gps_from_utc("2011-07-19T16:00:00Z");
   settings.end = settings.epoch + fsw::nearest_duration(hours * 3600.0 + 600.0);
-  settings.data_directory = std::string(VBAR_SOURCE_DIR) + "/data";
+  settings.data_directory = vbar::tests::source_path("data");
   settings.forces = {.drag = true,
                      .geomagnetic_index = truth::GeomagneticIndex::kThreeHourly,
                      .radiation_pressure = true,

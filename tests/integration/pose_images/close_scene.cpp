@@ -10,6 +10,7 @@
 #include "host_sim/mission/telecommands.h"
 #include "host_sim/twins/camera/model/cad_objects.h"
 #include "host_sim/twins/camera/photometry.h"
+#include "tests/support/paths.h"
 
 namespace vbar::test {
 namespace {
@@ -37,7 +38,7 @@ CloseScene::CloseScene()
     : shape_(training::TargetShape::load(mission::data_directory())),
       network_(std::make_unique<fsw::pose::SpacecraftPoseNetwork>()) {
   const mission::Mission mission =
-      mission::load_mission(std::filesystem::path(VBAR_SOURCE_DIR) / "missions" / "experiment2.toml");
+      mission::load_mission(std::filesystem::path(vbar::tests::source_path("missions")) / "experiment2.toml");
   const mission::Spacecraft& servicer = *mission.find_spacecraft("servicer");
   camera_ = servicer.camera->settings;
   const auto settings = fsw::gnc::pose_camera_settings(mission::camera_configuration_of(servicer),

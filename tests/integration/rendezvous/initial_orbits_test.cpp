@@ -11,6 +11,7 @@
 
 #include "fsw/orbit/rtn.h"
 #include "host_sim/mission/load.h"
+#include "tests/support/paths.h"
 
 namespace vbar::test {
 namespace {
@@ -21,7 +22,7 @@ struct Pair {
 };
 
 Pair placed(const std::vector<std::string>& overrides = {}) {
-  const std::string root = VBAR_SOURCE_DIR;
+  const std::string root = vbar::tests::source_path();
   const mission::Mission mission = mission::load_mission(root + "/missions/ideal_navigation.toml", overrides);
   truth::TruthSettings settings;
   settings.epoch = mission.epoch;
@@ -69,7 +70,7 @@ TEST(InitialOrbits, ElementsAreAsGoodAsTheirWaypoint) {
 // The body frame's error of mass is that of the truth's forces: a sigma seven times the mass leaves some seeds without
 // one, and drag refuses that by name; the true mass otherwise stretches what sunlight and drag do over 39 h.
 TEST(InitialOrbits, ReceiversDrawTheTrueMass) {
-  const std::string root = VBAR_SOURCE_DIR;
+  const std::string root = vbar::tests::source_path();
   const auto servicer_of = [&](int seed, const std::string& sigma_kg) {
     const mission::Mission mission = mission::load_mission(
         root + "/missions/experiment3.toml",

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "pil_bridge/in_process.h"
+#include "tests/support/paths.h"
 #include "tests/support/step_packets.h"
 
 namespace vbar::pil {
@@ -24,7 +25,7 @@ std::string error_of_loading(const std::string& path) {
 }
 
 TEST(TestArticle, ASharedLibraryFliesLikeTheSameCodeLinkedIn) {
-  const auto loaded = make_in_process(load_test_article(VBAR_BINARY_DIR "/libvbar_echo_article.so"), 1);
+  const auto loaded = make_in_process(load_test_article(vbar::tests::build_path("libvbar_echo_article.so")), 1);
   const auto linked = make_in_process(linked_test_article(), 1);
   EXPECT_EQ(loaded->description(), "in process: vbar link exerciser");
   EXPECT_EQ(vbar::test::fly(*loaded, 50), vbar::test::fly(*linked, 50));

@@ -12,6 +12,7 @@
 #include "fsw/orbit/rtn.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/truth_model.h"
+#include "tests/support/paths.h"
 #include "tests/unit/fsw/control/legs.h"
 
 namespace vbar::fsw::control {
@@ -80,7 +81,7 @@ TEST(Fly, PredictsTheIntegratedArrivalToDecimetres) {
   settings.epoch = truth::gps_from_utc("2011-07-18T01:00:00Z");
   settings.gravity_degree = 2;
   settings.gravity_order = 0;
-  settings.data_directory = VBAR_SOURCE_DIR "/data";
+  settings.data_directory = vbar::tests::source_path("data");
   truth::TruthModel model(settings);
   const MeanOrbits start = waypoint_zero(settings.epoch);
   const std::size_t servicer = model.add_spacecraft("servicer", state_of(start.servicer));

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "fsw/control/koenig_damico.h"
+#include "tests/support/paths.h"
 
 namespace vbar::fsw::control {
 namespace {
@@ -51,7 +52,7 @@ ReferenceProblem parse(const std::string& line) {
 }
 
 std::vector<ReferenceProblem> read_problems() {
-  std::ifstream file(VBAR_SOURCE_DIR "/tests/unit/fsw/control/koenig_reference.csv");
+  std::ifstream file(vbar::tests::source_path("tests/unit/fsw/control/koenig_reference.csv"));
   std::string line;
   std::getline(file, line);
   std::vector<ReferenceProblem> problems;

@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "fsw/gnss/ephemeris.h"
+#include "tests/support/paths.h"
 
 namespace vbar::fsw::gnss::test {
 
 inline std::vector<std::vector<std::string>> csv_rows(const std::string& name) {
-  std::ifstream file(VBAR_SOURCE_DIR "/tests/data/receiver/" + name);
+  std::ifstream file(vbar::tests::source_path("tests/data/receiver/") + name);
   std::vector<std::vector<std::string>> rows;
   std::string line;
   std::getline(file, line);  // the source

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/paths.h"
+
 namespace vbar::fsw::gnss::test {
 
 inline std::vector<std::string> split(const std::string& text, char separator) {
@@ -25,7 +27,7 @@ struct AsciiLog {
 
 /// The log `name` (as RANGEA) of test case `test`.
 inline AsciiLog ascii_log(const std::string& test, const std::string& name) {
-  std::ifstream file(VBAR_SOURCE_DIR "/tests/data/receiver/novatel_ascii_logs.txt");
+  std::ifstream file(vbar::tests::source_path("tests/data/receiver/novatel_ascii_logs.txt"));
   AsciiLog log;
   std::string title;
   std::string line;

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "fsw/gnss/gps_week.h"
+#include "tests/support/paths.h"
 #include "tests/unit/fsw/gnss/novatel_vectors.h"
 #include "tests/unit/fsw/gnss/oem_bytes_writer.h"
 
@@ -130,7 +131,7 @@ TEST(BestXyz, RefusesWhatCannotBe) {
 
 /// NovAtel's binary log of this test, and what its own decoder printed of it.
 TEST(BestPosition, IsWhereTheManufacturersDecoderPutsIt) {
-  std::ifstream file(VBAR_SOURCE_DIR "/tests/data/receiver/novatel_binary_logs.hex");
+  std::ifstream file(vbar::tests::source_path("tests/data/receiver/novatel_binary_logs.hex"));
   const auto stream = std::make_unique<OemStream>();
   std::string line;
   bool whole = false;

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/paths.h"
 #include "tests/unit/fsw/gnss/oem_bytes_writer.h"
 
 namespace vbar::fsw::gnss {
@@ -85,7 +86,7 @@ Bytes bytes_of_hex(const std::string& text) {
 }
 
 TEST(OemStream, ReadsTheManufacturersVectors) {
-  std::ifstream file(VBAR_SOURCE_DIR "/tests/data/receiver/novatel_binary_logs.hex");
+  std::ifstream file(vbar::tests::source_path("tests/data/receiver/novatel_binary_logs.hex"));
   std::string name;
   std::string hex;
   std::getline(file, name);  // the source

@@ -13,6 +13,7 @@
 
 #include "fsw/gnss/oem_ephemeris.h"
 #include "tests/support/allocation_counter.h"
+#include "tests/support/paths.h"
 #include "tests/support/receiver_promises.h"
 #include "tests/unit/fsw/gnss/oem_bytes_writer.h"
 
@@ -23,7 +24,7 @@ using test::Bytes;
 
 /// An OEMV's log of 18 December 2009: its messages RANGECMP, RAWEPHEM and BESTPOS.
 Bytes real_log() {
-  std::ifstream file(VBAR_SOURCE_DIR "/tests/data/receiver/oemv_200911218.gps", std::ios::binary);
+  std::ifstream file(vbar::tests::source_path("tests/data/receiver/oemv_200911218.gps"), std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 

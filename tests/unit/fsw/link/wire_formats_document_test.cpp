@@ -15,6 +15,7 @@
 #include "fsw/link/cobs.h"
 #include "fsw/link/frame.h"
 #include "fsw/packets/messages.h"
+#include "tests/support/paths.h"
 
 namespace vbar::fsw {
 namespace {
@@ -23,7 +24,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// The bytes of the block "```hex <name>": on each line the pairs of hex digits up to the comment.
 Bytes block(const std::string& name) {
-  std::ifstream file(VBAR_SOURCE_DIR "/docs/wire_formats.md");
+  std::ifstream file(vbar::tests::source_path("docs/wire_formats.md"));
   EXPECT_TRUE(file);
   Bytes bytes;
   std::string line;
@@ -83,7 +84,7 @@ TEST(WireFormatsDocument, PixelsAreRight) {
 
 /// By APID, the messages of the table's rows: "| 0x001 | `tick` |", two to a line.
 std::map<int, std::string> table_of_apids() {
-  std::ifstream file(VBAR_SOURCE_DIR "/docs/wire_formats.md");
+  std::ifstream file(vbar::tests::source_path("docs/wire_formats.md"));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const std::regex row(R"(\| 0x([0-9a-f]{3}) \| `(\w+)` )");
   std::map<int, std::string> table;

@@ -12,6 +12,7 @@
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/truth_model.h"
 #include "tests/support/accuracy.h"
+#include "tests/support/paths.h"
 
 namespace vbar::fsw::navigation {
 namespace {
@@ -27,7 +28,7 @@ class Coast : public testing::Test {
     settings.end = settings.epoch + duration_of_seconds(86400);
     settings.gravity_degree = degree;
     settings.gravity_order = degree;
-    settings.data_directory = std::string(VBAR_SOURCE_DIR) + "/data";
+    settings.data_directory = vbar::tests::source_path("data");
     truth = std::make_unique<truth::TruthModel>(settings);
     const double degree_of_arc = M_PI / 180.0;
     orbit::QnsElements q{7087300.0, 0.0015, 0.0, 98.18 * degree_of_arc, 207.0 * degree_of_arc, -0.69 * degree_of_arc};

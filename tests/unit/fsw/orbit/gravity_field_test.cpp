@@ -12,12 +12,13 @@
 #include "fsw/orbit/gravity_coefficients.h"
 #include "host_sim/truth/forces/gravity_coefficients.h"
 #include "tests/support/accuracy.h"
+#include "tests/support/paths.h"
 
 namespace vbar::fsw::orbit {
 namespace {
 
 truth::GravityCoefficients published() {
-  return truth::load_gravity_coefficients(std::string(VBAR_SOURCE_DIR) + "/data/gravity/ggm05s_120.txt",
+  return truth::load_gravity_coefficients(vbar::tests::source_path("data/gravity/ggm05s_120.txt"),
                                           kGravityDegree);
 }
 

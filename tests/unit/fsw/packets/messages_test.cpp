@@ -2,6 +2,7 @@
 // rules (fields in order, big-endian, no padding), independently of the generated code.
 
 #include "fsw/packets/messages.h"
+#include "tests/support/paths.h"
 
 #include <algorithm>
 #include <bit>
@@ -81,7 +82,7 @@ std::map<std::string, Layout> layouts_of(const std::string& path) {
 class Messages : public testing::Test {
  protected:
   static constexpr std::size_t kHashBytes = 8;
-  std::map<std::string, Layout> layouts_ = layouts_of(VBAR_SOURCE_DIR "/fsw/packets/vbar.lcm");
+  std::map<std::string, Layout> layouts_ = layouts_of(vbar::tests::source_path("fsw/packets/vbar.lcm"));
 
   template <class Message>
   static Bytes packet_of(const Message& message) {

@@ -12,13 +12,14 @@
 
 #include "fsw/stars/star_lookup.h"
 #include "tests/support/accuracy.h"
+#include "tests/support/paths.h"
 #include "tests/support/star_sky.h"
 
 namespace vbar::fsw::stars {
 namespace {
 
 const std::vector<sky::TrueStar>& the_sky() {
-  static const auto stars = sky::read_sky(VBAR_SOURCE_DIR "/data/stars/hipparcos_v8.csv", 2011.55);
+  static const auto stars = sky::read_sky(vbar::tests::source_path("data/stars/hipparcos_v8.csv"), 2011.55);
   return stars;
 }
 

@@ -15,10 +15,11 @@
 #include <unistd.h>
 
 #include "fsw/stars/star_tables.h"
+#include "tests/support/paths.h"
 
 namespace {
 
-const std::string kStarFile = VBAR_SOURCE_DIR "/data/stars/hipparcos_v8.csv";
+const std::string kStarFile = vbar::tests::source_path("data/stars/hipparcos_v8.csv");
 const std::string kHeading = "hip,ra_deg,dec_deg,pm_ra_mas,pm_dec_mas,v,b_v\n";
 
 std::string content_of(const std::filesystem::path& path) {
@@ -36,7 +37,7 @@ class MakeStarTables : public testing::Test {
     std::string message;
   };
   [[nodiscard]] Outcome run(const std::string& star_file, const std::string& epoch = "2011.55") const {
-    const std::string command = VBAR_BINARY_DIR "/fsw/stars/make_star_tables " + star_file + " " + epoch + " " +
+    const std::string command = vbar::tests::build_path("fsw/stars/make_star_tables ") + star_file + " " + epoch + " " +
                                 (folder_ / "tables").string() + " " + (folder_ / "sizes").string() + " 2> " +
                                 (folder_ / "message").string();
     const int status = std::system(command.c_str());

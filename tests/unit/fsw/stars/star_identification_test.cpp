@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/paths.h"
 #include "tests/support/star_campaign.h"
 
 namespace vbar::fsw::stars {
@@ -16,7 +17,7 @@ constexpr double kSigma = 0.1 / 5972.7;
 constexpr int kThousand = sky::share_under_sanitizers(1000);
 
 const std::vector<sky::TrueStar>& the_sky() {
-  static const auto stars = sky::read_sky(VBAR_SOURCE_DIR "/data/stars/hipparcos_v8.csv", 2011.55);
+  static const auto stars = sky::read_sky(vbar::tests::source_path("data/stars/hipparcos_v8.csv"), 2011.55);
   return stars;
 }
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/paths.h"
 #include "tests/support/star_campaign.h"
 
 namespace vbar::fsw::stars {
@@ -39,7 +40,7 @@ TEST(MagnitudeGate, LetsSaturatedStarsBeTooFaint) {
 }
 
 TEST(Verification, RefusesAnAttitudeThatIsWrong) {
-  const auto sky = sky::read_sky(VBAR_SOURCE_DIR "/data/stars/hipparcos_v8.csv", 2011.55);
+  const auto sky = sky::read_sky(vbar::tests::source_path("data/stars/hipparcos_v8.csv"), 2011.55);
   auto verification = std::make_unique<Verification>();
   sky::Random random(21);
   AttitudeFix fix;

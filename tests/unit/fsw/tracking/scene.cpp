@@ -9,6 +9,7 @@
 #include "fsw/orbit/rtn.h"
 #include "fsw/orbit/secular.h"
 #include "host_sim/truth/earth/time_scales.h"
+#include "tests/support/paths.h"
 #include "tests/unit/fsw/orbit/mission.h"
 
 namespace vbar::testing {
@@ -90,7 +91,7 @@ struct SceneMaker::Sky {
     truth_settings.epoch = truth::gps_from_utc("2011-07-18T01:00:00Z");
     truth_settings.gravity_degree = 20;
     truth_settings.gravity_order = 20;
-    truth_settings.data_directory = std::string(VBAR_SOURCE_DIR) + "/data";
+    truth_settings.data_directory = vbar::tests::source_path("data");
     truth = std::make_unique<truth::TruthModel>(truth_settings);
     start = truth_settings.epoch;
 

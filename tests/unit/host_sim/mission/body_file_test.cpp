@@ -11,6 +11,7 @@
 
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/truth/attitude/rigid_body.h"
+#include "tests/support/paths.h"
 
 namespace vbar::mission {
 namespace {
@@ -20,7 +21,7 @@ using fsw::Vector3;
 using testing::HasSubstr;
 
 truth::Body body(const std::string& name) {
-  return load_body(std::filesystem::path(VBAR_SOURCE_DIR) / "data/bodies" / (name + ".toml"));
+  return load_body(std::filesystem::path(vbar::tests::source_path("data/bodies")) / (name + ".toml"));
 }
 
 TEST(Bodies, TangoHasThePublishedPrincipalMoments) {

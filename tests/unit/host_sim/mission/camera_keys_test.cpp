@@ -9,6 +9,7 @@
 #include "fsw/packets/messages.h"
 #include "host_sim/mission/camera_file.h"
 #include "host_sim/mission/telecommands.h"
+#include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
 namespace vbar::mission::test {
@@ -53,7 +54,7 @@ TEST(CameraKeys, DefaultIsTheOpticalStimulator) {
 
 // What a camera file leaves out is the Optical Stimulator's: its own file says nothing else.
 TEST(CameraKeys, TheOpticalStimulatorsFileIsTheDefault) {
-  const auto file = load_camera(VBAR_SOURCE_DIR "/data/cameras/optical_stimulator.toml").settings();
+  const auto file = load_camera(vbar::tests::source_path("data/cameras/optical_stimulator.toml")).settings();
   const twins::camera::CameraSettings usual;
   EXPECT_EQ(file.optics.principal_point_px, usual.optics.principal_point_px);
   EXPECT_EQ(file.optics.distortion, usual.optics.distortion);
@@ -180,7 +181,7 @@ TEST(CameraTelecommands, CameraIsAsCalibrated) {
 }
 
 TEST(CameraTelecommands, NavigationIsByCameraWithoutAPartner) {
-  const auto orientation = truth::EarthOrientationSeries::load(VBAR_SOURCE_DIR "/data/earth/eop_2009_2013.csv");
+  const auto orientation = truth::EarthOrientationSeries::load(vbar::tests::source_path("data/earth/eop_2009_2013.csv"));
   const Mission mission = mission_with({"gnss.body_frame.antenna_in_body_m=[0, -0.3, 0]"});
   const auto c = navigation_configuration_of(mission, mission.spacecraft[0], orientation);
   EXPECT_EQ(c.source, 2);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
 namespace vbar::mission::test {
@@ -41,7 +42,7 @@ TEST_F(Catalogue, MissingFolderIsAnError) {
 
 // Every mission that the project ships can be run.
 TEST(ShippedMissions, AllLoad) {
-  const auto entries = list_missions(VBAR_SOURCE_DIR "/missions");
+  const auto entries = list_missions(vbar::tests::source_path("missions"));
   ASSERT_FALSE(entries.empty());
   for (const auto& entry : entries) EXPECT_TRUE(entry.good) << entry.description;
 }

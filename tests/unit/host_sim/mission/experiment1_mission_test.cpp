@@ -19,6 +19,7 @@
 #include "host_sim/mission/extends.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/earth/sun_moon.h"
+#include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
 namespace vbar::mission::test {
@@ -26,8 +27,8 @@ namespace {
 
 using fsw::Vector3;
 
-constexpr const char* kFile = VBAR_SOURCE_DIR "/missions/experiment1.toml";
-constexpr const char* kAsPrinted = VBAR_SOURCE_DIR "/missions/experiment1_as_printed.toml";
+const std::string kFile = vbar::tests::source_path("missions/experiment1.toml");
+const std::string kAsPrinted = vbar::tests::source_path("missions/experiment1_as_printed.toml");
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 const OrbitByElements& servicer_orbit(const Mission& mission) {
@@ -38,7 +39,7 @@ const OrbitByElements& servicer_orbit(const Mission& mission) {
 /// of a mean Sun at longitude zero by its definition.
 double mean_local_time_h(const Mission& mission) {
   const auto orientation = std::make_shared<const truth::EarthOrientationSeries>(
-      truth::EarthOrientationSeries::load(VBAR_SOURCE_DIR "/data/earth/eop_2009_2013.csv"));
+      truth::EarthOrientationSeries::load(vbar::tests::source_path("data/earth/eop_2009_2013.csv")));
   truth::EarthRotation rotation(orientation, mission.epoch);
   const fsw::orbit::QnsElements& e = servicer_orbit(mission).elements;
   const Vector3 normal_eci(std::sin(e.i) * std::sin(e.raan), -std::sin(e.i) * std::cos(e.raan), std::cos(e.i));
@@ -187,7 +188,7 @@ std::string text_of_file(const char* file) {
 }
 
 TEST(Experiment1Mission, EveryKeyIsExplained) {
-  const std::string text = text_of_file(kFile) + text_of_file(VBAR_SOURCE_DIR "/data/cameras/optical_stimulator.toml");
+  const std::string text = text_of_file(kFile) + text_of_file(vbar::tests::source_path("data/cameras/optical_stimulator.toml"));
   for (const char* table : {"spacecraft.servicer.sensors.camera", "spacecraft.servicer.sensors.camera.optics",
                             "spacecraft.servicer.sensors.camera.detector", "spacecraft.servicer.attitude",
                             "angles_only", "angles_only.apriori"}) {

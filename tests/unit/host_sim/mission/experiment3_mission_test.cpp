@@ -9,12 +9,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
 namespace vbar::mission::test {
 namespace {
 
-constexpr const char* kFile = VBAR_SOURCE_DIR "/missions/experiment3.toml";
+const std::string kFile = vbar::tests::source_path("missions/experiment3.toml");
 
 std::string file_text() {
   std::ostringstream text;
@@ -110,7 +111,7 @@ TEST(Experiment3Mission, ReceiverIsThePapers) {
 }
 
 TEST(GnssNavigationOnlyMission, IsIdleWithBurns) {
-  const Mission mission = load_mission(VBAR_SOURCE_DIR "/missions/gnss_navigation_only.toml");
+  const Mission mission = load_mission(vbar::tests::source_path("missions/gnss_navigation_only.toml"));
   EXPECT_EQ(mission.guidance.mode, Mode::kIdle);
   EXPECT_EQ(mission.burns.size(), 4U);
   EXPECT_TRUE(mission.find_spacecraft("servicer")->gnss.has_value());

@@ -4,13 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
 namespace vbar::mission::test {
 namespace {
 
 Mission ideal_navigation() {
-  return load_mission(VBAR_SOURCE_DIR "/missions/ideal_navigation.toml");
+  return load_mission(vbar::tests::source_path("missions/ideal_navigation.toml"));
 }
 
 // The paper's table "End-to-end Mission ROE Waypoints": time in hours, then a*ROE in metres.

@@ -7,6 +7,7 @@
 
 #include "host_sim/report/compare_report.h"
 #include "host_sim/report/run_folder.h"
+#include "tests/support/paths.h"
 #include "tests/unit/host_sim/report/program_output.h"
 #include "tests/unit/host_sim/report/scratch_folder.h"
 #include "tests/unit/host_sim/report/synthetic_run.h"
@@ -23,7 +24,7 @@ class HtmlReport : public ScratchFolder {
     const auto file = scratch_ / "page.html";
     write(file, html);
     const ProgramOutput output =
-        output_of("python3 " VBAR_SOURCE_DIR "/tests/unit/host_sim/report/check_page.py " + file.string());
+        output_of("python3 " + vbar::tests::source_path("tests/unit/host_sim/report/check_page.py ") + file.string());
     return output.status == 0 ? output.text : "check_page.py failed: " + output.text;
   }
 };

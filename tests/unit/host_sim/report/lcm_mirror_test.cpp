@@ -7,6 +7,7 @@
 #include <lcm/lcm.h>
 
 #include "host_sim/report/output_hash.h"
+#include "tests/support/paths.h"
 #include "tests/unit/host_sim/report/packets.h"
 #include "tests/unit/host_sim/report/program_output.h"
 #include "tests/unit/host_sim/report/scratch_folder.h"
@@ -52,7 +53,7 @@ TEST_F(LcmMirrorTest, WhatIsLoggedFromTheBusIsEveryPacket) {
     EXPECT_EQ(log.records[k].packet, records[k].packet);
   }
   const ProgramOutput independent =
-      output_of("python3 " VBAR_SOURCE_DIR "/tests/unit/host_sim/report/hash_lcm_log.py " + file.string());
+      output_of("python3 " + vbar::tests::source_path("tests/unit/host_sim/report/hash_lcm_log.py ") + file.string());
   EXPECT_EQ(independent.text, hash.commands_sha256() + "\n" + hash.telemetry_sha256() + "\n");
 }
 

@@ -7,10 +7,11 @@
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/orbit_geometry.h"
 #include "host_sim/truth/truth_model.h"
+#include "tests/support/paths.h"
 
 namespace vbar::truth::test {
 
-inline const std::filesystem::path kDataDirectory = std::filesystem::path(VBAR_SOURCE_DIR) / "data";
+inline const std::filesystem::path kDataDirectory = std::filesystem::path(vbar::tests::source_path("data"));
 
 inline constexpr double kGm = 3.986004415e14;      // GGM05S
 inline constexpr double kEarthRadius = 6378136.3;  // GGM05S

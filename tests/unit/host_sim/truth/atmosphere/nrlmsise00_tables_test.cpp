@@ -1,4 +1,5 @@
 #include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
+#include "tests/support/paths.h"
 
 #include <filesystem>
 #include <fstream>
@@ -18,7 +19,7 @@ using testing::HasSubstr;
 class Nrlmsise00TablesFile : public testing::Test {
  protected:
   void SetUp() override {
-    std::ifstream in(std::filesystem::path(VBAR_SOURCE_DIR) / "data/atmosphere/nrlmsise00.csv");
+    std::ifstream in(std::filesystem::path(vbar::tests::source_path("data/atmosphere/nrlmsise00.csv")));
     std::stringstream text;
     text << in.rdbuf();
     whole_ = text.str();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host_sim/truth/atmosphere/nrlmsise00.h"
+#include "tests/support/paths.h"
 
 namespace vbar::truth::test {
 
@@ -24,7 +25,7 @@ inline std::vector<std::string> cells(const std::string& line) {
 }
 
 inline std::vector<ReferenceRow> reference_rows(const std::string& file_name) {
-  const auto file = std::filesystem::path(VBAR_SOURCE_DIR) / "tests/unit/host_sim/truth/atmosphere" / file_name;
+  const auto file = std::filesystem::path(vbar::tests::source_path("tests/unit/host_sim/truth/atmosphere")) / file_name;
   std::ifstream in(file);
   std::vector<std::string> columns;
   std::vector<ReferenceRow> rows;
@@ -67,7 +68,7 @@ inline AtmosphereInput input_of(const ReferenceRow& row) {
 
 inline std::shared_ptr<const Nrlmsise00Tables> published_tables() {
   static const auto tables = std::make_shared<const Nrlmsise00Tables>(
-      load_nrlmsise00_tables(std::filesystem::path(VBAR_SOURCE_DIR) / "data/atmosphere/nrlmsise00.csv"));
+      load_nrlmsise00_tables(std::filesystem::path(vbar::tests::source_path("data/atmosphere/nrlmsise00.csv"))));
   return tables;
 }
 

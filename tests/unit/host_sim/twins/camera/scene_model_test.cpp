@@ -15,6 +15,7 @@
 #include "host_sim/twins/camera/scene.h"
 #include "tests/support/camera_picture.h"
 #include "tests/support/camera_scene.h"
+#include "tests/support/paths.h"
 
 namespace {
 
@@ -124,7 +125,7 @@ TEST(SceneModel, an_example_frame_of_tango_near_and_far) {
   camera::PhotonImage image;
   renderer().render(exposure, image);
   const std::filesystem::path file =
-      std::filesystem::path(VBAR_BINARY_DIR) / ("camera_tango_" + std::to_string(getpid()) + ".png");
+      std::filesystem::path(vbar::tests::build_path()) / ("camera_tango_" + std::to_string(getpid()) + ".png");
   ASSERT_TRUE(vbar::test::write_picture(image, 1e8, file));
   if (std::getenv("VBAR_KEEP_IMAGES") == nullptr) std::filesystem::remove(file);
   EXPECT_GT(measure(image, kMiddle + kFocalPx * Vector2(-0.02, -0.02), 80.0).electrons,

@@ -15,6 +15,7 @@
 #include "host_sim/twins/camera/scene.h"
 #include "tests/support/camera_picture.h"
 #include "tests/support/camera_scene.h"
+#include "tests/support/paths.h"
 
 namespace {
 
@@ -169,7 +170,7 @@ TEST(SceneObjects, an_example_frame_of_orion_with_three_spacecraft) {
   camera::PhotonImage image;
   renderer().render(exposure, image);
   const std::filesystem::path file =
-      std::filesystem::path(VBAR_BINARY_DIR) / ("camera_example_" + std::to_string(getpid()) + ".png");
+      std::filesystem::path(vbar::tests::build_path()) / ("camera_example_" + std::to_string(getpid()) + ".png");
   ASSERT_TRUE(vbar::test::write_picture(image, 2000.0, file));
   if (std::getenv("VBAR_KEEP_IMAGES") == nullptr) std::filesystem::remove(file);
   // The belt's three stars, V 1.7 to 2.2, blue: 3.1e10 * 10^(-0.4 * 1.7) * 3.358e-5 electrons and less.

@@ -10,11 +10,12 @@
 #include "host_sim/twins/gnss/navigation_message.h"
 #include "host_sim/twins/gnss/system_time.h"
 #include "tests/support/accuracy.h"
+#include "tests/support/paths.h"
 
 namespace vbar::twins::gnss {
 namespace {
 
-const std::filesystem::path kFiles = std::filesystem::path(VBAR_SOURCE_DIR) / "data" / "gps";
+const std::filesystem::path kFiles = std::filesystem::path(vbar::tests::source_path("data")) / "gps";
 
 std::vector<Ephemeris> all_sets() {
   std::vector<Ephemeris> sets = read_ephemeris_file(kFiles / "gps_2011_10_20.csv").satellites;

@@ -8,11 +8,12 @@
 
 #include "host_sim/twins/gnss/ephemeris_file.h"
 #include "host_sim/twins/gnss/system_time.h"
+#include "tests/support/paths.h"
 
 namespace vbar::twins::gnss {
 namespace {
 
-const std::filesystem::path kData = std::filesystem::path(VBAR_SOURCE_DIR) / "data";
+const std::filesystem::path kData = std::filesystem::path(vbar::tests::source_path("data"));
 constexpr fsw::GpsTime kMission = gps_time_of(System::kGps, 1645, 2 * 86400 + 57600);  // 2011-07-19 16:00
 
 std::size_t count(const Constellation& constellation, System system) {

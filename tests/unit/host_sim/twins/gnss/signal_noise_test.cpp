@@ -1,4 +1,5 @@
 #include "host_sim/twins/gnss/signal_noise.h"
+#include "tests/support/paths.h"
 
 #include <cmath>
 #include <filesystem>
@@ -35,7 +36,7 @@ TEST(SignalNoise, LinkBudget) {
 
 // Values of the pattern's file at and between its angles.
 TEST(SignalNoise, AntennaPattern) {
-  const AntennaPattern pattern = AntennaPattern::load(std::filesystem::path(VBAR_SOURCE_DIR) / "data");
+  const AntennaPattern pattern = AntennaPattern::load(std::filesystem::path(vbar::tests::source_path("data")));
   const auto at_deg = [&pattern](double angle) {
     return pattern.attenuation_db(std::cos(angle * std::numbers::pi / 180));
   };

@@ -1,6 +1,7 @@
 // CAD files that are none, and what is said of them; Tango's against its keypoints.
 
 #include "host_sim/twins/camera/model/cad_model.h"
+#include "tests/support/paths.h"
 
 #include <filesystem>
 #include <fstream>
@@ -136,7 +137,7 @@ TEST_F(CadFiles, ThatAreNone) {
 }
 
 TEST(TangoModel, HasItsKeypointsAndALimitedNumberOfFaces) {
-  const CadModel model = load_cad_model(std::filesystem::path(VBAR_SOURCE_DIR) / "data/models/tango.obj");
+  const CadModel model = load_cad_model(std::filesystem::path(vbar::tests::source_path("data/models/tango.obj")));
   EXPECT_GT(model.triangles.size(), 1000U);
   EXPECT_LT(model.triangles.size(), 5000U);
   EXPECT_EQ(model.faces_without_area, 0U);

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/twins/camera/model/target_renderer.h"
+#include "tests/support/paths.h"
 #include "tests/unit/host_sim/twins/camera/model/light_sums.h"
 #include "tests/unit/host_sim/twins/camera/model/shapes.h"
 
@@ -25,7 +26,7 @@ using fsw::Vector3;
 constexpr double kPi = std::numbers::pi;
 
 CadModel tango() {
-  return load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj");
+  return load_cad_model(vbar::tests::source_path("data/models/tango.obj"));
 }
 
 CadModel sphere(double radius, double albedo) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/twins/camera/model/target_renderer.h"
+#include "tests/support/paths.h"
 #include "tests/unit/host_sim/twins/camera/model/light_sums.h"
 #include "tests/unit/host_sim/twins/camera/model/ray_tracer.h"
 
@@ -41,7 +42,7 @@ bool free_around(const CadModel& model, const Spheres& spheres, const Vector3& c
 }
 
 TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
-  const CadModel model = load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj");
+  const CadModel model = load_cad_model(vbar::tests::source_path("data/models/tango.obj"));
   const Spheres spheres(model);
   TargetRenderer renderer(model);
   std::vector<LightSample> samples;
@@ -85,7 +86,7 @@ TEST(TargetGeometry, AntennaTipsAppearWhereTheyProject) {
 
 TEST(TargetGeometry, IsNotMirrored) {
   // From above, the body's y to the right and x down in the picture: tip 10 is at the left, below the middle.
-  TargetRenderer renderer(load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj"));
+  TargetRenderer renderer(load_cad_model(vbar::tests::source_path("data/models/tango.obj")));
   TargetView view;
   view.R_camera_body << 0, 1, 0,  //
       1, 0, 0,                    //

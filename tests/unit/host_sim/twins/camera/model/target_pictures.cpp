@@ -11,6 +11,7 @@
 #include <png.h>
 
 #include "host_sim/twins/camera/model/target_renderer.h"
+#include "tests/support/paths.h"
 
 namespace vbar::twins::camera {
 namespace {
@@ -95,7 +96,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: target_pictures FOLDER\n");
     return 2;
   }
-  TargetRenderer renderer(load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj"));
+  TargetRenderer renderer(load_cad_model(vbar::tests::source_path("data/models/tango.obj")));
   std::vector<LightSample> samples;
   constexpr double kPixel = 1.0 / 5972.7;
   for (const double range : {5.0, 20.0, 100.0}) {

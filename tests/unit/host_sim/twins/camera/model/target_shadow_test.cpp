@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/twins/camera/model/target_renderer.h"
+#include "tests/support/paths.h"
 #include "tests/unit/host_sim/twins/camera/model/light_sums.h"
 #include "tests/unit/host_sim/twins/camera/model/ray_tracer.h"
 #include "tests/unit/host_sim/twins/camera/model/shapes.h"
@@ -70,7 +71,7 @@ TEST(TargetShadow, OfTwoPlatesIsTheRayTracers) {
 }
 
 TEST(TargetShadow, OfMattTangoIsTheRayTracers) {
-  CadModel model = load_cad_model(std::string(VBAR_SOURCE_DIR) + "/data/models/tango.obj");
+  CadModel model = load_cad_model(vbar::tests::source_path("data/models/tango.obj"));
   for (Material& m : model.materials) m = shapes::lambert(0.4);
   for (Triangle& t : model.triangles) t.normals = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
   model = make_cad_model("flat, matt tango", model.triangles, model.materials);
