@@ -11,8 +11,9 @@ fly=(
   g++ cmake ninja-build python3-minimal
   libeigen3-dev liblcm-dev liblcm-bin libboost-dev liberfa-dev libgeographiclib-dev librandom123-dev libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev libosmesa6-dev libassimp-dev libpng-dev
-  # the emulated Zynq, and the sources of the mathematics library that flight code has on every target
-  gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib newlib-source qemu-system-arm
+  # The emulated Zynq, whose images link no C++ run-time library (its headers are enough; the library is 313 MB), and the
+  # sources of the mathematics library that flight code has on every target.
+  gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-dev newlib-source qemu-system-arm
 )
 test=(
   "${fly[@]}"
