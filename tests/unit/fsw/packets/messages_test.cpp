@@ -2,7 +2,6 @@
 // rules (fields in order, big-endian, no padding), independently of the generated code.
 
 #include "fsw/packets/messages.h"
-#include "tests/support/paths.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,6 +15,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/paths.h"
 
 namespace vbar::fsw::packets {
 namespace {
@@ -38,7 +39,8 @@ struct Declaration {
 };
 std::optional<Declaration> declaration_in(const std::string& line) {
   const std::size_t end = line.find(';');
-  if (!line.starts_with("  ") || end == std::string::npos) return std::nullopt;
+  if (!line.starts_with("  ") || line.starts_with("  const ") || line.starts_with("  //") || end == std::string::npos)
+    return std::nullopt;
   std::istringstream words(line.substr(0, end));
   Declaration declaration;
   words >> declaration.type >> declaration.name;
