@@ -314,7 +314,7 @@ void Simulation::handle(const ExecutePrescribedBurn& prescribed) {
   maneuver_command command{};
   command.maneuver_id = -1 - static_cast<std::int32_t>(prescribed.index);
   command.waypoint_index = -1;
-  command.solver = -1;
+  command.solver = waypoint::kSolverNone;
   const fsw::Vector3& dv_rtn = mission_.burns[prescribed.index].dv_rtn;
   std::copy(dv_rtn.begin(), dv_rtn.end(), command.dv_rtn);
   recorder_.on_prescribed(events_.now(), command);
