@@ -10,6 +10,7 @@
 #include "host_sim/app/initial_orbits.h"
 #include "host_sim/app/make_twins.h"
 #include "host_sim/mission/telecommands.h"
+#include "host_sim/report/summarise.h"
 #include "host_sim/twins/camera/camera_sensor.h"
 
 namespace vbar::app {
@@ -89,6 +90,7 @@ bool Simulation::run() {
   const auto finish = [&] {
     recorder_.finish();
     summarise(wall_seconds() - started, complete);
+    report::evaluate(record_);
   };
   try {
     schedule_the_known();
@@ -312,7 +314,7 @@ void Simulation::handle(const ExecutePrescribedBurn& prescribed) {
   maneuver_command command{};
   command.maneuver_id = -1 - static_cast<std::int32_t>(prescribed.index);
   command.waypoint_index = -1;
-  command.solver = -1;
+  command.solver = waypoint::kSolverNone;
   const fsw::Vector3& dv_rtn = mission_.burns[prescribed.index].dv_rtn;
   std::copy(dv_rtn.begin(), dv_rtn.end(), command.dv_rtn);
   recorder_.on_prescribed(events_.now(), command);
@@ -345,6 +347,8 @@ void Simulation::summarise(double wall_s, bool complete) {
   summary.flight_computer = mission::name_of(servicer_.flight_computer->target);
   summary.flight_software = surroundings_.flight_computer.description();
   const bool is_by_pose = servicer_.camera && servicer_.camera->navigation == mission::CameraNavigation::kPose;
+  summary.target = servicer_.observes();
+  summary.flight_step.unit = cost_unit_;
   summary.navigation = is_by_pose         ? "pose"
                        : servicer_.camera ? "angles_only"
                        : servicer_.gnss   ? "gnss"

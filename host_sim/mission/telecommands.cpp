@@ -77,8 +77,9 @@ vbar::gnc_configuration gnc_configuration_of(const Mission& mission) {
 namespace {
 
 std::int8_t source_of(const Spacecraft& servicer) {
-  if (!servicer.camera) return 1;
-  return servicer.camera->navigation == CameraNavigation::kPose ? 3 : 2;
+  if (!servicer.camera) return navigation_configuration::kSourceGnss;
+  return servicer.camera->navigation == CameraNavigation::kPose ? navigation_configuration::kSourcePose
+                                                                : navigation_configuration::kSourceAnglesOnly;
 }
 
 }  // namespace
