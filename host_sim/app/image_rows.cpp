@@ -54,10 +54,12 @@ void append_objects(double exposure_s, const telemetry_objects& objects, std::ve
 }
 
 void append_residuals(const report::ImageRow& row, std::vector<report::ResidualRow>& rows) {
-  const char* const sensors[] = {"bearing_x_arcsec", "bearing_y_arcsec"};
+  const auto& [x, y] = row.prefit_arcsec;
+  if (!(row.nis > 0.0)) return;  // the filter did not run
+  const double sigma_arcsec = std::hypot(x, y) / std::sqrt(row.nis);
+  const char* const sensors[] = {"bearing_in_plane_arcsec", "bearing_cross_plane_arcsec"};
   for (const std::size_t axis : {0U, 1U})
-    rows.push_back(
-        {row.time_s, sensors[axis], row.prefit_arcsec[axis], row.postfit_arcsec[axis], row.bearing_sigma_arcsec});
+    rows.push_back({row.time_s, sensors[axis], row.prefit_arcsec[axis], row.postfit_arcsec[axis], sigma_arcsec});
 }
 
 }  // namespace vbar::app

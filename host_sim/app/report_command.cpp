@@ -12,12 +12,6 @@
 namespace vbar::app {
 namespace {
 
-/// "runs/a" and "runs/a/" are both called "a".
-std::string name_of(const std::filesystem::path& folder) {
-  const std::filesystem::path absolute = std::filesystem::weakly_canonical(folder);
-  return absolute.filename().string();
-}
-
 int report_one(const std::filesystem::path& folder) {
   const report::RunRecord record = report::read_run(folder);
   fmt::print("{}report  {}\n", report::waypoint_table(record), report::write_html_report(folder, record).string());
@@ -29,7 +23,8 @@ int report_one(const std::filesystem::path& folder) {
 int report_command(const std::vector<std::filesystem::path>& run_folders, const std::filesystem::path& out) {
   if (run_folders.size() == 1 && out.empty()) return report_one(run_folders.front());
   std::vector<report::ComparedRun> runs;
-  for (const std::filesystem::path& folder : run_folders) runs.push_back({name_of(folder), report::read_run(folder)});
+  const std::vector<std::string> names = report::run_names(run_folders);
+  for (std::size_t k = 0; k < names.size(); ++k) runs.push_back({names[k], report::read_run(run_folders[k])});
   const std::filesystem::path file = out.empty() ? run_folders.front().parent_path() / "comparison.html" : out;
   report::write_html_comparison(file, runs);
   fmt::print("{}report  {}\n", report::comparison_table(runs), file.string());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -29,6 +30,17 @@ void complete(View& view, const RunRecord& record) {
 }
 
 }  // namespace
+
+bool is_start(const RunRecord& record, const WaypointRow& row) {
+  return !record.truth.empty() && row.time_s <= record.truth.front().time_s;
+}
+
+std::vector<WaypointRow> reached_waypoints(const RunRecord& record) {
+  std::vector<WaypointRow> reached;
+  std::ranges::copy_if(record.waypoints, std::back_inserter(reached),
+                       [&](const WaypointRow& row) { return !is_start(record, row); });
+  return reached;
+}
 
 View whole_run(const RunRecord& record) {
   View view;

@@ -109,7 +109,7 @@ void RunFolder::finish(const RunRecord& record) const {
   if (!record.keypoints.empty()) write_rows(folder_ / kKeypoints, record.keypoints);
   if (!record.gallery.empty()) write_gallery(folder_, record.gallery);
   write_rows(folder_ / kManeuvers, record.maneuvers);
-  write_rows(folder_ / kResiduals, record.residuals);
+  if (!record.residuals.empty()) write_rows(folder_ / kResiduals, record.residuals);
   replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
 }
 
@@ -133,7 +133,7 @@ RunRecord read_run(const fs::path& run_folder) {
   if (fs::exists(run_folder / kKeypoints)) record.keypoints = read_rows<KeypointRow>(run_folder / kKeypoints);
   if (fs::exists(run_folder / kGallery)) record.gallery = read_gallery(run_folder);
   record.maneuvers = read_rows<ManeuverRow>(run_folder / kManeuvers);
-  record.residuals = read_rows<ResidualRow>(run_folder / kResiduals);
+  if (fs::exists(run_folder / kResiduals)) record.residuals = read_rows<ResidualRow>(run_folder / kResiduals);
   return record;
 }
 
