@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 8> kSightings{"bearing",
                                                      "target not confirmed",
                                                      "own orbit not known"};
 constexpr std::array<std::string_view, 7> kPoseSightings{
-    "pose", "keypoints, no pose", "no keypoints", "no target", "dark", "blinded", "invalid"};
+    "pose", "keypoints, no pose", "no keypoints", "no target", "no light", "blinded", "invalid"};
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 #include "host_sim/report/html_page.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "host_sim/report/html_style.h"
@@ -19,6 +21,16 @@ std::string anchor(std::string_view heading) {
     out += is_plain ? c : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : '-';
   }
   return out;
+}
+
+/// What a page break must not part from the heading: all up to the end of the first row of figures, unless a table
+/// comes before it; then nothing.
+std::size_t size_kept_with_heading(std::string_view content) {
+  constexpr std::string_view kRowEnd = "</div>\n";
+  const std::size_t row = content.find("<div class=\"figures");
+  const std::size_t table = std::min(content.find("<table"), content.find("<dl"));
+  if (row == std::string_view::npos || table < row) return 0;
+  return content.find(kRowEnd, row) + kRowEnd.size();
 }
 
 }  // namespace
@@ -57,14 +69,15 @@ std::string html_page(std::string_view title, std::string_view body) {
 
 std::string section_html(const Section& section) {
   if (section.content.empty()) return {};
-  std::string out = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}", anchor(section.heading),
-                                escaped(section.heading), section.content);
+  std::string head = fmt::format("<h2>{}</h2>\n", escaped(section.heading));
   if (!section.files.empty()) {
-    out += "<p class=\"files\">Data:";
-    for (const std::string& file : section.files) out += fmt::format(" <a href=\"{0}\">{0}</a>", escaped(file));
-    out += "</p>\n";
+    head += "<p class=\"files\">Data:";
+    for (const std::string& file : section.files) head += fmt::format(" <a href=\"{0}\">{0}</a>", escaped(file));
+    head += "</p>\n";
   }
-  return out + "</section>\n";
+  const std::size_t kept = size_kept_with_heading(section.content);
+  return fmt::format("<section id=\"{}\">\n<div class=\"keep\">\n{}{}</div>\n{}</section>\n", anchor(section.heading),
+                     head, section.content.substr(0, kept), section.content.substr(kept));
 }
 
 std::string contents(const std::vector<Section>& sections) {

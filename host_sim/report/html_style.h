@@ -54,6 +54,7 @@ dl div { display: flex; gap: 14px; padding: 3px 0; border-bottom: 1px solid var(
 dt { color: var(--muted); flex: 0 0 180px; }
 dd { margin: 0; overflow-wrap: anywhere; font-variant-numeric: tabular-nums; }
 details { margin: 8px 0; } summary { cursor: pointer; color: var(--muted); }
+.figures > .legend { grid-column: 1 / -1; }
 .figures { display: grid; gap: 10px 16px; margin: 8px 0 14px; }
 @media (min-width: 760px), print {
   .of2 { grid-template-columns: repeat(2, minmax(0, 1fr)); } .of3 { grid-template-columns: repeat(3, minmax(0, 1fr)); }
@@ -92,8 +93,11 @@ svg text.ring { fill: var(--bad); font-size: 10.5px; font-weight: 600; }
   .tile { padding: 5px 8px; } .tile b { font-size: 13px; } .tile span { font-size: 10px; }
   dl { grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 20px; } dt { flex-basis: 120px; }
   .scroll { overflow: visible; }
-  figure, .figures, tr, dl div, .tile { break-inside: avoid; }
-  h2, h3, .note, .legend, thead { break-after: avoid; } .files { break-before: avoid; }
+  figure, .figures, .keep, tr, dl div, .tile { break-inside: avoid; }
+  h2, h3, .keep, .note, thead { break-after: avoid; }
+  nav, .files { font-size: 10px; }
+  svg .title { font-size: 14px; } svg.plot, svg .tick { font-size: 12.5px; }
+  svg text.moment, svg text.ring { font-size: 12px; }
 }
 )css";
 

@@ -20,7 +20,8 @@ void complete(View& view, const RunRecord& record) {
   for (const WaypointRow& row : record.waypoints) {
     if (view.holds(row.time_s)) view.waypoints.push_back(row);
   }
-  if (view.waypoints.empty()) {
+  const bool is_start_only = view.waypoints.size() == 1 && is_start(record, view.waypoints.front());
+  if (view.waypoints.empty() || is_start_only) {
     view.name = "whole run";
   } else if (view.waypoints.size() == 1) {
     view.name = fmt::format("waypoint {}", view.waypoints.front().index);

@@ -399,7 +399,7 @@ Section pose_section(const RunRecord& record) {
           plot_rows(3, attitude_component_plots(record, view)) + "<h3>Poses of single images</h3>\n" +
           plot_rows(4, pnp_plots(record, view)) + "<h3>Keypoints</h3>\n" + keypoint_table(record) +
           plot_rows(2, {keypoint_count_plot(record, view), consistency_plot(record)}) +
-          gallery_html(record, 1,
+          gallery_html(record, 2,
                        "Left: as received by the flight software, with the crop. Right: the crop as the network "
                        "sees it, with one heatmap per keypoint in its colour. Crosses: keypoints, white if "
                        "navigation used them, red if it rejected them, with ellipses of 3σ.",

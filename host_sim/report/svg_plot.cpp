@@ -17,7 +17,7 @@ constexpr double kTitleHeight = 22.0;
 constexpr double kMomentTextHeight = 12.0;
 constexpr double kRightMargin = 12.0;
 constexpr double kBottomMargin = 42.0;
-constexpr double kCharacterWidth = 6.2;  // of the tick font
+constexpr double kCharacterWidth = 7.2;  // of the tick font, in print
 constexpr double kEventHeight = 9.0;
 constexpr double kCurveTolerance = 0.25;  // pixels
 constexpr double kDotDistance = 1.0;      // pixels
@@ -115,7 +115,7 @@ class Drawing {
   std::string draw() {
     append(R"(<svg class="plot" viewBox="0 0 {:g} {:g}" role="img"><title>{}</title>)", plot_.width, plot_.height,
            escaped(plot_.title));
-    append(R"(<text class="title" x="{:.1f}" y="13">{}</text>)", left_, escaped(plot_.title));
+    append(R"(<text class="title" x="2" y="13">{}</text>)", escaped(plot_.title));
     draw_grid();
     draw_axis_names();
     draw_moments();
@@ -157,7 +157,7 @@ class Drawing {
   void settle_left_margin() {
     std::size_t widest = 1;
     for (const Tick& tick : ticks_of(y_, 34.0)) widest = std::max(widest, tick.text.size());
-    left_ = 28.0 + kCharacterWidth * static_cast<double>(widest);
+    left_ = 26.0 + kCharacterWidth * static_cast<double>(widest);
     x_.start = left_;
     x_.length = plot_.width - kRightMargin - left_;
   }
@@ -165,7 +165,7 @@ class Drawing {
   void draw_grid() {
     append(R"(<rect class="frame" x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}"/>)", left_, top_, x_.length,
            -y_.length);
-    for (const Tick& tick : ticks_of(x_, 62.0)) {
+    for (const Tick& tick : ticks_of(x_, 70.0)) {
       const double x = x_.pixel_of_shown(tick.value);
       append(R"(<line class="grid" x1="{0:.1f}" x2="{0:.1f}" y1="{1:.1f}" y2="{2:.1f}"/>)", x, top_, y_.start);
       append(R"(<text class="tick mid" x="{:.1f}" y="{:.1f}">{}</text>)", x, y_.start + 14.0, tick.text);
@@ -318,7 +318,10 @@ std::string plot_rows(int columns, std::vector<Plot> plots, std::size_t least_le
     plot.width = std::floor((kPageWidth - kGap * (shared - 1)) / shared);
     drawn.push_back(svg(plot));
   }
-  return legend(plots, least_legend) + figures(shared, drawn);
+  // Inside the first row, from which a page break would part it.
+  std::string out = figures(shared, drawn);
+  out.insert(out.find('\n') + 1, legend(plots, least_legend));
+  return out;
 }
 
 }  // namespace vbar::report
