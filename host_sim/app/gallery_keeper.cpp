@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -13,12 +12,10 @@ namespace vbar::app {
 namespace {
 
 using fsw::GpsTime;
-using fsw::angles_only::ObjectKind;
 using fsw::angles_only::SightingStatus;
 
-// Radii of the marks, px: of the target's so much that it does not hide in its neighbours' boxes, and near by as much
-// as a spacecraft of this size takes.
-constexpr double kStarRadius = 8.0;
+// Radius of the mark about the target, px: larger than the marks of its neighbours, and at close range the apparent
+// radius of a spacecraft of this size.
 constexpr double kTargetRadius = 13.0;
 constexpr double kSpacecraftRadiusM = 0.8;
 
@@ -99,42 +96,21 @@ void GalleryKeeper::finish(std::vector<report::GalleryImage>& gallery) {
 
 GalleryKeeper::Candidate GalleryKeeper::candidate(const ImageFindings& found, GpsTime moment) const {
   const fsw::imaging::ImageView view = assembly_->view();
-  return {moment, found.row, view.frame, {view.pixels.begin(), view.pixels.end()}, marks_of(found)};
+  return {moment, found.row, view.frame, {view.pixels.begin(), view.pixels.end()}};
 }
 
-// The target last, so that nothing lies over its circle.
-std::vector<report::ImageMark> GalleryKeeper::marks_of(const ImageFindings& found) const {
-  std::vector<report::ImageMark> marks, target;
-  if (found.objects == nullptr) return marks;
-  const telemetry_objects& objects = *found.objects;
-  const int count = std::clamp<int>(objects.count, 0, static_cast<int>(std::size(objects.kind)));
-  for (int k = 0; k < count; ++k) {
-    const double x = objects.x_px[k], y = objects.y_px[k];
-    switch (static_cast<ObjectKind>(objects.kind[k])) {
-      case ObjectKind::kStar:
-        marks.push_back({report::MarkShape::kBox, x, y, kStarRadius});
-        break;
-      case ObjectKind::kTarget: {
-        const double size_px = found.row.range_m ? kSpacecraftRadiusM * focal_length_px_ / *found.row.range_m : 0.0;
-        target.push_back({report::MarkShape::kCircle, x, y, std::max(kTargetRadius, size_px)});
-        break;
-      }
-      case ObjectKind::kUnmatched:
-        marks.push_back({report::MarkShape::kTriangle, x, y, kStarRadius});
-        break;
-      case ObjectKind::kHotPixel:
-        break;
-    }
-  }
-  marks.insert(marks.end(), target.begin(), target.end());
-  return marks;
-}
-
-report::GalleryImage GalleryKeeper::picture(const Candidate& candidate) {
-  const report::CameraPicture picture{candidate.frame.width, candidate.frame.height, candidate.frame.origin_x,
-                                      candidate.frame.origin_y, candidate.dn};
-  return {candidate.row.time_s, candidate.row.image, caption(candidate.row),
-          report::png_of(picture, report::stretch_for(picture), candidate.marks)};
+report::GalleryImage GalleryKeeper::picture(const Candidate& candidate) const {
+  const report::CameraPicture picture{candidate.frame.width, candidate.frame.height, candidate.dn};
+  const double size_px = candidate.row.range_m ? kSpacecraftRadiusM * focal_length_px_ / *candidate.row.range_m : 0.0;
+  return {.time_s = candidate.row.time_s,
+          .image = candidate.row.image,
+          .caption = caption(candidate.row),
+          .origin_x_px = candidate.frame.origin_x,
+          .origin_y_px = candidate.frame.origin_y,
+          .width_px = candidate.frame.width,
+          .height_px = candidate.frame.height,
+          .target_radius_px = std::max(kTargetRadius, size_px),
+          .png = report::png_of(picture, report::stretch_for(picture))};
 }
 
 }  // namespace vbar::app

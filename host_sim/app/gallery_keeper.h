@@ -52,15 +52,13 @@ class GalleryKeeper {
     report::ImageRow row;
     fsw::imaging::ImageFrame frame;
     std::vector<std::uint16_t> dn;
-    std::vector<report::ImageMark> marks;
   };
 
   [[nodiscard]] bool may_be_wanted(fsw::GpsTime now) const;
   /// The first one at or after an exposure, if the exposure is among the last before it.
   [[nodiscard]] std::optional<fsw::GpsTime> moment_of(fsw::GpsTime exposure) const;
-  [[nodiscard]] std::vector<report::ImageMark> marks_of(const ImageFindings& found) const;
   [[nodiscard]] Candidate candidate(const ImageFindings& found, fsw::GpsTime moment) const;
-  static report::GalleryImage picture(const Candidate& candidate);
+  [[nodiscard]] report::GalleryImage picture(const Candidate& candidate) const;
 
   std::unique_ptr<fsw::imaging::ImageAssembly> assembly_;  ///< null without a camera; large
   std::vector<fsw::GpsTime> moments_;                      ///< in order

@@ -18,10 +18,12 @@ void append_objects(double exposure_s, const telemetry_objects& objects, std::ve
 }
 
 void append_residuals(const report::ImageRow& row, std::vector<report::ResidualRow>& rows) {
-  const char* const sensors[] = {"bearing_x_arcsec", "bearing_y_arcsec"};
+  if (!(row.nis > 0.0)) return;  // the filter did not run
+  const double sigma_arcsec = std::hypot(row.prefit[0], row.prefit[1]) / std::sqrt(row.nis) / kArcsecond;
+  const char* const sensors[] = {"bearing_in_plane_arcsec", "bearing_cross_plane_arcsec"};
   for (const std::size_t axis : {0U, 1U})
     rows.push_back({row.time_s, sensors[axis], row.prefit[axis] / kArcsecond, row.postfit[axis] / kArcsecond,
-                    row.bearing_sigma / kArcsecond});
+                    sigma_arcsec});
 }
 
 }  // namespace vbar::app

@@ -10,7 +10,8 @@ namespace vbar::app {
 
 void append_objects(double exposure_s, const telemetry_objects& objects, std::vector<report::ObjectRow>& rows);
 
-/// The residuals of an image's bearing, an axis of the camera each, in arcseconds.
+/// The residuals of an image's bearing in the servicer's orbital plane and across it, in arcseconds, with the standard
+/// deviation of the innovation along the residual vector: |prefit| / sqrt(NIS). None for a bearing of the batch.
 void append_residuals(const report::ImageRow& row, std::vector<report::ResidualRow>& rows);
 
 }  // namespace vbar::app

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "fsw/pose/spacecraft_pose_network.h"
 #include "host_sim/app/pose_picture.h"
 #include "host_sim/mission/telecommands.h"
 #include "host_sim/report/code_names.h"
@@ -49,10 +50,20 @@ void PoseGallery::on_inputs(fsw::GpsTime now, std::span<const pil::Packet> input
 void PoseGallery::on_pose(fsw::GpsTime exposure, const telemetry_pose& pose, const report::PoseRow& row,
                           std::vector<report::GalleryImage>& gallery) {
   if (!work_ || next_ == moments_.size() || exposure < moments_[next_]) return;
+  if (pose.status == static_cast<int>(fsw::pose::SightingStatus::kDark)) return;  // a black picture shows nothing
   const fsw::imaging::ImageAssembly& assembly = work_->assembly;
   if (!assembly.has_image() || assembly.image_time() != exposure || assembly.image_number() != pose.image) return;
-  gallery.push_back({row.time_s, row.image, caption(row),
-                     pose_picture(assembly.view(), pose, dark_level_dn_, noise_dn_, work_->network)});
+  const fsw::imaging::ImageFrame& frame = assembly.view().frame;
+  gallery.push_back({.time_s = row.time_s,
+                     .image = row.image,
+                     .caption = caption(row),
+                     .origin_x_px = frame.origin_x,
+                     .origin_y_px = frame.origin_y,
+                     .width_px = frame.width,
+                     .height_px = frame.height,
+                     .crop_left = crop_left(frame.width),
+                     .crop_side = kCropPicturePx,
+                     .png = pose_picture(assembly.view(), pose, dark_level_dn_, noise_dn_, work_->network)});
   while (next_ < moments_.size() && exposure >= moments_[next_]) ++next_;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Keeps a few of a run's images for its report, with what the pose network made of them: the first image after each of
-// some even times, the last of a run left out that would come after its end.
+// Keeps a few of a run's images for its report, with the heatmaps of the pose network: the first image with light after
+// each of some evenly spaced times.
 
 #include <memory>
 #include <span>

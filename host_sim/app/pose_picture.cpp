@@ -21,11 +21,8 @@ using fsw::pose::kCropSide;
 using report::Colour;
 using report::ColourPicture;
 
-constexpr int kSamplePx = 4;  // a sample of the crop in the picture
+constexpr int kSamplePx = kCropPicturePx / kCropSide;
 constexpr int kCellPx = kSamplePx * kCropSide / kMapSide;
-constexpr int kGap = 8;
-constexpr double kSigmas = 3.0;
-constexpr Colour kWhite{255, 255, 255}, kRed{255, 60, 60}, kGrey{150, 150, 150}, kGreen{40, 210, 60};
 
 /// Eleven hues around the circle, neighbours in number far apart in hue.
 Colour colour_of(int keypoint) {
@@ -40,10 +37,6 @@ Colour colour_of(int keypoint) {
 void set_grey(ColourPicture& picture, int x, int y, double share) {
   const auto grey = static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
   picture.set(x, y, {grey, grey, grey});
-}
-
-Colour colour_of_fate(int fate) {
-  return fate == 0 ? kGrey : fate == 1 ? kRed : kWhite;
 }
 
 /// Roots of the light, as the network gets them; all but the brightest thousandth below white.
@@ -66,8 +59,8 @@ void draw_image(const fsw::imaging::ImageView& image, double black_dn, ColourPic
 
 void draw_crop(std::span<const float> samples, int left, ColourPicture& picture) {
   const float most = std::max(*std::ranges::max_element(samples), 1.0F);
-  for (int y = 0; y < kCropSide * kSamplePx; ++y)
-    for (int x = 0; x < kCropSide * kSamplePx; ++x) {
+  for (int y = 0; y < kCropPicturePx; ++y)
+    for (int x = 0; x < kCropPicturePx; ++x) {
       const auto sample = static_cast<std::size_t>(y / kSamplePx * kCropSide + x / kSamplePx);
       set_grey(picture, left + x, y, static_cast<double>(samples[sample] / most));
     }
@@ -86,35 +79,18 @@ void draw_map(std::span<const float> logits, const Colour& colour, double streng
   }
 }
 
-void draw_keypoints(const telemetry_pose& pose, const CropRegion& region, int left, ColourPicture& picture) {
-  constexpr double kCrossPx = 5.0;
-  const double scale = kSamplePx * kCropSide / region.side_px;
-  for (int k = 0; k < kKeypoints; ++k) {
-    if (pose.keypoint_fate[k] == 0) continue;
-    const Vector2 place = region.place_of(Vector2(static_cast<double>(pose.x_px[k]), static_cast<double>(pose.y_px[k])),
-                                          kCropSide * kSamplePx);
-    const Colour colour = colour_of_fate(pose.keypoint_fate[k]);
-    picture.cross(left + place.x(), place.y(), kCrossPx, colour);
-    const auto covariance = [&](int which) {
-      return scale * scale * static_cast<double>(pose.covariance_px2[3 * k + which]);
-    };
-    picture.ellipse(left + place.x(), place.y(), {covariance(0), covariance(1), covariance(2)}, kSigmas, colour);
-  }
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> pose_picture(const fsw::imaging::ImageView& image, const telemetry_pose& pose,
                                        double dark_level_dn, double noise_dn, fsw::network::KeypointNetwork& network) {
   const fsw::imaging::ImageFrame& frame = image.frame;
-  const int left = frame.width + kGap;
-  ColourPicture picture(left + kCropSide * kSamplePx, std::max<int>(frame.height, kCropSide * kSamplePx));
+  const int left = crop_left(frame.width);
+  ColourPicture picture(left + kCropPicturePx, std::max<int>(frame.height, kCropPicturePx));
   constexpr double kNoiseSigmas = 4.0;
   draw_image(image, dark_level_dn + kNoiseSigmas * noise_dn, picture);
   const CropRegion region{Vector2(pose.region_px[0], pose.region_px[1]), pose.region_px[2]};
   const auto samples = std::make_unique<fsw::pose::CropSamples>();
   if (fsw::pose::cut_crop(image, region, dark_level_dn, *samples, false) != Status::kOk) return picture.png();
-  picture.box(region.centre_px.x() - frame.origin_x, region.centre_px.y() - frame.origin_y, region.side_px, kGreen);
   draw_crop(*samples, left, picture);
   if (fsw::pose::cut_crop(image, region, dark_level_dn, *samples) == Status::kOk &&
       network.run(*samples) == Status::kOk)
@@ -122,7 +98,6 @@ std::vector<std::uint8_t> pose_picture(const fsw::imaging::ImageView& image, con
       constexpr double kStrong = 0.65, kFaint = 0.15;
       draw_map(network.logits(k), colour_of(k), pose.keypoint_fate[k] != 0 ? kStrong : kFaint, left, picture);
     }
-  draw_keypoints(pose, region, left, picture);
   return picture.png();
 }
 

@@ -1,7 +1,6 @@
 #pragma once
-// What the pose network made of an image, for the eye: the image with its crop, and the crop with the network's maps
-// and the keypoints that came of them. The network is run again on the crop that telemetry names: same bits as on
-// board.
+// What the pose network saw of an image, for the eye: the image, and its crop with the network's heatmaps. The network
+// is run again on the crop that telemetry reports: same bits as on board. Marks are drawn by the report.
 
 #include <cstdint>
 #include <vector>
@@ -12,8 +11,14 @@
 
 namespace vbar::app {
 
-/// A PNG; what is no more than noise is black in it. Without the maps where `network` has no weights or the crop cannot
-/// be cut out.
+/// The crop is enlarged to this width and height, and stands right of the image.
+inline constexpr int kCropPicturePx = 512;
+[[nodiscard]] inline int crop_left(int image_width) {
+  constexpr int kGap = 8;
+  return image_width + kGap;
+}
+
+/// A PNG; noise is black in it. Without heatmaps if `network` has no weights, without a crop if it cannot be cut out.
 [[nodiscard]] std::vector<std::uint8_t> pose_picture(const fsw::imaging::ImageView& image, const telemetry_pose& pose,
                                                      double dark_level_dn, double noise_dn,
                                                      fsw::network::KeypointNetwork& network);

@@ -13,12 +13,6 @@
 namespace vbar::app {
 namespace {
 
-/// "runs/a" and "runs/a/" are both called "a".
-std::string name_of(const std::filesystem::path& folder) {
-  const std::filesystem::path absolute = std::filesystem::weakly_canonical(folder);
-  return absolute.filename().string();
-}
-
 /// A run as its tables have it, figures computed from them.
 report::RunRecord evaluated_run(const std::filesystem::path& folder) {
   report::RunRecord record = report::read_run(folder);
@@ -38,7 +32,8 @@ int report_one(const std::filesystem::path& folder) {
 int report_command(const std::vector<std::filesystem::path>& run_folders, const std::filesystem::path& out) {
   if (run_folders.size() == 1 && out.empty()) return report_one(run_folders.front());
   std::vector<report::ComparedRun> runs;
-  for (const std::filesystem::path& folder : run_folders) runs.push_back({name_of(folder), evaluated_run(folder)});
+  const std::vector<std::string> names = report::run_names(run_folders);
+  for (std::size_t k = 0; k < names.size(); ++k) runs.push_back({names[k], evaluated_run(run_folders[k])});
   const std::filesystem::path file = out.empty() ? run_folders.front().parent_path() / "comparison.html" : out;
   report::write_html_comparison(file, runs);
   fmt::print("{}report  {}\n", report::comparison_table(runs), file.string());

@@ -31,15 +31,20 @@ const RunRecord& longest(Runs runs) {
 std::string verdict(Runs runs) {
   if (runs.size() < 2) return {};
   const Summary& first = runs.front().record.summary;
-  const bool same =
-      std::ranges::all_of(runs, [&](const ComparedRun& run) { return same_outputs(first, run.record.summary); });
-  return same ? "<p><span class=\"status good\">same bits</span> All runs gave the same maneuver commands and "
-                "telemetry.</p>\n"
-              : "<p><span class=\"status bad\">different</span> Not all runs gave the same maneuver commands and "
-                "telemetry.</p>\n";
+  const auto holds_for_all = [&](const auto& relation) {
+    return std::ranges::all_of(runs, [&](const ComparedRun& run) { return relation(first, run.record.summary); });
+  };
+  if (holds_for_all(same_outputs)) {
+    return "<p><span class=\"status good\">same bits</span> All runs gave the same maneuver commands and "
+           "telemetry.</p>\n";
+  }
+  if (!holds_for_all(expect_same_outputs))
+    return "<p>The runs are of different missions or seeds; their outputs are not expected to be the same.</p>\n";
+  return "<p><span class=\"status bad\">different</span> Not all runs gave the same maneuver commands and telemetry, "
+         "although mission and seed are the same. Runs with different settings are expected to differ.</p>\n";
 }
 
-std::string metrics(Runs runs) {
+Section metrics(Runs runs) {
   std::vector<Column> columns{{"", false}};
   for (const ComparedRun& run : runs) columns.push_back({run.name});
   std::vector<std::vector<std::string>> rows;
@@ -48,17 +53,11 @@ std::string metrics(Runs runs) {
     cells.push_back(row.name);
     cells.insert(cells.end(), row.cells.begin(), row.cells.end());
   }
-  return section("Performance", table(columns, rows));
+  return {"Performance", table(columns, rows)};
 }
 
-Plot delta_v_plot(Runs runs, const View& view) {
-  Plot plot;
-  plot.title = "Cumulative delta-v, " + view.name;
-  plot.x = time_axis(view);
-  plot.y = {.name = "delta-v", .unit = Unit::kMetresPerSecond};
-  plot.width = 580.0;
-  plot.height = 260.0;
-  plot.moments = waypoint_moments(view);
+Plot delta_v_plot(Runs runs, const View& view, const std::string& name) {
+  Plot plot = time_plot(view, "Cumulative delta-v, " + name, "delta-v", Unit::kMetresPerSecond, 260.0);
   double most = 0.0;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     std::vector<Point> points = stairs(cumulative_dv(executed_in_order(runs[k].record), view));
@@ -69,22 +68,18 @@ Plot delta_v_plot(Runs runs, const View& view) {
   return plot;
 }
 
-std::string delta_v(Runs runs) {
+Section delta_v(Runs runs) {
   const RunRecord& shown = longest(runs);
-  const Plot whole = delta_v_plot(runs, whole_run(shown));
-  std::vector<std::string> plots{svg(whole)};
+  std::vector<Plot> plots{delta_v_plot(runs, whole_run(shown), "whole run")};
   const std::vector<View> views = mission_views(shown);
-  if (views.size() > 1) plots.push_back(svg(delta_v_plot(runs, views.back())));
-  return section("Delta-v", legend(whole.series) + figures(2, plots));
+  if (views.size() > 1) plots.push_back(delta_v_plot(runs, views.back(), views.back().name));
+  return {"Delta-v", plot_rows(2, std::move(plots))};
 }
 
 Plot element_plot(Runs runs, const View& view, std::size_t element) {
-  Plot plot;
-  plot.title = fmt::format("{}, {}", kElementNames[element], view.name);
-  plot.x = time_axis(view);
-  plot.y = {.name = kElementNames[element], .unit = Unit::kMetres, .least_span = kLeastElementSpan_m};
-  plot.height = 220.0;
-  plot.moments = waypoint_moments(view);
+  const char* const name = kElementNames[element];
+  Plot plot = time_plot(view, fmt::format("{}, {}", name, view.name), name, Unit::kMetres, 220.0);
+  plot.y.least_span = kLeastElementSpan_m;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     plot.series.push_back(
         {runs[k].name, colour_of(k), mark_of(k),
@@ -93,14 +88,13 @@ Plot element_plot(Runs runs, const View& view, std::size_t element) {
   return plot;
 }
 
-std::string elements(Runs runs) {
+Section elements(Runs runs) {
   const std::vector<View> views = mission_views(longest(runs));
-  std::vector<std::string> plots;
+  std::vector<Plot> plots;
   for (std::size_t element = 0; element < kElementNames.size(); ++element) {
-    for (const View& view : views) plots.push_back(svg(element_plot(runs, view, element)));
+    for (const View& view : views) plots.push_back(element_plot(runs, view, element));
   }
-  return section("True relative orbital elements",
-                 legend(element_plot(runs, views.front(), 0).series) + figures(columns_for(views.size()), plots));
+  return {"True relative orbital elements", plot_rows(columns_for(views.size()), std::move(plots))};
 }
 
 }  // namespace
@@ -108,8 +102,10 @@ std::string elements(Runs runs) {
 std::string html_comparison(Runs runs) {
   std::string names;
   for (const ComparedRun& run : runs) names += (names.empty() ? "" : " | ") + run.name;
-  const std::string head = fmt::format("<h1>Runs side by side</h1>\n<p class=\"lead\">{}</p>\n", escaped(names));
-  return html_page(names, head + verdict(runs) + metrics(runs) + delta_v(runs) + elements(runs));
+  std::string body =
+      fmt::format("<h1>Runs side by side</h1>\n<p class=\"lead\">{}</p>\n", escaped(names)) + verdict(runs);
+  for (const Section& section : {metrics(runs), delta_v(runs), elements(runs)}) body += section_html(section);
+  return html_page(names, body);
 }
 
 void write_html_comparison(const std::filesystem::path& file, Runs runs) {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/report/mission_views.h"
 #include "host_sim/report/number_text.h"
 
 namespace vbar::report {
@@ -26,7 +27,7 @@ ComparisonRow row_of(std::string name, Runs runs, const Cell& cell) {
 std::map<int, double> waypoint_times(Runs runs) {
   std::map<int, double> times;
   for (const ComparedRun& run : runs) {
-    for (const WaypointRow& waypoint : run.record.waypoints) times.emplace(waypoint.index, waypoint.time_s);
+    for (const WaypointRow& waypoint : reached_waypoints(run.record)) times.emplace(waypoint.index, waypoint.time_s);
   }
   return times;
 }
@@ -70,9 +71,12 @@ std::string mean_and_deviation(const std::optional<MeanAndDeviation>& value) {
   return value ? fmt::format("{} ± {}", fixed(value->mean, 4), fixed(value->std, 4)) : fixed(std::nullopt, 4);
 }
 
-std::string same_as_first(const std::string& hash, const std::string& first) {
-  if (hash.empty() || first.empty()) return "–";
-  return hash == first ? "same bits" : "DIFFERENT";
+/// Different outputs are set off only where they should be the same.
+std::string same_as_first(const RunRecord& run, const RunRecord& first, std::string Summary::*hash) {
+  const std::string &own = run.summary.*hash, &expected = first.summary.*hash;
+  if (own.empty() || expected.empty()) return "–";
+  if (own == expected) return "same bits";
+  return expect_same_outputs(run.summary, first.summary) ? "DIFFERENT" : "other mission or seed";
 }
 
 std::string cost(const Summary::FlightStep& step) {
@@ -109,12 +113,10 @@ void append_differences(std::vector<ComparisonRow>& rows, Runs runs) {
     const auto difference = largest_difference(first, r);
     return difference ? significant(*difference, 3) : std::string("–");
   }));
-  rows.push_back(row_of("  maneuver commands", runs, [&](const RunRecord& r) {
-    return same_as_first(r.summary.commands_sha256, first.summary.commands_sha256);
-  }));
-  rows.push_back(row_of("  telemetry", runs, [&](const RunRecord& r) {
-    return same_as_first(r.summary.telemetry_sha256, first.summary.telemetry_sha256);
-  }));
+  rows.push_back(row_of("  maneuver commands", runs,
+                        [&](const RunRecord& r) { return same_as_first(r, first, &Summary::commands_sha256); }));
+  rows.push_back(row_of("  telemetry", runs,
+                        [&](const RunRecord& r) { return same_as_first(r, first, &Summary::telemetry_sha256); }));
 }
 
 /// Characters, not bytes: names and units may hold more than ASCII.
@@ -129,6 +131,35 @@ bool same_outputs(const Summary& a, const Summary& b) {
          a.telemetry_sha256 == b.telemetry_sha256;
 }
 
+bool expect_same_outputs(const Summary& a, const Summary& b) {
+  return a.mission == b.mission && a.seed == b.seed;
+}
+
+std::vector<std::string> run_names(const std::vector<std::filesystem::path>& folders) {
+  std::vector<std::filesystem::path> names, rest;
+  for (const std::filesystem::path& folder : folders) {
+    const std::filesystem::path canonical = std::filesystem::weakly_canonical(folder);
+    const bool ends_in_slash = !canonical.has_filename();
+    rest.push_back(ends_in_slash ? canonical.parent_path() : canonical);
+    names.push_back(rest.back().filename());
+  }
+  const auto extend = [&](std::size_t k) {
+    rest[k] = rest[k].parent_path();
+    names[k] = rest[k].filename() / names[k];
+  };
+  const auto is_twin = [&](std::size_t k) {
+    return std::ranges::count(names, names[k]) > 1 && rest[k].has_relative_path();
+  };
+  for (bool changed = true; changed;) {
+    std::vector<std::size_t> twins;
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (is_twin(k)) twins.push_back(k);
+    std::ranges::for_each(twins, extend);
+    changed = !twins.empty();
+  }
+  return {names.begin(), names.end()};
+}
+
 std::vector<ComparisonRow> comparison_rows(Runs runs) {
   std::vector<ComparisonRow> rows;
   if (runs.empty()) return rows;
@@ -138,7 +169,7 @@ std::vector<ComparisonRow> comparison_rows(Runs runs) {
   append_by_waypoint(
       rows, runs, "navigation error, m", [](const WaypointRow& w) { return w.navigation_error_m; }, 4);
   append_by_waypoint(
-      rows, runs, "delta-v so far, m/s", [](const WaypointRow& w) { return w.cumulative_dv_mps; }, 6);
+      rows, runs, "cumulative delta-v, m/s", [](const WaypointRow& w) { return w.cumulative_dv_mps; }, 6);
   append_totals(rows, runs);
   if (runs.size() > 1) append_differences(rows, runs);
   return rows;

@@ -2,6 +2,7 @@
 // Several runs side by side (SIL | PIL | HIL): the paper's performance metrics, and whether the outputs are the same
 // bits.
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,13 @@ struct ComparedRun {
 
 /// Both runs gave the same maneuver commands and the same telemetry, bit for bit.
 [[nodiscard]] bool same_outputs(const Summary& a, const Summary& b);
+
+/// Both runs are of the same mission with the same seed, so that their outputs should be the same on every flight
+/// computer.
+[[nodiscard]] bool expect_same_outputs(const Summary& a, const Summary& b);
+
+/// Names of runs by the names of their folders, with as many parent folders as tell equal ones apart.
+[[nodiscard]] std::vector<std::string> run_names(const std::vector<std::filesystem::path>& folders);
 
 /// A line of the comparison: a cell for each run, or a heading without cells.
 struct ComparisonRow {

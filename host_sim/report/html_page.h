@@ -13,10 +13,18 @@ namespace vbar::report {
 /// A whole HTML document; `body` is HTML.
 [[nodiscard]] std::string html_page(std::string_view title, std::string_view body);
 
-/// A heading and what stands under it; `content` is HTML. Empty without content.
-[[nodiscard]] std::string section(std::string_view heading, std::string_view content);
+/// A heading, what stands under it as HTML, and the files of the run folder that it shows. Without content it is left
+/// out of the page.
+struct Section {
+  std::string heading, content;
+  std::vector<std::string> files{};
+};
+[[nodiscard]] std::string section_html(const Section& section);
 
-/// Figures side by side, `columns` a row on a wide screen.
+/// Links to the sections that have content.
+[[nodiscard]] std::string contents(const std::vector<Section>& sections);
+
+/// Figures side by side, `columns` a row on a wide screen. A row is not split between printed pages.
 [[nodiscard]] std::string figures(int columns, const std::vector<std::string>& figures);
 
 struct Column {
@@ -30,6 +38,7 @@ struct Column {
 /// Names and values, one a line; values are text.
 struct Fact {
   std::string name, value;
+  bool is_bad = false;  ///< set off from the others: a value out of its limits
 };
 [[nodiscard]] std::string fact_list(const std::vector<Fact>& facts);
 

@@ -38,6 +38,9 @@ p { margin: 6px 0; max-width: 90ch; }
 .tile { background: var(--panel); border: 1px solid var(--grid); border-radius: 6px; padding: 10px 14px; }
 .tile b { display: block; font-size: 22px; line-height: 1.25; font-weight: 600; }
 .tile span { color: var(--muted); font-size: 13px; }
+nav { display: flex; flex-wrap: wrap; gap: 2px 18px; font-size: 14px; margin: 12px 0; }
+a { color: var(--c0); text-decoration: none; } a:hover { text-decoration: underline; }
+.files { font-size: 13px; color: var(--muted); }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 14px; font-variant-numeric: tabular-nums; margin: 8px 0; }
 th, td { padding: 4px 14px 4px 0; text-align: left; vertical-align: top; }
@@ -51,12 +54,17 @@ dl div { display: flex; gap: 14px; padding: 3px 0; border-bottom: 1px solid var(
 dt { color: var(--muted); flex: 0 0 180px; }
 dd { margin: 0; overflow-wrap: anywhere; font-variant-numeric: tabular-nums; }
 details { margin: 8px 0; } summary { cursor: pointer; color: var(--muted); }
+.figures > .legend { grid-column: 1 / -1; }
 .figures { display: grid; gap: 10px 16px; margin: 8px 0 14px; }
 @media (min-width: 760px), print {
   .of2 { grid-template-columns: repeat(2, minmax(0, 1fr)); } .of3 { grid-template-columns: repeat(3, minmax(0, 1fr)); }
+  .of4 { grid-template-columns: repeat(4, minmax(0, 1fr)); }
 }
 figure { margin: 0; }
-img.picture { width: 100%; height: auto; } figcaption { font-size: 13px; color: var(--muted); }
+.picture { display: block; width: 100%; height: auto; }
+.mark { fill: none; stroke-width: 1.4; vector-effect: non-scaling-stroke; pointer-events: all; }
+.mark.red { stroke: #e62828; } .mark.green { stroke: #28d23c; } .mark.blue { stroke: #4678ff; } .mark.white { stroke: #fff; }
+ figcaption { font-size: 13px; color: var(--muted); }
 .legend { font-size: 13px; color: var(--muted); display: flex; flex-wrap: wrap; gap: 2px 20px; margin: 4px 0; }
 .swatch { width: 24px; height: 10px; margin-right: 6px; }
 svg.plot { display: block; width: 100%; height: auto; font-size: 11px; }
@@ -68,7 +76,7 @@ svg .frame { fill: none; stroke: var(--frame); } svg .grid { stroke: var(--grid)
 svg line.moment { stroke: var(--muted); stroke-dasharray: 2 3; } svg text.moment { fill: var(--muted); font-size: 10px; }
 svg .event { fill: none; stroke: var(--c4); stroke-width: 1.4; }
 svg .line { fill: none; stroke-width: 1.3; stroke-linejoin: round; }
-svg .broad { stroke-width: 4.5; stroke-opacity: 0.4; } svg .dashed { stroke-dasharray: 5 3; }
+svg .line.broad { stroke-width: 4.5; stroke-opacity: 0.4; } svg .dots.broad { stroke-width: 6; stroke-opacity: 0.35; } svg .dashed { stroke-dasharray: 5 3; }
 svg .dots { fill: none; stroke-width: 3.4; stroke-linecap: round; }
 svg .c0 { stroke: var(--c0); } svg .c1 { stroke: var(--c1); } svg .c2 { stroke: var(--c2); }
 svg .c3 { stroke: var(--c3); } svg .c4 { stroke: var(--c4); } svg .c5 { stroke: var(--c5); }
@@ -85,8 +93,11 @@ svg text.ring { fill: var(--bad); font-size: 10.5px; font-weight: 600; }
   .tile { padding: 5px 8px; } .tile b { font-size: 13px; } .tile span { font-size: 10px; }
   dl { grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 20px; } dt { flex-basis: 120px; }
   .scroll { overflow: visible; }
-  figure, tr, dl div, .tile { break-inside: avoid; }
-  h2, .note, .legend { break-after: avoid; }
+  figure, .figures, .keep, tr, dl div, .tile { break-inside: avoid; }
+  h2, h3, .keep, .note, thead { break-after: avoid; }
+  nav, .files { font-size: 10px; }
+  svg .title { font-size: 14px; } svg.plot, svg .tick { font-size: 12.5px; }
+  svg text.moment, svg text.ring { font-size: 12px; }
 }
 )css";
 

@@ -1,5 +1,5 @@
 #pragma once
-// Camera images for the eye: stretched to shades of grey, with marks about what was found in them, as PNG.
+// Camera images for the eye: stretched to shades of grey, as PNG.
 
 #include <cstdint>
 #include <span>
@@ -8,12 +8,10 @@
 
 namespace vbar::report {
 
-/// A camera image. Pixel coordinates are the detector's; an integer is the centre of a pixel.
+/// A camera image.
 struct CameraPicture {
   int width = 0;
   int height = 0;
-  int origin_x = 0;  ///< of its first pixel
-  int origin_y = 0;
   std::span<const std::uint16_t> dn;  ///< rows from the top; 0xFFFF is a pixel that is missing
 };
 
@@ -28,21 +26,15 @@ struct Stretch {
 /// From a little above the background's noise to the brightest pixel.
 [[nodiscard]] Stretch stretch_for(const CameraPicture& picture);
 
-enum class MarkShape { kBox, kCircle, kTriangle };  ///< red, green, blue
+/// A PNG in shades of grey; missing pixels are dark violet. Throws std::invalid_argument unless the number of pixels is
+/// that of the picture's size, and that is not zero.
+[[nodiscard]] std::vector<std::uint8_t> png_of(const CameraPicture& picture, const Stretch& stretch);
 
-struct ImageMark {
-  MarkShape shape = MarkShape::kBox;
-  double x_px = 0.0, y_px = 0.0;
-  double radius_px = 8.0;  ///< of the circle, and of the one inside box and triangle
-};
+/// Pixels in one of libpng's formats as PNG. Throws std::runtime_error if the library fails.
+[[nodiscard]] std::vector<std::uint8_t> encoded_png(int width, int height, unsigned format, const std::uint8_t* pixels,
+                                                    const std::uint8_t* palette = nullptr);
 
-/// A PNG, `enlargement` (>= 1) pixels for each of the image's either way. Marks may reach over the edge; those far
-/// outside or at no number are left out. Throws
-/// std::invalid_argument for a picture without pixels, or with another number of them than its size says.
-[[nodiscard]] std::vector<std::uint8_t> png_of(const CameraPicture& picture, const Stretch& stretch,
-                                               std::span<const ImageMark> marks, int enlargement = 1);
-
-/// data:image/png;base64,... for a page that holds its pictures itself.
+/// data:image/png;base64,... for a page that contains its pictures.
 [[nodiscard]] std::string png_data_uri(std::span<const std::uint8_t> png);
 
 }  // namespace vbar::report

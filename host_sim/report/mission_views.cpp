@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -19,7 +20,8 @@ void complete(View& view, const RunRecord& record) {
   for (const WaypointRow& row : record.waypoints) {
     if (view.holds(row.time_s)) view.waypoints.push_back(row);
   }
-  if (view.waypoints.empty()) {
+  const bool is_start_only = view.waypoints.size() == 1 && is_start(record, view.waypoints.front());
+  if (view.waypoints.empty() || is_start_only) {
     view.name = "whole run";
   } else if (view.waypoints.size() == 1) {
     view.name = fmt::format("waypoint {}", view.waypoints.front().index);
@@ -29,6 +31,17 @@ void complete(View& view, const RunRecord& record) {
 }
 
 }  // namespace
+
+bool is_start(const RunRecord& record, const WaypointRow& row) {
+  return !record.truth.empty() && row.time_s <= record.truth.front().time_s;
+}
+
+std::vector<WaypointRow> reached_waypoints(const RunRecord& record) {
+  std::vector<WaypointRow> reached;
+  std::ranges::copy_if(record.waypoints, std::back_inserter(reached),
+                       [&](const WaypointRow& row) { return !is_start(record, row); });
+  return reached;
+}
 
 View whole_run(const RunRecord& record) {
   View view;

@@ -20,6 +20,12 @@ struct View {
 /// with; the leg that leads there still belongs to the view before. One view for a run without waypoints.
 [[nodiscard]] std::vector<View> mission_views(const RunRecord& record);
 
+/// The run began at this waypoint: it was not flown to.
+[[nodiscard]] bool is_start(const RunRecord& record, const WaypointRow& row);
+
+/// The waypoints that the run was flown to.
+[[nodiscard]] std::vector<WaypointRow> reached_waypoints(const RunRecord& record);
+
 /// The whole run in one.
 [[nodiscard]] View whole_run(const RunRecord& record);
 

@@ -1,6 +1,9 @@
 #include "host_sim/report/number_text.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -47,9 +50,35 @@ std::string duration_text(double seconds) {
   return minutes % 60 == 0 ? fmt::format("{} h", minutes / 60) : fmt::format("{} h {} min", minutes / 60, minutes % 60);
 }
 
-std::string velocity_text(double mps) {
-  if (!std::isfinite(mps)) return kNone;
-  return std::abs(mps) >= 0.3 ? fmt::format("{:.4f} m/s", mps) : fmt::format("{:.4f} mm/s", mps * 1e3);
+std::string measure_text(double value, std::string_view unit) {
+  constexpr double kLeast = 1e-5, kThousandthsBelow = 0.1, kThousandsFrom = 1e4;
+  if (!std::isfinite(value)) return kNone;
+  const double size = std::abs(value);
+  if (size == 0.0) return fmt::format("0 {}", unit);
+  if (size < kLeast) return fmt::format("< 0.01 m{}", unit);
+  const double scale = size < kThousandthsBelow ? 1e3 : size >= kThousandsFrom ? 1e-3 : 1.0;
+  const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(size * scale))), 0, 4);
+  return fmt::format("{:.{}f} {}{}", value * scale, decimals, scale > 1.0 ? "m" : scale < 1.0 ? "k" : "", unit);
+}
+
+std::vector<double> percentages(const std::vector<double>& parts) {
+  double whole = 0.0;
+  for (const double part : parts) whole += std::max(part, 0.0);
+  std::vector<double> tenths(parts.size(), 0.0);
+  if (!(whole > 0.0)) return tenths;
+  std::vector<std::pair<double, std::size_t>> remainders;
+  double missing = 1000.0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const double exact = 1000.0 * std::max(parts[k], 0.0) / whole;
+    tenths[k] = std::floor(exact);
+    missing -= tenths[k];
+    remainders.emplace_back(exact - tenths[k], k);
+  }
+  std::ranges::sort(remainders, std::greater{});
+  for (std::size_t k = 0; k < remainders.size() && missing > 0.5; ++k, missing -= 1.0)
+    tenths[remainders[k].second] += 1.0;
+  for (double& share : tenths) share /= 10.0;
+  return tenths;
 }
 
 }  // namespace vbar::report

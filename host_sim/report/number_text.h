@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace vbar::report {
 
@@ -23,7 +25,12 @@ namespace vbar::report {
 /// "41 h 15 min", "2 h 15 min", "12.3 s".
 [[nodiscard]] std::string duration_text(double seconds);
 
-/// A velocity in m/s, or mm/s where that reads better, with its unit.
-[[nodiscard]] std::string velocity_text(double mps);
+/// A length or velocity of `unit` (m, m/s) to three significant digits, with thousandths or thousands of the unit where
+/// that reads better. Below a hundred-thousandth: "< 0.01 mm".
+[[nodiscard]] std::string measure_text(double value, std::string_view unit);
+
+/// Shares of a whole in tenths of a percent that add up to 100.0 (largest remainders); zeros if all parts are zero.
+/// Negative parts count as zero.
+[[nodiscard]] std::vector<double> percentages(const std::vector<double>& parts);
 
 }  // namespace vbar::report

@@ -2,9 +2,7 @@
 // What the paper says of its experiment 1 ("Performance metrics for Experiment #1"), software and hardware in the loop:
 // to stand beside a run that meets the same waypoints.
 
-#include <array>
-
-#include "host_sim/report/run_record.h"
+#include "host_sim/report/paper_table.h"
 
 namespace vbar::report::paper1 {
 
@@ -13,32 +11,22 @@ struct Loop {
   double control_error_m = 0.0;
 };
 
-struct Waypoint {
-  int index;
-  Sextuple a_roe_m;  ///< of its table of waypoints
+struct Loops {
   Loop software, hardware;
 };
 
-inline constexpr std::array<Waypoint, 7> kWaypoints{{
-    {1, {-87.0, -50000.0, 0.0, 1000.0, 0.0, 1000.0}, {80.04, 24.40}, {75.27, 113.88}},
-    {2, {-70.0, -25000.0, 0.0, 500.0, 0.0, 500.0}, {50.75, 10.26}, {23.03, 73.59}},
-    {3, {-17.0, -5000.0, 0.0, 500.0, 0.0, 500.0}, {3.18, 2.47}, {9.58, 13.17}},
-    {4, {0.0, -1000.0, 0.0, 30.0, 0.0, 30.0}, {2.57, 3.91}, {6.70, 6.44}},
-    {5, {0.0, -600.0, 0.0, 18.0, 0.0, 18.0}, {4.57, 8.01}, {10.12, 10.11}},
-    {6, {0.0, -200.0, 0.0, 6.0, 0.0, 6.0}, {1.33, 3.64}, {1.09, 1.22}},
-    {7, {0.0, -100.0, 0.0, 3.0, 0.0, 3.0}, {3.89, 8.77}, {3.06, 4.47}},
+inline constexpr std::array<PaperWaypoint<Loops>, 7> kWaypoints{{
+    {1, {-87.0, -50000.0, 0.0, 1000.0, 0.0, 1000.0}, {{80.04, 24.40}, {75.27, 113.88}}},
+    {2, {-70.0, -25000.0, 0.0, 500.0, 0.0, 500.0}, {{50.75, 10.26}, {23.03, 73.59}}},
+    {3, {-17.0, -5000.0, 0.0, 500.0, 0.0, 500.0}, {{3.18, 2.47}, {9.58, 13.17}}},
+    {4, {0.0, -1000.0, 0.0, 30.0, 0.0, 30.0}, {{2.57, 3.91}, {6.70, 6.44}}},
+    {5, {0.0, -600.0, 0.0, 18.0, 0.0, 18.0}, {{4.57, 8.01}, {10.12, 10.11}}},
+    {6, {0.0, -200.0, 0.0, 6.0, 0.0, 6.0}, {{1.33, 3.64}, {1.09, 1.22}}},
+    {7, {0.0, -100.0, 0.0, 3.0, 0.0, 3.0}, {{3.89, 8.77}, {3.06, 4.47}}},
 }};
 
 // Of the whole experiment.
 inline constexpr const char* kDeltaVSoftware = "4.69 in 61 maneuvers";
 inline constexpr const char* kDeltaVHardware = "4.75 in 90 maneuvers";
-
-/// The paper's row of the waypoint that `row` is; null if it is none of the paper's.
-[[nodiscard]] inline const Waypoint* waypoint(const WaypointRow& row) {
-  for (const Waypoint& candidate : kWaypoints) {
-    if (candidate.index == row.index && candidate.a_roe_m == row.a_roe_desired_m) return &candidate;
-  }
-  return nullptr;
-}
 
 }  // namespace vbar::report::paper1

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -19,7 +20,56 @@ double distance_to_segment(const Point& p, const Point& a, const Point& b) {
   return std::hypot(p.x - (a.x + t * dx), p.y - (a.y + t * dy));
 }
 
+/// The part of a segment inside the box, as fractions of its length.
+struct Part {
+  double from = 0.0, to = 1.0;
+};
+
+/// Cuts away what lies beyond one edge: `inside` is the distance of the segment's start from that edge, `change` what
+/// is added to it on the way to the end.
+bool cut(Part& part, double inside, double change) {
+  if (change == 0.0) return inside >= 0.0;
+  const double crossing = -inside / change;
+  if (change > 0.0)
+    part.from = std::max(part.from, crossing);
+  else
+    part.to = std::min(part.to, crossing);
+  return part.from <= part.to;
+}
+
+std::optional<Part> part_inside(const Point& a, const Point& b, const Box& box) {
+  Part part;
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  const bool is_inside = cut(part, a.x - box.left, dx) && cut(part, box.right - a.x, -dx) &&
+                         cut(part, a.y - box.top, dy) && cut(part, box.bottom - a.y, -dy);
+  return is_inside ? std::optional(part) : std::nullopt;
+}
+
+/// Clamped, as rounding may leave a cut a last bit outside.
+Point between(const Point& a, const Point& b, double fraction, const Box& box) {
+  return {std::clamp(a.x + fraction * (b.x - a.x), box.left, box.right),
+          std::clamp(a.y + fraction * (b.y - a.y), box.top, box.bottom)};
+}
+
 }  // namespace
+
+std::vector<std::vector<Point>> clipped(const std::vector<Point>& curve, const Box& box) {
+  std::vector<std::vector<Point>> pieces;
+  bool is_open = false;  // the last piece ends where the next segment starts
+  for (std::size_t k = 0; k + 1 < curve.size(); ++k) {
+    const Point &a = curve[k], &b = curve[k + 1];
+    const std::optional<Part> part = part_inside(a, b, box);
+    if (!part) {
+      is_open = false;
+      continue;
+    }
+    if (!is_open || part->from > 0.0) pieces.push_back({between(a, b, part->from, box)});
+    pieces.back().push_back(between(a, b, part->to, box));
+    is_open = part->to == 1.0;
+  }
+  if (curve.size() == 1 && box.holds(curve.front())) pieces.push_back(curve);
+  return pieces;
+}
 
 std::vector<Point> thinned_curve(const std::vector<Point>& points, double tolerance) {
   if (points.size() < 3) return points;

@@ -15,6 +15,16 @@ struct Point {
 /// Dots without those that would lie within `distance` of one already there, judged on a grid of that size.
 [[nodiscard]] std::vector<Point> thinned_dots(const std::vector<Point>& points, double distance);
 
+/// A frame in the coordinates of the points.
+struct Box {
+  double left = 0.0, top = 0.0, right = 0.0, bottom = 0.0;
+
+  [[nodiscard]] bool holds(const Point& p) const { return p.x >= left && p.x <= right && p.y >= top && p.y <= bottom; }
+};
+
+/// The pieces of a curve inside the box; segments are cut where they cross its edges (Liang and Barsky, 1984).
+[[nodiscard]] std::vector<std::vector<Point>> clipped(const std::vector<Point>& curve, const Box& box);
+
 /// The corners of a curve that keeps each value until the next point.
 [[nodiscard]] std::vector<Point> stairs(const std::vector<Point>& points);
 

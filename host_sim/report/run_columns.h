@@ -222,6 +222,13 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"time_s"}, row.time_s);
   visit(ColumnName{"image"}, row.image);
   visit(ColumnName{"caption"}, row.caption);
+  visit(ColumnName{"origin_x_px"}, row.origin_x_px);
+  visit(ColumnName{"origin_y_px"}, row.origin_y_px);
+  visit(ColumnName{"width_px"}, row.width_px);
+  visit(ColumnName{"height_px"}, row.height_px);
+  visit(ColumnName{"target_radius_px"}, row.target_radius_px);
+  visit(ColumnName{"crop_left"}, row.crop_left);
+  visit(ColumnName{"crop_side"}, row.crop_side);
 }
 
 template <columns::RowOf<ManeuverRow> Row, class Visitor>

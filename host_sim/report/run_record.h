@@ -115,12 +115,16 @@ struct KeypointRow {
   std::optional<double> error_x_px, error_y_px;
 };
 
-/// An image worth looking at, with marks about what was found in it (gallery.csv and gallery/<image>.png).
+/// An image of the report's gallery (gallery.csv and gallery/<image>.png), and which pixels of the detector it shows.
+/// All sizes are zero in folders whose pictures have their marks in the pixels.
 struct GalleryImage {
   double time_s = 0.0;
   std::int32_t image = 0;
   std::string caption;
-  std::vector<std::uint8_t> png;  ///< the file's bytes
+  int origin_x_px = 0, origin_y_px = 0, width_px = 0, height_px = 0;  ///< at the picture's upper left corner, 1:1
+  double target_radius_px = 0.0;                                      ///< of a circle about the target
+  int crop_left = 0, crop_side = 0;  ///< in the picture: where the crop of the pose network is; side 0: no crop
+  std::vector<std::uint8_t> png;     ///< the file's bytes
 };
 
 /// A maneuver from command to execution (maneuvers.csv).
@@ -131,7 +135,8 @@ struct ManeuverRow {
   Triple commanded_dv_rtn_mps{}, executed_dv_rtn_mps{};
 };
 
-/// A residual of navigation (residuals.csv); none with ideal navigation. In the unit that the sensor's name ends in.
+/// A residual of navigation (residuals.csv, only if there are any), in the unit that the sensor's name ends in. Sigma
+/// is that of the innovation along the residual vector, |prefit| / sqrt(NIS).
 struct ResidualRow {
   double time_s = 0.0;
   std::string sensor;

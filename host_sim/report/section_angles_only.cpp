@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -6,8 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/report/consistency.h"
+#include "host_sim/report/gallery_html.h"
 #include "host_sim/report/html_page.h"
-#include "host_sim/report/image_png.h"
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/navigation_errors.h"
 #include "host_sim/report/number_text.h"
@@ -31,59 +33,57 @@ const std::vector<Metric> kMetrics{
      &paper1::Loop::navigation_error_m},
     {"control error, m", [](const WaypointRow& row) { return row.control_error_m; }, &paper1::Loop::control_error_m}};
 
-std::vector<std::string> papers_row(const RunRecord& record, const char* loop, const Metric& metric,
-                                    paper1::Loop paper1::Waypoint::*which) {
+std::vector<std::string> papers_row(const std::vector<WaypointRow>& waypoints, const char* loop, const Metric& metric,
+                                    paper1::Loop paper1::Loops::*which) {
   std::vector<std::string> cells{"", loop};
-  for (const WaypointRow& row : record.waypoints) {
-    const paper1::Waypoint* const same = paper1::waypoint(row);
+  for (const WaypointRow& row : waypoints) {
+    const paper1::Loops* const same = at_waypoint(paper1::kWaypoints, row);
     cells.push_back(fixed(same != nullptr ? std::optional((same->*which).*metric.papers_value) : std::nullopt, 2));
   }
   return cells;
 }
 
-/// The paper's numbers stand under those of a run that meets its waypoints.
+/// The paper's figures stand below those of a run that meets its waypoints.
 std::string performance_table(const RunRecord& record) {
+  const std::vector<WaypointRow> waypoints = reached_waypoints(record);
   std::vector<Column> columns{{"", false}, {"", false}};
-  for (const WaypointRow& row : record.waypoints) columns.push_back({fmt::format("waypoint {}", row.index)});
-  const bool is_beside_the_paper =
-      std::ranges::any_of(record.waypoints, [](const WaypointRow& row) { return paper1::waypoint(row) != nullptr; });
+  for (const WaypointRow& row : waypoints) columns.push_back({fmt::format("waypoint {}", row.index)});
+  const bool has_paper = meets_paper(paper1::kWaypoints, waypoints);
   std::vector<std::vector<std::string>> rows;
   for (const Metric& metric : kMetrics) {
-    std::vector<std::string>& cells = rows.emplace_back(std::vector<std::string>{metric.name, "this run"});
-    for (const WaypointRow& row : record.waypoints) cells.push_back(fixed(metric.value(row), 2));
-    if (!is_beside_the_paper) continue;
-    rows.push_back(papers_row(record, "paper, software in the loop", metric, &paper1::Waypoint::software));
-    rows.push_back(papers_row(record, "paper, hardware in the loop", metric, &paper1::Waypoint::hardware));
+    std::vector<std::string>& cells = rows.emplace_back(std::vector<std::string>{metric.name, kThisRun});
+    for (const WaypointRow& row : waypoints) cells.push_back(fixed(metric.value(row), 2));
+    if (!has_paper) continue;
+    rows.push_back(papers_row(waypoints, kPaperSoftware, metric, &paper1::Loops::software));
+    rows.push_back(papers_row(waypoints, kPaperHardware, metric, &paper1::Loops::hardware));
   }
-  std::string out = table(columns, rows);
+  std::string out = waypoints.empty() ? "" : table(columns, rows);
   const Summary& s = record.summary;
   out += fmt::format("<p>Delta-v: {} m/s in {} maneuvers", fixed(s.dv_mps, 3), s.maneuvers);
-  if (is_beside_the_paper) {
-    out += fmt::format("; the paper&#39;s {} (software in the loop) and {} (hardware in the loop)",
-                       paper1::kDeltaVSoftware, paper1::kDeltaVHardware);
+  if (has_paper) {
+    out += fmt::format("; paper: {} (software in the loop) and {} (hardware in the loop)", paper1::kDeltaVSoftware,
+                       paper1::kDeltaVHardware);
   }
   return out + ".</p>\n";
 }
 
 // ----------------------------------------------------------------------------------------------------------- in words
 
-constexpr double kArcsecond = M_PI / 648000.0;
+/// The filter took the bearing, so that its residuals and its NIS are of this image.
+bool is_filtered(const ImageRow& row) {
+  return row.fate == telemetry_image::kEditFilter && std::isfinite(row.nis) && row.nis > 0.0;
+}
 
-/// 95 % of chi-square with two degrees of freedom lies below 5.991.
-constexpr double kNis95 = 5.991;
-
-std::string nis_text(const RunRecord& record) {
+Fact nis_fact(const RunRecord& record) {
   double sum = 0.0;
-  int count = 0, inside = 0;
+  std::size_t count = 0;
   for (const ImageRow& row : record.images) {
-    if (row.fate != telemetry_image::kEditFilter || !std::isfinite(row.nis)) continue;
+    if (!is_filtered(row)) continue;
     sum += row.nis;
     ++count;
-    if (row.nis <= kNis95) ++inside;
   }
-  if (count == 0) return "–";
-  return fmt::format("mean {}, {} % of {} below the 95 % limit", fixed(sum / count, 2),
-                     fixed(100.0 * inside / count, 1), count);
+  return consistency_fact("NIS of a bearing, mean",
+                          count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt, 2.0, count);
 }
 
 /// Of the images that had an attitude.
@@ -100,21 +100,23 @@ std::string facts(const RunRecord& record) {
   const Summary& s = record.summary;
   const ImageCounts counts = s.images.value_or(ImageCounts{});
   const ImageRow& last = record.images.back();
+  const auto with_nees = static_cast<std::size_t>(
+      std::ranges::count_if(record.images, [](const ImageRow& row) { return row.nees.has_value(); }));
   std::vector<Fact> facts{{"images", fmt::format("{}, {} with a bearing, {} without stars", counts.images,
                                                  counts.with_bearing, last.images_without_stars)},
-                          {"choices that were not the target", std::to_string(counts.wrong_targets)},
-                          {"bearings", fmt::format("{} used, {} refused", last.bearings_used, last.bearings_refused)},
-                          {"stars an image", stars_text(record)},
-                          {"NIS, 2 expected", nis_text(record)},
-                          {"NEES, 6 expected", fixed(s.navigation_nees, 2)},
-                          {"tiles refused", std::to_string(last.tiles_refused)}};
+                          {"wrong target selected", fmt::format("{} images", counts.wrong_targets)},
+                          {"bearings", fmt::format("{} used, {} rejected", last.bearings_used, last.bearings_refused)},
+                          {"stars per image", stars_text(record)},
+                          nis_fact(record),
+                          consistency_fact("NEES of the orbit, mean", s.navigation_nees, 6.0, with_nees),
+                          {"image tiles rejected", std::to_string(last.tiles_refused)}};
   if (const auto& error = s.bearing_error_arcsec) {
-    facts.push_back({"bearing error, target within a pixel", fmt::format("noise {} arcsec an axis, bias {} arcsec",
+    facts.push_back({"bearing error, target within a pixel", fmt::format("noise {} arcsec per axis, bias {} arcsec",
                                                                          fixed(error->std, 2), fixed(error->bias, 2))});
   }
   if (const auto& error = s.star_attitude_error_arcsec) {
-    facts.push_back(
-        {"boresight by the stars", fmt::format("error {} ± {} arcsec", fixed(error->mean, 2), fixed(error->std, 2))});
+    facts.push_back({"boresight error of the star attitude",
+                     fmt::format("{} ± {} arcsec", fixed(error->mean, 2), fixed(error->std, 2))});
   }
   return fact_list(facts);
 }
@@ -122,14 +124,7 @@ std::string facts(const RunRecord& record) {
 // --------------------------------------------------------------------------------------------------------------- plots
 
 Plot empty_plot(const RunRecord& record, const View& view, const char* title, const char* quantity, Unit unit) {
-  Plot plot;
-  plot.title = title;
-  plot.x = time_axis(view);
-  plot.y = {.name = quantity, .unit = unit};
-  plot.width = 580.0;
-  plot.moments = waypoint_moments(view);
-  plot.events = maneuver_events(record, view);
-  return plot;
+  return time_plot(view, title, quantity, unit, 250.0, &record);
 }
 
 /// (hours, value(row)) of the images for which it gives one.
@@ -155,28 +150,53 @@ Range range_of_most(const std::vector<Series>& series) {
   return {-most, most};
 }
 
-/// Two plots, of the camera's x and y.
+constexpr std::array<const char*, 2> kPlanes{"in the orbital plane", "across the orbital plane"};
+
+/// Two plots, of the two components.
 std::vector<Plot> residual_plots(const RunRecord& record, const View& view) {
   std::vector<Plot> plots;
   for (const std::size_t axis : {0U, 1U}) {
-    Plot plot = empty_plot(record, view, axis == 0 ? "Residuals across, camera x" : "Residuals up and down, camera y",
-                           "residual", Unit::kArcseconds);
+    Plot plot = empty_plot(record, view, "", "residual", Unit::kArcseconds);
+    plot.title = fmt::format("Bearing residual {}", kPlanes[axis]);
     const auto values = [&](double(telemetry_image::*residual)[2]) {
       return points_of(record, view, [&](const ImageRow& row) {
-        return row.fate >= telemetry_image::kEditFilter ? std::optional((row.*residual)[axis] / kArcsecond)
-                                                        : std::nullopt;
+        return is_filtered(row) ? std::optional((row.*residual)[axis] / kArcsecond) : std::nullopt;
       });
     };
-    plot.series = {{"before the update", 5, Mark::kDots, values(&telemetry_image::prefit)},
-                   {"after the update", 0, Mark::kDots, values(&telemetry_image::postfit)}};
+    plot.series = {{"prefit", 1, Mark::kBroadDots, values(&telemetry_image::prefit)},
+                   {"postfit", 0, Mark::kDots, values(&telemetry_image::postfit)}};
     plot.y.range = range_of_most(plot.series);
     plots.push_back(std::move(plot));
   }
   return plots;
 }
 
-/// On a logarithmic scale: what reflects light is some decimetres beside the centre of mass, 1 arcsec of the first
-/// image's range and 300 of the last one's.
+/// The prefit residual r over the standard deviation |r| / sqrt(NIS) of the innovation along it, by component. The
+/// vector has the length sqrt(NIS), whatever the innovation's covariance.
+std::vector<Plot> normalised_plots(const RunRecord& record, const View& view) {
+  const double limit = std::sqrt(-2.0 * std::log(0.05));  // 95 % of chi-square with two degrees of freedom
+  const Range across = hours_of(view);
+  std::vector<Plot> plots;
+  for (const std::size_t axis : {0U, 1U}) {
+    Plot plot = empty_plot(record, view, "", "residual", Unit::kSigmas);
+    plot.title = fmt::format("Normalised prefit residual {}", kPlanes[axis]);
+    plot.series = {
+        {"prefit", 1, Mark::kDots,
+         points_of(record, view,
+                   [&](const ImageRow& row) -> std::optional<double> {
+                     if (!is_filtered(row)) return std::nullopt;
+                     return row.prefit[axis] * std::sqrt(row.nis) / std::hypot(row.prefit[0], row.prefit[1]);
+                   })},
+        {"95 % of the residual vectors are shorter", 5, Mark::kDashedLine, {{across.low, limit}, {across.high, limit}}},
+        {"", 5, Mark::kDashedLine, {{across.low, -limit}, {across.high, -limit}}}};
+    plot.y.range = range_of_most(plot.series);
+    plots.push_back(std::move(plot));
+  }
+  return plots;
+}
+
+/// On a logarithmic scale: the centre of brightness lies some decimetres beside the centre of mass, 1 arcsec at the
+/// range of the first image and 300 at that of the last.
 Plot bearing_error_plot(const RunRecord& record, const View& view) {
   Plot plot = empty_plot(record, view, "Error of the measured bearing", "error", Unit::kArcseconds);
   plot.y.logarithmic = true;
@@ -185,16 +205,16 @@ Plot bearing_error_plot(const RunRecord& record, const View& view) {
       return row.bearing_error_x_arcsec ? std::optional<double>(value(row)) : std::nullopt;
     });
   };
-  plot.series = {{"size", 0, Mark::kDots, of_bearings([](const ImageRow& row) {
+  plot.series = {{"magnitude of the error", 0, Mark::kDots, of_bearings([](const ImageRow& row) {
                     return std::hypot(*row.bearing_error_x_arcsec, row.bearing_error_y_arcsec.value_or(0.0));
                   })},
-                 {"one sigma of an axis as it claims", 1, Mark::kDashedLine,
+                 {"1σ per axis reported with the bearing", 1, Mark::kDashedLine,
                   of_bearings([](const ImageRow& row) { return row.bearing_sigma / kArcsecond; })}};
   return plot;
 }
 
 Plot attitude_error_plot(const RunRecord& record, const View& view) {
-  Plot plot = empty_plot(record, view, "Error of the attitude by the stars", "error", Unit::kArcseconds);
+  Plot plot = empty_plot(record, view, "Error of the star attitude", "error", Unit::kArcseconds);
   plot.series = {{"of the boresight", 0, Mark::kDots,
                   points_of(record, view, [](const ImageRow& r) { return r.attitude_error_across_arcsec; })},
                  {"about the boresight", 5, Mark::kDots,
@@ -217,12 +237,12 @@ Plot objects_plot(const RunRecord& record, const View& view) {
   return plot;
 }
 
-/// Bearings alone tell little of the range: how much, is the question of this kind of navigation.
+/// Range is weakly observable from bearings alone.
 Plot range_plot(const RunRecord& record, const View& view) {
-  Plot plot = empty_plot(record, view, "Range, its error and what the filter claims", "range", Unit::kMetres);
+  Plot plot = empty_plot(record, view, "Range, its error and 1σ of the filter", "range", Unit::kMetres);
   plot.y.logarithmic = true;
-  Series truth{"true range", 2, Mark::kLine, {}}, error{"its error", 0, Mark::kLine, {}},
-      sigma{"one sigma along the line of sight", 1, Mark::kDashedLine, {}};
+  Series truth{"true range", 2, Mark::kLine, {}}, error{"range error", 0, Mark::kLine, {}},
+      sigma{"1σ of the filter along the line of sight", 1, Mark::kDashedLine, {}};
   std::size_t next = 0;
   for (const NavigationError& e : navigation_errors(record)) {
     while (next < record.truth.size() && record.truth[next].time_s < e.time_s) ++next;
@@ -244,42 +264,51 @@ Plot range_plot(const RunRecord& record, const View& view) {
 
 // ------------------------------------------------------------------------------------------------------------- gallery
 
-std::string gallery(const RunRecord& record) {
-  if (record.gallery.empty()) return {};
-  std::vector<std::string> pictures;
-  for (const GalleryImage& image : record.gallery) {
-    const std::string caption =
-        fmt::format("image {} at {} h: {}", image.image, fixed(hours(image.time_s), 2), image.caption);
-    pictures.push_back(
-        fmt::format("<img class=\"picture\" alt=\"{0}\" src=\"{1}\"/>"
-                    "<figcaption>{0}</figcaption>",
-                    escaped(caption), png_data_uri(image.png)));
+/// What the flight software took the objects of an image for; the target last, on top of its neighbours' marks.
+std::string marks(const RunRecord& record, const GalleryImage& image) {
+  constexpr double kRadius = 8.0;
+  std::string all, target;
+  for (const ObjectRow& row : record.objects) {
+    if (row.image != image.image) continue;
+    MarkAt at{in_picture(static_cast<double>(row.x_px), image.origin_x_px),
+              in_picture(static_cast<double>(row.y_px), image.origin_y_px)};
+    const std::string place = fmt::format("at x {:.1f}, y {:.1f} px", row.x_px, row.y_px);
+    if (row.kind == 0) {
+      at.colour = "blue";
+      at.tooltip = "not matched, " + place;
+      all += triangle_mark(at, kRadius);
+    } else if (row.kind == 1) {
+      at.tooltip = fmt::format("star HIP {}, {}", row.star, place);
+      all += box_mark(at, kRadius);
+    } else if (row.kind == 2) {
+      at.colour = "green";
+      at.tooltip = "selected target, " + place;
+      target += circle_mark(at, image.target_radius_px);
+    }
   }
-  return "<h3>Images</h3>\n<p class=\"note\">As the flight software got them, with its own findings: red boxes are "
-         "stars that it identified, the green circle is its target, blue triangles are objects that it did not "
-         "match. Dark violet did not arrive.</p>\n" +
-         figures(3, pictures);
+  return all + target;
 }
 
 }  // namespace
 
-std::string angles_only_section(const RunRecord& record) {
+Section angles_only_section(const RunRecord& record) {
   if (record.images.empty()) return {};
   const View view = whole_run(record);
-  const std::vector<Plot> residuals = residual_plots(record, view);
-  const Plot bearing = bearing_error_plot(record, view), attitude = attitude_error_plot(record, view);
-  const Plot objects = objects_plot(record, view), range = range_plot(record, view);
-  return section(
-      "Angles-only navigation",
-      performance_table(record) + facts(record) +
-          "<p class=\"note\">Errors of bearings are against the target's centre of mass; what reflects light lies up "
-          "to "
-          "some decimetres beside it, which shows at close range. Linear plots leave out the largest hundredth of "
-          "their dots. "
-          "Dashed lines: waypoints. Strokes on the lower edge: maneuvers.</p>\n" +
-          legend(residuals[0].series) + figures(2, {svg(residuals[0]), svg(residuals[1])}) + legend(bearing.series) +
-          legend(attitude.series) + figures(2, {svg(bearing), svg(attitude)}) + legend(range.series) +
-          legend(objects.series) + figures(2, {svg(range), svg(objects)}) + gallery(record));
+  return {"Angles-only navigation",
+          performance_table(record) + facts(record) + kBandNote +
+              "<p class=\"note\">Residuals of the bearings that the filter used. Normalised: over |prefit| / √NIS, the "
+              "standard deviation of the innovation along the residual vector. Errors of bearings are against the "
+              "target's centre of mass; its centre of brightness lies up to some decimetres beside it, which shows at "
+              "close range. Linear plots leave out the largest hundredth of their dots.</p>\n" +
+              kPlotNote + plot_rows(2, residual_plots(record, view)) + plot_rows(2, normalised_plots(record, view)) +
+              plot_rows(2, {bearing_error_plot(record, view), attitude_error_plot(record, view)}) +
+              plot_rows(2, {range_plot(record, view), objects_plot(record, view)}) +
+              gallery_html(record, 3,
+                           "As received by the flight software, with its findings: red boxes are identified stars, the "
+                           "green circle is the selected target, blue triangles are unmatched objects. Dark violet "
+                           "pixels did not arrive.",
+                           [&](const GalleryImage& image) { return marks(record, image); }),
+          {"images.csv", "objects.csv", "gallery.csv", "residuals.csv"}};
 }
 
 }  // namespace vbar::report

@@ -12,10 +12,10 @@
 namespace vbar::report {
 namespace {
 
-/// A tumble of a degree a second over the whole mission would be a black band: two orbits of it are a figure.
+/// A tumble of a degree per second over the whole mission would be a black band; two orbits are readable.
 constexpr double kClose_s = 12000.0;
 
-/// A rate that is constant but for rounding is not worth a plot of its noise; 1e-4 deg/s.
+/// 1e-4 deg/s: a smaller range would show the rounding of a constant rate.
 constexpr double kLeastRateSpan_radps = 2e-6;
 
 View beginning_of(const View& run) {
@@ -34,25 +34,16 @@ double angle_between(const Quadruple& a, const Quadruple& b) {
   return 2.0 * std::acos(std::min(std::abs(cosine), 1.0));
 }
 
-Plot plot_of(const std::string& title, const std::string& quantity, Unit unit, const View& view) {
-  Plot plot;
-  plot.title = title;
-  plot.x = time_axis(view);
-  plot.y = {.name = quantity, .unit = unit};
-  plot.height = 220.0;
-  plot.moments = waypoint_moments(view);
-  return plot;
-}
-
 Plot angle_plot(const std::string& spacecraft, const std::vector<AttitudeRow>& rows, const View& view) {
-  Plot plot = plot_of(fmt::format("{}, turned since the start", spacecraft), "angle", Unit::kRadians, view);
+  Plot plot = time_plot(view, fmt::format("{}, rotation since the start", spacecraft), "angle", Unit::kRadians, 220.0);
   const auto angle = [&](const AttitudeRow& row) { return angle_between(row.q_body_eci, rows.front().q_body_eci); };
-  plot.series = {{"angle", 0, Mark::kLine, over_time(rows, view, angle)}};
+  plot.series = {{"", 0, Mark::kLine, over_time(rows, view, angle)}};
   return plot;
 }
 
 Plot components_plot(const std::string& spacecraft, const std::vector<AttitudeRow>& rows, const View& view) {
-  Plot plot = plot_of(fmt::format("{}, rate about body axes", spacecraft), "rate", Unit::kRadiansPerSecond, view);
+  Plot plot = time_plot(view, fmt::format("{}, angular rate about body axes", spacecraft), "rate",
+                        Unit::kRadiansPerSecond, 220.0);
   plot.y.least_span = kLeastRateSpan_radps;
   constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -63,38 +54,35 @@ Plot components_plot(const std::string& spacecraft, const std::vector<AttitudeRo
 }
 
 Plot size_plot(const std::string& spacecraft, const std::vector<AttitudeRow>& rows, const View& view) {
-  Plot plot =
-      plot_of(fmt::format("{}, size of the rate, whole run", spacecraft), "rate", Unit::kRadiansPerSecond, view);
+  Plot plot = time_plot(view, fmt::format("{}, magnitude of the rate, whole run", spacecraft), "rate",
+                        Unit::kRadiansPerSecond, 220.0);
   plot.y.least_span = kLeastRateSpan_radps;
   const auto size = [](const AttitudeRow& row) {
     return std::hypot(row.rate_body_radps[0], row.rate_body_radps[1], row.rate_body_radps[2]);
   };
-  plot.series = {{"rate", 0, Mark::kLine, over_time(rows, view, size)}};
+  plot.series = {{"", 0, Mark::kLine, over_time(rows, view, size)}};
   return plot;
 }
 
 }  // namespace
 
-std::string attitude_section(const RunRecord& record) {
+Section attitude_section(const RunRecord& record) {
   if (record.attitudes.empty()) return {};
   std::map<std::string, std::vector<AttitudeRow>> rows_of;
   for (const AttitudeRow& row : record.attitudes) rows_of[row.spacecraft].push_back(row);
   const View run = whole_run(record);
   const View beginning = beginning_of(run);
-  std::vector<std::string> plots;
-  std::vector<Series> axes;
+  std::vector<Plot> plots;
   for (const auto& [spacecraft, rows] : rows_of) {
-    const Plot components = components_plot(spacecraft, rows, beginning);
-    axes = components.series;
-    plots.push_back(svg(angle_plot(spacecraft, rows, beginning)));
-    plots.push_back(svg(components));
-    plots.push_back(svg(size_plot(spacecraft, rows, run)));
+    plots.push_back(angle_plot(spacecraft, rows, beginning));
+    plots.push_back(components_plot(spacecraft, rows, beginning));
+    plots.push_back(size_plot(spacecraft, rows, run));
   }
-  return section(
-      "Attitude",
-      "<p class=\"note\">True attitude, at flight steps: the angle between the attitude and that of the first "
-      "step, and the rate with respect to ECI. Dashed lines: waypoints.</p>\n" +
-          legend(axes) + figures(3, plots));
+  return {"Attitude",
+          "<p class=\"note\">True attitude at flight steps: the angle between the attitude and that of the first step, "
+          "and the angular rate with respect to ECI. Dashed vertical lines: waypoints.</p>\n" +
+              plot_rows(3, std::move(plots)),
+          {"attitude.csv"}};
 }
 
 }  // namespace vbar::report

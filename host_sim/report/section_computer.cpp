@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+
 #include <fmt/format.h>
 
 #include "host_sim/report/html_page.h"
@@ -11,25 +15,19 @@ namespace {
 std::string step_cost(const RunRecord& record) {
   const Summary::FlightStep& step = record.summary.flight_step;
   if (step.unit == "none" || step.max == 0) {
-    return fmt::format("<p>{} flight steps; this flight computer cannot count what a step costs.</p>\n",
+    return fmt::format("<p>{} flight steps; this flight computer does not count instructions.</p>\n",
                        grouped(step.count));
   }
   const View whole = whole_run(record);
-  Plot plot;
-  plot.title = fmt::format("{} of each flight step", step.unit);
-  plot.x = time_axis(whole);
-  plot.y = {.name = step.unit};
+  Plot plot = time_plot(whole, fmt::format("{} of each flight step", step.unit), step.unit, Unit::kNone, 240.0);
   plot.y.range = Range{0.0, 1.05 * static_cast<double>(step.max)};
-  plot.width = 1190.0;
-  plot.height = 240.0;
-  plot.moments = waypoint_moments(whole);
   plot.series = {{step.unit, 0, Mark::kDots, over_time(record.estimates, whole, [](const EstimateRow& r) {
                     return static_cast<double>(r.step_cost);
                   })}};
   return fmt::format("<p>{} flight steps: at most {}, on average {} {}; at most {} bytes of stack.</p>\n",
                      grouped(step.count), grouped(step.max), grouped_nearest(step.mean), step.unit,
                      grouped(step.stack_bytes_max)) +
-         figures(1, {svg(plot)});
+         plot_rows(1, {std::move(plot)});
 }
 
 std::string share_of_step(const Summary::Link& link) {
@@ -38,37 +36,61 @@ std::string share_of_step(const Summary::Link& link) {
                      fixed(100.0 * link.step_share_mean, 2), grouped(static_cast<std::uint64_t>(link.baud)));
 }
 
-std::string share(double seconds, double wall_s) {
-  return wall_s > 0.0 ? fmt::format("{} s ({} %)", fixed(seconds, 2), fixed(100.0 * seconds / wall_s, 1))
-                      : fixed(seconds, 2) + " s";
+/// "3 resent, 1 rejected"; the text for none if all counts are zero.
+struct Count {
+  const char* what;
+  std::uint64_t value;
+};
+Fact counts(const char* name, std::initializer_list<Count> all) {
+  std::string text;
+  for (const Count& count : all) {
+    if (count.value == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count.value), count.what);
+  }
+  return {name, text.empty() ? "none" : text, !text.empty()};
+}
+
+/// Without bytes there was no link: the flight software ran in this process.
+void add_link(const Summary::Link& link, std::vector<Fact>& facts) {
+  if (link.bytes == 0) {
+    facts.push_back({"link", "none: flight software in the same process"});
+    return;
+  }
+  facts.push_back({"bytes on the link", grouped(link.bytes)});
+  facts.push_back({"share of a step on the line", share_of_step(link)});
+  facts.push_back(counts("irregular frames", {{"resent", link.frames_resent},
+                                              {"rejected", link.frames_rejected},
+                                              {"duplicated", link.frames_duplicated},
+                                              {"foreign", link.strangers_ignored}}));
+}
+
+/// Shares that add up to 100 % of their sum.
+void add_wall_clock(const Summary& s, std::vector<Fact>& facts) {
+  const std::vector<double> parts{s.wall_share.truth_s, s.wall_share.flight_s, s.wall_share.link_s,
+                                  s.wall_share.other_s};
+  constexpr std::array kNames{"wall clock: truth", "wall clock: flight computer", "wall clock: link",
+                              "wall clock: other"};
+  const std::vector<double> shares = percentages(parts);
+  for (std::size_t k = 0; k < kNames.size(); ++k)
+    facts.push_back({kNames[k], fmt::format("{} s ({} %)", fixed(std::max(parts[k], 0.0), 2), fixed(shares[k], 1))});
+  if (s.camera.empty()) return;
+  facts.push_back({"camera thread, in parallel",
+                   fmt::format("rendering {} s, detector {} s, packing {} s", fixed(s.wall_share.render_s, 2),
+                               fixed(s.wall_share.detector_s, 2), fixed(s.wall_share.packing_s, 2))});
 }
 
 }  // namespace
 
-std::string computer_section(const RunRecord& record) {
+Section computer_section(const RunRecord& record) {
   const Summary& s = record.summary;
-  std::vector<Fact> facts{
-      {"bytes on the link", grouped(s.link.bytes)},
-      {"share of a step on the line", share_of_step(s.link)},
-      {"frames sent again", grouped(s.link.frames_resent)},
-      {"frames rejected", grouped(s.link.frames_rejected)},
-      {"frames duplicated", grouped(s.link.frames_duplicated)},
-      {"strangers ignored", grouped(s.link.strangers_ignored)},
-      {"steps late", grouped(s.deadlines.compute_overruns)},
-      {"wake-ups late", grouped(s.deadlines.wakeups_late)},
-      {"link late", grouped(s.deadlines.link_late)},
-      {"simulation late", grouped(s.deadlines.simulation_late)},
-      {"wall clock: truth", share(s.wall_share.truth_s, s.wall_s)},
-      {"wall clock: flight computer", share(s.wall_share.flight_s, s.wall_s)},
-      {"wall clock: link", share(s.wall_share.link_s, s.wall_s)},
-      {"wall clock: elsewhere", share(s.wall_share.other_s, s.wall_s)},
-  };
-  if (!s.camera.empty()) {
-    facts.push_back({"camera's own thread: rendering", share(s.wall_share.render_s, s.wall_s)});
-    facts.push_back({"camera's own thread: detector", share(s.wall_share.detector_s, s.wall_s)});
-    facts.push_back({"camera's own thread: packing", share(s.wall_share.packing_s, s.wall_s)});
-  }
-  return section("Flight computer, link and time", step_cost(record) + fact_list(facts));
+  std::vector<Fact> facts;
+  add_link(s.link, facts);
+  facts.push_back(counts("deadlines missed", {{"by the flight step", s.deadlines.compute_overruns},
+                                              {"by the wake-up", s.deadlines.wakeups_late},
+                                              {"by the link", s.deadlines.link_late},
+                                              {"by the simulation", s.deadlines.simulation_late}}));
+  add_wall_clock(s, facts);
+  return {"Flight computer, link and time", step_cost(record) + fact_list(facts), {"estimate.csv"}};
 }
 
 }  // namespace vbar::report

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "host_sim/report/html_page.h"
@@ -8,32 +10,34 @@
 namespace vbar::report {
 namespace {
 
+/// A flight computer without mean ROE reports zeros.
+bool has_estimate(const EstimateRow& row) {
+  return row.navigation_valid != 0 && row.a_roe_mean_m != Sextuple{};
+}
+
 Plot element_plot(const RunRecord& record, const View& view, std::size_t k) {
-  Plot plot;
-  plot.title = fmt::format("{}, {}", kElementNames[k], view.name);
-  plot.x = time_axis(view);
-  plot.y = {.name = kElementNames[k], .unit = Unit::kMetres, .least_span = kLeastElementSpan_m};
-  plot.height = 220.0;
-  plot.moments = waypoint_moments(view);
+  Plot plot =
+      time_plot(view, fmt::format("{}, {}", kElementNames[k], view.name), kElementNames[k], Unit::kMetres, 220.0);
+  plot.y.least_span = kLeastElementSpan_m;
   plot.series = {{"true", 0, Mark::kBroadLine,
                   over_time(record.truth, view, [k](const TruthRow& r) { return r.a_roe_mean_m[k]; })},
-                 {"estimated", 1, Mark::kLine, {}},
-                 {"wanted at the next waypoint", 5, Mark::kDashedLine, {}}};
+                 {"estimated", 1, Mark::kLine,
+                  over_time(record.estimates, view,
+                            [k](const EstimateRow& r) { return has_estimate(r) ? r.a_roe_mean_m[k] : std::nan(""); })},
+                 {"desired at the next waypoint", 5, Mark::kDashedLine, {}}};
+  std::vector<Point>& desired = plot.series[2].points;
   for (const EstimateRow& row : record.estimates) {
-    if (!view.holds(row.time_s)) continue;
-    if (row.navigation_valid != 0) plot.series[1].points.push_back({hours(row.time_s), row.a_roe_mean_m[k]});
-    std::vector<Point>& wanted = plot.series[2].points;
-    if (row.waypoint_index < 0) continue;
-    // A new waypoint is wanted at once, not by and by.
-    if (!wanted.empty() && wanted.back().y != row.a_roe_desired_m[k]) {
-      wanted.push_back({hours(row.time_s), wanted.back().y});
+    if (!view.holds(row.time_s) || row.waypoint_index < 0) continue;
+    // The desired elements change at once with the next waypoint.
+    if (!desired.empty() && desired.back().y != row.a_roe_desired_m[k]) {
+      desired.push_back({hours(row.time_s), desired.back().y});
     }
-    wanted.push_back({hours(row.time_s), row.a_roe_desired_m[k]});
+    desired.push_back({hours(row.time_s), row.a_roe_desired_m[k]});
   }
   for (const WaypointRow& row : view.waypoints) {
     plot.rings.push_back({{hours(row.time_s), row.a_roe_desired_m[k]},
                           "",
-                          fmt::format("waypoint {}: {} m wanted, {} m true", row.index,
+                          fmt::format("waypoint {}: {} m desired, {} m true", row.index,
                                       fixed(row.a_roe_desired_m[k], 3), fixed(row.a_roe_actual_m[k], 3))});
   }
   return plot;
@@ -41,18 +45,18 @@ Plot element_plot(const RunRecord& record, const View& view, std::size_t k) {
 
 }  // namespace
 
-std::string elements_section(const RunRecord& record) {
+Section elements_section(const RunRecord& record) {
   if (record.truth.empty()) return {};
   const std::vector<View> views = mission_views(record);
-  std::vector<std::string> plots;
+  std::vector<Plot> plots;
   for (std::size_t k = 0; k < kElementNames.size(); ++k) {
-    for (const View& view : views) plots.push_back(svg(element_plot(record, view, k)));
+    for (const View& view : views) plots.push_back(element_plot(record, view, k));
   }
-  return section(
-      "Relative orbital elements",
-      "<p class=\"note\">Mean ROE of the target with respect to the servicer, times the reference semi-major axis. "
-      "Rings and dashed lines: waypoints.</p>\n" +
-          legend(element_plot(record, views.front(), 0).series) + figures(columns_for(views.size()), plots));
+  return {"Relative orbital elements",
+          "<p class=\"note\">Mean ROE of the target with respect to the servicer, times the reference semi-major axis. "
+          "Rings and dashed vertical lines: waypoints.</p>\n" +
+              plot_rows(columns_for(views.size()), std::move(plots)),
+          {"truth.csv", "estimate.csv"}};
 }
 
 }  // namespace vbar::report

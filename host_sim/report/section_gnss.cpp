@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/report/consistency.h"
 #include "host_sim/report/html_page.h"
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/navigation_errors.h"
@@ -21,62 +22,53 @@ constexpr double kMillimetres = 1e3;
 
 // ------------------------------------------------------------------------------------------------- table of the paper
 
-std::string mean_and_deviation(const std::optional<MeanAndDeviation>& value, int decimals) {
-  if (!value) return fixed(std::nullopt, decimals);
-  return fmt::format("{} ± {}", fixed(kMillimetres * value->mean, decimals),
-                     fixed(kMillimetres * value->std, decimals));
-}
-
 std::optional<double> in_millimetres(const std::optional<double>& value) {
   return value ? std::optional(kMillimetres * *value) : std::nullopt;
 }
 
-/// A row of the table: a value at each waypoint and one of the whole run, as the run has them and as the paper does.
+/// A row of the table: a value at each waypoint and one of the whole run, of the run and of the paper.
 struct Metric {
   std::string name;
   std::function<std::optional<double>(const WaypointRow&)> value;
-  std::function<std::optional<double>(const paper::Waypoint&)> papers_value;
+  std::function<std::optional<double>(const paper3::Figures&)> papers_value;
   std::string whole, papers_whole;
 };
 
 std::vector<Metric> metrics(const Summary& s) {
   return {{"navigation error, mm", [](const WaypointRow& row) { return in_millimetres(row.navigation_error_m); },
-           [](const paper::Waypoint& row) { return row.navigation_error_mm; },
-           mean_and_deviation(s.navigation_error_m, 3), paper::kNavigationError_mm},
+           [](const paper3::Figures& paper) { return paper.navigation_error_mm; },
+           plus_minus(s.navigation_error_m, 3, kMillimetres), paper3::kNavigationError_mm},
           {"navigation velocity error, mm/s",
            [](const WaypointRow& row) { return in_millimetres(row.navigation_velocity_error_mps); },
-           [](const paper::Waypoint& row) { return row.navigation_velocity_error_mmps; },
-           mean_and_deviation(s.navigation_velocity_error_mps, 3), paper::kNavigationVelocityError_mmps},
+           [](const paper3::Figures& paper) { return paper.navigation_velocity_error_mmps; },
+           plus_minus(s.navigation_velocity_error_mps, 3, kMillimetres), paper3::kNavigationVelocityError_mmps},
           {"control error, m", [](const WaypointRow& row) { return row.control_error_m; },
-           [](const paper::Waypoint& row) { return row.control_error_m; }, "", ""},
-          {"delta-v so far, mm/s", [](const WaypointRow& row) { return kMillimetres * row.cumulative_dv_mps; },
-           [](const paper::Waypoint&) { return std::nullopt; },
-           fmt::format("{} in {} maneuvers", fixed(kMillimetres * s.dv_mps, 3), s.maneuvers), paper::kDeltaV_mmps}};
+           [](const paper3::Figures& paper) { return paper.control_error_m; }, "", ""},
+          {"cumulative delta-v, mm/s", [](const WaypointRow& row) { return kMillimetres * row.cumulative_dv_mps; },
+           [](const paper3::Figures&) { return std::nullopt; },
+           fmt::format("{} in {} maneuvers", fixed(kMillimetres * s.dv_mps, 3), s.maneuvers), paper3::kDeltaV_mmps}};
 }
 
-bool is_beside_the_paper(const RunRecord& record) {
-  return std::ranges::any_of(record.waypoints, [](const WaypointRow& row) { return paper::waypoint(row) != nullptr; });
-}
-
-/// The paper's numbers stand under those of a run that meets its waypoints.
+/// The paper's figures stand below those of a run that meets its waypoints.
 std::string performance_table(const RunRecord& record) {
+  const std::vector<WaypointRow> waypoints = reached_waypoints(record);
   std::vector<Column> columns{{"", false}, {"", false}};
-  for (const WaypointRow& row : record.waypoints) columns.push_back({fmt::format("waypoint {}", row.index)});
+  for (const WaypointRow& row : waypoints) columns.push_back({fmt::format("waypoint {}", row.index)});
   columns.push_back({"whole run, mean ± std"});
 
   std::vector<std::vector<std::string>> rows;
   for (const Metric& metric : metrics(record.summary)) {
-    std::vector<std::string> run{metric.name, "this run"};
-    std::vector<std::string> paper{"", "paper, software in the loop"};
-    for (const WaypointRow& row : record.waypoints) {
+    std::vector<std::string> run{metric.name, kThisRun};
+    std::vector<std::string> paper{"", kPaperSoftware};
+    for (const WaypointRow& row : waypoints) {
       run.push_back(fixed(metric.value(row), 3));
-      const paper::Waypoint* const same = paper::waypoint(row);
+      const paper3::Figures* const same = at_waypoint(paper3::kWaypoints, row);
       paper.push_back(fixed(same != nullptr ? metric.papers_value(*same) : std::nullopt, 3));
     }
     run.push_back(metric.whole);
     paper.push_back(metric.papers_whole);
     rows.push_back(std::move(run));
-    if (is_beside_the_paper(record)) rows.push_back(std::move(paper));
+    if (meets_paper(paper3::kWaypoints, waypoints)) rows.push_back(std::move(paper));
   }
   return table(columns, rows);
 }
@@ -87,19 +79,12 @@ std::string percent(double share) {
   return fmt::format("{} %", fixed(100.0 * share, 1));
 }
 
-/// Of chi-square over its degrees of freedom, 95 % of draws lie between (Wilson and Hilferty 1931; four digits from ten
-/// degrees on).
-Range nis_band(std::int32_t degrees) {
-  const double spread = 2.0 / (9.0 * degrees);
-  const auto quantile = [&](double sigmas) { return std::pow(1.0 - spread + sigmas * std::sqrt(spread), 3.0); };
-  return {quantile(-1.959964), quantile(1.959964)};
-}
-
 /// Normalised innovations of one epoch of one kind of measurement.
 struct EpochNis {
   double time_s = 0.0;
   double nis = 0.0;  ///< over the number of measurements
-  Range band;
+  std::size_t measurements = 0;
+  Range band;  ///< 95 % of it
 };
 
 struct NisKind {
@@ -110,7 +95,7 @@ struct NisKind {
 constexpr NisKind kCode{"code", &GnssRow::codes_used, &GnssRow::code_nis};
 constexpr NisKind kPhase{"carrier phase", &GnssRow::phases_used, &GnssRow::phase_nis};
 
-/// Each epoch once: a step without new measurements repeats what the one before said.
+/// Each epoch once: a step without new measurements repeats the figures of the step before.
 std::vector<EpochNis> epochs_of(const RunRecord& record, const NisKind& kind) {
   std::vector<EpochNis> epochs;
   std::int32_t pairs = 0;
@@ -118,20 +103,38 @@ std::vector<EpochNis> epochs_of(const RunRecord& record, const NisKind& kind) {
     const bool is_new = row.pairs != pairs;
     pairs = row.pairs;
     const std::int32_t used = row.*kind.used;
-    if (is_new && used > 0) epochs.push_back({row.time_s, row.*kind.sum / used, nis_band(used)});
+    if (is_new && used > 0) {
+      const auto count = static_cast<std::size_t>(used);
+      epochs.push_back({row.time_s, row.*kind.sum / used, count, mean_band(1.0, count)});
+    }
   }
   return epochs;
 }
 
-std::string share_in_band(const std::vector<EpochNis>& epochs) {
-  if (epochs.empty()) return "–";
+/// The mean over all measurements, and the share of epochs inside their own bands.
+Fact nis_fact(const char* name, const std::vector<EpochNis>& epochs) {
+  if (epochs.empty()) return {name, "–"};
+  double sum = 0.0;
+  std::size_t measurements = 0;
+  for (const EpochNis& e : epochs) {
+    if (!std::isfinite(e.nis)) continue;
+    sum += e.nis * static_cast<double>(e.measurements);
+    measurements += e.measurements;
+  }
+  if (measurements == 0) return {name, "–"};
   const auto inside =
       std::ranges::count_if(epochs, [](const EpochNis& e) { return e.nis >= e.band.low && e.nis <= e.band.high; });
-  double sum = 0.0;
-  for (const EpochNis& e : epochs) sum += e.nis;
-  const auto count = static_cast<double>(epochs.size());
-  return fmt::format("mean {}, {} of {} epochs inside the 95 % band", fixed(sum / count, 3),
-                     percent(static_cast<double>(inside) / count), epochs.size());
+  Fact fact = consistency_fact(name, sum / static_cast<double>(measurements), 1.0, measurements);
+  fact.value += fmt::format("; {} of {} epochs inside theirs",
+                            percent(static_cast<double>(inside) / static_cast<double>(epochs.size())), epochs.size());
+  return fact;
+}
+
+/// Estimates that the mean NEES is of.
+std::size_t count_nees(const RunRecord& record) {
+  const double from_s = first_fix(record).value_or(0.0);
+  return static_cast<std::size_t>(std::ranges::count_if(
+      navigation_errors(record), [&](const NavigationError& e) { return e.nees && e.time_s >= from_s; }));
 }
 
 std::string facts(const RunRecord& record) {
@@ -141,30 +144,22 @@ std::string facts(const RunRecord& record) {
   return fact_list(
       {{"first fix", fix},
        {"static floor", fixed(in_millimetres(s.static_floor_m), 3) + " mm"},
-       {"NEES, 6 expected", fixed(s.navigation_nees, 2)},
-       {"NIS, code", share_in_band(epochs_of(record, kCode))},
-       {"NIS, carrier phase", share_in_band(epochs_of(record, kPhase))},
-       {"epochs", fmt::format("{} of both receivers, {} of one alone, {} too late, {} without solution", last.pairs,
+       consistency_fact("NEES of the relative state, mean", s.navigation_nees, 6.0, count_nees(record)),
+       nis_fact("NIS per code measurement, mean", epochs_of(record, kCode)),
+       nis_fact("NIS per phase measurement, mean", epochs_of(record, kPhase)),
+       {"epochs", fmt::format("{} of both receivers, {} of one receiver, {} too late, {} without solution", last.pairs,
                               last.alone, last.too_late, last.no_solution)},
-       {"integers", fmt::format("{} decisions to hold, {} releases, {} cycle slips, {} restarts", last.fixes,
-                                last.releases, last.slips, last.restarts)},
-       {"measurements refused", fmt::format("{} code, {} carrier phase", last.codes_refused, last.phases_refused)},
-       {"receiver messages", fmt::format("{}, {} refused (chance patterns included)", grouped_nearest(last.messages),
+       {"integer ambiguities", fmt::format("{} fixes, {} releases, {} cycle slips, {} restarts", last.fixes,
+                                           last.releases, last.slips, last.restarts)},
+       {"measurements rejected", fmt::format("{} code, {} carrier phase", last.codes_refused, last.phases_refused)},
+       {"receiver messages", fmt::format("{}, {} rejected (chance patterns included)", grouped_nearest(last.messages),
                                          last.messages_refused)}});
 }
 
-// ----------------------------------------------------------------------------------------------------------------
-// plots
+// --------------------------------------------------------------------------------------------------------------- plots
 
 Plot empty_plot(const RunRecord& record, const View& view, const char* title, const char* quantity, Unit unit) {
-  Plot plot;
-  plot.title = title;
-  plot.x = time_axis(view);
-  plot.y = {.name = quantity, .unit = unit};
-  plot.width = 580.0;
-  plot.moments = waypoint_moments(view);
-  plot.events = maneuver_events(record, view);
-  return plot;
+  return time_plot(view, title, quantity, unit, 250.0, &record);
 }
 
 double claimed(const NavigationError& e) {
@@ -173,11 +168,11 @@ double claimed(const NavigationError& e) {
 
 /// Both size and claim against the floor.
 Plot size_plot(const RunRecord& record, const View& view) {
-  Plot plot = empty_plot(record, view, "Size of the position error", "error", Unit::kMetres);
+  Plot plot = empty_plot(record, view, "Magnitude of the position error", "error", Unit::kMetres);
   const std::vector<NavigationError> all = navigation_errors(record);
   const auto size = [](const NavigationError& e) { return magnitude(e.position_rtn); };
   plot.series = {{"position error", 0, Mark::kLine, over_time(all, view, size)},
-                 {"one sigma as the filter claims", 1, Mark::kDashedLine, over_time(all, view, claimed)}};
+                 {"1σ of the filter", 1, Mark::kDashedLine, over_time(all, view, claimed)}};
   const std::optional<double> floor_m = record.summary.static_floor_m;
   if (floor_m) {
     const Range across = hours_of(view);
@@ -192,22 +187,22 @@ Plot size_plot(const RunRecord& record, const View& view) {
 }
 
 Plot carriers_plot(const RunRecord& record, const View& view) {
-  Plot plot = empty_plot(record, view, "Carriers of both receivers", "carriers", Unit::kNone);
+  Plot plot = empty_plot(record, view, "Carriers tracked by both receivers", "carriers", Unit::kNone);
   const auto points = [&](std::int32_t GnssRow::*count) {
     return over_time(record.gnss, view, [count](const GnssRow& row) { return static_cast<double>(row.*count); });
   };
   plot.series = {{"tracked", 5, Mark::kStairs, points(&GnssRow::tracked)},
-                 {"held to integers", 2, Mark::kStairs, points(&GnssRow::fixed)}};
+                 {"fixed to integers", 2, Mark::kStairs, points(&GnssRow::fixed)}};
   plot.y.range = from_zero_to(std::ranges::max(record.gnss, {}, &GnssRow::tracked).tracked);
   return plot;
 }
 
 Plot nis_plot(const RunRecord& record, const View& view, const NisKind& kind) {
   const std::vector<EpochNis> epochs = epochs_of(record, kind);
-  Plot plot = empty_plot(record, view, "", "NIS over its degrees", Unit::kNone);
+  Plot plot = empty_plot(record, view, "", "NIS per degree of freedom", Unit::kNone);
   plot.title = fmt::format("Normalised innovations squared, {}", kind.name);
   plot.series = {
-      {"of an epoch", 0, Mark::kDots, over_time(epochs, view, [](const EpochNis& e) { return e.nis; })},
+      {"epoch", 0, Mark::kDots, over_time(epochs, view, [](const EpochNis& e) { return e.nis; })},
       {"95 % band", 1, Mark::kDashedLine, over_time(epochs, view, [](const EpochNis& e) { return e.band.low; })},
       {"", 1, Mark::kDashedLine, over_time(epochs, view, [](const EpochNis& e) { return e.band.high; })}};
   double most = 0.0;
@@ -218,27 +213,20 @@ Plot nis_plot(const RunRecord& record, const View& view, const NisKind& kind) {
 
 }  // namespace
 
-std::string gnss_section(const RunRecord& record) {
+Section gnss_section(const RunRecord& record) {
   if (record.gnss.empty()) return {};
   const View view = whole_run(record);
-  const Plot size = size_plot(record, view);
-  const Plot carriers = carriers_plot(record, view);
-  std::vector<Series> keys = size.series;
-  keys.insert(keys.end(), carriers.series.begin(), carriers.series.end());
-  const Plot code = nis_plot(record, view, kCode);
-  const Plot phase = nis_plot(record, view, kPhase);
-  return section(
-      "Carrier-phase navigation",
-      performance_table(record) +
-          "<p class=\"note\">Means and standard deviations of navigation are over the steps from the first fix "
-          "on.</p>\n" +
-          facts(record) +
-          "<p class=\"note\">Static floor: how far this run's antennas are from where navigation takes them to be, "
-          "target against servicer, were their axes parallel. A navigation that took positions from phases alone "
-          "would err by just that; the motion between epochs tells part of it. Dashed lines: waypoints. Strokes on the "
-          "lower edge: maneuvers.</p>\n" +
-          legend(keys) + figures(2, {svg(size), svg(carriers)}) + legend({code.series[0], code.series[1]}) +
-          figures(2, {svg(code), svg(phase)}));
+  return {"Carrier-phase navigation",
+          performance_table(record) +
+              "<p class=\"note\">Means and standard deviations of navigation are over the steps from the first fix "
+              "on.</p>\n" +
+              facts(record) + kBandNote +
+              "<p class=\"note\">Static floor: distance of this run's antenna phase centres from their nominal "
+              "positions, target relative to servicer, for bodies with parallel axes: the error of a solution from "
+              "carrier phases alone. The motion between epochs makes part of it observable.</p>\n" +
+              kPlotNote + plot_rows(2, {size_plot(record, view), carriers_plot(record, view)}) +
+              plot_rows(2, {nis_plot(record, view, kCode), nis_plot(record, view, kPhase)}),
+          {"gnss.csv", "estimate.csv"}};
 }
 
 }  // namespace vbar::report

@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "host_sim/report/code_names.h"
 #include "host_sim/report/html_page.h"
+#include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/report_sections.h"
 #include "host_sim/report/section_parts.h"
@@ -66,26 +66,18 @@ std::string what_was_done_when(const RunRecord& record) {
                             record, [](const EstimateRow& r) { return r.least_squares_status; }, warning_unless_ok)},
       {"passive safety", bands(
                              record, [](const EstimateRow& r) { return r.safety_status; }, warning_unless_ok)}};
-  return "<p class=\"note\">The last four rows are empty while all is well.</p>\n" +
+  return "<p class=\"note\">The last four rows show status codes other than ok.</p>\n" +
          figures(1, {timeline(rows, hours_of(whole_run(record)))});
 }
 
 Plot distance_plot(const RunRecord& record) {
   const View whole = whole_run(record);
-  Plot plot;
-  plot.title = "Distance to the target: now, and the least to come if the plan ended after any of its burns";
-  plot.x = time_axis(whole);
-  plot.y = {.name = "distance", .unit = Unit::kMetres, .logarithmic = true};
-  plot.width = 1190.0;
-  plot.height = 280.0;
-  plot.moments = waypoint_moments(whole);
+  Plot plot = time_plot(whole, "Distance to the target, and the minimum if the plan stopped after any of its maneuvers",
+                        "distance", Unit::kMetres, 280.0);
+  plot.y.logarithmic = true;
   plot.series = {
       {"true distance", 0, Mark::kLine,
-       over_time(record.truth, whole,
-                 [](const TruthRow& r) {
-                   return std::hypot(r.relative_position_rtn[0], r.relative_position_rtn[1],
-                                     r.relative_position_rtn[2]);
-                 })},
+       over_time(record.truth, whole, [](const TruthRow& r) { return magnitude(r.relative_position_rtn); })},
       {"passive safety distance", 1, Mark::kLine,
        over_time(record.estimates, whole, [](const EstimateRow& r) { return r.passive_safety_distance_m; })}};
   return plot;
@@ -93,11 +85,11 @@ Plot distance_plot(const RunRecord& record) {
 
 }  // namespace
 
-std::string guidance_section(const RunRecord& record) {
+Section guidance_section(const RunRecord& record) {
   if (record.estimates.empty() || record.truth.empty()) return {};
-  const Plot distances = distance_plot(record);
-  return section("Guidance and passive safety",
-                 what_was_done_when(record) + legend(distances.series) + figures(1, {svg(distances)}));
+  return {"Guidance and passive safety",
+          what_was_done_when(record) + plot_rows(1, {distance_plot(record)}),
+          {"estimate.csv", "truth.csv"}};
 }
 
 }  // namespace vbar::report

@@ -8,9 +8,9 @@
 
 namespace vbar::report {
 
-std::string health_section(const RunRecord& record) {
+Section health_section(const RunRecord& record) {
   const std::optional<telemetry_health>& health = record.summary.health;
-  if (!health) return "";
+  if (!health) return {};
   std::vector<Fact> facts;
   visit_fields(*health, [&](const Field& field, const auto& value) {
     std::string name = field.name;
@@ -22,7 +22,7 @@ std::string health_section(const RunRecord& record) {
   const std::string line = health_line(*health);
   const std::string text = line.empty() ? "The flight software rejected and dropped no packet and raised no fault."
                                         : "Not nominal: " + line + ".";
-  return section("Health of the flight software", "<p>" + escaped(text) + "</p>\n" + fact_list(facts));
+  return {"Health of the flight software", "<p>" + escaped(text) + "</p>\n" + fact_list(facts)};
 }
 
 }  // namespace vbar::report

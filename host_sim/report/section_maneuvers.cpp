@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -12,35 +12,27 @@
 namespace vbar::report {
 namespace {
 
-Plot cumulative_plot(const std::vector<ManeuverRow>& executed, const View& view, const std::string& title) {
-  Plot plot;
-  plot.title = title;
-  plot.x = time_axis(view);
-  plot.y = {.name = "delta-v", .unit = Unit::kMetresPerSecond};
-  plot.width = 580.0;
-  plot.height = 260.0;
-  plot.moments = waypoint_moments(view);
+Plot cumulative_plot(const std::vector<ManeuverRow>& executed, const View& view) {
+  Plot plot = time_plot(view, "Cumulative delta-v, " + view.name, "delta-v", Unit::kMetresPerSecond, 260.0);
   plot.series.push_back({"executed", 0, Mark::kStairs, cumulative_dv(executed, view)});
   plot.y.range = from_zero_to(plot.series.front().points.back().y);
   return plot;
 }
 
+/// Closed form, Koenig-D'Amico, least squares; -1: a maneuver that no solver of the flight software planned.
+constexpr std::array kSolvers{0, 1, 2, -1};
+constexpr int kNoSolverColour = 5;
+
 Plot size_plot(const std::vector<ManeuverRow>& executed, const View& view) {
-  Plot plot;
-  plot.title = "Size of each maneuver by the solver that planned it";
-  plot.x = time_axis(view);
-  plot.y = {.name = "delta-v", .unit = Unit::kMetresPerSecond, .logarithmic = true};
-  plot.width = 1190.0;
-  plot.height = 240.0;
-  plot.moments = waypoint_moments(view);
-  for (int solver = 0; solver < 3; ++solver) {
-    Series series{solver_name(solver), solver, Mark::kDots, {}};
+  Plot plot = time_plot(view, "Size of each maneuver by solver", "delta-v", Unit::kMetresPerSecond, 240.0);
+  plot.y.logarithmic = true;
+  for (const int solver : kSolvers) {
+    Series series{"solver: " + solver_name(solver), solver < 0 ? kNoSolverColour : solver, Mark::kDots, {}};
     for (const ManeuverRow& row : executed) {
-      if (row.solver == solver) {
-        series.points.push_back({hours(row.execution_time_s), magnitude(row.executed_dv_rtn_mps)});
-      }
+      if (row.solver != solver) continue;
+      series.points.push_back({hours(row.execution_time_s), magnitude(row.executed_dv_rtn_mps)});
     }
-    if (!series.points.empty()) plot.series.push_back(std::move(series));
+    plot.series.push_back(std::move(series));
   }
   return plot;
 }
@@ -65,26 +57,23 @@ std::vector<std::string> cells(const ManeuverRow& row) {
 
 }  // namespace
 
-std::string maneuver_section(const RunRecord& record) {
-  if (record.maneuvers.empty()) return section("Maneuvers", "<p>None was commanded.</p>\n");
+Section maneuver_section(const RunRecord& record) {
+  if (record.maneuvers.empty()) return {"Maneuvers", "<p>None was commanded.</p>\n"};
   const std::vector<ManeuverRow> executed = executed_in_order(record);
   const View whole = whole_run(record);
-  std::vector<std::string> plots{svg(cumulative_plot(executed, whole, "Cumulative delta-v, whole run"))};
   const std::vector<View> views = mission_views(record);
-  if (views.size() > 1) {
-    plots.push_back(svg(cumulative_plot(executed, views.back(), "Cumulative delta-v, " + views.back().name)));
-  }
+  std::vector<Plot> cumulative{cumulative_plot(executed, whole)};
+  cumulative.front().title = "Cumulative delta-v, whole run";
+  if (views.size() > 1) cumulative.push_back(cumulative_plot(executed, views.back()));
   std::vector<std::vector<std::string>> rows;
   for (const ManeuverRow& row : record.maneuvers) rows.push_back(cells(row));
-  const Plot sizes = size_plot(executed, whole);
-  const auto refused = static_cast<std::size_t>(std::ranges::count(record.maneuvers, false, &ManeuverRow::accepted));
-  return section("Maneuvers",
-                 fmt::format("<p>{} commanded, {} executed, {} not executed; dashed lines are waypoints.</p>\n",
-                             record.maneuvers.size(), executed.size(), refused) +
-                     figures(2, plots) + legend(sizes.series) + figures(1, {svg(sizes)}) +
-                     fmt::format("<details><summary>All {} maneuvers, in the servicer's RTN frame</summary>",
-                                 record.maneuvers.size()) +
-                     table(kColumns, rows) + "</details>\n");
+  return {"Maneuvers",
+          fmt::format("<p>{} commanded, {} executed, {} not executed. Dashed vertical lines: waypoints.</p>\n",
+                      rows.size(), executed.size(), rows.size() - executed.size()) +
+              plot_rows(2, std::move(cumulative)) + plot_rows(1, {size_plot(executed, whole)}, 1) +
+              fmt::format("<details><summary>All {} maneuvers, in the servicer's RTN frame</summary>", rows.size()) +
+              table(kColumns, rows) + "</details>\n",
+          {"maneuvers.csv"}};
 }
 
 }  // namespace vbar::report

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/report/html_page.h"
+#include "host_sim/report/mission_views.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/report_sections.h"
 
@@ -22,17 +23,16 @@ std::string tile(std::string_view value, std::string_view meaning) {
 std::string tiles(const RunRecord& record) {
   const Summary& s = record.summary;
   std::string out = "<div class=\"tiles\">\n";
-  out += tile(velocity_text(s.dv_mps), fmt::format("delta-v in {} maneuvers", s.maneuvers));
-  if (!record.waypoints.empty()) {
-    const WaypointRow& last = record.waypoints.back();
-    out += tile(fixed(last.control_error_m, 4) + " m", fmt::format("control error at waypoint {}", last.index));
-    const auto worst = std::ranges::max_element(record.waypoints, {}, &WaypointRow::control_error_m);
-    out +=
-        tile(fixed(worst->control_error_m, 3) + " m", fmt::format("largest control error (waypoint {})", worst->index));
+  out += tile(measure_text(s.dv_mps, "m/s"), fmt::format("delta-v in {} maneuvers", s.maneuvers));
+  const std::vector<WaypointRow> reached = reached_waypoints(record);
+  if (!reached.empty()) {
+    const WaypointRow& last = reached.back();
+    out += tile(measure_text(last.control_error_m, "m"), fmt::format("control error at waypoint {}", last.index));
+    const auto worst = std::ranges::max_element(reached, {}, &WaypointRow::control_error_m);
+    out += tile(measure_text(worst->control_error_m, "m"),
+                fmt::format("largest control error (waypoint {})", worst->index));
   }
-  if (s.navigation_error_m) {
-    out += tile(fixed(s.navigation_error_m->mean, 4) + " m", "mean navigation error");
-  }
+  if (s.navigation_error_m) out += tile(measure_text(s.navigation_error_m->mean, "m"), "mean navigation error");
   out += tile(duration_text(s.simulated_s), fmt::format("simulated in {}", duration_text(s.wall_s)));
   out += tile(fmt::format("{}×", grouped_nearest(s.speed_factor)), "real time");
   return out + "</div>\n";
@@ -58,7 +58,7 @@ std::string overview(const RunRecord& record) {
                           {"seed", std::to_string(s.seed)},
                           {"commands SHA-256", s.commands_sha256},
                           {"telemetry SHA-256", s.telemetry_sha256}};
-  return out + fact_list(facts);
+  return out + fact_list(facts) + "<p class=\"files\">Data: <a href=\"summary.json\">summary.json</a></p>\n";
 }
 
 }  // namespace vbar::report

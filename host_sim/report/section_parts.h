@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "host_sim/report/mission_views.h"
@@ -21,7 +23,7 @@ inline double hours(double seconds) {
 
 inline constexpr std::array<const char*, 6> kElementNames{"aδa", "aδλ", "aδex", "aδey", "aδix", "aδiy"};
 
-/// Mean elements scatter by millimetres about what they mean; less is not worth a plot.
+/// Mean elements scatter by millimetres; a smaller range would show nothing else.
 inline constexpr double kLeastElementSpan_m = 0.02;
 
 /// Figures a row so that plots of one view stand below each other.
@@ -54,6 +56,23 @@ inline std::vector<double> maneuver_events(const RunRecord& record, const View& 
   }
   return events;
 }
+
+/// A plot over the time of a view, with its waypoints and, if there is a record, its maneuvers.
+inline Plot time_plot(const View& view, std::string title, std::string quantity, Unit unit, double height = 250.0,
+                      const RunRecord* record = nullptr) {
+  Plot plot;
+  plot.title = std::move(title);
+  plot.x = time_axis(view);
+  plot.y = {.name = std::move(quantity), .unit = unit};
+  plot.height = height;
+  plot.moments = waypoint_moments(view);
+  if (record != nullptr) plot.events = maneuver_events(*record, view);
+  return plot;
+}
+
+/// What moments and events of a plot are, as HTML.
+inline constexpr const char* kPlotNote =
+    "<p class=\"note\">Dashed vertical lines: waypoints. Strokes on the lower edge: maneuvers.</p>\n";
 
 /// When navigation's errors have come down to their lasting size, five minutes after the first fix; the start of a view
 /// that begins later or ends sooner. Axes of errors show what comes then.

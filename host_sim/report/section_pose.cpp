@@ -7,9 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "fsw/math/math.h"
 #include "host_sim/report/code_names.h"
+#include "host_sim/report/consistency.h"
+#include "host_sim/report/gallery_html.h"
 #include "host_sim/report/html_page.h"
-#include "host_sim/report/image_png.h"
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/paper_experiment2.h"
@@ -20,22 +22,17 @@
 namespace vbar::report {
 namespace {
 
-constexpr double kRadian = M_PI / 180.0;  // of a degree
 constexpr int kKeypoints = 11;
-
-// ------------------------------------------------------------------------------------------------- table of the paper
-
-std::string plus_minus(const std::optional<MeanAndDeviation>& value, int decimals) {
-  return value ? fmt::format("{} ± {}", fixed(value->mean, decimals), fixed(value->std, decimals)) : "–";
-}
 
 using Cells = std::vector<std::string>;
 
-Cells papers_row(const RunRecord& record, const char* loop, const paper2::Totals& totals,
-                 paper2::Loop paper2::Waypoint::*which, bool is_navigation) {
+// ------------------------------------------------------------------------------------------------- table of the paper
+
+Cells papers_row(const std::vector<WaypointRow>& waypoints, const char* loop, const paper2::Totals& totals,
+                 paper2::Loop paper2::Loops::*which, bool is_navigation) {
   Cells cells{"", loop};
-  for (const WaypointRow& row : record.waypoints) {
-    const paper2::Waypoint* const same = paper2::waypoint(row);
+  for (const WaypointRow& row : waypoints) {
+    const paper2::Loops* const same = at_waypoint(paper2::kWaypoints, row);
     std::optional<double> value;
     if (same != nullptr) value = is_navigation ? (same->*which).navigation_error_m : (same->*which).control_error_m;
     cells.push_back(fixed(value, 4));
@@ -44,44 +41,43 @@ Cells papers_row(const RunRecord& record, const char* loop, const paper2::Totals
   return cells;
 }
 
-/// The paper's numbers stand under those of a run that meets its waypoints.
+/// The paper's figures stand below those of a run that meets its waypoints.
 std::string performance_table(const RunRecord& record) {
+  const std::vector<WaypointRow> waypoints = reached_waypoints(record);
   std::vector<Column> columns{{"", false}, {"", false}};
-  for (const WaypointRow& row : record.waypoints) columns.push_back({fmt::format("waypoint {}", row.index)});
+  for (const WaypointRow& row : waypoints) columns.push_back({fmt::format("waypoint {}", row.index)});
   columns.push_back({"whole run"});
-  const bool is_beside_the_paper =
-      std::ranges::any_of(record.waypoints, [](const WaypointRow& row) { return paper2::waypoint(row) != nullptr; });
+  const bool has_paper = meets_paper(paper2::kWaypoints, waypoints);
   std::vector<Cells> rows;
   for (const bool is_navigation : {true, false}) {
-    Cells& own = rows.emplace_back(Cells{is_navigation ? "navigation error, m" : "control error, m", "this run"});
-    for (const WaypointRow& row : record.waypoints)
+    Cells& own = rows.emplace_back(Cells{is_navigation ? "navigation error, m" : "control error, m", kThisRun});
+    for (const WaypointRow& row : waypoints)
       own.push_back(fixed(is_navigation ? row.navigation_error_m : std::optional(row.control_error_m), 4));
     own.push_back(is_navigation ? plus_minus(record.summary.navigation_error_m, 4) : "");
-    if (!is_beside_the_paper) continue;
-    rows.push_back(papers_row(record, "paper, software in the loop", paper2::kSoftware, &paper2::Waypoint::software,
-                              is_navigation));
-    rows.push_back(papers_row(record, "paper, hardware in the loop", paper2::kHardware, &paper2::Waypoint::hardware,
-                              is_navigation));
+    if (!has_paper) continue;
+    rows.push_back(papers_row(waypoints, kPaperSoftware, paper2::kSoftware, &paper2::Loops::software, is_navigation));
+    rows.push_back(papers_row(waypoints, kPaperHardware, paper2::kHardware, &paper2::Loops::hardware, is_navigation));
   }
-  const auto total = [&](const char* name, const char* of, const std::string& value) {
-    Cells& cells = rows.emplace_back(Cells{name, of});
-    cells.resize(2 + record.waypoints.size());
-    cells.push_back(value);
+  /// A figure of the whole run below which those of the paper stand.
+  const auto totals = [&](const char* name, const std::string& run, const auto& of_paper) {
+    const auto total = [&](const char* first, const char* of, const std::string& value) {
+      Cells& cells = rows.emplace_back(Cells{first, of});
+      cells.resize(2 + waypoints.size());
+      cells.push_back(value);
+    };
+    total(name, kThisRun, run);
+    if (!has_paper) return;
+    total("", kPaperSoftware, of_paper(paper2::kSoftware));
+    total("", kPaperHardware, of_paper(paper2::kHardware));
   };
   const auto dv = [](double mps, int maneuvers) {
     return fmt::format("{} in {} maneuvers", fixed(1e3 * mps, 2), maneuvers);
   };
   const Summary& s = record.summary;
-  total("attitude error, deg", "this run", plus_minus(s.attitude_error_deg, 2));
-  if (is_beside_the_paper) {
-    total("", "paper, software in the loop", plus_minus(paper2::kSoftware.attitude_error_deg, 2));
-    total("", "paper, hardware in the loop", plus_minus(paper2::kHardware.attitude_error_deg, 2));
-  }
-  total("delta-v, mm/s", "this run", dv(s.dv_mps, s.maneuvers));
-  if (is_beside_the_paper) {
-    total("", "paper, software in the loop", dv(paper2::kSoftware.dv_mps, paper2::kSoftware.maneuvers));
-    total("", "paper, hardware in the loop", dv(paper2::kHardware.dv_mps, paper2::kHardware.maneuvers));
-  }
+  totals("attitude error, deg", plus_minus(s.attitude_error_deg, 2),
+         [](const paper2::Totals& paper) { return plus_minus(paper.attitude_error_deg, 2); });
+  totals("delta-v, mm/s", dv(s.dv_mps, s.maneuvers),
+         [&](const paper2::Totals& paper) { return dv(paper.dv_mps, paper.maneuvers); });
   return table(columns, rows);
 }
 
@@ -91,41 +87,48 @@ std::string percent(double part, double whole) {
   return whole > 0.0 ? fmt::format("{} %", fixed(100.0 * part / whole, 1)) : "–";
 }
 
-/// Over its degrees of freedom: 1 is honest.
-std::string nis_text(const RunRecord& record) {
-  double sum = 0.0, degrees = 0.0;
-  int images = 0;
+/// Over its degrees of freedom.
+Fact nis_fact(const RunRecord& record) {
+  double sum = 0.0;
+  std::size_t degrees = 0;
   for (const PoseRow& row : record.poses) {
     if (row.fate != telemetry_pose::kEditKeypoints || row.nis_degrees <= 0 || !std::isfinite(row.nis)) continue;
     sum += row.nis;
-    degrees += row.nis_degrees;
-    ++images;
+    degrees += static_cast<std::size_t>(row.nis_degrees);
   }
-  return images == 0 ? "–" : fmt::format("{}, over {} images", fixed(sum / degrees, 2), images);
+  const auto mean = degrees > 0 ? std::optional(sum / static_cast<double>(degrees)) : std::nullopt;
+  return consistency_fact("NIS per degree of freedom, mean", mean, 1.0, degrees);
+}
+
+std::size_t count_of(const RunRecord& record, std::optional<double> PoseRow::*value) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(record.poses, [&](const PoseRow& row) { return (row.*value).has_value(); }));
 }
 
 std::string facts(const RunRecord& record) {
   const PoseFigures f = record.summary.pose.value_or(PoseFigures{});
   const PoseRow& last = record.poses.back();
   return fact_list(
-      {{"images", fmt::format("{}, {} ({}) with a pose by PnP, {} of them more than 10 deg off", f.images, f.with_pose,
-                              percent(f.with_pose, f.images), f.poses_over_10_deg)},
-       {"images in navigation", fmt::format("{} used, {} refused", last.images_used, last.images_refused)},
-       {"keypoints in navigation", fmt::format("{} used, {} refused", last.keypoints_used, last.keypoints_refused)},
+      {{"images", fmt::format("{}, {} ({}) with a PnP pose, {} of them with an attitude error over 10 deg", f.images,
+                              f.with_pose, percent(f.with_pose, f.images), f.poses_over_10_deg)},
+       {"images in navigation", fmt::format("{} used, {} rejected", last.images_used, last.images_refused)},
+       {"keypoints in navigation", fmt::format("{} used, {} rejected", last.keypoints_used, last.keypoints_refused)},
        {"keypoint error, median", fmt::format("{} px", fixed(f.keypoint_error_px, 2))},
-       {"normalised keypoint error squared, median; 1.39 expected", fixed(f.keypoint_chi_square, 2)},
-       {"NIS over its degrees of freedom, 1 expected", nis_text(record)},
-       {"NEES of the orbit, 6 expected", fixed(record.summary.navigation_nees, 2)},
-       {"NEES of attitude and rate, 6 expected", fixed(f.attitude_nees, 2)},
-       {"navigation error, target lit",
+       {"normalised squared keypoint error, median", fixed(f.keypoint_chi_square, 2) + ", 1.39 expected"},
+       nis_fact(record),
+       consistency_fact("NEES of the orbit, mean", record.summary.navigation_nees, 6.0,
+                        count_of(record, &PoseRow::nees)),
+       consistency_fact("NEES of attitude and rate, mean", f.attitude_nees, 6.0,
+                        count_of(record, &PoseRow::attitude_nees)),
+       {"navigation error, target sunlit",
         f.lit_navigation_error_m.mean > 0.0 ? plus_minus(f.lit_navigation_error_m, 4) + " m" : std::string("–")},
-       {"begun anew", fmt::format("attitude {} times, the whole filter {} times", f.attitude_restarts, f.restarts)},
-       {"tiles refused", std::to_string(last.tiles_refused)}});
+       {"re-initialised", fmt::format("attitude {} times, the whole filter {} times", f.attitude_restarts, f.restarts)},
+       {"image tiles rejected", std::to_string(last.tiles_refused)}});
 }
 
-/// How many images came to what.
+/// Images by outcome.
 std::string outcome_table(const RunRecord& record) {
-  std::map<int, std::array<int, 4>> counts;  // of a status: all, refused, folded in, kept for the start
+  std::map<int, std::array<int, 4>> counts;  // of a status: all, rejected, used, kept for the initialisation
   for (const PoseRow& row : record.poses) {
     std::array<int, 4>& count = counts[row.status];
     ++count[0];
@@ -135,14 +138,14 @@ std::string outcome_table(const RunRecord& record) {
   for (const auto& [status, count] : counts)
     rows.push_back({pose_sighting_name(status), std::to_string(count[0]), std::to_string(count[2]),
                     std::to_string(count[1]), std::to_string(count[3])});
-  return table({{"what the images gave", false}, {"images"}, {"folded in"}, {"refused"}, {"kept for the start"}}, rows);
+  return table({{"outcome", false}, {"images"}, {"used"}, {"rejected"}, {"kept for initialisation"}}, rows);
 }
 
 double at_share(std::vector<double>& sorted, double share) {
   return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(share * static_cast<double>(sorted.size())))];
 }
 
-/// Each keypoint: how often seen, used and refused, how far off.
+/// Of each keypoint: shares of the images, errors.
 std::string keypoint_table(const RunRecord& record) {
   struct Of {
     int images = 0, usable = 0, used = 0, refused = 0;
@@ -176,26 +179,15 @@ std::string keypoint_table(const RunRecord& record) {
     cells.push_back(keypoint.sigmas.empty() ? "–" : fixed(at_share(keypoint.sigmas, 0.5), 2));
     rows.push_back(std::move(cells));
   }
-  return table({{"keypoint"},
-                {"usable"},
-                {"used"},
-                {"refused"},
-                {"error, px: median"},
-                {"95 %"},
-                {"sigma of an axis, px: median"}},
-               rows);
+  return table(
+      {{"keypoint"}, {"usable"}, {"used"}, {"rejected"}, {"error, px: median"}, {"95 %"}, {"1σ per axis, px: median"}},
+      rows);
 }
 
 // --------------------------------------------------------------------------------------------------------------- plots
 
 Plot empty_plot(const RunRecord& record, const View& view, std::string title, const char* quantity, Unit unit) {
-  Plot plot;
-  plot.title = std::move(title);
-  plot.x = time_axis(view);
-  plot.y = {.name = quantity, .unit = unit};
-  plot.moments = waypoint_moments(view);
-  plot.events = maneuver_events(record, view);
-  return plot;
+  return time_plot(view, std::move(title), quantity, unit, 220.0, &record);
 }
 
 /// (hours, value(row)) of the images for which it gives one.
@@ -240,19 +232,19 @@ double attitude_sigma(const PoseRow& row, std::size_t axis) {
 }
 
 Plot attitude_plot(const RunRecord& record, const View& view) {
-  Plot plot = empty_plot(record, view, "Attitude error, in all", "angle", Unit::kRadians);
+  Plot plot = empty_plot(record, view, "Total attitude error", "angle", Unit::kRadians);
   plot.y.logarithmic = true;
-  plot.series = {{"estimated less true", 0, Mark::kLine,
-                  line_of(record,
-                          [](const PoseRow& row) -> std::optional<double> {
-                            if (!row.attitude_error_deg) return std::nullopt;
-                            return kRadian * *row.attitude_error_deg;
-                          })},
-                 {"three sigma as the filter claims", 1, Mark::kDashedLine,
-                  line_of(record, [](const PoseRow& row) -> std::optional<double> {
-                    if (!row.attitude_error_deg) return std::nullopt;
-                    return 3.0 * std::hypot(attitude_sigma(row, 0), attitude_sigma(row, 1), attitude_sigma(row, 2));
-                  })}};
+  plot.series = {
+      {"estimate minus truth", 0, Mark::kLine,
+       line_of(record,
+               [](const PoseRow& row) -> std::optional<double> {
+                 if (!row.attitude_error_deg) return std::nullopt;
+                 return fsw::math::kDegree * *row.attitude_error_deg;
+               })},
+      {"3σ of the filter", 1, Mark::kDashedLine, line_of(record, [](const PoseRow& row) -> std::optional<double> {
+         if (!row.attitude_error_deg) return std::nullopt;
+         return 3.0 * std::hypot(attitude_sigma(row, 0), attitude_sigma(row, 1), attitude_sigma(row, 2));
+       })}};
   return plot;
 }
 
@@ -264,18 +256,17 @@ std::vector<Plot> attitude_component_plots(const RunRecord& record, const View& 
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Plot plot =
         empty_plot(record, view, fmt::format("Attitude error about body {}", kAxes[axis]), "angle", Unit::kRadians);
-    plot.height = 220.0;
     const auto error = [&](const PoseRow& row) -> std::optional<double> {
       const std::optional<double>& deg = row.*kErrors[axis];
-      return deg ? std::optional(kRadian * *deg) : std::nullopt;
+      return deg ? std::optional(fsw::math::kDegree * *deg) : std::nullopt;
     };
     const auto bound = [&](double sigmas) {
       return line_of(record, [&, sigmas](const PoseRow& row) -> std::optional<double> {
         return row.*kErrors[axis] ? std::optional(sigmas * attitude_sigma(row, axis)) : std::nullopt;
       });
     };
-    plot.series = {{"estimated less true", 0, Mark::kLine, line_of(record, error)},
-                   {"three sigma as the filter claims", 1, Mark::kDashedLine, bound(3.0)},
+    plot.series = {{"estimate minus truth", 0, Mark::kLine, line_of(record, error)},
+                   {"3σ of the filter", 1, Mark::kDashedLine, bound(3.0)},
                    {"", 1, Mark::kDashedLine, bound(-3.0)}};
     const double most = most_of(plot.series, 0.02);
     plot.y.range = Range{-most, most};
@@ -285,21 +276,20 @@ std::vector<Plot> attitude_component_plots(const RunRecord& record, const View& 
 }
 
 Plot rate_plot(const RunRecord& record, const View& view) {
-  Plot plot = empty_plot(record, view, "Error of the target's rate", "rate", Unit::kRadiansPerSecond);
+  Plot plot = empty_plot(record, view, "Error of the target's angular rate", "rate", Unit::kRadiansPerSecond);
   plot.y.logarithmic = true;
-  plot.series = {{"size", 0, Mark::kLine, line_of(record, [](const PoseRow& row) { return row.rate_error_radps; })}};
+  plot.series = {{"", 0, Mark::kLine, line_of(record, [](const PoseRow& row) { return row.rate_error_radps; })}};
   return plot;
 }
 
 std::vector<Plot> pnp_plots(const RunRecord& record, const View& view) {
   constexpr std::array<const char*, 3> kTitles{"PnP position error, camera x", "PnP position error, camera y",
-                                               "PnP position error, along the boresight"};
+                                               "PnP position error, boresight"};
   constexpr std::array<std::optional<double> PoseRow::*, 3> kErrors{&PoseRow::pnp_error_x_m, &PoseRow::pnp_error_y_m,
                                                                     &PoseRow::pnp_error_z_m};
   std::vector<Plot> plots;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Plot plot = empty_plot(record, view, kTitles[axis], "error", Unit::kMetres);
-    plot.height = 220.0;
     plot.series = {{"", 5, Mark::kDots, points_of(record, [&](const PoseRow& row) { return row.*kErrors[axis]; })}};
     const double most = most_of(plot.series, 0.02);
     plot.y.range = Range{-most, most};
@@ -308,7 +298,7 @@ std::vector<Plot> pnp_plots(const RunRecord& record, const View& view) {
   Plot angle = empty_plot(record, view, "PnP attitude error", "angle", Unit::kRadians);
   angle.y.logarithmic = true;
   angle.series = {{"", 5, Mark::kDots, points_of(record, [](const PoseRow& row) -> std::optional<double> {
-                     return row.pnp_error_deg ? std::optional(kRadian * *row.pnp_error_deg) : std::nullopt;
+                     return row.pnp_error_deg ? std::optional(fsw::math::kDegree * *row.pnp_error_deg) : std::nullopt;
                    })}};
   plots.push_back(std::move(angle));
   return plots;
@@ -321,7 +311,7 @@ Plot range_plot(const RunRecord& record, const View& view) {
 }
 
 Plot keypoint_count_plot(const RunRecord& record, const View& view) {
-  Plot plot = empty_plot(record, view, "Keypoints of an image", "keypoints", Unit::kNone);
+  Plot plot = empty_plot(record, view, "Keypoints per image", "keypoints", Unit::kNone);
   std::map<std::int32_t, std::pair<int, int>> counts;  // of an image: usable, used
   for (const KeypointRow& row : record.keypoints) {
     counts[row.image].first += row.fate != telemetry_pose::kKeypointUnusable ? 1 : 0;
@@ -334,7 +324,7 @@ Plot keypoint_count_plot(const RunRecord& record, const View& view) {
     });
   };
   plot.series = {{"usable", 5, Mark::kDots, count(&std::pair<int, int>::first)},
-                 {"folded in", 0, Mark::kDots, count(&std::pair<int, int>::second)}};
+                 {"used", 0, Mark::kDots, count(&std::pair<int, int>::second)}};
   plot.y.range = Range{0.0, kKeypoints + 0.5};
   return plot;
 }
@@ -353,12 +343,12 @@ Plot consistency_plot(const RunRecord& record) {
   }
   std::ranges::sort(squares);
   Plot plot;
-  plot.title = "Normalised keypoint errors squared";
+  plot.title = "Normalised squared keypoint errors";
   constexpr double kMost = 15.0, kStep = 0.1;
-  plot.x = {.name = "squared error over claimed variance", .range = Range{0.0, kMost}};
-  plot.y = {.name = "share of keypoints below", .range = Range{0.0, 1.0}};
+  plot.x = {.name = "squared error over reported variance", .range = Range{0.0, kMost}};
+  plot.y = {.name = "cumulative share of keypoints", .range = Range{0.0, 1.0}};
   Series measured{"keypoints of this run", 0, Mark::kLine, {}},
-      expected{"two degrees of freedom", 1, Mark::kDashedLine, {}};
+      expected{"chi-square, two degrees of freedom", 1, Mark::kDashedLine, {}};
   for (double square = 0.0; square <= kMost; square += kStep) {
     const auto below = std::ranges::upper_bound(squares, square) - squares.begin();
     if (!squares.empty())
@@ -369,46 +359,51 @@ Plot consistency_plot(const RunRecord& record) {
   return plot;
 }
 
-std::vector<std::string> svgs(const std::vector<Plot>& plots) {
-  std::vector<std::string> drawn;
-  for (const Plot& plot : plots) drawn.push_back(svg(plot));
-  return drawn;
-}
-
 // ------------------------------------------------------------------------------------------------------------- gallery
 
-std::string gallery(const RunRecord& record) {
-  if (record.gallery.empty()) return {};
-  std::vector<std::string> pictures;
-  for (const GalleryImage& image : record.gallery) {
-    const std::string caption =
-        fmt::format("image {} at {} h: {}", image.image, fixed(hours(image.time_s), 2), image.caption);
-    pictures.push_back(fmt::format("<img class=\"picture\" alt=\"{0}\" src=\"{1}\"/><figcaption>{0}</figcaption>",
-                                   escaped(caption), png_data_uri(image.png)));
+/// The crop in the image, and the keypoints in the enlarged crop with ellipses of three sigma.
+std::string marks(const RunRecord& record, const GalleryImage& image) {
+  constexpr double kCross = 5.0, kSigmas = 3.0;
+  const auto pose = std::ranges::find(record.poses, image.image, &PoseRow::image);
+  if (pose == record.poses.end() || image.crop_side == 0 || !(pose->region_px[2] > 0.0)) return {};
+  const auto [centre_x, centre_y, side] = pose->region_px;
+  std::string all = box_mark({in_picture(centre_x, image.origin_x_px), in_picture(centre_y, image.origin_y_px), "green",
+                              "crop for the network"},
+                             0.5 * side);
+  const double scale = image.crop_side / side;
+  for (const KeypointRow& row : record.keypoints) {
+    if (row.image != image.image || row.fate == 0) continue;
+    MarkAt at{image.crop_left + scale * (static_cast<double>(row.x_px) - centre_x + 0.5 * side),
+              scale * (static_cast<double>(row.y_px) - centre_y + 0.5 * side), row.fate == 1 ? "red" : "white",
+              fmt::format("keypoint {}, {}", row.keypoint, row.fate == 1 ? "rejected" : "used")};
+    if (row.error_x_px && row.error_y_px)
+      at.tooltip += fmt::format(", error {} px", fixed(std::hypot(*row.error_x_px, *row.error_y_px), 2));
+    const Triple covariance{row.covariance_xx_px2, row.covariance_xy_px2, row.covariance_yy_px2};
+    all += cross_mark(at, kCross) + ellipse_mark(at, covariance, kSigmas * scale);
   }
-  return "<h3>Images</h3>\n<p class=\"note\">Left, as the flight software got it, with its crop. Right, the crop as "
-         "the network saw it, with the network&#39;s maps, a colour a keypoint; crosses are the keypoints that came of "
-         "them, white where navigation used them, red where it refused them, with ellipses of three sigma.</p>\n" +
-         figures(1, pictures);
+  return all;
 }
 
 }  // namespace
 
-std::string pose_section(const RunRecord& record) {
+Section pose_section(const RunRecord& record) {
   if (record.poses.empty()) return {};
   const View view = whole_run(record);
-  const Plot attitude = attitude_plot(record, view);
-  const Plot counts = keypoint_count_plot(record, view), consistency = consistency_plot(record);
-  return section(
+  return {
       "Navigation by the pose network",
-      performance_table(record) + facts(record) + outcome_table(record) +
-          "<p class=\"note\">Dashed lines: waypoints. Strokes on the lower edge: maneuvers. Gaps: the target in the "
-          "dark. Linear plots leave out the largest fiftieth of their values.</p>\n<h3>Attitude</h3>\n" +
-          legend(attitude.series) + figures(3, svgs({attitude, rate_plot(record, view), range_plot(record, view)})) +
-          figures(3, svgs(attitude_component_plots(record, view))) + "<h3>Poses of single images</h3>\n" +
-          figures(4, svgs(pnp_plots(record, view))) + "<h3>Keypoints</h3>\n" + keypoint_table(record) +
-          legend(counts.series) + legend(consistency.series) + figures(2, svgs({counts, consistency})) +
-          gallery(record));
+      performance_table(record) + facts(record) + kBandNote + outcome_table(record) +
+          "<h3>Attitude</h3>\n<p class=\"note\">Gaps: target in eclipse. Linear plots leave out the largest fiftieth "
+          "of their values.</p>\n" +
+          kPlotNote + plot_rows(3, {attitude_plot(record, view), rate_plot(record, view), range_plot(record, view)}) +
+          plot_rows(3, attitude_component_plots(record, view)) + "<h3>Poses of single images</h3>\n" +
+          plot_rows(4, pnp_plots(record, view)) + "<h3>Keypoints</h3>\n" + keypoint_table(record) +
+          plot_rows(2, {keypoint_count_plot(record, view), consistency_plot(record)}) +
+          gallery_html(record, 2,
+                       "Left: as received by the flight software, with the crop. Right: the crop as the network "
+                       "sees it, with one heatmap per keypoint in its colour. Crosses: keypoints, white if "
+                       "navigation used them, red if it rejected them, with ellipses of 3σ.",
+                       [&](const GalleryImage& image) { return marks(record, image); }),
+      {"poses.csv", "keypoints.csv", "gallery.csv"}};
 }
 
 }  // namespace vbar::report

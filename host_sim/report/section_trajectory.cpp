@@ -40,11 +40,12 @@ bool fits_same_scale(const std::vector<Point>& points) {
   return x && y && x->span() <= kFlattest * y->span() && y->span() <= kFlattest * x->span();
 }
 
-std::string ring_tooltip(const WaypointRow& row) {
+std::string ring_tooltip(const RunRecord& record, const WaypointRow& row) {
   const Triple& p = row.actual_position_rtn;
-  return fmt::format("waypoint {} at {} h: R {}, T {}, N {} m; control error {} m", row.index,
-                     fixed(hours(row.time_s), 2), fixed(p[0], 3), fixed(p[1], 3), fixed(p[2], 3),
-                     fixed(row.control_error_m, 4));
+  const std::string place = fmt::format("waypoint {} at {} h: R {}, T {}, N {} m", row.index,
+                                        fixed(hours(row.time_s), 2), fixed(p[0], 3), fixed(p[1], 3), fixed(p[2], 3));
+  if (is_start(record, row)) return "start, " + place;
+  return fmt::format("{}; control error {} m", place, fixed(row.control_error_m, 4));
 }
 
 Plot projection(const RunRecord& record, const View& view, const Plane& plane) {
@@ -59,24 +60,25 @@ Plot projection(const RunRecord& record, const View& view, const Plane& plane) {
   plot.same_scale = fits_same_scale(truth.points);
   plot.series.push_back(std::move(truth));
   for (const WaypointRow& row : view.waypoints) {
-    plot.rings.push_back({in_plane(plane, row.actual_position_rtn), std::to_string(row.index), ring_tooltip(row)});
+    plot.rings.push_back(
+        {in_plane(plane, row.actual_position_rtn), std::to_string(row.index), ring_tooltip(record, row)});
   }
   return plot;
 }
 
 }  // namespace
 
-std::string trajectory_section(const RunRecord& record) {
+Section trajectory_section(const RunRecord& record) {
   if (record.truth.empty()) return {};
-  std::vector<std::string> plots;
+  std::vector<Plot> plots;
   for (const View& view : mission_views(record)) {
-    for (const Plane& plane : kPlanes) plots.push_back(svg(projection(record, view, plane)));
+    for (const Plane& plane : kPlanes) plots.push_back(projection(record, view, plane));
   }
-  return section(
-      "Trajectory",
-      "<p class=\"note\">True position of the target in the servicer's RTN frame; rings are the waypoints where "
-      "they were reached. Each row is a stretch of the approach.</p>\n" +
-          figures(3, plots));
+  return {"Trajectory",
+          "<p class=\"note\">True position of the target in the servicer's RTN frame. Rings: positions at the times of "
+          "the waypoints. Each row shows one part of the approach.</p>\n" +
+              plot_rows(3, std::move(plots)),
+          {"truth.csv"}};
 }
 
 }  // namespace vbar::report

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "host_sim/report/html_page.h"
 
@@ -16,13 +17,31 @@ constexpr double kTitleHeight = 22.0;
 constexpr double kMomentTextHeight = 12.0;
 constexpr double kRightMargin = 12.0;
 constexpr double kBottomMargin = 42.0;
-constexpr double kCharacterWidth = 6.2;  // of the tick font
+constexpr double kCharacterWidth = 7.2;  // of the tick font, in print
 constexpr double kEventHeight = 9.0;
 constexpr double kCurveTolerance = 0.25;  // pixels
 constexpr double kDotDistance = 1.0;      // pixels
+constexpr double kPageWidth = 1190.0;     // pixels, of a row of plots on a wide screen
+constexpr double kGap = 16.0;             // between the plots of a row
 
 bool finite(const Point& p) {
   return std::isfinite(p.x) && std::isfinite(p.y);
+}
+
+bool is_dots(const Series& series) {
+  return series.mark == Mark::kDots || series.mark == Mark::kBroadDots;
+}
+
+std::string_view style_of(const Series& series) {
+  switch (series.mark) {
+    case Mark::kBroadLine:
+    case Mark::kBroadDots:
+      return "broad ";
+    case Mark::kDashedLine:
+      return "dashed ";
+    default:
+      return "";
+  }
 }
 
 std::vector<double> values_of(const Plot& plot, double Point::*coordinate, bool positive_only) {
@@ -96,7 +115,7 @@ class Drawing {
   std::string draw() {
     append(R"(<svg class="plot" viewBox="0 0 {:g} {:g}" role="img"><title>{}</title>)", plot_.width, plot_.height,
            escaped(plot_.title));
-    append(R"(<text class="title" x="{:.1f}" y="13">{}</text>)", left_, escaped(plot_.title));
+    append(R"(<text class="title" x="2" y="13">{}</text>)", escaped(plot_.title));
     draw_grid();
     draw_axis_names();
     draw_moments();
@@ -138,7 +157,7 @@ class Drawing {
   void settle_left_margin() {
     std::size_t widest = 1;
     for (const Tick& tick : ticks_of(y_, 34.0)) widest = std::max(widest, tick.text.size());
-    left_ = 28.0 + kCharacterWidth * static_cast<double>(widest);
+    left_ = 26.0 + kCharacterWidth * static_cast<double>(widest);
     x_.start = left_;
     x_.length = plot_.width - kRightMargin - left_;
   }
@@ -146,7 +165,7 @@ class Drawing {
   void draw_grid() {
     append(R"(<rect class="frame" x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}"/>)", left_, top_, x_.length,
            -y_.length);
-    for (const Tick& tick : ticks_of(x_, 62.0)) {
+    for (const Tick& tick : ticks_of(x_, 70.0)) {
       const double x = x_.pixel_of_shown(tick.value);
       append(R"(<line class="grid" x1="{0:.1f}" x2="{0:.1f}" y1="{1:.1f}" y2="{2:.1f}"/>)", x, top_, y_.start);
       append(R"(<text class="tick mid" x="{:.1f}" y="{:.1f}">{}</text>)", x, y_.start + 14.0, tick.text);
@@ -189,7 +208,10 @@ class Drawing {
   void draw_events() {
     if (plot_.events.empty()) return;
     out_ += R"(<path class="event" d=")";
-    for (const double x : plot_.events) append("M{:.1f} {:.1f}v{:g}", x_.pixel(x), y_.start, -kEventHeight);
+    for (const double event : plot_.events) {
+      const double x = x_.pixel(event);
+      if (x >= left_ && x <= left_ + x_.length) append("M{:.1f} {:.1f}v{:g}", x, y_.start, -kEventHeight);
+    }
     out_ += "\"/>";
   }
 
@@ -200,8 +222,10 @@ class Drawing {
       stretch.clear();
     };
     for (const Point& p : series.points) {
-      if (finite(p) && x_.shows(p.x) && y_.shows(p.y)) {
-        stretch.push_back({x_.pixel(p.x), y_.pixel(p.y)});
+      const bool is_shown = finite(p) && x_.shows(p.x) && y_.shows(p.y);
+      const Point pixel = is_shown ? Point{x_.pixel(p.x), y_.pixel(p.y)} : Point{};
+      if (is_shown && finite(pixel)) {
+        stretch.push_back(pixel);
       } else {
         end_stretch();
       }
@@ -209,21 +233,26 @@ class Drawing {
     end_stretch();
   }
 
+  [[nodiscard]] Box frame() const { return {left_, top_, left_ + x_.length, y_.start}; }
+
   void draw_stretch(const Series& series, const std::vector<Point>& pixels) {
-    if (series.mark == Mark::kDots || pixels.size() == 1) {
-      append(R"(<path class="dots c{}" d=")", series.colour);
+    if (is_dots(series) || pixels.size() == 1) {
+      std::vector<Point> inside;
+      std::ranges::copy_if(pixels, std::back_inserter(inside), [&](const Point& p) { return frame().holds(p); });
+      if (inside.empty()) return;
+      append(R"(<path class="dots {}c{}" d=")", style_of(series), series.colour);
       // A line of no length with round ends is a dot: far shorter than a circle each.
-      for (const Point& p : thinned_dots(pixels, kDotDistance)) append("M{:.1f} {:.1f}h0", p.x, p.y);
+      for (const Point& p : thinned_dots(inside, kDotDistance)) append("M{:.1f} {:.1f}h0", p.x, p.y);
     } else {
-      const std::string_view style = series.mark == Mark::kBroadLine    ? "broad "
-                                     : series.mark == Mark::kDashedLine ? "dashed "
-                                                                        : "";
-      append(R"(<path class="line {}c{}" d=")", style, series.colour);
-      const std::vector<Point> curve = series.mark == Mark::kStairs ? stairs(pixels) : pixels;
-      char command = 'M';
-      for (const Point& p : thinned_curve(curve, kCurveTolerance)) {
-        append("{}{:.1f} {:.1f}", command, p.x, p.y);
-        command = 'L';
+      const auto pieces = clipped(series.mark == Mark::kStairs ? stairs(pixels) : pixels, frame());
+      if (pieces.empty()) return;
+      append(R"(<path class="line {}c{}" d=")", style_of(series), series.colour);
+      for (const std::vector<Point>& piece : pieces) {
+        char command = 'M';
+        for (const Point& p : thinned_curve(piece, kCurveTolerance)) {
+          append("{}{:.1f} {:.1f}", command, p.x, p.y);
+          command = 'L';
+        }
       }
     }
     out_ += "\"/>";
@@ -232,6 +261,7 @@ class Drawing {
   void draw_ring(const Ring& ring) {
     if (!finite(ring.at) || !x_.shows(ring.at.x) || !y_.shows(ring.at.y)) return;
     const Point at{x_.pixel(ring.at.x), y_.pixel(ring.at.y)};
+    if (!frame().holds(at)) return;
     append(R"(<circle class="ring" cx="{:.1f}" cy="{:.1f}" r="3.5"><title>{}</title></circle>)", at.x, at.y,
            escaped(ring.tooltip));
     const Point text{at.x + 6.0, at.y - 5.0};
@@ -250,16 +280,15 @@ class Drawing {
 };
 
 std::string swatch(const Series& series) {
-  if (series.mark == Mark::kDots) {
-    return fmt::format(
-        R"(<svg class="swatch" viewBox="0 0 24 10"><path class="dots c{}" d="M6 5h0M12 5h0M18 5h0"/></svg>)",
-        series.colour);
-  }
-  const std::string_view style = series.mark == Mark::kBroadLine    ? "broad "
-                                 : series.mark == Mark::kDashedLine ? "dashed "
-                                                                    : "";
-  return fmt::format(R"(<svg class="swatch" viewBox="0 0 24 10"><path class="line {}c{}" d="M1 5H23"/></svg>)", style,
-                     series.colour);
+  return fmt::format(R"(<svg class="swatch" viewBox="0 0 24 10"><path class="{} {}c{}" d="{}"/></svg>)",
+                     is_dots(series) ? "dots" : "line", style_of(series), series.colour,
+                     is_dots(series) ? "M6 5h0M12 5h0M18 5h0" : "M1 5H23");
+}
+
+bool has_something(const Plot& plot, const Series& series) {
+  return std::ranges::any_of(series.points, [&](const Point& p) {
+    return finite(p) && (!plot.x.logarithmic || p.x > 0.0) && (!plot.y.logarithmic || p.y > 0.0);
+  });
 }
 
 }  // namespace
@@ -268,11 +297,31 @@ std::string svg(const Plot& plot) {
   return Drawing(plot).draw();
 }
 
-std::string legend(const std::vector<Series>& series) {
-  if (series.size() < 2) return {};
-  std::string out = "<p class=\"legend\">";
-  for (const Series& s : series) out += fmt::format("<span>{}{}</span>", swatch(s), escaped(s.name));
-  return out + "</p>\n";
+std::string legend(const std::vector<Plot>& plots, std::size_t least) {
+  std::vector<std::string> entries;
+  for (const Plot& plot : plots) {
+    for (const Series& series : plot.series) {
+      if (series.name.empty() || !has_something(plot, series)) continue;
+      std::string entry = fmt::format("<span>{}{}</span>", swatch(series), escaped(series.name));
+      if (std::ranges::find(entries, entry) == entries.end()) entries.push_back(std::move(entry));
+    }
+  }
+  if (entries.size() < least) return {};
+  return fmt::format("<p class=\"legend\">{}</p>\n", fmt::join(entries, ""));
+}
+
+std::string plot_rows(int columns, std::vector<Plot> plots, std::size_t least_legend) {
+  if (plots.empty()) return {};
+  const int shared = std::min(columns, static_cast<int>(plots.size()));
+  std::vector<std::string> drawn;
+  for (Plot& plot : plots) {
+    plot.width = std::floor((kPageWidth - kGap * (shared - 1)) / shared);
+    drawn.push_back(svg(plot));
+  }
+  // Inside the first row, from which a page break would part it.
+  std::string out = figures(shared, drawn);
+  out.insert(out.find('\n') + 1, legend(plots, least_legend));
+  return out;
 }
 
 }  // namespace vbar::report

@@ -11,7 +11,8 @@
 
 namespace vbar::report {
 
-enum class Mark { kLine, kBroadLine, kDashedLine, kStairs, kDots };
+/// Broad ones are translucent: another series drawn over them leaves them visible.
+enum class Mark { kLine, kBroadLine, kDashedLine, kStairs, kDots, kBroadDots };
 
 struct Series {
   std::string name;
@@ -49,12 +50,17 @@ struct Plot {
   std::vector<Ring> rings;
   std::vector<Moment> moments;
   std::vector<double> events;            ///< many of one kind: each a short stroke on the lower edge
-  double width = 380.0, height = 250.0;  ///< pixels
+  double width = 386.0, height = 250.0;  ///< pixels
 };
 
 [[nodiscard]] std::string svg(const Plot& plot);
 
-/// What the marks of a plot mean, as HTML; empty for fewer than two series.
-[[nodiscard]] std::string legend(const std::vector<Series>& series);
+/// The marks of all plots with their names, each once, as HTML: of named series that have something to show. Empty for
+/// fewer than `least` of them.
+[[nodiscard]] std::string legend(const std::vector<Plot>& plots, std::size_t least = 2);
+
+/// Plots side by side below their legend, `columns` a row. Their widths are set so that text has the same size whatever
+/// the number of columns; plots too few for a row share its width.
+[[nodiscard]] std::string plot_rows(int columns, std::vector<Plot> plots, std::size_t least_legend = 2);
 
 }  // namespace vbar::report

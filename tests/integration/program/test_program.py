@@ -304,7 +304,7 @@ class RunFolder(unittest.TestCase):
         with scratch() as folder:
             for name in ("a", "b"):
                 fly(folder / name, "mission.duration_h=6.4")
-            for file in ("summary.json", "waypoints.csv", "truth.csv", "estimate.csv", "maneuvers.csv", "residuals.csv",
+            for file in ("summary.json", "waypoints.csv", "truth.csv", "estimate.csv", "maneuvers.csv",
                          "packets.lcmlog", "report.html"):
                 self.assertTrue((folder / "a" / file).is_file(), file)
             for file in ("waypoints.csv", "truth.csv", "estimate.csv", "maneuvers.csv", "packets.lcmlog"):

@@ -59,9 +59,9 @@ std::vector<std::uint16_t> pattern(int number) {
   return dn;
 }
 
-std::vector<std::uint8_t> png(std::vector<std::uint16_t> dn, const std::vector<report::ImageMark>& marks) {
-  const report::CameraPicture picture{kRegion.width, kRegion.height, kRegion.x, kRegion.y, dn};
-  return report::png_of(picture, report::stretch_for(picture), marks);
+std::vector<std::uint8_t> png(std::vector<std::uint16_t> dn) {
+  const report::CameraPicture picture{kRegion.width, kRegion.height, dn};
+  return report::png_of(picture, report::stretch_for(picture));
 }
 
 class Gallery : public testing::Test {
@@ -103,7 +103,7 @@ TEST_F(Gallery, HoldsTheFirstBearingAndTheLastOnesBeforeWaypoints) {
   EXPECT_THAT(minutes(), testing::ElementsAre(5, 51, 120, 149));
   for (const report::GalleryImage& picture : pictures_) {
     EXPECT_EQ(picture.time_s, 60.0 * (picture.image + 1));
-    EXPECT_EQ(picture.png, png(pattern(picture.image), {}));
+    EXPECT_EQ(picture.png, png(pattern(picture.image)));
   }
   EXPECT_THAT(pictures_[1].caption, HasSubstr("range 12.35 km"));
   EXPECT_THAT(pictures_[2].caption, HasSubstr("no target"));
@@ -114,19 +114,18 @@ TEST_F(Gallery, TakesTheImageOfTheWaypointsOwnTime) {
   EXPECT_THAT(minutes(), testing::ElementsAre(1, 60));
 }
 
-TEST_F(Gallery, MarksWhatTheObjectsAre) {
-  telemetry_objects objects{};
-  objects.count = 4;
-  for (int k = 0; k < 4; ++k) {
-    objects.kind[k] = static_cast<std::int8_t>(k);  // unmatched, star, target, hot pixel
-    objects.x_px[k] = 725.0F + 15.0F * static_cast<float>(k);
-    objects.y_px[k] = 220.0F;
-  }
-  fly_image(1, kBearing, &objects);
+// The report draws its marks by these; pixels hold none.
+TEST_F(Gallery, SaysWhichPixelsItShowsAndHowLargeTheTargetIs) {
+  fly_image(1, kBearing);
   ASSERT_EQ(pictures_.size(), 1U);
-  EXPECT_EQ(pictures_[0].png, png(pattern(0), {{report::MarkShape::kTriangle, 725.0, 220.0, 8.0},
-                                               {report::MarkShape::kBox, 740.0, 220.0, 8.0},
-                                               {report::MarkShape::kCircle, 755.0, 220.0, 13.0}}));
+  const report::GalleryImage& picture = pictures_[0];
+  EXPECT_EQ(picture.png, png(pattern(0)));
+  EXPECT_EQ(picture.origin_x_px, 710);
+  EXPECT_EQ(picture.origin_y_px, 200);
+  EXPECT_EQ(picture.width_px, 80);
+  EXPECT_EQ(picture.height_px, 50);
+  EXPECT_EQ(picture.crop_side, 0);
+  EXPECT_EQ(picture.target_radius_px, 13.0) << "a point at 12 km";
 }
 
 TEST_F(Gallery, PixelsOfALostTileAreMissing) {
@@ -134,7 +133,7 @@ TEST_F(Gallery, PixelsOfALostTileAreMissing) {
   ASSERT_EQ(pictures_.size(), 1U);
   std::vector<std::uint16_t> dn = pattern(0);
   std::fill(dn.begin() + 2 * 868, dn.begin() + 3 * 868, std::uint16_t{0xFFFF});
-  EXPECT_EQ(pictures_[0].png, png(dn, {}));
+  EXPECT_EQ(pictures_[0].png, png(dn));
   EXPECT_THAT(pictures_[0].caption, HasSubstr("1 tiles missing"));
 }
 

@@ -199,6 +199,8 @@ TEST_F(ImageTruth, TheRecorderTakesTheTruthOfTheExposure) {
 
   image_.image = 7;
   image_.fate = 2;
+  image_.prefit[0] = 1e-5;
+  image_.nis = 1.5;
   telemetry_objects objects{};
   objects.image = 7;
   objects.count = 1;
@@ -223,16 +225,21 @@ TEST_F(ImageTruth, TheRecorderTakesTheTruthOfTheExposure) {
 
 TEST(ImageRows, ResidualsAndObjectsAreRows) {
   telemetry_image image{};
+  image.prefit[0] = 40.0 * kArcsecond;
   image.prefit[1] = 30.0 * kArcsecond;
   image.postfit[0] = -5.0 * kArcsecond;
-  image.bearing_sigma = 12.0 * kArcsecond;
   std::vector<report::ResidualRow> residuals;
   append_residuals(report::row_of<report::ImageRow>(image), residuals);
+  EXPECT_TRUE(residuals.empty()) << "the filter did not run";
+  // An innovation of 50 arcsec with a variance of 20^2 arcsec^2 in all directions.
+  image.nis = 6.25;
+  append_residuals(report::row_of<report::ImageRow>(image), residuals);
   ASSERT_EQ(residuals.size(), 2U);
-  EXPECT_EQ(residuals[0].sensor, "bearing_x_arcsec");
+  EXPECT_EQ(residuals[0].sensor, "bearing_in_plane_arcsec");
   EXPECT_NEAR(residuals[0].postfit, -5.0, 1e-12);
   EXPECT_NEAR(residuals[1].prefit, 30.0, 1e-12);
-  EXPECT_NEAR(residuals[1].sigma, 12.0, 1e-12);
+  EXPECT_NEAR(residuals[0].sigma, 20.0, 1e-12);
+  EXPECT_NEAR(residuals[1].sigma, 20.0, 1e-12);
 
   telemetry_objects objects{};
   objects.count = 2;

@@ -49,6 +49,21 @@ TEST(Comparison, HoldsEachRunAgainstTheFirst) {
   EXPECT_THAT(cells_of(rows, "waypoint 10"), ElementsAre("1.0000", "–")) << "never reached";
 }
 
+TEST(Comparison, OtherMissionsAndSeedsAreExpectedToDiffer) {
+  std::vector<ComparedRun> runs = two_runs();
+  EXPECT_TRUE(expect_same_outputs(runs[0].record.summary, runs[1].record.summary));
+  runs[1].record.summary.seed = 2;
+  EXPECT_FALSE(expect_same_outputs(runs[0].record.summary, runs[1].record.summary));
+  EXPECT_THAT(cells_of(comparison_rows(runs), "maneuver commands"), ElementsAre("same bits", "other mission or seed"));
+  EXPECT_EQ(cells_of(comparison_rows(runs), "waypoint 0"), std::vector<std::string>{"no such row"}) << "the start";
+}
+
+TEST(Comparison, RunsInFoldersOfTheSameNameAreToldApart) {
+  EXPECT_THAT(run_names({"/a/one/run", "/a/two/run/", "/b/one/run", "/a/other"}),
+              ElementsAre("a/one/run", "two/run", "b/one/run", "other"));
+  EXPECT_THAT(run_names({"/a/run", "/a/run"}), ElementsAre("a/run", "a/run")) << "the same folder twice";
+}
+
 TEST(Comparison, OneRunIsHeldAgainstNothing) {
   const std::vector<ComparedRun> one{{"sil", synthetic_run()}};
   for (const ComparisonRow& row : comparison_rows(one)) EXPECT_EQ(row.name.find("against"), std::string::npos);

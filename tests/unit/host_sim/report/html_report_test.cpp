@@ -38,6 +38,11 @@ TEST_F(HtmlReport, TheCheckSeesFaults) {
   EXPECT_NE(complaints("<html><p>open</html>"), "");
   EXPECT_NE(complaints("<html><img src=\"x.png\"/></html>"), "");
   EXPECT_NE(complaints("<html><path d=\"M1 nan\"/></html>"), "");
+  EXPECT_NE(complaints("<html><a href=\"#nowhere\">x</a></html>"), "");
+  const std::string plot = "<html><svg class=\"plot\" viewBox=\"0 0 10 10\"><path d=\"M1 2L";
+  EXPECT_EQ(complaints(plot + "3 4\"/></svg></html>"), "");
+  EXPECT_NE(complaints(plot + "3 1959047.0\"/></svg></html>"), "");
+  EXPECT_NE(complaints(plot + "-0.1 4\"/></svg></html>"), "");
 }
 
 TEST_F(HtmlReport, TellsTheWholeRun) {
@@ -47,6 +52,7 @@ TEST_F(HtmlReport, TellsTheWholeRun) {
         "Angles-only navigation", "Navigation by the pose network", "Attitude", "Guidance and passive safety",
         "Health of the flight software", "Flight computer, link and time"}) {
     EXPECT_THAT(html, HasSubstr("<h2>" + std::string(heading) + "</h2>"));
+    EXPECT_THAT(html, HasSubstr("\">" + std::string(heading) + "</a>")) << "in the contents";
   }
   EXPECT_THAT(html, HasSubstr("&lt;a &quot;test&quot; &amp; nothing else&gt;")) << "the flight software's own name";
   EXPECT_THAT(html, HasSubstr(std::string(64, 'a')));
@@ -55,13 +61,67 @@ TEST_F(HtmlReport, TellsTheWholeRun) {
   EXPECT_THAT(html, HasSubstr("40 commanded, 39 executed, 1 not executed"));
   EXPECT_THAT(html, HasSubstr("300 s after the start"));
   EXPECT_THAT(html, HasSubstr("4.75 in 90 maneuvers")) << "the paper's, as the run meets its waypoints 1 to 7";
-  EXPECT_THAT(html, HasSubstr("noise 11.25 arcsec an axis, bias 2.50 arcsec"));
+  EXPECT_THAT(html, HasSubstr("noise 11.25 arcsec per axis, bias 2.50 arcsec"));
   EXPECT_THAT(html, HasSubstr("2476, 2122 with a bearing, 353 without stars"));
   EXPECT_THAT(html, HasSubstr("0.1250 ± 0.0956")) << "the paper's of experiment 2, by the same waypoints";
-  EXPECT_THAT(html, HasSubstr("136, 120 (88.2 %) with a pose by PnP, 7 of them more than 10 deg off"));
+  EXPECT_THAT(html, HasSubstr("136, 120 (88.2 %) with a PnP pose, 7 of them with an attitude error over 10 deg"));
   EXPECT_THAT(html, HasSubstr("data:image/png;base64,iVBORw0KGgo")) << "the signature of every PNG";
   EXPECT_THAT(html, HasSubstr("12.476 in 12 maneuvers")) << "the paper's, as the run meets its waypoints 9 and 10";
   EXPECT_THAT(html, HasSubstr("at most 350,000, on average 250,001 instructions; at most 21,000 bytes of stack"));
+}
+
+TEST_F(HtmlReport, DrawsMarksOverThePictures) {
+  const std::string html = html_report(synthetic_run());
+  // Objects of image 403: 712.34, 722.34 and 732.34 px by 500.5 px, in a picture from 80, 50 px on.
+  EXPECT_THAT(html, HasSubstr("<rect class=\"mark red\" x=\"634.8\" y=\"443.0\" width=\"16.0\" height=\"16.0\">"
+                              "<title>star HIP 32349, at x 722.3, y 500.5 px</title>"));
+  EXPECT_THAT(html, HasSubstr("<circle class=\"mark green\" cx=\"652.8\" cy=\"451.0\" r=\"13.0\">"));
+  EXPECT_THAT(html, HasSubstr("<img class=\"picture\"")) << "of a folder that has its marks in the pixels";
+  // Crop of 300 px about 400.5, 250.25 px, enlarged to 512 px; keypoint 0 at 400, 250.5 px.
+  EXPECT_THAT(html, HasSubstr("<rect class=\"mark green\" x=\"171.0\" y=\"50.8\" width=\"300.0\" height=\"300.0\">"));
+  EXPECT_THAT(html, HasSubstr("<path class=\"mark white\" d=\"M1058.1 256.4h10.0M1063.1 251.4v10.0\">"
+                              "<title>keypoint 0, used, error "));
+  EXPECT_THAT(html, HasSubstr("<title>keypoint 9, rejected"));
+}
+
+TEST_F(HtmlReport, TheStartIsNotAReachedWaypoint) {
+  RunRecord record = synthetic_run();
+  record.waypoints.resize(1);
+  const std::string html = html_report(record);
+  EXPECT_THAT(html, HasSubstr("0 (start)"));
+  EXPECT_THAT(html, HasSubstr("No waypoint was reached after the start"));
+  EXPECT_THAT(html, testing::Not(HasSubstr("control error at waypoint")));
+}
+
+// A flight computer of a user: no solver, no mean ROE, no passive safety.
+TEST_F(HtmlReport, ShowsAFlightComputerThatReportsLittle) {
+  RunRecord record = synthetic_run();
+  for (ManeuverRow& row : record.maneuvers) row.solver = -1;
+  for (EstimateRow& row : record.estimates) {
+    row.a_roe_mean_m = {};
+    row.passive_safety_distance_m = 0.0;
+  }
+  const std::string html = html_report(record);
+  EXPECT_EQ(complaints(html), "");
+  EXPECT_THAT(html, HasSubstr("solver: none"));
+  EXPECT_THAT(html, testing::Not(HasSubstr("</svg>estimated</span>")));
+  EXPECT_THAT(html, testing::Not(HasSubstr("</svg>passive safety distance</span>")));
+}
+
+TEST_F(HtmlReport, SharesOfTheWallClockAddUp) {
+  RunRecord record = synthetic_run();
+  record.summary.wall_s = 0.066;
+  record.summary.wall_share = {.truth_s = 0.36, .flight_s = 0.01, .link_s = 0.0, .other_s = -0.29};
+  const std::string html = html_report(record);
+  EXPECT_THAT(html, HasSubstr("0.36 s (97.3 %)"));
+  EXPECT_THAT(html, HasSubstr("0.01 s (2.7 %)"));
+  EXPECT_THAT(html, testing::Not(HasSubstr("-0.29")));
+}
+
+TEST_F(HtmlReport, MarksFiguresOutsideTheirBand) {
+  RunRecord record = synthetic_run();
+  record.summary.pose->attitude_nees = 35.07;
+  EXPECT_THAT(html_report(record), HasSubstr("<dd class=\"bad\">35.07, 6 expected; above the 95 % band "));
 }
 
 // 41 h at a step a minute; a page that a browser opens at once and a mail server takes.
@@ -185,6 +245,8 @@ TEST_F(HtmlReport, RunsSideBySideAreAPageToo) {
   EXPECT_THAT(html_comparison(runs), HasSubstr("All runs gave the same maneuver commands and telemetry"));
   runs[1].record.summary.telemetry_sha256 = std::string(64, 'c');
   EXPECT_THAT(html_comparison(runs), HasSubstr("Not all runs gave the same"));
+  runs[1].record.summary.seed = 2;
+  EXPECT_THAT(html_comparison(runs), HasSubstr("not expected to be the same"));
   runs.push_back({"never flew", {}});
   EXPECT_EQ(complaints(html_comparison(runs)), "");
 }

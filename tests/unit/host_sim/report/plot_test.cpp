@@ -1,10 +1,12 @@
 #include <cmath>
+#include <regex>
 #include <stdexcept>
 #include <string_view>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "host_sim/report/consistency.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/svg_plot.h"
 
@@ -65,6 +67,70 @@ TEST(ThinnedCurve, KeepsASpike) {
   std::vector<Point> line;
   for (int k = 0; k < 1001; ++k) line.push_back({0.1 * k, k == 500 ? 5.0 : 0.0});
   EXPECT_EQ(thinned_curve(line, 0.25).size(), 5U) << "two ends, the spike and its two feet";
+}
+
+TEST(Clipped, CutsSegmentsAtTheFrame) {
+  const Box box{0.0, 0.0, 10.0, 10.0};
+  // In by the left edge, out at the top far above, back in, and out at the lower right corner's side.
+  const auto pieces = clipped({{-10.0, 5.0}, {5.0, 5.0}, {5.0, -1e6}, {8.0, -1e6}, {8.0, 5.0}, {28.0, 15.0}}, box);
+  ASSERT_EQ(pieces.size(), 2U);
+  ASSERT_EQ(pieces[0].size(), 3U);
+  EXPECT_EQ(pieces[0][0].x, 0.0);
+  EXPECT_EQ(pieces[0][0].y, 5.0);
+  EXPECT_EQ(pieces[0][2].x, 5.0);
+  EXPECT_EQ(pieces[0][2].y, 0.0);
+  ASSERT_EQ(pieces[1].size(), 3U);
+  EXPECT_EQ(pieces[1][0].x, 8.0);
+  EXPECT_EQ(pieces[1][0].y, 0.0);
+  EXPECT_EQ(pieces[1][2].x, 10.0);
+  EXPECT_NEAR(pieces[1][2].y, 6.0, 1e-12);
+}
+
+// Both ends outside and the middle inside: dropping points would lose it.
+TEST(Clipped, KeepsASegmentThatCrossesTheFrame) {
+  const auto pieces = clipped({{-10.0, -10.0}, {20.0, 20.0}}, {0.0, 0.0, 10.0, 10.0});
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_NEAR(pieces[0][0].x, 0.0, 1e-12);
+  EXPECT_NEAR(pieces[0][1].y, 10.0, 1e-12);
+  EXPECT_TRUE(clipped({{-10.0, 5.0}, {5.0, 20.0}}, {0.0, 0.0, 10.0, 10.0}).empty()) << "past the corner";
+  EXPECT_TRUE(clipped({}, {0.0, 0.0, 10.0, 10.0}).empty());
+}
+
+TEST(SvgPlot, DrawsNothingOutsideItsFrame) {
+  Plot plot;
+  plot.x = {.name = "x", .range = Range{0.0, 1.0}};
+  plot.y = {.name = "y", .range = Range{-1.0, 1.0}};
+  plot.series = {{"spike", 0, Mark::kDashedLine, {{-5.0, 0.0}, {0.4, 0.0}, {0.5, 1e300}, {0.6, 0.0}, {1.0, 1e9}}},
+                 {"dots", 1, Mark::kBroadDots, {{0.5, 0.5}, {0.5, 3.0}, {2.0, 0.0}, {0.5, std::nan("")}}}};
+  plot.events = {-3.0, 0.5, 7.0};
+  plot.rings = {{{0.5, 40.0}, "outside", ""}};
+  const std::string text = svg(plot);
+  const std::regex number(R"([ML](-?[0-9.e+]+) (-?[0-9.e+]+))");
+  int count = 0;
+  for (std::sregex_iterator match(text.begin(), text.end(), number), end; match != end; ++match, ++count) {
+    EXPECT_GE(std::stod((*match)[1]), 0.0);
+    EXPECT_LE(std::stod((*match)[1]), plot.width);
+    EXPECT_GE(std::stod((*match)[2]), 0.0);
+    EXPECT_LE(std::stod((*match)[2]), plot.height);
+  }
+  EXPECT_GE(count, 5) << "the line's pieces, a dot and an event";
+  EXPECT_EQ(text.find("outside"), std::string::npos);
+}
+
+TEST(Legend, NamesWhatIsDrawnOnce) {
+  Plot plot;
+  plot.y.logarithmic = true;
+  plot.series = {{"shown", 0, Mark::kLine, {{0.0, 1.0}}},
+                 {"zeros on a logarithmic axis", 1, Mark::kLine, {{0.0, 0.0}}},
+                 {"", 2, Mark::kLine, {{0.0, 1.0}}},
+                 {"other", 3, Mark::kDots, {{0.0, 1.0}}}};
+  const std::string text = legend({plot, plot});
+  EXPECT_NE(text.find("shown"), std::string::npos);
+  EXPECT_EQ(text.find("shown"), text.rfind("shown"));
+  EXPECT_EQ(text.find("zeros"), std::string::npos);
+  plot.series.resize(1);
+  EXPECT_TRUE(legend({plot}).empty());
+  EXPECT_FALSE(legend({plot}, 1).empty());
 }
 
 TEST(ThinnedDots, DropsOnlyThoseThatLieOnOthers) {
@@ -199,8 +265,43 @@ TEST(NumberText, ReadsWell) {
   EXPECT_EQ(duration_text(52.36), "52.4 s");
   EXPECT_EQ(fixed(std::nan(""), 3), "–");
   EXPECT_EQ(fixed(std::nullopt, 3), "–");
-  EXPECT_EQ(velocity_text(3.83), "3.8300 m/s");
-  EXPECT_EQ(velocity_text(0.0057), "5.7000 mm/s");
+  EXPECT_EQ(measure_text(3.83, "m/s"), "3.83 m/s");
+  EXPECT_EQ(measure_text(0.0057, "m/s"), "5.70 mm/s");
+  EXPECT_EQ(measure_text(0.0731, "m"), "73.1 mm");
+  EXPECT_EQ(measure_text(123.4, "m"), "123 m");
+  EXPECT_EQ(measure_text(74850.0, "m"), "74.8 km");
+  EXPECT_EQ(measure_text(1e-9, "m"), "< 0.01 mm");
+  EXPECT_EQ(measure_text(0.0, "m"), "0 m");
+  EXPECT_EQ(measure_text(std::nan(""), "m"), "–");
+}
+
+TEST(NumberText, PercentagesAddUp) {
+  using testing::ElementsAre;
+  EXPECT_THAT(percentages({1.0, 1.0, 1.0}), ElementsAre(33.3, 33.3, 33.4));
+  EXPECT_THAT(percentages({3.0, -1.0, 1.0}), ElementsAre(75.0, 0.0, 25.0));
+  EXPECT_THAT(percentages({0.0, 0.0}), ElementsAre(0.0, 0.0));
+  EXPECT_THAT(percentages({std::nan(""), 1.0}), ElementsAre(0.0, 100.0));
+}
+
+// Quantiles from NIST/SEMATECH e-Handbook of Statistical Methods, 1.3.6.7.4 (critical values of chi-square).
+TEST(Consistency, BandsAreThoseOfTables) {
+  EXPECT_NEAR(chi_square_band(2.0).low, 0.051, 5e-4);
+  EXPECT_NEAR(chi_square_band(2.0).high, 7.378, 5e-4);
+  EXPECT_NEAR(chi_square_band(6.0).low, 1.237, 5e-4);
+  EXPECT_NEAR(chi_square_band(6.0).high, 14.449, 5e-4);
+  EXPECT_NEAR(mean_band(2.0, 50).low, 74.222 / 50.0, 1e-5) << "100 degrees of freedom";
+  EXPECT_NEAR(mean_band(2.0, 50).high, 129.561 / 50.0, 1e-5);
+}
+
+TEST(Consistency, SetsOffMeansOutsideTheirBand) {
+  EXPECT_EQ(consistency_fact("NIS", 2.1, 2.0, 50).value,
+            "2.10, 2 expected; inside the 95 % band 1.48 to 2.59 of 50 samples");
+  EXPECT_FALSE(consistency_fact("NIS", 2.1, 2.0, 50).is_bad);
+  EXPECT_TRUE(consistency_fact("NIS", 0.37, 2.0, 50).is_bad);
+  EXPECT_THAT(consistency_fact("NIS", 2.7, 2.0, 50).value, testing::HasSubstr("above"));
+  EXPECT_EQ(consistency_fact("NIS", std::nullopt, 2.0, 50).value, "–");
+  EXPECT_EQ(consistency_fact("NIS", std::nan(""), 2.0, 50).value, "–");
+  EXPECT_EQ(consistency_fact("NIS", 2.1, 2.0, 0).value, "2.10, 2 expected");
 }
 
 }  // namespace

@@ -355,7 +355,18 @@ RunRecord synthetic_run() {
     record.images.push_back(image_of(record.estimates.back()));
     if (step % 400 == 3) {
       add_objects(record, record.images.back());
-      record.gallery.push_back({record.images.back().time_s, record.images.back().image, "target & <decoy>", kPicture});
+      // The first is of a folder whose pictures have their marks in the pixels.
+      record.gallery.push_back({.time_s = record.images.back().time_s,
+                                .image = record.images.back().image,
+                                .caption = "target & <decoy>",
+                                .origin_x_px = step > 3 ? 80 : 0,
+                                .origin_y_px = step > 3 ? 50 : 0,
+                                .width_px = step > 3 ? 800 : 0,
+                                .height_px = step > 3 ? 500 : 0,
+                                .target_radius_px = 13.0,
+                                .crop_left = step > 2340 ? 808 : 0,
+                                .crop_side = step > 2340 ? 512 : 0,
+                                .png = kPicture});
     }
     if (step >= 2340) {
       record.poses.push_back(pose_of(record.estimates.back()));

@@ -26,7 +26,7 @@ TEST(WaypointTable, HasALineAWaypointAndOneForAll) {
   const std::vector<std::string> lines = lines_of(waypoint_table(synthetic_run()));
   ASSERT_EQ(lines.size(), 2U + 11U + 1U);
   using testing::ElementsAre;
-  EXPECT_THAT(words_of(lines[2]), ElementsAre("0", "0.000", "0.0000", "–", "–", "0.000000", "0.000000", "0"));
+  EXPECT_THAT(words_of(lines[2]), ElementsAre("start", "0", "0.000", "–", "–", "–", "0.000000", "0.000000", "0"));
   EXPECT_THAT(words_of(lines[2 + 10]),
               ElementsAre("10", "41.250", "1.0000", "0.0909", "0.0100", "0.010000", "1.549768", "4"));
   EXPECT_THAT(words_of(lines.back()), ElementsAre("all", "41.250", "3.834500", "39"));
