@@ -18,6 +18,8 @@ report::RunRecord evaluated_run(const std::filesystem::path& folder) {
   report::RunRecord record = report::read_run(folder);
   for (const std::string& note : record.notes) fmt::print(stderr, "vbar: {}\n", note);
   report::evaluate(record);
+  const std::string health = record.summary.health ? report::health_line(*record.summary.health) : "";
+  if (!health.empty()) fmt::print("flight software: {}\n", health);
   return record;
 }
 

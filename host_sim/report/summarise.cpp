@@ -149,6 +149,9 @@ void summarise_flight_steps(const RunRecord& record, Summary& summary) {
 
 Summary summarise(const RunRecord& record) {
   Summary summary = record.summary;
+  // A killed run did not say how long it was.
+  if (!summary.complete && summary.simulated_s == 0.0 && !record.truth.empty())
+    summary.simulated_s = record.truth.back().time_s - record.truth.front().time_s;
   summarise_navigation(record, summary);
   summarise_maneuvers(record, summary);
   summarise_images(record, summary);

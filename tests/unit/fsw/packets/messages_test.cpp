@@ -282,7 +282,8 @@ TEST_F(Messages, EveryFieldIsVisitedInOrder) {
 
 TEST(Fields, TellUnitsElementsAndWordsOfCodes) {
   int seen = 0;
-  visit_fields(telemetry_navigation{}, [&](const vbar::Field& field, const auto&) {
+  const telemetry_navigation message{};
+  visit_fields(message, [&](const vbar::Field& field, const auto&) {
     if (field.name == std::string("relative_velocity_rtn")) {
       EXPECT_STREQ(field.unit, "mps");
       EXPECT_STREQ(field.elements[1], "t");

@@ -1,5 +1,6 @@
 #include "host_sim/report/navigation_errors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -139,7 +140,8 @@ TEST(NavigationErrors, NeesIsOfFreshGnssWithACovarianceOnly) {
   EXPECT_FALSE(nees_of(2, nothing).has_value()) << "ideal";
   EXPECT_FALSE(nees_of(4, [](RunRecord& r) { r.gnss.clear(); }).has_value());
   EXPECT_FALSE(nees_of(4, [](RunRecord& r) { r.gnss[0].epoch_s.reset(); }).has_value());
-  EXPECT_FALSE(nees_of(4, [](RunRecord& r) { r.gnss[0].covariance_rtn.fill(0.0); }).has_value()) << "singular";
+  EXPECT_FALSE(nees_of(4, [](RunRecord& r) { std::ranges::fill(r.gnss[0].covariance_rtn, 0.0); }).has_value())
+      << "singular";
 }
 
 TEST(NavigationErrors, FirstFixIsTheFirstStepByFixedAmbiguities) {

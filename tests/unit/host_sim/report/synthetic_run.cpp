@@ -140,7 +140,8 @@ TelemetryRow<telemetry_health> health_of(const EstimateRow& estimate) {
   row.message.step = estimate.step;
   row.message.packets_accepted = static_cast<std::int32_t>(40 * estimate.step);
   row.message.inbox_dropped = estimate.step > 100 ? 12 : 0;
-  row.message.faults = telemetry_health::kFaultInboxFull | telemetry_health::kFaultHold;
+  row.message.faults = telemetry_health::kFaultInboxFull;
+  row.message.faults |= telemetry_health::kFaultHold;
   return row;
 }
 

@@ -1,0 +1,75 @@
+// Figures of a run from its tables alone, against sums over what synthetic_run says it put in.
+
+#include "host_sim/report/summarise.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "host_sim/report/summary_json.h"
+#include "tests/unit/host_sim/report/synthetic_run.h"
+
+namespace vbar::report::test {
+namespace {
+
+TEST(Summarise, FiguresComeFromTheTables) {
+  RunRecord record = synthetic_run();
+  const Summary stored = record.summary;
+  record.summary = {};
+  static_cast<RunFacts&>(record.summary) = stored;
+  evaluate(record);
+  const Summary& s = record.summary;
+  double dv = 0.0;
+  for (int id = 1; id <= 40; ++id)
+    if (id != 17) dv += std::hypot(1.0 / (id * id), 0.3 / id);
+  EXPECT_NEAR(s.dv_mps, dv, 1e-12);
+  EXPECT_EQ(s.maneuvers, 39);
+  EXPECT_EQ(s.flight_step.count, 2476U);
+  EXPECT_EQ(s.flight_step.stack_bytes_max, 21000U);
+  EXPECT_EQ(s.first_fix_s.value(), 300.0);
+  ASSERT_TRUE(s.health.has_value());
+  EXPECT_EQ(s.health->step, 2475);
+  EXPECT_EQ(s.health->inbox_dropped, 12);
+  EXPECT_EQ(s.images->images, 2476);
+  EXPECT_EQ(s.pose->images, 136);
+  EXPECT_EQ(s.seed, stored.seed) << "a fact, not a figure";
+  EXPECT_EQ(s.telemetry_sha256, stored.telemetry_sha256);
+  EXPECT_EQ(record.waypoints[5].leg_maneuvers, 3) << "17 was not executed";
+  EXPECT_NEAR(record.waypoints.back().cumulative_dv_mps, dv, 1e-12);
+}
+
+TEST(Summarise, IsAFunctionOfTheTables) {
+  RunRecord record = synthetic_run();
+  evaluate(record);
+  const std::string once = summary_json(record.summary, record.waypoints);
+  evaluate(record);
+  EXPECT_EQ(summary_json(record.summary, record.waypoints), once);
+}
+
+TEST(Summarise, ANaNInATableIsSeen) {
+  RunRecord record = synthetic_run();
+  record.estimates[1000].relative_position_rtn[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(summarise(record).navigation_error_m->mean));
+}
+
+TEST(Summarise, AKilledRunIsAsLongAsItsTables) {
+  RunRecord record = synthetic_run();
+  record.summary.complete = false;
+  record.summary.simulated_s = 0.0;
+  EXPECT_EQ(summarise(record).simulated_s, 148500.0);
+}
+
+TEST(Summarise, HealthIsOneLineOfWhatIsNotNominal) {
+  telemetry_health health{};
+  health.packets_accepted = 100;
+  health.step = 7;
+  EXPECT_EQ(health_line(health), "");
+  health.inbox_dropped = 11123;
+  health.faults = telemetry_health::kFaultInboxFull;
+  health.faults |= telemetry_health::kFaultNavigationTimeout;
+  EXPECT_EQ(health_line(health), "inbox dropped 11123, faults navigation_timeout+inbox_full");
+}
+
+}  // namespace
+}  // namespace vbar::report::test
