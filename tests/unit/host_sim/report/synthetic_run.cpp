@@ -329,7 +329,7 @@ RunRecord synthetic_run() {
     record.estimates.push_back(estimate_of(record.truth.back(), step));
     record.gnss.push_back(gnss_of(record.estimates.back()));
     record.images.push_back(image_of(record.estimates.back()));
-    if (step % 400 == 3) {
+    if (step % 400 == 3 || step == 2404) {
       add_objects(record, record.images.back());
       // The first is of a folder whose pictures have their marks in the pixels.
       record.gallery.push_back({.time_s = record.images.back().time_s,
