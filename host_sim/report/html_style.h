@@ -93,7 +93,7 @@ svg text.ring { fill: var(--bad); font-size: 10.5px; font-weight: 600; }
   .tile { padding: 5px 8px; } .tile b { font-size: 13px; } .tile span { font-size: 10px; }
   dl { grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 20px; } dt { flex-basis: 120px; }
   .scroll { overflow: visible; }
-  figure, .figures, .keep, tr, dl div, .tile { break-inside: avoid; }
+  figure, .figures, .keep, table, tr, dl, dl div, .tile { break-inside: avoid; }
   h2, h3, .keep, .note, thead { break-after: avoid; }
   nav, .files { font-size: 10px; }
   svg .title { font-size: 14px; } svg.plot, svg .tick { font-size: 12.5px; }

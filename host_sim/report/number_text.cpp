@@ -62,14 +62,15 @@ std::string measure_text(double value, std::string_view unit) {
 }
 
 std::vector<double> percentages(const std::vector<double>& parts) {
+  const auto size = [](double part) { return part > 0.0 ? part : 0.0; };  // also of NaN
   double whole = 0.0;
-  for (const double part : parts) whole += std::max(part, 0.0);
+  for (const double part : parts) whole += size(part);
   std::vector<double> tenths(parts.size(), 0.0);
   if (!(whole > 0.0)) return tenths;
   std::vector<std::pair<double, std::size_t>> remainders;
   double missing = 1000.0;
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    const double exact = 1000.0 * std::max(parts[k], 0.0) / whole;
+    const double exact = 1000.0 * size(parts[k]) / whole;
     tenths[k] = std::floor(exact);
     missing -= tenths[k];
     remainders.emplace_back(exact - tenths[k], k);

@@ -294,6 +294,10 @@ std::string marks(const RunRecord& record, const GalleryImage& image) {
 Section angles_only_section(const RunRecord& record) {
   if (record.images.empty()) return {};
   const View view = whole_run(record);
+  std::vector<std::string> files{"images.csv"};
+  if (!record.objects.empty()) files.emplace_back("objects.csv");
+  if (!record.gallery.empty()) files.emplace_back("gallery.csv");
+  if (!record.residuals.empty()) files.emplace_back("residuals.csv");
   return {"Angles-only navigation",
           performance_table(record) + facts(record) + kBandNote +
               "<p class=\"note\">Residuals of the bearings that the filter used. Normalised: over |prefit| / √NIS, the "
@@ -308,7 +312,7 @@ Section angles_only_section(const RunRecord& record) {
                            "green circle is the selected target, blue triangles are unmatched objects. Dark violet "
                            "pixels did not arrive.",
                            [&](const GalleryImage& image) { return marks(record, image); }),
-          {"images.csv", "objects.csv", "gallery.csv", "residuals.csv"}};
+          files};
 }
 
 }  // namespace vbar::report

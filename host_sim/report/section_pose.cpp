@@ -389,6 +389,9 @@ std::string marks(const RunRecord& record, const GalleryImage& image) {
 Section pose_section(const RunRecord& record) {
   if (record.poses.empty()) return {};
   const View view = whole_run(record);
+  std::vector<std::string> files{"poses.csv"};
+  if (!record.keypoints.empty()) files.emplace_back("keypoints.csv");
+  if (!record.gallery.empty()) files.emplace_back("gallery.csv");
   return {
       "Navigation by the pose network",
       performance_table(record) + facts(record) + kBandNote + outcome_table(record) +
@@ -403,7 +406,7 @@ Section pose_section(const RunRecord& record) {
                        "sees it, with one heatmap per keypoint in its colour. Crosses: keypoints, white if "
                        "navigation used them, red if it rejected them, with ellipses of 3σ.",
                        [&](const GalleryImage& image) { return marks(record, image); }),
-      {"poses.csv", "keypoints.csv", "gallery.csv"}};
+      files};
 }
 
 }  // namespace vbar::report

