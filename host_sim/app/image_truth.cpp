@@ -112,6 +112,7 @@ void summarise_images(const std::vector<report::ImageRow>& images, const std::st
   std::vector<double> x, y, size, across, all_nees;
   for (const report::ImageRow& row : images) {
     if (row.status == 0) ++counts.with_bearing;
+    if (!row.range_m) ++counts.without_truth;
     if (!row.chosen.empty() && row.chosen != target) ++counts.wrong_targets;
     if (row.attitude_error_across_arcsec) across.push_back(*row.attitude_error_across_arcsec);
     if (row.nees) all_nees.push_back(*row.nees);

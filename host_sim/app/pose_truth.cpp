@@ -158,6 +158,7 @@ void summarise_poses(const report::RunRecord& record, report::Summary& summary) 
   std::vector<double> attitude_errors, nees, attitude_nees, keypoint_errors, chi_squares, lit_errors;
   for (const report::PoseRow& row : record.poses) {
     ++figures.images;
+    if (!row.range_m) ++figures.without_truth;
     if (row.pnp_inliers > 0) ++figures.with_pose;
     if (row.pnp_error_deg.value_or(0.0) > 10.0) ++figures.poses_over_10_deg;
     if (row.attitude_error_deg) attitude_errors.push_back(*row.attitude_error_deg);

@@ -7,12 +7,12 @@
 
 #include <fmt/core.h>
 
+#include "host_sim/app/assemble.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/data_directory.h"
 #include "host_sim/app/packet_keepers.h"
 #include "host_sim/app/progress.h"
-#include "host_sim/app/simulation.h"
 #include "host_sim/app/stop_request.h"
 #include "host_sim/mission/extends.h"
 #include "host_sim/mission/load.h"
@@ -54,23 +54,22 @@ void summarise_flight_steps(report::RunRecord& record, const std::string& unit) 
 }
 
 /// Flies and fills the record. The reason why the run is not complete, or nothing.
-std::optional<std::string> fly(const mission::Mission& mission, const std::filesystem::path& folder,
-                               report::RunRecord& record) {
+std::optional<std::string> fly(const mission::Mission& mission, AssembledMission& assembled,
+                               const std::filesystem::path& folder, report::RunRecord& record) {
   PacketKeepers keepers(mission, folder);
   const std::unique_ptr<pil::FlightComputer> flight_computer = connect_flight_computer(flying_spacecraft(mission));
   engine::SteadyWallClock wall;
   ProgressLine progress(mission.duration);
-  const Simulation::Surroundings surroundings{*flight_computer, wall, keepers.observers(),
-                                              [&](fsw::Duration simulated) { progress.update(simulated); },
-                                              stop_requested};
-  Simulation simulation(mission, data_directory(), surroundings, record);
   std::optional<std::string> trouble;
   try {
-    if (!simulation.run()) trouble = "interrupted";
+    const bool complete = assembled.fly({*flight_computer, wall, keepers.observers(),
+                                         [&](fsw::Duration simulated) { progress.update(simulated); }, stop_requested},
+                                        record);
+    if (!complete) trouble = "interrupted";
   } catch (const std::exception& error) {
     trouble = error.what();
   }
-  summarise_flight_steps(record, simulation.cost_unit());
+  summarise_flight_steps(record, assembled.facts().cost_unit);
   record.summary.commands_sha256 = keepers.commands_sha256();
   record.summary.telemetry_sha256 = keepers.telemetry_sha256();
   if (!trouble) flight_computer->close();
@@ -81,17 +80,19 @@ std::optional<std::string> fly(const mission::Mission& mission, const std::files
 
 int run_command(const RunOptions& options) {
   const mission::Mission mission = mission::load_mission(options.mission, options.overrides);
-  static_cast<void>(flying_spacecraft(mission));  // refused before there is a folder
+  catch_stop_signals();
+  // Whatever cannot fly, and a source that is not ready, is refused before there is a folder.
+  AssembledMission assembled(mission, data_directory());
+  assembled.start();
   const std::filesystem::path out =
       options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out;
   const report::RunFolder folder(out, start_of(mission));
   keep_mission(mission, options, folder.path());
-  catch_stop_signals();
 
   report::RunRecord record;
   std::optional<std::string> trouble;
   try {
-    trouble = fly(mission, folder.path(), record);
+    trouble = fly(mission, assembled, folder.path(), record);
   } catch (const std::exception& error) {
     trouble = error.what();  // not even begun
   }

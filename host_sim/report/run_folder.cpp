@@ -31,12 +31,13 @@ constexpr std::string_view kGallery = "gallery.csv";
 constexpr std::string_view kPictures = "gallery";  // a folder
 constexpr std::string_view kManeuvers = "maneuvers.csv";
 constexpr std::string_view kResiduals = "residuals.csv";
+constexpr std::string_view kNotes = "notes.csv";
 constexpr std::string_view kPacketLog = "packets.lcmlog";
 constexpr std::string_view kReport = "report.html";
 
-constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,     kAttitude,  kEstimate,  kGnss,
-                                         kImages,    kObjects,   kPoses,     kKeypoints, kGallery,
-                                         kManeuvers, kResiduals, kPacketLog, kReport};
+constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,     kAttitude, kEstimate,  kGnss,
+                                         kImages,    kObjects,   kPoses,    kKeypoints, kGallery,
+                                         kManeuvers, kResiduals, kNotes,    kPacketLog, kReport};
 
 [[noreturn]] void fail(const fs::path& folder, std::string_view what) {
   throw std::runtime_error(fmt::format("{}: {}", folder.string(), what));
@@ -110,6 +111,7 @@ void RunFolder::finish(const RunRecord& record) const {
   if (!record.gallery.empty()) write_gallery(folder_, record.gallery);
   write_rows(folder_ / kManeuvers, record.maneuvers);
   write_rows(folder_ / kResiduals, record.residuals);
+  if (!record.notes.empty()) write_rows(folder_ / kNotes, record.notes);
   replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
 }
 
@@ -134,6 +136,7 @@ RunRecord read_run(const fs::path& run_folder) {
   if (fs::exists(run_folder / kGallery)) record.gallery = read_gallery(run_folder);
   record.maneuvers = read_rows<ManeuverRow>(run_folder / kManeuvers);
   record.residuals = read_rows<ResidualRow>(run_folder / kResiduals);
+  if (fs::exists(run_folder / kNotes)) record.notes = read_rows<NoteRow>(run_folder / kNotes);
   return record;
 }
 

@@ -219,7 +219,8 @@ struct BearingError {
 struct ImageCounts {
   int images = 0;
   int with_bearing = 0;
-  int wrong_targets = 0;  ///< images whose choice is not the target
+  int wrong_targets = 0;  ///< images whose choice is not the target; those without truth are not judged
+  int without_truth = 0;
   friend bool operator==(const ImageCounts&, const ImageCounts&) = default;
 };
 
@@ -234,7 +235,19 @@ struct PoseFigures {
   MeanAndDeviation lit_navigation_error_m;
   std::optional<double> attitude_nees;  ///< mean; turn and rate, 6 is honest
   int attitude_restarts = 0, restarts = 0;
+  int without_truth = 0;  ///< images, not judged
   friend bool operator==(const PoseFigures&, const PoseFigures&) = default;
+};
+
+/// How often a source measured, failed and, in real time, began late.
+struct SourceFigures {
+  std::string name;  ///< "servicer/gnss"
+  std::string kind;  ///< "digital", "recorded" or the name of a testbed
+  std::int64_t epochs = 0, failures = 0;
+  std::string last_failure;  ///< why; all reasons are in notes.csv
+  std::uint64_t late = 0;
+  double latest_s = 0.0;  ///< how late the latest began
+  friend bool operator==(const SourceFigures&, const SourceFigures&) = default;
 };
 
 /// summary.json.
@@ -283,6 +296,7 @@ struct Summary {
     std::uint64_t compute_overruns = 0, wakeups_late = 0, link_late = 0, simulation_late = 0;
     friend bool operator==(const Deadlines&, const Deadlines&) = default;
   } deadlines;
+  std::vector<SourceFigures> sources;
   struct WallShare {
     double truth_s = 0.0, flight_s = 0.0, link_s = 0.0, other_s = 0.0;
     // Of a digital camera, on a thread of its own: beside the others, not part of their sum.
@@ -290,6 +304,16 @@ struct Summary {
     friend bool operator==(const WallShare&, const WallShare&) = default;
   } wall_share;
   friend bool operator==(const Summary&, const Summary&) = default;
+};
+
+/// What a source or an actuator said of a measurement or a burn, or why it failed (notes.csv).
+struct NoteRow {
+  double time_s = 0.0;  ///< since the mission's epoch
+  std::string source;   ///< "servicer/gnss"
+  std::string name;     ///< with the unit; "failure": `text` is why
+  std::optional<double> value;
+  std::string text;
+  friend bool operator==(const NoteRow&, const NoteRow&) = default;
 };
 
 struct RunRecord {
@@ -306,6 +330,7 @@ struct RunRecord {
   std::vector<GalleryImage> gallery;
   std::vector<ManeuverRow> maneuvers;
   std::vector<ResidualRow> residuals;
+  std::vector<NoteRow> notes;
   friend bool operator==(const RunRecord&, const RunRecord&) = default;
 };
 

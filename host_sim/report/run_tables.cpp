@@ -102,6 +102,7 @@ template void write_rows(const std::filesystem::path&, const std::vector<Keypoin
 template void write_rows(const std::filesystem::path&, const std::vector<GalleryImage>&);
 template void write_rows(const std::filesystem::path&, const std::vector<ManeuverRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<ResidualRow>&);
+template void write_rows(const std::filesystem::path&, const std::vector<NoteRow>&);
 template void write_rows(const std::filesystem::path&, const std::vector<WaypointRow>&);
 
 template std::vector<TruthRow> read_rows(const std::filesystem::path&);
@@ -115,6 +116,7 @@ template std::vector<KeypointRow> read_rows(const std::filesystem::path&);
 template std::vector<GalleryImage> read_rows(const std::filesystem::path&);
 template std::vector<ManeuverRow> read_rows(const std::filesystem::path&);
 template std::vector<ResidualRow> read_rows(const std::filesystem::path&);
+template std::vector<NoteRow> read_rows(const std::filesystem::path&);
 template std::vector<WaypointRow> read_rows(const std::filesystem::path&);
 
 }  // namespace vbar::report

@@ -98,14 +98,16 @@ std::string facts(const RunRecord& record) {
   const Summary& s = record.summary;
   const ImageCounts counts = s.images.value_or(ImageCounts{});
   const ImageRow& last = record.images.back();
-  std::vector<Fact> facts{{"images", fmt::format("{}, {} with a bearing, {} without stars", counts.images,
-                                                 counts.with_bearing, last.images_without_stars)},
-                          {"choices that were not the target", std::to_string(counts.wrong_targets)},
-                          {"bearings", fmt::format("{} used, {} refused", last.bearings_used, last.bearings_refused)},
-                          {"stars an image", stars_text(record)},
-                          {"NIS, 2 expected", nis_text(record)},
-                          {"NEES, 6 expected", fixed(s.navigation_nees, 2)},
-                          {"tiles refused", std::to_string(last.tiles_refused)}};
+  std::vector<Fact> facts{
+      {"images", fmt::format("{}, {} with a bearing, {} without stars", counts.images, counts.with_bearing,
+                             last.images_without_stars)},
+      {"choices that were not the target",
+       fmt::format("{} in {} images with truth", counts.wrong_targets, counts.images - counts.without_truth)},
+      {"bearings", fmt::format("{} used, {} refused", last.bearings_used, last.bearings_refused)},
+      {"stars an image", stars_text(record)},
+      {"NIS, 2 expected", nis_text(record)},
+      {"NEES, 6 expected", fixed(s.navigation_nees, 2)},
+      {"tiles refused", std::to_string(last.tiles_refused)}};
   if (const auto& error = s.bearing_error_arcsec) {
     facts.push_back({"bearing error, target within a pixel", fmt::format("noise {} arcsec an axis, bias {} arcsec",
                                                                          fixed(error->std, 2), fixed(error->bias, 2))});

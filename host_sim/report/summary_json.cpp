@@ -39,7 +39,18 @@ Json json_of(const std::optional<PoseFigures>& value) {
            {{"mean", value->lit_navigation_error_m.mean}, {"std", value->lit_navigation_error_m.std}}},
           {"attitude_nees", json_of(value->attitude_nees)},
           {"attitude_restarts", value->attitude_restarts},
-          {"restarts", value->restarts}};
+          {"restarts", value->restarts},
+          {"images_without_truth", value->without_truth}};
+}
+
+Json json_of(const SourceFigures& value) {
+  return {{"name", value.name},
+          {"kind", value.kind},
+          {"epochs", value.epochs},
+          {"failures", value.failures},
+          {"last_failure", value.last_failure.empty() ? Json(nullptr) : Json(value.last_failure)},
+          {"late", value.late},
+          {"latest_s", value.latest_s}};
 }
 
 Json count_or_null(const std::optional<ImageCounts>& counts, int ImageCounts::*count) {
@@ -87,7 +98,7 @@ std::optional<BearingError> bearing_error(const Json& json) {
 std::optional<ImageCounts> image_counts(const Json& json) {
   if (json.at("images").is_null()) return std::nullopt;
   return ImageCounts{json.at("images").get<int>(), json.at("images_with_bearing").get<int>(),
-                     json.at("wrong_targets").get<int>()};
+                     json.at("wrong_targets").get<int>(), json.value("images_without_truth", 0)};
 }
 
 std::optional<PoseFigures> pose_figures(const Json& json) {
@@ -103,7 +114,18 @@ std::optional<PoseFigures> pose_figures(const Json& json) {
   figures.attitude_nees = optional_number(json.at("attitude_nees"));
   json.at("attitude_restarts").get_to(figures.attitude_restarts);
   json.at("restarts").get_to(figures.restarts);
+  figures.without_truth = json.value("images_without_truth", 0);
   return figures;
+}
+
+SourceFigures source_figures(const Json& json) {
+  return {text(json.at("name")),
+          text(json.at("kind")),
+          json.at("epochs").get<std::int64_t>(),
+          json.at("failures").get<std::int64_t>(),
+          text(json.at("last_failure")),
+          json.at("late").get<std::uint64_t>(),
+          number(json.at("latest_s"))};
 }
 
 Summary summary_from(const Json& json) {
@@ -158,6 +180,9 @@ Summary summary_from(const Json& json) {
   deadlines.at("link_late").get_to(s.deadlines.link_late);
   deadlines.at("simulation_late").get_to(s.deadlines.simulation_late);
 
+  // Older summaries have none.
+  for (const Json& source : json.value("sources", Json::array())) s.sources.push_back(source_figures(source));
+
   const Json& share = json.at("wall_share");
   s.wall_share.truth_s = number(share.at("truth_s"));
   s.wall_share.flight_s = number(share.at("flight_s"));
@@ -174,6 +199,8 @@ Summary summary_from(const Json& json) {
 std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypoints) {
   Json rows = Json::array();
   for (const WaypointRow& row : waypoints) rows.push_back(json_of(row));
+  Json sources = Json::array();
+  for (const SourceFigures& source : s.sources) sources.push_back(json_of(source));
   const Json json = {
       {"mission", s.mission},
       {"seed", s.seed},
@@ -199,6 +226,7 @@ std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypo
       {"images", count_or_null(s.images, &ImageCounts::images)},
       {"images_with_bearing", count_or_null(s.images, &ImageCounts::with_bearing)},
       {"wrong_targets", count_or_null(s.images, &ImageCounts::wrong_targets)},
+      {"images_without_truth", count_or_null(s.images, &ImageCounts::without_truth)},
       {"pose", json_of(s.pose)},
       {"dv_mps", s.dv_mps},
       {"maneuvers", s.maneuvers},
@@ -224,6 +252,7 @@ std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypo
         {"wakeups_late", s.deadlines.wakeups_late},
         {"link_late", s.deadlines.link_late},
         {"simulation_late", s.deadlines.simulation_late}}},
+      {"sources", sources},
       {"wall_share",
        {{"truth_s", s.wall_share.truth_s},
         {"flight_s", s.wall_share.flight_s},

@@ -46,9 +46,9 @@ relative = { to = "servicer", a_roe_m = [0, -2e4, 0, 0, 0, 0] }
 class ImageTruth : public testing::Test {
  protected:
   void SetUp() override {
-    truth_.spacecraft = {{"servicer", {kPlace, kVelocity}, truth::AttitudeState{}},
-                         {"target", {kPlace + Vector3(0.0, 0.0, 1e4 + 0.5), kVelocity}, std::nullopt},
-                         {"decoy", {kPlace + Vector3(30.0, 0.0, 2e4 + 0.5), kVelocity}, std::nullopt}};
+    truth_.spacecraft = {{"servicer", {kPlace, kVelocity}, truth::AttitudeState{}, {}, {}},
+                         {"target", {kPlace + Vector3(0.0, 0.0, 1e4 + 0.5), kVelocity}, {}, {}, {}},
+                         {"decoy", {kPlace + Vector3(30.0, 0.0, 2e4 + 0.5), kVelocity}, {}, {}, {}}};
     image_.bearing_eci[2] = 1.0;
     image_.q_eci_camera[0] = 1.0;
     image_.star_method = 1;
@@ -159,7 +159,7 @@ TEST_F(ImageTruth, SummaryTakesTheUnresolvedTargetOnly) {
   rows.back().status = 2;
   report::Summary summary;
   summarise_images(rows, "target", summary);
-  EXPECT_EQ(summary.images, (report::ImageCounts{7, 6, 1}));
+  EXPECT_EQ(summary.images, (report::ImageCounts{7, 6, 1, 1}));
   EXPECT_NEAR(summary.bearing_error_arcsec->bias, std::hypot(2.0, 3.0), 1e-6);
   EXPECT_NEAR(summary.bearing_error_arcsec->std, 10.0 / std::sqrt(2.0), 1e-6) << "of two axes, one of them still";
   EXPECT_NEAR(summary.bearing_error_arcsec->mean, 0.5 * (std::hypot(12.0, 3.0) + std::hypot(8.0, 3.0)), 1e-6);
