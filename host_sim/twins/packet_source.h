@@ -23,10 +23,11 @@ using Packet = std::vector<std::uint8_t>;
 struct SpacecraftTruth {
   std::string name;
   fsw::orbit::CartesianState orbit;
-  std::optional<truth::AttitudeState> attitude;  ///< if it has one
+  std::optional<truth::AttitudeState> attitude = std::nullopt;  ///< if it has one
   // Of a source that asks for them (TruthDetail); empty where they are not known.
-  std::optional<fsw::Vector3> acceleration_eci;           ///< the point mass included, m/s^2
-  std::optional<fsw::Vector3> angular_acceleration_body;  ///< rate of change of the angular rate in body axes, rad/s^2
+  std::optional<fsw::Vector3> acceleration_eci = std::nullopt;  ///< the point mass included, m/s^2
+  std::optional<fsw::Vector3> angular_acceleration_body =
+      std::nullopt;  ///< rate of change of the angular rate in body axes, rad/s^2
 };
 
 /// The truth at one instant.

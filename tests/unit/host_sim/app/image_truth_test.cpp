@@ -46,9 +46,9 @@ relative = { to = "servicer", a_roe_m = [0, -2e4, 0, 0, 0, 0] }
 class ImageTruth : public testing::Test {
  protected:
   void SetUp() override {
-    truth_.spacecraft = {{"servicer", {kPlace, kVelocity}, truth::AttitudeState{}, {}, {}},
-                         {"target", {kPlace + Vector3(0.0, 0.0, 1e4 + 0.5), kVelocity}, {}, {}, {}},
-                         {"decoy", {kPlace + Vector3(30.0, 0.0, 2e4 + 0.5), kVelocity}, {}, {}, {}}};
+    truth_.spacecraft = {{"servicer", {kPlace, kVelocity}, truth::AttitudeState{}},
+                         {"target", {kPlace + Vector3(0.0, 0.0, 1e4 + 0.5), kVelocity}, std::nullopt},
+                         {"decoy", {kPlace + Vector3(30.0, 0.0, 2e4 + 0.5), kVelocity}, std::nullopt}};
     image_.bearing_eci[2] = 1.0;
     image_.q_eci_camera[0] = 1.0;
     image_.star_method = 1;

@@ -202,6 +202,39 @@ TEST(CameraSensor, RendererThatFailsIsHeard) {
   EXPECT_THROW(measurement.pending.get(), std::runtime_error);
 }
 
+/// An optical bench, as a test has it.
+class Bench final : public ImageTaker {
+ public:
+  void start(fsw::GpsTime) override { ++started; }
+  void stop(StopReason) override { ++stopped; }
+  TakenImage take(const Exposure& exposure) override {
+    if (exposure.number == 1) return {{}, {{"retries", 3.0}}, "the frame was lost"};
+    return {std::vector<std::uint16_t>(1200, 7), {{"pose_error_m", 0.001}}};
+  }
+  std::vector<Note> statistics() const override { return {{"moves", 12.0}}; }
+  int started = 0, stopped = 0;
+};
+
+TEST(CameraSensor, BenchTakesTheImagesInTheRenderersPlace) {
+  auto owned = std::make_unique<Bench>();
+  Bench& bench = *owned;
+  CameraSensor sensor(small_camera(), std::move(owned));
+  sensor.start(kStart);
+  Measurement first = sensor.measure(snapshot(kStart));
+  EXPECT_TRUE(first.recipe.empty()) << "it cannot be made again: the log keeps its pixels";
+  const Completion image = first.pending.get();
+  EXPECT_EQ(image.packets.size(), 2U);
+  EXPECT_EQ(image.notes.at(0).name, "pose_error_m");
+  const Completion lost = sensor.measure(snapshot(kStart + kPeriod)).pending.get();
+  EXPECT_TRUE(lost.packets.empty());
+  EXPECT_EQ(lost.failure, "the frame was lost");
+  EXPECT_EQ(lost.notes.at(0).value, 3.0);
+  sensor.stop(StopReason::kCompleted);
+  EXPECT_EQ(bench.started, 1);
+  EXPECT_EQ(bench.stopped, 1);
+  EXPECT_EQ(sensor.statistics().at(0).name, "moves");
+}
+
 TEST(CameraSensor, TruthThatLacksTheSpacecraftFails) {
   CameraSensor sensor(small_camera(), one_pixel);
   TruthSnapshot truth = snapshot(kStart);
