@@ -113,13 +113,6 @@ void FlightRecorder::on_waypoint(const mission::Waypoint& waypoint, const PairTr
   record_.waypoints.push_back(row);
 }
 
-void FlightRecorder::on_measured(const twins::TruthSnapshot& truth) {
-  constexpr std::size_t kKept = 64;
-  if (!servicer_.camera || (!measured_.empty() && measured_.back().time == truth.time)) return;
-  measured_.push_back(truth);
-  if (measured_.size() > kKept) measured_.pop_front();
-}
-
 void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer) {
   report::EstimateRow row;
   row.time_s = mission_seconds(time);
@@ -199,8 +192,8 @@ void FlightRecorder::on_image(const report::EstimateRow& step, const ImageTeleme
   row.step_time_s = step.time_s;
   const telemetry_objects* const objects =
       told.objects && told.objects->image == told.image->image ? &*told.objects : nullptr;
-  const auto truth = std::ranges::find(measured_, told.exposure, &twins::TruthSnapshot::time);
-  if (truth != measured_.end()) add_truth(row, *told.image, objects, mission_, servicer_, *truth);
+  const auto truth = kept_truth_.take(told.exposure);
+  if (truth) add_truth(row, *told.image, objects, mission_, servicer_, *truth);
   if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
   if (objects != nullptr) append_objects(row.time_s, *objects, record_.objects);
   record_.images.push_back(row);
@@ -213,8 +206,8 @@ void FlightRecorder::on_pose(const report::EstimateRow& step, const ImageTelemet
   row.time_s = exposure_s;
   row.step_time_s = step.time_s;
   append_keypoints(exposure_s, *told.pose, record_.keypoints);
-  const auto truth = std::ranges::find(measured_, told.exposure, &twins::TruthSnapshot::time);
-  if (truth != measured_.end() && known_target_)
+  const auto truth = kept_truth_.take(told.exposure);
+  if (truth && known_target_)
     add_truth(row, record_.keypoints, *told.pose, known_target_->keypoints_body_m, mission_, servicer_, *truth);
   record_.poses.push_back(row);
   pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);

@@ -2,7 +2,6 @@
 // Turns what happens in a run into the rows of its record: truth, what the flight software said, maneuvers, waypoints
 // met.
 
-#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +10,7 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/app/gallery_keeper.h"
+#include "host_sim/app/kept_truth.h"
 #include "host_sim/app/pose_gallery.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
@@ -37,8 +37,8 @@ class FlightRecorder {
   /// `servicer`: the spacecraft of the mission whose flight software speaks.
   FlightRecorder(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunRecord& record);
 
-  /// Truth when a sensor measured: what an image showed is told steps later. The last few are kept.
-  void on_measured(const twins::TruthSnapshot& truth);
+  /// Truth of an image, on which the flight software reports steps later.
+  void on_measured(const twins::TruthSnapshot& truth) { kept_truth_.keep(truth); }
 
   /// Truth at the time of a flight step.
   void on_truth(fsw::GpsTime time, const PairTruth& truth);
@@ -86,7 +86,7 @@ class FlightRecorder {
 
   const mission::Mission& mission_;
   const mission::Spacecraft& servicer_;
-  std::deque<twins::TruthSnapshot> measured_;       ///< oldest first
+  KeptTruth kept_truth_;
   std::optional<pose_configuration> known_target_;  ///< as telecommanded, with navigation by the pose network
   report::RunRecord& record_;
   GalleryKeeper gallery_;

@@ -7,6 +7,7 @@
 #include "host_sim/twins/camera/camera_sensor.h"
 #include "host_sim/twins/camera/model/cad_objects.h"
 #include "host_sim/twins/camera/scene.h"
+#include "host_sim/twins/gnss/gnss_receiver.h"
 #include "host_sim/twins/gnss_sensor.h"
 #include "host_sim/twins/ideal_navigation.h"
 #include "host_sim/twins/ideal_thruster.h"
@@ -16,11 +17,13 @@ namespace vbar::app {
 
 namespace {
 
+constexpr const char* kDigital = "digital";
+
 std::unique_ptr<twins::PacketSource> make_navigation_source(const mission::Mission& mission,
                                                             const mission::Spacecraft& spacecraft) {
   const mission::NavigationSensor& sensor = *spacecraft.navigation;
   if (sensor.source == mission::NavigationSource::kRecorded) {
-    const twins::RecordedLog::Selection selection{spacecraft.number, fsw::packets::Apid::kIdealNavigation};
+    const twins::RecordedLog::Selection selection{spacecraft.number, {fsw::packets::Apid::kIdealNavigation}};
     return std::make_unique<twins::RecordedLog>(sensor.log, selection);
   }
   twins::IdealNavigation::Settings settings;
@@ -99,20 +102,25 @@ std::unique_ptr<twins::PacketSource> make_camera_sensor(const mission::Mission& 
 
 }  // namespace
 
-std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mission& mission,
-                                                               const mission::Spacecraft& servicer,
-                                                               const std::filesystem::path& data_directory) {
-  std::vector<std::unique_ptr<twins::PacketSource>> sensors;
-  if (servicer.navigation) sensors.push_back(make_navigation_source(mission, servicer));
+std::vector<Source> make_sources(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                                 const std::filesystem::path& data_directory) {
+  std::vector<Source> sources;
+  if (servicer.navigation) {
+    sources.push_back({servicer.name + "/navigation", std::string(mission::name_of(servicer.navigation->source)),
+                       make_navigation_source(mission, servicer)});
+  }
   if (servicer.gnss) {
     const auto sky = std::make_shared<const twins::gnss::Constellation>(data_directory, mission.constellation,
                                                                         mission.start_time(), mission.seed);
-    sensors.push_back(make_gnss_sensor(mission, servicer, servicer, sky, data_directory));
+    sources.push_back(
+        {servicer.name + "/gnss", kDigital, make_gnss_sensor(mission, servicer, servicer, sky, data_directory)});
     if (const mission::Spacecraft* const partner = mission.find_spacecraft(servicer.gnss->partner))
-      sensors.push_back(make_gnss_sensor(mission, *partner, servicer, sky, data_directory));
+      sources.push_back(
+          {partner->name + "/gnss", kDigital, make_gnss_sensor(mission, *partner, servicer, sky, data_directory)});
   }
-  if (servicer.camera) sensors.push_back(make_camera_sensor(mission, servicer, data_directory));
-  return sensors;
+  if (servicer.camera)
+    sources.push_back({servicer.name + "/camera", kDigital, make_camera_sensor(mission, servicer, data_directory)});
+  return sources;
 }
 
 twins::camera::TileRestorer::MakeImage make_image_maker(const mission::Mission& mission,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "host_sim/app/simulation.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/twins/actuator.h"
 #include "host_sim/twins/camera/recipe_log.h"
@@ -13,11 +14,10 @@
 
 namespace vbar::app {
 
-/// What the flight software of `servicer` hears: its navigation sensor, or its own and its partner's GNSS receivers.
-/// Throws what a recorded log and GNSS data throw.
-std::vector<std::unique_ptr<twins::PacketSource>> make_sensors(const mission::Mission& mission,
-                                                               const mission::Spacecraft& servicer,
-                                                               const std::filesystem::path& data_directory);
+/// What the flight software of `servicer` senses by: its navigation sensor, or its own and its partner's GNSS
+/// receivers. Throws what a recorded log and GNSS data throw.
+std::vector<Source> make_sources(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                                 const std::filesystem::path& data_directory);
 
 /// Makes the images of the digital camera of `servicer` again, for a replay. Throws std::runtime_error if it has none.
 twins::camera::TileRestorer::MakeImage make_image_maker(const mission::Mission& mission,

@@ -18,7 +18,7 @@ void for_each_record(std::uint32_t step, fsw::GpsTime time, std::span<const pil:
 
 }  // namespace
 
-class PacketKeepers::Log final : public PacketObserver {
+class PacketKeepers::Log final : public RunObserver {
  public:
   Log(const std::filesystem::path& file, mission::ImagesInLog images) : writer_(file), images_(images) {}
   void on_step(std::uint32_t step, fsw::GpsTime time, std::span<const pil::Packet> inputs,
@@ -35,7 +35,7 @@ class PacketKeepers::Log final : public PacketObserver {
   mission::ImagesInLog images_;
 };
 
-class PacketKeepers::Hash final : public PacketObserver {
+class PacketKeepers::Hash final : public RunObserver {
  public:
   void on_step(std::uint32_t, fsw::GpsTime, std::span<const pil::Packet>,
                std::span<const pil::Packet> outputs) override {
@@ -47,7 +47,7 @@ class PacketKeepers::Hash final : public PacketObserver {
   report::OutputHash hash_;
 };
 
-class PacketKeepers::Mirror final : public PacketObserver {
+class PacketKeepers::Mirror final : public RunObserver {
  public:
   explicit Mirror(const std::string& url) : mirror_(url) {}
   void on_step(std::uint32_t step, fsw::GpsTime time, std::span<const pil::Packet> inputs,

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/app/simulation.h"
+#include "host_sim/app/run_observer.h"
 #include "host_sim/mission/mission.h"
 
 namespace vbar::app {
@@ -20,7 +20,7 @@ class PacketKeepers {
   PacketKeepers(const PacketKeepers&) = delete;
   PacketKeepers& operator=(const PacketKeepers&) = delete;
 
-  [[nodiscard]] std::span<PacketObserver* const> observers() const { return observers_; }
+  [[nodiscard]] std::span<RunObserver* const> observers() const { return observers_; }
 
   /// Of the maneuver commands, and of all telemetry, so far.
   [[nodiscard]] std::string commands_sha256() const;
@@ -33,7 +33,7 @@ class PacketKeepers {
   std::unique_ptr<Log> log_;
   std::unique_ptr<Hash> hash_;
   std::unique_ptr<Mirror> mirror_;
-  std::vector<PacketObserver*> observers_;
+  std::vector<RunObserver*> observers_;
 };
 
 }  // namespace vbar::app

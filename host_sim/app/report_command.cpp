@@ -16,7 +16,7 @@ namespace {
 /// A run as its tables have it, figures computed from them.
 report::RunRecord evaluated_run(const std::filesystem::path& folder) {
   report::RunRecord record = report::read_run(folder);
-  for (const std::string& note : record.notes) fmt::print(stderr, "vbar: {}\n", note);
+  for (const std::string& note : record.reading_notes) fmt::print(stderr, "vbar: {}\n", note);
   report::evaluate(record);
   const std::string health = record.summary.health ? report::health_line(*record.summary.health) : "";
   if (!health.empty()) fmt::print("flight software: {}\n", health);

@@ -7,12 +7,12 @@
 
 #include <fmt/core.h>
 
+#include "host_sim/app/assemble.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/data_directory.h"
 #include "host_sim/app/packet_keepers.h"
 #include "host_sim/app/progress.h"
-#include "host_sim/app/simulation.h"
 #include "host_sim/app/stop_request.h"
 #include "host_sim/mission/extends.h"
 #include "host_sim/mission/load.h"
@@ -42,7 +42,8 @@ void keep_mission(const mission::Mission& mission, const RunOptions& options, co
 }
 
 /// Flies and fills the record. The reason why the run is not complete, or nothing.
-std::optional<std::string> fly(const mission::Mission& mission, report::RunFolder& folder, report::RunRecord& record) {
+std::optional<std::string> fly(const mission::Mission& mission, AssembledMission& assembled, report::RunFolder& folder,
+                               report::RunRecord& record) {
   constexpr std::chrono::seconds kBetweenUpdates{1};
   PacketKeepers keepers(mission, folder.path());
   const std::unique_ptr<pil::FlightComputer> flight_computer = connect_flight_computer(flying_spacecraft(mission));
@@ -55,11 +56,11 @@ std::optional<std::string> fly(const mission::Mission& mission, report::RunFolde
     folder.update(record);
     updated = std::chrono::steady_clock::now();
   };
-  const Simulation::Surroundings surroundings{*flight_computer, wall, keepers.observers(), after_step, stop_requested};
-  Simulation simulation(mission, data_directory(), surroundings, record);
   std::optional<std::string> trouble;
   try {
-    if (!simulation.run()) trouble = "interrupted";
+    const bool complete =
+        assembled.fly({*flight_computer, wall, keepers.observers(), after_step, stop_requested}, record);
+    if (!complete) trouble = "interrupted";
   } catch (const std::exception& error) {
     trouble = error.what();
   }
@@ -79,17 +80,19 @@ void report_health(const report::Summary& summary) {
 
 int run_command(const RunOptions& options) {
   const mission::Mission mission = mission::load_mission(options.mission, options.overrides);
-  static_cast<void>(flying_spacecraft(mission));  // refused before there is a folder
+  catch_stop_signals();
+  // Whatever cannot fly, and a source that is not ready, is refused before there is a folder.
+  AssembledMission assembled(mission, data_directory());
+  assembled.start();
   const std::filesystem::path out =
       options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out;
   report::RunFolder folder(out, start_of(mission));
   keep_mission(mission, options, folder.path());
-  catch_stop_signals();
 
   report::RunRecord record;
   std::optional<std::string> trouble;
   try {
-    trouble = fly(mission, folder, record);
+    trouble = fly(mission, assembled, folder, record);
   } catch (const std::exception& error) {
     trouble = error.what();  // not even begun
   }

@@ -1,5 +1,6 @@
 #pragma once
-// One run of a mission: truth, sensors, links, flight computer and actuators around one queue of events.
+// One run: a true world, sources, links, a flight computer and actuators around one queue of events. All of them come
+// from outside (assemble.h makes them from a mission); nothing here knows what a source is.
 //
 // At one instant things happen in this order: measurements are taken, packets arrive, a waypoint is judged, the flight
 // software steps, burns are executed. So a burn at a waypoint's own time counts as after it, and a step sees what was
@@ -9,79 +10,123 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
-#include "host_sim/app/flight_recorder.h"
-#include "host_sim/app/line_usage.h"
+#include "host_sim/app/run_observer.h"
+#include "host_sim/app/true_world.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/event_queue.h"
 #include "host_sim/engine/link_model.h"
-#include "host_sim/mission/mission.h"
-#include "host_sim/report/run_record.h"
-#include "host_sim/truth/earth/earth_rotation.h"
-#include "host_sim/truth/truth_model.h"
 #include "host_sim/twins/actuator.h"
+#include "host_sim/twins/packet_encoder.h"
 #include "host_sim/twins/packet_source.h"
 #include "pil_bridge/flight_computer.h"
 
 namespace vbar::app {
 
-/// Sees every packet of a run as it crosses the border of the flight computer.
-class PacketObserver {
- public:
-  PacketObserver() = default;
-  PacketObserver(const PacketObserver&) = delete;
-  PacketObserver& operator=(const PacketObserver&) = delete;
-  virtual ~PacketObserver() = default;
-  /// All packets of a step, the tick last, and the answer to them.
-  virtual void on_step(std::uint32_t step, fsw::GpsTime time, std::span<const pil::Packet> inputs,
-                       std::span<const pil::Packet> outputs) = 0;
-  /// From what packets that are yet to come can be made again (twins::Measurement::recipe).
-  virtual void on_recipe(fsw::GpsTime /*time*/, std::span<const std::uint8_t> /*recipe*/) {}
+/// What the flight software senses by.
+struct Source {
+  std::string name;  ///< in errors, notes and the summary: "servicer/gnss"
+  std::string kind;  ///< "digital", "recorded" or the name of a testbed
+  std::unique_ptr<twins::PacketSource> packets;
+};
+
+/// What takes part in a run. All references must outlive it.
+struct World {
+  TrueWorld& truth;
+  std::span<const Source> sources;
+  twins::Actuator& thruster;
+  pil::FlightComputer& flight_computer;
+  engine::LinkModel& board_link;  ///< between sources or actuators and the flight computer
+  engine::WallClock& wall;
+  std::span<RunObserver* const> observers;
+  std::function<void(fsw::Duration)> progress = {};  ///< gets the simulated span after each step; may be empty
+  std::function<bool()> stop_requested = {};         ///< asked often; may be empty
+};
+
+/// When what happens.
+struct Timetable {
+  struct Burn {
+    fsw::GpsTime time;
+    fsw::Vector3 dv_rtn = fsw::Vector3::Zero();
+  };
+  fsw::GpsTime start;  ///< first flight step
+  fsw::GpsTime end;
+  fsw::Duration step;             ///< between flight steps
+  fsw::Duration compute_latency;  ///< from a step to the moment its outputs take effect
+  std::uint8_t spacecraft = 0;    ///< as in packet headers
+  engine::ClockSettings clock;
+  std::vector<fsw::GpsTime> waypoints;
+  std::vector<Burn> burns;                   ///< that the flight software did not ask for
+  std::vector<twins::Packet> first_packets;  ///< telecommands that the first step brings
+};
+
+/// What the simulation knows of a run that is over.
+struct RunFacts {
+  struct OfSource {
+    std::string name;
+    std::int64_t epochs = 0;
+    std::int64_t failures = 0;
+    std::string last_failure;
+    engine::Lateness late;  ///< measurements begun late; real time only
+  };
+  bool complete = false;  ///< it came to its end
+  fsw::Duration simulated;
+  // Wall-clock time, s; the shares are parts of `wall_s`.
+  double wall_s = 0.0, truth_s = 0.0, flight_s = 0.0, link_s = 0.0, sources_s = 0.0;
+  std::string cost_unit = "none";  ///< of pil::StepReport::count
+  engine::DeadlineReport deadlines;
+  std::vector<OfSource> sources;
 };
 
 class Simulation {
  public:
-  /// All references must outlive the simulation. `progress` is told the simulated span after each step;
-  /// `stop_requested` is asked before each (both may be empty).
-  struct Surroundings {
-    pil::FlightComputer& flight_computer;
-    engine::WallClock& wall;
-    std::span<PacketObserver* const> observers;
-    std::function<void(fsw::Duration)> progress;
-    std::function<bool()> stop_requested;
-  };
+  Simulation(const World& world, const Timetable& timetable);
 
-  Simulation(const mission::Mission& mission, const std::filesystem::path& data_directory,
-             const Surroundings& surroundings, report::RunRecord& record);
-
-  /// Flies the mission. True if it came to its end, false if it was stopped. Throws what truth, twins and flight
-  /// computer throw; the record then holds what was flown.
+  /// Flies. True if it came to its end, false if it was stopped. Throws what the world throws, std::runtime_error for a
+  /// source that does not answer within its time limit and std::logic_error for one that delivers before it measured,
+  /// each naming the source.
   bool run();
 
+  /// After run(), however it ended.
+  [[nodiscard]] const RunFacts& facts() const { return facts_; }
+
  private:
+  // Priorities: the order of what happens at one instant.
   struct TakeMeasurement {
-    std::size_t sensor;
+    static constexpr std::int32_t kPriority = 0;
+    std::size_t source;
   };
-  /// What a sensor has been making since it measured.
+  /// What a source has been making since it measured.
   struct CollectPending {
-    std::shared_ptr<std::future<std::vector<twins::Packet>>> packets;
+    static constexpr std::int32_t kPriority = 5;
+    std::size_t source;
+    fsw::GpsTime epoch;
+    std::shared_ptr<std::future<twins::Completion>> completion;
     bool bypasses_link;
   };
   struct DeliverPacket {
-    pil::Packet packet;
+    static constexpr std::int32_t kPriority = 10;
+    twins::Packet packet;
   };
   struct JudgeWaypoint {
+    static constexpr std::int32_t kPriority = 20;
     std::size_t index;
   };
-  struct StepFlight {};
+  struct StepFlight {
+    static constexpr std::int32_t kPriority = 30;
+  };
   struct ExecuteBurn {
+    static constexpr std::int32_t kPriority = 40;
     maneuver_command command;
   };
-  /// One that the mission file prescribes.
   struct ExecutePrescribedBurn {
+    static constexpr std::int32_t kPriority = 40;
     std::size_t index;
   };
   using Event = std::variant<TakeMeasurement, CollectPending, DeliverPacket, JudgeWaypoint, StepFlight, ExecuteBurn,
@@ -89,50 +134,40 @@ class Simulation {
 
   void handle(const TakeMeasurement& taken);
   void handle(const CollectPending& collected);
-  void handle(const DeliverPacket&);
-  void handle(const JudgeWaypoint&);
+  void handle(const DeliverPacket& delivery);
+  void handle(const JudgeWaypoint& judged);
   void handle(const StepFlight&);
-  void handle(const ExecuteBurn&);
+  void handle(const ExecuteBurn& burn);
   void handle(const ExecutePrescribedBurn& prescribed);
 
-  void schedule(fsw::GpsTime time, Event event);
-  void schedule_the_known();
-  void schedule_measurement(std::size_t sensor, fsw::GpsTime from);
-  twins::Measurement measure_now(twins::PacketSource& sensor);
-  [[nodiscard]] twins::TruthSnapshot snapshot();
-  void execute(const maneuver_command& command);
-  [[nodiscard]] std::vector<NamedAttitude> all_attitudes() const;
+  template <class E>
+  void schedule(fsw::GpsTime time, E event);
+  void schedule_timetable();
+  void schedule_measurement(std::size_t source, fsw::GpsTime from);
+  bool wait_until_due(const Event& event);
+  void fly();
+  [[nodiscard]] bool stop_requested() const { return world_.stop_requested && world_.stop_requested(); }
+  [[nodiscard]] bool wait_for(const CollectPending& pending);
   void pass_on(std::vector<twins::Packet> packets, fsw::GpsTime available, bool bypasses_link);
-  void send_to_flight(pil::Packet packet, fsw::GpsTime sent);
-  void report_execution(const twins::Execution& execution);
-  void queue_telecommands();
+  void send_to_flight(twins::Packet packet, fsw::GpsTime sent);
+  void note(fsw::GpsTime time, std::string_view source, std::span<const twins::Note> notes);
+  void fail(std::size_t source, fsw::GpsTime epoch, const std::string& reason);
   void take_commands(const pil::StepResult& answer);
   void point(const fsw::packets::PacketView& packet, fsw::GpsTime effective);
-  [[nodiscard]] pil::Packet make_tick();
-  [[nodiscard]] PairTruth pair_truth() const;
-  void summarise(double wall_s, bool complete);
+  void execute(const maneuver_command& command);
+  void report_execution(const twins::Execution& execution);
+  [[nodiscard]] twins::Packet make_tick();
+  [[nodiscard]] double mission_seconds(fsw::GpsTime time) const { return fsw::seconds(time - timetable_.start); }
 
-  const mission::Mission& mission_;
-  const mission::Spacecraft& servicer_;
-  Surroundings surroundings_;
-  report::RunRecord& record_;
-  FlightRecorder recorder_;
-  truth::TruthModel truth_;
-  std::size_t servicer_index_ = 0;
-  std::size_t target_index_ = 0;
-  std::vector<std::unique_ptr<twins::PacketSource>> sensors_;
-  std::unique_ptr<twins::Actuator> thruster_;
-  engine::LinkModel board_link_;
-  truth::EarthRotation earth_rotation_;
-  LineUsage line_;
+  World world_;
+  Timetable timetable_;
   engine::RunClock clock_;
   engine::EventQueue<Event> events_;
-  std::vector<pil::Packet> arrived_;  ///< for the next step
+  twins::PacketEncoder ticks_;
+  std::vector<twins::Packet> arrived_;  ///< for the next step
   std::uint32_t step_ = 0;
-  std::uint16_t tick_sequence_ = 0;
-  std::string cost_unit_ = "none";
-  double flight_compute_s_ = 0.0;
-  double link_s_ = 0.0;
+  bool interrupted_ = false;
+  RunFacts facts_;
 };
 
 }  // namespace vbar::app

@@ -35,26 +35,40 @@ bool RunClock::sleep_until(WallClock::Span due, const std::function<bool()>& sto
   return true;
 }
 
-bool RunClock::begin_step(fsw::GpsTime time, const std::function<bool()>& stop_requested) {
-  if (stop_requested && stop_requested()) return false;
-  if (settings_.mode == ClockMode::kLockStep) {
-    ++report_.steps;
-    return true;
-  }
-
+std::optional<RunClock::Arrival> RunClock::await(fsw::GpsTime time, const std::function<bool()>& stop_requested) {
   const WallClock::Span due = wall_start_ + on_the_wall(time - start_);
   const WallClock::Span behind = wall_.now() - due;
-  if (behind >= WallClock::Span::zero()) {
-    // Arrears that only shrink, or that a late exchange explains, are no new lateness.
-    if (behind > arrears_ + settings_.wake_tolerance && !exchange_late_) book(report_.simulation_late, behind);
-    arrears_ = behind;
-  } else {
-    if (!sleep_until(due, stop_requested)) return false;
-    const WallClock::Span overslept = wall_.now() - due;
-    if (overslept > settings_.wake_tolerance) book(report_.woke_late, overslept);
-    arrears_ = overslept;
+  if (behind >= WallClock::Span::zero()) return Arrival{false, behind};
+  if (!sleep_until(due, stop_requested)) return std::nullopt;
+  const WallClock::Span overslept = wall_.now() - due;
+  if (overslept > settings_.wake_tolerance) book(report_.woke_late, overslept);
+  arrears_ = overslept;
+  exchange_late_ = false;  // its delay has been caught up with
+  return Arrival{true, overslept};
+}
+
+bool RunClock::wait_until(fsw::GpsTime time, Lateness* late, const std::function<bool()>& stop_requested) {
+  if (stop_requested && stop_requested()) return false;
+  if (settings_.mode == ClockMode::kLockStep) return true;
+  const std::optional<Arrival> arrival = await(time, stop_requested);
+  if (!arrival) return false;
+  if (late != nullptr && arrival->late > settings_.wake_tolerance) book(*late, arrival->late);
+  return true;
+}
+
+bool RunClock::begin_step(fsw::GpsTime time, const std::function<bool()>& stop_requested) {
+  if (stop_requested && stop_requested()) return false;
+  if (settings_.mode == ClockMode::kRealTime) {
+    const std::optional<Arrival> arrival = await(time, stop_requested);
+    if (!arrival) return false;
+    if (!arrival->slept) {
+      // Arrears that only shrink, or that a late exchange explains, are no new lateness.
+      const WallClock::Span behind = arrival->late;
+      if (behind > arrears_ + settings_.wake_tolerance && !exchange_late_) book(report_.simulation_late, behind);
+      arrears_ = behind;
+    }
+    exchange_late_ = false;
   }
-  exchange_late_ = false;
   ++report_.steps;
   return true;
 }

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "fsw/core/gps_time.h"
 #include "host_sim/engine/wall_clock.h"
@@ -50,8 +51,12 @@ class RunClock {
   /// Ties the simulated `time` to the wall's present. To be called before the first step.
   void start(fsw::GpsTime time);
 
-  /// Waits until the step at `time` is due; in lock-step at once. False if `stop_requested` (asked about ten times a
-  /// second, may be empty) said so before.
+  /// Waits until an event at `time` is due; in lock-step at once. One that begins late beyond the tolerance is booked
+  /// in `late`, if that is not null, whatever the cause. False if `stop_requested` (asked about ten times a second, may
+  /// be empty) said so before.
+  bool wait_until(fsw::GpsTime time, Lateness* late, const std::function<bool()>& stop_requested = {});
+
+  /// The same for the step at `time`, with the books of the report.
   bool begin_step(fsw::GpsTime time, const std::function<bool()>& stop_requested = {});
 
   /// Books the exchange of the step: wall time from the first packet out to the last packet in, and how much of it the
@@ -62,13 +67,19 @@ class RunClock {
 
  private:
   [[nodiscard]] WallClock::Span on_the_wall(fsw::Duration simulated) const;
+  /// How late an event begins.
+  struct Arrival {
+    bool slept = false;
+    WallClock::Span late{0};
+  };
+  std::optional<Arrival> await(fsw::GpsTime time, const std::function<bool()>& stop_requested);
   bool sleep_until(WallClock::Span due, const std::function<bool()>& stop_requested);
 
   ClockSettings settings_;
   WallClock& wall_;
   fsw::GpsTime start_;
   WallClock::Span wall_start_{0};
-  WallClock::Span arrears_{0};  ///< how late the last step began
+  WallClock::Span arrears_{0};  ///< how late the run was when it was last booked
   bool exchange_late_ = false;  ///< the last exchange exceeded a budget: the delay it causes is booked already
   DeadlineReport report_;
 };

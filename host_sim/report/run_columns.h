@@ -243,6 +243,15 @@ void visit_columns(Row& row, Visitor& visit) {
   columns::group(visit, "executed_dv_rtn", columns::kRtn, "mps", row.executed_dv_rtn_mps);
 }
 
+template <columns::RowOf<NoteRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"source"}, row.source);
+  visit(ColumnName{"name"}, row.name);
+  visit(ColumnName{"value"}, row.value);
+  visit(ColumnName{"text"}, row.text);
+}
+
 template <columns::RowOf<ResidualRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"time_s"}, row.time_s);

@@ -193,6 +193,15 @@ Row row_of(const Message& message) {
   return row;
 }
 
+/// What a source or an actuator said of a measurement or a burn, or why it failed (notes.csv).
+struct NoteRow {
+  double time_s = 0.0;  ///< since the mission's epoch
+  std::string source;   ///< "servicer/gnss"
+  std::string name;     ///< with the unit; "failure": `text` is why
+  std::optional<double> value;
+  std::string text;
+  };
+
 struct RunRecord {
   Summary summary;
   std::vector<WaypointRow> waypoints;
@@ -207,8 +216,9 @@ struct RunRecord {
   std::vector<GalleryImage> gallery;
   std::vector<ManeuverRow> maneuvers;
   std::vector<ResidualRow> residuals;
+  std::vector<NoteRow> notes;
   TelemetryTables telemetry;
-  std::vector<std::string> notes;  ///< what reading the folder had to leave out
+  std::vector<std::string> reading_notes;  ///< what reading the folder had to leave out
 
   template <class Message>
   [[nodiscard]] const std::vector<TelemetryRow<Message>>& of() const {

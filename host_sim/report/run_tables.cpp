@@ -41,7 +41,8 @@ constexpr std::tuple kTables{
     Table{"keypoints.csv", &RunRecord::keypoints, Rows::kGrow, Presence::kIfNotEmpty},
     Table{"gallery.csv", &RunRecord::gallery, Rows::kChange, Presence::kIfNotEmpty},
     Table{"maneuvers.csv", &RunRecord::maneuvers, Rows::kChange, Presence::kAlways},
-    Table{"residuals.csv", &RunRecord::residuals, Rows::kGrow, Presence::kAlways},
+    Table{"residuals.csv", &RunRecord::residuals, Rows::kGrow, Presence::kIfNotEmpty},
+    Table{"notes.csv", &RunRecord::notes, Rows::kGrow, Presence::kIfNotEmpty},
 };
 
 template <class Message>
@@ -271,7 +272,7 @@ void read_tables(const fs::path& folder, RunRecord& record) {
     const bool is_part = !complete && !fs::exists(file);
     if (is_part) file = PartialFile::part_of(file);
     if ((is_part || presence == Presence::kIfNotEmpty) && !fs::exists(file)) return;
-    rows = read_rows<Row>(file, name, is_part, record.notes);
+    rows = read_rows<Row>(file, name, is_part, record.reading_notes);
   });
 }
 

@@ -64,6 +64,7 @@ void summarise_images(const RunRecord& record, Summary& summary) {
   std::vector<double> x, y, size, across, all_nees;
   for (const ImageRow& row : record.images) {
     if (row.status == telemetry_image::kStatusBearing) ++counts.with_bearing;
+    if (!row.range_m) ++counts.without_truth;
     if (!row.chosen.empty() && row.chosen != summary.target) ++counts.wrong_targets;
     if (row.attitude_error_across_arcsec) across.push_back(*row.attitude_error_across_arcsec);
     if (row.nees) all_nees.push_back(*row.nees);
@@ -108,6 +109,7 @@ void summarise_poses(const RunRecord& record, Summary& summary) {
   std::vector<double> attitude_errors, nees, attitude_nees, keypoint_errors, chi_squares;
   for (const PoseRow& row : record.poses) {
     ++figures.images;
+    if (!row.range_m) ++figures.without_truth;
     if (row.pnp_inliers > 0) ++figures.with_pose;
     if (row.pnp_error_deg.value_or(0.0) > kLargePoseError_deg) ++figures.poses_over_10_deg;
     if (row.attitude_error_deg) attitude_errors.push_back(*row.attitude_error_deg);

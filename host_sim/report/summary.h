@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <vbar/fields.h>
 
@@ -24,7 +25,8 @@ struct BearingError {
 struct ImageCounts {
   int images = 0;
   int with_bearing = 0;
-  int wrong_targets = 0;  ///< images whose choice is not the target
+  int wrong_targets = 0;  ///< images whose choice is not the target; those without truth are not evaluated
+  int without_truth = 0;
 };
 
 /// Of navigation by the pose network.
@@ -38,6 +40,17 @@ struct PoseFigures {
   MeanAndDeviation lit_navigation_error_m;
   std::optional<double> attitude_nees;  ///< mean; turn and rate, 6 if consistent
   int attitude_restarts = 0, restarts = 0;
+  int without_truth = 0;  ///< images, not evaluated
+};
+
+/// How often a source measured, failed and, in real time, began late.
+struct SourceFigures {
+  std::string name;  ///< "servicer/gnss"
+  std::string kind;  ///< "digital", "recorded" or the name of a testbed
+  std::int64_t epochs = 0, failures = 0;
+  std::string last_failure;  ///< why; all reasons are in notes.csv
+  std::uint64_t late = 0;
+  double latest_s = 0.0;  ///< largest lateness
 };
 
 /// What a run is and what the tables do not hold.
@@ -62,6 +75,7 @@ struct RunFacts {
   struct Deadlines {
     std::uint64_t compute_overruns = 0, wakeups_late = 0, link_late = 0, simulation_late = 0;
   } deadlines;
+  std::vector<SourceFigures> sources;
   struct WallShare {
     double truth_s = 0.0, flight_s = 0.0, link_s = 0.0, other_s = 0.0;
     // Of a digital camera, on a thread of its own: beside the others, not part of their sum.

@@ -44,6 +44,17 @@ void members(Is<PoseFigures> auto& s, auto& visit) {
   visit("attitude_nees", s.attitude_nees);
   visit("attitude_restarts", s.attitude_restarts);
   visit("restarts", s.restarts);
+  visit("images_without_truth", s.without_truth);
+}
+
+void members(Is<SourceFigures> auto& s, auto& visit) {
+  visit("name", s.name);
+  visit("kind", s.kind);
+  visit("epochs", s.epochs);
+  visit("failures", s.failures);
+  visit("last_failure", s.last_failure);
+  visit("late", s.late);
+  visit("latest_s", s.latest_s);
 }
 
 void members(Is<Summary::FlightStep> auto& s, auto& visit) {
@@ -122,6 +133,7 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit.part("images", s.images, &ImageCounts::images);
   visit.part("images_with_bearing", s.images, &ImageCounts::with_bearing);
   visit.part("wrong_targets", s.images, &ImageCounts::wrong_targets);
+  visit.part("images_without_truth", s.images, &ImageCounts::without_truth);
   visit("pose", s.pose);
   visit("dv_mps", s.dv_mps);
   visit("maneuvers", s.maneuvers);
@@ -131,6 +143,7 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit("flight_step", s.flight_step);
   visit("link", s.link);
   visit("deadlines", s.deadlines);
+  visit("sources", s.sources);
   visit("wall_share", s.wall_share);
 }
 
@@ -155,6 +168,10 @@ struct Writer {
   static Json json_of(const Value& value) {
     if constexpr (std::is_same_v<Value, std::string>) {
       return value.empty() ? Json(nullptr) : Json(value);
+    } else if constexpr (requires { value.push_back(value.front()); }) {
+      Json all = Json::array();
+      for (const auto& one : value) all.push_back(json_of(one));
+      return all;
     } else if constexpr (requires { value.has_value(); }) {
       // Means of nothing keep their members, so that a script finds them whatever was flown.
       using Inner = typename Value::value_type;
@@ -208,6 +225,8 @@ struct Reader {
       value = from.is_null() ? std::numeric_limits<double>::quiet_NaN() : from.get<double>();
     } else if constexpr (std::is_same_v<Value, std::string>) {
       value = from.is_null() ? std::string() : from.get<std::string>();
+    } else if constexpr (requires { value.push_back(value.front()); }) {
+      for (const Json& one : from) read(one, value.emplace_back());
     } else if constexpr (std::is_class_v<Value>) {
       if (!from.is_object()) throw std::runtime_error("an object is expected");
       Reader reader{from};

@@ -71,6 +71,9 @@ class SpacecraftPropagator {
   /// Whether advance_to(seconds) would have to integrate.
   bool needs_steps_to(double seconds) const { return integrator_.time() < seconds; }
 
+  /// End of the last step.
+  double known_until() const { return integrator_.time(); }
+
   /// The forces' shares of the acceleration at the current time.
   std::vector<ForceAcceleration> accelerations() { return dynamics_->accelerations(current_, state()); }
 

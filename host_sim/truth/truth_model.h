@@ -68,6 +68,13 @@ class TruthModel {
   /// least the current time. Throws std::out_of_range outside.
   fsw::orbit::CartesianState state_at(std::size_t index, fsw::GpsTime time) const;
 
+  /// State at a time up to a second or so after the current one. No step is taken for it: beyond the last one the
+  /// perturbations are those of the current time (to a micrometre in a second).
+  fsw::orbit::CartesianState state_ahead(std::size_t index, fsw::GpsTime time) const;
+
+  /// All of the acceleration at a state of about the current time, the point mass included.
+  fsw::Vector3 acceleration_eci(std::size_t index, const fsw::orbit::CartesianState& state) const;
+
   /// Adds a velocity (m/s, in the spacecraft's own RTN) at the current time.
   void apply_impulse_rtn(std::size_t index, const fsw::Vector3& dv_rtn);
 
@@ -104,6 +111,7 @@ class TruthModel {
 
  private:
   double seconds_after_epoch(fsw::GpsTime time) const { return fsw::seconds(time - settings_.epoch); }
+  fsw::Vector3 perturbation_eci(std::size_t index) const;
   void advance_in_parallel(const std::vector<SpacecraftPropagator*>& spacecraft, double seconds) const;
 
   TruthSettings settings_;

@@ -23,6 +23,8 @@ gnss::BodyTruth body_truth(const TruthSnapshot& truth, const SpacecraftTruth& sp
   body.q_body_eci = attitude.q_body_eci;
   body.rate_body_eci = attitude.q_body_eci.conjugate() * attitude.rate_body;
   body.R_ecef_eci = truth.R_itrf_gcrf;
+  body.acceleration_eci = spacecraft.acceleration_eci;
+  body.angular_acceleration_body = spacecraft.angular_acceleration_body;
   return body;
 }
 
@@ -40,7 +42,7 @@ Message attitude_message(const truth::AttitudeState& attitude) {
 
 }  // namespace
 
-GnssSensor::GnssSensor(const Settings& settings, std::unique_ptr<gnss::GnssReceiver> receiver,
+GnssSensor::GnssSensor(const Settings& settings, std::unique_ptr<gnss::ReceiverBytes> receiver,
                        std::unique_ptr<gnss::Crosslink> crosslink)
     : settings_(settings),
       receiver_(std::move(receiver)),
@@ -57,19 +59,24 @@ Measurement GnssSensor::measure(const TruthSnapshot& truth) {
   if (spacecraft == nullptr) return failed(truth.time, "no spacecraft \"" + settings_.spacecraft + "\"");
   if (!spacecraft->attitude) return failed(truth.time, "\"" + settings_.spacecraft + "\" has no attitude");
 
-  const std::vector<std::uint8_t> bytes = receiver_->bytes_at(body_truth(truth, *spacecraft));
+  gnss::ReceiverOutput output = receiver_->output_at(body_truth(truth, *spacecraft));
   Measurement measurement;
+  if (!output.failure.empty()) measurement = failed(truth.time, output.failure);
+  measurement.notes = std::move(output.notes);
+  if (!output.failure.empty()) return measurement;
   measurement.status = MeasurementStatus::kReady;
-  measurement.available = truth.time;
+  const fsw::GpsTime complete = truth.time + output.delay;
+  measurement.available = complete;
+  if (!output.is_epoch) return measurement;
   bool finite = true;
   if (crosslink_) {
-    const std::optional<fsw::GpsTime> arrival = crosslink_->send(truth.time);
+    const std::optional<fsw::GpsTime> arrival = crosslink_->send(complete);
     if (!arrival) return measurement;
     measurement.available = *arrival;
-    finite = append_packets<crosslink_gnss_bytes, crosslink_attitude>(truth.time, bytes, *spacecraft->attitude,
+    finite = append_packets<crosslink_gnss_bytes, crosslink_attitude>(truth.time, output.bytes, *spacecraft->attitude,
                                                                       measurement.packets);
   } else {
-    finite = append_packets<gnss_bytes, attitude>(truth.time, bytes, *spacecraft->attitude, measurement.packets);
+    finite = append_packets<gnss_bytes, attitude>(truth.time, output.bytes, *spacecraft->attitude, measurement.packets);
   }
   if (!finite) return failed(truth.time, "the truth holds a number that is not finite");
   return measurement;

@@ -1,6 +1,7 @@
 #pragma once
 // A GNSS receiver and a star tracker as a packet source: at each epoch the receiver's bytes and the attitude, straight
-// to the flight software, or by way of the crosslink if they are those of another spacecraft.
+// to the flight software, or by way of the crosslink if they are those of another spacecraft. Whether the receiver is
+// a twin or a device is the receiver's affair (gnss/receiver_bytes.h).
 
 #include <memory>
 #include <optional>
@@ -8,7 +9,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "host_sim/twins/gnss/crosslink.h"
-#include "host_sim/twins/gnss/gnss_receiver.h"
+#include "host_sim/twins/gnss/receiver_bytes.h"
 #include "host_sim/twins/packet_encoder.h"
 #include "host_sim/twins/packet_source.h"
 
@@ -20,20 +21,25 @@ class GnssSensor final : public PacketSource {
     std::string spacecraft;          ///< that carries the receiver
     std::uint8_t flight_number = 0;  ///< of the spacecraft whose flight software gets the packets
     fsw::GpsTime start;              ///< first epoch
-    fsw::Duration period;            ///< > 0, whole milliseconds
+    fsw::Duration period;            ///< > 0, whole milliseconds: between calls of the receiver
   };
 
   /// `crosslink`: how the bytes reach the flight software; null: by wire. `receiver` must not be null.
-  GnssSensor(const Settings& settings, std::unique_ptr<gnss::GnssReceiver> receiver,
+  GnssSensor(const Settings& settings, std::unique_ptr<gnss::ReceiverBytes> receiver,
              std::unique_ptr<gnss::Crosslink> crosslink);
+
+  void start(fsw::GpsTime first_epoch) override { receiver_->start(first_epoch); }
+  void stop(StopReason reason) override { receiver_->stop(reason); }
+  [[nodiscard]] TruthDetail truth_detail() const override { return receiver_->truth_detail(); }
+  [[nodiscard]] std::vector<Note> statistics() const override { return receiver_->statistics(); }
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
   /// The packets of one epoch: receiver bytes in pieces, and the attitude. No packets if the crosslink loses them,
-  /// which it does whole. kFailed if the truth lacks the spacecraft or its attitude.
+  /// which it does whole. kFailed if the truth lacks the spacecraft or its attitude, or the receiver fails.
   Measurement measure(const TruthSnapshot& truth) override;
 
-  [[nodiscard]] const gnss::GnssReceiver& receiver() const { return *receiver_; }
+  [[nodiscard]] const gnss::ReceiverBytes& receiver() const { return *receiver_; }
 
  private:
   template <class BytesMessage, class AttitudeMessage>
@@ -41,7 +47,7 @@ class GnssSensor final : public PacketSource {
                       std::vector<Packet>& packets);
 
   Settings settings_;
-  std::unique_ptr<gnss::GnssReceiver> receiver_;
+  std::unique_ptr<gnss::ReceiverBytes> receiver_;
   std::unique_ptr<gnss::Crosslink> crosslink_;
   PacketEncoder bytes_encoder_;
   PacketEncoder attitude_encoder_;

@@ -2,6 +2,7 @@
 // Whatever the flight software senses comes from a PacketSource: a digital twin, the driver of a testbed, a recorded
 // log.
 
+#include <chrono>
 #include <cstdint>
 #include <future>
 #include <optional>
@@ -22,7 +23,11 @@ using Packet = std::vector<std::uint8_t>;
 struct SpacecraftTruth {
   std::string name;
   fsw::orbit::CartesianState orbit;
-  std::optional<truth::AttitudeState> attitude;  ///< if it has one
+  std::optional<truth::AttitudeState> attitude = std::nullopt;  ///< if it has one
+  // Of a source that asks for them (TruthDetail); empty where they are not known.
+  std::optional<fsw::Vector3> acceleration_eci = std::nullopt;  ///< the point mass included, m/s^2
+  std::optional<fsw::Vector3> angular_acceleration_body =
+      std::nullopt;  ///< rate of change of the angular rate in body axes, rad/s^2
 };
 
 /// The truth at one instant.
@@ -39,25 +44,50 @@ struct TruthSnapshot {
   }
 };
 
-/// Something a source or an actuator knows about its own truth (an achieved pose, an error it made); for the report
-/// only.
+enum class TruthDetail { kStates, kAccelerations };
+
+/// The true motion near the present, for a device with a latency. It does not know of burns and pointing commands to
+/// come.
+class TruthOutlook {
+ public:
+  TruthOutlook() = default;
+  TruthOutlook(const TruthOutlook&) = delete;
+  TruthOutlook& operator=(const TruthOutlook&) = delete;
+  virtual ~TruthOutlook() = default;
+
+  static constexpr fsw::Duration kHorizon = fsw::duration_of_seconds(1);
+
+  /// Accelerations included. Throws std::out_of_range for a time before the present or beyond the horizon.
+  [[nodiscard]] virtual TruthSnapshot at(fsw::GpsTime time) = 0;
+};
+
+/// Something a source or an actuator knows about its own truth (an achieved pose, an error it made), or what it cost;
+/// for the record only.
 struct Note {
   std::string name;  ///< with the unit, if it has one: "pointing_error_rad"
   double value = 0.0;
+  std::string text = {};  ///< beside the value or, with a value of NaN, in its place
 };
 
 enum class MeasurementStatus {
-  kReady,   ///< the packets are there (possibly none: nothing to be seen)
-  kLater,   ///< not yet: ask again for the same epoch; simulated time waits in lock-step
+  kReady,   ///< the packets are there (possibly none: nothing to be seen), or pending
   kFailed,  ///< there will be none for this epoch
+};
+
+/// What a source was still making when it measured.
+struct Completion {
+  std::vector<Packet> packets;
+  std::vector<Note> notes;
+  std::string failure = {};  ///< if there are no packets after all: why, one sentence
 };
 
 struct Measurement {
   MeasurementStatus status = MeasurementStatus::kFailed;
   std::vector<Packet> packets;
-  /// More packets, still in the making on another thread: asked for at `available`, when the simulation waits for them.
-  /// They must be a pure function of what measure() was given, so that it does not matter when they were made.
-  std::future<std::vector<Packet>> pending;
+  /// More packets, still in the making on another thread: collected at `available`, when the simulation waits for them
+  /// up to the source's time limit. They must not depend on when they are collected: a pure function of what measure()
+  /// was given, or recorded.
+  std::future<Completion> pending;
   /// From what the pending packets can be made again (for images, an encoded vbar_host.image_recipe): a log may keep it
   /// in their place. Empty: they cannot be.
   std::vector<std::uint8_t> recipe;
@@ -68,6 +98,8 @@ struct Measurement {
   std::string reason;  ///< kFailed: one sentence
 };
 
+enum class StopReason { kCompleted, kInterrupted, kFailed };
+
 class PacketSource {
  public:
   PacketSource() = default;
@@ -75,11 +107,33 @@ class PacketSource {
   PacketSource& operator=(const PacketSource&) = delete;
   virtual ~PacketSource() = default;
 
+  /// Before there is a run folder: a device answers, is homed and calibrated. `first_epoch` is the start of the run.
+  /// Throws std::runtime_error, one sentence, if the run shall not begin.
+  virtual void start(fsw::GpsTime first_epoch) { static_cast<void>(first_epoch); }
+
+  /// The run is over, however it ended: motion stops, and what is pending is completed or abandoned without delay.
+  /// Called once after start(), also after one that threw. What it throws is reported and ends nothing else.
+  virtual void stop(StopReason reason) { static_cast<void>(reason); }
+
   /// The first epoch at or after `from` at which it measures; none if it never will again.
   [[nodiscard]] virtual std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const = 0;
 
-  /// Measures at the epoch of `truth`. Epochs come in order; the same one again only after kLater.
+  /// Measures at the epoch of `truth`. Epochs come in order. It should return within a second, since nothing interrupts
+  /// it: what takes longer is `pending`.
   virtual Measurement measure(const TruthSnapshot& truth) = 0;
+
+  /// What its snapshots hold.
+  [[nodiscard]] virtual TruthDetail truth_detail() const { return TruthDetail::kStates; }
+
+  /// Whether the flight software reports on its measurements one by one, later and by their time (images): their truth
+  /// is then kept until it has.
+  [[nodiscard]] virtual bool truth_is_compared() const { return false; }
+
+  /// How long, on the wall, the simulation waits for what is pending before it ends the run.
+  [[nodiscard]] virtual std::chrono::milliseconds wait_limit() const { return std::chrono::minutes(1); }
+
+  /// What it has done so far, for the summary. Must not wait for what is pending.
+  [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
 };
 
 /// The first of start, start + period, ... at or after `from`; period > 0.

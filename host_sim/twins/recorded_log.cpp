@@ -2,22 +2,43 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace vbar::twins {
 
-RecordedLog::RecordedLog(const std::filesystem::path& file, const Selection& selection) {
-  for (PacketRecord& record : read_packet_log(file).records) {
-    if (!record.to_flight) continue;
-    const auto view = fsw::packets::parse_packet(record.packet);
-    if (!view.ok() || view.value().header.apid != selection.apid ||
-        view.value().header.spacecraft != selection.spacecraft)
-      continue;
-    deliveries_.push_back({record.time, std::move(record.packet)});
-  }
+RecordedLog::RecordedLog(const std::filesystem::path& file, const Selection& selection,
+                         const MakeTileSource& make_tiles) {
+  PacketLog log = read_packet_log(file);
+  for (PacketRecord& record : log.records)
+    if (record.to_flight) add(std::move(record), selection);
   if (deliveries_.empty())
-    throw std::runtime_error(file.string() + ": holds no packet of the sensor that it shall play");
-  std::stable_sort(deliveries_.begin(), deliveries_.end(),
-                   [](const Delivery& a, const Delivery& b) { return a.time < b.time; });
+    throw std::runtime_error(file.string() + ": contains no packet of the sensor to be replayed");
+  std::ranges::stable_sort(deliveries_, {}, &Delivery::time);
+  if (std::ranges::any_of(deliveries_, [](const Delivery& delivery) { return delivery.tiles.has_value(); })) {
+    if (!make_tiles) throw std::runtime_error(file.string() + ": lacks image tiles, and nothing can make them again");
+    tiles_ = make_tiles(log.recipes);
+    for (const auto& [time, recipe] : tiles_.recipes) epochs_.insert(time);
+  }
+}
+
+void RecordedLog::add(PacketRecord&& record, const Selection& selection) {
+  using fsw::packets::Apid;
+  const bool wants_images = std::ranges::find(selection.apids, Apid::kImageTile) != selection.apids.end();
+  if (record.tiles) {
+    if (!wants_images || record.tiles->spacecraft != selection.spacecraft) return;
+    plays_images_ = true;
+  } else {
+    const auto view = fsw::packets::parse_packet(record.packet);
+    if (!view.ok() || view.value().header.spacecraft != selection.spacecraft) return;
+    const Apid apid = view.value().header.apid;
+    if (std::ranges::find(selection.apids, apid) == selection.apids.end()) return;
+    if (apid == Apid::kImageTile) {
+      plays_images_ = true;
+      epochs_.insert(view.value().header.time);
+    }
+  }
+  epochs_.insert(record.time);
+  deliveries_.push_back({record.time, std::move(record.packet), record.tiles});
 }
 
 std::vector<RecordedLog::Delivery>::const_iterator RecordedLog::first_at_or_after(fsw::GpsTime time) const {
@@ -26,9 +47,9 @@ std::vector<RecordedLog::Delivery>::const_iterator RecordedLog::first_at_or_afte
 }
 
 std::optional<fsw::GpsTime> RecordedLog::next_epoch(fsw::GpsTime from) const {
-  const auto next = first_at_or_after(from);
-  if (next == deliveries_.end()) return std::nullopt;
-  return next->time;
+  const auto next = epochs_.lower_bound(from);
+  if (next == epochs_.end()) return std::nullopt;
+  return *next;
 }
 
 Measurement RecordedLog::measure(const TruthSnapshot& truth) {
@@ -36,8 +57,15 @@ Measurement RecordedLog::measure(const TruthSnapshot& truth) {
   measurement.status = MeasurementStatus::kReady;
   measurement.available = truth.time;
   measurement.bypasses_link = true;
-  for (auto it = first_at_or_after(truth.time); it != deliveries_.end() && it->time == truth.time; ++it)
-    measurement.packets.push_back(it->packet);
+  if (const auto recipe = tiles_.recipes.find(truth.time); recipe != tiles_.recipes.end())
+    measurement.recipe = recipe->second;
+  for (auto it = first_at_or_after(truth.time); it != deliveries_.end() && it->time == truth.time; ++it) {
+    if (!it->tiles) {
+      measurement.packets.push_back(it->packet);
+    } else {
+      for (Packet& tile : tiles_.packets_of(*it->tiles)) measurement.packets.push_back(std::move(tile));
+    }
+  }
   return measurement;
 }
 

@@ -2,6 +2,11 @@
 // A recorded run as a sensor: the packets of a log, at the steps they were delivered in.
 
 #include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
 #include <vector>
 
 #include "fsw/packets/packet.h"
@@ -10,32 +15,50 @@
 
 namespace vbar::twins {
 
+/// What gives back image tiles that a log holds as recipes only (camera/recipe_log.h).
+struct TileSource {
+  std::function<std::vector<Packet>(const TileRun&)> packets_of;
+  std::map<fsw::GpsTime, std::vector<std::uint8_t>> recipes;  ///< as encoded, by the time of the exposure
+};
+/// Makes it from the recipes of the log.
+using MakeTileSource = std::function<TileSource(std::span<const std::vector<std::uint8_t>> recipes)>;
+
 class RecordedLog final : public PacketSource {
  public:
   /// Which packets of the log it plays, of those that went to the flight software.
   struct Selection {
     std::uint8_t spacecraft = 0;
-    fsw::packets::Apid apid = fsw::packets::Apid::kIdealNavigation;
+    std::vector<fsw::packets::Apid> apids;
   };
 
-  /// Throws std::runtime_error, as read_packet_log, and for a log without any such packet.
-  RecordedLog(const std::filesystem::path& file, const Selection& selection);
+  /// `make_tiles` is needed for logs without the pixels of their images. Throws std::runtime_error, as read_packet_log,
+  /// for a log without any such packet, and for one that lacks tiles without `make_tiles`.
+  RecordedLog(const std::filesystem::path& file, const Selection& selection, const MakeTileSource& make_tiles = {});
 
-  /// Time of the next recorded delivery.
+  /// Time of the next recorded delivery, or of the next exposure of a recorded image: its truth is then looked at.
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
   /// The packets delivered at the epoch, byte for byte and in the recorded order, past any simulated link. kReady with
-  /// none if none were.
+  /// none if none were. At an exposure also its recipe, for the log of this run. Throws std::runtime_error for tiles
+  /// that cannot be made again.
   Measurement measure(const TruthSnapshot& truth) override;
+
+  /// Of a camera.
+  [[nodiscard]] bool truth_is_compared() const override { return plays_images_; }
 
  private:
   struct Delivery {
     fsw::GpsTime time;
     Packet packet;
+    std::optional<TileRun> tiles;  ///< in the place of the packet
   };
+  void add(PacketRecord&& record, const Selection& selection);
   [[nodiscard]] std::vector<Delivery>::const_iterator first_at_or_after(fsw::GpsTime time) const;
 
   std::vector<Delivery> deliveries_;  ///< in order of time
+  std::set<fsw::GpsTime> epochs_;     ///< of deliveries and exposures
+  TileSource tiles_;
+  bool plays_images_ = false;
 };
 
 }  // namespace vbar::twins

@@ -11,8 +11,8 @@
 #include <benchmark/benchmark.h>
 
 #include "fsw/gnc/vbar_gnc.h"
+#include "host_sim/app/assemble.h"
 #include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/app/simulation.h"
 #include "host_sim/mission/load.h"
 #include "tests/support/paths.h"
 
@@ -27,11 +27,11 @@ mission::Mission load(const char* name) {
   return mission::load_mission(kRoot + "/missions/" + name + ".toml");
 }
 
-void fly(const mission::Mission& mission, std::span<app::PacketObserver* const> observers,
+void fly(const mission::Mission& mission, std::span<app::RunObserver* const> observers,
          vbar::report::RunRecord& record) {
   const auto computer = app::connect_flight_computer(app::flying_spacecraft(mission));
   vbar::engine::SteadyWallClock wall;
-  app::Simulation(mission, kRoot + "/data", {*computer, wall, observers, {}, {}}, record).run();
+  app::AssembledMission(mission, kRoot + "/data").fly({*computer, wall, observers, {}, {}}, record);
 }
 
 void whole_mission(benchmark::State& state, const char* name) {
@@ -54,7 +54,7 @@ void whole_mission(benchmark::State& state, const char* name) {
 }
 
 /// What the flight software was told, step by step.
-class InputKeeper final : public app::PacketObserver {
+class InputKeeper final : public app::RunObserver {
  public:
   struct Step {
     std::int64_t time_ns;
@@ -89,7 +89,7 @@ class FlightSoftware {
 /// The mean step of the whole mission on recorded inputs: packets in, telemetry out, all planning included.
 void gnc_step(benchmark::State& state, const char* name) {
   InputKeeper recording;
-  const std::array<app::PacketObserver*, 1> observers{&recording};
+  const std::array<app::RunObserver*, 1> observers{&recording};
   vbar::report::RunRecord record;
   fly(load(name), observers, record);
   for (auto _ : state) {

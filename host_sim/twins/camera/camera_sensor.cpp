@@ -22,8 +22,8 @@ void check_models(const CameraMount& mount) {
 
 }  // namespace
 
-CameraSensor::CameraSensor(const Settings& settings, Renderer renderer)
-    : settings_(settings), maker_(settings.image, std::move(renderer)) {
+CameraSensor::CameraSensor(const Settings& settings, std::unique_ptr<ImageTaker> taker)
+    : settings_(settings), taker_(std::move(taker)) {
   check_models(settings.mount);
 }
 
@@ -37,8 +37,9 @@ Measurement CameraSensor::measure(const TruthSnapshot& truth) {
   try {
     const std::int64_t number = (truth.time - settings_.start).ns / settings_.period.ns;
     const Exposure exposure = exposure_of_truth(settings_.mount, truth, number);
-    measurement.recipe = bytes_of({settings_.image.spacecraft, settings_.image.unit, exposure});
-    measurement.pending = worker_.run([this, exposure] { return maker_.packets_of(exposure); });
+    if (taker_->is_reproducible())
+      measurement.recipe = bytes_of({settings_.image.spacecraft, settings_.image.unit, exposure});
+    measurement.pending = worker_.run([this, exposure] { return take(exposure); });
     measurement.status = MeasurementStatus::kReady;
   } catch (const std::invalid_argument& error) {
     measurement.status = MeasurementStatus::kFailed;
@@ -47,8 +48,21 @@ Measurement CameraSensor::measure(const TruthSnapshot& truth) {
   return measurement;
 }
 
-ImagingTime CameraSensor::time_spent() {
-  return worker_.run([this] { return maker_.time_spent(); }).get();
+Completion CameraSensor::take(const Exposure& exposure) {
+  TakenImage image = taker_->take(exposure);
+  Completion completion{{}, std::move(image.notes), std::move(image.failure)};
+  if (!completion.failure.empty()) return completion;
+  const Stopwatch watch(packing_s_);
+  completion.packets = packets_of(settings_.image, exposure, image.dn);
+  ++images_;
+  return completion;
+}
+
+std::vector<Note> CameraSensor::statistics() const {
+  std::vector<Note> statistics = taker_->statistics();
+  statistics.push_back({"images", static_cast<double>(images_)});
+  statistics.push_back({"packing_s", packing_s_});
+  return statistics;
 }
 
 }  // namespace vbar::twins::camera

@@ -1,12 +1,16 @@
 #pragma once
-// The digital camera as a packet source: an image every period, made on a thread of its own while the simulation goes
-// on, because at its epoch nobody waits for it yet: it leaves the camera when it has been read out.
+// A camera as a packet source: an image every period, taken on a thread of its own while the simulation goes on,
+// because it leaves the camera only when it has been read out. How it is taken is the taker's (image_taker.h).
 
+#include <atomic>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "fsw/core/gps_time.h"
 #include "host_sim/twins/camera/exposure_of_truth.h"
 #include "host_sim/twins/camera/image_maker.h"
+#include "host_sim/twins/camera/image_taker.h"
 #include "host_sim/twins/camera/worker.h"
 #include "host_sim/twins/packet_source.h"
 
@@ -20,25 +24,38 @@ class CameraSensor final : public PacketSource {
     fsw::GpsTime start;     ///< middle of the first exposure
     fsw::Duration period;   ///< > 0, between exposures
     fsw::Duration readout;  ///< >= 0: from the middle of an exposure until its packets leave
+    std::chrono::milliseconds timeout = std::chrono::minutes(5);  ///< on the wall, for one image
   };
 
-  /// `renderer` is called on the sensor's own thread, from one call to the next always the same. Throws
-  /// std::invalid_argument if a recipe cannot hold the models of the mount (image_recipe.h).
-  CameraSensor(const Settings& settings, Renderer renderer);
+  /// Throws std::invalid_argument if a recipe cannot hold the models of the mount (image_recipe.h).
+  CameraSensor(const Settings& settings, std::unique_ptr<ImageTaker> taker);
+  /// The digital camera. `renderer` is called on the sensor's own thread.
+  CameraSensor(const Settings& settings, Renderer renderer)
+      : CameraSensor(settings, std::make_unique<ImageMaker>(settings.image, std::move(renderer))) {}
+
+  void start(fsw::GpsTime first_epoch) override { taker_->start(first_epoch); }
+  void stop(StopReason reason) override { taker_->stop(reason); }
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// Begins the image, whose packets are `pending`; `recipe` is from what they can be made again. kFailed if the truth
-  /// lacks the spacecraft or its attitude.
+  /// Begins the image, whose packets are `pending`; `recipe` is from what they can be made again, if they can. kFailed
+  /// if the truth lacks the spacecraft or its attitude.
   Measurement measure(const TruthSnapshot& truth) override;
 
-  /// So far. Waits for the images begun.
-  [[nodiscard]] ImagingTime time_spent();
+  [[nodiscard]] bool truth_is_compared() const override { return true; }
+  [[nodiscard]] std::chrono::milliseconds wait_limit() const override { return settings_.timeout; }
+
+  /// "images" taken, "packing_s" of the wall clock spent on their packets, and what the taker tells.
+  [[nodiscard]] std::vector<Note> statistics() const override;
 
  private:
+  Completion take(const Exposure& exposure);
+
   Settings settings_;
-  ImageMaker maker_;
-  Worker worker_;  // last: its thread uses the maker
+  std::unique_ptr<ImageTaker> taker_;
+  std::atomic<double> packing_s_{0.0};
+  std::atomic<std::int64_t> images_{0};
+  Worker worker_;  // last: its thread uses all the others
 };
 
 }  // namespace vbar::twins::camera

@@ -1,14 +1,18 @@
 #pragma once
-// From an exposure to the packets of its image: renderer, detector, tiles. The sensor makes its images with it, and so
-// does a replay from the recipes of a log.
+// The digital camera: from an exposure to an image by renderer and detector. The sensor takes its images with it; a
+// replay makes packets with it from the recipes of a log.
 
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "host_sim/twins/camera/detector.h"
 #include "host_sim/twins/camera/exposure.h"
+#include "host_sim/twins/camera/image_taker.h"
 #include "host_sim/twins/camera/photon_image.h"
 #include "host_sim/twins/packet_source.h"
 
@@ -18,15 +22,7 @@ namespace vbar::twins::camera {
 /// the exposure.
 using Renderer = std::function<void(const Exposure&, PhotonImage&)>;
 
-/// Wall-clock time spent, s.
-struct ImagingTime {
-  double render_s = 0.0;
-  double detector_s = 0.0;
-  double packing_s = 0.0;
-  std::int64_t images = 0;
-};
-
-class ImageMaker {
+class ImageMaker final : public ImageTaker {
  public:
   struct Settings {
     CameraSettings camera;
@@ -39,20 +35,43 @@ class ImageMaker {
   /// `renderer` must not be empty.
   ImageMaker(const Settings& settings, Renderer renderer);
 
-  /// The packets of the image: a pure function of the settings and the exposure, whatever was made before.
+  /// A pure function of the settings and the exposure, whatever was made before.
+  TakenImage take(const Exposure& exposure) override;
+  [[nodiscard]] bool is_reproducible() const override { return true; }
+  /// "render_s" and "detector_s": wall-clock time spent.
+  [[nodiscard]] std::vector<Note> statistics() const override;
+
+  /// The packets of the image.
   std::vector<Packet> packets_of(const Exposure& exposure);
 
   [[nodiscard]] const Settings& settings() const { return settings_; }
   [[nodiscard]] const Detector& detector() const { return detector_; }
-  [[nodiscard]] const ImagingTime& time_spent() const { return time_spent_; }
 
  private:
   Settings settings_;
   Renderer renderer_;
   Detector detector_;
   PhotonImage photons_;
-  std::vector<std::uint16_t> dn_;
-  ImagingTime time_spent_;
+  std::atomic<double> render_s_{0.0};
+  std::atomic<double> detector_s_{0.0};
+};
+
+/// The packets of an image taken.
+std::vector<Packet> packets_of(const ImageMaker::Settings& settings, const Exposure& exposure,
+                               std::span<const std::uint16_t> dn);
+
+/// Adds the time from its making to its end, s.
+class Stopwatch {
+ public:
+  explicit Stopwatch(std::atomic<double>& total_s) : total_s_(total_s) {}
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  ~Stopwatch() { total_s_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::atomic<double>& total_s_;
+  Clock::time_point start_ = Clock::now();
 };
 
 }  // namespace vbar::twins::camera

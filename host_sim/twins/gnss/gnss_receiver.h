@@ -24,23 +24,13 @@
 #include "host_sim/twins/gnss/gnss_settings.h"
 #include "host_sim/twins/gnss/oem_encoder.h"
 #include "host_sim/twins/gnss/point_solution.h"
+#include "host_sim/twins/gnss/receiver_bytes.h"
 #include "host_sim/twins/gnss/receiver_clock.h"
 #include "host_sim/twins/gnss/signal_noise.h"
 #include "host_sim/twins/gnss/signal_path.h"
 #include "host_sim/twins/gnss/tracking.h"
 
 namespace vbar::twins::gnss {
-
-/// The truth about the body that carries the receiver.
-struct BodyTruth {
-  fsw::GpsTime time;                                 ///< whole milliseconds
-  fsw::Vector3 position_eci = fsw::Vector3::Zero();  ///< of the centre of mass
-  fsw::Vector3 velocity_eci = fsw::Vector3::Zero();
-  Eigen::Quaterniond q_body_eci =
-      Eigen::Quaterniond::Identity();                  ///< as the body's attitude is known; body axes from ECI
-  fsw::Vector3 rate_body_eci = fsw::Vector3::Zero();   ///< angular velocity against ECI, rad/s, ECI components
-  fsw::Matrix3 R_ecef_eci = fsw::Matrix3::Identity();  ///< the truth's own Earth rotation at `time`
-};
 
 /// The truth of one observation, for tests and report.
 struct ObservationTruth {
@@ -67,7 +57,7 @@ struct ReceiverTruth {
   std::vector<ObservationTruth> observations;                   ///< in the order of observations()
 };
 
-class GnssReceiver {
+class GnssReceiver final : public ReceiverBytes {
  public:
   /// `name` is the spacecraft's (with the receiver's number, if it has several): it names all random streams, so that
   /// neither another receiver nor another setting changes this one's draws. `constellation` must not be null and may be
@@ -79,6 +69,7 @@ class GnssReceiver {
   /// call switches it on. Throws std::invalid_argument for a time that is not later than the last or not a whole
   /// millisecond, and for a truth that is not finite or not near the Earth.
   std::vector<std::uint8_t> bytes_at(const BodyTruth& truth);
+  ReceiverOutput output_at(const BodyTruth& truth) override { return {bytes_at(truth)}; }
 
   /// Lets a carrier slip by whole cycles at the next epoch, if it is tracked then.
   void command_slip(SatelliteId satellite, Signal signal, std::int64_t cycles, bool seen);

@@ -13,6 +13,7 @@
 #include "host_sim/mission/load.h"
 #include "host_sim/mission/telecommands.h"
 #include "host_sim/truth/earth/earth_rotation.h"
+#include "host_sim/twins/gnss/gnss_receiver.h"
 #include "host_sim/twins/packet_encoder.h"
 #include "tests/support/paths.h"
 
@@ -63,7 +64,7 @@ EmulatedPair::EmulatedPair(const CoastingPair& coast, std::uint64_t seed, const 
       navigation_(std::make_unique<fsw::gnc::Navigation>()) {
   mission_.seed = seed;
   const mission::Spacecraft& servicer = *mission_.find_spacecraft("servicer");
-  sensors_ = app::make_sensors(mission_, servicer, kRoot + "/data");
+  sensors_ = app::make_sources(mission_, servicer, kRoot + "/data");
   twins::PacketEncoder encoder(kServicerNumber, 0);
   const auto packet = encoder.encode(
       mission_.start_time(), mission::navigation_configuration_of(mission_, servicer, coast.earth_orientation()));
@@ -88,7 +89,7 @@ void EmulatedPair::fly(int epochs) {
 
 void EmulatedPair::measure(const twins::TruthSnapshot& truth) {
   for (const auto& sensor : sensors_) {
-    twins::Measurement measurement = sensor->measure(truth);
+    twins::Measurement measurement = sensor.packets->measure(truth);
     if (measurement.status != twins::MeasurementStatus::kReady) throw std::runtime_error(measurement.reason);
     for (twins::Packet& packet : measurement.packets) {
       under_way_.push_back({measurement.available, std::move(packet)});
@@ -100,8 +101,9 @@ void EmulatedPair::measure(const twins::TruthSnapshot& truth) {
 void EmulatedPair::remember_integers(GpsTime time) {
   Integers& integers = integers_[time];
   for (const int sign : {-1, 1}) {
-    const auto& sensor = dynamic_cast<const twins::GnssSensor&>(*sensors_[sign < 0 ? 0 : 1]);
-    for (const auto& one : sensor.receiver().truth().observations) {
+    const auto& sensor = dynamic_cast<const twins::GnssSensor&>(*sensors_[sign < 0 ? 0 : 1].packets);
+    const auto& receiver = dynamic_cast<const twins::gnss::GnssReceiver&>(sensor.receiver());
+    for (const auto& one : receiver.truth().observations) {
       integers[{static_cast<int>(one.signal), one.satellite.prn}] += sign * one.ambiguity_cycles;
     }
   }

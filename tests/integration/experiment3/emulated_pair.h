@@ -14,6 +14,7 @@
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/navigation.h"
 #include "fsw/gnss/lambda.h"
+#include "host_sim/app/simulation.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/truth/truth_model.h"
 #include "host_sim/twins/gnss_sensor.h"
@@ -93,7 +94,7 @@ class EmulatedPair {
 
   const CoastingPair& coast_;
   mission::Mission mission_;
-  std::vector<std::unique_ptr<twins::PacketSource>> sensors_;  ///< servicer's, then target's
+  std::vector<app::Source> sensors_;  ///< servicer's, then target's
   std::vector<Arrival> under_way_;
   std::map<fsw::GpsTime, Integers> integers_;  ///< target minus servicer
   fsw::gnc::Inbox inbox_;

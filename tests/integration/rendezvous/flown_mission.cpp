@@ -9,8 +9,8 @@
 #include <openssl/evp.h>
 
 #include "fsw/packets/packet.h"
+#include "host_sim/app/assemble.h"
 #include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/app/simulation.h"
 #include "host_sim/mission/load.h"
 #include "tests/support/paths.h"
 
@@ -18,7 +18,7 @@ namespace vbar::test {
 namespace {
 
 /// Keeps the bytes of what the flight software said.
-class OutputCollector final : public app::PacketObserver {
+class OutputCollector final : public app::RunObserver {
  public:
   explicit OutputCollector(FlownMission& flown) : flown_(flown) {}
 
@@ -59,10 +59,10 @@ FlownMission fly(const std::string& file, const std::vector<std::string>& overri
 
   FlownMission flown;
   OutputCollector collector(flown);
-  const std::array<app::PacketObserver*, 1> observers{&collector};
+  const std::array<app::RunObserver*, 1> observers{&collector};
   engine::SteadyWallClock wall;
-  app::Simulation simulation(mission, root + "/data", {*computer, wall, observers, {}, {}}, flown.record);
-  flown.complete = simulation.run();
+  app::AssembledMission assembled(mission, root + "/data");
+  flown.complete = assembled.fly({*computer, wall, observers, {}, {}}, flown.record);
   computer->close();
   return flown;
 }

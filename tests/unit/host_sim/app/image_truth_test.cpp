@@ -169,6 +169,7 @@ TEST_F(ImageTruth, SummaryTakesTheUnresolvedTargetOnly) {
   EXPECT_EQ(summary.images->images, 7);
   EXPECT_EQ(summary.images->with_bearing, 6);
   EXPECT_EQ(summary.images->wrong_targets, 1);
+  EXPECT_EQ(summary.images->without_truth, 1);
   EXPECT_NEAR(summary.bearing_error_arcsec->bias, std::hypot(2.0, 3.0), 1e-6);
   EXPECT_NEAR(summary.bearing_error_arcsec->std, 10.0 / std::sqrt(2.0), 1e-6) << "of two axes, one of them still";
   EXPECT_NEAR(summary.bearing_error_arcsec->mean, 0.5 * (std::hypot(12.0, 3.0) + std::hypot(8.0, 3.0)), 1e-6);

@@ -38,7 +38,7 @@ TEST_P(ImagesInTheLog, AreWhatTheMissionAsksFor) {
   mission.record.images = GetParam();
   {
     const PacketKeepers keepers(mission, folder_);
-    for (PacketObserver* observer : keepers.observers()) {
+    for (RunObserver* observer : keepers.observers()) {
       observer->on_recipe({0}, twins::camera::bytes_of(recipe));
       observer->on_step(0, {0}, tiles, {});
     }

@@ -144,6 +144,47 @@ TEST(RunClock, WaitingEndsWhenAskedToStop) {
   EXPECT_EQ(clock.report().steps, 0U);
 }
 
+TEST(RunClock, EventsBetweenStepsArePacedToo) {
+  TestWall wall;
+  const WallClock::Span begin = wall.now();
+  RunClock clock(real_time(2.0), wall);
+  clock.start(at(0));
+  Lateness late;
+  EXPECT_TRUE(clock.wait_until(at(4), &late));
+  EXPECT_EQ(wall.now() - begin, 2s);
+  wall.pass(1500ms);
+  EXPECT_TRUE(clock.wait_until(at(6), &late));  // due 0.5 s ago
+  EXPECT_TRUE(clock.wait_until(at(6), nullptr));
+  EXPECT_EQ(late.count, 1U);
+  EXPECT_EQ(late.worst, 500ms);
+  EXPECT_EQ(clock.report().steps, 0U);
+  EXPECT_FALSE(clock.wait_until(at(100), &late, [] { return true; }));
+}
+
+TEST(RunClock, LockStepDoesNotWaitForEvents) {
+  TestWall wall;
+  RunClock clock({}, wall);
+  clock.start(at(0));
+  Lateness late;
+  EXPECT_TRUE(clock.wait_until(at(3600), &late));
+  EXPECT_EQ(wall.sleeps, 0);
+  EXPECT_EQ(late.count, 0U);
+  EXPECT_FALSE(clock.wait_until(at(3600), &late, [] { return true; })) << "asked to stop all the same";
+}
+
+TEST(RunClock, OversleepingForAnEventIsNotTheStepsSimulationLateness) {
+  TestWall wall;
+  RunClock clock(real_time(1.0), wall);
+  clock.start(at(0));
+  ASSERT_TRUE(clock.begin_step(at(0)));
+  wall.pass(9950ms);
+  wall.oversleep = 30ms;
+  EXPECT_TRUE(clock.wait_until(at(10), nullptr));  // a measurement at the step's own time
+  EXPECT_TRUE(clock.begin_step(at(10)));
+  EXPECT_EQ(clock.report().woke_late.count, 1U);
+  EXPECT_EQ(clock.report().simulation_late.count, 0U);
+}
+
 // The one test on the real clock: a wake-up never comes before its time.
 TEST(SteadyWallClock, SleepsAtLeastAsLongAsAsked) {
   SteadyWallClock wall;

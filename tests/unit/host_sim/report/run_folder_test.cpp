@@ -225,8 +225,9 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
                   "camera", "gnss", "navigation", "target", "simulated_s", "wall_s", "speed_factor",
                   "navigation_error_m", "navigation_velocity_error_mps", "attitude_error_deg", "first_fix_s",
                   "static_floor_m", "navigation_nees", "bearing_error_arcsec", "star_attitude_error_arcsec", "images",
-                  "images_with_bearing", "wrong_targets", "pose", "dv_mps", "maneuvers", "commands_sha256",
-                  "telemetry_sha256", "health", "flight_step", "link", "deadlines", "wall_share", "waypoints"));
+                  "images_with_bearing", "wrong_targets", "images_without_truth", "pose", "dv_mps", "maneuvers",
+                  "commands_sha256", "telemetry_sha256", "health", "flight_step", "link", "deadlines", "sources",
+                  "wall_share", "waypoints"));
   EXPECT_THAT(keys(json.at("waypoints").at(3)),
               ElementsAre("index", "time_s", "navigation_error_m", "navigation_velocity_error_mps", "control_error_m",
                           "leg_dv_mps", "cumulative_dv_mps", "leg_maneuvers"));
@@ -244,6 +245,10 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
   EXPECT_THAT(keys(json.at("star_attitude_error_arcsec")), ElementsAre("mean", "std"));
   EXPECT_EQ(json.at("images"), 2476);
   EXPECT_EQ(json.at("wrong_targets"), 43);
+  EXPECT_EQ(json.at("images_without_truth"), 17);
+  EXPECT_THAT(keys(json.at("sources").at(0)),
+              ElementsAre("name", "kind", "epochs", "failures", "last_failure", "late", "latest_s"));
+  EXPECT_EQ(json.at("sources").at(0).at("last_failure"), "no lock");
   EXPECT_TRUE(json.at("camera").is_null());
   EXPECT_TRUE(json.at("incomplete_reason").is_null());
   EXPECT_EQ(json.at("attitude_error_deg").at("mean"), 2.5);

@@ -324,9 +324,10 @@ Summary summary() {
   s.navigation_nees = 5.9;
   s.bearing_error_arcsec = BearingError{14.5, 11.25, 2.5};
   s.star_attitude_error_arcsec = MeanAndDeviation{4.5, 1.5};
-  s.images = ImageCounts{2476, 2122, 43};
+  s.images = ImageCounts{2476, 2122, 43, 17};
   s.attitude_error_deg = MeanAndDeviation{2.5, 1.25};
-  s.pose = PoseFigures{136, 120, 7, 0.75, 1.5, {0.0445, 0.0125}, 5.5, 2, 1};
+  s.pose = PoseFigures{136, 120, 7, 0.75, 1.5, {0.0445, 0.0125}, 5.5, 2, 1, 3};
+  s.sources = {{"servicer/gnss", "digital", 14857, 2, "no lock", 5, 0.125}};
   s.dv_mps = 3.8345;
   s.maneuvers = 39;
   s.commands_sha256 = std::string(64, 'a');
@@ -347,6 +348,8 @@ Summary summary() {
 RunRecord synthetic_run() {
   RunRecord record;
   record.summary = summary();
+  record.notes = {{60.0, "servicer/gnss", "failure", std::nullopt, "no lock"},
+                  {120.0, "thruster", "magnitude_error", 0.015625, ""}};
   for (std::int64_t step = 0; step <= 2475; ++step) {
     record.truth.push_back(truth_at(60.0 * static_cast<double>(step)));
     record.estimates.push_back(estimate_of(record.truth.back(), step));

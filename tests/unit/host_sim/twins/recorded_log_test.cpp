@@ -33,7 +33,7 @@ TEST_F(RecordedLogFile, PlaysItsPacketsAtTheirRecordedDeliveries) {
     writer.write({2, at(120), true, late});
     writer.write({2, at(120), true, in_time});
   }
-  RecordedLog source(file_, {1, fsw::packets::Apid::kIdealNavigation});
+  RecordedLog source(file_, {1, {fsw::packets::Apid::kIdealNavigation}});
   EXPECT_EQ(source.next_epoch(at(-100)), at(0));
   EXPECT_EQ(source.next_epoch(at(0)), at(0));
   EXPECT_EQ(source.next_epoch(at(1)), at(120));
@@ -48,18 +48,80 @@ TEST_F(RecordedLogFile, PlaysItsPacketsAtTheirRecordedDeliveries) {
   EXPECT_EQ(source.measure({at(120), {}}).packets, (std::vector<Packet>{late, in_time}));
 }
 
+Packet tile_packet(std::int64_t exposure_s, std::uint8_t spacecraft, std::int16_t tile) {
+  vbar::image_tile message{};
+  message.tile = tile;
+  return packet_of(message, at(exposure_s), spacecraft, static_cast<std::uint16_t>(tile));
+}
+
+TEST_F(RecordedLogFile, PlaysSeveralMessagesInTheOrderOfTheLog) {
+  const Packet bytes = packet_of(vbar::gnss_bytes{}, at(0), 1, 0);
+  const Packet attitude = packet_of(vbar::attitude{}, at(0), 1, 0);
+  {
+    PacketLogWriter writer(file_);
+    writer.write({0, at(0), true, bytes});
+    writer.write({0, at(0), true, navigation_packet(0, 1, 0)});
+    writer.write({0, at(0), true, attitude});
+  }
+  RecordedLog source(file_, {1, {fsw::packets::Apid::kAttitude, fsw::packets::Apid::kGnssBytes}});
+  EXPECT_EQ(source.measure({at(0), {}}).packets, (std::vector<Packet>{bytes, attitude}));
+  EXPECT_FALSE(source.truth_is_compared());
+}
+
+// Images are judged by the truth at their exposures, which lie before their deliveries.
+TEST_F(RecordedLogFile, ExposuresOfImagesAreEpochs) {
+  const Packet tile = tile_packet(58, 1, 0);
+  {
+    PacketLogWriter writer(file_);
+    writer.write({1, at(60), true, tile});
+    writer.write({1, at(60), true, tile_packet(59, 2, 0)});  // another spacecraft's
+  }
+  RecordedLog source(file_, {1, {fsw::packets::Apid::kImageTile}});
+  EXPECT_TRUE(source.truth_is_compared());
+  EXPECT_EQ(source.next_epoch(at(0)), at(58));
+  EXPECT_TRUE(source.measure({at(58), {}}).packets.empty());
+  EXPECT_EQ(source.next_epoch(at(59)), at(60));
+  EXPECT_EQ(source.measure({at(60), {}}).packets, std::vector<Packet>{tile});
+}
+
+TEST_F(RecordedLogFile, TilesThatTheLogLacksAreMadeAgain) {
+  const TileRun run{1, 0, 7, 0, 2, 99};
+  {
+    PacketLogWriter writer(file_);
+    writer.write_recipe(at(58), {1, 2, 3});
+    writer.write({1, at(60), true, {}, run});
+    writer.write({1, at(60), true, {}, TileRun{2, 0, 7, 0, 2, 99}});  // another spacecraft's
+  }
+  const std::vector<Packet> tiles{tile_packet(58, 1, 0), tile_packet(58, 1, 1)};
+  const MakeTileSource make = [&](std::span<const std::vector<std::uint8_t>> recipes) {
+    EXPECT_EQ(recipes.size(), 1U);
+    TileSource source;
+    source.recipes[at(58)] = recipes[0];
+    source.packets_of = [&](const TileRun& asked) {
+      EXPECT_EQ(asked, run);
+      return tiles;
+    };
+    return source;
+  };
+  RecordedLog source(file_, {1, {fsw::packets::Apid::kImageTile}}, make);
+  EXPECT_EQ(source.next_epoch(at(0)), at(58));
+  EXPECT_EQ(source.measure({at(58), {}}).recipe, (std::vector<std::uint8_t>{1, 2, 3}));
+  EXPECT_EQ(source.measure({at(60), {}}).packets, tiles);
+  EXPECT_THROW(RecordedLog(file_, {1, {fsw::packets::Apid::kImageTile}}), std::runtime_error);
+}
+
 TEST_F(RecordedLogFile, LogWithoutThePacketsIsAnError) {
   {
     PacketLogWriter writer(file_);
     writer.write({0, at(0), true, packet_of(vbar::tick{}, at(0), 1, 0)});
   }
   try {
-    const RecordedLog source(file_, {1, fsw::packets::Apid::kIdealNavigation});
+    const RecordedLog source(file_, {1, {fsw::packets::Apid::kIdealNavigation}});
     ADD_FAILURE() << "an empty source";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(), file_.string() + ": holds no packet of the sensor that it shall play");
+    EXPECT_EQ(error.what(), file_.string() + ": contains no packet of the sensor to be replayed");
   }
-  EXPECT_THROW(RecordedLog("no/such.lcmlog", {1, fsw::packets::Apid::kIdealNavigation}), std::runtime_error);
+  EXPECT_THROW(RecordedLog("no/such.lcmlog", {1, {fsw::packets::Apid::kIdealNavigation}}), std::runtime_error);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "host_sim/twins/camera/camera_sensor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
@@ -70,7 +71,7 @@ TEST(CameraSensor, PacketsAreTheImage) {
   ASSERT_EQ(measurement.status, MeasurementStatus::kReady) << measurement.reason;
   EXPECT_TRUE(measurement.packets.empty());
   EXPECT_EQ(measurement.available, time + fsw::duration_of_seconds(2));
-  const std::vector<Packet> packets = measurement.pending.get();
+  const std::vector<Packet> packets = measurement.pending.get().packets;
   ASSERT_EQ(packets.size(), 2U) << "1200 pixels, 868 a tile";
   const auto view = fsw::packets::parse_packet(packets[0]);
   ASSERT_TRUE(view.ok());
@@ -171,22 +172,25 @@ TEST(CameraSensor, ImageIsMadeWhileTheSimulationGoesOnAndOneAfterTheOther) {
   Measurement first = sensor.measure(snapshot(kStart));
   Measurement second = sensor.measure(snapshot(kStart + kPeriod));
   go.set_value();
-  EXPECT_EQ(second.pending.get().size(), 2U);
-  EXPECT_EQ(first.pending.get().size(), 2U);
+  EXPECT_EQ(second.pending.get().packets.size(), 2U);
+  EXPECT_EQ(first.pending.get().packets.size(), 2U);
   EXPECT_EQ(numbers, (std::vector<std::int64_t>{0, 1}));
   EXPECT_EQ(threads[0], threads[1]) << "an OpenGL context lives on one thread";
   EXPECT_NE(threads[0], std::this_thread::get_id());
-  EXPECT_EQ(sensor.time_spent().images, 2);
+  const auto statistics = sensor.statistics();
+  const auto images = std::ranges::find(statistics, "images", &Note::name);
+  ASSERT_NE(images, statistics.end());
+  EXPECT_EQ(images->value, 2.0);
 }
 
 TEST(CameraSensor, SensorThatGoesAwayBreaksNoFuture) {
-  std::future<std::vector<Packet>> pending;
+  std::future<Completion> pending;
   {
     CameraSensor sensor(small_camera(), one_pixel);
     pending = sensor.measure(snapshot(kStart)).pending;
   }
   try {
-    EXPECT_EQ(pending.get().size(), 2U);
+    EXPECT_EQ(pending.get().packets.size(), 2U);
   } catch (const std::future_error& error) {
     EXPECT_EQ(error.code(), std::future_errc::broken_promise);  // it had not been begun
   }
@@ -196,6 +200,39 @@ TEST(CameraSensor, RendererThatFailsIsHeard) {
   CameraSensor sensor(small_camera(), [](const Exposure&, PhotonImage&) { throw std::runtime_error("no context"); });
   Measurement measurement = sensor.measure(snapshot(kStart));
   EXPECT_THROW(measurement.pending.get(), std::runtime_error);
+}
+
+/// An optical bench, as a test has it.
+class Bench final : public ImageTaker {
+ public:
+  void start(fsw::GpsTime) override { ++started; }
+  void stop(StopReason) override { ++stopped; }
+  TakenImage take(const Exposure& exposure) override {
+    if (exposure.number == 1) return {{}, {{"retries", 3.0}}, "the frame was lost"};
+    return {std::vector<std::uint16_t>(1200, 7), {{"pose_error_m", 0.001}}};
+  }
+  std::vector<Note> statistics() const override { return {{"moves", 12.0}}; }
+  int started = 0, stopped = 0;
+};
+
+TEST(CameraSensor, BenchTakesTheImagesInTheRenderersPlace) {
+  auto owned = std::make_unique<Bench>();
+  Bench& bench = *owned;
+  CameraSensor sensor(small_camera(), std::move(owned));
+  sensor.start(kStart);
+  Measurement first = sensor.measure(snapshot(kStart));
+  EXPECT_TRUE(first.recipe.empty()) << "it cannot be made again: the log keeps its pixels";
+  const Completion image = first.pending.get();
+  EXPECT_EQ(image.packets.size(), 2U);
+  EXPECT_EQ(image.notes.at(0).name, "pose_error_m");
+  const Completion lost = sensor.measure(snapshot(kStart + kPeriod)).pending.get();
+  EXPECT_TRUE(lost.packets.empty());
+  EXPECT_EQ(lost.failure, "the frame was lost");
+  EXPECT_EQ(lost.notes.at(0).value, 3.0);
+  sensor.stop(StopReason::kCompleted);
+  EXPECT_EQ(bench.started, 1);
+  EXPECT_EQ(bench.stopped, 1);
+  EXPECT_EQ(sensor.statistics().at(0).name, "moves");
 }
 
 TEST(CameraSensor, TruthThatLacksTheSpacecraftFails) {
@@ -227,7 +264,7 @@ TEST(CameraSensor, RecipeMakesTheSamePackets) {
   EXPECT_EQ(recipe->unit, 2);
   ImageMaker maker(small_camera().image, one_pixel);
   static_cast<void>(maker.packets_of({}));  // another image before it changes nothing
-  EXPECT_EQ(maker.packets_of(recipe->exposure), measurement.pending.get());
+  EXPECT_EQ(maker.packets_of(recipe->exposure), measurement.pending.get().packets);
 }
 
 }  // namespace

@@ -1,0 +1,270 @@
+#include "host_sim/app/assemble.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "host_sim/app/connect_flight_computer.h"
+#include "host_sim/app/flight_recorder.h"
+#include "host_sim/app/line_usage.h"
+#include "host_sim/app/make_twins.h"
+#include "host_sim/mission/telecommands.h"
+#include "host_sim/report/summarise.h"
+
+namespace vbar::app {
+namespace {
+
+/// The spacecraft that flies, with all it needs to.
+const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
+  const mission::Spacecraft& servicer = flying_spacecraft(mission);
+  for (const mission::Spacecraft& other : mission.spacecraft) {
+    if (&other != &servicer && other.flight_computer) {
+      throw std::runtime_error("spacecraft \"" + other.name +
+                               "\" has a flight computer too; one in a mission is supported");
+    }
+  }
+  if (!servicer.navigation && !servicer.gnss) {
+    throw std::runtime_error(
+        "spacecraft \"" + servicer.name +
+        "\" has neither sensors.navigation nor sensors.gnss; one of them is needed to navigate by");
+  }
+  if (!servicer.thruster) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no thruster");
+  return servicer;
+}
+
+PairTruth pair_in(const twins::TruthSnapshot& truth, const mission::Spacecraft& servicer) {
+  return {truth.find(servicer.name)->orbit, truth.find(servicer.observes())->orbit};
+}
+
+/// Telecommands of one instant.
+class Telecommands {
+ public:
+  Telecommands(fsw::GpsTime time, std::uint8_t spacecraft) : time_(time), spacecraft_(spacecraft) {}
+  template <class Message>
+  void add(const Message& message) {
+    auto packet = twins::PacketEncoder(spacecraft_, 0).encode(time_, message);
+    if (!packet) throw std::runtime_error("a telecommand cannot be sent: it holds a number that is not finite");
+    packets_.push_back(std::move(*packet));
+  }
+  [[nodiscard]] std::vector<twins::Packet> packets() && { return std::move(packets_); }
+
+ private:
+  fsw::GpsTime time_;
+  std::uint8_t spacecraft_;
+  std::vector<twins::Packet> packets_;
+};
+
+/// The mission, telecommanded to the flight software before its first step.
+std::vector<twins::Packet> first_packets(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                                         FlownTruth& truth) {
+  Telecommands telecommands(mission.start_time(), servicer.number);
+  const PairTruth pair = pair_in(truth.snapshot(twins::TruthDetail::kStates), servicer);
+  telecommands.add(mission::gnc_configuration_of(mission));
+  if (servicer.gnss) {
+    const auto& orientation = *truth.model().data().earth_orientation;
+    telecommands.add(mission::navigation_configuration_of(mission, servicer, orientation));
+  }
+  if (servicer.camera) {
+    telecommands.add(mission::camera_configuration_of(servicer));
+    if (servicer.camera->navigation == mission::CameraNavigation::kPose) {
+      auto configuration = mission::pose_configuration_of(mission, servicer);
+      mission::add_apriori(mission, servicer, pair.servicer, pair.target, configuration);
+      telecommands.add(configuration);
+    } else {
+      telecommands.add(mission::angles_only_configuration_of(mission));
+      telecommands.add(mission::target_apriori_of(mission, servicer, pair.servicer, pair.target));
+    }
+  }
+  telecommands.add(mission::waypoint_table_of(mission));
+  telecommands.add(mission::mode_command_of(mission));
+  return std::move(telecommands).packets();
+}
+
+Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraft& servicer, FlownTruth& truth) {
+  Timetable timetable;
+  timetable.start = mission.start_time();
+  timetable.end = mission.end_time();
+  timetable.step = mission.step;
+  timetable.compute_latency = servicer.flight_computer->compute_latency;
+  timetable.spacecraft = servicer.number;
+  timetable.clock = mission.clock;
+  for (const mission::Waypoint& waypoint : mission.waypoints) timetable.waypoints.push_back(waypoint.time);
+  for (const mission::PrescribedBurn& burn : mission.burns) timetable.burns.push_back({burn.time, burn.dv_rtn});
+  timetable.first_packets = first_packets(mission, servicer, truth);
+  return timetable;
+}
+
+/// What a run shows, for the record.
+class Recording final : public RunObserver {
+ public:
+  Recording(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunRecord& record)
+      : mission_(mission), servicer_(servicer), recorder_(mission, servicer, record), record_(record) {}
+
+  void on_note(fsw::GpsTime time, std::string_view source, const twins::Note& note) override {
+    const auto value = std::isnan(note.value) ? std::nullopt : std::optional<double>(note.value);
+    add_note(time, source, note.name, value, note.text);
+  }
+  void on_failure(fsw::GpsTime time, std::string_view source, std::string_view reason) override {
+    add_note(time, source, "failure", std::nullopt, reason);
+  }
+  void on_measured(const twins::TruthSnapshot& truth) override { recorder_.on_measured(truth); }
+  void on_waypoint(std::size_t waypoint, const twins::TruthSnapshot& truth) override {
+    recorder_.on_waypoint(mission_.waypoints[waypoint], pair_in(truth, servicer_));
+  }
+  void on_truth(const twins::TruthSnapshot& truth) override {
+    recorder_.on_truth(truth.time, pair_in(truth, servicer_));
+    std::vector<NamedAttitude> attitudes;
+    for (const twins::SpacecraftTruth& one : truth.spacecraft)
+      if (one.attitude) attitudes.push_back({one.name, *one.attitude});
+    recorder_.on_attitudes(truth.time, attitudes);
+  }
+  void on_step(std::uint32_t, fsw::GpsTime time, std::span<const pil::Packet> inputs,
+               std::span<const pil::Packet>) override {
+    recorder_.on_inputs(time, inputs);
+  }
+  void on_answer(fsw::GpsTime time, const pil::StepResult& answer) override { recorder_.on_answer(time, answer); }
+  void on_prescribed(fsw::GpsTime time, const maneuver_command& command) override {
+    recorder_.on_prescribed(time, command);
+  }
+  void on_execution(fsw::GpsTime time, const executed_maneuver& executed) override {
+    recorder_.on_execution(time, executed);
+  }
+  void finish() { recorder_.finish(); }
+
+ private:
+  void add_note(fsw::GpsTime time, std::string_view source, std::string_view name, std::optional<double> value,
+                std::string_view text) {
+    record_.notes.push_back(
+        {fsw::seconds(time - mission_.epoch), std::string(source), std::string(name), value, std::string(text)});
+  }
+
+  const mission::Mission& mission_;
+  const mission::Spacecraft& servicer_;
+  FlightRecorder recorder_;
+  report::RunRecord& record_;
+};
+
+/// What the line to the flight computer carries.
+class LineWatch final : public RunObserver {
+ public:
+  LineWatch(const mission::Mission& mission, const mission::Spacecraft& servicer, const pil::FlightComputer& computer)
+      : computer_(computer), usage_(*servicer.flight_computer, mission.step, computer.statistics()) {}
+  void on_step(std::uint32_t, fsw::GpsTime, std::span<const pil::Packet>, std::span<const pil::Packet>) override {
+    usage_.after_step(computer_.statistics());
+  }
+  void summarise(report::Summary::Link& summary) const {
+    const pil::LinkStatistics link = computer_.statistics();
+    summary = {link.bytes_sent + link.bytes_received, link.frames_resent, link.frames_rejected, link.frames_duplicated,
+               link.strangers_ignored};
+    usage_.summarise(summary);
+  }
+
+ private:
+  const pil::FlightComputer& computer_;
+  LineUsage usage_;
+};
+
+/// Kind of the source whose name ends in `sensor`; empty if there is none.
+std::string kind_of(std::span<const Source> sources, const std::string& name) {
+  for (const Source& source : sources)
+    if (source.name == name) return source.kind;
+  return {};
+}
+
+void summarise_mission(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                       std::span<const Source> sources, report::Summary& summary) {
+  summary.mission = mission.name;
+  summary.seed = mission.seed;
+  summary.target = servicer.observes();
+  summary.flight_computer = mission::name_of(servicer.flight_computer->target);
+  const bool is_by_pose = servicer.camera && servicer.camera->navigation == mission::CameraNavigation::kPose;
+  summary.navigation = is_by_pose        ? "pose"
+                       : servicer.camera ? "angles_only"
+                       : servicer.gnss   ? "gnss"
+                                         : kind_of(sources, servicer.name + "/navigation");
+  summary.gnss = kind_of(sources, servicer.name + "/gnss");
+  summary.camera = kind_of(sources, servicer.name + "/camera");
+  summary.static_floor_m = gnss_static_floor_m(mission, servicer);
+}
+
+void summarise_run(const RunFacts& facts, std::span<const Source> sources, report::Summary& summary) {
+  summary.complete = facts.complete;
+  summary.simulated_s = fsw::seconds(facts.simulated);
+  summary.wall_s = facts.wall_s;
+  summary.speed_factor = facts.wall_s > 0.0 ? summary.simulated_s / facts.wall_s : 0.0;
+  summary.deadlines = {facts.deadlines.step_late.count, facts.deadlines.woke_late.count,
+                       facts.deadlines.link_late.count, facts.deadlines.simulation_late.count};
+  report::Summary::WallShare& share = summary.wall_share;
+  share.truth_s = facts.truth_s;
+  share.flight_s = facts.flight_s;
+  share.link_s = facts.link_s;
+  share.other_s = std::max(0.0, facts.wall_s - facts.truth_s - facts.flight_s - facts.link_s);
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    const RunFacts::OfSource& of = facts.sources[k];
+    summary.sources.push_back({of.name, sources[k].kind, of.epochs, of.failures, of.last_failure, of.late.count,
+                               std::chrono::duration<double>(of.late.worst).count()});
+  }
+  for (const Source& source : sources) {
+    for (const twins::Note& spent : source.packets->statistics()) {
+      if (spent.name == "render_s") share.render_s += spent.value;
+      if (spent.name == "detector_s") share.detector_s += spent.value;
+      if (spent.name == "packing_s") share.packing_s += spent.value;
+    }
+  }
+}
+
+}  // namespace
+
+AssembledMission::AssembledMission(const mission::Mission& mission, const std::filesystem::path& data_directory)
+    : mission_(mission),
+      servicer_(complete_servicer(mission)),
+      truth_(mission, servicer_, data_directory),
+      sources_(make_sources(mission, servicer_, data_directory)),
+      thruster_(make_thruster(mission, servicer_)),
+      board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
+      timetable_(timetable_of(mission, servicer_, truth_)) {}
+
+bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& record) {
+  start();
+  Recording recording(mission_, servicer_, record);
+  LineWatch line(mission_, servicer_, surroundings.flight_computer);
+  std::vector<RunObserver*> observers(surroundings.observers.begin(), surroundings.observers.end());
+  observers.insert(observers.end(), {&recording, &line});
+  const World world{truth_,
+                    sources_,
+                    *thruster_,
+                    surroundings.flight_computer,
+                    board_link_,
+                    surroundings.wall,
+                    observers,
+                    surroundings.progress,
+                    surroundings.stop_requested};
+  Simulation simulation(world, timetable_);
+
+  const auto finish = [&](twins::StopReason reason) {
+    facts_ = simulation.facts();
+    const std::string trouble = started_.stop(reason);
+    recording.finish();
+    summarise_mission(mission_, servicer_, sources_, record.summary);
+    summarise_run(facts_, sources_, record.summary);
+    record.summary.flight_software = surroundings.flight_computer.description();
+    record.summary.flight_step.unit = facts_.cost_unit;
+    line.summarise(record.summary.link);
+    report::evaluate(record);
+    return trouble;
+  };
+  bool complete = false;
+  try {
+    complete = simulation.run();
+  } catch (...) {
+    finish(twins::StopReason::kFailed);
+    throw;
+  }
+  const std::string trouble = finish(complete ? twins::StopReason::kCompleted : twins::StopReason::kInterrupted);
+  if (!trouble.empty()) throw std::runtime_error(trouble);
+  return complete;
+}
+
+}  // namespace vbar::app

@@ -1,0 +1,57 @@
+#pragma once
+// A mission as a world that can be flown: the one place where both are known.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "host_sim/app/flown_truth.h"
+#include "host_sim/app/simulation.h"
+#include "host_sim/app/started_sources.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/report/run_record.h"
+
+namespace vbar::app {
+
+class AssembledMission {
+ public:
+  /// What a run has around it.
+  struct Surroundings {
+    pil::FlightComputer& flight_computer;
+    engine::WallClock& wall;
+    std::span<RunObserver* const> observers;
+    std::function<void(fsw::Duration)> progress;  ///< as in World
+    std::function<bool()> stop_requested;         ///< as in World
+  };
+
+  /// `mission` must outlive it. Throws what truth, orbits, attitudes, twins and their data throw, and
+  /// std::runtime_error for a mission that cannot be flown.
+  AssembledMission(const mission::Mission& mission, const std::filesystem::path& data_directory);
+  AssembledMission(const AssembledMission&) = delete;
+  AssembledMission& operator=(const AssembledMission&) = delete;
+
+  /// Makes the sources ready, before there is a run folder. Throws as StartedSources::start.
+  void start() { started_.start(timetable_.start); }
+
+  /// Flies and fills the record, then stops the sources, however the run ended. Throws as Simulation::run; the record
+  /// then holds what was flown. Starts the sources if nobody did. To be called once.
+  bool fly(const Surroundings& surroundings, report::RunRecord& record);
+
+  [[nodiscard]] const RunFacts& facts() const { return facts_; }
+  [[nodiscard]] std::span<const Source> sources() const { return sources_; }
+
+ private:
+  const mission::Mission& mission_;
+  const mission::Spacecraft& servicer_;
+  FlownTruth truth_;
+  std::vector<Source> sources_;
+  std::unique_ptr<twins::Actuator> thruster_;
+  engine::LinkModel board_link_;
+  Timetable timetable_;
+  RunFacts facts_;
+  StartedSources started_{sources_};  // last: it stops the sources
+};
+
+}  // namespace vbar::app

@@ -1,0 +1,35 @@
+#pragma once
+// The truth at each image's exposure, kept until the flight software has reported on that image.
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::app {
+
+class KeptTruth {
+ public:
+  /// Once for each image: two cameras may expose at the same time.
+  void keep(const twins::TruthSnapshot& truth) { kept_.emplace(truth.time, truth); }
+
+  /// The truth of an exposure, which is then released. None if there is none: counted.
+  std::optional<twins::TruthSnapshot> take(fsw::GpsTime exposure) {
+    auto node = kept_.extract(exposure);
+    if (node) return std::move(node.mapped());
+    ++without_truth_;
+    return std::nullopt;
+  }
+
+  /// Images whose truth was asked for and not there.
+  [[nodiscard]] int without_truth() const { return without_truth_; }
+  [[nodiscard]] std::size_t size() const { return kept_.size(); }
+
+ private:
+  std::multimap<fsw::GpsTime, twins::TruthSnapshot> kept_;
+  int without_truth_ = 0;
+};
+
+}  // namespace vbar::app

@@ -1,0 +1,50 @@
+#pragma once
+// Who watches a run: the log, the record, the hashes, a live view.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/packets/messages.h"
+#include "host_sim/twins/packet_source.h"
+#include "pil_bridge/flight_computer.h"
+
+namespace vbar::app {
+
+/// Is called as things happen, in their order; overrides what it wants to see.
+class RunObserver {
+ public:
+  RunObserver() = default;
+  RunObserver(const RunObserver&) = delete;
+  RunObserver& operator=(const RunObserver&) = delete;
+  virtual ~RunObserver() = default;
+
+  /// The truth of a measurement that the flight software reports on later (PacketSource::truth_is_compared).
+  virtual void on_measured(const twins::TruthSnapshot& /*truth*/) {}
+  /// From what packets that are yet to come can be made again (twins::Measurement::recipe).
+  virtual void on_recipe(fsw::GpsTime /*time*/, std::span<const std::uint8_t> /*recipe*/) {}
+  /// A source or an actuator said something about a measurement or a burn.
+  virtual void on_note(fsw::GpsTime /*time*/, std::string_view /*source*/, const twins::Note& /*note*/) {}
+  /// A source failed an epoch, in one sentence.
+  virtual void on_failure(fsw::GpsTime /*time*/, std::string_view /*source*/, std::string_view /*reason*/) {}
+
+  /// The time of a waypoint (an index of the timetable), before any burn of that instant.
+  virtual void on_waypoint(std::size_t /*waypoint*/, const twins::TruthSnapshot& /*truth*/) {}
+
+  /// A flight step begins.
+  virtual void on_truth(const twins::TruthSnapshot& /*truth*/) {}
+  /// It is over: all its packets, the tick last, and the packets of the answer.
+  virtual void on_step(std::uint32_t /*step*/, fsw::GpsTime /*time*/, std::span<const pil::Packet> /*inputs*/,
+                       std::span<const pil::Packet> /*outputs*/) {}
+  /// The same answer with what it cost.
+  virtual void on_answer(fsw::GpsTime /*time*/, const pil::StepResult& /*answer*/) {}
+
+  /// A burn of the timetable is about to happen.
+  virtual void on_prescribed(fsw::GpsTime /*time*/, const maneuver_command& /*command*/) {}
+  /// A burn has been executed or refused.
+  virtual void on_execution(fsw::GpsTime /*time*/, const executed_maneuver& /*executed*/) {}
+};
+
+}  // namespace vbar::app

@@ -1,0 +1,32 @@
+#pragma once
+// The true world as a run moves it: time goes on, one spacecraft flies.
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/types.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::app {
+
+class TrueWorld {
+ public:
+  TrueWorld() = default;
+  TrueWorld(const TrueWorld&) = delete;
+  TrueWorld& operator=(const TrueWorld&) = delete;
+  virtual ~TrueWorld() = default;
+
+  /// Not back in time.
+  virtual void advance_to(fsw::GpsTime time) = 0;
+  /// At the current time.
+  [[nodiscard]] virtual twins::TruthSnapshot snapshot(twins::TruthDetail detail) = 0;
+
+  // The spacecraft that flies.
+  /// Adds a velocity, m/s in its own RTN, at the current time.
+  virtual void apply_impulse_rtn(const fsw::Vector3& dv_rtn) = 0;
+  /// Turns it to a direction in its own RTN, a unit vector and its rate (1/s) at `time`, if its attitude is commanded.
+  virtual void point(fsw::GpsTime time, const fsw::Vector3& boresight_rtn, const fsw::Vector3& boresight_rate_rtn) = 0;
+
+  /// Wall-clock time spent in it so far, s.
+  [[nodiscard]] virtual double wall_s() const = 0;
+};
+
+}  // namespace vbar::app
