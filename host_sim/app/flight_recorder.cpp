@@ -11,11 +11,12 @@
 #include "host_sim/app/image_rows.h"
 #include "host_sim/app/image_truth.h"
 #include "host_sim/app/pose_truth.h"
-#include "host_sim/mission/telecommands.h"
+#include "host_sim/mission/data_directory.h"
 #include "host_sim/report/code_names.h"
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/navigation_errors.h"
 #include "host_sim/report/statistics.h"
+#include "host_sim/sensors/camera/camera_kind.h"
 
 namespace vbar::app {
 namespace {
@@ -61,8 +62,9 @@ FlightRecorder::FlightRecorder(const mission::Mission& mission, const mission::S
       record_(record),
       gallery_(mission, servicer),
       pose_gallery_(mission, servicer) {
-  if (servicer.camera && servicer.camera->navigation == mission::CameraNavigation::kPose)
-    known_target_ = mission::pose_configuration_of(mission, servicer);
+  const auto* const camera = mission::find_settings<sensors::CameraSensor>(servicer);
+  if (camera != nullptr && camera->use == sensors::CameraNavigation::kPose)
+    known_target_ = sensors::pose_configuration_of(mission, *camera, mission::data_directory());
 }
 
 void FlightRecorder::on_truth(fsw::GpsTime time, const PairTruth& truth) {
@@ -110,7 +112,9 @@ void FlightRecorder::on_waypoint(const mission::Waypoint& waypoint, const PairTr
 
 void FlightRecorder::on_measured(const twins::TruthSnapshot& truth) {
   constexpr std::size_t kKept = 64;
-  if (!servicer_.camera || (!measured_.empty() && measured_.back().time == truth.time)) return;
+  if (mission::find_settings<sensors::CameraSensor>(servicer_) == nullptr ||
+      (!measured_.empty() && measured_.back().time == truth.time))
+    return;
   measured_.push_back(truth);
   if (measured_.size() > kKept) measured_.pop_front();
 }

@@ -9,17 +9,17 @@
 
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/app/data_directory.h"
 #include "host_sim/app/packet_keepers.h"
 #include "host_sim/app/progress.h"
 #include "host_sim/app/simulation.h"
 #include "host_sim/app/stop_request.h"
+#include "host_sim/mission/data_directory.h"
 #include "host_sim/mission/extends.h"
-#include "host_sim/mission/load.h"
 #include "host_sim/report/html_report.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/text_file.h"
 #include "host_sim/report/waypoint_table.h"
+#include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
 namespace {
@@ -58,12 +58,12 @@ std::optional<std::string> fly(const mission::Mission& mission, const std::files
                                report::RunRecord& record) {
   PacketKeepers keepers(mission, folder);
   const std::unique_ptr<pil::FlightComputer> flight_computer = connect_flight_computer(flying_spacecraft(mission));
-  engine::SteadyWallClock wall;
+  const auto wall = mission::make_wall_clock(mission, sensors::installation());
   ProgressLine progress(mission.duration);
-  const Simulation::Surroundings surroundings{*flight_computer, wall, keepers.observers(),
+  const Simulation::Surroundings surroundings{*flight_computer, *wall, keepers.observers(),
                                               [&](fsw::Duration simulated) { progress.update(simulated); },
                                               stop_requested};
-  Simulation simulation(mission, data_directory(), surroundings, record);
+  Simulation simulation(mission, mission::data_directory(), surroundings, record);
   std::optional<std::string> trouble;
   try {
     if (!simulation.run()) trouble = "interrupted";
@@ -80,7 +80,7 @@ std::optional<std::string> fly(const mission::Mission& mission, const std::files
 }  // namespace
 
 int run_command(const RunOptions& options) {
-  const mission::Mission mission = mission::load_mission(options.mission, options.overrides);
+  const mission::Mission mission = sensors::load_mission(options.mission, options.overrides);
   static_cast<void>(flying_spacecraft(mission));  // refused before there is a folder
   const std::filesystem::path out =
       options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out;

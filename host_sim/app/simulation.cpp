@@ -9,7 +9,10 @@
 #include "host_sim/app/initial_attitudes.h"
 #include "host_sim/app/initial_orbits.h"
 #include "host_sim/app/make_twins.h"
-#include "host_sim/mission/telecommands.h"
+#include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/sensors/ideal_navigation/ideal_navigation_kind.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/camera/camera_sensor.h"
 
 namespace vbar::app {
@@ -35,11 +38,9 @@ const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
                                "\" has a flight computer too; one in a mission is supported");
     }
   }
-  if (!servicer.navigation && !servicer.gnss) {
-    throw std::runtime_error(
-        "spacecraft \"" + servicer.name +
-        "\" has neither sensors.navigation nor sensors.gnss; one of them is needed to navigate by");
-  }
+  if (servicer.observes().empty())
+    throw std::runtime_error("spacecraft \"" + servicer.name +
+                             "\" has no sensor that observes another spacecraft; one is needed to navigate by");
   if (!servicer.thruster) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no thruster");
   return servicer;
 }
@@ -68,6 +69,7 @@ Simulation::Simulation(const mission::Mission& mission, const std::filesystem::p
       servicer_(complete_servicer(mission)),
       surroundings_(surroundings),
       record_(record),
+      data_directory_(data_directory),
       recorder_(mission, servicer_, record),
       truth_(truth_settings(mission, data_directory)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
@@ -130,29 +132,10 @@ void Simulation::schedule_the_known() {
 
 /// The flight software is told its mission before its first step.
 void Simulation::queue_telecommands() {
-  const GpsTime now = mission_.start_time();
-  arrived_.push_back(make_packet(now, servicer_.number, 0, mission::gnc_configuration_of(mission_)));
-  if (servicer_.gnss) {
-    const auto configuration =
-        mission::navigation_configuration_of(mission_, servicer_, *truth_.data().earth_orientation);
-    arrived_.push_back(make_packet(now, servicer_.number, 0, configuration));
-  }
-  if (servicer_.camera) {
-    arrived_.push_back(make_packet(now, servicer_.number, 0, mission::camera_configuration_of(servicer_)));
-    if (servicer_.camera->navigation == mission::CameraNavigation::kPose) {
-      auto configuration = mission::pose_configuration_of(mission_, servicer_);
-      const PairTruth truth = pair_truth();
-      mission::add_apriori(mission_, servicer_, truth.servicer, truth.target, configuration);
-      arrived_.push_back(make_packet(now, servicer_.number, 0, configuration));
-    } else {
-      arrived_.push_back(make_packet(now, servicer_.number, 0, mission::angles_only_configuration_of(mission_)));
-      const PairTruth truth = pair_truth();
-      const auto apriori = mission::target_apriori_of(mission_, servicer_, truth.servicer, truth.target);
-      arrived_.push_back(make_packet(now, servicer_.number, 0, apriori));
-    }
-  }
-  arrived_.push_back(make_packet(now, servicer_.number, 0, mission::waypoint_table_of(mission_)));
-  arrived_.push_back(make_packet(now, servicer_.number, 0, mission::mode_command_of(mission_)));
+  const sensors::TelecommandContext context{
+      mission_, servicer_, data_directory_, *truth_.data().earth_orientation,
+      [this](std::string_view spacecraft) { return truth_.state(truth_.index_of(std::string(spacecraft))); }};
+  for (twins::Packet& packet : sensors::telecommands_of(context)) arrived_.push_back(std::move(packet));
 }
 
 void Simulation::schedule_measurement(std::size_t sensor, GpsTime from) {
@@ -344,14 +327,17 @@ void Simulation::summarise(double wall_s, bool complete) {
   summary.complete = complete;
   summary.flight_computer = mission::name_of(servicer_.flight_computer->target);
   summary.flight_software = surroundings_.flight_computer.description();
-  const bool is_by_pose = servicer_.camera && servicer_.camera->navigation == mission::CameraNavigation::kPose;
-  summary.navigation = is_by_pose         ? "pose"
-                       : servicer_.camera ? "angles_only"
-                       : servicer_.gnss   ? "gnss"
-                                          : std::string(mission::name_of(servicer_.navigation->source));
-  summary.gnss = servicer_.gnss ? "digital" : "";
-  summary.camera = servicer_.camera ? "digital" : "";
-  summary.static_floor_m = gnss_static_floor_m(mission_, servicer_);
+  const auto* const camera_settings = mission::find_settings<sensors::CameraSensor>(servicer_);
+  const auto* const gnss = mission::find_settings<sensors::GnssSensor>(servicer_);
+  const auto* const navigation = mission::find_settings<sensors::NavigationSensor>(servicer_);
+  const bool is_by_pose = camera_settings != nullptr && camera_settings->use == sensors::CameraNavigation::kPose;
+  summary.navigation = is_by_pose                   ? "pose"
+                       : camera_settings != nullptr ? "angles_only"
+                       : gnss != nullptr            ? "gnss"
+                                                    : navigation->source;
+  summary.gnss = gnss != nullptr ? gnss->source : "";
+  summary.camera = camera_settings != nullptr ? camera_settings->source : "";
+  summary.static_floor_m = sensors::gnss_static_floor_m(mission_, servicer_);
   // What a link delivers after the end is of no interest.
   summary.simulated_s = fsw::seconds(std::min(events_.now(), mission_.end_time()) - mission_.start_time());
   summary.wall_s = wall_s;

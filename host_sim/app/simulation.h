@@ -119,6 +119,7 @@ class Simulation {
   const mission::Spacecraft& servicer_;
   Surroundings surroundings_;
   report::RunRecord& record_;
+  std::filesystem::path data_directory_;
   FlightRecorder recorder_;
   truth::TruthModel truth_;
   std::size_t servicer_index_ = 0;

@@ -9,13 +9,13 @@ RecordedLog::RecordedLog(const std::filesystem::path& file, const Selection& sel
   for (PacketRecord& record : read_packet_log(file).records) {
     if (!record.to_flight) continue;
     const auto view = fsw::packets::parse_packet(record.packet);
-    if (!view.ok() || view.value().header.apid != selection.apid ||
-        view.value().header.spacecraft != selection.spacecraft)
+    if (!view.ok() || view.value().header.spacecraft != selection.spacecraft ||
+        std::ranges::find(selection.apids, view.value().header.apid) == selection.apids.end())
       continue;
     deliveries_.push_back({record.time, std::move(record.packet)});
   }
   if (deliveries_.empty())
-    throw std::runtime_error(file.string() + ": holds no packet of the sensor that it shall play");
+    throw std::runtime_error(file.string() + ": contains no packet of the sensor to be replayed");
   std::stable_sort(deliveries_.begin(), deliveries_.end(),
                    [](const Delivery& a, const Delivery& b) { return a.time < b.time; });
 }

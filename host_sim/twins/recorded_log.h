@@ -15,7 +15,7 @@ class RecordedLog final : public PacketSource {
   /// Which packets of the log it plays, of those that went to the flight software.
   struct Selection {
     std::uint8_t spacecraft = 0;
-    fsw::packets::Apid apid = fsw::packets::Apid::kIdealNavigation;
+    std::vector<fsw::packets::Apid> apids;
   };
 
   /// Throws std::runtime_error, as read_packet_log, and for a log without any such packet.
