@@ -160,7 +160,7 @@ TEST(Experiment1Mission, FliesACommandedCameraWithItsOwnGnss) {
   }
 }
 
-std::string text_of_file(const char* file) {
+std::string text_of_file(const std::string& file) {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   return text.str();
