@@ -4,5 +4,5 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 for preset in "$@"; do
   cmake --preset "$preset" --log-level=WARNING
-  cmake --build --preset "$preset" --parallel
+  cmake --build --preset "$preset"
 done

@@ -1,23 +1,40 @@
 #!/usr/bin/env bash
-# Installs every Debian 12 package that vbar builds, tests or runs with. Safe to run again.
+# Installs the Debian 12 packages that are missing; safe to run again.
+#   ci/install.sh fly      what builds and flies missions, in process and on the emulated Zynq
+#   ci/install.sh test     fly, and what compiles and runs the unit and integration tests, formats and lints
+#   ci/install.sh peers    the independent programs that tests compare with (half a gigabyte); their tests are skipped without
+#   ci/install.sh train    what trains the keypoint network
+# Several at once are possible; none means fly.
 set -euo pipefail
 
-packages=(
-  # build
-  build-essential cmake ninja-build ccache git ca-certificates pkg-config
-  clang clang-format clang-tidy libclang-rt-14-dev
-  # libraries of the host programs
-  libeigen3-dev liblcm-dev liblcm-bin libboost-dev libboost-system-dev liberfa-dev libgeographiclib-dev librandom123-dev
-  libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev libosmesa6-dev libassimp-dev libpng-dev
-  libgtest-dev libgmock-dev libbenchmark-dev
-  # flight computers: bare-metal ARM, ARM Linux, their emulators, and the mathematics library of the flight code
-  gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib newlib-source
-  g++-arm-linux-gnueabihf qemu-system-arm qemu-user
-  # independent programs the tests compare with
-  tshark iproute2 python3 python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev libopencv-dev
+fly=(
+  g++ cmake ninja-build python3-minimal
+  libeigen3-dev liblcm-dev liblcm-bin libboost-dev liberfa-dev libgeographiclib-dev librandom123-dev libtomlplusplus-dev
+  libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev libosmesa6-dev libassimp-dev libpng-dev
+  # The emulated Zynq, whose images link no C++ run-time library (its headers are enough; the library is 313 MB), and the
+  # sources of the mathematics library that flight code has on every target.
+  gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-dev newlib-source qemu-system-arm
 )
-# Only where another npm is not already there (a vendor's node conflicts with Debian's).
-command -v npm >/dev/null 2>&1 || packages+=(nodejs npm)
+test=(
+  "${fly[@]}"
+  ccache git ca-certificates libgtest-dev libgmock-dev libbenchmark-dev python3 iproute2
+  clang clang-format clang-tidy libclang-rt-14-dev
+  g++-arm-linux-gnueabihf qemu-user
+)
+peers=(python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev libopencv-dev tshark)
+train=("${fly[@]}" python3 python3-numpy python3-torch)
+
+# The wire formats' peer is an npm package. Only where another npm is not already there: a vendor's node conflicts with
+# Debian's.
+command -v npm >/dev/null 2>&1 || peers+=(nodejs npm)
+
+packages=()
+for group in "${@:-fly}"; do
+  case $group in
+    fly | test | peers | train) declare -n list=$group && packages+=("${list[@]}") ;;
+    *) echo "ci/install.sh: '$group' is not a group; accepted: fly, test, peers, train" >&2 && exit 2 ;;
+  esac
+done
 
 sudo=()
 if [[ $(id -u) -ne 0 ]]; then sudo=(sudo); fi

@@ -1,26 +1,28 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds for every target and runs all tests: short arcs where a whole mission would be long.
-# The whole missions are flown by ci/verify.sh.
+# The whole missions are flown by ci/verify.sh; the first verdict on a change comes from ci/quick.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 started=$SECONDS
 say() { printf '\n== %s (%d s)\n' "$1" $((SECONDS - started)); }
 
 say "packages"
-ci/install.sh
+ci/install.sh test peers
+timeout 120 tests/peers/wire_formats/install_npm.sh || echo "npm package cobs not fetched: its test will be skipped"
+say "format"
+ci/format.sh
 say "build for this computer, for the bare Zynq and for Linux on the Zynq"
 ci/build.sh host zynq zynq-linux
 say "tests"
-timeout 120 tests/peers/wire_formats/install_npm.sh || echo "npm package cobs not fetched: its test will be skipped"
 ctest --preset host --parallel 2
+say "mutants of kernels: the tests of their modules must fail"
+ci/mutate.sh
 say "the second compiler, all warnings errors, and unit tests under its address and undefined-behaviour sanitizers"
 cmake --preset asan --log-level=WARNING
-cmake --build --preset asan --parallel --target flight_code vbar unit_tests
-ctest --preset asan --parallel 2 --label-regex unit
-say "a minute of fuzzing: the decoder of receiver bytes"
-cmake --preset fuzz --log-level=WARNING
-cmake --build --preset fuzz --parallel
-found=$(mktemp -d)
-trap 'rm -rf "$found"' EXIT
-build/fuzz/tests/fuzz/vbar_fuzz_receiver -max_total_time=60 -print_final_stats=1 -verbosity=0 "$found" tests/fuzz/corpus/receiver
+cmake --build --preset asan --target flight_code vbar unit_tests
+ctest --preset asan --parallel 2 --label-regex '^unit$'
+say "fuzzing: every decoder and loader for a few seconds"
+ci/fuzz.sh 5
+say "clang-tidy of the changed files"
+ci/tidy.sh --changed
 say "all passed"

@@ -101,7 +101,7 @@ def section(build, root, runs, table):
         "",
         "A bearing counts for another object if another spacecraft is nearer to it than the target. Where a decoy passes within two"
         " pixels of the target, both are one object: that one is the right one, but its centre lies between them, and the filter's"
-        " gate has to refuse it (column `used` of images.csv).",
+        " gate has to refuse it (column `fate` of images.csv).",
         "",
         "With the printed node, dark for 34 minutes each orbit, seeds 1 to 5 (limits doubled):",
         "",

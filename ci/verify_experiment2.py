@@ -12,11 +12,11 @@ AS_PRINTED_SEEDS = range(1, 4)
 
 
 def nis_share(folder):
-    """Sum of NIS over the sum of its degrees of freedom, of the images folded in."""
+    """Sum of NIS over the sum of its degrees of freedom, of the images whose keypoints navigation used."""
     total, degrees = 0.0, 0.0
     with open(folder / "poses.csv", newline="") as file:
         for row in csv.DictReader(file):
-            if row["fate"] == "2" and float(row["nis_degrees"]) > 0:
+            if row["fate"] == "keypoints" and float(row["nis_degrees"]) > 0:
                 total += float(row["nis"])
                 degrees += float(row["nis_degrees"])
     return total / degrees if degrees else float("nan")

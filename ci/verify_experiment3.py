@@ -7,7 +7,7 @@ from flights import fly
 
 MISSION = "missions/experiment3.toml"
 SEEDS = range(1, 11)
-PROPAGATED, FIXED = 1, 4  # navigation_source
+PROPAGATED, FIXED = "propagated", "gnss_fixed"  # navigation_source
 SILENCE_BEGIN_S, SILENCE_S = 1800.0, 600.0
 CASES = {
     "nominal": [],
@@ -26,14 +26,14 @@ def rows_of(path):
 
 
 def relative(row, kind, unit):
-    return [float(row[f"relative_{kind}_rtn_{axis}_{unit}"]) for axis in "rtn"]
+    return [float(row[f"relative_{kind}_rtn_{axis}_{unit}"] or "nan") for axis in "rtn"]
 
 
 def judge(summary, folder):
     """The figures of one run: errors in m and m/s from the first fix on, times in s after the start."""
     truth, estimates = rows_of(folder / "truth.csv"), rows_of(folder / "estimate.csv")
     start = float(truth[0]["time_s"])
-    sources = [(float(row["time_s"]) - start, int(row["navigation_source"])) for row in estimates]
+    sources = [(float(row["time_s"]) - start, row["navigation_source"]) for row in estimates]
     first_fix = min((time for time, source in sources if source == FIXED), default=math.inf)
     silence_end = SILENCE_BEGIN_S + SILENCE_S
     position, velocity = [], []

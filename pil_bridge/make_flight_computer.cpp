@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "pil_bridge/byte_channels.h"
+#include "host_sim/io/byte_channels.h"
+#include "host_sim/io/udp_socket.h"
 #include "pil_bridge/in_process.h"
 #include "pil_bridge/remote_computer.h"
 #include "pil_bridge/stream_transport.h"
@@ -50,7 +51,7 @@ constexpr int kPortAttempts = 3;
 /// The two ends of a link to a program that is yet to be started.
 struct ChildLink {
   std::unique_ptr<FrameTransport> transport;
-  FileDescriptor child_end;
+  io::FileDescriptor child_end;
   std::vector<std::string> flight_arguments;  ///< how vbar_flight is told to use its end
 };
 
@@ -61,7 +62,7 @@ std::unique_ptr<FrameTransport> finish(std::unique_ptr<FrameTransport> transport
 }
 
 std::unique_ptr<FrameTransport> finish(std::unique_ptr<ByteChannel> channel, const FlightComputerOptions& options) {
-  if (options.paced_bits_per_s > 0.0) channel = paced(std::move(channel), options.paced_bits_per_s);
+  if (options.paced_bits_per_s > 0.0) channel = io::paced(std::move(channel), options.paced_bits_per_s);
   if (options.faults.any_byte_fault()) channel = with_byte_faults(std::move(channel), options.faults);
   return finish(std::make_unique<StreamTransport>(std::move(channel)), options);
 }
@@ -70,20 +71,20 @@ ChildLink make_child_link(const FlightComputerOptions& options) {
   const std::string fd = std::to_string(kChildLinkFd);
   switch (options.link) {
     case LinkKind::kSerial: {
-      auto [ours, theirs] = make_socket_pair();
-      return {finish(adopt_socket(std::move(ours), "stream socket"), options), std::move(theirs), {"--stream", fd}};
+      auto [ours, theirs] = io::make_socket_pair();
+      return {finish(io::adopt_socket(std::move(ours), "stream socket"), options), std::move(theirs), {"--stream", fd}};
     }
     case LinkKind::kPty: {
-      Pty pty = make_pty();
-      return {finish(adopt_pty(std::move(pty.master), "pseudo-terminal " + pty.slave_path), options),
+      io::Pty pty = io::make_pty();
+      return {finish(io::adopt_pty(std::move(pty.master), "pseudo-terminal " + pty.slave_path), options),
               std::move(pty.slave),
               {"--stream", fd}};
     }
     case LinkKind::kUdp:
       break;
   }
-  BoundUdpSocket ours = bind_udp_loopback();
-  BoundUdpSocket theirs = bind_udp_loopback();
+  io::BoundUdpSocket ours = io::bind_udp_loopback();
+  io::BoundUdpSocket theirs = io::bind_udp_loopback();
   return {finish(make_udp_transport(std::move(ours.socket), "127.0.0.1", theirs.port), options),
           std::move(theirs.socket),
           {"--datagram", fd, "--peer", "127.0.0.1:" + std::to_string(ours.port)}};
@@ -101,17 +102,17 @@ RemoteParts parts_for(const FlightComputerOptions& options) {
   return parts;
 }
 
-std::unique_ptr<ChildProcess> start(const std::vector<std::string>& arguments,
-                                    std::vector<FileDescriptor> inherited = {}) {
+std::unique_ptr<io::ChildProcess> start(const std::vector<std::string>& arguments,
+                                        std::vector<io::FileDescriptor> inherited = {}) {
   try {
-    return std::make_unique<ChildProcess>(arguments, std::move(inherited));
+    return std::make_unique<io::ChildProcess>(arguments, std::move(inherited));
   } catch (const std::system_error& error) {
     throw FlightComputerError(error.what());
   }
 }
 
-std::vector<FileDescriptor> only(FileDescriptor descriptor) {
-  std::vector<FileDescriptor> list;
+std::vector<io::FileDescriptor> only(io::FileDescriptor descriptor) {
+  std::vector<io::FileDescriptor> list;
   list.push_back(std::move(descriptor));
   return list;
 }
@@ -153,7 +154,7 @@ std::unique_ptr<FlightComputer> make_zynq_qemu_over_udp(const FlightComputerOpti
                                                         const std::string& image) {
   for (int attempt = 1;; ++attempt) {
     // Found free, given back, and taken by the emulator: in between another program may take it, so try again then.
-    const std::uint16_t port = bind_udp_loopback().port;
+    const std::uint16_t port = io::bind_udp_loopback().port;
     RemoteParts parts = parts_for(options);
     parts.icount_shift = options.icount_shift;
     parts.process = start(zynq_qemu_over_udp(image, options.icount_shift, port));
@@ -176,11 +177,11 @@ std::unique_ptr<FlightComputer> make_zynq_qemu(const FlightComputerOptions& opti
   const std::string image = find_image(options, "../zynq/vbar_zynq7000.elf", "zynq");
   if (options.link == LinkKind::kPty) throw FlightComputerError("zynq_qemu takes link serial or udp, not pty");
   if (options.link == LinkKind::kUdp) return make_zynq_qemu_over_udp(options, image);
-  auto [ours, theirs] = make_socket_pair();
+  auto [ours, theirs] = io::make_socket_pair();
   RemoteParts parts = parts_for(options);
   parts.icount_shift = options.icount_shift;
   parts.process = start(zynq_qemu_over_serial(image, options.icount_shift, kChildLinkFd), only(std::move(theirs)));
-  parts.transport = finish(adopt_socket(std::move(ours), "the emulator's UART0"), options);
+  parts.transport = finish(io::adopt_socket(std::move(ours), "the emulator's UART0"), options);
   return std::make_unique<RemoteComputer>(std::move(parts));
 }
 
@@ -210,12 +211,12 @@ std::unique_ptr<FrameTransport> open_board_link(const FlightComputerOptions& opt
     }
     return finish(make_udp_transport(host, number, options.local_udp_port), options);
   }
-  if (endpoint.starts_with(kUnix)) return finish(connect_unix(endpoint.substr(kUnix.size()), deadline), options);
+  if (endpoint.starts_with(kUnix)) return finish(io::connect_unix(endpoint.substr(kUnix.size()), deadline), options);
   if (endpoint.starts_with(kTcp)) {
     const auto [host, port] = split_endpoint(endpoint, endpoint.substr(kTcp.size()));
-    return finish(connect_tcp(host, port, deadline), options);
+    return finish(io::connect_tcp(host, port, deadline), options);
   }
-  return finish(open_serial(endpoint, options.baud), options);
+  return finish(io::open_serial(endpoint, options.baud), options);
 }
 
 std::unique_ptr<FlightComputer> make_board(const FlightComputerOptions& options) {

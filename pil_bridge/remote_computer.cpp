@@ -70,7 +70,7 @@ LinkStatistics RemoteComputer::statistics() const {
           .frames_resent = host.frames_resent + board_counters_.frames_resent,
           .frames_rejected = host.frames_rejected + line.frames_rejected + board_counters_.frames_rejected,
           .frames_duplicated = host.frames_duplicated + board_counters_.frames_duplicated,
-          .strangers_ignored = line.strangers_ignored,
+          .strangers_ignored = line.foreign_datagrams,
           .polls = host.polls};
 }
 
@@ -88,7 +88,7 @@ void RemoteComputer::close() {
 void RemoteComputer::fail(const std::string& when, const std::string& cause) {
   failure_ = "flight computer " + parts_.name + " failed " + when + ": " + cause;
   if (parts_.process) {
-    ChildProcess& process = *parts_.process;
+    io::ChildProcess& process = *parts_.process;
     if (process.wait_for_end(kExplainPatience)) {
       failure_ += "; " + process.program() + ": " + process.status_text();
     } else {

@@ -6,16 +6,16 @@
 #include <optional>
 #include <string>
 
+#include "host_sim/io/child_process.h"
 #include "pil_bridge/flight_computer.h"
-#include "pil_bridge/process.h"
 #include "pil_bridge/step_barrier.h"
 #include "pil_bridge/transport.h"
 
 namespace vbar::pil {
 
 struct RemoteParts {
-  std::string name;                       ///< "zynq_qemu over serial", for messages
-  std::unique_ptr<ChildProcess> process;  ///< what runs the flight computer, if this program started it
+  std::string name;                           ///< "zynq_qemu over serial", for messages
+  std::unique_ptr<io::ChildProcess> process;  ///< what runs the flight computer, if this program started it
   std::unique_ptr<FrameTransport> transport;
   BarrierTiming timing;
   std::uint8_t spacecraft = 0;

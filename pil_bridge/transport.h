@@ -1,45 +1,26 @@
 #pragma once
-// The two layers under the step barrier: a byte channel (a serial line or a stream socket), and a frame transport,
-// which is either COBS over such a channel or datagrams. One thread; calls return by a deadline.
+// The layer under the step barrier: a frame transport, which is either COBS over a byte channel (host_sim/io) or
+// datagrams. One thread; calls return by a deadline.
 
 #include <chrono>
 #include <cstdint>
 #include <span>
-#include <stdexcept>
 #include <string>
+
+#include "host_sim/io/byte_channel.h"
 
 namespace vbar::pil {
 
-using Clock = std::chrono::steady_clock;
-
+using io::ByteChannel;
+using io::Clock;
 /// The link to the flight computer does not work any more, or nobody answers on it.
-class LinkError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-class ByteChannel {
- public:
-  ByteChannel() = default;
-  ByteChannel(const ByteChannel&) = delete;
-  ByteChannel& operator=(const ByteChannel&) = delete;
-  virtual ~ByteChannel() = default;
-
-  /// Writes all of `bytes`. Throws LinkError if the line is closed or does not take them by `deadline`.
-  virtual void write(std::span<const std::uint8_t> bytes, Clock::time_point deadline) = 0;
-
-  /// What has arrived: at least one byte, or none if nothing came by `deadline`. Valid until the next call. Throws
-  /// LinkError.
-  virtual std::span<const std::uint8_t> read(Clock::time_point deadline) = 0;
-
-  [[nodiscard]] virtual std::string description() const = 0;
-};
+using LinkError = io::ChannelError;
 
 struct TransportCounters {
-  std::uint64_t bytes_sent = 0;       ///< as coded for the wire
-  std::uint64_t bytes_received = 0;   ///< likewise
-  std::uint64_t frames_rejected = 0;  ///< dropped for breaking the line coding
-  std::uint64_t strangers_ignored = 0;
+  std::uint64_t bytes_sent = 0;         ///< as coded for the wire
+  std::uint64_t bytes_received = 0;     ///< likewise
+  std::uint64_t frames_rejected = 0;    ///< dropped for breaking the line coding
+  std::uint64_t foreign_datagrams = 0;  ///< from other addresses than the peer's, discarded
 };
 
 class FrameTransport {

@@ -9,10 +9,25 @@ namespace {
 
 /// Number of telemetry_pose.keypoint_fate.
 std::int8_t keypoint_fate(const pose::Keypoint& seen, const navigation::KeypointUpdate& update) {
-  if (update.accepted) return 2;
-  if (update.is_usable) return 1;
-  return seen.is_usable ? 3 : 0;
+  if (update.accepted) return telemetry_pose::kKeypointUsed;
+  if (update.is_usable) return telemetry_pose::kKeypointRejected;
+  return seen.is_usable ? telemetry_pose::kKeypointWithoutFilter : telemetry_pose::kKeypointUnusable;
 }
+
+template <class Enumerator>
+constexpr bool is_reported_as(Enumerator enumerator, int constant) {
+  return static_cast<int>(enumerator) == constant;
+}
+
+// The last of each list stands for all: the lists of vbar.lcm are those of the code.
+static_assert(is_reported_as(Status::kNotReady, telemetry_control::kStatusNotReady));
+static_assert(is_reported_as(kFaultClock, telemetry_health::kFaultClock));
+static_assert(is_reported_as(NavigationSource::kPose, telemetry_navigation::kSourcePose));
+static_assert(is_reported_as(gnss::Obstacle::kSearch, telemetry_gnss::kObstacleSearch));
+static_assert(is_reported_as(angles_only::SightingStatus::kNoOrbit, telemetry_image::kStatusOwnOrbitUnknown));
+static_assert(is_reported_as(angles_only::StarMethod::kPredicted, telemetry_image::kStarMethodPrediction));
+static_assert(is_reported_as(angles_only::ObjectKind::kHotPixel, telemetry_objects::kKindHotPixel));
+static_assert(is_reported_as(pose::SightingStatus::kInvalid, telemetry_pose::kStatusInvalid));
 
 }  // namespace
 

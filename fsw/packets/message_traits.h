@@ -1,34 +1,13 @@
 #pragma once
 // Which messages are packets: the compile-time list, the APID of each, and whether its numbers are finite.
-// A new message is a struct in vbar.lcm, an APID in packet.h, a line in VBAR_FOR_EACH_MESSAGE and an overload of
-// all_finite.
+// A new message is a struct in vbar.lcm, an APID in packet.h and a line in VBAR_FOR_EACH_MESSAGE.
 
-#include <vbar/angles_only_configuration.hpp>
-#include <vbar/attitude.hpp>
-#include <vbar/camera_configuration.hpp>
-#include <vbar/crosslink_attitude.hpp>
-#include <vbar/crosslink_gnss_bytes.hpp>
-#include <vbar/executed_maneuver.hpp>
-#include <vbar/gnc_configuration.hpp>
-#include <vbar/gnss_bytes.hpp>
-#include <vbar/ideal_navigation.hpp>
-#include <vbar/image_tile.hpp>
-#include <vbar/maneuver_command.hpp>
-#include <vbar/mode_command.hpp>
-#include <vbar/navigation_configuration.hpp>
-#include <vbar/pointing_command.hpp>
-#include <vbar/pose_configuration.hpp>
-#include <vbar/step_report.hpp>
-#include <vbar/target_apriori.hpp>
-#include <vbar/telemetry_control.hpp>
-#include <vbar/telemetry_gnss.hpp>
-#include <vbar/telemetry_health.hpp>
-#include <vbar/telemetry_image.hpp>
-#include <vbar/telemetry_navigation.hpp>
-#include <vbar/telemetry_objects.hpp>
-#include <vbar/telemetry_pose.hpp>
-#include <vbar/tick.hpp>
-#include <vbar/waypoint_table.hpp>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include <vbar/fields.h>
 
 #include "fsw/packets/packet.h"
 
@@ -67,13 +46,11 @@ namespace vbar::fsw::packets {
 template <class Message>
 struct MessageTraits;
 
-#define VBAR_MESSAGE(type, enumerator)                              \
-  template <>                                                       \
-  struct MessageTraits<type> {                                      \
-    static constexpr Apid kApid = Apid::enumerator;                 \
-  };                                                                \
-  /** False if any floating-point field is a NaN or an infinity. */ \
-  [[nodiscard]] bool all_finite(const type& message);
+#define VBAR_MESSAGE(type, enumerator)              \
+  template <>                                       \
+  struct MessageTraits<type> {                      \
+    static constexpr Apid kApid = Apid::enumerator; \
+  };
 VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)
 #undef VBAR_MESSAGE
 
@@ -83,6 +60,36 @@ constexpr void for_each_message(Visitor&& visit) {
 #define VBAR_MESSAGE(type, enumerator) visit.template operator()<type>();
   VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)
 #undef VBAR_MESSAGE
+}
+
+/// The same for every message of telemetry.
+template <class Visitor>
+constexpr void for_each_telemetry(Visitor&& visit) {
+  for_each_message([&]<class Message>() {
+    if constexpr (is_telemetry(MessageTraits<Message>::kApid)) visit.template operator()<Message>();
+  });
+}
+
+/// False if any floating-point field, inner messages and all elements included, is a NaN or an infinity. By the bits:
+/// no compiler option for fast mathematics can make this always true.
+template <class Value>
+[[nodiscard]] bool all_finite(const Value& value) {
+  if constexpr (std::is_array_v<Value>) {
+    for (const auto& element : value) {
+      if (!all_finite(element)) return false;
+    }
+    return true;
+  } else if constexpr (std::is_floating_point_v<Value>) {
+    constexpr std::uint64_t kExponentMask = 0x7FF0'0000'0000'0000U;
+    return (std::bit_cast<std::uint64_t>(static_cast<double>(value)) & kExponentMask) != kExponentMask;
+  } else if constexpr (std::is_class_v<Value>) {
+    bool finite = true;
+    visit_fields(value,
+                 [&finite](const Field& /*field*/, const auto& member) { finite = finite && all_finite(member); });
+    return finite;
+  } else {
+    return true;
+  }
 }
 
 /// The message's name as vbar.lcm has it (also its LCM type name); null for an APID that carries none.

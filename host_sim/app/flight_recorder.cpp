@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -12,10 +13,6 @@
 #include "host_sim/app/image_truth.h"
 #include "host_sim/app/pose_truth.h"
 #include "host_sim/mission/data_directory.h"
-#include "host_sim/report/code_names.h"
-#include "host_sim/report/maneuver_series.h"
-#include "host_sim/report/navigation_errors.h"
-#include "host_sim/report/statistics.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 
 namespace vbar::app {
@@ -25,7 +22,6 @@ using fsw::Vector3;
 using fsw::Vector6;
 using fsw::orbit::CartesianState;
 using fsw::orbit::QnsElements;
-using report::magnitude;
 
 report::Triple triple(const Vector3& v) {
   return {v.x(), v.y(), v.z()};
@@ -39,6 +35,15 @@ report::Sextuple sextuple(const Vector6& v) {
 }
 report::Sextuple sextuple(const double (&v)[6]) {
   return {v[0], v[1], v[2], v[3], v[4], v[5]};
+}
+
+/// What navigation does not know is empty in the table.
+void forget_state(report::EstimateRow& row) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  row.relative_position_rtn.fill(kUnknown);
+  row.relative_velocity_rtn.fill(kUnknown);
+  row.sigma_rtn.fill(kUnknown);
+  row.a_roe_mean_m.fill(kUnknown);
 }
 
 double distance(const report::Triple& a, const report::Triple& b) {
@@ -131,6 +136,7 @@ void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer)
     if (packet.value().header.apid == fsw::packets::Apid::kManeuverCommand) {
       on_command(time, packet.value());
     } else {
+      on_any_telemetry(row.time_s, packet.value());
       on_telemetry(row, told, packet.value());
     }
   }
@@ -139,6 +145,16 @@ void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer)
   record_.estimates.push_back(row);
 }
 
+/// Every message of telemetry, whatever it is.
+void FlightRecorder::on_any_telemetry(double step_time_s, const fsw::packets::PacketView& packet) {
+  const auto record = [&]<class Message>(std::vector<report::TelemetryRow<Message>>& rows) {
+    if (const auto message = fsw::packets::decode<Message>(packet); message.ok())
+      rows.push_back({mission_seconds(packet.header.time), step_time_s, message.value()});
+  };
+  std::apply([&](auto&... rows) { (record(rows), ...); }, record_.telemetry);
+}
+
+/// What has a table with the truth beside it.
 void FlightRecorder::on_telemetry(report::EstimateRow& row, ImageTelemetry& told,
                                   const fsw::packets::PacketView& packet) {
   if (const auto navigation = fsw::packets::decode<telemetry_navigation>(packet); navigation.ok()) {
@@ -150,6 +166,7 @@ void FlightRecorder::on_telemetry(report::EstimateRow& row, ImageTelemetry& told
     row.relative_velocity_rtn = triple(m.relative_velocity_rtn);
     row.sigma_rtn = sextuple(m.sigma_rtn);
     row.a_roe_mean_m = sextuple(m.a_roe_mean_m);
+    if (m.valid == 0) forget_state(row);
   } else if (const auto control = fsw::packets::decode<telemetry_control>(packet); control.ok()) {
     const telemetry_control& m = control.value();
     row.a_roe_desired_m = sextuple(m.a_roe_desired_m);
@@ -166,7 +183,9 @@ void FlightRecorder::on_telemetry(report::EstimateRow& row, ImageTelemetry& told
     row.passive_safety_distance_m = m.passive_safety_distance_m;
     row.commanded_dv_mps = m.commanded_dv;
   } else if (const auto gnss = fsw::packets::decode<telemetry_gnss>(packet); gnss.ok()) {
-    record_.gnss.push_back(gnss_row(row.time_s, gnss.value()));
+    auto& gnss_row = record_.gnss.emplace_back(report::row_of<report::GnssRow>(gnss.value()));
+    gnss_row.time_s = row.time_s;
+    if (gnss_row.epoch_gps_ns != 0) gnss_row.epoch_s = mission_seconds(fsw::GpsTime{gnss_row.epoch_gps_ns});
   } else if (const auto image = fsw::packets::decode<telemetry_image>(packet); image.ok()) {
     told.exposure = packet.header.time;
     told.image = image.value();
@@ -179,12 +198,14 @@ void FlightRecorder::on_telemetry(report::EstimateRow& row, ImageTelemetry& told
 }
 
 void FlightRecorder::on_image(const report::EstimateRow& step, const ImageTelemetry& told) {
-  report::ImageRow row = image_row(mission_seconds(told.exposure), step.time_s, *told.image);
+  auto row = report::row_of<report::ImageRow>(*told.image);
+  row.time_s = mission_seconds(told.exposure);
+  row.step_time_s = step.time_s;
   const telemetry_objects* const objects =
       told.objects && told.objects->image == told.image->image ? &*told.objects : nullptr;
   const auto truth = std::ranges::find(measured_, told.exposure, &twins::TruthSnapshot::time);
   if (truth != measured_.end()) add_truth(row, *told.image, objects, mission_, servicer_, *truth);
-  if (row.used != 0) append_residuals(row, record_.residuals);
+  if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
   if (objects != nullptr) append_objects(row.time_s, *objects, record_.objects);
   record_.images.push_back(row);
   gallery_.on_image({told.exposure, row, objects}, record_.gallery);
@@ -192,43 +213,15 @@ void FlightRecorder::on_image(const report::EstimateRow& step, const ImageTeleme
 
 void FlightRecorder::on_pose(const report::EstimateRow& step, const ImageTelemetry& told) {
   const double exposure_s = mission_seconds(told.exposure);
-  report::PoseRow row = pose_row(exposure_s, step.time_s, *told.pose);
+  auto row = report::row_of<report::PoseRow>(*told.pose);
+  row.time_s = exposure_s;
+  row.step_time_s = step.time_s;
   append_keypoints(exposure_s, *told.pose, record_.keypoints);
   const auto truth = std::ranges::find(measured_, told.exposure, &twins::TruthSnapshot::time);
   if (truth != measured_.end() && known_target_)
     add_truth(row, record_.keypoints, *told.pose, known_target_->keypoints_body_m, mission_, servicer_, *truth);
   record_.poses.push_back(row);
   pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
-}
-
-report::GnssRow FlightRecorder::gnss_row(double time_s, const telemetry_gnss& m) const {
-  report::GnssRow row;
-  row.time_s = time_s;
-  row.step = m.step;
-  if (m.epoch_gps_ns != 0) row.epoch_s = mission_seconds(fsw::GpsTime{m.epoch_gps_ns});
-  row.pairs = m.pairs;
-  row.alone = m.alone;
-  row.too_late = m.too_late;
-  row.no_solution = m.no_solution;
-  row.tracked = m.tracked;
-  row.fixed = m.fixed;
-  row.fixes = m.fixes;
-  row.releases = m.releases;
-  row.slips = m.slips;
-  row.restarts = m.restarts;
-  row.obstacle = report::obstacle_name(m.obstacle);
-  row.success_rate = m.success_rate;
-  row.ratio = m.ratio;
-  row.codes_used = m.codes_used;
-  row.phases_used = m.phases_used;
-  row.codes_refused = m.codes_refused;
-  row.phases_refused = m.phases_refused;
-  row.code_nis = m.code_nis;
-  row.phase_nis = m.phase_nis;
-  std::ranges::copy(m.covariance_rtn, row.covariance_rtn.begin());
-  row.messages = m.messages;
-  row.messages_refused = m.messages_refused;
-  return row;
 }
 
 void FlightRecorder::on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet) {
@@ -260,61 +253,7 @@ void FlightRecorder::on_execution(fsw::GpsTime time, const executed_maneuver& ex
 }
 
 void FlightRecorder::finish() {
-  finish_navigation_errors();
-  finish_legs();
   gallery_.finish(record_.gallery);
-  summarise_images(record_.images, servicer_.observes(), record_.summary);
-  summarise_poses(record_, record_.summary);
-}
-
-// Statistics of carrier-phase navigation are those after the first fix, as the paper's are.
-void FlightRecorder::finish_navigation_errors() {
-  const std::optional<double> fix_s = report::first_fix(record_);
-  std::vector<double> position_errors, velocity_errors, nees;
-  for (const report::NavigationError& error : report::navigation_errors(record_)) {
-    const double position_error = magnitude(error.position_rtn);
-    const double velocity_error = magnitude(error.velocity_rtn);
-    for (report::WaypointRow& waypoint : record_.waypoints) {
-      if (waypoint.time_s != error.time_s) continue;
-      waypoint.navigation_error_m = position_error;
-      waypoint.navigation_velocity_error_mps = velocity_error;
-    }
-    if (fix_s && error.time_s < *fix_s) continue;
-    position_errors.push_back(position_error);
-    velocity_errors.push_back(velocity_error);
-    if (error.nees) nees.push_back(*error.nees);
-  }
-  report::Summary& summary = record_.summary;
-  if (fix_s) summary.first_fix_s = *fix_s - fsw::seconds(mission_.start);
-  if (!nees.empty()) summary.navigation_nees = report::statistics(nees).mean;
-  if (position_errors.empty()) return;
-  summary.navigation_error_m = report::statistics(position_errors);
-  summary.navigation_velocity_error_mps = report::statistics(velocity_errors);
-}
-
-// A burn belongs to the leg of the waypoint it was commanded for: the last burn of a fuel-optimal leg stands at the
-// waypoint's own time and stops the arrival.
-void FlightRecorder::finish_legs() {
-  report::Summary& summary = record_.summary;
-  summary.dv_mps = 0.0;
-  summary.maneuvers = 0;
-  for (const report::ManeuverRow& maneuver : record_.maneuvers) {
-    if (!maneuver.accepted) continue;
-    const double dv = magnitude(maneuver.executed_dv_rtn_mps);
-    summary.dv_mps += dv;
-    ++summary.maneuvers;
-    const auto leg = std::ranges::find_if(record_.waypoints, [&](const report::WaypointRow& waypoint) {
-      return maneuver.waypoint_index == waypoint.index;
-    });
-    if (leg == record_.waypoints.end()) continue;
-    leg->leg_dv_mps += dv;
-    ++leg->leg_maneuvers;
-  }
-  double cumulative = 0.0;
-  for (report::WaypointRow& waypoint : record_.waypoints) {
-    cumulative += waypoint.leg_dv_mps;
-    waypoint.cumulative_dv_mps = cumulative;
-  }
 }
 
 }  // namespace vbar::app

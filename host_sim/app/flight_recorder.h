@@ -64,7 +64,7 @@ class FlightRecorder {
   /// What became of a command.
   void on_execution(fsw::GpsTime time, const executed_maneuver& executed);
 
-  /// Completes what can only be known at the end: errors of navigation, fuel by leg.
+  /// Completes what can only be known at the end: the gallery.
   void finish();
 
  private:
@@ -77,14 +77,12 @@ class FlightRecorder {
     std::optional<telemetry_pose> pose;
   };
 
+  void on_any_telemetry(double step_time_s, const fsw::packets::PacketView& packet);
   void on_telemetry(report::EstimateRow& row, ImageTelemetry& told, const fsw::packets::PacketView& packet);
   void on_image(const report::EstimateRow& step, const ImageTelemetry& told);
   void on_pose(const report::EstimateRow& step, const ImageTelemetry& told);
-  [[nodiscard]] report::GnssRow gnss_row(double time_s, const telemetry_gnss& m) const;
   void on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet);
   void add_maneuver(fsw::GpsTime command_time, fsw::GpsTime burn_time, const maneuver_command& command);
-  void finish_navigation_errors();
-  void finish_legs();
 
   const mission::Mission& mission_;
   const mission::Spacecraft& servicer_;

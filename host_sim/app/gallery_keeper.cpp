@@ -35,7 +35,7 @@ std::string range_text(double range_m) {
 std::string caption(const report::ImageRow& row) {
   std::string text = row.range_m ? "true range " + range_text(*row.range_m) + ", " : "";
   text += fmt::format("{} objects, {} stars, {}", row.objects, row.stars, report::sighting_name(row.status));
-  if (has_bearing(row)) text += row.used != 0 ? ", used" : ", refused by the filter";
+  if (has_bearing(row)) text += row.fate >= telemetry_image::kEditFilter ? ", used" : ", refused by the filter";
   if (row.tiles_missing > 0) text += fmt::format(", {} tiles missing", row.tiles_missing);
   return text;
 }

@@ -8,10 +8,6 @@
 
 namespace vbar::app {
 
-/// Times are seconds after the mission's epoch: the exposure's, and that of the step that told of it. The truth stays
-/// out.
-[[nodiscard]] report::ImageRow image_row(double exposure_s, double step_s, const telemetry_image& image);
-
 void append_objects(double exposure_s, const telemetry_objects& objects, std::vector<report::ObjectRow>& rows);
 
 /// The residuals of an image's bearing, an axis of the camera each, in arcseconds.

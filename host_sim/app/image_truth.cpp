@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 
 #include "host_sim/app/true_camera.h"
-#include "host_sim/report/statistics.h"
 
 namespace vbar::app {
 namespace {
@@ -18,8 +17,6 @@ constexpr double kArcsecond = M_PI / 648000.0;
 constexpr double kRadius_m = 0.6;
 /// About three pixels of the Optical Stimulator: a bearing farther off is one of something else.
 constexpr double kSameObject_rad = 100.0 * kArcsecond;
-/// The target, 0.7 m, is a pixel of 35 arcsec there.
-constexpr double kUnresolvedRange_m = 5000.0;
 
 Vector3 vector(const double (&v)[3]) {
   return {v[0], v[1], v[2]};
@@ -86,11 +83,11 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
   const Vector3 los_eci = camera.towards(*target);
   row.range_m = los_eci.norm();
   const Vector3 bearing_eci = vector(image.bearing_eci);
-  if (image.status == 0 && bearing_eci.norm() > 0.5) {
+  if (image.status == telemetry_image::kStatusBearing && bearing_eci.norm() > 0.5) {
     add_bearing_error(row, bearing_eci, los_eci, camera.q_camera_eci);
     row.chosen = spacecraft_at(bearing_eci, camera, servicer.name, truth);
   }
-  if (image.star_method != 0) {
+  if (image.star_method != telemetry_image::kStarMethodNone) {
     const double(&q)[4] = image.q_eci_camera;
     add_attitude_error(row, {q[0], q[1], q[2], q[3]}, camera.q_camera_eci);
   }
@@ -100,35 +97,9 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
     const double tolerance_px = settings.focal_length_px() * (kSameObject_rad + kRadius_m / *row.range_m);
     row.true_object = true_object(*objects, *target_px, tolerance_px);
   }
-  if (image.fate == 2)
+  if (image.fate == telemetry_image::kEditFilter)
     row.nees = nees_of_roe(image.a_roe_osculating_m, image.covariance_a_roe, own->orbit, target->orbit,
                            mission.guidance.reference_semi_major_axis_m);
-}
-
-void summarise_images(const std::vector<report::ImageRow>& images, const std::string& target,
-                      report::Summary& summary) {
-  if (images.empty()) return;
-  report::ImageCounts counts;
-  counts.images = static_cast<int>(images.size());
-  std::vector<double> x, y, size, across, all_nees;
-  for (const report::ImageRow& row : images) {
-    if (row.status == 0) ++counts.with_bearing;
-    if (!row.chosen.empty() && row.chosen != target) ++counts.wrong_targets;
-    if (row.attitude_error_across_arcsec) across.push_back(*row.attitude_error_across_arcsec);
-    if (row.nees) all_nees.push_back(*row.nees);
-    // A wrong choice is counted as one; its bearing says nothing of the target's.
-    if (!row.bearing_error_x_arcsec || row.chosen != target || !(row.range_m > kUnresolvedRange_m)) continue;
-    x.push_back(*row.bearing_error_x_arcsec);
-    y.push_back(*row.bearing_error_y_arcsec);
-    size.push_back(std::hypot(x.back(), y.back()));
-  }
-  summary.images = counts;
-  if (!across.empty()) summary.star_attitude_error_arcsec = report::statistics(across);
-  if (!all_nees.empty()) summary.navigation_nees = report::statistics(all_nees).mean;
-  if (size.empty()) return;
-  const report::MeanAndDeviation of_x = report::statistics(x), of_y = report::statistics(y);
-  summary.bearing_error_arcsec = report::BearingError{
-      report::statistics(size).mean, std::hypot(of_x.std, of_y.std) / M_SQRT2, std::hypot(of_x.mean, of_y.mean)};
 }
 
 }  // namespace vbar::app

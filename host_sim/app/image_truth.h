@@ -17,8 +17,4 @@ namespace vbar::app {
 void add_truth(report::ImageRow& row, const telemetry_image& image, const telemetry_objects* objects,
                const mission::Mission& mission, const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
 
-/// The summary's figures of images, bearings and attitude by the stars; bearings count while the target is no larger
-/// than a pixel, beyond 5 km.
-void summarise_images(const std::vector<report::ImageRow>& images, const std::string& target, report::Summary& summary);
-
 }  // namespace vbar::app

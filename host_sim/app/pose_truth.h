@@ -10,9 +10,6 @@
 
 namespace vbar::app {
 
-/// Times in seconds since the mission's epoch; nothing of the truth yet.
-[[nodiscard]] report::PoseRow pose_row(double exposure_s, double step_s, const telemetry_pose& pose);
-
 /// Eleven rows, nothing of the truth yet.
 void append_keypoints(double exposure_s, const telemetry_pose& pose, std::vector<report::KeypointRow>& rows);
 
@@ -21,8 +18,5 @@ void append_keypoints(double exposure_s, const telemetry_pose& pose, std::vector
 void add_truth(report::PoseRow& row, std::vector<report::KeypointRow>& keypoints, const telemetry_pose& pose,
                const double (&keypoints_body_m)[33], const mission::Mission& mission,
                const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
-
-/// Over all images. Nothing without any.
-void summarise_poses(const report::RunRecord& record, report::Summary& summary);
 
 }  // namespace vbar::app

@@ -7,6 +7,7 @@
 #include "host_sim/report/comparison.h"
 #include "host_sim/report/html_report.h"
 #include "host_sim/report/run_folder.h"
+#include "host_sim/report/summarise.h"
 #include "host_sim/report/waypoint_table.h"
 
 namespace vbar::app {
@@ -18,8 +19,16 @@ std::string name_of(const std::filesystem::path& folder) {
   return absolute.filename().string();
 }
 
+/// A run as its tables have it, figures computed from them.
+report::RunRecord evaluated_run(const std::filesystem::path& folder) {
+  report::RunRecord record = report::read_run(folder);
+  for (const std::string& note : record.notes) fmt::print(stderr, "vbar: {}\n", note);
+  report::evaluate(record);
+  return record;
+}
+
 int report_one(const std::filesystem::path& folder) {
-  const report::RunRecord record = report::read_run(folder);
+  const report::RunRecord record = evaluated_run(folder);
   fmt::print("{}report  {}\n", report::waypoint_table(record), report::write_html_report(folder, record).string());
   return 0;
 }
@@ -29,7 +38,7 @@ int report_one(const std::filesystem::path& folder) {
 int report_command(const std::vector<std::filesystem::path>& run_folders, const std::filesystem::path& out) {
   if (run_folders.size() == 1 && out.empty()) return report_one(run_folders.front());
   std::vector<report::ComparedRun> runs;
-  for (const std::filesystem::path& folder : run_folders) runs.push_back({name_of(folder), report::read_run(folder)});
+  for (const std::filesystem::path& folder : run_folders) runs.push_back({name_of(folder), evaluated_run(folder)});
   const std::filesystem::path file = out.empty() ? run_folders.front().parent_path() / "comparison.html" : out;
   report::write_html_comparison(file, runs);
   fmt::print("{}report  {}\n", report::comparison_table(runs), file.string());

@@ -1,6 +1,6 @@
 // vbar run: a mission file, a flight computer, a run folder.
 
-#include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -17,6 +17,7 @@
 #include "host_sim/mission/extends.h"
 #include "host_sim/report/html_report.h"
 #include "host_sim/report/run_folder.h"
+#include "host_sim/report/summarise.h"
 #include "host_sim/report/text_file.h"
 #include "host_sim/report/waypoint_table.h"
 #include "host_sim/sensors/sensor_kinds.h"
@@ -28,6 +29,7 @@ report::Summary start_of(const mission::Mission& mission) {
   report::Summary summary;
   summary.mission = mission.name;
   summary.seed = mission.seed;
+  summary.target = flying_spacecraft(mission).observes();
   return summary;
 }
 
@@ -39,30 +41,21 @@ void keep_mission(const mission::Mission& mission, const RunOptions& options, co
   if (!overrides) throw std::runtime_error((folder / kOverridesCopy).string() + ": cannot be written");
 }
 
-/// What the flight computer's steps cost.
-void summarise_flight_steps(report::RunRecord& record, const std::string& unit) {
-  report::Summary::FlightStep& total = record.summary.flight_step;
-  total.unit = unit;
-  double sum = 0.0;
-  for (const report::EstimateRow& row : record.estimates) {
-    ++total.count;
-    total.max = std::max(total.max, row.step_cost);
-    total.stack_bytes_max = std::max(total.stack_bytes_max, row.stack_bytes);
-    sum += static_cast<double>(row.step_cost);
-  }
-  if (total.count > 0) total.mean = sum / static_cast<double>(total.count);
-}
-
 /// Flies and fills the record. The reason why the run is not complete, or nothing.
-std::optional<std::string> fly(const mission::Mission& mission, const std::filesystem::path& folder,
-                               report::RunRecord& record) {
-  PacketKeepers keepers(mission, folder);
+std::optional<std::string> fly(const mission::Mission& mission, report::RunFolder& folder, report::RunRecord& record) {
+  constexpr std::chrono::seconds kBetweenUpdates{1};
+  PacketKeepers keepers(mission, folder.path());
   const std::unique_ptr<pil::FlightComputer> flight_computer = connect_flight_computer(flying_spacecraft(mission));
   const auto wall = mission::make_wall_clock(mission, sensors::installation());
   ProgressLine progress(mission.duration);
-  const Simulation::Surroundings surroundings{*flight_computer, *wall, keepers.observers(),
-                                              [&](fsw::Duration simulated) { progress.update(simulated); },
-                                              stop_requested};
+  auto updated = std::chrono::steady_clock::now();
+  const auto after_step = [&](fsw::Duration simulated) {
+    progress.update(simulated);
+    if (std::chrono::steady_clock::now() - updated < kBetweenUpdates) return;
+    folder.update(record);
+    updated = std::chrono::steady_clock::now();
+  };
+  const Simulation::Surroundings surroundings{*flight_computer, *wall, keepers.observers(), after_step, stop_requested};
   Simulation simulation(mission, mission::data_directory(), surroundings, record);
   std::optional<std::string> trouble;
   try {
@@ -70,11 +63,16 @@ std::optional<std::string> fly(const mission::Mission& mission, const std::files
   } catch (const std::exception& error) {
     trouble = error.what();
   }
-  summarise_flight_steps(record, simulation.cost_unit());
   record.summary.commands_sha256 = keepers.commands_sha256();
   record.summary.telemetry_sha256 = keepers.telemetry_sha256();
   if (!trouble) flight_computer->close();
   return trouble;
+}
+
+/// Packets that were dropped, plans that were refused: never without a word.
+void report_health(const report::Summary& summary) {
+  const std::string line = summary.health ? report::health_line(*summary.health) : "";
+  if (!line.empty()) fmt::print("flight software: {}\n", line);
 }
 
 }  // namespace
@@ -84,14 +82,14 @@ int run_command(const RunOptions& options) {
   static_cast<void>(flying_spacecraft(mission));  // refused before there is a folder
   const std::filesystem::path out =
       options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out;
-  const report::RunFolder folder(out, start_of(mission));
+  report::RunFolder folder(out, start_of(mission));
   keep_mission(mission, options, folder.path());
   catch_stop_signals();
 
   report::RunRecord record;
   std::optional<std::string> trouble;
   try {
-    trouble = fly(mission, folder.path(), record);
+    trouble = fly(mission, folder, record);
   } catch (const std::exception& error) {
     trouble = error.what();  // not even begun
   }
@@ -102,6 +100,7 @@ int run_command(const RunOptions& options) {
   folder.finish(record);
 
   if (!record.waypoints.empty()) fmt::print("{}", report::waypoint_table(record));
+  report_health(record.summary);
   fmt::print("report  {}\n", report::write_html_report(folder.path(), record).string());
   if (!trouble) return 0;
   fmt::print(stderr, "vbar: {}: run incomplete: {}\n", folder.path().string(), *trouble);

@@ -9,6 +9,7 @@
 #include "host_sim/app/initial_attitudes.h"
 #include "host_sim/app/initial_orbits.h"
 #include "host_sim/app/make_twins.h"
+#include "host_sim/report/summarise.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
 #include "host_sim/sensors/ideal_navigation/ideal_navigation_kind.h"
@@ -91,6 +92,7 @@ bool Simulation::run() {
   const auto finish = [&] {
     recorder_.finish();
     summarise(wall_seconds() - started, complete);
+    report::evaluate(record_);
   };
   try {
     schedule_the_known();
@@ -295,7 +297,7 @@ void Simulation::handle(const ExecutePrescribedBurn& prescribed) {
   maneuver_command command{};
   command.maneuver_id = -1 - static_cast<std::int32_t>(prescribed.index);
   command.waypoint_index = -1;
-  command.solver = -1;
+  command.solver = waypoint::kSolverNone;
   const fsw::Vector3& dv_rtn = mission_.burns[prescribed.index].dv_rtn;
   std::copy(dv_rtn.begin(), dv_rtn.end(), command.dv_rtn);
   recorder_.on_prescribed(events_.now(), command);
@@ -327,6 +329,8 @@ void Simulation::summarise(double wall_s, bool complete) {
   summary.complete = complete;
   summary.flight_computer = mission::name_of(servicer_.flight_computer->target);
   summary.flight_software = surroundings_.flight_computer.description();
+  summary.target = servicer_.observes();
+  summary.flight_step.unit = cost_unit_;
   const auto* const camera_settings = mission::find_settings<sensors::CameraSensor>(servicer_);
   const auto* const gnss = mission::find_settings<sensors::GnssSensor>(servicer_);
   const auto* const navigation = mission::find_settings<sensors::NavigationSensor>(servicer_);

@@ -61,9 +61,6 @@ class Simulation {
   /// computer throw; the record then holds what was flown.
   bool run();
 
-  /// Unit of EstimateRow::step_cost: "none", "instructions" or "cycles".
-  [[nodiscard]] const std::string& cost_unit() const { return cost_unit_; }
-
  private:
   struct TakeMeasurement {
     std::size_t sensor;

@@ -10,6 +10,5 @@ namespace vbar::report {
 [[nodiscard]] std::string status_name(int status);
 [[nodiscard]] std::string sighting_name(int status);       ///< fsw/angles_only/sighting.h
 [[nodiscard]] std::string pose_sighting_name(int status);  ///< fsw/pose/spacecraft_pose_network.h
-[[nodiscard]] std::string obstacle_name(int obstacle);     ///< fsw/gnss/ambiguity_validation.h
 
 }  // namespace vbar::report

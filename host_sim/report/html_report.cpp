@@ -13,7 +13,8 @@ std::string html_report(const RunRecord& record) {
   const std::string body = overview(record) + waypoint_section(record) + trajectory_section(record) +
                            elements_section(record) + maneuver_section(record) + navigation_section(record) +
                            gnss_section(record) + angles_only_section(record) + pose_section(record) +
-                           attitude_section(record) + guidance_section(record) + computer_section(record);
+                           attitude_section(record) + guidance_section(record) + health_section(record) +
+                           computer_section(record);
   return html_page(fmt::format("{} (seed {})", record.summary.mission, record.summary.seed), body);
 }
 

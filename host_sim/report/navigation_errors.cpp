@@ -13,9 +13,8 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// telemetry_navigation.source.
-constexpr int kGnssFloat = 3;
-constexpr int kGnssFixed = 4;
+constexpr int kGnssFloat = telemetry_navigation::kSourceGnssFloat;
+constexpr int kGnssFixed = telemetry_navigation::kSourceGnssFixed;
 
 Eigen::Vector3d vector(const Triple& v) {
   return {v[0], v[1], v[2]};
@@ -41,7 +40,7 @@ Matrix6 clohessy_wiltshire(double n, double t) {
   return transition;
 }
 
-Matrix6 symmetric(const LowerTriangle6& lower) {
+Matrix6 symmetric(const double (&lower)[21]) {
   Matrix6 matrix;
   std::size_t place = 0;
   for (int row = 0; row < 6; ++row) {

@@ -16,6 +16,10 @@ void PartialFile::append(std::string_view text) {
   if (!stream_) fail();
 }
 
+void PartialFile::flush() {
+  if (!stream_.flush()) fail();
+}
+
 void PartialFile::finish() {
   stream_.close();
   std::error_code error;

@@ -15,6 +15,9 @@ class PartialFile {
   /// Throws std::runtime_error that names the file, here or in finish().
   void append(std::string_view text);
 
+  /// Hands all that was appended to the operating system: it outlives the program.
+  void flush();
+
   /// Gives the file its name. Without it the part stays a part.
   void finish();
 

@@ -41,6 +41,9 @@ namespace vbar::report {
 /// What guidance did when, and how near the target may drift (section_guidance.cpp).
 [[nodiscard]] std::string guidance_section(const RunRecord& record);
 
+/// What the flight software counted: packets rejected and dropped, plans refused, faults (section_health.cpp).
+[[nodiscard]] std::string health_section(const RunRecord& record);
+
 /// Cost of each flight step, link, deadlines and where the wall-clock time went (section_computer.cpp).
 [[nodiscard]] std::string computer_section(const RunRecord& record);
 

@@ -1,6 +1,6 @@
 #pragma once
-// The columns of each file of a run folder, once for writing and reading alike: visit_columns(row, visitor) calls
-// visitor(ColumnName, value) in the order of the file.
+// The columns of each table, once for writing and reading alike: visit_columns(row, visitor) calls
+// visitor(ColumnName, value) in the order of the file. A message's columns come from vbar.lcm.
 
 #include <array>
 #include <cstddef>
@@ -8,102 +8,138 @@
 #include <string_view>
 #include <type_traits>
 
+#include "host_sim/report/csv_table.h"
 #include "host_sim/report/run_record.h"
 
 namespace vbar::report {
 
-/// `<group>_<member>`, or the group alone.
+/// The parts of a column's name, joined by underscores.
 struct ColumnName {
-  std::string_view group;
-  std::string_view member{};
+  std::string_view stem, element{}, unit{};
+  int number = -1;  ///< of an element without a name
 
   [[nodiscard]] std::string text() const {
-    std::string joined(group);
-    if (!member.empty()) joined.append("_").append(member);
+    std::string joined(stem);
+    if (number >= 0) joined += "_" + std::to_string(number);
+    for (const std::string_view part : {element, unit})
+      if (!part.empty()) joined.append("_").append(part);
     return joined;
   }
 };
 
 namespace columns {
 
-inline constexpr std::array<std::string_view, 3> kXyzM{"x_m", "y_m", "z_m"};
-inline constexpr std::array<std::string_view, 3> kXyzMps{"x_mps", "y_mps", "z_mps"};
-inline constexpr std::array<std::string_view, 3> kXyzRadps{"x_radps", "y_radps", "z_radps"};
+using Names3 = std::array<std::string_view, 3>;
+inline constexpr Names3 kXyz{"x", "y", "z"}, kRtn{"r", "t", "n"};
 inline constexpr std::array<std::string_view, 4> kWxyz{"w", "x", "y", "z"};
-inline constexpr std::array<std::string_view, 3> kRtnM{"r_m", "t_m", "n_m"};
-inline constexpr std::array<std::string_view, 3> kRtnMps{"r_mps", "t_mps", "n_mps"};
 inline constexpr std::array<std::string_view, 6> kRtnMAndMps{"r_m", "t_m", "n_m", "r_mps", "t_mps", "n_mps"};
-/// Rows and columns r, t, n, then their rates.
-inline constexpr std::array<std::string_view, 21> kRtnLowerTriangle{
-    "r_r",  "t_r",  "t_t",   "n_r",   "n_t",  "n_n",  "vr_r", "vr_t",  "vr_n",  "vr_vr", "vt_r",
-    "vt_t", "vt_n", "vt_vr", "vt_vt", "vn_r", "vn_t", "vn_n", "vn_vr", "vn_vt", "vn_vn"};
-inline constexpr std::array<std::string_view, 3> kXyz{"x", "y", "z"};
-inline constexpr std::array<std::string_view, 2> kXyArcsec{"x_arcsec", "y_arcsec"};
-/// Rows and columns da, dlambda, dex, dey, dix, diy.
-inline constexpr std::array<std::string_view, 21> kRoeLowerTriangle{
-    "da_da",   "dl_da",   "dl_dl",   "dex_da",  "dex_dl",  "dex_dex", "dey_da",
-    "dey_dl",  "dey_dex", "dey_dey", "dix_da",  "dix_dl",  "dix_dex", "dix_dey",
-    "dix_dix", "diy_da",  "diy_dl",  "diy_dex", "diy_dey", "diy_dix", "diy_diy"};
-/// A square on the detector.
-inline constexpr std::array<std::string_view, 3> kSquarePx{"x_px", "y_px", "side_px"};
-/// Rows and columns turn about x, y, z (rad), rate about x, y, z (rad/s).
-inline constexpr std::array<std::string_view, 21> kAttitudeLowerTriangle{
-    "x_x",  "y_x",  "y_y",   "z_x",   "z_y",  "z_z",  "wx_x", "wx_y",  "wx_z",  "wx_wx", "wy_x",
-    "wy_y", "wy_z", "wy_wx", "wy_wy", "wz_x", "wz_y", "wz_z", "wz_wx", "wz_wy", "wz_wz"};
-inline constexpr std::array<std::string_view, 6> kRoeM{"da_m", "dlambda_m", "dex_m", "dey_m", "dix_m", "diy_m"};
+inline constexpr std::array<std::string_view, 6> kRoe{"da", "dlambda", "dex", "dey", "dix", "diy"};
 
 template <class Visitor, class Values, std::size_t size>
-void group(Visitor& visit, std::string_view name, const std::array<std::string_view, size>& members, Values& values) {
+void group(Visitor& visit, std::string_view name, const std::array<std::string_view, size>& elements,
+           std::string_view unit, Values& values) {
   static_assert(std::tuple_size_v<std::remove_const_t<Values>> == size);
-  for (std::size_t k = 0; k < size; ++k) visit(ColumnName{name, members[k]}, values[k]);
+  for (std::size_t k = 0; k < size; ++k) visit(ColumnName{name, elements[k], unit}, values[k]);
+}
+
+template <std::size_t size>
+constexpr Codes words(const Code (&codes)[size]) {
+  return {codes, size, false};
+}
+
+template <class Visitor, class Number>
+void coded(Visitor& visit, std::string_view name, Codes codes, Number& value) {
+  visit(ColumnName{name}, Coded<Number>{value, codes});
+}
+
+/// All fields of a message; of one whose unnamed elements are rows of another table, those that are not.
+template <class Visitor, class Message>
+void fields(Visitor& visit, Message& message, bool numbered_elements = true) {
+  visit_fields(message, [&](const Field& field, auto& value) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    const auto cell = [&](const ColumnName& name, auto& number) {
+      if constexpr (std::is_integral_v<std::remove_reference_t<decltype(number)>>) {
+        if (field.codes.count > 0)
+          return visit(name, Coded<std::remove_reference_t<decltype(number)>>{number, field.codes});
+      }
+      visit(name, number);
+    };
+    if constexpr (std::is_array_v<Value>) {
+      if (field.elements == nullptr && !numbered_elements) return;
+      for (int k = 0; k < static_cast<int>(std::extent_v<Value>); ++k) {
+        const bool named = field.elements != nullptr;
+        cell(ColumnName{field.stem, named ? field.elements[k] : "", field.unit, named ? -1 : k}, value[k]);
+      }
+    } else {
+      cell(ColumnName{field.stem, {}, field.unit}, value);
+    }
+  });
 }
 
 /// `Row`, as a row that is written (const) or one that is read.
 template <class Some, class Row>
 concept RowOf = std::is_same_v<std::remove_const_t<Some>, Row>;
 
+/// The message that a row is.
+template <class Message, class Row>
+auto& message_of(Row& row) {
+  return static_cast<std::conditional_t<std::is_const_v<Row>, const Message, Message>&>(row);
+}
+
 }  // namespace columns
+
+template <class Row, class Visitor>
+requires requires(Row row) {
+  row.message;
+}
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"step_time_s"}, row.step_time_s);
+  columns::fields(visit, row.message);
+}
 
 template <columns::RowOf<TruthRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
+  using namespace columns;
   visit(ColumnName{"time_s"}, row.time_s);
-  columns::group(visit, "servicer_position_eci", columns::kXyzM, row.servicer_position_eci);
-  columns::group(visit, "servicer_velocity_eci", columns::kXyzMps, row.servicer_velocity_eci);
-  columns::group(visit, "target_position_eci", columns::kXyzM, row.target_position_eci);
-  columns::group(visit, "target_velocity_eci", columns::kXyzMps, row.target_velocity_eci);
-  columns::group(visit, "relative_position_rtn", columns::kRtnM, row.relative_position_rtn);
-  columns::group(visit, "relative_velocity_rtn", columns::kRtnMps, row.relative_velocity_rtn);
-  columns::group(visit, "a_roe_mean", columns::kRoeM, row.a_roe_mean_m);
+  group(visit, "servicer_position_eci", kXyz, "m", row.servicer_position_eci);
+  group(visit, "servicer_velocity_eci", kXyz, "mps", row.servicer_velocity_eci);
+  group(visit, "target_position_eci", kXyz, "m", row.target_position_eci);
+  group(visit, "target_velocity_eci", kXyz, "mps", row.target_velocity_eci);
+  group(visit, "relative_position_rtn", kRtn, "m", row.relative_position_rtn);
+  group(visit, "relative_velocity_rtn", kRtn, "mps", row.relative_velocity_rtn);
+  group(visit, "a_roe_mean", kRoe, "m", row.a_roe_mean_m);
 }
 
 template <columns::RowOf<AttitudeRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"time_s"}, row.time_s);
   visit(ColumnName{"spacecraft"}, row.spacecraft);
-  columns::group(visit, "q_body_eci", columns::kWxyz, row.q_body_eci);
-  columns::group(visit, "rate_body", columns::kXyzRadps, row.rate_body_radps);
+  columns::group(visit, "q_body_eci", columns::kWxyz, "", row.q_body_eci);
+  columns::group(visit, "rate_body", columns::kXyz, "radps", row.rate_body_radps);
 }
 
 template <columns::RowOf<EstimateRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
+  using namespace columns;
   visit(ColumnName{"time_s"}, row.time_s);
   visit(ColumnName{"step"}, row.step);
-  visit(ColumnName{"navigation_source"}, row.navigation_source);
+  coded(visit, "navigation_source", words(codes::telemetry_navigation_kSource), row.navigation_source);
   visit(ColumnName{"navigation_valid"}, row.navigation_valid);
-  columns::group(visit, "relative_position_rtn", columns::kRtnM, row.relative_position_rtn);
-  columns::group(visit, "relative_velocity_rtn", columns::kRtnMps, row.relative_velocity_rtn);
-  columns::group(visit, "sigma_rtn", columns::kRtnMAndMps, row.sigma_rtn);
-  columns::group(visit, "a_roe_mean", columns::kRoeM, row.a_roe_mean_m);
-  columns::group(visit, "a_roe_desired", columns::kRoeM, row.a_roe_desired_m);
-  columns::group(visit, "predicted_a_roe_error", columns::kRoeM, row.predicted_a_roe_error_m);
-  visit(ColumnName{"mode"}, row.mode);
-  visit(ColumnName{"active_solver"}, row.active_solver);
+  group(visit, "relative_position_rtn", kRtn, "m", row.relative_position_rtn);
+  group(visit, "relative_velocity_rtn", kRtn, "mps", row.relative_velocity_rtn);
+  group(visit, "sigma_rtn", kRtnMAndMps, "", row.sigma_rtn);
+  group(visit, "a_roe_mean", kRoe, "m", row.a_roe_mean_m);
+  group(visit, "a_roe_desired", kRoe, "m", row.a_roe_desired_m);
+  group(visit, "predicted_a_roe_error", kRoe, "m", row.predicted_a_roe_error_m);
+  coded(visit, "mode", words(codes::mode_command_kMode), row.mode);
+  coded(visit, "active_solver", words(codes::waypoint_kSolver), row.active_solver);
   visit(ColumnName{"waypoint_index"}, row.waypoint_index);
   visit(ColumnName{"planned_burns"}, row.planned_burns);
-  visit(ColumnName{"koenig_damico_status"}, row.koenig_damico_status);
-  visit(ColumnName{"closed_form_status"}, row.closed_form_status);
-  visit(ColumnName{"least_squares_status"}, row.least_squares_status);
-  visit(ColumnName{"safety_status"}, row.safety_status);
+  coded(visit, "koenig_damico_status", words(codes::telemetry_control_kStatus), row.koenig_damico_status);
+  coded(visit, "closed_form_status", words(codes::telemetry_control_kStatus), row.closed_form_status);
+  coded(visit, "least_squares_status", words(codes::telemetry_control_kStatus), row.least_squares_status);
+  coded(visit, "safety_status", words(codes::telemetry_control_kStatus), row.safety_status);
   visit(ColumnName{"planned_dv_mps"}, row.planned_dv_mps);
   visit(ColumnName{"passive_safety_distance_m"}, row.passive_safety_distance_m);
   visit(ColumnName{"commanded_dv_mps"}, row.commanded_dv_mps);
@@ -114,63 +150,17 @@ void visit_columns(Row& row, Visitor& visit) {
 template <columns::RowOf<GnssRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"time_s"}, row.time_s);
-  visit(ColumnName{"step"}, row.step);
   visit(ColumnName{"epoch_s"}, row.epoch_s);
-  visit(ColumnName{"pairs"}, row.pairs);
-  visit(ColumnName{"alone"}, row.alone);
-  visit(ColumnName{"too_late"}, row.too_late);
-  visit(ColumnName{"no_solution"}, row.no_solution);
-  visit(ColumnName{"tracked"}, row.tracked);
-  visit(ColumnName{"fixed"}, row.fixed);
-  visit(ColumnName{"fixes"}, row.fixes);
-  visit(ColumnName{"releases"}, row.releases);
-  visit(ColumnName{"slips"}, row.slips);
-  visit(ColumnName{"restarts"}, row.restarts);
-  visit(ColumnName{"obstacle"}, row.obstacle);
-  visit(ColumnName{"success_rate"}, row.success_rate);
-  visit(ColumnName{"ratio"}, row.ratio);
-  visit(ColumnName{"codes_used"}, row.codes_used);
-  visit(ColumnName{"phases_used"}, row.phases_used);
-  visit(ColumnName{"codes_refused"}, row.codes_refused);
-  visit(ColumnName{"phases_refused"}, row.phases_refused);
-  visit(ColumnName{"code_nis"}, row.code_nis);
-  visit(ColumnName{"phase_nis"}, row.phase_nis);
-  columns::group(visit, "covariance_rtn", columns::kRtnLowerTriangle, row.covariance_rtn);
-  visit(ColumnName{"messages"}, row.messages);
-  visit(ColumnName{"messages_refused"}, row.messages_refused);
+  columns::fields(visit, columns::message_of<telemetry_gnss>(row));
 }
 
 template <columns::RowOf<ImageRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"time_s"}, row.time_s);
   visit(ColumnName{"step_time_s"}, row.step_time_s);
-  visit(ColumnName{"step"}, row.step);
-  visit(ColumnName{"image"}, row.image);
-  visit(ColumnName{"status"}, row.status);
-  visit(ColumnName{"star_method"}, row.star_method);
-  visit(ColumnName{"tiles_missing"}, row.tiles_missing);
-  visit(ColumnName{"objects"}, row.objects);
-  visit(ColumnName{"stars"}, row.stars);
-  visit(ColumnName{"hypotheses"}, row.hypotheses);
-  visit(ColumnName{"target_object"}, row.target_object);
+  columns::fields(visit, columns::message_of<telemetry_image>(row));
   visit(ColumnName{"true_object"}, row.true_object);
   visit(ColumnName{"chosen"}, row.chosen);
-  visit(ColumnName{"background_dn"}, row.background_dn);
-  visit(ColumnName{"noise_dn"}, row.noise_dn);
-  columns::group(visit, "q_eci_camera", columns::kWxyz, row.q_eci_camera);
-  visit(ColumnName{"attitude_sigma_arcsec"}, row.attitude_sigma_arcsec);
-  columns::group(visit, "bearing_eci", columns::kXyz, row.bearing_eci);
-  visit(ColumnName{"bearing_sigma_arcsec"}, row.bearing_sigma_arcsec);
-  columns::group(visit, "prefit", columns::kXyArcsec, row.prefit_arcsec);
-  columns::group(visit, "postfit", columns::kXyArcsec, row.postfit_arcsec);
-  visit(ColumnName{"nis"}, row.nis);
-  visit(ColumnName{"used"}, row.used);
-  columns::group(visit, "covariance_a_roe_m2", columns::kRoeLowerTriangle, row.covariance_a_roe_m2);
-  columns::group(visit, "a_roe_osculating", columns::kRoeM, row.a_roe_osculating_m);
-  visit(ColumnName{"bearings_used"}, row.bearings_used);
-  visit(ColumnName{"bearings_refused"}, row.bearings_refused);
-  visit(ColumnName{"images_without_stars"}, row.images_without_stars);
-  visit(ColumnName{"tiles_refused"}, row.tiles_refused);
   visit(ColumnName{"range_m"}, row.range_m);
   visit(ColumnName{"bearing_error_x_arcsec"}, row.bearing_error_x_arcsec);
   visit(ColumnName{"bearing_error_y_arcsec"}, row.bearing_error_y_arcsec);
@@ -184,7 +174,7 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"time_s"}, row.time_s);
   visit(ColumnName{"image"}, row.image);
   visit(ColumnName{"object"}, row.object);
-  visit(ColumnName{"kind"}, row.kind);
+  columns::coded(visit, "kind", columns::words(codes::telemetry_objects_kKind), row.kind);
   visit(ColumnName{"star"}, row.star);
   visit(ColumnName{"x_px"}, row.x_px);
   visit(ColumnName{"y_px"}, row.y_px);
@@ -194,35 +184,7 @@ template <columns::RowOf<PoseRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"time_s"}, row.time_s);
   visit(ColumnName{"step_time_s"}, row.step_time_s);
-  visit(ColumnName{"step"}, row.step);
-  visit(ColumnName{"image"}, row.image);
-  visit(ColumnName{"status"}, row.status);
-  visit(ColumnName{"region_is_predicted"}, row.region_is_predicted);
-  visit(ColumnName{"fate"}, row.fate);
-  visit(ColumnName{"filter_runs"}, row.filter_runs);
-  visit(ColumnName{"has_attitude"}, row.has_attitude);
-  visit(ColumnName{"tiles_missing"}, row.tiles_missing);
-  columns::group(visit, "region", columns::kSquarePx, row.region_px);
-  visit(ColumnName{"pnp_inliers"}, row.pnp_inliers);
-  columns::group(visit, "pnp_q_camera_body", columns::kWxyz, row.pnp_q_camera_body);
-  columns::group(visit, "pnp_position_camera", columns::kXyzM, row.pnp_position_camera_m);
-  visit(ColumnName{"pnp_mean_square"}, row.pnp_mean_square);
-  columns::group(visit, "q_camera_body", columns::kWxyz, row.q_camera_body);
-  columns::group(visit, "position_camera", columns::kXyzM, row.position_camera_m);
-  columns::group(visit, "rate_body", columns::kXyzRadps, row.rate_body_radps);
-  columns::group(visit, "covariance_attitude", columns::kAttitudeLowerTriangle, row.covariance_attitude);
-  columns::group(visit, "covariance_a_roe_m2", columns::kRoeLowerTriangle, row.covariance_a_roe_m2);
-  columns::group(visit, "a_roe_osculating", columns::kRoeM, row.a_roe_osculating_m);
-  visit(ColumnName{"nis"}, row.nis);
-  visit(ColumnName{"nis_degrees"}, row.nis_degrees);
-  visit(ColumnName{"acceleration_psd"}, row.acceleration_psd);
-  visit(ColumnName{"images_used"}, row.images_used);
-  visit(ColumnName{"images_refused"}, row.images_refused);
-  visit(ColumnName{"keypoints_used"}, row.keypoints_used);
-  visit(ColumnName{"keypoints_refused"}, row.keypoints_refused);
-  visit(ColumnName{"attitude_restarts"}, row.attitude_restarts);
-  visit(ColumnName{"restarts"}, row.restarts);
-  visit(ColumnName{"tiles_refused"}, row.tiles_refused);
+  columns::fields(visit, columns::message_of<telemetry_pose>(row), false);
   visit(ColumnName{"range_m"}, row.range_m);
   visit(ColumnName{"sunlit"}, row.sunlit);
   visit(ColumnName{"pnp_error_x_m"}, row.pnp_error_x_m);
@@ -243,7 +205,7 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"time_s"}, row.time_s);
   visit(ColumnName{"image"}, row.image);
   visit(ColumnName{"keypoint"}, row.keypoint);
-  visit(ColumnName{"fate"}, row.fate);
+  columns::coded(visit, "fate", columns::words(codes::telemetry_pose_kKeypoint), row.fate);
   visit(ColumnName{"peak"}, row.peak);
   visit(ColumnName{"x_px"}, row.x_px);
   visit(ColumnName{"y_px"}, row.y_px);
@@ -266,12 +228,12 @@ template <columns::RowOf<ManeuverRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"maneuver_id"}, row.maneuver_id);
   visit(ColumnName{"waypoint_index"}, row.waypoint_index);
-  visit(ColumnName{"solver"}, row.solver);
+  columns::coded(visit, "solver", columns::words(codes::waypoint_kSolver), row.solver);
   visit(ColumnName{"command_time_s"}, row.command_time_s);
   visit(ColumnName{"execution_time_s"}, row.execution_time_s);
   visit(ColumnName{"accepted"}, row.accepted);
-  columns::group(visit, "commanded_dv_rtn", columns::kRtnMps, row.commanded_dv_rtn_mps);
-  columns::group(visit, "executed_dv_rtn", columns::kRtnMps, row.executed_dv_rtn_mps);
+  columns::group(visit, "commanded_dv_rtn", columns::kRtn, "mps", row.commanded_dv_rtn_mps);
+  columns::group(visit, "executed_dv_rtn", columns::kRtn, "mps", row.executed_dv_rtn_mps);
 }
 
 template <columns::RowOf<ResidualRow> Row, class Visitor>
@@ -285,12 +247,13 @@ void visit_columns(Row& row, Visitor& visit) {
 
 template <columns::RowOf<WaypointRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
+  using namespace columns;
   visit(ColumnName{"index"}, row.index);
   visit(ColumnName{"time_s"}, row.time_s);
-  columns::group(visit, "a_roe_desired", columns::kRoeM, row.a_roe_desired_m);
-  columns::group(visit, "a_roe_actual", columns::kRoeM, row.a_roe_actual_m);
-  columns::group(visit, "desired_position_rtn", columns::kRtnM, row.desired_position_rtn);
-  columns::group(visit, "actual_position_rtn", columns::kRtnM, row.actual_position_rtn);
+  group(visit, "a_roe_desired", kRoe, "m", row.a_roe_desired_m);
+  group(visit, "a_roe_actual", kRoe, "m", row.a_roe_actual_m);
+  group(visit, "desired_position_rtn", kRtn, "m", row.desired_position_rtn);
+  group(visit, "actual_position_rtn", kRtn, "m", row.actual_position_rtn);
   visit(ColumnName{"control_error_m"}, row.control_error_m);
   visit(ColumnName{"navigation_error_m"}, row.navigation_error_m);
   visit(ColumnName{"navigation_velocity_error_mps"}, row.navigation_velocity_error_mps);

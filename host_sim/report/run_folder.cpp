@@ -1,6 +1,5 @@
 #include "host_sim/report/run_folder.h"
 
-#include <array>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -18,25 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSummary = "summary.json";
-constexpr std::string_view kWaypoints = "waypoints.csv";
-constexpr std::string_view kTruth = "truth.csv";
-constexpr std::string_view kAttitude = "attitude.csv";
-constexpr std::string_view kEstimate = "estimate.csv";
-constexpr std::string_view kGnss = "gnss.csv";
-constexpr std::string_view kImages = "images.csv";
-constexpr std::string_view kObjects = "objects.csv";
-constexpr std::string_view kPoses = "poses.csv";
-constexpr std::string_view kKeypoints = "keypoints.csv";
-constexpr std::string_view kGallery = "gallery.csv";
 constexpr std::string_view kPictures = "gallery";  // a folder
-constexpr std::string_view kManeuvers = "maneuvers.csv";
-constexpr std::string_view kResiduals = "residuals.csv";
 constexpr std::string_view kPacketLog = "packets.lcmlog";
 constexpr std::string_view kReport = "report.html";
-
-constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,     kAttitude,  kEstimate,  kGnss,
-                                         kImages,    kObjects,   kPoses,     kKeypoints, kGallery,
-                                         kManeuvers, kResiduals, kPacketLog, kReport};
 
 [[noreturn]] void fail(const fs::path& folder, std::string_view what) {
   throw std::runtime_error(fmt::format("{}: {}", folder.string(), what));
@@ -53,20 +36,17 @@ fs::path picture_file(const fs::path& folder, const GalleryImage& image) {
   return folder / kPictures / fmt::format("{:05}.png", image.image);
 }
 
-void write_gallery(const fs::path& folder, const std::vector<GalleryImage>& gallery) {
-  fs::create_directories(folder / kPictures);
+void write_pictures(const fs::path& folder, const std::vector<GalleryImage>& gallery) {
+  if (!gallery.empty()) fs::create_directories(folder / kPictures);
   for (const GalleryImage& image : gallery)
     replace_text_file(picture_file(folder, image), std::string(image.png.begin(), image.png.end()));
-  write_rows(folder / kGallery, gallery);
 }
 
-std::vector<GalleryImage> read_gallery(const fs::path& folder) {
-  std::vector<GalleryImage> gallery = read_rows<GalleryImage>(folder / kGallery);
+void read_pictures(const fs::path& folder, std::vector<GalleryImage>& gallery) {
   for (GalleryImage& image : gallery) {
     const std::string bytes = read_text_file(picture_file(folder, image));
     image.png.assign(bytes.begin(), bytes.end());
   }
-  return gallery;
 }
 
 }  // namespace
@@ -82,7 +62,7 @@ fs::path report_file(const fs::path& run_folder) {
   return run_folder / kReport;
 }
 
-RunFolder::RunFolder(fs::path folder, const Summary& start) : folder_(std::move(folder)) {
+RunFolder::RunFolder(fs::path folder, const Summary& start) : folder_(std::move(folder)), tables_(folder_) {
   try {
     check_may_be_replaced(folder_);
     fs::create_directories(folder_);
@@ -90,26 +70,24 @@ RunFolder::RunFolder(fs::path folder, const Summary& start) : folder_(std::move(
     running.complete = false;
     running.incomplete_reason = "running";
     replace_text_file(folder_ / kSummary, summary_json(running, {}));
-    for (const std::string_view name : kFilesBesideSummary) fs::remove(folder_ / name);
+    for (const std::string& name : table_files()) {
+      fs::remove(folder_ / name);
+      fs::remove(PartialFile::part_of(folder_ / name));
+    }
+    for (const std::string_view name : {kPacketLog, kReport}) fs::remove(folder_ / name);
     fs::remove_all(folder_ / kPictures);
   } catch (const fs::filesystem_error& error) {
     fail(folder_, "cannot be made: " + error.code().message());
   }
 }
 
-void RunFolder::finish(const RunRecord& record) const {
-  write_rows(folder_ / kWaypoints, record.waypoints);
-  write_rows(folder_ / kTruth, record.truth);
-  if (!record.attitudes.empty()) write_rows(folder_ / kAttitude, record.attitudes);
-  write_rows(folder_ / kEstimate, record.estimates);
-  if (!record.gnss.empty()) write_rows(folder_ / kGnss, record.gnss);
-  if (!record.images.empty()) write_rows(folder_ / kImages, record.images);
-  if (!record.objects.empty()) write_rows(folder_ / kObjects, record.objects);
-  if (!record.poses.empty()) write_rows(folder_ / kPoses, record.poses);
-  if (!record.keypoints.empty()) write_rows(folder_ / kKeypoints, record.keypoints);
-  if (!record.gallery.empty()) write_gallery(folder_, record.gallery);
-  write_rows(folder_ / kManeuvers, record.maneuvers);
-  write_rows(folder_ / kResiduals, record.residuals);
+void RunFolder::update(const RunRecord& record) {
+  tables_.update(record);
+}
+
+void RunFolder::finish(const RunRecord& record) {
+  write_pictures(folder_, record.gallery);
+  tables_.finish(record);
   replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
 }
 
@@ -117,23 +95,14 @@ RunRecord read_run(const fs::path& run_folder) {
   if (!fs::is_directory(run_folder)) fail(run_folder, "no such run folder");
   RunRecord record;
   record.summary = read_summary(run_folder / kSummary);
-  // A run that was killed left nothing but its packet log.
-  if (!record.summary.complete && !fs::exists(run_folder / kTruth)) {
+  const fs::path truth = run_folder / "truth.csv";
+  if (!record.summary.complete && !fs::exists(truth) && !fs::exists(PartialFile::part_of(truth))) {
     fail(run_folder,
          fmt::format("the run did not end (it says \"{}\") and left no tables", record.summary.incomplete_reason));
   }
-  record.waypoints = read_rows<WaypointRow>(run_folder / kWaypoints);
-  record.truth = read_rows<TruthRow>(run_folder / kTruth);
-  if (fs::exists(run_folder / kAttitude)) record.attitudes = read_rows<AttitudeRow>(run_folder / kAttitude);
-  record.estimates = read_rows<EstimateRow>(run_folder / kEstimate);
-  if (fs::exists(run_folder / kGnss)) record.gnss = read_rows<GnssRow>(run_folder / kGnss);
-  if (fs::exists(run_folder / kImages)) record.images = read_rows<ImageRow>(run_folder / kImages);
-  if (fs::exists(run_folder / kObjects)) record.objects = read_rows<ObjectRow>(run_folder / kObjects);
-  if (fs::exists(run_folder / kPoses)) record.poses = read_rows<PoseRow>(run_folder / kPoses);
-  if (fs::exists(run_folder / kKeypoints)) record.keypoints = read_rows<KeypointRow>(run_folder / kKeypoints);
-  if (fs::exists(run_folder / kGallery)) record.gallery = read_gallery(run_folder);
-  record.maneuvers = read_rows<ManeuverRow>(run_folder / kManeuvers);
-  record.residuals = read_rows<ResidualRow>(run_folder / kResiduals);
+  read_tables(run_folder, record);
+  if (!fs::exists(run_folder / kPictures) && !record.summary.complete) record.gallery.clear();  // written at the end
+  read_pictures(run_folder, record.gallery);
   return record;
 }
 

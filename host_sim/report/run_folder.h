@@ -7,6 +7,7 @@
 #include <string>
 
 #include "host_sim/report/run_record.h"
+#include "host_sim/report/run_tables.h"
 
 namespace vbar::report {
 
@@ -26,12 +27,17 @@ class RunFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] std::filesystem::path packet_log() const { return packet_log_file(folder_); }
 
-  /// Writes the tables, then the summary, which alone may say that the run is complete. Throws std::runtime_error that
-  /// names the file that could not be written; the folder then still says incomplete.
-  void finish(const RunRecord& record) const;
+  /// Writes what has been added to the tables since the last call, so that a killed run leaves them. Throws
+  /// std::runtime_error that names the file that could not be written, here and below.
+  void update(const RunRecord& record);
+
+  /// Writes the tables, then the summary, which alone may say that the run is complete. If it throws, the folder still
+  /// says incomplete.
+  void finish(const RunRecord& record);
 
  private:
   std::filesystem::path folder_;
+  TableWriter tables_;
 };
 
 /// Throws std::runtime_error that names the file and the line for a folder that is no run's, or damaged.

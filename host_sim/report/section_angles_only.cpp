@@ -67,6 +67,8 @@ std::string performance_table(const RunRecord& record) {
 
 // ----------------------------------------------------------------------------------------------------------- in words
 
+constexpr double kArcsecond = M_PI / 648000.0;
+
 /// 95 % of chi-square with two degrees of freedom lies below 5.991.
 constexpr double kNis95 = 5.991;
 
@@ -74,7 +76,7 @@ std::string nis_text(const RunRecord& record) {
   double sum = 0.0;
   int count = 0, inside = 0;
   for (const ImageRow& row : record.images) {
-    if (row.used != 1 || !std::isfinite(row.nis)) continue;
+    if (row.fate != telemetry_image::kEditFilter || !std::isfinite(row.nis)) continue;
     sum += row.nis;
     ++count;
     if (row.nis <= kNis95) ++inside;
@@ -159,13 +161,14 @@ std::vector<Plot> residual_plots(const RunRecord& record, const View& view) {
   for (const std::size_t axis : {0U, 1U}) {
     Plot plot = empty_plot(record, view, axis == 0 ? "Residuals across, camera x" : "Residuals up and down, camera y",
                            "residual", Unit::kArcseconds);
-    const auto values = [&](Pair ImageRow::*residual) {
+    const auto values = [&](double(telemetry_image::*residual)[2]) {
       return points_of(record, view, [&](const ImageRow& row) {
-        return row.used != 0 ? std::optional((row.*residual)[axis]) : std::nullopt;
+        return row.fate >= telemetry_image::kEditFilter ? std::optional((row.*residual)[axis] / kArcsecond)
+                                                        : std::nullopt;
       });
     };
-    plot.series = {{"before the update", 5, Mark::kDots, values(&ImageRow::prefit_arcsec)},
-                   {"after the update", 0, Mark::kDots, values(&ImageRow::postfit_arcsec)}};
+    plot.series = {{"before the update", 5, Mark::kDots, values(&telemetry_image::prefit)},
+                   {"after the update", 0, Mark::kDots, values(&telemetry_image::postfit)}};
     plot.y.range = range_of_most(plot.series);
     plots.push_back(std::move(plot));
   }
@@ -186,7 +189,7 @@ Plot bearing_error_plot(const RunRecord& record, const View& view) {
                     return std::hypot(*row.bearing_error_x_arcsec, row.bearing_error_y_arcsec.value_or(0.0));
                   })},
                  {"one sigma of an axis as it claims", 1, Mark::kDashedLine,
-                  of_bearings([](const ImageRow& row) { return row.bearing_sigma_arcsec; })}};
+                  of_bearings([](const ImageRow& row) { return row.bearing_sigma / kArcsecond; })}};
   return plot;
 }
 
@@ -202,7 +205,7 @@ Plot attitude_error_plot(const RunRecord& record, const View& view) {
 
 Plot objects_plot(const RunRecord& record, const View& view) {
   Plot plot = empty_plot(record, view, "Objects in the image", "objects", Unit::kNone);
-  const auto values = [&](int ImageRow::*count) {
+  const auto values = [&](std::int16_t telemetry_image::*count) {
     return points_of(record, view,
                      [count](const ImageRow& row) { return std::optional(static_cast<double>(row.*count)); });
   };

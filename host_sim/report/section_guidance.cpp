@@ -14,8 +14,6 @@ namespace vbar::report {
 namespace {
 
 constexpr int kWarningColour = 6;
-constexpr int kOk = 0;
-constexpr int kNotReady = 13;  // a solver that was never asked
 
 /// Stretches over which `code(row)` keeps its value; those for which `describe` gives no text are left out.
 template <class Code, class Describe>
@@ -36,8 +34,8 @@ std::vector<Band> bands(const RunRecord& record, const Code& code, const Describ
 
 Band warning_unless_ok(int status) {
   Band band{.colour = kWarningColour};
-  const bool tried = status != kNotReady;
-  if (tried && status != kOk) band.text = status_name(status);
+  const bool tried = status != telemetry_control::kStatusNotReady;  // it was asked
+  if (tried && status != telemetry_control::kStatusOk) band.text = status_name(status);
   return band;
 }
 
@@ -46,7 +44,10 @@ std::string what_was_done_when(const RunRecord& record) {
       {"mode", bands(
                    record, [](const EstimateRow& r) { return r.mode; },
                    [](int mode) {
-                     return Band{.colour = mode == 1 ? 0 : mode == 3 ? 6 : 5, .text = mode_name(mode)};
+                     return Band{.colour = mode == mode_command::kModeApproach ? 0
+                                           : mode == mode_command::kModeHold   ? 6
+                                                                               : 5,
+                                 .text = mode_name(mode)};
                    })},
       {"next waypoint",
        bands(

@@ -22,7 +22,6 @@ namespace {
 
 constexpr double kRadian = M_PI / 180.0;  // of a degree
 constexpr int kKeypoints = 11;
-constexpr int kFoldedIn = 2;  // fate of an image and of a keypoint
 
 // ------------------------------------------------------------------------------------------------- table of the paper
 
@@ -97,7 +96,7 @@ std::string nis_text(const RunRecord& record) {
   double sum = 0.0, degrees = 0.0;
   int images = 0;
   for (const PoseRow& row : record.poses) {
-    if (row.fate != kFoldedIn || row.nis_degrees <= 0 || !std::isfinite(row.nis)) continue;
+    if (row.fate != telemetry_pose::kEditKeypoints || row.nis_degrees <= 0 || !std::isfinite(row.nis)) continue;
     sum += row.nis;
     degrees += row.nis_degrees;
     ++images;
@@ -154,10 +153,10 @@ std::string keypoint_table(const RunRecord& record) {
     if (row.keypoint < 0 || row.keypoint >= kKeypoints) continue;
     Of& keypoint = of[static_cast<std::size_t>(row.keypoint)];
     ++keypoint.images;
-    if (row.fate == 0) continue;
+    if (row.fate == telemetry_pose::kKeypointUnusable) continue;
     ++keypoint.usable;
-    keypoint.refused += row.fate == 1 ? 1 : 0;
-    keypoint.used += row.fate == kFoldedIn ? 1 : 0;
+    keypoint.refused += row.fate == telemetry_pose::kKeypointRejected ? 1 : 0;
+    keypoint.used += row.fate == telemetry_pose::kKeypointUsed ? 1 : 0;
     if (!row.error_x_px || !row.error_y_px) continue;
     const double error = std::hypot(*row.error_x_px, *row.error_y_px);
     const double sigma = std::sqrt(0.5 * static_cast<double>(row.covariance_xx_px2 + row.covariance_yy_px2));
@@ -325,8 +324,8 @@ Plot keypoint_count_plot(const RunRecord& record, const View& view) {
   Plot plot = empty_plot(record, view, "Keypoints of an image", "keypoints", Unit::kNone);
   std::map<std::int32_t, std::pair<int, int>> counts;  // of an image: usable, used
   for (const KeypointRow& row : record.keypoints) {
-    counts[row.image].first += row.fate != 0 ? 1 : 0;
-    counts[row.image].second += row.fate == kFoldedIn ? 1 : 0;
+    counts[row.image].first += row.fate != telemetry_pose::kKeypointUnusable ? 1 : 0;
+    counts[row.image].second += row.fate == telemetry_pose::kKeypointUsed ? 1 : 0;
   }
   const auto count = [&](auto which) {
     return points_of(record, [&](const PoseRow& row) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "host_sim/report/run_record.h"
+#include "host_sim/report/summary.h"
 
 namespace vbar::report {
 

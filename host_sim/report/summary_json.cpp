@@ -1,8 +1,10 @@
 #include "host_sim/report/summary_json.h"
 
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 
 #include <nlohmann/json.hpp>
 
@@ -13,237 +15,241 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// JSON has no NaN: a number that is not finite is written as null, by nlohmann itself for plain ones.
-Json json_of(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
+/// Of the keys below. A file of a newer one is refused: what it means is not known here.
+constexpr int kSchema = 1;
+
+template <class Some, class Type>
+concept Is = std::is_same_v<std::remove_const_t<Some>, Type>;
+
+// The members of each object, once for both directions.
+
+void members(Is<MeanAndDeviation> auto& s, auto& visit) {
+  visit("mean", s.mean);
+  visit("std", s.std);
 }
 
-Json json_of(const std::optional<MeanAndDeviation>& value) {
-  if (!value) return {{"mean", nullptr}, {"std", nullptr}};
-  return {{"mean", value->mean}, {"std", value->std}};
+void members(Is<BearingError> auto& s, auto& visit) {
+  visit("mean", s.mean);
+  visit("std", s.std);
+  visit("bias", s.bias);
 }
 
-Json json_of(const std::optional<BearingError>& value) {
-  if (!value) return {{"mean", nullptr}, {"std", nullptr}, {"bias", nullptr}};
-  return {{"mean", value->mean}, {"std", value->std}, {"bias", value->bias}};
+void members(Is<PoseFigures> auto& s, auto& visit) {
+  visit("images", s.images);
+  visit("with_pose", s.with_pose);
+  visit("poses_over_10_deg", s.poses_over_10_deg);
+  visit("keypoint_error_px", s.keypoint_error_px);
+  visit("keypoint_chi_square", s.keypoint_chi_square);
+  visit("lit_navigation_error_m", s.lit_navigation_error_m);
+  visit("attitude_nees", s.attitude_nees);
+  visit("attitude_restarts", s.attitude_restarts);
+  visit("restarts", s.restarts);
 }
 
-Json json_of(const std::optional<PoseFigures>& value) {
-  if (!value) return nullptr;
-  return {{"images", value->images},
-          {"with_pose", value->with_pose},
-          {"poses_over_10_deg", value->poses_over_10_deg},
-          {"keypoint_error_px", value->keypoint_error_px},
-          {"keypoint_chi_square", value->keypoint_chi_square},
-          {"lit_navigation_error_m",
-           {{"mean", value->lit_navigation_error_m.mean}, {"std", value->lit_navigation_error_m.std}}},
-          {"attitude_nees", json_of(value->attitude_nees)},
-          {"attitude_restarts", value->attitude_restarts},
-          {"restarts", value->restarts}};
+void members(Is<Summary::FlightStep> auto& s, auto& visit) {
+  visit("count", s.count);
+  visit("unit", s.unit);
+  visit("max", s.max);
+  visit("mean", s.mean);
+  visit("stack_bytes_max", s.stack_bytes_max);
 }
 
-Json count_or_null(const std::optional<ImageCounts>& counts, int ImageCounts::*count) {
-  return counts ? Json((*counts).*count) : Json(nullptr);
+void members(Is<RunFacts::Link> auto& s, auto& visit) {
+  visit("bytes", s.bytes);
+  visit("frames_resent", s.frames_resent);
+  visit("frames_rejected", s.frames_rejected);
+  visit("frames_duplicated", s.frames_duplicated);
+  visit("strangers_ignored", s.strangers_ignored);
+  visit("baud", s.baud);
+  visit("step_share_max", s.step_share_max);
+  visit("step_share_mean", s.step_share_mean);
 }
 
-Json text_or_null(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
+void members(Is<RunFacts::Deadlines> auto& s, auto& visit) {
+  visit("compute_overruns", s.compute_overruns);
+  visit("wakeups_late", s.wakeups_late);
+  visit("link_late", s.link_late);
+  visit("simulation_late", s.simulation_late);
 }
 
-Json json_of(const WaypointRow& row) {
-  return {{"index", row.index},
-          {"time_s", row.time_s},
-          {"navigation_error_m", json_of(row.navigation_error_m)},
-          {"navigation_velocity_error_mps", json_of(row.navigation_velocity_error_mps)},
-          {"control_error_m", row.control_error_m},
-          {"leg_dv_mps", row.leg_dv_mps},
-          {"cumulative_dv_mps", row.cumulative_dv_mps},
-          {"leg_maneuvers", row.leg_maneuvers}};
+void members(Is<RunFacts::WallShare> auto& s, auto& visit) {
+  visit("truth_s", s.truth_s);
+  visit("flight_s", s.flight_s);
+  visit("link_s", s.link_s);
+  visit("other_s", s.other_s);
+  visit("render_s", s.render_s);
+  visit("detector_s", s.detector_s);
+  visit("packing_s", s.packing_s);
 }
 
-double number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+void members(Is<telemetry_health> auto& s, auto& visit) {
+  visit_fields(s, [&](const Field& field, auto& value) { visit(field.name, value, field.codes); });
 }
 
-std::string text(const Json& json) {
-  return json.is_null() ? std::string() : json.get<std::string>();
+void members(Is<WaypointRow> auto& s, auto& visit) {
+  visit("index", s.index);
+  visit("time_s", s.time_s);
+  visit("navigation_error_m", s.navigation_error_m);
+  visit("navigation_velocity_error_mps", s.navigation_velocity_error_mps);
+  visit("control_error_m", s.control_error_m);
+  visit("leg_dv_mps", s.leg_dv_mps);
+  visit("cumulative_dv_mps", s.cumulative_dv_mps);
+  visit("leg_maneuvers", s.leg_maneuvers);
 }
 
-std::optional<double> optional_number(const Json& json) {
-  if (json.is_null()) return std::nullopt;
-  return json.get<double>();
+void members(Is<Summary> auto& s, auto& visit) {
+  visit("mission", s.mission);
+  visit("seed", s.seed);
+  visit("complete", s.complete);
+  visit("incomplete_reason", s.incomplete_reason);
+  visit("flight_computer", s.flight_computer);
+  visit("flight_software", s.flight_software);
+  visit("camera", s.camera);
+  visit("gnss", s.gnss);
+  visit("navigation", s.navigation);
+  visit("target", s.target);
+  visit("simulated_s", s.simulated_s);
+  visit("wall_s", s.wall_s);
+  visit("speed_factor", s.speed_factor);
+  visit("navigation_error_m", s.navigation_error_m);
+  visit("navigation_velocity_error_mps", s.navigation_velocity_error_mps);
+  visit("attitude_error_deg", s.attitude_error_deg);
+  visit("first_fix_s", s.first_fix_s);
+  visit("static_floor_m", s.static_floor_m);
+  visit("navigation_nees", s.navigation_nees);
+  visit("bearing_error_arcsec", s.bearing_error_arcsec);
+  visit("star_attitude_error_arcsec", s.star_attitude_error_arcsec);
+  visit.part("images", s.images, &ImageCounts::images);
+  visit.part("images_with_bearing", s.images, &ImageCounts::with_bearing);
+  visit.part("wrong_targets", s.images, &ImageCounts::wrong_targets);
+  visit("pose", s.pose);
+  visit("dv_mps", s.dv_mps);
+  visit("maneuvers", s.maneuvers);
+  visit("commands_sha256", s.commands_sha256);
+  visit("telemetry_sha256", s.telemetry_sha256);
+  visit("health", s.health);
+  visit("flight_step", s.flight_step);
+  visit("link", s.link);
+  visit("deadlines", s.deadlines);
+  visit("wall_share", s.wall_share);
 }
 
-std::optional<MeanAndDeviation> mean_and_deviation(const Json& json) {
-  if (json.at("mean").is_null()) return std::nullopt;
-  return MeanAndDeviation{number(json.at("mean")), number(json.at("std"))};
-}
+/// Members into a JSON object. JSON has no NaN: a number that is not finite is null, as nlohmann writes it, and so is a
+/// text that is empty.
+struct Writer {
+  Json json = Json::object();
 
-std::optional<BearingError> bearing_error(const Json& json) {
-  if (json.at("mean").is_null()) return std::nullopt;
-  return BearingError{number(json.at("mean")), number(json.at("std")), number(json.at("bias"))};
-}
+  void operator()(const char* key, const auto& value) { json[key] = json_of(value); }
+  void operator()(const char* key, const auto& value, const Codes& codes) {
+    if (!codes.are_bits) return (*this)(key, value);
+    json[key] = Json::array();
+    for (int k = 0; k < codes.count; ++k)
+      if ((value & codes.codes[k].value) != 0) json[key].push_back(codes.codes[k].word);
+  }
+  template <class Whole, class Part>
+  void part(const char* key, const std::optional<Whole>& whole, Part Whole::*part) {
+    json[key] = whole ? Json((*whole).*part) : Json(nullptr);
+  }
 
-std::optional<ImageCounts> image_counts(const Json& json) {
-  if (json.at("images").is_null()) return std::nullopt;
-  return ImageCounts{json.at("images").get<int>(), json.at("images_with_bearing").get<int>(),
-                     json.at("wrong_targets").get<int>()};
-}
+  template <class Value>
+  static Json json_of(const Value& value) {
+    if constexpr (std::is_same_v<Value, std::string>) {
+      return value.empty() ? Json(nullptr) : Json(value);
+    } else if constexpr (requires { value.has_value(); }) {
+      // Means of nothing keep their members, so that a script finds them whatever was flown.
+      using Inner = typename Value::value_type;
+      if (value || !(std::is_same_v<Inner, MeanAndDeviation> || std::is_same_v<Inner, BearingError>))
+        return value ? json_of(*value) : Json(nullptr);
+      Json nulls = json_of(Inner{});
+      for (auto& item : nulls) item = nullptr;
+      return nulls;
+    } else if constexpr (std::is_class_v<Value>) {
+      Writer writer;
+      members(value, writer);
+      return writer.json;
+    } else {
+      return Json(value);
+    }
+  }
+};
 
-std::optional<PoseFigures> pose_figures(const Json& json) {
-  if (json.is_null()) return std::nullopt;
-  PoseFigures figures;
-  json.at("images").get_to(figures.images);
-  json.at("with_pose").get_to(figures.with_pose);
-  json.at("poses_over_10_deg").get_to(figures.poses_over_10_deg);
-  figures.keypoint_error_px = number(json.at("keypoint_error_px"));
-  figures.keypoint_chi_square = number(json.at("keypoint_chi_square"));
-  const Json& lit = json.at("lit_navigation_error_m");
-  figures.lit_navigation_error_m = {number(lit.at("mean")), number(lit.at("std"))};
-  figures.attitude_nees = optional_number(json.at("attitude_nees"));
-  json.at("attitude_restarts").get_to(figures.attitude_restarts);
-  json.at("restarts").get_to(figures.restarts);
-  return figures;
-}
+/// Members out of a JSON object; one that is missing keeps its default.
+struct Reader {
+  const Json& json;
 
-Summary summary_from(const Json& json) {
-  Summary s;
-  json.at("mission").get_to(s.mission);
-  json.at("seed").get_to(s.seed);
-  json.at("complete").get_to(s.complete);
-  s.incomplete_reason = text(json.at("incomplete_reason"));
-  json.at("flight_computer").get_to(s.flight_computer);
-  json.at("flight_software").get_to(s.flight_software);
-  s.camera = text(json.at("camera"));
-  s.gnss = text(json.at("gnss"));
-  s.navigation = text(json.at("navigation"));
-  s.simulated_s = number(json.at("simulated_s"));
-  s.wall_s = number(json.at("wall_s"));
-  s.speed_factor = number(json.at("speed_factor"));
-  s.navigation_error_m = mean_and_deviation(json.at("navigation_error_m"));
-  s.navigation_velocity_error_mps = mean_and_deviation(json.at("navigation_velocity_error_mps"));
-  s.attitude_error_deg = mean_and_deviation(json.at("attitude_error_deg"));
-  s.first_fix_s = optional_number(json.at("first_fix_s"));
-  s.static_floor_m = optional_number(json.at("static_floor_m"));
-  s.navigation_nees = optional_number(json.at("navigation_nees"));
-  s.bearing_error_arcsec = bearing_error(json.at("bearing_error_arcsec"));
-  s.star_attitude_error_arcsec = mean_and_deviation(json.at("star_attitude_error_arcsec"));
-  s.images = image_counts(json);
-  s.pose = pose_figures(json.at("pose"));
-  s.dv_mps = number(json.at("dv_mps"));
-  json.at("maneuvers").get_to(s.maneuvers);
-  json.at("commands_sha256").get_to(s.commands_sha256);
-  json.at("telemetry_sha256").get_to(s.telemetry_sha256);
+  void operator()(const char* key, auto& value) {
+    if (!json.contains(key)) return;
+    try {
+      read(json.at(key), value);
+    } catch (const Json::exception& error) {
+      throw std::runtime_error(std::string("key \"") + key + "\": " + error.what());
+    }
+  }
+  void operator()(const char* key, auto& value, const Codes& codes) {
+    if (!codes.are_bits) return (*this)(key, value);
+    if (!json.contains(key)) return;
+    for (const Json& word : json.at(key))
+      for (int k = 0; k < codes.count; ++k)
+        if (word == codes.codes[k].word) value |= codes.codes[k].value;
+  }
+  template <class Whole, class Part>
+  void part(const char* key, std::optional<Whole>& whole, Part Whole::*part) {
+    if (!json.contains(key) || json.at(key).is_null()) return;
+    if (!whole) whole.emplace();
+    (*this)(key, (*whole).*part);
+  }
 
-  const Json& step = json.at("flight_step");
-  step.at("count").get_to(s.flight_step.count);
-  step.at("unit").get_to(s.flight_step.unit);
-  step.at("max").get_to(s.flight_step.max);
-  s.flight_step.mean = number(step.at("mean"));
-  step.at("stack_bytes_max").get_to(s.flight_step.stack_bytes_max);
-
-  const Json& link = json.at("link");
-  link.at("bytes").get_to(s.link.bytes);
-  link.at("frames_resent").get_to(s.link.frames_resent);
-  link.at("frames_rejected").get_to(s.link.frames_rejected);
-  link.at("frames_duplicated").get_to(s.link.frames_duplicated);
-  link.at("strangers_ignored").get_to(s.link.strangers_ignored);
-  link.at("baud").get_to(s.link.baud);
-  s.link.step_share_max = number(link.at("step_share_max"));
-  s.link.step_share_mean = number(link.at("step_share_mean"));
-
-  const Json& deadlines = json.at("deadlines");
-  deadlines.at("compute_overruns").get_to(s.deadlines.compute_overruns);
-  deadlines.at("wakeups_late").get_to(s.deadlines.wakeups_late);
-  deadlines.at("link_late").get_to(s.deadlines.link_late);
-  deadlines.at("simulation_late").get_to(s.deadlines.simulation_late);
-
-  const Json& share = json.at("wall_share");
-  s.wall_share.truth_s = number(share.at("truth_s"));
-  s.wall_share.flight_s = number(share.at("flight_s"));
-  s.wall_share.link_s = number(share.at("link_s"));
-  s.wall_share.other_s = number(share.at("other_s"));
-  s.wall_share.render_s = number(share.at("render_s"));
-  s.wall_share.detector_s = number(share.at("detector_s"));
-  s.wall_share.packing_s = number(share.at("packing_s"));
-  return s;
-}
+  template <class Value>
+  static void read(const Json& from, Value& value) {
+    if constexpr (requires { value.has_value(); }) {
+      const bool is_empty = from.is_null() || (from.contains("mean") && from.at("mean").is_null());
+      if (!is_empty) read(from, value.emplace());
+    } else if constexpr (std::is_same_v<Value, double>) {
+      value = from.is_null() ? std::numeric_limits<double>::quiet_NaN() : from.get<double>();
+    } else if constexpr (std::is_same_v<Value, std::string>) {
+      value = from.is_null() ? std::string() : from.get<std::string>();
+    } else if constexpr (std::is_class_v<Value>) {
+      if (!from.is_object()) throw std::runtime_error("an object is expected");
+      Reader reader{from};
+      members(value, reader);
+    } else {
+      from.get_to(value);
+    }
+  }
+};
 
 }  // namespace
 
-std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypoints) {
-  Json rows = Json::array();
-  for (const WaypointRow& row : waypoints) rows.push_back(json_of(row));
-  const Json json = {
-      {"mission", s.mission},
-      {"seed", s.seed},
-      {"complete", s.complete},
-      {"incomplete_reason", text_or_null(s.incomplete_reason)},
-      {"flight_computer", s.flight_computer},
-      {"flight_software", s.flight_software},
-      {"camera", text_or_null(s.camera)},
-      {"gnss", text_or_null(s.gnss)},
-      {"navigation", text_or_null(s.navigation)},
-      {"simulated_s", s.simulated_s},
-      {"wall_s", s.wall_s},
-      {"speed_factor", s.speed_factor},
-      {"waypoints", rows},
-      {"navigation_error_m", json_of(s.navigation_error_m)},
-      {"navigation_velocity_error_mps", json_of(s.navigation_velocity_error_mps)},
-      {"attitude_error_deg", json_of(s.attitude_error_deg)},
-      {"first_fix_s", json_of(s.first_fix_s)},
-      {"static_floor_m", json_of(s.static_floor_m)},
-      {"navigation_nees", json_of(s.navigation_nees)},
-      {"bearing_error_arcsec", json_of(s.bearing_error_arcsec)},
-      {"star_attitude_error_arcsec", json_of(s.star_attitude_error_arcsec)},
-      {"images", count_or_null(s.images, &ImageCounts::images)},
-      {"images_with_bearing", count_or_null(s.images, &ImageCounts::with_bearing)},
-      {"wrong_targets", count_or_null(s.images, &ImageCounts::wrong_targets)},
-      {"pose", json_of(s.pose)},
-      {"dv_mps", s.dv_mps},
-      {"maneuvers", s.maneuvers},
-      {"commands_sha256", s.commands_sha256},
-      {"telemetry_sha256", s.telemetry_sha256},
-      {"flight_step",
-       {{"count", s.flight_step.count},
-        {"unit", s.flight_step.unit},
-        {"max", s.flight_step.max},
-        {"mean", s.flight_step.mean},
-        {"stack_bytes_max", s.flight_step.stack_bytes_max}}},
-      {"link",
-       {{"bytes", s.link.bytes},
-        {"frames_resent", s.link.frames_resent},
-        {"frames_rejected", s.link.frames_rejected},
-        {"frames_duplicated", s.link.frames_duplicated},
-        {"strangers_ignored", s.link.strangers_ignored},
-        {"baud", s.link.baud},
-        {"step_share_max", s.link.step_share_max},
-        {"step_share_mean", s.link.step_share_mean}}},
-      {"deadlines",
-       {{"compute_overruns", s.deadlines.compute_overruns},
-        {"wakeups_late", s.deadlines.wakeups_late},
-        {"link_late", s.deadlines.link_late},
-        {"simulation_late", s.deadlines.simulation_late}}},
-      {"wall_share",
-       {{"truth_s", s.wall_share.truth_s},
-        {"flight_s", s.wall_share.flight_s},
-        {"link_s", s.wall_share.link_s},
-        {"other_s", s.wall_share.other_s},
-        {"render_s", s.wall_share.render_s},
-        {"detector_s", s.wall_share.detector_s},
-        {"packing_s", s.wall_share.packing_s}}},
-  };
+std::string summary_json(const Summary& summary, const std::vector<WaypointRow>& waypoints) {
+  Json json = {{"schema", kSchema}};
+  json.update(Writer::json_of(summary));
+  json["waypoints"] = Json::array();
+  for (const WaypointRow& row : waypoints) json["waypoints"].push_back(Writer::json_of(row));
   // Text that is not UTF-8 (a library's own name for itself) is written with replacement characters, never refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Summary read_summary(const std::filesystem::path& file) {
   const std::string content = read_text_file(file);
+  const auto fail = [&](const char* what) {
+    throw std::runtime_error(file.string() + ": not a run's summary: " + what);
+  };
+  Summary summary;
   try {
-    return summary_from(Json::parse(content));
+    const Json json = Json::parse(content);
+    const int schema = json.value("schema", 0);
+    if (schema > kSchema) {
+      throw std::runtime_error(file.string() + ": made by a newer version of this program (schema " +
+                               std::to_string(schema) + "; this one reads up to " + std::to_string(kSchema) + ")");
+    }
+    Reader::read(json, summary);
   } catch (const Json::exception& error) {
-    throw std::runtime_error(file.string() + ": not a run's summary: " + error.what());
+    fail(error.what());
+  } catch (const std::runtime_error& error) {
+    if (std::string_view(error.what()).starts_with(file.string())) throw;
+    fail(error.what());
   }
+  return summary;
 }
 
 bool is_summary(const std::filesystem::path& file) {

@@ -46,7 +46,7 @@ void frame_check(benchmark::State& state) {
 }
 
 /// Steps of two packets: one of up to 1376 bytes and the tick.
-void step(benchmark::State& state, Target target, LinkKind kind, const char* image) {
+void step(benchmark::State& state, Target target, LinkKind kind, const std::string& image) {
   FlightComputerOptions options;
   options.target = target;
   options.link = kind;
@@ -71,7 +71,7 @@ void step(benchmark::State& state, Target target, LinkKind kind, const char* ima
 }
 
 /// Steps of one camera image, 500 x 800 px at 12 bits: 461 tiles and the tick.
-void image_step(benchmark::State& state, Target target, LinkKind kind, const char* image) {
+void image_step(benchmark::State& state, Target target, LinkKind kind, const std::string& image) {
   FlightComputerOptions options;
   options.target = target;
   options.link = kind;
@@ -103,7 +103,7 @@ const std::string kArmLinux = vbar::tests::source_path("build/zynq-linux/vbar_fl
 
 BENCHMARK(cobs_round_trip)->Name("link/cobs/1400");
 BENCHMARK(frame_check)->Name("link/frame_crc/1400");
-BENCHMARK_CAPTURE(step, in_process, Target::kInProcess, LinkKind::kSerial, "")
+BENCHMARK_CAPTURE(step, in_process, Target::kInProcess, LinkKind::kSerial, std::string())
     ->Name("link/in_process/step")
     ->UseRealTime();
 BENCHMARK_CAPTURE(step, host_serial, Target::kHostProcess, LinkKind::kSerial, kHost)

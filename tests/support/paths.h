@@ -1,6 +1,6 @@
 #pragma once
-// Absolute paths of files that tests read. They are compiled into one source file only, so that the compiler cache serves
-// every checkout of the project with the objects of all other test sources.
+// Absolute paths of files that tests read. They are compiled into one source file only, so that the compiler cache
+// serves every checkout of the project with the objects of all other test sources.
 
 #include <string>
 

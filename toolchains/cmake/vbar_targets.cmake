@@ -56,7 +56,8 @@ target_compile_options(vbar_flight_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>
   -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Wswitch-enum)
 
-# vbar_fsw_library(name SOURCES ... DEPENDS ...): a static library of flight code.
+# vbar_fsw_library(name SOURCES ... DEPENDS ...): a static library of flight code. What every target flies (fsw and
+# boards/common) is in the global property VBAR_FLIGHT_LIBRARIES, which the target flight_code and the flight rules go by.
 function(vbar_fsw_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
@@ -65,6 +66,10 @@ function(vbar_fsw_library name)
   endif()
   target_link_libraries(${name} PRIVATE vbar_flight_options PUBLIC ${ARG_DEPENDS})
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  if(folder MATCHES "^(fsw/|boards/common$)")
+    set_property(GLOBAL APPEND PROPERTY VBAR_FLIGHT_LIBRARIES ${name})
+  endif()
 endfunction()
 
 # vbar_host_library(name SOURCES ... DEPENDS ...): a static library of host code.

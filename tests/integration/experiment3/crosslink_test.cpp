@@ -11,7 +11,7 @@
 namespace vbar::test {
 namespace {
 
-constexpr int kPropagated = 1, kFixed = 4;  // telemetry_navigation.source
+constexpr int kPropagated = telemetry_navigation::kSourcePropagated, kFixed = telemetry_navigation::kSourceGnssFixed;
 
 TEST(Crosslink, AFifthLostAndFiveSecondsLateCostLessThanHalf) {
   const std::vector<std::string> poor{"links.crosslink.latency={distribution=\"uniform\", min_s=0.0, max_s=5.0}",

@@ -12,7 +12,7 @@
 namespace vbar::test {
 namespace {
 
-constexpr int kFixed = 4;  // telemetry_navigation.source
+constexpr int kFixed = telemetry_navigation::kSourceGnssFixed;
 
 double distance(const report::Triple& a, const report::Triple& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

@@ -19,7 +19,7 @@ namespace vbar::test {
 namespace {
 
 constexpr std::uint32_t kFirstBad = 330, kLastBad = 389;  // steps of 10 s
-constexpr int kFixed = 4;                                 // telemetry_navigation.source
+constexpr int kFixed = telemetry_navigation::kSourceGnssFixed;
 
 /// An abuse of both receivers' bytes.
 struct Abuse {

@@ -12,6 +12,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "host_sim/io/child_process.h"
+#include "host_sim/io/udp_socket.h"
 #include "pil_bridge/remote_computer.h"
 #include "pil_bridge/udp_transport.h"
 #include "tests/integration/flight_computers/echo_computer.h"
@@ -103,12 +105,12 @@ TEST(SlowSerialLine, FliesAtTheRateOfItsBaud) {
   EXPECT_GE(std::chrono::duration<double>(Clock::now() - start).count(), least_s);
 }
 
-// ---- datagrams from strangers, at the board
+// ---- foreign datagrams, at the board
 
 TEST(Stranger, IsIgnoredAndCountedByTheBoard) {
-  const std::uint16_t port = bind_udp_loopback().port;
+  const std::uint16_t port = io::bind_udp_loopback().port;
   const std::string address = "127.0.0.1:" + std::to_string(port);
-  const ChildProcess board({vbar::tests::build_path("vbar_flight_echo"), "--udp", address}, {});
+  const io::ChildProcess board({vbar::tests::build_path("vbar_flight_echo"), "--udp", address}, {});
   auto options = echo_options(Target::kBoard, LinkKind::kUdp);
   options.endpoint = address;
   const auto computer = make_flight_computer(options);

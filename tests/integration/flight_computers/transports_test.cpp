@@ -3,8 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pil_bridge/byte_channels.h"
-#include "pil_bridge/process.h"
+#include "host_sim/io/byte_channels.h"
+#include "host_sim/io/child_process.h"
+#include "host_sim/io/udp_socket.h"
 #include "pil_bridge/step_barrier.h"
 #include "pil_bridge/stream_transport.h"
 #include "pil_bridge/udp_transport.h"
@@ -14,6 +15,14 @@
 namespace vbar::pil {
 namespace {
 
+using io::adopt_pty;
+using io::adopt_socket;
+using io::bind_udp_loopback;
+using io::ChildProcess;
+using io::FileDescriptor;
+using io::make_pty;
+using io::make_socket_pair;
+using io::Pty;
 using test::echo_options;
 using test::expected_outputs;
 using testing::HasSubstr;
@@ -83,7 +92,8 @@ TEST(Board, OnASerialDevice) {
 // The other way round: the flight software opens the device, by name and rate.
 TEST(Board, OpensItsSerialDeviceItself) {
   Pty pty = make_pty();
-  const ChildProcess board({vbar::tests::build_path("vbar_flight_echo"), "--serial", pty.slave_path, "--baud", "115200"}, {});
+  const ChildProcess board(
+      {vbar::tests::build_path("vbar_flight_echo"), "--serial", pty.slave_path, "--baud", "115200"}, {});
   StreamTransport line(adopt_pty(std::move(pty.master), "pseudo-terminal"));
   StepBarrier barrier(line, 1, BarrierTiming{}, [] {});
   EXPECT_EQ(barrier.connect(test::kSpacecraft), "host process");

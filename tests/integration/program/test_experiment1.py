@@ -25,7 +25,7 @@ def require_zynq(test):
 
 def bearings_folded_in(folder):
     with (folder / "images.csv").open() as file:
-        return [row["used"] for row in csv.DictReader(file)].count("1")  # 2: it made the first orbit
+        return [row["fate"] for row in csv.DictReader(file)].count("filter")
 
 
 class Experiment1(unittest.TestCase):

@@ -11,7 +11,7 @@
 namespace vbar::test {
 namespace {
 
-constexpr int kFixedAmbiguities = 4;  // telemetry_navigation.source
+constexpr int kFixedAmbiguities = telemetry_navigation::kSourceGnssFixed;
 
 std::string body_frame(const char* spacecraft, const char* key, double value) {
   return std::string("spacecraft.") + spacecraft + ".sensors.gnss.body_frame." + key + "=" + std::to_string(value);

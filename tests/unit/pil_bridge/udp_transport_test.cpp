@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "fsw/link/frame.h"
+#include "host_sim/io/udp_socket.h"
 
 namespace vbar::pil {
 namespace {
@@ -21,8 +22,8 @@ Clock::time_point soon() {
 /// Two transports that are each other's peers.
 struct Pair {
   Pair() {
-    BoundUdpSocket a = bind_udp_loopback();
-    BoundUdpSocket b = bind_udp_loopback();
+    io::BoundUdpSocket a = io::bind_udp_loopback();
+    io::BoundUdpSocket b = io::bind_udp_loopback();
     port = a.port;
     one = make_udp_transport(std::move(a.socket), "127.0.0.1", b.port);
     other = make_udp_transport(std::move(b.socket), "127.0.0.1", a.port);
@@ -50,7 +51,7 @@ TEST(UdpTransport, IgnoresAndCountsStrangers) {
   stranger->send(Bytes{6, 6, 6});
   pair.other->send(Bytes{7});
   EXPECT_THAT(pair.one->receive(soon()), ElementsAre(7));
-  EXPECT_EQ(pair.one->counters().strangers_ignored, 2U);
+  EXPECT_EQ(pair.one->counters().foreign_datagrams, 2U);
   EXPECT_EQ(pair.one->counters().bytes_received, 1U);
 }
 
@@ -72,7 +73,7 @@ TEST(UdpTransport, ReceiveEndsAtItsDeadline) {
 }
 
 TEST(UdpTransport, APeerThatIsNotThereYetIsNoError) {
-  std::uint16_t free_port = bind_udp_loopback().port;
+  std::uint16_t free_port = io::bind_udp_loopback().port;
   const auto transport = make_udp_transport("127.0.0.1", free_port);
   for (int i = 0; i < 3; ++i) {
     transport->send(Bytes{1});

@@ -2,7 +2,6 @@
 // rules (fields in order, big-endian, no padding), independently of the generated code.
 
 #include "fsw/packets/messages.h"
-#include "tests/support/paths.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,6 +15,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/paths.h"
 
 namespace vbar::fsw::packets {
 namespace {
@@ -38,7 +39,8 @@ struct Declaration {
 };
 std::optional<Declaration> declaration_in(const std::string& line) {
   const std::size_t end = line.find(';');
-  if (!line.starts_with("  ") || end == std::string::npos) return std::nullopt;
+  if (!line.starts_with("  ") || line.starts_with("  const ") || line.starts_with("  //") || end == std::string::npos)
+    return std::nullopt;
   std::istringstream words(line.substr(0, end));
   Declaration declaration;
   words >> declaration.type >> declaration.name;
@@ -254,6 +256,49 @@ TEST_F(Messages, ValuesSurviveTheWireBitForBit) {
   EXPECT_EQ(received.value().maneuver_id, sent.maneuver_id);
   EXPECT_EQ(received.value().accepted, sent.accepted);
   EXPECT_EQ(std::memcmp(received.value().dv_rtn, sent.dv_rtn, sizeof sent.dv_rtn), 0);
+}
+
+/// The fields that the generated visitor visits, an element of an array each.
+template <class Message>
+void append_names(const Message& message, std::vector<std::string>& names) {
+  visit_fields(message, [&](const vbar::Field& field, const auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_class_v<std::remove_all_extents_t<Value>>) {
+      for (const auto& element : value) append_names(element, names);
+    } else {
+      for (std::size_t k = 0; k < std::max<std::size_t>(std::extent_v<Value>, 1); ++k) names.emplace_back(field.name);
+    }
+  });
+}
+
+TEST_F(Messages, EveryFieldIsVisitedInOrder) {
+  for_each_message([&]<class Message>() {
+    std::vector<std::string> visited, expected;
+    append_names(Message{}, visited);
+    for (const auto& field : layouts_[Message::getTypeName()]) expected.push_back(field.name);
+    EXPECT_EQ(visited, expected) << Message::getTypeName();
+  });
+}
+
+TEST(Fields, TellUnitsElementsAndWordsOfCodes) {
+  int seen = 0;
+  visit_fields(telemetry_navigation{}, [&](const vbar::Field& field, const auto&) {
+    if (field.name == std::string("relative_velocity_rtn")) {
+      EXPECT_STREQ(field.unit, "mps");
+      EXPECT_STREQ(field.elements[1], "t");
+      ++seen;
+    } else if (field.name == std::string("a_roe_mean_m")) {
+      EXPECT_STREQ(field.stem, "a_roe_mean");
+      EXPECT_STREQ(field.unit, "m");
+      ++seen;
+    } else if (field.name == std::string("source")) {
+      ASSERT_EQ(field.codes.count, 7);
+      EXPECT_EQ(field.codes.codes[4].value, 4);
+      EXPECT_STREQ(field.codes.codes[4].word, "gnss_fixed");
+      ++seen;
+    }
+  });
+  EXPECT_EQ(seen, 3);
 }
 
 }  // namespace

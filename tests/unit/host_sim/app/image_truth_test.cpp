@@ -9,6 +9,7 @@
 #include "fsw/orbit/roe.h"
 #include "host_sim/app/flight_recorder.h"
 #include "host_sim/app/image_rows.h"
+#include "host_sim/report/summarise.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
@@ -56,7 +57,7 @@ class ImageTruth : public testing::Test {
   }
 
   [[nodiscard]] report::ImageRow row(const telemetry_objects* objects = nullptr) const {
-    report::ImageRow row = image_row(100.0, 160.0, image_);
+    auto row = report::row_of<report::ImageRow>(image_);
     add_truth(row, image_, objects, mission_, mission_.spacecraft[0], truth_);
     return row;
   }
@@ -142,7 +143,10 @@ TEST_F(ImageTruth, NeesOfOneSigmaEachIsSix) {
 
 TEST_F(ImageTruth, WithoutTheTruthThereAreNoErrors) {
   truth_.spacecraft[0].attitude.reset();
-  EXPECT_TRUE(row() == image_row(100.0, 160.0, image_));
+  EXPECT_FALSE(row().range_m.has_value());
+  EXPECT_FALSE(row().bearing_error_x_arcsec.has_value());
+  EXPECT_FALSE(row().attitude_error_across_arcsec.has_value());
+  EXPECT_EQ(row().chosen, "");
 }
 
 TEST_F(ImageTruth, SummaryTakesTheUnresolvedTargetOnly) {
@@ -158,17 +162,21 @@ TEST_F(ImageTruth, SummaryTakesTheUnresolvedTargetOnly) {
   rows.back().chosen = "decoy";
   rows.push_back({});
   rows.back().status = 2;
-  report::Summary summary;
-  summarise_images(rows, "target", summary);
-  EXPECT_EQ(summary.images, (report::ImageCounts{7, 6, 1}));
+  report::RunRecord record;
+  record.summary.target = "target";
+  record.images = rows;
+  const report::Summary summary = report::summarise(record);
+  ASSERT_TRUE(summary.images.has_value());
+  EXPECT_EQ(summary.images->images, 7);
+  EXPECT_EQ(summary.images->with_bearing, 6);
+  EXPECT_EQ(summary.images->wrong_targets, 1);
   EXPECT_NEAR(summary.bearing_error_arcsec->bias, std::hypot(2.0, 3.0), 1e-6);
   EXPECT_NEAR(summary.bearing_error_arcsec->std, 10.0 / std::sqrt(2.0), 1e-6) << "of two axes, one of them still";
   EXPECT_NEAR(summary.bearing_error_arcsec->mean, 0.5 * (std::hypot(12.0, 3.0) + std::hypot(8.0, 3.0)), 1e-6);
   EXPECT_EQ(summary.star_attitude_error_arcsec->mean, 0.0);
 
-  report::Summary none;
-  summarise_images({}, "target", none);
-  EXPECT_FALSE(none.images.has_value());
+  record.images.clear();
+  EXPECT_FALSE(report::summarise(record).images.has_value());
 }
 
 pil::Packet packet_of(fsw::GpsTime time, const auto& message) {
@@ -208,7 +216,6 @@ TEST_F(ImageTruth, TheRecorderTakesTheTruthOfTheExposure) {
   EXPECT_NEAR(record.images[0].bearing_error_x_arcsec.value(), 0.0, 1e-9);
   EXPECT_EQ(record.objects.size(), 1U);
   EXPECT_EQ(record.residuals.size(), 2U);
-  EXPECT_EQ(record.summary.images, (report::ImageCounts{1, 1, 0}));
 
   answer.packets = {packet_of(exposure + fsw::duration_of_seconds(1), image_)};  // no truth was kept of that
   recorder.on_answer(truth_.time, answer);
@@ -221,7 +228,7 @@ TEST(ImageRows, ResidualsAndObjectsAreRows) {
   image.postfit[0] = -5.0 * kArcsecond;
   image.bearing_sigma = 12.0 * kArcsecond;
   std::vector<report::ResidualRow> residuals;
-  append_residuals(image_row(60.0, 120.0, image), residuals);
+  append_residuals(report::row_of<report::ImageRow>(image), residuals);
   ASSERT_EQ(residuals.size(), 2U);
   EXPECT_EQ(residuals[0].sensor, "bearing_x_arcsec");
   EXPECT_NEAR(residuals[0].postfit, -5.0, 1e-12);

@@ -1,5 +1,6 @@
 #include "host_sim/report/html_report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -41,14 +42,16 @@ TEST_F(HtmlReport, TheCheckSeesFaults) {
 
 TEST_F(HtmlReport, TellsTheWholeRun) {
   const std::string html = html_report(synthetic_run());
-  for (const char* heading : {"Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation",
-                              "Carrier-phase navigation", "Angles-only navigation", "Navigation by the pose network",
-                              "Attitude", "Guidance and passive safety", "Flight computer, link and time"}) {
+  for (const char* heading :
+       {"Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation", "Carrier-phase navigation",
+        "Angles-only navigation", "Navigation by the pose network", "Attitude", "Guidance and passive safety",
+        "Health of the flight software", "Flight computer, link and time"}) {
     EXPECT_THAT(html, HasSubstr("<h2>" + std::string(heading) + "</h2>"));
   }
   EXPECT_THAT(html, HasSubstr("&lt;a &quot;test&quot; &amp; nothing else&gt;")) << "the flight software's own name";
   EXPECT_THAT(html, HasSubstr(std::string(64, 'a')));
   EXPECT_THAT(html, HasSubstr("did not converge"));
+  EXPECT_THAT(html, HasSubstr("Not nominal: inbox dropped 12, faults inbox_full.")) << "never without a word";
   EXPECT_THAT(html, HasSubstr("40 commanded, 39 executed, 1 not executed"));
   EXPECT_THAT(html, HasSubstr("300 s after the start"));
   EXPECT_THAT(html, HasSubstr("4.75 in 90 maneuvers")) << "the paper's, as the run meets its waypoints 1 to 7";
@@ -158,13 +161,13 @@ TEST_F(HtmlReport, CopesWithNumbersThatAreNone) {
   record.truth[200].a_roe_mean_m.fill(std::numeric_limits<double>::infinity());
   record.gnss[400].phase_nis = none;
   record.images[100].nis = none;
-  record.images[110].prefit_arcsec = {none, none};
+  std::ranges::fill(record.images[110].prefit, none);
   record.images[120].bearing_error_x_arcsec = none;
   record.poses[20].attitude_error_deg = none;
-  record.poses[30].covariance_attitude.fill(none);
+  std::ranges::fill(record.poses[30].covariance_attitude, none);
   record.keypoints[40].error_x_px = none;
   record.keypoints[41].covariance_xx_px2 = std::numeric_limits<float>::quiet_NaN();
-  record.gnss[500].covariance_rtn.fill(none);
+  std::ranges::fill(record.gnss[500].covariance_rtn, none);
   record.estimates[300].passive_safety_distance_m = none;
   record.maneuvers[5].executed_dv_rtn_mps = {none, 0.0, 0.0};
   EXPECT_EQ(complaints(html_report(record)), "");

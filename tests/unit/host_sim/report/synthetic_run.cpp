@@ -1,5 +1,6 @@
 #include "tests/unit/host_sim/report/synthetic_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -45,6 +46,8 @@ Triple rtn_of(const Sextuple& roe, double time_s) {
   const double s = std::sin(kMeanMotion_radps * time_s);
   return {roe[0] - roe[2] * c - roe[3] * s, roe[1] + 2.0 * (roe[2] * s - roe[3] * c), roe[4] * s - roe[5] * c};
 }
+
+constexpr double kArcsecond = M_PI / 648000.0;
 
 double norm(const Triple& v) {
   return std::hypot(v[0], v[1], v[2]);
@@ -102,11 +105,15 @@ EstimateRow estimate_of(const TruthRow& truth, std::int64_t step) {
   return row;
 }
 
+template <class Number, std::size_t size>
+void set(Number (&field)[size], const std::array<double, size>& values) {
+  std::ranges::copy(values, field);
+}
+
 GnssRow gnss_of(const EstimateRow& estimate) {
   GnssRow row;
   row.time_s = estimate.time_s;
   row.step = estimate.step;
-  row.obstacle = "none";
   row.messages = static_cast<std::int32_t>(7 * estimate.step);
   if (estimate.step < 5) return row;
   row.epoch_s = estimate.time_s - 10.0;
@@ -114,7 +121,7 @@ GnssRow gnss_of(const EstimateRow& estimate) {
   row.tracked = 30 + static_cast<std::int32_t>(estimate.step % 5);
   row.fixed = row.tracked - 1;
   row.fixes = 1 + static_cast<std::int32_t>(estimate.step / 100);
-  row.obstacle = estimate.step % 7 == 0 ? "ratio" : "none";
+  row.obstacle = estimate.step % 7 == 0 ? telemetry_gnss::kObstacleRatio : telemetry_gnss::kObstacleNone;
   row.success_rate = 0.9999;
   row.ratio = 12.5;
   row.codes_used = row.phases_used = row.tracked;
@@ -128,6 +135,15 @@ GnssRow gnss_of(const EstimateRow& estimate) {
   return row;
 }
 
+TelemetryRow<telemetry_health> health_of(const EstimateRow& estimate) {
+  TelemetryRow<telemetry_health> row{estimate.time_s, estimate.time_s, {}};
+  row.message.step = estimate.step;
+  row.message.packets_accepted = static_cast<std::int32_t>(40 * estimate.step);
+  row.message.inbox_dropped = estimate.step > 100 ? 12 : 0;
+  row.message.faults = telemetry_health::kFaultInboxFull | telemetry_health::kFaultHold;
+  return row;
+}
+
 /// An image a minute; every seventh is dark, in every fiftieth the decoy is taken for the target.
 ImageRow image_of(const EstimateRow& estimate) {
   ImageRow row;
@@ -135,7 +151,7 @@ ImageRow image_of(const EstimateRow& estimate) {
   row.time_s = estimate.time_s - 60.0;
   row.step_time_s = estimate.time_s;
   row.image = static_cast<std::int32_t>(estimate.step);
-  row.objects = 60 + static_cast<int>(estimate.step % 9);
+  row.objects = static_cast<std::int16_t>(60 + estimate.step % 9);
   row.background_dn = 66.5;
   row.noise_dn = 1.25;
   row.images_without_stars = static_cast<std::int32_t>(estimate.step / 7);
@@ -147,26 +163,26 @@ ImageRow image_of(const EstimateRow& estimate) {
   row.bearings_refused = 2;
   if (row.status != 0) return row;
   row.star_method = 2;
-  row.stars = 40 + static_cast<int>(estimate.step % 5);
+  row.stars = static_cast<std::int16_t>(40 + estimate.step % 5);
   row.hypotheses = 3;
   row.target_object = 5;
   row.true_object = estimate.step % 50 == 1 ? 6 : 5;
   row.chosen = estimate.step % 50 == 1 ? "decoy, \"behind\"" : "target";
-  row.q_eci_camera = {0.5, -0.5, 0.5, 0.5};
-  row.attitude_sigma_arcsec = 4.0;
-  row.bearing_eci = {0.6, -0.8, 1e-300};
-  row.bearing_sigma_arcsec = 12.0;
-  row.prefit_arcsec = {30.0 * wobble(row.time_s, 10.0), 20.0 * wobble(row.time_s, 11.0)};
-  row.postfit_arcsec = {15.0 * wobble(row.time_s, 10.0), 12.0 * wobble(row.time_s, 11.0)};
+  set(row.q_eci_camera, {0.5, -0.5, 0.5, 0.5});
+  row.attitude_sigma = 4.0 * kArcsecond;
+  set(row.bearing_eci, {0.6, -0.8, 1e-300});
+  row.bearing_sigma = 12.0 * kArcsecond;
+  set(row.prefit, {30.0 * kArcsecond * wobble(row.time_s, 10.0), 20.0 * kArcsecond * wobble(row.time_s, 11.0)});
+  set(row.postfit, {15.0 * kArcsecond * wobble(row.time_s, 10.0), 12.0 * kArcsecond * wobble(row.time_s, 11.0)});
   row.nis = 1.0 + wobble(row.time_s, 12.0);
-  row.used = estimate.step < 40 ? 2 : 1;
-  row.covariance_a_roe_m2.fill(0.25);
-  row.a_roe_osculating_m = estimate.a_roe_mean_m;
+  row.fate = estimate.step < 40 ? telemetry_image::kEditBatch : telemetry_image::kEditFilter;
+  std::ranges::fill(row.covariance_a_roe, 0.25);
+  set(row.a_roe_osculating_m, estimate.a_roe_mean_m);
   row.bearing_error_x_arcsec = 2.0 + 12.0 * wobble(row.time_s, 13.0);
   row.bearing_error_y_arcsec = 12.0 * wobble(row.time_s, 14.0);
   row.attitude_error_across_arcsec = 4.0 + wobble(row.time_s, 15.0);
   row.attitude_error_roll_arcsec = 20.0 + wobble(row.time_s, 16.0);
-  if (row.used == 1) row.nees = 6.0 + wobble(row.time_s, 17.0);
+  if (row.fate == telemetry_image::kEditFilter) row.nees = 6.0 + wobble(row.time_s, 17.0);
   return row;
 }
 
@@ -193,19 +209,21 @@ PoseRow pose_of(const EstimateRow& estimate) {
   if (row.status != 0) return row;
   row.fate = row.image % 5 == 0 ? 1 : 2;
   row.has_attitude = 1;
-  row.region_px = {400.5, 250.25, 300.0};
+  set(row.region_px, {400.5, 250.25, 300.0});
   row.pnp_inliers = 9;
-  row.pnp_q_camera_body = row.q_camera_body = {0.5, 0.5, -0.5, 0.5};
-  row.pnp_position_camera_m = row.position_camera_m = {0.1, -0.2, *row.range_m};
+  set(row.pnp_q_camera_body, {0.5, 0.5, -0.5, 0.5});
+  set(row.q_camera_body, {0.5, 0.5, -0.5, 0.5});
+  set(row.pnp_position_camera_m, {0.1, -0.2, *row.range_m});
+  set(row.position_camera_m, {0.1, -0.2, *row.range_m});
   row.pnp_mean_square = 1.1;
-  row.rate_body_radps = {0.01, -0.02, 0.005};
+  set(row.rate_body, {0.01, -0.02, 0.005});
   std::size_t place = 0;
   for (std::size_t k = 0; k < 6; ++k) {
     place += k;
     row.covariance_attitude[place++] = k < 3 ? 4e-4 : 1e-8;
   }
-  row.covariance_a_roe_m2.fill(0.125);
-  row.a_roe_osculating_m = estimate.a_roe_mean_m;
+  std::ranges::fill(row.covariance_a_roe, 0.125);
+  set(row.a_roe_osculating_m, estimate.a_roe_mean_m);
   row.nis = 18.0 + wobble(row.time_s, 19.0);
   row.nis_degrees = 18;
   row.acceleration_psd = 1e-13;
@@ -312,6 +330,10 @@ Summary summary() {
   s.maneuvers = 39;
   s.commands_sha256 = std::string(64, 'a');
   s.telemetry_sha256 = std::string(64, 'b');
+  s.health = telemetry_health{};
+  s.health->inbox_dropped = 12;
+  s.health->faults = telemetry_health::kFaultInboxFull;
+  s.target = "target";
   s.flight_step = {.count = 2476, .max = 350000, .mean = 250000.5, .unit = "instructions", .stack_bytes_max = 21000};
   s.link = {2135034, 3, 2, 1, 4, 921600, 0.0125, 0.00625};
   s.deadlines = {5, 6, 7};
@@ -328,6 +350,8 @@ RunRecord synthetic_run() {
     record.truth.push_back(truth_at(60.0 * static_cast<double>(step)));
     record.estimates.push_back(estimate_of(record.truth.back(), step));
     record.gnss.push_back(gnss_of(record.estimates.back()));
+    std::get<std::vector<TelemetryRow<telemetry_health>>>(record.telemetry)
+        .push_back(health_of(record.estimates.back()));
     record.images.push_back(image_of(record.estimates.back()));
     if (step % 400 == 3) {
       add_objects(record, record.images.back());

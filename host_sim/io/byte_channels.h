@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
-#include "pil_bridge/file_descriptor.h"
-#include "pil_bridge/transport.h"
+#include "host_sim/io/byte_channel.h"
+#include "host_sim/io/file_descriptor.h"
 
-namespace vbar::pil {
+namespace vbar::io {
 
 /// A serial device (or the slave end of a pseudo-terminal): raw, 8N1, no flow control, modem lines ignored.
 std::unique_ptr<ByteChannel> open_serial(const std::string& device, unsigned baud);
@@ -40,4 +40,4 @@ Pty make_pty();
 /// written or read comes out at the other end once the last of its bytes would have.
 std::unique_ptr<ByteChannel> paced(std::unique_ptr<ByteChannel> channel, double bits_per_s);
 
-}  // namespace vbar::pil
+}  // namespace vbar::io

@@ -1,6 +1,6 @@
 // Every byte channel against a plain descriptor at its other end.
 
-#include "pil_bridge/byte_channels.h"
+#include "host_sim/io/byte_channels.h"
 
 #include <filesystem>
 #include <numeric>
@@ -15,7 +15,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-namespace vbar::pil {
+namespace vbar::io {
 namespace {
 
 using std::chrono::milliseconds;
@@ -116,8 +116,8 @@ TEST(ByteChannels, TcpSocket) {
 }
 
 TEST(ByteChannels, NobodyListeningIsAnErrorAtTheDeadline) {
-  EXPECT_THROW(connect_unix("/nowhere/socket", Clock::now() + milliseconds(20)), LinkError);
-  EXPECT_THROW(open_serial("/nowhere/tty", 115200), LinkError);
+  EXPECT_THROW(connect_unix("/nowhere/socket", Clock::now() + milliseconds(20)), ChannelError);
+  EXPECT_THROW(open_serial("/nowhere/tty", 115200), ChannelError);
 }
 
 TEST(ByteChannels, ReadEndsAtItsDeadline) {
@@ -141,22 +141,22 @@ TEST(ByteChannels, AClosedLineIsAnErrorAfterItsLastBytes) {
   ASSERT_EQ(::write(theirs.get(), "last", 4), 4);
   theirs.reset();
   EXPECT_EQ(channel->read(soon()).size(), 4U);
-  EXPECT_THROW((void)channel->read(soon()), LinkError);
-  EXPECT_THROW(channel->write(all_bytes(), soon()), LinkError);
+  EXPECT_THROW((void)channel->read(soon()), ChannelError);
+  EXPECT_THROW(channel->write(all_bytes(), soon()), ChannelError);
 }
 
 TEST(ByteChannels, AHungUpTerminalIsAnError) {
   Pty pty = make_pty();
   const auto channel = adopt_pty(std::move(pty.master), "pty");
   pty.slave.reset();
-  EXPECT_THROW((void)channel->read(soon()), LinkError);
+  EXPECT_THROW((void)channel->read(soon()), ChannelError);
 }
 
 TEST(ByteChannels, ALineThatTakesNoMoreBytesIsAnErrorAtTheDeadline) {
   auto [ours, theirs] = make_socket_pair();
   const auto channel = adopt_socket(std::move(ours), "pair");
   const Bytes more_than_any_socket_buffer(64U << 20U);
-  EXPECT_THROW(channel->write(more_than_any_socket_buffer, Clock::now() + milliseconds(50)), LinkError);
+  EXPECT_THROW(channel->write(more_than_any_socket_buffer, Clock::now() + milliseconds(50)), ChannelError);
   // The read that went on beside the write still works.
   ASSERT_EQ(::write(theirs.get(), "x", 1), 1);
   EXPECT_EQ(channel->read(soon()).size(), 1U);
@@ -188,4 +188,4 @@ TEST(ByteChannels, PacingGivesTheLineOfABaudRate) {
 }
 
 }  // namespace
-}  // namespace vbar::pil
+}  // namespace vbar::io

@@ -9,9 +9,9 @@
 
 #include <sys/types.h>
 
-#include "pil_bridge/file_descriptor.h"
+#include "host_sim/io/file_descriptor.h"
 
-namespace vbar::pil {
+namespace vbar::io {
 
 class ChildProcess {
  public:
@@ -52,4 +52,4 @@ class ChildProcess {
   std::optional<int> wait_status_;
 };
 
-}  // namespace vbar::pil
+}  // namespace vbar::io

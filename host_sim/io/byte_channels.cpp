@@ -1,4 +1,4 @@
-#include "pil_bridge/byte_channels.h"
+#include "host_sim/io/byte_channels.h"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@
 #include <sys/socket.h>
 #include <termios.h>
 
-namespace vbar::pil {
+namespace vbar::io {
 namespace {
 
 namespace asio = boost::asio;
@@ -29,7 +29,7 @@ using boost::system::error_code;
 constexpr std::chrono::milliseconds kConnectRetryPeriod{5};
 
 [[noreturn]] void fail(const std::string& what, const error_code& error) {
-  throw LinkError(what + ": " + error.message());
+  throw ChannelError(what + ": " + error.message());
 }
 
 [[noreturn]] void fail_errno(const std::string& what) {
@@ -54,7 +54,7 @@ class AsioChannel final : public ByteChannel {
       error_code ignored;
       stream_.cancel(ignored);
       while (!outcome) context_->run_one();
-      throw LinkError(description_ + " takes no more bytes");
+      throw ChannelError(description_ + " takes no more bytes");
     }
     if (*outcome) fail(description_, *outcome);
   }
@@ -254,4 +254,4 @@ std::unique_ptr<ByteChannel> paced(std::unique_ptr<ByteChannel> channel, double 
   return std::make_unique<PacedChannel>(std::move(channel), bits_per_s);
 }
 
-}  // namespace vbar::pil
+}  // namespace vbar::io

@@ -1,4 +1,4 @@
-#include "pil_bridge/process.h"
+#include "host_sim/io/child_process.h"
 
 #include <fstream>
 #include <sstream>
@@ -13,9 +13,9 @@
 #include <sys/socket.h>
 #include <sys/wait.h>
 
-#include "pil_bridge/byte_channels.h"
+#include "host_sim/io/byte_channels.h"
 
-namespace vbar::pil {
+namespace vbar::io {
 namespace {
 
 using std::chrono::milliseconds;
@@ -149,4 +149,4 @@ TEST(ChildProcess, RunsInAProcessGroupOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace vbar::pil
+}  // namespace vbar::io

@@ -5,7 +5,7 @@
 
 #include <unistd.h>
 
-namespace vbar::pil {
+namespace vbar::io {
 
 class FileDescriptor {
  public:
@@ -31,4 +31,4 @@ class FileDescriptor {
   int fd_ = -1;
 };
 
-}  // namespace vbar::pil
+}  // namespace vbar::io

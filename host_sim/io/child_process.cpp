@@ -1,4 +1,4 @@
-#include "pil_bridge/process.h"
+#include "host_sim/io/child_process.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -16,7 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace vbar::pil {
+namespace vbar::io {
 namespace {
 
 constexpr int kFirstInherited = 3;
@@ -165,4 +165,4 @@ std::string ChildProcess::output_tail(std::size_t limit) const {
   return text;
 }
 
-}  // namespace vbar::pil
+}  // namespace vbar::io

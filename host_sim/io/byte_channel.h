@@ -1,0 +1,38 @@
+#pragma once
+// A byte stream to another device or process: a serial line or a stream socket. One thread; every call returns by a
+// deadline.
+
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+namespace vbar::io {
+
+using Clock = std::chrono::steady_clock;
+
+/// The channel does not work any more, or there is no answer on it.
+class ChannelError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class ByteChannel {
+ public:
+  ByteChannel() = default;
+  ByteChannel(const ByteChannel&) = delete;
+  ByteChannel& operator=(const ByteChannel&) = delete;
+  virtual ~ByteChannel() = default;
+
+  /// Writes all of `bytes`. Throws ChannelError if the line is closed or does not take them by `deadline`.
+  virtual void write(std::span<const std::uint8_t> bytes, Clock::time_point deadline) = 0;
+
+  /// What has arrived: at least one byte, or none if nothing came by `deadline`. Valid until the next call. Throws
+  /// ChannelError.
+  virtual std::span<const std::uint8_t> read(Clock::time_point deadline) = 0;
+
+  [[nodiscard]] virtual std::string description() const = 0;
+};
+
+}  // namespace vbar::io

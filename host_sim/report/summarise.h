@@ -1,0 +1,22 @@
+#pragma once
+// The figures of a run, computed from its tables.
+
+#include <string>
+#include <vector>
+
+#include "host_sim/report/run_record.h"
+
+namespace vbar::report {
+
+/// The facts of record.summary, and every figure that the tables give. Figures that need a fact which an older version
+/// did not write (the target's name) stay as they were.
+[[nodiscard]] Summary summarise(const RunRecord& record);
+
+/// Gives each waypoint navigation's error at its time and the delta-v of its leg, then summarises.
+void evaluate(RunRecord& record);
+
+/// What the flight software counted that should not happen, on one line ("11123 packets dropped: inbox full; ...");
+/// empty if there was nothing.
+[[nodiscard]] std::string health_line(const telemetry_health& health);
+
+}  // namespace vbar::report

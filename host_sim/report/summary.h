@@ -1,0 +1,97 @@
+#pragma once
+// summary.json: what scripts and CI read of a run. Facts are known of a run alone; figures follow from its tables
+// (summarise.h).
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <vbar/fields.h>
+
+namespace vbar::report {
+
+struct MeanAndDeviation {
+  double mean = 0.0, std = 0.0;
+};
+
+/// Of the bearings to a target that is no larger than a pixel.
+struct BearingError {
+  double mean = 0.0;  ///< size
+  double std = 0.0;   ///< of each axis about the bias
+  double bias = 0.0;  ///< size of the mean
+};
+
+struct ImageCounts {
+  int images = 0;
+  int with_bearing = 0;
+  int wrong_targets = 0;  ///< images whose choice is not the target
+};
+
+/// Of navigation by the pose network.
+struct PoseFigures {
+  int images = 0;
+  int with_pose = 0;                 ///< by PnP
+  int poses_over_10_deg = 0;         ///< of them, more than 10 deg off
+  double keypoint_error_px = 0.0;    ///< median of those usable
+  double keypoint_chi_square = 0.0;  ///< median normalised squared error of those usable; 1.39 if consistent
+  /// Position error over the images of a lit target alone, m.
+  MeanAndDeviation lit_navigation_error_m;
+  std::optional<double> attitude_nees;  ///< mean; turn and rate, 6 if consistent
+  int attitude_restarts = 0, restarts = 0;
+};
+
+/// What a run is and what the tables do not hold.
+struct RunFacts {
+  std::string mission;
+  std::uint64_t seed = 0;
+  bool complete = false;
+  std::string incomplete_reason;
+  std::string flight_computer, flight_software, camera, gnss, navigation;
+  std::string target;  ///< the spacecraft that is approached
+  double simulated_s = 0.0, wall_s = 0.0, speed_factor = 0.0;
+  /// Of this run's draws: the distance between the antennas' true places and those that navigation takes for true, as
+  /// of bodies with parallel axes. Navigation that takes the nominal places errs by it; one that estimates them from
+  /// the motion may do better.
+  std::optional<double> static_floor_m;
+  std::string commands_sha256, telemetry_sha256;
+  struct Link {
+    std::uint64_t bytes = 0, frames_resent = 0, frames_rejected = 0, frames_duplicated = 0, strangers_ignored = 0;
+    int baud = 0;                                        ///< of a serial line; 0: none, or as fast as it goes
+    double step_share_max = 0.0, step_share_mean = 0.0;  ///< of a step's period, that its bytes take at that rate
+  } link;
+  struct Deadlines {
+    std::uint64_t compute_overruns = 0, wakeups_late = 0, link_late = 0, simulation_late = 0;
+  } deadlines;
+  struct WallShare {
+    double truth_s = 0.0, flight_s = 0.0, link_s = 0.0, other_s = 0.0;
+    // Of a digital camera, on a thread of its own: beside the others, not part of their sum.
+    double render_s = 0.0, detector_s = 0.0, packing_s = 0.0;
+  } wall_share;
+};
+
+struct Summary : RunFacts {
+  /// Over all steps with a valid estimate; from the first fix on if there was one.
+  std::optional<MeanAndDeviation> navigation_error_m, navigation_velocity_error_mps;
+  std::optional<MeanAndDeviation> attitude_error_deg;
+  std::optional<double> first_fix_s;  ///< GNSS: since the start: the first step whose estimate is by fixed ambiguities
+  /// Mean normalised estimation error squared of the relative state over the steps of navigation_error_m, or over the
+  /// images that angles-only navigation used; 6 if consistent.
+  std::optional<double> navigation_nees;
+  // Angles-only navigation only.
+  std::optional<BearingError> bearing_error_arcsec;
+  std::optional<MeanAndDeviation> star_attitude_error_arcsec;  ///< of the boresight
+  std::optional<ImageCounts> images;
+  // Navigation by the pose network only.
+  std::optional<PoseFigures> pose;
+  double dv_mps = 0.0;
+  int maneuvers = 0;
+  struct FlightStep {
+    std::uint64_t count = 0, max = 0;
+    double mean = 0.0;
+    std::string unit = "none";
+    std::uint32_t stack_bytes_max = 0;
+  } flight_step;
+  std::optional<telemetry_health> health;  ///< what the flight software counted until its last step
+};
+
+}  // namespace vbar::report

@@ -1,0 +1,58 @@
+// Run folders of an earlier version (tests/data/earlier_runs/README.md). Expected values are read off its files.
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "host_sim/report/html_report.h"
+#include "host_sim/report/run_folder.h"
+#include "host_sim/report/summarise.h"
+#include "tests/support/paths.h"
+
+namespace vbar::report::test {
+namespace {
+
+constexpr double kArcsecond = M_PI / 648000.0;
+
+RunRecord earlier_run(const std::string& name) {
+  return read_run(vbar::tests::source_path("tests/data/earlier_runs/" + name));
+}
+
+TEST(EarlierRuns, ImagesAreConverted) {
+  const RunRecord record = earlier_run("experiment1");
+  ASSERT_EQ(record.images.size(), 5U);
+  EXPECT_THAT(record.notes, testing::IsEmpty());
+  const ImageRow& first = record.images.front();
+  EXPECT_EQ(first.status, telemetry_image::kStatusNoTarget);
+  EXPECT_EQ(first.star_method, telemetry_image::kStarMethodLostInSpace);
+  EXPECT_NEAR(first.attitude_sigma, 0.41075991275213863 * kArcsecond, 1e-18);
+  EXPECT_EQ(first.covariance_a_roe[0], 9846.780724292774);
+  EXPECT_EQ(first.covariance_a_roe[20], 40009.93382449952);
+  EXPECT_EQ(first.fate, telemetry_image::kEditRejected) << "the column `used` was 0";
+  EXPECT_EQ(record.objects.size(), 10U);
+}
+
+TEST(EarlierRuns, PosesAndGnssAreRead) {
+  const RunRecord poses = earlier_run("experiment2");
+  EXPECT_EQ(poses.poses.size(), 3U);
+  EXPECT_EQ(poses.keypoints.size(), 33U);
+  EXPECT_GT(poses.poses.back().covariance_a_roe[0], 0.0);
+  const RunRecord gnss = earlier_run("experiment3");
+  EXPECT_EQ(gnss.gnss.size(), 8U);
+  EXPECT_EQ(gnss.gnss.front().messages, 3);
+  EXPECT_EQ(gnss.gnss.front().obstacle, telemetry_gnss::kObstacleNone);
+  EXPECT_EQ(gnss.summary.telemetry_sha256.substr(0, 16), "6d63806d94a5a9ca");
+}
+
+TEST(EarlierRuns, HaveAReport) {
+  for (const char* name : {"experiment1", "experiment2", "experiment3"}) {
+    RunRecord record = earlier_run(name);
+    const auto images = record.summary.images;
+    evaluate(record);
+    EXPECT_EQ(record.summary.images.has_value(), images.has_value()) << name;
+    EXPECT_THAT(html_report(record), testing::HasSubstr(name));
+  }
+}
+
+}  // namespace
+}  // namespace vbar::report::test
