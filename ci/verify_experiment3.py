@@ -13,7 +13,7 @@ CASES = {
     "nominal": [],
     "cold start": [f"spacecraft.{name}.sensors.gnss.start.mode=cold" for name in ("servicer", "target")],
     "crosslink loses 20 %, 0 to 5 s late": [
-        'links.crosslink.latency={distribution="uniform", minimum_s=0.0, maximum_s=5.0}',
+        'links.crosslink.latency={distribution="uniform", min_s=0.0, max_s=5.0}',
         "links.crosslink.loss_probability=0.2"],
     "crosslink silent for 10 minutes": [f"links.crosslink.silence_begin_s={SILENCE_BEGIN_S}",
                                         f"links.crosslink.silence_duration_s={SILENCE_S}"],

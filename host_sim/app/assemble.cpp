@@ -9,9 +9,12 @@
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/flight_recorder.h"
 #include "host_sim/app/line_usage.h"
-#include "host_sim/app/make_twins.h"
-#include "host_sim/mission/telecommands.h"
+#include "host_sim/app/make_thruster.h"
 #include "host_sim/report/summarise.h"
+#include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/sensors/ideal_navigation/ideal_navigation_kind.h"
+#include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
 namespace {
@@ -25,11 +28,9 @@ const mission::Spacecraft& complete_servicer(const mission::Mission& mission) {
                                "\" has a flight computer too; one in a mission is supported");
     }
   }
-  if (!servicer.navigation && !servicer.gnss) {
-    throw std::runtime_error(
-        "spacecraft \"" + servicer.name +
-        "\" has neither sensors.navigation nor sensors.gnss; one of them is needed to navigate by");
-  }
+  if (servicer.observes().empty())
+    throw std::runtime_error("spacecraft \"" + servicer.name +
+                             "\" has no sensor that observes another spacecraft; one is needed to navigate by");
   if (!servicer.thruster) throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no thruster");
   return servicer;
 }
@@ -38,51 +39,8 @@ PairTruth pair_in(const twins::TruthSnapshot& truth, const mission::Spacecraft& 
   return {truth.find(servicer.name)->orbit, truth.find(servicer.observes())->orbit};
 }
 
-/// Telecommands of one instant.
-class Telecommands {
- public:
-  Telecommands(fsw::GpsTime time, std::uint8_t spacecraft) : time_(time), spacecraft_(spacecraft) {}
-  template <class Message>
-  void add(const Message& message) {
-    auto packet = twins::PacketEncoder(spacecraft_, 0).encode(time_, message);
-    if (!packet) throw std::runtime_error("a telecommand cannot be sent: it holds a number that is not finite");
-    packets_.push_back(std::move(*packet));
-  }
-  [[nodiscard]] std::vector<twins::Packet> packets() && { return std::move(packets_); }
-
- private:
-  fsw::GpsTime time_;
-  std::uint8_t spacecraft_;
-  std::vector<twins::Packet> packets_;
-};
-
-/// The mission, telecommanded to the flight software before its first step.
-std::vector<twins::Packet> first_packets(const mission::Mission& mission, const mission::Spacecraft& servicer,
-                                         FlownTruth& truth) {
-  Telecommands telecommands(mission.start_time(), servicer.number);
-  const PairTruth pair = pair_in(truth.snapshot(twins::TruthDetail::kStates), servicer);
-  telecommands.add(mission::gnc_configuration_of(mission));
-  if (servicer.gnss) {
-    const auto& orientation = *truth.model().data().earth_orientation;
-    telecommands.add(mission::navigation_configuration_of(mission, servicer, orientation));
-  }
-  if (servicer.camera) {
-    telecommands.add(mission::camera_configuration_of(servicer));
-    if (servicer.camera->navigation == mission::CameraNavigation::kPose) {
-      auto configuration = mission::pose_configuration_of(mission, servicer);
-      mission::add_apriori(mission, servicer, pair.servicer, pair.target, configuration);
-      telecommands.add(configuration);
-    } else {
-      telecommands.add(mission::angles_only_configuration_of(mission));
-      telecommands.add(mission::target_apriori_of(mission, servicer, pair.servicer, pair.target));
-    }
-  }
-  telecommands.add(mission::waypoint_table_of(mission));
-  telecommands.add(mission::mode_command_of(mission));
-  return std::move(telecommands).packets();
-}
-
-Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraft& servicer, FlownTruth& truth) {
+Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                       const std::filesystem::path& data_directory, const truth::TruthModel& truth) {
   Timetable timetable;
   timetable.start = mission.start_time();
   timetable.end = mission.end_time();
@@ -92,7 +50,11 @@ Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraf
   timetable.clock = mission.clock;
   for (const mission::Waypoint& waypoint : mission.waypoints) timetable.waypoints.push_back(waypoint.time);
   for (const mission::PrescribedBurn& burn : mission.burns) timetable.burns.push_back({burn.time, burn.dv_rtn});
-  timetable.first_packets = first_packets(mission, servicer, truth);
+  const auto state_at_start = [&](std::string_view spacecraft) {
+    return truth.state(truth.index_of(std::string(spacecraft)));
+  };
+  timetable.first_packets = sensors::telecommands_of(
+      {mission, servicer, data_directory, *truth.data().earth_orientation, state_at_start});
   return timetable;
 }
 
@@ -166,27 +128,23 @@ class LineWatch final : public RunObserver {
   LineUsage usage_;
 };
 
-/// Kind of the source whose name ends in `sensor`; empty if there is none.
-std::string kind_of(std::span<const Source> sources, const std::string& name) {
-  for (const Source& source : sources)
-    if (source.name == name) return source.kind;
-  return {};
-}
-
 void summarise_mission(const mission::Mission& mission, const mission::Spacecraft& servicer,
-                       std::span<const Source> sources, report::Summary& summary) {
+                       report::Summary& summary) {
   summary.mission = mission.name;
   summary.seed = mission.seed;
   summary.target = servicer.observes();
   summary.flight_computer = mission::name_of(servicer.flight_computer->target);
-  const bool is_by_pose = servicer.camera && servicer.camera->navigation == mission::CameraNavigation::kPose;
-  summary.navigation = is_by_pose        ? "pose"
-                       : servicer.camera ? "angles_only"
-                       : servicer.gnss   ? "gnss"
-                                         : kind_of(sources, servicer.name + "/navigation");
-  summary.gnss = kind_of(sources, servicer.name + "/gnss");
-  summary.camera = kind_of(sources, servicer.name + "/camera");
-  summary.static_floor_m = gnss_static_floor_m(mission, servicer);
+  const auto* const camera = mission::find_settings<sensors::CameraSensor>(servicer);
+  const auto* const gnss = mission::find_settings<sensors::GnssSensor>(servicer);
+  const auto* const navigation = mission::find_settings<sensors::NavigationSensor>(servicer);
+  const bool is_by_pose = camera != nullptr && camera->use == sensors::CameraNavigation::kPose;
+  summary.navigation = is_by_pose          ? "pose"
+                       : camera != nullptr ? "angles_only"
+                       : gnss != nullptr   ? "gnss"
+                                           : navigation->source;
+  summary.gnss = gnss != nullptr ? gnss->source : "";
+  summary.camera = camera != nullptr ? camera->source : "";
+  summary.static_floor_m = sensors::gnss_static_floor_m(mission, servicer);
 }
 
 void summarise_run(const RunFacts& facts, std::span<const Source> sources, report::Summary& summary) {
@@ -221,10 +179,10 @@ AssembledMission::AssembledMission(const mission::Mission& mission, const std::f
     : mission_(mission),
       servicer_(complete_servicer(mission)),
       truth_(mission, servicer_, data_directory),
-      sources_(make_sources(mission, servicer_, data_directory)),
+      sources_(sensors::make_sources(mission, servicer_, data_directory)),
       thruster_(make_thruster(mission, servicer_)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
-      timetable_(timetable_of(mission, servicer_, truth_)) {}
+      timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())) {}
 
 bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& record) {
   start();
@@ -247,7 +205,7 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
     facts_ = simulation.facts();
     const std::string trouble = started_.stop(reason);
     recording.finish();
-    summarise_mission(mission_, servicer_, sources_, record.summary);
+    summarise_mission(mission_, servicer_, record.summary);
     summarise_run(facts_, sources_, record.summary);
     record.summary.flight_software = surroundings.flight_computer.description();
     record.summary.flight_step.unit = facts_.cost_unit;

@@ -12,7 +12,8 @@
 #include "host_sim/app/image_rows.h"
 #include "host_sim/app/image_truth.h"
 #include "host_sim/app/pose_truth.h"
-#include "host_sim/mission/telecommands.h"
+#include "host_sim/mission/data_directory.h"
+#include "host_sim/sensors/camera/camera_kind.h"
 
 namespace vbar::app {
 namespace {
@@ -66,8 +67,9 @@ FlightRecorder::FlightRecorder(const mission::Mission& mission, const mission::S
       record_(record),
       gallery_(mission, servicer),
       pose_gallery_(mission, servicer) {
-  if (servicer.camera && servicer.camera->navigation == mission::CameraNavigation::kPose)
-    known_target_ = mission::pose_configuration_of(mission, servicer);
+  const auto* const camera = mission::find_settings<sensors::CameraSensor>(servicer);
+  if (camera != nullptr && camera->use == sensors::CameraNavigation::kPose)
+    known_target_ = sensors::pose_configuration_of(mission, *camera, mission::data_directory());
 }
 
 void FlightRecorder::on_truth(fsw::GpsTime time, const PairTruth& truth) {

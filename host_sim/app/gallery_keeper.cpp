@@ -7,6 +7,7 @@
 
 #include "fsw/angles_only/sighting.h"
 #include "host_sim/report/code_names.h"
+#include "host_sim/sensors/camera/camera_kind.h"
 
 namespace vbar::app {
 namespace {
@@ -39,10 +40,11 @@ std::string caption(const report::ImageRow& row) {
 }  // namespace
 
 GalleryKeeper::GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  if (!servicer.camera || servicer.camera->navigation != mission::CameraNavigation::kAnglesOnly) return;
+  const auto* const camera = mission::find_settings<sensors::CameraSensor>(servicer);
+  if (camera == nullptr || camera->use != sensors::CameraNavigation::kAnglesOnly) return;
   assembly_ = std::make_unique<fsw::imaging::ImageAssembly>();
-  before_ = fsw::Duration{kExposuresBefore * servicer.camera->period.ns};
-  focal_length_px_ = servicer.camera->settings.focal_length_px();
+  before_ = fsw::Duration{kExposuresBefore * camera->period.ns};
+  focal_length_px_ = camera->settings.focal_length_px();
   for (const mission::Waypoint& waypoint : mission.waypoints)
     if (waypoint.time > mission.start_time() && waypoint.time < mission.end_time()) moments_.push_back(waypoint.time);
   moments_.push_back(mission.end_time());

@@ -77,8 +77,9 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
                const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);
   const twins::SpacecraftTruth* const target = truth.find(servicer.observes());
-  if (!servicer.camera || own == nullptr || target == nullptr || !own->attitude) return;
-  const TrueCamera camera = true_camera(*servicer.camera, *own);
+  const auto* const sensor = mission::find_settings<sensors::CameraSensor>(servicer);
+  if (sensor == nullptr || own == nullptr || target == nullptr || !own->attitude) return;
+  const TrueCamera camera = true_camera(*sensor, *own);
   const Vector3 los_eci = camera.towards(*target);
   row.range_m = los_eci.norm();
   const Vector3 bearing_eci = vector(image.bearing_eci);
@@ -90,7 +91,7 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
     const double(&q)[4] = image.q_eci_camera;
     add_attitude_error(row, {q[0], q[1], q[2], q[3]}, camera.q_camera_eci);
   }
-  const twins::camera::CameraSettings& settings = servicer.camera->settings;
+  const twins::camera::CameraSettings& settings = sensor->settings;
   const auto target_px = pixel_of(settings, camera.q_camera_eci * los_eci);
   if (objects != nullptr && target_px) {
     const double tolerance_px = settings.focal_length_px() * (kSameObject_rad + kRadius_m / *row.range_m);

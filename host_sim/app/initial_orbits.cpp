@@ -5,7 +5,7 @@
 
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
-#include "host_sim/twins/gnss/body_frame.h"
+#include "host_sim/mission/attitude.h"
 
 namespace vbar::app {
 namespace {
@@ -49,15 +49,13 @@ CartesianState state_about(const mission::Mission& mission, const mission::Orbit
   return state_of(fsw::orbit::qns_from_roe(chief_mean, roe), spacecraft);
 }
 
-/// The mass that a spacecraft with a receiver truly has: what the body frame's draws add to the nominal one.
+/// With the true mass.
 truth::SurfaceProperties true_surface(const mission::Mission& mission, const mission::Spacecraft& spacecraft) {
   truth::SurfaceProperties surface = spacecraft.surface;
-  if (spacecraft.gnss) {
-    const twins::gnss::BodyFrameSettings& settings = spacecraft.gnss->receiver.body_frame;
-    surface.mass_kg += twins::gnss::draw_body_frame(settings, mission.seed, spacecraft.name).mass_kg;
-    if (!(surface.mass_kg > 0.0))
-      throw std::runtime_error("spacecraft \"" + spacecraft.name + "\": its mass_sigma_kg left it without a mass");
-  }
+  surface.mass_kg += mission::drawn_mass_error_kg(mission.seed, spacecraft.name, spacecraft.mass_sigma_kg);
+  if (!(surface.mass_kg > 0.0))
+    throw std::runtime_error("spacecraft \"" + spacecraft.name +
+                             "\": the mass drawn with its mass_sigma_kg is not positive");
   return surface;
 }
 

@@ -6,8 +6,9 @@
 
 #include "fsw/pose/spacecraft_pose_network.h"
 #include "host_sim/app/pose_picture.h"
-#include "host_sim/mission/telecommands.h"
+#include "host_sim/mission/data_directory.h"
 #include "host_sim/report/code_names.h"
+#include "host_sim/sensors/camera/camera_kind.h"
 
 namespace vbar::app {
 namespace {
@@ -25,10 +26,11 @@ std::string caption(const report::PoseRow& row) {
 }  // namespace
 
 PoseGallery::PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  if (!servicer.camera || servicer.camera->navigation != mission::CameraNavigation::kPose) return;
+  const auto* const camera = mission::find_settings<sensors::CameraSensor>(servicer);
+  if (camera == nullptr || camera->use != sensors::CameraNavigation::kPose) return;
   work_ = std::make_unique<Work>();
   static_cast<void>(work_->network.load(fsw::network::weights_on_board()));  // without it, pictures without maps
-  const pose_configuration configuration = mission::pose_configuration_of(mission, servicer);
+  const pose_configuration configuration = sensors::pose_configuration_of(mission, *camera, mission::data_directory());
   dark_level_dn_ = configuration.dark_level_dn;
   noise_dn_ = configuration.noise_dn;
   for (int k = 0; k < kPictures; ++k)

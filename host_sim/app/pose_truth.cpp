@@ -76,8 +76,9 @@ void add_truth(report::PoseRow& row, std::vector<report::KeypointRow>& keypoints
                const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);
   const twins::SpacecraftTruth* const target = truth.find(servicer.observes());
-  if (!servicer.camera || own == nullptr || target == nullptr || !own->attitude || !target->attitude) return;
-  const TrueCamera camera = true_camera(*servicer.camera, *own);
+  const auto* const settings = mission::find_settings<sensors::CameraSensor>(servicer);
+  if (settings == nullptr || own == nullptr || target == nullptr || !own->attitude || !target->attitude) return;
+  const TrueCamera camera = true_camera(*settings, *own);
   const Vector3 position_camera = camera.q_camera_eci * camera.towards(*target);
   const Quaterniond q_camera_body = camera.q_camera_eci * target->attitude->q_body_eci.conjugate();
   row.range_m = position_camera.norm();
@@ -92,7 +93,7 @@ void add_truth(report::PoseRow& row, std::vector<report::KeypointRow>& keypoints
   for (int k = 0; k < kKeypoints; ++k) {
     report::KeypointRow& keypoint = keypoints[keypoints.size() - kKeypoints + static_cast<std::size_t>(k)];
     const Vector3 at_body = Eigen::Map<const Vector3>(keypoints_body_m + 3 * k);
-    const auto pixel = pixel_of(servicer.camera->settings, position_camera + q_camera_body * at_body);
+    const auto pixel = pixel_of(settings->settings, position_camera + q_camera_body * at_body);
     if (keypoint.fate == telemetry_pose::kKeypointUnusable || !pixel) continue;
     keypoint.error_x_px = static_cast<double>(keypoint.x_px) - pixel->x();
     keypoint.error_y_px = static_cast<double>(keypoint.y_px) - pixel->y();

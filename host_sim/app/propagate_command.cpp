@@ -6,13 +6,13 @@
 #include <fmt/core.h>
 
 #include "host_sim/app/commands.h"
-#include "host_sim/app/data_directory.h"
 #include "host_sim/app/progress.h"
 #include "host_sim/app/propagation.h"
 #include "host_sim/app/stop_request.h"
-#include "host_sim/mission/load.h"
+#include "host_sim/mission/data_directory.h"
 #include "host_sim/report/propagation_folder.h"
 #include "host_sim/report/propagation_summary.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::app {
@@ -29,8 +29,8 @@ fsw::GpsTime now() {
 }  // namespace
 
 int propagate_command(const PropagateOptions& options) {
-  const mission::Mission mission = mission::load_mission(options.mission, options.overrides);
-  Propagation propagation(mission, data_directory());
+  const mission::Mission mission = sensors::load_mission(options.mission, options.overrides);
+  Propagation propagation(mission, mission::data_directory());
   report::PropagationFolder folder(options.out.empty() ? report::default_propagation_folder(mission.name) : options.out,
                                    mission.name);
   const report::OemFile::Span span{mission.start_time(), mission.end_time(), propagation.sampling_times().size(),

@@ -12,10 +12,10 @@
 
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/app/data_directory.h"
-#include "host_sim/app/make_twins.h"
-#include "host_sim/mission/load.h"
+#include "host_sim/mission/data_directory.h"
 #include "host_sim/report/run_folder.h"
+#include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/camera/recipe_log.h"
 #include "host_sim/twins/packet_log.h"
 
@@ -28,7 +28,7 @@ mission::Mission mission_as_flown(const ReplayOptions& options) {
   std::ifstream lines(options.run_folder / kOverridesCopy);
   for (std::string line; std::getline(lines, line);) overrides.push_back(line);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
-  return mission::load_mission(options.run_folder / kMissionCopy, overrides);
+  return sensors::load_mission(options.run_folder / kMissionCopy, overrides);
 }
 
 struct RecordedStep {
@@ -58,8 +58,8 @@ std::map<std::uint32_t, RecordedStep> steps_of(const twins::PacketLog& log) {
 /// What makes the images of the log again; none if it has no recipes.
 std::optional<twins::camera::TileRestorer> make_restorer(const mission::Mission& mission, const twins::PacketLog& log) {
   if (log.recipes.empty()) return std::nullopt;
-  return twins::camera::TileRestorer(log.recipes,
-                                     make_image_maker(mission, flying_spacecraft(mission), data_directory()));
+  return twins::camera::TileRestorer(
+      log.recipes, sensors::make_image_maker(mission, flying_spacecraft(mission), mission::data_directory()));
 }
 
 /// The packets that went to the flight software, with the image tiles made again that the log has none of.

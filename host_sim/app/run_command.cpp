@@ -10,17 +10,17 @@
 #include "host_sim/app/assemble.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/app/data_directory.h"
 #include "host_sim/app/packet_keepers.h"
 #include "host_sim/app/progress.h"
 #include "host_sim/app/stop_request.h"
+#include "host_sim/mission/data_directory.h"
 #include "host_sim/mission/extends.h"
-#include "host_sim/mission/load.h"
 #include "host_sim/report/html_report.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/summarise.h"
 #include "host_sim/report/text_file.h"
 #include "host_sim/report/waypoint_table.h"
+#include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
 namespace {
@@ -47,7 +47,7 @@ std::optional<std::string> fly(const mission::Mission& mission, AssembledMission
   constexpr std::chrono::seconds kBetweenUpdates{1};
   PacketKeepers keepers(mission, folder.path());
   const std::unique_ptr<pil::FlightComputer> flight_computer = connect_flight_computer(flying_spacecraft(mission));
-  engine::SteadyWallClock wall;
+  const auto wall = mission::make_wall_clock(mission, sensors::installation());
   ProgressLine progress(mission.duration);
   auto updated = std::chrono::steady_clock::now();
   const auto after_step = [&](fsw::Duration simulated) {
@@ -59,7 +59,7 @@ std::optional<std::string> fly(const mission::Mission& mission, AssembledMission
   std::optional<std::string> trouble;
   try {
     const bool complete =
-        assembled.fly({*flight_computer, wall, keepers.observers(), after_step, stop_requested}, record);
+        assembled.fly({*flight_computer, *wall, keepers.observers(), after_step, stop_requested}, record);
     if (!complete) trouble = "interrupted";
   } catch (const std::exception& error) {
     trouble = error.what();
@@ -79,10 +79,10 @@ void report_health(const report::Summary& summary) {
 }  // namespace
 
 int run_command(const RunOptions& options) {
-  const mission::Mission mission = mission::load_mission(options.mission, options.overrides);
+  const mission::Mission mission = sensors::load_mission(options.mission, options.overrides);
   catch_stop_signals();
   // Whatever cannot fly, and a source that is not ready, is refused before there is a folder.
-  AssembledMission assembled(mission, data_directory());
+  AssembledMission assembled(mission, mission::data_directory());
   assembled.start();
   const std::filesystem::path out =
       options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out;

@@ -29,12 +29,7 @@
 
 namespace vbar::app {
 
-/// What the flight software senses by.
-struct Source {
-  std::string name;  ///< in errors, notes and the summary: "servicer/gnss"
-  std::string kind;  ///< "digital", "recorded" or the name of a testbed
-  std::unique_ptr<twins::PacketSource> packets;
-};
+using Source = twins::NamedSource;
 
 /// What takes part in a run. All references must outlive it.
 struct World {

@@ -6,7 +6,7 @@
 
 namespace vbar::app {
 
-TrueCamera true_camera(const mission::CameraSensor& camera, const twins::SpacecraftTruth& servicer) {
+TrueCamera true_camera(const sensors::CameraSensor& camera, const twins::SpacecraftTruth& servicer) {
   const Eigen::Quaterniond& q_body_eci = servicer.attitude->q_body_eci;
   return {servicer.orbit.position_eci + q_body_eci.conjugate() * camera.position_body_m,
           camera.q_camera_body * q_body_eci};

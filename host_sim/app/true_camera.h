@@ -8,7 +8,7 @@
 
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
-#include "host_sim/mission/mission.h"
+#include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::app {
@@ -24,7 +24,7 @@ struct TrueCamera {
 };
 
 /// `servicer` must have an attitude.
-[[nodiscard]] TrueCamera true_camera(const mission::CameraSensor& camera, const twins::SpacecraftTruth& servicer);
+[[nodiscard]] TrueCamera true_camera(const sensors::CameraSensor& camera, const twins::SpacecraftTruth& servicer);
 
 /// Pinhole and Brown-Conrady distortion, forwards (Brown 1966); none behind the camera.
 [[nodiscard]] std::optional<Eigen::Vector2d> pixel_of(const twins::camera::CameraSettings& settings,

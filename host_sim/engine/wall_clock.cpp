@@ -13,4 +13,7 @@ void SteadyWallClock::sleep_until(Span wake) {
       std::chrono::steady_clock::time_point(std::chrono::duration_cast<std::chrono::steady_clock::duration>(wake)));
 }
 
+const WallClockSource kMonotonicClock{
+    "monotonic", [](std::string_view) -> std::unique_ptr<WallClock> { return std::make_unique<SteadyWallClock>(); }};
+
 }  // namespace vbar::engine

@@ -3,6 +3,8 @@
 // clock there that follows its PPS edges.
 
 #include <chrono>
+#include <memory>
+#include <string_view>
 
 namespace vbar::engine {
 
@@ -27,5 +29,14 @@ class SteadyWallClock final : public WallClock {
   Span now() override;
   void sleep_until(Span wake) override;
 };
+
+/// A source of time, by the name that missions use.
+struct WallClockSource {
+  std::string_view name;
+  /// `device`: what follows "<name>:" in the mission, empty if nothing does.
+  std::unique_ptr<WallClock> (*make)(std::string_view device);
+};
+
+extern const WallClockSource kMonotonicClock;  ///< "monotonic", SteadyWallClock
 
 }  // namespace vbar::engine

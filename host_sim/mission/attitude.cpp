@@ -47,6 +47,11 @@ truth::ControlError drawn_control_error(std::uint64_t seed, std::string_view spa
   return error;
 }
 
+double drawn_mass_error_kg(std::uint64_t seed, std::string_view spacecraft, double sigma_kg) {
+  // The first number of the stream of what is unknown about the body; the receiver's antenna draws the others.
+  return sigma_kg * engine::RandomStream(seed, "gnss/" + std::string(spacecraft) + "/body_frame").normal();
+}
+
 truth::AttitudeState start_of(const Tumble& tumble, std::uint64_t seed, std::string_view spacecraft) {
   truth::AttitudeState start;
   start.q_body_eci = tumble.q_body_eci ? *tumble.q_body_eci : drawn_attitude(seed, spacecraft);

@@ -50,6 +50,9 @@ using Attitude = std::variant<Tumble, Inertial, truth::PointedSettings, Commande
 /// the seed's, equally strong, so that the root mean square over a long time is `sigma` (rad).
 [[nodiscard]] truth::ControlError drawn_control_error(std::uint64_t seed, std::string_view spacecraft, double sigma);
 
+/// True minus nominal mass of a spacecraft, kg: normal with `sigma_kg`.
+[[nodiscard]] double drawn_mass_error_kg(std::uint64_t seed, std::string_view spacecraft, double sigma_kg);
+
 /// The attitude at the start of the run, drawn where the file does not say it.
 [[nodiscard]] truth::AttitudeState start_of(const Tumble& tumble, std::uint64_t seed, std::string_view spacecraft);
 

@@ -21,9 +21,9 @@ Vector3 read_point(const TableReader& section, std::string_view key) {
 }
 
 truth::Facet read_facet(const TableReader& section, const std::vector<Vector3>& corners_m) {
-  section.accept_only({"corners", "specular", "diffuse"});
   const double last = static_cast<double>(corners_m.size()) - 1.0;
   std::vector<Vector3> polygon_m;
+  if (corners_m.empty()) section.refuse("corners", "a facet of a body without corners", "a body with `corners`");
   for (const double index : section.numbers("corners", 3, 64, from_to(0.0, last))) {
     if (index != std::floor(index)) section.refuse("corners", "a number that is no integer", "places in `corners`");
     polygon_m.push_back(corners_m[static_cast<std::size_t>(index)]);
@@ -42,8 +42,7 @@ truth::Facet read_facet(const TableReader& section, const std::vector<Vector3>& 
 
 truth::Body load_body(const std::filesystem::path& file) {
   const toml::table table = parse_toml(read_text_file(file, "a body file (TOML)"), file.string());
-  const TableReader document(table, "", file.string());
-  document.accept_only({"inertia_kgm2", "centre_of_mass_m", "corners", "facet"});
+  const TableReader document(table, file.string());
   truth::Body body;
   body.name = file.stem().string();
   const auto inertia = read_inertia(document);
@@ -52,22 +51,21 @@ truth::Body load_body(const std::filesystem::path& file) {
   body.centre_of_mass_m = read_point(document, "centre_of_mass_m");
   std::vector<Vector3> corners_m;
   for (const TableReader& corner : document.tables("corners")) {
-    corner.accept_only({"at_m"});
     corners_m.push_back(read_point(corner, "at_m") - body.centre_of_mass_m);
   }
   for (const TableReader& facet : document.tables("facet")) body.facets.push_back(read_facet(facet, corners_m));
+  document.finish();
   return body;
 }
 
 std::vector<Vector3> load_keypoints(const std::filesystem::path& file, std::size_t count) {
   const toml::table table = parse_toml(read_text_file(file, "a file of keypoints (TOML)"), file.string());
-  const TableReader document(table, "", file.string());
-  document.accept_only({"keypoints"});
+  const TableReader document(table, file.string());
   std::vector<Vector3> keypoints_m;
   for (const TableReader& keypoint : document.tables("keypoints")) {
-    keypoint.accept_only({"at_m"});
     keypoints_m.push_back(read_point(keypoint, "at_m"));
   }
+  document.finish();
   if (keypoints_m.size() != count)
     document.refuse("keypoints", std::to_string(keypoints_m.size()) + " of them", std::to_string(count));
   return keypoints_m;

@@ -9,11 +9,11 @@
 namespace vbar::mission {
 namespace {
 
-CatalogueEntry entry_of(const std::filesystem::path& file) {
+CatalogueEntry entry_of(const std::filesystem::path& file, const Installation& installation) {
   CatalogueEntry entry;
   entry.file = file;
   try {
-    const Mission mission = load_mission(file);
+    const Mission mission = load_mission(file, {}, installation);
     entry.name = mission.name;
     entry.description = mission.description;
     entry.duration_h = fsw::seconds(mission.duration) / 3600.0;
@@ -27,7 +27,7 @@ CatalogueEntry entry_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder) {
+std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder, const Installation& installation) {
   std::error_code error;
   std::vector<std::filesystem::path> files;
   for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
@@ -35,7 +35,7 @@ std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder) {
   if (error) throw MissionError(folder.string(), "", "no folder that can be read", "a folder of mission files");
   std::sort(files.begin(), files.end());
   std::vector<CatalogueEntry> entries;
-  for (const auto& file : files) entries.push_back(entry_of(file));
+  for (const auto& file : files) entries.push_back(entry_of(file, installation));
   return entries;
 }
 

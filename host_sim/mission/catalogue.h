@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/mission/sensor_reader.h"
+
 namespace vbar::mission {
 
 struct CatalogueEntry {
@@ -16,7 +18,8 @@ struct CatalogueEntry {
 };
 
 /// Every *.toml file of `folder`, in order of file name. Throws MissionError if there is no such folder.
-[[nodiscard]] std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder);
+[[nodiscard]] std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder,
+                                                        const Installation& installation);
 
 /// One line of the catalogue, without a line end: name, duration in hours, description; names padded to `name_width`.
 [[nodiscard]] std::string line_of(const CatalogueEntry& entry, std::size_t name_width);

@@ -61,7 +61,7 @@ void put_over(toml::table& base, toml::table& own) {
 }
 
 void resolve(toml::table& document, const std::filesystem::path& file, int depth) {
-  const TableReader reader(document, "", file.string());
+  const TableReader reader(document, file.string());
   if (!reader.has("extends")) return;
   if (depth == kLongestChain) reader.refuse_value("extends", "a chain of at most four files");
   const std::filesystem::path other = file.parent_path() / reader.text("extends");

@@ -6,37 +6,74 @@
 #include "host_sim/mission/toml_file.h"
 
 namespace vbar::mission {
+namespace {
 
-Mission parse_mission(std::string_view text, const std::filesystem::path& file,
-                      std::span<const std::string> overrides) {
+/// A table or an array of tables of the document.
+struct Section {
+  const char* name;
+  void (*read)(const TableReader& document, Mission& mission, const Installation& installation);
+};
+
+template <auto read>
+void without_installation(const TableReader& document, Mission& mission, const Installation& /*installation*/) {
+  read(document, mission);
+}
+
+/// In the order of reading, because later ones look at what earlier ones filled.
+constexpr Section kSections[] = {{"mission", without_installation<read_general>},
+                                 {"truth", without_installation<read_truth>},
+                                 {"testbed", read_testbeds},
+                                 {"waypoint", without_installation<read_waypoints>},
+                                 {"spacecraft", read_spacecraft},
+                                 {"guidance", without_installation<read_guidance>},
+                                 {"navigation", read_shared},
+                                 {"burn", without_installation<read_burns>},
+                                 {"clock", read_clock},
+                                 {"links", without_installation<read_links>},
+                                 {"lcm", without_installation<read_lcm>},
+                                 {"record", without_installation<read_record>}};
+
+template <class Use>
+void with_document(std::string_view text, const std::filesystem::path& file, std::span<const std::string> overrides,
+                   const Installation& installation, const Use& use) {
   toml::table table = parse_toml(text, file.string());
   put_over_extended(table, file);
   for (const std::string& assignment : overrides) apply_override(table, assignment);
 
-  const TableReader document(table, "", file.string());
-  document.accept_only({"mission", "truth", "spacecraft", "guidance", "gnss_navigation", "angles_only", "pose",
-                        "waypoint", "burn", "constellation", "clock", "links", "lcm", "record"});
+  const TableReader document(table, file.string());
+  for (const Section& section : kSections) static_cast<void>(document.has(section.name));
+  for (const SensorReader* const kind : installation.kinds)
+    if (!kind->table.empty()) static_cast<void>(document.has(kind->table));
+  document.refuse_unknown_keys();
   Mission mission;
   mission.file = file;
-  read_general(document, mission);
-  read_truth(document, mission);
-  read_waypoints(document, mission);
-  read_spacecraft(document, mission);
-  read_guidance(document, mission);
-  read_gnss_navigation(document, mission);
-  read_angles_only(document, mission);
-  read_pose(document, mission);
-  read_constellation(document, mission);
-  read_burns(document, mission);
-  read_clock(document, mission);
-  read_links(document, mission);
-  read_lcm(document, mission);
-  read_record(document, mission);
-  return mission;
+  for (const Section& section : kSections) section.read(document, mission, installation);
+  document.finish();
+  use(document, std::move(mission));
 }
 
-Mission load_mission(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  return parse_mission(read_text_file(file, "a mission file (TOML)"), file, overrides);
+}  // namespace
+
+Mission parse_mission(std::string_view text, const std::filesystem::path& file, std::span<const std::string> overrides,
+                      const Installation& installation) {
+  Mission loaded;
+  with_document(text, file, overrides, installation,
+                [&](const TableReader& /*document*/, Mission mission) { loaded = std::move(mission); });
+  return loaded;
+}
+
+Mission load_mission(const std::filesystem::path& file, std::span<const std::string> overrides,
+                     const Installation& installation) {
+  return parse_mission(read_text_file(file, "a mission file (TOML)"), file, overrides, installation);
+}
+
+std::map<std::string, std::vector<std::string>> accepted_keys(const std::filesystem::path& file,
+                                                              std::span<const std::string> overrides,
+                                                              const Installation& installation) {
+  std::map<std::string, std::vector<std::string>> keys;
+  with_document(read_text_file(file, "a mission file (TOML)"), file, overrides, installation,
+                [&](const TableReader& document, const Mission& /*mission*/) { keys = document.asked_of_all(); });
+  return keys;
 }
 
 }  // namespace vbar::mission

@@ -8,9 +8,9 @@ namespace vbar::mission {
 
 const std::string& Spacecraft::observes() const {
   static const std::string nobody;
-  if (camera) return camera->target;
-  if (gnss) return gnss->partner;
-  return navigation ? navigation->target : nobody;
+  const auto found =
+      std::ranges::find_if(sensors, [](const Sensor& sensor) { return !sensor.settings->observed.empty(); });
+  return found == sensors.end() ? nobody : found->settings->observed;
 }
 
 bool Mission::flies() const {
@@ -35,9 +35,6 @@ std::string_view name_of(FlightTarget target) {
 }
 std::string_view name_of(FlightLink link) {
   return name_in(kFlightLinks, link);
-}
-std::string_view name_of(NavigationSource source) {
-  return name_in(kNavigationSources, source);
 }
 
 }  // namespace vbar::mission

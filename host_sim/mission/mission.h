@@ -5,7 +5,9 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -13,14 +15,11 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
+#include "fsw/packets/messages.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/link_model.h"
 #include "host_sim/mission/attitude.h"
 #include "host_sim/truth/truth_settings.h"
-#include "host_sim/twins/camera/camera_settings.h"
-#include "host_sim/twins/gnss/constellation.h"
-#include "host_sim/twins/gnss/crosslink.h"
-#include "host_sim/twins/gnss/gnss_settings.h"
 
 namespace vbar::mission {
 
@@ -63,88 +62,44 @@ struct FlightComputer {
   int port = 0;         ///< board on UDP
 };
 
-enum class NavigationSource { kIdeal, kRecorded };
+/// What a kind of sensor has read from the table of one sensor: each kind derives its own settings.
+struct SensorSettings {
+  SensorSettings() = default;
+  SensorSettings(const SensorSettings&) = default;
+  SensorSettings& operator=(const SensorSettings&) = default;
+  virtual ~SensorSettings() = default;
 
-/// sensors.navigation: states that need no estimating.
-struct NavigationSensor {
-  NavigationSource source = NavigationSource::kIdeal;
-  std::string target;  ///< the spacecraft it observes
-  fsw::Duration period;
-  std::filesystem::path log;  ///< recorded only: the packet log it plays
+  std::string source;          ///< what provides its data: "digital", "recorded" or the name of a testbed
+  std::filesystem::path log;   ///< of source "recorded": the packet log
+  std::string observed;        ///< the other spacecraft that it measures or exchanges data with; empty: none
+  std::int8_t navigation = 0;  ///< what navigation makes of it, as in vbar.lcm, navigation_configuration.source
 };
 
-/// sensors.gnss: a receiver and a star tracker.
-struct GnssSensor {
-  twins::gnss::GnssReceiverSettings receiver;
-  /// The spacecraft whose receiver's data come by the crosslink; empty: this one's go to its partner, or they are all
-  /// there is, beside a camera.
-  std::string partner;
+/// What a kind of sensor has read from tables of the document, for all of its sensors.
+struct SharedSettings {
+  SharedSettings() = default;
+  SharedSettings(const SharedSettings&) = default;
+  SharedSettings& operator=(const SharedSettings&) = default;
+  virtual ~SharedSettings() = default;
 };
 
-/// What navigation makes of a camera's images.
-enum class CameraNavigation { kAnglesOnly, kPose };
-
-/// sensors.camera: navigates by images of one spacecraft among all that have a CAD model.
-struct CameraSensor {
-  std::string camera;  ///< names its file in data/cameras, which `settings` began with
-  twins::camera::CameraSettings settings;
-  std::string target;  ///< the spacecraft it navigates to
-  CameraNavigation navigation = CameraNavigation::kAnglesOnly;
-  fsw::Duration period;   ///< between exposures
-  fsw::Duration readout;  ///< from the middle of an exposure until the image leaves the camera
-  Eigen::Quaterniond q_camera_body = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
-  fsw::Vector3 position_body_m = fsw::Vector3::Zero();                ///< from the centre of mass
+/// [spacecraft.sensors.<name>]
+struct Sensor {
+  std::string name;
+  std::string kind;
+  std::shared_ptr<const SensorSettings> settings;
 };
 
-/// What angles-only navigation goes by, telecommanded; fields as in vbar.lcm, angles_only_configuration.
-struct AnglesOnly {
-  double detection_sigmas = 0.0;
-  double centroid_floor_px = 0.0;
-  double pointing_tolerance = 0.0;
-  double acceleration_psd = 0.0;
-  double acceleration_psd_least = 0.0;
-  double acceleration_psd_most = 0.0;
-  double brightness_offset_m = 0.0;
-  double maneuver_sigma = 0.0;
-  double maneuver_sigma_relative = 0.0;
-  int batch_images = 0;
-  /// Of the target's place that is telecommanded at the start: mean ROE times the reference a, 1 sigma.
-  fsw::Vector6 apriori_sigma_a_roe_m = fsw::Vector6::Zero();
-  friend bool operator==(const AnglesOnly&, const AnglesOnly&) = default;
+/// [testbed.<name>], as the driver of that name has read it.
+struct TestbedSettings {
+  TestbedSettings() = default;
+  TestbedSettings(const TestbedSettings&) = default;
+  TestbedSettings& operator=(const TestbedSettings&) = default;
+  virtual ~TestbedSettings() = default;
 };
-
-/// What navigation by the pose network goes by, telecommanded; fields as in vbar.lcm, pose_configuration.
-struct PoseNavigation {
-  double keypoint_sigma_scale = 0.0;
-  double keypoint_floor_px = 0.0;
-  double acceleration_psd = 0.0;
-  double acceleration_psd_least = 0.0;
-  double acceleration_psd_most = 0.0;
-  double angular_acceleration_psd = 0.0;
-  double maneuver_sigma = 0.0;
-  double maneuver_sigma_relative = 0.0;
-  /// Of where the target is telecommanded to be at the start: mean ROE times the reference a, 1 sigma; zero: it is not.
-  fsw::Vector6 apriori_sigma_a_roe_m = fsw::Vector6::Zero();
-  fsw::Vector6 start_sigma_a_roe_m = fsw::Vector6::Zero();  ///< of a formation that nothing is known of
-  int start_images = 0;
-  friend bool operator==(const PoseNavigation&, const PoseNavigation&) = default;
-};
-
-/// What flight software navigates by, telecommanded; fields as in vbar.lcm, navigation_configuration.
-struct GnssNavigation {
-  bool resolve_ambiguities = true;
-  double min_success_rate = 0.0;
-  double min_ratio = 0.0;
-  fsw::Duration pair_wait;
-  double antenna_offset_sigma_m = 0.0;
-  double phase_centre_jitter_m = 0.0;
-  double code_bias_sigma_m = 0.0;
-  double start_velocity_sigma = 0.0;
-  double acceleration_sigma = 0.0;
-  double acceleration_time_s = 0.0;
-  double maneuver_sigma = 0.0;
-  double maneuver_sigma_relative = 0.0;
-  friend bool operator==(const GnssNavigation&, const GnssNavigation&) = default;
+struct Testbed {
+  std::string name;
+  std::shared_ptr<const TestbedSettings> settings;
 };
 
 /// A burn that the flight software is told of but did not ask for.
@@ -161,20 +116,28 @@ struct Thruster {
 
 struct Spacecraft {
   std::string name;
-  std::uint8_t number = 0;  ///< as in packet headers
-  SurfaceProperties surface;
-  std::string model;  ///< CAD file that cameras see it by, data/models/<model>.obj; empty: no camera sees it
+  std::uint8_t number = 0;     ///< as in packet headers
+  std::string body;            ///< names its file in data/bodies; empty: none
+  SurfaceProperties surface;   ///< nominal
+  double mass_sigma_kg = 0.0;  ///< of its true mass
+  std::string model;           ///< CAD file that cameras see it by, data/models/<model>.obj; empty: no camera sees it
   std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe> orbit;
   std::optional<Attitude> attitude;
   std::optional<FlightComputer> flight_computer;
-  std::optional<NavigationSensor> navigation;
-  std::optional<GnssSensor> gnss;
-  std::optional<CameraSensor> camera;
+  std::vector<Sensor> sensors;  ///< kinds in the order of the program's list, the sensors of a kind by name
   std::optional<Thruster> thruster;
 
   /// The spacecraft that its sensors navigate to; empty if it has none.
   [[nodiscard]] const std::string& observes() const;
 };
+
+/// Settings of the first sensor of a kind, by the type of its settings; null if there is none.
+template <class Settings>
+[[nodiscard]] const Settings* find_settings(const Spacecraft& spacecraft) {
+  for (const Sensor& sensor : spacecraft.sensors)
+    if (const auto* const settings = dynamic_cast<const Settings*>(sensor.settings.get())) return settings;
+  return nullptr;
+}
 
 /// Which solver plans the leg that ends at a waypoint; numbers as in vbar.lcm.
 enum class Solver : std::int8_t { kClosedForm = 0, kKoenigDamico = 1, kLeastSquares = 2 };
@@ -190,25 +153,11 @@ struct Waypoint {
 /// Numbers as in vbar.lcm, mode_command.
 enum class Mode : std::int8_t { kIdle = 0, kApproach = 1, kStationKeeping = 2, kHold = 3 };
 
-/// What is telecommanded to the flight software at the start; fields as in vbar.lcm, gnc_configuration.
+/// What is telecommanded to the flight software at the start.
 struct Guidance {
   Mode mode = Mode::kApproach;
   double reference_semi_major_axis_m = 0.0;
-  fsw::Duration compute_latency;
-  fsw::Duration closed_form_period;
-  fsw::Duration koenig_damico_period;
-  fsw::Duration koenig_damico_grid;
-  fsw::GpsTime planner_start;
-  double minimum_dv = 0.0;
-  double maximum_dv = 0.0;
-  double roe_error_threshold_m = 0.0;
-  double keep_out_radius_m = 0.0;
-  double safety_horizon_s = 0.0;
-  double station_keeping_deadband_m = 0.0;
-  double closed_form_tolerance_m = 0.0;
-  double koenig_damico_tolerance_m = 0.0;
-  double station_keeping_horizon_s = 0.0;
-  double navigation_timeout_s = 0.0;
+  vbar::gnc_configuration configuration{};
 };
 
 /// Live packets on an LCM bus.
@@ -239,16 +188,14 @@ struct Mission {
   truth::TruthSettings truth;  ///< all but the data folder, which the program knows
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
-  GnssNavigation gnss_navigation;
-  AnglesOnly angles_only;
-  PoseNavigation pose;
+  std::vector<std::shared_ptr<const SharedSettings>> shared;  ///< one of each kind of sensor
+  std::vector<Testbed> testbeds;
   std::vector<PrescribedBurn> burns;  ///< of the spacecraft that flies, in order of time
   std::vector<Waypoint> waypoints;    ///< in order of time
   engine::ClockSettings clock;
+  std::string clock_source;  ///< "<name>" or "<name>:<device>", engine::WallClockSource
   engine::LinkSettings
       board_link;  ///< the simulated link between a spacecraft's sensors or actuators and its flight computer
-  twins::gnss::CrosslinkSettings crosslink;
-  twins::gnss::ConstellationSettings constellation;
   LcmMirror lcm;
   Record record;
 
@@ -263,9 +210,17 @@ struct Mission {
   [[nodiscard]] const Waypoint* find_waypoint(int index) const;
 };
 
+/// What a kind of sensor has read for all of its sensors, by the type of those settings. Throws std::logic_error if the
+/// mission was loaded without that kind.
+template <class Settings>
+[[nodiscard]] const Settings& shared_settings(const Mission& mission) {
+  for (const auto& shared : mission.shared)
+    if (const auto* const settings = dynamic_cast<const Settings*>(shared.get())) return *settings;
+  throw std::logic_error("the mission was loaded without a kind of sensor that is asked for");
+}
+
 /// The names that mission files and summaries use (names.h has them all).
 [[nodiscard]] std::string_view name_of(FlightTarget target);
 [[nodiscard]] std::string_view name_of(FlightLink link);
-[[nodiscard]] std::string_view name_of(NavigationSource source);
 
 }  // namespace vbar::mission

@@ -20,8 +20,6 @@ inline constexpr Names<FlightTarget, 5> kFlightTargets{{{"in_process", FlightTar
                                                         {"zynq_linux_qemu", FlightTarget::kZynqLinuxQemu},
                                                         {"board", FlightTarget::kBoard}}};
 inline constexpr Names<FlightLink, 2> kFlightLinks{{{"serial", FlightLink::kSerial}, {"udp", FlightLink::kUdp}}};
-inline constexpr Names<NavigationSource, 2> kNavigationSources{
-    {{"ideal", NavigationSource::kIdeal}, {"recorded", NavigationSource::kRecorded}}};
 inline constexpr Names<Solver, 3> kSolvers{{{"closed_form", Solver::kClosedForm},
                                             {"koenig_damico", Solver::kKoenigDamico},
                                             {"least_squares", Solver::kLeastSquares}}};

@@ -32,21 +32,29 @@ std::vector<std::string> split(const std::string& path) {
   return segments;
 }
 
-std::vector<std::string> with_servicer(std::vector<std::string> segments) {
-  const bool sensor = segments.front() == "camera" || segments.front() == "gnss";
-  if (!sensor && segments.front() != "flight_computer") return segments;
-  std::vector<std::string> prefix{"spacecraft", "servicer"};
-  if (sensor) prefix.emplace_back("sensors");
-  segments.insert(segments.begin(), prefix.begin(), prefix.end());
-  return segments;
-}
-
 std::string label_of(const toml::table& element, const std::string& key) {
   const toml::node* node = element.get(key);
   if (node == nullptr) return {};
   if (const auto* text = node->as_string()) return text->get();
   if (const auto* integer = node->as_integer()) return std::to_string(integer->get());
   return {};
+}
+
+/// A path without a spacecraft that begins with flight_computer or the name of a sensor of the servicer.
+std::vector<std::string> with_servicer(toml::table& document, std::vector<std::string> segments) {
+  const bool is_computer = segments.front() == "flight_computer";
+  bool is_sensor = false;
+  if (const toml::array* const all = document["spacecraft"].as_array();
+      all != nullptr && !document.contains(segments.front()))
+    for (const toml::node& element : *all)
+      if (const toml::table* const table = element.as_table();
+          table != nullptr && label_of(*table, "name") == "servicer")
+        is_sensor = (*table)["sensors"][segments.front()].is_table();
+  if (!is_sensor && !is_computer) return segments;
+  std::vector<std::string> prefix{"spacecraft", "servicer"};
+  if (is_sensor) prefix.emplace_back("sensors");
+  segments.insert(segments.begin(), prefix.begin(), prefix.end());
+  return segments;
 }
 
 // The element of array-of-tables `array` whose `key` is `label`.
@@ -98,7 +106,7 @@ Override parse_assignment(const std::string& assignment) {
 
 void apply_override(toml::table& document, const std::string& assignment) {
   const Override set = parse_assignment(assignment);
-  const std::vector<std::string> path = with_servicer(split(set.path));
+  const std::vector<std::string> path = with_servicer(document, split(set.path));
 
   toml::table* table = &document;
   std::size_t next = 0;

@@ -11,8 +11,8 @@ namespace vbar::mission {
 /// as for the file. The value is TOML, or failing that a text without quotes.
 ///
 /// A path is dotted: mission.seed, spacecraft.servicer.flight_computer.target (by the spacecraft's name),
-/// waypoint.3.time_h (by the waypoint's index). flight_computer, camera and gnss without a spacecraft are the
-/// servicer's: its flight computer and its sensors of these names.
+/// waypoint.3.time_h (by the waypoint's index). flight_computer, and the name of a sensor that the
+/// servicer has, need no spacecraft before them: camera.period_s is spacecraft.servicer.sensors.camera.period_s.
 ///
 /// Throws MissionError, whose location is the override, for text that is no assignment and for a spacecraft or waypoint
 /// that the file does not have.

@@ -42,8 +42,8 @@ constexpr Names<TorqueKind, 3> kTorques{{{"gravity_gradient", TorqueKind::kGravi
 // Ten turns a second: integrating hours of it takes minutes.
 constexpr double kFastest_degps = 3600.0;
 // The tumbles that the experiments with an uncooperative target fly.
-constexpr double kUsualSlowest_degps = 0.3;
-constexpr double kUsualFastest_degps = 1.5;
+constexpr double kDefaultRateMin_degps = 0.3;
+constexpr double kDefaultRateMax_degps = 1.5;
 
 Vector3 vector(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
@@ -56,7 +56,7 @@ void read_rate(const TableReader& section, Tumble& tumble) {
     tumble.rate_body = kDegree * vector(section.three_numbers("rate_degps", from_to(-kFastest_degps, kFastest_degps)));
     return;
   }
-  std::vector<double> range{kUsualSlowest_degps, kUsualFastest_degps};
+  std::vector<double> range{kDefaultRateMin_degps, kDefaultRateMax_degps};
   if (section.has("tumble_rate_degps"))
     range = section.numbers("tumble_rate_degps", 2, 2, from_to(0.0, kFastest_degps));
   if (range[1] < range[0])
@@ -65,12 +65,11 @@ void read_rate(const TableReader& section, Tumble& tumble) {
   tumble.fastest_radps = kDegree * range[1];
 }
 
-Tumble read_tumble(const TableReader& section, const std::string& usual_body) {
-  section.accept_only({"profile", "q_body_eci", "rate_degps", "tumble_rate_degps", "body", "inertia_kgm2", "torques"});
+Tumble read_tumble(const TableReader& section, const std::string& body) {
   Tumble tumble;
   tumble.q_body_eci = read_quaternion(section, "q_body_eci");
   read_rate(section, tumble);
-  tumble.body = section.name("body", usual_body);
+  tumble.body = body;
   tumble.inertia_kgm2 = read_inertia(section);
   tumble.torques = section.choices<TorqueKind>("torques", kTorques);
   return tumble;
@@ -93,39 +92,36 @@ truth::PointedSettings read_pointed(const TableReader& section, Profile profile,
                                     const std::vector<std::string>& names) {
   truth::PointedSettings pointed;
   if (profile == Profile::kTarget) {
-    section.accept_only({"profile", "target", "boresight_body", "second_body", "second_to"});
     pointed.spacecraft = read_other_spacecraft(section, own, names);
   } else {
-    section.accept_only({"profile", "boresight_body", "second_body", "second_to"});
   }
   truth::PointingSettings& pointing = pointed.pointing;
   const Range component = from_to(-1.0, 1.0);
   pointing.boresight_to = boresight_of(profile);
   pointing.boresight_body = vector(section.three_numbers("boresight_body", component, {{0.0, 0.0, 1.0}}));
-  pointing.second_body = vector(section.three_numbers("second_body", component, {{0.0, 1.0, 0.0}}));
-  pointing.second_to = section.choice<Direction>("second_to", kSecondDirections, Direction::kOrbitNormal);
+  pointing.second_body = vector(section.three_numbers("secondary_axis_body", component, {{0.0, 1.0, 0.0}}));
+  pointing.second_to = section.choice<Direction>("secondary_direction", kSecondDirections, Direction::kOrbitNormal);
   if (!truth::are_two_axes(pointing.boresight_body, pointing.second_body))
-    section.refuse(section.has("boresight_body") ? "boresight_body" : "second_body", "an axis along the other one",
-                   "boresight_body and second_body in two different directions");
+    section.refuse(section.has("boresight_body") ? "boresight_body" : "secondary_axis_body",
+                   "an axis along the other one", "boresight_body and secondary_axis_body in two different directions");
   if (truth::are_one_line(pointing.boresight_to, pointing.second_to))
-    section.refuse("second_to", "the line that the boresight follows", "another direction");
+    section.refuse("secondary_direction", "the line that the boresight follows", "another direction");
   return pointed;
 }
 
 constexpr double kArcsecond = kDegree / 3600.0;
 
 Commanded read_commanded(const TableReader& section) {
-  section.accept_only({"profile", "control_error_arcsec", "initial_boresight_rtn", "boresight_body", "second_body"});
   Commanded commanded;
   commanded.control_error = kArcsecond * section.number("control_error_arcsec", from_to(0.0, 36000.0), 30.0);
   const Range component = from_to(-1.0, 1.0);
   truth::CommandedAxes& axes = commanded.axes;
   axes.initial_boresight_rtn = vector(section.three_numbers("initial_boresight_rtn", component, {{0.0, -1.0, 0.0}}));
   axes.boresight_body = vector(section.three_numbers("boresight_body", component, {{0.0, 0.0, 1.0}}));
-  axes.second_body = vector(section.three_numbers("second_body", component, {{0.0, -1.0, 0.0}}));
+  axes.second_body = vector(section.three_numbers("secondary_axis_body", component, {{0.0, -1.0, 0.0}}));
   if (!truth::are_two_axes(axes.boresight_body, axes.second_body))
-    section.refuse(section.has("boresight_body") ? "boresight_body" : "second_body", "an axis along the other one",
-                   "boresight_body and second_body in two different directions");
+    section.refuse(section.has("boresight_body") ? "boresight_body" : "secondary_axis_body",
+                   "an axis along the other one", "boresight_body and secondary_axis_body in two different directions");
   if (!truth::leaves_zenith_clear(axes.initial_boresight_rtn, Vector3::Zero()))
     section.refuse("initial_boresight_rtn", "a boresight at the zenith or the nadir, or none",
                    "a direction [R, T, N] that leaves the second axis a zenith to keep near to");
@@ -174,17 +170,15 @@ std::string read_other_spacecraft(const TableReader& section, const std::string&
   return target;
 }
 
-std::optional<Attitude> read_attitude(const TableReader& section, const std::string& own, const std::string& usual_body,
+std::optional<Attitude> read_attitude(const TableReader& section, const std::string& own, const std::string& body,
                                       const std::vector<std::string>& names) {
   const auto profile = section.choice<Profile>("profile", kProfiles, Profile::kNone);
   switch (profile) {
     case Profile::kNone:
-      section.accept_only({"profile"});
       return std::nullopt;
     case Profile::kTumble:
-      return read_tumble(section, usual_body);
+      return read_tumble(section, body);
     case Profile::kInertial:
-      section.accept_only({"profile", "q_body_eci"});
       return Inertial{read_quaternion(section, "q_body_eci")};
     case Profile::kCommanded:
       return read_commanded(section);

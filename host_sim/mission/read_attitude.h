@@ -22,10 +22,9 @@ namespace vbar::mission {
 [[nodiscard]] std::string read_other_spacecraft(const TableReader& section, const std::string& own,
                                                 const std::vector<std::string>& names);
 
-/// `own`: the name of the spacecraft; `usual_body`: its body if the table names none; `names`: of all spacecraft of the
+/// `own`: the name of the spacecraft; `body`: its body; `names`: of all spacecraft of the
 /// mission. Nothing for profile = "none", the default. Throws MissionError.
 [[nodiscard]] std::optional<Attitude> read_attitude(const TableReader& section, const std::string& own,
-                                                    const std::string& usual_body,
-                                                    const std::vector<std::string>& names);
+                                                    const std::string& body, const std::vector<std::string>& names);
 
 }  // namespace vbar::mission

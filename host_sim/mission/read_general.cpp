@@ -21,7 +21,6 @@ fsw::GpsTime read_epoch(const TableReader& section) {
 
 void read_general(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("mission");
-  section.accept_only({"name", "description", "epoch_utc", "start_h", "duration_h", "step_s", "seed"});
   mission.name = section.name("name", mission.file.stem().string());
   mission.description = section.text("description", "");
   mission.epoch = read_epoch(section);
@@ -30,6 +29,7 @@ void read_general(const TableReader& document, Mission& mission) {
   mission.step = section.span("step_s", 1.0, from_to(1e-3, 3600.0), 60.0);
   constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
   mission.seed = static_cast<std::uint64_t>(section.integer("seed", 0, kLargestSeed, 1));
+  section.finish();
 }
 
 }  // namespace vbar::mission

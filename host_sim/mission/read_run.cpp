@@ -1,7 +1,7 @@
 #include <algorithm>
+#include <stdexcept>
 
 #include "host_sim/mission/names.h"
-#include "host_sim/mission/read_gnss.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
@@ -13,84 +13,101 @@ using engine::LatencyKind;
 // Longest simulated latency, s: a link slower than an hour is an error of the file.
 constexpr double kLongestLatency_s = 3600.0;
 
+}  // namespace
+
 LatencyDistribution read_latency(const TableReader& section) {
   LatencyDistribution latency;
   latency.kind = section.choice<LatencyKind>("distribution", kLatencyKinds, LatencyKind::kConstant);
   const auto read_limits = [&] {
-    latency.minimum_s = section.number("minimum_s", from_to(0.0, kLongestLatency_s), 0.0);
-    latency.maximum_s = section.number("maximum_s", above_to(0.0, kLongestLatency_s));
-    if (latency.maximum_s <= latency.minimum_s) section.refuse_value("maximum_s", "a number above minimum_s");
+    latency.minimum_s = section.number("min_s", from_to(0.0, kLongestLatency_s), 0.0);
+    latency.maximum_s = section.number("max_s", above_to(0.0, kLongestLatency_s));
+    if (latency.maximum_s <= latency.minimum_s) section.refuse_value("max_s", "a number above min_s");
   };
   switch (latency.kind) {
     case LatencyKind::kConstant:
-      section.accept_only({"distribution", "latency_s"});
       latency.mean_s = section.number("latency_s", from_to(0.0, kLongestLatency_s), 0.0);
       break;
     case LatencyKind::kUniform:
-      section.accept_only({"distribution", "minimum_s", "maximum_s"});
       read_limits();
       break;
     case LatencyKind::kNormal:
-      section.accept_only({"distribution", "mean_s", "standard_deviation_s", "minimum_s", "maximum_s"});
       latency.mean_s = section.number("mean_s", from_to(0.0, kLongestLatency_s));
-      latency.standard_deviation_s = section.number("standard_deviation_s", above_to(0.0, kLongestLatency_s));
+      latency.standard_deviation_s = section.number("sigma_s", above_to(0.0, kLongestLatency_s));
       read_limits();
       break;
     case LatencyKind::kExponential:
-      section.accept_only({"distribution", "mean_s", "minimum_s"});
       latency.mean_s = section.number("mean_s", above_to(0.0, kLongestLatency_s));
-      latency.minimum_s = section.number("minimum_s", from_to(0.0, kLongestLatency_s), 0.0);
-      if (latency.minimum_s >= latency.mean_s) section.refuse_value("minimum_s", "a number below mean_s");
+      latency.minimum_s = section.number("min_s", from_to(0.0, kLongestLatency_s), 0.0);
+      if (latency.minimum_s >= latency.mean_s) section.refuse_value("min_s", "a number below mean_s");
       break;
   }
+  section.finish();
   return latency;
+}
+
+namespace {
+
+const engine::WallClockSource* find_clock(std::string_view source, const Installation& installation) {
+  const std::string_view name = source.substr(0, source.find(':'));
+  const auto found = std::ranges::find_if(installation.clocks,
+                                          [&](const engine::WallClockSource* clock) { return clock->name == name; });
+  return found == installation.clocks.end() ? nullptr : *found;
 }
 
 }  // namespace
 
-void read_clock(const TableReader& document, Mission& mission) {
+std::unique_ptr<engine::WallClock> make_wall_clock(const Mission& mission, const Installation& installation) {
+  const std::string_view source = mission.clock_source;
+  const std::size_t colon = source.find(':');
+  const engine::WallClockSource* const clock = find_clock(source, installation);
+  if (clock == nullptr) throw std::logic_error("clock source \"" + mission.clock_source + "\" is not registered");
+  return clock->make(colon == std::string_view::npos ? std::string_view() : source.substr(colon + 1));
+}
+
+void read_clock(const TableReader& document, Mission& mission, const Installation& installation) {
   const TableReader section = document.table("clock");
-  section.accept_only({"mode", "speed_factor", "compute_budget_s", "link_budget_s", "wake_tolerance_ms"});
   engine::ClockSettings& clock = mission.clock;
   clock.mode = section.choice<engine::ClockMode>("mode", kClockModes, engine::ClockMode::kLockStep);
   clock.speed_factor = section.number("speed_factor", from_to(1e-3, 1e6), 1.0);
   // What the run assumes: outputs take effect after the compute latency, and a step is over before the next one.
-  clock.compute_budget = section.span("compute_budget_s", 1.0, above_to(0.0, 3600.0),
-                                      std::max(1e-3, fsw::seconds(mission.guidance.compute_latency)));
+  clock.compute_budget =
+      section.span("compute_budget_s", 1.0, above_to(0.0, 3600.0),
+                   std::max(1e-3, 1e-9 * static_cast<double>(mission.guidance.configuration.compute_latency_ns)));
   clock.link_budget = section.span("link_budget_s", 1.0, above_to(0.0, 3600.0), fsw::seconds(mission.step));
   const double tolerance_ms = section.number("wake_tolerance_ms", from_to(0.0, 1e4), 2.0);
+  if (installation.clocks.empty()) throw std::logic_error("the program has no clock source");
+  mission.clock_source = section.text("source", std::string(installation.clocks.front()->name));
+  if (find_clock(mission.clock_source, installation) == nullptr) {
+    std::vector<std::string_view> names;
+    for (const engine::WallClockSource* const source : installation.clocks) names.push_back(source->name);
+    section.refuse_value("source", listing_of(names) + ", the clock sources that this program has");
+  }
+  section.finish();
   clock.wake_tolerance = engine::WallClock::Span(static_cast<std::int64_t>(tolerance_ms * 1e6));
 }
 
 void read_links(const TableReader& document, Mission& mission) {
   const TableReader links = document.table("links");
-  links.accept_only({"board", "crosslink"});
   const TableReader board = links.table("board");
-  board.accept_only({"latency", "loss_probability"});
   mission.board_link.latency = read_latency(board.table("latency"));
   mission.board_link.loss_probability = board.number("loss_probability", from_to(0.0, 1.0), 0.0);
-  const TableReader crosslink = links.table("crosslink");
-  crosslink.accept_only({"latency", "loss_probability", "silence_begin_s", "silence_duration_s"});
-  if (crosslink.has("latency")) mission.crosslink.link.latency = read_latency(crosslink.table("latency"));
-  mission.crosslink.link.loss_probability =
-      crosslink.number("loss_probability", from_to(0.0, 1.0), mission.crosslink.link.loss_probability);
-  read_crosslink_silence(crosslink, mission);
+  board.finish();
 }
 
 void read_lcm(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("lcm");
-  section.accept_only({"mirror", "url"});
   mission.lcm.mirror = section.flag("mirror", false);
   // Time to live 0: the packets do not leave this computer.
   mission.lcm.url = section.text("url", "udpm://239.255.76.67:7667?ttl=0");
   if (mission.lcm.url.find("://") == std::string::npos)
     section.refuse_value("url", "an LCM provider, e.g. udpm://239.255.76.67:7667?ttl=0");
+  section.finish();
 }
 
 void read_record(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("record");
-  section.accept_only({"images"});
   mission.record.images = section.choice<ImagesInLog>("images", kImagesInLog, ImagesInLog::kRecipes);
+  section.finish();
 }
 
 }  // namespace vbar::mission

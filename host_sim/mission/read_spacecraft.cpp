@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "fsw/math/math.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_attitude.h"
-#include "host_sim/mission/read_camera.h"
-#include "host_sim/mission/read_gnss.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/mission/spacecraft_group.h"
 
@@ -15,8 +14,9 @@ namespace {
 using fsw::math::kDegree;
 
 // PRISMA's two spacecraft: Mango, the servicer, and Tango, the target (figures of the literature, to the digits known).
-constexpr SurfaceProperties kMango{154.0, 1.3, 2.5, 2.5, 1.32};
-constexpr SurfaceProperties kTango{40.0, 0.38, 2.25, 0.55, 1.2};
+constexpr std::string_view kDefaultBody = "mango";
+constexpr std::pair<std::string_view, SurfaceProperties> kKnownBodies[] = {{"mango", {154.0, 1.3, 2.5, 2.5, 1.32}},
+                                                                           {"tango", {40.0, 0.38, 2.25, 0.55, 1.2}}};
 
 /// One of the spacecraft that a section stands for.
 struct Member {
@@ -24,29 +24,34 @@ struct Member {
   int index;
 
   double number(const TableReader& section, std::string_view key, Range range,
-                std::optional<double> otherwise = std::nullopt) const {
-    return group.number(section, index, key, range, otherwise);
+                std::optional<double> default_value = std::nullopt) const {
+    return group.number(section, index, key, range, default_value);
   }
   double angle(const TableReader& section, std::string_view key) const {
     return kDegree * group.angle_deg(section, index, key);
   }
 };
 
-SurfaceProperties read_surface(const TableReader& section, const Member& member) {
-  const SurfaceProperties& usual = member.group.name() == "target" ? kTango : kMango;
-  SurfaceProperties surface;
-  surface.mass_kg = member.number(section, "mass_kg", above_to(0.0, 1e6), usual.mass_kg);
-  surface.drag_area_m2 = member.number(section, "drag_area_m2", from_to(0.0, 1e4), usual.drag_area_m2);
-  surface.drag_coefficient = member.number(section, "drag_coefficient", from_to(0.0, 10.0), usual.drag_coefficient);
-  surface.radiation_area_m2 = member.number(section, "radiation_area_m2", from_to(0.0, 1e4), usual.radiation_area_m2);
+/// Keys that are missing have the values of the body; they are required for a body that is not known here.
+SurfaceProperties read_surface(const TableReader& section, const Member& member, std::string_view body) {
+  const auto known = std::ranges::find(kKnownBodies, body, [](const auto& entry) { return entry.first; });
+  const auto default_of = [&](double SurfaceProperties::*value) {
+    return known == std::end(kKnownBodies) ? std::nullopt : std::optional(known->second.*value);
+  };
+  using S = SurfaceProperties;
+  S surface;
+  surface.mass_kg = member.number(section, "mass_kg", above_to(0.0, 1e6), default_of(&S::mass_kg));
+  surface.drag_area_m2 = member.number(section, "drag_area_m2", from_to(0.0, 1e4), default_of(&S::drag_area_m2));
+  surface.drag_coefficient =
+      member.number(section, "drag_coefficient", from_to(0.0, 10.0), default_of(&S::drag_coefficient));
+  surface.radiation_area_m2 =
+      member.number(section, "radiation_area_m2", from_to(0.0, 1e4), default_of(&S::radiation_area_m2));
   surface.radiation_coefficient =
-      member.number(section, "radiation_coefficient", from_to(0.0, 10.0), usual.radiation_coefficient);
+      member.number(section, "radiation_coefficient", from_to(0.0, 10.0), default_of(&S::radiation_coefficient));
   return surface;
 }
 
 OrbitByElements read_elements(const TableReader& section, const Member& member) {
-  section.accept_only(
-      {"kind", "semi_major_axis_km", "ex", "ey", "inclination_deg", "raan_deg", "mean_argument_of_latitude_deg"});
   OrbitByElements orbit;
   orbit.kind = section.choice<ElementsKind>("kind", kElementsKinds);
   fsw::orbit::QnsElements& elements = orbit.elements;
@@ -65,7 +70,6 @@ OrbitByElements read_elements(const TableReader& section, const Member& member) 
 using Orbit = std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe>;
 
 Orbit read_relative(const TableReader& section, const Mission& mission) {
-  section.accept_only({"to", "waypoint", "a_roe_m"});
   const std::string to = section.name("to");
   // Only one that stands above, so that the orbits can be made in order.
   if (mission.find_spacecraft(to) == nullptr)
@@ -90,7 +94,6 @@ Orbit read_orbit(const TableReader& section, const Member& member, const Mission
 }
 
 FlightComputer read_flight_computer(const TableReader& section) {
-  section.accept_only({"target", "link", "library", "compute_latency_s", "device", "baud", "address", "port"});
   FlightComputer computer;
   computer.target = section.choice<FlightTarget>("target", kFlightTargets, FlightTarget::kInProcess);
   computer.link = section.choice<FlightLink>("link", kFlightLinks, FlightLink::kSerial);
@@ -113,26 +116,7 @@ FlightComputer read_flight_computer(const TableReader& section) {
   return computer;
 }
 
-NavigationSensor read_navigation(const TableReader& section, const std::vector<std::string>& spacecraft_names,
-                                 const Mission& mission) {
-  section.accept_only({"source", "target", "period_s", "log"});
-  NavigationSensor sensor;
-  sensor.source = section.choice<NavigationSource>("source", kNavigationSources, NavigationSource::kIdeal);
-  sensor.target = section.name("target", "target");
-  if (std::find(spacecraft_names.begin(), spacecraft_names.end(), sensor.target) == spacecraft_names.end())
-    section.refuse("target", "the spacecraft \"" + sensor.target + "\"",
-                   listing_of({spacecraft_names.begin(), spacecraft_names.end()}));
-  sensor.period = section.span("period_s", 1.0, from_to(1e-3, 1e6), fsw::seconds(mission.step));
-  const std::filesystem::path log = section.text("log", "");
-  const bool recorded = sensor.source == NavigationSource::kRecorded;
-  if (recorded && log.empty()) section.refuse("log", "nothing", "the packets.lcmlog to play, as source is recorded");
-  if (!recorded && !log.empty()) section.refuse_value("log", "nothing, unless source is recorded");
-  if (recorded) sensor.log = mission.file.parent_path() / log;  // an absolute one stays as it is
-  return sensor;
-}
-
 Thruster read_thruster(const TableReader& section) {
-  section.accept_only({"magnitude_error_percent", "pointing_error_deg"});
   Thruster thruster;
   thruster.magnitude_error = 1e-2 * section.number("magnitude_error_percent", from_to(0.0, 20.0), 0.0);
   thruster.pointing_error_rad = kDegree * section.number("pointing_error_deg", from_to(0.0, 30.0), 0.0);
@@ -154,77 +138,30 @@ std::uint8_t read_number(const TableReader& section, const Member& member, const
 }
 
 Spacecraft read_one(TableReader& section, const Member& member, const std::vector<std::string>& names,
-                    const Mission& mission) {
+                    const Mission& mission, const Installation& installation) {
   Spacecraft spacecraft;
   spacecraft.name = member.group.member_name(member.index);
   spacecraft.number = read_number(section, member, mission);
-  spacecraft.surface = read_surface(section, member);
+  spacecraft.body = section.name("body", std::string(kDefaultBody));
+  spacecraft.surface = read_surface(section, member, spacecraft.body);
+  spacecraft.mass_sigma_kg = section.number("mass_sigma_kg", from_to(0.0, 1e3), 0.0);
   if (section.has("model")) spacecraft.model = section.name("model");
   spacecraft.orbit = read_orbit(section, member, mission);
-  spacecraft.attitude = read_attitude(section.table("attitude"), spacecraft.name,
-                                      member.group.name() == "target" ? "tango" : "mango", names);
+  spacecraft.attitude = read_attitude(section.table("attitude"), spacecraft.name, spacecraft.body, names);
   if (section.has("flight_computer"))
     spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
 
-  const TableReader sensors = section.table("sensors");
-  sensors.accept_only({"navigation", "gnss", "camera"});
-  if (sensors.has("navigation")) spacecraft.navigation = read_navigation(sensors.table("navigation"), names, mission);
-  if (sensors.has("gnss")) spacecraft.gnss = read_gnss_sensor(sensors.table("gnss"), spacecraft.name, names);
-  if (spacecraft.navigation && spacecraft.gnss)
-    sensors.refuse("gnss", "a second way to navigate", "navigation or gnss, not both");
-  if (sensors.has("camera")) spacecraft.camera = read_camera(sensors.table("camera"), spacecraft.name, names, mission);
+  spacecraft.sensors = read_sensors(section.table("sensors"), {mission, installation, spacecraft.name, names});
   const TableReader actuators = section.table("actuators");
-  actuators.accept_only({"thruster"});
   if (actuators.has("thruster")) spacecraft.thruster = read_thruster(actuators.table("thruster"));
   return spacecraft;
 }
 
 void read_section(TableReader& section, const SpacecraftGroup& group, const std::vector<std::string>& names,
-                  Mission& mission) {
-  section.accept_only({"name", "count", "spacing", "number", "model", "mass_kg", "drag_area_m2", "drag_coefficient",
-                       "radiation_area_m2", "radiation_coefficient", "elements", "relative", "attitude",
-                       "flight_computer", "sensors", "actuators"});
+                  Mission& mission, const Installation& installation) {
   for (int index = 0; index < group.count(); ++index)
-    mission.spacecraft.push_back(read_one(section, {group, index}, names, mission));
-}
-
-/// A camera navigates with the flight software and the receiver beside it, to something that it can see.
-void check_camera(const TableReader& section, const Spacecraft& servicer, const Mission& mission) {
-  if (!servicer.camera) return;
-  const TableReader sensors = section.table("sensors");
-  if (!servicer.flight_computer)
-    sensors.refuse("camera", "a camera without a flight computer", "a camera of a spacecraft that flies software");
-  if (!servicer.gnss)
-    sensors.refuse("camera", "a camera without sensors.gnss",
-                   "a GNSS receiver too: it tells the spacecraft's own orbit");
-  if (!servicer.gnss->partner.empty())
-    sensors.table("gnss").refuse_value("partner", "nothing, beside a camera: the target does not cooperate");
-  if (!servicer.attitude)
-    sensors.refuse("camera", "a camera without an attitude", "an attitude: a camera looks somewhere");
-  const Spacecraft& target = *mission.find_spacecraft(servicer.camera->target);
-  if (target.model.empty() || !target.attitude)
-    sensors.table("camera").refuse(
-        "target",
-        "the spacecraft \"" + target.name + "\" without " + (target.model.empty() ? "a model" : "an attitude"),
-        "a spacecraft with a model and an attitude, so that it can be seen");
-  if (servicer.camera->navigation == CameraNavigation::kPose && !std::holds_alternative<Tumble>(*target.attitude))
-    sensors.table("camera").refuse(
-        "target", "the spacecraft \"" + target.name + "\", which does not tumble",
-        "with navigation = \"pose\": a spacecraft that tumbles, by laws that are known on board");
-}
-
-/// Both ends of relative navigation by GNSS have what it takes.
-void check_gnss_pair(const TableReader& section, const Spacecraft& servicer, const Mission& mission) {
-  if (!servicer.flight_computer || !servicer.gnss || servicer.camera) return;
-  const TableReader gnss = section.table("sensors").table("gnss");
-  const Spacecraft* const partner = mission.find_spacecraft(servicer.gnss->partner);
-  if (partner == nullptr || !partner->gnss)
-    gnss.refuse("partner", partner == nullptr ? "nothing" : "the spacecraft \"" + partner->name + "\" without GNSS",
-                "a spacecraft that has sensors.gnss too");
-  for (const Spacecraft* spacecraft : {&servicer, partner})
-    if (!spacecraft->attitude)
-      gnss.refuse("", "no attitude of " + spacecraft->name,
-                  "both spacecraft with an attitude: antennas point somewhere");
+    mission.spacecraft.push_back(read_one(section, {group, index}, names, mission, installation));
+  section.finish();
 }
 
 void add_names(const TableReader& section, const SpacecraftGroup& group, std::vector<std::string>& names) {
@@ -238,7 +175,7 @@ void add_names(const TableReader& section, const SpacecraftGroup& group, std::ve
 
 }  // namespace
 
-void read_spacecraft(const TableReader& document, Mission& mission) {
+void read_spacecraft(const TableReader& document, Mission& mission, const Installation& installation) {
   std::vector<TableReader> sections = document.tables("spacecraft");
   if (sections.empty()) document.refuse("spacecraft", "nothing", "at least one [[spacecraft]]");
   // All names, before anything else: a sensor may look at a spacecraft further down.
@@ -249,12 +186,11 @@ void read_spacecraft(const TableReader& document, Mission& mission) {
     add_names(section, group, names);
     section.rename("spacecraft." + group.name());
   }
-  for (std::size_t k = 0; k < sections.size(); ++k) read_section(sections[k], groups[k], names, mission);
+  for (std::size_t k = 0; k < sections.size(); ++k) read_section(sections[k], groups[k], names, mission, installation);
   for (std::size_t k = 0; k < sections.size(); ++k) {
     for (int index = 0; index < groups[k].count(); ++index) {
       const Spacecraft& spacecraft = *mission.find_spacecraft(groups[k].member_name(index));
-      check_camera(sections[k], spacecraft, mission);
-      check_gnss_pair(sections[k], spacecraft, mission);
+      check_sensors(sections[k].table("sensors"), spacecraft, mission, installation);
     }
   }
 }

@@ -9,9 +9,9 @@ namespace vbar::mission {
 namespace {
 
 /// A data file: of the data folder, or, if it is absolute or begins with "./" or "../", seen from the mission file.
-std::filesystem::path read_file(const TableReader& section, std::string_view key, const std::filesystem::path& usual,
-                                const Mission& mission) {
-  const std::string text = section.text(key, usual.string());
+std::filesystem::path read_file(const TableReader& section, std::string_view key,
+                                const std::filesystem::path& default_value, const Mission& mission) {
+  const std::string text = section.text(key, default_value.string());
   if (text.empty()) section.refuse_value(key, "a file of the data folder, or one seen from the mission file (./...)");
   if (!text.starts_with("./") && !text.starts_with("../")) return text;
   return std::filesystem::absolute(mission.file).parent_path() / text;
@@ -36,9 +36,6 @@ truth::ForceModel read_forces(const TableReader& section) {
 
 void read_truth(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("truth");
-  section.accept_only({"gravity_degree", "gravity_order", "drag", "geomagnetic_index", "radiation_pressure", "shadow",
-                       "sun", "moon", "solid_tides", "relativity", "relative_tolerance", "threads", "gravity_file",
-                       "earth_orientation_file", "space_weather_file"});
   truth::TruthSettings& truth = mission.truth;
   truth.epoch = mission.epoch;
   truth.end = mission.end_time();
@@ -54,6 +51,7 @@ void read_truth(const TableReader& document, Mission& mission) {
   truth.gravity_file = read_file(section, "gravity_file", truth.gravity_file, mission);
   truth.earth_orientation_file = read_file(section, "earth_orientation_file", truth.earth_orientation_file, mission);
   truth.space_weather_file = read_file(section, "space_weather_file", truth.space_weather_file, mission);
+  section.finish();
 }
 
 }  // namespace vbar::mission

@@ -7,13 +7,13 @@ namespace {
 constexpr double kLargestARoe_m = 1e6;  // what the flight software takes
 
 Waypoint read_waypoint(const TableReader& section, const Mission& mission) {
-  section.accept_only({"index", "time_h", "a_roe_m", "solver"});
   Waypoint waypoint;
   waypoint.index = static_cast<int>(section.integer("index", 0, 9999));
   waypoint.time = mission.epoch + section.span("time_h", kHour_s, from_to(0.0, kLongestMission_h));
   const auto a_roe_m = section.six_numbers("a_roe_m", from_to(-kLargestARoe_m, kLargestARoe_m));
   waypoint.a_roe_m = Eigen::Map<const fsw::Vector6>(a_roe_m.data());
   waypoint.solver = section.choice<Solver>("solver", kSolvers, Solver::kClosedForm);
+  section.finish();
   return waypoint;
 }
 

@@ -18,9 +18,6 @@ SpacecraftGroup::SpacecraftGroup(const TableReader& section)
       count_(static_cast<int>(section.integer("count", 1, kMostSpacecraft, 1))),
       spacing_(section.table("spacing")) {
   spacing_.rename("spacecraft." + name_ + ".spacing");
-  spacing_.accept_only({"semi_major_axis_km", "ex", "ey", "inclination_deg", "raan_deg",
-                        "mean_argument_of_latitude_deg", "mass_kg", "drag_area_m2", "drag_coefficient",
-                        "radiation_area_m2", "radiation_coefficient"});
   if (section.has("spacing") && !counted_) section.refuse("count", "nothing", "how many spacecraft the spacing is for");
   if (count_ > 1 && section.has("relative"))
     section.refuse("relative", "one place for " + std::to_string(count_) + " spacecraft", "elements, with a spacing");
@@ -37,8 +34,8 @@ double SpacecraftGroup::shift(int member, std::string_view key) const {
 }
 
 double SpacecraftGroup::number(const TableReader& section, int member, std::string_view key, Range range,
-                               std::optional<double> otherwise) const {
-  const double value = section.number(key, range, otherwise) + shift(member, key);
+                               std::optional<double> default_value) const {
+  const double value = section.number(key, range, default_value) + shift(member, key);
   const bool good = (range.above ? value > range.low : value >= range.low) && value <= range.high;
   if (!good)
     spacing_.refuse(key, fmt::format("{:.10g} for {}", value, member_name(member)), "a number " + text_of(range));

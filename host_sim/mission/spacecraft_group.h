@@ -30,7 +30,7 @@ class SpacecraftGroup {
 
   /// As section.number(), plus `member` (0, 1, ...) times the spacing of that key. The sum must lie in the range too.
   [[nodiscard]] double number(const TableReader& section, int member, std::string_view key, Range range,
-                              std::optional<double> otherwise = std::nullopt) const;
+                              std::optional<double> default_value = std::nullopt) const;
 
   /// The same for an angle in degrees: a sum outside a turn is brought back into it, to -180 ... 180.
   [[nodiscard]] double angle_deg(const TableReader& section, int member, std::string_view key) const;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <exception>
 #include <sstream>
 
 #include "host_sim/mission/mission_error.h"
@@ -9,8 +11,6 @@
 
 namespace vbar::mission {
 namespace {
-
-const toml::table kEmptyTable;
 
 std::string text_of(double number) {
   std::ostringstream out;
@@ -45,6 +45,10 @@ const toml::node* first_with_location(const toml::node& node) {
 }
 
 }  // namespace
+
+bool is_name(std::string_view text) {
+  return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), is_name_character);
+}
 
 std::string location_of(const toml::node& node, const std::string& file) {
   const toml::node* located = first_with_location(node);
@@ -97,17 +101,99 @@ std::string listing_of(const std::vector<std::string_view>& names) {
   return listing;
 }
 
-TableReader::TableReader(const toml::table& table, std::string path, std::string file)
-    : table_(&table), path_(std::move(path)), file_(std::move(file)) {}
+/// What has been asked of each table of a document, and the first error that waits for finish().
+struct TableReader::Book {
+  struct Entry {
+    std::string path;
+    std::vector<std::string> keys;
+  };
+  std::map<const toml::table*, Entry> entries;
+  std::deque<toml::table> missing;  ///< what readers of tables that the file does not have read
+  const toml::table* refused_in = nullptr;
+  std::exception_ptr refused;
+};
 
-void TableReader::accept_only(std::initializer_list<std::string_view> keys) const {
-  for (const auto& [key, node] : *table_) {
-    if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
-    const std::vector<std::string_view> accepted(keys);
+TableReader::TableReader(const toml::table& table, std::string file)
+    : table_(&table), file_(std::move(file)), book_(std::make_shared<Book>()) {
+  book_->entries[table_];
+}
+
+TableReader::TableReader(const toml::table& table, std::string path, const TableReader& parent)
+    : table_(&table), path_(std::move(path)), file_(parent.file_), book_(parent.book_) {
+  book_->entries[table_].path = path_;
+}
+
+void TableReader::rename(std::string path) {
+  path_ = std::move(path);
+  book_->entries[table_].path = path_;
+}
+
+const toml::node* TableReader::find(std::string_view key) const {
+  std::vector<std::string>& keys = book_->entries[table_].keys;
+  if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.emplace_back(key);
+  return table_->get(key);
+}
+
+std::vector<std::string> TableReader::keys() const {
+  std::vector<std::string> names;
+  for (const auto& [key, node] : *table_) names.emplace_back(key.str());
+  return names;
+}
+
+std::vector<std::string> TableReader::asked() const {
+  return book_->entries[table_].keys;
+}
+
+std::map<std::string, std::vector<std::string>> TableReader::asked_of_all() const {
+  std::map<std::string, std::vector<std::string>> all;
+  for (const auto& [table, entry] : book_->entries) all[entry.path] = entry.keys;
+  return all;
+}
+
+void TableReader::refuse_unknown_keys() const {
+  refuse_unknown_keys(*table_);
+}
+
+void TableReader::refuse_unknown_keys(const toml::table& table) const {
+  const Book::Entry& entry = book_->entries[&table];
+  for (const auto& [key, node] : table) {
+    if (std::find(entry.keys.begin(), entry.keys.end(), key.str()) != entry.keys.end()) continue;
+    const std::vector<std::string_view> accepted(entry.keys.begin(), entry.keys.end());
     const auto nearest = nearest_name(key.str(), accepted);
-    throw MissionError(location_of(node, file_), path_of(key.str()),
+    throw MissionError(location_of(node, file_), (entry.path.empty() ? "" : entry.path + ".") + std::string(key.str()),
                        "an unknown key" + (nearest ? " (did you mean " + std::string(*nearest) + "?)" : std::string()),
                        listing_of(accepted));
+  }
+}
+
+void TableReader::finish() const {
+  finish(*table_);
+  if (book_->refused && (book_->refused_in == table_ || path_.empty())) std::rethrow_exception(book_->refused);
+}
+
+void TableReader::finish(const toml::table& table) const {
+  refuse_unknown_keys(table);
+  const auto finish_inner = [&](const toml::node& node) {
+    const toml::table* const inner = node.as_table();
+    if (inner != nullptr && book_->entries.contains(inner)) finish(*inner);
+  };
+  for (const auto& [key, node] : table) {
+    finish_inner(node);
+    if (const toml::array* const elements = node.as_array())
+      for (const toml::node& element : *elements) finish_inner(element);
+  }
+}
+
+template <class Value, class Read>
+Value TableReader::or_later(Value accepted, const Read& read) const {
+  try {
+    return read();
+  } catch (const MissionError&) {
+    if (!book_->refused) {
+      book_->refused = std::current_exception();
+      book_->refused_in = table_;
+    }
+    return accepted;
   }
 }
 
@@ -117,6 +203,7 @@ std::string TableReader::path_of(std::string_view key) const {
 }
 
 void TableReader::refuse(std::string_view key, const std::string& found, const std::string& accepted) const {
+  if (book_->refused) std::rethrow_exception(book_->refused);  // the earlier one, of which this may be a consequence
   const toml::node* node = key.empty() ? nullptr : table_->get(key);
   throw MissionError(location_of(node != nullptr ? *node : *table_, file_), path_of(key), found, accepted);
 }
@@ -127,7 +214,7 @@ void TableReader::refuse_value(std::string_view key, const std::string& accepted
 }
 
 const toml::node& TableReader::required(std::string_view key, const std::string& accepted) const {
-  const toml::node* node = table_->get(key);
+  const toml::node* node = find(key);
   if (node == nullptr) refuse(key, "nothing", accepted);
   return *node;
 }
@@ -142,29 +229,34 @@ double TableReader::checked_number(const toml::node& node, std::string_view key,
   return *value;
 }
 
-double TableReader::number(std::string_view key, Range range, std::optional<double> otherwise) const {
-  if (!has(key) && otherwise) return *otherwise;
-  return checked_number(required(key, "a number " + text_of(range)), key, range);
+double TableReader::number(std::string_view key, Range range, std::optional<double> default_value) const {
+  if (!has(key) && default_value) return *default_value;
+  return or_later(default_value.value_or(range.above ? range.high : range.low),
+                  [&] { return checked_number(required(key, "a number " + text_of(range)), key, range); });
 }
 
 std::int64_t TableReader::integer(std::string_view key, std::int64_t low, std::int64_t high,
-                                  std::optional<std::int64_t> otherwise) const {
-  if (!has(key) && otherwise) return *otherwise;
-  const std::string accepted = "an integer from " + std::to_string(low) + " to " + std::to_string(high);
-  const auto* value = required(key, accepted).as_integer();
-  if (value == nullptr || value->get() < low || value->get() > high) refuse_value(key, accepted);
-  return value->get();
+                                  std::optional<std::int64_t> default_value) const {
+  if (!has(key) && default_value) return *default_value;
+  return or_later(default_value.value_or(low), [&] {
+    const std::string accepted = "an integer from " + std::to_string(low) + " to " + std::to_string(high);
+    const auto* value = required(key, accepted).as_integer();
+    if (value == nullptr || value->get() < low || value->get() > high) refuse_value(key, accepted);
+    return value->get();
+  });
 }
 
-bool TableReader::flag(std::string_view key, bool otherwise) const {
-  if (!has(key)) return otherwise;
-  const auto* value = table_->get(key)->as_boolean();
-  if (value == nullptr) refuse_value(key, "true or false");
-  return value->get();
+bool TableReader::flag(std::string_view key, bool default_value) const {
+  if (!has(key)) return default_value;
+  return or_later(default_value, [&] {
+    const auto* value = table_->get(key)->as_boolean();
+    if (value == nullptr) refuse_value(key, "true or false");
+    return value->get();
+  });
 }
 
-std::string TableReader::text(std::string_view key, std::optional<std::string> otherwise) const {
-  if (!has(key) && otherwise) return *otherwise;
+std::string TableReader::text(std::string_view key, std::optional<std::string> default_value) const {
+  if (!has(key) && default_value) return *default_value;
   const toml::node& node = required(key, "a text");
   if (const auto* date_time = node.as_date_time()) return streamed(date_time->get());
   const auto* value = node.as_string();
@@ -174,27 +266,30 @@ std::string TableReader::text(std::string_view key, std::optional<std::string> o
   return value->get();
 }
 
-std::string TableReader::name(std::string_view key, std::optional<std::string> otherwise) const {
-  const std::string value = text(key, std::move(otherwise));
-  if (value.empty() || value.size() > 64 || !std::all_of(value.begin(), value.end(), is_name_character))
-    refuse(key, "the text \"" + value + "\"", "a name of 1 to 64 letters, digits, '_' and '-'");
+std::string TableReader::name(std::string_view key, std::optional<std::string> default_value) const {
+  const std::string value = text(key, std::move(default_value));
+  if (!is_name(value)) refuse(key, "the text \"" + value + "\"", std::string(kNameRule));
   return value;
 }
 
-std::vector<double> TableReader::numbers(std::string_view key, std::size_t least, std::size_t most, Range range) const {
-  const std::string count = std::to_string(least) + (most == least ? "" : " to " + std::to_string(most));
-  const std::string accepted = "an array of " + count + " numbers " + text_of(range);
-  const auto* array = required(key, accepted).as_array();
-  if (array == nullptr || array->size() < least || array->size() > most) refuse_value(key, accepted);
-  std::vector<double> values;
-  for (std::size_t k = 0; k < array->size(); ++k)
-    values.push_back(checked_number((*array)[k], std::string(key) + "[" + std::to_string(k) + "]", range));
-  return values;
+std::vector<double> TableReader::numbers(std::string_view key, std::size_t min_count, std::size_t max_count,
+                                         Range range) const {
+  return or_later(std::vector<double>(min_count, range.above ? range.high : range.low), [&] {
+    const std::string count =
+        std::to_string(min_count) + (max_count == min_count ? "" : " to " + std::to_string(max_count));
+    const std::string accepted = "an array of " + count + " numbers " + text_of(range);
+    const auto* array = required(key, accepted).as_array();
+    if (array == nullptr || array->size() < min_count || array->size() > max_count) refuse_value(key, accepted);
+    std::vector<double> values;
+    for (std::size_t k = 0; k < array->size(); ++k)
+      values.push_back(checked_number((*array)[k], std::string(key) + "[" + std::to_string(k) + "]", range));
+    return values;
+  });
 }
 
 std::array<double, 3> TableReader::three_numbers(std::string_view key, Range range,
-                                                 std::optional<std::array<double, 3>> otherwise) const {
-  if (!has(key) && otherwise) return *otherwise;
+                                                 std::optional<std::array<double, 3>> default_value) const {
+  if (!has(key) && default_value) return *default_value;
   std::array<double, 3> three{};
   std::ranges::copy(numbers(key, 3, 3, range), three.begin());
   return three;
@@ -207,8 +302,8 @@ std::array<double, 6> TableReader::six_numbers(std::string_view key, Range range
 }
 
 fsw::Duration TableReader::span(std::string_view key, double unit_s, Range range,
-                                std::optional<double> otherwise) const {
-  return fsw::nearest_duration(number(key, range, otherwise) * unit_s);
+                                std::optional<double> default_value) const {
+  return fsw::nearest_duration(number(key, range, default_value) * unit_s);
 }
 
 std::size_t TableReader::chosen(std::string_view key, const std::vector<std::string_view>& accepted) const {
@@ -242,15 +337,16 @@ std::vector<std::size_t> TableReader::chosen_several(std::string_view key,
 }
 
 TableReader TableReader::table(std::string_view key) const {
-  const toml::node* node = table_->get(key);
-  if (node == nullptr) return {kEmptyTable, path_of(key), file_};
+  const toml::node* node = find(key);
+  if (node == nullptr) return {book_->missing.emplace_back(), path_of(key), *this};
   if (!node->is_table()) refuse_value(key, "a table");
-  return {*node->as_table(), path_of(key), file_};
+  TableReader inner(*node->as_table(), path_of(key), *this);
+  return inner;
 }
 
 std::vector<TableReader> TableReader::tables(std::string_view key) const {
   std::vector<TableReader> readers;
-  const toml::node* node = table_->get(key);
+  const toml::node* node = find(key);
   if (node == nullptr) return readers;
   const std::string accepted = "an array of tables, [[" + path_of(key) + "]]";
   const auto* array = node->as_array();
@@ -258,7 +354,7 @@ std::vector<TableReader> TableReader::tables(std::string_view key) const {
   for (const toml::node& element : *array) {
     if (!element.is_table())
       throw MissionError(location_of(element, file_), path_of(key), description_of(element), accepted);
-    readers.emplace_back(*element.as_table(), path_of(key) + "." + std::to_string(readers.size()), file_);
+    readers.push_back({*element.as_table(), path_of(key) + "." + std::to_string(readers.size()), *this});
   }
   return readers;
 }

@@ -3,7 +3,8 @@
 
 #include <array>
 #include <cstdint>
-#include <initializer_list>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,46 +30,66 @@ constexpr Range above_to(double low, double high) {
   return {low, high, true};
 }
 
+/// A key that has been asked for is a known key: finish() refuses all others, so that no list of keys is written.
 class TableReader {
  public:
-  /// Reads `table`, which must outlive the reader. `path` is its dotted path, empty for the document; `file` the file's
-  /// name.
-  TableReader(const toml::table& table, std::string path, std::string file);
+  /// Reads the document `table`, which must outlive the reader and all readers of its inner tables; `file` is the
+  /// file's name.
+  TableReader(const toml::table& table, std::string file);
 
-  /// Refuses every key of the table that is not listed. To be called before a value is read, except the one value on
-  /// which the list depends.
-  void accept_only(std::initializer_list<std::string_view> keys) const;
+  /// To be called when all keys have been asked for. Throws, in this order: for a key of the table that nobody asked
+  /// for; likewise for its inner tables; for the first number or flag of the table that was refused (number, numbers,
+  /// integer and flag return an accepted value then, so that the remaining keys are asked for before the message).
+  void finish() const;
 
-  [[nodiscard]] bool has(std::string_view key) const { return table_->contains(key); }
+  /// Refuses a key that has not been asked for so far, without looking at inner tables.
+  void refuse_unknown_keys() const;
 
-  // A value or, where the key is missing, `otherwise`; without `otherwise` the key is required.
-  double number(std::string_view key, Range range, std::optional<double> otherwise = std::nullopt) const;
+  /// The keys that have been asked for, in that order.
+  [[nodiscard]] std::vector<std::string> asked() const;
+  /// The same for all tables of the document that have been read, by their dotted paths.
+  [[nodiscard]] std::map<std::string, std::vector<std::string>> asked_of_all() const;
+
+  [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// The keys of the table, in alphabetical order; none of them counts as asked for.
+  [[nodiscard]] std::vector<std::string> keys() const;
+
+  // A value or, where the key is missing, `default_value`; without it the key is required.
+  double number(std::string_view key, Range range, std::optional<double> default_value = std::nullopt) const;
   std::int64_t integer(std::string_view key, std::int64_t low, std::int64_t high,
-                       std::optional<std::int64_t> otherwise = std::nullopt) const;
-  bool flag(std::string_view key, bool otherwise) const;
+                       std::optional<std::int64_t> default_value = std::nullopt) const;
+  bool flag(std::string_view key, bool default_value) const;
   /// Text of printable characters; an unquoted TOML date-time counts as its text.
-  std::string text(std::string_view key, std::optional<std::string> otherwise = std::nullopt) const;
+  std::string text(std::string_view key, std::optional<std::string> default_value = std::nullopt) const;
   /// Letters, digits, '_' and '-' only: a name that can stand in a path.
-  std::string name(std::string_view key, std::optional<std::string> otherwise = std::nullopt) const;
-  /// An array of at least `least` and at most `most` numbers.
-  std::vector<double> numbers(std::string_view key, std::size_t least, std::size_t most, Range range) const;
-  /// Three numbers or, where the key is missing, `otherwise`; without `otherwise` the key is required.
+  std::string name(std::string_view key, std::optional<std::string> default_value = std::nullopt) const;
+  /// An array of `min_count` to `max_count` numbers.
+  std::vector<double> numbers(std::string_view key, std::size_t min_count, std::size_t max_count, Range range) const;
+  /// Three numbers or, where the key is missing, `default_value`; without it the key is required.
   std::array<double, 3> three_numbers(std::string_view key, Range range,
-                                      std::optional<std::array<double, 3>> otherwise = std::nullopt) const;
+                                      std::optional<std::array<double, 3>> default_value = std::nullopt) const;
   /// Six numbers.
   std::array<double, 6> six_numbers(std::string_view key, Range range) const;
-  /// A span given in units of `unit_s` seconds, rounded to a nanosecond; range and `otherwise` in the same units.
+  /// A span given in units of `unit_s` seconds, rounded to a nanosecond; range and `default_value` in the same units.
   fsw::Duration span(std::string_view key, double unit_s, Range range,
-                     std::optional<double> otherwise = std::nullopt) const;
+                     std::optional<double> default_value = std::nullopt) const;
 
   /// The enumerator whose name is the value.
   template <class Enum, std::size_t N>
   Enum choice(std::string_view key, const std::array<std::pair<std::string_view, Enum>, N>& names,
-              std::optional<Enum> otherwise = std::nullopt) const {
-    if (!has(key) && otherwise) return *otherwise;
+              std::optional<Enum> default_value = std::nullopt) const {
+    if (!has(key) && default_value) return *default_value;
     std::vector<std::string_view> accepted;
     for (const auto& [name, value] : names) accepted.push_back(name);
     return names[chosen(key, accepted)].second;
+  }
+
+  /// One of the names; `default_value` where the key is missing.
+  std::string choice(std::string_view key, const std::vector<std::string_view>& names,
+                     std::string_view default_value) const {
+    return std::string(has(key) ? names[chosen(key, names)] : default_value);
   }
 
   /// The enumerators whose names are in the array, each at most once; none where the key is missing.
@@ -86,7 +107,7 @@ class TableReader {
   /// The elements of an array of tables; none if it is missing. Their paths are key.0, key.1, ... until renamed.
   [[nodiscard]] std::vector<TableReader> tables(std::string_view key) const;
   /// Gives the table the path by which people know it.
-  void rename(std::string path) { path_ = std::move(path); }
+  void rename(std::string path);
 
   /// Refuses the value of `key` (the whole table if empty) for a reason of the caller's.
   [[noreturn]] void refuse(std::string_view key, const std::string& found, const std::string& accepted) const;
@@ -94,6 +115,17 @@ class TableReader {
   [[noreturn]] void refuse_value(std::string_view key, const std::string& accepted) const;
 
  private:
+  struct Book;
+
+  TableReader(const toml::table& table, std::string path, const TableReader& parent);
+
+  /// The node of a key, which counts as asked for; null if it is missing.
+  [[nodiscard]] const toml::node* find(std::string_view key) const;
+  void finish(const toml::table& table) const;
+  void refuse_unknown_keys(const toml::table& table) const;
+  /// Keeps the error for finish().
+  template <class Value, class Read>
+  Value or_later(Value accepted, const Read& read) const;
   [[nodiscard]] std::string path_of(std::string_view key) const;
   [[nodiscard]] const toml::node& required(std::string_view key, const std::string& accepted) const;
   [[nodiscard]] std::size_t chosen(std::string_view key, const std::vector<std::string_view>& accepted) const;
@@ -104,7 +136,11 @@ class TableReader {
   const toml::table* table_;
   std::string path_;
   std::string file_;
+  std::shared_ptr<Book> book_;  ///< of the whole document
 };
+
+inline constexpr std::string_view kNameRule = "a name of 1 to 64 letters, digits, '_' and '-'";
+[[nodiscard]] bool is_name(std::string_view text);
 
 /// "file:line" of a node, or the override it came from; `file` alone if it came from nowhere.
 [[nodiscard]] std::string location_of(const toml::node& node, const std::string& file);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host_sim/mission/camera_file.h"
+#include "host_sim/sensors/camera/camera_file.h"
 #include "host_sim/training/draws.h"
 #include "host_sim/twins/camera/optics.h"
 
@@ -61,7 +61,7 @@ void draw_light(Circumstances& drawn, engine::RandomStream& stream) {
 }  // namespace
 
 twins::camera::CameraSettings close_range_camera(const std::filesystem::path& data_directory) {
-  mission::CameraFile file = mission::load_camera(data_directory / "cameras" / "tron.toml");
+  sensors::CameraFile file = sensors::load_camera(data_directory / "cameras" / "tron.toml");
   file.binning = 2;
   twins::camera::CameraSettings camera = file.settings();
   twins::camera::DetectorSettings& detector = camera.detector;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -134,6 +135,13 @@ class PacketSource {
 
   /// What it has done so far, for the summary. Must not wait for what is pending.
   [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
+};
+
+/// A source as the simulation, its record and its messages refer to it.
+struct NamedSource {
+  std::string name;  ///< in errors, notes and the summary: "servicer/gnss"
+  std::string kind;  ///< "digital", "recorded" or the name of a testbed
+  std::unique_ptr<PacketSource> packets;
 };
 
 /// The first of start, start + period, ... at or after `from`; period > 0.

@@ -13,7 +13,7 @@
 #include "fsw/gnc/vbar_gnc.h"
 #include "host_sim/app/assemble.h"
 #include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/mission/load.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "tests/support/paths.h"
 
 namespace {
@@ -24,7 +24,7 @@ namespace mission = vbar::mission;
 const std::string kRoot = vbar::tests::source_path();
 
 mission::Mission load(const char* name) {
-  return mission::load_mission(kRoot + "/missions/" + name + ".toml");
+  return sensors::load_mission(kRoot + "/missions/" + name + ".toml");
 }
 
 void fly(const mission::Mission& mission, std::span<app::RunObserver* const> observers,

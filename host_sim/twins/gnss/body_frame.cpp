@@ -37,7 +37,7 @@ double mean_square_m2(const BodyFrameSettings& settings) {
 BodyFrameErrors draw_body_frame(const BodyFrameSettings& settings, std::uint64_t seed, std::string_view spacecraft) {
   engine::RandomStream stream(seed, "gnss/" + std::string(spacecraft) + "/body_frame");
   BodyFrameErrors errors;
-  errors.mass_kg = stream.normal() * settings.mass_sigma_kg;
+  static_cast<void>(stream.normal());  // the draw of the true mass, mission::drawn_mass_error_kg
   const Vector3 com_direction = random_direction(stream);
   errors.com_m = settings.com_radius_mm * 1e-3 * std::cbrt(stream.uniform()) * com_direction;
   errors.pco_m = settings.pco_bias_mm * 1e-3 * random_direction(stream);

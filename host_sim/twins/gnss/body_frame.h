@@ -15,7 +15,6 @@ inline constexpr double kArcsecond = std::numbers::pi / 648000.0;  ///< rad
 
 /// One spacecraft's draws, constant through a run. SI, body frame.
 struct BodyFrameErrors {
-  double mass_kg = 0.0;                                   ///< true minus nominal mass
   fsw::Vector3 com_m = fsw::Vector3::Zero();              ///< true minus nominal centre of mass
   fsw::Vector3 pco_m = fsw::Vector3::Zero();              ///< phase centre minus where it is thought to be
   fsw::Vector3 antenna_rotation = fsw::Vector3::Zero();   ///< rad, small: true from nominal antenna direction

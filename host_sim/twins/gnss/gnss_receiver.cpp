@@ -95,7 +95,7 @@ std::vector<std::uint8_t> GnssReceiver::bytes_at(const BodyTruth& truth) {
   oem::append_range(bytes, header, observations_);
   append_ephemerides(bytes, header);
   const bool due =
-      !corrections_logged_ || seconds(truth.time - corrections_logged_at_) >= settings_.output.corrections_repeat_s;
+      !corrections_logged_ || seconds(truth.time - corrections_logged_at_) >= settings_.output.corrections_period_s;
   if (solution && due) {
     oem::append_ionutc(bytes, header, constellation_->corrections(), utc);
     corrections_logged_ = true;
@@ -288,7 +288,7 @@ void GnssReceiver::append_ephemerides(oem::Bytes& bytes, const oem::Header& head
     MessageState& message = messages_[index];
     const bool tracked = tracking_[index].signals().front().tracking;
     const bool repeated =
-        message.logged && seconds(header.time - message.logged_at) < settings_.output.ephemeris_repeat_s;
+        message.logged && seconds(header.time - message.logged_at) < settings_.output.ephemeris_period_s;
     if (!message.received || !tracked || repeated) continue;
     switch (constellation_->id(index).system) {
       case System::kGps:

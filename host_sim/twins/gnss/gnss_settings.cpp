@@ -14,11 +14,11 @@ void need_between(const char* name, double value, double low, double high) {
 }
 
 // An interval of times from 0 to a day.
-void need_interval(const char* least_name, double least_s, const char* most_name, double most_s) {
-  need_between(least_name, least_s, 0.0, 86400.0);
-  need_between(most_name, most_s, 0.0, 86400.0);
-  if (least_s > most_s)
-    throw std::invalid_argument(fmt::format("{} = {} is above {} = {}", least_name, least_s, most_name, most_s));
+void need_interval(const char* min_name, double min_s, const char* max_name, double max_s) {
+  need_between(min_name, min_s, 0.0, 86400.0);
+  need_between(max_name, max_s, 0.0, 86400.0);
+  if (min_s > max_s)
+    throw std::invalid_argument(fmt::format("{} = {} is above {} = {}", min_name, min_s, max_name, max_s));
 }
 
 void check_visibility(const VisibilitySettings& visibility) {
@@ -47,14 +47,13 @@ void check_tracking(const TrackingSettings& tracking) {
     throw std::invalid_argument(fmt::format("loss_threshold_dbhz = {} is above acquisition_threshold_dbhz = {}",
                                             tracking.loss_threshold_dbhz, tracking.acquisition_threshold_dbhz));
   need_between("cycle_slips_per_hour", tracking.cycle_slips_per_hour, 0.0, 3600.0);
-  need_between("unseen_slip_fraction", tracking.unseen_slip_fraction, 0.0, 1.0);
+  need_between("undetected_slip_fraction", tracking.undetected_slip_fraction, 0.0, 1.0);
   need_between("code_bias_sigma_m", tracking.code_bias_sigma_m, 0.0, 1000.0);
 }
 
 void check_start(const StartSettings& start) {
-  need_interval("cold_search_least_s", start.cold_search_least_s, "cold_search_most_s", start.cold_search_most_s);
-  need_interval("reacquisition_least_s", start.reacquisition_least_s, "reacquisition_most_s",
-                start.reacquisition_most_s);
+  need_interval("cold_search_min_s", start.cold_search_min_s, "cold_search_max_s", start.cold_search_max_s);
+  need_interval("reacquisition_min_s", start.reacquisition_min_s, "reacquisition_max_s", start.reacquisition_max_s);
   need_between("ephemeris_decoding_s", start.ephemeris_decoding_s, 0.0, 3600.0);
 }
 
@@ -71,7 +70,6 @@ void check_body_frame(const BodyFrameSettings& body) {
   if (!(std::abs(body.boresight_in_body.norm() - 1.0) < 1e-6))
     throw std::invalid_argument(
         fmt::format("boresight_in_body has length {}: accepted is a unit vector", body.boresight_in_body.norm()));
-  need_between("mass_sigma_kg", body.mass_sigma_kg, 0.0, 1e4);
   need_between("com_radius_mm", body.com_radius_mm, 0.0, 1e4);
   need_between("pco_bias_mm", body.pco_bias_mm, 0.0, 1e4);
   need_between("pco_noise_mm", body.pco_noise_mm, 0.0, 1e4);
@@ -84,8 +82,8 @@ void check_output(const OutputSettings& output) {
   if (std::abs(output.period_s * 1000.0 - std::round(output.period_s * 1000.0)) > 1e-9)
     throw std::invalid_argument(
         fmt::format("period_s = {}: accepted is a whole number of milliseconds", output.period_s));
-  need_between("ephemeris_repeat_s", output.ephemeris_repeat_s, 1.0, 1e5);
-  need_between("corrections_repeat_s", output.corrections_repeat_s, 1.0, 1e5);
+  need_between("ephemeris_period_s", output.ephemeris_period_s, 1.0, 1e5);
+  need_between("corrections_period_s", output.corrections_period_s, 1.0, 1e5);
 }
 
 }  // namespace

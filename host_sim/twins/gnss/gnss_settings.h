@@ -37,8 +37,8 @@ struct TrackingSettings {
   double acquisition_threshold_dbhz = 33.0;
   double loss_threshold_dbhz = 28.0;
   double cycle_slips_per_hour = 0.02;  ///< of each signal; every slip is seen by the receiver: the lock time restarts
-  double unseen_slip_fraction = 0.0;   ///< of those slips, the share that the receiver does not see
-  double code_bias_sigma_m = 0.0;      ///< constant code delay of each signal in the receiver
+  double undetected_slip_fraction = 0.0;  ///< of those slips, the share that the receiver does not detect
+  double code_bias_sigma_m = 0.0;         ///< constant code delay of each signal in the receiver
   friend bool operator==(const TrackingSettings&, const TrackingSettings&) = default;
 };
 
@@ -51,10 +51,10 @@ enum class StartMode : std::uint8_t {
 /// How tracking begins. Each satellite's delay is uniform in its interval.
 struct StartSettings {
   StartMode mode = StartMode::kWarm;
-  double cold_search_least_s = 20.0;
-  double cold_search_most_s = 60.0;
-  double reacquisition_least_s = 1.0;  ///< warm, hot, and every satellite that rises later
-  double reacquisition_most_s = 8.0;
+  double cold_search_min_s = 20.0;
+  double cold_search_max_s = 60.0;
+  double reacquisition_min_s = 1.0;  ///< warm, hot, and every satellite that rises later
+  double reacquisition_max_s = 8.0;
   double ephemeris_decoding_s = 30.0;  ///< a message's set has been received after so long in lock
   friend bool operator==(const StartSettings&, const StartSettings&) = default;
 };
@@ -74,7 +74,6 @@ struct ClockSettings {
 struct BodyFrameSettings {
   fsw::Vector3 antenna_in_body_m = fsw::Vector3(0.0, 0.0, 0.3);  ///< from the nominal centre of mass
   fsw::Vector3 boresight_in_body = fsw::Vector3::UnitZ();
-  double mass_sigma_kg = 0.04;              ///< A
   double com_radius_mm = 3.0;               ///< A: centre of mass uniform in a ball
   double pco_bias_mm = 5.0;                 ///< A: length of a constant vector of random direction
   double pco_noise_mm = 1.0;                ///< A: each axis, each epoch, all signals alike
@@ -88,8 +87,8 @@ enum class GpsEphemerisLog : std::uint8_t { kRawEphem, kGpsEphem };
 /// What the receiver was asked to log.
 struct OutputSettings {
   double period_s = 10.0;               ///< of RANGE, BESTXYZ, TIME: 0.1 to 60, whole milliseconds
-  double ephemeris_repeat_s = 300.0;    ///< each ephemeris again; new ones at once
-  double corrections_repeat_s = 300.0;  ///< IONUTC
+  double ephemeris_period_s = 300.0;    ///< each ephemeris again; new ones at once
+  double corrections_period_s = 300.0;  ///< IONUTC
   GpsEphemerisLog gps_ephemeris = GpsEphemerisLog::kRawEphem;
   friend bool operator==(const OutputSettings&, const OutputSettings&) = default;
 };

@@ -68,8 +68,8 @@ void SatelliteTracking::update(fsw::GpsTime now, bool first, const std::vector<d
 
 void SatelliteTracking::search(fsw::GpsTime now, bool first) {
   const bool cold = first && start_.mode == StartMode::kCold;
-  const double delay_s = cold ? stream_.uniform(start_.cold_search_least_s, start_.cold_search_most_s)
-                              : stream_.uniform(start_.reacquisition_least_s, start_.reacquisition_most_s);
+  const double delay_s = cold ? stream_.uniform(start_.cold_search_min_s, start_.cold_search_max_s)
+                              : stream_.uniform(start_.reacquisition_min_s, start_.reacquisition_max_s);
   found_ = now + fsw::nearest_duration(delay_s);
   heard_since_ = found_;
 }
@@ -97,7 +97,7 @@ void SatelliteTracking::slip_by_chance(SignalTrack& track, fsw::GpsTime now, dou
   const double probability = -std::expm1(-tracking_.cycle_slips_per_hour / 3600.0 * elapsed_s);
   if (track.stream.uniform() >= probability) return;
   const std::int64_t cycles = nonzero_integer(track.stream, kLargestSlip_cycles);
-  slip(track, now, cycles, track.stream.uniform() >= tracking_.unseen_slip_fraction);
+  slip(track, now, cycles, track.stream.uniform() >= tracking_.undetected_slip_fraction);
 }
 
 void SatelliteTracking::command_slip(Signal signal, std::int64_t cycles, bool seen) {

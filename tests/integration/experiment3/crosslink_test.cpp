@@ -14,9 +14,8 @@ namespace {
 constexpr int kPropagated = telemetry_navigation::kSourcePropagated, kFixed = telemetry_navigation::kSourceGnssFixed;
 
 TEST(Crosslink, AFifthLostAndFiveSecondsLateCostLessThanHalf) {
-  const std::vector<std::string> poor{
-      "links.crosslink.latency={distribution=\"uniform\", minimum_s=0.0, maximum_s=5.0}",
-      "links.crosslink.loss_probability=0.2"};
+  const std::vector<std::string> poor{"links.crosslink.latency={distribution=\"uniform\", min_s=0.0, max_s=5.0}",
+                                      "links.crosslink.loss_probability=0.2"};
   std::vector<double> usual, worse;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     usual.push_back(fly_experiment3(seed).mean_position_m);

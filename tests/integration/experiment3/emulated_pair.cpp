@@ -9,9 +9,8 @@
 #include "fsw/orbit/rtn.h"
 #include "host_sim/app/initial_attitudes.h"
 #include "host_sim/app/initial_orbits.h"
-#include "host_sim/app/make_twins.h"
-#include "host_sim/mission/load.h"
-#include "host_sim/mission/telecommands.h"
+#include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/twins/gnss/gnss_receiver.h"
 #include "host_sim/twins/packet_encoder.h"
@@ -30,7 +29,7 @@ constexpr std::uint8_t kServicerNumber = 1;
 
 mission::Mission experiment3(std::vector<std::string> overrides, const std::vector<std::string>& more) {
   overrides.insert(overrides.end(), more.begin(), more.end());
-  return mission::load_mission(kRoot + "/missions/experiment3.toml", overrides);
+  return sensors::load_mission(kRoot + "/missions/experiment3.toml", overrides);
 }
 
 }  // namespace
@@ -42,8 +41,8 @@ CoastingPair::CoastingPair(int duration_s, const std::vector<std::string>& overr
   app::place_spacecraft(mission_, truth_);
   app::set_attitudes(mission_, kRoot + "/data", truth_);
   truth::EarthRotation earth_rotation(truth_.data().earth_orientation, mission_.epoch);
-  const fsw::Duration period =
-      fsw::nearest_duration(mission_.find_spacecraft("servicer")->gnss->receiver.output.period_s);
+  const fsw::Duration period = fsw::nearest_duration(
+      mission::find_settings<sensors::GnssSensor>(*mission_.find_spacecraft("servicer"))->receiver.output.period_s);
   const GpsTime end = mission_.start_time() + fsw::duration_of_seconds(duration_s);
   for (GpsTime time = mission_.start_time(); time <= end; time = time + period) {
     truth_.advance_to(time);
@@ -64,10 +63,10 @@ EmulatedPair::EmulatedPair(const CoastingPair& coast, std::uint64_t seed, const 
       navigation_(std::make_unique<fsw::gnc::Navigation>()) {
   mission_.seed = seed;
   const mission::Spacecraft& servicer = *mission_.find_spacecraft("servicer");
-  sensors_ = app::make_sources(mission_, servicer, kRoot + "/data");
+  sensors_ = sensors::make_sources(mission_, servicer, kRoot + "/data");
   twins::PacketEncoder encoder(kServicerNumber, 0);
   const auto packet = encoder.encode(
-      mission_.start_time(), mission::navigation_configuration_of(mission_, servicer, coast.earth_orientation()));
+      mission_.start_time(), sensors::navigation_configuration_of(mission_, servicer, coast.earth_orientation()));
   under_way_.push_back({mission_.start_time(), packet.value()});
 }
 

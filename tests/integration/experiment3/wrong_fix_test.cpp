@@ -81,7 +81,7 @@ TEST(UnseenSlips, NeverStayInAHeldInteger) {
   for (const std::string spacecraft : {"servicer", "target"}) {
     const std::string tracking = "spacecraft." + spacecraft + "." + kTracking;
     overrides.push_back(tracking + ".cycle_slips_per_hour=3.0");
-    overrides.push_back(tracking + ".unseen_slip_fraction=1.0");
+    overrides.push_back(tracking + ".undetected_slip_fraction=1.0");
   }
   std::int32_t found = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {

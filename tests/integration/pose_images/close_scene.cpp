@@ -6,8 +6,8 @@
 
 #include "fsw/gnc/camera_configuration.h"
 #include "host_sim/mission/data_directory.h"
-#include "host_sim/mission/load.h"
-#include "host_sim/mission/telecommands.h"
+#include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/camera/model/cad_objects.h"
 #include "host_sim/twins/camera/photometry.h"
 #include "tests/support/paths.h"
@@ -38,11 +38,13 @@ CloseScene::CloseScene()
     : shape_(training::TargetShape::load(mission::data_directory())),
       network_(std::make_unique<fsw::pose::SpacecraftPoseNetwork>()) {
   const mission::Mission mission =
-      mission::load_mission(std::filesystem::path(vbar::tests::source_path("missions")) / "experiment2.toml");
+      sensors::load_mission(std::filesystem::path(vbar::tests::source_path("missions")) / "experiment2.toml");
   const mission::Spacecraft& servicer = *mission.find_spacecraft("servicer");
-  camera_ = servicer.camera->settings;
-  const auto settings = fsw::gnc::pose_camera_settings(mission::camera_configuration_of(servicer),
-                                                       mission::pose_configuration_of(mission, servicer));
+  const auto& sensor = *mission::find_settings<sensors::CameraSensor>(servicer);
+  camera_ = sensor.settings;
+  const auto settings =
+      fsw::gnc::pose_camera_settings(sensors::camera_configuration_of(sensor),
+                                     sensors::pose_configuration_of(mission, sensor, mission::data_directory()));
   if (!settings.ok()) throw std::runtime_error("the mission's camera does not suit the flight software");
   settings_ = settings.value();
   network_->configure(settings_);

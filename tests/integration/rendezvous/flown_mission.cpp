@@ -11,7 +11,7 @@
 #include "fsw/packets/packet.h"
 #include "host_sim/app/assemble.h"
 #include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/mission/load.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "tests/support/paths.h"
 
 namespace vbar::test {
@@ -53,7 +53,7 @@ std::string sha256(std::span<const std::uint8_t> bytes) {
 
 FlownMission fly(const std::string& file, const std::vector<std::string>& overrides, const Wrap& wrap) {
   const std::string root = vbar::tests::source_path();
-  const mission::Mission mission = mission::load_mission(root + "/missions/" + file, overrides);
+  const mission::Mission mission = sensors::load_mission(root + "/missions/" + file, overrides);
   std::unique_ptr<pil::FlightComputer> computer = app::connect_flight_computer(app::flying_spacecraft(mission));
   if (wrap) computer = wrap(std::move(computer));
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "fsw/orbit/rtn.h"
-#include "host_sim/mission/load.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "tests/support/paths.h"
 
 namespace vbar::test {
@@ -23,7 +23,7 @@ struct Pair {
 
 Pair placed(const std::vector<std::string>& overrides = {}) {
   const std::string root = vbar::tests::source_path();
-  const mission::Mission mission = mission::load_mission(root + "/missions/ideal_navigation.toml", overrides);
+  const mission::Mission mission = sensors::load_mission(root + "/missions/ideal_navigation.toml", overrides);
   truth::TruthSettings settings;
   settings.epoch = mission.epoch;
   settings.gravity_degree = mission.truth.gravity_degree;
@@ -67,15 +67,14 @@ TEST(InitialOrbits, ElementsAreAsGoodAsTheirWaypoint) {
   EXPECT_EQ(by_roe.target.velocity_eci, at_waypoint.target.velocity_eci);
 }
 
-// The body frame's error of mass is that of the truth's forces: a sigma seven times the mass leaves some seeds without
-// one, and drag refuses that by name; the true mass otherwise stretches what sunlight and drag do over 39 h.
-TEST(InitialOrbits, ReceiversDrawTheTrueMass) {
+// The error of the mass is that of the truth's forces: with a sigma seven times the mass some seeds draw a mass below
+// zero, which is refused by name; the true mass otherwise stretches what sunlight and drag do over 39 h.
+TEST(InitialOrbits, TheTrueMassIsDrawn) {
   const std::string root = vbar::tests::source_path();
   const auto servicer_of = [&](int seed, const std::string& sigma_kg) {
-    const mission::Mission mission = mission::load_mission(
-        root + "/missions/experiment3.toml",
-        std::vector<std::string>{"mission.seed=" + std::to_string(seed),
-                                 "spacecraft.servicer.sensors.gnss.body_frame.mass_sigma_kg=" + sigma_kg});
+    const mission::Mission mission = sensors::load_mission(
+        root + "/missions/experiment3.toml", std::vector<std::string>{"mission.seed=" + std::to_string(seed),
+                                                                      "spacecraft.servicer.mass_sigma_kg=" + sigma_kg});
     truth::TruthModel truth(app::truth_settings(mission, root + "/data"));
     app::place_spacecraft(mission, truth);
     return truth.state("servicer").position_eci;
@@ -89,7 +88,7 @@ TEST(InitialOrbits, ReceiversDrawTheTrueMass) {
     try {
       servicer_of(seed, "1000");
     } catch (const std::runtime_error& error) {
-      EXPECT_STREQ(error.what(), "spacecraft \"servicer\": its mass_sigma_kg left it without a mass");
+      EXPECT_STREQ(error.what(), "spacecraft \"servicer\": the mass drawn with its mass_sigma_kg is not positive");
       ++without;
     }
   }

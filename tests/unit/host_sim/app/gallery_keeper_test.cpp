@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/mission/load.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/camera/image_tiles.h"
 
 namespace vbar::app {
@@ -31,6 +31,7 @@ attitude = { profile = "commanded" }
 elements = { kind = "mean", semi_major_axis_km = 7000, ex = 0, ey = 0, inclination_deg = 90, raan_deg = 0, mean_argument_of_latitude_deg = 0 }
 [[spacecraft]]
 name = "target"
+body = "tango"
 model = "tango"
 attitude = { profile = "tumble" }
 relative = { to = "servicer", waypoint = 0 }
@@ -88,7 +89,7 @@ class Gallery : public testing::Test {
     return all;
   }
 
-  const mission::Mission mission_ = mission::parse_mission(kMission, "m.toml");
+  const mission::Mission mission_ = sensors::parse_mission(kMission, "m.toml");
   GalleryKeeper keeper_{mission_, mission_.spacecraft[0]};
   std::vector<report::GalleryImage> pictures_;
 };
@@ -139,7 +140,7 @@ TEST_F(Gallery, PixelsOfALostTileAreMissing) {
 
 TEST_F(Gallery, NeedsACamera) {
   mission::Mission blind = mission_;
-  blind.spacecraft[0].camera.reset();
+  std::erase_if(blind.spacecraft[0].sensors, [](const mission::Sensor& sensor) { return sensor.kind == "camera"; });
   GalleryKeeper keeper(blind, blind.spacecraft[0]);
   keeper.on_inputs(blind.start_time(), {});
   keeper.on_image({blind.start_time(), {}, nullptr}, pictures_);

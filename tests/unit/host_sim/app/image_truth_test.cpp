@@ -9,8 +9,8 @@
 #include "fsw/orbit/roe.h"
 #include "host_sim/app/flight_recorder.h"
 #include "host_sim/app/image_rows.h"
-#include "host_sim/mission/load.h"
 #include "host_sim/report/summarise.h"
+#include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
 namespace {
@@ -35,6 +35,7 @@ attitude = { profile = "commanded" }
 elements = { kind = "mean", semi_major_axis_km = 7000, ex = 0, ey = 0, inclination_deg = 90, raan_deg = 0, mean_argument_of_latitude_deg = 0 }
 [[spacecraft]]
 name = "target"
+body = "tango"
 model = "tango"
 attitude = { profile = "tumble" }
 relative = { to = "servicer", a_roe_m = [0, -1e4, 0, 0, 0, 0] }
@@ -68,7 +69,7 @@ class ImageTruth : public testing::Test {
 
   const Vector3 kPlace{7.0e6, 0.0, 0.0};
   const Vector3 kVelocity{0.0, 100.0, 7546.0};
-  mission::Mission mission_ = mission::parse_mission(kMission, "m.toml");
+  mission::Mission mission_ = sensors::parse_mission(kMission, "m.toml");
   twins::TruthSnapshot truth_;
   telemetry_image image_{};
 };

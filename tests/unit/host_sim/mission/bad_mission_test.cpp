@@ -43,8 +43,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "mission.colour: found an unknown key; accepted: name, description, epoch_utc, start_h, duration_h, "
                   "step_s or seed"},
         BadChange{"UnknownSection", "[mission]", "[trut]\n[mission]", "[trut]",
-                  "trut: found an unknown key (did you mean truth?); accepted: mission, truth, spacecraft, guidance, "
-                  "gnss_navigation, angles_only, pose, waypoint, burn, constellation, clock, links, lcm or record"},
+                  "trut: found an unknown key (did you mean truth?); accepted: mission, truth, testbed, waypoint, "
+                  "spacecraft, guidance, navigation, burn, clock, links, lcm, record or constellation"},
         BadChange{"WrongTypeText", "duration_h = 2.0", "duration_h = \"two\"", "duration_h",
                   "mission.duration_h: found the text \"two\"; accepted: a number above 0, up to 2000"},
         BadChange{"WrongTypeInteger", "[mission]", "[mission]\nseed = 1.0", "seed",
@@ -55,8 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "truth: found the integer 3; accepted: a table"},
         BadChange{
             "WrongTypeOfArrayOfTables", "[mission]", "waypoint2 = 1\n[mission]", "waypoint2",
-            "waypoint2: found an unknown key (did you mean waypoint?); accepted: mission, truth, spacecraft, "
-            "guidance, gnss_navigation, angles_only, pose, waypoint, burn, constellation, clock, links, lcm or record"},
+            "waypoint2: found an unknown key (did you mean waypoint?); accepted: mission, truth, testbed, waypoint, "
+            "spacecraft, guidance, navigation, burn, clock, links, lcm, record or constellation"},
         BadChange{"MissingRequiredKey", "duration_h = 2.0\n", "", "[mission]",
                   "mission.duration_h: found nothing; accepted: a number above 0, up to 2000"},
         BadChange{"NotANumber", "duration_h = 2.0", "duration_h = nan", "duration_h",
@@ -104,7 +104,8 @@ INSTANTIATE_TEST_SUITE_P(
             "1980-01-06 on"},
         BadChange{"NameThatIsNoPath", "[mission]", "[mission]\nname = \"../a\"", "name",
                   "mission.name: found the text \"../a\"; accepted: a name of 1 to 64 letters, digits, '_' and '-'"},
-        BadChange{"NeitherOrbit", "[[spacecraft]]\nname = \"target\"\nrelative = { to = \"servicer\", waypoint = 0 }",
+        BadChange{"NeitherOrbit",
+                  "[[spacecraft]]\nname = \"target\"\nbody = \"tango\"\nrelative = { to = \"servicer\", waypoint = 0 }",
                   "[[spacecraft]] # bare\nname = \"target\"", "# bare",
                   "spacecraft.target: found neither elements nor relative; accepted: exactly one of them"},
         BadChange{
@@ -120,8 +121,10 @@ INSTANTIATE_TEST_SUITE_P(
                   "recorded",
                   "spacecraft.servicer.sensors.navigation.log: found nothing; accepted: the packets.lcmlog to play, as "
                   "source is recorded"},
-        BadChange{"UnknownSensor", "sensors.navigation = {}", "sensors.radar = {}", "radar",
-                  "spacecraft.servicer.sensors.radar: found an unknown key; accepted: navigation, gnss or camera"},
+        BadChange{
+            "UnknownSensor", "sensors.navigation = {}", "sensors.radar = {}", "radar",
+            "spacecraft.servicer.sensors.radar.kind: found nothing, and the sensor has the name \"radar\"; accepted: "
+            "navigation, gnss or camera"},
         BadChange{"BoardWithoutDevice", "flight_computer = {}", "flight_computer = { target = \"board\" }", "board",
                   "spacecraft.servicer.flight_computer.device: found nothing; accepted: the tty of the board, e.g. "
                   "/dev/ttyUSB0"},
@@ -137,17 +140,15 @@ INSTANTIATE_TEST_SUITE_P(
                   "compute_latency_s",
                   "guidance.compute_latency_s: found the number 0.5; accepted: at least the flight computer's "
                   "compute_latency_s, or its burns come too late"},
-        BadChange{"MaximumBelowMinimum", "[mission]",
-                  "[guidance]\nminimum_dv_mmps = 2\nmaximum_dv_mps = 0.001\n[mission]", "maximum_dv_mps",
-                  "guidance.maximum_dv_mps: found the number 0.001; accepted: more than minimum_dv_mmps"},
-        BadChange{
-            "KeyOfAnotherDistribution", "[mission]",
-            "[links.board]\nlatency = { distribution = \"exponential\", maximum_s = 1 }\n[mission]", "exponential",
-            "links.board.latency.maximum_s: found an unknown key (did you mean minimum_s?); accepted: distribution, "
-            "mean_s or minimum_s"},
+        BadChange{"MaximumBelowMinimum", "[mission]", "[guidance]\ndv_min_mmps = 2\ndv_max_mps = 0.001\n[mission]",
+                  "dv_max_mps", "guidance.dv_max_mps: found the number 0.001; accepted: more than dv_min_mmps"},
+        BadChange{"KeyOfAnotherDistribution", "[mission]",
+                  "[links.board]\nlatency = { distribution = \"exponential\", max_s = 1 }\n[mission]", "exponential",
+                  "links.board.latency.max_s: found an unknown key (did you mean min_s?); accepted: distribution, "
+                  "mean_s or min_s"},
         BadChange{"EmptyInterval", "[mission]",
-                  "[links.board]\nlatency = { distribution = \"uniform\", minimum_s = 1, maximum_s = 1 }\n[mission]",
-                  "uniform", "links.board.latency.maximum_s: found the integer 1; accepted: a number above minimum_s"},
+                  "[links.board]\nlatency = { distribution = \"uniform\", min_s = 1, max_s = 1 }\n[mission]", "uniform",
+                  "links.board.latency.max_s: found the integer 1; accepted: a number above min_s"},
         BadChange{"Probability", "[mission]", "[links.board]\nloss_probability = 1.5\n[mission]", "loss_probability",
                   "links.board.loss_probability: found the number 1.5; accepted: a number from 0 to 1"},
         BadChange{"NoLcmUrl", "[mission]", "[lcm]\nurl = \"loopback\"\n[mission]", "url",

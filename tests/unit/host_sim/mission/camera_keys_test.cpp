@@ -7,14 +7,17 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/packets/messages.h"
-#include "host_sim/mission/camera_file.h"
-#include "host_sim/mission/telecommands.h"
+#include "host_sim/sensors/camera/camera_file.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
 namespace vbar::mission::test {
 namespace {
 
+using sensors::camera_configuration_of;
+using sensors::load_camera;
+using sensors::navigation_configuration_of;
+using sensors::target_apriori_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -37,9 +40,9 @@ Mission mission_with(const std::vector<std::string>& overrides = {}) {
 
 TEST(CameraKeys, DefaultIsTheOpticalStimulator) {
   const Mission mission = mission_with();
-  const CameraSensor& camera = *mission.spacecraft[0].camera;
+  const CameraSensor& camera = sensor_of<CameraSensor>(mission);
   EXPECT_EQ(camera.camera, "optical_stimulator");
-  EXPECT_EQ(camera.target, "target");
+  EXPECT_EQ(camera.observed, "target");
   EXPECT_EQ(mission.spacecraft[0].observes(), "target");
   EXPECT_EQ(camera.period, mission.step);
   EXPECT_EQ(camera.readout, fsw::duration_of_seconds(2));
@@ -98,7 +101,7 @@ TEST(CameraKeys, EveryKeyArrives) {
                                         "camera.q_camera_body=[0, 1, 0, 0]", "camera.position_body_m=[0.1, 0.2, 0.3]",
                                         "camera.optics.f_number=2.8", "camera.detector.hot_pixels=7",
                                         "camera.target=decoy", "spacecraft.decoy.attitude.profile=inertial"});
-  const CameraSensor& camera = *mission.spacecraft[0].camera;
+  const CameraSensor& camera = sensor_of<CameraSensor>(mission);
   EXPECT_NEAR(camera.settings.focal_length_px(), 2901.0, 0.1) << "of TRON's 17 mm";
   EXPECT_EQ(camera.settings.optics.distortion[0], -0.22383);
   EXPECT_EQ(camera.period, fsw::duration_of_seconds(30));
@@ -109,7 +112,7 @@ TEST(CameraKeys, EveryKeyArrives) {
   EXPECT_EQ(camera.position_body_m, fsw::Vector3(0.1, 0.2, 0.3));
   EXPECT_EQ(camera.settings.optics.f_number, 2.8);
   EXPECT_EQ(camera.settings.detector.hot_pixels, 7);
-  EXPECT_EQ(camera.target, "decoy");
+  EXPECT_EQ(camera.observed, "decoy");
 }
 
 // Two by two of TRON's pixels: 2 x 5.86 um, a quarter of them; the corner of the detector stays where it is.
@@ -117,13 +120,13 @@ TEST(CameraKeys, BinnedPixelsAreTheCamerasPixels) {
   const Mission mission = mission_with({"camera.camera=tron", "camera.detector.binning=2", "camera.detector.bits=12",
                                         "camera.detector.offset_dn=64", "camera.detector.gain_dn_per_electron=0.03",
                                         "camera.region_px=[80, 50, 800, 500]"});
-  const twins::camera::CameraSettings& settings = mission.spacecraft[0].camera->settings;
+  const twins::camera::CameraSettings& settings = sensor_of<CameraSensor>(mission).settings;
   EXPECT_EQ(settings.detector.width, 960);
   EXPECT_EQ(settings.detector.height, 600);
   EXPECT_EQ(settings.region, (twins::camera::Region{80, 50, 800, 500}));
   EXPECT_EQ(settings.detector.gain_dn_per_electron, 0.03);
   EXPECT_EQ(settings.detector.full_well_electrons, 128000.0);
-  const vbar::camera_configuration c = camera_configuration_of(mission.spacecraft[0]);
+  const vbar::camera_configuration c = camera_configuration_of(sensor_of<CameraSensor>(mission));
   EXPECT_NEAR(c.focal_length_px[0], 17.0 / 11.72e-3, 1e-9);
   EXPECT_EQ(c.principal_point_px[0], 479.5);
   EXPECT_EQ(c.principal_point_px[1], 299.5);
@@ -135,7 +138,7 @@ TEST(CameraKeys, BinnedPixelsAreTheCamerasPixels) {
 
 TEST(CameraKeys, BinningTakesGainAndRegionOfTheCameraFileAlong) {
   const auto settings =
-      mission_with({"camera.camera=tron", "camera.detector.binning=4"}).spacecraft[0].camera->settings;
+      sensor_of<CameraSensor>(mission_with({"camera.camera=tron", "camera.detector.binning=4"})).settings;
   EXPECT_EQ(settings.region, (twins::camera::Region{165, 75, 150, 150}));
   EXPECT_DOUBLE_EQ(settings.detector.gain_dn_per_electron, 0.0078 / 16.0);
   EXPECT_DOUBLE_EQ(settings.optics.principal_point_px[0], 239.5);
@@ -148,7 +151,9 @@ TEST(CameraKeys, ADecoyHasItsOwnElements) {
 }
 
 TEST(CameraKeys, AnglesOnlyDefaultsAndUnits) {
-  const AnglesOnly navigation = mission_with().angles_only;
+  const Mission mission = mission_with();
+  const auto& shared = shared_settings<CameraShared>(mission);
+  const vbar::angles_only_configuration& navigation = shared.angles_only;
   EXPECT_EQ(navigation.detection_sigmas, 5.0);
   EXPECT_EQ(navigation.centroid_floor_px, 0.05);
   EXPECT_DOUBLE_EQ(navigation.pointing_tolerance, 600.0 / 3600.0 * kDegree);
@@ -159,12 +164,12 @@ TEST(CameraKeys, AnglesOnlyDefaultsAndUnits) {
   EXPECT_DOUBLE_EQ(navigation.maneuver_sigma, 2e-6);
   EXPECT_DOUBLE_EQ(navigation.maneuver_sigma_relative, 2e-3);
   EXPECT_EQ(navigation.batch_images, 30);
-  EXPECT_THAT(navigation.apriori_sigma_a_roe_m, ElementsAre(30, 1000, 200, 200, 200, 200));
+  EXPECT_THAT(shared.angles_only_apriori_sigma_a_roe_m, ElementsAre(30, 1000, 200, 200, 200, 200));
 }
 
 TEST(CameraTelecommands, CameraIsAsCalibrated) {
   const Mission mission = mission_with({"camera.q_camera_body=[0.6, 0.8, 0, 0]"});
-  const vbar::camera_configuration c = camera_configuration_of(mission.spacecraft[0]);
+  const vbar::camera_configuration c = camera_configuration_of(sensor_of<CameraSensor>(mission));
   EXPECT_EQ(c.width, 500);
   EXPECT_EQ(c.height, 800);
   EXPECT_EQ(c.origin_x, 710);
@@ -181,7 +186,8 @@ TEST(CameraTelecommands, CameraIsAsCalibrated) {
 }
 
 TEST(CameraTelecommands, NavigationIsByCameraWithoutAPartner) {
-  const auto orientation = truth::EarthOrientationSeries::load(vbar::tests::source_path("data/earth/eop_2009_2013.csv"));
+  const auto orientation =
+      truth::EarthOrientationSeries::load(vbar::tests::source_path("data/earth/eop_2009_2013.csv"));
   const Mission mission = mission_with({"gnss.body_frame.antenna_in_body_m=[0, -0.3, 0]"});
   const auto c = navigation_configuration_of(mission, mission.spacecraft[0], orientation);
   EXPECT_EQ(c.source, 2);
@@ -233,8 +239,8 @@ TEST(CameraTelecommands, AprioriErrsByItsSigmas) {
 TEST(CameraTelecommands, ArePackets) {
   const Mission mission = mission_with();
   std::array<std::uint8_t, fsw::packets::kMaxPacketBytes> buffer{};
-  EXPECT_TRUE(fsw::packets::encode({}, camera_configuration_of(mission.spacecraft[0]), buffer).ok());
-  EXPECT_TRUE(fsw::packets::encode({}, angles_only_configuration_of(mission), buffer).ok());
+  EXPECT_TRUE(fsw::packets::encode({}, camera_configuration_of(sensor_of<CameraSensor>(mission)), buffer).ok());
+  EXPECT_TRUE(fsw::packets::encode({}, shared_settings<CameraShared>(mission).angles_only, buffer).ok());
 }
 
 struct BadOverride {
@@ -256,12 +262,13 @@ TEST_P(BadCameraMission, EndsWithOneMessage) {
 INSTANTIATE_TEST_SUITE_P(
     OneValue, BadCameraMission,
     testing::Values(
-        BadOverride{
-            "UnknownSource", {"camera.source=tron"}, "camera.source: found the text \"tron\"; accepted: digital"},
+        BadOverride{"UnknownSource",
+                    {"camera.source=tron"},
+                    "camera.source: found the text \"tron\"; accepted: digital or recorded"},
         BadOverride{"UnknownCamera",
                     {"camera.camera=optical_simulator"},
                     "camera.camera: found the text \"optical_simulator\" (did you mean optical_stimulator?); accepted: "
-                    "optical_stimulator or tron"},
+                    "optical_stimulator or tron, or the path of a camera file (./...)"},
         BadOverride{
             "UnknownKey", {"camera.optics.fnumber=2"}, "optics.fnumber: found an unknown key (did you mean f_number?)"},
         BadOverride{"RegionOffTheDetector",
@@ -297,23 +304,27 @@ INSTANTIATE_TEST_SUITE_P(
                     {"camera.target=decoy"},
                     "camera.target: found the spacecraft \"decoy\" without an attitude; accepted: a spacecraft with a "
                     "model and an attitude"},
-        BadOverride{"PartnerBesideACamera",
-                    {"gnss.partner=target"},
-                    "gnss.partner: found the text \"target\"; accepted: nothing, beside a camera"},
+        BadOverride{
+            "PartnerBesideACamera",
+            {"gnss.partner=target"},
+            "camera: found a camera beside a GNSS receiver with the partner \"target\"; accepted: a GNSS receiver "
+            "without a partner"},
         BadOverride{
             "NoAttitude", {"spacecraft.servicer.attitude.profile=none"}, "camera: found a camera without an attitude"},
         BadOverride{"PsdOutsideItsLimits",
-                    {"angles_only.acceleration_psd=1e-10"},
-                    "angles_only.acceleration_psd: found a start outside its limits"},
-        BadOverride{"NoBatch", {"angles_only.batch_images=2"}, "angles_only.batch_images: found the integer 2"},
+                    {"navigation.angles_only.acceleration_psd=1e-10"},
+                    "navigation.angles_only.acceleration_psd: found an initial value outside its limits"},
+        BadOverride{"NoBatch",
+                    {"navigation.angles_only.batch_images=2"},
+                    "navigation.angles_only.batch_images: found the integer 2"},
         BadOverride{"AprioriWithoutError",
-                    {"angles_only.apriori.sigma_a_da_m=0"},
-                    "angles_only.apriori.sigma_a_da_m: found the integer 0; accepted: a number above 0"}),
+                    {"navigation.angles_only.apriori.sigma_a_da_m=0"},
+                    "navigation.angles_only.apriori.sigma_a_da_m: found the integer 0; accepted: a number above 0"}),
     [](const auto& test) { return std::string(test.param.label); });
 
 TEST(BadCameraMission, SensorsThatDoNotGoTogether) {
   EXPECT_THAT(message_of(changed(camera_mission(), "sensors.gnss = {}\n", "")),
-              HasSubstr("sensors.camera: found a camera without sensors.gnss; accepted: a GNSS receiver too"));
+              HasSubstr("sensors.camera: found a camera without a GNSS receiver; accepted: a GNSS receiver too"));
   EXPECT_THAT(message_of(changed(camera_mission(), "flight_computer = {}\n", "")),
               HasSubstr("sensors.camera: found a camera without a flight computer"));
   EXPECT_THAT(message_of(changed(camera_mission(), ", a_roe_m = [1", ", waypoint = 0, a_roe_m = [1")),
@@ -331,7 +342,7 @@ TEST(CommandedProfile, KeysAndDefaults) {
   const auto told = std::get<Commanded>(*mission_with({"spacecraft.servicer.attitude.control_error_arcsec=12",
                                                        "spacecraft.servicer.attitude.initial_boresight_rtn=[0, 1, 0]",
                                                        "spacecraft.servicer.attitude.boresight_body=[1, 0, 0]",
-                                                       "spacecraft.servicer.attitude.second_body=[0, 0, 1]"})
+                                                       "spacecraft.servicer.attitude.secondary_axis_body=[0, 0, 1]"})
                                              .spacecraft[0]
                                              .attitude);
   EXPECT_DOUBLE_EQ(told.control_error, 12.0 / 3600.0 * kDegree);
@@ -339,8 +350,8 @@ TEST(CommandedProfile, KeysAndDefaults) {
   EXPECT_EQ(told.axes.boresight_body, fsw::Vector3(1, 0, 0));
   EXPECT_THAT(message_of(camera_mission(), {"spacecraft.servicer.attitude.initial_boresight_rtn=[1, 0, 0]"}),
               HasSubstr("initial_boresight_rtn: found a boresight at the zenith or the nadir, or none"));
-  EXPECT_THAT(message_of(camera_mission(), {"spacecraft.servicer.attitude.second_body=[0, 0, 1]"}),
-              HasSubstr("second_body: found an axis along the other one"));
+  EXPECT_THAT(message_of(camera_mission(), {"spacecraft.servicer.attitude.secondary_axis_body=[0, 0, 1]"}),
+              HasSubstr("secondary_axis_body: found an axis along the other one"));
 }
 
 // Root mean square over a day within 10 % of sigma (cross terms of nearby periods), zero mean, periods as told.

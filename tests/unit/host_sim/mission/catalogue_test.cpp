@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "host_sim/sensors/sensor_kinds.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
@@ -27,7 +28,7 @@ TEST_F(Catalogue, ListsGoodAndBadMissionsInOrder) {
   write("b.toml", kSmallMission);
   write("a.toml", "[mission]\nduration_h = true\n");
   write("notes.txt", "not a mission");
-  const auto entries = list_missions(folder_);
+  const auto entries = list_missions(folder_, sensors::installation());
   ASSERT_EQ(entries.size(), 2U);
   EXPECT_FALSE(entries[0].good);
   EXPECT_EQ(line_of(entries[0], 4), "a     cannot be run: " + (folder_ / "a.toml").string() +
@@ -37,12 +38,12 @@ TEST_F(Catalogue, ListsGoodAndBadMissionsInOrder) {
 }
 
 TEST_F(Catalogue, MissingFolderIsAnError) {
-  EXPECT_THROW(static_cast<void>(list_missions(folder_ / "none")), MissionError);
+  EXPECT_THROW(static_cast<void>(list_missions(folder_ / "none", sensors::installation())), MissionError);
 }
 
 // Every mission that the project ships can be run.
 TEST(ShippedMissions, AllLoad) {
-  const auto entries = list_missions(vbar::tests::source_path("missions"));
+  const auto entries = list_missions(vbar::tests::source_path("missions"), sensors::installation());
   ASSERT_FALSE(entries.empty());
   for (const auto& entry : entries) EXPECT_TRUE(entry.good) << entry.description;
 }

@@ -146,10 +146,10 @@ TEST(Experiment1Mission, DecoysAreInTheFieldAndCrossIt) {
 TEST(Experiment1Mission, FliesACommandedCameraWithItsOwnGnss) {
   const Mission mission = load_mission(kFile);
   const Spacecraft& servicer = *mission.find_spacecraft("servicer");
-  EXPECT_TRUE(servicer.camera.has_value());
+  EXPECT_NE(find_settings<CameraSensor>(servicer), nullptr);
   EXPECT_TRUE(std::holds_alternative<Commanded>(*servicer.attitude));
-  EXPECT_TRUE(servicer.gnss->partner.empty());
-  EXPECT_EQ(servicer.gnss->receiver.body_frame.boresight_in_body, Vector3(0, -1, 0)) << "up";
+  EXPECT_TRUE(sensor_of<GnssSensor>(mission).observed.empty());
+  EXPECT_EQ(sensor_of<GnssSensor>(mission).receiver.body_frame.boresight_in_body, Vector3(0, -1, 0)) << "up";
   for (const Spacecraft& other : mission.spacecraft) {
     if (&other == &servicer) continue;
     EXPECT_EQ(other.model, "tango");
@@ -160,39 +160,20 @@ TEST(Experiment1Mission, FliesACommandedCameraWithItsOwnGnss) {
   }
 }
 
-/// The keys that a table accepts, as the message about an unknown one lists them.
-std::vector<std::string> accepted_keys(const std::string& table) {
-  std::string message;
-  try {
-    static_cast<void>(load_mission(kFile, std::vector<std::string>{table + ".xyzzy=1"}));
-  } catch (const MissionError& error) {
-    message = error.what();
-  }
-  const std::string before = "accepted: ";
-  const std::size_t start = message.find(before);
-  EXPECT_NE(start, std::string::npos) << table << ": " << message;
-  if (start == std::string::npos) return {};
-  std::string list = message.substr(start + before.size());  // "a, b or c"
-  std::replace(list.begin(), list.end(), ',', ' ');
-  std::istringstream words(list);
-  std::vector<std::string> keys;
-  for (std::string word; words >> word;)
-    if (word != "or") keys.push_back(word);
-  return keys;
-}
-
-std::string text_of_file(const char* file) {
+std::string text_of_file(const std::string& file) {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   return text.str();
 }
 
 TEST(Experiment1Mission, EveryKeyIsExplained) {
-  const std::string text = text_of_file(kFile) + text_of_file(vbar::tests::source_path("data/cameras/optical_stimulator.toml"));
+  const auto accepted = accepted_keys(kFile, {}, sensors::installation());
+  const std::string text =
+      text_of_file(kFile) + text_of_file(vbar::tests::source_path("data/cameras/optical_stimulator.toml"));
   for (const char* table : {"spacecraft.servicer.sensors.camera", "spacecraft.servicer.sensors.camera.optics",
                             "spacecraft.servicer.sensors.camera.detector", "spacecraft.servicer.attitude",
-                            "angles_only", "angles_only.apriori"}) {
-    const std::vector<std::string> keys = accepted_keys(table);
+                            "navigation.angles_only", "navigation.angles_only.apriori"}) {
+    const std::vector<std::string>& keys = accepted.at(table);
     EXPECT_GE(keys.size(), 4U) << table;
     for (const std::string& key : keys) {
       const bool is_shown = text.find("\n" + key + " = ") != std::string::npos ||
@@ -204,10 +185,14 @@ TEST(Experiment1Mission, EveryKeyIsExplained) {
 }
 
 TEST(Experiment1Mission, ShowsTheDefaults) {
-  AnglesOnly shown = load_mission(kFile).angles_only;
+  const Mission mission = load_mission(kFile), bare = small_mission();
+  const auto& defaults = shared_settings<CameraShared>(bare);
+  vbar::angles_only_configuration shown = shared_settings<CameraShared>(mission).angles_only;
   EXPECT_EQ(shown.maneuver_sigma_relative, 1e-3);  // the file says that this one is not
-  shown.maneuver_sigma_relative = small_mission().angles_only.maneuver_sigma_relative;
-  EXPECT_TRUE(shown == small_mission().angles_only);
+  shown.maneuver_sigma_relative = defaults.angles_only.maneuver_sigma_relative;
+  EXPECT_EQ(packet_of(shown), packet_of(defaults.angles_only));
+  EXPECT_EQ(shared_settings<CameraShared>(mission).angles_only_apriori_sigma_a_roe_m,
+            defaults.angles_only_apriori_sigma_a_roe_m);
 }
 
 // ------------------------------------------------------------------------------------------------------------- extends
@@ -271,7 +256,8 @@ TEST_F(Extends, TheWholeStandsAlone) {
   EXPECT_EQ(whole.guidance.reference_semi_major_axis_m, original.guidance.reference_semi_major_axis_m);
   ASSERT_EQ(whole.waypoints.size(), 8U);
   for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(whole.waypoints[k].a_roe_m, original.waypoints[k].a_roe_m);
-  EXPECT_TRUE(whole.angles_only == original.angles_only);
+  EXPECT_EQ(packet_of(shared_settings<CameraShared>(whole).angles_only),
+            packet_of(shared_settings<CameraShared>(original).angles_only));
   EXPECT_EQ(whole.spacecraft.size(), original.spacecraft.size());
 }
 

@@ -66,8 +66,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "attitude: antennas point somewhere"},
         BadChange{"TwoWaysToNavigate", "sensors.gnss = { partner", "sensors.navigation = {}\nsensors.gnss = { partner",
                   "partner",
-                  "spacecraft.servicer.sensors.gnss: found a second way to navigate; accepted: navigation or gnss, not "
-                  "both"},
+                  "spacecraft.servicer.sensors.gnss: found a second way to navigate; accepted: a sensor of kind "
+                  "navigation or gnss, not both"},
         BadChange{"BurnBeforeTheStart", "[mission]", "[[burn]]\ntime_h = 0.5\n[mission]\nstart_h = 1.0", "time_h",
                   "burn.0.time_h: found the number 0.5; accepted: a time of the run"},
         BadChange{"BurnAfterTheEnd", "[mission]", "[[burn]]\ntime_h = 2.5\n[mission]", "time_h",
@@ -119,8 +119,8 @@ std::vector<BadValue> bad_values() {
   };
   constexpr Number kNumbers[] = {
       {"period_s", "from 0.1 to 60"},
-      {"ephemeris_repeat_s", "from 1 to 100000"},
-      {"corrections_repeat_s", "from 1 to 100000"},
+      {"ephemeris_period_s", "from 1 to 100000"},
+      {"corrections_period_s", "from 1 to 100000"},
       {"visibility.transmit_aperture_deg", "above 0, up to 360"},
       {"visibility.receiver_mask_deg", "above 0, up to 360"},
       {"visibility.horizon_mask_deg", "from -90 to 90"},
@@ -137,19 +137,18 @@ std::vector<BadValue> bad_values() {
       {"tracking.acquisition_threshold_dbhz", "from 0 to 60"},
       {"tracking.loss_threshold_dbhz", "from 0 to 60"},
       {"tracking.cycle_slips_per_hour", "from 0 to 10000"},
-      {"tracking.unseen_slip_fraction", "from 0 to 1"},
+      {"tracking.undetected_slip_fraction", "from 0 to 1"},
       {"tracking.code_bias_sigma_m", "from 0 to 100"},
-      {"start.cold_search_least_s", "from 0 to 3600"},
-      {"start.cold_search_most_s", "from 0 to 3600"},
-      {"start.reacquisition_least_s", "from 0 to 3600"},
-      {"start.reacquisition_most_s", "from 0 to 3600"},
+      {"start.cold_search_min_s", "from 0 to 3600"},
+      {"start.cold_search_max_s", "from 0 to 3600"},
+      {"start.reacquisition_min_s", "from 0 to 3600"},
+      {"start.reacquisition_max_s", "from 0 to 3600"},
       {"start.ephemeris_decoding_s", "from 0 to 3600"},
       {"clock.initial_offset_ms", "from 0 to 1000"},
       {"clock.initial_drift_sigma_ns_per_s", "from 0 to 100000"},
       {"clock.h0_s", "from 0 to 1e-15"},
       {"clock.h_minus2_per_s", "from 0 to 1e-15"},
       {"clock.jump_threshold_ms", "from 0.5 to 1000000"},
-      {"body_frame.mass_sigma_kg", "from 0 to 1000"},
       {"body_frame.com_radius_mm", "from 0 to 1000"},
       {"body_frame.pco_bias_mm", "from 0 to 1000"},
       {"body_frame.pco_noise_mm", "from 0 to 1000"},
@@ -157,21 +156,22 @@ std::vector<BadValue> bad_values() {
       {"body_frame.attitude_knowledge_arcsec", "from 0 to 100000"},
   };
   constexpr Number kElsewhere[] = {
-      {"gnss_navigation.min_success_rate", "from 0.5 to 1"},
-      {"gnss_navigation.min_ratio", "from 1 to 1000"},
-      {"gnss_navigation.pair_wait_s", "from 0.1 to 600"},
-      {"gnss_navigation.antenna_offset_sigma_mm", "above 0, up to 1000"},
-      {"gnss_navigation.phase_centre_jitter_mm", "above 0, up to 100"},
-      {"gnss_navigation.code_bias_sigma_m", "above 0, up to 100"},
-      {"gnss_navigation.start_velocity_sigma_mps", "above 0, up to 100"},
-      {"gnss_navigation.acceleration_sigma_nmps2", "above 0, up to 1000000"},
-      {"gnss_navigation.acceleration_time_s", "above 0, up to 1000000"},
-      {"gnss_navigation.maneuver_sigma_mmps", "above 0, up to 1000"},
-      {"gnss_navigation.maneuver_sigma_percent", "from 0 to 100"},
+      {"navigation.carrier_phase.success_rate_min", "from 0.5 to 1"},
+      {"navigation.carrier_phase.ratio_min", "from 1 to 1000"},
+      {"navigation.carrier_phase.pair_timeout_s", "from 0.1 to 600"},
+      {"navigation.carrier_phase.antenna_offset_sigma_mm", "above 0, up to 1000"},
+      {"navigation.carrier_phase.phase_centre_jitter_mm", "above 0, up to 100"},
+      {"navigation.carrier_phase.code_bias_sigma_m", "above 0, up to 100"},
+      {"navigation.carrier_phase.initial_velocity_sigma_mps", "above 0, up to 100"},
+      {"navigation.carrier_phase.acceleration_sigma_nmps2", "above 0, up to 1000000"},
+      {"navigation.carrier_phase.acceleration_correlation_time_s", "above 0, up to 1000000"},
+      {"navigation.carrier_phase.maneuver_sigma_mmps", "above 0, up to 1000"},
+      {"navigation.carrier_phase.maneuver_sigma_percent", "from 0 to 100"},
       {"constellation.orbit_error_radial_m", "from 0 to 10000"},
       {"constellation.orbit_error_transverse_m", "from 0 to 10000"},
       {"constellation.orbit_error_normal_m", "from 0 to 10000"},
       {"constellation.clock_error_ns", "from 0 to 10000"},
+      {"spacecraft.servicer.mass_sigma_kg", "from 0 to 1000"},
       {"links.crosslink.silence_duration_s", "from 0 to 10000000"},
   };
   std::vector<BadValue> all;
@@ -199,13 +199,13 @@ TEST(BadGnssValue, EndsWithOneMessageThatNamesItsRange) {
 TEST(BadGnssValue, WordsThatAreNone) {
   const std::string sensor(kSensor);
   const BadValue words[] = {
-      {sensor + ".source", "testbed", "the text \"testbed\"", "digital"},
+      {sensor + ".source", "testbed", "the text \"testbed\"", "digital or recorded"},
       {sensor + ".gps_ephemeris", "rawephemb", "the text \"rawephemb\" (did you mean rawephem?)",
        "rawephem or gpsephem"},
       {sensor + ".start.mode", "lukewarm", "the text \"lukewarm\"", "cold, warm or hot"},
       {sensor + ".ionosphere", "1", "the integer 1", "true or false"},
       {sensor + ".tracking.thermal_noise", "2", "the integer 2", "true or false"},
-      {"gnss_navigation.resolve_ambiguities", "3", "the integer 3", "true or false"},
+      {"navigation.carrier_phase.resolve_ambiguities", "3", "the integer 3", "true or false"},
   };
   for (const BadValue& bad : words) {
     const std::string message = message_of(gnss_mission(), {bad.key + "=" + bad.value});
@@ -215,26 +215,27 @@ TEST(BadGnssValue, WordsThatAreNone) {
 }
 
 TEST(GnssKeys, GoodOnesArriveInSiUnits) {
-  const std::string text =
-      changed(gnss_mission(), "[mission]",
-              "[[burn]]\ntime_h = 0.5\ndv_rtn_mmps = [1, -2, 3]\n[gnss_navigation]\nantenna_offset_sigma_mm = 4\n"
-              "acceleration_sigma_nmps2 = 20\nmaneuver_sigma_mmps = 0.5\nmaneuver_sigma_percent = 3\npair_wait_s = 7\n"
-              "[links.crosslink]\nsilence_begin_s = 100\nsilence_duration_s = 600\n[mission]");
+  const std::string text = changed(
+      gnss_mission(), "[mission]",
+      "[[burn]]\ntime_h = 0.5\ndv_rtn_mmps = [1, -2, 3]\n[navigation.carrier_phase]\nantenna_offset_sigma_mm = 4\n"
+      "acceleration_sigma_nmps2 = 20\nmaneuver_sigma_mmps = 0.5\nmaneuver_sigma_percent = 3\npair_timeout_s = 7\n"
+      "[links.crosslink]\nsilence_begin_s = 100\nsilence_duration_s = 600\n[mission]");
   const Mission mission = parse_mission(text, "m.toml");
-  EXPECT_EQ(mission.find_spacecraft("servicer")->gnss->partner, "target");
-  EXPECT_EQ(mission.find_spacecraft("target")->gnss->receiver.output.period_s, 5.0);
+  EXPECT_EQ(sensor_of<GnssSensor>(mission).observed, "target");
+  EXPECT_EQ(sensor_of<GnssSensor>(mission, "target").receiver.output.period_s, 5.0);
   ASSERT_EQ(mission.burns.size(), 1U);
   EXPECT_EQ((mission.burns[0].time - mission.epoch).ns, std::int64_t{1800} * 1000000000);
   EXPECT_DOUBLE_EQ(mission.burns[0].dv_rtn.x(), 0.001);
   EXPECT_DOUBLE_EQ(mission.burns[0].dv_rtn.y(), -0.002);
   EXPECT_DOUBLE_EQ(mission.burns[0].dv_rtn.z(), 0.003);
-  EXPECT_DOUBLE_EQ(mission.gnss_navigation.antenna_offset_sigma_m, 0.004);
-  EXPECT_DOUBLE_EQ(mission.gnss_navigation.acceleration_sigma, 2e-8);
-  EXPECT_DOUBLE_EQ(mission.gnss_navigation.maneuver_sigma, 5e-4);
-  EXPECT_DOUBLE_EQ(mission.gnss_navigation.maneuver_sigma_relative, 0.03);
-  EXPECT_EQ(mission.gnss_navigation.pair_wait.ns, std::int64_t{7} * 1000000000);
-  EXPECT_EQ(mission.crosslink.silence_begin_s, 100.0);
-  EXPECT_EQ(mission.crosslink.silence_duration_s, 600.0);
+  const auto& shared = shared_settings<GnssShared>(mission);
+  EXPECT_DOUBLE_EQ(shared.navigation.antenna_offset_sigma_m, 0.004);
+  EXPECT_DOUBLE_EQ(shared.navigation.acceleration_sigma, 2e-8);
+  EXPECT_DOUBLE_EQ(shared.navigation.maneuver_sigma, 5e-4);
+  EXPECT_DOUBLE_EQ(shared.navigation.maneuver_sigma_relative, 0.03);
+  EXPECT_EQ(shared.navigation.pair_wait_ns, std::int64_t{7} * 1000000000);
+  EXPECT_EQ(shared.crosslink.silence_begin_s, 100.0);
+  EXPECT_EQ(shared.crosslink.silence_duration_s, 600.0);
 }
 
 }  // namespace

@@ -6,7 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "host_sim/mission/load.h"
+#include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/sensors/ideal_navigation/ideal_navigation_kind.h"
+#include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::mission::test {
 
@@ -28,6 +31,7 @@ raan_deg = -90.0
 mean_argument_of_latitude_deg = -0.69
 [[spacecraft]]
 name = "target"
+body = "tango"
 relative = { to = "servicer", waypoint = 0 }
 [[waypoint]]
 index = 0
@@ -38,6 +42,14 @@ index = 1
 time_h = 2.0
 a_roe_m = [0, -600, 0, 18, 0, 18]
 )";
+
+using sensors::CameraSensor;
+using sensors::CameraShared;
+using sensors::GnssSensor;
+using sensors::GnssShared;
+using sensors::load_mission;
+using sensors::NavigationSensor;
+using sensors::parse_mission;
 
 /// The text with the one occurrence of `what` replaced.
 inline std::string changed(std::string text, std::string_view what, std::string_view by) {
@@ -60,6 +72,20 @@ inline std::string message_of(const std::string& text, const std::vector<std::st
     return error.what();
   }
   return {};
+}
+
+/// The settings of the first sensor of a kind.
+template <class Settings>
+const Settings& sensor_of(const Mission& mission, std::string_view spacecraft = "servicer") {
+  return *find_settings<Settings>(*mission.find_spacecraft(spacecraft));
+}
+
+/// A message as a packet: all of its bytes.
+template <class Message>
+std::vector<twins::Packet> packet_of(const Message& message) {
+  sensors::Telecommands telecommands(fsw::GpsTime{}, 1);
+  telecommands.add(message);
+  return telecommands.packets();
 }
 
 /// Line, counted from 1, on which `what` stands in `text`.

@@ -42,14 +42,17 @@ TEST(Overrides, FlightComputerAloneIsTheServicers) {
   }
 }
 
-// camera and gnss are the servicer's sensors of these names.
-TEST(Overrides, CameraAndGnssAloneAreTheServicersSensors) {
-  EXPECT_EQ(message_of(kSmall, {"camera.source=seance"}),
-            "--set camera.source=seance: spacecraft.servicer.sensors.camera.source: found the text \"seance\"; "
-            "accepted: digital");
-  EXPECT_EQ(message_of(kSmall, {"gnss.source=seance"}),
-            "--set gnss.source=seance: spacecraft.servicer.sensors.gnss.source: found the text \"seance\"; accepted: "
-            "digital");
+// The name of a sensor that the servicer has stands for that sensor.
+TEST(Overrides, TheNameOfASensorAloneIsTheServicers) {
+  const std::string text = changed(kSmall, "sensors.navigation = {}", "sensors.states = { kind = \"navigation\" }");
+  EXPECT_EQ(message_of(text, {"states.source=seance"}),
+            "--set states.source=seance: spacecraft.servicer.sensors.states.source: found the text \"seance\"; "
+            "accepted: ideal or recorded");
+  EXPECT_EQ(
+      sensor_of<NavigationSensor>(parse_mission(text, "m.toml", std::vector<std::string>{"states.period_s=7"})).period,
+      fsw::duration_of_seconds(7));
+  EXPECT_EQ(message_of(text, {"camera.period_s=7"}).substr(0, 56),
+            "--set camera.period_s=7: camera: found an unknown key; a");
 }
 
 TEST(Overrides, TextNeedsNoQuotesButMayHaveThem) {
@@ -62,9 +65,8 @@ TEST(Overrides, TextNeedsNoQuotesButMayHaveThem) {
 }
 
 TEST(Overrides, WholeTablesAndArraysAreValuesToo) {
-  const Mission mission =
-      small_mission({"waypoint.1.a_roe_m=[1, 2, 3, 4, 5, 6]",
-                     "links.board.latency={distribution=\"uniform\", minimum_s=0.1, maximum_s=0.2}"});
+  const Mission mission = small_mission({"waypoint.1.a_roe_m=[1, 2, 3, 4, 5, 6]",
+                                         "links.board.latency={distribution=\"uniform\", min_s=0.1, max_s=0.2}"});
   EXPECT_EQ(mission.find_waypoint(1)->a_roe_m(5), 6.0);
   EXPECT_EQ(mission.board_link.latency.kind, engine::LatencyKind::kUniform);
 }
@@ -87,8 +89,8 @@ TEST(Overrides, AreCheckedLikeTheFileAndNamedInTheMessage) {
        "mission.sed: found an unknown key (did you mean seed?); accepted: name, description, epoch_utc, start_h, "
        "duration_h, step_s or seed"},
       {"clok.mode=real_time",
-       "clok: found an unknown key (did you mean clock?); accepted: mission, truth, spacecraft, guidance, "
-       "gnss_navigation, angles_only, pose, waypoint, burn, constellation, clock, links, lcm or record"},
+       "clok: found an unknown key (did you mean clock?); accepted: mission, truth, testbed, waypoint, "
+       "spacecraft, guidance, navigation, burn, clock, links, lcm, record or constellation"},
       {"waypoint.1.time_h=0",
        "waypoint.1.time_h: found the integer 0; accepted: a time after that of waypoint 0, which stands before it"},
       {"flight_computer.target=board",

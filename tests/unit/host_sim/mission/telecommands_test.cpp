@@ -24,13 +24,13 @@ TEST(Telecommands, WaypointTableCarriesTheMissionsWaypoints) {
 
 TEST(Telecommands, ConfigurationIsInTheUnitsOfThePacketContract) {
   const Mission mission = small_mission(
-      {"mission.start_h=1", "guidance.planner_delay_s=1200", "guidance.minimum_dv_mmps=0.25",
-       "guidance.maximum_dv_mps=3", "guidance.compute_latency_s=1.5", "guidance.closed_form_period_s=301",
-       "guidance.koenig_damico_period_s=61", "guidance.koenig_damico_grid_s=31", "guidance.roe_error_threshold_m=0.4",
-       "guidance.keep_out_radius_m=0.6", "guidance.safety_horizon_s=6001", "guidance.station_keeping_deadband_m=0.7",
+      {"mission.start_h=1", "guidance.planner_delay_s=1200", "guidance.dv_min_mmps=0.25", "guidance.dv_max_mps=3",
+       "guidance.compute_latency_s=1.5", "guidance.closed_form_period_s=301", "guidance.koenig_damico_period_s=61",
+       "guidance.koenig_damico_grid_s=31", "guidance.roe_error_threshold_m=0.4", "guidance.keep_out_radius_m=0.6",
+       "guidance.safety_horizon_s=6001", "guidance.station_keeping_deadband_m=0.7",
        "guidance.closed_form_tolerance_m=0.8", "guidance.koenig_damico_tolerance_m=0.009",
        "guidance.station_keeping_horizon_s=6003", "guidance.navigation_timeout_s=602"});
-  const vbar::gnc_configuration configuration = gnc_configuration_of(mission);
+  const vbar::gnc_configuration configuration = mission.guidance.configuration;
   constexpr std::int64_t kSecond = 1000000000;
   EXPECT_EQ(configuration.compute_latency_ns, 3 * kSecond / 2);
   EXPECT_EQ(configuration.closed_form_period_ns, 301 * kSecond);
@@ -58,7 +58,7 @@ TEST(Telecommands, ArePackets) {
   const Mission mission = small_mission();
   std::array<std::uint8_t, fsw::packets::kMaxPacketBytes> buffer{};
   EXPECT_TRUE(fsw::packets::encode({}, waypoint_table_of(mission), buffer).ok());
-  EXPECT_TRUE(fsw::packets::encode({}, gnc_configuration_of(mission), buffer).ok());
+  EXPECT_TRUE(fsw::packets::encode({}, mission.guidance.configuration, buffer).ok());
   EXPECT_TRUE(fsw::packets::encode({}, mode_command_of(mission), buffer).ok());
 }
 

@@ -24,7 +24,7 @@ GnssReceiverSettings quiet() {
   settings.tracking.thermal_noise = false;
   settings.tracking.cycle_slips_per_hour = 0.0;
   settings.start.mode = StartMode::kHot;
-  settings.start.reacquisition_least_s = settings.start.reacquisition_most_s = 0.0;
+  settings.start.reacquisition_min_s = settings.start.reacquisition_max_s = 0.0;
   return settings;
 }
 

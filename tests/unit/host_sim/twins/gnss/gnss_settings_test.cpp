@@ -37,7 +37,6 @@ TEST(GnssSettings, DefaultsAreThePapers) {
   EXPECT_EQ(settings.visibility.receiver_mask_deg, 190.0);
   EXPECT_EQ(settings.visibility.horizon_mask_deg, -20.0);
   EXPECT_EQ(settings.link_budget.lna_gain_db, 33.0);
-  EXPECT_EQ(settings.body_frame.mass_sigma_kg, 0.04);
   EXPECT_EQ(settings.body_frame.com_radius_mm, 3.0);
   EXPECT_EQ(settings.body_frame.pco_bias_mm, 5.0);
   EXPECT_EQ(settings.body_frame.pco_noise_mm, 1.0);
@@ -57,10 +56,10 @@ TEST(GnssSettings, RefusesWithOneClearError) {
             "integration_s = 0: accepted is 0.001 to 1");
   EXPECT_EQ(refusal_after([](Settings& s) { s.tracking.loss_threshold_dbhz = 35.0; }),
             "loss_threshold_dbhz = 35 is above acquisition_threshold_dbhz = 33");
-  EXPECT_EQ(refusal_after([](Settings& s) { s.tracking.unseen_slip_fraction = 2.0; }),
-            "unseen_slip_fraction = 2: accepted is 0 to 1");
-  EXPECT_EQ(refusal_after([](Settings& s) { s.start.cold_search_least_s = 100.0; }),
-            "cold_search_least_s = 100 is above cold_search_most_s = 60");
+  EXPECT_EQ(refusal_after([](Settings& s) { s.tracking.undetected_slip_fraction = 2.0; }),
+            "undetected_slip_fraction = 2: accepted is 0 to 1");
+  EXPECT_EQ(refusal_after([](Settings& s) { s.start.cold_search_min_s = 100.0; }),
+            "cold_search_min_s = 100 is above cold_search_max_s = 60");
   EXPECT_EQ(refusal_after([](Settings& s) { s.clock.jump_threshold_ms = 0.1; }),
             "jump_threshold_ms = 0.1: accepted is 0.5 to 100");
   EXPECT_EQ(refusal_after([](Settings& s) { s.body_frame.boresight_in_body.setZero(); }),

@@ -94,7 +94,7 @@ TEST(Tracking, SlipsOnCommand) {
 TEST(Tracking, SlipsAtItsRate) {
   TrackingSettings settings;
   settings.cycle_slips_per_hour = 100.0;
-  settings.unseen_slip_fraction = 0.25;
+  settings.undetected_slip_fraction = 0.25;
   SatelliteTracking tracking(kG05, {}, settings, 1, "test");
   int unseen = 0;
   int slips = 0;

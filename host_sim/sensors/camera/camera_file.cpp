@@ -1,4 +1,4 @@
-#include "host_sim/mission/camera_file.h"
+#include "host_sim/sensors/camera/camera_file.h"
 
 #include <algorithm>
 #include <vector>
@@ -7,8 +7,13 @@
 #include "host_sim/mission/toml_file.h"
 #include "host_sim/twins/camera/binning.h"
 
-namespace vbar::mission {
+namespace vbar::sensors {
 namespace {
+
+using mission::above_to;
+using mission::from_to;
+using mission::Range;
+using mission::TableReader;
 
 using twins::camera::CameraSettings;
 using twins::camera::DetectorSettings;
@@ -31,9 +36,6 @@ void read(const TableReader& section, std::string_view key, Range range, std::ar
 }
 
 void read_optics(const TableReader& section, OpticsSettings& optics) {
-  section.accept_only({"focal_length_mm", "f_number", "transmission", "principal_point_px", "distortion",
-                       "point_spread_sigma_px", "halo_fraction", "halo_sigma_px", "vignetting", "sun_exclusion_deg",
-                       "stray_light_electrons"});
   const Range share = from_to(0.0, 1.0);
   read(section, "focal_length_mm", above_to(0.0, 1e4), optics.focal_length_mm);
   read(section, "f_number", from_to(0.5, 100.0), optics.f_number);
@@ -65,10 +67,6 @@ void read_binning_and_gain(const TableReader& section, CameraFile& camera) {
 }
 
 void read_detector(const TableReader& section, DetectorSettings& detector) {
-  section.accept_only({"width", "height", "pixel_pitch_um", "quantum_efficiency", "full_well_electrons",
-                       "gain_dn_per_electron", "bits", "offset_dn", "read_noise_electrons", "dark_electrons_per_s",
-                       "dark_nonuniformity", "photo_response_nonuniformity", "hot_pixels", "hot_pixel_electrons_per_s",
-                       "blooming_fraction", "binning"});
   const Range share = from_to(0.0, 1.0);
   read(section, "width", 1, kLargestDetector_px, detector.width);
   read(section, "height", 1, kLargestDetector_px, detector.height);
@@ -141,12 +139,12 @@ void read_camera_settings(const TableReader& section, CameraFile& camera) {
 }
 
 CameraFile load_camera(const std::filesystem::path& file) {
-  const toml::table table = parse_toml(read_text_file(file, "a camera file (TOML)"), file.string());
-  const TableReader document(table, "", file.string());
-  document.accept_only({"exposure_s", "region_px", "zero_magnitude_photons", "optics", "detector"});
+  const toml::table table = mission::parse_toml(mission::read_text_file(file, "a camera file (TOML)"), file.string());
+  const TableReader document(table, file.string());
   CameraFile camera;
   read_camera_settings(document, camera);
+  document.finish();
   return camera;
 }
 
-}  // namespace vbar::mission
+}  // namespace vbar::sensors

@@ -1,21 +1,23 @@
-#include "host_sim/mission/read_gnss.h"
-
 #include <algorithm>
 #include <stdexcept>
 
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_sections.h"
+#include "host_sim/sensors/gnss/gnss_kind.h"
 
-namespace vbar::mission {
+namespace vbar::sensors {
 namespace {
+
+using mission::above_to;
+using mission::from_to;
+using mission::Names;
+using mission::Range;
+using mission::TableReader;
 
 using twins::gnss::GpsEphemerisLog;
 using twins::gnss::SatelliteSet;
 using twins::gnss::StartMode;
 
-/// The emulator is the one source so far: the key is there so that a testbed is one word away.
-enum class GnssSource { kDigital };
-constexpr Names<GnssSource, 1> kGnssSources{{{"digital", GnssSource::kDigital}}};
 constexpr Names<StartMode, 3> kStartModes{
     {{"cold", StartMode::kCold}, {"warm", StartMode::kWarm}, {"hot", StartMode::kHot}}};
 constexpr Names<SatelliteSet, 3> kSatelliteSets{
@@ -34,7 +36,6 @@ void read_vector(const TableReader& section, std::string_view key, Range range, 
 }
 
 void read_visibility(const TableReader& section, twins::gnss::VisibilitySettings& settings) {
-  section.accept_only({"transmit_aperture_deg", "receiver_mask_deg", "horizon_mask_deg", "occultation_altitude_km"});
   read(section, "transmit_aperture_deg", above_to(0.0, 360.0), settings.transmit_aperture_deg);
   read(section, "receiver_mask_deg", above_to(0.0, 360.0), settings.receiver_mask_deg);
   read(section, "horizon_mask_deg", from_to(-90.0, 90.0), settings.horizon_mask_deg);
@@ -42,8 +43,6 @@ void read_visibility(const TableReader& section, twins::gnss::VisibilitySettings
 }
 
 void read_link_budget(const TableReader& section, twins::gnss::LinkBudgetSettings& settings) {
-  section.accept_only({"boresight_gain_dbi", "antenna_temperature_k", "lna_gain_db", "lna_noise_figure_db",
-                       "receiver_noise_figure_db", "losses_db"});
   read(section, "boresight_gain_dbi", from_to(-20.0, 40.0), settings.boresight_gain_dbi);
   read(section, "antenna_temperature_k", above_to(0.0, 1e4), settings.antenna_temperature_k);
   read(section, "lna_gain_db", from_to(0.0, 80.0), settings.lna_gain_db);
@@ -53,9 +52,6 @@ void read_link_budget(const TableReader& section, twins::gnss::LinkBudgetSetting
 }
 
 void read_tracking(const TableReader& section, twins::gnss::TrackingSettings& settings) {
-  section.accept_only({"thermal_noise", "code_loop_bandwidth_hz", "carrier_loop_bandwidth_hz", "integration_s",
-                       "acquisition_threshold_dbhz", "loss_threshold_dbhz", "cycle_slips_per_hour",
-                       "unseen_slip_fraction", "code_bias_sigma_m"});
   settings.thermal_noise = section.flag("thermal_noise", settings.thermal_noise);
   read(section, "code_loop_bandwidth_hz", above_to(0.0, 100.0), settings.code_loop_bandwidth_hz);
   read(section, "carrier_loop_bandwidth_hz", above_to(0.0, 200.0), settings.carrier_loop_bandwidth_hz);
@@ -63,25 +59,21 @@ void read_tracking(const TableReader& section, twins::gnss::TrackingSettings& se
   read(section, "acquisition_threshold_dbhz", from_to(0.0, 60.0), settings.acquisition_threshold_dbhz);
   read(section, "loss_threshold_dbhz", from_to(0.0, 60.0), settings.loss_threshold_dbhz);
   read(section, "cycle_slips_per_hour", from_to(0.0, 1e4), settings.cycle_slips_per_hour);
-  read(section, "unseen_slip_fraction", from_to(0.0, 1.0), settings.unseen_slip_fraction);
+  read(section, "undetected_slip_fraction", from_to(0.0, 1.0), settings.undetected_slip_fraction);
   read(section, "code_bias_sigma_m", from_to(0.0, 100.0), settings.code_bias_sigma_m);
 }
 
 void read_start(const TableReader& section, twins::gnss::StartSettings& settings) {
-  section.accept_only({"mode", "cold_search_least_s", "cold_search_most_s", "reacquisition_least_s",
-                       "reacquisition_most_s", "ephemeris_decoding_s"});
   settings.mode = section.choice<StartMode>("mode", kStartModes, settings.mode);
   constexpr Range kDelay_s = from_to(0.0, 3600.0);
-  read(section, "cold_search_least_s", kDelay_s, settings.cold_search_least_s);
-  read(section, "cold_search_most_s", kDelay_s, settings.cold_search_most_s);
-  read(section, "reacquisition_least_s", kDelay_s, settings.reacquisition_least_s);
-  read(section, "reacquisition_most_s", kDelay_s, settings.reacquisition_most_s);
+  read(section, "cold_search_min_s", kDelay_s, settings.cold_search_min_s);
+  read(section, "cold_search_max_s", kDelay_s, settings.cold_search_max_s);
+  read(section, "reacquisition_min_s", kDelay_s, settings.reacquisition_min_s);
+  read(section, "reacquisition_max_s", kDelay_s, settings.reacquisition_max_s);
   read(section, "ephemeris_decoding_s", kDelay_s, settings.ephemeris_decoding_s);
 }
 
 void read_receiver_clock(const TableReader& section, twins::gnss::ClockSettings& settings) {
-  section.accept_only(
-      {"initial_offset_ms", "initial_drift_sigma_ns_per_s", "h0_s", "h_minus2_per_s", "jump_threshold_ms"});
   read(section, "initial_offset_ms", from_to(0.0, 1e3), settings.initial_offset_ms);
   read(section, "initial_drift_sigma_ns_per_s", from_to(0.0, 1e5), settings.initial_drift_sigma_ns_per_s);
   read(section, "h0_s", from_to(0.0, 1e-15), settings.h0_s);
@@ -90,11 +82,8 @@ void read_receiver_clock(const TableReader& section, twins::gnss::ClockSettings&
 }
 
 void read_body_frame(const TableReader& section, twins::gnss::BodyFrameSettings& settings) {
-  section.accept_only({"antenna_in_body_m", "boresight_in_body", "mass_sigma_kg", "com_radius_mm", "pco_bias_mm",
-                       "pco_noise_mm", "antenna_direction_arcsec", "attitude_knowledge_arcsec"});
   read_vector(section, "antenna_in_body_m", from_to(-50.0, 50.0), settings.antenna_in_body_m);
   read_vector(section, "boresight_in_body", from_to(-1.0, 1.0), settings.boresight_in_body);
-  read(section, "mass_sigma_kg", from_to(0.0, 1e3), settings.mass_sigma_kg);
   read(section, "com_radius_mm", from_to(0.0, 1e3), settings.com_radius_mm);
   read(section, "pco_bias_mm", from_to(0.0, 1e3), settings.pco_bias_mm);
   read(section, "pco_noise_mm", from_to(0.0, 1e3), settings.pco_noise_mm);
@@ -104,20 +93,20 @@ void read_body_frame(const TableReader& section, twins::gnss::BodyFrameSettings&
 
 }  // namespace
 
-GnssSensor read_gnss_sensor(const TableReader& section, const std::string& spacecraft,
-                            const std::vector<std::string>& names) {
-  section.accept_only({"source", "partner", "period_s", "ephemeris_repeat_s", "corrections_repeat_s", "gps_ephemeris",
-                       "ionosphere", "visibility", "link_budget", "tracking", "start", "clock", "body_frame"});
-  static_cast<void>(section.choice<GnssSource>("source", kGnssSources, GnssSource::kDigital));
-  GnssSensor sensor;
-  sensor.partner = section.text("partner", "");
-  const bool is_known = std::find(names.begin(), names.end(), sensor.partner) != names.end();
-  if (!sensor.partner.empty() && (!is_known || sensor.partner == spacecraft))
-    section.refuse_value("partner", "another spacecraft: " + listing_of({names.begin(), names.end()}));
-  twins::gnss::GnssReceiverSettings& receiver = sensor.receiver;
+std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& section,
+                                                         const mission::SensorContext& context) {
+  auto sensor = std::make_shared<GnssSensor>();
+  const std::vector<std::string>& names = context.spacecraft_names;
+  mission::read_source(section, "digital", context, *sensor);
+  sensor->navigation = 1;
+  sensor->observed = section.text("partner", "");
+  const bool is_known = std::find(names.begin(), names.end(), sensor->observed) != names.end();
+  if (!sensor->observed.empty() && (!is_known || sensor->observed == context.spacecraft))
+    section.refuse_value("partner", "another spacecraft: " + mission::listing_of({names.begin(), names.end()}));
+  twins::gnss::GnssReceiverSettings& receiver = sensor->receiver;
   read(section, "period_s", from_to(0.1, 60.0), receiver.output.period_s);
-  read(section, "ephemeris_repeat_s", from_to(1.0, 1e5), receiver.output.ephemeris_repeat_s);
-  read(section, "corrections_repeat_s", from_to(1.0, 1e5), receiver.output.corrections_repeat_s);
+  read(section, "ephemeris_period_s", from_to(1.0, 1e5), receiver.output.ephemeris_period_s);
+  read(section, "corrections_period_s", from_to(1.0, 1e5), receiver.output.corrections_period_s);
   receiver.output.gps_ephemeris =
       section.choice<GpsEphemerisLog>("gps_ephemeris", kEphemerisLogs, receiver.output.gps_ephemeris);
   receiver.ionosphere = section.flag("ionosphere", receiver.ionosphere);
@@ -127,6 +116,7 @@ GnssSensor read_gnss_sensor(const TableReader& section, const std::string& space
   read_start(section.table("start"), receiver.start);
   read_receiver_clock(section.table("clock"), receiver.clock);
   read_body_frame(section.table("body_frame"), receiver.body_frame);
+  section.finish();
   try {
     twins::gnss::check(receiver);  // what depends on more than one key
   } catch (const std::invalid_argument& error) {
@@ -135,16 +125,17 @@ GnssSensor read_gnss_sensor(const TableReader& section, const std::string& space
   return sensor;
 }
 
-void read_crosslink_silence(const TableReader& section, Mission& mission) {
-  read(section, "silence_begin_s", from_to(0.0, 1e7), mission.crosslink.silence_begin_s);
-  read(section, "silence_duration_s", from_to(0.0, 1e7), mission.crosslink.silence_duration_s);
+namespace {
+
+void read_crosslink(const TableReader& section, twins::gnss::CrosslinkSettings& crosslink) {
+  if (section.has("latency")) crosslink.link.latency = mission::read_latency(section.table("latency"));
+  read(section, "loss_probability", from_to(0.0, 1.0), crosslink.link.loss_probability);
+  read(section, "silence_begin_s", from_to(0.0, 1e7), crosslink.silence_begin_s);
+  read(section, "silence_duration_s", from_to(0.0, 1e7), crosslink.silence_duration_s);
+  section.finish();
 }
 
-void read_constellation(const TableReader& document, Mission& mission) {
-  const TableReader section = document.table("constellation");
-  section.accept_only({"gps", "galileo", "beidou", "orbit_error_radial_m", "orbit_error_transverse_m",
-                       "orbit_error_normal_m", "clock_error_ns"});
-  twins::gnss::ConstellationSettings& settings = mission.constellation;
+void read_constellation(const TableReader& section, twins::gnss::ConstellationSettings& settings) {
   settings.gps = section.choice<SatelliteSet>("gps", kSatelliteSets, settings.gps);
   settings.galileo = section.choice<SatelliteSet>("galileo", kSatelliteSets, settings.galileo);
   settings.beidou = section.choice<SatelliteSet>("beidou", kSatelliteSets, settings.beidou);
@@ -153,6 +144,7 @@ void read_constellation(const TableReader& document, Mission& mission) {
   read(section, "orbit_error_transverse_m", kError, settings.orbit_error_transverse_m);
   read(section, "orbit_error_normal_m", kError, settings.orbit_error_normal_m);
   read(section, "clock_error_ns", kError, settings.clock_error_ns);
+  section.finish();
   try {
     twins::gnss::check(settings);
   } catch (const std::invalid_argument& error) {
@@ -162,25 +154,31 @@ void read_constellation(const TableReader& document, Mission& mission) {
 
 // Defaults: what the paper's Appendix A makes of each axis of an antenna (a vector of 5 mm of any direction, a ball of
 // 3 mm), and differential forces of two spacecraft whose drag and sunlight are not modelled on board.
-void read_gnss_navigation(const TableReader& document, Mission& mission) {
-  const TableReader section = document.table("gnss_navigation");
-  section.accept_only({"resolve_ambiguities", "min_success_rate", "min_ratio", "pair_wait_s", "antenna_offset_sigma_mm",
-                       "phase_centre_jitter_mm", "code_bias_sigma_m", "start_velocity_sigma_mps",
-                       "acceleration_sigma_nmps2", "acceleration_time_s", "maneuver_sigma_mmps",
-                       "maneuver_sigma_percent"});
-  GnssNavigation& navigation = mission.gnss_navigation;
-  navigation.resolve_ambiguities = section.flag("resolve_ambiguities", true);
-  navigation.min_success_rate = section.number("min_success_rate", from_to(0.5, 1.0), 0.999);
-  navigation.min_ratio = section.number("min_ratio", from_to(1.0, 1e3), 3.0);
-  navigation.pair_wait = section.span("pair_wait_s", 1.0, from_to(0.1, 600.0), 12.0);
+void read_carrier_phase(const TableReader& section, vbar::navigation_configuration& navigation) {
+  navigation.resolve_ambiguities = section.flag("resolve_ambiguities", true) ? 1 : 0;
+  navigation.min_success_rate = section.number("success_rate_min", from_to(0.5, 1.0), 0.999);
+  navigation.min_ratio = section.number("ratio_min", from_to(1.0, 1e3), 3.0);
+  navigation.pair_wait_ns = section.span("pair_timeout_s", 1.0, from_to(0.1, 600.0), 12.0).ns;
   navigation.antenna_offset_sigma_m = 1e-3 * section.number("antenna_offset_sigma_mm", above_to(0.0, 1e3), 3.2);
   navigation.phase_centre_jitter_m = 1e-3 * section.number("phase_centre_jitter_mm", above_to(0.0, 100.0), 1.0);
   navigation.code_bias_sigma_m = section.number("code_bias_sigma_m", above_to(0.0, 100.0), 2.0);
-  navigation.start_velocity_sigma = section.number("start_velocity_sigma_mps", above_to(0.0, 100.0), 0.2);
+  navigation.start_velocity_sigma = section.number("initial_velocity_sigma_mps", above_to(0.0, 100.0), 0.2);
   navigation.acceleration_sigma = 1e-9 * section.number("acceleration_sigma_nmps2", above_to(0.0, 1e6), 10.0);
-  navigation.acceleration_time_s = section.number("acceleration_time_s", above_to(0.0, 1e6), 1500.0);
+  navigation.acceleration_time_s = section.number("acceleration_correlation_time_s", above_to(0.0, 1e6), 1500.0);
   navigation.maneuver_sigma = 1e-3 * section.number("maneuver_sigma_mmps", above_to(0.0, 1e3), 0.002);
   navigation.maneuver_sigma_relative = 1e-2 * section.number("maneuver_sigma_percent", from_to(0.0, 100.0), 0.2);
+  section.finish();
 }
 
-}  // namespace vbar::mission
+}  // namespace
+
+std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const TableReader& document,
+                                                                const mission::Mission& /*mission*/) {
+  auto shared = std::make_shared<GnssShared>();
+  read_carrier_phase(document.table("navigation").table("carrier_phase"), shared->navigation);
+  read_constellation(document.table("constellation"), shared->constellation);
+  read_crosslink(document.table("links").table("crosslink"), shared->crosslink);
+  return shared;
+}
+
+}  // namespace vbar::sensors

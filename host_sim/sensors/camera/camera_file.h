@@ -7,7 +7,7 @@
 #include "host_sim/mission/table_reader.h"
 #include "host_sim/twins/camera/camera_settings.h"
 
-namespace vbar::mission {
+namespace vbar::sensors {
 
 /// A camera as files say it: pixel by pixel, and how many of them are summed.
 struct CameraFile {
@@ -27,6 +27,6 @@ struct CameraFile {
 /// The keys of a camera that a file and a mission have in common, over what `camera` holds already: exposure_s,
 /// region_px, zero_magnitude_photons, the tables optics and detector. Throws MissionError for one that is out of
 /// range, and for settings that do not fit together.
-void read_camera_settings(const TableReader& section, CameraFile& camera);
+void read_camera_settings(const mission::TableReader& section, CameraFile& camera);
 
-}  // namespace vbar::mission
+}  // namespace vbar::sensors

@@ -1,0 +1,97 @@
+#include <algorithm>
+
+#include "host_sim/mission/nearest_name.h"
+#include "host_sim/mission/read_sections.h"
+#include "host_sim/mission/sensor_reader.h"
+
+namespace vbar::mission {
+namespace {
+
+constexpr std::string_view kRecorded = "recorded";
+
+template <class Readers>
+std::vector<std::string_view> names_of(const Readers& readers) {
+  std::vector<std::string_view> names;
+  for (const auto* const reader : readers) names.push_back(reader->name);
+  return names;
+}
+
+/// Index of the kind in the program's list. A sensor that has the name of a kind need not give it.
+std::size_t kind_of(const TableReader& section, const std::string& name, const Installation& installation) {
+  const std::vector<std::string_view> kinds = names_of(installation.kinds);
+  const auto place_of = [&](std::string_view kind) {
+    return static_cast<std::size_t>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+  };
+  const std::string kind = section.text("kind", name);
+  const std::size_t place = place_of(kind);
+  if (place < kinds.size()) return place;
+  const auto nearest = nearest_name(kind, kinds);
+  section.refuse("kind",
+                 (section.has("kind") ? "the text \"" : "nothing, and the sensor has the name \"") + kind + "\"" +
+                     (nearest ? " (did you mean " + std::string(*nearest) + "?)" : std::string()),
+                 listing_of(kinds));
+}
+
+}  // namespace
+
+std::vector<Sensor> read_sensors(const TableReader& sensors, const SensorContext& context) {
+  std::vector<std::vector<Sensor>> by_kind(context.installation.kinds.size());
+  for (const std::string& name : sensors.keys()) {
+    const TableReader section = sensors.table(name);
+    if (!is_name(name)) sensors.refuse(name, "the name \"" + name + "\"", std::string(kNameRule));
+    const std::size_t kind = kind_of(section, name, context.installation);
+    const SensorReader& reader = *context.installation.kinds[kind];
+    by_kind[kind].push_back({name, std::string(reader.name), reader.read(section, context)});
+    section.finish();
+  }
+  std::vector<Sensor> all;
+  for (std::vector<Sensor>& some : by_kind) std::ranges::move(some, std::back_inserter(all));
+  return all;
+}
+
+void check_sensors(const TableReader& sensors, const Spacecraft& spacecraft, const Mission& mission,
+                   const Installation& installation) {
+  for (const Sensor& sensor : spacecraft.sensors) {
+    const auto reader =
+        std::ranges::find_if(installation.kinds, [&](const SensorReader* kind) { return kind->name == sensor.kind; });
+    if ((*reader)->check != nullptr) (*reader)->check(sensors.table(sensor.name), sensor, spacecraft, mission);
+  }
+}
+
+void read_source(const TableReader& section, std::string_view twin, const SensorContext& context,
+                 SensorSettings& settings) {
+  std::vector<std::string_view> accepted{twin, kRecorded};
+  for (const Testbed& testbed : context.mission.testbeds) accepted.push_back(testbed.name);
+  settings.source = section.choice("source", accepted, twin);
+  const std::filesystem::path log = section.text("log", "");
+  const bool is_recorded = settings.source == kRecorded;
+  if (is_recorded && log.empty()) section.refuse("log", "nothing", "the packets.lcmlog to play, as source is recorded");
+  if (!is_recorded && !log.empty()) section.refuse_value("log", "nothing, unless source is recorded");
+  if (is_recorded) settings.log = context.mission.file.parent_path() / log;  // an absolute one stays as it is
+}
+
+void read_shared(const TableReader& document, Mission& mission, const Installation& installation) {
+  for (const SensorReader* const kind : installation.kinds) {
+    if (kind->read_shared == nullptr) continue;
+    mission.shared.push_back(kind->read_shared(document, mission));
+  }
+  document.table("navigation").finish();
+}
+
+void read_testbeds(const TableReader& document, Mission& mission, const Installation& installation) {
+  const TableReader testbeds = document.table("testbed");
+  for (const std::string& name : testbeds.keys()) {
+    const TableReader section = testbeds.table(name);
+    const auto driver =
+        std::ranges::find_if(installation.testbeds, [&](const TestbedReader* reader) { return reader->name == name; });
+    if (driver == installation.testbeds.end()) {
+      const std::string drivers = listing_of(names_of(installation.testbeds));
+      section.refuse("", "a testbed without a driver in this program",
+                     drivers.empty() ? "no testbed: no driver is registered" : drivers);
+    }
+    mission.testbeds.push_back({name, (*driver)->read(section)});
+    section.finish();
+  }
+}
+
+}  // namespace vbar::mission

@@ -1,0 +1,62 @@
+#pragma once
+// What the loader of missions has to know of a kind of sensor or of a testbed: how its tables are read.
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host_sim/engine/wall_clock.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/mission/table_reader.h"
+
+namespace vbar::mission {
+
+struct Installation;
+
+/// What is known when the table of a sensor is read.
+struct SensorContext {
+  const Mission& mission;  ///< the spacecraft further down are missing
+  const Installation& installation;
+  const std::string& spacecraft;                     ///< that carries the sensor
+  const std::vector<std::string>& spacecraft_names;  ///< of all spacecraft
+};
+
+/// All functions throw MissionError.
+struct SensorReader {
+  std::string_view name;   ///< the value of `kind`
+  std::string_view table;  ///< of the document, that only this kind reads; empty: none
+  /// Reads the table of one sensor, with the ranges and defaults of its keys.
+  std::shared_ptr<const SensorSettings> (*read)(const TableReader& section, const SensorContext& context);
+  /// Reads the tables of the document that belong to the kind. Null if it has none.
+  std::shared_ptr<const SharedSettings> (*read_shared)(const TableReader& document, const Mission& mission);
+  /// Refuses what does not fit the rest of the mission, which has been read. `section` is the table of the sensor.
+  void (*check)(const TableReader& section, const Sensor& sensor, const Spacecraft& spacecraft, const Mission& mission);
+};
+
+/// The driver of a testbed, registered under the name of its table.
+struct TestbedReader {
+  std::string_view name;
+  std::shared_ptr<const TestbedSettings> (*read)(const TableReader& section);
+};
+
+/// What a program offers to missions.
+struct Installation {
+  std::filesystem::path data_directory;
+  std::vector<const SensorReader*> kinds;
+  std::vector<const TestbedReader*> testbeds;
+  std::vector<const engine::WallClockSource*> clocks;  ///< of which the first is the default
+};
+
+/// The clock that the mission names. The loader has seen to it that the program has it.
+[[nodiscard]] std::unique_ptr<engine::WallClock> make_wall_clock(const Mission& mission,
+                                                                 const Installation& installation);
+
+/// `source` and, for "recorded", `log`: `twin` is the name of the source that this program simulates, the default.
+/// Testbeds of the mission are accepted too.
+void read_source(const TableReader& section, std::string_view twin, const SensorContext& context,
+                 SensorSettings& settings);
+
+}  // namespace vbar::mission

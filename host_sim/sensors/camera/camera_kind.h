@@ -1,0 +1,73 @@
+#pragma once
+// kind = "camera": navigates by images of one spacecraft among all that have a CAD model.
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "fsw/packets/messages.h"
+#include "host_sim/sensors/sensor_kind.h"
+#include "host_sim/twins/camera/camera_settings.h"
+#include "host_sim/twins/camera/recipe_log.h"
+
+namespace vbar::sensors {
+
+/// What navigation makes of a camera's images.
+enum class CameraNavigation { kNone, kAnglesOnly, kPose };
+
+/// `observed` is the spacecraft that it navigates to.
+struct CameraSensor : mission::SensorSettings {
+  std::string camera;  ///< its file as the mission names it, which `settings` began with
+  twins::camera::CameraSettings settings;
+  CameraNavigation use = CameraNavigation::kAnglesOnly;
+  fsw::Duration period;   ///< between exposures
+  fsw::Duration readout;  ///< from the middle of an exposure until the image leaves the camera
+  Eigen::Quaterniond q_camera_body = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
+  fsw::Vector3 position_body_m = fsw::Vector3::Zero();                ///< from the centre of mass
+};
+
+/// [navigation.angles_only] and [navigation.pose]: what does not depend on camera and target.
+struct CameraShared : mission::SharedSettings {
+  vbar::angles_only_configuration angles_only{};
+  /// Of the target's a-priori state for angles-only navigation: mean ROE times the reference a, 1 sigma.
+  fsw::Vector6 angles_only_apriori_sigma_a_roe_m = fsw::Vector6::Zero();
+  /// The a-priori sigmas are those of the mission, without an a-priori state.
+  vbar::pose_configuration pose{};
+};
+
+extern const SensorKind kCamera;
+
+// In read_camera.cpp and read_camera_navigation.cpp.
+std::shared_ptr<const mission::SensorSettings> read_camera(const mission::TableReader& section,
+                                                           const mission::SensorContext& context);
+std::shared_ptr<const mission::SharedSettings> read_camera_shared(const mission::TableReader& document,
+                                                                  const mission::Mission& mission);
+
+// In camera_telecommands.cpp.
+void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandContext& context,
+                             Telecommands& telecommands);
+
+/// The camera as calibrated on the ground: without error.
+[[nodiscard]] vbar::camera_configuration camera_configuration_of(const CameraSensor& camera);
+
+/// The target of the camera as the ground knows it: keypoints of its model, inertia of its body; no a-priori state.
+/// Throws MissionError for files that cannot be read.
+[[nodiscard]] vbar::pose_configuration pose_configuration_of(const mission::Mission& mission,
+                                                             const CameraSensor& camera,
+                                                             const std::filesystem::path& data_directory);
+
+/// Where the ground last knew the target to be, out of the true states of both at the start: mean ROE off by what the
+/// seed draws with the mission's sigmas. Throws std::runtime_error for states that are not orbits.
+[[nodiscard]] vbar::target_apriori target_apriori_of(const mission::Mission& mission,
+                                                     const mission::Spacecraft& servicer,
+                                                     const fsw::orbit::CartesianState& servicer_state,
+                                                     const fsw::orbit::CartesianState& target_state);
+
+/// Makes the images of the first digital camera of `servicer` again, for a replay. Throws std::runtime_error if it has
+/// none.
+[[nodiscard]] twins::camera::TileRestorer::MakeImage make_image_maker(const mission::Mission& mission,
+                                                                      const mission::Spacecraft& servicer,
+                                                                      const std::filesystem::path& data_directory);
+
+}  // namespace vbar::sensors

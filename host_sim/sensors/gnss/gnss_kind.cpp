@@ -1,0 +1,136 @@
+#include "host_sim/sensors/gnss/gnss_kind.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fsw/math/math.h"
+#include "host_sim/twins/gnss/body_frame.h"
+#include "host_sim/twins/gnss/gnss_receiver.h"
+#include "host_sim/twins/gnss_sensor.h"
+#include "host_sim/twins/recorded_log.h"
+
+namespace vbar::sensors {
+namespace {
+
+using mission::find_settings;
+using mission::Mission;
+using mission::Sensor;
+using mission::Spacecraft;
+using mission::TableReader;
+
+/// Both ends of relative navigation by GNSS have what it takes.
+void check(const TableReader& section, const Sensor& sensor, const Spacecraft& spacecraft, const Mission& mission) {
+  for (const Sensor& other : spacecraft.sensors) {
+    if (&other == &sensor) continue;
+    if (other.kind == sensor.kind) section.refuse("", "a second sensor of kind gnss", "one on a spacecraft");
+    if (other.settings->navigation == 0)
+      section.refuse("", "a second way to navigate", "a sensor of kind navigation or gnss, not both");
+  }
+  const bool is_beside_camera =
+      std::ranges::any_of(spacecraft.sensors, [](const Sensor& other) { return other.settings->navigation > 1; });
+  if (!spacecraft.flight_computer || is_beside_camera) return;
+  const Spacecraft* const partner = mission.find_spacecraft(sensor.settings->observed);
+  if (partner == nullptr || find_settings<GnssSensor>(*partner) == nullptr)
+    section.refuse("partner", partner == nullptr ? "nothing" : "the spacecraft \"" + partner->name + "\" without GNSS",
+                   "a spacecraft that has sensors.gnss too");
+  for (const Spacecraft* one : {&spacecraft, partner})
+    if (!one->attitude)
+      section.refuse("", "no attitude of " + one->name, "both spacecraft with an attitude: antennas point somewhere");
+}
+
+std::unique_ptr<twins::PacketSource> make_receiver(const MakeContext& context, const Spacecraft& carrier,
+                                                   const std::shared_ptr<const twins::gnss::Constellation>& sky) {
+  const Mission& mission = context.mission;
+  const twins::gnss::GnssReceiverSettings& settings = find_settings<GnssSensor>(carrier)->receiver;
+  twins::GnssSensor::Settings sensor;
+  sensor.spacecraft = carrier.name;
+  sensor.flight_number = context.servicer.number;
+  sensor.start = mission.start_time();
+  sensor.period = fsw::nearest_duration(settings.output.period_s);
+  std::unique_ptr<twins::gnss::Crosslink> crosslink;
+  if (&carrier != &context.servicer)
+    crosslink = std::make_unique<twins::gnss::Crosslink>(mission::shared_settings<GnssShared>(mission).crosslink,
+                                                         mission.seed, carrier.name);
+  auto receiver =
+      std::make_unique<twins::gnss::GnssReceiver>(settings, sky, context.data_directory, mission.seed, carrier.name);
+  return std::make_unique<twins::GnssSensor>(sensor, std::move(receiver), std::move(crosslink));
+}
+
+void add_sources(const Sensor& sensor, const MakeContext& context,
+                 std::vector<twins::NamedSource>& sources) {
+  if (sensor.settings->source == "recorded") {
+    using fsw::packets::Apid;
+    const twins::RecordedLog::Selection selection{
+        context.servicer.number,
+        {Apid::kGnssBytes, Apid::kAttitude, Apid::kCrosslinkGnssBytes, Apid::kCrosslinkAttitude}};
+    sources.push_back({source_name(context.servicer, sensor), sensor.settings->source,
+                       std::make_unique<twins::RecordedLog>(sensor.settings->log, selection)});
+    return;
+  }
+  const Mission& mission = context.mission;
+  const auto sky = context.shared.get<const twins::gnss::Constellation>("gnss/sky", [&] {
+    return std::make_shared<const twins::gnss::Constellation>(
+        context.data_directory, mission::shared_settings<GnssShared>(mission).constellation, mission.start_time(),
+        mission.seed);
+  });
+  const auto add = [&](const Spacecraft& carrier) {
+    sources.push_back(
+        {source_name(carrier, sensor), sensor.settings->source, make_receiver(context, carrier, sky)});
+  };
+  add(context.servicer);
+  if (const Spacecraft* const partner = mission.find_spacecraft(sensor.settings->observed)) add(*partner);
+}
+
+void add_telecommands(const Sensor& /*sensor*/, const TelecommandContext& context, Telecommands& telecommands) {
+  telecommands.add(navigation_configuration_of(context.mission, context.servicer, context.earth_orientation));
+}
+
+/// The kind of navigation of the spacecraft: that of its camera, if it has one.
+std::int8_t navigation_of(const Spacecraft& servicer) {
+  std::int8_t navigation = 0;
+  for (const Sensor& sensor : servicer.sensors) navigation = std::max(navigation, sensor.settings->navigation);
+  return navigation;
+}
+
+}  // namespace
+
+const SensorKind kGnss{{"gnss", "constellation", read_gnss, read_gnss_shared, check}, add_telecommands, add_sources};
+
+vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer,
+                                                           const truth::EarthOrientationSeries& orientation) {
+  vbar::navigation_configuration configuration = mission::shared_settings<GnssShared>(mission).navigation;
+  configuration.source = navigation_of(servicer);
+  const auto copy_antenna = [](const GnssSensor& gnss, double(&antenna_m)[3]) {
+    const fsw::Vector3& nominal = gnss.receiver.body_frame.antenna_in_body_m;
+    std::copy(nominal.begin(), nominal.end(), antenna_m);
+  };
+  const GnssSensor& own = *find_settings<GnssSensor>(servicer);
+  copy_antenna(own, configuration.servicer_antenna_body_m);
+  if (const Spacecraft* const partner = mission.find_spacecraft(own.observed))
+    copy_antenna(*find_settings<GnssSensor>(*partner), configuration.target_antenna_body_m);
+  // GPS time is 19 s behind TAI. A prediction is told to what the IERS bulletins print: 10 us and 10 uas.
+  constexpr double kGpsMinusTai_s = -19.0;
+  constexpr double kLookAhead_s = 3600.0;
+  const truth::EarthOrientation now = orientation.at(mission.start_time());
+  const truth::EarthOrientation later = orientation.at(mission.start_time(), kLookAhead_s);
+  configuration.earth_epoch_ns = mission.start_time().ns;
+  configuration.ut1_minus_gps_s = 1e-5 * std::round(1e5 * (now.ut1_minus_tai_s - kGpsMinusTai_s));
+  configuration.ut1_rate = (later.ut1_minus_tai_s - now.ut1_minus_tai_s) / kLookAhead_s;
+  constexpr double kTenMicroarcseconds = 1e-5 * fsw::math::kPi / 648000.0;
+  configuration.pole_x = kTenMicroarcseconds * std::round(now.pole_x / kTenMicroarcseconds);
+  configuration.pole_y = kTenMicroarcseconds * std::round(now.pole_y / kTenMicroarcseconds);
+  return configuration;
+}
+
+std::optional<double> gnss_static_floor_m(const Mission& mission, const Spacecraft& servicer) {
+  const GnssSensor* const own = find_settings<GnssSensor>(servicer);
+  if (own == nullptr || own->observed.empty()) return std::nullopt;
+  const Spacecraft& partner = *mission.find_spacecraft(own->observed);
+  const twins::gnss::BodyFrameSettings& ours = own->receiver.body_frame;
+  const twins::gnss::BodyFrameSettings& theirs = find_settings<GnssSensor>(partner)->receiver.body_frame;
+  const auto our_errors = twins::gnss::draw_body_frame(ours, mission.seed, servicer.name);
+  const auto their_errors = twins::gnss::draw_body_frame(theirs, mission.seed, partner.name);
+  return twins::gnss::static_floor_m(ours, our_errors, theirs, their_errors).norm();
+}
+
+}  // namespace vbar::sensors

@@ -1,0 +1,47 @@
+#pragma once
+// kind = "gnss": a receiver and a star tracker. Its data and, over the crosslink, those of a partner's receiver.
+
+#include <optional>
+#include <vector>
+
+#include "fsw/packets/messages.h"
+#include "host_sim/sensors/sensor_kind.h"
+#include "host_sim/twins/gnss/constellation.h"
+#include "host_sim/twins/gnss/crosslink.h"
+#include "host_sim/twins/gnss/gnss_settings.h"
+
+namespace vbar::sensors {
+
+/// `observed` is the partner: the spacecraft whose receiver's data come over the crosslink; empty: this one's go to its
+/// partner, or they are all there is, beside a camera.
+struct GnssSensor : mission::SensorSettings {
+  twins::gnss::GnssReceiverSettings receiver;
+};
+
+/// [navigation.carrier_phase], [constellation] and [links.crosslink].
+struct GnssShared : mission::SharedSettings {
+  vbar::navigation_configuration navigation{};  ///< what does not depend on spacecraft and time
+  twins::gnss::ConstellationSettings constellation;
+  twins::gnss::CrosslinkSettings crosslink;
+};
+
+extern const SensorKind kGnss;
+
+// In read_gnss.cpp.
+std::shared_ptr<const mission::SensorSettings> read_gnss(const mission::TableReader& section,
+                                                         const mission::SensorContext& context);
+std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const mission::TableReader& document,
+                                                                const mission::Mission& mission);
+
+/// For a spacecraft that has a GNSS receiver. `orientation`: the Earth's at the start, as the ground predicts it.
+/// Antennas are the nominal ones of the spacecraft that flies and its GNSS partner, if it has one.
+[[nodiscard]] vbar::navigation_configuration navigation_configuration_of(
+    const mission::Mission& mission, const mission::Spacecraft& servicer,
+    const truth::EarthOrientationSeries& orientation);
+
+/// Distance (m) between where the antennas of `servicer` and its partner are and where navigation takes them to be,
+/// from the run's own draws, as if the bodies had parallel axes. For the report only. None without a GNSS pair.
+[[nodiscard]] std::optional<double> gnss_static_floor_m(const mission::Mission& mission,
+                                                        const mission::Spacecraft& servicer);
+
+}  // namespace vbar::sensors

@@ -1,0 +1,100 @@
+#pragma once
+// A kind of sensor: everything that the program knows about it, registered in sensor_kinds.cpp.
+
+#include <any>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fsw/orbit/elements.h"
+#include "fsw/packets/messages.h"
+#include "host_sim/mission/sensor_reader.h"
+#include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::sensors {
+
+/// Telecommands to one spacecraft in the order in which they are sent.
+class Telecommands {
+ public:
+  Telecommands(fsw::GpsTime time, std::uint8_t spacecraft) : time_(time), spacecraft_(spacecraft) {}
+
+  /// Throws std::runtime_error for a message that holds a NaN or an infinity.
+  template <class Message>
+  void add(const Message& message) {
+    fsw::packets::PacketHeader header;
+    header.time = time_;
+    header.spacecraft = spacecraft_;
+    twins::Packet packet(fsw::packets::kMaxPacketBytes);
+    const auto size = fsw::packets::encode(header, message, packet);
+    if (!size.ok()) throw std::runtime_error("a telecommand cannot be sent: it contains a number that is not finite");
+    packet.resize(size.value());
+    packets_.push_back(std::move(packet));
+  }
+
+  [[nodiscard]] const std::vector<twins::Packet>& packets() const { return packets_; }
+
+ private:
+  fsw::GpsTime time_;
+  std::uint8_t spacecraft_;
+  std::vector<twins::Packet> packets_;
+};
+
+/// What is known on the ground when the telecommands of the start are made.
+struct TelecommandContext {
+  const mission::Mission& mission;
+  const mission::Spacecraft& servicer;  ///< carries the flight software
+  std::filesystem::path data_directory;
+  const truth::EarthOrientationSeries& earth_orientation;
+  /// True state of a spacecraft at the start, from which a-priori knowledge is drawn.
+  std::function<fsw::orbit::CartesianState(std::string_view spacecraft)> state_at_start;
+};
+
+/// Objects that several sources of one run share, by name: the sky over all receivers, a testbed with two channels.
+class SharedObjects {
+ public:
+  /// The object of that name, which the first caller makes.
+  template <class Object, class Make>
+  std::shared_ptr<Object> get(const std::string& name, const Make& make) {
+    std::any& object = objects_[name];
+    if (!object.has_value()) object = std::shared_ptr<Object>(make());
+    return std::any_cast<std::shared_ptr<Object>>(object);
+  }
+
+ private:
+  std::map<std::string, std::any> objects_;
+};
+
+struct MakeContext {
+  const mission::Mission& mission;
+  const mission::Spacecraft& servicer;  ///< carries the sensor and the flight software
+  std::filesystem::path data_directory;
+  SharedObjects& shared;
+};
+
+struct SensorKind : mission::SensorReader {
+  /// Adds what the flight software is told about the sensor before its first step. Null: nothing.
+  void (*add_telecommands)(const mission::Sensor& sensor, const TelecommandContext& context,
+                           Telecommands& telecommands);
+  /// Adds the sources of the sensor's packets. Throws what a recorded log and data files throw.
+  void (*add_sources)(const mission::Sensor& sensor, const MakeContext& context,
+                      std::vector<twins::NamedSource>& sources);
+};
+
+/// "servicer/gnss"
+[[nodiscard]] inline std::string source_name(const mission::Spacecraft& carrier, const mission::Sensor& sensor) {
+  return carrier.name + "/" + sensor.name;
+}
+
+/// The settings of a sensor of the kind whose settings are `Settings`.
+template <class Settings>
+const Settings& settings_of(const mission::Sensor& sensor) {
+  return dynamic_cast<const Settings&>(*sensor.settings);
+}
+
+}  // namespace vbar::sensors

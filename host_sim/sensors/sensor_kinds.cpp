@@ -1,0 +1,69 @@
+#include "host_sim/sensors/sensor_kinds.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/telecommands.h"
+#include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/sensors/ideal_navigation/ideal_navigation_kind.h"
+
+namespace vbar::sensors {
+namespace {
+
+constexpr const SensorKind* kSensorKinds[] = {&kIdealNavigation, &kGnss, &kCamera};
+
+}  // namespace
+
+std::span<const SensorKind* const> sensor_kinds() {
+  return kSensorKinds;
+}
+
+const SensorKind& kind_of(const mission::Sensor& sensor) {
+  const auto found =
+      std::ranges::find_if(kSensorKinds, [&](const SensorKind* kind) { return kind->name == sensor.kind; });
+  if (found == std::end(kSensorKinds)) throw std::logic_error("\"" + sensor.kind + "\" is not a kind of sensor");
+  return **found;
+}
+
+mission::Installation installation() {
+  mission::Installation installation;
+  installation.data_directory = mission::data_directory();
+  installation.kinds.assign(std::begin(kSensorKinds), std::end(kSensorKinds));
+  installation.clocks = {&engine::kMonotonicClock};
+  return installation;
+}
+
+mission::Mission load_mission(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return mission::load_mission(file, overrides, installation());
+}
+
+mission::Mission parse_mission(std::string_view text, const std::filesystem::path& file,
+                               std::span<const std::string> overrides) {
+  return mission::parse_mission(text, file, overrides, installation());
+}
+
+std::vector<twins::NamedSource> make_sources(const mission::Mission& mission,
+                                                               const mission::Spacecraft& servicer,
+                                                               const std::filesystem::path& data_directory) {
+  std::vector<twins::NamedSource> sources;
+  SharedObjects shared;
+  const MakeContext context{mission, servicer, data_directory, shared};
+  for (const mission::Sensor& sensor : servicer.sensors) kind_of(sensor).add_sources(sensor, context, sources);
+  return sources;
+}
+
+std::vector<twins::Packet> telecommands_of(const TelecommandContext& context) {
+  Telecommands telecommands(context.mission.start_time(), context.servicer.number);
+  telecommands.add(context.mission.guidance.configuration);
+  for (const mission::Sensor& sensor : context.servicer.sensors) {
+    const SensorKind& kind = kind_of(sensor);
+    if (kind.add_telecommands != nullptr) kind.add_telecommands(sensor, context, telecommands);
+  }
+  telecommands.add(mission::waypoint_table_of(context.mission));
+  telecommands.add(mission::mode_command_of(context.mission));
+  return telecommands.packets();
+}
+
+}  // namespace vbar::sensors

@@ -1,0 +1,37 @@
+#pragma once
+// The kinds of sensors of this program, and missions read with them.
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host_sim/mission/load.h"
+#include "host_sim/sensors/sensor_kind.h"
+
+namespace vbar::sensors {
+
+/// All kinds, in the order in which the sensors of a spacecraft measure at one instant.
+[[nodiscard]] std::span<const SensorKind* const> sensor_kinds();
+
+/// The kind of a sensor of a mission that was loaded with installation().
+[[nodiscard]] const SensorKind& kind_of(const mission::Sensor& sensor);
+
+/// Kinds, clock sources and testbeds of this program; the data folder is mission::data_directory().
+[[nodiscard]] mission::Installation installation();
+
+/// mission::load_mission with installation().
+mission::Mission load_mission(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+mission::Mission parse_mission(std::string_view text, const std::filesystem::path& file,
+                               std::span<const std::string> overrides = {});
+
+/// The sources of all that the flight software of `servicer` receives from its sensors.
+[[nodiscard]] std::vector<twins::NamedSource> make_sources(
+    const mission::Mission& mission, const mission::Spacecraft& servicer, const std::filesystem::path& data_directory);
+
+/// What the flight software is told before its first step, in this order: guidance, its sensors, the waypoints, the
+/// mode.
+[[nodiscard]] std::vector<twins::Packet> telecommands_of(const TelecommandContext& context);
+
+}  // namespace vbar::sensors
