@@ -5,14 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/mission/load.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "tests/support/paths.h"
 
 namespace vbar::app {
 namespace {
 
 mission::Mission load(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return mission::load_mission(vbar::tests::source_path() + "/missions/" + name, overrides);
+  return sensors::load_mission(vbar::tests::source_path() + "/missions/" + name, overrides);
 }
 
 std::string data() {
