@@ -58,6 +58,10 @@ struct FlightComputerOptions {
   LinkFaults faults;
 };
 
+/// The library, program or image that make_flight_computer would fly; empty for a linked test article and for a board.
+/// Throws FlightComputerError if there is no such image.
+std::string software_file(const FlightComputerOptions& options);
+
 /// Starts or finds the flight computer and waits until it answers. Throws FlightComputerError.
 std::unique_ptr<FlightComputer> make_flight_computer(const FlightComputerOptions& options);
 

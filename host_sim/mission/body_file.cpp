@@ -41,7 +41,7 @@ truth::Facet read_facet(const TableReader& section, const std::vector<Vector3>& 
 }  // namespace
 
 truth::Body load_body(const std::filesystem::path& file) {
-  const toml::table table = parse_toml(read_text_file(file, "a body file (TOML)"), file.string());
+  const toml::table table = parse_toml(read_data_text(file, "a body file (TOML)"), file.string());
   const TableReader document(table, "", file.string());
   document.accept_only({"inertia_kgm2", "centre_of_mass_m", "corners", "facet"});
   truth::Body body;
@@ -60,7 +60,7 @@ truth::Body load_body(const std::filesystem::path& file) {
 }
 
 std::vector<Vector3> load_keypoints(const std::filesystem::path& file, std::size_t count) {
-  const toml::table table = parse_toml(read_text_file(file, "a file of keypoints (TOML)"), file.string());
+  const toml::table table = parse_toml(read_data_text(file, "a file of keypoints (TOML)"), file.string());
   const TableReader document(table, "", file.string());
   document.accept_only({"keypoints"});
   std::vector<Vector3> keypoints_m;

@@ -141,7 +141,7 @@ void read_camera_settings(const TableReader& section, CameraFile& camera) {
 }
 
 CameraFile load_camera(const std::filesystem::path& file) {
-  const toml::table table = parse_toml(read_text_file(file, "a camera file (TOML)"), file.string());
+  const toml::table table = parse_toml(read_data_text(file, "a camera file (TOML)"), file.string());
   const TableReader document(table, "", file.string());
   document.accept_only({"exposure_s", "region_px", "zero_magnitude_photons", "optics", "detector"});
   CameraFile camera;

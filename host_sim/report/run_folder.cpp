@@ -1,12 +1,15 @@
 #include "host_sim/report/run_folder.h"
 
+#include <algorithm>
 #include <array>
+#include <fstream>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "host_sim/report/run_tables.h"
 #include "host_sim/report/summary_json.h"
@@ -42,11 +45,19 @@ constexpr std::array kFilesBesideSummary{kWaypoints, kTruth,     kAttitude,  kEs
   throw std::runtime_error(fmt::format("{}: {}", folder.string(), what));
 }
 
-void check_may_be_replaced(const fs::path& folder) {
+[[noreturn]] void refuse(const fs::path& folder, std::string_view what) {
+  throw FolderRefused(fmt::format("{}: {}", folder.string(), what));
+}
+
+void check_may_be_used(const fs::path& folder, RunFolder::Existing existing) {
   if (!fs::exists(folder)) return;
-  if (!fs::is_directory(folder)) fail(folder, "is a file; a run needs a folder");
-  if (fs::is_empty(folder) || is_summary(folder / kSummary)) return;
-  fail(folder, "holds something other than a run; remove it or name another folder with --out");
+  if (!fs::is_directory(folder)) refuse(folder, "is a file; a run needs a folder");
+  const bool holds_run = is_summary(folder / kSummary);
+  if (holds_run && existing == RunFolder::Existing::kRefuse)
+    refuse(folder, "holds a run; name another folder with --out, or replace that run with --force");
+  const auto is_lock = [](const fs::directory_entry& entry) { return entry.path().filename() == RunLock::kFile; };
+  if (holds_run || std::ranges::all_of(fs::directory_iterator(folder), is_lock)) return;
+  refuse(folder, "holds something other than a run; remove it or name another folder with --out");
 }
 
 fs::path picture_file(const fs::path& folder, const GalleryImage& image) {
@@ -72,9 +83,15 @@ std::vector<GalleryImage> read_gallery(const fs::path& folder) {
 }  // namespace
 
 fs::path default_run_folder(const std::string& mission, std::uint64_t seed) {
-  return fs::path("runs") / fmt::format("{}-{}", mission, seed);
+  const fs::path first = fs::path("runs") / fmt::format("{}-{}", mission, seed);
+  fs::path folder = first;
+  for (int number = 2; fs::exists(folder); ++number) folder = fmt::format("{}.{}", first.string(), number);
+  return folder;
 }
 
+fs::path summary_file(const fs::path& run_folder) {
+  return run_folder / kSummary;
+}
 fs::path packet_log_file(const fs::path& run_folder) {
   return run_folder / kPacketLog;
 }
@@ -82,13 +99,15 @@ fs::path report_file(const fs::path& run_folder) {
   return run_folder / kReport;
 }
 
-RunFolder::RunFolder(fs::path folder, const Summary& start) : folder_(std::move(folder)) {
+RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing) : folder_(std::move(folder)) {
   try {
-    check_may_be_replaced(folder_);
+    check_may_be_used(folder_, existing);
     fs::create_directories(folder_);
+    lock_.emplace(folder_);
+    check_may_be_used(folder_, existing);  // another run may have come and gone before the lock was taken
     Summary running = start;
     running.complete = false;
-    running.incomplete_reason = "running";
+    running.incomplete_reason = fmt::format("running in process {}, or killed", ::getpid());
     replace_text_file(folder_ / kSummary, summary_json(running, {}));
     for (const std::string_view name : kFilesBesideSummary) fs::remove(folder_ / name);
     fs::remove_all(folder_ / kPictures);
@@ -111,6 +130,26 @@ void RunFolder::finish(const RunRecord& record) const {
   write_rows(folder_ / kManeuvers, record.maneuvers);
   write_rows(folder_ / kResiduals, record.residuals);
   replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
+}
+
+void RunFolder::give_up(Summary summary, const std::string& reason) const {
+  summary.complete = false;
+  summary.incomplete_reason = reason;
+  const std::string text = summary_json(summary, {});
+  try {
+    replace_text_file(folder_ / kSummary, text);
+  } catch (const std::runtime_error&) {
+    // A full disk takes no second file, but its blocks of the first: overwritten in place, without the data that were
+    // read, it fits.
+    summary.provenance.data.clear();
+    std::fstream file(folder_ / kSummary, std::ios::in | std::ios::out | std::ios::binary);
+    const std::string short_text = summary_json(summary, {});
+    file.write(short_text.data(), static_cast<std::streamsize>(short_text.size()));
+    file.close();
+    if (!file) return;
+    std::error_code ignored;
+    fs::resize_file(folder_ / kSummary, short_text.size(), ignored);
+  }
 }
 
 RunRecord read_run(const fs::path& run_folder) {

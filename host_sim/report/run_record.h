@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/report/provenance.h"
+
 namespace vbar::report {
 
 using Pair = std::array<double, 2>;
@@ -289,6 +291,7 @@ struct Summary {
     double render_s = 0.0, detector_s = 0.0, packing_s = 0.0;
     friend bool operator==(const WallShare&, const WallShare&) = default;
   } wall_share;
+  Provenance provenance;
   friend bool operator==(const Summary&, const Summary&) = default;
 };
 

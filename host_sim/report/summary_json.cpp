@@ -166,6 +166,7 @@ Summary summary_from(const Json& json) {
   s.wall_share.render_s = number(share.at("render_s"));
   s.wall_share.detector_s = number(share.at("detector_s"));
   s.wall_share.packing_s = number(share.at("packing_s"));
+  if (json.contains("provenance")) s.provenance = provenance_from(json.at("provenance"));
   return s;
 }
 
@@ -232,6 +233,7 @@ std::string summary_json(const Summary& s, const std::vector<WaypointRow>& waypo
         {"render_s", s.wall_share.render_s},
         {"detector_s", s.wall_share.detector_s},
         {"packing_s", s.wall_share.packing_s}}},
+      {"provenance", json_of(s.provenance)},
   };
   // Text that is not UTF-8 (a library's own name for itself) is written with replacement characters, never refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -70,14 +70,22 @@ class PacketLogWriter {
   std::unique_ptr<Log> log_;
 };
 
+/// Two events that stand one after the other although their numbers do not follow: events between them were removed.
+struct EventGap {
+  std::uint64_t offset = 0;  ///< of the second in the file
+  std::int64_t before = 0, after = 0;
+};
+
 struct PacketLog {
   std::vector<PacketRecord> records;               ///< in the order of the file
   std::vector<std::vector<std::uint8_t>> recipes;  ///< as encoded
+  std::uint64_t bytes = 0;                         ///< size of the file
   bool cut_short = false;                          ///< the file ends within an event, as that of a killed run may
+  std::optional<EventGap> gap;                     ///< the first one
 };
 
-/// Reads all packets of a log; events of other channels are passed over. Throws std::runtime_error that names the file
-/// for one that cannot be read, that is no LCM log, and for a record that is damaged.
+/// Reads all packets of a log; events of other channels are passed over. Throws std::runtime_error that names a file
+/// that cannot be read, and DamagedLog (lcm_log_reader.h) for one that is not an LCM log or holds a damaged record.
 [[nodiscard]] PacketLog read_packet_log(const std::filesystem::path& file);
 
 }  // namespace vbar::twins

@@ -15,7 +15,7 @@ RecordedLog::RecordedLog(const std::filesystem::path& file, const Selection& sel
     deliveries_.push_back({record.time, std::move(record.packet)});
   }
   if (deliveries_.empty())
-    throw std::runtime_error(file.string() + ": holds no packet of the sensor that it shall play");
+    throw std::runtime_error(file.string() + ": contains no packet of the sensor to be replayed");
   std::stable_sort(deliveries_.begin(), deliveries_.end(),
                    [](const Delivery& a, const Delivery& b) { return a.time < b.time; });
 }

@@ -133,12 +133,12 @@ std::string error_of(const std::filesystem::path& file) {
 TEST_F(PacketLogFile, BadFilesAreNamed) {
   EXPECT_EQ(error_of(file_), file_.string() + ": no such file");
   std::ofstream(file_) << "[mission]\n";
-  EXPECT_EQ(error_of(file_), file_.string() + ": no LCM log");
+  EXPECT_EQ(error_of(file_), file_.string() + ": byte 0: not an LCM log");
   write(file_, {some_records()[0]});
   std::string bytes = content();
   bytes[39] = static_cast<char>(bytes[39] ^ 1);  // first byte of the record: its type hash
   std::ofstream(file_, std::ios::binary) << bytes;
-  EXPECT_EQ(error_of(file_), file_.string() + ": event 0 is a damaged packet record");
+  EXPECT_EQ(error_of(file_), file_.string() + ": byte 0: a damaged packet record");
   EXPECT_THROW(PacketLogWriter("/no/such/folder/x.lcmlog"), std::runtime_error);
 }
 
@@ -149,7 +149,7 @@ TEST_F(PacketLogFile, RecordThatClaimsTooManyBytesIsRefused) {
   for (const int claimed : {0x7F, 0xFF}) {  // enormous and negative
     bytes[39 + 25] = static_cast<char>(claimed);
     std::ofstream(file_, std::ios::binary) << bytes;
-    EXPECT_EQ(error_of(file_), file_.string() + ": event 0 is a damaged packet record");
+    EXPECT_EQ(error_of(file_), file_.string() + ": byte 0: a damaged packet record");
   }
 }
 
