@@ -17,10 +17,6 @@ say "the second compiler, all warnings errors, and unit tests under its address 
 cmake --preset asan --log-level=WARNING
 cmake --build --preset asan --parallel --target flight_code vbar unit_tests
 ctest --preset asan --parallel 2 --label-regex unit
-say "a minute of fuzzing: the decoder of receiver bytes"
-cmake --preset fuzz --log-level=WARNING
-cmake --build --preset fuzz --parallel
-found=$(mktemp -d)
-trap 'rm -rf "$found"' EXIT
-build/fuzz/tests/fuzz/vbar_fuzz_receiver -max_total_time=60 -print_final_stats=1 -verbosity=0 "$found" tests/fuzz/corpus/receiver
+say "fuzzing of every decoder and loader"
+ci/fuzz.sh 10
 say "all passed"

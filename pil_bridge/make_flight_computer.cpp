@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pil_bridge/byte_channels.h"
+#include "pil_bridge/guarded_process.h"
 #include "pil_bridge/in_process.h"
 #include "pil_bridge/remote_computer.h"
 #include "pil_bridge/stream_transport.h"
@@ -241,9 +242,13 @@ std::unique_ptr<FlightComputer> make_board(const FlightComputerOptions& options)
 }
 
 std::unique_ptr<FlightComputer> make_linked_or_loaded(const FlightComputerOptions& options) {
-  auto article = options.library.empty() ? options.article : load_test_article(options.library);
-  if (!article) throw FlightComputerError("in_process: this program is linked with no flight software; name a library");
-  return make_in_process(std::move(article), options.spacecraft);
+  if (!options.library.empty()) {
+    const auto make = [&] { return make_in_process(load_test_article(options.library), options.spacecraft); };
+    return make_guarded(make, "flight_computer.library '" + options.library + "'", options.library_step_limit);
+  }
+  if (!options.article)
+    throw FlightComputerError("in_process: this program is linked with no flight software; name a library");
+  return make_in_process(options.article, options.spacecraft);
 }
 
 }  // namespace

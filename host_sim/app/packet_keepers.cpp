@@ -29,7 +29,7 @@ class PacketKeepers::Log final : public PacketObserver {
   void on_recipe(fsw::GpsTime time, std::span<const std::uint8_t> recipe) override {
     if (images_ == mission::ImagesInLog::kRecipes) writer_.write_recipe(time, recipe);
   }
-  void flush() { writer_.flush(); }
+  void finish() { writer_.finish(); }
 
  private:
   twins::camera::RecipeLogWriter writer_;
@@ -71,8 +71,8 @@ PacketKeepers::PacketKeepers(const mission::Mission& mission, const std::filesys
 
 PacketKeepers::~PacketKeepers() = default;
 
-void PacketKeepers::flush() {
-  log_->flush();
+void PacketKeepers::finish() {
+  log_->finish();
 }
 
 std::string PacketKeepers::commands_sha256() const {

@@ -22,8 +22,8 @@ class PacketKeepers {
 
   [[nodiscard]] std::span<PacketObserver* const> observers() const { return observers_; }
 
-  /// Everything is in the files. Throws std::runtime_error that names the one that takes no more.
-  void flush();
+  /// The run has ended, and everything is in the files. Throws std::runtime_error that names the one that takes no more.
+  void finish();
 
   /// Of the maneuver commands, and of all telemetry, so far.
   [[nodiscard]] std::string commands_sha256() const;

@@ -58,13 +58,17 @@ std::optional<Verdict> verdict_on_log(const std::filesystem::path& path, const t
   }
   if (const auto step = missing_step(steps))
     return Verdict{kThinnedLog, fmt::format("{}: records are missing: of step {}", file, *step)};
+  if (log.events_at_end && log.events != *log.events_at_end) {
+    return Verdict{kThinnedLog, fmt::format("{}: records are missing: {} events, its end states {}", file, log.events,
+                                            *log.events_at_end)};
+  }
   if (!has_ended(summary)) return std::nullopt;
   const std::uint64_t flown = summary.flight_step.count;
   if (log.records.empty() && flown > 0)
     return Verdict{kEmptyLog, fmt::format("{}: the log is empty, the run had {} steps", file, flown)};
-  if (log.cut_short || steps.size() < flown) return cut(file, steps, flown);
-  const auto& written = summary.provenance.packet_log;
-  if (written && log.bytes < written->bytes) return cut(file, steps, flown);
+  const auto& written = summary.provenance.packet_log;  // none in a folder of an earlier version
+  if (log.cut_short || steps.size() < flown || (written && summary.complete && !log.events_at_end))
+    return cut(file, steps, flown);
   if (steps.size() > flown || !has_outputs_of(summary, steps)) {
     return Verdict{kForeignLog, fmt::format("{}: the log holds other outputs than the summary states (SHA-256)", file)};
   }

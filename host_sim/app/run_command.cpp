@@ -69,7 +69,7 @@ std::optional<std::string> fly(const mission::Mission& mission, const std::files
   std::optional<std::string> trouble;
   try {
     if (!simulation.run()) trouble = kInterruption;
-    keepers.flush();
+    keepers.finish();
   } catch (const std::exception& error) {
     trouble = error.what();
   }

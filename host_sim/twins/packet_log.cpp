@@ -117,6 +117,13 @@ void take(LoggedEvent& event, const std::filesystem::path& file, PacketLog& log)
   if (event.channel == kPacketChannel) log.records.push_back(record_of(event, file));
   if (event.channel == kTilesChannel) log.records.push_back(tiles_of(event, file));
   if (event.channel == kRecipeChannel) log.recipes.push_back(std::move(event.data));
+  if (event.channel != kEndChannel) {
+    ++log.events;
+  } else if (event.data.size() == sizeof log.events) {
+    log.events_at_end = fsw::packets::read_big_endian<std::uint64_t>(event.data, 0);
+  } else {
+    fail(file, event, "a damaged end");
+  }
 }
 
 }  // namespace
@@ -169,9 +176,14 @@ void PacketLogWriter::write_event(fsw::GpsTime time, LcmEvent event) {
   raw.data = event.data.data();
   errno = 0;
   if (lcm_eventlog_write_event(log_->handle.get(), &raw) != 0) throw files::write_error(log_->file);
+  ++events_;
+  last_ = time;
 }
 
-void PacketLogWriter::flush() {
+void PacketLogWriter::finish() {
+  std::vector<std::uint8_t> count(sizeof events_);
+  fsw::packets::write_big_endian(events_, std::span(count), 0);
+  write_event(last_, {kEndChannel, std::move(count)});
   errno = 0;
   if (std::fflush(log_->handle->f) != 0) throw files::write_error(log_->file);
 }
@@ -179,9 +191,9 @@ void PacketLogWriter::flush() {
 PacketLog read_packet_log(const std::filesystem::path& file) {
   LcmLogReader reader(file);
   PacketLog log;
-  std::optional<std::int64_t> before;
+  std::int64_t before = -1;
   while (auto event = reader.next()) {
-    if (before && event->number != *before + 1 && !log.gap) log.gap = {event->offset, *before, event->number};
+    if (event->number != before + 1 && !log.gap) log.gap = {event->offset, before, event->number};
     before = event->number;
     take(*event, file, log);
   }

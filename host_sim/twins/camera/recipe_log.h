@@ -36,7 +36,7 @@ class RecipeLogWriter {
   void end_step();
 
   /// As PacketLogWriter.
-  void flush() { writer_.flush(); }
+  void finish() { writer_.finish(); }
 
  private:
   bool joins_run(const PacketRecord& record);

@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import struct
@@ -247,12 +248,16 @@ class Provenance(Evidence):
 
         def edit(data):
             text = (data / file).read_text()
-            (data / file).write_text(text.replace("6378136.3", "6505699.0"))
+            (data / file).write_text(re.sub(r"(?m)^(2 0 -4\.8)", r"2 0 -4.9", text))
 
         for change in (cut, edit):
-            result = self.with_data(change, "run", MISSION, "--out", self.folder / "run", "--set", SHORT, "--force")
-            self.expect(result, FAILED, str(file))
-            self.assertFalse(summary_of(self.folder / "run")["complete"])
+            with self.subTest(change.__name__):
+                self.refuse_data(change, file)
+
+    def refuse_data(self, change, file):
+        result = self.with_data(change, "run", MISSION, "--out", self.folder / "run", "--set", SHORT, "--force")
+        self.expect(result, FAILED, str(file))
+        self.assertFalse(summary_of(self.folder / "run")["complete"])
 
     def test_a_replay_says_what_has_changed(self):
         def edit(data):
