@@ -57,7 +57,7 @@ TEST_F(RecordedLogFile, LogWithoutThePacketsIsAnError) {
     const RecordedLog source(file_, {1, fsw::packets::Apid::kIdealNavigation});
     ADD_FAILURE() << "an empty source";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(), file_.string() + ": holds no packet of the sensor that it shall play");
+    EXPECT_EQ(error.what(), file_.string() + ": contains no packet of the sensor to be replayed");
   }
   EXPECT_THROW(RecordedLog("no/such.lcmlog", {1, fsw::packets::Apid::kIdealNavigation}), std::runtime_error);
 }
