@@ -273,6 +273,36 @@ class Provenance(Evidence):
         self.expect(vbar("replay", copy), DONE, "note:", "mission.toml differs")
 
 
+class FaultyLibrary(Evidence):
+    """Foreign flight software that crashes or hangs ends the run with one sentence, and its record says so."""
+
+    LIBRARY = BINARY / "tests" / "unit" / "pil_bridge" / "libvbar_article_with_faults.so"
+
+    def settings(self, fault):
+        """`fault`: as numbered in article_with_faults.c."""
+        if missing(self.LIBRARY):
+            self.skipTest(missing(self.LIBRARY))
+        return overrides(f"flight_computer.library={self.LIBRARY}", f"spacecraft.servicer.number={fault}",
+                         "spacecraft.target.number=9")
+
+    def test_a_crash(self):
+        folder = self.folder / "crash"
+        result = vbar("run", MISSION, "--out", folder, *self.settings(1))
+        self.expect(result, FAILED, "crashed at step 0: Segmentation fault")
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertIn("crashed at step 0", summary_of(folder)["incomplete_reason"])
+
+    def test_a_hang_ends_a_second_after_ctrl_c(self):
+        folder = self.folder / "hang"
+        run = start("run", MISSION, "--out", folder, *self.settings(2))
+        time.sleep(2)
+        run.send_signal(signal.SIGINT)
+        _, errors = run.communicate(timeout=10)
+        self.assertEqual(run.returncode, FAILED)
+        self.assertIn("did not return at step 0", errors)
+        self.assertIn("did not return at step 0", summary_of(folder)["incomplete_reason"])
+
+
 class CommandLine(Evidence):
     """What a user types."""
 
