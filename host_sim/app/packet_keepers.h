@@ -22,7 +22,8 @@ class PacketKeepers {
 
   [[nodiscard]] std::span<PacketObserver* const> observers() const { return observers_; }
 
-  /// The run has ended, and everything is in the files. Throws std::runtime_error that names the one that takes no more.
+  /// The run has ended, and everything is in the files. Throws std::runtime_error that names the one that takes no
+  /// more.
   void finish();
 
   /// Of the maneuver commands, and of all telemetry, so far.
