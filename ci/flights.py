@@ -7,7 +7,7 @@ ZYNQ = ["flight_computer.target=zynq_qemu", "flight_computer.link=udp"]
 
 def fly(build, root, mission, folder, seed=None, overrides=()):
     """Its summary; ends the script where it fails."""
-    command = [str(build / "vbar"), "run", mission, "--out", str(folder)]
+    command = [str(build / "vbar"), "run", mission, "--force", "--out", str(folder)]
     if seed is not None:
         command += ["--seed", str(seed)]
     for override in overrides:

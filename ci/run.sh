@@ -9,6 +9,6 @@ cmake --preset host --log-level=WARNING -DVBAR_TESTS=OFF
 cmake --build --preset host
 ci/build.sh zynq
 vbar=build/host/vbar
-"$vbar" run missions/ideal_navigation.toml --out runs/ideal_navigation-sil
-"$vbar" run missions/ideal_navigation.toml --set flight_computer.target=zynq_qemu --out runs/ideal_navigation-pil
+"$vbar" run missions/ideal_navigation.toml --force --out runs/ideal_navigation-sil
+"$vbar" run missions/ideal_navigation.toml --set flight_computer.target=zynq_qemu --force --out runs/ideal_navigation-pil
 "$vbar" report runs/ideal_navigation-sil runs/ideal_navigation-pil

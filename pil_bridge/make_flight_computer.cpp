@@ -10,6 +10,7 @@
 
 #include "host_sim/io/byte_channels.h"
 #include "host_sim/io/udp_socket.h"
+#include "pil_bridge/guarded_process.h"
 #include "pil_bridge/in_process.h"
 #include "pil_bridge/remote_computer.h"
 #include "pil_bridge/stream_transport.h"
@@ -117,21 +118,35 @@ std::vector<io::FileDescriptor> only(io::FileDescriptor descriptor) {
   return list;
 }
 
-/// `options.image`, or what the build put at `beside` relative to the running program.
-std::string find_image(const FlightComputerOptions& options, const std::string& beside, const std::string& preset) {
+/// Where the build puts an image, relative to the running program, and the CMake preset that builds it.
+struct BuiltImage {
+  const char* beside;
+  const char* preset;
+};
+
+BuiltImage built_image(Target target) {
+  if (target == Target::kZynqQemu) return {"../zynq/vbar_zynq7000.elf", "zynq"};
+  if (target == Target::kZynqLinuxQemu) return {"../zynq-linux/vbar_flight", "zynq-linux"};
+  return {"vbar_flight", "host"};
+}
+
+/// `options.image`, or what the build made.
+std::string find_image(const FlightComputerOptions& options) {
+  const auto [beside, preset] = built_image(options.target);
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::path image = options.image.empty() ? fs::read_symlink("/proc/self/exe", error).parent_path() / beside
                                                : fs::path(options.image);
   if (!fs::is_regular_file(image, error)) {
     throw FlightComputerError("flight computer " + std::string(name_of(options.target)) + ": there is no image '" +
-                              image.lexically_normal().string() + "' (built by the CMake preset '" + preset + "')");
+                              image.lexically_normal().string() + "' (built by the CMake preset '" + preset +
+                              "': cmake --build --preset " + preset + ")");
   }
   return image.lexically_normal().string();
 }
 
 std::unique_ptr<FlightComputer> make_host_process(const FlightComputerOptions& options) {
-  const std::string image = find_image(options, "vbar_flight", "host");
+  const std::string image = find_image(options);
   ChildLink link = make_child_link(options);
   std::vector<std::string> arguments{image};
   arguments.insert(arguments.end(), link.flight_arguments.begin(), link.flight_arguments.end());
@@ -142,7 +157,7 @@ std::unique_ptr<FlightComputer> make_host_process(const FlightComputerOptions& o
 }
 
 std::unique_ptr<FlightComputer> make_zynq_linux_qemu(const FlightComputerOptions& options) {
-  const std::string image = find_image(options, "../zynq-linux/vbar_flight", "zynq-linux");
+  const std::string image = find_image(options);
   ChildLink link = make_child_link(options);
   RemoteParts parts = parts_for(options);
   parts.process = start(linux_arm_qemu(image, link.flight_arguments), only(std::move(link.child_end)));
@@ -174,7 +189,7 @@ std::unique_ptr<FlightComputer> make_zynq_qemu(const FlightComputerOptions& opti
                               "; accepted: " + std::to_string(kLeastIcountShift) + " to " +
                               std::to_string(kGreatestIcountShift));
   }
-  const std::string image = find_image(options, "../zynq/vbar_zynq7000.elf", "zynq");
+  const std::string image = find_image(options);
   if (options.link == LinkKind::kPty) throw FlightComputerError("zynq_qemu takes link serial or udp, not pty");
   if (options.link == LinkKind::kUdp) return make_zynq_qemu_over_udp(options, image);
   auto [ours, theirs] = io::make_socket_pair();
@@ -228,9 +243,13 @@ std::unique_ptr<FlightComputer> make_board(const FlightComputerOptions& options)
 }
 
 std::unique_ptr<FlightComputer> make_linked_or_loaded(const FlightComputerOptions& options) {
-  auto article = options.library.empty() ? options.article : load_test_article(options.library);
-  if (!article) throw FlightComputerError("in_process: this program is linked with no flight software; name a library");
-  return make_in_process(std::move(article), options.spacecraft);
+  if (!options.library.empty()) {
+    const auto make = [&] { return make_in_process(load_test_article(options.library), options.spacecraft); };
+    return make_guarded(make, "flight_computer.library '" + options.library + "'", options.library_step_limit);
+  }
+  if (!options.article)
+    throw FlightComputerError("in_process: this program is linked with no flight software; name a library");
+  return make_in_process(options.article, options.spacecraft);
 }
 
 }  // namespace
@@ -246,6 +265,20 @@ std::string_view name_of(Target target) {
 }
 std::string_view name_of(LinkKind link) {
   return name_in(kLinks, link);
+}
+
+std::string software_file(const FlightComputerOptions& options) {
+  switch (options.target) {
+    case Target::kInProcess:
+      return options.library;
+    case Target::kBoard:
+      return {};
+    case Target::kHostProcess:
+    case Target::kZynqQemu:
+    case Target::kZynqLinuxQemu:
+      break;
+  }
+  return find_image(options);
 }
 
 std::unique_ptr<FlightComputer> make_flight_computer(const FlightComputerOptions& options) {

@@ -1,6 +1,7 @@
 #pragma once
 // One place that knows every kind of flight computer, so that a mission file's words are enough to get one.
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -42,6 +43,8 @@ struct FlightComputerOptions {
   /// in_process: the test article (`linked_test_article()`), unless `library` names a shared library.
   std::shared_ptr<const TestArticle> article;
   std::string library;
+  /// A library runs in a child process (guarded_process.h), which is given up if a step takes longer.
+  std::chrono::milliseconds library_step_limit{60'000};
 
   /// host_process, zynq_qemu, zynq_linux_qemu: the program or image to run. Empty: the one that the build put beside
   /// the running program (`vbar_flight`, `../zynq/vbar_zynq7000.elf`, `../zynq-linux/vbar_flight`).
@@ -57,6 +60,10 @@ struct FlightComputerOptions {
   BarrierTiming timing;
   LinkFaults faults;
 };
+
+/// The library, program or image that make_flight_computer would fly; empty for a linked test article and for a board.
+/// Throws FlightComputerError if there is no such image.
+std::string software_file(const FlightComputerOptions& options);
 
 /// Starts or finds the flight computer and waits until it answers. Throws FlightComputerError.
 std::unique_ptr<FlightComputer> make_flight_computer(const FlightComputerOptions& options);

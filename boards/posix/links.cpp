@@ -1,6 +1,7 @@
 #include "boards/posix/links.h"
 
 #include <cerrno>
+#include <ctime>
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -39,13 +40,10 @@ bool write_all(int fd, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-bool same_address(const sockaddr_in& a, const sockaddr_in& b) {
-  return a.sin_addr.s_addr == b.sin_addr.s_addr && a.sin_port == b.sin_port;
-}
-
-bool is_hello(std::span<const std::uint8_t> datagram) {
-  const auto frame = fsw::link::parse_frame(datagram);
-  return frame.ok() && frame.value().header.type == fsw::link::FrameType::kHello;
+std::uint64_t now_ms() {
+  timespec now{};
+  (void)::clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<std::uint64_t>(now.tv_sec) * 1000U + static_cast<std::uint64_t>(now.tv_nsec) / 1'000'000U;
 }
 
 }  // namespace
@@ -78,18 +76,19 @@ LinkEnd StreamLink::serve(FlightExecutive& executive) {
 
 void DatagramLink::send(void* context, std::span<const std::uint8_t> frame) {
   auto* const link = static_cast<DatagramLink*>(context);
-  if (!link->has_peer_) return;
-  const auto* const address = reinterpret_cast<const sockaddr*>(&link->peer_);
+  if (!link->peer_is_fixed_ && !link->guard_.has_peer()) return;
+  const DatagramSender& peer = link->peer_is_fixed_ ? link->fixed_peer_ : link->guard_.peer();
+  const auto* const address = reinterpret_cast<const sockaddr*>(&peer.address);
   // What the system does not take is lost like any datagram, and asked for again.
-  while (::sendto(link->fd_, frame.data(), frame.size(), 0, address, sizeof link->peer_) < 0 && errno == EINTR) {
+  while (::sendto(link->fd_, frame.data(), frame.size(), 0, address, sizeof peer.address) < 0 && errno == EINTR) {
   }
 }
 
 LinkEnd DatagramLink::serve(FlightExecutive& executive) {
   for (;;) {
-    sockaddr_in sender{};
-    socklen_t length = sizeof sender;
-    auto* const address = reinterpret_cast<sockaddr*>(&sender);
+    DatagramSender sender;
+    socklen_t length = sizeof sender.address;
+    auto* const address = reinterpret_cast<sockaddr*>(&sender.address);
     const ssize_t count = ::recvfrom(fd_, received_.data(), received_.size(), 0, address, &length);
     if (count < 0) {
       // An earlier datagram of ours found nobody at home: no reason to stop listening.
@@ -97,7 +96,7 @@ LinkEnd DatagramLink::serve(FlightExecutive& executive) {
       return LinkEnd::kFailed;
     }
     const auto datagram = std::span<const std::uint8_t>(received_).first(static_cast<std::size_t>(count));
-    if (!accepts(sender, datagram)) {
+    if (!admits(sender, datagram)) {
       executive.count_rejected(1);
     } else if (executive.on_frame(datagram) == Activity::kGoodbye) {
       return LinkEnd::kGoodbye;
@@ -105,12 +104,8 @@ LinkEnd DatagramLink::serve(FlightExecutive& executive) {
   }
 }
 
-bool DatagramLink::accepts(const sockaddr_in& sender, std::span<const std::uint8_t> datagram) {
-  if (has_peer_ && same_address(sender, peer_)) return true;
-  if (peer_is_fixed_ || !is_hello(datagram)) return false;
-  peer_ = sender;
-  has_peer_ = true;
-  return true;
+bool DatagramLink::admits(const DatagramSender& sender, std::span<const std::uint8_t> datagram) {
+  return peer_is_fixed_ ? sender == fixed_peer_ : guard_.admits(sender, datagram, now_ms());
 }
 
 }  // namespace vbar::boards::posix

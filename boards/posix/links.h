@@ -10,6 +10,7 @@
 #include <netinet/in.h>
 
 #include "boards/common/flight_executive.h"
+#include "boards/common/session_guard.h"
 #include "fsw/link/cobs.h"
 
 namespace vbar::boards::posix {
@@ -39,25 +40,37 @@ class StreamLink {
   std::array<std::uint8_t, fsw::link::kMaxCobsFrameBytes> coded_{};
 };
 
+/// The address and port that a datagram came from.
+struct DatagramSender {
+  sockaddr_in address{};
+
+  friend bool operator==(const DatagramSender& a, const DatagramSender& b) {
+    return a.address.sin_addr.s_addr == b.address.sin_addr.s_addr && a.address.sin_port == b.address.sin_port;
+  }
+};
+
 class DatagramLink {
  public:
-  /// `fd`, a bound UDP socket, stays the caller's. Serves whoever sends a valid kHello; everybody else is a stranger.
-  explicit DatagramLink(int fd) : fd_(fd) {}
+  static constexpr std::uint64_t kSilence_ms = 5'000;  ///< as on the Zynq
+
+  /// `fd`, a bound UDP socket, stays the caller's. Serves the first who sends a valid kHello, and another only once
+  /// that one has been silent.
+  explicit DatagramLink(int fd, std::uint64_t silence_ms = kSilence_ms) : fd_(fd), guard_(silence_ms) {}
   /// Serves `peer` alone.
-  DatagramLink(int fd, const sockaddr_in& peer) : fd_(fd), peer_(peer), has_peer_(true), peer_is_fixed_(true) {}
+  DatagramLink(int fd, const sockaddr_in& peer) : fd_(fd), fixed_peer_{peer}, peer_is_fixed_(true) {}
 
   /// `Platform::send`, with a DatagramLink as context.
   static void send(void* context, std::span<const std::uint8_t> frame);
 
-  /// Feeds `executive` until the link ends. Datagrams of strangers are ignored and counted.
+  /// Feeds `executive` until the link ends. Datagrams of other senders are counted as rejected.
   LinkEnd serve(FlightExecutive& executive);
 
  private:
-  [[nodiscard]] bool accepts(const sockaddr_in& sender, std::span<const std::uint8_t> datagram);
+  [[nodiscard]] bool admits(const DatagramSender& sender, std::span<const std::uint8_t> datagram);
 
   int fd_;
-  sockaddr_in peer_{};
-  bool has_peer_ = false;
+  SessionGuard<DatagramSender> guard_{kSilence_ms};
+  DatagramSender fixed_peer_;
   bool peer_is_fixed_ = false;
   // One byte more than a frame may have, so that a longer datagram is seen to be longer.
   std::array<std::uint8_t, fsw::link::kMaxFrameBytes + 1> received_{};

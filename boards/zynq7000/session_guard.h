@@ -1,14 +1,9 @@
 #pragma once
-// Who may speak to the flight software. A board has two interfaces, and anybody may send to them; a session has one
-// peer.
-//
-// The first sender of a valid kHello becomes the peer. Frames of anybody else are refused and counted until the session
-// ends: with its kGoodbye, or, so that a host that died does not lock a board, once the peer has been silent for a
-// while and somebody else says hello.
+// The senders of this board, and the guard that admits one of them to a session (boards/common/session_guard.h).
 
 #include <cstdint>
-#include <span>
 
+#include "boards/common/session_guard.h"
 #include "boards/zynq7000/udp_endpoint.h"
 
 namespace vbar::boards::zynq7000 {
@@ -27,28 +22,6 @@ struct Sender {
   }
 };
 
-class SessionGuard {
- public:
-  /// `silence` in the unit of the times given to `admits`: how long a peer may say nothing before another may take
-  /// over.
-  explicit SessionGuard(std::uint64_t silence) : silence_(silence) {}
-
-  /// True if the frame, received at `now`, is for the flight software. A kHello that is admitted makes its sender the
-  /// peer.
-  bool admits(const Sender& sender, std::span<const std::uint8_t> frame, std::uint64_t now);
-
-  /// The peer said goodbye.
-  void end_session() { has_peer_ = false; }
-
-  [[nodiscard]] bool has_peer() const { return has_peer_; }
-  /// Where answers go; meaningful while has_peer().
-  [[nodiscard]] const Sender& peer() const { return peer_; }
-
- private:
-  std::uint64_t silence_;
-  std::uint64_t last_heard_ = 0;
-  Sender peer_;
-  bool has_peer_ = false;
-};
+using SessionGuard = boards::SessionGuard<Sender>;
 
 }  // namespace vbar::boards::zynq7000

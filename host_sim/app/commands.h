@@ -1,6 +1,5 @@
 #pragma once
-// What `vbar` can be asked to do. Each returns the program's exit code: 0 done, 1 not (said on standard error), 2 done
-// but the result is not what was hoped for (outputs differ).
+// The commands of `vbar`. Each returns the program's exit code (exit_codes.h).
 
 #include <filesystem>
 #include <string>
@@ -14,28 +13,40 @@ inline constexpr const char* kOverridesCopy = "overrides.txt";
 
 struct RunOptions {
   std::filesystem::path mission;
-  std::filesystem::path out;           ///< empty: runs/<mission>-<seed>
+  std::filesystem::path out;           ///< empty: report::default_run_folder
   std::vector<std::string> overrides;  ///< "path=value"
+  bool force = false;                  ///< a run that `out` holds is replaced
+  bool check = false;                  ///< only the mission file is read
+  bool quiet = false;                  ///< nothing is printed but errors
 };
 int run_command(const RunOptions& options);
 
 struct PropagateOptions {
   std::filesystem::path mission;
-  std::filesystem::path out;           ///< empty: runs/<mission>-truth
-  bool oem = false;                    ///< CCSDS orbit ephemeris messages too
+  std::filesystem::path out;  ///< empty: runs/<mission>-truth
+  bool oem = false;           ///< CCSDS orbit ephemeris messages too
+  bool quiet = false;
   std::vector<std::string> overrides;  ///< "path=value"
 };
 int propagate_command(const PropagateOptions& options);
 
 struct ReplayOptions {
   std::filesystem::path run_folder;
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides;  ///< of the flight computer only
+  bool trust = false;                  ///< libraries, devices and addresses that the folder names may be used
+  bool quiet = false;
 };
 int replay_command(const ReplayOptions& options);
 
-/// Of one run: its report.html. Of several: a comparison in `out`, beside the first run unless given.
-int report_command(const std::vector<std::filesystem::path>& run_folders, const std::filesystem::path& out);
+struct ReportOptions {
+  std::vector<std::filesystem::path> run_folders;
+  std::filesystem::path out;       ///< of the comparison; empty: beside the first run
+  bool fail_if_different = false;  ///< kDifferent if a run's outputs are not those of the first
+};
+/// Of one run: its report.html. Of several: a comparison.
+int report_command(const ReportOptions& options);
 
+/// `folder` empty: mission::missions_directory().
 int missions_command(const std::filesystem::path& folder);
 
 }  // namespace vbar::app

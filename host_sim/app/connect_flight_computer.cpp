@@ -16,7 +16,9 @@ const mission::Spacecraft& flying_spacecraft(const mission::Mission& mission) {
   return *flying;
 }
 
-std::unique_ptr<pil::FlightComputer> connect_flight_computer(const mission::Spacecraft& spacecraft) {
+namespace {
+
+pil::FlightComputerOptions options_for(const mission::Spacecraft& spacecraft) {
   const mission::FlightComputer& wanted = *spacecraft.flight_computer;
   pil::FlightComputerOptions options;
   options.target = pil::target_from_name(mission::name_of(wanted.target));
@@ -31,7 +33,21 @@ std::unique_ptr<pil::FlightComputer> connect_flight_computer(const mission::Spac
   } else if (wanted.baud) {
     options.paced_bits_per_s = *wanted.baud;
   }
-  return pil::make_flight_computer(options);
+  return options;
+}
+
+}  // namespace
+
+std::string flight_software_file(const mission::Spacecraft& spacecraft) {
+  try {
+    return pil::software_file(options_for(spacecraft));
+  } catch (const pil::FlightComputerError&) {
+    return {};  // connect_flight_computer says so
+  }
+}
+
+std::unique_ptr<pil::FlightComputer> connect_flight_computer(const mission::Spacecraft& spacecraft) {
+  return pil::make_flight_computer(options_for(spacecraft));
 }
 
 }  // namespace vbar::app

@@ -11,6 +11,9 @@ namespace vbar::app {
 /// The first spacecraft of the mission that has a flight computer. Throws std::runtime_error if none has.
 const mission::Spacecraft& flying_spacecraft(const mission::Mission& mission);
 
+/// The library or image that it flies; empty if the flight software is in this program, on a board, or not found.
+std::string flight_software_file(const mission::Spacecraft& spacecraft);
+
 /// Throws pil::FlightComputerError.
 std::unique_ptr<pil::FlightComputer> connect_flight_computer(const mission::Spacecraft& spacecraft);
 

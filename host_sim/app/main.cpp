@@ -1,32 +1,96 @@
 // vbar: flies missions, replays their packets, reports on runs.
 
+#include <cerrno>
+#include <cstdio>
 #include <exception>
+#include <string_view>
+#include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "host_sim/app/build_info.h"
 #include "host_sim/app/commands.h"
+#include "host_sim/app/exit_codes.h"
+#include "host_sim/mission/mission_error.h"
+#include "host_sim/mission/nearest_name.h"
+#include "host_sim/report/run_lock.h"
 
 namespace {
 
+using namespace vbar::app;
+
 constexpr const char* kSetHelp =
     "a key of the mission file and its value, e.g. flight_computer.target=zynq_qemu; may be given again";
+constexpr const char* kMissionHelp = "mission file (TOML), or a name that vbar missions lists";
+constexpr const char* kQuietHelp = "print nothing but errors";
+
+/// One assignment for each --set, so that it never takes the mission for another.
+void add_set(CLI::App* command, std::vector<std::string>& overrides) {
+  command->add_option("--set", overrides, kSetHelp)->allow_extra_args(false);
+}
+
+/// A message for a first word that is not a command; empty if it is one, or an option.
+std::string unknown_command(const CLI::App& program, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == argv[1]) return {};
+    names.push_back(command->get_name());
+  }
+  const auto nearest = vbar::mission::nearest_name(argv[1], names);
+  return fmt::format("there is no command \"{}\"{}; vbar --help lists them", argv[1],
+                     nearest ? fmt::format(", did you mean {}?", *nearest) : "");
+}
+
+int complain(const char* what, int exit_code) {
+  std::fflush(stdout);
+  fmt::print(stderr, "vbar: {}\n", what);
+  return exit_code;
+}
+
+/// Parses the command line; the command runs as its callback.
+int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code) {
+  if (const std::string message = unknown_command(program, argc, argv); !message.empty())
+    return complain(message.c_str(), kRefused);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kDone : kRefused;
+  } catch (const vbar::mission::MissionError& error) {
+    return complain(error.what(), kRefused);
+  } catch (const vbar::report::FolderRefused& error) {
+    return complain(error.what(), kRefused);
+  } catch (const Refused& error) {
+    return complain(error.what(), kRefused);
+  } catch (const std::exception& error) {
+    return complain(error.what(), kFailed);
+  }
+  return exit_code;
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace vbar::app;
   CLI::App program{"Flight-software harness for spacecraft rendezvous and formation flying"};
   program.require_subcommand(1);
-  int exit_code = 0;
+  program.footer(kExitCodeHelp);
+  program.set_version_flag("--version", fmt::format("vbar {}, commit {}, {}, {}", build_version(), kBuildCommit,
+                                                    build_compiler(), build_type()));
+  int exit_code = kDone;
 
   RunOptions run;
-  std::uint64_t seed = 0;
+  std::int64_t seed = 0;
   CLI::App* run_app = program.add_subcommand("run", "fly a mission and leave a run folder");
-  run_app->add_option("mission", run.mission, "mission file (TOML)")->required();
-  const CLI::Option* seed_option = run_app->add_option("--seed", seed, "seed of every random stream (mission.seed)");
-  run_app->add_option("--out", run.out, "run folder; runs/<mission>-<seed> unless given");
-  run_app->add_option("--set", run.overrides, kSetHelp);
+  run_app->add_option("mission", run.mission, kMissionHelp)->required();
+  const CLI::Option* seed_option =
+      run_app->add_option("--seed", seed, "seed of every random stream (mission.seed)")->check(CLI::NonNegativeNumber);
+  run_app->add_option("--out", run.out, "run folder; by default runs/<mission>-<seed>, the next run .2, .3, ...");
+  run_app->add_flag("--force", run.force, "replace the run that the folder of --out holds");
+  run_app->add_flag("--check", run.check, "check the mission file and fly nothing");
+  run_app->add_flag("--quiet", run.quiet, kQuietHelp);
+  add_set(run_app, run.overrides);
   run_app->callback([&] {
     if (*seed_option) run.overrides.push_back("mission.seed=" + std::to_string(seed));
     exit_code = run_command(run);
@@ -35,39 +99,39 @@ int main(int argc, char** argv) {
   PropagateOptions propagate;
   CLI::App* propagate_app = program.add_subcommand(
       "propagate", "fly a mission's spacecraft without flight software and leave their ephemerides");
-  propagate_app->add_option("mission", propagate.mission, "mission file (TOML)")->required();
+  propagate_app->add_option("mission", propagate.mission, kMissionHelp)->required();
   propagate_app->add_option("--out", propagate.out, "folder; runs/<mission>-truth unless given");
   propagate_app->add_flag("--oem", propagate.oem, "write CCSDS orbit ephemeris messages as well");
-  propagate_app->add_option("--set", propagate.overrides, kSetHelp);
+  propagate_app->add_flag("--quiet", propagate.quiet, kQuietHelp);
+  add_set(propagate_app, propagate.overrides);
   propagate_app->callback([&] { exit_code = propagate_command(propagate); });
 
   ReplayOptions replay;
   CLI::App* replay_app =
       program.add_subcommand("replay", "feed a run's packets to a flight computer; are the outputs the same bits?");
   replay_app->add_option("run", replay.run_folder, "run folder")->required();
-  replay_app->add_option("--set", replay.overrides, kSetHelp);
+  replay_app->add_flag("--trust", replay.trust, "use a library, device or address that the run folder names");
+  replay_app->add_flag("--quiet", replay.quiet, kQuietHelp);
+  add_set(replay_app, replay.overrides);
   replay_app->callback([&] { exit_code = replay_command(replay); });
 
-  std::vector<std::filesystem::path> folders;
+  ReportOptions report;
   CLI::App* report_app = program.add_subcommand("report", "write the report of a run, or of several side by side");
-  report_app->add_option("run", folders, "run folders")->required();
-  std::filesystem::path report_out;
-  report_app->add_option("--out", report_out,
+  report_app->add_option("run", report.run_folders, "run folders")->required();
+  report_app->add_option("--out", report.out,
                          "file of the comparison; comparison.html beside the first run unless given");
-  report_app->callback([&] { exit_code = report_command(folders, report_out); });
+  report_app->add_flag("--fail-if-different", report.fail_if_different,
+                       "exit code 3 unless all runs gave the same outputs as the first");
+  report_app->callback([&] { exit_code = report_command(report); });
 
-  std::filesystem::path missions = "missions";
+  std::filesystem::path missions;
   CLI::App* missions_app = program.add_subcommand("missions", "what can be run, one line each");
   missions_app->add_option("folder", missions, "folder of mission files");
   missions_app->callback([&] { exit_code = missions_command(missions); });
 
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "vbar: {}\n", error.what());
-    return 1;
-  }
-  return exit_code;
+  const int result = parse_and_run(program, argc, argv, exit_code);
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return result;
+  const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
+  return complain(("standard output cannot be written" + reason).c_str(), result == kDone ? kFailed : result);
 }

@@ -29,6 +29,7 @@ class PacketKeepers::Log final : public RunObserver {
   void on_recipe(fsw::GpsTime time, std::span<const std::uint8_t> recipe) override {
     if (images_ == mission::ImagesInLog::kRecipes) writer_.write_recipe(time, recipe);
   }
+  void finish() { writer_.finish(); }
 
  private:
   twins::camera::RecipeLogWriter writer_;
@@ -69,6 +70,10 @@ PacketKeepers::PacketKeepers(const mission::Mission& mission, const std::filesys
 }
 
 PacketKeepers::~PacketKeepers() = default;
+
+void PacketKeepers::finish() {
+  log_->finish();
+}
 
 std::string PacketKeepers::commands_sha256() const {
   return hash_->get().commands_sha256();

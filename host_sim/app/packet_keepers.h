@@ -22,6 +22,10 @@ class PacketKeepers {
 
   [[nodiscard]] std::span<RunObserver* const> observers() const { return observers_; }
 
+  /// The run has ended, and everything is in the files. Throws std::runtime_error that names the one that takes no
+  /// more.
+  void finish();
+
   /// Of the maneuver commands, and of all telemetry, so far.
   [[nodiscard]] std::string commands_sha256() const;
   [[nodiscard]] std::string telemetry_sha256() const;

@@ -5,8 +5,8 @@
 
 namespace vbar::app {
 
-ProgressLine::ProgressLine(fsw::Duration total)
-    : total_(total), started_(Clock::now()), drawn_(started_), on_terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressLine::ProgressLine(fsw::Duration total, bool quiet)
+    : total_(total), started_(Clock::now()), drawn_(started_), on_terminal_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
   erase();

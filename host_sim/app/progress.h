@@ -9,8 +9,8 @@ namespace vbar::app {
 
 class ProgressLine {
  public:
-  /// Of a run that simulates `total`.
-  explicit ProgressLine(fsw::Duration total);
+  /// Of a run that simulates `total`; `quiet` draws nothing.
+  ProgressLine(fsw::Duration total, bool quiet);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;

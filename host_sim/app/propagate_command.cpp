@@ -6,9 +6,11 @@
 #include <fmt/core.h>
 
 #include "host_sim/app/commands.h"
+#include "host_sim/app/exit_codes.h"
 #include "host_sim/app/progress.h"
 #include "host_sim/app/propagation.h"
 #include "host_sim/app/stop_request.h"
+#include "host_sim/mission/catalogue.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/report/propagation_folder.h"
 #include "host_sim/report/propagation_summary.h"
@@ -29,8 +31,14 @@ fsw::GpsTime now() {
 }  // namespace
 
 int propagate_command(const PropagateOptions& options) {
-  const mission::Mission mission = sensors::load_mission(options.mission, options.overrides);
-  Propagation propagation(mission, mission::data_directory());
+  const mission::Mission mission = sensors::load_mission(mission::find_mission(options.mission), options.overrides);
+  Propagation propagation = [&] {
+    try {
+      return Propagation(mission, mission::data_directory());
+    } catch (const std::exception& error) {
+      throw Refused(error.what());  // nothing is written yet
+    }
+  }();
   report::PropagationFolder folder(options.out.empty() ? report::default_propagation_folder(mission.name) : options.out,
                                    mission.name);
   const report::OemFile::Span span{mission.start_time(), mission.end_time(), propagation.sampling_times().size(),
@@ -40,15 +48,15 @@ int propagate_command(const PropagateOptions& options) {
 
   report::PropagationRecord record;
   {
-    ProgressLine progress(mission.duration);
+    ProgressLine progress(mission.duration, options.quiet);
     record = propagation.run([&](std::size_t k, const report::EphemerisRow& row) { folder.append(k, row); },
                              [&](fsw::Duration simulated) { progress.update(simulated); }, stop_requested);
   }
   folder.finish(record);
-  fmt::print("{}ephemeris  {}\n", report::propagation_table(record), folder.path().string());
-  if (record.complete) return 0;
+  if (!options.quiet) fmt::print("{}ephemeris  {}\n", report::propagation_table(record), folder.path().string());
+  if (record.complete) return kDone;
   fmt::print(stderr, "vbar: {}: propagation incomplete: {}\n", folder.path().string(), record.incomplete_reason);
-  return 1;
+  return record.incomplete_reason == Propagation::kInterruption ? kInterrupted : kFailed;
 }
 
 }  // namespace vbar::app

@@ -10,6 +10,15 @@
 #include "host_sim/truth/earth/geodetic.h"
 
 namespace vbar::app {
+namespace {
+
+truth::TruthStatistics since(const truth::TruthStatistics& before, const truth::TruthStatistics& now) {
+  return {now.steps - before.steps, now.rejected_steps - before.rejected_steps,
+          now.force_evaluations - before.force_evaluations, now.edges_crossed - before.edges_crossed,
+          now.wall_s - before.wall_s};
+}
+
+}  // namespace
 
 /// Sums what drag takes from the semi-major axis: da/dt = 2 a^2 / GM (velocity . drag), by the trapezoidal rule over
 /// the sampling times. From the motion itself it could not be told: the field's tesserals move the mean semi-major axis
@@ -85,7 +94,7 @@ void Propagation::sample(std::vector<DecayMeter>& decay, const RowSink& sink, re
 
 report::PropagationRecord Propagation::run(const RowSink& sink, const std::function<void(fsw::Duration)>& progress,
                                            const std::function<bool()>& stop_requested) {
-  const auto started = std::chrono::steady_clock::now();
+  auto started = std::chrono::steady_clock::now();
   report::PropagationRecord record;
   record.mission = mission_.name;
   record.threads = mission_.truth.threads;
@@ -94,13 +103,20 @@ report::PropagationRecord Propagation::run(const RowSink& sink, const std::funct
     record.spacecraft.emplace_back().name = mission_.spacecraft[k].name;
     decay.emplace_back(truth_.data().gravity->gm());
   }
-  truth_.measure_force_times(true);
+  std::vector<truth::TruthStatistics> at_start(truth_index_.size());
+  truth::TruthStatistics total_at_start;
   try {
+    // What leads from the epoch to the start is not part of the span that is reported.
+    truth_.advance_to(mission_.start_time());
+    started = std::chrono::steady_clock::now();
+    for (std::size_t k = 0; k < truth_index_.size(); ++k) at_start[k] = truth_.statistics(truth_index_[k]);
+    total_at_start = truth_.statistics();
+    truth_.measure_force_times(true);
     record.complete = true;
     for (const fsw::GpsTime time : sampling_times()) {
       if (stop_requested && stop_requested()) {
         record.complete = false;
-        record.incomplete_reason = "interrupted";
+        record.incomplete_reason = kInterruption;
         break;
       }
       truth_.advance_to(time);
@@ -112,10 +128,10 @@ report::PropagationRecord Propagation::run(const RowSink& sink, const std::funct
     record.incomplete_reason = error.what();
   }
   for (std::size_t k = 0; k < truth_index_.size(); ++k) {
-    record.spacecraft[k].statistics = truth_.statistics(truth_index_[k]);
+    record.spacecraft[k].statistics = since(at_start[k], truth_.statistics(truth_index_[k]));
     record.spacecraft[k].semi_major_axis_change_by_drag_m = decay[k].change();
   }
-  record.total = truth_.statistics();
+  record.total = since(total_at_start, truth_.statistics());
   record.force_times = truth_.force_times();
   record.simulated_s = fsw::seconds(truth_.time() - mission_.start_time());
   record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

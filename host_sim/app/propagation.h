@@ -16,6 +16,9 @@ namespace vbar::app {
 
 class Propagation {
  public:
+  /// PropagationRecord::incomplete_reason of one that was stopped.
+  static constexpr const char* kInterruption = "interrupted";
+
   /// Told each row, in order of time and, at one time, of the mission's spacecraft.
   using RowSink = std::function<void(std::size_t spacecraft, const report::EphemerisRow& row)>;
 

@@ -1,58 +1,95 @@
 // vbar replay: the recorded packets of a run into a flight computer.
 
 #include <algorithm>
+#include <array>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
+#include "host_sim/app/flown_from.h"
+#include "host_sim/app/replay_log.h"
+#include "host_sim/app/stop_request.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/report/run_folder.h"
+#include "host_sim/report/summary_json.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/camera/recipe_log.h"
-#include "host_sim/twins/packet_log.h"
+#include "host_sim/twins/lcm_log_reader.h"
 
 namespace vbar::app {
 namespace {
 
+/// "library" of "flight_computer.library=x" or "spacecraft.servicer.flight_computer.library=x"; empty for another key.
+std::string_view flight_computer_key(std::string_view assignment) {
+  constexpr std::string_view kTable = "flight_computer.";
+  std::string_view path = assignment.substr(0, assignment.find('='));
+  if (path.starts_with("spacecraft.")) {
+    path.remove_prefix(std::string_view("spacecraft.").size());
+    path.remove_prefix(std::min(path.find('.'), path.size() - 1) + 1);
+  }
+  return path.starts_with(kTable) ? path.substr(kTable.size()) : std::string_view();
+}
+
+void refuse_overrides_without_effect(const std::vector<std::string>& overrides) {
+  for (const std::string& assignment : overrides) {
+    if (flight_computer_key(assignment).empty())
+      throw Refused("--set " + assignment + ": has no effect on a replay; accepted: keys of flight_computer");
+  }
+}
+
+std::vector<std::string> overrides_of_run(const std::filesystem::path& folder) {
+  std::vector<std::string> overrides;
+  std::ifstream lines(folder / kOverridesCopy);
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty()) overrides.push_back(line);
+  return overrides;
+}
+
+/// A folder may come from anywhere: what it names is neither loaded nor opened unless the user names or trusts it.
+void check_trust(const mission::FlightComputer& computer, const ReplayOptions& options) {
+  if (options.trust) return;
+  const bool is_board = computer.target == mission::FlightTarget::kBoard;
+  const bool is_serial = computer.link == mission::FlightLink::kSerial;
+  const std::array<std::pair<std::string_view, std::string>, 3> named{
+      {{"library", computer.library},
+       {"device", is_board && is_serial ? computer.device : ""},
+       {"address", is_board && !is_serial ? computer.address : ""}}};
+  for (const auto& [key, value] : named) {
+    const auto is_this = [&](const std::string& assignment) { return flight_computer_key(assignment) == key; };
+    if (value.empty() || std::ranges::any_of(options.overrides, is_this)) continue;
+    throw Refused(fmt::format("{}: names flight_computer.{} = \"{}\", which is used only with --trust, or with --set",
+                              options.run_folder.string(), key, value));
+  }
+}
+
 /// The mission as it was flown, with the overrides of then and, over them, those of now.
 mission::Mission mission_as_flown(const ReplayOptions& options) {
-  std::vector<std::string> overrides;
-  std::ifstream lines(options.run_folder / kOverridesCopy);
-  for (std::string line; std::getline(lines, line);) overrides.push_back(line);
+  refuse_overrides_without_effect(options.overrides);
+  std::vector<std::string> overrides = overrides_of_run(options.run_folder);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
-  return sensors::load_mission(options.run_folder / kMissionCopy, overrides);
-}
-
-struct RecordedStep {
-  std::vector<twins::PacketRecord> inputs;
-  std::vector<pil::Packet> outputs;
-};
-
-twins::PacketLog read_log(const std::filesystem::path& file) {
-  twins::PacketLog log = twins::read_packet_log(file);
-  if (log.cut_short) fmt::print(stderr, "vbar: {}: ends within a packet; replaying what is whole\n", file.string());
-  return log;
-}
-
-std::map<std::uint32_t, RecordedStep> steps_of(const twins::PacketLog& log) {
-  std::map<std::uint32_t, RecordedStep> steps;
-  for (const twins::PacketRecord& record : log.records) {
-    RecordedStep& step = steps[record.step];
-    if (record.to_flight) {
-      step.inputs.push_back(record);
-    } else {
-      step.outputs.push_back(record.packet);
-    }
+  mission::Mission mission = sensors::load_mission(options.run_folder / kMissionCopy, overrides);
+  try {
+    check_trust(*flying_spacecraft(mission).flight_computer, options);
+  } catch (const std::runtime_error& error) {
+    throw Refused(error.what());
   }
-  return steps;
+  return mission;
+}
+
+report::Summary read_summary(const std::filesystem::path& folder) {
+  try {
+    return report::read_summary(report::summary_file(folder));
+  } catch (const std::runtime_error& error) {
+    throw Refused(error.what());
+  }
 }
 
 /// What makes the images of the log again; none if it has no recipes.
@@ -78,36 +115,91 @@ std::vector<pil::Packet> packets_of(const std::vector<twins::PacketRecord>& reco
   return packets;
 }
 
-/// Where two answers part, or nothing.
-std::optional<std::string> difference(const std::vector<pil::Packet>& recorded, const std::vector<pil::Packet>& now) {
+/// Where two answers part, or nothing. `cut`: the recorded one may lack packets at its end.
+std::optional<std::string> difference(const std::vector<pil::Packet>& recorded, const std::vector<pil::Packet>& now,
+                                      bool cut) {
   for (std::size_t k = 0; k < std::min(recorded.size(), now.size()); ++k) {
     const auto [a, b] = std::ranges::mismatch(recorded[k], now[k]);
     if (a == recorded[k].end() && b == now[k].end()) continue;
     return fmt::format("packet {} differs from byte {} on", k, a - recorded[k].begin());
   }
-  if (recorded.size() == now.size()) return std::nullopt;
+  if (recorded.size() == now.size() || (cut && recorded.size() < now.size())) return std::nullopt;
   return fmt::format("{} packets recorded, {} now", recorded.size(), now.size());
+}
+
+struct Compared {
+  std::size_t steps = 0, packets = 0, bytes = 0;
+
+  void add(const std::vector<pil::Packet>& recorded) {
+    ++steps;
+    packets += recorded.size();
+    for (const pil::Packet& packet : recorded) bytes += packet.size();
+  }
+  [[nodiscard]] std::string text() const {
+    return fmt::format("{} steps, {} packets, {} bytes of output", steps, packets, bytes);
+  }
+};
+
+/// Feeds the steps to the flight computer and compares its answers. `may_be_cut`: the last step may not be whole.
+Verdict compare(const RecordedSteps& steps, bool may_be_cut, std::optional<twins::camera::TileRestorer> restorer,
+                pil::FlightComputer& flight_computer) {
+  Compared compared;
+  for (const auto& [number, step] : steps) {
+    if (stop_requested()) return {kInterrupted, "interrupted after " + compared.text()};
+    const bool cut = may_be_cut && number == steps.rbegin()->first;
+    if (cut && step.outputs.empty()) continue;  // the log ends before the answer
+    const pil::StepResult answer = flight_computer.step(number, packets_of(step.inputs, restorer));
+    if (const auto what = difference(step.outputs, answer.packets, cut))
+      return {kDifferent, fmt::format("differs at step {}: {}; identical before: {}", number, *what, compared.text())};
+    compared.add(step.outputs);
+  }
+  flight_computer.close();
+  return {kDone, fmt::format("identical: {} on {}", compared.text(), flight_computer.description())};
+}
+
+/// The verdict on a log that passed, fed to the flight computer.
+Verdict fly_again(const mission::Mission& mission, const report::Summary& summary, const twins::PacketLog& log,
+                  const RecordedSteps& steps) {
+  auto restorer = make_restorer(mission, log);
+  const auto flight_computer = connect_flight_computer(flying_spacecraft(mission));
+  Verdict verdict = compare(steps, !has_ended(summary), std::move(restorer), *flight_computer);
+  if (verdict.code != kDone) return verdict;
+  if (has_ended(summary)) {
+    verdict.sentence += fmt::format("; all steps of the run, SHA-256 as in its summary (commands {}, telemetry {})",
+                                    summary.commands_sha256.substr(0, 16), summary.telemetry_sha256.substr(0, 16));
+    if (!summary.complete)
+      verdict.sentence += fmt::format("; the run itself is incomplete: {}", summary.incomplete_reason);
+    return verdict;
+  }
+  return {kKilledRun, "the run was killed and left no summary to compare with; what it left is " + verdict.sentence};
+}
+
+int say(const Verdict& verdict, bool quiet) {
+  if (!quiet || verdict.code != kDone) fmt::print("{}\n", verdict.sentence);
+  return verdict.code;
 }
 
 }  // namespace
 
 int replay_command(const ReplayOptions& options) {
+  const report::Summary summary = read_summary(options.run_folder);
   const mission::Mission mission = mission_as_flown(options);
-  const twins::PacketLog log = read_log(report::packet_log_file(options.run_folder));
-  const std::map<std::uint32_t, RecordedStep> steps = steps_of(log);
-  std::optional<twins::camera::TileRestorer> restorer = make_restorer(mission, log);
-  const std::unique_ptr<pil::FlightComputer> flight_computer = connect_flight_computer(flying_spacecraft(mission));
-  for (const auto& [number, step] : steps) {
-    if (step.outputs.empty()) continue;  // the run broke off before the answer
-    const pil::StepResult answer = flight_computer->step(number, packets_of(step.inputs, restorer));
-    if (const auto what = difference(step.outputs, answer.packets)) {
-      fmt::print("differs at step {}: {}\n", number, *what);
-      return 2;
-    }
+  const std::filesystem::path file = report::packet_log_file(options.run_folder);
+  twins::PacketLog log;
+  try {
+    log = twins::read_packet_log(file);
+  } catch (const twins::DamagedLog& error) {
+    return say({kDamagedLog, error.what()}, options.quiet);
   }
-  flight_computer->close();
-  fmt::print("identical: {} steps on {}\n", steps.size(), flight_computer->description());
-  return 0;
+  const RecordedSteps steps = steps_of(log);
+  if (const auto verdict = verdict_on_log(file, log, steps, summary)) return say(*verdict, options.quiet);
+  catch_stop_signals();
+  if (!options.quiet) {
+    for (const std::string& change : changes_since(summary.provenance, options.run_folder / kMissionCopy,
+                                                   flight_software_file(flying_spacecraft(mission))))
+      fmt::print("note: {}\n", change);
+  }
+  return say(fly_again(mission, summary, log, steps), options.quiet);
 }
 
 }  // namespace vbar::app

@@ -1,8 +1,11 @@
 // vbar report: one run, or several side by side.
 
+#include <algorithm>
+
 #include <fmt/core.h>
 
 #include "host_sim/app/commands.h"
+#include "host_sim/app/exit_codes.h"
 #include "host_sim/report/compare_report.h"
 #include "host_sim/report/comparison.h"
 #include "host_sim/report/html_report.h"
@@ -31,7 +34,8 @@ int report_one(const std::filesystem::path& folder) {
 
 }  // namespace
 
-int report_command(const std::vector<std::filesystem::path>& run_folders, const std::filesystem::path& out) {
+int report_command(const ReportOptions& options) {
+  const auto& [run_folders, out, fail_if_different] = options;
   if (run_folders.size() == 1 && out.empty()) return report_one(run_folders.front());
   std::vector<report::ComparedRun> runs;
   const std::vector<std::string> names = report::run_names(run_folders);
@@ -39,7 +43,10 @@ int report_command(const std::vector<std::filesystem::path>& run_folders, const 
   const std::filesystem::path file = out.empty() ? run_folders.front().parent_path() / "comparison.html" : out;
   report::write_html_comparison(file, runs);
   fmt::print("{}report  {}\n", report::comparison_table(runs), file.string());
-  return 0;
+  const auto same_as_first = [&](const report::ComparedRun& run) {
+    return report::same_outputs(runs.front().record.summary, run.record.summary);
+  };
+  return fail_if_different && !std::ranges::all_of(runs, same_as_first) ? kDifferent : kDone;
 }
 
 }  // namespace vbar::app

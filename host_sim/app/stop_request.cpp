@@ -17,6 +17,8 @@ void on_signal(int signal) {
 void catch_stop_signals() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGHUP, on_signal);
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool stop_requested() {

@@ -3,7 +3,8 @@
 
 namespace vbar::app {
 
-/// From now on SIGINT and SIGTERM only set a flag; a second one ends the program.
+/// From now on SIGINT, SIGTERM and SIGHUP only set a flag; a second one ends the program. A reader of standard output
+/// that goes away does not end the program.
 void catch_stop_signals();
 
 [[nodiscard]] bool stop_requested();

@@ -41,7 +41,7 @@ truth::Facet read_facet(const TableReader& section, const std::vector<Vector3>& 
 }  // namespace
 
 truth::Body load_body(const std::filesystem::path& file) {
-  const toml::table table = parse_toml(read_text_file(file, "a body file (TOML)"), file.string());
+  const toml::table table = parse_toml(read_data_text(file, "a body file (TOML)"), file.string());
   const TableReader document(table, file.string());
   truth::Body body;
   body.name = file.stem().string();
@@ -59,7 +59,7 @@ truth::Body load_body(const std::filesystem::path& file) {
 }
 
 std::vector<Vector3> load_keypoints(const std::filesystem::path& file, std::size_t count) {
-  const toml::table table = parse_toml(read_text_file(file, "a file of keypoints (TOML)"), file.string());
+  const toml::table table = parse_toml(read_data_text(file, "a file of keypoints (TOML)"), file.string());
   const TableReader document(table, file.string());
   std::vector<Vector3> keypoints_m;
   for (const TableReader& keypoint : document.tables("keypoints")) {

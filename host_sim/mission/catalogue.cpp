@@ -4,7 +4,9 @@
 #include <iomanip>
 #include <sstream>
 
+#include "host_sim/mission/data_directory.h"
 #include "host_sim/mission/load.h"
+#include "host_sim/mission/nearest_name.h"
 
 namespace vbar::mission {
 namespace {
@@ -37,6 +39,34 @@ std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder, c
   std::vector<CatalogueEntry> entries;
   for (const auto& file : files) entries.push_back(entry_of(file, installation));
   return entries;
+}
+
+std::filesystem::path missions_directory() {
+  const std::filesystem::path here = "missions";
+  if (std::filesystem::is_directory(here)) return here;
+  return data_directory().parent_path() / "missions";
+}
+
+std::filesystem::path find_mission(const std::filesystem::path& path_or_name) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path_or_name, error)) return path_or_name;
+  std::vector<CatalogueEntry> missions;
+  try {
+    missions = list_missions(missions_directory());
+  } catch (const std::exception&) {  // no catalogue: then only a path can be meant
+  }
+  std::vector<std::string_view> names;
+  for (const CatalogueEntry& entry : missions) {
+    if (path_or_name == entry.name) return entry.file;
+    names.push_back(entry.name);
+  }
+  const std::string wanted = path_or_name.stem().string();
+  const auto nearest = nearest_name(wanted, names);
+  throw MissionError(
+      path_or_name.string(), "",
+      std::filesystem::exists(path_or_name, error) ? "something that is not a file" : "no such file or mission",
+      "a mission file (TOML) or a name that vbar missions lists" +
+          (nearest ? "; did you mean " + std::string(*nearest) + "?" : std::string()));
 }
 
 std::string line_of(const CatalogueEntry& entry, std::size_t name_width) {

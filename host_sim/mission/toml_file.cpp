@@ -3,6 +3,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "host_sim/files/data_stream.h"
 #include "host_sim/mission/mission_error.h"
 
 namespace vbar::mission {
@@ -14,6 +15,12 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
     throw MissionError(file + ":" + std::to_string(error.source().begin.line), "",
                        "text that is no TOML: " + std::string(error.description()), "a TOML 1.0 document");
   }
+}
+
+std::string read_data_text(const std::filesystem::path& file, const std::string& kind) {
+  std::string text = read_text_file(file, kind);
+  files::note_file_read(file, text);
+  return text;
 }
 
 std::string read_text_file(const std::filesystem::path& file, const std::string& kind) {

@@ -2,19 +2,15 @@
 // What makes two runs the same: SHA-256 over the bytes of all maneuver commands, and over those of all telemetry.
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
+
+#include "host_sim/files/sha256.h"
 
 namespace vbar::report {
 
 class OutputHash {
  public:
-  OutputHash();
-  ~OutputHash();
-  OutputHash(OutputHash&&) noexcept;
-  OutputHash& operator=(OutputHash&&) noexcept;
-
   /// A packet from the flight software, in its order. Its APID alone decides where it counts, so that a damaged packet
   /// changes the hash instead of vanishing from it. Packets to the flight software and step reports count nowhere.
   void add(std::span<const std::uint8_t> packet);
@@ -24,8 +20,7 @@ class OutputHash {
   [[nodiscard]] std::string telemetry_sha256() const;
 
  private:
-  struct Digest;
-  std::unique_ptr<Digest> commands_, telemetry_;
+  files::Sha256 commands_, telemetry_;
 };
 
 }  // namespace vbar::report

@@ -1,8 +1,10 @@
 #include "host_sim/report/partial_file.h"
 
-#include <stdexcept>
+#include <cerrno>
 #include <system_error>
 #include <utility>
+
+#include "host_sim/files/write_error.h"
 
 namespace vbar::report {
 
@@ -12,6 +14,7 @@ PartialFile::PartialFile(std::filesystem::path file)
 }
 
 void PartialFile::append(std::string_view text) {
+  errno = 0;
   stream_.write(text.data(), static_cast<std::streamsize>(text.size()));
   if (!stream_) fail();
 }
@@ -21,6 +24,7 @@ void PartialFile::flush() {
 }
 
 void PartialFile::finish() {
+  errno = 0;
   stream_.close();
   std::error_code error;
   if (stream_) std::filesystem::rename(part_of(file_), file_, error);
@@ -34,7 +38,7 @@ std::filesystem::path PartialFile::part_of(const std::filesystem::path& file) {
 }
 
 void PartialFile::fail() const {
-  throw std::runtime_error(file_.string() + ": cannot be written");
+  throw files::write_error(file_);
 }
 
 }  // namespace vbar::report

@@ -1,11 +1,13 @@
 #include "host_sim/report/run_folder.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "host_sim/report/run_tables.h"
 #include "host_sim/report/summary_json.h"
@@ -25,11 +27,19 @@ constexpr std::string_view kReport = "report.html";
   throw std::runtime_error(fmt::format("{}: {}", folder.string(), what));
 }
 
-void check_may_be_replaced(const fs::path& folder) {
+[[noreturn]] void refuse(const fs::path& folder, std::string_view what) {
+  throw FolderRefused(fmt::format("{}: {}", folder.string(), what));
+}
+
+void check_may_be_used(const fs::path& folder, RunFolder::Existing existing) {
   if (!fs::exists(folder)) return;
-  if (!fs::is_directory(folder)) fail(folder, "is a file; a run needs a folder");
-  if (fs::is_empty(folder) || is_summary(folder / kSummary)) return;
-  fail(folder, "holds something other than a run; remove it or name another folder with --out");
+  if (!fs::is_directory(folder)) refuse(folder, "is a file; a run needs a folder");
+  const bool holds_run = is_summary(folder / kSummary);
+  if (holds_run && existing == RunFolder::Existing::kRefuse)
+    refuse(folder, "holds a run; name another folder with --out, or replace that run with --force");
+  const auto is_lock = [](const fs::directory_entry& entry) { return entry.path().filename() == RunLock::kFile; };
+  if (holds_run || std::ranges::all_of(fs::directory_iterator(folder), is_lock)) return;
+  refuse(folder, "holds something other than a run; remove it or name another folder with --out");
 }
 
 fs::path picture_file(const fs::path& folder, const GalleryImage& image) {
@@ -52,9 +62,15 @@ void read_pictures(const fs::path& folder, std::vector<GalleryImage>& gallery) {
 }  // namespace
 
 fs::path default_run_folder(const std::string& mission, std::uint64_t seed) {
-  return fs::path("runs") / fmt::format("{}-{}", mission, seed);
+  const fs::path first = fs::path("runs") / fmt::format("{}-{}", mission, seed);
+  fs::path folder = first;
+  for (int number = 2; fs::exists(folder); ++number) folder = fmt::format("{}.{}", first.string(), number);
+  return folder;
 }
 
+fs::path summary_file(const fs::path& run_folder) {
+  return run_folder / kSummary;
+}
 fs::path packet_log_file(const fs::path& run_folder) {
   return run_folder / kPacketLog;
 }
@@ -62,13 +78,16 @@ fs::path report_file(const fs::path& run_folder) {
   return run_folder / kReport;
 }
 
-RunFolder::RunFolder(fs::path folder, const Summary& start) : folder_(std::move(folder)), tables_(folder_) {
+RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing)
+    : folder_(std::move(folder)), tables_(folder_) {
   try {
-    check_may_be_replaced(folder_);
+    check_may_be_used(folder_, existing);
     fs::create_directories(folder_);
+    lock_.emplace(folder_);
+    check_may_be_used(folder_, existing);  // another run may have come and gone before the lock was taken
     Summary running = start;
     running.complete = false;
-    running.incomplete_reason = "running";
+    running.incomplete_reason = fmt::format("running in process {}, or killed", ::getpid());
     replace_text_file(folder_ / kSummary, summary_json(running, {}));
     for (const std::string& name : table_files()) {
       fs::remove(folder_ / name);
@@ -89,6 +108,26 @@ void RunFolder::finish(const RunRecord& record) {
   write_pictures(folder_, record.gallery);
   tables_.finish(record);
   replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
+}
+
+void RunFolder::give_up(Summary summary, const std::string& reason) const {
+  summary.complete = false;
+  summary.incomplete_reason = reason;
+  const std::string text = summary_json(summary, {});
+  try {
+    replace_text_file(folder_ / kSummary, text);
+  } catch (const std::runtime_error&) {
+    // A full disk takes no second file, but its blocks of the first: overwritten in place, without the data that were
+    // read, it fits.
+    summary.provenance.data.clear();
+    std::fstream file(folder_ / kSummary, std::ios::in | std::ios::out | std::ios::binary);
+    const std::string short_text = summary_json(summary, {});
+    file.write(short_text.data(), static_cast<std::streamsize>(short_text.size()));
+    file.close();
+    if (!file) return;
+    std::error_code ignored;
+    fs::resize_file(folder_ / kSummary, short_text.size(), ignored);
+  }
 }
 
 RunRecord read_run(const fs::path& run_folder) {

@@ -4,25 +4,33 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "host_sim/report/run_lock.h"
 #include "host_sim/report/run_record.h"
 #include "host_sim/report/run_tables.h"
 
 namespace vbar::report {
 
-/// Where a run goes unless told otherwise: runs/<mission>-<seed>.
+/// Where a run goes by default: runs/<mission>-<seed>, and from the second run on runs/<mission>-<seed>.2, .3, ...: the
+/// first that does not exist.
 [[nodiscard]] std::filesystem::path default_run_folder(const std::string& mission, std::uint64_t seed);
 
+[[nodiscard]] std::filesystem::path summary_file(const std::filesystem::path& run_folder);
 [[nodiscard]] std::filesystem::path packet_log_file(const std::filesystem::path& run_folder);
 [[nodiscard]] std::filesystem::path report_file(const std::filesystem::path& run_folder);
 
 class RunFolder {
  public:
-  /// Makes the folder and writes a summary that says the run is under way. The files of an earlier run are removed;
-  /// files that no run writes stay. Throws std::runtime_error that names the folder if it holds anything but a run, or
-  /// cannot be made or written.
-  RunFolder(std::filesystem::path folder, const Summary& start);
+  /// What becomes of a run that the folder already holds.
+  enum class Existing { kReplace, kRefuse };
+
+  /// Makes the folder, locks it while this object lives, and writes a summary that says the run is under way. The files
+  /// of an earlier run are removed; files that no run writes stay. Throws FolderRefused that names the folder if it
+  /// holds anything but a run, a run that is not to be replaced, or one under way; std::runtime_error if it cannot be
+  /// made or written.
+  RunFolder(std::filesystem::path folder, const Summary& start, Existing existing = Existing::kReplace);
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] std::filesystem::path packet_log() const { return packet_log_file(folder_); }
@@ -35,9 +43,13 @@ class RunFolder {
   /// says incomplete.
   void finish(const RunRecord& record);
 
+  /// After finish() threw: a summary that says why the record is incomplete, even where the disk is full.
+  void give_up(Summary summary, const std::string& reason) const;
+
  private:
   std::filesystem::path folder_;
   TableWriter tables_;
+  std::optional<RunLock> lock_;
 };
 
 /// Throws std::runtime_error that names the file and the line for a folder that is no run's, or damaged.

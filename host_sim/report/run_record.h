@@ -185,6 +185,15 @@ using TelemetryTable = std::conditional_t<fsw::packets::is_telemetry(fsw::packet
 using TelemetryTables = decltype(std::tuple_cat(std::tuple<>() VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)));
 #undef VBAR_MESSAGE
 
+/// What a source or an actuator reported of a measurement or a burn, or why it failed (notes.csv).
+struct NoteRow {
+  double time_s = 0.0;  ///< since the mission's epoch
+  std::string source;   ///< "servicer/gnss"
+  std::string name;     ///< with the unit; "failure": `text` is the reason
+  std::optional<double> value;
+  std::string text;
+};
+
 /// The row that a message is, with nothing beside it yet.
 template <class Row, class Message>
 Row row_of(const Message& message) {
@@ -192,15 +201,6 @@ Row row_of(const Message& message) {
   static_cast<Message&>(row) = message;
   return row;
 }
-
-/// What a source or an actuator said of a measurement or a burn, or why it failed (notes.csv).
-struct NoteRow {
-  double time_s = 0.0;  ///< since the mission's epoch
-  std::string source;   ///< "servicer/gnss"
-  std::string name;     ///< with the unit; "failure": `text` is why
-  std::optional<double> value;
-  std::string text;
-  };
 
 struct RunRecord {
   Summary summary;

@@ -1,9 +1,12 @@
 #include "host_sim/report/text_file.h"
 
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <system_error>
+
+#include "host_sim/files/write_error.h"
 
 namespace vbar::report {
 
@@ -18,15 +21,17 @@ std::string read_text_file(const std::filesystem::path& file) {
 void replace_text_file(const std::filesystem::path& file, std::string_view text) {
   std::filesystem::path neighbour = file;
   neighbour += ".new";
+  errno = 0;
   std::ofstream stream(neighbour, std::ios::binary | std::ios::trunc);
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));
   stream.close();
   std::error_code error;
   if (stream) std::filesystem::rename(neighbour, file, error);
   if (!stream || error) {
+    const std::runtime_error reason = files::write_error(file);
     std::error_code ignored;
     std::filesystem::remove(neighbour, ignored);
-    throw std::runtime_error(file.string() + ": cannot be written");
+    throw reason;
   }
 }
 

@@ -1,6 +1,6 @@
 #include "host_sim/twins/packet_log.h"
 
-#include <array>
+#include <cerrno>
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
@@ -11,6 +11,8 @@
 
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/message_traits.h"
+#include "host_sim/files/write_error.h"
+#include "host_sim/twins/lcm_log_reader.h"
 
 namespace vbar::twins {
 namespace {
@@ -58,32 +60,24 @@ struct LogCloser {
 };
 using LogHandle = std::unique_ptr<lcm_eventlog_t, LogCloser>;
 
-struct EventFreer {
-  void operator()(lcm_eventlog_event_t* event) const { lcm_eventlog_free_event(event); }
-};
-using EventHandle = std::unique_ptr<lcm_eventlog_event_t, EventFreer>;
-
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
-  throw std::runtime_error(file.string() + ": " + what);
-}
-
-// LCM's reader looks for the next sync word wherever it is, so a file that is no log would read as an empty one.
-void check_starts_as_log(const std::filesystem::path& file, std::FILE* stream) {
-  constexpr std::array<std::uint8_t, 4> kSyncWord{0xED, 0xA1, 0xDA, 0x01};
-  std::array<std::uint8_t, 4> start{};
-  const std::size_t size = std::fread(start.data(), 1, start.size(), stream);
-  std::rewind(stream);
-  if (size > 0 && start != kSyncWord) fail(file, "no LCM log");
+[[noreturn]] void fail(const std::filesystem::path& file, const LoggedEvent& event, const std::string& what) {
+  throw DamagedLog(file.string() + ": byte " + std::to_string(event.offset) + ": " + what);
 }
 
 // The size that a record claims, at its place in the encoded record, must be that of the event: the generated decoder
 // makes room for whatever is claimed before it looks whether the bytes are there.
-bool claims_its_size(const lcm_eventlog_event_t& event) {
+bool claims_its_size(const LoggedEvent& event) {
   constexpr std::size_t kSizeAt = 8 + 8 + 8 + 1;  // type hash, step, time, direction
   constexpr std::size_t kPacketAt = kSizeAt + 4;
-  const std::span bytes(static_cast<const std::uint8_t*>(event.data), static_cast<std::size_t>(event.datalen));
-  return bytes.size() >= kPacketAt &&
-         fsw::packets::read_big_endian<std::uint32_t>(bytes, kSizeAt) == bytes.size() - kPacketAt;
+  return event.data.size() >= kPacketAt &&
+         fsw::packets::read_big_endian<std::uint32_t>(event.data, kSizeAt) == event.data.size() - kPacketAt;
+}
+
+/// True if the data are exactly one message of this type.
+template <class Message>
+bool decode_whole(const LoggedEvent& event, Message& message) {
+  const auto size = static_cast<int>(event.data.size());
+  return message.decode(event.data.data(), 0, size) == size;
 }
 
 bool is_step(std::int64_t number) {
@@ -94,12 +88,11 @@ bool fits_header(std::int16_t number) {
   return number >= 0 && number <= std::numeric_limits<std::uint8_t>::max();
 }
 
-PacketRecord tiles_of(const lcm_eventlog_event_t& event, const std::filesystem::path& file) {
+PacketRecord tiles_of(const LoggedEvent& event, const std::filesystem::path& file) {
   vbar_host::tile_run message;
-  const bool good = message.decode(event.data, 0, event.datalen) == event.datalen && is_step(message.step) &&
-                    fits_header(message.spacecraft) && fits_header(message.unit) && message.image >= 0 &&
-                    message.first_tile >= 0 && message.tiles > 0;
-  if (!good) fail(file, "event " + std::to_string(event.eventnum) + " is a damaged record of image tiles");
+  const bool good = decode_whole(event, message) && is_step(message.step) && fits_header(message.spacecraft) &&
+                    fits_header(message.unit) && message.image >= 0 && message.first_tile >= 0 && message.tiles > 0;
+  if (!good) fail(file, event, "a damaged record of image tiles");
   const TileRun run{static_cast<std::uint8_t>(message.spacecraft),
                     static_cast<std::uint8_t>(message.unit),
                     message.image,
@@ -109,24 +102,27 @@ PacketRecord tiles_of(const lcm_eventlog_event_t& event, const std::filesystem::
   return {static_cast<std::uint32_t>(message.step), {message.gps_time_ns}, true, {}, run};
 }
 
-PacketRecord record_of(const lcm_eventlog_event_t& event, const std::filesystem::path& file) {
+PacketRecord record_of(const LoggedEvent& event, const std::filesystem::path& file) {
   vbar_host::packet_record message;
-  const bool good = claims_its_size(event) && message.decode(event.data, 0, event.datalen) == event.datalen &&
-                    is_step(message.step) && (message.to_flight == 0 || message.to_flight == 1);
-  if (!good) fail(file, "event " + std::to_string(event.eventnum) + " is a damaged packet record");
+  const bool good = claims_its_size(event) && decode_whole(event, message) && is_step(message.step) &&
+                    (message.to_flight == 0 || message.to_flight == 1);
+  if (!good) fail(file, event, "a damaged packet record");
   return {static_cast<std::uint32_t>(message.step),
           {message.gps_time_ns},
           message.to_flight == 1,
           std::move(message.packet)};
 }
 
-void take(const lcm_eventlog_event_t& event, const std::filesystem::path& file, PacketLog& log) {
-  const std::string_view channel(event.channel);
-  if (channel == kPacketChannel) log.records.push_back(record_of(event, file));
-  if (channel == kTilesChannel) log.records.push_back(tiles_of(event, file));
-  if (channel == kRecipeChannel) {
-    const std::span bytes(static_cast<const std::uint8_t*>(event.data), static_cast<std::size_t>(event.datalen));
-    log.recipes.emplace_back(bytes.begin(), bytes.end());
+void take(LoggedEvent& event, const std::filesystem::path& file, PacketLog& log) {
+  if (event.channel == kPacketChannel) log.records.push_back(record_of(event, file));
+  if (event.channel == kTilesChannel) log.records.push_back(tiles_of(event, file));
+  if (event.channel == kRecipeChannel) log.recipes.push_back(std::move(event.data));
+  if (event.channel != kEndChannel) {
+    ++log.events;
+  } else if (event.data.size() == sizeof log.events) {
+    log.events_at_end = fsw::packets::read_big_endian<std::uint64_t>(event.data, 0);
+  } else {
+    fail(file, event, "a damaged end");
   }
 }
 
@@ -157,8 +153,8 @@ struct PacketLogWriter::Log {
 };
 
 PacketLogWriter::PacketLogWriter(const std::filesystem::path& file)
-    : log_(new Log{file, LogHandle(lcm_eventlog_create(file.c_str(), "w"))}) {
-  if (log_->handle == nullptr) fail(file, "cannot be written");
+    : log_(new Log{file, LogHandle((errno = 0, lcm_eventlog_create(file.c_str(), "w")))}) {
+  if (log_->handle == nullptr) throw files::write_error(file);
 }
 
 PacketLogWriter::~PacketLogWriter() = default;
@@ -178,27 +174,32 @@ void PacketLogWriter::write_event(fsw::GpsTime time, LcmEvent event) {
   raw.channel = event.channel.data();
   raw.datalen = static_cast<std::int32_t>(event.data.size());
   raw.data = event.data.data();
-  if (lcm_eventlog_write_event(log_->handle.get(), &raw) != 0) fail(log_->file, "cannot be written");
+  errno = 0;
+  if (lcm_eventlog_write_event(log_->handle.get(), &raw) != 0) throw files::write_error(log_->file);
+  ++events_;
+  last_ = time;
 }
 
-void PacketLogWriter::flush() {
-  if (std::fflush(log_->handle->f) != 0) fail(log_->file, "cannot be written");
+void PacketLogWriter::finish() {
+  std::vector<std::uint8_t> count(sizeof events_);
+  fsw::packets::write_big_endian(events_, std::span(count), 0);
+  write_event(last_, {kEndChannel, std::move(count)});
+  errno = 0;
+  if (std::fflush(log_->handle->f) != 0) throw files::write_error(log_->file);
 }
 
 PacketLog read_packet_log(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) fail(file, "no such file");
-  const LogHandle log(lcm_eventlog_create(file.c_str(), "r"));
-  if (log == nullptr) fail(file, "cannot be read");
-  check_starts_as_log(file, log->f);
-
-  PacketLog result;
-  long whole = 0;  // where the last whole event ends
-  while (const EventHandle event{lcm_eventlog_read_next_event(log.get())}) {
-    whole = std::ftell(log->f);
-    take(*event, file, result);
+  LcmLogReader reader(file);
+  PacketLog log;
+  std::int64_t before = -1;
+  while (auto event = reader.next()) {
+    if (event->number != before + 1 && !log.gap) log.gap = {event->offset, before, event->number};
+    before = event->number;
+    take(*event, file, log);
   }
-  result.cut_short = static_cast<std::uintmax_t>(whole) != std::filesystem::file_size(file);
-  return result;
+  log.bytes = reader.size();
+  log.cut_short = reader.cut_short();
+  return log;
 }
 
 }  // namespace vbar::twins

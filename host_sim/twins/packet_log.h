@@ -7,6 +7,8 @@
 // Of a digital camera's images there may stand instead
 //   VBAR_IMAGE_RECIPE                         a vbar_host.image_recipe: from what an image can be made again
 //   VBAR_IMAGE_TILES                          a vbar_host.tile_run: in the place of some of its tiles
+// The last event of a run that ended is
+//   VBAR_END                                  the number of events before it, 8 bytes big-endian
 // Only the channels in capitals are read back. Event times are the simulated GPS time, so that the same run makes the
 // same log.
 
@@ -27,6 +29,7 @@ namespace vbar::twins {
 inline constexpr const char* kPacketChannel = "VBAR_PACKET";
 inline constexpr const char* kRecipeChannel = "VBAR_IMAGE_RECIPE";
 inline constexpr const char* kTilesChannel = "VBAR_IMAGE_TILES";
+inline constexpr const char* kEndChannel = "VBAR_END";
 
 /// A packet as it crossed the border of a flight computer.
 struct PacketRecord {
@@ -60,24 +63,37 @@ class PacketLogWriter {
   /// The same of a recipe (Measurement::recipe) of this time.
   void write_recipe(fsw::GpsTime time, std::vector<std::uint8_t> recipe);
 
-  /// Everything written is in the file. Throws as write.
-  void flush();
+  /// Marks the end of the run; everything written is in the file then. Throws as write.
+  void finish();
 
  private:
   struct Log;
   void write_event(fsw::GpsTime time, LcmEvent event);
 
   std::unique_ptr<Log> log_;
+  std::uint64_t events_ = 0;
+  fsw::GpsTime last_;
+};
+
+/// Two events that stand one after the other although their numbers do not follow: events between them were removed.
+/// Before the first event stands event -1.
+struct EventGap {
+  std::uint64_t offset = 0;  ///< of the second in the file
+  std::int64_t before = 0, after = 0;
 };
 
 struct PacketLog {
   std::vector<PacketRecord> records;               ///< in the order of the file
   std::vector<std::vector<std::uint8_t>> recipes;  ///< as encoded
+  std::uint64_t bytes = 0;                         ///< size of the file
   bool cut_short = false;                          ///< the file ends within an event, as that of a killed run may
+  std::optional<EventGap> gap;                     ///< the first one
+  std::uint64_t events = 0;                        ///< of all channels, the end excepted
+  std::optional<std::uint64_t> events_at_end;      ///< as VBAR_END states; none if the log has no end
 };
 
-/// Reads all packets of a log; events of other channels are passed over. Throws std::runtime_error that names the file
-/// for one that cannot be read, that is no LCM log, and for a record that is damaged.
+/// Reads all packets of a log; events of other channels are passed over. Throws std::runtime_error that names a file
+/// that cannot be read, and DamagedLog (lcm_log_reader.h) for one that is not an LCM log or holds a damaged record.
 [[nodiscard]] PacketLog read_packet_log(const std::filesystem::path& file);
 
 }  // namespace vbar::twins

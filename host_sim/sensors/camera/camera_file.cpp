@@ -139,7 +139,7 @@ void read_camera_settings(const TableReader& section, CameraFile& camera) {
 }
 
 CameraFile load_camera(const std::filesystem::path& file) {
-  const toml::table table = mission::parse_toml(mission::read_text_file(file, "a camera file (TOML)"), file.string());
+  const toml::table table = mission::parse_toml(mission::read_data_text(file, "a camera file (TOML)"), file.string());
   const TableReader document(table, file.string());
   CameraFile camera;
   read_camera_settings(document, camera);

@@ -3,12 +3,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
+
+#include "host_sim/files/data_stream.h"
 
 namespace vbar::truth {
 namespace {
@@ -69,7 +70,7 @@ class TableReader {
   }
 
   std::filesystem::path file_;
-  std::ifstream in_;
+  files::DataStream in_;
   std::string line_;
   int number_ = 0;
 };

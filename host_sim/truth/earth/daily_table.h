@@ -6,12 +6,13 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
+
+#include "host_sim/files/data_stream.h"
 
 namespace vbar::truth {
 
@@ -37,7 +38,7 @@ void read_daily_table(const std::filesystem::path& file, std::string_view what, 
   // Days of GPS time's century; a file of observations has no others.
   constexpr double kFirstMjd = 44244.0;  // 1980-01-06
   constexpr double kLastMjd = 88068.0;   // 2099-12-31
-  std::ifstream in(file);
+  files::DataStream in(file);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot open the {} file", file.string(), what));
   std::string line;
   bool header_seen = false;

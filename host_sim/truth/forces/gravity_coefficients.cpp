@@ -2,12 +2,13 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "host_sim/files/data_stream.h"
 
 namespace vbar::truth {
 namespace {
@@ -51,7 +52,7 @@ class LineReader {
   }
 
   std::filesystem::path file_;
-  std::ifstream in_;
+  files::DataStream in_;
   std::string line_;
   std::vector<std::string_view> words_;
   int number_ = 0;

@@ -35,6 +35,9 @@ class RecipeLogWriter {
   /// Writes what was held back: at the end of every step, because a run does not reach beyond one.
   void end_step();
 
+  /// As PacketLogWriter.
+  void finish() { writer_.finish(); }
+
  private:
   bool joins_run(const PacketRecord& record);
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,6 +12,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "host_sim/files/data_stream.h"
 #include "host_sim/twins/camera/aberration.h"
 #include "host_sim/twins/camera/photometry.h"
 
@@ -64,7 +64,7 @@ SkyStar star_of(const std::array<double, kNumbers>& n, double zero_magnitude_pho
 
 StarSky StarSky::load(const std::filesystem::path& data_directory, double zero_magnitude_photons) {
   const std::filesystem::path file = data_directory / "stars" / "hipparcos_v8.csv";
-  std::ifstream in(file);
+  files::DataStream in(file);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot open the star catalogue", file.string()));
   StarSky sky;
   std::string line;

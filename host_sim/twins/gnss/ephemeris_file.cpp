@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/files/data_stream.h"
 #include "host_sim/twins/gnss/system_time.h"
 
 namespace vbar::twins::gnss {
@@ -120,7 +120,7 @@ bool take_correction(const Row& row, BroadcastCorrections& corrections) {
 }  // namespace
 
 EphemerisFile read_ephemeris_file(const std::filesystem::path& file) {
-  std::ifstream in(file);
+  files::DataStream in(file);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
   EphemerisFile result;
   bool columns_seen = false;

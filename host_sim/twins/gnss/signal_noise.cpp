@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
+
+#include "host_sim/files/data_stream.h"
 
 namespace vbar::twins::gnss {
 namespace {
@@ -34,7 +35,7 @@ double reference_distance_m(System system) {
 
 AntennaPattern AntennaPattern::load(const std::filesystem::path& data_directory) {
   const std::filesystem::path file = data_directory / "gps" / "receiver_antenna_typical_patch.csv";
-  std::ifstream in(file);
+  files::DataStream in(file);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
   AntennaPattern pattern;
   std::string line;

@@ -110,7 +110,7 @@ class Experiment2BadInput(unittest.TestCase):
     def refuse(self, *parts, settings):
         with scratch() as folder:
             result = vbar("run", EXPERIMENT2, "--out", folder / "run", *overrides(*SHORT, *settings))
-            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertEqual(result.returncode, 2, result.stderr)
             self.assertEqual(result.stderr.count("vbar:"), 1, result.stderr)
             for part in parts:
                 self.assertIn(part, result.stderr)

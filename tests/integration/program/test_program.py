@@ -249,14 +249,14 @@ class Propagate(unittest.TestCase):
     def test_a_mission_without_one_cannot_be_run(self):
         with scratch() as folder:
             result = vbar("run", self.ORBIT, "--out", folder / "run")
-            self.assertEqual(result.returncode, 1)
+            self.assertEqual(result.returncode, 2)
             self.assertIn("vbar propagate", result.stderr)
             self.assertFalse((folder / "run").exists())
 
     def refuse(self, settings, *parts):
         with scratch() as folder:
             result = vbar("propagate", self.ORBIT, "--out", folder / "out", *overrides(*settings))
-            self.assertEqual(result.returncode, 1)
+            self.assertEqual(result.returncode, 2)
             self.assertEqual(result.stderr.count("vbar:"), 1, result.stderr)
             for part in parts:
                 self.assertIn(part, result.stderr)

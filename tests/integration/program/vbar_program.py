@@ -47,7 +47,7 @@ def overrides(*settings):
 
 def fly(folder, *settings, mission=MISSION, timeout=300):
     """Flies a mission that has to succeed; its summary."""
-    result = vbar("run", mission, "--out", folder, *overrides(*settings), timeout=timeout)
+    result = vbar("run", mission, "--force", "--out", folder, *overrides(*settings), timeout=timeout)
     if result.returncode != 0:
         raise AssertionError(f"vbar run failed: {result.stderr}")
     return summary_of(folder)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "pil_bridge/in_process.h"
+#include "pil_bridge/make_flight_computer.h"
 #include "tests/support/paths.h"
 #include "tests/support/step_packets.h"
 
@@ -53,6 +54,42 @@ TEST(TestArticle, LoadingSaysWhatIsWrong) {
   EXPECT_THAT(error_of_loading(kLibraries + "libvbar_article_without_step.so"), HasSubstr("no function vbar_gnc_step"));
   EXPECT_THAT(error_of_loading(kLibraries + "libvbar_article_of_other_version.so"),
               HasSubstr("version 2 of the test-article interface, this program for 1"));
+}
+
+// A library flies in a child process, with the same bits.
+std::unique_ptr<FlightComputer> library_in_child(const std::string& library, std::uint8_t spacecraft) {
+  FlightComputerOptions options;
+  options.library = library;
+  options.spacecraft = spacecraft;
+  options.library_step_limit = std::chrono::milliseconds(500);
+  return make_flight_computer(options);
+}
+
+TEST(LibraryInChild, HasTheSameOutputsAsInProcess) {
+  const std::string library = vbar::tests::build_path("libvbar_echo_article.so");
+  const auto child = library_in_child(library, 1);
+  EXPECT_EQ(child->description(), "in process: vbar link exerciser");
+  EXPECT_EQ(vbar::test::fly(*child, 50), vbar::test::fly(*make_in_process(load_test_article(library), 1), 50));
+  child->close();
+}
+
+TEST(LibraryInChild, LoadingSaysWhatIsWrong) {
+  EXPECT_THAT([] { (void)library_in_child("/nowhere/gnc.so", 1); },
+              testing::ThrowsMessage<FlightComputerError>(HasSubstr("cannot be loaded")));
+}
+
+// The numbers are those of article_with_faults.c.
+TEST(LibraryInChild, AFaultIsOneSentenceAndTheProgramGoesOn) {
+  const std::string library = kLibraries + "libvbar_article_with_faults.so";
+  const auto flying = [&](std::uint8_t fault) {
+    return [&library, fault] { (void)library_in_child(library, fault)->step(7, vbar::test::step_packets(7, 3)); };
+  };
+  using testing::ThrowsMessage;
+  EXPECT_THAT(flying(1), ThrowsMessage<FlightComputerError>(HasSubstr("crashed at step 7: Segmentation fault")));
+  EXPECT_THAT(flying(2), ThrowsMessage<FlightComputerError>(HasSubstr("did not return at step 7")));
+  EXPECT_THAT(flying(3), ThrowsMessage<FlightComputerError>(HasSubstr("at step 7, with exit code 7")));
+  EXPECT_THAT(flying(4), ThrowsMessage<FlightComputerError>(HasSubstr("crashed while it was loaded")));
+  EXPECT_THAT(flying(5), ThrowsMessage<FlightComputerError>(HasSubstr("did not return while it was loaded")));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // Reading of CAD files, with what assimp lets pass in silence: an OBJ file's material that no MTL file defines.
 
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "host_sim/files/data_stream.h"
 #include "host_sim/twins/camera/model/cad_model.h"
 
 namespace vbar::twins::camera {
@@ -34,7 +34,7 @@ std::string rest_of(std::istringstream& line) {
 
 // Adds the names of the materials that an MTL file defines with a diffuse colour.
 void read_material_names(const std::filesystem::path& file, std::set<std::string>& defined) {
-  std::ifstream stream(file);
+  files::DataStream stream(file);
   if (!stream) refuse(file, "no such material file");
   std::string text, word, material;
   while (std::getline(stream, text)) {
@@ -47,7 +47,7 @@ void read_material_names(const std::filesystem::path& file, std::set<std::string
 
 // What assimp does not say, or not plainly: it replaces a material that it cannot find by a grey one and goes on.
 void check_obj(const std::filesystem::path& file) {
-  std::ifstream stream(file);
+  files::DataStream stream(file);
   std::set<std::string> defined;
   std::string text, word, material;
   bool faces = false;

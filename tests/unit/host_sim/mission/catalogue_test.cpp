@@ -48,5 +48,20 @@ TEST(ShippedMissions, AllLoad) {
   for (const auto& entry : entries) EXPECT_TRUE(entry.good) << entry.description;
 }
 
+// The names are those of the project's own missions.
+TEST_F(Catalogue, FindsMissionsByPathAndByName) {
+  write("b.toml", kSmallMission);
+  EXPECT_EQ(find_mission(folder_ / "b.toml"), folder_ / "b.toml");
+  EXPECT_EQ(find_mission("experiment3").filename(), "experiment3.toml");
+  for (const char* wrong : {"experiment33", "missions/experment3.toml"}) {
+    try {
+      static_cast<void>(find_mission(wrong));
+      ADD_FAILURE() << wrong;
+    } catch (const MissionError& error) {
+      EXPECT_NE(std::string(error.what()).find("did you mean experiment3?"), std::string::npos) << error.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vbar::mission::test

@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "host_sim/report/summary_json.h"
 #include "tests/unit/host_sim/report/scratch_folder.h"
@@ -227,7 +228,7 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
                   "static_floor_m", "navigation_nees", "bearing_error_arcsec", "star_attitude_error_arcsec", "images",
                   "images_with_bearing", "wrong_targets", "images_without_truth", "pose", "dv_mps", "maneuvers",
                   "commands_sha256", "telemetry_sha256", "health", "flight_step", "link", "deadlines", "sources",
-                  "wall_share", "waypoints"));
+                  "wall_share", "provenance", "waypoints"));
   EXPECT_THAT(keys(json.at("waypoints").at(3)),
               ElementsAre("index", "time_s", "navigation_error_m", "navigation_velocity_error_mps", "control_error_m",
                           "leg_dv_mps", "cumulative_dv_mps", "leg_maneuvers"));
@@ -281,7 +282,7 @@ TEST_F(RunFolderTest, SaysIncompleteUntilFinished) {
   const Json json = Json::parse(content(run() / "summary.json"));
   EXPECT_EQ(json.at("mission"), "experiment3");
   EXPECT_EQ(json.at("complete"), false);
-  EXPECT_EQ(json.at("incomplete_reason"), "running");
+  EXPECT_EQ(json.at("incomplete_reason"), "running in process " + std::to_string(::getpid()) + ", or killed");
   EXPECT_THAT(error_of_reading(), AllOf(HasSubstr(run().string()), HasSubstr("did not end"), HasSubstr("running")));
 }
 
@@ -447,6 +448,49 @@ TEST_F(RunFolderTest, DamagedSummariesAreRefused) {
   EXPECT_THAT(error_of_reading(), AllOf(HasSubstr("summary.json"), HasSubstr("number")));
   fs::remove(run() / "summary.json");
   EXPECT_THAT(error_of_reading(), HasSubstr("summary.json: no such file"));
+}
+
+TEST_F(RunFolderTest, HasOneWriterAtATime) {
+  {
+    const RunFolder first(run(), {});
+    EXPECT_TRUE(fs::exists(run() / RunLock::kFile));
+    EXPECT_THAT(error_of_making(run()), HasSubstr("being written by a run in process " + std::to_string(::getpid())));
+  }
+  EXPECT_FALSE(fs::exists(run() / RunLock::kFile));
+  EXPECT_EQ(error_of_making(run()), "no error");
+}
+
+TEST_F(RunFolderTest, IsReplacedOnlyIfThatIsAskedFor) {
+  leave_a_run();
+  const std::string before = content(run() / "summary.json");
+  EXPECT_THROW(RunFolder(run(), {}, RunFolder::Existing::kRefuse), FolderRefused);
+  EXPECT_EQ(content(run() / "summary.json"), before);
+  EXPECT_NO_THROW(RunFolder(scratch_ / "new", {}, RunFolder::Existing::kRefuse));
+}
+
+TEST_F(RunFolderTest, GivenUpItSaysWhy) {
+  const RunFolder folder(run(), {});
+  folder.give_up(synthetic_run().summary, "truth.csv: cannot be written: No space left on device");
+  const Json json = Json::parse(content(run() / "summary.json"));
+  EXPECT_EQ(json.at("complete"), false);
+  EXPECT_THAT(json.at("incomplete_reason").get<std::string>(), HasSubstr("No space left"));
+}
+
+TEST_F(RunFolderTest, ProvenanceIsReadBack) {
+  RunRecord record = synthetic_run();
+  Provenance& provenance = record.summary.provenance;
+  provenance.commit = "0123456789ab+";
+  provenance.epoch_utc = "2011-07-18T01:00:00.000Z";
+  provenance.overrides = {"mission.seed=3", "spacecraft.servicer.name=\"a b\""};
+  provenance.flight_software = FileDigest{"libarticle.so", 12, "ab"};
+  provenance.data = {{"gravity/field.txt", 3, "cd"}, {"/elsewhere/stars.csv", 4, "ef"}};
+  RunFolder(run(), {}).finish(record);
+  EXPECT_TRUE(read_run(run()).summary.provenance == provenance);
+  // A folder of an earlier version has none.
+  Json json = Json::parse(content(run() / "summary.json"));
+  json.erase("provenance");
+  write(run() / "summary.json", json.dump());
+  EXPECT_TRUE(read_run(run()).summary.provenance == Provenance{});
 }
 
 }  // namespace

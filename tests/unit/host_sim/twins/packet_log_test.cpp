@@ -1,5 +1,7 @@
 #include "host_sim/twins/packet_log.h"
 
+#include <gmock/gmock.h>
+
 #include "tests/unit/host_sim/twins/log_file.h"
 
 namespace vbar::twins::test {
@@ -133,12 +135,12 @@ std::string error_of(const std::filesystem::path& file) {
 TEST_F(PacketLogFile, BadFilesAreNamed) {
   EXPECT_EQ(error_of(file_), file_.string() + ": no such file");
   std::ofstream(file_) << "[mission]\n";
-  EXPECT_EQ(error_of(file_), file_.string() + ": no LCM log");
+  EXPECT_EQ(error_of(file_), file_.string() + ": byte 0: not an LCM log");
   write(file_, {some_records()[0]});
   std::string bytes = content();
   bytes[39] = static_cast<char>(bytes[39] ^ 1);  // first byte of the record: its type hash
   std::ofstream(file_, std::ios::binary) << bytes;
-  EXPECT_EQ(error_of(file_), file_.string() + ": event 0 is a damaged packet record");
+  EXPECT_EQ(error_of(file_), file_.string() + ": byte 0: a damaged packet record");
   EXPECT_THROW(PacketLogWriter("/no/such/folder/x.lcmlog"), std::runtime_error);
 }
 
@@ -149,7 +151,42 @@ TEST_F(PacketLogFile, RecordThatClaimsTooManyBytesIsRefused) {
   for (const int claimed : {0x7F, 0xFF}) {  // enormous and negative
     bytes[39 + 25] = static_cast<char>(claimed);
     std::ofstream(file_, std::ios::binary) << bytes;
-    EXPECT_EQ(error_of(file_), file_.string() + ": event 0 is a damaged packet record");
+    EXPECT_EQ(error_of(file_), file_.string() + ": byte 0: a damaged packet record");
+  }
+}
+
+TEST_F(PacketLogFile, StatesItsEndAndWhatIsMissing) {
+  {
+    PacketLogWriter writer(file_);
+    for (const PacketRecord& record : some_records()) writer.write(record);
+    writer.finish();
+  }
+  const std::string bytes = content();
+  const PacketLog whole = read_packet_log(file_);
+  EXPECT_EQ(whole.events_at_end, whole.events);
+  EXPECT_FALSE(whole.gap);
+  EXPECT_EQ(whole.bytes, bytes.size());
+  // Without its first event: the numbers start at 1.
+  const std::size_t second = bytes.find("\xED\xA1\xDA\x01", 4);
+  std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes.substr(second);
+  const PacketLog thinned = read_packet_log(file_);
+  ASSERT_TRUE(thinned.gap);
+  EXPECT_EQ(thinned.gap->before, -1);
+  EXPECT_EQ(thinned.gap->after, 1);
+}
+
+// Sizes in the header, by LCM's format at bytes 20 (channel) and 24 (data). LCM's own reader crashes on the first.
+TEST_F(PacketLogFile, SizesThatCannotBeAreRefusedWithTheirPlace) {
+  write(file_, some_records());
+  const std::string bytes = content();
+  const std::size_t second = bytes.find("\xED\xA1\xDA\x01", 4);
+  for (const std::size_t field : {20U, 24U}) {
+    for (const char* size : {"\x7F\xFF\xFF\xFF", "\xFF\xFF\xFF\xFF", "\x01\x00\x00\x00", "\x00\x00\x10\x00"}) {
+      std::string damaged = bytes;
+      damaged.replace(second + field, 4, std::string(size, 4));
+      std::ofstream(file_, std::ios::binary | std::ios::trunc) << damaged;
+      EXPECT_THAT(error_of(file_), testing::StartsWith(file_.string() + ": byte " + std::to_string(second) + ": "));
+    }
   }
 }
 

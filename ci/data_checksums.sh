@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# Lists the data files with their SHA-256 in data/SHA256SUMS, after a change that is intended. The program refuses a data file
+# that differs from the list.
+set -euo pipefail
+cd "$(dirname "$0")/../data"
+export LC_ALL=C
+find . -mindepth 2 -type f -not -name README.md -not -name '*.py' | sort | sed 's|^\./||' | xargs sha256sum >SHA256SUMS

@@ -1,0 +1,86 @@
+#include "host_sim/files/data_stream.h"
+
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+
+#include "host_sim/files/sha256.h"
+
+namespace vbar::files {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kManifest = "SHA256SUMS";
+
+struct Registry {
+  std::mutex mutex;
+  std::map<fs::path, FileRead> files;
+};
+
+Registry& registry() {
+  static Registry one;
+  return one;
+}
+
+/// What `manifest` lists for `name`: lines of sha256sum, "digest  ./name" or "digest  name".
+std::optional<std::string> listed_in(const fs::path& manifest, const std::string& name) {
+  std::ifstream lines(manifest);
+  for (std::string line; std::getline(lines, line);) {
+    constexpr std::size_t kDigits = 64;
+    if (line.size() < kDigits + 3) continue;
+    std::string listed = line.substr(kDigits + 2);
+    if (listed.starts_with("./")) listed.erase(0, 2);
+    if (listed == name) return line.substr(0, kDigits);
+  }
+  return std::nullopt;
+}
+
+/// Data files stand in a folder of the data directory, whose manifest lists them.
+void check_manifest(const fs::path& file, const std::string& sha256) {
+  const fs::path room = file.parent_path(), data = room.parent_path(), manifest = data / kManifest;
+  std::error_code error;
+  if (!fs::is_regular_file(manifest, error)) return;
+  const auto listed = listed_in(manifest, (room.filename() / file.filename()).string());
+  if (listed && *listed != sha256)
+    throw std::runtime_error(file.string() + ": differs from what " + manifest.string() +
+                             " lists: truncated or changed (ci/data_checksums.sh lists a change that is intended)");
+}
+
+}  // namespace
+
+std::vector<FileRead> files_read() {
+  Registry& all = registry();
+  const std::lock_guard lock(all.mutex);
+  std::vector<FileRead> files;
+  for (const auto& [path, file] : all.files) files.push_back(file);
+  return files;
+}
+
+void note_file_read(const fs::path& file, std::string_view contents) {
+  std::error_code error;
+  fs::path absolute = fs::absolute(file, error).lexically_normal();
+  FileRead read{absolute, contents.size(), sha256_of(contents)};
+  check_manifest(absolute, read.sha256);
+  Registry& all = registry();
+  const std::lock_guard lock(all.mutex);
+  all.files.insert_or_assign(std::move(absolute), std::move(read));
+}
+
+DataStream::DataStream(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::error_code error;
+  std::string contents;
+  if (stream && !fs::is_directory(file, error)) contents.assign(std::istreambuf_iterator<char>(stream), {});
+  if (!stream || stream.bad() || fs::is_directory(file, error)) {
+    setstate(std::ios::failbit);
+    return;
+  }
+  note_file_read(file, contents);
+  str(std::move(contents));
+}
+
+}  // namespace vbar::files

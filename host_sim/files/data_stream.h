@@ -1,0 +1,33 @@
+#pragma once
+// The data files that a run reads. Each is read whole through here, so that what was parsed is what is recorded in the
+// run's provenance, and so that a file that differs from the checksums of its data directory is refused.
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vbar::files {
+
+struct FileRead {
+  std::filesystem::path file;
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+/// Of this process so far, each file once, in order of their paths.
+[[nodiscard]] std::vector<FileRead> files_read();
+
+/// Records a file whose contents were read elsewhere. Throws std::runtime_error that names the file if a SHA256SUMS in
+/// a folder above it lists other contents.
+void note_file_read(const std::filesystem::path& file, std::string_view contents);
+
+/// In the place of std::ifstream: the contents of a file, recorded. Its state is bad if the file cannot be read; throws
+/// as note_file_read.
+class DataStream : public std::istringstream {
+ public:
+  explicit DataStream(const std::filesystem::path& file);
+};
+
+}  // namespace vbar::files

@@ -1,0 +1,42 @@
+#pragma once
+// What a run was made of: program, mission, data, flight software, computer. It stands in summary.json from the run's
+// first moment; data files and packet log are added at the end.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace vbar::report {
+
+struct FileDigest {
+  std::string file;  ///< data: relative to the data directory where it stands in it
+  std::uint64_t bytes = 0;
+  std::string sha256;
+  friend bool operator==(const FileDigest&, const FileDigest&) = default;
+};
+
+struct Provenance {
+  std::string vbar_version, commit, compiler, build_type;
+  std::string host, started_utc, epoch_utc;
+  std::vector<std::string> overrides;  ///< "path=value", as given
+  std::string mission_sha256;          ///< of mission.toml in the run folder
+  std::string program_sha256;
+  std::optional<FileDigest> flight_software;  ///< the library or image that flew; none: in the program, or on a board
+  std::vector<FileDigest> data;
+  std::optional<FileDigest> packet_log;
+  friend bool operator==(const Provenance&, const Provenance&) = default;
+};
+
+/// Nothing if the file cannot be read.
+[[nodiscard]] std::optional<FileDigest> digest_of(const std::filesystem::path& file);
+
+[[nodiscard]] nlohmann::ordered_json json_of(const Provenance& provenance);
+
+/// What is missing stays empty. Throws nlohmann::json::exception for a value of another type.
+[[nodiscard]] Provenance provenance_from(const nlohmann::ordered_json& json);
+
+}  // namespace vbar::report

@@ -1,0 +1,86 @@
+#include "host_sim/twins/lcm_log_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "fsw/packets/big_endian.h"
+
+namespace vbar::twins {
+namespace {
+
+using fsw::packets::read_big_endian;
+
+constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
+constexpr std::size_t kHeaderBytes = 28;
+constexpr std::uint32_t kChannelBytesMax = 63;                // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr std::uint32_t kDataBytesMax = 64U * 1024U * 1024U;  // a packet has 64 kB; other programs may log images
+
+}  // namespace
+
+LcmLogReader::LcmLogReader(const std::filesystem::path& file) : file_(file) {
+  if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": no such file");
+  stream_.open(file, std::ios::binary);
+  if (!stream_) throw std::runtime_error(file.string() + ": cannot be read");
+  size_ = std::filesystem::file_size(file);
+}
+
+void LcmLogReader::fail(std::uint64_t offset, const std::string& what) const {
+  throw DamagedLog(file_.string() + ": byte " + std::to_string(offset) + ": " + what);
+}
+
+/// The event at `offset` reaches beyond the end of the file. A log that was cut has nothing more behind it; if another
+/// event follows, it is the size that is wrong.
+void LcmLogReader::take_rest_as_cut(std::uint64_t offset) {
+  stream_.clear();
+  stream_.seekg(static_cast<std::streamoff>(offset + sizeof kSyncWord));
+  std::uint32_t window = 0;
+  for (int byte = stream_.get(); byte != std::ifstream::traits_type::eof(); byte = stream_.get()) {
+    window = window << 8U | static_cast<std::uint32_t>(byte);
+    if (window == kSyncWord) fail(offset, "an event whose size is wrong, as another event stands within it");
+  }
+  cut_short_ = true;
+  offset_ = size_;
+}
+
+std::optional<LoggedEvent> LcmLogReader::next() {
+  const std::uint64_t begin = offset_, left = size_ - offset_;
+  if (left == 0) return std::nullopt;
+  std::array<std::uint8_t, kHeaderBytes> bytes{};
+  const std::size_t available = std::min<std::uint64_t>(left, kHeaderBytes);
+  stream_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(available));
+  if (!stream_) fail(begin, "cannot be read");
+  const std::span header(bytes);
+  if (available < sizeof kSyncWord && begin > 0) {
+    take_rest_as_cut(begin);
+    return std::nullopt;
+  }
+  if (available < sizeof kSyncWord || read_big_endian<std::uint32_t>(header, 0) != kSyncWord)
+    fail(begin, begin == 0 ? "not an LCM log" : "no event starts here, where one has to");
+  if (available < kHeaderBytes) {
+    take_rest_as_cut(begin);
+    return std::nullopt;
+  }
+  LoggedEvent event;
+  event.offset = begin;
+  event.number = static_cast<std::int64_t>(read_big_endian<std::uint64_t>(header, 4));
+  const auto channel_bytes = read_big_endian<std::uint32_t>(header, 20);
+  const auto data_bytes = read_big_endian<std::uint32_t>(header, 24);
+  if (channel_bytes == 0 || channel_bytes > kChannelBytesMax)
+    fail(begin, "an event whose channel name has " + std::to_string(channel_bytes) + " bytes; accepted: 1 to 63");
+  if (data_bytes > kDataBytesMax)
+    fail(begin, "an event that claims " + std::to_string(data_bytes) + " bytes; accepted: up to 67108864");
+  if (left - kHeaderBytes < std::uint64_t{channel_bytes} + data_bytes) {
+    take_rest_as_cut(begin);
+    return std::nullopt;
+  }
+  event.channel.resize(channel_bytes);
+  event.data.resize(data_bytes);
+  stream_.read(event.channel.data(), channel_bytes);
+  stream_.read(reinterpret_cast<char*>(event.data.data()), data_bytes);
+  if (!stream_) fail(begin, "cannot be read");
+  offset_ += kHeaderBytes + channel_bytes + data_bytes;
+  return event;
+}
+
+}  // namespace vbar::twins

@@ -1,0 +1,50 @@
+#pragma once
+// Events of a file in LCM's log format, read defensively: every size is checked against the file before memory is made
+// for it. An event is, in big-endian order, the sync word EDA1DA01, event number (8 bytes), time in microseconds (8),
+// lengths of channel and data (4 each), then channel and data.
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace vbar::twins {
+
+/// The file is not a log, or damaged; the message names file and byte offset.
+class DamagedLog : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct LoggedEvent {
+  std::uint64_t offset = 0;  ///< of its first byte in the file
+  std::int64_t number = 0;
+  std::string channel;
+  std::vector<std::uint8_t> data;
+};
+
+class LcmLogReader {
+ public:
+  /// Throws std::runtime_error that names a file that cannot be read.
+  explicit LcmLogReader(const std::filesystem::path& file);
+
+  /// Nothing at the end of the file, or where it ends within an event: then cut_short(). Throws DamagedLog.
+  [[nodiscard]] std::optional<LoggedEvent> next();
+
+  [[nodiscard]] bool cut_short() const { return cut_short_; }
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+
+ private:
+  [[noreturn]] void fail(std::uint64_t offset, const std::string& what) const;
+  void take_rest_as_cut(std::uint64_t offset);
+
+  std::filesystem::path file_;
+  std::ifstream stream_;
+  std::uint64_t size_ = 0, offset_ = 0;
+  bool cut_short_ = false;
+};
+
+}  // namespace vbar::twins
