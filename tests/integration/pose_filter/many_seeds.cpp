@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "tests/integration/pose_filter/close_flight.h"
+#include "tests/support/figures.h"
 
 namespace {
 
@@ -55,7 +56,7 @@ int main(int argc, char** argv) {
     auto navigation = std::make_unique<fsw::navigation::PoseNavigation>();
     if (navigation->configure(settings) != fsw::Status::kOk) return 1;
     double position = 0.0, attitude = 0.0, roe_nees = 0.0, attitude_nees = 0.0, nis = 0.0, rows = 0.0;
-    double worst_position = 0.0, worst_attitude = 0.0;
+    vbar::accuracy::Largest worst_position, worst_attitude;
     int count = 0;
     int first = -1;
     for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
@@ -83,8 +84,8 @@ int main(int argc, char** argv) {
       if (k < 120 || fate != fsw::navigation::PoseFate::kFilter) continue;  // ten minutes to settle
       position += error.position_m;
       attitude += error.attitude * 57.2958;
-      worst_position = std::max(worst_position, error.position_m);
-      worst_attitude = std::max(worst_attitude, error.attitude * 57.2958);
+      worst_position.add(error.position_m);
+      worst_attitude.add(error.attitude * 57.2958);
       roe_nees += error.roe_nees;
       attitude_nees += error.attitude_nees;
       ++count;
