@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "fsw/angles_only/sighting.h"
+#include "host_sim/app/true_camera.h"
 #include "host_sim/report/code_names.h"
 
 namespace vbar::app {
@@ -20,7 +21,6 @@ using fsw::angles_only::SightingStatus;
 // as a spacecraft of this size takes.
 constexpr double kStarRadius = 8.0;
 constexpr double kTargetRadius = 13.0;
-constexpr double kSpacecraftRadiusM = 0.8;
 
 bool has_bearing(const report::ImageRow& row) {
   return row.status == static_cast<int>(SightingStatus::kBearing);
@@ -115,7 +115,7 @@ std::vector<report::ImageMark> GalleryKeeper::marks_of(const ImageFindings& foun
         marks.push_back({report::MarkShape::kBox, x, y, kStarRadius});
         break;
       case ObjectKind::kTarget: {
-        const double size_px = found.row.range_m ? kSpacecraftRadiusM * focal_length_px_ / *found.row.range_m : 0.0;
+        const double size_px = found.row.range_m ? kSpacecraftRadius_m * focal_length_px_ / *found.row.range_m : 0.0;
         target.push_back({report::MarkShape::kCircle, x, y, std::max(kTargetRadius, size_px)});
         break;
       }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 
@@ -57,6 +58,8 @@ void add_attitude_error(report::PoseRow& row, const telemetry_pose& pose, const 
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
+  const auto is_nan = [](double value) { return std::isnan(value); };
+  if (std::ranges::any_of(values, is_nan)) return std::numeric_limits<double>::quiet_NaN();  // has no place in an order
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
@@ -159,7 +162,7 @@ void summarise_poses(const report::RunRecord& record, report::Summary& summary) 
   for (const report::PoseRow& row : record.poses) {
     ++figures.images;
     if (row.pnp_inliers > 0) ++figures.with_pose;
-    if (row.pnp_error_deg.value_or(0.0) > 10.0) ++figures.poses_over_10_deg;
+    if (!(row.pnp_error_deg.value_or(0.0) <= 10.0)) ++figures.poses_over_10_deg;
     if (row.attitude_error_deg) attitude_errors.push_back(*row.attitude_error_deg);
     if (row.nees) nees.push_back(*row.nees);
     if (row.attitude_nees && row.fate == 2) attitude_nees.push_back(*row.attitude_nees);

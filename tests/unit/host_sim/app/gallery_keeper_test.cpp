@@ -78,7 +78,7 @@ class Gallery : public testing::Test {
     row.image = number;
     row.status = status;
     row.tiles_missing = lost_tile >= 0 ? 1 : 0;
-    row.range_m = 12345.6;
+    row.range_m = range_m_;
     keeper_.on_image({exposure, row, objects}, pictures_);
   }
 
@@ -91,6 +91,7 @@ class Gallery : public testing::Test {
   const mission::Mission mission_ = mission::parse_mission(kMission, "m.toml");
   GalleryKeeper keeper_{mission_, mission_.spacecraft[0]};
   std::vector<report::GalleryImage> pictures_;
+  double range_m_ = 12345.6;
 };
 
 TEST_F(Gallery, HoldsTheFirstBearingAndTheLastOnesBeforeWaypoints) {
@@ -127,6 +128,21 @@ TEST_F(Gallery, MarksWhatTheObjectsAre) {
   EXPECT_EQ(pictures_[0].png, png(pattern(0), {{report::MarkShape::kTriangle, 725.0, 220.0, 8.0},
                                                {report::MarkShape::kBox, 740.0, 220.0, 8.0},
                                                {report::MarkShape::kCircle, 755.0, 220.0, 13.0}}));
+}
+
+// Tango's 0.73 m are 5972.7 px * 0.73 m / range: 21.8 px of 200 m.
+TEST_F(Gallery, ANearTargetsMarkIsItsSize) {
+  telemetry_objects objects{};
+  objects.count = 1;
+  objects.kind[0] = 2;
+  objects.x_px[0] = 755.0F;
+  objects.y_px[0] = 225.0F;
+  range_m_ = 200.0;
+  fly_image(1, kBearing, &objects);
+  ASSERT_EQ(pictures_.size(), 1U);
+  const double radius_px = 0.73 * 35e3 / 5.86 / 200.0;
+  EXPECT_EQ(pictures_[0].png, png(pattern(0), {{report::MarkShape::kCircle, 755.0, 225.0, radius_px}}));
+  EXPECT_THAT(pictures_[0].caption, HasSubstr("range 200.0 m"));
 }
 
 TEST_F(Gallery, PixelsOfALostTileAreMissing) {
