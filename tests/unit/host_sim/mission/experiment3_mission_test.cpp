@@ -1,48 +1,18 @@
 // missions/experiment3.toml flies the paper's waypoints 8 to 10, explains every key of GNSS, and the values it shows
 // are the defaults that it says they are.
 
-#include <algorithm>
-#include <fstream>
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
+#include "tests/unit/host_sim/mission/shown_keys.h"
 
 namespace vbar::mission::test {
 namespace {
 
 const std::string kFile = vbar::tests::source_path("missions/experiment3.toml");
-
-std::string file_text() {
-  std::ostringstream text;
-  text << std::ifstream(kFile).rdbuf();
-  return text.str();
-}
-
-/// The keys that a table accepts, as the message about an unknown one lists them.
-std::vector<std::string> accepted_keys(const std::string& table) {
-  std::string message;
-  try {
-    static_cast<void>(load_mission(kFile, std::vector<std::string>{table + ".xyzzy=1"}));
-  } catch (const MissionError& error) {
-    message = error.what();
-  }
-  const std::string before = "accepted: ";
-  const std::size_t start = message.find(before);
-  EXPECT_NE(start, std::string::npos) << table << ": " << message;
-  if (start == std::string::npos) return {};
-  std::string list = message.substr(start + before.size());  // "a, b or c"
-  std::replace(list.begin(), list.end(), ',', ' ');
-  std::istringstream words(list);
-  std::vector<std::string> keys;
-  for (std::string word; words >> word;)
-    if (word != "or") keys.push_back(word);
-  return keys;
-}
 
 TEST(Experiment3Mission, WaypointsAreThePapers) {
   // Table "End-to-end Mission ROE Waypoints".
@@ -63,19 +33,9 @@ TEST(Experiment3Mission, WaypointsAreThePapers) {
 
 TEST(Experiment3Mission, EveryKeyOfGnssIsExplained) {
   const std::string sensor = "spacecraft.servicer.sensors.gnss";
-  const std::string text = file_text();
-  for (const std::string& table :
-       {sensor, sensor + ".visibility", sensor + ".link_budget", sensor + ".tracking", sensor + ".start",
-        sensor + ".clock", sensor + ".body_frame", std::string("gnss_navigation"), std::string("constellation"),
-        std::string("links.crosslink")}) {
-    const std::vector<std::string> keys = accepted_keys(table);
-    EXPECT_GE(keys.size(), 4U) << table;
-    for (const std::string& key : keys) {
-      const bool is_shown = text.find("\n" + key + " = ") != std::string::npos ||
-                            text.find("sensors.gnss." + key + "]") != std::string::npos;
-      EXPECT_TRUE(is_shown) << table << '.' << key;
-    }
-  }
+  expect_all_shown(text_of_file(kFile), kFile,
+                   {sensor, sensor + ".visibility", sensor + ".link_budget", sensor + ".tracking", sensor + ".start",
+                    sensor + ".clock", sensor + ".body_frame", "gnss_navigation", "constellation", "links.crosslink"});
 }
 
 // A mission without the tables has the same values, but for the loss of the crosslink, of which the file says so.
