@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
         "%3u %.2f deg/s first %d: position %5.2f cm (most %5.2f) attitude %5.2f deg (most %5.2f) nees %5.1f %5.1f "
         "nis/dof %.2f psd %.0e %.0e | images %d refused %d keypoints %d refused %d positions %d attitudes %d "
         "restarts %d\n",
-        seed, rate_deg_s, first, 100 * position / count, 100 * worst_position, attitude / count, worst_attitude,
+        seed, rate_deg_s, first, 100 * position / count, 100 * worst_position, attitude / count, worst_attitude.value,
         roe_nees / count, attitude_nees / count, nis / rows, navigation->filter().acceleration_psd(),
         navigation->filter().angular_acceleration_psd(), c.images_used, c.images_refused, c.keypoints_used,
         c.keypoints_refused, c.positions_used, c.attitudes_reset, c.restarts);
