@@ -249,21 +249,24 @@ def main():
         print(*sorted({k["program"] for k in kernels}))
         return
     survivors = 0
-    print(f"{'kernel':58}{'tests':34}" + "".join(f"{m:12}" for m in MUTATIONS))
     with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         build = Build(options.build)
         for kernel in kernels:
             kernel["tests"] = options.tests or kernel["tests"]
+        names = [kernel["name"].removeprefix("vbar::") for kernel in kernels]
+        tests = [f"{kernel['program']} {kernel['tests']}" for kernel in kernels]
+        widths = [2 + max(len(text) for text in column) for column in (names, tests)]
+        print(f"{'kernel':{widths[0]}}{'tests':{widths[1]}}" + "".join(f"{m:12}" for m in MUTATIONS).rstrip())
         judged = [pool.submit(judge, build, kernel, pathlib.Path(scratch)) for kernel in kernels]
-        for kernel, verdicts in zip(kernels, judged):
+        for name, test, verdicts in zip(names, tests, judged):
             try:
                 verdicts = verdicts.result()
             except ValueError as error:
                 pool.shutdown(cancel_futures=True)
                 sys.exit(f"{error}")
             survivors += sum(v == "passed" for v in verdicts.values())
-            print(f"{kernel['name'].removeprefix('vbar::'):58}{kernel['program'] + ' ' + kernel['tests']:34}"
-                  + "".join(f"{'SURVIVED' if v == 'passed' else v:12}" for v in verdicts.values()), flush=True)
+            words = [f"{'SURVIVED' if v == 'passed' else v:12}" for v in verdicts.values()]
+            print(f"{name:{widths[0]}}{test:{widths[1]}}{''.join(words).rstrip()}", flush=True)
     print(f"{len(kernels)} kernels, {len(kernels) * len(MUTATIONS)} mutants, {survivors} survived")
     sys.exit(1 if survivors else 0)
 
