@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "fsw/angles_only/sighting.h"
+#include "host_sim/app/true_camera.h"
 #include "host_sim/report/code_names.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 
@@ -18,7 +19,6 @@ using fsw::angles_only::SightingStatus;
 // Radius of the mark about the target, px: larger than the marks of its neighbours, and at close range the apparent
 // radius of a spacecraft of this size.
 constexpr double kTargetRadius = 13.0;
-constexpr double kSpacecraftRadiusM = 0.8;
 
 bool has_bearing(const report::ImageRow& row) {
   return row.status == static_cast<int>(SightingStatus::kBearing);
@@ -103,7 +103,7 @@ GalleryKeeper::Candidate GalleryKeeper::candidate(const ImageFindings& found, Gp
 
 report::GalleryImage GalleryKeeper::picture(const Candidate& candidate) const {
   const report::CameraPicture picture{candidate.frame.width, candidate.frame.height, candidate.dn};
-  const double size_px = candidate.row.range_m ? kSpacecraftRadiusM * focal_length_px_ / *candidate.row.range_m : 0.0;
+  const double size_px = candidate.row.range_m ? kSpacecraftRadius_m * focal_length_px_ / *candidate.row.range_m : 0.0;
   return {.time_s = candidate.row.time_s,
           .image = candidate.row.image,
           .caption = caption(candidate.row),

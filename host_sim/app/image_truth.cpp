@@ -1,6 +1,8 @@
 #include "host_sim/app/image_truth.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <Eigen/Geometry>
 
@@ -13,10 +15,8 @@ using Eigen::Quaterniond;
 using fsw::Vector3;
 
 constexpr double kArcsecond = M_PI / 648000.0;
-/// Of a spacecraft: its bearing is somewhere inside.
-constexpr double kRadius_m = 0.6;
-/// About three pixels of the Optical Stimulator: a bearing farther off is one of something else.
-constexpr double kSameObject_rad = 100.0 * kArcsecond;
+/// A bearing farther off than this from all of a spacecraft is the bearing of another object.
+constexpr double kSameObject_px = 3.0;
 
 Vector3 vector(const double (&v)[3]) {
   return {v[0], v[1], v[2]};
@@ -26,13 +26,19 @@ double angle_between(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+/// How far from the direction to a spacecraft's centre of mass a bearing may be that is the spacecraft's, rad.
+double same_object(const twins::camera::CameraSettings& settings, double range_m) {
+  return kSameObject_px / settings.focal_length_px() + kSpacecraftRadius_m / range_m;
+}
+
 /// The object nearest to where the target really is, if it is near enough to be it; -1: none.
 int true_object(const telemetry_objects& objects, const Eigen::Vector2d& target_px, double tolerance_px) {
   int nearest = -1;
   double least = tolerance_px;
-  for (int k = 0; k < objects.count && k < 96; ++k) {
+  const int count = std::min<int>(objects.count, std::size(objects.x_px));
+  for (int k = 0; k < count; ++k) {
     const double distance = (Eigen::Vector2d(objects.x_px[k], objects.y_px[k]) - target_px).norm();
-    if (distance > least) continue;
+    if (!(distance <= least)) continue;
     least = distance;
     nearest = k;
   }
@@ -40,15 +46,15 @@ int true_object(const telemetry_objects& objects, const Eigen::Vector2d& target_
 }
 
 /// The spacecraft in the direction of a bearing, nearest first by what its size allows.
-std::string spacecraft_at(const Vector3& bearing_eci, const TrueCamera& camera, const std::string& servicer,
+std::string spacecraft_at(const Vector3& bearing_eci, const TrueCamera& camera, const mission::Spacecraft& servicer,
                           const twins::TruthSnapshot& truth) {
   std::string found = "nothing";
   double least = 1.0;
   for (const twins::SpacecraftTruth& other : truth.spacecraft) {
-    if (other.name == servicer) continue;
+    if (other.name == servicer.name) continue;
     const Vector3 los = camera.towards(other);
-    const double share = angle_between(bearing_eci, los) / (kSameObject_rad + kRadius_m / los.norm());
-    if (share > least) continue;
+    const double share = angle_between(bearing_eci, los) / same_object(servicer.camera->settings, los.norm());
+    if (!(share <= least)) continue;
     least = share;
     found = other.name;
   }
@@ -85,7 +91,7 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
   const Vector3 bearing_eci = vector(image.bearing_eci);
   if (image.status == telemetry_image::kStatusBearing && bearing_eci.norm() > 0.5) {
     add_bearing_error(row, bearing_eci, los_eci, camera.q_camera_eci);
-    row.chosen = spacecraft_at(bearing_eci, camera, servicer.name, truth);
+    row.chosen = spacecraft_at(bearing_eci, camera, servicer, truth);
   }
   if (image.star_method != telemetry_image::kStarMethodNone) {
     const double(&q)[4] = image.q_eci_camera;
@@ -94,7 +100,7 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
   const twins::camera::CameraSettings& settings = sensor->settings;
   const auto target_px = pixel_of(settings, camera.q_camera_eci * los_eci);
   if (objects != nullptr && target_px) {
-    const double tolerance_px = settings.focal_length_px() * (kSameObject_rad + kRadius_m / *row.range_m);
+    const double tolerance_px = settings.focal_length_px() * same_object(settings, *row.range_m);
     row.true_object = true_object(*objects, *target_px, tolerance_px);
   }
   if (image.fate == telemetry_image::kEditFilter)

@@ -13,6 +13,10 @@
 
 namespace vbar::app {
 
+/// Of the sphere about the centre of mass of Tango, the spacecraft that cameras see here, that holds its body and
+/// antennas.
+inline constexpr double kSpacecraftRadius_m = 0.73;
+
 /// A camera in orbit at the middle of an exposure.
 struct TrueCamera {
   fsw::Vector3 position_eci = fsw::Vector3::Zero();

@@ -24,8 +24,10 @@ std::optional<MeanAndDeviation> statistics_of(const std::vector<double>& values)
   return values.empty() ? std::nullopt : std::optional(statistics(values));
 }
 
+/// NaN if any value is: it has no place in an order.
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
+  if (std::ranges::any_of(values, [](double value) { return std::isnan(value); })) return std::nan("");
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
@@ -111,7 +113,7 @@ void summarise_poses(const RunRecord& record, Summary& summary) {
     ++figures.images;
     if (!row.range_m) ++figures.without_truth;
     if (row.pnp_inliers > 0) ++figures.with_pose;
-    if (row.pnp_error_deg.value_or(0.0) > kLargePoseError_deg) ++figures.poses_over_10_deg;
+    if (!(row.pnp_error_deg.value_or(0.0) <= kLargePoseError_deg)) ++figures.poses_over_10_deg;
     if (row.attitude_error_deg) attitude_errors.push_back(*row.attitude_error_deg);
     if (row.nees) nees.push_back(*row.nees);
     if (row.attitude_nees && row.fate == telemetry_pose::kEditKeypoints) attitude_nees.push_back(*row.attitude_nees);

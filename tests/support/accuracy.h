@@ -3,8 +3,8 @@
 // limit that holds it. The row is an expectation of the test and, by the same call, properties of its result (gtest's
 // RecordProperty), which ci/accuracy.sh gathers into the page; so the page cannot claim what no test holds.
 //
-//   double largest = 0.0;
-//   for (...) largest = std::max(largest, relative_difference(...));
+//   accuracy::Largest largest;
+//   for (...) largest.add(relative_difference(...));
 //   accuracy::expect_below("gravity 60x60", "GeographicLib SphericalHarmonic, 10,000 points", largest, 1e-13,
 //   "relative");
 //
@@ -16,6 +16,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/figures.h"
 
 namespace vbar::accuracy {
 

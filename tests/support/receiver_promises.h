@@ -15,7 +15,7 @@ inline bool keeps_promises(const fsw::gnss::ObservationEpoch& epoch) {
                                o.phase_sigma_cycles, o.cn0_dbhz, o.lock_time_s}) {
       if (!std::isfinite(value)) return false;
     }
-    if (o.satellite.prn == 0 || o.pseudorange_m < 1e7 || o.pseudorange_m > 6e7) return false;
+    if (o.satellite.prn == 0 || !(o.pseudorange_m >= 1e7 && o.pseudorange_m <= 6e7)) return false;
     if (k == 0) continue;
     const fsw::gnss::Observation& before = epoch.observations[k - 1];
     if (o.satellite < before.satellite) return false;

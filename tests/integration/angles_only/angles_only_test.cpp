@@ -60,11 +60,6 @@ Outcome navigate(const TrueFlight& flight, const SensorErrors& errors, unsigned 
   return outcome;
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
-}
-
 /// Truth once for all tests: it is the same for every seed.
 const TrueFlight& whole_flight() {
   static const TrueFlight flight = fly_truly(36.0);
@@ -102,12 +97,13 @@ TEST(AnglesOnly, KnowsTheTargetAtTheWaypoints) {
   for (std::size_t w = 0; w < 7; ++w) {
     const std::string name = std::to_string(w + 1);
     accuracy::expect_below("angles-only navigation at waypoint " + name,
-                           "truth, all forces, simulated bearings, 4 seeds", median(error[w]), kAsked[w], "m");
+                           "truth, all forces, simulated bearings, 4 seeds", accuracy::median(error[w]), kAsked[w],
+                           "m");
     // Chi-square of 24 degrees of freedom: 99.9 % below 51. Far below six would be a filter that does not trust itself.
     EXPECT_LT(nees[w], 51.2 / kSeeds) << name;
     EXPECT_GT(nees[w], 1.0) << name;
-    table.push_back({name, accuracy::detail::number_text(median(error[w])), accuracy::detail::number_text(bound[w]),
-                     accuracy::detail::number_text(nees[w])});
+    table.push_back({name, accuracy::detail::number_text(accuracy::median(error[w])),
+                     accuracy::detail::number_text(bound[w]), accuracy::detail::number_text(nees[w])});
   }
   accuracy::record_table("Angles-only navigation without images", table);
   // Of some 4 x 1000 bearings with two degrees of freedom: 2 within 0.1, and what the bias's uncertainty adds.

@@ -37,7 +37,7 @@ Errors errors_of(ImageChain& chain, SceneMaker& scenes, int images, double range
     ++errors.bearings;
     bearing_errors.push_back(scene.R_camera_eci * (sighting.bearing.direction_eci - scene.target_direction()) /
                              kArcsec);
-    if (bearing_errors.back().norm() > 60.0) ++errors.wrong;
+    if (!(bearing_errors.back().norm() <= 60.0)) ++errors.wrong;
   }
   errors.boresight_arcsec = std::sqrt(boresight2 / errors.attitudes) / kArcsec;
   for (const Vector3& error : bearing_errors) errors.bias_arcsec += error / errors.bearings;

@@ -7,6 +7,7 @@
 
 #include "tests/integration/angles_only/observability_bound.h"
 #include "tests/integration/angles_only/true_flight.h"
+#include "tests/support/figures.h"
 
 int main(int argc, char** argv) {
   using namespace vbar;
@@ -73,10 +74,7 @@ int main(int argc, char** argv) {
                 counters.bearings_refused, counters.batches_failed, counters.doubts, counters.restarts);
   }
   std::printf("med");
-  for (auto& of : errors) {
-    std::sort(of.begin(), of.end());
-    std::printf(" | %8.2f          ", of.empty() ? 0.0 : 0.5 * (of[(of.size() - 1) / 2] + of[of.size() / 2]));
-  }
+  for (const auto& of : errors) std::printf(" | %8.2f          ", vbar::accuracy::median(of));
   std::printf("\nnees");
   for (const double mean : nees) std::printf(" | %8.2f          ", mean);
   std::printf("\n");

@@ -1,5 +1,6 @@
 #include "tests/integration/closed_form_loop/ideal_loop.h"
 
+#include <algorithm>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -78,8 +79,7 @@ class Loop {
     const int period = close ? 1 : settings_.ticks_a_closed_form_decision;
     for (int tick = 0; truth_->time() < goal_.time; ++tick) {
       if (tick % period == 0) decide(close);
-      GpsTime next = truth_->time() + nearest_duration(settings_.tick_s);
-      if (next > goal_.time) next = goal_.time;
+      const GpsTime next = std::min(truth_->time() + nearest_duration(settings_.tick_s), goal_.time);
       commit_until(next + nearest_duration(settings_.latency_s));
       fly_until(next);
     }

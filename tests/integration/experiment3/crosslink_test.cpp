@@ -7,6 +7,7 @@
 
 #include "fsw/gnc/gnc.h"
 #include "tests/integration/experiment3/flight.h"
+#include "tests/support/figures.h"
 
 namespace vbar::test {
 namespace {
@@ -24,9 +25,9 @@ TEST(Crosslink, AFifthLostAndFiveSecondsLateCostLessThanHalf) {
     EXPECT_LT(flight.first_fix_s.value_or(1e9), 300.0) << seed;
     for (const int index : {9, 10}) EXPECT_LT(waypoint(flight.flown.record, index).control_error_m, 0.05) << seed;
   }
-  fmt::print("mean position error {:.2f} mm, {:.2f} mm over a poor crosslink\n", 1e3 * median(usual),
-             1e3 * median(worse));
-  EXPECT_LT(median(worse), 1.5 * median(usual));
+  fmt::print("mean position error {:.2f} mm, {:.2f} mm over a poor crosslink\n", 1e3 * accuracy::median(usual),
+             1e3 * accuracy::median(worse));
+  EXPECT_LT(accuracy::median(worse), 1.5 * accuracy::median(usual));
 }
 
 class Silence : public ::testing::TestWithParam<int> {};
@@ -41,7 +42,8 @@ TEST_P(Silence, OfTenMinutesIsCoastedToldAndRecoveredFrom) {
           fmt::format("links.crosslink.silence_duration_s={}", kSilence_s), "guidance.navigation_timeout_s=300.0"});
   const report::RunRecord& record = flight.flown.record;
   const double start_s = record.truth.front().time_s;
-  double fixed_again_s = 1e9, largest_m = 0.0;
+  accuracy::Smallest fixed_again_s;
+  accuracy::Largest largest_m;
   for (std::size_t k = 0; k < record.estimates.size(); ++k) {
     const report::EstimateRow& estimate = record.estimates[k];
     const double since_s = estimate.time_s - start_s - begin_s;
@@ -55,10 +57,10 @@ TEST_P(Silence, OfTenMinutesIsCoastedToldAndRecoveredFrom) {
       EXPECT_EQ(estimate.navigation_source, kPropagated) << since_s;
       EXPECT_EQ(estimate.navigation_valid, 1) << since_s;
       EXPECT_LT(error_m, 4.0 * std::sqrt(variance)) << since_s;  // it knows how much it has lost
-      largest_m = std::max(largest_m, error_m);
+      largest_m.add(error_m);
     }
     if (since_s >= kSilence_s && estimate.navigation_source == kFixed) {
-      fixed_again_s = std::min(fixed_again_s, since_s - kSilence_s);
+      fixed_again_s.add(since_s - kSilence_s);
     }
   }
   fmt::print("silent from {} s: coasts to {:.1f} cm, fixed again after {:.0f} s\n", begin_s, 1e2 * largest_m,

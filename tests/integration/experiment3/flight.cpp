@@ -30,7 +30,7 @@ void judge(Flight& flight) {
     ASSERT_EQ(estimate.navigation_valid, 1) << estimate.time_s;
     const double position_m = distance(estimate.relative_position_rtn, record.truth[k].relative_position_rtn);
     flight.mean_position_m += position_m;
-    flight.largest_position_m = std::max(flight.largest_position_m, position_m);
+    flight.largest_position_m.add(position_m);
     flight.mean_velocity_mps += distance(estimate.relative_velocity_rtn, record.truth[k].relative_velocity_rtn);
     count += 1.0;
   }
@@ -48,12 +48,6 @@ Flight fly_experiment3(std::uint64_t seed, std::vector<std::string> overrides, c
   EXPECT_TRUE(flight.flown.complete) << seed;
   judge(flight);
   return flight;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
 template <class Message>

@@ -8,6 +8,7 @@
 
 #include "fsw/packets/messages.h"
 #include "tests/integration/rendezvous/flown_mission.h"
+#include "tests/support/figures.h"
 
 namespace vbar::test {
 
@@ -17,14 +18,11 @@ struct Flight {
   std::optional<double> first_fix_s;  ///< after the start
   double mean_position_m = 0.0;
   double mean_velocity_mps = 0.0;
-  double largest_position_m = 0.0;
+  accuracy::Largest largest_position_m;
 };
 
 /// Flies it from this seed. Fails the test if it does not come to its end.
 Flight fly_experiment3(std::uint64_t seed, std::vector<std::string> overrides = {}, const Wrap& wrap = {});
-
-/// The middle one; the mean of the middle two of an even number.
-double median(std::vector<double> values);
 
 /// Telemetry of one kind, decoded, in order.
 template <class Message>

@@ -14,6 +14,7 @@
 #include "fsw/packets/messages.h"
 #include "tests/integration/experiment3/flight.h"
 #include "tests/integration/experiment3/receiver_stream.h"
+#include "tests/support/figures.h"
 
 namespace vbar::test {
 namespace {
@@ -144,17 +145,17 @@ TEST_P(HostileBytes, AreSurvivedAndForgotten) {
   const Flight flight = fly_experiment3(1, {}, spoil_steps(kFirstBad, kLastBad, GetParam().spoil));
   const report::RunRecord& record = flight.flown.record;
   const double last_bad_s = record.truth[kLastBad].time_s;
-  double fixed_again_s = 1e9;
-  double largest_m = 0.0;
+  accuracy::Smallest fixed_again_s;
+  accuracy::Largest largest_m;
   for (std::size_t k = 0; k < record.estimates.size(); ++k) {
     const report::EstimateRow& estimate = record.estimates[k];
     if (estimate.time_s > last_bad_s && estimate.navigation_source == kFixed)
-      fixed_again_s = std::min(fixed_again_s, estimate.time_s - last_bad_s);
+      fixed_again_s.add(estimate.time_s - last_bad_s);
     if (k < kFirstBad) continue;
     double error_m = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)
       error_m = std::hypot(error_m, estimate.relative_position_rtn[axis] - record.truth[k].relative_position_rtn[axis]);
-    largest_m = std::max(largest_m, error_m);
+    largest_m.add(error_m);
   }
   const std::vector<telemetry_gnss> gnss = telemetry_of<telemetry_gnss>(flight.flown);
   ASSERT_EQ(gnss.size(), record.estimates.size());

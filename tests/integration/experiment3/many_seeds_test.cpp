@@ -36,25 +36,25 @@ CoastingPair coast_of(int seed, int duration_s) {
 TEST(ManySeeds, EveryHeldIntegerIsTheTrueOneAndTheFilterIsHonest) {
   long wrong = 0;
   int releases = 0;
-  double latest_fix_s = 0.0;
+  accuracy::Largest latest_fix_s;
   double nis = 0.0;
   double phases = 0.0;
   std::vector<double> nees(4, 0.0);  // at 300, 600, 900, 1200 s
   for (int seed = 1; seed <= kSeeds; ++seed) {
     const CoastingPair coast = coast_of(seed, kDuration_s);
     EmulatedPair pair(coast, static_cast<std::uint64_t>(seed));
-    double first_fix_s = 1e9;
+    accuracy::Smallest first_fix_s;
     while (!pair.done()) {
       pair.fly();
       if (!pair.gnss().valid()) continue;
-      if (pair.is_fixed()) first_fix_s = std::min(first_fix_s, pair.elapsed_s());
+      if (pair.is_fixed()) first_fix_s.add(pair.elapsed_s());
       wrong += pair.wrong_integers();
       nis += pair.gnss().last_update().phase_nis;
       phases += pair.gnss().last_update().phases_used;
       const int elapsed_s = static_cast<int>(pair.elapsed_s());
       if (elapsed_s > 0 && elapsed_s % 300 == 0) nees[static_cast<std::size_t>(elapsed_s / 300 - 1)] += pair.nees();
     }
-    latest_fix_s = std::max(latest_fix_s, first_fix_s);
+    latest_fix_s.add(first_fix_s);
     releases += pair.gnss().ambiguities().report().releases;
   }
   fmt::print("first fix after {} s at the latest; {} releases; NIS {:.4f} of {:.0f} phases; NEES", latest_fix_s,
@@ -77,7 +77,7 @@ TEST(ManySeeds, TheForcesAreAsTheFilterIsTold) {
   constexpr int kOrbit_s = 5940;
   const CoastingPair coast = coast_of(0, kOrbit_s);
   fsw::Vector3 sum_of_squares = fsw::Vector3::Zero();
-  double largest_step = 0.0;
+  accuracy::Largest largest_step;
   fsw::Vector3 before = fsw::Vector3::Zero();
   const auto& epochs = coast.epochs();
   for (std::size_t k = 0; k + 1 < epochs.size(); ++k) {
@@ -88,7 +88,7 @@ TEST(ManySeeds, TheForcesAreAsTheFilterIsTold) {
     const fsw::Vector3 gained_eci = (flown("target") - flown("servicer")) - (coasted("target") - coasted("servicer"));
     const fsw::Vector3 acceleration = fsw::orbit::R_rtn_eci(epochs[k].find("servicer")->orbit) * gained_eci / 10.0;
     sum_of_squares += acceleration.cwiseAbs2();
-    if (k > 0) largest_step = std::max(largest_step, (acceleration - before).norm());
+    if (k > 0) largest_step.add((acceleration - before).norm());
     before = acceleration;
   }
   const double rms = std::sqrt(sum_of_squares.sum() / (3.0 * static_cast<double>(epochs.size() - 1)));

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "fsw/pose/heatmap.h"
+#include "tests/support/figures.h"
 #include "tests/support/tango_view.h"
 
 namespace vbar::test {
@@ -46,13 +47,6 @@ std::vector<PoseError> accepted(const std::vector<PoseError>& poses) {
 }
 
 }  // namespace
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto place = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(place), values.end());
-  return values[place];
-}
 
 FrontEndErrors::FrontEndErrors(std::span<const std::byte> weights, const fsw::pose::KeypointShape& shape,
                                const fsw::pose::PnpSettings& settings)
@@ -118,7 +112,7 @@ double FrontEndErrors::false_share() const {
 }
 
 double FrontEndErrors::median_keypoint_samples() const {
-  return quantile(column(keypoints_, &KeypointError::samples), 0.5);
+  return accuracy::quantile(column(keypoints_, &KeypointError::samples), 0.5);
 }
 
 double FrontEndErrors::accepted_share() const {
@@ -142,17 +136,19 @@ std::string FrontEndErrors::report() const {
   text += fmt::format("keypoints on the map usable {:.1f} %, beside it {:.1f} %\n", 100.0 * usable_share(),
                       100.0 * false_share());
   text += fmt::format("keypoint error, samples: median {:.2f}, 90 % {:.2f}, 99 % {:.2f}; px: median {:.2f}\n",
-                      quantile(samples, 0.5), quantile(samples, 0.9), quantile(samples, 0.99), quantile(px, 0.5));
+                      accuracy::quantile(samples, 0.5), accuracy::quantile(samples, 0.9),
+                      accuracy::quantile(samples, 0.99), accuracy::quantile(px, 0.5));
   text +=
       fmt::format("  normalised: median {:.2f} (1.39), mean {:.2f} (2), 90 % {:.2f} (4.61), beyond 9.21 {:.1f} % (1)\n",
-                  quantile(normalised, 0.5), mean(normalised), quantile(normalised, 0.9),
+                  accuracy::quantile(normalised, 0.5), mean(normalised), accuracy::quantile(normalised, 0.9),
                   100.0 * share_of(normalised, [](double x) { return x > 9.21; }));
   text += fmt::format("poses {:.1f} %, beyond 10 deg {:.2f} % of them\n", 100.0 * accepted_share(),
                       100.0 * share_beyond(10.0));
   text += fmt::format("  attitude, deg: median {:.2f}, 90 % {:.2f}; position, m: median {:.3f}, 90 % {:.3f}\n",
-                      quantile(turns, 0.5), quantile(turns, 0.9), quantile(shifts, 0.5), quantile(shifts, 0.9));
+                      accuracy::quantile(turns, 0.5), accuracy::quantile(turns, 0.9), accuracy::quantile(shifts, 0.5),
+                      accuracy::quantile(shifts, 0.9));
   text += fmt::format("  normalised: median {:.2f} (5.35), mean {:.2f} (6), beyond 16.8 {:.1f} % (1)\n",
-                      quantile(squares, 0.5), mean(squares),
+                      accuracy::quantile(squares, 0.5), mean(squares),
                       100.0 * share_of(squares, [](double x) { return x > 16.812; }));
   return text;
 }

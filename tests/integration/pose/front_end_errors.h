@@ -67,7 +67,4 @@ class FrontEndErrors {
   std::size_t on_map_ = 0, beside_map_ = 0, usable_beside_map_ = 0;
 };
 
-/// Of a copy; 0 of none. `share` 0.5 is the median.
-double quantile(std::vector<double> values, double share);
-
 }  // namespace vbar::test

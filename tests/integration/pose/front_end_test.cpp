@@ -61,7 +61,7 @@ TEST(FrontEnd, KeypointsOfHeldOutCrops) {
 TEST(FrontEnd, CovariancesAreTrue) {
   std::vector<double> squares;
   for (const KeypointError& error : held_out().keypoints()) squares.push_back(error.normalised);
-  const double median = quantile(squares, 0.5);
+  const double median = accuracy::quantile(squares, 0.5);
   accuracy::expect_below("covariances of keypoints: normalised error squared, median, off from chi-square's 1.386",
                          fmt::format("truth, {} held-out crops", kCrops), std::abs(median / 1.386 - 1.0), 0.36,
                          "relative");

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "tests/integration/pose_filter/close_flight.h"
+#include "tests/support/figures.h"
 
 namespace {
 
@@ -55,7 +56,7 @@ int main(int argc, char** argv) {
     auto navigation = std::make_unique<fsw::navigation::PoseNavigation>();
     if (navigation->configure(settings) != fsw::Status::kOk) return 1;
     double position = 0.0, attitude = 0.0, roe_nees = 0.0, attitude_nees = 0.0, nis = 0.0, rows = 0.0;
-    double worst_position = 0.0, worst_attitude = 0.0;
+    vbar::accuracy::Largest worst_position, worst_attitude;
     int count = 0;
     int first = -1;
     for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
@@ -83,8 +84,8 @@ int main(int argc, char** argv) {
       if (k < 120 || fate != fsw::navigation::PoseFate::kFilter) continue;  // ten minutes to settle
       position += error.position_m;
       attitude += error.attitude * 57.2958;
-      worst_position = std::max(worst_position, error.position_m);
-      worst_attitude = std::max(worst_attitude, error.attitude * 57.2958);
+      worst_position.add(error.position_m);
+      worst_attitude.add(error.attitude * 57.2958);
       roe_nees += error.roe_nees;
       attitude_nees += error.attitude_nees;
       ++count;
@@ -94,7 +95,7 @@ int main(int argc, char** argv) {
         "%3u %.2f deg/s first %d: position %5.2f cm (most %5.2f) attitude %5.2f deg (most %5.2f) nees %5.1f %5.1f "
         "nis/dof %.2f psd %.0e %.0e | images %d refused %d keypoints %d refused %d positions %d attitudes %d "
         "restarts %d\n",
-        seed, rate_deg_s, first, 100 * position / count, 100 * worst_position, attitude / count, worst_attitude,
+        seed, rate_deg_s, first, 100 * position / count, 100 * worst_position, attitude / count, worst_attitude.value,
         roe_nees / count, attitude_nees / count, nis / rows, navigation->filter().acceleration_psd(),
         navigation->filter().angular_acceleration_psd(), c.images_used, c.images_refused, c.keypoints_used,
         c.keypoints_refused, c.positions_used, c.attitudes_reset, c.restarts);

@@ -105,12 +105,12 @@ TEST_F(CameraPeer, DirectionsAreOpenCvs) {
   std::vector<cv::Point2d> points;
   const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-15);
   cv::undistortPoints(pixels, points, matrix, distortion, cv::noArray(), cv::noArray(), until);
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (std::size_t k = 0; k < pixels.size(); ++k) {
     const Result<Vector3> direction = direction_of(camera, {pixels[k].x, pixels[k].y});
     ASSERT_TRUE(direction.ok());
     const Vector3 expected = Vector3(points[k].x, points[k].y, 1.0).normalized();
-    largest = std::max(largest, (direction.value() - expected).norm());
+    largest.add((direction.value() - expected).norm());
   }
   // Both iterate to rounding: 1e-15 of the image plane
   accuracy::expect_below("direction of a pixel through a distorting lens", "OpenCV undistortPoints, 936 pixels",
@@ -124,10 +124,10 @@ TEST_F(CameraPeer, PixelsAreOpenCvs) {
   }
   std::vector<cv::Point2d> pixels;
   cv::projectPoints(points, cv::Vec3d(0, 0, 0), cv::Vec3d(0, 0, 0), matrix, distortion, pixels);
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Vector2 pixel = pixel_of(camera, Vector3(points[k].x, points[k].y, points[k].z)).value();
-    largest = std::max(largest, (pixel - Vector2(pixels[k].x, pixels[k].y)).norm());
+    largest.add((pixel - Vector2(pixels[k].x, pixels[k].y)).norm());
   }
   // Rounding of pixel numbers near 2000: 2e-13 each operation
   accuracy::expect_below("pixel of a direction through a distorting lens", "OpenCV projectPoints, 117 directions",

@@ -28,7 +28,7 @@ struct Comparison {
   int compared = 0;
   int unanswered = 0;  ///< by RTKLIB
   int different = 0;
-  double largest_norm_difference = 0.0;
+  accuracy::Largest largest_norm_difference;
 };
 
 /// Best and second, as whole vectors; RTKLIB's come out of a solution of linear equations, so they are rounded first.
@@ -61,9 +61,8 @@ Comparison compare(Eigen::Index n, std::uint64_t seed, const DrawCovariance& cov
       ++result.different;
       continue;
     }
-    result.largest_norm_difference =
-        std::max({result.largest_norm_difference, std::abs(ours.value().best_norm2 / norm2[0] - 1.0),
-                  std::abs(ours.value().second_norm2 / norm2[1] - 1.0)});
+    result.largest_norm_difference.add(std::abs(ours.value().best_norm2 / norm2[0] - 1.0),
+                                       std::abs(ours.value().second_norm2 / norm2[1] - 1.0));
   }
   return result;
 }

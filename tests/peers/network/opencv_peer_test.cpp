@@ -9,6 +9,7 @@
 #include "fsw/network/keypoint_network.h"
 #include "tests/unit/fsw/network/network_file.h"
 #ifdef VBAR_HAVE_OPENCV
+#include "tests/support/figures.h"
 #include "tests/support/opencv_network.h"
 #endif
 
@@ -28,18 +29,17 @@ TEST(KeypointNetworkPeer, OpencvGivesTheSameMaps) {
     ASSERT_EQ(network->run(crop), vbar::fsw::Status::kOk);
     const cv::Mat maps = opencv.run(crop);
     ASSERT_EQ(maps.size[1], kMapChannels);
-    float largest = 0.0F;
-    float difference = 0.0F;
+    vbar::accuracy::Largest largest, difference;
     for (int k = 0; k < kKeypoints; ++k) {
       const std::span<const float> logits = network->logits(k);
       for (std::size_t cell = 0; cell < kMapCells; ++cell) {
         const float expected = maps.ptr<float>(0, k)[cell];
-        largest = std::max(largest, std::abs(expected));
-        difference = std::max(difference, std::abs(logits[cell] - expected));
+        largest.add(std::abs(expected));
+        difference.add(std::abs(logits[cell] - expected));
       }
     }
     // Both round to single precision, in different orders: some 1e-6 (keypoint_network_test.cpp).
-    EXPECT_LT(difference, 1e-5F * largest);
+    EXPECT_LT(difference, 1e-5 * largest);
   }
 #endif
 }

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "fsw/control/koenig_damico.h"
+#include "tests/support/figures.h"
 #include "tests/support/paths.h"
 
 namespace vbar::fsw::control {
@@ -77,8 +78,7 @@ TEST(KoenigReference, EveryRandomProblemConvergesToTheConeSolversOptimum) {
   const auto problems = read_problems();
   ASSERT_EQ(problems.size(), 1200U);
   const auto workspace = std::make_unique<KoenigDamicoWorkspace>();
-  int most_rounds = 0, most_steps = 0;
-  double worst_residual = 0.0, worst_excess = 0.0;
+  accuracy::Largest most_rounds, most_steps, worst_residual, worst_excess;
   for (std::size_t k = 0; k < problems.size(); ++k) {
     SCOPED_TRACE("problem " + std::to_string(k));
     const auto& [problem, settings, optimum] = problems[k];
@@ -90,17 +90,17 @@ TEST(KoenigReference, EveryRandomProblemConvergesToTheConeSolversOptimum) {
     EXPECT_LE(solution.cost, optimum * (1.0 + settings.primer.cost_tolerance + kReferenceError));
     EXPECT_LE(solution.lower_bound, optimum * (1.0 + kReferenceError));
     EXPECT_LT(relative_residual(problem, *workspace), 1e-9);
-    most_rounds = std::max(most_rounds, solution.rounds);
-    most_steps = std::max(most_steps, solution.newton_steps);
-    worst_residual = std::max(worst_residual, relative_residual(problem, *workspace));
-    worst_excess = std::max(worst_excess, solution.cost / optimum - 1.0);
+    most_rounds.add(solution.rounds);
+    most_steps.add(solution.newton_steps);
+    worst_residual.add(relative_residual(problem, *workspace));
+    worst_excess.add(solution.cost / optimum - 1.0);
   }
-  RecordProperty("most_rounds", most_rounds);
-  RecordProperty("most_newton_steps", most_steps);
+  RecordProperty("most_rounds", std::to_string(most_rounds));
+  RecordProperty("most_newton_steps", std::to_string(most_steps));
   RecordProperty("worst_residual", std::to_string(worst_residual));
   RecordProperty("worst_excess", std::to_string(worst_excess));
-  std::printf("rounds <= %d, Newton steps <= %d, residual <= %.1e, cost above the optimum <= %.2e\n", most_rounds,
-              most_steps, worst_residual, worst_excess);
+  std::printf("rounds <= %.0f, Newton steps <= %.0f, residual <= %.1e, cost above the optimum <= %.2e\n",
+              most_rounds.value, most_steps.value, worst_residual.value, worst_excess.value);
 }
 
 }  // namespace

@@ -28,6 +28,22 @@ struct PolarToCartesian {
     return transform.regress<2>(values);
   }
 
+  /// The transform's sums over the five points written out, with c = alpha^2 (2 + kappa) and the points sqrt(c) sigma
+  /// from the mean: two points lie on the y axis, two are turned by x to both sides (Julier and Uhlmann 2004, section
+  /// III).
+  struct Expected {
+    explicit Expected(const UnscentedParameters& p) {
+      const double c = p.alpha * p.alpha * (2.0 + p.kappa), x = std::sqrt(c) * 15.0 * M_PI / 180.0;
+      const double drop = 2.0 * std::pow(std::sin(x / 2.0), 2);  // 1 - cos x
+      const double below = drop / c;                             // 1 - mean
+      mean_y = 1.0 - below;
+      variance_x = std::pow(std::sin(x), 2) / c;
+      variance_y = 0.02 * 0.02 + below * below * ((c - 2.0) / c + 1.0 - p.alpha * p.alpha + p.beta + 1.0 / c) +
+                   (below - drop) * (below - drop) / c;
+    }
+    double mean_y, variance_x, variance_y;
+  };
+
   Vector2 variances(const UnscentedTransform<2>::Regression<2>& r) const {
     return (r.slope * covariance * r.slope.transpose() + r.remainder).diagonal();
   }
@@ -35,19 +51,25 @@ struct PolarToCartesian {
 
 TEST(Unscented, PolarToCartesianWithSmallSpread) {
   const PolarToCartesian example;
-  const auto r = example.regression({.alpha = 1e-3, .beta = 2.0, .kappa = 0.0});
-  // Values of an independent double-precision implementation; alpha = 1e-3 costs six digits by its weights of 1e6.
-  EXPECT_NEAR(r.mean(1), 0.965730541, 1e-8);
-  EXPECT_NEAR(example.variances(r)(0), 0.068538916, 1e-8);
-  EXPECT_NEAR(example.variances(r)(1), 0.002748793, 1e-8);
+  const UnscentedParameters parameters{.alpha = 1e-3, .beta = 2.0, .kappa = 0.0};
+  const auto r = example.regression(parameters);
+  const PolarToCartesian::Expected expected(parameters);
+  // alpha = 1e-3 costs six digits by its weights of 1e6.
+  EXPECT_NEAR(r.mean(0), 0.0, 1e-8);
+  EXPECT_NEAR(r.mean(1), expected.mean_y, 1e-8);
+  EXPECT_NEAR(example.variances(r)(0), expected.variance_x, 1e-8);
+  EXPECT_NEAR(example.variances(r)(1), expected.variance_y, 1e-8);
 }
 
 TEST(Unscented, PolarToCartesianWithWideSpread) {
   const PolarToCartesian example;
-  const auto r = example.regression({.alpha = 1.0, .beta = 0.0, .kappa = 1.0});
-  EXPECT_NEAR(r.mean(1), 0.966313728, 1e-9);  // to the digits printed; exact is 0.966311088
-  EXPECT_NEAR(example.variances(r)(0), 0.063968249, 1e-9);
-  EXPECT_NEAR(example.variances(r)(1), 0.00266953, 1e-8);
+  const UnscentedParameters parameters{.alpha = 1.0, .beta = 0.0, .kappa = 1.0};
+  const auto r = example.regression(parameters);
+  const PolarToCartesian::Expected expected(parameters);
+  EXPECT_NEAR(r.mean(1), expected.mean_y, 1e-15);
+  EXPECT_NEAR(r.mean(1), std::exp(-0.5 * std::pow(15.0 * M_PI / 180.0, 2)), 3e-6);  // E[cos] of a normal angle
+  EXPECT_NEAR(example.variances(r)(0), expected.variance_x, 1e-15);
+  EXPECT_NEAR(example.variances(r)(1), expected.variance_y, 1e-15);
 }
 
 TEST(Unscented, LinearFunctionIsExact) {

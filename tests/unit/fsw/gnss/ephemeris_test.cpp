@@ -20,10 +20,10 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(SatelliteState, IsRtklibs) {
   const std::vector<Ephemeris> records = test::broadcast_records();
-  double position = 0.0;
-  double velocity = 0.0;
-  double clock = 0.0;
-  double drift = 0.0;
+  accuracy::Largest position;
+  accuracy::Largest velocity;
+  accuracy::Largest clock;
+  accuracy::Largest drift;
   std::set<Constellation> systems;
   const std::vector<test::ReferenceState> states = test::broadcast_states();
   for (const test::ReferenceState& reference : states) {
@@ -32,10 +32,10 @@ TEST(SatelliteState, IsRtklibs) {
     ASSERT_TRUE(state.ok());
     const auto& v = reference.values;
     systems.insert(record.satellite.constellation);
-    position = std::max(position, (state.value().position_ecef - Vector3(v[0], v[1], v[2])).norm());
-    velocity = std::max(velocity, (state.value().velocity_ecef - Vector3(v[3], v[4], v[5])).norm());
-    clock = std::max(clock, std::abs(state.value().clock_s - v[6]));
-    drift = std::max(drift, std::abs(state.value().clock_drift - v[7]));
+    position.add((state.value().position_ecef - Vector3(v[0], v[1], v[2])).norm());
+    velocity.add((state.value().velocity_ecef - Vector3(v[3], v[4], v[5])).norm());
+    clock.add(std::abs(state.value().clock_s - v[6]));
+    drift.add(std::abs(state.value().clock_drift - v[7]));
   }
   EXPECT_EQ(states.size(), 105U);
   EXPECT_EQ(systems.size(), kConstellations);

@@ -71,9 +71,9 @@ std::array<double, 2> enumerate(const Problem& problem, std::array<Vector, 2>& n
     return residual.dot(inverse * residual);
   };
   Vector rounded = problem.ambiguities.array().round();
-  double bound = distance2(rounded);
+  accuracy::Largest bound(distance2(rounded));
   rounded(0) += 1.0;
-  bound = std::max(bound, distance2(rounded));
+  bound.add(distance2(rounded));
   // |a - z|_i <= sqrt(bound Q_ii) inside the ellipsoid.
   const Vector reach = (bound * problem.covariance.diagonal()).array().sqrt();
   const Vector low = (problem.ambiguities - reach).array().ceil();
@@ -99,7 +99,7 @@ std::array<double, 2> enumerate(const Problem& problem, std::array<Vector, 2>& n
 
 TEST(Lambda, FindsTheTwoNearestThatEnumerationFinds) {
   Random random(1);
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (Eigen::Index n = 1; n <= 4; ++n) {
     for (int trial = 0; trial < 200; ++trial) {
       const Problem problem = problems::draw(problems::random_covariance(n, 1.5, 2.0, random), random);
@@ -109,8 +109,8 @@ TEST(Lambda, FindsTheTwoNearestThatEnumerationFinds) {
       ASSERT_TRUE(solution.ok());
       EXPECT_EQ(whole(solution.value().best, problem.size()), nearest[0]);
       EXPECT_EQ(whole(solution.value().second, problem.size()), nearest[1]);
-      largest = std::max({largest, std::abs(solution.value().best_norm2 - distance2[0]) / distance2[1],
-                          std::abs(solution.value().second_norm2 - distance2[1]) / distance2[1]});
+      largest.add(std::abs(solution.value().best_norm2 - distance2[0]) / distance2[1],
+                  std::abs(solution.value().second_norm2 - distance2[1]) / distance2[1]);
     }
   }
   // Floats of 10^5 cycles are known to 1.5e-11, of residuals of 0.1 to 1: 1e-10 relative, a little more in the square.
@@ -153,7 +153,7 @@ TEST(Decorrelation, IsAWholeTransformationThatKeepsVolumeAndCovariance) {
       const Vector d = Eigen::Map<const Vector>(problem.d().data(), n);
       const Matrix restored = back * l.transpose() * d.asDiagonal() * l * back.transpose();
       // Whole numbers up to 1e4 twice on rounding of 1e-16 of the decorrelated variances.
-      EXPECT_LT((restored - q).cwiseAbs().maxCoeff(), 1e-8 * q.cwiseAbs().maxCoeff());
+      EXPECT_LT(accuracy::largest_entry(restored - q), 1e-8 * accuracy::largest_entry(q));
     }
   }
 }
@@ -207,7 +207,7 @@ bool bootstrap(const Matrix& q, Vector z) {
   Matrix p = q;
   for (Eigen::Index k = q.rows(); k-- > 0;) {
     const double miss = z(k);
-    if (std::abs(miss) >= 0.5) return false;  // the true integers are zero
+    if (!(std::abs(miss) < 0.5)) return false;  // the true integers are zero
     z.head(k) -= p.col(k).head(k) * (miss / p(k, k));
     p.topLeftCorner(k, k) -= (p.col(k).head(k) * p.col(k).head(k).transpose() / p(k, k)).eval();
   }

@@ -83,9 +83,7 @@ std::map<std::tuple<int, int, int>, Expected> expected_of(const test::AsciiLog& 
 }
 
 struct Differences {
-  double pseudorange = 0.0;
-  double phase = 0.0;
-  double others = 0.0;
+  accuracy::Largest pseudorange, phase, others;
   std::size_t signals = 0;
 };
 
@@ -103,11 +101,11 @@ void compare_pair(const std::string& name, Differences& largest) {
     const auto found = expected.find({static_cast<int>(o.satellite.constellation), o.satellite.prn, o.code});
     ASSERT_NE(found, expected.end());
     const Expected& e = found->second;
-    largest.pseudorange = std::max(largest.pseudorange, std::abs(o.pseudorange_m - e.pseudorange_m));
-    largest.phase = std::max(largest.phase, std::abs(o.carrier_phase_cycles + e.adr));
+    largest.pseudorange.add(std::abs(o.pseudorange_m - e.pseudorange_m));
+    largest.phase.add(std::abs(o.carrier_phase_cycles + e.adr));
     for (const double difference : {o.doppler_hz - e.doppler, o.cn0_dbhz - e.cn0, o.lock_time_s - e.lock,
                                     o.pseudorange_sigma_m - e.sigma_m, o.phase_sigma_cycles - e.adr_sigma}) {
-      largest.others = std::max(largest.others, std::abs(difference));
+      largest.others.add(std::abs(difference));
     }
     EXPECT_EQ(o.phase_usable, (e.status & 0xC00U) == 0xC00U);
   }

@@ -20,6 +20,7 @@
 
 #include "fsw/gnss/decorrelation.h"
 #include "fsw/gnss/lambda.h"
+#include "tests/support/figures.h"
 #include "tests/unit/fsw/gnss/ambiguity_problems.h"
 
 namespace {
@@ -87,11 +88,11 @@ int main() {
   for (std::size_t row = kCounts.size(); row-- > 0;) {
     for (std::size_t column = 0; column < kFailureRates.size(); ++column) {
       Random random(100 * row + column);
-      double ratio = row + 1 < kCounts.size() ? table[row + 1][column] : 1.0;
-      if (column > 0) ratio = std::max(ratio, table[row][column - 1]);
+      vbar::accuracy::Largest ratio(row + 1 < kCounts.size() ? table[row + 1][column] : 1.0);
+      if (column > 0) ratio.add(table[row][column - 1]);
       for (int number = 0; number < kModels; ++number) {
         const Matrix covariance = scaled_to(model(kCounts[row], number, random), kFailureRates[column]);
-        ratio = std::max(ratio, sufficient_ratio(covariance, random));
+        ratio.add(sufficient_ratio(covariance, random));
       }
       table[row][column] = std::ceil(100.0 * ratio) / 100.0;
     }

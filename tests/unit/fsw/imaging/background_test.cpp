@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
 #include "tests/support/synthetic_image.h"
 
 namespace vbar::fsw::imaging {
@@ -31,12 +32,12 @@ class BackgroundTest : public testing::Test {
   }
   /// Largest difference from the scene's own level, DN.
   double worst_level(test::SyntheticImage& scene) {
-    double worst = 0.0;
+    accuracy::Largest worst;
     for (int y = 0; y < height; y += 7) {
       for (int x = 0; x < width; x += 7) {
         const double expected =
             detector.offset_dn + detector.gain_dn_per_electron * (scene.at(x, y) + detector.dark_electrons);
-        worst = std::max(worst, std::abs(background->level_dn(x, y) - expected));
+        worst.add(std::abs(background->level_dn(x, y) - expected));
       }
     }
     return worst;

@@ -10,7 +10,7 @@ namespace vbar::fsw::imaging {
 namespace {
 
 struct Errors {
-  double worst = 0.0;
+  accuracy::Largest worst;
   double rms = 0.0;  ///< each axis
   double mean_x = 0.0, mean_y = 0.0;
   double predicted = 0.0;  ///< root mean square of what the detector says of itself
@@ -42,7 +42,7 @@ Errors errors_of(Detection& d, const test::Point& like, int images) {
       }
       const double x = object->centroid_px.x() - point.x;
       const double y = object->centroid_px.y() - point.y;
-      e.worst = std::max(e.worst, std::hypot(x, y));
+      e.worst.add(std::hypot(x, y));
       squares += 0.5 * (x * x + y * y);
       predicted += object->sigma_px * object->sigma_px;
       e.mean_x += x;
@@ -102,11 +102,11 @@ TEST(Centroid, IsUnbiasedWhereverInAPixelThePointIs) {
   d.settings.gain_dn_per_electron = 1.0;
   // The image of a point of the reference camera, still, smeared by the orbit's rate along and across, and obliquely.
   // The light is 8000 DN: the noise of 0.45 DN a pixel alone scatters by 0.0002 px.
-  double worst = 0.0;
+  accuracy::Largest worst;
   for (const auto& [smear_x, smear_y] : {std::pair{0.0, 0.0}, {1.2, 0.0}, {0.0, 1.2}, {0.8, 0.9}}) {
     const Errors e = errors_of(d, {.electrons = 8000.0, .smear_x_px = smear_x, .smear_y_px = smear_y}, 1);
     EXPECT_EQ(e.lost, 0);
-    worst = std::max(worst, e.worst);
+    worst.add(e.worst);
   }
   // Sampled by pixels, a Gaussian of 0.85 px under the window of 1.06 px gives a bias of some thousandths (Poisson's
   // sum: 4 pi s^2 exp(-2 pi^2 s^2) with s = 0.66 px of their product is 0.001 px each axis).
@@ -130,13 +130,13 @@ TEST(Centroid, IsUnbiasedForSharpAndForSoftLenses) {
 /// standard deviation is known to 1.5 %, a mean to 0.03 of one.
 TEST(Centroid, ScattersHardlyMoreThanItMustAndSaysHowMuch) {
   Detection d;
-  double worst_ratio = 0.0;
+  accuracy::Largest worst_ratio;
   for (const double electrons : {450.0, 900.0, 3000.0, 20000.0, 100000.0}) {
     for (const double smear : {0.0, 1.2}) {
       const test::Point like{.electrons = electrons, .smear_y_px = smear};
       const Errors e = errors_of(d, like, 5);
       EXPECT_EQ(e.lost, 0) << electrons;
-      worst_ratio = std::max(worst_ratio, e.rms / cramer_rao(like, d.detector));
+      worst_ratio.add(e.rms / cramer_rao(like, d.detector));
       EXPECT_NEAR(e.predicted, e.rms, 0.08 * e.rms) << electrons << " electrons";
       EXPECT_LT(std::hypot(e.mean_x, e.mean_y), 0.002 + 0.13 * e.rms) << electrons;
     }
@@ -149,7 +149,7 @@ TEST(Centroid, ScattersHardlyMoreThanItMustAndSaysHowMuch) {
 /// arcsec a pixel). From magnitude 2.4 at 75 km to -7 at 1 km, where the disc is saturated.
 TEST(Centroid, OfATargetThatSaturates) {
   Detection d;
-  double worst = 0.0;
+  accuracy::Largest worst;
   for (double magnitude = 3.0; magnitude > -9.0; magnitude -= 1.0) {
     for (int k = 0; k < 25; ++k) {
       test::SyntheticImage scene(100, 100);
@@ -160,7 +160,7 @@ TEST(Centroid, OfATargetThatSaturates) {
       ASSERT_FALSE(d.objects->objects().empty());
       const DetectedObject& object = d.objects->objects()[0];
       EXPECT_EQ(object.is_saturated, magnitude < 2.0) << magnitude;
-      worst = std::max(worst, std::hypot(object.centroid_px.x() - x, object.centroid_px.y() - y));
+      worst.add(std::hypot(object.centroid_px.x() - x, object.centroid_px.y() - y));
     }
   }
   // What rounding of a disc's edge to pixels leaves: a disc of 3 px has some 10 pixels at its edge, each wrong by 0.3.

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
+
 namespace vbar::fsw::math {
 namespace {
 
@@ -19,8 +21,8 @@ void expect_decomposes(const Eigen::Matrix<double, N, N>& a) {
   const auto& [values, vectors] = result.value();
   const Square rebuilt = vectors * values.asDiagonal() * vectors.transpose();
   // A few roundings a rotation, 6 sweeps of at most 15 rotations.
-  EXPECT_LT((rebuilt - a).cwiseAbs().maxCoeff(), 1e-14 * a.cwiseAbs().maxCoeff());
-  EXPECT_LT((vectors.transpose() * vectors - Square::Identity()).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_LT(accuracy::largest_entry(rebuilt - a), 1e-14 * accuracy::largest_entry(a));
+  EXPECT_LT(accuracy::largest_entry(vectors.transpose() * vectors - Square::Identity()), 1e-14);
   for (int k = 1; k < N; ++k) EXPECT_LE(values(k - 1), values(k));
 }
 

@@ -94,7 +94,7 @@ struct CooperatingPair {
         const double held =
             (estimate.mean(RelativeFilter::ambiguity_index(a)) - estimate.mean(RelativeFilter::ambiguity_index(b))) /
             gnss::wavelength(one.signal);
-        if (std::abs(held - (true_cycles(one) - true_cycles(other))) > 0.1) return false;
+        if (!(std::abs(held - (true_cycles(one) - true_cycles(other))) <= 0.1)) return false;
       }
     }
     return true;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
 #include "tests/unit/fsw/network/network_file.h"
 #include "tests/unit/fsw/network/plain_network.h"
 
@@ -18,15 +19,14 @@ using vbar::test::Crop;
 
 /// Largest difference of the logits from the definition's, over the largest logit.
 double relative_difference(const KeypointNetwork& network, vbar::test::PlainMap maps) {
-  double largest = 0.0;
-  double difference = 0.0;
+  vbar::accuracy::Largest largest;
+  vbar::accuracy::Largest difference;
   for (int k = 0; k < kKeypoints; ++k) {
     const auto logits = network.logits(k);
     for (int cell = 0; cell < kMapSide * kMapSide; ++cell) {
       const double expected = maps.at(cell / kMapSide, cell % kMapSide, k);
-      largest = std::max(largest, std::abs(expected));
-      difference =
-          std::max(difference, std::abs(static_cast<double>(logits[static_cast<std::size_t>(cell)]) - expected));
+      largest.add(std::abs(expected));
+      difference.add(std::abs(static_cast<double>(logits[static_cast<std::size_t>(cell)]) - expected));
     }
   }
   return difference / largest;

@@ -13,6 +13,7 @@
 #include "fsw/orbit/constants.h"
 #include "fsw/orbit/in_plane.h"
 #include "fsw/orbit/secular.h"
+#include "tests/support/figures.h"
 #include "tests/unit/fsw/orbit/longitude_term.h"
 #include "tests/unit/fsw/orbit/mission.h"
 #include "tests/unit/fsw/orbit/reference_orbit.h"
@@ -143,11 +144,11 @@ struct Swing {
 
 Swing swing_over_three_orbits(const QnsElements& osculating_start) {
   struct Range {
-    double low = std::numeric_limits<double>::infinity();
-    double high = -std::numeric_limits<double>::infinity();
+    accuracy::Smallest low;
+    accuracy::Largest high{-std::numeric_limits<double>::infinity()};
     void add(double x) {
-      low = std::min(low, x);
-      high = std::max(high, x);
+      low.add(x);
+      high.add(x);
     }
   };
   Range osculating_a, mean_a, mean_u;

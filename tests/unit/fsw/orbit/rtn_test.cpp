@@ -10,6 +10,7 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/secular.h"
+#include "tests/support/figures.h"
 #include "tests/unit/fsw/orbit/longitude_term.h"
 #include "tests/unit/fsw/orbit/mission.h"
 #include "tests/unit/fsw/orbit/reference_orbit.h"
@@ -20,8 +21,8 @@ namespace {
 TEST(Rtn, AxesAreRadialTransverseNormal) {
   const CartesianState state = cartesian_from_qns(mission::kServicerOsculating).value();
   const Matrix3 R = R_rtn_eci(state);
-  EXPECT_LT((R * R.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff(), 4e-16);  // two roundings
-  EXPECT_LT((R.row(0).cross(R.row(1)) - R.row(2)).norm(), 4e-16);                     // right-handed
+  EXPECT_LT(accuracy::largest_entry(R * R.transpose() - Matrix3::Identity()), 4e-16);  // two roundings
+  EXPECT_LT((R.row(0).cross(R.row(1)) - R.row(2)).norm(), 4e-16);                      // right-handed
   const Vector3 r = R * state.position_eci;
   const Vector3 v = R * state.velocity_eci;
   EXPECT_NEAR(r.x(), state.position_eci.norm(), 4e-9);

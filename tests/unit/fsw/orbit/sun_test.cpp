@@ -27,14 +27,14 @@ Earth erfa_earth(GpsTime time) {
 
 TEST(OnboardSun, AgreesWithErfaFrom2000To2040) {
   constexpr std::int64_t kFirst_s = 7300LL * 86400;
-  double direction = 0.0, distance = 0.0, velocity = 0.0;
+  accuracy::Largest direction, distance, velocity;
   for (int step = 0; step < 4800; ++step) {
     const GpsTime time{(kFirst_s + step * 263'000LL) * kNanosecondsPerSecond};
     const Earth expected = erfa_earth(time);
     const Vector3 sun = sun_position_gcrf(time);
-    direction = std::max(direction, (sun.normalized() - expected.sun_position.normalized()).norm() / ERFA_DAS2R);
-    distance = std::max(distance, std::abs(sun.norm() / expected.sun_position.norm() - 1.0));
-    velocity = std::max(velocity, (earth_velocity_over_c_gcrf(time) - expected.velocity_over_c).norm());
+    direction.add((sun.normalized() - expected.sun_position.normalized()).norm() / ERFA_DAS2R);
+    distance.add(std::abs(sun.norm() / expected.sun_position.norm() - 1.0));
+    velocity.add((earth_velocity_over_c_gcrf(time) - expected.velocity_over_c).norm());
   }
   // What the header promises: terms left out, together.
   accuracy::expect_below("on-board Sun, direction 2000 to 2040", "ERFA eraEpv00, 4800 instants", direction, 15.0,

@@ -8,6 +8,7 @@
 #include "fsw/orbit/constants.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/secular.h"
+#include "tests/support/figures.h"
 #include "tests/unit/fsw/orbit/mission.h"
 
 namespace vbar::fsw::orbit {
@@ -156,7 +157,7 @@ TEST(Transition, IsTheJacobianOfTheSecularMotion) {
       };
       const Vector6 slope = (end(h) - end(-h)) / (2.0 * h);
       // Central difference: h^2 = 1e-10 of slopes up to 200 (dl after 15 orbits), and 2e-14 of rounding of u over 2e-5.
-      ASSERT_LT((slope - phi.col(column)).cwiseAbs().maxCoeff(), 2e-7) << "column " << column << ", tau = " << tau;
+      ASSERT_LT(accuracy::largest_entry(slope - phi.col(column)), 2e-7) << "column " << column << ", tau = " << tau;
     }
   }
 }
@@ -166,7 +167,7 @@ TEST(Transition, Composes) {
   const Matrix6 whole = roe_transition_j2(chief, 50000.0);
   const Matrix6 parts =
       roe_transition_j2(propagate_secular(chief, 20000.0), 30000.0) * roe_transition_j2(chief, 20000.0);
-  EXPECT_LT((whole - parts).cwiseAbs().maxCoeff(), 1e-13);  // rounding of elements up to 75
+  EXPECT_LT(accuracy::largest_entry(whole - parts), 1e-13);  // rounding of elements up to 75
 }
 
 }  // namespace

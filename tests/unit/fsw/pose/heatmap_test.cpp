@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
+
 namespace vbar::fsw::pose {
 namespace {
 
@@ -42,7 +44,7 @@ TEST(Heatmap, AGaussiansPlaceAndWidth) {
     EXPECT_FALSE(same.is_at_border);
     // Logarithms in single precision: 1e-7
     EXPECT_LT((same.place - place).norm(), 1e-5);
-    EXPECT_LT(same.excess.cwiseAbs().maxCoeff(), 1e-5);
+    EXPECT_LT(accuracy::largest_entry(same.excess), 1e-5);
   }
   const MapPeak wider = read_map(map_of([](int x, int y) { return gaussian(x, y, 10.3, 20.7, 1.1); }), 1.0);
   EXPECT_NEAR(wider.place.x(), 10.3, 0.01);

@@ -10,6 +10,7 @@
 #include "fsw/pose/heatmap.h"
 #include "fsw/pose/pnp.h"
 #include "fsw/pose/region.h"
+#include "tests/support/figures.h"
 #include "tests/support/tango_view.h"
 
 namespace vbar::fsw::pose {
@@ -31,9 +32,9 @@ std::array<float, network::kMapCells> map_around(const Vector2& place, double si
 
 struct Outcome {
   int poses = 0;
-  double worst_turn = 0.0;
-  double worst_shift = 0.0;  ///< of the range
-  double normalised = 0.0;   ///< mean over poses
+  accuracy::Largest worst_turn;
+  accuracy::Largest worst_shift;  ///< of the range
+  double normalised = 0.0;        ///< mean over poses
 };
 
 /// Maps as wide as training asks for, widened by the error that they are made with.
@@ -60,8 +61,8 @@ Outcome campaign(double error_cells, int problems) {
     Vector6 error;
     error << test::turn_between(pose.R_camera_body, truth.R_camera_body),
         truth.position_camera_m - pose.position_camera_m;
-    outcome.worst_turn = std::max(outcome.worst_turn, error.head<3>().norm());
-    outcome.worst_shift = std::max(outcome.worst_shift, error.tail<3>().norm() / truth.position_camera_m.norm());
+    outcome.worst_turn.add(error.head<3>().norm());
+    outcome.worst_shift.add(error.tail<3>().norm() / truth.position_camera_m.norm());
     const Eigen::Matrix<double, 6, 6> covariance = found.value().covariance;
     outcome.normalised += error.dot(Vector6(covariance.llt().solve(error))) / problems;
   }

@@ -14,6 +14,7 @@
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/orbit/secular.h"
+#include "tests/support/figures.h"
 #include "tests/unit/fsw/orbit/mission.h"
 
 namespace vbar::fsw::safety {
@@ -49,10 +50,10 @@ TEST(EccentricityInclinationSeparation, IsTheLeastDistanceInTheRnPlane) {
   std::uniform_real_distribution<double> unit(-300.0, 300.0);
   for (int k = 0; k < 100; ++k) {
     const double dex = unit(generator), dey = unit(generator), dix = unit(generator), diy = unit(generator);
-    double least = std::numeric_limits<double>::infinity();
+    accuracy::Smallest least;
     for (int j = 0; j < 100000; ++j) {
       const double u = j * 2e-5 * math::kPi;
-      least = std::min(least, std::hypot(dex * std::cos(u) + dey * std::sin(u), dix * std::sin(u) - diy * std::cos(u)));
+      least.add(std::hypot(dex * std::cos(u) + dey * std::sin(u), dix * std::sin(u) - diy * std::cos(u)));
     }
     // Sampled 6e-5 rad apart, 3e-5 from the minimum: at most 420 m times that where the ellipse is flat.
     EXPECT_NEAR(eccentricity_inclination_separation(roe_of(0, 0, dex, dey, dix, diy), kA), least, 0.015);
@@ -78,9 +79,8 @@ TEST(Drift, OfTheWaypointsKeepsTheirSeparation) {
 
 /// Closest points by the exact map, every two seconds: both mean orbits moved on, through their osculating states.
 struct Exact {
-  double spatial = std::numeric_limits<double>::infinity();
-  double radial_normal = std::numeric_limits<double>::infinity();
-  double farthest = 0.0;
+  accuracy::Smallest spatial, radial_normal;
+  accuracy::Largest farthest;
 };
 
 Exact exact_drift(const Vector6& roe, double horizon) {
@@ -90,9 +90,9 @@ Exact exact_drift(const Vector6& roe, double horizon) {
     const QnsElements chief = orbit::propagate_secular(mission::kServicerMean, t);
     const Vector6 now = orbit::roe_from_qns(chief, orbit::propagate_secular(target, t));
     const Vector3 r = orbit::relative_state_from_mean_roe(chief, now).value().position_rtn;
-    exact.spatial = std::min(exact.spatial, r.norm());
-    exact.radial_normal = std::min(exact.radial_normal, std::hypot(r.x(), r.z()));
-    exact.farthest = std::max(exact.farthest, r.norm());
+    exact.spatial.add(r.norm());
+    exact.radial_normal.add(std::hypot(r.x(), r.z()));
+    exact.farthest.add(r.norm());
   }
   return exact;
 }
@@ -141,8 +141,7 @@ TEST(Drift, FindsTheMinimumBetweenItsSamples) {
   const Vector6 roe = roe_of(200.0, 900.0, 0.0, 120.0, 0.0, 80.0);
   const DriftSafety drift = assess_drift(mission::kServicerMean, roe, 2.0 * kRevolution).value();
   const QnsElements target = orbit::qns_from_roe(mission::kServicerMean, roe);
-  double least = std::numeric_limits<double>::infinity();
-  double least_rn = least;
+  accuracy::Smallest least, least_rn;
   for (double t = 0.0; t < 2.0 * kRevolution; t += 0.05) {
     const QnsElements chief = orbit::propagate_secular(mission::kServicerMean, t);
     const Vector6 now = orbit::roe_from_qns(chief, orbit::propagate_secular(target, t));
@@ -150,8 +149,8 @@ TEST(Drift, FindsTheMinimumBetweenItsSamples) {
     const double radius = 1.0 + x(0);
     const Vector3 r = kA * Vector3(radius * std::cos(x(2)) * std::cos(x(1)) - 1.0,
                                    radius * std::cos(x(2)) * std::sin(x(1)), radius * std::sin(x(2)));
-    least = std::min(least, r.norm());
-    least_rn = std::min(least_rn, std::hypot(r.x(), r.z()));
+    least.add(r.norm());
+    least_rn.add(std::hypot(r.x(), r.z()));
   }
   // The parabola through samples 3.6 deg apart leaves (0.063 rad)^4/64 = 2.5e-7 of the orbit's size; time 0.05 s: less.
   EXPECT_NEAR(drift.spatial.distance, least, 0.05);

@@ -12,6 +12,7 @@
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/safety/passive_safety.h"
+#include "tests/support/figures.h"
 #include "tests/unit/fsw/orbit/mission.h"
 #include "tests/unit/fsw/orbit/reference_orbit.h"
 
@@ -41,7 +42,7 @@ struct Truth {
   double least = std::numeric_limits<double>::infinity();
   double time = 0.0;
   std::size_t prefix = 0;
-  double farthest = 0.0;
+  accuracy::Largest farthest;
 };
 
 /// Least distance over all prefixes, the drift after each watched for the horizon and until the next burn, every 10 s.
@@ -60,7 +61,7 @@ Truth fly_all_prefixes(const Vector6& roe, const Plan& plan) {
     const double watched = std::max(kHorizon, next - now);
     for (double elapsed = 0.0; elapsed <= watched; elapsed += 10.0) {
       const double distance = (s.position_eci - t.position_eci).norm();
-      truth.farthest = std::max(truth.farthest, distance);
+      truth.farthest.add(distance);
       if (distance < truth.least) truth = {distance, now + elapsed, prefix, truth.farthest};
       s = reference::fly(s, 10.0, 10.0);
       t = reference::fly(t, 10.0, 10.0);

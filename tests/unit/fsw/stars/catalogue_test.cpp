@@ -72,7 +72,7 @@ Vector3 direction_at_epoch(const NamedStar& star) {
 
 TEST(StarCatalogue, HasBrightStarsWhereTheyAre) {
   ASSERT_EQ(catalogue_epoch(), 2011.55);
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (const NamedStar& named : kNamedStars) {
     const Vector3 expected = direction_at_epoch(named);
     int nearest = 0;
@@ -82,7 +82,7 @@ TEST(StarCatalogue, HasBrightStarsWhereTheyAre) {
     }
     EXPECT_EQ(star_hipparcos(nearest), named.hipparcos) << named.name;
     EXPECT_NEAR(star_magnitude(nearest), named.v, 0.15) << named.name;  // variable stars among them
-    largest = std::max(largest, (star_direction_eci(nearest) - expected).norm() / ERFA_DAS2R);
+    largest.add((star_direction_eci(nearest) - expected).norm() / ERFA_DAS2R);
   }
   // The star file rounds some positions to 0.1 arcsec.
   accuracy::expect_below("star catalogue on board at 2011.55", "20 bright stars, Hipparcos new reduction through ERFA",
@@ -132,8 +132,8 @@ TEST(StarCatalogue, NearestStarIsTheNearestOfAll) {
     const Vector3 place = (near.direction + Vector3(sky::uniform(random, -off, off), sky::uniform(random, -off, off),
                                                     sky::uniform(random, -off, off)))
                               .normalized();
-    double nearest = 1.0;
-    for (const sky::TrueStar& star : the_sky()) nearest = std::min(nearest, (star.direction - place).norm());
+    accuracy::Smallest nearest{1.0};
+    for (const sky::TrueStar& star : the_sky()) nearest.add((star.direction - place).norm());
     const Neighbour found = nearest_star(place, kCellMargin, 5.0, any);
     ASSERT_GE(found.star, 0);
     EXPECT_NEAR(std::sqrt(found.squared_distance), nearest, 0.1 * ERFA_DAS2R);

@@ -58,7 +58,7 @@ void merge_blobs(Scene& scene) {
       kept.object.centroid_px += part * (gone.object.centroid_px - kept.object.centroid_px);
       kept.object.flux_dn = flux;
       kept.object.sharpness = std::max((1.0 - part) * kept.object.sharpness, part * gone.object.sharpness);
-      scene.source[a] = std::min(scene.source[a], scene.source[b]);
+      scene.source[a] = std::min<int>(scene.source[a], scene.source[b]);
       scene.candidates.erase(scene.candidates.begin() + static_cast<std::ptrdiff_t>(b));
       scene.source.erase(scene.source.begin() + static_cast<std::ptrdiff_t>(b));
     }

@@ -79,7 +79,7 @@ class Gallery : public testing::Test {
     row.image = number;
     row.status = status;
     row.tiles_missing = lost_tile >= 0 ? 1 : 0;
-    row.range_m = 12345.6;
+    row.range_m = range_m_;
     keeper_.on_image({exposure, row, objects}, pictures_);
   }
 
@@ -92,6 +92,7 @@ class Gallery : public testing::Test {
   const mission::Mission mission_ = sensors::parse_mission(kMission, "m.toml");
   GalleryKeeper keeper_{mission_, mission_.spacecraft[0]};
   std::vector<report::GalleryImage> pictures_;
+  double range_m_ = 12345.6;
 };
 
 TEST_F(Gallery, HoldsTheFirstBearingAndTheLastOnesBeforeWaypoints) {
@@ -127,6 +128,21 @@ TEST_F(Gallery, SaysWhichPixelsItShowsAndHowLargeTheTargetIs) {
   EXPECT_EQ(picture.height_px, 50);
   EXPECT_EQ(picture.crop_side, 0);
   EXPECT_EQ(picture.target_radius_px, 13.0) << "a point at 12 km";
+}
+
+// Tango's 0.73 m are 5972.7 px * 0.73 m / range: 21.8 px of 200 m.
+TEST_F(Gallery, ANearTargetsMarkIsItsSize) {
+  telemetry_objects objects{};
+  objects.count = 1;
+  objects.kind[0] = 2;
+  objects.x_px[0] = 755.0F;
+  objects.y_px[0] = 225.0F;
+  range_m_ = 200.0;
+  fly_image(1, kBearing, &objects);
+  ASSERT_EQ(pictures_.size(), 1U);
+  const double radius_px = 0.73 * 35e3 / 5.86 / 200.0;
+  EXPECT_EQ(pictures_[0].png, png(pattern(0), {{report::MarkShape::kCircle, 755.0, 225.0, radius_px}}));
+  EXPECT_THAT(pictures_[0].caption, HasSubstr("range 200.0 m"));
 }
 
 TEST_F(Gallery, PixelsOfALostTileAreMissing) {

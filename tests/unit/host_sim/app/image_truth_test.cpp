@@ -104,6 +104,44 @@ TEST_F(ImageTruth, ChoicesAreNamed) {
   EXPECT_FALSE(row().bearing_error_x_arcsec.has_value());
 }
 
+// Three pixels of the camera that flies, and the spacecraft's own radius: 0.73 m at 10 km are 0.44 px.
+TEST_F(ImageTruth, TheSameObjectIsWithinThreePixelsOfThisCamera) {
+  truth_.spacecraft.pop_back();
+  for (const double focal_length_mm : {35.0, 7.0}) {
+    mission_.spacecraft[0].camera->settings.optics.focal_length_mm = focal_length_mm;
+    const double pixel = 5.86e-3 / focal_length_mm;
+    const double limit_px = 3.0 + 0.73e-4 / pixel;
+    for (const double off_px : {limit_px - 0.05, limit_px + 0.05}) {
+      point({std::tan(off_px * pixel), 0.0, 1.0});
+      EXPECT_EQ(row().chosen, off_px < limit_px ? "target" : "nothing") << focal_length_mm << ' ' << off_px;
+      telemetry_objects objects{};
+      objects.count = 1;
+      objects.x_px[0] = static_cast<float>(959.5 + off_px);
+      objects.y_px[0] = 599.5F;
+      EXPECT_EQ(row(&objects).true_object, off_px < limit_px ? 0 : -1) << focal_length_mm << ' ' << off_px;
+    }
+  }
+}
+
+TEST_F(ImageTruth, ACountBeyondTheFieldIsThatOfTheField) {
+  telemetry_objects objects{};
+  objects.count = 1000;  // invalid
+  objects.x_px[95] = 959.5F;
+  objects.y_px[95] = 599.5F;
+  EXPECT_EQ(row(&objects).true_object, 95);
+}
+
+TEST_F(ImageTruth, ANanOfTheTruthIsNotAnErrorOfZero) {
+  truth_.spacecraft[1].orbit.position_eci.x() = std::nan("");
+  telemetry_objects objects{};
+  objects.count = 1;
+  const report::ImageRow seen = row(&objects);
+  EXPECT_TRUE(std::isnan(seen.range_m.value()));
+  EXPECT_TRUE(std::isnan(seen.bearing_error_x_arcsec.value()));
+  EXPECT_EQ(seen.chosen, "nothing");
+  EXPECT_EQ(seen.true_object, -1);
+}
+
 TEST_F(ImageTruth, FindsTheObjectThatIsTheTarget) {
   telemetry_objects objects{};
   objects.count = 3;

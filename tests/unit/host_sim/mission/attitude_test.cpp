@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/support/figures.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
 namespace vbar::mission::test {
@@ -129,10 +130,10 @@ TEST(AttitudeDraws, AreUniform) {
   }
   // A component of a uniform unit vector has variance 1/3, its square 4/45; so has an element of a uniform rotation.
   // The trace of a uniform rotation has mean square 1 and mean fourth power 3 (moments of the character of SO(3)).
-  EXPECT_LT(axis_sum.cwiseAbs().maxCoeff() / kCount, std::sqrt(1.0 / 3.0) * four_sigma);
-  EXPECT_LT((axis_squares / kCount - Vector3::Constant(1.0 / 3.0)).cwiseAbs().maxCoeff(),
+  EXPECT_LT(accuracy::largest_entry(axis_sum) / kCount, std::sqrt(1.0 / 3.0) * four_sigma);
+  EXPECT_LT(accuracy::largest_entry(axis_squares / kCount - Vector3::Constant(1.0 / 3.0)),
             std::sqrt(4.0 / 45.0) * four_sigma);
-  EXPECT_LT(rotation_sum.cwiseAbs().maxCoeff() / kCount, std::sqrt(1.0 / 3.0) * four_sigma);
+  EXPECT_LT(accuracy::largest_entry(rotation_sum) / kCount, std::sqrt(1.0 / 3.0) * four_sigma);
   EXPECT_NEAR(trace_squares / kCount, 1.0, std::sqrt(2.0) * four_sigma);
   EXPECT_NEAR(rate_sum / kCount, 2.0, 2.0 / std::sqrt(12.0) * four_sigma);
 }

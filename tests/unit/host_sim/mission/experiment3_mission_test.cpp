@@ -1,26 +1,18 @@
 // missions/experiment3.toml flies the paper's waypoints 8 to 10, explains every key of GNSS, and the values it shows
 // are the defaults that it says they are.
 
-#include <fstream>
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
+#include "tests/unit/host_sim/mission/shown_keys.h"
 
 namespace vbar::mission::test {
 namespace {
 
 const std::string kFile = vbar::tests::source_path("missions/experiment3.toml");
-
-std::string file_text() {
-  std::ostringstream text;
-  text << std::ifstream(kFile).rdbuf();
-  return text.str();
-}
 
 TEST(Experiment3Mission, WaypointsAreThePapers) {
   // Table "End-to-end Mission ROE Waypoints".
@@ -42,20 +34,10 @@ TEST(Experiment3Mission, WaypointsAreThePapers) {
 
 TEST(Experiment3Mission, EveryKeyOfGnssIsExplained) {
   const std::string sensor = "spacecraft.servicer.sensors.gnss";
-  const std::string text = file_text();
-  const auto accepted = accepted_keys(kFile, {}, sensors::installation());
-  for (const std::string& table :
-       {sensor, sensor + ".visibility", sensor + ".link_budget", sensor + ".tracking", sensor + ".start",
-        sensor + ".clock", sensor + ".body_frame", std::string("navigation.carrier_phase"),
-        std::string("constellation"), std::string("links.crosslink")}) {
-    const std::vector<std::string>& keys = accepted.at(table);
-    EXPECT_GE(keys.size(), 4U) << table;
-    for (const std::string& key : keys) {
-      const bool is_shown = text.find("\n" + key + " = ") != std::string::npos ||
-                            text.find("sensors.gnss." + key + "]") != std::string::npos;
-      EXPECT_TRUE(is_shown) << table << '.' << key;
-    }
-  }
+  expect_all_shown(text_of_file(kFile), kFile,
+                   {sensor, sensor + ".visibility", sensor + ".link_budget", sensor + ".tracking", sensor + ".start",
+                    sensor + ".clock", sensor + ".body_frame", "navigation.carrier_phase", "constellation",
+                    "links.crosslink"});
 }
 
 // A mission without the tables has the same values, but for the loss of the crosslink, of which the file says so.

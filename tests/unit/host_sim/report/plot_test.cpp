@@ -9,6 +9,7 @@
 #include "host_sim/report/consistency.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/svg_plot.h"
+#include "tests/support/figures.h"
 
 namespace vbar::report::test {
 namespace {
@@ -17,11 +18,11 @@ constexpr double kSearchStep = 0.1;  // pixels
 
 // By search along the segment: slower than the formula, and independent of it.
 double distance_to_segment(const Point& p, const Point& a, const Point& b) {
-  double least = std::hypot(p.x - a.x, p.y - a.y);
+  accuracy::Smallest least(std::hypot(p.x - a.x, p.y - a.y));
   const int steps = 1 + static_cast<int>(std::hypot(b.x - a.x, b.y - a.y) / kSearchStep);
   for (int k = 1; k <= steps; ++k) {
     const double t = static_cast<double>(k) / steps;
-    least = std::min(least, std::hypot(p.x - a.x - t * (b.x - a.x), p.y - a.y - t * (b.y - a.y)));
+    least.add(std::hypot(p.x - a.x - t * (b.x - a.x), p.y - a.y - t * (b.y - a.y)));
   }
   return least;
 }
@@ -44,10 +45,10 @@ TEST(ThinnedCurve, StaysWithinTheTolerance) {
     EXPECT_EQ(kept.front().x, points.front().x);
     EXPECT_EQ(kept.back().x, points.back().x);
     for (const Point& p : points) {
-      double least = 1e9;
+      accuracy::Smallest least;
       for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
         if (kept[k + 1].x < p.x - 11.0 || kept[k].x > p.x + 11.0) continue;  // farther than any tolerance tried
-        least = std::min(least, distance_to_segment(p, kept[k], kept[k + 1]));
+        least.add(distance_to_segment(p, kept[k], kept[k + 1]));
       }
       // The search may miss the nearest place by half a step.
       ASSERT_LE(least, tolerance + 0.5 * kSearchStep) << p.x;

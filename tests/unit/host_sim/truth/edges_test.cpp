@@ -295,9 +295,9 @@ TEST(Edges, AreWhereARootSearchOnAnotherTrajectoryFindsThem) {
   }
   ASSERT_EQ(found.size(), roots.size());
   ASSERT_GE(roots.size(), 13u);  // 6.7 orbits
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (std::size_t i = 0; i < roots.size(); ++i) {
-    largest = std::max(largest, std::abs(found[i] - roots[i]));
+    largest.add(std::abs(found[i] - roots[i]));
   }
   accuracy::expect_below("shadow edges located", "bisection on Kepler's motion, 13 edges", largest, 1e-6, "s");
 }

@@ -67,7 +67,7 @@ TEST(CommandedAttitude, FollowsTheLineInRtnWithTheSecondAxisUp) {
 TEST(CommandedAttitude, RateIsTheDerivativeOfTheAttitude) {
   CommandedAttitude attitude({.boresight_body = {0.1, -0.3, 2.0}, .second_body = {0.2, -1.0, 0.4}}, some_error(), own);
   ASSERT_TRUE(attitude.take({0.0, Vector3(0.1, -0.9, 0.3).normalized(), {2e-4, 1e-4, -3e-4}}));
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (double t = 5.0; t < 2000.0; t += 33.7) {
     if (std::abs(t - kLongestLine_s) < 2.0) continue;  // there the line ends, and the rate jumps
     // Rotation vector from -h to +h over 2 h, extrapolated (Richardson).
@@ -77,7 +77,7 @@ TEST(CommandedAttitude, RateIsTheDerivativeOfTheAttitude) {
       return -turn.angle() / (2.0 * h) * turn.axis();
     };
     const Vector3 rate = (4.0 * differenced(0.25) - differenced(0.5)) / 3.0;
-    largest = std::max(largest, (attitude.state_at(t).rate_body - rate).norm());
+    largest.add((attitude.state_at(t).rate_body - rate).norm());
   }
   // Errors of 2e-3 rad at 0.3 rad/s: h^4 w^5 A / 30 is 1e-9 rad/s for the fastest sinusoid (4.4e-4 rad).
   accuracy::expect_below("attitude: rate of commanded pointing with control errors",

@@ -87,13 +87,13 @@ double angle(const Vector3& a, const Vector3& b) {
 }
 
 TEST(PointingProfile, TurnsTheBoresightThereAndTheSecondAxisAsNearAsItGoes) {
-  double boresight_error = 0.0;
+  accuracy::Largest boresight_error;
   for (const Case& c : kCases) {
     const PointingProfile pointing = profile(c);
     for (double t = 0.0; t < 6000.0; t += 97.0) {
       const Quaterniond q_eci_body = pointing.state_at(t).q_body_eci.conjugate();
       const Vector3 to = unit_direction(c.boresight, t), second_to = unit_direction(c.second, t);
-      boresight_error = std::max(boresight_error, angle(q_eci_body * kBoresight, to));
+      boresight_error.add(angle(q_eci_body * kBoresight, to));
       // As near as it goes: the second axis, the boresight and the wanted direction lie in one plane, on one side.
       const Vector3 second = q_eci_body * kSecond.normalized();
       EXPECT_NEAR(second.dot(to.cross(second_to).normalized()), 0.0, 1e-13) << c.name;
@@ -108,7 +108,7 @@ TEST(PointingProfile, TurnsTheBoresightThereAndTheSecondAxisAsNearAsItGoes) {
 /// Largest difference of the rate of a profile and its differenced attitude, over some 60 instants.
 double rate_error(const Case& c) {
   const PointingProfile pointing = profile(c);
-  double error = 0.0;
+  accuracy::Largest error;
   for (double t = 0.0; t < 6000.0; t += 97.0) {
     // Rotation vector from -h to +h over 2 h, extrapolated (Richardson): error h^4, and the attitude's rounding over h.
     const auto differenced = [&](double h) -> Vector3 {
@@ -117,16 +117,16 @@ double rate_error(const Case& c) {
       return -rotation.angle() / (2.0 * h) * rotation.axis();
     };
     const Vector3 rate = (4.0 * differenced(0.5) - differenced(1.0)) / 3.0;
-    error = std::max(error, (pointing.state_at(t).rate_body - rate).norm());
+    error.add((pointing.state_at(t).rate_body - rate).norm());
   }
   return error;
 }
 
 TEST(PointingProfile, RateIsTheDerivativeOfTheAttitude) {
-  double at_infinity = 0.0, at_spacecraft = 0.0;
+  accuracy::Largest at_infinity, at_spacecraft;
   for (const Case& c : kCases) {
-    double& largest = c.boresight == Direction::kSpacecraft ? at_spacecraft : at_infinity;
-    largest = std::max(largest, rate_error(c));
+    accuracy::Largest& largest = c.boresight == Direction::kSpacecraft ? at_spacecraft : at_infinity;
+    largest.add(rate_error(c));
   }
   // The attitude is rounded to some 1e-15 rad; a direction to a point 70 m away to 2e-11 rad, by positions of 7e6 m.
   accuracy::expect_below("attitude: rate of pointing at zenith, nadir, along the track, the Sun",

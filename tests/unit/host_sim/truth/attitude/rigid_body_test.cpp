@@ -49,14 +49,14 @@ TEST(RigidBody, KeepsAngularMomentumAndEnergy) {
   RigidBody body = free_body(inertia, start);
   const Vector3 momentum_eci = start.q_body_eci.conjugate() * (inertia * start.rate_body);
   const double energy = start.rate_body.dot(inertia * start.rate_body);
-  double momentum_error = 0.0, direction_error = 0.0, energy_error = 0.0;
+  accuracy::Largest momentum_error, direction_error, energy_error;
   for (double t = 0.0; t <= 6.0 * kHour_s; t += 100.0) {
     body.advance_to(t);
     const AttitudeState now = body.state_at(t);
     const Vector3 h = inertia * now.rate_body;
-    momentum_error = std::max(momentum_error, std::abs(h.norm() / momentum_eci.norm() - 1.0));
-    direction_error = std::max(direction_error, (now.q_body_eci.conjugate() * h - momentum_eci).norm());
-    energy_error = std::max(energy_error, std::abs(now.rate_body.dot(h) / energy - 1.0));
+    momentum_error.add(std::abs(h.norm() / momentum_eci.norm() - 1.0));
+    direction_error.add((now.q_body_eci.conjugate() * h - momentum_eci).norm());
+    energy_error.add(std::abs(now.rate_body.dot(h) / energy - 1.0));
   }
   // The angular momentum is integrated in ECI, where nothing changes it: rounding only.
   accuracy::expect_below("attitude: |J w| of a torque-free tumble, 6 h at 1.5 deg/s", "constant of the motion",
@@ -76,15 +76,15 @@ TEST(RigidBody, AxisymmetricBodyPrecessesAsInClosedForm) {
   const AttitudeState start{kSomeAttitude, w0};
   RigidBody body = free_body(diagonal(moments), start);
   const Vector3 momentum_eci = kSomeAttitude.conjugate() * moments.cwiseProduct(w0);
-  double rate_error = 0.0, attitude_error = 0.0;
+  accuracy::Largest rate_error, attitude_error;
   for (double t = 0.0; t <= kHour_s; t += 7.0) {
     body.advance_to(t);
     const AttitudeState now = body.state_at(t);
     const Vector3 w(0.1 * std::cos(0.2 * t), 0.1 * std::sin(0.2 * t), 0.2);
     const Quaterniond q_eci_body = AngleAxisd(momentum_eci.norm() * t, momentum_eci.normalized()) *
                                    kSomeAttitude.conjugate() * AngleAxisd(-0.2 * t, Vector3::UnitZ());
-    rate_error = std::max(rate_error, (now.rate_body - w).norm() / w.norm());
-    attitude_error = std::max(attitude_error, angle_between(now.q_body_eci, q_eci_body.conjugate()));
+    rate_error.add((now.rate_body - w).norm() / w.norm());
+    attitude_error.add(angle_between(now.q_body_eci, q_eci_body.conjugate()));
   }
   // Some 2e4 steps with local errors up to 1e-13 change the energy by 1e-11 (6 h above: 1e-12), and a rate that is
   // wrong by as much makes a phase of 800 rad wrong by 1e-8.
@@ -144,12 +144,12 @@ TEST(RigidBody, AsymmetricBodyMovesAsJacobisFunctionsSay) {
   // Tango at about 1.5 deg/s, half of it across the axis of the greatest moment, for 2 h.
   const AsymmetricTop top(kTango, 0.9 * kDegree, 1.2 * kDegree);
   RigidBody body = free_body(diagonal(kTango), {top.q_body_eci(0.0), top.rate(0.0)});
-  double rate_error = 0.0, attitude_error = 0.0;
+  accuracy::Largest rate_error, attitude_error;
   for (double t = 0.0; t <= 2.0 * kHour_s; t += 240.0) {
     body.advance_to(t);
     const AttitudeState now = body.state_at(t);
-    rate_error = std::max(rate_error, (now.rate_body - top.rate(t)).norm() / top.rate(t).norm());
-    attitude_error = std::max(attitude_error, angle_between(now.q_body_eci, top.q_body_eci(t)));
+    rate_error.add((now.rate_body - top.rate(t)).norm() / top.rate(t).norm());
+    attitude_error.add(angle_between(now.q_body_eci, top.q_body_eci(t)));
   }
   // Some 3,000 steps with local errors up to 1e-13; the interpolant inside a step is some 1e-11 off.
   accuracy::expect_below("attitude: rate of Tango tumbling, 2 h at 1.5 deg/s", "Jacobi's elliptic functions",
@@ -171,10 +171,10 @@ TEST(RigidBody, RotationAboutTheIntermediateAxisIsUnstable) {
     body.advance_to(t);
     EXPECT_NEAR(body.state_at(t).rate_body[0] / (disturbance * std::cosh(growth)), 1.0, 1e-5) << growth;
   }
-  double least = w2;
+  accuracy::Smallest least{w2};
   for (double t = 6.0 / lambda; t < 40.0 / lambda; t += 10.0) {
     body.advance_to(t);
-    least = std::min(least, body.state_at(t).rate_body[1]);
+    least.add(body.state_at(t).rate_body[1]);
   }
   EXPECT_NEAR(least, -w2, 1e-3 * w2);  // 10 s beside the turn's end leave 1e-4 of it
 }
@@ -184,12 +184,12 @@ TEST(RigidBody, RotationAboutTheOuterAxesIsStable) {
     Vector3 w = Vector3::Constant(1e-7 * kDegree);
     w[axis] = 1.0 * kDegree;
     RigidBody body = free_body(diagonal(kTango), {kSomeAttitude, w});
-    double farthest = 0.0;
+    accuracy::Largest farthest;
     for (double t = 0.0; t < 2.0 * kHour_s; t += 10.0) {
       body.advance_to(t);
       Vector3 across = body.state_at(t).rate_body;
       across[axis] = 0.0;
-      farthest = std::max(farthest, across.norm());
+      farthest.add(across.norm());
     }
     // The polhode is an ellipse of axis ratio below 2 for these moments.
     EXPECT_LT(farthest, 3.0 * std::sqrt(2.0) * 1e-7 * kDegree) << axis;

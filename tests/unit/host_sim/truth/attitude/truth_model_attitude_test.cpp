@@ -122,16 +122,16 @@ TEST(TruthModelAttitude, RadiationTorqueEndsStepsAtTheShadowsEdges) {
 TEST(TruthModelAttitude, PointsAtTheOtherSpacecraftWithItsOwnRate) {
   TruthModel model = pair();
   model.advance_to(after(1000.0));
-  double boresight = 0.0, rate = 0.0;
+  accuracy::Largest boresight, rate;
   for (double t = 1000.0; t < 5000.0; t += 400.0) {
     model.advance_to(after(t + 10.0));  // so that the states about t are known
     const AttitudeState now = model.attitude_at(0, after(t));
     const Vector3 los = model.state_at(1, after(t)).position_eci - model.state_at(0, after(t)).position_eci;
-    boresight = std::max(boresight, (now.q_body_eci * los).normalized().cross(Vector3::UnitZ()).norm());
+    boresight.add((now.q_body_eci * los).normalized().cross(Vector3::UnitZ()).norm());
     const double h = 5.0;
     const Eigen::AngleAxisd turn(model.attitude_at(0, after(t + h)).q_body_eci *
                                  model.attitude_at(0, after(t - h)).q_body_eci.conjugate());
-    rate = std::max(rate, (now.rate_body + turn.angle() / (2.0 * h) * turn.axis()).norm());
+    rate.add((now.rate_body + turn.angle() / (2.0 * h) * turn.axis()).norm());
   }
   EXPECT_LT(boresight, 1e-12);
   // The orbit's interpolant carries 1e-6 m of a line of sight of 100 m over 10 s, 1e-9 rad/s; the third derivative of a

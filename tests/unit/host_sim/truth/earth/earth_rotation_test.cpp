@@ -26,24 +26,23 @@ fsw::Matrix3 matrix(const double (&rows)[3][3]) {
 }
 
 double largest_difference(const CelestialPole& a, const CelestialPole& b) {
-  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.s - b.s)});
+  return accuracy::largest_entry(fsw::Vector3(a.x - b.x, a.y - b.y, a.s - b.s));
 }
 
 TEST(EarthRotation, TwelveEpochsOfTheIau2006Chain) {
   CelestialPoleInterpolator interpolator;
-  double pole = 0.0, pole_interpolated = 0.0, rotation = 0.0, rotation_interpolated = 0.0;
+  accuracy::Largest pole, pole_interpolated, rotation, rotation_interpolated;
   for (const test::Iau2006Epoch& epoch : test::kIau2006Epochs) {
     const JulianDate tt{2451545.0, epoch.tt_centuries * 36525.0};
     const CelestialPole reference{epoch.x, epoch.y, epoch.s};
-    pole = std::max(pole, largest_difference(celestial_pole_iau2006a(tt), reference));
+    pole.add(largest_difference(celestial_pole_iau2006a(tt), reference));
     const CelestialPole interpolated = interpolator.at(tt);
-    pole_interpolated = std::max(pole_interpolated, largest_difference(interpolated, reference));
+    pole_interpolated.add(largest_difference(interpolated, reference));
     // The reference matrix from its own era and s'.
     const fsw::Matrix3 composed = R_itrf_gcrf(reference, epoch.era, 0.0, 0.0, epoch.sp);
-    rotation = std::max(rotation, (composed - matrix(epoch.R_itrs_gcrs)).cwiseAbs().maxCoeff());
+    rotation.add(accuracy::largest_entry(composed - matrix(epoch.R_itrs_gcrs)));
     const fsw::Matrix3 with_interpolation = R_itrf_gcrf(interpolated, epoch.era, 0.0, 0.0, epoch.sp);
-    rotation_interpolated =
-        std::max(rotation_interpolated, (with_interpolation - matrix(epoch.R_itrs_gcrs)).cwiseAbs().maxCoeff());
+    rotation_interpolated.add(accuracy::largest_entry(with_interpolation - matrix(epoch.R_itrs_gcrs)));
   }
   // The same library in another build: the last bits of sums of thousands of terms, arguments up to 1e4 rad.
   accuracy::expect_below("celestial pole X, Y and s", "IAU 2006/2000A, 12 epochs computed with ERFA", pole, 1e-14,
@@ -63,10 +62,10 @@ TEST(EarthRotation, InterpolationErrorIsBelowItsStatement) {
   CelestialPoleInterpolator interpolator;
   std::mt19937_64 random(20110718);
   std::uniform_real_distribution<double> day(0.0, 7305.0);
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (int i = 0; i < 600; ++i) {
     const JulianDate tt{2451544.5, day(random)};
-    largest = std::max(largest, largest_difference(interpolator.at(tt), celestial_pole_iau2006a(tt)));
+    largest.add(largest_difference(interpolator.at(tt), celestial_pole_iau2006a(tt)));
   }
   accuracy::expect_below("celestial pole by interpolation", "ERFA's full series, 600 instants of 2000 to 2020", largest,
                          1e-12, "rad");
@@ -100,7 +99,7 @@ TEST(EarthRotation, RealEarthIsErfasChain) {
   for (int mjd = 55758; mjd < 55766; ++mjd) days.push_back({mjd, {kUt1MinusUtc - 34.0, kPoleX, kPoleY, 0.0, 0.0}});
   const fsw::GpsTime epoch = test::mission_epoch();
   EarthRotation rotation(std::make_shared<const EarthOrientationSeries>(days), epoch);
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (double seconds = 0.0; seconds < 148500.0; seconds += 3333.25) {
     double utc_day = 0.0, utc = 0.0, tai_day = 0.0, tai = 0.0, tt_day = 0.0, tt = 0.0, ut1_day = 0.0, ut1 = 0.0;
     eraDtf2d("UTC", 2011, 7, 18, 1, 0, 0.0, &utc_day, &utc);
@@ -111,7 +110,7 @@ TEST(EarthRotation, RealEarthIsErfasChain) {
     double x = 0.0, y = 0.0, expected[3][3];
     eraXy06(tt_day, tt, &x, &y);
     eraC2txy(tt_day, tt, ut1_day, ut1, x, y, kPoleX, kPoleY, expected);
-    largest = std::max(largest, (rotation.R_itrf_gcrf_at(seconds) - matrix(expected)).cwiseAbs().maxCoeff());
+    largest.add(accuracy::largest_entry(rotation.R_itrf_gcrf_at(seconds) - matrix(expected)));
   }
   accuracy::expect_below("Earth rotation from GPS time on, over 41 hours", "ERFA's chain from UTC, 45 instants",
                          largest, 1e-12, "of a matrix element");
@@ -136,7 +135,7 @@ TEST(EarthRotation, IsARotationAndTurnsEastward) {
       EarthOrientationSeries::load(test::kDataDirectory / "earth/eop_2009_2013.csv"));
   EarthRotation rotation(series, test::mission_epoch());
   const fsw::Matrix3 R = rotation.R_itrf_gcrf_at(0.0);
-  EXPECT_LT((R * R.transpose() - fsw::Matrix3::Identity()).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT(accuracy::largest_entry(R * R.transpose() - fsw::Matrix3::Identity()), 1e-15);
   EXPECT_NEAR(R.determinant(), 1.0, 1e-15);
   // Nominal rate 7.292115e-5 rad/s (IERS Conventions 2010, table 1.2): the inertial x axis drifts westward in
   // longitude.

@@ -19,7 +19,7 @@ TEST(Geodetic, AgreesWithGeographicLib) {
   // Karney's conversion is exact (a quartic solved in closed form; here from geodetic to Cartesian, a plain formula).
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  double angle = 0.0, height = 0.0;
+  accuracy::Largest angle, height;
   for (int i = 0; i < 20000; ++i) {
     const double latitude_deg = -90.0 + 180.0 * unit(random);
     const double longitude_deg = -180.0 + 360.0 * unit(random);
@@ -27,9 +27,9 @@ TEST(Geodetic, AgreesWithGeographicLib) {
     fsw::Vector3 r;
     GeographicLib::Geocentric::WGS84().Forward(latitude_deg, longitude_deg, altitude, r.x(), r.y(), r.z());
     const GeodeticPosition found = geodetic_from_itrf(r);
-    angle = std::max(angle, std::abs(found.latitude - latitude_deg * kDegree));
-    angle = std::max(angle, std::abs(found.longitude - longitude_deg * kDegree));
-    height = std::max(height, std::abs(found.altitude - altitude));
+    angle.add(std::abs(found.latitude - latitude_deg * kDegree));
+    angle.add(std::abs(found.longitude - longitude_deg * kDegree));
+    height.add(std::abs(found.altitude - altitude));
   }
   // Rounding: 2e-16 of pi, and of 4e7 m; Bowring's second pass is below it.
   accuracy::expect_below("geodetic latitude and longitude", "GeographicLib Geocentric, 20,000 points to geostationary",

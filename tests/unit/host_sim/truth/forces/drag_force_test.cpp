@@ -81,7 +81,7 @@ TEST(DragForce, NothingDragsOnWhatTurnsWithTheEarth) {
       EarthOrientationSeries::load(test::kDataDirectory / "earth/eop_2009_2013.csv"));
   EarthRotation rotation(orientation, test::mission_epoch());
   DragForce force = drag();
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (const Vector3& r_itrf : {Vector3(6.9e6, 0.0, 0.0), Vector3(-4e6, 4e6, 4e6), Vector3(1e6, -2e6, -6.6e6)}) {
     for (int seconds = 100; seconds < 80000; seconds += 9000) {
       constexpr double kStep = 1.0;  // s: truncation w^3 r/6 = 4e-7 m/s
@@ -95,7 +95,7 @@ TEST(DragForce, NothingDragsOnWhatTurnsWithTheEarth) {
                            (2.0 * kStep);
       const double area_to_mass = kSpacecraft.drag_coefficient * kSpacecraft.drag_area_m2 / kSpacecraft.mass_kg;
       const double density = force.atmosphere_at(input).drag_density;
-      largest = std::max(largest, std::sqrt(2.0 * force.acceleration_eci(input).norm() / (area_to_mass * density)));
+      largest.add(std::sqrt(2.0 * force.acceleration_eci(input).norm() / (area_to_mass * density)));
     }
   }
   // Polar motion of up to 0.5 arcsec times w r, 510 m/s: 1.2 mm/s.

@@ -67,10 +67,10 @@ double difference_from_peer(int degree, int order, const std::vector<Vector3>& w
   const GravityCoefficients model = load_gravity_coefficients(kFile, degree);
   const GravityField field(model, degree, order);
   const Peer peer(model, degree, order);
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (const Vector3& r : where) {
     const Vector3 expected = peer.acceleration(r);
-    largest = std::max(largest, (field.acceleration_itrf(r) - expected).norm() / expected.norm());
+    largest.add((field.acceleration_itrf(r) - expected).norm() / expected.norm());
   }
   return largest;
 }

@@ -125,12 +125,12 @@ TEST(Penumbra, IsTheOverlapOfTwoDisksOnTheSky) {
   // From a low orbit (the Earth 64 degrees in radius) to beyond the umbra's apex (smaller than the Sun). The
   // projection's scale varies by 2e-5 over the Sun's disk; the rings' sums are good to 1e-6.
   const double sun = 0.00465;
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (double earth : {64.0 * kDegree, 30.0 * kDegree, 8.7 * kDegree, 1.0 * kDegree, 0.3 * kDegree, 0.2 * kDegree}) {
     for (double part : {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98}) {
       const double inner = std::abs(earth - sun), outer = earth + sun;
       const SkyDisks disks{sun, earth, inner + part * (outer - inner)};
-      largest = std::max(largest, std::abs(1.0 - penumbra_sunlit_fraction(disks) - hidden_by_rings(disks)));
+      largest.add(std::abs(1.0 - penumbra_sunlit_fraction(disks) - hidden_by_rings(disks)));
     }
   }
   accuracy::expect_below("sunlit fraction in the penumbra", "integration over the Sun's disk, 42 geometries", largest,

@@ -33,13 +33,13 @@ Vector3 direct_difference(const Vector3& position, const Vector3& body, double g
 
 TEST(ThirdBody, IsTheDirectDifferenceWithoutItsCancellation) {
   // A few roundings of doubles, 1e-15; along directions where the tide's two terms compensate each other, some more.
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (const auto& [body, gm] : {std::pair{kSun, kSunGm}, {kMoon, kMoonGm}}) {
     for (const Vector3& direction : kDirections) {
       for (double distance : {1.0, 6.4e6, 7.1e6, 4.2e7, 1.5e8}) {
         const Vector3 position = distance * direction.normalized();
         const Vector3 expected = direct_difference(position, body, gm);
-        largest = std::max(largest, (third_body_acceleration(position, body, gm) - expected).norm() / expected.norm());
+        largest.add((third_body_acceleration(position, body, gm) - expected).norm() / expected.norm());
       }
     }
   }

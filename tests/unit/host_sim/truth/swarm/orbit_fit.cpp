@@ -8,6 +8,8 @@
 
 #include <Eigen/QR>
 
+#include "tests/support/figures.h"
+
 namespace vbar::truth::test {
 namespace {
 
@@ -24,11 +26,12 @@ Eigen::VectorXd stacked_difference(const Positions& a, const Positions& b) {
 }  // namespace
 
 Distances distances(const Positions& a, const Positions& b) {
-  double sum = 0.0, largest = 0.0;
+  double sum = 0.0;
+  accuracy::Largest largest;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double distance = (a[i] - b[i]).norm();
     sum += distance * distance;
-    largest = std::max(largest, distance);
+    largest.add(distance);
   }
   return {std::sqrt(sum / static_cast<double>(a.size())), largest};
 }
@@ -61,7 +64,7 @@ OrbitStart OrbitFit::fit(const Propagate& propagate, const OrbitStart& first, bo
     start = displaced(start, by);
     // A thousandth of a step moves no position by more than a centimetre or two; the next iteration would gain three
     // digits on that.
-    if (by.cwiseAbs().maxCoeff() < 1e-4) return start;
+    if (accuracy::largest_entry(by) < 1e-4) return start;
   }
   throw std::runtime_error("the fit of the orbit did not converge");
 }

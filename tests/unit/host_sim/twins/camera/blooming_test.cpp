@@ -52,7 +52,7 @@ TEST(Blooming, ConservesCharge) {
     const double drained = bloom({100.0, fraction}, kSide, kSide, charge);
     // Single precision: 2^-24 of 3e4 a share at most, in some thousand shares.
     EXPECT_NEAR(total(charge) + drained, before, 2.0) << fraction;
-    EXPECT_LE(*std::max_element(charge.begin(), charge.end()), 100.0F) << fraction;
+    EXPECT_THAT(charge, testing::Each(testing::Le(100.0F))) << fraction;
     EXPECT_GT(drained, 0.0) << fraction;
   }
 }

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/engine/distributions.h"
+#include "tests/support/figures.h"
 
 namespace vbar::twins::camera {
 namespace {
@@ -34,7 +35,7 @@ TEST(PixelNoise, WordsAreThoseOfRandom123) {
 
 /// Words that stand for the whole range, evenly or towards an end.
 double worst_normal_error(std::uint32_t first, std::uint32_t stride) {
-  double worst = 0.0;
+  accuracy::Largest worst;
   ChunkWords words;
   ChunkFloats normal;
   std::uint32_t word = first;
@@ -45,7 +46,7 @@ double worst_normal_error(std::uint32_t first, std::uint32_t stride) {
       // The lower half counts the upper tail, the upper half the lower one.
       const double tail = (static_cast<double>(words[k] & 0x7FFFFFFFU) + 0.5) * 0x1p-32;
       const double exact = -engine::normal_quantile(tail) * (words[k] >> 31U ? -1.0 : 1.0);
-      worst = std::max(worst, std::abs(static_cast<double>(normal[k]) - exact));
+      worst.add(std::abs(static_cast<double>(normal[k]) - exact));
     }
   }
   return worst;

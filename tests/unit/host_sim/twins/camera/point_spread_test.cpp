@@ -11,6 +11,7 @@
 
 #include "host_sim/twins/camera/wide_spread.h"
 #include "tests/support/camera_scene.h"
+#include "tests/support/figures.h"
 
 namespace {
 
@@ -141,7 +142,8 @@ TEST(PointSpread, wide_things_give_the_image_of_each_of_their_points) {
         camera::PhotonImage together{kLarge, std::vector<float>(320 * 260, 0.0F)}, each = together;
         spread.add(points, smear, together);
         for (const camera::ImagePoint& point : points) spread.add(point, smear, each);
-        double sum_together = 0.0, sum_each = 0.0, brightest = 0.0, squares = 0.0;
+        double sum_together = 0.0, sum_each = 0.0, squares = 0.0;
+        vbar::accuracy::Largest brightest;
         Vector2 first_together = Vector2::Zero(), first_each = Vector2::Zero();
         for (int y = 0; y < kLarge.height; ++y)
           for (int x = 0; x < kLarge.width; ++x) {
@@ -151,7 +153,7 @@ TEST(PointSpread, wide_things_give_the_image_of_each_of_their_points) {
             first_together += a * Vector2(x, y);
             first_each += b * Vector2(x, y);
             squares += (a - b) * (a - b);
-            brightest = std::max(brightest, b);
+            brightest.add(b);
           }
         EXPECT_NEAR(sum_together / sum_each, 1.0, 2e-4) << extent << ' ' << sigma;
         EXPECT_NEAR((first_together / sum_together - first_each / sum_each).norm(), 0.0, 0.01)

@@ -10,6 +10,7 @@
 #include "host_sim/twins/camera/aberration.h"
 #include "host_sim/twins/camera/scene.h"
 #include "tests/support/camera_scene.h"
+#include "tests/support/figures.h"
 
 namespace {
 
@@ -34,7 +35,9 @@ camera::PhotonImage image_of(const camera::Exposure& exposure) {
 }
 
 double least(const camera::PhotonImage& image) {
-  return *std::min_element(image.electrons.begin(), image.electrons.end());
+  vbar::accuracy::Smallest least;
+  for (const float electrons : image.electrons) least.add(electrons);
+  return least;
 }
 
 // A direction as its right ascension and declination, degrees.

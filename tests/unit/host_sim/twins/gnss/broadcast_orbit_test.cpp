@@ -174,13 +174,13 @@ TEST(BroadcastOrbit, NeighbouringRealSetsAgree) {
 // The velocity is the position's derivative: central differences over 2 s err by a'''/6 (1e-4 m/s^... below 1e-7 m/s)
 // and by rounding of 27,000 km (4e-9 m / 1 s).
 TEST(BroadcastOrbit, VelocityIsDerivative) {
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (const Ephemeris& set : all_sets()) {
     const SatelliteState here = satellite_state(set, set.toe, 3000.0);
     const fsw::Vector3 difference =
         (satellite_state(set, set.toe, 3001.0).position_ecef - satellite_state(set, set.toe, 2999.0).position_ecef) /
         2.0;
-    largest = std::max(largest, (here.velocity_ecef - difference).norm());
+    largest.add((here.velocity_ecef - difference).norm());
     const double clock_difference =
         (satellite_state(set, set.toe, 3001.0).clock_s - satellite_state(set, set.toe, 2999.0).clock_s) / 2.0;
     EXPECT_NEAR(here.clock_drift, clock_difference, 1e-18) << name_of(set.satellite);
@@ -210,12 +210,11 @@ TEST(BroadcastOrbit, ReferenceTimeIsFree) {
 // The message's bits cost what half of a last bit moves a satellite: 2^-31 semicircles of four angles at 27,000 to
 // 42,000 km, at most 4 x 0.03 m.
 TEST(NavigationMessage, RoundingCostsCentimetres) {
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (const Ephemeris& set : all_sets()) {
     const fsw::GpsTime toe = set.toe;
     const Ephemeris rounded = rounded_to_message(set);
-    largest = std::max(
-        largest,
+    largest.add(
         (satellite_state(set, toe, 3600.0).position_ecef - satellite_state(rounded, toe, 3600.0).position_ecef).norm());
     // Rounded once is rounded for good.
     EXPECT_DOUBLE_EQ(rounded_to_message(rounded).m0, rounded.m0);

@@ -71,7 +71,7 @@ TEST(GnssReceiver, DoubleDifferencesHoldIntegers) {
   const auto satellites = test::constellation(3);
   GnssReceiver a(quiet(), satellites, test::data_directory(), 3, "servicer");
   GnssReceiver b(quiet(), satellites, test::data_directory(), 3, "target");
-  double largest = 0.0;
+  accuracy::Largest largest;
   long pairs = 0;
   for (int k = 0; k < 60; ++k) {
     a.bytes_at(test::in_orbit(60.0 * k));
@@ -82,7 +82,7 @@ TEST(GnssReceiver, DoubleDifferencesHoldIntegers) {
       const auto [first, is_first] = reference.emplace(key.second, cycles);
       if (is_first) continue;
       const double difference = cycles - first->second;
-      largest = std::max(largest, std::abs(difference - std::round(difference)));
+      largest.add(std::abs(difference - std::round(difference)));
       ++pairs;
     }
   }
@@ -128,8 +128,8 @@ TEST(GnssReceiver, CombinationsAreConstantOverArcs) {
 
 // Satellites of GPS in view over a day.
 struct InView {
-  long least = 99;
-  long most = 0;
+  accuracy::Smallest least;
+  accuracy::Largest most;
   double mean = 0.0;
 };
 InView gps_in_view(const GnssReceiverSettings& settings) {
@@ -139,8 +139,8 @@ InView gps_in_view(const GnssReceiverSettings& settings) {
   for (int k = 0; k < kMinutes; ++k) {
     subject.bytes_at(test::in_orbit(60.0 * k));
     const long gps = std::ranges::count(subject.observations(), Signal::kGpsL1, &oem::RangeRecord::signal);
-    view.least = std::min(view.least, gps);
-    view.most = std::max(view.most, gps);
+    view.least.add(gps);
+    view.most.add(gps);
     view.mean += static_cast<double>(gps) / kMinutes;
   }
   return view;

@@ -42,14 +42,13 @@ TEST(GnssReceiverNoise, HasTheLoopsVariances) {
       ++s.count;
     }
   }
-  double worst = 0.0;
+  accuracy::Largest worst;
   for (const auto& [signal, s] : sums) {
     const double tolerance = 4.0 * std::sqrt(2.0 / s.count);
     EXPECT_NEAR(s.code / s.count, 1.0, tolerance) << structure(signal).name;
     EXPECT_NEAR(s.carrier / s.count, 1.0, tolerance) << structure(signal).name;
     EXPECT_NEAR(s.product / s.count, 0.0, tolerance) << structure(signal).name;
-    if (signal == Signal::kGpsL1)
-      worst = std::max(std::abs(s.code / s.count - 1.0), std::abs(s.carrier / s.count - 1.0));
+    if (signal == Signal::kGpsL1) worst.add(std::abs(s.code / s.count - 1.0), std::abs(s.carrier / s.count - 1.0));
   }
   EXPECT_GT(sums[Signal::kGpsL1].count, 15000);
   accuracy::expect_below("GNSS emulator: noise of code and carrier, variance", "loop formulas of Kaplan and Hegarty",

@@ -1,7 +1,6 @@
 // CAD files that are none, and what is said of them; Tango's against its keypoints.
 
 #include "host_sim/twins/camera/model/cad_model.h"
-#include "tests/support/paths.h"
 
 #include <filesystem>
 #include <fstream>
@@ -11,6 +10,9 @@
 
 #include <gmock/gmock.h>
 #include <unistd.h>
+
+#include "tests/support/figures.h"
+#include "tests/support/paths.h"
 
 namespace vbar::twins::camera {
 namespace {
@@ -150,9 +152,9 @@ TEST(TangoModel, HasItsKeypointsAndALimitedNumberOfFaces) {
         Vector3(0.37, -0.385, 0.3215), Vector3(-0.37, -0.264, 0.0), Vector3(-0.37, 0.304, 0.0),
         Vector3(0.37, 0.304, 0.0), Vector3(0.37, -0.264, 0.0), Vector3(-0.5427, 0.4877, 0.2535),
         Vector3(0.5427, 0.4877, 0.2591), Vector3(0.3050, -0.5790, 0.2515)}) {
-    double nearest = 1.0;
+    accuracy::Smallest nearest{1.0};
     for (const Triangle& t : model.triangles)
-      for (const Vector3& corner : t.corners) nearest = std::min(nearest, (corner - keypoint).norm());
+      for (const Vector3& corner : t.corners) nearest.add((corner - keypoint).norm());
     EXPECT_LT(nearest, 2e-5) << keypoint.transpose();  // of the file's digits, 1e-5 m
   }
   // Nothing but antennas reaches far beyond the hull: fittings stand out by less than a decimetre.

@@ -12,6 +12,7 @@
 
 #include "host_sim/twins/camera/model/cad_model.h"
 #include "host_sim/twins/camera/model/target_renderer.h"
+#include "tests/support/figures.h"
 
 namespace vbar::twins::camera {
 
@@ -26,8 +27,8 @@ class Spheres {
   explicit Spheres(const CadModel& model) {
     for (const Triangle& t : model.triangles) {
       const fsw::Vector3 middle = (t.corners[0] + t.corners[1] + t.corners[2]) / 3.0;
-      double square = 0.0;
-      for (const fsw::Vector3& corner : t.corners) square = std::max(square, (corner - middle).squaredNorm());
+      accuracy::Largest square;
+      for (const fsw::Vector3& corner : t.corners) square.add((corner - middle).squaredNorm());
       spheres_.push_back({middle.x(), middle.y(), middle.z(), 1.0001 * square});
     }
   }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/twins/camera/model/target_renderer.h"
+#include "tests/support/figures.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/twins/camera/model/light_sums.h"
 #include "tests/unit/host_sim/twins/camera/model/ray_tracer.h"
@@ -57,12 +58,12 @@ TEST(TargetShadow, OfTwoPlatesIsTheRayTracers) {
   const CadModel model = l_shape();
   TargetRenderer renderer(model);
   std::vector<LightSample> samples;
-  double shaded = 0.0;
+  accuracy::Largest shaded;
   for (const double turn : {0.0, 0.6, 1.2}) {
     TargetView view = view_at(300.0, 0.9);
     view.R_camera_body = turned(M_PI - 0.4, -0.3 - turn, 0.4);
     const TracedLight traced = trace(model, view, 100000);
-    shaded = std::max(shaded, 1.0 - traced.flux / traced.flux_without_shadows);
+    shaded.add(1.0 - traced.flux / traced.flux_without_shadows);
     renderer.render(view, samples);
     EXPECT_NEAR(sum_of(samples).flux / traced.flux, 1.0, 0.015) << "turn " << turn;
     EXPECT_LT((sum_of(samples).direction - traced.direction).norm() * 300.0, 0.005) << "turn " << turn;
@@ -77,13 +78,13 @@ TEST(TargetShadow, OfMattTangoIsTheRayTracers) {
   model = make_cad_model("flat, matt tango", model.triangles, model.materials);
   TargetRenderer renderer(model);
   std::vector<LightSample> samples;
-  double shaded = 0.0;
+  accuracy::Largest shaded;
   for (const double turn : {0.4, 2.2, 4.0}) {
     TargetView view = view_at(30.0, 1.0);
     view.R_camera_body = turned(turn, 0.5 * turn, 0.7);
     view.texel_pitch = 0.01 / 30.0;
     const TracedLight traced = trace(model, view, 10000);
-    shaded = std::max(shaded, 1.0 - traced.flux / traced.flux_without_shadows);
+    shaded.add(1.0 - traced.flux / traced.flux_without_shadows);
     renderer.render(view, samples);
     // 10,000 rays leave the reference itself half a per cent and 2 mm uncertain.
     EXPECT_NEAR(sum_of(samples).flux / traced.flux, 1.0, 0.015) << "turn " << turn;
