@@ -33,7 +33,7 @@ CoastingPair coast_of(int seed, int duration_s) {
   return CoastingPair(duration_s, {fmt::format("mission.start_h={}", 39.0 + 0.033 * seed)});
 }
 
-TEST(ManySeeds, EveryHeldIntegerIsTheTrueOneAndTheFilterIsHonest) {
+TEST(ManySeeds, EveryHeldIntegerIsTheTrueOneAndTheFilterIsConsistent) {
   long wrong = 0;
   int releases = 0;
   double latest_fix_s = 0.0;
