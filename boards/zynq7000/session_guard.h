@@ -1,10 +1,10 @@
 #pragma once
-// Who may speak to the flight software. A board has two interfaces, and anybody may send to them; a session has one
+// Access control of the flight software. A board has two interfaces with any number of senders; a session has one
 // peer.
 //
-// The first sender of a valid kHello becomes the peer. Frames of anybody else are refused and counted until the session
-// ends: with its kGoodbye, or, so that a host that died does not lock a board, once the peer has been silent for a
-// while and somebody else says hello.
+// The first sender of a valid kHello becomes the peer. Frames of other senders are refused and counted until its end:
+// with the goodbye of the peer, or, so that a lost host does not block the board, once the peer has been silent for a
+// time limit and another sender sends a hello.
 
 #include <cstdint>
 #include <span>
@@ -15,7 +15,7 @@ namespace vbar::boards::zynq7000 {
 
 enum class Interface : std::uint8_t { kSerial, kEthernet };
 
-/// A sender, as far as its interface can tell senders apart. Everything on the serial line is one sender; on Ethernet a
+/// A sender, as far as its interface distinguishes senders. The serial line has one sender; on Ethernet a
 /// sender is an address and a port.
 struct Sender {
   Interface interface = Interface::kSerial;
@@ -29,19 +29,19 @@ struct Sender {
 
 class SessionGuard {
  public:
-  /// `silence` in the unit of the times given to `admits`: how long a peer may say nothing before another may take
-  /// over.
+  /// `silence` in the unit of the times given to `admits`: time without a frame of the peer after which another sender
+  /// may take over.
   explicit SessionGuard(std::uint64_t silence) : silence_(silence) {}
 
   /// True if the frame, received at `now`, is for the flight software. A kHello that is admitted makes its sender the
   /// peer.
   bool admits(const Sender& sender, std::span<const std::uint8_t> frame, std::uint64_t now);
 
-  /// The peer said goodbye.
+  /// The goodbye of the peer.
   void end_session() { has_peer_ = false; }
 
   [[nodiscard]] bool has_peer() const { return has_peer_; }
-  /// Where answers go; meaningful while has_peer().
+  /// Destination of answers; valid while has_peer().
   [[nodiscard]] const Sender& peer() const { return peer_; }
 
  private:

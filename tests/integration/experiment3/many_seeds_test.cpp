@@ -73,7 +73,7 @@ TEST(ManySeeds, EveryHeldIntegerIsTheTrueOneAndTheFilterIsConsistent) {
 }
 
 // Why the flights above begin all around the orbit: the differential acceleration that the filter has to guess.
-TEST(ManySeeds, TheForcesAreAsTheFilterIsTold) {
+TEST(ManySeeds, TheForcesAreThoseConfiguredInTheFilter) {
   constexpr int kOrbit_s = 5940;
   const CoastingPair coast = coast_of(0, kOrbit_s);
   fsw::Vector3 sum_of_squares = fsw::Vector3::Zero();

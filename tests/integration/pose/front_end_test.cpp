@@ -23,11 +23,11 @@ LabelledView view_of(const training::LabelledCrop& crop, const twins::camera::Ca
   LabelledView view;
   view.samples = crop.samples;
   standardise(view.samples);
-  view.region = crop.circumstances.region;
+  view.region = crop.priors.region;
   std::ranges::fill(view.camera.focal_length_px, camera.focal_length_px());
   view.camera.principal_point_px = {camera.optics.principal_point_px[0], camera.optics.principal_point_px[1]};
   std::ranges::copy(camera.optics.distortion, view.camera.distortion.begin());
-  view.truth = {crop.circumstances.R_camera_body, crop.circumstances.centre_of_mass_camera};
+  view.truth = {crop.priors.R_camera_body, crop.priors.centre_of_mass_camera};
   view.cells = crop.cells;
   view.counts = crop.counts;
   return view;
@@ -62,9 +62,9 @@ TEST(FrontEnd, CovariancesAreTrue) {
   std::vector<double> squares;
   for (const KeypointError& error : held_out().keypoints()) squares.push_back(error.normalised);
   const double median = quantile(squares, 0.5);
-  accuracy::expect_below("keypoint covariances: median of the normalised squared error, deviation from 1.386 (chi-square)",
-                         fmt::format("truth, {} held-out crops", kCrops), std::abs(median / 1.386 - 1.0), 0.36,
-                         "relative");
+  accuracy::expect_below(
+      "keypoint covariances: median of the normalised squared error, deviation from 1.386 (chi-square)",
+      fmt::format("truth, {} held-out crops", kCrops), std::abs(median / 1.386 - 1.0), 0.36, "relative");
 }
 
 TEST(FrontEnd, PosesOfHeldOutCrops) {

@@ -85,7 +85,7 @@ TEST(ObjectDetector, AHotPixelHasNoWidth) {
   for (const DetectedObject& object : d.objects->objects()) EXPECT_LT(object.radius_px, 0.4);
 }
 
-TEST(ObjectDetector, TheBrightestOfTooManyAreTold) {
+TEST(ObjectDetector, TheBrightestOfTooManyAreReported) {
   Detection d;
   test::SyntheticImage scene(500, 800);
   std::vector<double> fluxes;
