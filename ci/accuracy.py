@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The accuracy page, docs/accuracy.md: what the tests measured against references from outside.
+"""The accuracy page, docs/accuracy.md: results of the tests against independent references.
 
 usage: ci/accuracy.py [--build build/host] [--bench FILE.json]    run the tests that record rows, write the page
        ci/accuracy.py [--build build/host] --check                run nothing: does the page name what the tests record?
@@ -23,14 +23,14 @@ HEAD = ["claim", "reference", "measured", "at most", "test"]
 CALL = re.compile(r"accuracy::(?:expect_below|expect_count|record_table)\s*\(\s*")
 LITERALS = re.compile(r'((?:"(?:[^"\\]|\\.)*"\s*)+)\s*([,)+])')
 
-# What the truth leaves out, so that no row is read as more than it says.
+# Effects that the truth model omits.
 LEFT_OUT = [
-    ["ocean tides", "some 3e-8 m/s^2 in a low orbit, a tenth of the solid Earth's; they need a tide model of some hundred coefficients",
+    ["ocean tides", "about 3e-8 m/s^2 in a low orbit, a tenth of the solid Earth tides; they require a tide model of some hundred coefficients",
      "IERS Conventions 2010, section 6.3"],
-    ["light and heat of the Earth", "10 to 35 % of the direct radiation pressure in a low orbit",
+    ["Earth albedo and infrared radiation", "10 to 35 % of the direct radiation pressure in a low orbit",
      "Montenbruck and Gill 2000, section 3.7"],
-    ["winds", "some 100 m/s of 7.5 km/s: 3 % of drag, more in storms", "Montenbruck and Gill 2000, section 3.5"],
-    ["daily and half-daily tides in pole and UT1", "1 mas and 0.1 ms: 3 cm in a low orbit", "IERS Conventions 2010, chapter 8"],
+    ["winds", "about 100 m/s of 7.5 km/s: 3 % of drag, more during geomagnetic storms", "Montenbruck and Gill 2000, section 3.5"],
+    ["diurnal and semidiurnal tides in polar motion and UT1", "1 mas and 0.1 ms: 3 cm in a low orbit", "IERS Conventions 2010, chapter 8"],
 ]
 
 
@@ -110,7 +110,7 @@ def records(build, sources):
     claims = [row["claim"] for row in rows]
     twice = sorted({claim for claim in claims if claims.count(claim) > 1})
     if twice:
-        sys.exit(f"told twice: {', '.join(twice)}")
+        sys.exit(f"claims recorded twice: {', '.join(twice)}")
     return rows, tables
 
 
@@ -120,7 +120,7 @@ def table(head, lines):
 
 
 def with_unit(number, unit, digits):
-    """A count as it is, a measurement to so many digits."""
+    """A count unchanged, a measurement to `digits` significant digits."""
     text = number if re.fullmatch(r"(= )?-?\d+", number) else f"{float(number):.{digits}g}"
     return f"{text} {unit}".strip()
 
@@ -130,17 +130,17 @@ def row_line(row):
             with_unit(row["limit"], row["unit"], 3), f"[`{row['test']}`](../{row['source']})"]
 
 
-# Kernels of the truth model, in the page's order, and what a reader should know of each.
+# Kernels of the truth model, in the page's order, with a remark on each.
 COST = {
     "truth": "A day of the servicer's orbit; `one_day_full`, `days`, `spacecraft` and `degree` with 60x60 gravity (or the degree"
              " named), drag, radiation pressure, Sun and Moon at a tolerance of 1e-11; `threads`: sixteen spacecraft.",
-    "gravity": "One evaluation; `vbar_portable` without the processor's wide registers, the same bits.",
-    "nrlmsise00": "One density; `new_day`: the first of a day.",
+    "gravity": "One evaluation; `vbar_portable` without vector instructions, bit-identical.",
+    "nrlmsise00": "One density; `new_day`: the first evaluation of a day.",
     "drag": "", "sun_moon": "One call of both.", "third_body": "", "solid_tides": "", "relativity": "", "earth_rotation": "",
     "day_in_sunlight": "A day of 60x60 gravity, Sun, Moon and radiation pressure at a tolerance of 1e-12, by kind of shadow.",
     "attitude": "",
 }
-# What Google Benchmark says of every case.
+# Fields that Google Benchmark writes for every case.
 BENCHMARK_FIELDS = {"name", "run_name", "run_type", "family_index", "per_family_instance_index", "repetitions",
                     "repetition_index", "threads", "iterations", "real_time", "cpu_time", "time_unit", "error_occurred"}
 
@@ -162,12 +162,12 @@ def cost_tables(file):
                 kernels[kernel].append(
                     [rest or kernel, *(f"{case[clock]:.4g} {case['time_unit']}" for clock in ("real_time", "cpu_time")),
                      where_time_goes(case)])
-    text = ["## What it costs", "", f"By `vbar_bench`, one run, {platform.machine()}.", ""]
+    text = ["## Cost", "", f"By `vbar_bench`, one run, {platform.machine()}.", ""]
     for kernel, lines in kernels.items():
         if not lines:
             continue
         has_shares = any(line[3] for line in lines)
-        head = ["who, size", "wall clock", "processor", "of it"]
+        head = ["implementation, size", "wall-clock time", "processor time", "shares"]
         text += [f"### {kernel}", "", *([COST[kernel], ""] if COST[kernel] else []),
                  table(head if has_shares else head[:3], [line if has_shares else line[:3] for line in lines]), ""]
     return text
@@ -176,7 +176,7 @@ def cost_tables(file):
 def page(rows, tables, bench):
     text = ["# Accuracy", "",
             f"Written by `ci/accuracy.sh` on {time.strftime('%Y-%m-%d')}, {platform.machine()}."
-            " Each row is an expectation of the test it names, against a reference from outside the code under test; measured"
+            " Each row is an expectation of the test named, against a reference independent of the code under test; measured"
             " is the largest difference that the test found. Another processor may round differently.", ""]
     for folder in sorted({str(entry["source"].parent) for entry in rows + tables}):
         of_folder = lambda entries: [e for e in entries if str(e["source"].parent) == folder]
@@ -187,12 +187,12 @@ def page(rows, tables, bench):
             title, head, *lines = entry["text"].split("\n")
             text += [f"### {title}", "", f"From [`{entry['test']}`](../{entry['source']}).", "",
                      table(head.split("\t"), [line.split("\t") for line in lines]), ""]
-    text += ["## Not in the model", "", table(["what", "size", "source"], LEFT_OUT), ""]
+    text += ["## Effects not modelled", "", table(["effect", "size", "source"], LEFT_OUT), ""]
     return "\n".join(text + (cost_tables(bench) if bench else []))
 
 
 def check(build, sources):
-    """The page's faults, as far as they show without running a test."""
+    """The defects of the page that are found without running a test."""
     text = PAGE.read_text()
     named = set(re.findall(r"\[`([^`]+)`\]\(\.\./([^)]+)\)", text))
     existing = {(name, str(source)) for listed in recording_tests(build, sources).values() for name, source in listed}
@@ -216,7 +216,7 @@ def main():
     sources = recording_sources()
     if arguments.check:
         faults = check(build, sources)
-        print("\n".join(faults + ["run ci/accuracy.sh"]) if faults else "the page is the tests' own")
+        print("\n".join(faults + ["run ci/accuracy.sh"]) if faults else "the page agrees with the tests")
         return 1 if faults else 0
     rows, tables = records(build, sources)
     PAGE.write_text(page(rows, tables, arguments.bench))

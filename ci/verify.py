@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Flies the missions at full length on every flight computer and writes what it found to docs/verification.md.
+"""Flies the missions at full length on every flight computer and writes the results to docs/verification.md.
 
 usage: ci/verify.py [--build build/host] [--experiment1 | --experiment2 | --experiment3]     (ci/verify.sh builds first)
 
---experiment1, 2 and 3 fly that one only, and replace its section alone.
+--experiment1, 2 and 3 fly that experiment only and replace its section.
 """
 import argparse
 import pathlib
@@ -38,7 +38,7 @@ FLIGHT_COMPUTERS = [
 REPLAYS = [name for name in ("in process", "host process, serial", "ARM Linux under qemu-arm, serial",
                              "emulated Zynq, UART", "emulated Zynq, Ethernet")]
 
-# What the mission has to show: waypoints, largest control error in m.
+# Requirements: waypoints, largest control error in m.
 CONTROL_ERROR_LIMITS = [((1, 2, 3), 2.0), ((4, 5, 6, 7), 0.5), ((8, 9, 10), 0.01)]
 
 
@@ -73,7 +73,7 @@ def table(head, rows):
 
 
 def replace_section(page, lines):
-    """`page` with the section that begins like `lines` replaced, or put at the end."""
+    """`page` with the section of the same heading as `lines` replaced, or appended."""
     sections = re.split(r"^(?=## )", page, flags=re.MULTILINE)
     new = "\n".join(lines)
     places = [k for k, old in enumerate(sections) if old.split("\n", 1)[0] == lines[0]]
@@ -126,13 +126,13 @@ def main():
         "# Verification",
         "",
         f"Written by `ci/verify.sh` on {time.strftime('%Y-%m-%d')}, {platform.machine()}, {platform.freedesktop_os_release()['PRETTY_NAME']}."
-        " The whole mission of 41.25 h each time. The Zynq is emulated by QEMU; nothing here was run on a board.",
+        " Each run is the complete mission of 41.25 h. The Zynq is emulated by QEMU; nothing was run on a board.",
         "",
-        "## The mission against its limits (in process)",
+        "## Mission results and their limits (in process)",
         "",
-        table(["what", "found", "at most", "met"], [(a, b, c, yes(d)) for a, b, c, d in rows]),
+        table(["quantity", "result", "at most", "met"], [(a, b, c, yes(d)) for a, b, c, d in rows]),
         "",
-        "## The same bits on every flight computer",
+        "## Bit-identical results on every flight computer",
         "",
         table(["flight computer", "commands_sha256", "telemetry_sha256", "same", "wall s", "largest step", "stack bytes"],
               [(name, short(s["commands_sha256"]), short(s["telemetry_sha256"]), yes(same(s)), f"{s['wall_s']:.1f}",
@@ -141,7 +141,7 @@ def main():
         "",
         "## Replay of the recorded packets",
         "",
-        table(["into", "identical", "vbar says"], [(name, yes(good), said) for name, good, said in replays]),
+        table(["replayed on", "identical", "output of vbar"], [(name, yes(good), said) for name, good, said in replays]),
         "",
     ]
     for lines, _ in sections:

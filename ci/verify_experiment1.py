@@ -9,7 +9,7 @@ AS_PRINTED = "missions/experiment1_as_printed.toml"
 SEEDS = range(1, 11)
 AS_PRINTED_SEEDS = range(1, 6)
 WAYPOINTS = range(1, 8)
-# Medians over the seeds, m. The paper's software in the loop: navigation and control.
+# Medians over the seeds, m. Paper, software in the loop: navigation and control.
 NAVIGATION_LIMITS = (40.0, 20.0, 3.0, 1.0, 1.5, 0.7, 1.0)
 CONTROL_LIMITS = (24.0, 10.0, 2.5, 1.5, 1.5, 1.5, 1.5)
 PAPER_NAVIGATION = (80.04, 50.75, 3.18, 2.57, 4.57, 1.33, 3.89)
@@ -50,7 +50,7 @@ def other_rows(flown, alone):
         row("bearing bias, target beyond 5 km", [s["bearing_error_arcsec"]["bias"] for s in flown], 3.0, 2, "arcsec"),
         row("attitude from stars, mean across the boresight", [s["star_attitude_error_arcsec"]["mean"] for s in flown],
             20.0, 2, "arcsec"),
-        ("bearings to another object than the target", str(wrong), "", "0", wrong == 0),
+        ("bearings to a spacecraft other than the target, including merged images of target and decoy", str(wrong), "", "0", wrong == 0),
         ("mean NEES of the ROE, 6 degrees of freedom", f"{statistics.median(nees):.2f}",
          f"{max(nees):.2f}", "6.5", statistics.median(nees) <= 6.5),
         ("times real time, in process, seed 1 alone", f"{alone['speed_factor']:,.0f}", "", "at least 1000",
@@ -59,7 +59,7 @@ def other_rows(flown, alone):
 
 
 def section(build, root, runs, table):
-    """The section's lines and whether everything in it is met. `table(head, rows)` writes a table."""
+    """The lines of the section and whether all limits are met. `table(head, rows)` writes a table."""
     yes = lambda good: "yes" if good else "**no**"
     flown = {}
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
@@ -68,7 +68,7 @@ def section(build, root, runs, table):
             seeds = SEEDS if mission == MISSION else AS_PRINTED_SEEDS
             folders = [runs / f"experiment1-{len(flown)}-{seed}" for seed in seeds]
             flown[mission] = list(pool.map(lambda seed, folder: fly(build, root, mission, folder, seed), seeds, folders))
-    print("flying: experiment 1 alone, for its speed, and on the emulated Zynq, Ethernet", flush=True)
+    print("flying: experiment 1 alone, to measure its speed, and on the emulated Zynq, Ethernet", flush=True)
     alone = fly(build, root, MISSION, runs / "experiment1-alone", 1)
     zynq = fly(build, root, MISSION, runs / "experiment1-zynq", 1, ZYNQ)
     reference = flown[MISSION][0]
@@ -87,30 +87,31 @@ def section(build, root, runs, table):
         "## Experiment 1",
         "",
         "Waypoints 0 to 7 by angles only, 75 km to 100 m in 36 h, in process, seeds 1 to 10: medians and worst seeds; limits"
-        " hold for the medians. The paper's numbers are those of its software in the loop.",
+        " hold for the medians. The figures of the paper are those of its software in the loop.",
         "",
         table(head, printed(nominal)),
         "",
-        table(["what", "median", "worst", "limit", "met"], printed(others)),
+        table(["quantity", "median", "worst", "limit", "met"], printed(others)),
         "",
-        f"A bearing came of {100 * statistics.median(images):.0f} % of the images; the target is dark in 15 of 100.",
+        f"{100 * statistics.median(images):.0f} % of the images yielded a bearing; the target is in eclipse in 15 %.",
         "",
-        "The filter is told of a camera and of thrusters as they are built, centroids to 0.05 px and burns to 0.1 %; the twin's"
-        " are better than that, but nothing tells the filter of harmonics beyond degree 20. Of errors of the stated size the test"
-        " AnglesOnly holds NEES in band.",
+        "The filter is configured with the errors expected of the hardware, centroids of 0.05 px and maneuvers of 0.1 %; those of"
+        " the digital twin are smaller, but the filter has no model of harmonics beyond degree 20. With errors of the configured"
+        " size, the test AnglesOnly verifies that the NEES is within its bounds.",
         "",
-        "A bearing counts for another object if another spacecraft is nearer to it than the target. Where a decoy passes within two"
-        " pixels of the target, both are one object: that one is the right one, but its centre lies between them, and the filter's"
-        " gate has to refuse it (column `fate` of images.csv).",
+        "A bearing is counted as one to another spacecraft if the true direction of another spacecraft is closer to it than that of"
+        " the target. When a decoy passes within two pixels of the target, the detector merges the two into one object. The choice"
+        " of this object is correct, but its centroid lies between the two spacecraft, so that it may be closer to the decoy and is"
+        " then counted here; the innovation gate of the filter has to reject it (column `fate` of images.csv).",
         "",
-        "With the printed node, dark for 34 minutes each orbit, seeds 1 to 5 (limits doubled):",
+        "With the printed node, in eclipse for 34 minutes of each orbit, seeds 1 to 5 (limits doubled):",
         "",
         table(head, printed(as_printed)),
         "",
-        f"The whole of seed 1 on the emulated Zynq over Ethernet, {zynq['link']['bytes'] / 1e9:.2f} GB of image tiles and"
+        f"The complete run of seed 1 on the emulated Zynq over Ethernet, {zynq['link']['bytes'] / 1e9:.2f} GB of image tiles and"
         f" answers: same hashes {yes(same)} (commands `{zynq['commands_sha256'][:16]}…`, telemetry"
-        f" `{zynq['telemetry_sha256'][:16]}…`), {zynq['wall_s']:.0f} s of wall clock; a step takes"
-        f" {step['mean']:,.0f} {step['unit']} in the mean and {step['max']:,} at most (stars identified from nothing), and"
+        f" `{zynq['telemetry_sha256'][:16]}…`), {zynq['wall_s']:.0f} s of wall-clock time; a step takes"
+        f" {step['mean']:,.0f} {step['unit']} in the mean and {step['max']:,} at most (lost-in-space star identification), and"
         f" {step['stack_bytes_max']:,} bytes of stack.",
         "",
     ]

@@ -43,12 +43,12 @@ class InProcess final : public FlightComputer {
     if (packets.empty()) throw FlightComputerError("a step needs at least its tick");
     const auto start = std::chrono::steady_clock::now();
     for (const Packet& packet : packets) {
-      // A packet that the flight software refuses is in its own counters.
+      // Packets refused by the flight software are in its own counters.
       (void)article_->receive(state_.get(), packet.data(), packet.size());
     }
     const auto last = fsw::packets::parse_packet(packets.back());
     if (last.ok() && fsw::packets::decode<vbar::tick>(last.value()).ok()) {
-      // A step that failed says so in the flight software's telemetry.
+      // A failed step is reported by the flight software's telemetry.
       (void)article_->step(state_.get(), last.value().header.time.ns);
     }
     StepResult result;
@@ -67,7 +67,7 @@ class InProcess final : public FlightComputer {
 
  private:
   static void sink(void* context, const std::uint8_t* packet, std::size_t size) {
-    // What does not fit is dropped, as on a board.
+    // Packets that do not fit are dropped, as on a board.
     (void)static_cast<InProcess*>(context)->outbox_.append({packet, size});
   }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The flight software in this process, called through its C interface. What it is given and when, and what is kept of
-// its output, follows boards/common/flight_executive.cpp, so that it does the same as on a board.
+// The flight software in this process, called through its C interface. The order of its inputs, and the handling of
+// its output, follow boards/common/flight_executive.cpp, so that the result is the same as on a board.
 
 #include <cstdint>
 #include <memory>

@@ -9,7 +9,7 @@
 namespace vbar::pil {
 namespace {
 
-/// Draws that are the same with every standard library: the engine is specified to the bit, its distributions are not.
+/// Random draws independent of the standard library: the engine is specified to the bit, its distributions are not.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : engine_(seed) {}
@@ -23,7 +23,7 @@ class Dice {
   std::mt19937_64 engine_;
 };
 
-constexpr std::uint64_t kReceiveStream = 0x9E3779B97F4A7C15U;  ///< sets the two directions' draws apart
+constexpr std::uint64_t kReceiveStream = 0x9E3779B97F4A7C15U;  ///< separates the draws of the two directions
 
 class FaultyChannel final : public ByteChannel {
  public:
@@ -62,7 +62,7 @@ class FaultyChannel final : public ByteChannel {
   std::vector<std::uint8_t> damaged_;
 };
 
-/// One direction of a bad line: what comes out of it for what goes in.
+/// One direction of a degraded line: output frames for input frames.
 class FrameMangler {
  public:
   using Frame = std::vector<std::uint8_t>;

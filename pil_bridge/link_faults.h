@@ -1,7 +1,7 @@
 #pragma once
-// A line made worse on purpose, for tests and fault runs: decorators of the byte channel (broken and lost bytes) and of
+// Fault injection on a line, for tests and fault runs: decorators of the byte channel (corrupted and lost bytes) and of
 // the frame transport (lost, repeated and late frames, a stalled line), driven by a seeded generator. The same seed
-// gives the same faults at the same bytes and frames; how many bytes and frames there are depends on timing, for polls
+// gives the same faults at the same bytes and frames; the number of bytes and frames depends on timing, because polls
 // do.
 
 #include <chrono>
@@ -12,7 +12,7 @@
 
 namespace vbar::pil {
 
-/// Probabilities, each direction on its own.
+/// Probabilities, separate for each direction.
 struct LinkFaults {
   std::uint64_t seed = 1;
   double flip_bit_per_byte = 0.0;   ///< one bit of the byte is inverted; serial lines only
@@ -21,7 +21,7 @@ struct LinkFaults {
   double drop_frame = 0.0;
   double duplicate_frame = 0.0;
   double delay_frame = 0.0;      ///< the frame is overtaken by the next one
-  double stall_per_frame = 0.0;  ///< the line stands still before the frame, for `stall`
+  double stall_per_frame = 0.0;  ///< the line stalls before the frame, for `stall`
   std::chrono::milliseconds stall{200};
 
   [[nodiscard]] bool any_byte_fault() const { return flip_bit_per_byte > 0.0 || drop_byte_per_byte > 0.0; }

@@ -45,15 +45,15 @@ std::string_view name_in(const Table& table, Value value) {
   return "unknown";
 }
 
-/// What a started program finds as its first inherited descriptor.
+/// Number of the first inherited descriptor in a started program.
 constexpr int kChildLinkFd = 3;
 constexpr int kPortAttempts = 3;
 
-/// The two ends of a link to a program that is yet to be started.
+/// The two ends of a link to a program not yet started.
 struct ChildLink {
   std::unique_ptr<FrameTransport> transport;
   io::FileDescriptor child_end;
-  std::vector<std::string> flight_arguments;  ///< how vbar_flight is told to use its end
+  std::vector<std::string> flight_arguments;  ///< arguments by which vbar_flight is given its end
 };
 
 std::unique_ptr<FrameTransport> finish(std::unique_ptr<FrameTransport> transport,
@@ -130,7 +130,7 @@ BuiltImage built_image(Target target) {
   return {"vbar_flight", "host"};
 }
 
-/// `options.image`, or what the build made.
+/// `options.image`, or the image that the build put beside the running program.
 std::string find_image(const FlightComputerOptions& options) {
   const auto [beside, preset] = built_image(options.target);
   namespace fs = std::filesystem;
@@ -168,7 +168,7 @@ std::unique_ptr<FlightComputer> make_zynq_linux_qemu(const FlightComputerOptions
 std::unique_ptr<FlightComputer> make_zynq_qemu_over_udp(const FlightComputerOptions& options,
                                                         const std::string& image) {
   for (int attempt = 1;; ++attempt) {
-    // Found free, given back, and taken by the emulator: in between another program may take it, so try again then.
+    // Found free, released, and taken by the emulator: another program may take it in between, hence the retry.
     const std::uint16_t port = io::bind_udp_loopback().port;
     RemoteParts parts = parts_for(options);
     parts.icount_shift = options.icount_shift;
@@ -184,9 +184,9 @@ std::unique_ptr<FlightComputer> make_zynq_qemu_over_udp(const FlightComputerOpti
 }
 
 std::unique_ptr<FlightComputer> make_zynq_qemu(const FlightComputerOptions& options) {
-  if (options.icount_shift < kLeastIcountShift || options.icount_shift > kGreatestIcountShift) {
+  if (options.icount_shift < kMinIcountShift || options.icount_shift > kGreatestIcountShift) {
     throw FlightComputerError("flight_computer.icount_shift is " + std::to_string(options.icount_shift) +
-                              "; accepted: " + std::to_string(kLeastIcountShift) + " to " +
+                              "; accepted: " + std::to_string(kMinIcountShift) + " to " +
                               std::to_string(kGreatestIcountShift));
   }
   const std::string image = find_image(options);

@@ -1,5 +1,5 @@
 #pragma once
-// One place that knows every kind of flight computer, so that a mission file's words are enough to get one.
+// Construction of every kind of flight computer from the words of a mission file.
 
 #include <chrono>
 #include <cstdint>
@@ -20,7 +20,7 @@ enum class Target : std::uint8_t {
   kHostProcess,    ///< "host_process": a process of its own on this computer
   kZynqQemu,       ///< "zynq_qemu": the bare-metal image on an emulated Zynq-7000
   kZynqLinuxQemu,  ///< "zynq_linux_qemu": the ARM Linux program under user-mode emulation
-  kBoard,          ///< "board": hardware, or anything else that already runs and listens
+  kBoard,          ///< "board": hardware, or any other program that already runs and listens
 };
 
 enum class LinkKind : std::uint8_t {
@@ -29,7 +29,7 @@ enum class LinkKind : std::uint8_t {
   kUdp,     ///< "udp"
 };
 
-/// Throw std::invalid_argument that lists what is accepted.
+/// Throw std::invalid_argument with the list of accepted names.
 Target target_from_name(std::string_view name);
 LinkKind link_from_name(std::string_view name);
 std::string_view name_of(Target target);
@@ -46,7 +46,7 @@ struct FlightComputerOptions {
   /// A library runs in a child process (guarded_process.h), which is given up if a step takes longer.
   std::chrono::milliseconds library_step_limit{60'000};
 
-  /// host_process, zynq_qemu, zynq_linux_qemu: the program or image to run. Empty: the one that the build put beside
+  /// host_process, zynq_qemu, zynq_linux_qemu: the program or image to run. Empty: the one built beside
   /// the running program (`vbar_flight`, `../zynq/vbar_zynq7000.elf`, `../zynq-linux/vbar_flight`).
   std::string image;
   int icount_shift = kDefaultIcountShift;  ///< zynq_qemu
@@ -56,7 +56,7 @@ struct FlightComputerOptions {
   unsigned baud = 921600;            ///< board, serial device
   std::uint16_t local_udp_port = 0;  ///< board; 0: any
 
-  double paced_bits_per_s = 0.0;  ///< serial and pty: slow the line down to this; 0: as fast as it goes
+  double paced_bits_per_s = 0.0;  ///< serial and pty: limits the rate of the line to this; 0: unlimited
   BarrierTiming timing;
   LinkFaults faults;
 };

@@ -5,12 +5,12 @@ namespace {
 
 constexpr std::uint64_t kNanosecondsPerTick = 10;
 
-/// Where boards/zynq7000 listens on Ethernet.
+/// Ethernet address and port of boards/zynq7000.
 constexpr const char* kBoardAddressAndPort = "10.0.2.15:5000";
 
 std::vector<std::string> zynq_machine(const std::string& elf, int icount_shift) {
   return {"qemu-system-arm", "-M", "xilinx-zynq-a9", "-m", "256M", "-display", "none", "-monitor", "none", "-no-reboot",
-          // A small translation buffer: the default one is a gigabyte a machine.
+          // A small translation buffer: the default is a gigabyte per machine.
           "-accel", "tcg,tb-size=64",
           // sleep=off: emulated time jumps while the board waits; align=off: it does not follow the wall clock.
           "-icount", "shift=" + std::to_string(icount_shift) + ",sleep=off,align=off",

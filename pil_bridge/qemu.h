@@ -1,5 +1,5 @@
 #pragma once
-// How the emulators are started, and what their counters mean.
+// Command lines of the emulators, and the meaning of their counters.
 
 #include <cstdint>
 #include <string>
@@ -8,8 +8,8 @@
 namespace vbar::pil {
 
 /// A fixed number of instructions per unit of emulated time, `2^shift` ns each: with it the emulator is deterministic.
-/// Below 5 the emulated clock cannot keep up with a serial link; above 8 the board's timers are slow for no gain.
-inline constexpr int kLeastIcountShift = 5;
+/// Below 5 the emulated clock cannot keep up with a serial link; above 8 the board's timers are slow without benefit.
+inline constexpr int kMinIcountShift = 5;
 inline constexpr int kGreatestIcountShift = 8;
 inline constexpr int kDefaultIcountShift = 6;
 
@@ -23,7 +23,7 @@ std::vector<std::string> zynq_qemu_over_udp(const std::string& elf, int icount_s
 /// An ARM Linux program under user-mode emulation.
 std::vector<std::string> linux_arm_qemu(const std::string& program, const std::vector<std::string>& arguments);
 
-/// What QEMU says when another program took the forwarded port in the meantime.
+/// Message of QEMU when another program took the forwarded port in the meantime.
 inline constexpr const char* kPortTakenMessage = "Could not set up host forwarding rule";
 
 /// Instructions executed while the emulated board's global timer (100 MHz, 10 ns a tick) counted `ticks`.

@@ -13,7 +13,7 @@ namespace {
 
 using boards::CounterUnit;
 
-/// A process whose line broke is about to end: so long to see why, before it is ended.
+/// A process whose line broke is about to end: time to obtain its exit status before it is terminated.
 constexpr std::chrono::milliseconds kExplainPatience{300};
 /// After a goodbye, to end by itself; then after a SIGTERM.
 constexpr std::chrono::milliseconds kGoodbyePatience{2000};
@@ -28,7 +28,7 @@ std::uint64_t counter(std::int64_t value) {
   return value > 0 ? static_cast<std::uint64_t>(value) : 0;
 }
 
-/// Many lines as one, for an error message.
+/// Several lines joined to one, for an error message.
 std::string on_one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.replace(at, 1, " | ");
@@ -79,7 +79,7 @@ void RemoteComputer::close() {
   try {
     barrier_.goodbye();
   } catch (const LinkError&) {
-    // Gone already: all that was wanted.
+    // Has ended already.
   }
   if (!parts_.process) return;
   if (!parts_.process->wait_for_end(kGoodbyePatience)) parts_.process->terminate(kTerminatePatience);

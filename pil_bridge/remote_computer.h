@@ -15,11 +15,11 @@ namespace vbar::pil {
 
 struct RemoteParts {
   std::string name;                           ///< "zynq_qemu over serial", for messages
-  std::unique_ptr<io::ChildProcess> process;  ///< what runs the flight computer, if this program started it
+  std::unique_ptr<io::ChildProcess> process;  ///< the process of the flight computer, if this program started it
   std::unique_ptr<FrameTransport> transport;
   BarrierTiming timing;
   std::uint8_t spacecraft = 0;
-  /// Of the emulator; without one the board's timer ticks cannot be turned into instructions.
+  /// Of the emulator; without it the board's timer ticks cannot be converted to instructions.
   std::optional<int> icount_shift;
 };
 
@@ -38,7 +38,7 @@ class RemoteComputer final : public FlightComputer {
   [[nodiscard]] int process_id() const { return parts_.process ? parts_.process->pid() : -1; }
 
  private:
-  /// Ends the process and throws FlightComputerError with all that is known about the cause.
+  /// Ends the process and throws FlightComputerError with all known information on the cause.
   [[noreturn]] void fail(const std::string& when, const std::string& cause);
   void check_process() const;
   /// If `packet` is a step report: keeps its counters, fills `report`, and returns true.
@@ -47,9 +47,9 @@ class RemoteComputer final : public FlightComputer {
   RemoteParts parts_;
   StepBarrier barrier_;
   std::string board_name_;
-  std::string failure_;  ///< why this computer cannot be used any more; empty while it can
+  std::string failure_;  ///< why this computer can no longer be used; empty while it can
   bool closed_ = false;
-  LinkStatistics board_counters_;  ///< the board's share, from its last step report
+  LinkStatistics board_counters_;  ///< the board's counters, from its last step report
 };
 
 }  // namespace vbar::pil

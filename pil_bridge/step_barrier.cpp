@@ -13,7 +13,7 @@ using fsw::link::FrameType;
 using fsw::link::FrameView;
 using fsw::link::kWindow;
 
-/// A board that cannot run its flight software says so in place of its name.
+/// A board that cannot run its flight software sends the reason in place of its name.
 constexpr std::string_view kBoardErrorPrefix = "error: ";
 
 std::string seconds_text(std::chrono::milliseconds duration) {
@@ -39,7 +39,7 @@ std::string StepBarrier::connect(std::uint8_t spacecraft) {
       }
       const std::string name(frame->payload.begin(), frame->payload.end());
       if (name.starts_with(kBoardErrorPrefix)) {
-        throw LinkError("the board cannot fly: " + name.substr(kBoardErrorPrefix.size()));
+        throw LinkError("the board cannot run its flight software: " + name.substr(kBoardErrorPrefix.size()));
       }
       return name;
     }
@@ -107,12 +107,12 @@ void StepBarrier::poll(Exchange& exchange) {
 }
 
 bool StepBarrier::take(Exchange& exchange, const FrameView& frame) {
-  if (frame.header.type == FrameType::kHelloAck) {  // the board heard more than one hello
+  if (frame.header.type == FrameType::kHelloAck) {  // the board received more than one hello
     ++counters_.frames_duplicated;
     return false;
   }
   if (frame.header.step != exchange.step) {
-    // A late repetition of an earlier answer, or nonsense about a step not yet begun.
+    // A late repetition of an earlier answer, or an invalid step.
     ++(frame.header.step < exchange.step ? counters_.frames_duplicated : counters_.frames_rejected);
     return false;
   }
@@ -129,8 +129,8 @@ bool StepBarrier::take_acknowledgement(Exchange& exchange, std::uint16_t held) {
   }
   const bool progress = held > exchange.acknowledged;
   exchange.acknowledged = std::max(exchange.acknowledged, held);
-  // The answer to a poll tells how much arrived of what was sent before the poll: the rest got lost. An acknowledgement
-  // on the board's own account, every half window, may still have been under way and says no such thing.
+  // The answer to a poll states how much was received of the frames sent before the poll: the others were lost. An
+  // unsolicited acknowledgement, every half window, may have been under way and does not imply this.
   const bool on_own_account = progress && held % (kWindow / 2) == 0;
   const bool answers_poll = exchange.poll_pending && !on_own_account;
   if (answers_poll) exchange.poll_pending = false;
@@ -155,7 +155,7 @@ bool StepBarrier::take_answer(Exchange& exchange, const FrameView& frame) {
       break;
     case BatchReceiver::Verdict::kOutOfOrder:
       ++counters_.frames_rejected;
-      // What came before got lost: ask at once, but only once, for more of the same burst is still on its way.
+      // The frames before were lost: poll at once, but only once, because more of the same burst is still on its way.
       if (!std::exchange(exchange.gap_reported, true)) poll(exchange);
       break;
     case BatchReceiver::Verdict::kForeign:

@@ -1,6 +1,6 @@
 #pragma once
-// The host's side of the step barrier (fsw/link/frame.h): go-back-N both ways, with polls for what is overdue. Whatever
-// the line loses, breaks, repeats or delays, `exchange` returns the flight computer's one answer to the step, or
+// The host's side of the step barrier (fsw/link/frame.h): go-back-N both ways, with polls for overdue answers. Whatever
+// the line loses, corrupts, repeats or delays, `exchange` returns the flight computer's one answer to the step, or
 // throws.
 
 #include <array>
@@ -20,11 +20,11 @@
 namespace vbar::pil {
 
 struct BarrierTiming {
-  /// Silence after which the host asks; doubled up to `poll_limit` while nothing moves. Well above the time of a step:
-  /// a poll that arrives during the step would be part of what the flight computer measures of itself.
+  /// Silence after which the host polls; doubled up to `poll_limit` without progress. Well above the time of a step:
+  /// a poll that arrives during the step would be included in the cost that the flight computer measures.
   std::chrono::milliseconds poll_after{500};
   std::chrono::milliseconds poll_limit{4000};
-  /// Without any progress for this long the flight computer is given up.
+  /// Time limit without any progress.
   std::chrono::milliseconds give_up_after{30000};
   std::chrono::milliseconds hello_period{100};
   /// For the first answer to a hello.
@@ -40,18 +40,18 @@ struct BarrierCounters {
 
 class StepBarrier {
  public:
-  /// `watch` is called whenever nothing came for a while; it may throw to end a hopeless wait.
+  /// `watch` is called periodically during a wait; it may throw to end it.
   StepBarrier(FrameTransport& transport, std::uint32_t session, const BarrierTiming& timing,
               std::function<void()> watch);
 
-  /// Says hello until the board answers, which makes it start the flight software of `spacecraft` anew; returns the
-  /// name the board gives. Throws LinkError, also with the reason of a board that cannot fly.
+  /// Sends hello until the board answers, which makes it construct the flight software of `spacecraft`; returns the
+  /// name of the board. Throws LinkError, also with the reason of a board that cannot run its flight software.
   std::string connect(std::uint8_t spacecraft);
 
   /// Sends the packets of `step` and returns the packets of the answer. Throws LinkError.
   std::vector<Packet> exchange(std::uint32_t step, std::span<const Packet> packets);
 
-  /// Tells the board that the run is over. Not acknowledged.
+  /// Sends the goodbye of the session. Not acknowledged.
   void goodbye();
 
   [[nodiscard]] BarrierCounters counters() const;
@@ -62,21 +62,21 @@ class StepBarrier {
     std::uint32_t step = 0;
     std::span<const Packet> packets;
     std::vector<Packet> answer;
-    std::uint16_t acknowledged = 0;  ///< packets the board is known to hold without a gap
+    std::uint16_t acknowledged = 0;  ///< packets received by the board without a gap
     std::uint16_t sent = 0;          ///< packets sent, from the first on
-    bool poll_pending = false;       ///< asked, and not answered yet
+    bool poll_pending = false;       ///< sent, and not answered yet
     std::uint16_t sent_before_poll = 0;
-    bool gap_reported = false;  ///< asked because of a gap in the answer, and no progress since
+    bool gap_reported = false;  ///< polled because of a gap in the answer, and no progress since
   };
 
   void send_window(Exchange& exchange);
   void poll(Exchange& exchange);
-  // What a frame does to the exchange; true if it is progress.
+  // Processes a frame; true if it is progress.
   bool take(Exchange& exchange, const fsw::link::FrameView& frame);
   bool take_acknowledgement(Exchange& exchange, std::uint16_t held);
   bool take_answer(Exchange& exchange, const fsw::link::FrameView& frame);
   void send(const fsw::link::FrameHeader& header, std::span<const std::uint8_t> payload = {});
-  /// The next good frame of this session, none by `deadline`. Others are counted.
+  /// The next valid frame of this session, no value at `deadline`. Others are counted.
   std::optional<fsw::link::FrameView> receive(Clock::time_point deadline);
 
   FrameTransport& transport_;

@@ -3,7 +3,7 @@
 namespace vbar::pil {
 
 void StreamTransport::send(std::span<const std::uint8_t> frame) {
-  // A zero before the very first frame ends whatever the line held before this program opened it.
+  // A zero before the very first frame terminates bytes that were on the line before this program opened it.
   const std::size_t lead = first_ ? 1 : 0;
   coded_[0] = 0;
   const auto size = fsw::link::cobs_encode(frame, std::span(coded_).subspan(lead));
@@ -21,7 +21,7 @@ std::span<const std::uint8_t> StreamTransport::receive(Clock::time_point deadlin
       undecoded_ = undecoded_.subspan(1);
       if (decoder_.push(byte)) return decoder_.frame();
     }
-    if (overdue) return {};  // a line that babbles without a frame does not prolong the wait
+    if (overdue) return {};  // a line that sends bytes without a frame does not extend the wait
     overdue = Clock::now() >= deadline;
     undecoded_ = channel_->read(deadline);
     counters_.bytes_received += undecoded_.size();

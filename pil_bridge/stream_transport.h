@@ -1,5 +1,5 @@
 #pragma once
-// Frames over a byte channel: COBS-coded, a zero byte after each.
+// Frames over a byte channel: COBS-encoded, a zero byte after each.
 
 #include <array>
 #include <memory>
@@ -22,7 +22,7 @@ class StreamTransport final : public FrameTransport {
   std::unique_ptr<ByteChannel> channel_;
   fsw::link::CobsDecoder decoder_;
   std::array<std::uint8_t, fsw::link::kMaxCobsFrameBytes + 1> coded_{};
-  std::span<const std::uint8_t> undecoded_;  ///< rest of the channel's last delivery
+  std::span<const std::uint8_t> undecoded_;  ///< remaining bytes of the channel's last delivery
   bool first_ = true;
   TransportCounters counters_;
 };

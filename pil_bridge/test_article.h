@@ -1,5 +1,5 @@
 #pragma once
-// The functions of a test article (fsw/gnc/vbar_gnc.h), wherever they come from.
+// The functions of a test article (fsw/gnc/vbar_gnc.h), linked or loaded.
 
 #include <memory>
 #include <string>
@@ -19,7 +19,7 @@ struct TestArticle {
   decltype(&vbar_gnc_step) step = nullptr;
 };
 
-/// The test article that this program is linked with. Inline, so that only a program that calls it needs one.
+/// The test article linked with this program. Inline, so that only a program that calls it needs one.
 inline std::shared_ptr<const TestArticle> linked_test_article() {
   return std::make_shared<const TestArticle>(TestArticle{.abi_version = &vbar_gnc_abi_version,
                                                          .name = &vbar_gnc_name,
@@ -31,7 +31,7 @@ inline std::shared_ptr<const TestArticle> linked_test_article() {
                                                          .step = &vbar_gnc_step});
 }
 
-/// The test article in the shared library at `path`, which stays loaded as long as the result lives. Throws
+/// The test article in the shared library at `path`, which stays loaded during the lifetime of the result. Throws
 /// FlightComputerError if it cannot be loaded, lacks a function, or was built for another version of the interface.
 std::shared_ptr<const TestArticle> load_test_article(const std::string& path);
 

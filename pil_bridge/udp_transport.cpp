@@ -19,7 +19,7 @@ class UdpTransport final : public FrameTransport {
   }
 
   std::span<const std::uint8_t> receive(Clock::time_point deadline) override {
-    // A flood of datagrams that are not frames does not prolong the wait.
+    // A flood of datagrams that are not frames does not extend the wait.
     for (bool overdue = false; !overdue;) {
       overdue = Clock::now() >= deadline;
       const auto datagram = socket_.receive(deadline);

@@ -1,5 +1,5 @@
 #pragma once
-// Frames over UDP, one a datagram, to and from one fixed address.
+// Frames over UDP, one per datagram, to and from one fixed address.
 
 #include <cstdint>
 #include <memory>
@@ -14,7 +14,7 @@ namespace vbar::pil {
 std::unique_ptr<FrameTransport> make_udp_transport(const std::string& peer_address, std::uint16_t peer_port,
                                                    std::uint16_t local_port = 0);
 
-/// Like the above, on a socket that is bound already.
+/// Likewise, on a socket that is bound already.
 std::unique_ptr<FrameTransport> make_udp_transport(io::FileDescriptor bound_socket, const std::string& peer_address,
                                                    std::uint16_t peer_port);
 

@@ -1,6 +1,6 @@
 #pragma once
 // Bytes from an interrupt handler to the main loop: one writer, one reader, no lock. Full: the newest byte is dropped
-// and counted; what is already in is never overwritten.
+// and counted; bytes in the ring are never overwritten.
 
 #include <array>
 #include <atomic>
@@ -25,7 +25,7 @@ class ByteRing {
     head_.store(head + 1U, std::memory_order_release);
   }
 
-  /// The reader's. False when there is nothing.
+  /// The reader's. False if the ring is empty.
   bool pop(std::uint8_t& byte) {
     const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
     if (head_.load(std::memory_order_acquire) == tail) {

@@ -1,5 +1,5 @@
 #pragma once
-// Divisors of the peripheral clocks, from the frequencies that the clock tree really has. Pure arithmetic.
+// Divisors of the peripheral clocks, from the actual frequencies of the clock tree. Pure arithmetic.
 
 #include <cstdint>
 
@@ -10,19 +10,19 @@ struct BaudDivisors {
   std::uint32_t divider = 4;    ///< BAUDDIV.BDIV, 4 to 255
 };
 
-/// Divisors nearest to `baud` = clock / (generator * (divider + 1)), UG585 chapter 19. Of equals the least divider,
-/// which samples a bit least often but leaves the most room to the generator.
+/// Divisors nearest to `baud` = clock / (generator * (divider + 1)), UG585 chapter 19. Of equals the smallest divider,
+/// which has the fewest samples per bit but the finest resolution of the generator.
 constexpr BaudDivisors baud_divisors(std::uint32_t clock_hz, std::uint32_t baud) {
   BaudDivisors best;
-  std::uint32_t least_error = 0xFFFFFFFFU;
+  std::uint32_t min_error = 0xFFFFFFFFU;
   for (std::uint32_t divider = 4; divider <= 255U; ++divider) {
     const std::uint32_t per_step = baud * (divider + 1U);
     std::uint32_t generator = (clock_hz + per_step / 2U) / per_step;
     generator = generator < 1U ? 1U : (generator > 0xFFFFU ? 0xFFFFU : generator);
     const std::uint32_t reached = clock_hz / (generator * (divider + 1U));
     const std::uint32_t error = reached > baud ? reached - baud : baud - reached;
-    if (error < least_error) {
-      least_error = error;
+    if (error < min_error) {
+      min_error = error;
       best = {generator, divider};
     }
   }
@@ -38,14 +38,14 @@ struct ClockDivisors {
 constexpr ClockDivisors clock_divisors(std::uint32_t source_hz, std::uint32_t wanted_hz) {
   const std::uint32_t wanted = (source_hz + wanted_hz / 2U) / wanted_hz;
   ClockDivisors best;
-  std::uint32_t least_error = 0xFFFFFFFFU;
+  std::uint32_t min_error = 0xFFFFFFFFU;
   for (std::uint32_t second = 1; second <= 63U; ++second) {
     std::uint32_t first = (wanted + second / 2U) / second;
     first = first < 1U ? 1U : (first > 63U ? 63U : first);
     const std::uint32_t product = first * second;
     const std::uint32_t error = product > wanted ? product - wanted : wanted - product;
-    if (error < least_error) {
-      least_error = error;
+    if (error < min_error) {
+      min_error = error;
       best = {first, second};
     }
   }

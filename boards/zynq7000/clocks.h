@@ -1,6 +1,6 @@
 #pragma once
-// The clock tree as the boot loader (or the emulator) left it, and the switches of the peripherals this image uses.
-// The PLLs, the DDR controller and the pins are the first-stage loader's business (docs/board_bringup.md).
+// The clock tree as left by the boot loader (or the emulator), and the clock gates of the peripherals used here.
+// The PLLs, the DDR controller and the pins are set by the first-stage loader (docs/board_bringup.md).
 
 #include <cstdint>
 
@@ -12,13 +12,13 @@ inline constexpr std::uint32_t kCrystalHz = 33'333'333U;
 /// Ethernet's line rates.
 enum class LineRate : std::uint8_t { k10Mbps, k100Mbps, k1000Mbps };
 
-/// Gives both UARTs and Ethernet their bus clocks, and the UARTs their reference clock; divisors stay as they are.
+/// Enables the bus clocks of both UARTs and Ethernet, and the reference clock of the UARTs; divisors are unchanged.
 void clocks_enable_peripherals();
 
 /// Reference clock of the UARTs, Hz.
 std::uint32_t uart_reference_hz();
 
-/// Sets Ethernet's transmit clock: 2.5, 25 or 125 MHz, from the I/O PLL; its receive clock comes from the PHY's pins.
+/// Sets the transmit clock of Ethernet: 2.5, 25 or 125 MHz, from the I/O PLL; its receive clock comes from the PHY.
 void clocks_set_ethernet(LineRate rate);
 
 }  // namespace vbar::boards::zynq7000

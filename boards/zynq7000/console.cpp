@@ -15,7 +15,7 @@ constexpr UartTransmitter kConsole(kUart1);
 
 void put(char c) {
   const std::array<std::uint8_t, 1> byte{static_cast<std::uint8_t>(c)};
-  static_cast<void>(kConsole.write(byte));  // a console that nobody reads must not stop anything
+  static_cast<void>(kConsole.write(byte));  // a console without a reader must not stop anything
 }
 
 }  // namespace

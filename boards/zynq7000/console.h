@@ -1,5 +1,5 @@
 #pragma once
-// Text for people, on UART1. Works from the first instruction of main on, and in fault handlers.
+// Text output on UART1. Available from the first instruction of main on, and in fault handlers.
 
 #include <cstdint>
 

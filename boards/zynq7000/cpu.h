@@ -1,16 +1,16 @@
 #pragma once
-// The few instructions of the Cortex-A9 that C++ has no word for.
+// Instructions of the Cortex-A9 that are not available in C++.
 
 #include <cstdint>
 
 namespace vbar::boards::zynq7000 {
 
-/// Everything before is complete, device writes included, before anything after starts.
+/// All accesses before, device writes included, are complete before any instruction after is executed.
 inline void synchronize() {
   asm volatile("dsb" ::: "memory");
 }
 
-/// Memory accesses before are seen by other masters before those after.
+/// Memory accesses before are observed by other masters before those after.
 inline void memory_barrier() {
   asm volatile("dmb" ::: "memory");
 }
@@ -43,7 +43,7 @@ inline void restore_interrupts(std::uint32_t cpsr) {
 }
 }  // namespace detail
 
-/// No interrupt is taken while one of these lives.
+/// No interrupt is taken during the lifetime of this object.
 class InterruptsMasked {
  public:
   InterruptsMasked() : before_(detail::status_register()) { detail::mask_interrupts(); }
@@ -55,7 +55,7 @@ class InterruptsMasked {
   std::uint32_t before_;
 };
 
-/// Interrupts are taken while one of these lives, also inside an InterruptsMasked.
+/// Interrupts are taken during the lifetime of this object, also inside an InterruptsMasked.
 class InterruptsAllowed {
  public:
   InterruptsAllowed() : before_(detail::status_register()) { detail::unmask_interrupts(); }

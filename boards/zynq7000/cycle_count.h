@@ -1,6 +1,6 @@
 #pragma once
-// The cycle counter has 32 bits: 6 seconds. The global timer, which runs at half the processor clock, tells how many
-// times it went round.
+// The cycle counter has 32 bits: 6 seconds. The global timer, which runs at half the processor clock, determines the
+// number of overflows.
 
 #include <cstdint>
 

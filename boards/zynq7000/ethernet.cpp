@@ -52,7 +52,7 @@ constexpr std::uint32_t kTransmitWrap = 1U << 30;
 constexpr std::uint32_t kTransmitLast = 1U << 15;
 
 constexpr std::size_t kBufferBytes = 1536;
-constexpr std::size_t kReceiveBuffers = 64;   // two windows of the link: one of the session, one of whoever disturbs it
+constexpr std::size_t kReceiveBuffers = 64;   // two windows of the link: the session's and that of another sender
 constexpr std::size_t kTransmitBuffers = 40;  // one window and some
 constexpr std::uint64_t kSendSpan = timer_span_ms(100);
 
@@ -62,7 +62,7 @@ struct Rings {
   alignas(64) std::array<std::array<std::uint8_t, kBufferBytes>, kReceiveBuffers> received;
   alignas(64) std::array<std::array<std::uint8_t, kBufferBytes>, kTransmitBuffers> transmitted;
 };
-// One controller, one set of rings; the linker script puts them where no cache holds them.
+// One controller, one set of rings, in uncached memory according to the linker script.
 [[gnu::section(".dma")]] Rings rings;
 
 std::uint32_t bus_address(const void* pointer) {
@@ -163,7 +163,7 @@ void Ethernet::release_received() {
   if ((reg(kReceiveStatus) & kReceiveNoBuffer) == 0U) {
     return;
   }
-  // The ring had run full, and reception stands still until it is switched off and on (UG585 16.7.4).
+  // The ring was full, and reception stalls until it is disabled and enabled again (UG585 16.7.4).
   ++receive_overruns_;
   reg(kReceiveStatus) = kReceiveNoBuffer;
   synchronize();
@@ -192,7 +192,7 @@ void Ethernet::send(std::span<const std::uint8_t> frame) {
   reg(kNetworkControl) = kControlRunning | kControlStartTransmission;
 }
 
-// Frames stay in the ring until the main loop fetches them; the interrupt only ends its sleep.
+// Frames stay in the ring until the main loop fetches them; the interrupt only ends the wait for interrupts.
 void Ethernet::on_interrupt(void*) {
   reg(kInterruptStatus) = reg(kInterruptStatus);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Gigabit Ethernet controller 0 (Cadence GEM, UG585 chapter 16): whole frames in and out of rings of buffers that its
+// Gigabit Ethernet controller 0 (Cadence GEM, UG585 chapter 16): complete frames in and out of buffer rings that its
 // DMA shares with the processor in uncached memory.
 //
 // Receive ring full: the controller drops the newest frames and counts them. Transmit ring full: a frame is dropped
@@ -17,21 +17,21 @@ namespace vbar::boards::zynq7000 {
 
 class Ethernet {
  public:
-  /// Sets the controller up and looks for a PHY. Without one, nothing is ever received.
+  /// Initialises the controller and detects the PHY. Without a PHY, no frame is ever received.
   void open(const MacAddress& mac);
 
-  /// True while a PHY is there that had no link when last asked: somebody must come back and ask `link_came_up`.
+  /// True if there is a PHY that had no link at the last check: `link_came_up` must then be called repeatedly.
   [[nodiscard]] bool waits_for_link() const { return phy_.has_value() && !link_.has_value(); }
-  /// Asks the PHY, and sets the controller's rate once there is a link. It keeps that rate until the next start.
+  /// Reads the PHY, and sets the rate of the controller once there is a link. The rate is kept until the next start.
   bool link_came_up();
 
-  /// Copies the oldest received frame to `frame` and returns its length; 0 when there is none.
+  /// Copies the oldest received frame to `frame` and returns its length; 0 if there is none.
   std::size_t receive(std::span<std::uint8_t> frame);
   [[nodiscard]] bool has_input() const;
 
   void send(std::span<const std::uint8_t> frame);
 
-  /// Times the receive ring was full; frames that were broken or too long; frames not sent.
+  /// Number of receive-ring overruns; of frames that were corrupted or too long; of frames not sent.
   [[nodiscard]] std::uint32_t receive_overruns() const { return receive_overruns_; }
   [[nodiscard]] std::uint32_t frames_broken() const { return frames_broken_; }
   [[nodiscard]] std::uint32_t sends_dropped() const { return sends_dropped_; }

@@ -11,7 +11,7 @@ namespace {
 
 bool halting = false;
 
-[[noreturn]] void rest() {
+[[noreturn]] void sleep_forever() {
   detail::mask_interrupts();
   for (;;) {
     wait_for_interrupt();
@@ -47,14 +47,14 @@ void print_register(const char* name, std::uint32_t value) {
 
 void halt(const char* reason, ExitCode code) {
   detail::mask_interrupts();
-  if (!halting) {  // a fault while halting must not go round for ever
+  if (!halting) {  // a fault while halting must not recur endlessly
     halting = true;
     print("\nHALT ");
     print(reason);
     print("\n");
     semihosting_exit(static_cast<std::uint32_t>(code));
   }
-  rest();
+  sleep_forever();
 }
 
 }  // namespace vbar::boards::zynq7000
@@ -63,7 +63,7 @@ void vbar_fault(std::uint32_t kind, std::uint32_t return_address, std::uint32_t 
                 const std::uint32_t* stack_and_link) {
   using namespace vbar::boards::zynq7000;
   if (halting) {
-    rest();
+    sleep_forever();
   }
   halting = true;
   const auto fault = static_cast<FaultKind>(kind);
@@ -90,5 +90,5 @@ void vbar_fault(std::uint32_t kind, std::uint32_t return_address, std::uint32_t 
   }
   print("\n");
   semihosting_exit(static_cast<std::uint32_t>(ExitCode::kFault) + kind);
-  rest();
+  sleep_forever();
 }

@@ -38,10 +38,10 @@ void interrupts_initialize() {
   for (unsigned word = 0; word < kInterrupts / 32U; ++word) {
     reg(kDistributorDisable + 4U * word) = 0xFFFFFFFFU;
     reg(kDistributorClearPending + 4U * word) = 0xFFFFFFFFU;
-    reg(kDistributorGroup + 4U * word) = 0;  // secure: arrives as IRQ, whatever a boot loader had in mind
+    reg(kDistributorGroup + 4U * word) = 0;  // secure: arrives as IRQ, whatever the boot loader has set
   }
   for (unsigned word = kFirstShared / 4U; word < kInterrupts / 4U; ++word) {
-    reg(kDistributorPriority + 4U * word) = 0xA0A0A0A0U;  // all alike: no handler interrupts another
+    reg(kDistributorPriority + 4U * word) = 0xA0A0A0A0U;  // equal: no handler interrupts another
     reg(kDistributorTarget + 4U * word) = 0x01010101U;    // first core
   }
   reg(kCpuPriorityMask) = 0xF0U;
@@ -66,7 +66,7 @@ void vbar_interrupt() {
   const std::uint32_t acknowledge = reg(kCpuAcknowledge);
   const std::uint32_t id = acknowledge & kIdMask;
   if (id >= kInterrupts) {
-    return;  // spurious: withdrawn before it was taken; has no end
+    return;  // spurious: withdrawn before it was taken; needs no end
   }
   if (entries[id].handler != nullptr) {
     entries[id].handler(entries[id].context);

@@ -1,5 +1,5 @@
-// The flight image: frames from UART0 or Ethernet to the flight executive, answers back to whoever leads the session. A
-// cyclic executive: one thing at a time, asleep in between.
+// The flight image: frames from UART0 or Ethernet to the flight executive, answers to the peer of the session. A
+// cyclic executive: one activity at a time, waiting for interrupts in between.
 
 #include <array>
 
@@ -29,7 +29,7 @@ constexpr std::uint16_t kPort = 5000;
 constexpr std::uint64_t kSilence = timer_span_ms(5'000);
 constexpr std::uint64_t kLinkPoll = timer_span_ms(500);
 
-/// Both interfaces, the guard before them and the executive behind them.
+/// Both interfaces, the session guard and the executive.
 class FlightBoard {
  public:
   FlightBoard() : executive_(platform()) {}
@@ -45,7 +45,7 @@ class FlightBoard {
   void deliver(const Sender& sender, std::span<const std::uint8_t> frame);
   void goodbye();
   void print_counters() const;
-  void rest() const;
+  void wait_for_input() const;
 
   static void send(void* self, std::span<const std::uint8_t> frame);
   void send_serial(std::span<const std::uint8_t> frame);
@@ -58,8 +58,8 @@ class FlightBoard {
   std::uint32_t decoder_rejected_ = 0;
   SessionGuard guard_{kSilence};
   std::uint64_t link_asked_ = 0;
-  std::array<std::uint8_t, kMostFrameBytes> received_{};
-  std::array<std::uint8_t, kMostFrameBytes> transmitted_{};
+  std::array<std::uint8_t, kMaxEthernetFrameBytes> received_{};
+  std::array<std::uint8_t, kMaxEthernetFrameBytes> transmitted_{};
   std::array<std::uint8_t, fsw::link::kMaxCobsFrameBytes> coded_{};
   FlightExecutive executive_;
 };
@@ -95,12 +95,12 @@ void FlightBoard::run() {
     const bool serial = serve_serial();
     const bool datagram = serve_ethernet();
     if (!serial && !datagram) {
-      rest();
+      wait_for_input();
     }
   }
 }
 
-// One frame, so that neither interface starves the other.
+// One frame per call, so that neither interface starves the other.
 bool FlightBoard::serve_serial() {
   std::uint8_t byte = 0;
   while (uart_.read(byte)) {
@@ -118,7 +118,7 @@ bool FlightBoard::serve_serial() {
 bool FlightBoard::serve_ethernet() {
   if (ethernet_.waits_for_link()) {
     await_link();
-    return true;  // nothing wakes a sleeping processor when somebody plugs in a cable
+    return true;  // a connected cable raises no interrupt that would end the wait
   }
   const std::size_t size = ethernet_.receive(received_);
   if (size == 0) {
@@ -154,8 +154,8 @@ void FlightBoard::deliver(const Sender& sender, std::span<const std::uint8_t> fr
     executive_.count_rejected(1);
     return;
   }
-  // Interrupts wait while flight code runs, so that a byte that arrives meanwhile costs the step nothing; the FIFO and
-  // the DMA ring hold what comes in, and the link sends again what they cannot. send() lets them in.
+  // Interrupts are masked while flight code runs, so that an arriving byte costs the step no time; the FIFO
+  // and the DMA ring hold what arrives, and the link retransmits what they cannot. send() unmasks them.
   const InterruptsMasked masked;
   if (executive_.on_frame(frame) == Activity::kGoodbye) {
     goodbye();
@@ -167,10 +167,10 @@ void FlightBoard::goodbye() {
   print("goodbye\n");
   print_counters();
   semihosting_exit(static_cast<std::uint32_t>(ExitCode::kDone));
-  // Still here: a bench board. It waits for the next hello.
+  // Not on an emulator: a bench board. It waits for the next hello.
 }
 
-// What the interfaces lost or refused since start-up. The step report tells what reached the flight executive.
+// Bytes and frames lost or refused by the interfaces since start-up. The step report counts those of the executive.
 void FlightBoard::print_counters() const {
   const UdpCounters& udp = endpoint_.counters();
   const struct {
@@ -195,8 +195,8 @@ void FlightBoard::print_counters() const {
   }
 }
 
-void FlightBoard::rest() const {
-  const InterruptsMasked masked;  // what arrives after the last look is pending, and ends the sleep at once
+void FlightBoard::wait_for_input() const {
+  const InterruptsMasked masked;  // a byte that arrives after the last check is pending, and ends the wait at once
   if (!uart_.has_input() && !ethernet_.has_input()) {
     wait_for_interrupt();
   }
@@ -239,6 +239,6 @@ int main() {
   timers_initialize();
   console_open();
   interrupts_initialize();
-  static FlightBoard board;  // here, not before main: its executive asks which counter counts
+  static FlightBoard board;  // constructed here, not before main: its executive selects the cost counter
   board.run();
 }

@@ -1,6 +1,6 @@
 #pragma once
 // Addresses and interrupt numbers of the Zynq-7000 processing system (Xilinx UG585, appendix B and chapter 7), and
-// where this image puts things in memory. zynq7000.ld states the same memory layout; mmu.cpp maps it.
+// where this image places code and data. zynq7000.ld states the same memory layout; mmu.cpp maps it.
 
 #include <cstdint>
 
@@ -24,7 +24,7 @@ inline constexpr unsigned kInterruptGem0 = 54;
 inline constexpr unsigned kInterruptUart0 = 59;
 inline constexpr unsigned kInterruptUart1 = 82;
 
-// What Ethernet's DMA reads and writes lives in one section of 1 MiB that no cache holds. Names of the linker script.
+// Buffers of Ethernet's DMA lie in one uncached section of 1 MiB. Names of the linker script.
 inline constexpr std::uintptr_t kSectionBytes = 0x00100000U;
 inline constexpr std::uintptr_t kImageStart = 0x00100000U;
 inline constexpr std::uintptr_t kStackGuard = 0x03E00000U;  ///< unmapped: an overflowing stack faults here

@@ -8,7 +8,7 @@
 #include "boards/zynq7000/memory_map.h"
 
 extern "C" {
-// Of zynq7000.ld: only its address means anything.
+// Of zynq7000.ld: only its address is used.
 extern char __writable_start[];
 void vbar_memory_enable();
 }
@@ -50,7 +50,7 @@ std::uint32_t attributes_of(std::uintptr_t address) {
 }
 
 // The random-access memory settings come from UG585 and Xilinx' answer record on the PL310 of the Zynq: the latencies
-// its arrays need, and one register of the SLCR that has no other description.
+// required by its arrays, and one register of the SLCR that has no other description.
 void enable_level2_cache() {
   constexpr std::uintptr_t kControl = kLevel2Cache + 0x100U;
   constexpr std::uintptr_t kAuxiliary = kLevel2Cache + 0x104U;

@@ -26,7 +26,7 @@ constexpr std::uint32_t kGigabitPartner = 10;
 
 std::optional<Phy> Phy::find(std::uintptr_t controller) {
   constexpr std::uint32_t kAddresses = 32;
-  constexpr std::uint16_t kNobody = 0xFFFF;  // the bus floats high
+  constexpr std::uint16_t kNobody = 0xFFFF;  // undriven bus: no PHY at this address
   constexpr std::uint16_t kNegotiate = (1U << 12) | (1U << 9);
   for (std::uint32_t address = 0; address < kAddresses; ++address) {
     const Phy phy(controller, address);
@@ -44,12 +44,12 @@ std::optional<Phy> Phy::find(std::uintptr_t controller) {
 std::optional<PhyLink> Phy::link() const {
   constexpr unsigned kLinkUp = 1U << 2;
   constexpr unsigned kNegotiated = 1U << 5;
-  static_cast<void>(read(kStatus));  // the first reading remembers a loss of link
+  static_cast<void>(read(kStatus));  // the first reading is latched after a loss of link
   const unsigned status = read(kStatus);
   if ((status & kLinkUp) == 0U || (status & kNegotiated) == 0U) {
     return std::nullopt;
   }
-  // What both ends can do, best first; the partner's gigabit abilities stand two bits higher than our own.
+  // Abilities common to both ends, best first; the partner's gigabit abilities are two bits higher than our own.
   const unsigned gigabit = read(kGigabitAdvertised) & (static_cast<unsigned>(read(kGigabitPartner)) >> 2U);
   if ((gigabit & (1U << 9)) != 0U) return PhyLink{LineRate::k1000Mbps, true};
   if ((gigabit & (1U << 8)) != 0U) return PhyLink{LineRate::k1000Mbps, false};

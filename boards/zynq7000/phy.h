@@ -1,5 +1,5 @@
 #pragma once
-// The Ethernet PHY behind the controller's management bus (IEEE 802.3 clause 22), whichever one the board has.
+// The Ethernet PHY on the controller's management bus (IEEE 802.3 clause 22), of any type.
 
 #include <cstdint>
 #include <optional>
@@ -16,10 +16,10 @@ struct PhyLink {
 /// A PHY at an address on the management bus of the controller at `controller`.
 class Phy {
  public:
-  /// Finds the PHY with the lowest address, if there is one, and lets it negotiate.
+  /// Finds the PHY with the lowest address, if there is one, and starts negotiation.
   static std::optional<Phy> find(std::uintptr_t controller);
 
-  /// What was negotiated; nothing while there is no link.
+  /// The negotiated rate; no value without a link.
   [[nodiscard]] std::optional<PhyLink> link() const;
 
  private:

@@ -1,4 +1,4 @@
-// What the C++ language needs below main: constructors of static objects, and ends for what must never be called. There
+// C++ run-time support below main: constructors of static objects, and traps for functions never to be called. There
 // is no heap: an allocation stops the board. check_image.cmake proves that newlib's allocator is not even in the image.
 
 #include <cstddef>
@@ -32,7 +32,7 @@ void vbar_construct_statics() {
   halt("main returned", ExitCode::kAborted);
 }
 
-// Destructors of static objects never run: nothing ends but by reset.
+// Destructors of static objects never run: execution ends only by reset.
 void* __dso_handle = nullptr;
 int __aeabi_atexit(void*, void (*)(void*), void*) {
   return 0;

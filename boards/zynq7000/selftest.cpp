@@ -1,6 +1,6 @@
-// What the flight software takes for granted of this processor, tried on the processor itself. The semihosting command
+// Properties of the processor on which flight software relies, tested on the processor itself. The semihosting command
 // line (second word) names the case: without one, all checks run; with one, the fault of that name is provoked, and the
-// exit code tells whether it was caught.
+// exit code states whether it was caught.
 
 #include <array>
 #include <cstring>
@@ -33,7 +33,7 @@ std::uint32_t floating_point_status() {
   return fpscr;
 }
 
-// The expected bits are IEEE 754's: each result is exact or correctly rounded, so there is one right answer.
+// The expected bits are those of IEEE 754: each result is exact or correctly rounded, and therefore unique.
 void check_floating_point() {
   constexpr std::uint32_t kModes = 0x07FF9F00U;  // all but the condition and exception flags
   check((floating_point_status() & kModes) == 0, "FPSCR: round to nearest, subnormals kept, no traps");
@@ -78,7 +78,7 @@ void check_timers() {
 
 // A software-set shared interrupt runs its handler, and the interrupted code finds its registers as it left them.
 void check_interrupts() {
-  constexpr unsigned kUnusedInterrupt = 61;  // PL interrupt 0: nothing is wired to it here
+  constexpr unsigned kUnusedInterrupt = 61;  // PL interrupt 0: not connected here
   constexpr std::uintptr_t kSetPending = kInterruptDistributor + 0x200U;
   static volatile int served = 0;
   interrupts_attach(

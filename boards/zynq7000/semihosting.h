@@ -1,6 +1,6 @@
 #pragma once
-// Requests to a debugger or an emulator (Arm semihosting, 2.0). Where nobody listens they do nothing: the request is an
-// SVC instruction, and this image's own SVC handler answers what nobody else caught.
+// Requests to a debugger or an emulator (Arm semihosting, 2.0). Without either they have no effect: the request is an
+// SVC instruction, and this image's own SVC handler answers those not handled elsewhere.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace vbar::boards::zynq7000 {
 
-/// How a run of this image ended, as a process's exit status.
+/// Result of a run of this image, as exit status of a process.
 enum class ExitCode : std::uint32_t {
   kDone = 0,
   kSelfTestFailed = 1,
@@ -17,10 +17,10 @@ enum class ExitCode : std::uint32_t {
   kAborted = 110,
 };
 
-/// Ends the emulator, or hands over to the debugger. Returns where there is neither.
+/// Ends the emulator, or stops at the debugger. Returns if there is neither.
 void semihosting_exit(std::uint32_t code);
 
-/// Copies the command line, zero-terminated, to `text`. False where there is none or it does not fit.
+/// Copies the command line, zero-terminated, to `text`. False if there is none or it does not fit.
 bool semihosting_command_line(std::span<char> text);
 
 }  // namespace vbar::boards::zynq7000

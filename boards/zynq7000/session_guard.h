@@ -10,7 +10,7 @@ namespace vbar::boards::zynq7000 {
 
 enum class Interface : std::uint8_t { kSerial, kEthernet };
 
-/// A sender, as far as its interface can tell senders apart. Everything on the serial line is one sender; on Ethernet a
+/// A sender, as far as its interface distinguishes senders. The serial line has one sender; on Ethernet a
 /// sender is an address and a port.
 struct Sender {
   Interface interface = Interface::kSerial;

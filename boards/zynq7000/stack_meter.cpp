@@ -1,7 +1,7 @@
 #include "boards/zynq7000/stack_meter.h"
 
 extern "C" {
-// Of zynq7000.ld: only their addresses mean anything.
+// Of zynq7000.ld: only their addresses are used.
 extern const std::uint32_t __stack_bottom[];
 extern const std::uint32_t __stack_top[];
 }
@@ -12,7 +12,7 @@ constexpr std::uint32_t kStackPaint = 0xDEADBEEF;  // STACK_PAINT of startup.S
 }  // namespace
 
 std::uint32_t stack_high_water() {
-  const volatile std::uint32_t* word = __stack_bottom;  // volatile: written behind the compiler's back
+  const volatile std::uint32_t* word = __stack_bottom;  // volatile: not written by this code
   const volatile std::uint32_t* const top = __stack_top;
   while (word < top && *word == kStackPaint) {
     ++word;

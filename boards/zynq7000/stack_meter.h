@@ -1,13 +1,13 @@
 #pragma once
-// How deep the stack of flight code and interrupt handlers has ever been: startup.S paints it, this looks for the
+// Stack high-water mark of flight code and interrupt handlers: startup.S paints the stack, this searches for the
 // paint.
 
 #include <cstdint>
 
 namespace vbar::boards::zynq7000 {
 
-/// Bytes used at most since start-up. A word that was used and holds the paint's value counts as unused: off by a few
-/// bytes at worst.
+/// Maximum number of bytes used since start-up. A used word with the value of the paint counts as unused: an error of a
+/// few bytes at most.
 std::uint32_t stack_high_water();
 
 }  // namespace vbar::boards::zynq7000

@@ -41,7 +41,7 @@ std::uint64_t total_cycles() {
 
 void timers_initialize() {
   reg(kTimerControl) =
-      1;  // on, not prescaled; a debugger or loader may have left it running: only differences are used
+      1;  // enabled, not prescaled; a debugger or loader may have left it running: only differences are used
   start_cycle_counter();
   const std::uint32_t before = cycle_counter();
   last_timer = global_timer();
@@ -50,7 +50,7 @@ void timers_initialize() {
 }
 
 std::uint64_t global_timer() {
-  // Two 32-bit halves: again, should the upper one have moved meanwhile. It moves every 12 seconds at most.
+  // Two 32-bit halves: read again if the upper one has changed meanwhile. It changes every 12 seconds at most.
   std::uint32_t high = reg(kTimerHigh);
   std::uint32_t low = reg(kTimerLow);
   const std::uint32_t high_after = reg(kTimerHigh);

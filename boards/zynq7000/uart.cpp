@@ -28,9 +28,9 @@ constexpr std::uint32_t kControlDisable = 0x28;  // both paths
 constexpr std::uint32_t kMode8N1 = 0x20;
 constexpr std::uint32_t kAllInterrupts = 0x1FFF;
 
-constexpr std::uint32_t kInterruptTrigger = 1U << 0;  // at least kTriggerLevel bytes wait
+constexpr std::uint32_t kInterruptTrigger = 1U << 0;  // at least kTriggerLevel bytes are received
 constexpr std::uint32_t kInterruptOverrun = 1U << 5;
-constexpr std::uint32_t kInterruptTimeout = 1U << 8;  // fewer wait, and the line has been quiet
+constexpr std::uint32_t kInterruptTimeout = 1U << 8;  // fewer, and the line has been quiet
 
 constexpr std::uint32_t kStatusReceiveTrigger = 1U << 0;
 constexpr std::uint32_t kStatusReceiveEmpty = 1U << 1;
@@ -39,10 +39,10 @@ constexpr std::uint32_t kStatusTransmitFull = 1U << 4;
 
 constexpr std::uint32_t kTriggerLevel = 8;  // must lie below both FIFO depths, or it never fires on the emulator
 constexpr std::uint32_t kTimeoutBits = 10;  // in units of 4 bit times
-constexpr std::size_t kSmallestFifo = 16;   // what fits into an empty transmit FIFO everywhere
+constexpr std::size_t kSmallestFifo = 16;   // capacity of an empty transmit FIFO on every target
 constexpr std::uint64_t kStallSpan = timer_span_ms(2000);
 
-// How many bytes the transmitter takes now without overflowing, waiting for the first; 0 when it stalls.
+// Number of bytes the transmitter accepts without overflow, after waiting for the first; 0 when it stalls.
 std::size_t wait_for_room(std::uintptr_t base) {
   std::uint32_t status = reg(base + kStatus);
   if ((status & kStatusTransmitEmpty) != 0U) {
@@ -106,7 +106,7 @@ void Uart::on_interrupt(void* self) {
   static_cast<Uart*>(self)->drain();
 }
 
-// Moves what certainly waits from the FIFO to the ring, without a look at each byte: a look is not cheap.
+// Moves bytes that are known to be present from the FIFO to the ring, without checking for each: a check is expensive.
 bool Uart::take_waiting() {
   const std::uint32_t status = reg(base_ + kStatus);
   if ((status & kStatusReceiveEmpty) != 0U) {
@@ -119,10 +119,10 @@ bool Uart::take_waiting() {
   return true;
 }
 
-// Acknowledge first, then empty the FIFO, then look again: a byte that arrives after the last look raises a new
-// interrupt. A timeout acknowledged after the last look would be lost, and the last bytes of a frame with it.
+// Acknowledge first, then empty the FIFO, then check again: a byte that arrives after the last check raises a new
+// interrupt. A timeout acknowledged after the last check would be lost, and the last bytes of a frame with it.
 void Uart::drain() {
-  constexpr int kPasses = 8;  // a handler ends; should bytes be left, the interrupt fires again
+  constexpr int kPasses = 8;  // a bound on the handler; if bytes are left, the interrupt fires again
   constexpr int kDeepestFifo = 64;
   int pass = 0;
   do {

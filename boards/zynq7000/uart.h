@@ -2,7 +2,7 @@
 // The Zynq's UART (Cadence IP, UG585 chapter 19), 8 data bits, no parity, 1 stop bit, no flow control.
 //
 // Reception is by interrupt into a ring, for either depth of the receive FIFO: 64 bytes on silicon, 16 on the emulator.
-// Transmission waits for room in the FIFO, never longer than a bound.
+// Transmission waits for space in the FIFO, for a bounded time.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,17 +17,17 @@ class UartTransmitter {
  public:
   explicit constexpr UartTransmitter(std::uintptr_t base) : base_(base) {}
 
-  /// Resets and configures the UART; whatever was on the line before is lost.
+  /// Resets and configures the UART; bytes on the line before are lost.
   void open(std::uint32_t baud) const;
 
-  /// Sends all of `bytes` unless the line stalls for two seconds: then the rest is dropped and the result is false.
+  /// Sends all of `bytes` unless the line stalls for two seconds: then the others are dropped and the result is false.
   bool write(std::span<const std::uint8_t> bytes) const;
 
  private:
   std::uintptr_t base_;
 };
 
-/// A UART both ways. One object a UART, never moved: the interrupt handler holds its address.
+/// A bidirectional UART. One object per UART, never moved: the interrupt handler holds its address.
 class Uart {
  public:
   /// Enough for a full window of frames that arrives while a step runs.
@@ -39,14 +39,14 @@ class Uart {
 
   void open(std::uint32_t baud);
 
-  /// Next received byte; false when there is none.
+  /// Next received byte; false if there is none.
   bool read(std::uint8_t& byte) { return received_.pop(byte); }
   [[nodiscard]] bool has_input() const { return !received_.empty(); }
 
-  /// As UartTransmitter::write; counts what it dropped.
+  /// As UartTransmitter::write; counts the bytes dropped.
   void write(std::span<const std::uint8_t> bytes);
 
-  /// Times the FIFO overran, bytes the ring had no room for, writes cut short by a stalled line.
+  /// Number of FIFO overruns, of bytes dropped by a full ring, of writes cut short by a stalled line.
   [[nodiscard]] std::uint32_t overruns() const { return overruns_; }
   [[nodiscard]] std::uint32_t bytes_dropped() const { return received_.dropped(); }
   [[nodiscard]] std::uint32_t writes_stalled() const { return writes_stalled_; }

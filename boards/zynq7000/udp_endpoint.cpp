@@ -55,7 +55,7 @@ std::uint16_t checksum(std::uint32_t sum) {
   return static_cast<std::uint16_t>(~sum & 0xFFFFU);
 }
 
-// RFC 768's checksum covers the addresses, the protocol and the length beside the datagram itself.
+// The checksum of RFC 768 covers the addresses, the protocol and the length in addition to the datagram itself.
 std::uint32_t pseudo_header(const Ipv4Address& source, const Ipv4Address& destination, std::size_t udp_size) {
   return add_words(source) + add_words(destination) + kProtocolUdp + static_cast<std::uint32_t>(udp_size);
 }
@@ -64,13 +64,13 @@ bool is_group(const MacAddress& mac) {
   return (mac[0] & 1U) != 0U;
 }
 
-// Addresses that no single host has: this network, loopback, multicast, reserved, broadcast (RFC 6890).
+// Addresses of no single host: this network, loopback, multicast, reserved, broadcast (RFC 6890).
 bool cannot_be_a_sender(const Ipv4Address& address) {
   return address[0] == 0 || address[0] == 127 || address[0] >= 224;
 }
 
 std::size_t pad(MutableBytes frame, std::size_t size) {
-  const std::size_t padded = std::max(size, kLeastFrameBytes);
+  const std::size_t padded = std::max(size, kMinEthernetFrameBytes);
   for (std::size_t i = size; i < padded; ++i) {
     frame[i] = 0;
   }
@@ -82,7 +82,7 @@ std::size_t pad(MutableBytes frame, std::size_t size) {
 struct UdpEndpoint::Ipv4Packet {
   MacAddress source_mac;
   Ipv4Address source;
-  std::span<const std::uint8_t> payload;  ///< as long as the header says
+  std::span<const std::uint8_t> payload;  ///< length according to the header
 };
 
 UdpReceived UdpEndpoint::malformed() {
@@ -96,7 +96,7 @@ UdpReceived UdpEndpoint::not_for_us() {
 }
 
 UdpReceived UdpEndpoint::receive(Bytes frame, MutableBytes reply) {
-  if (frame.size() < kEthernetHeaderBytes || frame.size() > kMostFrameBytes) {
+  if (frame.size() < kEthernetHeaderBytes || frame.size() > kMaxEthernetFrameBytes) {
     return malformed();
   }
   const auto destination = read_address<6>(frame, 0);
@@ -126,11 +126,11 @@ UdpReceived UdpEndpoint::receive_arp(Bytes frame, MutableBytes reply) {
   }
   const auto sender_mac = read_address<6>(request, 8);
   const auto sender = read_address<4>(request, 14);
-  // 0.0.0.0 asks whether the address is taken (RFC 5227) and deserves an answer.
+  // 0.0.0.0 asks whether the address is in use (RFC 5227) and must be answered.
   if (is_group(sender_mac) || sender == address_ || (sender != Ipv4Address{} && cannot_be_a_sender(sender))) {
     return malformed();
   }
-  if (reply.size() < kLeastFrameBytes) {
+  if (reply.size() < kMinEthernetFrameBytes) {
     return {};
   }
   write_bytes(reply, 0, sender_mac);
@@ -210,7 +210,7 @@ UdpReceived UdpEndpoint::receive_icmp(const Ipv4Packet& packet, MutableBytes rep
     return not_for_us();
   }
   const std::size_t frame_size = kEthernetHeaderBytes + kIpv4HeaderBytes + request.size();
-  if (reply.size() < std::max(frame_size, kLeastFrameBytes)) {
+  if (reply.size() < std::max(frame_size, kMinEthernetFrameBytes)) {
     return {};
   }
   write_headers(packet.source_mac, packet.source, kProtocolIcmp, request.size(), reply);
@@ -246,7 +246,7 @@ void UdpEndpoint::write_headers(const MacAddress& to_mac, const Ipv4Address& to,
 
 fsw::Result<std::size_t> UdpEndpoint::write_datagram(const UdpPeer& to, Bytes payload, MutableBytes out) {
   const std::size_t frame_size = kUdpOverheadBytes + payload.size();
-  if (payload.size() > kMostDatagramBytes || out.size() < std::max(frame_size, kLeastFrameBytes)) {
+  if (payload.size() > kMaxDatagramBytes || out.size() < std::max(frame_size, kMinEthernetFrameBytes)) {
     return fsw::Status::kTooLong;
   }
   const std::size_t udp_size = kUdpHeaderBytes + payload.size();

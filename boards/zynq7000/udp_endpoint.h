@@ -1,11 +1,11 @@
 #pragma once
-// One UDP port on one IPv4 address: ARP (RFC 826), IPv4 (RFC 791), UDP (RFC 768) and ICMP echo (RFC 792), as little of
-// each as one peer at a time needs. No hardware here: frames in, frames out.
+// One UDP port on one IPv4 address: ARP (RFC 826), IPv4 (RFC 791), UDP (RFC 768) and ICMP echo (RFC 792), the subset
+// needed for one peer at a time. Independent of hardware: frames in, frames out.
 //
-// Every byte that comes in may be hostile. A frame is believed only as far as its lengths, addresses and checksums
-// agree; anything else is counted and changes nothing. The endpoint never asks for an address: it answers to the one
-// that a request came from. Fragments are not put together (a link frame fits a packet), options are skipped, and
-// nothing that was sent to a group or claims to come from one is answered.
+// Every incoming byte may be hostile. A frame is accepted only if its lengths, addresses and checksums
+// agree; all others are counted and have no effect. The endpoint never requests an address: it answers to the one
+// from which a request came. Fragments are not reassembled (a link frame fits a packet), options are skipped, and
+// frames sent to a group address, or from one, are not answered.
 
 #include <array>
 #include <cstddef>
@@ -20,19 +20,19 @@ using MacAddress = std::array<std::uint8_t, 6>;
 using Ipv4Address = std::array<std::uint8_t, 4>;
 
 inline constexpr std::size_t kEthernetHeaderBytes = 14;
-inline constexpr std::size_t kLeastFrameBytes = 60;   ///< without the check sequence; shorter ones are padded
-inline constexpr std::size_t kMostFrameBytes = 1514;  ///< without the check sequence
+inline constexpr std::size_t kMinEthernetFrameBytes = 60;    ///< without the check sequence; shorter ones are padded
+inline constexpr std::size_t kMaxEthernetFrameBytes = 1514;  ///< without the check sequence
 inline constexpr std::size_t kUdpOverheadBytes = kEthernetHeaderBytes + 20 + 8;
-inline constexpr std::size_t kMostDatagramBytes = kMostFrameBytes - kUdpOverheadBytes;
+inline constexpr std::size_t kMaxDatagramBytes = kMaxEthernetFrameBytes - kUdpOverheadBytes;
 
-/// Where a datagram came from, and where an answer goes.
+/// Sender of a datagram, and destination of its answer.
 struct UdpPeer {
   MacAddress mac{};
   Ipv4Address address{};
   std::uint16_t port = 0;
 };
 
-/// What became of a frame.
+/// Result of a frame.
 enum class UdpEvent : std::uint8_t {
   kNothing,   ///< not for this endpoint, or refused
   kReply,     ///< the reply must be sent
@@ -41,7 +41,7 @@ enum class UdpEvent : std::uint8_t {
 
 struct UdpReceived {
   UdpEvent event = UdpEvent::kNothing;
-  std::span<const std::uint8_t> bytes;  ///< kReply: a whole frame, in the caller's buffer; kDatagram: the payload
+  std::span<const std::uint8_t> bytes;  ///< kReply: a complete frame, in the caller's buffer; kDatagram: the payload
   UdpPeer from;                         ///< kDatagram
 };
 
@@ -59,12 +59,12 @@ class UdpEndpoint {
       : mac_(mac), address_(address), port_(port) {}
 
   /// Takes one Ethernet frame (from the destination address to the end of its data, padding allowed, no check
-  /// sequence). `reply` is where an answer is written; it must not overlap `frame`, and what it has no room for is not
-  /// answered.
+  /// sequence). The answer is written to `reply`, which must not overlap `frame`; an answer that does not fit is not
+  /// sent.
   UdpReceived receive(std::span<const std::uint8_t> frame, std::span<std::uint8_t> reply);
 
   /// Writes the Ethernet frame that carries `payload` to `to`; returns its length. kTooLong if it exceeds
-  /// kMostDatagramBytes or `out` is too small.
+  /// kMaxDatagramBytes or `out` is too small.
   fsw::Result<std::size_t> write_datagram(const UdpPeer& to, std::span<const std::uint8_t> payload,
                                           std::span<std::uint8_t> out);
 

@@ -12,9 +12,9 @@ namespace {
 // Of a factor e of flux.
 constexpr double kMagnitude = 1.0857362047581296;
 
-constexpr double kLeastFlux_dn = 1.0;
+constexpr double kMinFlux_dn = 1.0;
 
-/// The cone about an image's middle that reaches its corners.
+/// The cone about the centre of an image that includes its corners.
 stars::Field field_of(const CameraSettings& settings) {
   const imaging::ImageFrame& frame = settings.frame;
   const auto direction = [&](double x, double y) {
@@ -37,7 +37,7 @@ stars::Field field_of(const CameraSettings& settings) {
 
 constexpr int kKnownHotPixel = tracking::HotPixelSettings{}.sightings;
 
-/// The widening of a point's image by its spread is no size of its own.
+/// The broadening of a point's image by the point-spread function is not an apparent size.
 double apparent_radius_px(const imaging::DetectedObject& object, double point_spread_sigma_px) {
   const double excess = object.radius_px * object.radius_px - point_spread_sigma_px * point_spread_sigma_px;
   return excess > 0.0 ? math::sqrt(excess) : 0.0;
@@ -55,24 +55,24 @@ void AnglesOnlyTracking::configure(const CameraSettings& settings) {
   sighting_ = {};
 }
 
-const Sighting& AnglesOnlyTracking::process(const TakenImage& image, const Circumstances& circumstances) {
+const Sighting& AnglesOnlyTracking::process(const TakenImage& image, const ImagePriors& priors) {
   sighting_ = {};
   sighting_.time = image.time;
   sighting_.image = image.number;
   sighting_.tiles_missing = image.tiles_missing;
   count_ = 0;
-  sighting_.status = look(image, circumstances);
+  sighting_.status = look(image, priors);
   return sighting_;
 }
 
-SightingStatus AnglesOnlyTracking::look(const TakenImage& image, const Circumstances& circumstances) {
+SightingStatus AnglesOnlyTracking::look(const TakenImage& image, const ImagePriors& priors) {
   if (const SightingStatus found = find_objects(image.view); found != SightingStatus::kBearing) return found;
-  if (!circumstances.is_orbit_known) return SightingStatus::kNoOrbit;
-  if (!identify_stars(circumstances)) return SightingStatus::kNoStars;
-  return find_target(image, circumstances);
+  if (!priors.is_orbit_known) return SightingStatus::kNoOrbit;
+  if (!identify_stars(priors)) return SightingStatus::kNoStars;
+  return find_target(image, priors);
 }
 
-/// kBearing: so far nothing speaks against one.
+/// kBearing: no reason for rejection so far.
 SightingStatus AnglesOnlyTracking::find_objects(const imaging::ImageView& image) {
   if (!(image.frame == settings_.frame)) return SightingStatus::kWrongFrame;
   const imaging::DetectionReport report = detector_.detect(image, settings_.detector);
@@ -94,11 +94,11 @@ SightingStatus AnglesOnlyTracking::find_objects(const imaging::ImageView& image)
   for (const imaging::DetectedObject& object : objects) {
     stars::ObservedStar& seen = seen_[count_++];
     const Result<Vector3> direction = imaging::direction_of(settings_.model, object.centroid_px);
-    // Where the lens model ends nothing can be said of a direction; the boresight's own never is a star's to a pixel.
+    // Directions are undefined outside the domain of the lens model; that of the boresight matches no star to a pixel.
     seen.direction_camera = direction.ok() ? direction.value() : Vector3(Vector3::UnitZ());
     seen.sigma_rad = sigma_of(object);
-    // Beside a bright neighbour the window of a faint object may hold less than the background.
-    const double flux_dn = object.flux_dn > kLeastFlux_dn ? object.flux_dn : kLeastFlux_dn;
+    // Beside a bright neighbour the window of a faint object may contain less light than the background.
+    const double flux_dn = object.flux_dn > kMinFlux_dn ? object.flux_dn : kMinFlux_dn;
     seen.magnitude = -kMagnitude * math::log(flux_dn / settings_.zero_magnitude_dn);
   }
   return SightingStatus::kBearing;
@@ -108,12 +108,12 @@ double AnglesOnlyTracking::sigma_of(const imaging::DetectedObject& object) const
   return math::hypot(object.sigma_px, settings_.centroid_floor_px) / settings_.model.focal_length_px.x();
 }
 
-bool AnglesOnlyTracking::identify_stars(const Circumstances& circumstances) {
+bool AnglesOnlyTracking::identify_stars(const ImagePriors& priors) {
   const auto seen = std::span(seen_).first(count_);
-  const Vector3& velocity = circumstances.velocity_over_c_eci;
+  const Vector3& velocity = priors.velocity_over_c_eci;
   Status status = Status::kNotReady;
-  if (circumstances.R_camera_eci) {
-    status = identifier_.track(seen, field_, *circumstances.R_camera_eci, settings_.pointing_tolerance, velocity);
+  if (priors.R_camera_eci) {
+    status = identifier_.track(seen, field_, *priors.R_camera_eci, settings_.pointing_tolerance, velocity);
     if (status == Status::kOk) sighting_.star_method = StarMethod::kPredicted;
   }
   if (status != Status::kOk) {
@@ -137,17 +137,17 @@ void AnglesOnlyTracking::mark_stars(const stars::AttitudeFix& fix) {
   }
 }
 
-std::size_t AnglesOnlyTracking::collect_candidates(const Circumstances& circumstances) {
-  const Matrix3 R_rtn_camera = orbit::R_rtn_eci(circumstances.servicer) * sighting_.R_camera_eci.transpose();
+std::size_t AnglesOnlyTracking::collect_candidates(const ImagePriors& priors) {
+  const Matrix3 R_rtn_camera = orbit::R_rtn_eci(priors.servicer) * sighting_.R_camera_eci.transpose();
   const auto objects = detector_.objects();
   const double per_px = 1.0 / settings_.model.focal_length_px.x();
   std::size_t count = 0;
   for (std::size_t k = 0; k < count_; ++k) {
-    // Of an object that is only partly there the light's centre is not to be known.
+    // The centroid of a partly visible object is not observable.
     if (sighting_.kind[k] == ObjectKind::kStar || objects[k].is_cut) continue;
     tracking::Candidate& candidate = candidates_[count];
     candidate.direction_rtn = R_rtn_camera * seen_[k].direction_camera;
-    // Of a body that is no point the light's centre wanders about the body's.
+    // The centroid of a resolved body varies within the body.
     const double size = apparent_radius_px(objects[k], settings_.detector.point_spread_sigma_px) * per_px;
     candidate.sigma = math::hypot(math::hypot(seen_[k].sigma_rad, sighting_.attitude_sigma), size);
     candidate.object = objects[k];
@@ -156,15 +156,15 @@ std::size_t AnglesOnlyTracking::collect_candidates(const Circumstances& circumst
   return count;
 }
 
-SightingStatus AnglesOnlyTracking::find_target(const TakenImage& image, const Circumstances& circumstances) {
-  const std::size_t candidates = collect_candidates(circumstances);
+SightingStatus AnglesOnlyTracking::find_target(const TakenImage& image, const ImagePriors& priors) {
+  const std::size_t candidates = collect_candidates(priors);
   tracking::TrackerInput input;
   input.time = image.time;
-  input.servicer = circumstances.servicer;
+  input.servicer = priors.servicer;
   input.candidates = std::span(candidates_).first(candidates);
-  input.burns = circumstances.burns;
-  input.prediction = circumstances.target;
-  input.detection_probability = circumstances.detection_probability;
+  input.burns = priors.burns;
+  input.prediction = priors.target;
+  input.detection_probability = priors.detection_probability;
   const Result<tracking::TrackerOutput> tracked = tracker_.step(input);
   if (!tracked.ok()) return SightingStatus::kNoTarget;
   sighting_.hypotheses = tracked.value().hypotheses;

@@ -1,8 +1,8 @@
 #pragma once
-// Angles-only tracking (Kruger, D'Amico 2021): from an image to a bearing. Objects are found, stars among them
-// identified and used for the attitude, and of what is left the tracker says which is the target.
+// Angles-only tracking (Kruger, D'Amico 2021): from an image to a bearing. Objects are detected, stars among them
+// identified and used for the attitude, and the tracker identifies the target among the others.
 //
-// The commanded pointing helps to recognise stars; where in the image the target lies is never taken for granted.
+// The commanded pointing supports star identification; the position of the target in the image is never assumed.
 
 #include <optional>
 #include <span>
@@ -18,7 +18,7 @@
 
 namespace vbar::fsw::angles_only {
 
-/// The camera as calibrated on the ground, and what is expected of it.
+/// The camera as calibrated on the ground, and its expected performance.
 struct CameraSettings {
   imaging::ImageFrame frame;
   imaging::CameraModel model;
@@ -30,18 +30,18 @@ struct CameraSettings {
   double pointing_tolerance = 3e-3;  ///< rad, of the commanded pointing
 };
 
-/// What is known of the exposure's instant before the image is looked at.
-struct Circumstances {
+/// A-priori information at the time of exposure.
+struct ImagePriors {
   bool is_orbit_known = false;
   orbit::CartesianState servicer;
-  Vector3 velocity_over_c_eci = Vector3::Zero();  ///< of the camera against the Solar System, for aberration
+  Vector3 velocity_over_c_eci = Vector3::Zero();  ///< of the camera, barycentric, for aberration
   std::optional<Matrix3> R_camera_eci;            ///< as commanded
-  std::optional<tracking::Prediction> target;     ///< where navigation expects it, as seen by the camera
-  double detection_probability = 0.95;            ///< of the target: less while it may be in the dark
+  std::optional<tracking::Prediction> target;     ///< predicted by navigation, as seen by the camera
+  double detection_probability = 0.95;            ///< of the target: smaller if it may be in eclipse
   std::span<const tracking::OwnBurn> burns;       ///< since the last image, in order of time
 };
 
-/// An image and what its tiles said of it.
+/// An image with the header of its tiles.
 struct TakenImage {
   GpsTime time;  ///< middle of the exposure
   std::int32_t number = 0;
@@ -53,20 +53,20 @@ class AnglesOnlyTracking {
  public:
   void configure(const CameraSettings& settings);
 
-  /// Images come in order of time.
-  const Sighting& process(const TakenImage& image, const Circumstances& circumstances);
+  /// Images must be passed in order of time.
+  const Sighting& process(const TakenImage& image, const ImagePriors& priors);
 
   [[nodiscard]] const Sighting& sighting() const { return sighting_; }
   [[nodiscard]] std::span<const imaging::DetectedObject> objects() const { return detector_.objects(); }
   [[nodiscard]] const CameraSettings& settings() const { return settings_; }
 
  private:
-  SightingStatus look(const TakenImage& image, const Circumstances& circumstances);
+  SightingStatus look(const TakenImage& image, const ImagePriors& priors);
   SightingStatus find_objects(const imaging::ImageView& image);
-  bool identify_stars(const Circumstances& circumstances);
+  bool identify_stars(const ImagePriors& priors);
   void mark_stars(const stars::AttitudeFix& fix);
-  std::size_t collect_candidates(const Circumstances& circumstances);
-  SightingStatus find_target(const TakenImage& image, const Circumstances& circumstances);
+  std::size_t collect_candidates(const ImagePriors& priors);
+  SightingStatus find_target(const TakenImage& image, const ImagePriors& priors);
   void measure_bearing(std::size_t object);
   [[nodiscard]] double sigma_of(const imaging::DetectedObject& object) const;
 
@@ -76,8 +76,8 @@ class AnglesOnlyTracking {
   tracking::TargetTracker tracker_;
   stars::Field field_;
   std::size_t count_ = 0;                                               ///< of the objects that have a direction
-  std::array<stars::ObservedStar, imaging::kMaxObjects> seen_{};        ///< the objects, whatever they are
-  std::array<tracking::Candidate, imaging::kMaxObjects> candidates_{};  ///< those that are no stars
+  std::array<stars::ObservedStar, imaging::kMaxObjects> seen_{};        ///< the objects, not yet classified
+  std::array<tracking::Candidate, imaging::kMaxObjects> candidates_{};  ///< those that are not stars
   std::array<std::size_t, imaging::kMaxObjects> object_of_candidate_{};
   Sighting sighting_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// What one image told: where the camera looked, which of the objects in it is the target, and what the others are.
+// Result of one image: attitude of the camera, the object identified as the target, and the classes of the others.
 
 #include <array>
 #include <cstdint>
@@ -11,16 +11,16 @@
 
 namespace vbar::fsw::angles_only {
 
-/// Why no bearing came of an image; numbers of telemetry_image.status.
+/// Why an image yielded no bearing; numbers of telemetry_image.status.
 enum class SightingStatus : std::int8_t {
-  kBearing = 0,       ///< one did
-  kWrongFrame = 1,    ///< size, place or depth of the image are not the configured camera's
-  kBlank = 2,         ///< no light, or nothing but light
+  kBearing = 0,       ///< a bearing was obtained
+  kWrongFrame = 1,    ///< size, origin or depth of the image differ from the configured camera
+  kBlank = 2,         ///< no light, or saturated
   kTooLittle = 3,     ///< most of it never arrived
   kNoStars = 4,       ///< the stars in it could not be identified: no attitude
-  kNoTarget = 5,      ///< nothing in it may be the target
-  kNotConfirmed = 6,  ///< a target candidate, not yet trusted
-  kNoOrbit = 7,       ///< the servicer's own orbit is not known yet
+  kNoTarget = 5,      ///< no object can be the target
+  kNotConfirmed = 6,  ///< a target candidate, not yet confirmed
+  kNoOrbit = 7,       ///< no orbit of servicer or target is known yet
 };
 
 enum class StarMethod : std::int8_t { kNone = 0, kLostInSpace = 1, kPredicted = 2 };
@@ -43,7 +43,7 @@ struct Sighting {
   Matrix3 R_camera_eci = Matrix3::Identity();  ///< by the stars, if there is a method
   double attitude_sigma = 0.0;                 ///< rad, of the boresight's direction
   int hypotheses = 0;
-  int target = -1;                         ///< which object
+  int target = -1;                         ///< index of the object
   navigation::BearingMeasurement bearing;  ///< only with kBearing
 };
 

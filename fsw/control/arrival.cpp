@@ -11,7 +11,7 @@ namespace {
 
 using orbit::QnsElements;
 
-// A step in an angle: the short way round.
+// Difference of angles, mapped to (-pi, pi].
 double angle_step(double to, double from) {
   return math::wrap_to_pi(to - from);
 }
@@ -28,7 +28,7 @@ QnsElements shifted(const QnsElements& elements, const QnsElements& from, const 
   return result;
 }
 
-// Relative size of what is left between two sets of elements.
+// Relative size of the difference of two sets of elements.
 double distance(const QnsElements& p, const QnsElements& q) {
   return math::abs(p.a - q.a) / q.a + math::abs(p.ex - q.ex) + math::abs(p.ey - q.ey) + math::abs(p.i - q.i) +
          math::abs(angle_step(p.raan, q.raan)) + math::abs(angle_step(p.u, q.u));
@@ -44,8 +44,8 @@ Result<QnsElements> mean_after_impulse(const QnsElements& mean, const Vector3& d
   const Result<QnsElements> wanted = orbit::qns_from_cartesian(orbit::apply_impulse_rtn(before.value(), dv_rtn));
   if (!wanted.ok()) return wanted.status();
 
-  // The mean elements before the impulse are known, so the fixed point for those after it starts next to the answer:
-  // each round divides the error by 1/J2, about 1e3, where a conversion from scratch would need three times as many.
+  // The mean elements before the impulse are known, so that the fixed point for those after it starts close to its end:
+  // each iteration divides the error by 1/J2, about 1e3; a conversion from scratch would need three times as many.
   constexpr int kMaxRounds = 6;
   constexpr double kConverged = 1e-13;
   QnsElements after = mean;

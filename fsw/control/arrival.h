@@ -1,8 +1,8 @@
 #pragma once
-// Where a plan arrives: mean ROE at the waypoint's time, predicted from the two absolute mean orbits.
+// Arrival error of a plan: mean ROE at the time of the waypoint, predicted from the two absolute mean orbits.
 //
 // The linear state transition misses the waypoint by tens of metres at 75 km (second-order terms in the separation, and
-// the servicer's own orbit changes when it burns). Two absolute orbits, each with its own secular rates, and burns
+// the servicer's own orbit changes with its burns). Two absolute orbits, each with its own secular rates, and burns
 // applied to the servicer's osculating state leave decimetres over six hours; feedback removes those.
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace vbar::fsw::control {
 
-/// Where the target shall be with respect to the servicer, and when. Metres of a waypoint table become dimensionless by
+/// Desired relative orbit of the target at a time. Metres of a waypoint table are made dimensionless by
 /// one fixed semi-major axis for the whole mission: by the current one, a waypoint at 50 km would move by 14 m.
 struct Waypoint {
   GpsTime time;
@@ -33,11 +33,11 @@ Result<orbit::QnsElements> mean_after_impulse(const orbit::QnsElements& mean, co
 /// time and within [orbits.epoch, until].
 Result<MeanOrbits> fly(const MeanOrbits& orbits, std::span<const Burn> burns, GpsTime until);
 
-/// Mean ROE (dimensionless) wanted at the waypoint minus those at which `burns` arrive. A burn at the waypoint's own
-/// time counts: the ROE, unlike the position, feel it at once. Errors as fly().
+/// Desired mean ROE (dimensionless) at the waypoint minus those at which `burns` arrive. A burn at the waypoint's own
+/// time counts: the ROE, unlike the position, change at once. Errors as fly().
 Result<Vector6> arrival_error(const MeanOrbits& orbits, std::span<const Burn> burns, const Waypoint& waypoint);
 
-/// What is left to plan from `start` on if `committed`, all before `start`, is flown: the pseudo-state is the arrival
+/// Remaining problem from `start` on if `committed`, all before `start`, is flown: the pseudo-state is the arrival
 /// error of the free drift after those. kInvalidArgument if the waypoint does not lie after `start`; else errors as
 /// fly().
 Result<ControlProblem> remaining_problem(const MeanOrbits& orbits, std::span<const Burn> committed, GpsTime start,

@@ -12,13 +12,13 @@
 namespace vbar::fsw::control {
 namespace {
 
-// Impulses below this share of the plan are rounding, not burns.
+// Impulses below this share of the plan are rounding errors.
 constexpr double kNegligibleShare = 1e-6;
 
-// A plan may leave this share of the pseudo-state.
+// Residual that a plan may have, as a share of the pseudo-state.
 constexpr double kAcceptedResidual = 1e-6;
 
-// Inclination changes below this, m, are rounding.
+// Inclination changes below this, m, are rounding errors.
 constexpr double kNoInclinationChange = 1e-9;
 
 // Impulses of a manoeuvring deputy.
@@ -39,19 +39,19 @@ struct DeputyBurns {
   }
 };
 
-// The problem with what all steps need of it.
+// The problem with derived quantities common to all steps.
 struct Model {
   const ControlProblem& problem;
   const ClosedFormSettings& settings;
   NearCircularOrbit orbit;
   double window = 0.0;  ///< s
-  double latest = 0.0;  ///< last offset at which a burn may be, s
+  double latest = 0.0;  ///< last offset at which a burn is allowed, s
 
   [[nodiscard]] Matrix63 effect(double offset) const {
     return arrival_effect(problem.servicer_mean, problem.start, problem.start + nearest_duration(offset),
                           problem.arrival);
   }
-  // What `burns` leave of the pseudo-state.
+  // Residual of the pseudo-state after `burns`.
   [[nodiscard]] Vector6 residual(const DeputyBurns& burns) const {
     Vector6 left = problem.pseudo_state;
     for (std::size_t k = 0; k < burns.count; ++k) left -= effect(burns.offsets[k]) * burns.dv[k];
@@ -59,7 +59,7 @@ struct Model {
   }
 };
 
-// Normal impulses: any one of them meets the inclination change by itself.
+// Normal impulses: each of them achieves the inclination change by itself.
 struct NormalBurns {
   struct Impulse {
     double offset = 0.0;  ///< s into the window
@@ -69,8 +69,8 @@ struct NormalBurns {
   std::size_t count = 0;
 };
 
-// The node drifts with the inclination change between burn and arrival, so the change wanted, and with it the phase,
-// depends a little on the time to go: a contraction by the ratio of the drift rates, about 1e-3.
+// The node drifts with the inclination change between burn and arrival, so that the desired change, and its phase,
+// depend slightly on the time to go: a contraction by the ratio of the drift rates, about 1e-3.
 NormalBurns normal_burns(const Model& model, const Vector6& target) {
   constexpr int kRounds = 4;
   const NearCircularOrbit& orbit = model.orbit;
@@ -98,12 +98,12 @@ NormalBurns normal_burns(const Model& model, const Vector6& target) {
   return burns;
 }
 
-// Times at which the eccentricity vector turns along the wanted change, or against it.
+// Times at which a tangential impulse changes the eccentricity vector along the desired change, or against it.
 PhaseTimes tangential_grid(const Model& model, const TangentialTask& task) {
   const NearCircularOrbit& orbit = model.orbit;
   const double now = eccentricity_phase(orbit, model.window, 0.0);
-  const double least = 0.5 * orbit.n * model.settings.eccentricity_floor_m;
-  const bool has_phase = math::hypot(task.e_cos, task.e_sin) > least;
+  const double minimum = 0.5 * orbit.n * model.settings.eccentricity_floor_m;
+  const bool has_phase = math::hypot(task.e_cos, task.e_sin) > minimum;
   const double phase = has_phase ? math::wrap_to_pi(math::atan2(task.e_sin, task.e_cos) - now) : 0.0;
   return phase_times(phase, orbit.latitude_rate - orbit.perigee_rate, model.latest);
 }
@@ -140,7 +140,7 @@ Result<TangentialBurns> tangential_burns(const Model& model, const Vector6& targ
 // One solution: tangential impulses and the choice of normal ones, the coupling between them (J2, eccentricity)
 // iterated away with the earliest normal impulse.
 struct Solution {
-  Vector6 target;  ///< what the near-circular view must aim at
+  Vector6 target;  ///< corrected goal of the near-circular model
   TangentialBurns tangential;
   NormalBurns normal;
 };
@@ -169,7 +169,7 @@ Result<Solution> coupled_solution(const Model& model, InPlane method) {
   return solution;
 }
 
-// The normal impulse shared out over the tangential burns that have a normal time within the merge window, in
+// The normal impulse is distributed over the tangential burns that have a normal time within the merge window, in
 // proportion to their sizes: the components then add in quadrature. Those burns move to the normal time.
 DeputyBurns spread_burns(const Model& model, const Solution& solution) {
   std::array<const NormalBurns::Impulse*, TangentialBurns::kMax> partner{};
@@ -199,10 +199,10 @@ DeputyBurns spread_burns(const Model& model, const Solution& solution) {
 }
 
 DeputyBurns without_negligible(const DeputyBurns& burns) {
-  const double least = kNegligibleShare * burns.cost();
+  const double minimum = kNegligibleShare * burns.cost();
   DeputyBurns kept;
   for (std::size_t k = 0; k < burns.count; ++k) {
-    if (burns.dv[k].norm() > least) kept.add(burns.offsets[k], burns.dv[k]);
+    if (burns.dv[k].norm() > minimum) kept.add(burns.offsets[k], burns.dv[k]);
   }
   return kept;
 }
@@ -211,8 +211,8 @@ bool meets(const Model& model, const Vector6& left) {
   return left.norm() <= kAcceptedResidual * model.problem.pseudo_state.norm();
 }
 
-// Removes what merging and the near-circular view left, as far as burns at these times can: one linear step solves the
-// linear model, a second one its rounding.
+// Removes the residual of merging and of the near-circular model, as far as burns at these times can: one linear step
+// solves the linear model, a second one its rounding errors.
 Result<DeputyBurns> polished(const Model& model, DeputyBurns burns) {
   constexpr int kRounds = 2;
   std::array<Matrix63, DeputyBurns::kMax> effects;
@@ -227,8 +227,8 @@ Result<DeputyBurns> polished(const Model& model, DeputyBurns burns) {
 
 enum class Arrangement : unsigned char { kSeparate, kSpread };
 
-// Burns at the normal phase cannot turn the inclination vector across it. What is left there moves the phase itself;
-// nothing else of the residual may, or it would wind up.
+// Burns at the normal phase cannot change the inclination vector across it. A residual in that direction changes the
+// phase itself; no other residual may, to avoid divergence.
 Result<DeputyBurns> arranged(const Model& model, Solution solution, Arrangement arrangement) {
   constexpr int kRounds = 4;
   Vector6 target = solution.target;
@@ -252,7 +252,7 @@ Burn* burn_at(Plan& plan, GpsTime time) {
   return nullptr;
 }
 
-// In order of time; burns of the same instant are one.
+// In order of time; burns of the same instant are merged.
 Plan servicer_plan(const Model& model, const DeputyBurns& burns) {
   Plan plan;
   plan.solver = Solver::kClosedForm;

@@ -1,10 +1,10 @@
 #pragma once
 // The closed-form impulsive solver for near-circular orbits (Chernick and D'Amico 2018; Chernick 2021): tangential
-// impulses half orbits apart at the phase of the wanted eccentricity change, one normal impulse at that of the
+// impulses half orbits apart at the phase of the desired eccentricity change, one normal impulse at that of the
 // inclination change.
 //
-// Beyond the published scheme: where three impulses on the phase grid miss the reachable lower bound, a linear program
-// over the grid and half orbits from both ends of the window looks for four; the normal impulse is spread over the
+// Beyond the published scheme: if three impulses on the phase grid miss the reachable lower bound, a linear program
+// over the grid and half orbits from both ends of the window finds four; the normal impulse is distributed over the
 // tangential ones, so that |T| and |N| add in quadrature; and the coupling by J2 and eccentricity is iterated away.
 
 #include "fsw/control/plan.h"
@@ -12,20 +12,20 @@
 namespace vbar::fsw::control {
 
 struct ClosedFormSettings {
-  /// Eccentricity changes below this (m, a |de|) have no phase of their own; burns may then fall anywhere.
+  /// Eccentricity changes below this (m, a |de|) have no defined phase; burns may then be at any time.
   double eccentricity_floor_m = 1.0;
-  /// A tangential burn moves to the time of a normal one if that is no further away than this (s), and R components
-  /// mend the eccentricity vector.
+  /// A tangential burn moves to the time of a normal one if that is within this interval (s), and R components
+  /// correct the eccentricity vector.
   double merge_window = 120.0;
-  /// No burn in the last seconds before arrival (s).
+  /// No burn in this interval before arrival (s).
   double final_coast = 0.0;
 };
 
-/// Burns (of the servicer, signs as in Plan) that meet the problem's pseudo-state to 1e-6 of it in the linear model
+/// Burns (of the servicer, signs as in Plan) that achieve the problem's pseudo-state to 1e-6 of it in the linear model
 /// with the exact effects of the burns. Errors of
 /// check_problem(); kInvalidArgument for an empty window; kSingular when the window has
-/// fewer than three burn times or only one parity of them (shorter than about an orbit): the next solver takes over;
-/// kDidNotConverge when the coupling does not settle.
+/// fewer than three burn times or only one parity of them (shorter than about an orbit): the next solver is used;
+/// kDidNotConverge if the coupling iteration does not converge.
 Result<Plan> solve_closed_form(const ControlProblem& problem, const ClosedFormSettings& settings = {});
 
 }  // namespace vbar::fsw::control

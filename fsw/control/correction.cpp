@@ -8,8 +8,8 @@
 namespace vbar::fsw::control {
 namespace {
 
-// dlambda answers a transverse burn with 3 m/s times the time to go, ten and more times what the other elements do; its
-// row is scaled to theirs by a fixed number. (Scaling by the largest effect, which changes from decision to decision,
+// The effect of a transverse burn on dlambda is 3 m/s times the time to go, ten and more times that on the others; its
+// row is scaled to theirs by a fixed factor. (Scaling by the largest effect, which changes from decision to decision,
 // diverges.)
 Vector6 row_scale() {
   return {1.0, 0.1, 1.0, 1.0, 1.0, 1.0};
@@ -40,7 +40,7 @@ Result<Correction> least_norm_correction(std::span<const Matrix63> effects, cons
   const Vector6 scaled_residual = rows.cwiseProduct(residual);
   for (int k = 0; k < 6; ++k) {
     const double gain_squared = eigen.value().values[k];
-    if (gain_squared < settings.least_gain * settings.least_gain * strongest) continue;
+    if (gain_squared < settings.min_gain * settings.min_gain * strongest) continue;
     const Vector6 direction = eigen.value().vectors.col(k);
     multipliers += direction * (direction.dot(scaled_residual) / gain_squared);
   }
@@ -56,8 +56,8 @@ Result<Correction> least_norm_correction(std::span<const Matrix63> effects, cons
 Result<Plan> correct_plan(const MeanOrbits& orbits, const Plan& committed, const Plan& plan, const Waypoint& waypoint,
                           const CorrectionSettings& settings) {
   if (plan.count == 0) return Status::kInvalidArgument;
-  // The linear effects are good to about 1e-2 of the whole change, mostly by the servicer's own burns on the way: every
-  // round leaves that share of the error, from tens of metres after planning at 75 km down to millimetres.
+  // The linear effects are accurate to about 1e-2 of the total change, mainly because of the servicer's own burns: each
+  // iteration leaves that share of the error, from tens of metres after planning at 75 km down to millimetres.
   constexpr int kRounds = 3;
   std::array<Matrix63, kMaxBurns> effects;
   for (std::size_t k = 0; k < plan.count; ++k) {

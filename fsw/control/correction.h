@@ -1,5 +1,5 @@
 #pragma once
-// The smallest change of existing burns that moves where they arrive.
+// The smallest change of existing burns that corrects their arrival.
 
 #include <array>
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace vbar::fsw::control {
 
-/// How a correction weighs what it may change against what it must reach.
+/// Weights of a correction: cost of changes against arrival error.
 struct CorrectionSettings {
-  /// Price of a radial impulse against a transverse or normal one: above one keeps R components small, so that they
-  /// serve where nothing else does, across the phase of the eccentricity vector.
+  /// Weight of a radial impulse relative to a transverse or normal one: above one keeps R components small, so they
+  /// are used only where necessary, across the phase of the eccentricity vector.
   double radial_price = 2.0;
-  /// A direction of the arrival whose gain is below this share of the strongest is left alone: closing it there would
-  /// cost more delta-v than it is worth, and another plan closes it for less.
-  double least_gain = 0.02;
+  /// A direction of the arrival with a gain below this share of the largest is not corrected: it would
+  /// cost more delta-v than justified, and another plan corrects it for less.
+  double min_gain = 0.02;
 };
 
 /// Changes of impulses, m/s, in the sign of the effects they were found with.
@@ -32,13 +32,13 @@ struct Correction {
 Result<Correction> least_norm_correction(std::span<const Matrix63> effects, const Vector6& residual,
                                          const CorrectionSettings& settings = {});
 
-/// `plan`, flown after all of `committed`, with its impulses, not its times, changed so that it arrives: Newton steps
-/// of least norm on the nonlinear prediction. It may still miss in directions that its times do not control: evaluate
+/// `plan`, flown after all of `committed`, with its impulses, not its times, corrected for arrival: Newton steps
+/// of least norm on the nonlinear prediction. It may still miss in directions that its times do not control; evaluate
 /// it. kInvalidArgument for a plan without burns; errors of arrival_error() and least_norm_correction().
 Result<Plan> correct_plan(const MeanOrbits& orbits, const Plan& committed, const Plan& plan, const Waypoint& waypoint,
                           const CorrectionSettings& settings = {});
 
-/// Distance (m) at the waypoint's time between where the target would be and where it should, for an arrival error in
+/// Distance (m) at the waypoint's time between actual and desired position of the target, for an arrival error in
 /// ROE. kNotFinite.
 Result<double> arrival_distance(const MeanOrbits& orbits, const Waypoint& waypoint, const Vector6& roe_error);
 

@@ -8,7 +8,7 @@
 namespace vbar::fsw::control {
 namespace {
 
-/// Intervals of the grid: none of them longer than the step asked for, unless that takes too many.
+/// Intervals of the grid: not longer than the step requested, unless that requires too many.
 std::int64_t grid_intervals(Duration horizon, Duration step) {
   const std::int64_t wanted = horizon.ns / step.ns + (horizon.ns % step.ns != 0 ? 1 : 0);
   return std::min(wanted, static_cast<std::int64_t>(kMaxGridTimes) - 1);

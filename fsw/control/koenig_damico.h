@@ -9,24 +9,24 @@
 
 namespace vbar::fsw::control {
 
-/// Most candidate times; on longer horizons the grid widens.
+/// Maximum number of candidate times; on longer horizons the grid widens.
 inline constexpr std::size_t kMaxGridTimes = 640;
 
-/// Says when thrust is allowed (attitude, camera, eclipse); without a function, always.
+/// Defines when thrust is allowed (attitude, camera, eclipse); without a function, always.
 struct ThrustWindows {
   bool (*allowed)(const void* context, GpsTime time) = nullptr;
   const void* context = nullptr;
 };
 
 struct KoenigDamicoSettings {
-  Duration grid_step = duration_of_seconds(30);  ///< > 0; the times are spread evenly, no wider than this if they fit
+  Duration grid_step = duration_of_seconds(30);  ///< > 0; upper limit if their number allows
   ThrustCost cost = ThrustCost::kSteerable;
   ThrustWindows windows;
-  double negligible_change_m = 1e-6;  ///< |a pseudo_state| below which nothing is burned
+  double negligible_change_m = 1e-6;  ///< |a pseudo_state| below which no burn is planned
   PrimerSettings primer;
 };
 
-/// Scratch and the full account of the last solution; about 120 kB, so not for a flight computer's stack.
+/// Workspace and full account of the last solution; about 120 kB, too large for the stack of a flight computer.
 struct KoenigDamicoWorkspace {
   std::array<Matrix63, kMaxGridTimes> effects;
   std::array<ThrustCost, kMaxGridTimes> costs{};
@@ -35,8 +35,8 @@ struct KoenigDamicoWorkspace {
   PrimerSolution solution;  ///< impulses of the deputy; valid after a solve that returned a plan
 };
 
-/// Burns of the servicer (at most kMaxImpulses, from `start` to `arrival`, both included) that bring about the
-/// pseudo-state at least cost, within settings.primer.cost_tolerance of the optimum on the grid. Errors:
+/// Burns of the servicer (at most kMaxImpulses, from `start` to `arrival`, both included) that achieve the
+/// pseudo-state at minimum cost, within settings.primer.cost_tolerance of the optimum on the grid. Errors:
 /// kInvalidArgument (settings), kNotFinite, kOutOfRange (orbit or horizon, arrival before start), kSingular (no time
 /// allowed, or too few or too close to reach every state), kDidNotConverge.
 Result<Plan> solve_koenig_damico(const ControlProblem& problem, const KoenigDamicoSettings& settings,

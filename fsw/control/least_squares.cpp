@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t kMaxTimes = 3;
 constexpr double kMaxCondition = 1e5;
-constexpr double kGoodCondition = 1e2;  ///< the middle is kept if it is no worse than this
+constexpr double kGoodCondition = 1e2;  ///< the middle is used if its condition is not worse than this
 
-/// Places of the middle burn, as parts of the horizon, in order of preference. Their distances to both ends have no
+/// Times of the middle burn, as parts of the horizon, in order of preference. Their distances to both ends have no
 /// common measure, so a horizon that makes one of them singular leaves others.
 constexpr std::array<double, 5> kMiddlePlaces{0.5, 0.4, 0.65, 0.28, 0.83};
 
@@ -56,8 +56,8 @@ Result<System> make_system(const ControlProblem& problem, const LeastSquaresSett
   }
   const auto eigen = math::symmetric_eigen<6>(weighted_gramian(system, settings.weight));
   if (!eigen.ok()) return eigen.status();
-  const double least = eigen.value().values(0);
-  system.smallest = least > 0.0 ? math::sqrt(least) : 0.0;
+  const double minimum = eigen.value().values(0);
+  system.smallest = minimum > 0.0 ? math::sqrt(minimum) : 0.0;
   system.largest = math::sqrt(eigen.value().values(5));
   return system;
 }

@@ -1,7 +1,7 @@
 #pragma once
 // Time-fixed impulsive control by least squares with Tikhonov regularisation, as in Guffanti and D'Amico's backup
 // solver: at two or three given times, the impulses x that minimise |W (A x - a w)|^2 + alpha |x|^2, A in metres of
-// a*ROE per m/s. Always an answer of the same effort: the last rung of the ladder. Not fuel-optimal.
+// a*ROE per m/s. It always returns a solution at constant cost: the last fallback. Not fuel-optimal.
 
 #include <cstddef>
 
@@ -12,10 +12,10 @@ namespace vbar::fsw::control {
 struct LeastSquaresSettings {
   std::size_t burn_count = 3;        ///< 2: at both ends of the horizon; 3: one between them too
   double regularisation = 1e2;       ///< alpha, m^2/(m/s)^2; 1e2 costs well under 1 mm, 1e5 tens of centimetres
-  Vector6 weight = Vector6::Ones();  ///< diagonal of W, > 0: how much an error of each ROE matters
+  Vector6 weight = Vector6::Ones();  ///< diagonal of W, > 0: weight of the error of each ROE
 };
 
-/// How well posed the problem was and what the plan leaves.
+/// Conditioning of the problem and residual of the plan.
 struct LeastSquaresReport {
   double smallest_singular_value = 0.0;  ///< of W A, m per m/s
   double largest_singular_value = 0.0;
@@ -23,9 +23,9 @@ struct LeastSquaresReport {
   GpsTime middle;           ///< time of the third burn, if there is one
 };
 
-/// Burns of the servicer at the start, between and at the arrival. The one between stands in the middle unless that is
-/// a singular spacing (half and whole orbits), then at the best of a few other places. A pseudo-state of zero, as any
-/// other, gives all burns of the plan, of zero size. Errors: kInvalidArgument (settings), kNotFinite, kOutOfRange
+/// Burns of the servicer at the start, between and at the arrival. The one between is in the middle unless that is
+/// a singular spacing (half and whole orbits), then at the best of a few other times. A pseudo-state of zero
+/// gives all burns of the plan as well, of zero size. Errors: kInvalidArgument (settings), kNotFinite, kOutOfRange
 /// (orbit, horizon), kSingular: no choice of times makes the singular values span less than a factor 1e5.
 Result<Plan> solve_least_squares(const ControlProblem& problem, const LeastSquaresSettings& settings = {},
                                  LeastSquaresReport* report = nullptr);

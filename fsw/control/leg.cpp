@@ -15,13 +15,13 @@ Plan still_possible(const Plan& plan, GpsTime earliest) {
   return possible;
 }
 
-// A plan and where it leads.
+// A plan and its arrival error.
 struct Candidate {
   Plan plan;
   Vector6 error = Vector6::Zero();
 };
 
-// What a correction may cost: `error` as a change of inclination, the dearest, and a share of the burns.
+// Limit of the cost of a correction: `error` as a change of inclination, the most expensive, and a share of the burns.
 double affordable_dv(const LegSituation& situation, const Plan& plan, const Vector6& error, const LegPolicy& policy) {
   const double speed = orbit::mean_motion(situation.orbits.servicer.a) * situation.orbits.servicer.a;
   return (1.0 + policy.dear_share) * plan.total_dv() + speed * error.norm();
@@ -66,8 +66,8 @@ bool arrives(const LegSituation& situation, const Vector6& error, const LegPolic
 }
 
 Result<Plan> plan_closed_form(const LegSituation& situation, const LegPolicy& policy) {
-  // What burns at the solver's times cannot reach, across the phase of the inclination change, goes back into the
-  // problem and moves those times by seconds.
+  // The residual that burns at the solver's times cannot reach, across the phase of the inclination change, is returned
+  // to the problem and moves those times by seconds.
   constexpr int kRounds = 3;
   Result<ControlProblem> problem =
       remaining_problem(situation.orbits, situation.committed.all(), situation.earliest_burn, situation.waypoint);

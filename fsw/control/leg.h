@@ -1,9 +1,9 @@
 #pragma once
 // The policy of one leg: what to do with the plan at each decision on the way to a waypoint.
 //
-// Planning anew at every decision chatters: burn times of equal cost come and go with every metre of change, and a leg
-// can cost three times its optimum. So a plan stays while it arrives; then its burns are corrected where they are; only
-// then is the leg planned again. Any solver's plan can be judged and corrected here.
+// Replanning at every decision chatters: burn times of equal cost alternate with every metre of change, and a leg
+// can cost three times its optimum. A plan is therefore kept while it arrives; then its burns are corrected in place;
+// only then is the leg replanned. The plan of any solver can be evaluated and corrected here.
 
 #include "fsw/control/arrival.h"
 #include "fsw/control/closed_form.h"
@@ -12,35 +12,35 @@
 
 namespace vbar::fsw::control {
 
-/// All that a decision rests on.
+/// Inputs of a decision.
 struct LegSituation {
   MeanOrbits orbits;      ///< now
-  Plan committed;         ///< commanded, still to be flown, all before `earliest_burn`
-  GpsTime earliest_burn;  ///< now plus the time it takes to command
+  Plan committed;         ///< commanded, not yet flown, all before `earliest_burn`
+  GpsTime earliest_burn;  ///< now plus the command latency
   Waypoint waypoint;
   Vector6 sigma_roe = Vector6::Zero();  ///< 1 sigma of the estimated ROE now, dimensionless
 };
 
 struct LegPolicy {
-  /// A plan stays while its arrival error, as a length (ROE times the semi-major axis, m), is below this or within 1
+  /// A plan is kept while its arrival error, as a length (ROE times the semi-major axis, m), is below this or within 1
   /// sigma.
   double tolerance_m = 1.0;
-  /// Corrected burns may cost this share more than before, plus what the error would cost as a change of inclination,
-  /// the dearest; beyond, planning anew may be cheaper.
+  /// Corrected burns may cost this share more than before, plus the cost of the error as a change of inclination,
+  /// the most expensive; beyond, replanning may be cheaper.
   double dear_share = 0.02;
   CorrectionSettings correction;
   ClosedFormSettings closed_form;
 };
 
-/// Mean ROE wanted at the waypoint minus those at which the committed burns and `plan` arrive, dimensionless. Errors as
-/// fly().
+/// Desired mean ROE at the waypoint minus those at which the committed burns and `plan` arrive, dimensionless. Errors
+/// as fly().
 Result<Vector6> evaluate_plan(const LegSituation& situation, const Plan& plan);
 
-/// 1 sigma, dimensionless, of the arrival that the uncertainty of the estimate leaves; errors of the elements now are
-/// taken as independent.
+/// 1 sigma, dimensionless, of the arrival error due to the uncertainty of the estimate; errors of the elements are
+/// assumed independent.
 Vector6 arrival_sigma(const LegSituation& situation);
 
-/// Whether an arrival error counts as none: root sum square of its elements, each in units of the larger of the
+/// Whether an arrival error is negligible: root sum square of its elements, each in units of the larger of the
 /// tolerance and its 1 sigma, below one.
 bool arrives(const LegSituation& situation, const Vector6& error, const LegPolicy& policy);
 
@@ -52,21 +52,21 @@ enum class LegAction : unsigned char {
   kKeep,      ///< the plan arrives
   kCorrect,   ///< same burn times, other impulses
   kReplan,    ///< a new closed-form plan
-  kHandOver,  ///< none of these arrives: the rest of the leg is for another solver
+  kHandOver,  ///< none of these arrives: the leg is passed to another solver
 };
 
 struct LegDecision {
   LegAction action = LegAction::kHandOver;
-  Plan plan;                        ///< of the action; at kHandOver the burns as they were, the missed ones left out
-  Vector6 error = Vector6::Zero();  ///< at the waypoint, with that plan, dimensionless
-  Status closed_form = Status::kNotReady;  ///< of the closed-form solver, if it was asked
+  Plan plan;                               ///< of the action; at kHandOver the previous burns without the missed ones
+  Vector6 error = Vector6::Zero();         ///< at the waypoint, with that plan, dimensionless
+  Status closed_form = Status::kNotReady;  ///< of the closed-form solver, if it was invoked
 };
 
 /// The first half of a decision, for the plan of any solver: keep it or correct it, else kHandOver. Errors of fly().
 Result<LegDecision> keep_or_correct(const LegSituation& situation, const Plan& plan, const LegPolicy& policy);
 
-/// One decision. Burns of `plan` before `earliest_burn` count as missed. Errors of fly(): then nothing is known about
-/// the leg.
+/// One decision. Burns of `plan` before `earliest_burn` count as missed. Errors of fly(): then the state of the leg is
+/// unknown.
 Result<LegDecision> decide_leg(const LegSituation& situation, const Plan& plan, const LegPolicy& policy);
 
 }  // namespace vbar::fsw::control

@@ -1,6 +1,6 @@
 #pragma once
 // The near-circular view of relative motion that the closed-form solver is made of: a tangential impulse changes da
-// and, by drift, dlambda, and turns de along one phase; a normal impulse changes di along one phase (Chernick and
+// and, by drift, dlambda, and changes de along one phase; a normal impulse changes di along one phase (Chernick and
 // D'Amico 2018). Terms of order e are left to the caller, who evaluates the exact effects.
 
 #include "fsw/core/types.h"
@@ -38,15 +38,15 @@ TangentialTask tangential_task(const NearCircularOrbit& orbit, const Vector6& ps
 /// into it.
 double eccentricity_phase(const NearCircularOrbit& orbit, double window, double offset);
 
-/// Lower bounds of the delta-v (m/s) for each part of a pseudo-state by reachable-set theory: radial impulses left out,
-/// which could help only in windows shorter than 0.3 orbits.
+/// Lower bounds of the delta-v (m/s) for each part of a pseudo-state by reachable-set theory: radial impulses excluded,
+/// which are of use only in windows shorter than 0.3 orbits.
 struct ReachableBounds {
   double da = 0.0;
   double dlambda = 0.0;
   double de = 0.0;
   double di = 0.0;
 
-  /// All in-plane parts must be met, and one set of burns may meet them together: the largest rules.
+  /// All in-plane parts must be achieved, possibly by one set of burns: the largest bound applies.
   [[nodiscard]] double in_plane() const;
 };
 

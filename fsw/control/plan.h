@@ -1,8 +1,8 @@
 #pragma once
-// What every control solver takes and gives.
+// Input and output of every control solver.
 //
 // All algebra is in dimensionless mean ROE of the target (deputy) with respect to the servicer (chief). The solvers
-// think of a manoeuvring deputy; a plan's burns are already those of the servicer: dv_servicer = -dv_deputy, in the
+// assume a manoeuvring deputy; a plan's burns are already those of the servicer: dv_servicer = -dv_deputy, in the
 // servicer's RTN.
 
 #include <array>
@@ -18,7 +18,7 @@ namespace vbar::fsw::control {
 
 inline constexpr std::size_t kMaxBurns = 32;
 
-/// Which solver made a plan; the number stands in packets.
+/// The solver that made a plan; the numbers are used in packets.
 enum class Solver : signed char { kNone = -1, kClosedForm = 0, kKoenigDamico = 1, kLeastSquares = 2 };
 
 /// An impulse of the servicer, m/s in its RTN frame at `time`.
@@ -44,12 +44,12 @@ struct Plan {
   }
 };
 
-/// Bring the ROE from their free drift to where they shall be, by impulses in [start, arrival].
+/// Change the ROE from their free drift to the desired ones, by impulses in [start, arrival].
 struct ControlProblem {
   GpsTime start;                     ///< earliest burn, epoch of servicer_mean
   GpsTime arrival;                   ///< waypoint time
   orbit::QnsElements servicer_mean;  ///< mean elements of the servicer at `start`
-  /// Change of the mean ROE wanted at `arrival` beyond the free drift (the pseudo-state w of the paper), dimensionless.
+  /// Desired change of the mean ROE at `arrival` beyond the free drift (the paper's pseudo-state w), dimensionless.
   Vector6 pseudo_state = Vector6::Zero();
 };
 

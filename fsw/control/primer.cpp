@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kCoarseTimes = 12;
 static_assert(3 * kCoarseTimes <= kMaxActive);
-constexpr std::size_t kMaxAdded = 10;  ///< impulses that join the active set at once
+constexpr std::size_t kMaxAdded = 10;  ///< impulses added to the active set at once
 constexpr double kMinPivot = 1e-9;     ///< of the equilibrated gramian; windows under about 0.1 s fall below
 constexpr double kMinSpan = 1e-3;      ///< pivot of the active effects' gramian below which none is dropped
 constexpr double kDropMargin = 0.01;   ///< impulses whose contact is lower than 1 by this leave the active set
@@ -47,7 +47,7 @@ void add_impulse(const ImpulseGrid& grid, const Scaling& scaling, std::size_t ti
 }
 
 /// Calls visit(index) for the coarse times: both ends and points between them by the golden ratio, whose spacing
-/// resonates with no period of the effects (at half and whole orbits they lose rank). A time may come twice.
+/// is not commensurable with any period of the effects (at half and whole orbits they lose rank). A time may recur.
 template <class Visit>
 void for_each_coarse_time(std::size_t size, Visit visit) {
   constexpr double kGoldenRatio = 0.6180339887498949;
@@ -78,7 +78,7 @@ Status make_scaling(const ImpulseGrid& grid, const Vector6& target, Scaling& sca
   return math::is_finite(scaling.target_norm) && scaling.target_norm > 0.0 ? Status::kOk : Status::kNotFinite;
 }
 
-/// A time where the primer vector is too long.
+/// A time at which the primer vector is too long.
 struct Violation {
   std::size_t time_index = 0;
   Contact contact;
@@ -105,8 +105,8 @@ void insert_peak(const Violation& peak, GridScan& scan) {
   scan.peaks[place] = peak;
 }
 
-/// The ends of the grid count as peaks, a plateau by its last time. A value that is not finite makes largest_squared
-/// so.
+/// The ends of the grid count as peaks, a plateau by its last time. A non-finite value makes largest_squared non-finite
+/// as well.
 GridScan scan_grid(const ImpulseGrid& grid, const Vector6& lambda) {
   GridScan scan;
   Violation last;
@@ -135,7 +135,7 @@ bool spans(const Matrix6& gramian) {
 }
 
 /// Drops the impulses whose contact is well below 1, except those without which the others would not span the state
-/// space (lambda would then be free to run away).
+/// space (lambda would then be unbounded).
 void drop_inactive(PrimerProgram& program) {
   std::array<bool, kMaxActive> dropped{};
   Matrix6 kept_gramian = Matrix6::Zero();
@@ -178,7 +178,7 @@ void start_program(const ImpulseGrid& grid, const Scaling& scaling, const Vector
   });
 }
 
-/// The program's impulses in order of time, in the caller's units, those of one time as one; their cost and residual.
+/// The program's impulses in order of time, in the caller's units, merged by time; their cost and residual.
 void store_impulses(const ImpulseGrid& grid, const PrimerProgram& program, double unit, PrimerSolution& solution) {
   for (std::size_t k = 0; k < program.count; ++k) {
     const ActiveImpulse& impulse = program.active[k];
@@ -217,7 +217,7 @@ Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& targ
   if (started != Status::kOk) return started;
 
   PrimerSolution solution;
-  double least_bound = kNoBound;
+  double min_bound = kNoBound;
   for (int round = 1; round <= settings.max_rounds; ++round) {
     const PrimerProgramEnd end =
         solve_primer_program(program, kGapShare * settings.cost_tolerance, settings.max_newton_steps);
@@ -237,10 +237,10 @@ Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& targ
       store_impulses(grid, program, scaling.target_norm, solution);
       return solution.residual <= kMaxResidual ? Result<PrimerSolution>(solution) : Status::kDidNotConverge;
     }
-    // Where the dual has many optima, an exchange need not bring progress; dropping would then go round in circles.
+    // If the dual has several optima, an exchange need not bring progress; dropping would then cycle.
     const double bound = program.target.dot(program.lambda);
-    if (bound < least_bound * (1.0 - kProgress * settings.cost_tolerance)) drop_inactive(program);
-    least_bound = std::min(least_bound, bound);
+    if (bound < min_bound * (1.0 - kProgress * settings.cost_tolerance)) drop_inactive(program);
+    min_bound = std::min(min_bound, bound);
     add_peaks(grid, scaling, scan, program);
     const Status restarted = restart_primer_program(program);
     if (restarted != Status::kOk) return Status::kDidNotConverge;

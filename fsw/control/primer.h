@@ -6,7 +6,7 @@
 //     minimise sum_j cost_j(dv_j)   subject to   sum_j G_j dv_j = target,
 //
 // solved through its dual: maximise target' lambda with contact_j(G_j' lambda) <= 1 at every time j. G_j' lambda is the
-// primer vector; impulses happen only where its contact function reaches 1. Knows nothing of orbits: the effects G_j
+// primer vector; impulses occur only where its contact function reaches 1. Independent of orbits: the effects G_j
 // are given.
 
 #include <array>
@@ -23,17 +23,17 @@ namespace vbar::fsw::control {
 /// Candidate times, by index, in order of time. The caller owns the storage.
 struct ImpulseGrid {
   std::span<const Matrix63> effects;  ///< change of the final state per impulse at each time (per m/s)
-  std::span<const ThrustCost> costs;  ///< one a time
+  std::span<const ThrustCost> costs;  ///< one per time
 };
 
 struct PrimerSettings {
   double cost_tolerance = 1e-3;  ///< the cost exceeds the optimum of the grid by at most this part; 1e-5 to 0.1
-  double prune_ratio = 1e-3;     ///< impulses below this part of the largest one go, if the others can make up for them
+  double prune_ratio = 1e-3;     ///< impulses below this part of the largest are dropped if possible
   int max_rounds = 30;           ///< exchanges of the active set
   int max_newton_steps = 60;     ///< for each active set; 12 is typical
 };
 
-/// Caratheodory: six impulses reach whatever many can, at the same cost.
+/// Caratheodory: six impulses achieve the effect of any number, at the same cost.
 inline constexpr std::size_t kMaxImpulses = 6;
 
 struct Impulse {
@@ -45,21 +45,20 @@ struct Impulse {
 struct PrimerSolution {
   std::array<Impulse, kMaxImpulses> impulses{};
   std::size_t count = 0;
-  double cost = 0.0;  ///< of the impulses, m/s
-  double lower_bound =
-      0.0;  ///< no set of impulses on the grid costs less: target' lambda, lambda feasible on all of it
+  double cost = 0.0;         ///< of the impulses, m/s
+  double lower_bound = 0.0;  ///< lower bound of the cost on the grid: target' lambda, lambda feasible on all of it
   Vector6 lambda = Vector6::Zero();  ///< the dual variable behind lower_bound, m/s per unit of state
   double residual = 0.0;             ///< |target - sum G dv| / |target|, in the solver's scaling of the state
   int rounds = 0;                    ///< active sets solved
   int newton_steps = 0;              ///< over all rounds
 };
 
-/// Scratch of the solver, about 18 kB.
+/// Workspace of the solver, about 18 kB.
 struct PrimerWorkspace {
   PrimerProgram program;
 };
 
-/// The impulses that bring about `target` at least cost. A zero target needs none. Errors: kInvalidArgument (settings,
+/// The impulses that achieve `target` at minimum cost. A zero target needs none. Errors: kInvalidArgument (settings,
 /// sizes), kNotFinite (a target or an effect), kSingular (the times allowed do not span the state space: none, too few,
 /// too close), kDidNotConverge.
 Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& target, const PrimerSettings& settings,

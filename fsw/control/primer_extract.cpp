@@ -106,7 +106,7 @@ void eliminate_one(const PrimerProgram& program, Selection& selection) {
   if (cost_rate > 0.0) {
     for (double& v : shift) v = -v;
   }
-  // A shift without negative part would be a free lunch (target reachable at no cost); rounding alone can feign it.
+  // A shift without negative part would reach the target at no cost; only rounding errors can produce one.
   double length = 0.0;
   std::size_t vanishing = kDimension + 1;
   for (std::size_t k = 0; k <= kDimension; ++k) {
@@ -120,7 +120,7 @@ void eliminate_one(const PrimerProgram& program, Selection& selection) {
   remove(selection, vanishing);
 }
 
-/// Least change of the impulses, weighted by their size, that brings them to the target; returns the residual left. A
+/// Smallest change of the impulses, weighted by their size, that reaches the target; returns the residual. A
 /// few impulses may span less than the state space and yet reach the target: hence the regularisation, whose error the
 /// passes remove.
 double meet_target(const PrimerProgram& program, Selection& selection) {
@@ -142,7 +142,7 @@ double meet_target(const PrimerProgram& program, Selection& selection) {
   return residual_of(program, selection).norm();
 }
 
-/// Takes `candidate` for `selection` if it meets the target at no more than `cost_limit`.
+/// Replaces `selection` by `candidate` if it reaches the target at no more than `cost_limit`.
 bool accept(const PrimerProgram& program, Selection candidate, double cost_limit, Selection& selection) {
   if (candidate.count == 0 || !(meet_target(program, candidate) <= kExact) || !(cost_of(candidate) <= cost_limit)) {
     return false;
@@ -151,13 +151,13 @@ bool accept(const PrimerProgram& program, Selection candidate, double cost_limit
   return true;
 }
 
-/// Removes what rounding and the interior-point method left of the residual.
+/// Removes the residual of rounding and of the interior-point method.
 void polish(const PrimerProgram& program, Selection& selection) {
   Selection polished = selection;
   if (meet_target(program, polished) < residual_of(program, selection).norm()) selection = polished;
 }
 
-/// Place of the smallest impulse between `above` and `limit`; count if none.
+/// Index of the smallest impulse between `above` and `limit`; count if there is none.
 std::size_t smallest_impulse(const Selection& selection, double above, double limit) {
   std::size_t smallest = selection.count;
   double size = limit;
@@ -223,7 +223,7 @@ void extract_impulses(PrimerProgram& program, double prune_ratio, double cost_li
   while (selection.count > kDimension) eliminate_one(program, selection);
 
   prune_small(program, prune_ratio, cost_limit, selection);
-  // The optimum of a continuous time between two grid points shows as a pair of impulses there.
+  // The optimum of a continuous time between two grid points appears as a pair of impulses there.
   while (join_one_pair(program, cost_limit, selection)) {
   }
   polish(program, selection);

@@ -11,7 +11,7 @@ namespace {
 using Cone = PrimerProgram::Cone;
 
 constexpr double kInteriorShare = 0.9;  ///< contact value to which a start shrinks lambda
-constexpr double kStepShare = 0.99;     ///< part of the way to a cone's boundary that a step may go
+constexpr double kStepShare = 0.99;     ///< part of the distance to a cone's boundary that a step may cover
 constexpr double kUnboundedStep = 1e300;
 
 /// lower triangle of m += factor * (g g' + 2 (g w)(g w)')
@@ -176,7 +176,7 @@ Status newton_step(PrimerProgram& program, double complementarity) {
   return Status::kOk;
 }
 
-/// Changes the multipliers so that they reach `missing` more, the large ones most, and stay inside their cones.
+/// Changes the multipliers so that they reach `missing` more, mainly the large ones, and stay inside their cones.
 Status meet_target(PrimerProgram& program, const Vector6& missing) {
   Matrix6 gramian = Matrix6::Zero();
   for (std::size_t k = 0; k < program.count; ++k) {
@@ -221,7 +221,7 @@ Status restart_primer_program(PrimerProgram& program) {
   const double contact = largest_contact(program);
   if (contact > kInteriorShare) program.lambda *= kInteriorShare / contact;
 
-  // On the central path u = mu y / (1 - |y|^2); mu is the one that meets the target best.
+  // On the central path u = mu y / (1 - |y|^2); mu is the one with the smallest residual.
   Vector6 reached = Vector6::Zero();
   for (std::size_t k = 0; k < program.count; ++k) {
     ActiveImpulse& impulse = program.active[k];

@@ -4,7 +4,7 @@
 //     maximise w' lambda   subject to   |G_k' lambda| <= 1   for every active impulse k,
 //
 // a second-order cone program in six variables whose Lagrange multipliers are the impulses: w = sum_k G_k u_k with the
-// least sum |u_k|. Solved by a primal-dual interior-point method with Nesterov-Todd scaling and Mehrotra's
+// minimum sum |u_k|. Solved by a primal-dual interior-point method with Nesterov-Todd scaling and Mehrotra's
 // predictor-corrector (as in Vandenberghe, "The CVXOPT linear and quadratic cone program solvers", 2010, and Domahidi
 // et al., "ECOS", 2013), specialised: the cone point s_k = (1, G_k' lambda) is a function of lambda, so each step is
 // one 6x6 Cholesky factor with two right-hand sides.
@@ -18,19 +18,19 @@
 
 namespace vbar::fsw::control {
 
-/// Cap of the active set: room for the coarse times of three thruster pairs, and a dozen more.
+/// Limit of the active set: the coarse times of three thruster pairs, and twelve more.
 inline constexpr std::size_t kMaxActive = 48;
 
-/// An impulse the program may use, with the multiplier (bound, -dv) of its cone: |dv| <= bound, equal at the optimum.
+/// An impulse of the program, with the multiplier (bound, -dv) of its cone: |dv| <= bound, equal at the optimum.
 struct ActiveImpulse {
   Matrix63 effect = Matrix63::Zero();  ///< change of the scaled state per impulse; zero columns for axes outside `axes`
-  std::size_t time_index = 0;          ///< place in the grid
+  std::size_t time_index = 0;          ///< index in the grid
   AxisSet axes = 0;
   Vector3 dv = Vector3::Zero();
   double bound = 0.0;
 };
 
-/// The program, its present point and the Nesterov-Todd scaling, one fixed-size object. State and impulses are scaled
+/// The program, its current point and the Nesterov-Todd scaling, one fixed-size object. State and impulses are scaled
 /// by the caller so that |target| = 1 and the effects are of order one.
 struct PrimerProgram {
   Vector6 target = Vector6::Zero();
@@ -65,11 +65,11 @@ struct PrimerProgramEnd {
 /// kSingular if the active effects do not span the state space.
 Status start_primer_program(PrimerProgram& program);
 
-/// Starts from the present lambda after the active set has changed: lambda is shrunk to the interior, the multipliers
-/// are put near the central path, as if lambda were on it, meeting w = sum G u. kSingular as above.
+/// Starts from the current lambda after the active set has changed: lambda is shrunk to the interior, the multipliers
+/// are set near the central path, as if lambda were on it, satisfying w = sum G u. kSingular as above.
 Status restart_primer_program(PrimerProgram& program);
 
-/// Improves the present point until the duality gap is below `relative_gap` of the cost and w - sum G u below the same
+/// Improves the current point until the duality gap is below `relative_gap` of the cost and w - sum G u below the same
 /// part of |w|. kDidNotConverge after `max_steps` Newton steps; kSingular or kNotFinite if a step cannot be computed.
 PrimerProgramEnd solve_primer_program(PrimerProgram& program, double relative_gap, int max_steps);
 

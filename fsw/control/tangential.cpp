@@ -10,13 +10,13 @@ namespace {
 using Vector4 = Eigen::Matrix<double, 4, 1>;
 using Matrix4 = Eigen::Matrix<double, 4, 4>;
 
-// Two solutions count as equally cheap within this, relative: the earlier times then win, so rounding cannot flip the
-// choice.
+// Two solutions are equally cheap within this, relative: the earlier times are then chosen, independent of rounding
+// errors.
 constexpr double kSameCost = 1e-9;
 
 // Magnitudes at three times; kSingular if they share one parity.
 Result<TangentialBurns> three_burns(const TangentialTask& task, const std::array<PhaseTime, 3>& times) {
-  // The one of the lonely parity is c; a and b share the other.
+  // The one of the single parity is c; a and b share the other.
   std::size_t c = 3;
   for (std::size_t k = 0; k < 3; ++k) {
     if (times[(k + 1) % 3].parity != times[k].parity && times[(k + 2) % 3].parity != times[k].parity) c = k;
@@ -40,7 +40,7 @@ Result<TangentialBurns> three_burns(const TangentialTask& task, const std::array
   return burns;
 }
 
-// What a unit tangential impulse does to [sum, moment / window, e_cos, e_sin].
+// Effect of a unit tangential impulse on [sum, moment / window, e_cos, e_sin].
 Vector4 column(const NearCircularOrbit& orbit, double window, double offset) {
   const double phase = eccentricity_phase(orbit, window, offset);
   return {1.0, 1.0 - offset / window, math::cos(phase), math::sin(phase)};
@@ -51,7 +51,7 @@ Vector4 right_hand_side(const TangentialTask& task) {
 }
 
 // One basis of the simplex method: four columns, each with a sign such that its variable is not negative. Index
-// kArtificial and above are the four unit columns of the start, priced so high that they leave.
+// kArtificial and above are the four unit columns of the start, with a cost so high that they leave.
 struct Basis {
   static constexpr std::size_t kArtificial = 1U << 16;
   static constexpr double kArtificialPrice = 1e4;
@@ -123,7 +123,7 @@ Result<TangentialBurns> cheapest_four_burns(const NearCircularOrbit& orbit, cons
     const Vector4 amounts = inverse * rhs;
     const Vector4 duals = inverse.transpose() * basis.prices;
 
-    // The most under-priced column enters, with the sign that makes its amount positive.
+    // The column with the most negative reduced cost enters, with the sign that makes its amount positive.
     std::size_t entering = offsets.size();
     double steepest = 1.0 + kOptimal;
     Vector4 entering_column = Vector4::Zero();
@@ -151,13 +151,13 @@ Result<TangentialBurns> cheapest_four_burns(const NearCircularOrbit& orbit, cons
 
     const Vector4 use = inverse * entering_column;
     int leaving = -1;
-    double least = 0.0;
+    double minimum = 0.0;
     for (int row = 0; row < 4; ++row) {
       if (use[row] < 1e-12) continue;
       const double ratio = amounts[row] / use[row];
-      if (leaving >= 0 && ratio >= least) continue;
+      if (leaving >= 0 && ratio >= minimum) continue;
       leaving = row;
-      least = ratio;
+      minimum = ratio;
     }
     if (leaving < 0) return Status::kSingular;
     basis.replace(leaving, entering, entering_column);

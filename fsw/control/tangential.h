@@ -10,10 +10,10 @@
 
 namespace vbar::fsw::control {
 
-/// Times a closed-form plan may choose from: two an orbit on the phase grid, so windows of up to 15 orbits.
+/// Times available to a closed-form plan: two per orbit on the phase grid, for windows of up to 15 orbits.
 inline constexpr std::size_t kMaxPhaseTimes = 32;
 
-/// A time at which a tangential impulse turns the eccentricity vector along the wanted direction (parity +1) or against
+/// A time at which a tangential impulse changes the eccentricity vector along the desired direction (+1) or against
 /// (-1).
 struct PhaseTime {
   double offset = 0.0;  ///< s into the window
@@ -45,14 +45,14 @@ struct TangentialBurns {
   [[nodiscard]] double cost() const;
 };
 
-/// The cheapest three impulses at times of the grid that meet da, dlambda and |de|, the phase of de being that of the
-/// grid: the exact optimum over the grid, since a basic solution of three equations has three non-zeros at most
+/// The cheapest three impulses at times of the grid that achieve da, dlambda and |de|, the phase of de being that of
+/// the grid: the exact optimum over the grid, since a basic solution of three equations has at most three non-zeros
 /// (Chernick and D'Amico 2018). Of equally cheap ones the earliest. kSingular if the grid has fewer than three times or
 /// only one parity.
 Result<TangentialBurns> cheapest_three_burns(const TangentialTask& task, std::span<const PhaseTime> grid);
 
-/// The cheapest impulses (four at most) among `offsets` (s into the window) that meet da, dlambda, dex and dey,
-/// whatever their phases: the linear program min sum |x| by the revised simplex method. kSingular if the offsets cannot
+/// The cheapest impulses (at most four) among `offsets` (s into the window) that achieve da, dlambda, dex and dey,
+/// of any phase: the linear program min sum |x| by the revised simplex method. kSingular if the offsets cannot
 /// meet the task.
 Result<TangentialBurns> cheapest_four_burns(const NearCircularOrbit& orbit, const TangentialTask& task,
                                             std::span<const double> offsets);

@@ -1,5 +1,5 @@
 #pragma once
-// What an impulse costs, by what the spacecraft can thrust with at a time, and the contact function of that cost
+// Cost of an impulse, by the thrusters available at a time, and the contact function of that cost
 // (Koenig & D'Amico 2020, "Fast Algorithm for Fuel-Optimal Impulsive Control of Linear Systems with Time-Varying
 // Cost").
 //
@@ -15,7 +15,7 @@
 namespace vbar::fsw::control {
 
 enum class ThrustCost : std::uint8_t {
-  kSteerable,        ///< |dv|: one thruster that is turned to its burn
+  kSteerable,        ///< |dv|: one thruster that is steered
   kOrthogonalPairs,  ///< |dv_R| + |dv_T| + |dv_N|: three pairs of thrusters along the RTN axes
   kRadialAndPlane,   ///< |dv_R| + hypot(dv_T, dv_N): a pair along R, one steerable thruster in the plane of T and N
 };
@@ -28,7 +28,7 @@ struct AxisGroups {
   std::size_t count = 0;
 };
 
-/// The groups whose norms add up to the cost.
+/// The groups whose norms are summed.
 constexpr AxisGroups axis_groups(ThrustCost cost) {
   switch (cost) {
     case ThrustCost::kSteerable:

@@ -1,6 +1,6 @@
 #pragma once
 // The one clock: integer nanoseconds of GPS time since 1980-01-06 00:00:00. No floating-point time is stored or
-// compared; seconds as double exist only as differences handed to dynamics.
+// compared; seconds as double exist only as differences passed to dynamics.
 
 #include <compare>
 #include <cstdint>

@@ -1,29 +1,29 @@
 #pragma once
-// Errors as values. A function that can fail returns Result<T>; a caller cannot drop it unseen.
+// Errors as values. A function that can fail returns Result<T>; a caller cannot ignore it silently.
 
 #include <cstdint>
 
 namespace vbar::fsw {
 
-/// Why something was refused or did not work. One list for all flight code, so that telemetry can carry it.
+/// Why an operation was refused or failed. One list for all flight code, so that telemetry can carry it.
 enum class Status : std::uint8_t {
   kOk = 0,
   kInvalidArgument,  ///< a precondition of the call does not hold
-  kNotFinite,        ///< a NaN or an infinity where a number is needed
+  kNotFinite,        ///< a NaN or an infinity where a finite value is required
   kOutOfRange,       ///< a number outside the range in which the model or the table is valid
   kDidNotConverge,   ///< an iteration reached its bound
   kSingular,         ///< a linear system without a usable solution
   kFull,             ///< a queue, pool or buffer has no room left
-  kTooShort,         ///< input ends before the thing it should hold
-  kTooLong,          ///< input is longer than the thing it should hold
+  kTooShort,         ///< input ends before the item it should contain
+  kTooLong,          ///< input is longer than the item it should contain
   kWrongType,        ///< packet identifier or type hash is not the expected one
   kBadChecksum,      ///< CRC does not match
   kBadSequence,      ///< out of order, duplicated or of another session
   kUnsafe,           ///< a plan that fails the passive-safety test
-  kNotReady,         ///< asked before it could be answered
+  kNotReady,         ///< requested before it is available
 };
 
-/// A value or the reason there is none. `value()` may only be read when `ok()`.
+/// A value or the reason why it is missing. `value()` may only be read when `ok()`.
 template <class T>
 class [[nodiscard]] Result {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// A bounded queue of things with a time tag, kept in an order that does not depend on the order of arrival.
+// A bounded queue of entries with a time tag, kept in an order that does not depend on the order of arrival.
 
 #include <array>
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace vbar::fsw {
 
-/// What orders entries: time first, then the sender's unit and sequence count, so that two entries of the same instant
-/// come out alike however they came in.
+/// Sort key of entries: time first, then the unit and sequence count of the sender, so that entries of the same instant
+/// are ordered alike irrespective of their arrival.
 struct FilingTag {
   GpsTime time;
   std::uint8_t unit = 0;
@@ -29,7 +29,7 @@ class TimeOrderedQueue {
     T value{};
   };
 
-  /// Files an entry. kBadSequence: one with this very tag is already there (a duplicate); kFull.
+  /// Files an entry. kBadSequence: an entry with the same tag exists already (a duplicate); kFull.
   [[nodiscard]] Status file(const FilingTag& tag, const T& value) {
     std::size_t place = size_;
     while (place > 0 && tag < entries_[place - 1].tag) --place;

@@ -1,5 +1,5 @@
 #pragma once
-// Fixed-size vectors and matrices of flight code. Dynamic sizes do not exist on board.
+// Fixed-size vectors and matrices of flight code. Dynamic sizes are not used on board.
 
 #if !defined(EIGEN_DONT_VECTORIZE) || !defined(EIGEN_DONT_PARALLELIZE)
 #error "build through vbar_options: vectorised Eigen changes the bits of flight code"

@@ -1,11 +1,11 @@
 #pragma once
-// A Gaussian estimate, and what a filter does to it by ones: forget a component, add noise, fold in a scalar
-// measurement. All of it works in place: at 80 components a second covariance would not fit a flight computer's stack.
+// A Gaussian estimate and the elementary operations of a filter: reset a component, add process noise, process a scalar
+// measurement. All operations work in place: with 80 components a second covariance would exceed the stack on board.
 //
-// Components may be idle (an ambiguity of a satellite not in view): their variance is zero, and no operation touches
+// Components may be inactive (an ambiguity of a satellite not in view): their variance is zero; no operation changes
 // them.
 //
-// Products are Eigen's lazy ones: its blocked kernels for larger matrices keep a way to the heap in the object code.
+// Products are Eigen's lazy ones: its blocked kernels for larger matrices leave heap calls in the object code.
 
 #include <Eigen/Core>
 
@@ -14,13 +14,13 @@
 
 namespace vbar::fsw::estimation {
 
-/// What came of a scalar measurement.
+/// Result of a scalar measurement.
 struct Innovation {
   double value = 0.0;     ///< measured minus predicted
   double variance = 0.0;  ///< predicted, of the estimate and the noise together
   bool accepted = false;
 
-  /// Squared and normalised: chi-square with one degree of freedom if the filter is honest.
+  /// Normalised innovation squared: chi-square with one degree of freedom if the filter is consistent.
   [[nodiscard]] double nis() const { return value * value / variance; }
 };
 
@@ -41,7 +41,7 @@ class Estimate {
   }
   [[nodiscard]] bool is_idle(int i) const { return covariance_(i, i) == 0.0; }
 
-  /// Component i is `mean` with `variance`, independent of all others; variance 0 puts it to rest.
+  /// Component i is `mean` with `variance`, independent of all others; variance 0 deactivates it.
   void reset(int i, double mean, double variance) {
     mean_(i) = mean;
     covariance_.row(i).setZero();
@@ -49,10 +49,10 @@ class Estimate {
     covariance_(i, i) = variance;
   }
 
-  /// Shifts the mean: a known change, as a burn.
+  /// Shifts the mean: a known change, such as a maneuver.
   void shift(int i, double by) { mean_(i) += by; }
 
-  /// Component i shrinks to `factor` of itself, as one that fades.
+  /// Component i is multiplied by `factor`, as in a Gauss-Markov decay.
   void scale(int i, double factor) {
     mean_(i) *= factor;
     covariance_.row(i) *= factor;
@@ -62,7 +62,7 @@ class Estimate {
   /// Independent noise on component i.
   void add_noise(int i, double variance) { covariance_(i, i) += variance; }
 
-  /// The first M components move by x <- mean + A (x - old mean) plus independent noise of covariance Q.
+  /// The first M components are propagated by x <- mean + A (x - old mean) plus independent noise of covariance Q.
   template <int M>
   void transform_head(const Eigen::Matrix<double, M, 1>& mean, const Eigen::Matrix<double, M, M>& a,
                       const Eigen::Matrix<double, M, M>& q) {
@@ -79,17 +79,17 @@ class Estimate {
     symmetrise();
   }
 
-  /// What a measurement with the linear(ised) model z = h x + noise would show: its innovation, not folded in.
+  /// Innovation of a measurement with the linear(ised) model z = h x + noise, without updating the estimate.
   /// `residual`: measured minus predicted.
   [[nodiscard]] Innovation predict(const Vector& h, double residual, double noise_variance) const {
     return {.value = residual, .variance = h.dot(covariance_times(h)) + noise_variance, .accepted = false};
   }
 
-  /// Folds it in unless nis() exceeds `gate`, or anything is not finite.
+  /// Updates the estimate unless nis() exceeds `gate` or a value is not finite.
   Innovation update(const Vector& h, double residual, double noise_variance, double gate) {
     const Vector ph = covariance_times(h);
     Innovation innovation{.value = residual, .variance = h.dot(ph) + noise_variance, .accepted = false};
-    // Written so that a NaN is refused.
+    // Written such that a NaN is refused.
     if (!(innovation.variance > 0.0) || !(innovation.nis() <= gate)) return innovation;
     innovation.accepted = true;
     mean_ += ph * (residual / innovation.variance);
@@ -105,19 +105,19 @@ class Estimate {
     return innovation;
   }
 
-  /// Whether every number is finite and no variance negative: a filter that fails it must start again.
+  /// Whether every value is finite and no variance negative; otherwise the filter must be restarted.
   [[nodiscard]] bool is_sound() const {
     double sum = 0.0;
-    double least = 0.0;
+    double minimum = 0.0;
     for (int i = 0; i < N; ++i) {
       sum += mean_(i) + covariance_.col(i).sum();
-      least = covariance_(i, i) < least ? covariance_(i, i) : least;
+      minimum = covariance_(i, i) < minimum ? covariance_(i, i) : minimum;
     }
-    return math::is_finite(sum) && least >= 0.0;
+    return math::is_finite(sum) && minimum >= 0.0;
   }
 
  private:
-  /// P h. A measurement sees few of the components; the columns of the others are left out.
+  /// P h. A measurement depends on few of the components; the columns of the others are skipped.
   [[nodiscard]] Vector covariance_times(const Vector& h) const {
     Vector product = Vector::Zero();
     for (int c = 0; c < N; ++c) {

@@ -1,6 +1,6 @@
 #pragma once
-// Where each block of a filter's state stands. A mission composes its state from blocks - orbit, clocks, attitude,
-// ambiguities - by naming them in a list; blocks know their own size and nothing of each other.
+// Position of each block in the state of a filter. A mission composes its state from blocks - orbit, clocks, attitude,
+// ambiguities - by naming them in a list; blocks have a size and are independent of each other.
 //
 //   using State = Layout<RelativeOrbit, EmpiricalAcceleration, ReceiverClock>;
 //   State::kSize, State::offset<ReceiverClock>()

@@ -1,9 +1,9 @@
 #pragma once
 // The unscented transform as statistical linear regression (Julier, Uhlmann 2004; Lefebvre et al. 2002): the 2M + 1
-// sigma points of M components carry a nonlinear function's mean, its slope and its curvature, without a derivative.
+// sigma points of M components yield the mean, the Jacobian and the nonlinearity of a function without derivatives.
 //
-// The slope makes the transform fit a filter whose other components enter linearly (clocks, ambiguities): only the
-// nonlinear ones are sampled, and what they share with the rest follows from the slope exactly. With no other
+// The Jacobian makes the transform usable in a filter whose other components enter linearly (clocks, ambiguities): only
+// the nonlinear ones are sampled, and their correlation with the others follows from the Jacobian. Without other
 // components this is the unscented Kalman filter with additive noise.
 
 #include <array>
@@ -23,7 +23,7 @@ struct UnscentedParameters {
   double kappa = 0.0;
 };
 
-/// Sigma points of a mean and covariance, and what is needed to fold a function's values back.
+/// Sigma points of a mean and covariance, and the regression of function values on them.
 template <int M>
 class UnscentedTransform {
  public:
@@ -50,37 +50,37 @@ class UnscentedTransform {
     return side < M ? Vector(mean_ + gamma_ * lower_.col(column)) : Vector(mean_ - gamma_ * lower_.col(column));
   }
 
-  /// A vector function y(x) of the points: mean, slope A = P_yx P_xx^-1 and the covariance about A x.
+  /// A vector function y(x) of the points: mean, Jacobian A = P_yx P_xx^-1 and the nonlinearity covariance about A x.
   template <int K>
   struct Regression {
     Eigen::Matrix<double, K, 1> mean;
-    Eigen::Matrix<double, K, M> slope;
-    Eigen::Matrix<double, K, K> remainder;
+    Eigen::Matrix<double, K, M> jacobian;
+    Eigen::Matrix<double, K, K> nonlinearity;
   };
 
   template <int K>
   [[nodiscard]] Regression<K> regress(const std::array<Eigen::Matrix<double, K, 1>, kPoints>& values) const {
     Regression<K> result;
-    // About the central value, which keeps a metre beside seven million.
+    // About the central value, which preserves a metre in seven thousand kilometres.
     result.mean = Eigen::Matrix<double, K, 1>::Zero();
     for (std::size_t k = 1; k < kPoints; ++k) result.mean += side_weight_ * (values[k] - values[0]);
     const Eigen::Matrix<double, K, 1> shift = result.mean;
     result.mean += values[0];
-    result.remainder = (covariance_weight_ * shift).lazyProduct(shift.transpose());
+    result.nonlinearity = (covariance_weight_ * shift).lazyProduct(shift.transpose());
     Eigen::Matrix<double, K, M> along;
     for (int m = 0; m < M; ++m) {
       const Eigen::Matrix<double, K, 1> plus = values[at(m + 1)] - values[0];
       const Eigen::Matrix<double, K, 1> minus = values[at(m + 1 + M)] - values[0];
       along.col(m) = (plus - minus) / (2.0 * gamma_);
-      // (plus - shift)(plus - shift)' + (minus - shift)(minus - shift)' without its odd part, which the slope holds.
+      // (plus - shift)(plus - shift)' + (minus - shift)(minus - shift)' without its odd part, which is in the Jacobian.
       const Eigen::Matrix<double, K, 1> even = 0.5 * (plus + minus) - shift;
-      result.remainder += (2.0 * side_weight_ * even).lazyProduct(even.transpose());
+      result.nonlinearity += (2.0 * side_weight_ * even).lazyProduct(even.transpose());
     }
-    // along = slope * lower
+    // along = Jacobian * lower
     for (int m = M - 1; m >= 0; --m) {
       Eigen::Matrix<double, K, 1> column = along.col(m);
-      for (int j = m + 1; j < M; ++j) column -= lower_(j, m) * result.slope.col(j);
-      result.slope.col(m) = column / lower_(m, m);
+      for (int j = m + 1; j < M; ++j) column -= lower_(j, m) * result.jacobian.col(j);
+      result.jacobian.col(m) = column / lower_(m, m);
     }
     return result;
   }

@@ -1,4 +1,4 @@
-// The C face of the flight software (vbar_gnc.h).
+// The C interface of the flight software (vbar_gnc.h).
 
 #include <new>
 
@@ -15,7 +15,7 @@ vbar_status as_c(Status status) {
 }
 
 bool is_aligned(const void* state) {
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the address itself is asked for
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the address itself is required
   return reinterpret_cast<std::uintptr_t>(state) % alignof(Gnc) == 0;
 }
 

@@ -6,15 +6,15 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-bool is_between(double x, double least, double most) {
-  return x >= least && x <= most;
+bool is_between(double x, double minimum, double maximum) {
+  return x >= minimum && x <= maximum;
 }
 
-bool is_above(double x, double most) {
-  return x > 0.0 && x <= most;
+bool is_above(double x, double maximum) {
+  return x > 0.0 && x <= maximum;
 }
 
-/// A body's: positive, and no moment larger than the other two together, in whatever axes.
+/// An inertia tensor is positive definite, and no principal moment exceeds the sum of the other two.
 bool is_inertia(const Matrix3& inertia) {
   const auto eigen = math::symmetric_eigen(inertia);
   if (!eigen.ok()) return false;
@@ -22,7 +22,7 @@ bool is_inertia(const Matrix3& inertia) {
   return moments(0) > 1e-6 && moments(2) < 1e7 && moments(2) <= 1.0001 * (moments(0) + moments(1));
 }
 
-/// kOutOfRange if the points lie nearly in one place or on one line, or too far out for any target.
+/// kOutOfRange if the points are nearly coincident or collinear, or too far from the origin for any target.
 Result<pose::KeypointShape> keypoint_shape(const pose_configuration& p) {
   pose::KeypointShape shape{};
   Matrix3 spread = Matrix3::Zero();
@@ -137,7 +137,7 @@ Result<navigation::PoseSettings> pose_settings(const camera_configuration& c, co
                          is_between(p.acceleration_psd_most, p.acceleration_psd, 1.0) &&
                          is_above(p.angular_acceleration_psd, 1.0) && is_between(p.maneuver_sigma, 0.0, 1.0) &&
                          is_between(p.maneuver_sigma_relative, 0.0, 1.0) && p.start_images >= 1 &&
-                         p.start_images <= static_cast<std::int32_t>(navigation::PoseStart::kMost) &&
+                         p.start_images <= static_cast<std::int32_t>(navigation::PoseInitialiser::kMaxSamples) &&
                          (start_sigma_a_roe_m.array() > 0.0).all() && (start_sigma_a_roe_m.array() < 1e6).all();
   if (!is_usable) return Status::kOutOfRange;
   navigation::PoseSettings settings;
@@ -148,7 +148,7 @@ Result<navigation::PoseSettings> pose_settings(const camera_configuration& c, co
                                                .a_roe_m = vector(p.apriori_a_roe_m),
                                                .sigma_a_roe_m = apriori_sigma_a_roe_m};
   }
-  settings.start.least_images = p.start_images;
+  settings.start.min_images = p.start_images;
   settings.start.sigma_a_roe_m = start_sigma_a_roe_m;
   settings.filter.camera = camera.value().model;
   settings.filter.shape = shape.value();

@@ -1,5 +1,5 @@
 #pragma once
-// Telecommands of cameras and of navigation with them, checked. kOutOfRange for a value no field may have.
+// Validated telecommands of cameras and of camera-based navigation. kOutOfRange for a value outside its valid range.
 
 #include "fsw/angles_only/angles_only_tracking.h"
 #include "fsw/core/result.h"

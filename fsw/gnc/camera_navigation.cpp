@@ -9,10 +9,10 @@ namespace {
 
 constexpr double kSpeedOfLight = 299792458.0;  // m/s
 
-// An image may come so much after its time.
+// Largest delay of an image with respect to its time tag.
 constexpr Duration kLongestDelay = duration_of_seconds(600);
 
-// The target is seen when it is lit. Near an edge of the shadow it may be either.
+// The target is visible when it is illuminated. Near an edge of the shadow it may or may not be.
 constexpr double kLitProbability = 0.95;
 constexpr double kEdgeProbability = 0.5;
 constexpr double kEdge_s = 20.0;
@@ -67,7 +67,7 @@ void CameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::EarthOr
 void CameraNavigation::update(GpsTime now, Inbox& inbox, navigation::GnssNavigation& own_orbit,
                               std::span<const navigation::Burn> burns) {
   has_image_ = false;
-  fate_ = navigation::BearingFate::kNone;
+  edit_status_ = navigation::BearingEditStatus::kNone;
   const imaging::ImageAssembly& assembly = inbox.image();
   if (!camera_ || !assembly.has_image()) return;
   const bool is_timely = assembly.image_time() <= now && now - assembly.image_time() <= kLongestDelay &&
@@ -90,39 +90,38 @@ void CameraNavigation::take_image(const angles_only::TakenImage& image, navigati
   epoch.sun_eci = sun_eci;
   epoch.servicer_gnss = servicer_at(image.time, own_orbit, burns);
   static_cast<void>(filter_.update(epoch, burns));
-  const angles_only::Sighting& sighting = tracking_.process(image, circumstances_of(image.time, sun_eci, burns));
+  const angles_only::Sighting& sighting = tracking_.process(image, priors_of(image.time, sun_eci, burns));
   if (sighting.status == angles_only::SightingStatus::kNoStars) ++images_without_stars_;
   if (sighting.status == angles_only::SightingStatus::kBearing) {
-    epoch.servicer_gnss.reset();  // it is folded in already
+    epoch.servicer_gnss.reset();  // already processed
     epoch.bearing = sighting.bearing;
-    fate_ = filter_.update(epoch, burns);
+    edit_status_ = filter_.update(epoch, burns);
   }
   last_image_ = image.time;
 }
 
-angles_only::Circumstances CameraNavigation::circumstances_of(GpsTime time, const Vector3& sun_eci,
-                                                              std::span<const navigation::Burn> burns) {
-  angles_only::Circumstances circumstances;
-  circumstances.is_orbit_known = filter_.has_target();
-  if (!circumstances.is_orbit_known) return circumstances;
-  circumstances.servicer = filter_.servicer();
-  circumstances.velocity_over_c_eci =
-      orbit::earth_velocity_over_c_gcrf(time) + circumstances.servicer.velocity_eci / kSpeedOfLight;
+angles_only::ImagePriors CameraNavigation::priors_of(GpsTime time, const Vector3& sun_eci,
+                                                     std::span<const navigation::Burn> burns) {
+  angles_only::ImagePriors priors;
+  priors.is_orbit_known = filter_.has_target();
+  if (!priors.is_orbit_known) return priors;
+  priors.servicer = filter_.servicer();
+  priors.velocity_over_c_eci = orbit::earth_velocity_over_c_gcrf(time) + priors.servicer.velocity_eci / kSpeedOfLight;
   const Matrix3& R_camera_body = tracking_.settings().R_camera_body;
   Matrix3 R_body_eci = Matrix3::Identity();
   if (pointing_) {
-    R_body_eci = R_body_eci_of(*pointing_, time, circumstances.servicer);
-    circumstances.R_camera_eci = R_camera_body * R_body_eci;
+    R_body_eci = R_body_eci_of(*pointing_, time, priors.servicer);
+    priors.R_camera_eci = R_camera_body * R_body_eci;
   }
   if (const Result<orbit::CartesianState> target = filter_.target(); target.ok()) {
-    orbit::RelativeState relative = orbit::relative_state_rtn(circumstances.servicer, target.value());
+    orbit::RelativeState relative = orbit::relative_state_rtn(priors.servicer, target.value());
     if (pointing_) {
       const Vector3 camera_eci = R_body_eci.transpose() * tracking_.settings().position_body_m;
-      relative.position_rtn -= orbit::R_rtn_eci(circumstances.servicer) * camera_eci;
+      relative.position_rtn -= orbit::R_rtn_eci(priors.servicer) * camera_eci;
     }
     const auto prediction = tracking::prediction_of(relative, filter_.covariance_rtn());
-    if (prediction.ok()) circumstances.target = prediction.value();
-    circumstances.detection_probability = detection_probability(target.value(), sun_eci);
+    if (prediction.ok()) priors.target = prediction.value();
+    priors.detection_probability = detection_probability(target.value(), sun_eci);
   }
   std::size_t count = 0;
   for (const navigation::Burn& burn : burns) {
@@ -131,8 +130,8 @@ angles_only::Circumstances CameraNavigation::circumstances_of(GpsTime time, cons
       burns_since_image_[count++] = {burn.time, burn.dv_rtn, angles_only_->maneuver_sigma};
     }
   }
-  circumstances.burns = std::span(burns_since_image_).first(count);
-  return circumstances;
+  priors.burns = std::span(burns_since_image_).first(count);
+  return priors;
 }
 
 }  // namespace vbar::fsw::gnc

@@ -1,6 +1,6 @@
 #pragma once
 // navigate, by camera: from the tiles of an image and the servicer's own GNSS orbit to the states of both spacecraft,
-// and where the camera shall look next.
+// and the pointing of the camera.
 
 #include <optional>
 #include <span>
@@ -17,22 +17,22 @@ namespace vbar::fsw::gnc {
 
 class CameraNavigation {
  public:
-  /// Starts anew with the inbox's configurations of camera and angles-only navigation and its a-priori orbit; what is
-  /// not there stays as it was.
+  /// Restarts with the configurations of camera and angles-only navigation and the a-priori orbit in the inbox; those
+  /// not present remain unchanged.
   void configure(GpsTime now, Inbox& inbox, const orbit::EarthOrientation& earth);
 
-  /// Takes the step's image, if there is one. `own_orbit`, to be brought to `now` afterwards, is brought to the image's
-  /// time here. `burns`: the servicer's, known or commanded, in order of time.
+  /// Processes the image of the step, if there is one. `own_orbit` is propagated here to the time of the image, and by
+  /// the caller to `now` afterwards. `burns`: those of the servicer, executed or commanded, in order of time.
   void update(GpsTime now, Inbox& inbox, navigation::GnssNavigation& own_orbit,
               std::span<const navigation::Burn> burns);
 
-  /// The camera is told this until it is told otherwise.
+  /// Commanded pointing of the camera, valid until the next command.
   void set_pointing(const Pointing& pointing) { pointing_ = pointing; }
 
-  /// Whether the step had an image, and what came of it.
+  /// Whether the step had an image, and its result.
   [[nodiscard]] bool has_image() const { return has_image_; }
   [[nodiscard]] const angles_only::AnglesOnlyTracking& tracking() const { return tracking_; }
-  [[nodiscard]] navigation::BearingFate fate() const { return fate_; }
+  [[nodiscard]] navigation::BearingEditStatus edit_status() const { return edit_status_; }
   [[nodiscard]] std::int32_t images_without_stars() const { return images_without_stars_; }
 
   [[nodiscard]] const navigation::AnglesOnlyNavigation& filter() const { return filter_; }
@@ -40,8 +40,8 @@ class CameraNavigation {
  private:
   void take_image(const angles_only::TakenImage& image, navigation::GnssNavigation& own_orbit,
                   std::span<const navigation::Burn> burns);
-  [[nodiscard]] angles_only::Circumstances circumstances_of(GpsTime time, const Vector3& sun_eci,
-                                                            std::span<const navigation::Burn> burns);
+  [[nodiscard]] angles_only::ImagePriors priors_of(GpsTime time, const Vector3& sun_eci,
+                                                   std::span<const navigation::Burn> burns);
 
   angles_only::AnglesOnlyTracking tracking_;
   navigation::AnglesOnlyNavigation filter_;
@@ -51,7 +51,7 @@ class CameraNavigation {
   std::array<tracking::OwnBurn, 64> burns_since_image_{};
   std::optional<GpsTime> last_image_;
   bool has_image_ = false;
-  navigation::BearingFate fate_ = navigation::BearingFate::kNone;
+  navigation::BearingEditStatus edit_status_ = navigation::BearingEditStatus::kNone;
   std::int32_t images_without_stars_ = 0;
 };
 

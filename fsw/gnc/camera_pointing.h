@@ -1,5 +1,5 @@
 #pragma once
-// Where a camera looks, and where the servicer was at an image's time.
+// Pointing of a camera, and the position of the servicer at the time of an image.
 
 #include <optional>
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace vbar::fsw::gnc {
 
-/// Where the camera shall look: a direction in the servicer's RTN that moves on a straight line.
+/// Commanded line of sight: a direction in the servicer's RTN with a constant rate.
 struct Pointing {
   GpsTime time;
   Vector3 boresight_rtn = Vector3::Zero();       ///< unit vector
@@ -24,15 +24,15 @@ struct Pointing {
   }
 };
 
-/// To the centre of the target. kOutOfRange if there is no distance between them.
+/// To the centre of the target. kOutOfRange if the distance is zero.
 Result<Pointing> pointing_at(GpsTime time, const orbit::CartesianState& servicer, const orbit::CartesianState& target);
 
-/// Axes of the servicer's body under a pointing command, as the platform keeps them: z along the boresight, -y as near
-/// to the zenith as that allows.
+/// Body axes of the servicer under a pointing command: z along the boresight, -y as close to the zenith as possible.
+/// The platform follows the same convention.
 Matrix3 R_body_eci_of(const Pointing& pointing, GpsTime time, const orbit::CartesianState& servicer);
 
-/// The servicer at `time` by its own receiver, through the burns on the way; one at the very time is after it. None if
-/// the receiver has not got so far yet, or is ahead of it.
+/// The servicer at `time` by its own receiver, including burns until then; a burn at `time` is included. No value if
+/// the estimate has not reached `time` yet, or is ahead of it.
 std::optional<orbit::CartesianState> servicer_at(GpsTime time, const navigation::GnssNavigation& own_orbit,
                                                  std::span<const navigation::Burn> burns);
 

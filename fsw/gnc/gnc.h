@@ -1,5 +1,5 @@
 #pragma once
-// The flight software: packets in, a step, packets out. Its whole state is this one object.
+// The flight software: packets in, a step, packets out. Its complete state is this one object.
 
 #include <cstdint>
 #include <optional>
@@ -18,9 +18,9 @@ namespace vbar::fsw::gnc {
 /// Latched faults, bits of telemetry_health.faults.
 enum Fault : std::int32_t {
   kFaultNavigationTimeout = 1 << 0,  ///< no measurement for longer than navigation_timeout_s
-  kFaultHold = 1 << 1,               ///< no solver gave a plan that may be flown
+  kFaultHold = 1 << 1,               ///< no solver produced a plan that is safe to fly
   kFaultInboxFull = 1 << 2,          ///< a packet was dropped because its queue was full
-  kFaultClock = 1 << 3,  ///< a step was asked for at or before the last step's time, or outside the clock's range
+  kFaultClock = 1 << 3,  ///< a step was requested at or before the last step's time, or outside the clock's range
 };
 
 class Gnc {
@@ -32,7 +32,7 @@ class Gnc {
   /// Checks and files one packet for the coming step.
   Status receive(std::span<const std::uint8_t> packet) { return inbox_.receive(packet); }
 
-  /// Runs the step at `now`. Nothing is done but to forget the step's packets if `now` is not later than the last step
+  /// Runs the step at `now`. Only discards the packets of the step if `now` is not later than the last step
   /// (kBadSequence) or outside the clock's range (kOutOfRange).
   Status step(GpsTime now);
 

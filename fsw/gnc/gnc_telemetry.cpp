@@ -1,4 +1,4 @@
-// report: what the flight software tells of a step.
+// report: the telemetry of a step.
 
 #include "fsw/gnc/gnc.h"
 #include "fsw/gnc/message_fields.h"
@@ -7,7 +7,7 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-/// Number of telemetry_pose.keypoint_fate.
+/// Values of telemetry_pose.keypoint_fate.
 std::int8_t keypoint_fate(const pose::Keypoint& seen, const navigation::KeypointUpdate& update) {
   if (update.accepted) return telemetry_pose::kKeypointUsed;
   if (update.is_usable) return telemetry_pose::kKeypointRejected;
@@ -70,7 +70,7 @@ void Gnc::report_gnss() {
   message.fixed = ambiguities.fixed;
   message.fixes = ambiguities.fixes;
   message.releases = ambiguities.releases;
-  message.obstacle = static_cast<std::int8_t>(ambiguities.obstacle);
+  message.obstacle = static_cast<std::int8_t>(ambiguities.rejection_reason);
   message.success_rate = ambiguities.success_rate;
   message.ratio = ambiguities.ratio;
   message.codes_used = last.codes_used;
@@ -96,7 +96,7 @@ std::optional<Pointing> Gnc::pointing_to_target() const {
   return Pointing{.time = now_, .boresight_rtn = *last_seen_rtn};
 }
 
-/// At where the target is thought to be, not where the last image showed it: between images it moves.
+/// Points at the estimated position of the target, not at that of the last image: it moves between images.
 void Gnc::point_camera() {
   const std::optional<Pointing> pointing = pointing_to_target();
   if (!pointing) return;
@@ -127,8 +127,8 @@ void Gnc::report_image() {
   message.attitude_sigma = sighting.attitude_sigma;
   copy(sighting.bearing.direction_eci, message.bearing_eci);
   message.bearing_sigma = sighting.bearing.sigma;
-  const bool is_filtered =
-      camera.fate() == navigation::BearingFate::kFilter || camera.fate() == navigation::BearingFate::kRefused;
+  const bool is_filtered = camera.edit_status() == navigation::BearingEditStatus::kFilter ||
+                           camera.edit_status() == navigation::BearingEditStatus::kRefused;
   if (is_filtered) {
     const navigation::BearingUpdate& update = filter.last_update();
     for (int axis = 0; axis < 2; ++axis) {
@@ -137,7 +137,7 @@ void Gnc::report_image() {
     }
     message.nis = update.nis;
   }
-  message.fate = static_cast<std::int8_t>(camera.fate());
+  message.fate = static_cast<std::int8_t>(camera.edit_status());
   message.filter_runs = filter.valid() ? 1 : 0;
   if (filter.has_target()) {
     copy(filter.a_roe_m(), message.a_roe_osculating_m);
@@ -157,9 +157,10 @@ void Gnc::report_objects() {
   telemetry_objects message{};
   message.step = step_;
   message.image = sighting.image;
-  constexpr std::size_t kMost = sizeof message.kind / sizeof message.kind[0];
-  const std::size_t count =
-      static_cast<std::size_t>(sighting.objects) < kMost ? static_cast<std::size_t>(sighting.objects) : kMost;
+  constexpr std::size_t kMaxReported = sizeof message.kind / sizeof message.kind[0];
+  const std::size_t count = static_cast<std::size_t>(sighting.objects) < kMaxReported
+                                ? static_cast<std::size_t>(sighting.objects)
+                                : kMaxReported;
   message.count = static_cast<std::int16_t>(count);
   for (std::size_t k = 0; k < count; ++k) {
     message.kind[k] = static_cast<std::int8_t>(sighting.kind[k]);
@@ -180,7 +181,7 @@ void Gnc::report_pose() {
   message.image = sighting.image;
   message.status = static_cast<std::int8_t>(sighting.status);
   message.region_is_predicted = sighting.region_is_predicted ? 1 : 0;
-  message.fate = static_cast<std::int8_t>(camera.fate());
+  message.fate = static_cast<std::int8_t>(camera.edit_status());
   message.filter_runs = filter.valid() ? 1 : 0;
   message.has_attitude = filter.has_attitude() ? 1 : 0;
   message.tiles_missing = static_cast<std::int16_t>(camera.tiles_missing());

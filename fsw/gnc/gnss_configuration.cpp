@@ -6,7 +6,7 @@
 
 namespace vbar::fsw::gnc {
 Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_configuration& c) {
-  const auto positive = [](double x, double most) { return x > 0.0 && x <= most; };
+  const auto positive = [](double x, double maximum) { return x > 0.0 && x <= maximum; };
   const Vector3 servicer_antenna = vector(c.servicer_antenna_body_m);
   const Vector3 target_antenna = vector(c.target_antenna_body_m);
   const bool usable = c.source >= 0 && c.source <= 3 && positive(c.min_success_rate, 1.0) && c.min_ratio >= 1.0 &&
@@ -38,7 +38,7 @@ Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_config
                     .pole_y = c.pole_y};
   settings.servicer_antenna_body_m = servicer_antenna;
   settings.target_antenna_body_m = target_antenna;
-  // Without a partner there is nobody to wait for.
+  // Without a partner there is no second epoch to wait for.
   settings.pair_wait = c.source == 1 ? Duration{c.pair_wait_ns} : Duration{-1};
   return settings;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The telecommand of navigation by GNSS, checked and turned into settings.
+// The telecommand of GNSS navigation, validated and converted to settings.
 
 #include "fsw/core/result.h"
 #include "fsw/navigation/gnss_navigation.h"
@@ -7,7 +7,7 @@
 
 namespace vbar::fsw::gnc {
 
-/// What a telecommand asks for; kOutOfRange for figures that no filter can work with.
+/// Settings of a telecommand; kOutOfRange for values with which no filter can operate.
 Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_configuration& configuration);
 
 }  // namespace vbar::fsw::gnc

@@ -11,10 +11,10 @@ constexpr std::size_t index_of(Receiver receiver) {
   return static_cast<std::size_t>(receiver);
 }
 
-// A body turns slower than this, rad/s.
+// Maximum angular rate of a spacecraft body, rad/s.
 constexpr double kGreatestRate = 10.0;
 
-/// False for a quaternion that is not of unit length to a part in a thousand, or an impossible rate.
+/// False for a quaternion whose length differs from one by more than a part in a thousand, or for an impossible rate.
 template <class Message>
 bool attitude_of(const Message& message, navigation::AttitudeSample& sample) {
   if (!is_rotation(message.q_eci_body)) return false;

@@ -1,5 +1,5 @@
 #pragma once
-// From packets of receiver bytes and attitudes to what GNSS navigation takes: one decoder a receiver.
+// From packets of receiver bytes and attitudes to the inputs of GNSS navigation: one decoder per receiver.
 
 #include <array>
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace vbar::fsw::gnc {
 
 class GnssReceivers {
  public:
-  /// Feeds the step's packets to `navigation`. A packet with a count that its array cannot have, or an attitude that is
-  /// none, is counted in the inbox and left out.
+  /// Passes the packets of the step to `navigation`. A packet with a count beyond its array, or an invalid attitude,
+  /// is counted in the inbox and skipped.
   void feed(GpsTime now, Inbox& inbox, navigation::GnssNavigation& navigation);
 
-  /// Whole messages of both receivers, and those that were refused for their checksum or contents.
+  /// Complete messages of both receivers, and those refused because of checksum or contents.
   [[nodiscard]] std::int32_t messages() const;
   [[nodiscard]] std::int32_t refused() const;
 

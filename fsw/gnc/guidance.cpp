@@ -13,8 +13,8 @@ namespace {
 using control::Plan;
 using control::Solver;
 
-/// The solvers that plan a leg from scratch, best first. (The closed form is asked by the policy of its legs, leg.h.)
-/// Least squares always gives something, if not the cheapest.
+/// The solvers that plan a leg from scratch, best first. (The closed form is invoked by the policy of its legs, leg.h.)
+/// Least squares always provides a plan, if not the cheapest.
 struct Ladder {
   std::array<Solver, 2> solvers;
   std::size_t count;
@@ -27,8 +27,8 @@ Ladder ladder_of(const Waypoint& goal, bool estimate_too_coarse) {
   return {{Solver::kKoenigDamico, Solver::kLeastSquares}, 2};
 }
 
-/// Where the fuel-optimal solver plans, planning anew costs computing only. Correcting a plan whose burn was missed can
-/// cost twice what a new plan does: a correction so much dearer than the plan gives way to one.
+/// For the fuel-optimal solver replanning costs computing time only. Correcting a plan whose burn was missed can
+/// cost twice as much as a new plan: a correction more expensive by this factor is replaced by one.
 constexpr double kDearCorrection = 1.1;
 
 bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
@@ -42,7 +42,7 @@ bool is_safe(const Result<safety::PlanSafety>& verdict) {
   return verdict.ok() && verdict.value().safe;
 }
 
-/// How far the estimate may be off: three sigma of position, and of the drift along track that da leaves open.
+/// Uncertainty of the estimate: three sigma of position, and of the along-track drift due to the uncertainty of da.
 safety::PositionBound three_sigma(const Vector6& sigma_rtn, double sigma_a_da_m,
                                   const orbit::QnsElements& servicer_mean) {
   safety::PositionBound bound;
@@ -65,7 +65,7 @@ void remove_first(Plan& plan) {
   --plan.count;
 }
 
-/// First the burns commanded already, then those only planned; both in order of time, the former all earlier.
+/// First the burns already commanded, then those only planned; both in order of time, the former all earlier.
 Plan joined(const Plan& pending, const Plan& planned) {
   Plan all = pending;
   for (std::size_t k = 0; k < planned.count && all.count < control::kMaxBurns; ++k) {
@@ -89,7 +89,7 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
 
   const gnc_configuration& configuration = management.configuration();
   situation_known_ = true;
-  forget_past_burns(now);
+  discard_past_burns(now);
   orbits_ = {now, servicer.value(), target.value()};
   report_.roe = orbit::roe_from_qns(orbits_.servicer, orbits_.target);
   const Vector6 sigma_a_roe_m = navigation.sigma_a_roe_m(orbits_.servicer);
@@ -97,7 +97,7 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m(0), orbits_.servicer);
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
   const Result<safety::PlanSafety> ahead = safety_of(plan_, configuration);
-  if (ahead.ok()) report_.passive_safety_distance = ahead.value().least_distance;
+  if (ahead.ok()) report_.passive_safety_distance = ahead.value().min_distance;
 }
 
 void Guidance::update(GpsTime now, Duration period, const Navigation& navigation, const Management& management) {
@@ -117,7 +117,7 @@ void Guidance::update(GpsTime now, Duration period, const Navigation& navigation
   commit_due_burns(now, period, configuration);
 }
 
-/// The waypoint to fly to. Sets `goal_`; a new one drops the plan of the old.
+/// Selects the waypoint ahead. Sets `goal_`; a new one discards the plan of the previous one.
 bool Guidance::select_goal(GpsTime now, const Management& management) {
   const Waypoint* wanted = nullptr;
   Waypoint stay;
@@ -166,7 +166,7 @@ bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configurati
 }
 
 void Guidance::decide(const gnc_configuration& configuration) {
-  if (goal_.time <= earliest_burn_) return;  // nothing can be done about this waypoint any more
+  if (goal_.time <= earliest_burn_) return;  // this waypoint cannot be influenced any more
   const double sigma_m = orbits_.servicer.a * sigma_roe_.maxCoeff();
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 && sigma_m > configuration.roe_error_threshold_m;
   if (stays_on_plan(configuration, too_coarse)) return;
@@ -176,8 +176,8 @@ void Guidance::decide(const gnc_configuration& configuration) {
   ++report_.holds;
 }
 
-/// Keeps or corrects the plan, or lets the closed form make it, as the leg's policy says. While the estimate is too
-/// coarse only what least squares planned stays.
+/// Keeps or corrects the plan, or replans by the closed form, according to the policy of the leg. While the estimate is
+/// too coarse, only a plan of least squares is kept.
 bool Guidance::stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse) {
   if (estimate_too_coarse && report_.active_solver != Solver::kLeastSquares) return false;
   const control::LegSituation situation = leg_situation();
@@ -209,7 +209,7 @@ bool Guidance::climbs_ladder(const gnc_configuration& configuration, bool estima
   return false;
 }
 
-/// Solvers are linear; what the true geometry leaves of the error is taken out of their burns, where these can.
+/// Solvers are linear; the residual error of the nonlinear model is removed by correcting their burns, where possible.
 Plan Guidance::refined(const Plan& candidate) const {
   const control::LegSituation situation = leg_situation();
   const Result<Plan> corrected =
@@ -237,7 +237,7 @@ bool Guidance::adopt_if_flyable(const Plan& candidate, const gnc_configuration& 
   plan_ = candidate;
   report_.active_solver = candidate.solver;
   report_.predicted_roe_error = error.value();
-  report_.passive_safety_distance = verdict.value().least_distance;
+  report_.passive_safety_distance = verdict.value().min_distance;
   return true;
 }
 
@@ -265,8 +265,8 @@ control::LegSituation Guidance::leg_situation() const {
   return {orbits_, pending_, earliest_start(), {goal_.time, goal_.roe}, sigma_roe_};
 }
 
-/// The closed form's arrival is held to what an orbit of corrections would gain for next to nothing; the fuel-optimal
-/// solver of the close range to millimetres.
+/// The closed form must arrive within the error that an orbit of corrections removes at negligible cost; the optimal
+/// solver of the close range within millimetres.
 control::LegPolicy Guidance::leg_policy(const gnc_configuration& configuration) const {
   control::LegPolicy policy;
   const bool far = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
@@ -281,7 +281,7 @@ Result<safety::PlanSafety> Guidance::safety_of(const Plan& candidate, const gnc_
   return safety::assess_plan(orbits_.epoch, orbits_.servicer, report_.roe, all, criterion);
 }
 
-/// New burns come after the latency and after everything commanded.
+/// New burns are placed after the latency and after everything commanded.
 GpsTime Guidance::earliest_start() const {
   if (pending_.count == 0) return earliest_burn_;
   const GpsTime after_pending = pending_.burns[pending_.count - 1].time + Duration{1};
@@ -301,13 +301,13 @@ Status& Guidance::status_of(Solver solver) {
   return report_.least_squares;
 }
 
-/// Commanded burns that have been flown by now are history; the state knows them.
-void Guidance::forget_past_burns(GpsTime now) {
+/// Commanded burns whose time has passed are discarded; they are contained in the state.
+void Guidance::discard_past_burns(GpsTime now) {
   drop_burns_before(pending_, now);
   drop_burns_before(plan_, now);  // a planned burn can only be past if steps were missed: it was never commanded
 }
 
-/// Commands every burn that the next step could not command in time any more.
+/// Commands every burn that could not be commanded in time in the next step.
 void Guidance::commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration) {
   const GpsTime next_chance = now + period + Duration{configuration.compute_latency_ns};
   while (plan_.count > 0 && plan_.burns[0].time < next_chance && command_count_ < kMaxCommandsPerStep &&

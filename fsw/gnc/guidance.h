@@ -1,9 +1,9 @@
 #pragma once
-// control: which waypoint, which solver, which fallback; commit a burn.
+// control: selection of waypoint, solver and fallback; commanding of burns.
 //
-// A plan is kept while it still arrives; otherwise the ladder of the leg's solvers is tried in order, and what a solver
-// gives is flown only if it passes the passive-safety test with every prefix of its burns. If none does, nothing is
-// flown: hold. A burn is commanded in the last step that can still do so, so that replanning may improve it until then.
+// A plan is kept while it still arrives; otherwise the solvers of the leg are tried in order of preference, and a plan
+// is flown only if it passes the passive-safety test after every partial burn sequence. If none does, no burn is
+// flown: hold. A burn is commanded in the last step in which it is still possible, so that replanning may improve it.
 
 #include <array>
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace vbar::fsw::gnc {
 
-/// What guidance did in a step; telemetry carries it. Statuses are those of the last attempt.
+/// Decisions of guidance in a step, for telemetry. Statuses are those of the last attempt.
 struct GuidanceReport {
   control::Solver active_solver = control::Solver::kNone;
   Status koenig_damico = Status::kNotReady;
@@ -35,7 +35,7 @@ struct GuidanceReport {
   std::int32_t holds = 0;
 };
 
-/// A burn that is to be commanded now.
+/// A burn to be commanded now.
 struct CommandedBurn {
   std::int32_t maneuver_id = 0;
   std::int32_t waypoint_index = -1;
@@ -47,10 +47,10 @@ class Guidance {
  public:
   static constexpr std::size_t kMaxCommandsPerStep = 16;
 
-  /// Mean orbits of both spacecraft and the passive safety of the plan as it stands.
+  /// Mean orbits of both spacecraft and the passive safety of the current plan.
   void assess(GpsTime now, const Navigation& navigation, const Management& management);
 
-  /// One step: drops what is past, replans if it is due and needed, and collects the burns to command. `period` is the
+  /// One step: discards past burns, replans if due and necessary, and collects the burns to command. `period` is the
   /// time to the next step.
   void update(GpsTime now, Duration period, const Navigation& navigation, const Management& management);
 
@@ -76,10 +76,10 @@ class Guidance {
   [[nodiscard]] control::LegSituation leg_situation() const;
   [[nodiscard]] control::LegPolicy leg_policy(const gnc_configuration& configuration) const;
   [[nodiscard]] GpsTime earliest_start() const;
-  void forget_past_burns(GpsTime now);
+  void discard_past_burns(GpsTime now);
   void commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration);
 
-  // What assess() found; the rest of the step builds on it.
+  // Results of assess(), used by the rest of the step.
   bool situation_known_ = false;
   GpsTime earliest_burn_;
   control::MeanOrbits orbits_;

@@ -1,5 +1,5 @@
 #pragma once
-// receive: decode, check and file each packet by its time tag. Nothing else happens to a packet until the step.
+// receive: decode, check and file each packet by its time tag. Packets are not processed until the step.
 
 #include <cstdint>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace vbar::fsw::gnc {
 
-/// Instants from 1980 to 2126, and spans up to 115 days: sums and differences of what is within stay within int64.
+/// Instants from 1980 to 2126, and spans up to 115 days: their sums and differences stay within int64.
 inline constexpr GpsTime kLatestTime{std::int64_t{1} << 62};
 inline constexpr Duration kLongestSpan = duration_of_seconds(10'000'000);
 constexpr bool is_usable(GpsTime time) {
@@ -22,16 +22,16 @@ constexpr bool is_usable(Duration span) {
   return span.ns > 0 && span <= kLongestSpan;
 }
 
-/// What happened to the packets so far; telemetry carries it.
+/// Counters of the packets so far, for telemetry.
 struct PacketCounters {
   std::int32_t accepted = 0;
   std::int32_t rejected_checksum = 0;
   std::int32_t rejected_type = 0;  ///< APID unknown or not for flight, or type hash of another message
   std::int32_t rejected_length = 0;
-  std::int32_t rejected_content = 0;  ///< NaN, infinity, or a value (a time tag, too) that no field may have
-  std::int32_t rejected_time = 0;     ///< time tag after the step, or not after what is already known
-  std::int32_t rejected_other = 0;    ///< another spacecraft's, or filed already
-  std::int32_t dropped_full = 0;      ///< its queue was full: the newest is dropped
+  std::int32_t rejected_content = 0;  ///< NaN, infinity, or a value (including a time tag) outside its valid range
+  std::int32_t rejected_time = 0;     ///< time tag after the step, or not after the newest processed
+  std::int32_t rejected_other = 0;    ///< of another spacecraft, or a duplicate
+  std::int32_t dropped_full = 0;      ///< queue full: the newest is dropped
 };
 
 /// Packets of the coming step. A queue that is full refuses the newest packet.
@@ -44,14 +44,14 @@ class Inbox {
 
   explicit Inbox(std::uint8_t spacecraft) : spacecraft_(spacecraft) { image_.accept_until(GpsTime{-1}); }
 
-  /// Takes one packet; the status says why one was refused. Never reads past `bytes`.
+  /// Receives one packet; the status is the reason for a refusal. Never reads past `bytes`.
   Status receive(std::span<const std::uint8_t> bytes);
 
-  /// Counts an entry that turned out to be unusable at the step (late, of the future).
+  /// Counts an entry that proved unusable at the step (late, or of the future).
   void count_unusable_time() { ++counters_.rejected_time; }
 
-  /// Puts the newest of a queue's entries into `kept`, which stays as it is without one. Those tagged after `now` are
-  /// counted as unusable.
+  /// Writes the newest entry of a queue into `kept`, which is unchanged if there is none. Entries tagged after `now`
+  /// are counted as unusable.
   template <class Message, std::size_t kCapacity>
   void keep_newest(const TimeOrderedQueue<Message, kCapacity>& queue, GpsTime now, std::optional<Message>& kept) {
     for (std::size_t k = 0; k < queue.size(); ++k) {
@@ -66,8 +66,8 @@ class Inbox {
   /// Counts a telecommand whose content the step refused.
   void count_bad_content() { ++counters_.rejected_content; }
 
-  /// Forgets everything filed, at the end of a step. Until the next one, expected at `next_step`, image tiles later
-  /// than that are refused: one of a far future would shut out all before it.
+  /// Discards all entries at the end of a step. Until the next one, expected at `next_step`, image tiles later
+  /// than that are refused: a tile of the far future would otherwise block all earlier ones.
   void clear(GpsTime next_step);
 
   [[nodiscard]] const PacketCounters& counters() const { return counters_; }
@@ -107,7 +107,7 @@ class Inbox {
   [[nodiscard]] const TimeOrderedQueue<crosslink_attitude, kMeasurements>& crosslink_attitudes() const {
     return crosslink_attitudes_;
   }
-  /// The image whose tiles came, whole or not.
+  /// The image whose tiles arrived, complete or not.
   [[nodiscard]] const imaging::ImageAssembly& image() const { return image_; }
   /// Time from the last tick to the next one; 0 before the first tick.
   [[nodiscard]] Duration step_period() const { return step_period_; }

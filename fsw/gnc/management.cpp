@@ -5,9 +5,9 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-constexpr double kLargestARoe = 1e6;  // m; beyond it the relative-orbit models say nothing
+constexpr double kLargestARoe = 1e6;  // m; beyond it the relative-orbit models are not valid
 
-/// Defaults that fly the paper's mission; a telecommand replaces them.
+/// Defaults are those of the paper's mission; a telecommand replaces them.
 gnc_configuration default_configuration() {
   gnc_configuration c{};
   c.compute_latency_ns = 1 * kNanosecondsPerSecond;
@@ -56,7 +56,7 @@ void Management::update(GpsTime now, Inbox& inbox) {
   // A waypoint is reached when its time comes: the schedule is fixed in time, whatever the error on arrival.
   while (next_ < count_ && waypoints_[next_].time <= now) ++next_;
   if (mode_ == Mode::kApproach && next_ == count_ && count_ > 0) mode_ = Mode::kStationKeeping;
-  if (mode_ == Mode::kStationKeeping && next_ == 0) mode_ = Mode::kIdle;  // no waypoint reached: nowhere to stay
+  if (mode_ == Mode::kStationKeeping && next_ == 0) mode_ = Mode::kIdle;  // no waypoint reached: no position to keep
 }
 
 bool Management::take(const waypoint_table& table) {

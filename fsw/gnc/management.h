@@ -11,13 +11,13 @@
 namespace vbar::fsw::gnc {
 
 enum class Mode : std::int8_t {
-  kIdle = 0,            ///< nothing commanded yet
-  kApproach = 1,        ///< fly to the next waypoint of the table
-  kStationKeeping = 2,  ///< stay at the last waypoint reached
-  kHold = 3,            ///< no burns until commanded otherwise
+  kIdle = 0,            ///< no command received yet
+  kApproach = 1,        ///< transfer to the next waypoint of the table
+  kStationKeeping = 2,  ///< keep the last waypoint reached
+  kHold = 3,            ///< no burns until the next command
 };
 
-/// A place to be at a time.
+/// A relative orbit to be reached at a time.
 struct Waypoint {
   std::int32_t index = -1;
   std::int8_t control_mode = 0;  ///< solver of the leg that ends here, numbers of control::Solver
@@ -31,8 +31,8 @@ class Management {
 
   Management();
 
-  /// Takes the telecommands of the inbox in order of their time tags, then moves the state machine to `now`. A
-  /// telecommand with content no field may have changes nothing and is counted.
+  /// Processes the telecommands of the inbox (configurations, tables, modes; each in order of time tags), then updates
+  /// the state machine to `now`. A telecommand with an invalid value has no effect and is counted.
   void update(GpsTime now, Inbox& inbox);
 
   [[nodiscard]] Mode mode() const { return mode_; }

@@ -24,14 +24,14 @@ void copy_lower_triangle(const Matrix6& from, double (&to)[21]) {
 void copy_rotation(const Matrix3& R, double (&to)[4]) {
   const double trace = R.trace();
   int largest = 0;
-  double most = trace;
+  double maximum = trace;
   for (int k = 0; k < 3; ++k) {
-    if (R(k, k) > most) {
-      most = R(k, k);
+    if (R(k, k) > maximum) {
+      maximum = R(k, k);
       largest = k + 1;
     }
   }
-  const double big = math::sqrt(1.0 + 2.0 * most - trace) * 0.5;
+  const double big = math::sqrt(1.0 + 2.0 * maximum - trace) * 0.5;
   const double by = 0.25 / big;
   if (largest == 0) {
     to[0] = big;

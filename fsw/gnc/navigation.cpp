@@ -12,15 +12,15 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// What point mass + J2 misses of the relative acceleration, per metre of separation: the gravity gradient of all other
+// Relative acceleration not modelled by point mass and J2, per metre of separation: the gravity gradient of all other
 // harmonics is a tenth of an Eotvos at 700 km. (Flown in 60x60 gravity, ten-minute coasts err by 0.7 to 1 of this, from
 // 75 km down to 7 m.)
 constexpr double kUnmodelledGradient = 1e-10;  // 1/s^2, 1 sigma, constant over a coast
 
-// A report or measurement may come so much after its time and still be used.
+// Largest delay of a report or measurement with respect to its time tag.
 constexpr Duration kLongestDelay = duration_of_seconds(600);
 
-// GNSS navigation lags its newest measurement by what the crosslink takes; older than this the state is a coast.
+// GNSS navigation lags its newest measurement by the delay of the crosslink; an older state counts as propagated.
 constexpr double kFreshGnss_s = 30.0;
 
 bool is_orbit(const orbit::CartesianState& state) {
@@ -46,12 +46,12 @@ void Navigation::update(GpsTime now, Inbox& inbox) {
       take_pose(now, inbox);
       break;
   }
-  if (!anchored_) return;
-  if (now - anchor_.epoch > kLongestDelay + kLongestDelay) move_anchor(now - kLongestDelay);
+  if (!has_reference_) return;
+  if (now - reference_.epoch > kLongestDelay + kLongestDelay) move_reference(now - kLongestDelay);
 
   const Result<Pair> present = flown_to(now);
   if (!present.ok()) {
-    let_go();  // too long a gap, or no orbit any more: start again from the next measurement
+    drop_state();  // gap too long, or invalid orbit: restart from the next measurement
     return;
   }
   state_.valid = sensors_ != Sensors::kBearings || camera_.filter().valid();
@@ -62,13 +62,13 @@ void Navigation::update(GpsTime now, Inbox& inbox) {
   set_uncertainty(now);
 }
 
-void Navigation::let_go() {
-  anchored_ = false;
+void Navigation::drop_state() {
+  has_reference_ = false;
   state_.valid = false;
   state_.has_target = false;
 }
 
-/// Of a coast from what the last measurement left; ideal navigation leaves nothing.
+/// Growth since the last measurement; ideal navigation has no initial covariance.
 void Navigation::set_uncertainty(GpsTime now) {
   const double age = seconds(now - state_.last_measurement);
   const bool is_fresh = age <= kFreshGnss_s;
@@ -81,7 +81,7 @@ void Navigation::set_uncertainty(GpsTime now) {
       state_.source = !is_fresh                        ? NavigationSource::kPropagated
                       : gnss_.ambiguities().is_fixed() ? NavigationSource::kGnssFixed
                                                        : NavigationSource::kGnssFloat;
-      // The covariance stands at the filters' epoch, which goes on with the servicer's receiver alone.
+      // The covariance is that at the epoch of the filters, which advances with the servicer's receiver alone.
       set_uncertainty(gnss_.covariance_rtn(), gnss_.epoch(), now);
       break;
     case Sensors::kPose:
@@ -97,7 +97,7 @@ void Navigation::set_uncertainty(GpsTime now) {
   }
 }
 
-/// What a covariance of position and velocity, and what the model of a coast leaves out, come to since `epoch`.
+/// Propagates the covariance of position and velocity from `epoch`, including the unmodelled acceleration.
 void Navigation::set_uncertainty(const Matrix6& covariance_rtn, GpsTime epoch, GpsTime now) {
   const double coast_s = seconds(now - epoch);
   const double separation = (state_.target.position_eci - state_.servicer.position_eci).norm();
@@ -123,10 +123,10 @@ void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
       inbox.count_bad_content();
       continue;
     }
-    sensors_ = static_cast<Sensors>(configurations[k].value.source);  // checked with the settings
+    sensors_ = static_cast<Sensors>(configurations[k].value.source);  // validated with the settings
     gnss_.configure(settings.value());
     earth_ = settings.value().earth;
-    let_go();
+    drop_state();
   }
   const bool camera_changes = inbox.camera_configurations().size() > 0 ||
                               inbox.angles_only_configurations().size() > 0 || inbox.target_aprioris().size() > 0 ||
@@ -137,7 +137,7 @@ void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
     } else {
       camera_.configure(now, inbox, earth_);
     }
-    if (uses_camera()) let_go();
+    if (uses_camera()) drop_state();
   }
 }
 
@@ -146,59 +146,59 @@ std::span<const navigation::Burn> Navigation::own_burns() {
   return std::span(burns_).first(maneuver_count_);
 }
 
-/// A filter's estimate is the anchor if it is later than the one there is.
-void Navigation::anchor_at(const Pair& estimated) {
+/// The estimate of a filter becomes the reference state if it is later than the current one.
+void Navigation::set_reference(const Pair& estimated) {
   if (!is_orbit(estimated.servicer) || !is_orbit(estimated.target)) return;
-  if (anchored_ && estimated.epoch <= anchor_.epoch) return;
-  anchor_ = estimated;
-  anchored_ = true;
-  forget_before(estimated.epoch);
+  if (has_reference_ && estimated.epoch <= reference_.epoch) return;
+  reference_ = estimated;
+  has_reference_ = true;
+  discard_before(estimated.epoch);
 }
 
-/// The filters' state at the last epoch folded in is the anchor; what was flown since follows as with any other source.
+/// The state of the filters at the last epoch processed becomes the reference; later burns follow as for other sources.
 void Navigation::take_gnss(GpsTime now, Inbox& inbox) {
   receivers_.feed(now, inbox, gnss_);
   gnss_.update(now, own_burns());
   if (!gnss_.valid()) {
-    let_go();
+    drop_state();
     return;
   }
   state_.last_measurement = gnss_.last_pair();
-  anchor_at({gnss_.epoch(), gnss_.servicer(), gnss_.target()});
+  set_reference({gnss_.epoch(), gnss_.servicer(), gnss_.target()});
 }
 
-/// The image is of some time ago: first the servicer's orbit up to then, with it the image, then the rest.
+/// The image is older than the step: the servicer's orbit is advanced to its time, the image processed, then to now.
 void Navigation::take_bearings(GpsTime now, Inbox& inbox) {
   receivers_.feed(now, inbox, gnss_);
   camera_.update(now, inbox, gnss_, own_burns());
   gnss_.update(now, own_burns());
-  anchor_at_estimate(camera_.filter(), camera_.filter().last_bearing());
+  set_reference_to_estimate(camera_.filter(), camera_.filter().last_bearing());
 }
 
 void Navigation::take_pose(GpsTime now, Inbox& inbox) {
   receivers_.feed(now, inbox, gnss_);
   pose_.update(now, inbox, gnss_, own_burns());
   gnss_.update(now, own_burns());
-  anchor_at_estimate(pose_.filter(), pose_.filter().last_measurement());
+  set_reference_to_estimate(pose_.filter(), pose_.filter().last_measurement());
 }
 
 template <class Filter>
-void Navigation::anchor_at_estimate(const Filter& filter, GpsTime last_measurement) {
+void Navigation::set_reference_to_estimate(const Filter& filter, GpsTime last_measurement) {
   const Result<orbit::CartesianState> target = filter.target();
   if (!target.ok()) {
-    let_go();
+    drop_state();
     return;
   }
   state_.last_measurement = last_measurement;
-  anchor_at({filter.epoch(), filter.servicer(), target.value()});
+  set_reference({filter.epoch(), filter.servicer(), target.value()});
 }
 
-/// Ideal navigation knows everything, so the latest measurement is all that counts: it becomes the anchor.
+/// The measurements of ideal navigation are complete states, so that the latest one becomes the reference state.
 void Navigation::take_measurements(GpsTime now, Inbox& inbox) {
   const auto& measurements = inbox.ideal_navigation_states();
   for (std::size_t k = 0; k < measurements.size(); ++k) {
     const GpsTime time = measurements[k].tag.time;
-    if (time > now || (anchored_ && time < anchor_.epoch)) {
+    if (time > now || (has_reference_ && time < reference_.epoch)) {
       inbox.count_unusable_time();
       continue;
     }
@@ -206,15 +206,15 @@ void Navigation::take_measurements(GpsTime now, Inbox& inbox) {
     const Pair measured{time,
                         {vector(measurement.servicer_position_eci), vector(measurement.servicer_velocity_eci)},
                         {vector(measurement.target_position_eci), vector(measurement.target_velocity_eci)}};
-    // A state no orbit model can hold is no state: wait for a better one.
+    // A state outside the domain of the orbit models is invalid: wait for the next one.
     if (!is_orbit(measured.servicer) || !is_orbit(measured.target)) {
       inbox.count_bad_content();
       continue;
     }
-    anchor_ = measured;
-    anchored_ = true;
+    reference_ = measured;
+    has_reference_ = true;
     state_.last_measurement = time;
-    forget_before(time);
+    discard_before(time);
   }
 }
 
@@ -227,12 +227,12 @@ void Navigation::take_maneuvers(GpsTime now, Inbox& inbox) {
       inbox.count_unusable_time();
       continue;
     }
-    forget(report.maneuver_id);
+    discard(report.maneuver_id);
     if (report.accepted == 0) continue;
-    if (!anchored_ || time >= anchor_.epoch) {
+    if (!has_reference_ || time >= reference_.epoch) {
       remember({report.maneuver_id, time, vector(report.dv_rtn)});
     } else if (time >= state_.last_measurement) {
-      inbox.count_unusable_time();  // before the anchor has moved on without a measurement: that cannot be undone
+      inbox.count_unusable_time();  // before the reference state: no longer applicable
     }
   }
 }
@@ -241,19 +241,19 @@ void Navigation::expect_maneuver(std::int32_t maneuver_id, GpsTime time, const V
   remember({maneuver_id, time, dv_rtn});
 }
 
-/// Without measurements the anchor follows at a distance, so that a step's work stays bounded.
-void Navigation::move_anchor(GpsTime time) {
+/// Without measurements the reference state follows at a distance, so that the work of a step stays bounded.
+void Navigation::move_reference(GpsTime time) {
   const Result<Pair> moved = flown_to(time);
-  anchored_ = moved.ok();
-  if (!anchored_) return;
-  anchor_ = moved.value();
-  forget_before(time);
+  has_reference_ = moved.ok();
+  if (!has_reference_) return;
+  reference_ = moved.value();
+  discard_before(time);
 }
 
-/// The anchor's states coasted to `time` through the own maneuvers before it.
+/// The reference states propagated to `time`, including the own maneuvers before it.
 Result<Navigation::Pair> Navigation::flown_to(GpsTime time) const {
-  orbit::CartesianState servicer = anchor_.servicer;
-  GpsTime reached = anchor_.epoch;
+  orbit::CartesianState servicer = reference_.servicer;
+  GpsTime reached = reference_.epoch;
   const auto coast_to = [&](GpsTime next) {
     const Result<orbit::CartesianState> coasted = orbit::propagate_j2(servicer, seconds(next - reached));
     if (coasted.ok()) servicer = coasted.value();
@@ -265,18 +265,18 @@ Result<Navigation::Pair> Navigation::flown_to(GpsTime time) const {
     servicer = orbit::apply_impulse_rtn(servicer, maneuvers_[k].dv_rtn);
   }
   if (const Status status = coast_to(time); status != Status::kOk) return status;
-  const Result<orbit::CartesianState> target = orbit::propagate_j2(anchor_.target, seconds(time - anchor_.epoch));
+  const Result<orbit::CartesianState> target = orbit::propagate_j2(reference_.target, seconds(time - reference_.epoch));
   if (!target.ok()) return target.status();
   if (!is_orbit(servicer) || !is_orbit(target.value())) return Status::kOutOfRange;
   return Pair{time, servicer, target.value()};
 }
 
-/// In order of time, those of one instant in order of their number. If there is no room the anchor moves past the
-/// oldest: nothing is lost but the chance to use what comes later than that.
+/// In order of time, those of one instant in order of their number. If the list is full, the reference state advances
+/// past the oldest maneuver: only measurements before it can then no longer be used.
 void Navigation::remember(const OwnManeuver& maneuver) {
   if (maneuver_count_ == kMaxManeuvers) {
-    if (anchored_) move_anchor(maneuvers_[0].time + Duration{1});
-    if (maneuver_count_ == kMaxManeuvers) forget(maneuvers_[0].id);
+    if (has_reference_) move_reference(maneuvers_[0].time + Duration{1});
+    if (maneuver_count_ == kMaxManeuvers) discard(maneuvers_[0].id);
   }
   std::size_t place = maneuver_count_++;
   const auto comes_before = [&](const OwnManeuver& other) {
@@ -286,7 +286,7 @@ void Navigation::remember(const OwnManeuver& maneuver) {
   maneuvers_[place] = maneuver;
 }
 
-void Navigation::forget(std::int32_t maneuver_id) {
+void Navigation::discard(std::int32_t maneuver_id) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < maneuver_count_; ++k) {
     if (maneuvers_[k].id != maneuver_id) maneuvers_[kept++] = maneuvers_[k];
@@ -294,7 +294,7 @@ void Navigation::forget(std::int32_t maneuver_id) {
   maneuver_count_ = kept;
 }
 
-void Navigation::forget_before(GpsTime time) {
+void Navigation::discard_before(GpsTime time) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < maneuver_count_; ++k) {
     if (maneuvers_[k].time >= time) maneuvers_[kept++] = maneuvers_[k];

@@ -1,12 +1,12 @@
 #pragma once
-// navigate: the state of servicer and target at the step's time, from measurements folded in at their own times and own
+// navigate: the state of servicer and target at the time of the step, from measurements at their own times and own
 // maneuvers. A telecommand chooses the source: ideal navigation (true states in a packet), the GNSS receivers of both
 // spacecraft, or the servicer's own receiver and a camera, for bearings or for poses; between measurements the state
-// coasts under J2.
+// is propagated under J2.
 //
-// What arrives late is not lost: the state is built anew at each step from an anchor, the last measurement, and the own
-// maneuvers since. A commanded maneuver counts as flown as commanded until the actuator says otherwise, so that neither
-// a late nor a lost report makes guidance fly it twice.
+// Late inputs are used: the state is rebuilt at each step from a reference state, that of the last measurement, and the
+// own maneuvers since. A commanded maneuver is assumed executed as commanded until the actuator reports otherwise, so
+// that neither a late nor a lost report causes guidance to repeat it.
 
 #include <array>
 #include <span>
@@ -32,10 +32,10 @@ enum class NavigationSource : std::int8_t {
   kPose = 6,
 };
 
-/// What navigation knows at `epoch`.
+/// The navigation solution at `epoch`.
 struct NavigationState {
-  bool valid = false;       ///< good enough to plan with
-  bool has_target = false;  ///< there is at least something to point a camera at
+  bool valid = false;       ///< sufficient for planning
+  bool has_target = false;  ///< sufficient for pointing a camera
   NavigationSource source = NavigationSource::kNone;
   GpsTime epoch;
   GpsTime last_measurement;
@@ -47,7 +47,7 @@ struct NavigationState {
 
 class Navigation {
  public:
-  /// Brings the state to `now`. Entries tagged after `now` or before the anchor are counted as unusable.
+  /// Propagates the state to `now`. Entries tagged after `now` or before the reference state are counted as unusable.
   void update(GpsTime now, Inbox& inbox);
 
   /// A maneuver was commanded: `dv_rtn` (m/s) at `time`, which lies after the last update.
@@ -55,28 +55,28 @@ class Navigation {
 
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
-  /// Whether GNSS of both spacecraft is the source, and what it knows of itself.
+  /// Whether GNSS of both spacecraft is the source, and its navigation filter.
   [[nodiscard]] bool uses_gnss() const { return sensors_ == Sensors::kGnss; }
   [[nodiscard]] const navigation::GnssNavigation& gnss() const { return gnss_; }
   [[nodiscard]] const GnssReceivers& receivers() const { return receivers_; }
 
-  /// Whether bearings by a camera are, and the same.
+  /// Whether bearings of a camera are the source, and its navigation.
   [[nodiscard]] bool uses_bearings() const { return sensors_ == Sensors::kBearings; }
   [[nodiscard]] const CameraNavigation& camera() const { return camera_; }
 
-  /// Whether the pose network is, and the same.
+  /// Whether the pose network is the source, and its navigation.
   [[nodiscard]] bool uses_pose() const { return sensors_ == Sensors::kPose; }
   [[nodiscard]] const PoseCameraNavigation& pose() const { return pose_; }
 
   [[nodiscard]] bool uses_camera() const { return uses_bearings() || uses_pose(); }
 
-  /// The camera is told this, after the last update.
+  /// Commanded pointing of the camera, after the last update.
   void expect_pointing(const Pointing& pointing) {
     camera_.set_pointing(pointing);
     pose_.set_pointing(pointing);
   }
 
-  /// 1 sigma of a * ROE (m, six components). A filter on ROE knows it; of others it is what `sigma_rtn` amounts to by
+  /// 1 sigma of a * ROE (m, six components): that of a filter on ROE; for other filters `sigma_rtn` transformed by
   /// the linear near-circular map, `servicer_mean` at epoch.
   [[nodiscard]] Vector6 sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const;
 
@@ -99,25 +99,25 @@ class Navigation {
   void take_bearings(GpsTime now, Inbox& inbox);
   void take_pose(GpsTime now, Inbox& inbox);
   template <class Filter>
-  void anchor_at_estimate(const Filter& filter, GpsTime last_measurement);
-  void anchor_at(const Pair& estimated);
-  void let_go();
+  void set_reference_to_estimate(const Filter& filter, GpsTime last_measurement);
+  void set_reference(const Pair& estimated);
+  void drop_state();
   [[nodiscard]] std::span<const navigation::Burn> own_burns();
   void set_uncertainty(GpsTime now);
   void set_uncertainty(const Matrix6& covariance_rtn, GpsTime epoch, GpsTime now);
   void take_maneuvers(GpsTime now, Inbox& inbox);
-  void move_anchor(GpsTime time);
+  void move_reference(GpsTime time);
   [[nodiscard]] Result<Pair> flown_to(GpsTime time) const;
   void remember(const OwnManeuver& maneuver);
-  void forget(std::int32_t maneuver_id);
-  void forget_before(GpsTime time);
+  void discard(std::int32_t maneuver_id);
+  void discard_before(GpsTime time);
 
-  static constexpr std::size_t kMaxManeuvers = 64;  // of those twice what guidance may have commanded ahead
+  static constexpr std::size_t kMaxManeuvers = 64;  // twice the number that guidance may have commanded ahead
 
   NavigationState state_;
-  bool anchored_ = false;
-  Pair anchor_;
-  std::array<OwnManeuver, kMaxManeuvers> maneuvers_{};  ///< in order of time, none before the anchor
+  bool has_reference_ = false;
+  Pair reference_;
+  std::array<OwnManeuver, kMaxManeuvers> maneuvers_{};  ///< in order of time, none before the reference state
   std::size_t maneuver_count_ = 0;
 
   /// As navigation_configuration.source.

@@ -1,5 +1,5 @@
 #pragma once
-// Packets out: headers, sequence counts, the sink. The only door of the flight software to the outside.
+// Packets out: headers, sequence counts, the sink. The only output of the flight software.
 
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ class Outbox {
     context_ = context;
   }
 
-  /// Encodes and emits a message. A message with a NaN or infinity is dropped and counted: the contract carries none.
+  /// Encodes and emits a message. A message with a NaN or infinity is dropped and counted: the interface excludes them.
   template <class Message>
   void send(GpsTime time, const Message& message) {
     packets::PacketHeader header;

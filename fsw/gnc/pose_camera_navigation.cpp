@@ -9,12 +9,12 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// An image may come so much after its time.
+// Largest delay of an image with respect to its time tag.
 constexpr Duration kLongestDelay = duration_of_seconds(600);
 
-// So many images in a row without the target, though it is lit, and it is elsewhere.
+// After this number of consecutive images without the illuminated target, its estimated position is considered wrong.
 constexpr int kUnseenBeforeLost = 12;
-// Of its distance, 1 sigma: what the target's place may be in doubt by to cut the image by it.
+// 1 sigma, share of the distance: largest position uncertainty with which the crop is predicted.
 constexpr double kKnownShare = 0.05;
 constexpr double kEdge_s = 20.0;  // of the Earth's shadow
 
@@ -39,7 +39,7 @@ void PoseCameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::Ear
     return;
   }
   network_.configure(network.value());
-  static_cast<void>(filter_.configure(navigation.value()));  // checked with the settings
+  static_cast<void>(filter_.configure(navigation.value()));  // validated with the settings
   R_camera_body_ = rotation(camera_->q_camera_body);
   camera_model_ = network.value().model;
   last_image_.reset();
@@ -48,7 +48,7 @@ void PoseCameraNavigation::configure(GpsTime now, Inbox& inbox, const orbit::Ear
 void PoseCameraNavigation::update(GpsTime now, Inbox& inbox, navigation::GnssNavigation& own_orbit,
                                   std::span<const navigation::Burn> burns) {
   has_image_ = false;
-  fate_ = navigation::PoseFate::kNone;
+  edit_status_ = navigation::PoseEditStatus::kNone;
   estimated_pose_.reset();
   const imaging::ImageAssembly& image = inbox.image();
   if (!camera_ || !pose_ || !image.has_image()) return;
@@ -73,22 +73,22 @@ void PoseCameraNavigation::take_image(const imaging::ImageAssembly& image, navig
   epoch.time = time;
   epoch.sun_eci = orbit::sun_position_gcrf(time).normalized();
   epoch.servicer_gnss = servicer_at(time, own_orbit, burns);
-  // First to the image's time, then where to look in it, then what it shows.
+  // Propagation to the time of the image, then prediction of the crop, then processing of the image.
   static_cast<void>(filter_.update(epoch, burns));
   epoch.R_camera_eci = R_camera_eci_at(time, own_orbit, epoch.servicer_gnss);
   if (epoch.R_camera_eci) estimated_pose_ = pose_of_estimate(*epoch.R_camera_eci);
   const pose::PoseSighting& sighting = network_.process(time, image.image_number(), image.view(), expected_position());
   watch_for_target(epoch);
   if (!epoch.R_camera_eci || sighting.status > pose::SightingStatus::kKeypoints) return;
-  epoch.servicer_gnss.reset();  // it is folded in already
+  epoch.servicer_gnss.reset();  // already processed
   keypoints_ = widened(sighting.keypoints);
   epoch.keypoints = &keypoints_;
   epoch.pnp = sighting.pnp;
-  fate_ = filter_.update(epoch, burns);
+  edit_status_ = filter_.update(epoch, burns);
   estimated_pose_ = pose_of_estimate(*epoch.R_camera_eci);
 }
 
-/// Where to cut the image, if that is known so well that the target fills the crop as in training.
+/// Predicted crop, if the position is known well enough that the target fills the crop as in training.
 std::optional<Vector3> PoseCameraNavigation::expected_position() const {
   if (!estimated_pose_) return std::nullopt;
   const Vector3& position = estimated_pose_->position_camera_m;
@@ -97,7 +97,7 @@ std::optional<Vector3> PoseCameraNavigation::expected_position() const {
                                                                                   : std::nullopt;
 }
 
-/// A target that is lit and before the camera is seen; one that is not is elsewhere, and what is known of it is wrong.
+/// A target that is illuminated and in the field of view is detected; if not, its estimated position is wrong.
 void PoseCameraNavigation::watch_for_target(const navigation::PoseEpoch& epoch) {
   const pose::PoseSighting& sighting = network_.sighting();
   if (sighting.status <= pose::SightingStatus::kKeypoints) {
@@ -115,7 +115,7 @@ void PoseCameraNavigation::watch_for_target(const navigation::PoseEpoch& epoch) 
   estimated_pose_.reset();
 }
 
-/// The network's own covariances are those of images that it was trained for; other light may deserve less trust.
+/// The covariances of the network hold for images as in its training; other illumination may require larger ones.
 pose::Keypoints PoseCameraNavigation::widened(pose::Keypoints keypoints) const {
   const double by = pose_->keypoint_sigma_scale * pose_->keypoint_sigma_scale;
   const double floor = pose_->keypoint_floor_px * pose_->keypoint_floor_px;
@@ -125,7 +125,7 @@ pose::Keypoints PoseCameraNavigation::widened(pose::Keypoints keypoints) const {
   return keypoints;
 }
 
-/// By the star tracker, or as commanded where it is silent.
+/// By the star tracker, or the commanded attitude if it provides none.
 std::optional<Matrix3> PoseCameraNavigation::R_camera_eci_at(
     GpsTime time, const navigation::GnssNavigation& own_orbit,
     const std::optional<orbit::CartesianState>& servicer) const {

@@ -16,26 +16,26 @@ namespace vbar::fsw::gnc {
 
 class PoseCameraNavigation {
  public:
-  /// Starts anew with the inbox's configurations of camera and pose navigation; what is not there stays as it was.
+  /// Restarts with the configurations of camera and pose navigation in the inbox; those not present remain unchanged.
   void configure(GpsTime now, Inbox& inbox, const orbit::EarthOrientation& earth);
 
-  /// Takes the step's image, if there is one. `own_orbit`, to be brought to `now` afterwards, is brought to the image's
-  /// time here. `burns`: the servicer's, known or commanded, in order of time.
+  /// Processes the image of the step, if there is one. `own_orbit` is propagated here to the time of the image, and by
+  /// the caller to `now` afterwards. `burns`: those of the servicer, executed or commanded, in order of time.
   void update(GpsTime now, Inbox& inbox, navigation::GnssNavigation& own_orbit,
               std::span<const navigation::Burn> burns);
 
-  /// The camera is told this until it is told otherwise: the attitude where the star tracker has none.
+  /// Commanded pointing of the camera, valid until the next command: the attitude when the star tracker provides none.
   void set_pointing(const Pointing& pointing) { pointing_ = pointing; }
 
-  /// Whether the step had an image, and what came of it.
+  /// Whether the step had an image, and its result.
   [[nodiscard]] bool has_image() const { return has_image_; }
   [[nodiscard]] int tiles_missing() const { return tiles_missing_; }
   [[nodiscard]] const pose::PoseSighting& sighting() const { return network_.sighting(); }
-  [[nodiscard]] navigation::PoseFate fate() const { return fate_; }
-  /// Of the target against the camera at the image's time, as navigation has it after the image.
+  [[nodiscard]] navigation::PoseEditStatus edit_status() const { return edit_status_; }
+  /// Of the target with respect to the camera at the time of the image, after the update.
   [[nodiscard]] const std::optional<pose::TargetPose>& estimated_pose() const { return estimated_pose_; }
 
-  /// While nothing is known of the target: the direction, in the servicer's RTN, in which it was seen last.
+  /// While the target is not acquired: the direction, in the servicer's RTN, in which it was seen last.
   [[nodiscard]] const std::optional<Vector3>& last_seen_rtn() const { return last_seen_rtn_; }
 
   [[nodiscard]] const navigation::PoseNavigation& filter() const { return filter_; }
@@ -60,11 +60,11 @@ class PoseCameraNavigation {
   std::optional<GpsTime> last_image_;
   bool has_image_ = false;
   int tiles_missing_ = 0;
-  navigation::PoseFate fate_ = navigation::PoseFate::kNone;
+  navigation::PoseEditStatus edit_status_ = navigation::PoseEditStatus::kNone;
   std::optional<pose::TargetPose> estimated_pose_;
   std::optional<Vector3> last_seen_rtn_;
-  int unseen_in_a_row_ = 0;      ///< images that should have shown the target and did not
-  pose::Keypoints keypoints_{};  ///< as the filter took them
+  int unseen_in_a_row_ = 0;      ///< images that should have shown the target but did not
+  pose::Keypoints keypoints_{};  ///< as processed by the filter
 };
 
 }  // namespace vbar::fsw::gnc

@@ -10,13 +10,13 @@
 namespace vbar::fsw::gnss {
 namespace {
 
-/// A float whose conditional variance is below this part of its variance depends on those taken before, to rounding.
-/// Ten times what Decorrelation asks for, so that a set made here is one that it takes.
+/// A float whose conditional variance is below this part of its variance is a linear combination of those before, to
+/// rounding. Ten times the limit of Decorrelation, so that a set made here is accepted there.
 constexpr double kDependent = 1e-11;
 
 constexpr double kLargestRatio = 1e9;
 
-/// Single ambiguities that may be wrong at once.
+/// Number of ambiguities that may be wrong at once.
 constexpr std::size_t kMaxMisfits = 4;
 
 /// The caller's covariance.
@@ -28,7 +28,7 @@ struct Covariance {
   }
 };
 
-/// The ambiguities being tried.
+/// The ambiguities considered.
 struct Candidates {
   std::size_t count = 0;
   std::array<std::uint8_t, kMaxAmbiguities> position{};
@@ -52,8 +52,8 @@ Status check(std::span<const double> ambiguities, std::span<const double> covari
   return math::is_finite(sum) ? Status::kOk : Status::kNotFinite;
 }
 
-/// Up to kMaxAmbiguities, each the sharpest given those taken before: the pivots of a Cholesky factorisation, smallest
-/// first. Leaves out what depends on the others.
+/// Up to kMaxAmbiguities, each the most precise given those before: the pivots of a Cholesky factorisation, smallest
+/// first. Leaves out those that depend on the others.
 Candidates select_sharpest(const Covariance& covariance, ValidationWorkspace& workspace) {
   std::array<double, kMaxFloatAmbiguities> rest{};
   std::array<bool, kMaxFloatAmbiguities> taken{};
@@ -94,7 +94,7 @@ double& information_at(ValidationWorkspace& workspace, std::size_t i, std::size_
 }
 
 /// Inverse of the candidates' covariance, by Gauss-Jordan elimination in place, which needs no pivoting for a positive
-/// definite matrix. It ranks candidates only: what is held is decided on the decorrelated problem.
+/// definite matrix. It only ranks candidates: the decision is made on the decorrelated problem.
 void compute_information(const Covariance& covariance, const Candidates& candidates, ValidationWorkspace& workspace) {
   const std::size_t n = candidates.count;
   const auto p = [&workspace](std::size_t i, std::size_t j) -> double& { return information_at(workspace, i, j); };
@@ -116,7 +116,7 @@ void compute_information(const Covariance& covariance, const Candidates& candida
   }
 }
 
-/// Takes candidate `i` out: the information of the others with it unknown is the Schur complement.
+/// Removes candidate `i`: the information of the others with it unknown is the Schur complement.
 void leave_out(std::size_t i, Candidates& candidates, ValidationWorkspace& workspace) {
   const std::size_t n = candidates.count;
   const auto p = [&workspace](std::size_t r, std::size_t c) -> double& { return information_at(workspace, r, c); };
@@ -140,10 +140,10 @@ void leave_out(std::size_t i, Candidates& candidates, ValidationWorkspace& works
   --candidates.count;
 }
 
-/// The one that stays least known when all others are: without it the dilution of precision of the rest is least, for
-/// det Q without i = det Q (Q^-1)_ii. Of those that `matters` says.
+/// The one that stays least certain when all others are known: without it the dilution of precision is smallest, for
+/// det Q without i = det Q (Q^-1)_ii. Of those selected by `matters`.
 template <class Matters>
-std::size_t least_known(std::size_t count, ValidationWorkspace& workspace, const Matters& matters) {
+std::size_t least_certain(std::size_t count, ValidationWorkspace& workspace, const Matters& matters) {
   std::size_t worst = count;
   for (std::size_t i = 0; i < count; ++i) {
     if (!matters(i)) continue;
@@ -152,7 +152,7 @@ std::size_t least_known(std::size_t count, ValidationWorkspace& workspace, const
   return worst == count ? 0 : worst;
 }
 
-/// Decorrelates the candidates, but for the one at `without` (their count: none).
+/// Decorrelates the candidates, except the one at `without` (their count: none).
 Status decorrelate(std::span<const double> ambiguities, const Covariance& covariance, const Candidates& candidates,
                    std::size_t without, ValidationWorkspace& workspace) {
   std::array<std::uint8_t, kMaxAmbiguities> position{};
@@ -168,19 +168,19 @@ Status decorrelate(std::span<const double> ambiguities, const Covariance& covari
                                          std::span(workspace.covariance).first(n * n));
 }
 
-/// The one without which the others come nearest to integers. The search is cut short: the vectors it meets first are
-/// near enough to tell a fault from none.
+/// The one without which the others come closest to integers. The search is truncated: the vectors found first are
+/// close enough to identify a fault.
 std::size_t least_fitting(std::span<const double> ambiguities, const Covariance& covariance,
                           const Candidates& candidates, ValidationWorkspace& workspace) {
   constexpr std::size_t kNodes = 1000;
   std::size_t worst = 0;
-  double least = kUnboundedNorm2;
+  double minimum = kUnboundedNorm2;
   for (std::size_t i = 0; i < candidates.count; ++i) {
     if (decorrelate(ambiguities, covariance, candidates, i, workspace) != Status::kOk) continue;
     NearestIntegers nearest;
-    (void)search_integers(workspace.decorrelation, {.norm2 = least, .nodes = kNodes}, nearest);
+    (void)search_integers(workspace.decorrelation, {.norm2 = minimum, .nodes = kNodes}, nearest);
     if (nearest.found == 0) continue;
-    least = nearest.best_norm2;
+    minimum = nearest.best_norm2;
     worst = i;
   }
   return worst;
@@ -193,9 +193,9 @@ double chi_square_reach(std::size_t degrees, double tail) {
   return n + 2.0 * math::sqrt(n * weight) + 2.0 * weight;
 }
 
-/// What a set of candidates came to, and the candidate to leave out if it was not accepted.
+/// Result of a set of candidates, and the candidate to leave out if it was not accepted.
 struct Trial {
-  Obstacle obstacle = Obstacle::kNone;
+  RejectionReason rejection_reason = RejectionReason::kNone;
   std::size_t worst = 0;
   std::array<double, kMaxAmbiguities> whole{};
 };
@@ -204,8 +204,8 @@ Trial try_candidates(std::span<const double> ambiguities, const Covariance& cova
                      const ValidationCriteria& criteria, ValidationWorkspace& workspace, AmbiguityDecision& decision) {
   const std::size_t n = candidates.count;
   Trial trial;
-  trial.worst = least_known(n, workspace, [](std::size_t) { return true; });
-  trial.obstacle = Obstacle::kSearch;
+  trial.worst = least_certain(n, workspace, [](std::size_t) { return true; });
+  trial.rejection_reason = RejectionReason::kSearch;
   decision.success_rate = 0.0;
   decision.ratio = 0.0;
   decision.residual = 0.0;
@@ -213,10 +213,10 @@ Trial try_candidates(std::span<const double> ambiguities, const Covariance& cova
   const Decorrelation& problem = workspace.decorrelation;
   decision.success_rate = bootstrap_success_rate(problem.d());
   if (decision.success_rate < criteria.min_success_rate) {
-    trial.obstacle = Obstacle::kWeak;
+    trial.rejection_reason = RejectionReason::kWeak;
     return trial;
   }
-  // No farther than integers can be that fit, and a second-best that is too near to them.
+  // Within the distance of integers that fit, and without a second-best that is too close.
   const double min_ratio = std::max(criteria.min_ratio, ratio_threshold(n, 1.0 - decision.success_rate));
   const double reach = min_ratio * chi_square_reach(n, criteria.residual_false_alarm);
   NearestIntegers nearest;
@@ -224,18 +224,19 @@ Trial try_candidates(std::span<const double> ambiguities, const Covariance& cova
   decision.residual = nearest.best_norm2;
   decision.ratio = std::min(nearest.second_norm2 / std::max(nearest.best_norm2, 1e-300), kLargestRatio);
   if (nearest.found == 0 || chi_square_tail(decision.residual, n) < criteria.residual_false_alarm) {
-    trial.obstacle = Obstacle::kNoFit;
+    trial.rejection_reason = RejectionReason::kNoFit;
     trial.worst = least_fitting(ambiguities, covariance, candidates, workspace);
     return trial;
   }
   if (problem.to_original(std::span(nearest.best).first(n)) != Status::kOk) return trial;
   if (decision.ratio < min_ratio) {  // then the second-best is within reach
     if (problem.to_original(std::span(nearest.second).first(n)) != Status::kOk) return trial;
-    trial.obstacle = Obstacle::kNotApart;
-    trial.worst = least_known(n, workspace, [&nearest](std::size_t i) { return nearest.best[i] != nearest.second[i]; });
+    trial.rejection_reason = RejectionReason::kNotApart;
+    trial.worst =
+        least_certain(n, workspace, [&nearest](std::size_t i) { return nearest.best[i] != nearest.second[i]; });
     return trial;
   }
-  trial.obstacle = Obstacle::kNone;
+  trial.rejection_reason = RejectionReason::kNone;
   trial.whole = nearest.best;
   return trial;
 }
@@ -248,26 +249,26 @@ Result<AmbiguityDecision> decide_ambiguities(std::span<const double> ambiguities
   const Covariance all{.elements = covariance, .size = ambiguities.size()};
   AmbiguityDecision decision;
   Candidates candidates = select_sharpest(all, workspace);
-  if (candidates.count < std::min(all.size, kMaxAmbiguities)) decision.obstacle = Obstacle::kSearch;
+  if (candidates.count < std::min(all.size, kMaxAmbiguities)) decision.rejection_reason = RejectionReason::kSearch;
   compute_information(all, candidates, workspace);
   std::size_t misfits = 0;
-  const auto meet = [&decision](Obstacle obstacle) {
-    if (decision.obstacle == Obstacle::kNone) decision.obstacle = obstacle;
+  const auto meet = [&decision](RejectionReason rejection_reason) {
+    if (decision.rejection_reason == RejectionReason::kNone) decision.rejection_reason = rejection_reason;
   };
   while (candidates.count >= criteria.min_count) {
     ++decision.tried;
     const Trial trial = try_candidates(ambiguities, all, candidates, criteria, workspace, decision);
-    if (trial.obstacle == Obstacle::kNone) {
+    if (trial.rejection_reason == RejectionReason::kNone) {
       decision.count = candidates.count;
       decision.position = candidates.position;
       decision.whole = trial.whole;
       return decision;
     }
-    meet(trial.obstacle);
-    if (trial.obstacle == Obstacle::kNoFit && ++misfits > kMaxMisfits) return decision;
+    meet(trial.rejection_reason);
+    if (trial.rejection_reason == RejectionReason::kNoFit && ++misfits > kMaxMisfits) return decision;
     leave_out(trial.worst, candidates, workspace);
   }
-  meet(Obstacle::kTooFew);
+  meet(RejectionReason::kTooFew);
   return decision;
 }
 

@@ -1,12 +1,12 @@
 #pragma once
-// Which float ambiguities may be held to which integers. Integers are believed if
-//   the model is strong:  bootstrapping succeeds with the probability asked for (Teunissen 1998);
-//   they stand out:       the second-best are farther by the ratio that keeps wrong fixes below kFixFailureRate
+// Which float ambiguities may be held to which integers. Integers are accepted if
+//   the model is strong:  bootstrapping succeeds with the required probability (Teunissen 1998);
+//   they are distinct:    the second-best are farther by the ratio that keeps wrong fixes below kFixFailureRate
 //                         (ratio_threshold.h), and by a fixed ratio that guards against covariances that are too small;
-//   they fit:             their squared distance from the float solution is one that a chi-square variable takes.
-// When not all can be, the one that spoils most is left out and the rest tried again, down to a smallest useful set.
-// More than kMaxAmbiguities are cut down first to those that are sharpest given each other; once these are held, the
-// filter's covariance of the others shrinks and a further call gets them.
+//   they fit:             their squared distance from the float solution is plausible for a chi-square variable.
+// If not all can be accepted, the worst one is left out and the others tried again, down to a smallest useful set.
+// More than kMaxAmbiguities are reduced first to the most precise given each other; once these are held, the
+// covariance of the others in the filter shrinks and a further call resolves them.
 
 #include <array>
 #include <cstddef>
@@ -25,12 +25,12 @@ inline constexpr std::size_t kMaxFloatAmbiguities = 80;
 struct ValidationCriteria {
   double min_success_rate = 0.9;       ///< of bootstrapping; 1 - kLargestModelFailureRate at least
   double min_ratio = 2.0;              ///< of squared norms, second-best to best, whatever the model's strength
-  double residual_false_alarm = 1e-4;  ///< probability that true integers are refused for not fitting
+  double residual_false_alarm = 1e-4;  ///< probability that correct integers are refused for their residual
   std::size_t min_count = 4;           ///< fewer double differences do not fix a baseline
 };
 
-/// What kept the ambiguities that are not held from being held.
-enum class Obstacle : std::uint8_t {
+/// Rejection reason of the ambiguities that are not held.
+enum class RejectionReason : std::uint8_t {
   kNone = 0,
   kTooFew,    ///< fewer ambiguities than min_count
   kWeak,      ///< success rate
@@ -40,19 +40,19 @@ enum class Obstacle : std::uint8_t {
 };
 
 struct AmbiguityDecision {
-  std::size_t count = 0;  ///< to hold; 0: none, the float solution stands
-  /// Which, as positions in the caller's vector, increasing, and their whole numbers.
+  std::size_t count = 0;  ///< to be held; 0: none, the float solution remains
+  /// Which, as indices in the caller's vector, increasing, and their integers.
   std::array<std::uint8_t, kMaxAmbiguities> position{};
   std::array<double, kMaxAmbiguities> whole{};
-  Obstacle obstacle = Obstacle::kNone;  ///< the first that was met on the way from all to those held
-  // Of those held, or of the last set that was tried.
+  RejectionReason rejection_reason = RejectionReason::kNone;  ///< the first one met while reducing the set
+  // Of those held, or of the last set considered.
   double success_rate = 0.0;
   double ratio = 0.0;     ///< at most 1e9
-  double residual = 0.0;  ///< squared norm of the integers, chi-square of the size of the set if they are right
+  double residual = 0.0;  ///< squared norm of the integers, chi-square with the size of the set if they are correct
   std::size_t tried = 0;  ///< sets
 };
 
-/// Memory of a decision, too large for a small stack; holds nothing between calls.
+/// Memory of a decision, too large for a small stack; holds no state between calls.
 struct ValidationWorkspace {
   Decorrelation decorrelation;
   std::array<double, kMaxAmbiguities> floats{};

@@ -1,5 +1,5 @@
 #pragma once
-// The chi-square distribution's tail, in closed form for whole degrees of freedom.
+// Tail probability of the chi-square distribution, in closed form for integer degrees of freedom.
 
 #include <cstddef>
 

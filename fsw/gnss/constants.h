@@ -1,5 +1,5 @@
 #pragma once
-// What the interface documents of the navigation satellites fix: all that an emulator and a receiver's user share.
+// Constants of the interface documents of the navigation satellites, shared by emulator and receiver software.
 
 namespace vbar::fsw::gnss {
 

@@ -12,15 +12,15 @@ constexpr double kLargestFloat = 2251799813685248.0;  // 2^51
 constexpr double kLargestWhole = 4503599627370496.0;  // 2^52
 constexpr double kLargestFactor = 2147483647.0;       // 2^31 - 1
 
-/// A conditional variance smaller than this part of the variance is rounding of the subtractions that led to it:
+/// A conditional variance smaller than this part of the variance is the rounding error of the preceding subtractions:
 /// kMaxAmbiguities of them leave 24 * 2.2e-16 of the variance, 0.5 % of this.
 constexpr double kSmallestPivot = 1e-12;
 
-/// An exchange is worth it if it makes the later variance smaller by 1 % at least (Lovasz' condition): a gain that is
-/// smaller saves the search less than the exchange costs (measured: 0.9 doubles the nodes of hard problems).
+/// An exchange is made if it reduces the later variance by at least 1 % (Lovasz' condition): a smaller gain
+/// saves the search less than the exchange costs (measured: 0.9 doubles the nodes of hard problems).
 constexpr double kWorthwhile = 0.99;
 
-/// A multiple from which on the other elements of its column are reduced too, lest they grow from exchange to exchange
+/// A multiple from which on the other elements of its column are reduced too, to prevent their growth
 /// (Xie, Chang, Al Borno 2011, section 3.2).
 constexpr double kLargeFactor = 2.0;
 
@@ -37,7 +37,7 @@ Status Decorrelation::load(std::span<const double> ambiguities, std::span<const 
   const std::size_t n = ambiguities.size();
   if (n == 0 || n > kMaxAmbiguities || covariance.size() != n * n) return Status::kInvalidArgument;
   count_ = n;
-  double sum = 0.0;  // not a number if anything is not finite
+  double sum = 0.0;  // NaN if any value is not finite
   for (std::size_t i = 0; i < n; ++i) {
     sum += 0.0 * ambiguities[i];
     double* row = l_.row(i);
@@ -58,27 +58,27 @@ Status Decorrelation::load(std::span<const double> ambiguities, std::span<const 
   return Status::kOk;
 }
 
-/// From the last row upwards, Q = L' D L: the component taken next is the one of least variance given those taken.
+/// From the last row upwards, Q = L' D L: the next component is the one of minimum variance given those before.
 Status Decorrelation::factorise() {
   std::array<double, kMaxAmbiguities> variance{};
   for (std::size_t i = 0; i < count_; ++i) variance[i] = l_.row(i)[i];
   for (std::size_t k = count_; k-- > 0;) {
     std::size_t sharpest = k;
-    double least = l_.row(k)[k];
+    double minimum = l_.row(k)[k];
     for (std::size_t i = k; i-- > 0;) {
-      if (l_.row(i)[i] < least) {
+      if (l_.row(i)[i] < minimum) {
         sharpest = i;
-        least = l_.row(i)[i];
+        minimum = l_.row(i)[i];
       }
     }
     if (sharpest != k) {
       bring_to(sharpest, k);
       std::swap(variance[sharpest], variance[k]);
     }
-    if (!(least > kSmallestPivot * variance[k])) return Status::kSingular;
-    const double inverse = 1.0 / least;
+    if (!(minimum > kSmallestPivot * variance[k])) return Status::kSingular;
+    const double inverse = 1.0 / minimum;
     if (!math::is_finite(inverse)) return Status::kSingular;
-    d_[k] = least;
+    d_[k] = minimum;
     double* pivot_row = l_.row(k);
     for (std::size_t i = 0; i < k; ++i) {
       const double factor = pivot_row[i] * inverse;
@@ -91,7 +91,7 @@ Status Decorrelation::factorise() {
   return Status::kOk;
 }
 
-/// Exchanges components `from` < `to` of what is not yet factored, and of the columns of the rows that are.
+/// Exchanges components `from` < `to` of the part not yet factored, and of the columns of the rows that are.
 void Decorrelation::bring_to(std::size_t from, std::size_t to) {
   double* low = l_.row(from);
   double* high = l_.row(to);
@@ -156,14 +156,14 @@ void Decorrelation::exchange(std::size_t k, double new_d) {
   const double correlation = lower[k];
   const double inverse = 1.0 / new_d;
   const double kept = d_[k] * inverse;
-  const double turned = d_[k + 1] * correlation * inverse;
+  const double rotated = d_[k + 1] * correlation * inverse;
   d_[k] = kept * d_[k + 1];
   d_[k + 1] = new_d;
-  lower[k] = turned;
+  lower[k] = rotated;
   for (std::size_t j = 0; j < k; ++j) {
     const double old = upper[j];
     upper[j] = lower[j] - correlation * old;
-    lower[j] = kept * old + turned * lower[j];
+    lower[j] = kept * old + rotated * lower[j];
   }
   for (std::size_t i = k + 2; i < count_; ++i) std::swap(l_.row(i)[k], l_.row(i)[k + 1]);
   std::swap(z_[k], z_[k + 1]);
@@ -182,7 +182,7 @@ Status Decorrelation::to_original(std::span<double> z) const {
   if (z.size() != count_) return Status::kInvalidArgument;
   double largest = 0.0;
   for (const double whole : z) largest = std::max(largest, math::abs(whole));
-  // Products and sums of whole numbers are exact below 2^53.
+  // Products and sums of integers are exact below 2^53.
   if (!(static_cast<double>(count_) * largest * largest_back_ < kLargestWhole)) return Status::kOutOfRange;
   std::array<double, kMaxAmbiguities> sum = whole_;
   for (std::size_t k = 0; k < count_; ++k) {

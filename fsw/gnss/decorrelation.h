@@ -1,7 +1,7 @@
 #pragma once
 // Decorrelation of float ambiguities: their covariance is factored as Q = L' D L, L unit lower triangular, and integer
-// transformations z = Z' a with whole Z and |det Z| = 1 bring D into increasing order from the last element to the
-// first, as far as they can. What is left is a nearly diagonal problem whose last component is the sharpest.
+// transformations z = Z' a with integer Z and |det Z| = 1 bring D into increasing order from the last element to the
+// first, as far as possible. The result is a nearly diagonal problem whose last component is the most precise.
 // mLAMBDA (Chang, Yang, Zhou 2005): factorisation with symmetric pivoting; integer Gauss transforms only where an
 // exchange follows (the "partial" reduction of Xie, Chang, Al Borno 2011: the others change neither D nor the search).
 
@@ -15,13 +15,13 @@
 
 namespace vbar::fsw::gnss {
 
-/// The nearest whole number, halves to the even one, for |x| < 2^51: adding 1.5 * 2^52 leaves no bits for a fraction.
+/// The nearest integer, halves to the even one, for |x| < 2^51: adding 1.5 * 2^52 leaves no bits for a fraction.
 inline double nearest_integer(double x) {
   constexpr double kNoFraction = 6755399441055744.0;
   return (x + kNoFraction) - kNoFraction;
 }
 
-/// A lower triangle stored by rows, without gaps: what the factorisation, an exchange and the search walk along.
+/// A lower triangle stored by rows, without gaps, for sequential access by factorisation, exchange and search.
 class LowerTriangle {
  public:
   [[nodiscard]] double* row(std::size_t i) { return &elements_[i * (i + 1) / 2]; }
@@ -37,20 +37,20 @@ class Decorrelation {
  public:
   /// Factors and reduces. `ambiguities` in cycles, `covariance` in cycles^2, n x n, of which the lower triangle of the
   /// column-major matrix is read. kInvalidArgument for sizes that do not fit; kNotFinite; kOutOfRange for |a| >= 2^51;
-  /// kSingular if a conditional variance is below 1e-12 of its variance (rounding would be all that is left of it) or
-  /// the correlations need transformations beyond whole numbers of 31 bits; kDidNotConverge at the bound of the
-  /// reduction. After an error nothing else may be asked.
+  /// kSingular if a conditional variance is below 1e-12 of its variance (dominated by rounding) or
+  /// the correlations need transformations beyond integers of 31 bits; kDidNotConverge at the bound of the
+  /// reduction. After an error the object must not be used.
   [[nodiscard]] Status compute(std::span<const double> ambiguities, std::span<const double> covariance);
 
   [[nodiscard]] std::size_t count() const { return count_; }
   /// Conditional variances of the decorrelated ambiguities, cycles^2.
   [[nodiscard]] std::span<const double> d() const { return std::span(d_).first(count_); }
-  /// Decorrelated float ambiguities, less whole numbers.
+  /// Decorrelated float ambiguities, less integers.
   [[nodiscard]] std::span<const double> z() const { return std::span(z_).first(count_); }
   /// The unit factor; its diagonal is 1.
   [[nodiscard]] const LowerTriangle& l() const { return l_; }
 
-  /// Whole decorrelated ambiguities, in place, to those of the caller. kOutOfRange beyond 2^52.
+  /// Integer decorrelated ambiguities, in place, to those of the caller. kOutOfRange beyond 2^52.
   [[nodiscard]] Status to_original(std::span<double> z) const;
 
  private:
@@ -68,8 +68,8 @@ class Decorrelation {
   LowerTriangle l_;
   std::array<double, kMaxAmbiguities> d_{};
   std::array<double, kMaxAmbiguities> z_{};
-  std::array<double, kMaxAmbiguities> whole_{};  ///< what was taken off the float ambiguities
-  /// Z^-T, whole numbers: the caller's ambiguities are the sum of z[k] times column column_[k], whole_ added.
+  std::array<double, kMaxAmbiguities> whole_{};  ///< integers subtracted from the float ambiguities
+  /// Z^-T, integers: the caller's ambiguities are the sum of z[k] times column column_[k], whole_ added.
   std::array<double, kMaxAmbiguities * kMaxAmbiguities> back_{};
   std::array<std::uint8_t, kMaxAmbiguities> column_{};
   double largest_back_ = 0.0;  ///< of its elements

@@ -87,7 +87,7 @@ PlanePoint plane_point(const Ephemeris& orbit, const EccentricAnomaly& anomaly, 
           .inclination_rate = orbit.i_dot + correction_rate(orbit.cic, orbit.cis)};
 }
 
-/// Out of the orbital plane, with the node at `node` and turning at `node_rate`.
+/// Out of the orbital plane, with the node at `node` and its rate `node_rate`.
 void rotate_out_of_plane(const PlanePoint& point, double node, double node_rate, SatelliteState& state) {
   const double sin_i = math::sin(point.inclination);
   const double cos_i = math::cos(point.inclination);
@@ -102,17 +102,17 @@ void rotate_out_of_plane(const PlanePoint& point, double node, double node_rate,
                          point.y_rate * sin_i + point.y * cos_i * point.inclination_rate};
 }
 
-/// Geostationary satellites of BeiDou are broadcast in a frame that does not turn with the Earth and is tilted by five
+/// Geostationary satellites of BeiDou are broadcast in a frame that does not rotate with the Earth, tilted by five
 /// degrees, so that their inclination is not near zero (BDS-SIS-ICD-B1I-3.0, table 5-11).
 void rotate_geostationary(double age, double earth_rate, SatelliteState& state) {
   constexpr double kTilt = -5.0 * math::kDegree;
   const double sin_tilt = math::sin(kTilt);
   const double cos_tilt = math::cos(kTilt);
-  const double sin_turn = math::sin(earth_rate * age);
-  const double cos_turn = math::cos(earth_rate * age);
+  const double sin_angle = math::sin(earth_rate * age);
+  const double cos_angle = math::cos(earth_rate * age);
   const auto rotated = [=](const Vector3& v) {
     const double y = v.y() * cos_tilt + v.z() * sin_tilt;
-    return Vector3(v.x() * cos_turn + y * sin_turn, -v.x() * sin_turn + y * cos_turn,
+    return Vector3(v.x() * cos_angle + y * sin_angle, -v.x() * sin_angle + y * cos_angle,
                    -v.y() * sin_tilt + v.z() * cos_tilt);
   };
   const Vector3 position = rotated(state.position_ecef);

@@ -1,5 +1,5 @@
 #pragma once
-// Broadcast ephemerides of GPS, Galileo and BeiDou in one form, and the satellite's state out of them.
+// Broadcast ephemerides of GPS, Galileo and BeiDou in one form, and the satellite state computed from them.
 // IS-GPS-200N 20.3.3.4.3 (orbit) and 20.3.3.3.3.1 (clock); Galileo OS SIS ICD 2.1, 5.1.1 and 5.1.4;
 // BDS-SIS-ICD-B1I-3.0, 5.2.4.9 to 5.2.4.12 (inclined and medium orbits; the geostationary satellites' rotated frame
 // included).
@@ -13,7 +13,7 @@ namespace vbar::fsw::gnss {
 
 struct Ephemeris {
   SatelliteId satellite;
-  std::int32_t issue = 0;  ///< IODE, IODnav, AODE: tells two sets apart
+  std::int32_t issue = 0;  ///< IODE, IODnav, AODE: identifies the set
   bool healthy = false;
   GpsTime toe;          ///< reference time of the orbit, in GPS time for every system
   GpsTime toc;          ///< the same of the clock
@@ -40,7 +40,7 @@ struct SatelliteState {
   double clock_drift = 0.0;  ///< s/s
 };
 
-/// Whether its elements are those of a navigation satellite: finite, inside the ranges that the interface documents
+/// Whether its elements are valid for a navigation satellite: finite, inside the ranges that the interface documents
 /// allow.
 Status check(const Ephemeris& ephemeris);
 

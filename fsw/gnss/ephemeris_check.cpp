@@ -1,6 +1,6 @@
-// Which elements a navigation satellite can have. The bounds are what the fields of the interface documents can hold
+// Valid elements of a navigation satellite. The bounds are the ranges of the fields in the interface documents
 // (the widest of IS-GPS-200N tables 20-I to 20-III, Galileo OS SIS ICD 2.1 tables 61, 65, 67, BDS-SIS-ICD-B1I-3.0
-// tables 5-6, 5-9), except where only a narrower range is a navigation satellite.
+// tables 5-6, 5-9), except where navigation satellites occupy a narrower range.
 
 #include <array>
 #include <span>
@@ -19,7 +19,7 @@ constexpr double kMaxSqrtA = 6700.0;
 // IS-GPS-200N, table 20-III; Galileo has two satellites at 0.16 (E14, E18).
 constexpr double kMaxEccentricityGps = 0.03;
 constexpr double kMaxEccentricity = 0.2;
-// Sent between -pi and pi; receivers that pass them on in radians may turn them positive.
+// Sent between -pi and pi; receivers that convert them to radians may make them positive.
 constexpr double kMaxAngle = math::kTwoPi;
 constexpr double kMaxDeltaN = 1.2e-8;          // 15 bits of 2^-43 semicircles/s
 constexpr double kMaxNodeRate = 3.0e-6;        // 23 bits of the same
@@ -30,7 +30,7 @@ constexpr double kMaxClock = 0.0625;           // 30 bits of 2^-34 s (Galileo)
 constexpr double kMaxClockRate = 1.5e-8;       // 20 bits of 2^-46 (Galileo)
 constexpr double kMaxClockAging = 3.6e-15;     // 7 bits of 2^-55 /s (GPS)
 constexpr double kMaxGroupDelay = 1.2e-7;      // 9 bits of 2^-32 s (Galileo)
-// Clock and orbit of a set are referred to the same hour or two.
+// Clock and orbit of a set refer to the same hour or two.
 constexpr Duration kMaxClockApart = duration_of_seconds(86'400);
 
 struct Bounded {

@@ -1,5 +1,5 @@
 #pragma once
-// Weeks and seconds of week, as receivers and navigation messages tell time, against the one clock (core/gps_time.h).
+// Weeks and seconds of week of receivers and navigation messages, converted to the one clock (core/gps_time.h).
 
 #include <cstdint>
 
@@ -9,7 +9,7 @@ namespace vbar::fsw::gnss {
 
 inline constexpr std::int64_t kSecondsPerWeek = 604'800;
 inline constexpr std::int64_t kNanosecondsPerWeek = kSecondsPerWeek * kNanosecondsPerSecond;
-/// Year 2171. Far below what an instant in nanoseconds can hold (15,250 weeks).
+/// Year 2171. Far below the range of an instant in nanoseconds (15,250 weeks).
 inline constexpr std::uint32_t kMaxWeek = 10'000;
 
 /// BeiDou time began on 2006-01-01 UTC: GPS week 1356, and 14 s behind GPS time ever since

@@ -7,10 +7,10 @@
 namespace vbar::fsw::gnss {
 namespace {
 
-/// One component of the vector being tried.
+/// One component of the current vector.
 struct Level {
-  double centre = 0.0;     ///< float value given the whole numbers of the later components
-  double whole = 0.0;      ///< being tried
+  double centre = 0.0;     ///< float value given the integers of the later components
+  double whole = 0.0;      ///< current integer
   double step = 0.0;       ///< to the next candidate: 1, -2, 3, ... or -1, 2, -3, ...
   double distance2 = 0.0;  ///< of the later components
   double weight = 0.0;     ///< 1 / conditional variance
@@ -28,7 +28,7 @@ void next_candidate(Level& level) {
   level.step = -level.step - __builtin_copysign(1.0, level.step);
 }
 
-/// Puts the vector that is being tried in its place.
+/// Writes the current vector to its place.
 void keep(const std::array<Level, kMaxAmbiguities>& levels, std::size_t n, double norm2, NearestIntegers& nearest) {
   std::array<double, kMaxAmbiguities>* place = &nearest.second;
   if (norm2 < nearest.best_norm2) {
@@ -49,7 +49,7 @@ Status search_integers(const Decorrelation& problem, const SearchLimits& limits,
   const std::size_t n = problem.count();
   std::array<Level, kMaxAmbiguities> levels{};
   for (std::size_t k = 0; k < n; ++k) levels[k].weight = 1.0 / problem.d()[k];
-  // Row k: centres of components 0 to k given the whole numbers of those after k.
+  // Row k: centres of components 0 to k given the integers of those after k.
   LowerTriangle centres;
   std::copy(problem.z().begin(), problem.z().end(), centres.row(n - 1));
   nearest.found = 0;
@@ -62,7 +62,7 @@ Status search_integers(const Decorrelation& problem, const SearchLimits& limits,
     const double residual = level.centre - level.whole;
     const double distance2 = level.distance2 + residual * residual * level.weight;
     if (!(distance2 < nearest.second_norm2)) {
-      // Candidates only get farther: this component is exhausted.
+      // Further candidates are only more distant: this component is exhausted.
       if (++k == n) return Status::kOk;
       next_candidate(levels[k]);
     } else if (k > 0) {

@@ -1,5 +1,5 @@
 #pragma once
-// The two whole vectors nearest to decorrelated float ambiguities: depth-first search in a shrinking ellipsoid, the
+// The two integer vectors nearest to decorrelated float ambiguities: depth-first search in a shrinking ellipsoid, the
 // candidates of a component in the order of their distance (Schnorr and Euchner 1994; Chang, Yang, Zhou 2005, 3.2).
 
 #include <array>
@@ -10,28 +10,28 @@
 
 namespace vbar::fsw::gnss {
 
-/// Nodes of a search. A problem whose success rate is 0.5 takes some hundred at 24 ambiguities; one that takes this
-/// many is not worth an answer. A node costs about 100 cycles of a Cortex-A9.
+/// Node limit of a search. A problem whose success rate is 0.5 takes some hundred at 24 ambiguities; one with this
+/// many cannot be resolved reliably. A node costs about 100 cycles of a Cortex-A9.
 inline constexpr std::size_t kMaxSearchNodes = 1U << 18U;
 
-/// More than any squared distance that a search can meet.
+/// Larger than any squared distance in a search.
 inline constexpr double kUnboundedNorm2 = 1e300;
 
 struct SearchLimits {
-  double norm2 = kUnboundedNorm2;  ///< only vectors nearer than this are of interest
+  double norm2 = kUnboundedNorm2;  ///< only vectors closer than this are searched
   std::size_t nodes = kMaxSearchNodes;
 };
 
 /// Decorrelated integers and their squared distances from the float ones in the metric of the covariance.
 struct NearestIntegers {
-  std::size_t found = 0;  ///< 0, 1 or 2; the squared distance of what was not found is the limit
+  std::size_t found = 0;  ///< 0, 1 or 2; the squared distance of those not found is the limit
   std::array<double, kMaxAmbiguities> best{};
   std::array<double, kMaxAmbiguities> second{};
   double best_norm2 = 0.0;
   double second_norm2 = 0.0;
 };
 
-/// kDidNotConverge at the limit of nodes: `nearest` then holds the nearest met so far.
+/// kDidNotConverge at the node limit: `nearest` then holds the nearest found so far.
 Status search_integers(const Decorrelation& problem, const SearchLimits& limits, NearestIntegers& nearest);
 
 /// resolve_ambiguities() of a problem that is decorrelated already.

@@ -36,7 +36,7 @@ Result<double> klobuchar_delay_l1_m(const KlobucharCoefficients& coefficients, c
   if (!math::is_finite(sight.latitude + sight.longitude + sight.azimuth)) return Status::kNotFinite;
   if (!(sight.elevation >= 0.0 && sight.elevation <= math::kPi / 2.0)) return Status::kOutOfRange;
 
-  // Angles in semicircles from here on, as the document has them.
+  // Angles in semicircles from here on, as in the document.
   const double elevation = sight.elevation / math::kPi;
   const double earth_angle = 0.0137 / (elevation + 0.11) - 0.022;
   double pierce_latitude = sight.latitude / math::kPi + earth_angle * math::cos(sight.azimuth);

@@ -14,10 +14,10 @@ struct KlobucharCoefficients {
   std::array<double, 4> beta{};
 };
 
-/// Whether they are numbers that the message's fields can hold (IS-GPS-200N, table 20-X).
+/// Whether they are within the range of the message's fields (IS-GPS-200N, table 20-X).
 Status check(const KlobucharCoefficients& coefficients);
 
-/// Where the signal comes from, seen by a user; rad.
+/// Direction of the signal as seen by a user; rad.
 struct LineOfSight {
   double latitude = 0.0;   ///< of the user, geodetic
   double longitude = 0.0;  ///< of the user
@@ -25,9 +25,9 @@ struct LineOfSight {
   double elevation = 0.0;  ///< of the satellite
 };
 
-/// Group delay at L1, m, for a user at the ground: the whole ionosphere. It goes with the inverse square of the
-/// frequency; the phase advances by as much. kNotFinite; kOutOfRange for an elevation outside [0, pi/2], where the
-/// model's mapping has no meaning (it has a pole at -19.8 degrees), or coefficients that fail check().
+/// Group delay at L1, m, for a user at the ground: the complete ionosphere. It is proportional to the inverse square of
+/// the frequency; the phase advance is the same. kNotFinite; kOutOfRange for an elevation outside [0, pi/2], where
+/// the model's mapping is not valid (it has a pole at -19.8 degrees), or coefficients that fail check().
 Result<double> klobuchar_delay_l1_m(const KlobucharCoefficients& coefficients, const LineOfSight& sight, GpsTime time);
 
 }  // namespace vbar::fsw::gnss

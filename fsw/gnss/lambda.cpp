@@ -14,7 +14,7 @@ double bootstrap_success_rate(std::span<const double> conditional_variances) {
 }
 
 double adop(std::span<const double> conditional_variances) {
-  double log_determinant = 0.0;  // the determinant itself can leave the range of numbers
+  double log_determinant = 0.0;  // the determinant itself can underflow or overflow
   for (const double variance : conditional_variances) log_determinant += math::log(variance);
   return math::exp(0.5 * log_determinant / static_cast<double>(conditional_variances.size()));
 }

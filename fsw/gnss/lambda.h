@@ -14,10 +14,10 @@ namespace vbar::fsw::gnss {
 
 inline constexpr std::size_t kMaxAmbiguities = 24;
 
-/// The best and second-best integer vectors, and what tells whether to believe them.
+/// The best and second-best integer vectors, with criteria for their validation.
 struct IntegerSolution {
   std::size_t count = 0;
-  std::array<double, kMaxAmbiguities> best{};  ///< whole numbers; |.| < 2^53
+  std::array<double, kMaxAmbiguities> best{};  ///< integers; |.| < 2^53
   std::array<double, kMaxAmbiguities> second{};
   double best_norm2 = 0.0;  ///< (a - z)' Q^-1 (a - z)
   double second_norm2 = 0.0;
@@ -25,7 +25,7 @@ struct IntegerSolution {
 };
 
 /// Probability that sequential rounding ("bootstrapping") of ambiguities with these conditional variances (cycles^2,
-/// each given those fixed before it) gives the true integers: prod of 2 Phi(1 / (2 sigma)) - 1 (Teunissen 1998,
+/// each given those fixed before it) yields the correct integers: prod of 2 Phi(1 / (2 sigma)) - 1 (Teunissen 1998,
 /// equation 18). For a decorrelated problem it is a sharp lower bound of the success rate of integer least squares.
 double bootstrap_success_rate(std::span<const double> conditional_variances);
 
@@ -35,7 +35,7 @@ double adop(std::span<const double> conditional_variances);
 
 /// `ambiguities` (cycles, n of them, 1 <= n <= kMaxAmbiguities) and their covariance (cycles^2, n x n, column-major;
 /// the lower triangle is read). kNotFinite; kSingular for a covariance that is not positive definite; kOutOfRange for
-/// an ambiguity too large to be a whole number; kDidNotConverge when the search reaches its bound.
+/// an ambiguity too large to be an integer; kDidNotConverge when the search reaches its bound.
 Result<IntegerSolution> resolve_ambiguities(std::span<const double> ambiguities, std::span<const double> covariance);
 
 }  // namespace vbar::fsw::gnss

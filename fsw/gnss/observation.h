@@ -1,5 +1,5 @@
 #pragma once
-// What a receiver measured at one instant of its own clock: code, carrier, Doppler of every signal it tracks.
+// Measurements of a receiver at one instant of its own clock: code, carrier, Doppler of every signal it tracks.
 
 #include <array>
 #include <compare>
@@ -36,7 +36,7 @@ constexpr double wavelength(Signal signal) {
 struct Observation {
   SatelliteId satellite;
   Signal signal = Signal::kGpsL1;
-  /// By which of the signal's codes it is tracked, the receiver's number (GPS L2: 9 P(Y), 5 P, 17 C). Phases of
+  /// The code by which it is tracked, as numbered by the receiver (GPS L2: 9 P(Y), 5 P, 17 C). Phases of
   /// different codes differ by fractions of a cycle: an arc, and a difference between receivers, is of one code.
   std::uint8_t code = 0;
   bool phase_usable = false;  ///< phase lock, and no half-cycle ambiguity (parity known)
@@ -46,7 +46,7 @@ struct Observation {
   double pseudorange_sigma_m = 0.0;   ///< the receiver's own estimates
   double phase_sigma_cycles = 0.0;
   double cn0_dbhz = 0.0;
-  double lock_time_s = 0.0;  ///< of continuous carrier tracking: falls when there was a slip
+  double lock_time_s = 0.0;  ///< of continuous carrier tracking: decreases after a slip
 };
 
 /// 24 satellites of two GPS signals, 16 each of Galileo and BeiDou.

@@ -22,12 +22,12 @@ template <std::unsigned_integral Integer>
   return read_little_endian<std::uint32_t>(bytes, offset);
 }
 
-/// Four bytes of single precision. May be anything, NaN and infinity included.
+/// Four bytes of single precision. Any value, NaN and infinity included.
 [[nodiscard]] constexpr double read_f32(std::span<const std::uint8_t> bytes, std::size_t offset) {
   return static_cast<double>(std::bit_cast<float>(read_little_endian<std::uint32_t>(bytes, offset)));
 }
 
-/// Eight bytes of double precision. May be anything, NaN and infinity included.
+/// Eight bytes of double precision. Any value, NaN and infinity included.
 [[nodiscard]] constexpr double read_f64(std::span<const std::uint8_t> bytes, std::size_t offset) {
   return std::bit_cast<double>(read_little_endian<std::uint64_t>(bytes, offset));
 }

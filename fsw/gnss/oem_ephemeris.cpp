@@ -23,7 +23,7 @@ std::optional<SatelliteId> satellite(Constellation constellation, std::uint32_t 
   return SatelliteId{constellation, static_cast<std::uint8_t>(prn)};
 }
 
-/// A time of week sent as a real number; nothing for one that is none.
+/// A time of week sent as a real number; no value if it is invalid.
 std::optional<Duration> of_week(double seconds_of_week) {
   if (!(seconds_of_week >= 0.0 && seconds_of_week < static_cast<double>(kSecondsPerWeek))) return std::nullopt;
   return nearest_duration(seconds_of_week);

@@ -1,9 +1,9 @@
 #pragma once
-// The broadcast ephemerides that a NovAtel receiver passes on (OEM7 Commands and Logs Reference Manual, logs of these
+// The broadcast ephemerides output by a NovAtel receiver (OEM7 Commands and Logs Reference Manual, logs of these
 // names): GPS as the navigation message's own bits or decoded, Galileo and BeiDou decoded.
 //
-// All: kWrongType for another id; kTooShort for a body shorter than the log (a longer one is taken: the manual lets new
-// fields follow the old); kBadSequence where the parts of the set are of different issues; else check()'s answer.
+// All: kWrongType for another id; kTooShort for a body shorter than the log (a longer one is accepted: the manual
+// appends new fields); kBadSequence if the parts of the set are of different issues; otherwise the result of check().
 
 #include "fsw/core/result.h"
 #include "fsw/gnss/ephemeris.h"
@@ -23,11 +23,11 @@ Result<Ephemeris> read_raw_ephemeris(const OemMessage& message);
 Result<Ephemeris> read_gps_ephemeris(const OemMessage& message);
 
 /// GALEPHEMERIS (id 1122): orbit and I/NAV clock, with the group delay of E1 against E5b. The log has no week: it is
-/// the one that brings toe nearest to the message's own time, so time_of()'s answers come besides. kNotReady: the
+/// the one that brings toe nearest to the message's own time, so that results of time_of() may occur. kNotReady: the
 /// receiver has no I/NAV clock yet.
 Result<Ephemeris> read_galileo_ephemeris(const OemMessage& message);
 
-/// BDSEPHEMERIS (id 1696): weeks and seconds of BeiDou time, turned into GPS time here.
+/// BDSEPHEMERIS (id 1696): weeks and seconds of BeiDou time, converted to GPS time here.
 Result<Ephemeris> read_beidou_ephemeris(const OemMessage& message);
 
 }  // namespace vbar::fsw::gnss

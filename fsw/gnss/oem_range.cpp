@@ -17,7 +17,7 @@ constexpr std::size_t kCompressedBytes = 24;
 // From the ground or a low orbit a navigation satellite is 18,000 to 50,000 km away; 20 ms of clock error are 6,000 km.
 constexpr double kMinPseudorange = 1.0e7;
 constexpr double kMaxPseudorange = 6.0e7;
-// Twice what a pseudorange of 60,000 km is in cycles, for a receiver that counts from an origin of its own.
+// Twice a pseudorange of 60,000 km in cycles, for a receiver that counts from its own origin.
 constexpr double kMaxPhaseCycles = 1.0e9;
 // 8 km/s of a low orbit on 4 km/s of a navigation satellite are 63 kHz; the receiver's oscillator adds a few.
 constexpr double kMaxDoppler = 1.0e5;
@@ -31,7 +31,7 @@ bool within(double value, double low, double high) {
   return value >= low && value <= high;
 }
 
-/// One signal's record of either log, before anything is known to be sensible.
+/// One signal's record of either log, before validation.
 struct Record {
   std::uint32_t status_word = 0;
   std::uint32_t prn = 0;
@@ -81,7 +81,7 @@ class EpochBuilder {
            within(observation.lock_time_s, 0.0, kMaxLockTime);
   }
 
-  /// Whether `a` stands after `b`.
+  /// Whether `a` comes after `b`.
   static bool after(const Observation& a, const Observation& b) {
     return a.satellite != b.satellite ? a.satellite > b.satellite : a.signal > b.signal;
   }
@@ -118,7 +118,7 @@ Record range_record(std::span<const std::uint8_t> bytes) {
   record.prn = read_little_endian<std::uint16_t>(bytes, 0);
   record.measured.pseudorange_m = read_f64(bytes, 4);
   record.measured.pseudorange_sigma_m = read_f32(bytes, 12);
-  record.measured.carrier_phase_cycles = -read_f64(bytes, 16);  // accumulated Doppler range falls with the range
+  record.measured.carrier_phase_cycles = -read_f64(bytes, 16);  // decreases with increasing range
   record.measured.phase_sigma_cycles = read_f32(bytes, 24);
   record.measured.doppler_hz = read_f32(bytes, 28);
   record.measured.cn0_dbhz = read_f32(bytes, 32);
@@ -128,11 +128,11 @@ Record range_record(std::span<const std::uint8_t> bytes) {
 }
 
 /// RANGECMP sends the accumulated Doppler range modulo 2^23 cycles; the receiver starts counting at the pseudorange, so
-/// that tells the turns (log RANGECMP, note on ADR rollover).
+/// it determines the number of rollovers (log RANGECMP, note on ADR rollover).
 double unrolled_phase_cycles(double rolled_adr_cycles, double pseudorange_m, Signal signal) {
   constexpr double kRollover = 8388608.0;
-  const double turns = math::floor((pseudorange_m / wavelength(signal) + rolled_adr_cycles) / kRollover + 0.5);
-  return turns * kRollover - rolled_adr_cycles;
+  const double rollovers = math::floor((pseudorange_m / wavelength(signal) + rolled_adr_cycles) / kRollover + 0.5);
+  return rollovers * kRollover - rolled_adr_cycles;
 }
 
 Record compressed_record(std::span<const std::uint8_t> bytes) {

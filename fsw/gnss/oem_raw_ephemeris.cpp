@@ -1,4 +1,4 @@
-// RAWEPHEM: subframes 1 to 3 as the satellite sends them, without parity: ten words of 24 bits, 30 bytes a subframe.
+// RAWEPHEM: subframes 1 to 3 as the satellite sends them, without parity: ten words of 24 bits, 30 bytes per subframe.
 
 #include <optional>
 
@@ -15,7 +15,7 @@ constexpr std::size_t kSubframeBytes = 30;
 constexpr std::size_t kFirstSubframe = 12;
 constexpr std::uint32_t kPreamble = 0x8B;
 constexpr std::uint32_t kWeekModulus = 1024;
-// Pi as the interface document has it, for the satellite's own arithmetic used the same (IS-GPS-200N, 20.3.3.4.3.3).
+// Pi as in the interface document, for consistency with the control segment (IS-GPS-200N, 20.3.3.4.3.3).
 constexpr double kSemicircle = 3.1415926535898;
 
 constexpr double two_to_the(int power) {
@@ -25,8 +25,8 @@ constexpr double two_to_the(int power) {
   return value;
 }
 
-/// Reads one subframe by word (1 to 10) and bit (1 to 24), as the interface document numbers them. A field may run on
-/// into the next word.
+/// Reads one subframe by word (1 to 10) and bit (1 to 24), as the interface document numbers them. A field may continue
+/// in the next word.
 class Subframe {
  public:
   Subframe(std::span<const std::uint8_t> body, std::size_t number)

@@ -11,7 +11,7 @@ constexpr std::uint32_t kClockValid = 0;
 constexpr std::uint32_t kSolutionComputed = 0;
 constexpr std::uint32_t kWgs84 = 61;
 
-// A receiver at the ground or in low orbit. Wide: navigation judges the rest.
+// A receiver at the ground or in low orbit. Wide limits: navigation checks further.
 constexpr double kMaxRadius = 1.0e8;
 constexpr double kMaxSpeed = 2.0e4;
 constexpr double kMaxClockOffset = 1.0;

@@ -1,9 +1,9 @@
 #pragma once
-// What a NovAtel receiver works out or passes on for all satellites together: the ionospheric model, its clock's
+// Solutions of a NovAtel receiver and data common to all satellites: the ionospheric model, its clock
 // offset, its own position (OEM7 Commands and Logs Reference Manual, logs of these names).
 //
-// All: kWrongType for another id; kTooShort for a body shorter than the log; kNotReady where the receiver says that it
-// has no solution; kNotFinite, kOutOfRange for numbers that cannot be; those with a time, time_of()'s answers.
+// All: kWrongType for another id; kTooShort for a body shorter than the log; kNotReady if the receiver reports
+// no solution; kNotFinite, kOutOfRange for invalid values; those with a time, the results of time_of().
 
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
@@ -32,7 +32,7 @@ struct ReceiverPosition {
   bool has_velocity = false;
   Vector3 velocity_ecef = Vector3::Zero();
   Vector3 velocity_sigma_mps = Vector3::Zero();
-  double velocity_latency_s = 0.0;  ///< the velocity is that of so much before receiver_time
+  double velocity_latency_s = 0.0;  ///< age of the velocity at receiver_time
   std::uint8_t satellites_used = 0;
 };
 
@@ -45,8 +45,8 @@ Result<ReceiverClock> read_time(const OemMessage& message);
 /// BESTXYZ (id 241). Without a velocity solution has_velocity is false.
 Result<ReceiverPosition> read_best_xyz(const OemMessage& message);
 
-/// BESTPOS (id 42): geodetic on WGS 84, turned into Cartesian here; no velocity. Its standard deviations are of north,
-/// east and up: each axis gets the root of their sum of squares.
+/// BESTPOS (id 42): geodetic on WGS 84, converted to Cartesian here; no velocity. Its standard deviations are of north,
+/// east and up: each axis is assigned the root of their sum of squares.
 Result<ReceiverPosition> read_best_position(const OemMessage& message);
 
 }  // namespace vbar::fsw::gnss

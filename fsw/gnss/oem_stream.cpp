@@ -13,10 +13,10 @@ constexpr std::uint8_t kSyncLong = 0x12;
 constexpr std::uint8_t kSyncShort = 0x13;
 constexpr std::size_t kSyncBytes = 3;
 constexpr std::size_t kCrcBytes = 4;
-constexpr std::size_t kLongHeaderBytes = 28;  // at least; the header says how long it is
+constexpr std::size_t kLongHeaderBytes = 28;  // minimum; the header contains its length
 constexpr std::size_t kShortHeaderBytes = 12;
 
-// Bytes of the header that tell the message's length.
+// Bytes of the header that contain the message length.
 constexpr std::size_t kLongLengthKnown = 10;
 constexpr std::size_t kShortLengthKnown = 4;
 
@@ -47,7 +47,7 @@ bool OemStream::push(std::uint8_t byte) {
   for (std::size_t k = 0; k < open_count_; ++k) {
     Candidate candidate = open_[k];
     candidate.crc = crc_after(candidate.crc, byte);
-    const Verdict verdict = judge(candidate);
+    const Verdict verdict = evaluate(candidate);
     if (verdict == Verdict::kWhole) {
       open_[k] = candidate;
       counters_.disproved += static_cast<std::uint32_t>(kept);
@@ -62,7 +62,7 @@ bool OemStream::push(std::uint8_t byte) {
   return false;
 }
 
-OemStream::Verdict OemStream::judge(Candidate& candidate) {
+OemStream::Verdict OemStream::evaluate(Candidate& candidate) {
   if (candidate.length == 0) return read_length(candidate);
   if (size_ - candidate.start < candidate.length) return Verdict::kOpen;
   // The remainder over a message and its own CRC is zero.
@@ -95,7 +95,7 @@ void OemStream::report(std::size_t index) {
   ++counters_.messages;
   counters_.message_bytes += message_length_;
   open_count_ = 0;
-  size_ = 0;  // the bytes stay where they are until the next push
+  size_ = 0;  // the bytes stay in place until the next push
 }
 
 void OemStream::open_at_sync() {
@@ -130,7 +130,7 @@ std::size_t OemStream::sync_prefix_length() const {
 }
 
 void OemStream::make_room() {
-  // Full means that a candidate is open: without one, at most two bytes are kept.
+  // Full implies an open candidate: without one, at most two bytes are kept.
   const std::size_t oldest = open_[0].start;
   std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(oldest), buffer_.end(), buffer_.begin());
   size_ -= oldest;

@@ -1,20 +1,20 @@
 #pragma once
-// Finds the binary messages of a NovAtel OEM6/OEM7 receiver in a stream of bytes that may hold anything else as well
+// Finds the binary messages of a NovAtel OEM6/OEM7 receiver in a stream of bytes that may contain arbitrary other data
 // (OEM7 Commands and Logs Reference Manual, 1.1.3 "Binary", 1.1.6 "Binary short headers", 1.7 "32-bit CRC").
 //
 //   long header   AA 44 12, header length, ..., 2 bytes body length at 8; the header's own length is honoured, not 28
 //   short header  AA 44 13, 1 byte body length at 3; 12 bytes
 //   then the body and a CRC-32 (reflected polynomial EDB88320h, start 0, no final XOR; little-endian) over all before
 //
-// A sync pattern may be chance or the remains of a broken message. So every sync pattern opens a candidate, and all
-// open candidates are followed side by side, each with a CRC of its own: a whole message is reported with its last
-// byte, and no false start before it can swallow or delay it. What a reported message contains is not searched for
-// further messages; candidates that began before it are thereby shown to be false. (A log that the receiver wraps in
+// A sync pattern may be coincidental or the remains of a broken message. Every sync pattern opens a candidate,
+// and all open candidates are followed in parallel, each with a CRC of its own: a message is reported with its last
+// byte, and no false start before it can mask or delay it. The contents of a reported message are not searched for
+// further messages; candidates that began before it are discarded as false. (A log that the receiver wraps in
 // another, as RXCONFIG does, has its CRC complemented, so it does not disprove what wraps it.)
 //
-// Bounds, whatever the input: memory is sizeof(OemStream); a byte costs at most kMaxOpenCandidates CRC steps and,
-// spread over the stream, less than one moved byte. More candidates at once than that do not arise by chance (a sync
-// pattern is one in 2^23 bytes); if they do, the oldest is given up.
+// Bounds for any input: memory is sizeof(OemStream); a byte costs at most kMaxOpenCandidates CRC steps and,
+// averaged over the stream, less than one moved byte. More candidates at once do not arise by coincidence (a sync
+// pattern is one in 2^23 bytes); if they do, the oldest is dropped.
 
 #include <array>
 #include <cstddef>
@@ -23,11 +23,11 @@
 
 namespace vbar::fsw::gnss {
 
-/// Header, body and CRC of the longest message that is taken: a RANGE of 185 signals fits, more than an OEM628 has
+/// Header, body and CRC of the longest message accepted: a RANGE of 185 signals fits, more than an OEM628 has
 /// channels (120).
 inline constexpr std::size_t kMaxOemMessageBytes = 8192;
 
-/// One message, its CRC checked, its contents not.
+/// One message with valid CRC; its contents are not checked.
 struct OemMessage {
   std::uint16_t id = 0;
   bool is_response = false;      ///< answer to a command, not a log
@@ -40,21 +40,21 @@ struct OemMessage {
 };
 
 struct OemStreamCounters {
-  std::uint64_t bytes = 0;          ///< taken in
-  std::uint64_t message_bytes = 0;  ///< of them, in reported messages
+  std::uint64_t bytes = 0;          ///< received
+  std::uint64_t message_bytes = 0;  ///< of these, in reported messages
   std::uint32_t messages = 0;
   std::uint32_t bad_checksum = 0;  ///< candidates that were complete and had a wrong CRC
-  std::uint32_t bad_header = 0;    ///< candidates whose header length cannot be
+  std::uint32_t bad_header = 0;    ///< candidates with an invalid header length
   std::uint32_t oversized = 0;     ///< candidates longer than kMaxOemMessageBytes
-  std::uint32_t disproved = 0;     ///< candidates in which a whole message began and ended
-  std::uint32_t given_up = 0;      ///< candidates given up because newer ones needed their place
+  std::uint32_t disproved = 0;     ///< candidates that contained a complete message
+  std::uint32_t given_up = 0;      ///< candidates dropped in favour of newer ones
 };
 
 class OemStream {
  public:
   static constexpr std::size_t kMaxOpenCandidates = 16;
 
-  /// Takes one byte. True when it completes a message, which message() then tells until the next push.
+  /// Takes one byte. True when it completes a message, which message() returns until the next push.
   [[nodiscard]] bool push(std::uint8_t byte);
 
   /// The message that push reported; empty if it reported none.
@@ -62,18 +62,18 @@ class OemStream {
 
   [[nodiscard]] const OemStreamCounters& counters() const { return counters_; }
 
-  /// Bytes that belong to no message and never will.
+  /// Bytes that belong to no message.
   [[nodiscard]] std::uint64_t skipped_bytes() const { return counters_.bytes - counters_.message_bytes - size_; }
 
  private:
   struct Candidate {
     std::size_t start = 0;   ///< of its sync pattern, in buffer_
-    std::size_t length = 0;  ///< of the whole message; 0 until its header has told
-    std::uint32_t crc = 0;   ///< over what has come of it
+    std::size_t length = 0;  ///< of the complete message; 0 until its header has arrived
+    std::uint32_t crc = 0;   ///< over the bytes so far
   };
   enum class Verdict : std::uint8_t { kOpen, kWhole, kFalse };
 
-  Verdict judge(Candidate& candidate);
+  Verdict evaluate(Candidate& candidate);
   Verdict read_length(Candidate& candidate);
   void report(std::size_t index);
   void open_at_sync();
@@ -81,7 +81,7 @@ class OemStream {
   void make_room();
   [[nodiscard]] std::size_t sync_prefix_length() const;
 
-  // Twice the longest message: what the oldest candidate holds is moved to the front once per kMaxOemMessageBytes
+  // Twice the longest message: the bytes of the oldest candidate are moved to the front once per kMaxOemMessageBytes
   // bytes.
   std::array<std::uint8_t, 2 * kMaxOemMessageBytes> buffer_{};
   std::size_t size_ = 0;

@@ -24,7 +24,7 @@ Status usable(std::uint8_t time_status) {
     case OemTimeStatus::kSatTime:
       return Status::kOk;
   }
-  return Status::kOutOfRange;  // a number that is none of them
+  return Status::kOutOfRange;  // an unknown value
 }
 
 }  // namespace

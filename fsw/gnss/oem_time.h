@@ -8,7 +8,7 @@
 
 namespace vbar::fsw::gnss {
 
-/// What the receiver knew of GPS time.
+/// The receiver's status of GPS time.
 enum class OemTimeStatus : std::uint8_t {
   kUnknown = 20,
   kApproximate = 60,
@@ -24,7 +24,7 @@ enum class OemTimeStatus : std::uint8_t {
 };
 
 /// The receiver's own time of the message, exact. kNotReady: the receiver does not know the time (unknown, approximate
-/// within seconds, or week 0). kOutOfRange: a status that does not exist, a week after 2171, a time of week beyond a
+/// within seconds, or week 0). kOutOfRange: an unknown status, a week after 2171, a time of week beyond a
 /// week.
 Result<GpsTime> time_of(const OemMessage& message);
 

@@ -6,7 +6,7 @@
 namespace vbar::fsw::gnss {
 namespace {
 
-// Printed by tests/unit/fsw/gnss/ratio_table.cpp, which tells how: simulated, for kFixFailureRate.
+// Output of tests/unit/fsw/gnss/ratio_table.cpp, which describes the method: simulated, for kFixFailureRate.
 constexpr std::array<std::size_t, 12> kCounts{1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24};
 constexpr std::array<double, 6> kModelFailureRates{0.002, 0.005, 0.01, 0.02, 0.05, kLargestModelFailureRate};
 constexpr std::array<std::array<double, kModelFailureRates.size()>, kCounts.size()> kRatios{{
@@ -28,8 +28,8 @@ constexpr std::array<std::array<double, kModelFailureRates.size()>, kCounts.size
 
 double ratio_threshold(std::size_t count, double model_failure_rate) {
   if (count == 0 || !(model_failure_rate <= kLargestModelFailureRate)) return std::numeric_limits<double>::infinity();
-  if (model_failure_rate <= kFixFailureRate) return 1.0;  // whatever is accepted, no more can fail
-  // Both ways to the stricter entry: the ratio falls with the number of ambiguities and grows with the failure rate.
+  if (model_failure_rate <= kFixFailureRate) return 1.0;  // the failure rate cannot be exceeded, whatever is accepted
+  // Rounded to the stricter entry: the ratio falls with the number of ambiguities and grows with the failure rate.
   std::size_t row = kCounts.size() - 1;
   while (kCounts[row] > count) --row;
   std::size_t column = 0;

@@ -8,7 +8,7 @@ ReceiverUpdate ReceiverDecoder::push(std::uint8_t byte) {
   return stream_.push(byte) ? read(stream_.message()) : ReceiverUpdate::kNone;
 }
 
-ReceiverUpdate ReceiverDecoder::judge(Status status, ReceiverUpdate update) {
+ReceiverUpdate ReceiverDecoder::evaluate(Status status, ReceiverUpdate update) {
   if (status == Status::kOk) return update;
   ++(status == Status::kNotReady ? counters_.not_ready : counters_.refused);
   return ReceiverUpdate::kNone;
@@ -17,7 +17,7 @@ ReceiverUpdate ReceiverDecoder::judge(Status status, ReceiverUpdate update) {
 template <class T>
 ReceiverUpdate ReceiverDecoder::keep(const Result<T>& result, T& place, ReceiverUpdate update) {
   if (result.ok()) place = result.value();
-  return judge(result.status(), update);
+  return evaluate(result.status(), update);
 }
 
 ReceiverUpdate ReceiverDecoder::read(const OemMessage& message) {
@@ -26,10 +26,10 @@ ReceiverUpdate ReceiverDecoder::read(const OemMessage& message) {
   if (!message.is_response && message.format == kBinary && message.source != kSecondAntenna) {
     switch (message.id) {
       case kOemRange:
-        return judge(read_range(message, observations_, counters_.observations), ReceiverUpdate::kObservations);
+        return evaluate(read_range(message, observations_, counters_.observations), ReceiverUpdate::kObservations);
       case kOemRangeCompressed:
-        return judge(read_range_compressed(message, observations_, counters_.observations),
-                     ReceiverUpdate::kObservations);
+        return evaluate(read_range_compressed(message, observations_, counters_.observations),
+                        ReceiverUpdate::kObservations);
       case kOemRawEphemeris:
         return keep(read_raw_ephemeris(message), ephemeris_, ReceiverUpdate::kEphemeris);
       case kOemGpsEphemeris:

@@ -1,5 +1,5 @@
 #pragma once
-// From the bytes of one receiver's line to what they tell, one thing at a time: the stream, its messages, their
+// From the bytes of one receiver to observations and ephemerides: the stream, its messages, their
 // contents.
 
 #include "fsw/core/result.h"
@@ -11,7 +11,7 @@
 
 namespace vbar::fsw::gnss {
 
-/// What a byte completed.
+/// Result of a byte.
 enum class ReceiverUpdate : std::uint8_t {
   kNone = 0,
   kObservations,
@@ -22,16 +22,16 @@ enum class ReceiverUpdate : std::uint8_t {
 };
 
 struct ReceiverCounters {
-  std::uint32_t unknown = 0;    ///< whole messages that are not read here, answers and other antennas' included
-  std::uint32_t not_ready = 0;  ///< messages in which the receiver says that it does not know yet
-  std::uint32_t refused = 0;    ///< messages whose contents cannot be
+  std::uint32_t unknown = 0;    ///< complete messages that are not decoded here, responses and other antennas included
+  std::uint32_t not_ready = 0;  ///< messages in which the receiver reports no valid data yet
+  std::uint32_t refused = 0;    ///< messages with invalid contents
   ObservationTally observations;
 };
 
-/// All of it is plain state, so a copy decodes on as the original does.
+/// The complete state is plain data, so that a copy continues as the original does.
 class ReceiverDecoder {
  public:
-  /// Takes one byte. What it says was updated can be read until the next push.
+  /// Takes one byte. The data reported as updated can be read until the next push.
   [[nodiscard]] ReceiverUpdate push(std::uint8_t byte);
 
   [[nodiscard]] const ObservationEpoch& observations() const { return observations_; }
@@ -45,7 +45,7 @@ class ReceiverDecoder {
 
  private:
   ReceiverUpdate read(const OemMessage& message);
-  ReceiverUpdate judge(Status status, ReceiverUpdate update);
+  ReceiverUpdate evaluate(Status status, ReceiverUpdate update);
   template <class T>
   ReceiverUpdate keep(const Result<T>& result, T& place, ReceiverUpdate update);
 

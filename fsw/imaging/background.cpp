@@ -10,16 +10,16 @@ namespace vbar::fsw::imaging {
 namespace {
 
 constexpr int kOne = 256;
-constexpr int kMostLevel = 4095 * kOne;
-constexpr int kMostNoise = 255 * kOne;
-/// Of an image's pixels there must be one in 16, and one in 16 of those unsaturated.
-constexpr int kLeastPart = 16;
-/// Of a cell's samples one in 8 must count, and so many at least.
-constexpr int kLeastPartOfCell = 8;
-constexpr int kLeastSamples = 12;
-/// A cell that is brighter by so many sigmas of a pixel than its neighbours agree on is filled by an object.
+constexpr int kMaxLevel = 4095 * kOne;
+constexpr int kMaxNoise = 255 * kOne;
+/// One in 16 of the pixels of an image must be present, and one in 16 of these unsaturated.
+constexpr int kMinPart = 16;
+/// One in 8 of the samples of a cell must be valid, and at least this number.
+constexpr int kMinPartOfCell = 8;
+constexpr int kMinSamples = 12;
+/// A cell brighter than the consensus of its neighbours by this number of sigma of a pixel is filled by an object.
 constexpr int kOutlierNoises = 8;
-constexpr int kSegmentShift = 14;  // of the 20 bits of a position, with the six that a slope keeps beyond DN / 256
+constexpr int kSegmentShift = 14;  // of the 20 bits of a position, with the six that a slope has beyond DN / 256
 
 bool is_image(const ImageView& image) {
   const ImageFrame& f = image.frame;
@@ -28,8 +28,8 @@ bool is_image(const ImageView& image) {
   return pixels <= kMaxPixels && image.pixels.size() == pixels;
 }
 
-int in_256ths(double value, int most) {
-  return std::clamp(static_cast<int>(math::floor(value * kOne + 0.5)), 0, most);
+int in_256ths(double value, int maximum) {
+  return std::clamp(static_cast<int>(math::floor(value * kOne + 0.5)), 0, maximum);
 }
 
 /// Between two nodes; `position` in 2^-20 of their distance.
@@ -38,7 +38,7 @@ int between(int a, int b, int position) {
   return a + static_cast<int>((part * (b - a)) >> 20);
 }
 
-/// Of a few values, which get sorted; of an even number of them the darker middle one: what errs is too bright.
+/// Of a few values, which are sorted; of an even number the darker middle one, since errors are towards bright.
 int middle_of(std::span<int> values) {
   for (std::size_t end = 1; end < values.size(); ++end) {
     for (std::size_t k = end; k > 0 && values[k] < values[k - 1]; --k) std::swap(values[k], values[k - 1]);
@@ -63,11 +63,11 @@ ImageCondition Background::measure(const ImageView& image, int saturation_dn) {
   if (!fill_gaps()) return ImageCondition::kTooLittle;
   replace_outliers();
   find_typical();
-  find_doubt();
-  extend(level_, [](int last, int before) { return std::clamp(2 * last - before, 0, kMostLevel); });
+  find_level_uncertainty();
+  extend(level_, [](int last, int before) { return std::clamp(2 * last - before, 0, kMaxLevel); });
   extend(noise_, [](int last, int) { return last; });
-  // A line drawn on for half a cell errs by three times what one drawn between nodes does.
-  extend(doubt_, [](int last, int) { return std::min(3 * last, kMostLevel); });
+  // The error of an extrapolation by half a cell is three times that of an interpolation.
+  extend(level_uncertainty_, [](int last, int) { return std::min(3 * last, kMaxLevel); });
   int x = 0;
   for (int k = 0; k < x_.cells + 2; ++k) {
     while (x < x_.pixels && (x_.position(x) >> 20) < k) ++x;
@@ -91,8 +91,8 @@ ImageCondition Background::measure_cells(const ImageView& image, int saturation_
     }
   }
   const int there = sampled_ - missing_;
-  if (there * kLeastPart < sampled_ || there == 0) return ImageCondition::kTooLittle;
-  if ((there - saturated_) * kLeastPart < there || there == saturated_) return ImageCondition::kSaturated;
+  if (there * kMinPart < sampled_ || there == 0) return ImageCondition::kTooLittle;
+  if ((there - saturated_) * kMinPart < there || there == saturated_) return ImageCondition::kSaturated;
   return darkest_ == brightest_ ? ImageCondition::kBlank : ImageCondition::kGood;
 }
 
@@ -121,9 +121,9 @@ void Background::count_cell(const ImageView& image, int saturation_dn, int colum
       lowest_ = std::min(lowest_, value);
       highest_ = std::max(highest_, value);
       if (x + 1 >= x_.pixels || image.pixels[k + 1] >= saturation_dn) continue;
-      const int difference = std::clamp(int{image.pixels[k + 1]} - value, -kMostDifference, kMostDifference);
+      const int difference = std::clamp(int{image.pixels[k + 1]} - value, -kMaxDifference, kMaxDifference);
       ++differences_;
-      const int bin = difference + kMostDifference;
+      const int bin = difference + kMaxDifference;
       ++difference_count_[static_cast<std::size_t>(bin)];
     }
   }
@@ -135,22 +135,22 @@ void Background::count_cell(const ImageView& image, int saturation_dn, int colum
 void Background::measure_cell(int column, int row) {
   const int width = x_.first_pixel(column + 1) - x_.first_pixel(column);
   const int height = y_.first_pixel(row + 1) - y_.first_pixel(row);
-  const int least = std::max(kLeastSamples, width * height / (4 * kLeastPartOfCell));
+  const int minimum = std::max(kMinSamples, width * height / (4 * kMinPartOfCell));
   const std::size_t k = node(column, row);
-  is_known_[k] = levels_ >= least && differences_ >= least;
+  is_known_[k] = levels_ >= minimum && differences_ >= minimum;
   if (is_known_[k]) {
     const auto first = static_cast<std::size_t>(lowest_);
     const std::size_t count = static_cast<std::size_t>(highest_) - first + 1;
     const double level = lowest_ + clipped_moments(std::span(level_count_).subspan(first, count), levels_).mean;
-    level_[k] = in_256ths(level, kMostLevel);
+    level_[k] = in_256ths(level, kMaxLevel);
     const double scatter = clipped_moments(difference_count_, differences_).sigma;
-    noise_[k] = in_256ths(scatter * 0.7071067811865476, kMostNoise);
+    noise_[k] = in_256ths(scatter * 0.7071067811865476, kMaxNoise);
   }
   if (levels_ > 0) std::fill(level_count_.begin() + lowest_, level_count_.begin() + highest_ + 1, std::uint16_t{0});
   if (differences_ > 0) difference_count_.fill(0);
 }
 
-/// Cells without a value of their own get their neighbours', from the known ones outwards. False: no cell has any.
+/// Cells without a value are assigned that of their neighbours, from the known ones outwards. False: no cell has any.
 bool Background::fill_gaps() {
   for (int pass = 0; pass < x_.cells + y_.cells; ++pass) {
     bool is_complete = true;
@@ -190,7 +190,7 @@ bool Background::fill_gap(int column, int row) {
   return true;
 }
 
-/// An object that fills a cell must not become background; stray light, which is smoother, must.
+/// An object that fills a cell must not become background; stray light, which is smoother, should.
 void Background::replace_outliers() {
   for (int row = 0; row < y_.cells; ++row) {
     for (int column = 0; column < x_.cells; ++column) {
@@ -204,8 +204,8 @@ void Background::replace_outliers() {
   }
 }
 
-/// Median of the cell's own level and of what its neighbours say along every line through it: between two of them, or
-/// at the edge beyond two of them. All agree where the background is a plane, so a gradient stays as it is.
+/// Median of the cell's own level and of the predictions of its neighbours along every line through it: between two of
+/// them, or at the edge beyond two of them. All agree if the background is a plane, so that a gradient is preserved.
 int Background::agreed_level(int column, int row) const {
   constexpr std::array<std::array<int, 2>, 4> kLines{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
   const auto is_inside = [this](int c, int r) { return c >= 0 && r >= 0 && c < x_.cells && r < y_.cells; };
@@ -223,11 +223,11 @@ int Background::agreed_level(int column, int row) const {
           2 * level_[node(column + way * dc, row + way * dr)] - level_[node(column + 2 * way * dc, row + 2 * way * dr)];
     }
   }
-  return std::clamp(middle_of(std::span(said).first(count)), 0, kMostLevel);
+  return std::clamp(middle_of(std::span(said).first(count)), 0, kMaxLevel);
 }
 
 /// Linear interpolation errs by an eighth of the second difference, along either axis.
-void Background::find_doubt() {
+void Background::find_level_uncertainty() {
   const auto bend = [](int a, int b, int c) { return (a - b) + (c - b); };
   for (int row = 0; row < y_.cells; ++row) {
     for (int column = 0; column < x_.cells; ++column) {
@@ -242,7 +242,7 @@ void Background::find_doubt() {
         const int d = bend(level_[node(column, r - 1)], level_[node(column, r)], level_[node(column, r + 1)]);
         sum += d < 0 ? -d : d;
       }
-      doubt_[node(column, row)] = sum / 8;
+      level_uncertainty_[node(column, row)] = sum / 8;
     }
   }
 }
@@ -292,8 +292,9 @@ void Background::level_row(int y, RowNodes& nodes) const {
 }
 
 void Background::threshold_row(int y, int noises_q4, RowNodes& nodes) const {
-  set_row(y, nodes,
-          [this, noises_q4](std::size_t k) { return 9 * (level_[k] + doubt_[k]) + noises_q4 * noise_[k] / 16; });
+  set_row(y, nodes, [this, noises_q4](std::size_t k) {
+    return 9 * (level_[k] + level_uncertainty_[k]) + noises_q4 * noise_[k] / 16;
+  });
 }
 
 int Background::at(const RowNodes& nodes, int x) const {

@@ -1,8 +1,8 @@
 #pragma once
-// What an image shows where there is nothing: level and noise on a coarse grid, interpolated between. The way of
-// SExtractor (Bertin and Arnouts 1996, section 3.2): clipped statistics of cells, and a cell that an object fills takes
-// the value of its neighbours. The noise is that of differences of neighbouring pixels, which no gradient of stray
-// light makes larger.
+// Background of an image: level and noise on a coarse grid, interpolated between, by the method of
+// SExtractor (Bertin and Arnouts 1996, section 3.2): clipped statistics of cells; a cell that is filled by an object
+// is assigned the value of its neighbours. The noise is that of differences of neighbouring pixels, which gradients of
+// stray light do not affect.
 
 #include <array>
 #include <cstddef>
@@ -13,29 +13,29 @@
 
 namespace vbar::fsw::imaging {
 
-/// Whether there is anything to be found in an image.
+/// Whether an image can be evaluated.
 enum class ImageCondition : std::uint8_t {
   kGood = 0,
-  kBlank,      ///< all pixels are alike: no detector reads out without noise
-  kSaturated,  ///< hardly a pixel is not saturated
-  kTooLittle,  ///< hardly a pixel is there
-  kInvalid,    ///< no image at all: sides and number of pixels disagree, or settings that no camera has
+  kBlank,      ///< all pixels are equal: not the output of a detector, which has noise
+  kSaturated,  ///< nearly all pixels are saturated
+  kTooLittle,  ///< nearly all pixels are missing
+  kInvalid,    ///< not a valid image: sides and number of pixels disagree, or invalid settings
 };
 
 class Background {
  public:
   /// A quantity along one row of the image, DN / 256, at the nodes of the grid.
   using RowNodes = std::array<int, 68>;
-  static constexpr int kMostNoises = 100 * 16;
+  static constexpr int kMaxNoises = 100 * 16;
 
-  /// Level and noise of the image. Saturated pixels (`saturation_dn`, 1 to 4095, and above) and missing ones do not
-  /// count. What the functions below say is about the last image that was kGood.
+  /// Level and noise of the image. Saturated pixels (`saturation_dn`, 1 to 4095, and above) and missing ones are
+  /// excluded. The functions below refer to the last image that was kGood.
   [[nodiscard]] ImageCondition measure(const ImageView& image, int saturation_dn);
 
   /// Level along row y.
   void level_row(int y, RowNodes& nodes) const;
-  /// What the sum of nine pixels must exceed along row y to be more than background: nine levels, noises_q4 / 16 times
-  /// the noise (1 sigma) of one pixel, at most kMostNoises, and what a curved background may differ by from the grid.
+  /// Threshold of the sum of nine pixels along row y for detection: nine levels, noises_q4 / 16 times
+  /// the noise (1 sigma) of one pixel, at most kMaxNoises, and the uncertainty of the level between nodes.
   void threshold_row(int y, int noises_q4, RowNodes& nodes) const;
   /// Either at pixel x of the row, DN / 256, rounded down.
   [[nodiscard]] int at(const RowNodes& nodes, int x) const;
@@ -49,14 +49,14 @@ class Background {
   /// Medians over the image, DN.
   [[nodiscard]] double typical_level_dn() const { return typical_level_dn_; }
   [[nodiscard]] double typical_noise_dn() const { return typical_noise_dn_; }
-  /// Pixels that were looked at (a quarter of the image) and those of them that are saturated or missing.
+  /// Pixels evaluated (a quarter of the image) and those of them that are saturated or missing.
   [[nodiscard]] int sampled() const { return sampled_; }
   [[nodiscard]] int saturated() const { return saturated_; }
   [[nodiscard]] int missing() const { return missing_; }
 
  private:
   static constexpr int kCell = 64;  ///< px, about
-  /// Along one axis: so many cells, a node in the middle of each and one beyond either end.
+  /// Along one axis: number of cells, a node in the middle of each and one beyond either end.
   struct Axis {
     int pixels = 0;
     int cells = 0;
@@ -79,7 +79,7 @@ class Background {
   [[nodiscard]] bool fill_gap(int column, int row);
   void replace_outliers();
   [[nodiscard]] int agreed_level(int column, int row) const;
-  void find_doubt();
+  void find_level_uncertainty();
   template <class Beyond>
   void extend(Grid& grid, Beyond beyond) const;
   template <class At>
@@ -91,7 +91,7 @@ class Background {
   std::array<std::int16_t, 68> segment_begin_{};  ///< the first pixel of a row that lies beyond node k
   Grid level_{};                                  ///< DN / 256
   Grid noise_{};                                  ///< 1 sigma of a pixel, DN / 256
-  Grid doubt_{};                                  ///< of the level between nodes, DN / 256
+  Grid level_uncertainty_{};                      ///< of the level between nodes, DN / 256
   Grid scratch_{};
   std::array<bool, kMaxNodes> is_known_{};
   double typical_level_dn_ = 0.0;
@@ -99,9 +99,9 @@ class Background {
 
   // Of the cell in work
   static constexpr std::size_t kLevels = 4096;
-  static constexpr int kMostDifference = 511;
+  static constexpr int kMaxDifference = 511;
   std::array<std::uint16_t, kLevels> level_count_{};
-  std::array<std::uint16_t, 2 * kMostDifference + 1> difference_count_{};
+  std::array<std::uint16_t, 2 * kMaxDifference + 1> difference_count_{};
   int levels_ = 0;       ///< pixels counted
   int differences_ = 0;  ///< pairs counted
   int lowest_ = 0;       ///< level

@@ -32,11 +32,11 @@ class Sums {
     return sum;
   }
 
-  /// Of its eight neighbours' none is greater, and of those that are as great none comes first.
+  /// None of its eight neighbours is greater, and none of those that are equal comes first.
   [[nodiscard]] bool is_maximum(int x, int y, const Component& c) const {
     const int here = at(x, y);
-    for (int j = std::max(y - 1, c.y_least); j <= std::min(y + 1, c.y_most); ++j) {
-      for (int i = std::max(x - 1, c.x_least); i <= std::min(x + 1, c.x_most); ++i) {
+    for (int j = std::max(y - 1, c.y_min); j <= std::min(y + 1, c.y_max); ++j) {
+      for (int i = std::max(x - 1, c.x_min); i <= std::min(x + 1, c.x_max); ++i) {
         const int other = at(i, j);
         const bool comes_first = j < y || (j == y && i < x);
         if (other > here || (other == here && comes_first)) return false;
@@ -45,19 +45,19 @@ class Sums {
     return true;
   }
 
-  /// Whether the fainter of two peaks stands out from the straight way between them.
+  /// Whether the fainter of two peaks exceeds the minimum on the straight path between them.
   [[nodiscard]] bool are_apart(const Blend::Peak& bright, const Blend::Peak& faint) const {
     const int dx = faint.x - bright.x;
     const int dy = faint.y - bright.y;
     const int steps = std::max(dx < 0 ? -dx : dx, dy < 0 ? -dy : dy);
-    int least = faint.sum_dn;
+    int minimum = faint.sum_dn;
     for (int k = 1; k < steps; ++k) {
       const int x = bright.x + (2 * dx * k + (dx < 0 ? -steps : steps)) / (2 * steps);
       const int y = bright.y + (2 * dy * k + (dy < 0 ? -steps : steps)) / (2 * steps);
-      least = std::min(least, at(x, y));
+      minimum = std::min(minimum, at(x, y));
     }
     const double noise = math::sqrt(2.0 * (variance_ + gain_ * std::max(faint.sum_dn, 0)));
-    return least > threshold_ && faint.sum_dn - least > kSignificance * noise;
+    return minimum > threshold_ && faint.sum_dn - minimum > kSignificance * noise;
   }
 
  private:
@@ -71,14 +71,14 @@ class Sums {
 /// The brightest maxima, in order.
 Blend maxima(const Sums& sums, const Component& c) {
   Blend found;
-  for (int y = c.y_least; y <= c.y_most; ++y) {
-    for (int x = c.x_least; x <= c.x_most; ++x) {
+  for (int y = c.y_min; y <= c.y_max; ++y) {
+    for (int x = c.x_min; x <= c.x_max; ++x) {
       if (!sums.is_maximum(x, y, c)) continue;
       Blend::Peak peak{x, y, sums.at(x, y)};
       for (std::size_t k = 0; k < found.count; ++k) {
         if (peak.sum_dn > found.peaks[k].sum_dn) std::swap(peak, found.peaks[k]);
       }
-      if (found.count < Blend::kMost) found.peaks[found.count++] = peak;
+      if (found.count < Blend::kMaxPeaks) found.peaks[found.count++] = peak;
     }
   }
   return found;

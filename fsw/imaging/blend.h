@@ -1,5 +1,5 @@
 #pragma once
-// Two points of light, or some more, in one component: told apart where the light between them is less than at either.
+// Deblending: two or more points of light in one component, separated if there is a minimum between them.
 
 #include <array>
 #include <cstddef>
@@ -10,19 +10,19 @@
 namespace vbar::fsw::imaging {
 
 struct Blend {
-  static constexpr std::size_t kMost = 4;
+  static constexpr std::size_t kMaxPeaks = 4;
   struct Peak {
     int x = 0;  ///< px, from the image's first pixel
     int y = 0;
     int sum_dn = 0;  ///< of the 3 x 3 pixels around, above the background
   };
-  std::array<Peak, kMost> peaks{};  ///< brightest first
+  std::array<Peak, kMaxPeaks> peaks{};  ///< brightest first
   std::size_t count = 0;
 };
 
-/// The maxima of sums of 3 x 3 pixels within the component, of which each stands out from the straight way to every
-/// brighter one by four times the noise of that difference; the way itself exceeds the background by
-/// `detection_sigmas`, else it leads to another component. At most kMost, the brightest; 1 for a component of one
+/// The maxima of sums of 3 x 3 pixels within the component, each of which exceeds the minimum on the straight path to
+/// every brighter one by four times the noise of that difference; the path itself exceeds the background by
+/// `detection_sigmas`, else it leads to another component. At most kMaxPeaks, the brightest; 1 for a component of one
 /// point.
 Blend separate(const ImageView& image, const Background& background, const Component& component,
                double gain_dn_per_electron, double detection_sigmas);

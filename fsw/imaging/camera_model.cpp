@@ -5,11 +5,11 @@
 namespace vbar::fsw::imaging {
 namespace {
 
-constexpr int kMostIterations = 20;
-/// Of the normalised image plane, 1e-6 px with any lens there is; Newton's next step would be its square.
+constexpr int kMaxIterations = 20;
+/// Of the normalised image plane, 1e-6 px for any practical lens; Newton's next step would be its square.
 constexpr double kSmallestStep = 1e-12;
-/// Half a field of 84 degrees: what lies further off is not in front of the camera.
-constexpr double kLeastCosine = 0.1;
+/// Half a field of 84 degrees: directions further off are not in front of the camera.
+constexpr double kMinCosine = 0.1;
 
 struct Distorted {
   Vector2 point;
@@ -44,11 +44,11 @@ Result<Vector3> direction_of(const CameraModel& camera, const Vector2& pixel) {
   const Vector2 seen = (pixel - camera.principal_point_px).cwiseQuotient(camera.focal_length_px);
   if (!math::is_finite(seen.x()) || !math::is_finite(seen.y())) return Status::kNotFinite;
   Vector2 p = seen;
-  for (int k = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < kMaxIterations; ++k) {
     const Distorted d = distort(camera.distortion, p);
     const Matrix2& J = d.derivative;
     const double determinant = J(0, 0) * J(1, 1) - J(0, 1) * J(1, 0);
-    // Where the determinant is not positive the image is folded over: no lens does that within its field.
+    // If the determinant is not positive the image is folded over, which is outside the field of any lens.
     if (!(determinant > 0.0)) return Status::kDidNotConverge;
     const Vector2 miss = seen - d.point;
     const Vector2 step{(J(1, 1) * miss.x() - J(0, 1) * miss.y()) / determinant,
@@ -66,7 +66,7 @@ Result<Vector2> pixel_of(const CameraModel& camera, const Vector3& direction_cam
   if (!is_usable(camera)) return Status::kInvalidArgument;
   const double norm = math::sqrt(direction_camera.squaredNorm());
   if (!math::is_finite(norm)) return Status::kNotFinite;
-  if (!(direction_camera.z() > kLeastCosine * norm)) return Status::kOutOfRange;
+  if (!(direction_camera.z() > kMinCosine * norm)) return Status::kOutOfRange;
   const Vector2 p = direction_camera.head<2>() / direction_camera.z();
   const Vector2 seen = distort(camera.distortion, p).point;
   return Vector2(camera.principal_point_px + seen.cwiseProduct(camera.focal_length_px));

@@ -1,6 +1,6 @@
 #pragma once
-// Between pixels and directions. Camera axes: z boresight, x right, y down in the image; pixel coordinates are the
-// detector's, and an integer is the centre of a pixel.
+// Mapping between pixels and directions. Camera axes: z boresight, x right, y down in the image; pixel coordinates are
+// those of the detector, and an integer is the centre of a pixel.
 
 #include <array>
 
@@ -22,7 +22,7 @@ Result<Vector3> direction_of(const CameraModel& camera, const Vector2& pixel);
 /// kOutOfRange for directions not in front of the camera (z <= 0.1 of the norm).
 Result<Vector2> pixel_of(const CameraModel& camera, const Vector3& direction_camera);
 
-/// The same of a point in camera axes (m), and how its pixel moves with it.
+/// Projection of a point in camera axes (m), and the Jacobian of its pixel.
 struct Projection {
   Vector2 pixel = Vector2::Zero();
   Eigen::Matrix<double, 2, 3> derivative = Eigen::Matrix<double, 2, 3>::Zero();  ///< px / m

@@ -9,21 +9,21 @@ namespace vbar::fsw::imaging {
 namespace {
 
 constexpr double kUnit = 16.0;  // of a component's brightness
-/// Sigma of the window over that of a point's image (pixel included), and its least, px: in a narrower window a few
-/// pixels decide, and the centroid leans towards their middles.
+/// Sigma of the window over that of a point's image (pixel included), and its minimum, px: in a narrower window a few
+/// pixels dominate, and the centroid is biased towards their centres.
 constexpr double kWindowWidth = 1.25;
-constexpr double kLeastWidth = 1.0;
-constexpr int kMostReach = 12;             // half a window, px
+constexpr double kMinWidth = 1.0;
+constexpr int kMaxReach = 12;              // half a window, px
 constexpr double kReach = 4.0;             // half a window, its sigmas
-constexpr double kReachThatMatters = 2.0;  // a pixel beyond the edge is felt
-constexpr int kMostIterations = 12;
+constexpr double kReachThatMatters = 2.0;  // a pixel beyond the edge has an effect
+constexpr int kMaxIterations = 12;
 constexpr double kSmallStep = 5e-4;  // px
 constexpr double kFurthest = 2.5;    // from the brightest 3 x 3 pixels, px
 
-/// exp(-(k - centre)^2 / (2 s^2)) at whole k from `first` on, by recurrence: the ratio of neighbours changes by a
+/// exp(-(k - centre)^2 / (2 s^2)) at integers k from `first` on, by recurrence: the ratio of neighbours changes by a
 /// constant factor.
 struct Weights {
-  std::array<double, 2 * kMostReach + 1> value{};
+  std::array<double, 2 * kMaxReach + 1> value{};
 
   Weights(double centre, int first, int count, double s) {
     const double d = first - centre;
@@ -54,8 +54,8 @@ int nearest(double x) {
 class Window {
  public:
   Window(const ImageView& image, const Background& background, const Component& component, double sigma, double gain)
-      : image_(image), sigma_(sigma), gain_(gain), reach_(std::min(static_cast<int>(kReach * sigma) + 1, kMostReach)) {
-    // Over a window the background is one number.
+      : image_(image), sigma_(sigma), gain_(gain), reach_(std::min(static_cast<int>(kReach * sigma) + 1, kMaxReach)) {
+    // Over a window the background is constant.
     level_ = background.level_dn(component.peak_x, component.peak_y);
     const double noise = background.noise_dn(component.peak_x, component.peak_y);
     noise_variance_ = noise * noise;
@@ -132,10 +132,10 @@ class Window {
 Centroid windowed_centroid(const ImageView& image, const Background& background, const Component& component,
                            double point_spread_sigma_px, double gain_dn_per_electron) {
   const double point = math::sqrt(point_spread_sigma_px * point_spread_sigma_px + 1.0 / 12.0);
-  const double sigma = std::max(kWindowWidth * point, kLeastWidth);
+  const double sigma = std::max(kWindowWidth * point, kMinWidth);
   const Window window(image, background, component, sigma, gain_dn_per_electron);
   Centroid c{.x = static_cast<double>(component.peak_x), .y = static_cast<double>(component.peak_y)};
-  for (int k = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < kMaxIterations; ++k) {
     const Sums sums = window.sums(c.x, c.y, false);
     if (!(sums.light > 0.0)) return c;
     const double dx = 2.0 * sums.x / sums.light;
@@ -150,7 +150,7 @@ Centroid windowed_centroid(const ImageView& image, const Background& background,
   }
   if (!c.is_found) return c;
   const Sums sums = window.sums(c.x, c.y, true);
-  // What the first moments change by when the centre moves a pixel: of a point's image rather more than half the light.
+  // Derivative of the first moments with respect to the centre: for a point's image rather more than half the light.
   const double change_x = std::max(sums.light - sums.xx / (sigma * sigma), 0.5 * sums.light);
   const double change_y = std::max(sums.light - sums.yy / (sigma * sigma), 0.5 * sums.light);
   c.sigma_px = math::sqrt(0.5 * (sums.variance_x / (change_x * change_x) + sums.variance_y / (change_y * change_y)));

@@ -1,5 +1,5 @@
 #pragma once
-// Where an object's light lies.
+// Centroid of an object.
 
 #include "fsw/imaging/background.h"
 #include "fsw/imaging/components.h"
@@ -11,14 +11,14 @@ struct Centroid {
   double x = 0.0;  ///< px, from the image's first pixel
   double y = 0.0;
   double sigma_px = 0.0;   ///< each axis, by photon and read noise
-  double radius_px = 0.0;  ///< sigma of the Gaussian that the light within the window has, along the wider axis
-  bool is_cut = false;     ///< what it rests on reaches beyond the image or into missing pixels
+  double radius_px = 0.0;  ///< sigma of the Gaussian fitted to the light within the window, along the wider axis
+  bool is_cut = false;     ///< its window extends beyond the image or into missing pixels
 };
 
-/// Iterated Gaussian-weighted centroid of a point source, from the brightest 3 x 3 pixels of its component on:
+/// Iterated Gaussian-weighted centroid of a point source, starting from the brightest 3 x 3 pixels of its component:
 /// SExtractor's windowed positions (docs of SExtractor 2.19, section 10.7.1; for a Gaussian source as good as a fit).
 /// The window is somewhat wider than the image of a point, which keeps the bias of sampling below 0.003 px at a width
-/// of 0.8 px. Not found if it wanders off or there is no light: then the component's own moments are better.
+/// of 0.8 px. Not found if it diverges or there is no light: then the component's own moments are better.
 Centroid windowed_centroid(const ImageView& image, const Background& background, const Component& component,
                            double point_spread_sigma_px, double gain_dn_per_electron);
 

@@ -8,10 +8,10 @@ namespace {
 
 void add(Component& sum, const Component& other) {
   sum.pixels += other.pixels;
-  sum.x_least = std::min(sum.x_least, other.x_least);
-  sum.x_most = std::max(sum.x_most, other.x_most);
-  sum.y_least = std::min(sum.y_least, other.y_least);
-  sum.y_most = std::max(sum.y_most, other.y_most);
+  sum.x_min = std::min(sum.x_min, other.x_min);
+  sum.x_max = std::max(sum.x_max, other.x_max);
+  sum.y_min = std::min(sum.y_min, other.y_min);
+  sum.y_max = std::max(sum.y_max, other.y_max);
   sum.peak_dn = std::max(sum.peak_dn, other.peak_dn);
   if (other.peak_sum > sum.peak_sum) {
     sum.peak_sum = other.peak_sum;
@@ -36,8 +36,8 @@ void add(Component& sum, const Component& other) {
 
 bool is_brighter(const Component& a, const Component& b) {
   if (a.flux != b.flux) return a.flux > b.flux;
-  if (a.y_least != b.y_least) return a.y_least < b.y_least;
-  return a.x_least < b.x_least;
+  if (a.y_min != b.y_min) return a.y_min < b.y_min;
+  return a.x_min < b.x_min;
 }
 
 void Components::clear(int largest_px) {
@@ -49,7 +49,7 @@ void Components::clear(int largest_px) {
   for (std::size_t k = kMaxLabels; k > 0; --k) release(static_cast<Label>(k - 1));
   united_count_ = 0;
   kept_count_ = 0;
-  least_flux_ = std::numeric_limits<std::int64_t>::min();
+  min_flux_ = std::numeric_limits<std::int64_t>::min();
   found_ = 0;
   extended_ = 0;
   extended_pixels_ = 0;
@@ -63,7 +63,7 @@ Component* Components::add_run(int y, int begin, int end) {
     ++runs_dropped_;
     return nullptr;
   }
-  // Diagonal neighbours touch too: a run reaches one pixel beyond either of its ends.
+  // Diagonal neighbours are connected: a run reaches one pixel beyond either of its ends.
   while (before_ < old_count && old_runs[before_].end < begin) ++before_;
   Label label = -1;
   for (std::size_t k = before_; k < old_count && old_runs[k].begin <= end; ++k) {
@@ -77,9 +77,9 @@ Component* Components::add_run(int y, int begin, int end) {
   if (label < 0) label = new_label(y, begin, end);
   runs_[now_][run_count_[now_]++] = {static_cast<std::int16_t>(begin), static_cast<std::int16_t>(end), label};
   Component& c = component(label);
-  c.x_least = std::min(c.x_least, begin);
-  c.x_most = std::max(c.x_most, end - 1);
-  c.y_most = y;
+  c.x_min = std::min(c.x_min, begin);
+  c.x_max = std::max(c.x_max, end - 1);
+  c.y_max = y;
   return &c;
 }
 
@@ -94,7 +94,7 @@ Components::Label Components::root_of(Label label) const {
 Components::Label Components::new_label(int y, int begin, int end) {
   const Label label = free_[--free_count_];
   parent_[static_cast<std::size_t>(label)] = label;
-  component(label) = {.x_least = begin, .x_most = end - 1, .y_least = y, .y_most = y};
+  component(label) = {.x_min = begin, .x_max = end - 1, .y_min = y, .y_max = y};
   return label;
 }
 
@@ -105,12 +105,12 @@ void Components::unite(Label into, Label from) {
 }
 
 void Components::end_row(int y) {
-  // Complete is what has no run in this row. Its label is met once per run, and free after the first.
+  // A component without a run in this row is complete. Its label is met once per run, and free after the first.
   const auto& old_runs = runs_[1 - now_];
   for (std::size_t k = 0; k < run_count_[1 - now_]; ++k) {
     const Label label = root_of(old_runs[k].label);
     Component& c = component(label);
-    if (c.y_most == y || c.pixels == 0) continue;
+    if (c.y_max == y || c.pixels == 0) continue;
     close(c);
     c.pixels = 0;
     release(label);
@@ -124,7 +124,7 @@ void Components::end_row(int y) {
 }
 
 void Components::finish() {
-  // A row that is none: it continues nothing.
+  // An empty row: it continues nothing.
   end_row(-1);
   keep_brightest();
 }
@@ -136,7 +136,7 @@ void Components::close(const Component& component) {
     extended_pixels_ += component.pixels;
     return;
   }
-  if (component.flux < least_flux_) return;
+  if (component.flux < min_flux_) return;
   if (kept_count_ == kept_.size()) keep_brightest();
   kept_[kept_count_++] = component;
 }
@@ -145,7 +145,7 @@ void Components::keep_brightest() {
   std::sort(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(kept_count_), is_brighter);
   if (kept_count_ < kMaxObjects) return;
   kept_count_ = kMaxObjects;
-  least_flux_ = kept_[kMaxObjects - 1].flux;
+  min_flux_ = kept_[kMaxObjects - 1].flux;
 }
 
 }  // namespace vbar::fsw::imaging

@@ -1,7 +1,7 @@
 #pragma once
 // Connected components of the pixels above a threshold, in one pass over the image: runs of a row are joined with those
-// of the row before by union and find, and a component that the next row does not continue is complete (the one-pass
-// way of Bailey and Johnston 2007). So memory is bounded by a row and not by the image.
+// of the previous row by union and find, and a component that the next row does not continue is complete (the one-pass
+// method of Bailey and Johnston 2007). Memory is therefore bounded by a row and not by the image.
 
 #include <array>
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace vbar::fsw::imaging {
 /// Brightness above the background in DN / 16; coordinates from the image's first pixel.
 struct Component {
   int pixels = 0;
-  int x_least = 0, x_most = 0, y_least = 0, y_most = 0;
+  int x_min = 0, x_max = 0, y_min = 0, y_max = 0;
   int peak_dn = 0;   ///< brightest pixel
   int peak_sum = 0;  ///< brightest neighbourhood of 3 x 3 pixels, DN, and its middle
   int peak_x = 0, peak_y = 0;
@@ -25,7 +25,7 @@ struct Component {
   std::int64_t flux = 0, flux_x = 0, flux_y = 0, flux_xx = 0, flux_xy = 0, flux_yy = 0;
 };
 
-/// Brightest first; where two are as bright, from the top and from the left.
+/// Brightest first; of equally bright ones, from the top and from the left.
 bool is_brighter(const Component& a, const Component& b);
 
 class Components {
@@ -35,12 +35,12 @@ class Components {
   /// Before an image. Components of more than `largest_px` pixels are extended: counted, not kept.
   void clear(int largest_px);
 
-  /// The next run of row y, pixels begin to end - 1; rows from the top, runs from the left. Returns the component that
-  /// it belongs to so far, for the caller to add the run's pixels to; null if the row has too many runs.
+  /// The next run of row y, pixels begin to end - 1; rows from the top, runs from the left. Returns its component
+  /// so far, to which the caller adds the run's pixels; null if the row has too many runs.
   Component* add_run(int y, int begin, int end);
   /// No more runs of row y.
   void end_row(int y);
-  /// No more rows. Sorts what was kept.
+  /// No more rows. Sorts the components kept.
   void finish();
 
   /// After finish(): at most kMaxObjects, the brightest of all.
@@ -74,16 +74,16 @@ class Components {
   std::array<std::array<Run, kMaxRunsOfRow>, 2> runs_{};  ///< of this row and of the one before
   std::array<std::size_t, 2> run_count_{};
   std::size_t now_ = 0;     ///< which of the two is this row
-  std::size_t before_ = 0;  ///< first run of the row before that a later run of this one may touch
+  std::size_t before_ = 0;  ///< first run of the previous row that a later run of this one may touch
   std::array<Component, kMaxLabels> components_{};
   std::array<Label, kMaxLabels> parent_{};
   std::array<Label, kMaxLabels> free_{};
   std::size_t free_count_ = 0;
-  std::array<Label, kMaxLabels> united_{};  ///< labels of this row that gave way to another
+  std::array<Label, kMaxLabels> united_{};  ///< labels of this row that were merged into another
   std::size_t united_count_ = 0;
   std::array<Component, 2 * kMaxObjects> kept_{};
   std::size_t kept_count_ = 0;
-  std::int64_t least_flux_ = 0;  ///< what is fainter is among the brightest no more
+  std::int64_t min_flux_ = 0;  ///< components fainter than this are not among the brightest
   int found_ = 0;
   int extended_ = 0;
   int extended_pixels_ = 0;

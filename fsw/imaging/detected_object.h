@@ -1,5 +1,5 @@
 #pragma once
-// What image processing finds in an image: stars, satellites, hot pixels, all alike so far.
+// Objects found by image processing: stars, satellites, hot pixels, not yet distinguished.
 
 #include <cstddef>
 

@@ -10,12 +10,12 @@ namespace vbar::fsw::imaging {
 namespace {
 
 constexpr double kClip = 3.0;
-constexpr int kMostIterations = 6;
-/// Of numbers that are all alike: rounding alone scatters by sqrt(1/12).
-constexpr double kLeastSigma = 0.28867513459481287;
+constexpr int kMaxIterations = 6;
+/// Of equal integers: rounding alone has a standard deviation of sqrt(1/12).
+constexpr double kMinSigma = 0.28867513459481287;
 constexpr double kQuartilesPerSigma = 1.3489795003921634;  // from the lower to the upper
 
-/// The values that a quarter, a half and three quarters of the numbers do not exceed.
+/// The values that a quarter, a half and three quarters of the samples do not exceed.
 std::array<int, 3> quartiles(std::span<const std::uint16_t> counts, int total) {
   std::array<int, 3> values{};
   std::size_t found = 0;
@@ -28,7 +28,7 @@ std::array<int, 3> quartiles(std::span<const std::uint16_t> counts, int total) {
   return values;
 }
 
-/// Variance of a Gaussian cut at +-k sigma, as part of the whole one's.
+/// Variance of a Gaussian truncated at +-k sigma, as part of the complete one's.
 double remaining_variance(double k) {
   const double density = math::exp(-0.5 * k * k) * 0.3989422804014327;  // 1 / sqrt(2 pi)
   return 1.0 - 2.0 * k * density / math::erf(k * 0.7071067811865476);
@@ -38,12 +38,11 @@ double remaining_variance(double k) {
 
 ClippedMoments clipped_moments(std::span<const std::uint16_t> counts, int total) {
   const auto [lower, median, upper] = quartiles(counts, total);
-  ClippedMoments moments{static_cast<double>(median),
-                         std::max((upper - lower) / kQuartilesPerSigma, 2.0 * kLeastSigma)};
+  ClippedMoments moments{static_cast<double>(median), std::max((upper - lower) / kQuartilesPerSigma, 2.0 * kMinSigma)};
   const int last = static_cast<int>(counts.size()) - 1;
   int first_before = -1;
   int end_before = -1;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const double reach = kClip * moments.sigma;
     const int first = std::clamp(static_cast<int>(math::floor(moments.mean - reach)) + 1, 0, last);
     const int end = std::clamp(static_cast<int>(math::floor(moments.mean + reach)), first, last) + 1;
@@ -63,10 +62,10 @@ ClippedMoments clipped_moments(std::span<const std::uint16_t> counts, int total)
     if (n == 0) break;
     const double mean = static_cast<double>(sum) / static_cast<double>(n);
     const double variance = static_cast<double>(squares) / static_cast<double>(n) - mean * mean;
-    // A whole number stands for all that is rounded to it, so the cut lies half beyond the outermost.
-    const double k = std::max(0.5 * (end - first) / std::max(moments.sigma, kLeastSigma), 1.0);
+    // An integer represents all values rounded to it, so that the cut lies half beyond the outermost.
+    const double k = std::max(0.5 * (end - first) / std::max(moments.sigma, kMinSigma), 1.0);
     moments.mean = median + mean;
-    moments.sigma = std::max(math::sqrt(std::max(variance, 0.0) / remaining_variance(k)), kLeastSigma);
+    moments.sigma = std::max(math::sqrt(std::max(variance, 0.0) / remaining_variance(k)), kMinSigma);
   }
   return moments;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Mean and scatter of many whole numbers among which some do not belong: a Gaussian's, from a histogram.
+// Robust mean and standard deviation of many integers with outliers: those of a Gaussian, from a histogram.
 
 #include <cstdint>
 #include <span>
@@ -12,8 +12,8 @@ struct ClippedMoments {
 };
 
 /// Moments within 3 sigma of the mean, found by iteration from median and quartiles; the sigma is that of the whole
-/// Gaussian, the tails beyond the clip put back. `counts[k]` numbers have the value k; `total` is their sum and at
-/// least 1. The sigma is good to half a per cent; below 0.9, where clipping at whole numbers is coarse,
+/// Gaussian, corrected for the clipped tails. `counts[k]` samples have the value k; `total` is their sum and at
+/// least 1. The sigma is accurate to half a per cent; below 0.9, where clipping at integers is coarse,
 /// to two or three.
 ClippedMoments clipped_moments(std::span<const std::uint16_t> counts, int total);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A camera image as flight software holds it: a region of the detector, 8 or 12 bits a pixel.
+// A camera image in flight software: a region of the detector, 8 or 12 bits per pixel.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@ inline constexpr int kMaxSide = 4096;  ///< of an image's width and height, px
 inline constexpr int kTilePixels12 = 868;
 inline constexpr int kTilePixels8 = 1302;
 
-/// Where an image lies on the detector.
+/// Position of an image on the detector.
 struct ImageFrame {
   int width = 0;
   int height = 0;
@@ -23,10 +23,10 @@ struct ImageFrame {
   friend constexpr bool operator==(const ImageFrame&, const ImageFrame&) = default;
 };
 
-/// A pixel that never arrived. No detector says so: 12 bits end at 4095.
+/// A pixel that never arrived. No detector outputs it: 12 bits end at 4095.
 inline constexpr std::uint16_t kMissingPixel = 0xFFFF;
 
-/// Rows from the top, pixels from the left. The pixels are the owner's.
+/// Rows from the top, pixels from the left. The pixels are owned by the caller.
 struct ImageView {
   ImageFrame frame;
   std::span<const std::uint16_t> pixels;  ///< width * height

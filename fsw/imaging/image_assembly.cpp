@@ -15,7 +15,7 @@ constexpr int pixels_of(const image_tile& tile) {
   return int{tile.width} * int{tile.height};
 }
 
-/// Whether the tile's fields agree among themselves: then its pixels lie within its image and its data within its
+/// Whether the tile's fields are consistent: then its pixels lie within its image and its data within its
 /// bytes.
 Status check(const image_tile& tile) {
   if (tile.bits != 8 && tile.bits != 12) return Status::kInvalidArgument;
@@ -23,10 +23,10 @@ Status check(const image_tile& tile) {
   if (tile.origin_x < 0 || tile.origin_y < 0) return Status::kInvalidArgument;
   const int pixels = pixels_of(tile);
   if (tile.width > kMaxSide || tile.height > kMaxSide || pixels > int{kMaxPixels}) return Status::kOutOfRange;
-  const int most = pixels_of_tile(tile.bits);
-  if (tile.tiles != (pixels + most - 1) / most) return Status::kInvalidArgument;
+  const int maximum = pixels_of_tile(tile.bits);
+  if (tile.tiles != (pixels + maximum - 1) / maximum) return Status::kInvalidArgument;
   if (tile.tile < 0 || tile.tile >= tile.tiles) return Status::kInvalidArgument;
-  if (tile.pixels != std::min(most, pixels - tile.tile * most)) return Status::kInvalidArgument;
+  if (tile.pixels != std::min(maximum, pixels - tile.tile * maximum)) return Status::kInvalidArgument;
   return Status::kOk;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// One camera's image out of its tiles. What is there at the step is the image of the latest time of which a tile came;
-// the order in which tiles arrive changes nothing of it.
+// Assembly of one camera's image from its tiles. The image at the step is that of the latest time of which a tile has
+// arrived; the result does not depend on the order in which tiles arrive.
 
 #include <array>
 #include <cstdint>
@@ -14,10 +14,10 @@ namespace vbar::fsw::imaging {
 
 /// Since the assembly was made.
 struct AssemblyCounts {
-  std::int32_t tiles_refused = 0;     ///< all that are in no image: faulty, late, twice there, of an image given up
-  std::int32_t tiles_duplicated = 0;  ///< of those, came twice with the same content
+  std::int32_t tiles_refused = 0;     ///< all that are in no image: invalid, late, duplicate, or of an abandoned image
+  std::int32_t tiles_duplicated = 0;  ///< of those, received twice with the same content
   std::int32_t images_abandoned = 0;  ///< replaced by a later one before they were used
-  std::int32_t images_spoiled = 0;    ///< two of their tiles contradict each other
+  std::int32_t images_spoiled = 0;    ///< with two contradicting tiles
 };
 
 class ImageAssembly {
@@ -25,18 +25,18 @@ class ImageAssembly {
   /// `unit`: which camera, as in the header of its packets.
   explicit ImageAssembly(std::uint8_t unit = 0) : unit_(unit) {}
 
-  /// Tiles later than this are refused (from the start none is): a tile from the future would shut out all before it.
+  /// Tiles later than this are refused (at the start none): a tile of the future would otherwise block all before it.
   void accept_until(GpsTime latest) { latest_ = latest; }
 
   /// Files a tile under its packet's time. A later time than that of the image there starts a new image. Refuses:
   ///   kWrongType        another unit
-  ///   kInvalidArgument  fields that no image has, or that contradict the tiles before. Then neither can be believed
+  ///   kInvalidArgument  fields that are invalid, or that contradict the tiles before. Then neither can be trusted
   ///                     and the image is spoiled: has_image() is false until a later one begins
   ///   kOutOfRange       more pixels than kMaxPixels or kMaxSide, or a time later than accept_until()
   ///   kBadSequence      of an image used, replaced or spoiled already, or there already
   [[nodiscard]] Status take(GpsTime time, std::uint8_t unit, const image_tile& tile);
 
-  /// At least one tile of an image is there, and none contradicts another.
+  /// At least one tile of an image has arrived, and none contradicts another.
   [[nodiscard]] bool has_image() const { return tiles_there_ > 0; }
   /// Pixels of missing tiles are kMissingPixel. Empty without an image, and valid until the next take().
   [[nodiscard]] ImageView view() const;
@@ -44,7 +44,7 @@ class ImageAssembly {
   [[nodiscard]] std::int32_t image_number() const { return number_; }
   [[nodiscard]] int tiles_missing() const { return tiles_ - tiles_there_; }
 
-  /// The image has been used: it is gone, and tiles of its time or before are refused from now on.
+  /// The image has been used: it is discarded, and tiles of its time or before are refused from now on.
   void clear();
 
   [[nodiscard]] const AssemblyCounts& counts() const { return counts_; }
@@ -60,8 +60,8 @@ class ImageAssembly {
 
   std::uint8_t unit_;
   GpsTime latest_{INT64_MAX};
-  GpsTime time_{INT64_MIN};  ///< of the image here, or of the last one that was
-  bool is_open_ = false;     ///< tiles of that time are still taken
+  GpsTime time_{INT64_MIN};  ///< of the current image, or of the last one
+  bool is_open_ = false;     ///< tiles of that time are still accepted
   ImageFrame frame_;
   std::int32_t number_ = 0;
   int tiles_ = 0;

@@ -8,20 +8,20 @@
 namespace vbar::fsw::imaging {
 namespace {
 
-/// A point's image is at most so many times its own width, smear included; what is wider is measured as a whole, unless
-/// it is several points.
+/// The image of a point extends to at most this multiple of its own width, with smear; wider components are measured
+/// as a whole, unless they are several points.
 constexpr double kWidestPoint = 2.0;
-/// From so many times a point's width on it may be several points, if it has no more pixels than these have: a
-/// spacecraft that is resolved has bright spots too.
+/// From this multiple of a point's width on it may be several points, if it has no more pixels than these would have: a
+/// resolved spacecraft has bright spots too.
 constexpr double kWiderThanPoint = 1.3;
-constexpr int kMostBlendedPixels = 250;
-/// Around a bright object noise lifts bits of its halo above the threshold: within so many pixels, and so many times
-/// fainter than it.
+constexpr int kMaxBlendedPixels = 250;
+/// Around a bright object noise raises parts of its halo above the threshold: within this number of pixels, and fainter
+/// by this factor.
 constexpr int kFragmentMargin = 3;
 constexpr std::int64_t kFragmentFlux = 100;
 
-bool is_within(double value, double least, double most) {
-  return value >= least && value <= most;  // false for a NaN
+bool is_within(double value, double minimum, double maximum) {
+  return value >= minimum && value <= maximum;  // false for a NaN
 }
 
 bool is_usable(const DetectorSettings& s) {
@@ -29,7 +29,7 @@ bool is_usable(const DetectorSettings& s) {
          is_within(s.point_spread_sigma_px, 0.3, 3.0) && s.largest_object_px >= 1;
 }
 
-/// Brightest first; where two are as bright, from the top and from the left.
+/// Brightest first; of equally bright ones, from the top and from the left.
 bool is_first(const DetectedObject& a, const DetectedObject& b) {
   if (a.flux_dn != b.flux_dn) return a.flux_dn > b.flux_dn;
   if (a.centroid_px.y() != b.centroid_px.y()) return a.centroid_px.y() < b.centroid_px.y();
@@ -56,7 +56,7 @@ DetectionReport ObjectDetector::detect(const ImageView& image, const DetectorSet
     }
   }
   std::sort(objects_.begin(), objects_.begin() + static_cast<std::ptrdiff_t>(object_count_), is_first);
-  image_ = {};  // the caller's pixels may go
+  image_ = {};  // the caller may release its pixels
   rows_ = {};
   report.background_dn = background_.typical_level_dn();
   report.noise_dn = background_.typical_noise_dn();
@@ -90,8 +90,8 @@ void ObjectDetector::find_components() {
   components_.finish();
 }
 
-/// Runs of pixels whose 3 x 3 sum exceeds the threshold. False if a sum is more than any nine pixels can be: a missing
-/// pixel is among them, and the rows must be patched. So an image without gaps is not searched for them.
+/// Runs of pixels whose 3 x 3 sum exceeds the threshold. False if a sum exceeds that of any nine pixels: a missing
+/// pixel is among them, and the rows must be patched. Images without gaps therefore need no search for gaps.
 bool ObjectDetector::scan_row() {
   const int last = image_.frame.width - 1;
   const std::uint16_t* above = rows_[0];
@@ -128,7 +128,7 @@ void ObjectDetector::push_run(int begin, int end) {
   runs_[run_count_++] = {static_cast<std::int16_t>(begin), static_cast<std::int16_t>(end)};
 }
 
-/// Copies of the three rows with the background in place of what is missing.
+/// Copies of the three rows with the background in place of missing pixels.
 void ObjectDetector::patch_rows(int y) {
   for (std::size_t k = 0; k < 3; ++k) {
     Background::RowNodes nodes;
@@ -147,11 +147,11 @@ void ObjectDetector::add_run(int y, const Run& run) {
   Component* component = components_.add_run(y, run.begin, run.end);
   if (component == nullptr) return;
   const ImageFrame& f = image_.frame;
-  // The sums of these pixels reach the outermost ones.
+  // The sums of these pixels include the outermost ones.
   const bool is_at_edge = run.begin == 1 || run.end == f.width - 1 || y == 1 || y == f.height - 2;
   if (is_at_edge || (is_patched_ && touches_missing(y, run))) component->is_cut = true;
   if (components_.is_extended(*component)) {
-    component->pixels += run.end - run.begin;  // nothing else of it will be asked for
+    component->pixels += run.end - run.begin;  // the other members are not needed
   } else {
     add_pixels(*component, y, run);
   }
@@ -206,14 +206,14 @@ bool ObjectDetector::touches_missing(int y, const Run& run) const {
   return false;
 }
 
-/// Whether a component kept lies in or beside the box of one far brighter.
+/// Whether a component kept lies in or beside the box of a much brighter one.
 bool ObjectDetector::is_fragment(std::size_t k) const {
   const std::span<const Component> kept = components_.kept();
   const Component& c = kept[k];
   for (std::size_t j = 0; j < k && kept[j].flux > kFragmentFlux * c.flux; ++j) {
     const Component& bright = kept[j];
-    if (c.peak_x >= bright.x_least - kFragmentMargin && c.peak_x <= bright.x_most + kFragmentMargin &&
-        c.peak_y >= bright.y_least - kFragmentMargin && c.peak_y <= bright.y_most + kFragmentMargin) {
+    if (c.peak_x >= bright.x_min - kFragmentMargin && c.peak_x <= bright.x_max + kFragmentMargin &&
+        c.peak_y >= bright.y_min - kFragmentMargin && c.peak_y <= bright.y_max + kFragmentMargin) {
       return true;
     }
   }
@@ -223,7 +223,7 @@ bool ObjectDetector::is_fragment(std::size_t k) const {
 void ObjectDetector::measure(const Component& component) {
   const double radius = component_radius(component);
   const double point = math::sqrt(settings_.point_spread_sigma_px * settings_.point_spread_sigma_px + 1.0 / 12.0);
-  const bool is_small = !component.is_saturated && component.pixels <= kMostBlendedPixels;
+  const bool is_small = !component.is_saturated && component.pixels <= kMaxBlendedPixels;
   Blend blend;
   if (is_small && radius > kWiderThanPoint * point) {
     blend = separate(image_, background_, component, settings_.gain_dn_per_electron, settings_.detection_sigmas);
@@ -237,11 +237,11 @@ void ObjectDetector::measure(const Component& component) {
 }
 
 void ObjectDetector::measure_whole(const Component& component) {
-  tell(component, component_centroid(background_, component, settings_.gain_dn_per_electron),
-       component_radius(component));
+  add_object(component, component_centroid(background_, component, settings_.gain_dn_per_electron),
+             component_radius(component));
 }
 
-/// Each peak as a point that has its share of the component's light and pixels. False if none of them is a point.
+/// Each peak as a point with its share of the component's light and pixels. False if none of them is a point.
 bool ObjectDetector::measure_points(const Component& component, const Blend& blend) {
   std::int64_t all = 0;
   for (std::size_t k = 0; k < blend.count; ++k) all += blend.peaks[k].sum_dn;
@@ -258,23 +258,24 @@ bool ObjectDetector::measure_points(const Component& component, const Blend& ble
     }
     const Centroid centroid =
         windowed_centroid(image_, background_, part, settings_.point_spread_sigma_px, settings_.gain_dn_per_electron);
-    if (centroid.is_found) tell(part, centroid, blend.count > 1 ? centroid.radius_px : component_radius(component));
+    if (centroid.is_found)
+      add_object(part, centroid, blend.count > 1 ? centroid.radius_px : component_radius(component));
   }
   return object_count_ > before;
 }
 
 int ObjectDetector::brightest_around(int x, int y) const {
-  int most = 0;
+  int maximum = 0;
   for (int row = y - 1; row <= y + 1; ++row) {
     for (int column = x - 1; column <= x + 1; ++column) {
       const int pixel = image_row(row)[column];
-      if (pixel != kMissingPixel) most = std::max(most, pixel);
+      if (pixel != kMissingPixel) maximum = std::max(maximum, pixel);
     }
   }
-  return most;
+  return maximum;
 }
 
-void ObjectDetector::tell(const Component& component, const Centroid& centroid, double radius_px) {
+void ObjectDetector::add_object(const Component& component, const Centroid& centroid, double radius_px) {
   if (object_count_ == objects_.size()) return;
   DetectedObject& object = objects_[object_count_++];
   object.centroid_px = {image_.frame.origin_x + centroid.x, image_.frame.origin_y + centroid.y};

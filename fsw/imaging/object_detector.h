@@ -1,9 +1,9 @@
 #pragma once
-// Objects in an image: what exceeds the background, put together and measured. Stars, satellites and hot pixels are all
-// alike here; what is larger than any satellite can be (Earth, Moon, the Sun's glare) is counted and left alone.
+// Object detection: components above the background are assembled and measured. Stars, satellites and hot pixels are
+// all alike here; objects larger than any satellite (Earth, Moon, glare of the Sun) are counted and ignored.
 //
 // Sums of 3 x 3 pixels are compared with the background's level and noise: for the image of a point nearly as good as a
-// filter matched to it, in whole numbers. Results are the same bits on every target.
+// matched filter, in integers. Results are bit-identical on every target.
 
 #include <array>
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace vbar::fsw::imaging {
 struct DetectorSettings {
   double detection_sigmas = 5.0;  ///< of the noise of a sum of 3 x 3 pixels, 1 to 30. 5: a false object in ten images
   double gain_dn_per_electron = 0.125;
-  int saturation_dn = 4000;            ///< a pixel of so much says no more than that it is bright, 1 to 4095
+  int saturation_dn = 4000;            ///< a pixel of this value or more is saturated, 1 to 4095
   double point_spread_sigma_px = 0.8;  ///< of the image of a point, before the pixel's own width, 0.3 to 3
   int largest_object_px = 20000;       ///< pixels
 };
@@ -30,26 +30,26 @@ struct DetectionReport {
   ImageCondition condition = ImageCondition::kInvalid;  ///< no object unless kGood
   double background_dn = 0.0;                           ///< median over the image
   double noise_dn = 0.0;                                ///< 1 sigma of a pixel, median over the image
-  int components = 0;                                   ///< all that was found
-  int objects = 0;                                      ///< measured and told
+  int components = 0;                                   ///< all components found
+  int objects = 0;                                      ///< measured and reported
   int extended = 0;                                     ///< of the components, larger than largest_object_px
   int pixels_rejected = 0;                              ///< of the extended ones
-  int fragments = 0;                                    ///< of the components, bits of a bright object's halo: not told
-  int runs_dropped = 0;                                 ///< not 0: a row so full that it was not read to its end
+  int fragments = 0;                                    ///< of the components, parts of a bright halo: not reported
+  int runs_dropped = 0;                                 ///< not 0: a row had too many runs to be processed
 };
 
-/// Some 300 kB, all of it work space: nothing of an image matters to the next.
+/// Some 300 kB, all of it workspace: no information is kept between images.
 ///
-/// A point that is neither saturated nor at an edge gets the centroid of centroid.h, windowed_centroid(); two that
-/// touch do so each. Whatever is saturated or wider gets the intensity-weighted mean of all its pixels: of a saturated
-/// point that is as good as the rounding of the bright disc's edge to whole pixels lets it be, 0.06 px, which its sigma
-/// leaves out.
+/// A point that is neither saturated nor at an edge is measured by centroid.h, windowed_centroid(), also two that
+/// touch. Objects that are saturated or wider are measured by the intensity-weighted mean of all their pixels: for a
+/// saturated point the accuracy is limited by rounding of the bright disc's edge to pixels, 0.06 px, which its sigma
+/// excludes.
 class ObjectDetector {
  public:
-  /// Looks at the whole image with no preference for any place in it.
+  /// Searches the complete image, without a preferred position.
   DetectionReport detect(const ImageView& image, const DetectorSettings& settings);
 
-  /// Of the last image, brightest first. On the detector: the image's origin is added.
+  /// Of the last image, brightest first. In detector coordinates: the image's origin is added.
   [[nodiscard]] std::span<const DetectedObject> objects() const { return std::span(objects_).first(object_count_); }
 
  private:
@@ -71,7 +71,7 @@ class ObjectDetector {
   void measure_whole(const Component& component);
   [[nodiscard]] bool measure_points(const Component& component, const Blend& blend);
   [[nodiscard]] int brightest_around(int x, int y) const;
-  void tell(const Component& component, const Centroid& centroid, double radius_px);
+  void add_object(const Component& component, const Centroid& centroid, double radius_px);
   [[nodiscard]] const std::uint16_t* image_row(int y) const {
     return image_.pixels.data() + static_cast<std::ptrdiff_t>(y) * image_.frame.width;
   }
@@ -81,19 +81,19 @@ class ObjectDetector {
   std::array<DetectedObject, kMaxObjects> objects_{};
   std::size_t object_count_ = 0;
 
-  // Of the image in work
+  // Of the current image
   ImageView image_;
   DetectorSettings settings_;
   int noises_q4_ = 0;  ///< threshold above the background of nine pixels, in sigmas of one / 16
 
-  // Of the row in work
+  // Of the current row
   std::array<const std::uint16_t*, 3> rows_{};  ///< above, this, below
   std::array<std::array<std::uint16_t, kMaxSide>, 3> patched_{};
   bool is_patched_ = false;
   std::array<int, kMaxSide> threshold_dn_{};
   std::array<Run, Components::kMaxRunsOfRow> runs_{};
   std::size_t run_count_ = 0;
-  int runs_dropped_ = 0;  ///< since the image began
+  int runs_dropped_ = 0;  ///< since the start of the image
   Background::RowNodes level_{};
 };
 

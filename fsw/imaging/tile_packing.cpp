@@ -3,16 +3,16 @@
 namespace vbar::fsw::imaging {
 namespace {
 
-constexpr std::uint16_t kMost12 = 0xFFF;
+constexpr std::uint16_t kMax12Bits = 0xFFF;
 
 constexpr std::uint8_t low_byte(unsigned value) {
   return static_cast<std::uint8_t>(value & 0xFFU);
 }
 
-bool fits(std::span<const std::uint16_t> pixels, unsigned most) {
-  unsigned all = 0;  // most is all ones, so a pixel beyond it leaves a bit above it
+bool fits(std::span<const std::uint16_t> pixels, unsigned maximum) {
+  unsigned all = 0;  // the maximum is all ones, so that a larger pixel leaves a bit above it
   for (const std::uint16_t pixel : pixels) all |= pixel;
-  return all <= most;
+  return all <= maximum;
 }
 
 void pack8(std::span<const std::uint16_t> pixels, std::uint8_t* out) {
@@ -57,7 +57,7 @@ void unpack12(const std::uint8_t* in, std::span<std::uint16_t> pixels) {
 
 std::size_t pack_pixels(std::span<const std::uint16_t> pixels, int bits, std::span<std::uint8_t> out) {
   const std::size_t size = packed_size(pixels.size(), bits);
-  if (size == 0 || size > out.size() || !fits(pixels, bits == 8 ? 0xFFU : kMost12)) return 0;
+  if (size == 0 || size > out.size() || !fits(pixels, bits == 8 ? 0xFFU : kMax12Bits)) return 0;
   if (bits == 8) {
     pack8(pixels, out.data());
   } else {

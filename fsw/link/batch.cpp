@@ -13,7 +13,7 @@ void BatchReceiver::open(std::uint32_t session, std::uint32_t step) {
 BatchReceiver::Decision BatchReceiver::offer(const FrameHeader& frame) {
   if (!open_ || frame.session != session_ || frame.step != step_) return {Verdict::kForeign, false};
   if (frame.index < held_ || complete_) return {Verdict::kDuplicate, frame.acknowledge_now};
-  // The last index that a count of 16 bits cannot follow is never taken.
+  // The last index is not used because its successor exceeds 16 bits.
   if (frame.index > held_ || held_ == UINT16_MAX) return {Verdict::kOutOfOrder, frame.acknowledge_now};
   ++held_;
   complete_ = frame.last;

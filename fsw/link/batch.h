@@ -1,8 +1,8 @@
 #pragma once
 // The two ends of a batch of a step (frame.h): go-back-N with a cumulative acknowledgement. Both sides of a link use
 // the same two state machines, one for the batch they send and one for the batch they receive. No I/O, no time, no
-// storage of packets: the owner sends what the sender names, stores what the receiver takes, and decides when to poll.
-// A batch has at most 65,535 packets.
+// storage of packets: the owner sends the packet named by the sender, stores those accepted by the receiver, decides
+// when to poll. A batch has at most 65,535 packets.
 
 #include <cstdint>
 
@@ -10,12 +10,12 @@
 
 namespace vbar::fsw::link {
 
-/// Takes the kData frames of one batch in order, without gaps or repetitions.
+/// Accepts the kData frames of one batch in order, without gaps or repetitions.
 class BatchReceiver {
  public:
   enum class Verdict : std::uint8_t {
     kTaken,       ///< the next packet: the owner stores its payload now
-    kDuplicate,   ///< held already
+    kDuplicate,   ///< received already
     kOutOfOrder,  ///< one before it is missing
     kForeign,     ///< of another session or step, or no batch is open
   };
@@ -26,18 +26,18 @@ class BatchReceiver {
 
   /// Expects the batch of (session, step) from its first packet on.
   void open(std::uint32_t session, std::uint32_t step);
-  /// Expects nothing any more: every frame is foreign.
+  /// Closes the batch: every frame is then foreign.
   void close() { open_ = false; }
 
-  /// Judges a kData frame.
+  /// Classifies a kData frame.
   Decision offer(const FrameHeader& frame);
 
-  /// kAck with the number of packets held.
+  /// kAck with the number of packets received.
   [[nodiscard]] FrameHeader acknowledgement() const;
   [[nodiscard]] bool is_open() const { return open_; }
   [[nodiscard]] bool complete() const { return complete_; }
   [[nodiscard]] std::uint32_t step() const { return step_; }
-  /// Packets held without a gap.
+  /// Packets received without a gap.
   [[nodiscard]] std::uint16_t held() const { return held_; }
 
  private:
@@ -48,7 +48,7 @@ class BatchReceiver {
   bool complete_ = false;
 };
 
-/// Says which packet of a batch goes out next. At most kWindow are out without acknowledgement.
+/// Selects the next packet of a batch to send. At most kWindow are outstanding without acknowledgement.
 class BatchSender {
  public:
   /// Starts the batch of (session, step) with `count` packets, at least one.
@@ -61,10 +61,10 @@ class BatchSender {
   /// The packet of next_header() was sent.
   void sent();
 
-  /// The other side holds `held` packets. Older news, and more than was ever sent, changes nothing.
+  /// The other side has received `held` packets. Older acknowledgements, and more than was ever sent, have no effect.
   void acknowledge(std::uint16_t held);
-  /// The other side holds `held` packets and lost what followed: sending resumes there. Impossible numbers change
-  /// nothing.
+  /// The other side has received `held` packets and lost the following: sending resumes there. Invalid numbers have
+  /// no effect.
   void rewind(std::uint16_t held);
 
   [[nodiscard]] std::uint32_t step() const { return step_; }
@@ -78,8 +78,8 @@ class BatchSender {
   std::uint32_t step_ = 0;
   std::uint16_t count_ = 0;
   std::uint16_t next_ = 0;          ///< to be sent next
-  std::uint16_t acknowledged_ = 0;  ///< held by the other side
-  std::uint16_t furthest_ = 0;      ///< one past the last that was ever sent
+  std::uint16_t acknowledged_ = 0;  ///< received by the other side
+  std::uint16_t furthest_ = 0;      ///< one past the last packet ever sent
   std::uint32_t resent_ = 0;
 };
 

@@ -19,7 +19,7 @@ Result<std::size_t> cobs_encode(std::span<const std::uint8_t> data, std::span<st
       out[end++] = data[i];
       ++code;
     }
-    // A group that is full at the very end of the data needs no successor.
+    // A full group at the end of the data needs no successor.
     const bool full = code == kFullGroup && i + 1 < data.size();
     if (data[i] != 0 && !full) continue;
     if (end == out.size()) return Status::kTooLong;

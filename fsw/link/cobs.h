@@ -17,7 +17,7 @@ Result<std::size_t> cobs_encode(std::span<const std::uint8_t> data, std::span<st
 /// Incremental decoder of a byte stream. Resynchronises at the next zero after anything malformed or oversized.
 class CobsDecoder {
  public:
-  /// Takes one byte. Returns true when it completes a well-formed frame, which `frame()` then shows until the next
+  /// Takes one byte. Returns true when it completes a well-formed frame, which `frame()` then returns until the next
   /// push.
   bool push(std::uint8_t byte);
   [[nodiscard]] std::span<const std::uint8_t> frame() const { return {buffer_.data(), frame_size_}; }

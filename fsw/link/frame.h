@@ -1,13 +1,13 @@
 #pragma once
 // Link frames between a host and a flight computer. They carry space packets through a step barrier: the packets of
-// step N go out as one numbered batch, the answer to step N comes back as one numbered batch, and whatever is lost,
-// broken, duplicated or delayed on the way is sent again, so a line's faults never become the experiment's.
+// step N are sent as one numbered batch, the answer to step N is returned as one numbered batch, and frames lost,
+// corrupted, duplicated or delayed on the way are retransmitted, so that link errors do not affect the experiment.
 //
 //   byte  0      protocol version (kProtocolVersion)
 //   byte  1      FrameType
 //   bytes 2-5    session, a number the host draws at each start: frames of an older run are refused
 //   bytes 6-9    step
-//   bytes 10-11  index: kData, place of this packet in its batch; kAck and kPoll, number of packets held without a gap
+//   bytes 10-11  index: kData, position of this packet in its batch; kAck and kPoll, packets received without a gap
 //   byte  12     flags: bit 0, last packet of the batch; bit 1, answer with kAck at once
 //   byte  13     0
 //   14 ...       kData: one space packet; kHelloAck: the board's name in ASCII
@@ -21,8 +21,8 @@
 //   host  kData 0..n-1 of step N, the last one flagged; after kWindow unacknowledged ones it waits for kAck
 //   board takes kData only in order (others are counted and dropped; every kWindow/2 taken, or on demand, kAck);
 //         once the flagged one is in: runs the step, keeps its answer, sends it as kData 0..m-1 of step N, last flagged
-//   host  acknowledges the answer the same way; nothing heard for a while: kPoll(N, packets of the answer held).
-//   board on kPoll: if its inputs of N are incomplete, kAck with what it holds; else its answer again from that index
+//   host  acknowledges the answer the same way; after a time without reception: kPoll(N, packets received).
+//   board on kPoll: if its inputs of N are incomplete, kAck with their number; else its answer again from that index
 //         on. kData of a step already run is a duplicate: the answer is on its way or will be polled for
 //   host  kGoodbye ends the run: the board stops.
 

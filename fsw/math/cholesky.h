@@ -1,6 +1,6 @@
 #pragma once
 // Cholesky factor of a small symmetric positive definite matrix. Eigen's has a blocked branch for large matrices that
-// keeps a way to the heap in the object code even of a 6x6; this one has none.
+// leaves heap calls in the object code even of a 6x6; this one has none.
 
 #include <Eigen/Core>
 
@@ -37,8 +37,8 @@ class Cholesky {
   /// False if A is not positive definite to rounding, or not finite; solve and the like are then meaningless.
   [[nodiscard]] bool ok() const { return smallest_pivot_ > 0.0; }
 
-  /// The smallest squared diagonal element of L, 0 unless ok: how far the worst row of A is from depending on those
-  /// before.
+  /// The smallest squared diagonal element of L, 0 unless ok: measures the linear dependence of the worst row of A on
+  /// those before.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
 
   /// L^-1 b.

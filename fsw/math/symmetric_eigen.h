@@ -1,6 +1,6 @@
 #pragma once
 // Eigenvalues and eigenvectors of small symmetric matrices by Jacobi rotations (Golub & Van Loan, Matrix
-// Computations, 8.5). Eigen's solver for a general size keeps a way to the heap in its code; this one has none, and its
+// Computations, 8.5). Eigen's solver for a general size leaves heap calls in the object code; this one does not; its
 // loops have fixed bounds.
 
 #include "fsw/core/result.h"
@@ -16,7 +16,7 @@ struct SymmetricEigen {
   Eigen::Matrix<double, N, N> vectors = Eigen::Matrix<double, N, N>::Identity();
 };
 
-/// Turns columns and rows p < q of the upper triangle `a` so that a(p, q) vanishes, and the columns of `v` with them.
+/// Rotates columns and rows p < q of the upper triangle `a` so that a(p, q) vanishes, and the columns of `v` with them.
 template <int N>
 void jacobi_rotation(Eigen::Matrix<double, N, N>& a, Eigen::Matrix<double, N, N>& v, int p, int q) {
   if (a(p, q) == 0.0) return;
@@ -26,7 +26,7 @@ void jacobi_rotation(Eigen::Matrix<double, N, N>& a, Eigen::Matrix<double, N, N>
   const double t = cotangent >= 0.0 ? 1.0 / (cotangent + root) : 1.0 / (cotangent - root);
   const double c = 1.0 / sqrt(1.0 + t * t);
   const double s = t * c;
-  const auto turn = [c, s](double& x, double& y) {
+  const auto rotate = [c, s](double& x, double& y) {
     const double old = x;
     x = c * old - s * y;
     y = s * old + c * y;
@@ -35,8 +35,8 @@ void jacobi_rotation(Eigen::Matrix<double, N, N>& a, Eigen::Matrix<double, N, N>
   a(q, q) += t * a(p, q);
   a(p, q) = 0.0;
   for (int k = 0; k < N; ++k) {
-    if (k != p && k != q) turn(k < p ? a(k, p) : a(p, k), k < q ? a(k, q) : a(q, k));
-    turn(v(k, p), v(k, q));
+    if (k != p && k != q) rotate(k < p ? a(k, p) : a(p, k), k < q ? a(k, q) : a(q, k));
+    rotate(v(k, p), v(k, q));
   }
 }
 

@@ -5,7 +5,7 @@
 namespace vbar::fsw::navigation {
 namespace {
 
-// The correlation of 60 pairs of white numbers has a standard deviation of 0.13: three of them, and one.
+// The correlation of 60 pairs of white samples has a standard deviation of 0.13: thresholds at three of it and at one.
 constexpr double kLagging = 0.39;
 constexpr double kWhite = 0.13;
 constexpr double kRaise = 10.0;
@@ -23,9 +23,9 @@ void AdaptiveNoise::take(const Vector2& normalised) {
   has_last_ = true;
   if (pairs_ < kWindow) return;
   if (products_ > kLagging * squares_) {
-    psd_ = std::min(psd_ * kRaise, settings_.psd_most);
+    psd_ = std::min(psd_ * kRaise, settings_.psd_max);
   } else if (products_ < kWhite * squares_) {
-    psd_ = std::max(psd_ * kLower, settings_.psd_least);
+    psd_ = std::max(psd_ * kLower, settings_.psd_min);
   }
   interrupt();
 }

@@ -8,7 +8,7 @@ namespace {
 
 static_assert(kPhaseChannels <= gnss::kMaxFloatAmbiguities);
 
-/// The channel that the others of its signal are counted from: a held one if there is one, else the one tracked
+/// The reference channel of the double differences of a signal: a held one if there is one, otherwise the one tracked
 /// longest.
 std::optional<std::size_t> reference_of(const PhaseChannels& channels, gnss::Signal signal) {
   std::optional<std::size_t> best;
@@ -55,12 +55,12 @@ void AmbiguityResolution::count(const RelativeFilter& filter) {
 
 void AmbiguityResolution::watch(RelativeFilter& filter, const RelativeUpdate& epoch,
                                 const AmbiguitySettings& settings) {
-  // One satellite that slips unseen is put right by the others. Where many contradict at once, the few that agree with
+  // A single undetected cycle slip is corrected by the others. If many contradict at once, the few that agree with
   // the state may be the wrong ones.
   contradicted_ = contradicted_ / 2 + epoch.contradictions;
   const std::int32_t held_before = report_.fixed + contradicted_;
-  const bool many_contradict = held_before > kLeastHeld && 3 * contradicted_ > held_before;
-  if (is_fixed() && epoch.phases_used + epoch.phases_refused >= kLeastHeld) {
+  const bool many_contradict = held_before > kMinHeld && 3 * contradicted_ > held_before;
+  if (is_fixed() && epoch.phases_used + epoch.phases_refused >= kMinHeld) {
     const bool disagree = epoch.phase_nis > settings.suspicious_nis * epoch.phases_used;
     const bool refused = 3 * (epoch.phases_refused + epoch.slips) > epoch.phases_used + epoch.phases_refused;
     suspicious_in_a_row_ = disagree || refused ? suspicious_in_a_row_ + 1 : 0;
@@ -73,23 +73,23 @@ void AmbiguityResolution::watch(RelativeFilter& filter, const RelativeUpdate& ep
 }
 
 void AmbiguityResolution::decide(RelativeFilter& filter, const AmbiguitySettings& settings) {
-  gather(filter, settings.least_epochs);
+  gather(filter, settings.min_epochs);
   if (offer_.count == 0) return;
   fill(filter);
   gnss::ValidationCriteria criteria;
   criteria.min_success_rate = settings.min_success_rate;
   criteria.min_ratio = settings.min_ratio;
-  // What is held already fixes the baseline: then one more is welcome.
-  criteria.min_count = is_fixed() ? 1 : static_cast<std::size_t>(kLeastHeld);
+  // The held integers already fix the baseline: a single further one is accepted.
+  criteria.min_count = is_fixed() ? 1 : static_cast<std::size_t>(kMinHeld);
   const auto decision =
       gnss::decide_ambiguities(std::span(floats_).first(offer_.count),
                                std::span(covariance_).first(offer_.count * offer_.count), criteria, workspace_);
   if (!decision.ok()) {
-    report_.obstacle = gnss::Obstacle::kSearch;
+    report_.rejection_reason = gnss::RejectionReason::kSearch;
     return;
   }
   const gnss::AmbiguityDecision& decided = decision.value();
-  report_.obstacle = decided.obstacle;
+  report_.rejection_reason = decided.rejection_reason;
   report_.success_rate = decided.success_rate;
   report_.ratio = decided.ratio;
   for (std::size_t k = 0; k < decided.count; ++k) {
@@ -99,7 +99,7 @@ void AmbiguityResolution::decide(RelativeFilter& filter, const AmbiguitySettings
   if (decided.count > 0) ++report_.fixes;
 }
 
-void AmbiguityResolution::gather(const RelativeFilter& filter, int least_epochs) {
+void AmbiguityResolution::gather(const RelativeFilter& filter, int min_epochs) {
   offer_.count = 0;
   for (std::size_t signal = 0; signal < gnss::kSignals; ++signal) {
     const std::optional<std::size_t> reference = reference_of(filter.channels(), static_cast<gnss::Signal>(signal));
@@ -107,7 +107,7 @@ void AmbiguityResolution::gather(const RelativeFilter& filter, int least_epochs)
     for (std::size_t k = 0; k < kPhaseChannels; ++k) {
       const PhaseChannel& channel = filter.channels()[k];
       const bool is_offered = channel.in_use && static_cast<std::size_t>(channel.signal) == signal && k != *reference &&
-                              !channel.fixed && channel.epochs >= least_epochs;
+                              !channel.fixed && channel.epochs >= min_epochs;
       if (!is_offered) continue;
       offer_.place[offer_.count] = static_cast<std::uint8_t>(k);
       offer_.reference[offer_.count] = static_cast<std::uint8_t>(*reference);

@@ -1,6 +1,6 @@
 #pragma once
-// From float ambiguities to integers and back: offers the filter's double differences to the integer estimator, holds
-// what passes its tests, watches what is held, and lets go of it all when the phases stop agreeing.
+// From float ambiguities to integers and back: passes double differences of the filter to the integer estimator, holds
+// those that pass its tests, monitors them, and releases all when the phases no longer agree.
 
 #include <array>
 #include <cstdint>
@@ -13,48 +13,48 @@ namespace vbar::fsw::navigation {
 struct AmbiguitySettings {
   bool enabled = true;
   double min_success_rate = 0.999;  ///< of bootstrapping
-  double min_ratio = 3.0;           ///< second-best to best squared norm, at least
-  int least_epochs = 4;             ///< tracked without a break before an ambiguity is offered
-  // What is held is let go when, in so many epochs in a row, the phases' normalised innovations average above this (1
-  // is honest) or more than a third of them are refused; and at once when a third of the held ones contradict.
+  double min_ratio = 3.0;           ///< minimum ratio of second-best to best squared norm
+  int min_epochs = 4;               ///< number of epochs tracked without a break before an ambiguity is considered
+  // The integers are released when, in this number of consecutive epochs, the mean normalised innovation squared of the
+  // phases exceeds this (1 if consistent) or more than a third are refused; at once when a third of those contradict.
   int suspicious_epochs = 3;
   double suspicious_nis = 4.0;
-  double release_sigma_m = 0.05;  ///< wrong integers are to be let go before they move the position further than this
+  double release_sigma_m = 0.05;  ///< wrong integers must be released before they shift the position by more than this
 };
 
 struct AmbiguityReport {
   std::int32_t tracked = 0;  ///< channels with a carrier
   std::int32_t fixed = 0;    ///< of them, held to integers
-  std::int32_t fixes = 0;    ///< decisions that held something
+  std::int32_t fixes = 0;    ///< number of decisions that held at least one integer
   std::int32_t releases = 0;
-  gnss::Obstacle obstacle = gnss::Obstacle::kNone;  ///< of the last decision
-  double success_rate = 0.0;                        ///< of the last decision
+  gnss::RejectionReason rejection_reason = gnss::RejectionReason::kNone;  ///< of the last decision
+  double success_rate = 0.0;                                              ///< of the last decision
   double ratio = 0.0;
 };
 
 class AmbiguityResolution {
  public:
-  /// Forgets what it watched; counters stay.
+  /// Resets the monitoring; counters stay.
   void reset();
 
-  /// After each epoch folded in.
+  /// After each epoch processed.
   void update(RelativeFilter& filter, const RelativeUpdate& epoch, const AmbiguitySettings& settings);
 
   [[nodiscard]] const AmbiguityReport& report() const { return report_; }
-  /// Integers of at least four channels are held: the relative position is that of fixed ambiguities.
-  [[nodiscard]] bool is_fixed() const { return report_.fixed >= kLeastHeld + 1; }
+  /// Integers of at least four channels are held: the relative position is an ambiguity-fixed one.
+  [[nodiscard]] bool is_fixed() const { return report_.fixed >= kMinHeld + 1; }
 
-  static constexpr std::int32_t kLeastHeld = 4;
+  static constexpr std::int32_t kMinHeld = 4;
 
  private:
-  /// Double differences offered: a channel and its reference each.
+  /// Double differences considered: a channel and its reference each.
   struct Offer {
     std::array<std::uint8_t, kPhaseChannels> place{};
     std::array<std::uint8_t, kPhaseChannels> reference{};
     std::size_t count = 0;
   };
 
-  void gather(const RelativeFilter& filter, int least_epochs);
+  void gather(const RelativeFilter& filter, int min_epochs);
   void fill(const RelativeFilter& filter);
   void watch(RelativeFilter& filter, const RelativeUpdate& epoch, const AmbiguitySettings& settings);
   void decide(RelativeFilter& filter, const AmbiguitySettings& settings);
@@ -62,7 +62,7 @@ class AmbiguityResolution {
 
   AmbiguityReport report_;
   int suspicious_in_a_row_ = 0;
-  std::int32_t contradicted_ = 0;  ///< held channels of late, those of an epoch before counting half
+  std::int32_t contradicted_ = 0;  ///< recent contradictions among held channels, with a weight halved at each epoch
   Offer offer_;
   std::array<double, kPhaseChannels> floats_{};                       ///< cycles
   std::array<double, kPhaseChannels * kPhaseChannels> covariance_{};  ///< cycles^2, column-major

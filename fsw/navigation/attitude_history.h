@@ -1,5 +1,5 @@
 #pragma once
-// The attitudes of one spacecraft as its sensors told them, to be asked for at the tags of other measurements.
+// The attitudes of one spacecraft as reported by its sensors, interpolated to the time tags of other measurements.
 
 #include <array>
 #include <cstddef>
@@ -20,7 +20,7 @@ class AttitudeHistory {
  public:
   void put(const AttitudeSample& sample);
 
-  /// At `time`, turned by the rate from the nearest sample; none if that is more than kReach away.
+  /// At `time`, propagated by the rate from the nearest sample; no value if that is more than kReach away.
   [[nodiscard]] std::optional<Matrix3> R_eci_body_at(GpsTime time) const;
 
   static constexpr Duration kReach = duration_of_seconds(30);

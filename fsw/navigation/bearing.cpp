@@ -7,7 +7,7 @@
 namespace vbar::fsw::navigation {
 
 Matrix3 bearing_axes(const Vector3& direction_eci, const orbit::CartesianState& servicer) {
-  constexpr double kAlongNormal = 1e-6;  // squared; a target straight above the plane has no vertical of its own
+  constexpr double kAlongNormal = 1e-6;  // squared; a target along the orbit normal has no defined vertical
   const Vector3 normal = servicer.position_eci.cross(servicer.velocity_eci);
   Vector3 in_plane = normal.cross(direction_eci);
   if (in_plane.squaredNorm() < kAlongNormal * normal.squaredNorm()) {

@@ -9,11 +9,11 @@ namespace vbar::fsw::navigation {
 namespace {
 
 constexpr int kMaxIterations = 15;
-constexpr double kLittle = 1e-5;     // an element's change for its slope: 70 m
-constexpr double kConverged = 1e-3;  // of a sigma, every unknown
-constexpr double kHuber = 3.0;       // residuals beyond so many sigma weigh as if they grew linearly
-constexpr double kOutlier = 5.0;     // and beyond these they do not count as used
-constexpr Duration kSegment = duration_of_seconds(600);  // the Earth's orientation is renewed after
+constexpr double kDifferenceStep = 1e-5;                 // difference step of an element for its Jacobian: 70 m
+constexpr double kConverged = 1e-3;                      // of a sigma, every unknown
+constexpr double kHuber = 3.0;                           // residuals beyond this number of sigma have a linear cost
+constexpr double kOutlier = 5.0;                         // residuals beyond this do not count as used
+constexpr Duration kSegment = duration_of_seconds(600);  // the Earth's orientation is updated after each
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void BearingBatch::add_burn(GpsTime time, const Vector3& dv_eci) {
   burns_[burn_count_++] = {time, dv_eci};
 }
 
-/// All orbits run backwards together, from the last bearing to the first.
+/// All orbits are propagated backwards together, from the last bearing to the first.
 Status BearingBatch::linearise(const orbit::CartesianState& servicer, const Unknowns& x,
                                const orbit::EarthOrientation& earth, const Vector3& sun_eci, Linearised& result) {
   result = {};
@@ -44,7 +44,7 @@ Status BearingBatch::linearise(const orbit::CartesianState& servicer, const Unkn
   orbits[0] = servicer;
   for (int k = 1; k < kOrbits; ++k) {
     Vector6 roe = x.head<6>();
-    if (k >= 2) roe((k - 2) / 2) += k % 2 == 0 ? kLittle : -kLittle;
+    if (k >= 2) roe((k - 2) / 2) += k % 2 == 0 ? kDifferenceStep : -kDifferenceStep;
     const auto target = target_from_roe(chief.value(), roe);
     if (!target.ok()) return target.status();
     orbits[static_cast<std::size_t>(k)] = target.value();
@@ -71,18 +71,18 @@ Status BearingBatch::linearise(const orbit::CartesianState& servicer, const Unkn
       const Vector3 sight = orbits[orbit].position_eci - orbits[0].position_eci - bearing.origin_eci;
       return Vector2(axes.topRows<2>() * sight / math::sqrt(sight.squaredNorm()));
     };
-    Eigen::Matrix<double, 2, kUnknowns> slope;
+    Eigen::Matrix<double, 2, kUnknowns> jacobian;
     for (int j = 0; j < 6; ++j) {
       const auto above = static_cast<std::size_t>(2 + 2 * j);
-      slope.col(j) = (seen(above) - seen(above + 1)) / (2.0 * kLittle);
+      jacobian.col(j) = (seen(above) - seen(above + 1)) / (2.0 * kDifferenceStep);
     }
-    slope.rightCols<2>() = Matrix2::Identity();
+    jacobian.rightCols<2>() = Matrix2::Identity();
     const Vector2 residual = -(seen(1) + x.tail<2>());
     const double distance = math::sqrt(residual.squaredNorm()) / bearing.sigma;
     const double weight = distance <= kHuber ? 1.0 : kHuber / distance;
     const double information = weight / (bearing.sigma * bearing.sigma);
-    result.normal += information * slope.transpose().lazyProduct(slope);
-    result.right += information * slope.transpose().lazyProduct(residual);
+    result.normal += information * jacobian.transpose().lazyProduct(jacobian);
+    result.right += information * jacobian.transpose().lazyProduct(residual);
     result.cost += distance <= kHuber ? distance * distance : kHuber * (2.0 * distance - kHuber);
     if (distance <= kOutlier) {
       ++result.used;
@@ -95,7 +95,7 @@ Status BearingBatch::linearise(const orbit::CartesianState& servicer, const Unkn
 Result<BatchSolution> BearingBatch::solve(const orbit::CartesianState& servicer, const Vector6& prior_roe,
                                           const Matrix6& prior_covariance, const orbit::EarthOrientation& earth,
                                           const Vector3& sun_eci, const BearingBatchSettings& settings) {
-  if (count_ < kLeastBearings) return Status::kNotReady;
+  if (count_ < kMinBearings) return Status::kNotReady;
   Normal prior_covariance_all = settings.bias_sigma * settings.bias_sigma * Normal::Identity();
   prior_covariance_all.topLeftCorner<6, 6>() = prior_covariance;
   const math::Cholesky<kUnknowns> prior(prior_covariance_all);
@@ -136,8 +136,8 @@ Result<BatchSolution> BearingBatch::solve(const orbit::CartesianState& servicer,
                                  .covariance = found.inverse(),
                                  .used = now.used,
                                  .chi_square = now.used > 0 ? now.chi_square_of_used / (2.0 * now.used) : 0.0};
-    const bool fits = now.used >= settings.least_share_used * static_cast<double>(count_) &&
-                      solution.chi_square <= settings.most_chi_square;
+    const bool fits = now.used >= settings.min_share_used * static_cast<double>(count_) &&
+                      solution.chi_square <= settings.max_chi_square;
     if (!fits) return Status::kOutOfRange;
     return solution;
   }

@@ -5,7 +5,7 @@
 
 namespace vbar::fsw::navigation {
 
-/// A burn of the servicer, known or commanded.
+/// A burn of the servicer, executed or commanded.
 struct Burn {
   GpsTime time;
   Vector3 dv_rtn = Vector3::Zero();  ///< m/s, in its RTN before the burn

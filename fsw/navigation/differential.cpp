@@ -7,9 +7,9 @@
 namespace vbar::fsw::navigation {
 namespace {
 
-// Receivers are optimists; no signal is taken for better than this.
-constexpr double kLeastCodeSigma_m = 0.05;
-constexpr double kLeastPhaseSigma_m = 0.3e-3;
+// The sigmas reported by receivers are optimistic; lower bounds apply.
+constexpr double kMinCodeSigma_m = 0.05;
+constexpr double kMinPhaseSigma_m = 0.3e-3;
 
 std::strong_ordering order(const gnss::Observation& a, const gnss::Observation& b) {
   if (const auto by_satellite = a.satellite <=> b.satellite; by_satellite != 0) return by_satellite;
@@ -17,9 +17,9 @@ std::strong_ordering order(const gnss::Observation& a, const gnss::Observation& 
   return a.code <=> b.code;
 }
 
-double difference_sigma(double a, double b, double least) {
-  const double floor_a = a > least ? a : least;
-  const double floor_b = b > least ? b : least;
+double difference_sigma(double a, double b, double minimum) {
+  const double floor_a = a > minimum ? a : minimum;
+  const double floor_b = b > minimum ? b : minimum;
   return math::hypot(floor_a, floor_b);
 }
 
@@ -36,7 +36,7 @@ void form_differences(const gnss::ObservationEpoch& servicer, const gnss::Observ
     if (t == target.count) return;
     const gnss::Observation& theirs = target.observations[t];
     if (order(theirs, ours) != 0) continue;
-    // One ephemeris for both: receivers may hold different ones, and their errors would not cancel.
+    // One ephemeris for both: receivers may hold different ones, whose errors would not cancel.
     const auto our_source =
         signal_source(ours.satellite, ours.pseudorange_m, servicer.receiver_time, ephemerides, frame);
     const auto their_source =
@@ -51,9 +51,9 @@ void form_differences(const gnss::ObservationEpoch& servicer, const gnss::Observ
         .code_m = theirs.pseudorange_m - ours.pseudorange_m + clock_difference,
         .phase_m = wavelength * (theirs.carrier_phase_cycles - ours.carrier_phase_cycles) + clock_difference,
         .phase_usable = ours.phase_usable && theirs.phase_usable,
-        .code_sigma_m = difference_sigma(ours.pseudorange_sigma_m, theirs.pseudorange_sigma_m, kLeastCodeSigma_m),
+        .code_sigma_m = difference_sigma(ours.pseudorange_sigma_m, theirs.pseudorange_sigma_m, kMinCodeSigma_m),
         .phase_sigma_m = difference_sigma(wavelength * ours.phase_sigma_cycles, wavelength * theirs.phase_sigma_cycles,
-                                          kLeastPhaseSigma_m),
+                                          kMinPhaseSigma_m),
         .servicer_lock_s = ours.lock_time_s,
         .target_lock_s = theirs.lock_time_s,
         .servicer_source_eci = our_source.value().position_eci,

@@ -1,6 +1,6 @@
 #pragma once
-// What two receivers saw of the same satellites at the same tag: single differences, target minus servicer. The
-// satellite's clock and orbit, and nearly all of the ionosphere, are the same for both and fall out.
+// Single differences, target minus servicer, of two receivers' observations with the same tag. Clock and orbit
+// errors of the satellite, and nearly all of the ionospheric delay, are common to both and cancel.
 
 #include <array>
 #include <cstddef>
@@ -15,14 +15,14 @@ namespace vbar::fsw::navigation {
 struct DifferentialObservation {
   gnss::SatelliteId satellite;
   gnss::Signal signal = gnss::Signal::kGpsL1;
-  double code_m = 0.0;  ///< pseudoranges, each corrected for the satellite's clock when it sent
+  double code_m = 0.0;  ///< pseudoranges, each corrected for the satellite clock at transmission
   double phase_m = 0.0;
   bool phase_usable = false;  ///< on both sides
   double code_sigma_m = 0.0;
   double phase_sigma_m = 0.0;
   double servicer_lock_s = 0.0;
   double target_lock_s = 0.0;
-  // The two signals left at different instants: receivers' clocks differ, and so do ranges.
+  // The two signals were transmitted at different instants, since receiver clocks and ranges differ.
   Vector3 servicer_source_eci = Vector3::Zero();
   Vector3 target_source_eci = Vector3::Zero();
 };
@@ -33,7 +33,7 @@ struct DifferentialEpoch {
   std::array<DifferentialObservation, gnss::kMaxObservations> observations{};
 };
 
-/// Differences of all signals that both epochs (of one tag) hold and the ephemerides know, into `out`.
+/// Differences of all signals common to both epochs (of one tag) with a known ephemeris, into `out`.
 void form_differences(const gnss::ObservationEpoch& servicer, const gnss::ObservationEpoch& target,
                       const EphemerisStore& ephemerides, const EarthFrame& frame, DifferentialEpoch& out);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What filters propagate with: a spacecraft under point mass and J2, pushed by a constant acceleration in its own RTN.
+// Propagation of the filters: point mass and J2, with a constant acceleration in the spacecraft's own RTN.
 
 #include <Eigen/Core>
 
@@ -7,13 +7,14 @@
 
 namespace vbar::fsw::navigation {
 
-/// The state `dt` (s, either sign, at most an hour) later; `acceleration_rtn` (m/s^2) is turned with the orbit.
-/// Classical Runge-Kutta 4, steps of at most 10 s: truncation below a micrometre a step. The caller answers for finite
+/// The state `dt` (s, either sign, at most an hour) later; `acceleration_rtn` (m/s^2) rotates with the orbit.
+/// Classical Runge-Kutta 4, steps of at most 10 s: truncation below a micrometre per step. The caller guarantees finite
 /// input.
-orbit::CartesianState propagate_pushed(const orbit::CartesianState& state, const Vector3& acceleration_rtn, double dt);
+orbit::CartesianState propagate_accelerated(const orbit::CartesianState& state, const Vector3& acceleration_rtn,
+                                            double dt);
 
-/// Adds what white noise of the acceleration (power spectral density, m^2/s^3, each axis) does in `dt` seconds to the
-/// covariance of a state that begins with a position and a velocity: the double integrator's.
+/// Adds the process noise of a white acceleration (power spectral density, m^2/s^3, per axis) over `dt` seconds to the
+/// covariance of a state that begins with position and velocity: that of a double integrator.
 template <int N>
 void add_acceleration_noise(Eigen::Matrix<double, N, N>& covariance, double psd, double dt) {
   for (int axis = 0; axis < 3; ++axis) {

@@ -5,7 +5,7 @@
 namespace vbar::fsw::navigation {
 namespace {
 
-/// Place in the table; empty for a number that the constellation does not have.
+/// Index in the table; no value for a number outside the constellation.
 std::optional<std::size_t> place_of(gnss::SatelliteId satellite) {
   constexpr std::array<std::size_t, gnss::kConstellations> kFirst{0, 32, 68};
   constexpr std::array<std::size_t, gnss::kConstellations> kCount{32, 36, 63};
@@ -34,7 +34,7 @@ Status EphemerisStore::put(const gnss::Ephemeris& ephemeris) {
   if (sets.count < sets.set.size()) {
     sets.set[sets.count++] = ephemeris;
   } else {
-    sets.set[sets.set[0].toe < sets.set[1].toe ? 0 : 1] = ephemeris;  // the older one goes
+    sets.set[sets.set[0].toe < sets.set[1].toe ? 0 : 1] = ephemeris;  // the older one is replaced
   }
   return Status::kOk;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The epochs of one receiver that wait for those of the other: in order of their tags, however they arrived.
+// The epochs of one receiver that wait for those of the other, in order of their tags irrespective of their arrival.
 
 #include <array>
 #include <cstddef>
@@ -13,7 +13,7 @@ class EpochBuffer {
  public:
   static constexpr std::size_t kEpochs = 24;
 
-  /// Files an epoch. kBadSequence: that tag is there already. When full the oldest goes: the newest is worth more.
+  /// Files an epoch. kBadSequence: the tag exists already. When full, the oldest is dropped in favour of the newest.
   Status file(const gnss::ObservationEpoch& epoch) {
     if (find(epoch.receiver_time) != nullptr) return Status::kBadSequence;
     if (count_ == kEpochs) {
@@ -39,7 +39,7 @@ class EpochBuffer {
     return nullptr;
   }
 
-  /// Forgets all epochs tagged at or before `tag`.
+  /// Discards all epochs tagged at or before `tag`.
   void drop_through(GpsTime tag) {
     std::size_t dropped = 0;
     while (dropped < count_ && at(dropped).receiver_time <= tag) used_[order_[dropped++]] = false;

@@ -14,11 +14,11 @@ constexpr std::size_t index_of(Receiver receiver) {
   return static_cast<std::size_t>(receiver);
 }
 
-// Differences of single points share the errors of orbits and clocks, but not the noise.
+// Differences of single-point solutions cancel the errors of orbits and clocks, but not the noise.
 constexpr double kStartSigma_m = 5.0;
-// A relative state that most codes contradict for so many epochs is lost.
-constexpr int kMostContradicted = 5;
-// A single point's own sigma knows nothing of slow errors common to all epochs.
+// A relative state contradicted by most codes in this number of epochs is considered lost.
+constexpr int kMaxContradicted = 5;
+// The sigma of a single-point solution excludes slow errors common to all epochs.
 constexpr double kOrbitSigma_m = 2.0;
 
 }  // namespace
@@ -42,7 +42,7 @@ void GnssNavigation::take(Receiver receiver, const gnss::ObservationEpoch& epoch
 }
 
 void GnssNavigation::take(const gnss::Ephemeris& ephemeris) {
-  // A set that is refused is one that a receiver should not have sent: nothing is lost.
+  // A refused set is invalid or unsupported: no information is lost.
   static_cast<void>(ephemerides_.put(ephemeris));
 }
 
@@ -65,7 +65,7 @@ void GnssNavigation::update(GpsTime now, std::span<const Burn> burns) {
   }
 }
 
-/// The servicer's orbit from its own receiver, and, if the target's epoch of that tag is there, the relative orbit.
+/// The servicer's orbit from its own receiver, and, if the target's epoch of that tag is available, the relative orbit.
 void GnssNavigation::take_epoch(const gnss::ObservationEpoch& epoch, const gnss::ObservationEpoch* other,
                                 std::span<const Burn> burns) {
   const EarthFrame frame = EarthFrame::at(epoch.receiver_time, settings_.earth);
@@ -77,7 +77,7 @@ void GnssNavigation::take_epoch(const gnss::ObservationEpoch& epoch, const gnss:
   advance_to(epoch.receiver_time, burns);
   epoch_ = epoch.receiver_time;
   has_epoch_ = true;
-  // The position is that of the instant of reception, the tag that of the receiver's clock.
+  // The position is that at the instant of reception, the tag that of the receiver clock.
   const double early_s = point.value().clock_m / gnss::kSpeedOfLight;
   const double sigma_m = math::hypot(point.value().sigma_m, kOrbitSigma_m);
   orbit_.take_position(epoch.receiver_time, early_s, point.value().position_eci, sigma_m);
@@ -88,7 +88,7 @@ void GnssNavigation::take_epoch(const gnss::ObservationEpoch& epoch, const gnss:
   if (orbit_.started()) take_pair(epoch, *other, point.value().clock_m, frame);
 }
 
-/// Both filters to `time`, through the burns on the way: a burn at the very time is after it.
+/// Both filters to `time`, including the burns until then: a burn at `time` comes after it.
 void GnssNavigation::advance_to(GpsTime time, std::span<const Burn> burns) {
   if (!has_epoch_ || !orbit_.started()) return;
   for (const Burn& burn : burns) {
@@ -137,7 +137,7 @@ void GnssNavigation::take_pair(const gnss::ObservationEpoch& ours, const gnss::O
   form_differences(ours, theirs, ephemerides_, frame, differences_);
   last_update_ = relative_.take(differences_, servicer, target);
   contradicted_in_a_row_ = last_update_.codes_refused > last_update_.codes_used ? contradicted_in_a_row_ + 1 : 0;
-  if (contradicted_in_a_row_ == kMostContradicted) {
+  if (contradicted_in_a_row_ == kMaxContradicted) {
     relative_.reset();
     contradicted_in_a_row_ = 0;
   }
@@ -160,12 +160,12 @@ Matrix6 GnssNavigation::covariance_rtn() const {
   const Matrix3 R_rtn = orbit::R_rtn_eci(ours);
   const Vector3 momentum = ours.position_eci.cross(ours.velocity_eci);
   const double rate = momentum.norm() / ours.position_eci.squaredNorm();
-  Matrix3 turning;  // w x, about N
-  turning << 0.0, -rate, 0.0, rate, 0.0, 0.0, 0.0, 0.0, 0.0;
+  Matrix3 rate_cross;  // w x, about N
+  rate_cross << 0.0, -rate, 0.0, rate, 0.0, 0.0, 0.0, 0.0, 0.0;
   Matrix6 map = Matrix6::Zero();
   map.topLeftCorner<3, 3>() = R_rtn;
   map.bottomRightCorner<3, 3>() = R_rtn;
-  map.bottomLeftCorner<3, 3>() = -(turning * R_rtn);
+  map.bottomLeftCorner<3, 3>() = -(rate_cross * R_rtn);
   const Matrix6 half = map.lazyProduct(relative_.estimate().head_covariance<6>());
   return half.lazyProduct(map.transpose());
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Navigation of two cooperating spacecraft by their GNSS receivers: pairs the epochs of both by their tags, in order;
-// keeps the servicer's orbit, the relative orbit, and the integers of the carrier phases.
+// Navigation of two cooperative spacecraft by their GNSS receivers: pairs the epochs of both by their tags, in order;
+// estimates the servicer's orbit, the relative orbit, and the integers of the carrier phases.
 
 #include <cstdint>
 #include <span>
@@ -27,47 +27,47 @@ struct GnssNavigationSettings {
   orbit::EarthOrientation earth;
   Vector3 servicer_antenna_body_m = Vector3::Zero();
   Vector3 target_antenna_body_m = Vector3::Zero();
-  Duration pair_wait = duration_of_seconds(12);  ///< so long an epoch waits for its other half
+  Duration pair_wait = duration_of_seconds(12);  ///< how long an epoch waits for its counterpart
 };
 
 struct GnssNavigationCounters {
-  std::int32_t pairs = 0;        ///< epochs of both receivers folded in
-  std::int32_t alone = 0;        ///< of the servicer only: the other half never came in time
-  std::int32_t too_late = 0;     ///< came after their time had been passed, or twice
+  std::int32_t pairs = 0;        ///< epochs of both receivers processed
+  std::int32_t alone = 0;        ///< of the servicer only: the counterpart did not arrive in time
+  std::int32_t too_late = 0;     ///< arrived after their time had been processed, or twice
   std::int32_t no_solution = 0;  ///< pairs without a single-point solution on either side, or without attitude
   std::int32_t codes_refused = 0;
   std::int32_t phases_refused = 0;
   std::int32_t slips = 0;
-  std::int32_t restarts = 0;  ///< of the relative filter, after it had begun
+  std::int32_t restarts = 0;  ///< of the relative filter, after initialisation
 };
 
 class GnssNavigation {
  public:
   explicit GnssNavigation(const GnssNavigationSettings& settings = {});
 
-  /// Replaces the settings and starts anew; ephemerides stay.
+  /// Replaces the settings and restarts; ephemerides stay.
   void configure(const GnssNavigationSettings& settings);
 
   void take(Receiver receiver, const gnss::ObservationEpoch& epoch);
   void take(const gnss::Ephemeris& ephemeris);
   void take(Receiver receiver, const AttitudeSample& attitude);
 
-  /// Folds in what can be by `now`. `burns`: the servicer's from the epoch on, in order of time.
+  /// Processes the epochs available until `now`. `burns`: the servicer's from the epoch on, in order of time.
   void update(GpsTime now, std::span<const Burn> burns);
 
-  /// Whether there is a relative orbit, and whose instant it is.
+  /// Whether there is a relative orbit, and its epoch.
   [[nodiscard]] bool valid() const { return orbit_.started() && relative_.started(); }
   [[nodiscard]] GpsTime epoch() const { return epoch_; }
-  /// When both receivers were last heard of the same instant: since then the relative orbit coasts. At most epoch().
+  /// Latest common epoch of both receivers: since then the relative orbit is propagated only. At most epoch().
   [[nodiscard]] GpsTime last_pair() const { return last_pair_; }
-  /// The servicer's own orbit is there before the relative one, or without it.
+  /// The servicer's own orbit is available before the relative one, or without it.
   [[nodiscard]] bool has_servicer() const { return orbit_.started(); }
   [[nodiscard]] orbit::CartesianState servicer() const { return orbit_.state(); }
   [[nodiscard]] orbit::CartesianState target() const;
-  /// Covariance of the relative state in the servicer's RTN (velocity as seen in the turning frame), m and m/s.
+  /// Covariance of the relative state in the servicer's RTN (velocity as seen in the rotating frame), m and m/s.
   [[nodiscard]] Matrix6 covariance_rtn() const;
 
-  /// By a spacecraft's own sensors; none without a sample near `time` (attitude_history.h).
+  /// By the sensors of the spacecraft; no value without a sample near `time` (attitude_history.h).
   [[nodiscard]] std::optional<Matrix3> R_eci_body_at(Receiver receiver, GpsTime time) const {
     return attitudes_[static_cast<std::size_t>(receiver)].R_eci_body_at(time);
   }
@@ -92,7 +92,7 @@ class GnssNavigation {
   AmbiguityResolution ambiguities_;
   DifferentialEpoch differences_;
   bool has_epoch_ = false;
-  GpsTime epoch_;  ///< of the last servicer epoch folded in
+  GpsTime epoch_;  ///< of the last servicer epoch processed
   GpsTime last_pair_;
   bool relative_has_begun_ = false;
   int contradicted_in_a_row_ = 0;  ///< epochs whose codes were mostly refused

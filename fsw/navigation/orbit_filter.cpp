@@ -9,15 +9,15 @@ namespace {
 
 using Transform = estimation::UnscentedTransform<6>;
 
-// What point mass and J2 leave out at 700 km is near 5e-5 m/s^2 and turns over minutes: as white noise of the velocity,
-// its square times such a correlation time.
+// Accelerations not modelled by point mass and J2 at 700 km are near 5e-5 m/s^2 and vary over minutes: as white noise,
+// their square times such a correlation time.
 constexpr double kUnmodelledPsd = 5e-5 * 5e-5 * 100.0;  // m^2/s^3
 
 constexpr double kGate = 25.0;            // 5 sigma, one degree of freedom
-constexpr double kStartSpeedSigma = 5.0;  // m/s: two positions a few metres wrong, seconds apart
-// Two positions start the filter if they lie so far apart in time, s.
-constexpr double kLeastBaseline = 0.5;
-constexpr double kMostBaseline = 120.0;
+constexpr double kStartSpeedSigma = 5.0;  // m/s: two positions with errors of a few metres, seconds apart
+// Minimum interval between the two positions that initialise the filter, s.
+constexpr double kMinBaseline = 0.5;
+constexpr double kMaxBaseline = 120.0;
 
 orbit::CartesianState state_of(const Vector6& x) {
   return {.position_eci = x.head<3>(), .velocity_eci = x.tail<3>()};
@@ -41,7 +41,7 @@ void OrbitFilter::take_position(GpsTime time, double early_s, const Vector3& pos
     fits = residual * residual <= kGate * (estimate_.variance(axis) + sigma_m * sigma_m);
   }
   if (!fits) {
-    if (++refused_in_a_row_ >= kMostRefused) {
+    if (++refused_in_a_row_ >= kMaxRefused) {
       reset();
       begin(time, early_s, position_eci, sigma_m);
     }
@@ -54,11 +54,11 @@ void OrbitFilter::take_position(GpsTime time, double early_s, const Vector3& pos
   }
 }
 
-/// Velocity from two positions: the chord, curved by the point mass.
+/// Velocity from two positions: the chord, corrected for the curvature due to the point mass.
 void OrbitFilter::begin(GpsTime time, double early_s, const Vector3& position_eci, double sigma_m) {
   const double baseline = has_first_ ? seconds(time - epoch_) - early_s + first_early_s_ : 0.0;
-  if (baseline < kLeastBaseline || baseline > kMostBaseline) {
-    if (!has_first_ || baseline > kMostBaseline || baseline < 0.0) {
+  if (baseline < kMinBaseline || baseline > kMaxBaseline) {
+    if (!has_first_ || baseline > kMaxBaseline || baseline < 0.0) {
       first_position_eci_ = position_eci;
       first_early_s_ = early_s;
       epoch_ = time;
@@ -91,13 +91,13 @@ void OrbitFilter::advance_to(GpsTime time) {
   }
   std::array<Vector6, Transform::kPoints> moved;
   for (std::size_t k = 0; k < Transform::kPoints; ++k) {
-    const orbit::CartesianState later = propagate_pushed(state_of(transform.point(k)), Vector3::Zero(), dt);
+    const orbit::CartesianState later = propagate_accelerated(state_of(transform.point(k)), Vector3::Zero(), dt);
     moved[k] << later.position_eci, later.velocity_eci;
   }
   const auto regression = transform.regress<6>(moved);
-  Matrix6 noise = regression.remainder;
+  Matrix6 noise = regression.nonlinearity;
   add_acceleration_noise(noise, kUnmodelledPsd, dt);
-  estimate_.transform_head<6>(regression.mean, regression.slope, noise);
+  estimate_.transform_head<6>(regression.mean, regression.jacobian, noise);
   epoch_ = time;
   if (!estimate_.is_sound()) reset();
 }

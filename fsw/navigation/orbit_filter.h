@@ -1,6 +1,6 @@
 #pragma once
-// The servicer's own orbit from its receiver's positions: an unscented filter on the inertial state. Metres are all it
-// is asked for; what needs millimetres is relative.
+// The servicer's own orbit from its receiver's positions: an unscented filter on the inertial state. Accuracy of metres
+// is sufficient; only the relative orbit requires millimetres.
 
 #include "fsw/core/gps_time.h"
 #include "fsw/estimation/estimate.h"
@@ -10,15 +10,15 @@ namespace vbar::fsw::navigation {
 
 class OrbitFilter {
  public:
-  /// Forgets everything.
+  /// Resets the filter.
   void reset() { *this = OrbitFilter{}; }
 
-  /// A position (m, ECI) measured `early_s` before `time` (milliseconds: a receiver's clock is ahead by that), which is
-  /// not before that of the last one. The second one starts the filter; one that does not fit (gate of 5 sigma an axis)
-  /// is left out, and after kMostRefused of those in a row the filter starts anew.
+  /// A position (m, ECI) measured `early_s` before `time` (milliseconds: the offset of the receiver clock), which is
+  /// not before that of the last one. The second one initialises the filter; one that fails the gate (5 sigma per axis)
+  /// is refused, and after kMaxRefused consecutive refusals the filter restarts.
   void take_position(GpsTime time, double early_s, const Vector3& position_eci, double sigma_m);
 
-  /// Moves the estimate to `time`, at or after its epoch; an impulse (m/s, ECI) is added there.
+  /// Propagates the estimate to `time`, at or after its epoch; an impulse (m/s, ECI) is added there.
   void advance_to(GpsTime time);
   void add_impulse(const Vector3& dv_eci);
 
@@ -28,8 +28,8 @@ class OrbitFilter {
     return {.position_eci = estimate_.mean().head<3>(), .velocity_eci = estimate_.mean().tail<3>()};
   }
 
-  static constexpr int kMostRefused = 5;
-  /// A coast longer than this starts the filter anew.
+  static constexpr int kMaxRefused = 5;
+  /// A propagation longer than this restarts the filter.
   static constexpr Duration kLongestCoast = duration_of_seconds(3600);
 
  private:

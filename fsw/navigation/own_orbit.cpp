@@ -6,8 +6,8 @@ namespace vbar::fsw::navigation {
 namespace {
 
 constexpr double kGate = 36.0;  // 6 sigma, one degree of freedom
-constexpr int kMostRefused = 6;
-constexpr double kStartSpeedSigma = 0.05;  // m/s, of a filtered GNSS orbit, generously
+constexpr int kMaxRefused = 6;
+constexpr double kStartSpeedSigma = 0.05;  // m/s, of a filtered GNSS orbit, conservative
 
 }  // namespace
 
@@ -21,13 +21,13 @@ void OwnOrbit::begin(const orbit::CartesianState& state) {
   refused_in_a_row_ = 0;
 }
 
-/// The covariance follows the slope of point mass and J2, by differences of a metre and a millimetre a second.
+/// The covariance is propagated by the Jacobian of point mass and J2, from differences of 100 m and 0.1 m/s.
 void OwnOrbit::advance(const Propagation& propagation, double dt) {
   if (!started_ || dt == 0.0) return;
   const orbit::CartesianState old = state();
   const orbit::CartesianState later = propagation.coast(old, dt);
-  const orbit::CartesianState middle = propagate_pushed(old, Vector3::Zero(), dt);
-  Matrix6 slope;
+  const orbit::CartesianState middle = propagate_accelerated(old, Vector3::Zero(), dt);
+  Matrix6 jacobian;
   for (int k = 0; k < 6; ++k) {
     const double step = k < 3 ? 100.0 : 0.1;
     orbit::CartesianState shifted = old;
@@ -36,14 +36,14 @@ void OwnOrbit::advance(const Propagation& propagation, double dt) {
     } else {
       shifted.velocity_eci(k - 3) += step;
     }
-    const orbit::CartesianState end = propagate_pushed(shifted, Vector3::Zero(), dt);
-    slope.col(k) << (end.position_eci - middle.position_eci) / step, (end.velocity_eci - middle.velocity_eci) / step;
+    const orbit::CartesianState end = propagate_accelerated(shifted, Vector3::Zero(), dt);
+    jacobian.col(k) << (end.position_eci - middle.position_eci) / step, (end.velocity_eci - middle.velocity_eci) / step;
   }
   Vector6 mean;
   mean << later.position_eci, later.velocity_eci;
   Matrix6 noise = Matrix6::Zero();
   add_acceleration_noise(noise, settings_.acceleration_psd, dt);
-  estimate_.transform_head<6>(mean, slope, noise);
+  estimate_.transform_head<6>(mean, jacobian, noise);
   if (!estimate_.is_sound()) reset();
 }
 
@@ -63,7 +63,7 @@ void OwnOrbit::take(const orbit::CartesianState& measured) {
   for (int axis = 0; axis < 3; ++axis) {
     const double residual = measured.position_eci(axis) - estimate_.mean(axis);
     if (residual * residual <= kGate * (estimate_.variance(axis) + variance)) continue;
-    if (++refused_in_a_row_ >= kMostRefused) begin(measured);
+    if (++refused_in_a_row_ >= kMaxRefused) begin(measured);
     return;
   }
   refused_in_a_row_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// The servicer's orbit as angles-only navigation wants it: smooth. Positions that jitter by a metre would make the
-// target's orbital elements, which stand on the servicer's, jitter with them; so here the same positions meet dynamics
+// A smooth orbit of the servicer for angles-only navigation. Position noise of a metre would appear in the
+// target's orbital elements, which refer to the servicer's; therefore the same positions are processed with dynamics
 // of degree 20 and little process noise.
 
 #include "fsw/core/gps_time.h"
@@ -10,8 +10,8 @@
 namespace vbar::fsw::navigation {
 
 struct OwnOrbitSettings {
-  double position_sigma_m = 2.0;   ///< of each axis of a position given; neighbours share part of their error
-  double acceleration_psd = 3e-9;  ///< m^2/s^3: Sun, Moon and tides, 1.5e-6 m/s^2 that turn with the orbit
+  double position_sigma_m = 2.0;   ///< per axis of a position; errors of neighbours are partly common
+  double acceleration_psd = 3e-9;  ///< m^2/s^3: Sun, Moon and tides, 1.5e-6 m/s^2 that vary with the orbit
 };
 
 class OwnOrbit {
@@ -19,7 +19,7 @@ class OwnOrbit {
   explicit OwnOrbit(const OwnOrbitSettings& settings = {}) : settings_(settings) {}
 
   void reset() { started_ = false; }
-  /// Begins with an orbit known to `position_sigma_m` and a hundredth of that a second.
+  /// Initialises with an orbit known to `position_sigma_m` and 0.05 m/s, 1 sigma per axis.
   void begin(const orbit::CartesianState& state);
   [[nodiscard]] bool started() const { return started_; }
   [[nodiscard]] orbit::CartesianState state() const {
@@ -31,8 +31,8 @@ class OwnOrbit {
 
   void advance(const Propagation& propagation, double dt);
   void add_impulse(const Vector3& dv_eci, double sigma);
-  /// Folds a position in (m, ECI); one beyond 6 sigma an axis is left out, and the sixth of those in a row makes the
-  /// filter begin anew with `measured`.
+  /// Processes a position (m, ECI); one beyond 6 sigma in an axis is refused, and the sixth consecutive refusal
+  /// restarts the filter with `measured`.
   void take(const orbit::CartesianState& measured);
 
  private:

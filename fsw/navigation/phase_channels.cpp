@@ -3,9 +3,9 @@
 namespace vbar::fsw::navigation {
 namespace {
 
-// Lock times are told to a fraction of a second and counted by the receiver's clock.
+// Lock times have a resolution of a fraction of a second and are counted by the receiver clock.
 constexpr double kLockTolerance_s = 0.6;
-// The longest lock time that the compressed log can tell; there it stands still.
+// The longest lock time that the compressed log can represent; it saturates there.
 constexpr double kLongestLock_s = 65000.0;
 
 bool fell(double lock_s, double before_s, double elapsed_s) {

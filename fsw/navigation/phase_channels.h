@@ -1,6 +1,6 @@
 #pragma once
-// Which ambiguity of the filter belongs to which signal of which satellite, and whether its carrier was tracked without
-// a break. A channel is taken at first sight, kept through short gaps, given back after long ones.
+// Assignment of the filter's ambiguities to signals and satellites, and whether each carrier was tracked without
+// a break. A channel is assigned at first sight, kept through short gaps, and released after long ones.
 
 #include <array>
 #include <cstddef>
@@ -22,12 +22,12 @@ struct PhaseChannel {
   double servicer_lock_s = 0.0;
   double target_lock_s = 0.0;
   int epochs = 0;      ///< tracked without a break
-  bool fixed = false;  ///< its differences to the other fixed ones of its signal are whole numbers, held by the filter
+  bool fixed = false;  ///< its differences to the other fixed ones of its signal are integers, held by the filter
 };
 
 class PhaseChannels {
  public:
-  /// Places of the channels whose signal has not been seen for kKeptUnseen: given back, to be put to rest by the
+  /// Indices of the channels whose signal has not been seen for kKeptUnseen: released, to be deactivated by the
   /// caller. Calls `given_back(place)` for each.
   template <class Visitor>
   void give_back_unseen(GpsTime now, Visitor&& given_back) {
@@ -41,13 +41,13 @@ class PhaseChannels {
 
   [[nodiscard]] std::optional<std::size_t> find(gnss::SatelliteId satellite, gnss::Signal signal) const;
 
-  /// A free channel for the signal, not yet tracked; none when all are taken.
+  /// A free channel for the signal, not yet tracked; no value when all are assigned.
   std::optional<std::size_t> take(gnss::SatelliteId satellite, gnss::Signal signal);
 
-  /// Whether a receiver's own lock time shows that it lost the carrier since the channel was last seen.
+  /// Whether the receiver's lock time shows a loss of lock since the channel was last seen.
   [[nodiscard]] bool lost_lock(std::size_t place, const DifferentialObservation& observation, GpsTime now) const;
 
-  /// The carrier was tracked, or begins anew.
+  /// The carrier was tracked, or its tracking restarts.
   void see(std::size_t place, const DifferentialObservation& observation, GpsTime now);
   void restart(std::size_t place);
 

@@ -24,7 +24,7 @@ Rates rates_of(const Vector4& q, const Vector3& rate, const Inertia& inertia, co
   d.quaternion(3) = -0.5 * v.dot(rate);
   Vector3 torque = (inertia.tensor * rate).cross(rate);
   if (gradient.strength != 0.0) {
-    // R_body_eci u without the matrix; the length of q is 1 to rounding of the integration.
+    // R_body_eci u without the matrix; the length of q is 1 to the rounding errors of the integration.
     const Vector3 across = 2.0 * gradient.vertical_eci.cross(v);
     const Vector3 vertical = gradient.vertical_eci + q(3) * across + across.cross(v);
     torque += gradient.strength * vertical.cross(inertia.tensor * vertical);
@@ -53,8 +53,8 @@ GravityGradient gravity_gradient_at(const Vector3& position_eci) {
   return {.vertical_eci = position_eci / r, .strength = 3.0 * orbit::kMu / (r2 * r)};
 }
 
-AttitudeState turned_on(const AttitudeState& state, const Inertia& inertia, const GravityGradient& gradient,
-                        double dt) {
+AttitudeState propagate_attitude(const AttitudeState& state, const Inertia& inertia, const GravityGradient& gradient,
+                                 double dt) {
   int steps = 1;
   while (steps < kMaxSteps && math::abs(dt) > steps * kMaxStep_s) ++steps;
   const double h = dt / steps;
@@ -95,11 +95,11 @@ Vector3 rotation_vector_of(const Eigen::Quaterniond& q) {
   return 2.0 * sign * math::atan2(sine, math::abs(q.w())) / sine * q.vec();
 }
 
-Eigen::Quaterniond quaternion_of_rotation_vector(const Vector3& turn) {
-  const double angle = math::sqrt(turn.squaredNorm());
+Eigen::Quaterniond quaternion_of_rotation_vector(const Vector3& rotation) {
+  const double angle = math::sqrt(rotation.squaredNorm());
   Eigen::Quaterniond q;
   q.w() = math::cos(0.5 * angle);
-  q.vec() = angle < 1e-12 ? Vector3(0.5 * turn) : Vector3(math::sin(0.5 * angle) / angle * turn);
+  q.vec() = angle < 1e-12 ? Vector3(0.5 * rotation) : Vector3(math::sin(0.5 * angle) / angle * rotation);
   return q;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// How the target turns: a rigid body of known inertia in the Earth's gravity gradient, and small turns as generalised
-// Rodrigues parameters.
+// Attitude motion of the target: a rigid body of known inertia with gravity-gradient torque, and small rotations as
+// generalised Rodrigues parameters.
 
 #include <Eigen/Geometry>
 
@@ -32,16 +32,17 @@ struct GravityGradient {
 GravityGradient gravity_gradient_at(const Vector3& position_eci);
 
 /// The attitude `dt` seconds (either sign, at most an hour) later. Euler's equations by classical Runge-Kutta 4, steps
-/// of at most 2.5 s: 1e-6 rad a minute at 3 deg/s. The vertical stands still meanwhile, so ask for a minute at most.
-AttitudeState turned_on(const AttitudeState& state, const Inertia& inertia, const GravityGradient& gradient, double dt);
+/// of at most 2.5 s: 1e-6 rad per minute at 3 deg/s. The vertical is constant meanwhile, so use a minute at most.
+AttitudeState propagate_attitude(const AttitudeState& state, const Inertia& inertia, const GravityGradient& gradient,
+                                 double dt);
 
 /// Generalised Rodrigues parameters with a = 1, f = 4 (Crassidis, Markley 2003): four times the modified ones, the
-/// rotation vector where that is small. The quaternion is a unit one; the shorter of its two turns is meant.
+/// rotation vector if small. The quaternion has unit length; it is interpreted as the shorter of its two rotations.
 Vector3 grp_of(const Eigen::Quaterniond& q);
 Eigen::Quaterniond quaternion_of_grp(const Vector3& grp);
 
 /// Rotation vector of a rotation matrix or unit quaternion, rad, at most pi long; and the quaternion of one.
 Vector3 rotation_vector_of(const Eigen::Quaterniond& q);
-Eigen::Quaterniond quaternion_of_rotation_vector(const Vector3& turn);
+Eigen::Quaterniond quaternion_of_rotation_vector(const Vector3& rotation);
 
 }  // namespace vbar::fsw::navigation

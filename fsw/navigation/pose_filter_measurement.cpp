@@ -1,4 +1,4 @@
-// Keypoints into the pose filter: what they are expected to show, which of them are believed, and what they change.
+// Measurement update of the pose filter with keypoints: prediction, editing, update.
 
 #include <algorithm>
 
@@ -12,14 +12,14 @@ namespace vbar::fsw::navigation {
 namespace {
 
 using Filter = PoseFilter;
-using Transform = estimation::UnscentedTransform<9>;  // ROE and turn
+using Transform = estimation::UnscentedTransform<9>;  // ROE and rotation
 
-constexpr int kTurn = Filter::State::offset<Filter::Attitude>();
+constexpr int kRotation = Filter::State::offset<Filter::Attitude>();
 constexpr int kCommon = Filter::State::offset<Filter::Common>();
 constexpr int kErrors = Filter::State::offset<Filter::KeypointError>();
 constexpr double kNoGate = 1e300;
 
-// Images further apart than this are no neighbours.
+// Innovations of images further apart than this are not neighbours.
 constexpr double kNeighbours_s = 20.0;
 
 // Points at 1.8 standard deviations; the central point's weight in a covariance stays above zero.
@@ -34,7 +34,7 @@ constexpr std::size_t at(int k) {
 }
 
 /// 99 % of chi-square with k degrees of freedom (Wilson, Hilferty 1931), good to a percent from two on.
-double most_expected(int k) {
+double max_expected(int k) {
   const double spread = 2.0 / (9.0 * k);
   const double root = 1.0 - spread + 2.3263 * math::sqrt(spread);
   return k * root * root * root;
@@ -63,14 +63,14 @@ double nis_of(const Matrix2& s, const Vector2& r) {
 
 }  // namespace
 
-const PoseUpdate& PoseFilter::take(const pose::Keypoints& keypoints, const CameraPlace& camera,
+const PoseUpdate& PoseFilter::take(const pose::Keypoints& keypoints, const CameraPose& camera,
                                    const orbit::CartesianState& servicer) {
   update_ = {};
   if (!started_) return update_;
   if (!predict_keypoints(keypoints, camera, servicer)) return update_;
   expect_innovations();
   gate_keypoints();
-  if (update_.used < settings_.least_keypoints || update_.is_mostly_refused(settings_.most_refused_share)) {
+  if (update_.used < settings_.min_keypoints || update_.is_mostly_rejected(settings_.max_refused_share)) {
     angular_noise_.interrupt();
     acceleration_noise_.interrupt();
     return update_;
@@ -81,8 +81,8 @@ const PoseUpdate& PoseFilter::take(const pose::Keypoints& keypoints, const Camer
     if (update_.keypoints[at(row / 2)].accepted) rows[at(count++)] = row;
   }
   update_.nis = joint_nis(rows, count);
-  const bool is_misfit = update_.nis > most_expected(count);
-  const double raised = is_misfit ? std::min(update_.nis / count, settings_.most_noise_scale) : 1.0;
+  const bool is_misfit = update_.nis > max_expected(count);
+  const double raised = is_misfit ? std::min(update_.nis / count, settings_.max_noise_scale) : 1.0;
   update_.noise_scale = raised * learned_noise_scale();
   adapt(rows, count, camera);
   since_update_s_ = 0.0;
@@ -93,9 +93,9 @@ const PoseUpdate& PoseFilter::take(const pose::Keypoints& keypoints, const Camer
   return update_;
 }
 
-/// Mean, slope and curvature of all keypoints' pixels, by sigma points of ROE and turn. A keypoint that one of them
-/// puts behind the camera is not used.
-bool PoseFilter::predict_keypoints(const pose::Keypoints& keypoints, const CameraPlace& camera,
+/// Mean, Jacobian and nonlinearity of the pixels of all keypoints, by sigma points of ROE and rotation. A keypoint that
+/// is behind the camera for one of them is not used.
+bool PoseFilter::predict_keypoints(const pose::Keypoints& keypoints, const CameraPose& camera,
                                    const orbit::CartesianState& servicer) {
   Transform transform;
   const auto chief = orbit::qns_from_cartesian(servicer);
@@ -112,7 +112,7 @@ bool PoseFilter::predict_keypoints(const pose::Keypoints& keypoints, const Camer
     const Vector3 centre_camera =
         camera.R_camera_eci * (target.value().position_eci - servicer.position_eci - camera.origin_eci);
     const Matrix3 R_camera_body =
-        camera.R_camera_eci * (attitude_.q_eci_body * quaternion_of_grp(x.segment<3>(kTurn))).toRotationMatrix();
+        camera.R_camera_eci * (attitude_.q_eci_body * quaternion_of_grp(x.segment<3>(kRotation))).toRotationMatrix();
     work_.values[point].setZero();
     for (std::size_t k = 0; k < settings_.shape.size(); ++k) {
       if (!update_.keypoints[k].is_usable) continue;
@@ -131,14 +131,14 @@ bool PoseFilter::predict_keypoints(const pose::Keypoints& keypoints, const Camer
   }
   const auto regression = transform.regress<kRows>(work_.values);
   work_.predicted = regression.mean;
-  work_.noise = regression.remainder;
-  work_.slope.setZero();
-  work_.slope.leftCols<kSeen>() = regression.slope;
+  work_.noise = regression.nonlinearity;
+  work_.jacobian.setZero();
+  work_.jacobian.leftCols<kSeen>() = regression.jacobian;
   model_errors(keypoints, centre_px);
   return true;
 }
 
-/// The share of a keypoint's error that lasts is a state in units of its covariance's root; the rest is noise.
+/// The correlated part of a keypoint's error is a state in units of the root of its covariance; the rest is noise.
 void PoseFilter::model_errors(const pose::Keypoints& keypoints, const Vector2& centre_px) {
   const double lasting = math::sqrt(settings_.correlated_share);
   work_.residual.setZero();
@@ -147,14 +147,14 @@ void PoseFilter::model_errors(const pose::Keypoints& keypoints, const Vector2& c
     ++update_.usable;
     const int row = 2 * k;
     const Matrix2 covariance = learned_noise_scale() * keypoints[at(k)].covariance_px2;
-    work_.slope.block<2, 2>(row, kErrors + row) = lasting * root_of(covariance);
-    work_.slope.block<2, 2>(row, kCommon) = Matrix2::Identity();
-    work_.slope.block<2, 1>(row, kCommon + 2) = work_.predicted.segment<2>(row) - centre_px;
-    work_.slope.block<2, 1>(row, kCommon + 3) = work_.slope.block<2, 1>(row, kCommon + 2);
+    work_.jacobian.block<2, 2>(row, kErrors + row) = lasting * root_of(covariance);
+    work_.jacobian.block<2, 2>(row, kCommon) = Matrix2::Identity();
+    work_.jacobian.block<2, 1>(row, kCommon + 2) = work_.predicted.segment<2>(row) - centre_px;
+    work_.jacobian.block<2, 1>(row, kCommon + 3) = work_.jacobian.block<2, 1>(row, kCommon + 2);
     work_.noise.block<2, 2>(row, row) += (1.0 - settings_.correlated_share) * covariance;
     const Vector2 errors =
-        work_.slope.block<2, Common::kSize>(row, kCommon) * estimate_.mean().segment<Common::kSize>(kCommon) +
-        work_.slope.block<2, 2>(row, kErrors + row) * estimate_.mean().segment<2>(kErrors + row);
+        work_.jacobian.block<2, Common::kSize>(row, kCommon) * estimate_.mean().segment<Common::kSize>(kCommon) +
+        work_.jacobian.block<2, 2>(row, kErrors + row) * estimate_.mean().segment<2>(kErrors + row);
     work_.residual.segment<2>(row) = keypoints[at(k)].pixel - work_.predicted.segment<2>(row) - errors;
     update_.keypoints[at(k)].prefit = work_.residual.segment<2>(row);
     update_.keypoints[at(k)].postfit = work_.residual.segment<2>(row);
@@ -163,18 +163,18 @@ void PoseFilter::model_errors(const pose::Keypoints& keypoints, const Vector2& c
 
 /// S = H P H' + N of all rows.
 void PoseFilter::expect_innovations() {
-  work_.slope_covariance.setZero();
+  work_.jacobian_covariance.setZero();
   for (int j = 0; j < State::kSize; ++j) {
     for (int i = 0; i < State::kSize; ++i) {
       const double p = estimate_.covariance(j, i);
-      if (p != 0.0) work_.slope_covariance.col(i) += p * work_.slope.col(j);
+      if (p != 0.0) work_.jacobian_covariance.col(i) += p * work_.jacobian.col(j);
     }
   }
   work_.innovation = work_.noise;
   for (int i = 0; i < State::kSize; ++i) {
     for (int c = 0; c < kRows; ++c) {
-      const double h = work_.slope(c, i);
-      if (h != 0.0) work_.innovation.col(c) += h * work_.slope_covariance.col(i);
+      const double h = work_.jacobian(c, i);
+      if (h != 0.0) work_.innovation.col(c) += h * work_.jacobian_covariance.col(i);
     }
   }
 }
@@ -218,7 +218,7 @@ double PoseFilter::joint_nis(const std::array<int, kRows>& rows, int count) {
   return sum;
 }
 
-/// The accepted rows freed of the noise they share, then one by one.
+/// The accepted rows are decorrelated, then processed one by one.
 void PoseFilter::fold_in(const pose::Keypoints& keypoints, double raised) {
   std::array<int, kRows> rows{};
   int count = 0;
@@ -230,17 +230,17 @@ void PoseFilter::fold_in(const pose::Keypoints& keypoints, double raised) {
   }
   if (!factorise(work_.noise, rows, count)) return;
   const Estimate::Vector old = estimate_.mean();
-  // Rows of L^-1 H, and of L^-1 r, in the place of what is needed no more.
+  // Rows of L^-1 H, and of L^-1 r, overwrite those no longer needed.
   for (int r = 0; r < count; ++r) {
-    Estimate::Vector h = work_.slope.row(rows[at(r)]).transpose();
+    Estimate::Vector h = work_.jacobian.row(rows[at(r)]).transpose();
     double value = work_.residual(rows[at(r)]);
     for (int k = 0; k < r; ++k) {
-      h -= work_.lower(r, k) * work_.slope_covariance.row(k).transpose();
+      h -= work_.lower(r, k) * work_.jacobian_covariance.row(k).transpose();
       value -= work_.lower(r, k) * work_.values[0](k);
     }
     h /= work_.lower(r, r);
     value /= work_.lower(r, r);
-    work_.slope_covariance.row(r) = h.transpose();
+    work_.jacobian_covariance.row(r) = h.transpose();
     work_.values[0](r) = value;
     estimate_.update(h, value - h.dot(estimate_.mean() - old), 1.0, kNoGate);
   }
@@ -248,48 +248,49 @@ void PoseFilter::fold_in(const pose::Keypoints& keypoints, double raised) {
   for (int k = 0; k < network::kKeypoints; ++k) {
     KeypointUpdate& keypoint = update_.keypoints[at(k)];
     for (int axis = 0; axis < 2; ++axis) {
-      keypoint.postfit(axis) = keypoint.prefit(axis) - work_.slope.row(2 * k + axis).transpose().dot(change);
+      keypoint.postfit(axis) = keypoint.prefit(axis) - work_.jacobian.row(2 * k + axis).transpose().dot(change);
     }
   }
-  absorb_turn();
+  reset_attitude_error();
 }
 
-/// A network is often surer than it should be. Slowly, a tenth of a misfit in ten images, so that no bad image teaches
-/// it; never below what is told. What passes the gate has by itself 0.95 of its expectation.
+/// The covariances of a network are often too small. They are adapted slowly, by a tenth of a misfit in ten images, so
+/// that no single image dominates; never below those given. Gated samples have 0.95 of the expected value.
 void PoseFilter::learn_scale(int count) {
   constexpr double kShare = 0.02;
   constexpr double kBehindTheGate = 0.953;
-  constexpr double kLeast = 0.8;  // in memory; covariances are never scaled by less than one
+  constexpr double kMinScale = 0.8;  // lower bound of the memory; the factor applied is never less than one
   const double ratio = std::clamp(update_.nis / (kBehindTheGate * count), 0.25, 4.0);
-  learned_scale_ = std::clamp(learned_scale_ * (1.0 + kShare * (ratio - 1.0)), kLeast, settings_.most_noise_scale);
+  learned_scale_ = std::clamp(learned_scale_ * (1.0 + kShare * (ratio - 1.0)), kMinScale, settings_.max_noise_scale);
 }
 
-/// By least squares the innovations are a shift of the whole (where the target lags) and a turn (where its attitude
-/// does), each over its expected standard deviation. Of the turn, two of the camera's axes: across it and along it.
-void PoseFilter::adapt(const std::array<int, kRows>& rows, int count, const CameraPlace& camera) {
+/// By least squares the innovations are a common shift (a lag of the orbit) and a rotation (a lag of the attitude),
+/// each normalised by its standard deviation. Two axes of the camera are used for the rotation: across and along it.
+void PoseFilter::adapt(const std::array<int, kRows>& rows, int count, const CameraPose& camera) {
   constexpr int kFitted = 5;
-  constexpr int kLeastRows = 10;
-  if (count < kLeastRows || since_update_s_ > kNeighbours_s) {
+  constexpr int kMinRows = 10;
+  if (count < kMinRows || since_update_s_ > kNeighbours_s) {
     acceleration_noise_.interrupt();
     angular_noise_.interrupt();
   }
-  if (count < kLeastRows) return;
+  if (count < kMinRows) return;
   const Matrix3 R_body_camera = (camera.R_camera_eci * attitude_.q_eci_body.toRotationMatrix()).transpose();
-  Eigen::Matrix<double, kRows, kFitted> slope = Eigen::Matrix<double, kRows, kFitted>::Zero();
+  Eigen::Matrix<double, kRows, kFitted> jacobian = Eigen::Matrix<double, kRows, kFitted>::Zero();
   for (int r = 0; r < count; ++r) {
     const int row = rows[at(r)];
-    slope(row, row % 2) = 1.0;
+    jacobian(row, row % 2) = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
-      for (int j = 0; j < 3; ++j) slope(row, 2 + axis) += work_.slope(row, kTurn + j) * R_body_camera(j, axis);
+      for (int j = 0; j < 3; ++j)
+        jacobian(row, 2 + axis) += work_.jacobian(row, kRotation + j) * R_body_camera(j, axis);
     }
   }
-  // A turn of a hundredth beside a pixel.
-  slope.rightCols<3>() *= 0.01;
+  // Scales a rotation of 0.01 rad to the order of a pixel.
+  jacobian.rightCols<3>() *= 0.01;
   Eigen::Matrix<double, kFitted, kFitted> normal;
   Eigen::Matrix<double, kFitted, 1> right;
   for (int i = 0; i < kFitted; ++i) {
-    right(i) = slope.col(i).dot(work_.residual);
-    for (int j = 0; j < kFitted; ++j) normal(i, j) = slope.col(i).dot(slope.col(j));
+    right(i) = jacobian.col(i).dot(work_.residual);
+    for (int j = 0; j < kFitted; ++j) normal(i, j) = jacobian.col(i).dot(jacobian.col(j));
   }
   const math::Cholesky<kFitted> factor(normal);
   if (!factor.ok()) return;
@@ -298,7 +299,7 @@ void PoseFilter::adapt(const std::array<int, kRows>& rows, int count, const Came
   for (int i = 0; i < kFitted; ++i) {
     const Eigen::Matrix<double, kFitted, 1> weights = factor.solve(Eigen::Matrix<double, kFitted, 1>::Unit(i));
     Rows combination = Rows::Zero();
-    for (int j = 0; j < kFitted; ++j) combination += weights(j) * slope.col(j);
+    for (int j = 0; j < kFitted; ++j) combination += weights(j) * jacobian.col(j);
     double variance = 0.0;
     for (int c = 0; c < kRows; ++c) variance += combination(c) * combination.dot(work_.innovation.col(c));
     if (!(variance > 0.0)) return;
@@ -322,18 +323,18 @@ void PoseFilter::take_position(const Vector3& relative_eci, const Matrix3& covar
     values[k] = target.value().position_eci - servicer.position_eci;
   }
   const auto regression = transform.regress<3>(values);
-  const math::Cholesky<3> noise(covariance_m2 + regression.remainder);
+  const math::Cholesky<3> noise(covariance_m2 + regression.nonlinearity);
   if (!noise.ok()) return;
   const Vector3 residual = noise.solve_lower(relative_eci - regression.mean);
   Eigen::Matrix<double, 3, 6> whitened;
-  for (int c = 0; c < 6; ++c) whitened.col(c) = noise.solve_lower(regression.slope.col(c));
+  for (int c = 0; c < 6; ++c) whitened.col(c) = noise.solve_lower(regression.jacobian.col(c));
   const Estimate::Vector old = estimate_.mean();
   for (int r = 0; r < 3; ++r) {
     Estimate::Vector h = Estimate::Vector::Zero();
     h.head<6>() = whitened.row(r).transpose();
     estimate_.update(h, residual(r) - h.dot(estimate_.mean() - old), 1.0, kNoGate);
   }
-  absorb_turn();
+  reset_attitude_error();
   if (!estimate_.is_sound()) reset();
 }
 

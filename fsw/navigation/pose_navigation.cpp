@@ -13,18 +13,18 @@ namespace {
 constexpr Duration kSegment = duration_of_seconds(20);
 constexpr int kMaxSegments = 4000;
 
-// Most keypoints refused in so many images in a row: the attitude is wrong.
+// Most keypoints refused in this number of consecutive images: the attitude is considered wrong.
 constexpr int kRefusedBeforeAttitude = 3;
-// And so many without an attitude that images agree on, or with their positions elsewhere: all is.
+// After this number without a consensus attitude, or with contradicting positions, the whole filter is reset.
 constexpr int kRefusedBeforeRestart = 20;
 constexpr int kFarBeforeRestart = 5;
 
-constexpr double kHalfLight_s = 15.0;  // either side of the edge of a shadow without half light
+constexpr double kHalfLight_s = 15.0;  // half width of the penumbra
 
 constexpr Duration kOldestApriori = duration_of_seconds(600);
 
-// 1 sigma of an attitude and rate that nothing is known of: wide enough for has_attitude() to say so, and no wider than
-// the filter's points can stand for.
+// 1 sigma of an unknown attitude and rate: large enough for has_attitude() to be false, and within the range of
+// the filter's sigma points.
 constexpr double kUnknownTurn = 0.8;
 constexpr double kUnknownRate = 0.02;
 
@@ -48,10 +48,10 @@ Status PoseNavigation::configure(const PoseSettings& settings) {
   return status;
 }
 
-PoseFate PoseNavigation::update(const PoseEpoch& epoch, std::span<const Burn> burns) {
+PoseEditStatus PoseNavigation::update(const PoseEpoch& epoch, std::span<const Burn> burns) {
   last_update_ = {};
   if (own_orbit_.started()) {
-    if (epoch.time < epoch_) return PoseFate::kNone;
+    if (epoch.time < epoch_) return PoseEditStatus::kNone;
     advance(epoch.time, epoch.sun_eci, burns);
     if (epoch.servicer_gnss.has_value()) own_orbit_.take(*epoch.servicer_gnss);
   } else if (epoch.servicer_gnss.has_value()) {
@@ -60,15 +60,15 @@ PoseFate PoseNavigation::update(const PoseEpoch& epoch, std::span<const Burn> bu
     begin_apriori();
   }
   if (filter_.started() && !has_attitude()) filter_.set_attitude(filter_.attitude(), unknown_attitude());
-  if (!own_orbit_.started() || !epoch.R_camera_eci.has_value()) return PoseFate::kNone;
-  CameraPlace camera;
+  if (!own_orbit_.started() || !epoch.R_camera_eci.has_value()) return PoseEditStatus::kNone;
+  CameraPose camera;
   camera.R_camera_eci = *epoch.R_camera_eci;
   camera.origin_eci = camera.R_camera_eci.transpose() * settings_.camera_position_camera_m;
   has_sample_ = is_fit_for_start(epoch);
   if (has_sample_) start_.add(sample_of(epoch, camera));
-  if (!filter_.started()) return has_sample_ ? begin() : PoseFate::kNone;
+  if (!filter_.started()) return has_sample_ ? begin() : PoseEditStatus::kNone;
   if (!has_attitude() && !renew_attitude()) return take_position_only(epoch, camera);
-  if (epoch.keypoints == nullptr) return PoseFate::kNone;
+  if (epoch.keypoints == nullptr) return PoseEditStatus::kNone;
   return take_keypoints(epoch, camera);
 }
 
@@ -98,7 +98,7 @@ void PoseNavigation::advance(GpsTime time, const Vector3& sun_eci, std::span<con
   coast_to(time);
 }
 
-/// One with enough keypoints, or sure of its attitude; not in the half light at the edge of the Earth's shadow.
+/// A pose with enough keypoints, or with a certain attitude; not in the penumbra at the edge of the Earth's shadow.
 bool PoseNavigation::is_fit_for_start(const PoseEpoch& epoch) const {
   if (!epoch.pnp.has_value()) return false;
   const orbit::CartesianState& servicer = own_orbit_.state();
@@ -111,7 +111,7 @@ bool PoseNavigation::is_fit_for_start(const PoseEpoch& epoch) const {
          variance <= settings_.start_attitude_sigma * settings_.start_attitude_sigma;
 }
 
-PoseSample PoseNavigation::sample_of(const PoseEpoch& epoch, const CameraPlace& camera) const {
+PoseSample PoseNavigation::sample_of(const PoseEpoch& epoch, const CameraPose& camera) const {
   const pose::PnpSolution& pnp = *epoch.pnp;
   const Matrix3 R_eci_camera = camera.R_camera_eci.transpose();
   PoseSample sample;
@@ -124,7 +124,7 @@ PoseSample PoseNavigation::sample_of(const PoseEpoch& epoch, const CameraPlace& 
   return sample;
 }
 
-/// The orbit as it is known beforehand; images have yet to tell the attitude.
+/// The a-priori orbit; the attitude is not yet known.
 void PoseNavigation::begin_apriori() {
   if (!settings_.apriori.has_value()) return;
   const PoseApriori& known = *settings_.apriori;
@@ -144,18 +144,18 @@ void PoseNavigation::begin_apriori() {
   if (filter_.started()) last_measurement_ = known.time;
 }
 
-PoseFate PoseNavigation::begin() {
+PoseEditStatus PoseNavigation::begin() {
   const auto attitude = start_.attitude();
   const auto orbit = start_.orbit();
-  if (!attitude.ok() || !orbit.ok()) return PoseFate::kStart;
+  if (!attitude.ok() || !orbit.ok()) return PoseEditStatus::kStart;
   filter_.begin(orbit.value().roe, orbit.value().covariance, attitude.value().attitude, attitude.value().covariance);
   refused_in_a_row_ = 0;
   far_in_a_row_ = 0;
   if (filter_.started()) last_measurement_ = epoch_;
-  return PoseFate::kStart;
+  return PoseEditStatus::kStart;
 }
 
-/// From what the last images agree on, the image at hand among them.
+/// From the consensus of the last images, including the current one.
 bool PoseNavigation::renew_attitude() {
   if (!has_sample_) return false;
   const auto attitude = start_.attitude();
@@ -177,27 +177,27 @@ bool PoseNavigation::is_far_from_filter(const PoseSample& sample) const {
   return !(factor.solve_lower(miss).squaredNorm() <= settings_.position_gate);
 }
 
-PoseFate PoseNavigation::take_position_only(const PoseEpoch& epoch, const CameraPlace& camera) {
-  if (!epoch.pnp.has_value()) return PoseFate::kNone;
+PoseEditStatus PoseNavigation::take_position_only(const PoseEpoch& epoch, const CameraPose& camera) {
+  if (!epoch.pnp.has_value()) return PoseEditStatus::kNone;
   const PoseSample sample = sample_of(epoch, camera);
   if (is_far_from_filter(sample)) {
     count_refusal(true);
-    return PoseFate::kRefused;
+    return PoseEditStatus::kRefused;
   }
   far_in_a_row_ = 0;
-  // Neighbouring images err alike.
+  // Errors of neighbouring images are correlated.
   const Vector3 range_sigma = settings_.pose_range_share * sample.relative_eci;
   const Matrix3 covariance =
       4.0 * sample.covariance_eci + range_sigma * range_sigma.transpose() + 1e-4 * Matrix3::Identity();
   filter_.take_position(sample.relative_eci, covariance, own_orbit_.state());
   ++counters_.positions_used;
   last_measurement_ = epoch.time;
-  return PoseFate::kPosition;
+  return PoseEditStatus::kPosition;
 }
 
-PoseFate PoseNavigation::take_keypoints(const PoseEpoch& epoch, const CameraPlace& camera) {
+PoseEditStatus PoseNavigation::take_keypoints(const PoseEpoch& epoch, const CameraPose& camera) {
   last_update_ = filter_.take(*epoch.keypoints, camera, own_orbit_.state());
-  if (last_update_.usable == 0) return PoseFate::kNone;
+  if (last_update_.usable == 0) return PoseEditStatus::kNone;
   counters_.keypoints_used += last_update_.accepted ? last_update_.used : 0;
   counters_.keypoints_refused += last_update_.usable - (last_update_.accepted ? last_update_.used : 0);
   if (last_update_.accepted) {
@@ -205,12 +205,12 @@ PoseFate PoseNavigation::take_keypoints(const PoseEpoch& epoch, const CameraPlac
     refused_in_a_row_ = 0;
     far_in_a_row_ = 0;
     last_measurement_ = epoch.time;
-    return PoseFate::kFilter;
+    return PoseEditStatus::kFilter;
   }
-  if (last_update_.is_mostly_refused(settings_.filter.most_refused_share)) {
+  if (last_update_.is_mostly_rejected(settings_.filter.max_refused_share)) {
     count_refusal(epoch.pnp.has_value() && is_far_from_filter(sample_of(epoch, camera)));
   }
-  return PoseFate::kRefused;
+  return PoseEditStatus::kRefused;
 }
 
 void PoseNavigation::count_refusal(bool is_position_far) {
@@ -219,19 +219,19 @@ void PoseNavigation::count_refusal(bool is_position_far) {
   far_in_a_row_ = is_position_far ? far_in_a_row_ + 1 : 0;
   if (far_in_a_row_ >= kFarBeforeRestart || refused_in_a_row_ >= kRefusedBeforeRestart) return restart();
   if (!is_position_far && refused_in_a_row_ >= kRefusedBeforeAttitude && renew_attitude()) {
-    doubt_place();
+    inflate_position();
     refused_in_a_row_ = 0;
   }
 }
 
-/// An attitude that was wrong has drawn the place along with it: keypoints of another side look larger or smaller.
-void PoseNavigation::doubt_place() {
+/// A wrong attitude has biased the position as well: keypoints of another side appear larger or smaller.
+void PoseNavigation::inflate_position() {
   constexpr double kShare = 0.03;  // of the distance
   const auto seen = filter_.target(own_orbit_.state());
   const auto chief = orbit::qns_from_cartesian(own_orbit_.state());
   if (!seen.ok() || !chief.ok()) return;
   const Vector3 apart = seen.value().position_eci - own_orbit_.state().position_eci;
-  filter_.doubt_place(kShare * math::sqrt(apart.squaredNorm()), chief.value().a);
+  filter_.inflate_position(kShare * math::sqrt(apart.squaredNorm()), chief.value().a);
 }
 
 void PoseNavigation::restart() {
@@ -268,23 +268,23 @@ Matrix6 PoseNavigation::a_roe_covariance_m2() const {
   return servicer.value().a * servicer.value().a * filter_.roe_covariance();
 }
 
-/// By the slope of the exact map, by differences.
+/// By the Jacobian of the exact map, from finite differences.
 Matrix6 PoseNavigation::covariance_rtn() const {
-  constexpr double kLittle = 1e-7;
+  constexpr double kDifferenceStep = 1e-7;
   const orbit::CartesianState servicer = own_orbit_.state();
   const auto chief = orbit::qns_from_cartesian(servicer);
   if (!chief.ok() || !valid()) return Matrix6::Zero();
-  Matrix6 slope;
+  Matrix6 jacobian;
   for (int k = 0; k < 6; ++k) {
-    const auto plus = target_from_roe(chief.value(), filter_.roe() + kLittle * Vector6::Unit(k));
-    const auto minus = target_from_roe(chief.value(), filter_.roe() - kLittle * Vector6::Unit(k));
+    const auto plus = target_from_roe(chief.value(), filter_.roe() + kDifferenceStep * Vector6::Unit(k));
+    const auto minus = target_from_roe(chief.value(), filter_.roe() - kDifferenceStep * Vector6::Unit(k));
     if (!plus.ok() || !minus.ok()) return Matrix6::Zero();
     const auto a = orbit::relative_state_rtn(servicer, plus.value());
     const auto b = orbit::relative_state_rtn(servicer, minus.value());
-    slope.col(k) << (a.position_rtn - b.position_rtn) / (2.0 * kLittle),
-        (a.velocity_rtn - b.velocity_rtn) / (2.0 * kLittle);
+    jacobian.col(k) << (a.position_rtn - b.position_rtn) / (2.0 * kDifferenceStep),
+        (a.velocity_rtn - b.velocity_rtn) / (2.0 * kDifferenceStep);
   }
-  return slope.lazyProduct(filter_.roe_covariance()).lazyProduct(slope.transpose());
+  return jacobian.lazyProduct(filter_.roe_covariance()).lazyProduct(jacobian.transpose());
 }
 
 }  // namespace vbar::fsw::navigation

@@ -20,22 +20,24 @@ orbit::CartesianState moved(const orbit::CartesianState& s, double h, const Vect
 Propagation::Propagation(GpsTime start, const orbit::EarthOrientation& earth, const Vector3& sun_eci)
     : R_itrf_gcrf_(orbit::R_itrf_gcrf(start, earth)), sun_eci_(sun_eci) {}
 
-/// Within two hours the Earth only turns: its pole moves by less than 1e-9 rad.
-Vector3 Propagation::acceleration(const orbit::CartesianState& s, double after, const Push& push) const {
-  const double turn = orbit::kEarthRotationRate * after;
-  const double c = math::cos(turn);
-  const double sn = math::sin(turn);
+/// Within two hours the Earth's rotation is a constant rate: its pole moves by less than 1e-9 rad.
+Vector3 Propagation::acceleration(const orbit::CartesianState& s, double after,
+                                  const DifferentialAcceleration& differential) const {
+  const double angle = orbit::kEarthRotationRate * after;
+  const double c = math::cos(angle);
+  const double sn = math::sin(angle);
   const Vector3 start_itrf = R_itrf_gcrf_ * s.position_eci;
   const Vector3 position_itrf(c * start_itrf.x() + sn * start_itrf.y(), c * start_itrf.y() - sn * start_itrf.x(),
                               start_itrf.z());
   const Vector3 g = orbit::gravity_itrf(position_itrf);
   Vector3 a = R_itrf_gcrf_.transpose() * Vector3(c * g.x() - sn * g.y(), c * g.y() + sn * g.x(), g.z());
-  if (push.along_track != 0.0) a += push.along_track * orbit::R_rtn_eci(s).row(1).transpose();
-  if (push.from_sun != 0.0 && is_sunlit(s.position_eci, sun_eci_)) a -= push.from_sun * sun_eci_;
+  if (differential.along_track != 0.0) a += differential.along_track * orbit::R_rtn_eci(s).row(1).transpose();
+  if (differential.from_sun != 0.0 && is_sunlit(s.position_eci, sun_eci_)) a -= differential.from_sun * sun_eci_;
   return a;
 }
 
-orbit::CartesianState Propagation::coast(const orbit::CartesianState& state, double dt, const Push& push) const {
+orbit::CartesianState Propagation::coast(const orbit::CartesianState& state, double dt,
+                                         const DifferentialAcceleration& differential) const {
   if (dt == 0.0) return state;
   const double span = dt > kLongest ? kLongest : dt < -kLongest ? -kLongest : dt;
   int steps = 1;
@@ -44,13 +46,13 @@ orbit::CartesianState Propagation::coast(const orbit::CartesianState& state, dou
   orbit::CartesianState s = state;
   for (int k = 0; k < steps; ++k) {
     const double t = k * h;
-    const Vector3 a1 = acceleration(s, t, push);
+    const Vector3 a1 = acceleration(s, t, differential);
     const orbit::CartesianState s2 = moved(s, 0.5 * h, s.velocity_eci, a1);
-    const Vector3 a2 = acceleration(s2, t + 0.5 * h, push);
+    const Vector3 a2 = acceleration(s2, t + 0.5 * h, differential);
     const orbit::CartesianState s3 = moved(s, 0.5 * h, s2.velocity_eci, a2);
-    const Vector3 a3 = acceleration(s3, t + 0.5 * h, push);
+    const Vector3 a3 = acceleration(s3, t + 0.5 * h, differential);
     const orbit::CartesianState s4 = moved(s, h, s3.velocity_eci, a3);
-    const Vector3 a4 = acceleration(s4, t + h, push);
+    const Vector3 a4 = acceleration(s4, t + h, differential);
     s.position_eci += h / 6.0 * (s.velocity_eci + 2.0 * s2.velocity_eci + 2.0 * s3.velocity_eci + s4.velocity_eci);
     s.velocity_eci += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
   }

@@ -23,20 +23,20 @@ constexpr int kCodeBias = Filter::State::offset<Filter::CodeBiases>();
 constexpr double kGate = 25.0;  // 5 sigma, one degree of freedom
 constexpr double kNoGate = 1e300;
 
-// A clock difference by single points is some metres wrong; so wide that it weighs nothing.
+// The clock difference of single-point solutions is wrong by some metres; this sigma gives it negligible weight.
 constexpr double kClockSigma_m = 100.0;
-// The same of an ambiguity that begins from its own first measurement.
+// Likewise for an ambiguity that is initialised from its own first measurement.
 constexpr double kAmbiguitySigma_m = 30.0;
 
-// Beside the correlated acceleration: what keeps the velocity's covariance from closing, m^2/s^3.
+// In addition to the correlated acceleration: keeps the velocity covariance from collapsing, m^2/s^3.
 constexpr double kVelocityPsd = 1e-18;
 
-// A phase that stands so far from the epoch's others, beside what the filter does not know, has slipped.
+// A phase that differs by this from the others of the epoch, in addition to the uncertainty of the filter, has slipped.
 constexpr double kSlip_m = 0.03;
 constexpr double kSlipSigmas = 5.0;
-constexpr std::size_t kLeastForMedian = 5;
+constexpr std::size_t kMinForMedian = 5;
 
-/// Where a receiver's antenna was when its signals arrived: the tag is by its own clock.
+/// Position of the receiver antenna when its signals arrived: the tag is that of its own clock.
 Vector3 antenna_position(const ReceiverPlatform& platform, const orbit::CartesianState& state) {
   const double late = -platform.clock_m / gnss::kSpeedOfLight;
   const double distance = state.position_eci.norm();
@@ -45,7 +45,7 @@ Vector3 antenna_position(const ReceiverPlatform& platform, const orbit::Cartesia
          platform.R_eci_body * platform.antenna_body_m;
 }
 
-/// Index of the code bias, or -1 for GPS L1, which the clock is told by.
+/// Index of the code bias, or -1 for GPS L1, which defines the clock.
 int code_bias_index(gnss::Signal signal) {
   return signal == gnss::Signal::kGpsL1 ? -1 : kCodeBias + static_cast<int>(signal) - 1;
 }
@@ -102,24 +102,24 @@ void RelativeFilter::advance_to(GpsTime time, const orbit::CartesianState& servi
     return;
   }
   const double decay = math::exp(-dt / settings_.acceleration_time_s);
-  const orbit::CartesianState servicer_later = propagate_pushed(servicer, Vector3::Zero(), dt);
+  const orbit::CartesianState servicer_later = propagate_accelerated(servicer, Vector3::Zero(), dt);
   std::array<Head, Transform::kPoints> moved;
   for (std::size_t k = 0; k < Transform::kPoints; ++k) {
     const Head x = transform.point(k);
     const orbit::CartesianState target{.position_eci = servicer.position_eci + x.segment<3>(kPosition),
                                        .velocity_eci = servicer.velocity_eci + x.segment<3>(kVelocity)};
-    const orbit::CartesianState later = propagate_pushed(target, x.segment<3>(kAcceleration), dt);
+    const orbit::CartesianState later = propagate_accelerated(target, x.segment<3>(kAcceleration), dt);
     moved[k] << later.position_eci - servicer_later.position_eci, later.velocity_eci - servicer_later.velocity_eci,
         decay * x.segment<3>(kAcceleration);
   }
   const auto regression = transform.regress<kHead>(moved);
-  Transform::Matrix noise = regression.remainder;
+  Transform::Matrix noise = regression.nonlinearity;
   const double acceleration_variance = settings_.acceleration_sigma * settings_.acceleration_sigma;
   add_acceleration_noise(noise, kVelocityPsd, dt);
   for (int axis = 0; axis < 3; ++axis) {
     noise(kAcceleration + axis, kAcceleration + axis) += (1.0 - decay * decay) * acceleration_variance;
   }
-  estimate_.transform_head<kHead>(regression.mean, regression.slope, noise);
+  estimate_.transform_head<kHead>(regression.mean, regression.jacobian, noise);
   epoch_ = time;
   if (!estimate_.is_sound()) reset();
 }
@@ -151,7 +151,7 @@ RelativeUpdate RelativeFilter::take(const DifferentialEpoch& epoch, const Receiv
   return update;
 }
 
-/// Clocks and jitter know nothing of the epoch before.
+/// Clocks and jitter are independent of the previous epoch.
 void RelativeFilter::renew_epoch_states(const ReceiverPlatform& servicer, const ReceiverPlatform& target) {
   estimate_.reset(kClock, target.clock_m - servicer.clock_m, kClockSigma_m * kClockSigma_m);
   const double jitter_variance = 2.0 * settings_.phase_centre_jitter_m * settings_.phase_centre_jitter_m;
@@ -190,38 +190,38 @@ Status RelativeFilter::linearise(const DifferentialEpoch& epoch, const ReceiverP
     Row& row = rows_[n];
     row = Row{};
     row.predicted = regression.mean(0) + reference_(kClock);
-    row.extra_variance = regression.remainder(0);
-    row.slope.head<kHead>() = regression.slope.transpose();
-    row.slope.segment<3>(kServicerAntenna) = -servicer.R_eci_body.transpose() * (servicer_line / servicer_range);
-    row.slope.segment<3>(kTargetAntenna) = target.R_eci_body.transpose() * target_direction;
-    row.slope.segment<3>(kJitter) = target_direction;
-    row.slope(kClock) = 1.0;
+    row.extra_variance = regression.nonlinearity(0);
+    row.jacobian.head<kHead>() = regression.jacobian.transpose();
+    row.jacobian.segment<3>(kServicerAntenna) = -servicer.R_eci_body.transpose() * (servicer_line / servicer_range);
+    row.jacobian.segment<3>(kTargetAntenna) = target.R_eci_body.transpose() * target_direction;
+    row.jacobian.segment<3>(kJitter) = target_direction;
+    row.jacobian(kClock) = 1.0;
   }
   return Status::kOk;
 }
 
-/// Measured minus what the state, as it is now, predicts; code bias and ambiguity not counted.
+/// Measured minus predicted by the current state; code bias and ambiguity excluded.
 double RelativeFilter::residual(const Row& row, double measured) const {
-  return measured - row.predicted - row.slope.dot(estimate_.mean().head<kGeometry>() - reference_);
+  return measured - row.predicted - row.jacobian.dot(estimate_.mean().head<kGeometry>() - reference_);
 }
 
-RelativeFilter::Estimate::Vector RelativeFilter::full_slope(const Row& row) const {
-  Estimate::Vector slope = Estimate::Vector::Zero();
-  slope.head<kGeometry>() = row.slope;
-  return slope;
+RelativeFilter::Estimate::Vector RelativeFilter::full_jacobian(const Row& row) const {
+  Estimate::Vector jacobian = Estimate::Vector::Zero();
+  jacobian.head<kGeometry>() = row.jacobian;
+  return jacobian;
 }
 
 void RelativeFilter::use_codes(const DifferentialEpoch& epoch, RelativeUpdate& update) {
   for (std::size_t n = 0; n < epoch.count; ++n) {
     const DifferentialObservation& observation = epoch.observations[n];
-    Estimate::Vector slope = full_slope(rows_[n]);
+    Estimate::Vector jacobian = full_jacobian(rows_[n]);
     double measured_less_predicted = residual(rows_[n], observation.code_m);
     if (const int bias = code_bias_index(observation.signal); bias >= 0) {
-      slope(bias) = 1.0;
+      jacobian(bias) = 1.0;
       measured_less_predicted -= estimate_.mean(bias);
     }
     const double variance = observation.code_sigma_m * observation.code_sigma_m + rows_[n].extra_variance;
-    const estimation::Innovation innovation = estimate_.update(slope, measured_less_predicted, variance, kGate);
+    const estimation::Innovation innovation = estimate_.update(jacobian, measured_less_predicted, variance, kGate);
     if (innovation.accepted) {
       ++update.codes_used;
       update.code_nis += innovation.nis();
@@ -231,7 +231,7 @@ void RelativeFilter::use_codes(const DifferentialEpoch& epoch, RelativeUpdate& u
   }
 }
 
-/// Gives each usable phase its channel, and finds the slips that receivers themselves tell.
+/// Assigns a channel to each usable phase, and finds the slips reported by the receivers.
 void RelativeFilter::follow_channels(const DifferentialEpoch& epoch, RelativeUpdate& update) {
   for (std::size_t n = 0; n < epoch.count; ++n) {
     const DifferentialObservation& observation = epoch.observations[n];
@@ -247,8 +247,8 @@ void RelativeFilter::follow_channels(const DifferentialEpoch& epoch, RelativeUpd
   }
 }
 
-/// The clock moves all phases alike, and the code tells it to decimetres only. So each is compared with the one in the
-/// middle: of the two, clock and common level fall out.
+/// The clock shifts all phases alike, and the code determines it to decimetres only. Each phase is therefore compared
+/// with the median: clock and common offset cancel.
 void RelativeFilter::find_slips_by_median(const DifferentialEpoch& epoch, RelativeUpdate& update) {
   Residuals residuals;
   for (std::size_t n = 0; n < epoch.count; ++n) {
@@ -257,18 +257,18 @@ void RelativeFilter::find_slips_by_median(const DifferentialEpoch& epoch, Relati
     const double value = residual(rows_[n], epoch.observations[n].phase_m) - estimate_.mean(ambiguity_index(*place));
     residuals.add({n, value});
   }
-  if (residuals.count < kLeastForMedian) return;
+  if (residuals.count < kMinForMedian) return;
   const std::size_t middle = residuals.median().observation;
   for (std::size_t k = 0; k < residuals.count; ++k) {
     const std::size_t n = residuals.sorted[k].observation;
     if (n == middle) continue;
     const std::size_t place = *rows_[n].channel;
-    Estimate::Vector slope = full_slope(rows_[n]) - full_slope(rows_[middle]);
-    slope(ambiguity_index(place)) += 1.0;
-    slope(ambiguity_index(*rows_[middle].channel)) -= 1.0;
+    Estimate::Vector jacobian = full_jacobian(rows_[n]) - full_jacobian(rows_[middle]);
+    jacobian(ambiguity_index(place)) += 1.0;
+    jacobian(ambiguity_index(*rows_[middle].channel)) -= 1.0;
     const double sigma_m = math::hypot(epoch.observations[n].phase_sigma_m, epoch.observations[middle].phase_sigma_m);
     const estimation::Innovation apart =
-        estimate_.predict(slope, residuals.sorted[k].value - residuals.median().value, sigma_m * sigma_m);
+        estimate_.predict(jacobian, residuals.sorted[k].value - residuals.median().value, sigma_m * sigma_m);
     if (math::abs(apart.value) > kSlip_m + kSlipSigmas * math::sqrt(apart.variance)) {
       ++update.slips;
       contradict(place, update);
@@ -277,7 +277,7 @@ void RelativeFilter::find_slips_by_median(const DifferentialEpoch& epoch, Relati
 }
 
 void RelativeFilter::use_phases(const DifferentialEpoch& epoch, RelativeUpdate& update) {
-  // Known ambiguities first: they tell the clock that new ones begin with.
+  // Known ambiguities first: they determine the clock with which new ones are initialised.
   for (const bool known : {true, false}) {
     for (std::size_t n = 0; n < epoch.count; ++n) {
       const std::optional<std::size_t>& place = rows_[n].channel;
@@ -285,11 +285,11 @@ void RelativeFilter::use_phases(const DifferentialEpoch& epoch, RelativeUpdate& 
       const DifferentialObservation& observation = epoch.observations[n];
       const int index = ambiguity_index(*place);
       if (!known) begin_ambiguity(*place, residual(rows_[n], observation.phase_m));
-      Estimate::Vector slope = full_slope(rows_[n]);
-      slope(index) = 1.0;
+      Estimate::Vector jacobian = full_jacobian(rows_[n]);
+      jacobian(index) = 1.0;
       const double variance = observation.phase_sigma_m * observation.phase_sigma_m + rows_[n].extra_variance;
       const double value = residual(rows_[n], observation.phase_m) - estimate_.mean(index);
-      const estimation::Innovation innovation = estimate_.update(slope, value, variance, known ? kGate : kNoGate);
+      const estimation::Innovation innovation = estimate_.update(jacobian, value, variance, known ? kGate : kNoGate);
       if (!innovation.accepted) {
         ++update.phases_refused;
         contradict(*place, update);
@@ -300,7 +300,7 @@ void RelativeFilter::use_phases(const DifferentialEpoch& epoch, RelativeUpdate& 
         ++update.phases_used;
         update.phase_nis += innovation.nis();
       }
-      rows_[n].channel.reset();  // done, so that the second round does not take it for a new one
+      rows_[n].channel.reset();  // processed, so that the second round does not treat it as a new one
     }
   }
 }
@@ -320,14 +320,14 @@ void RelativeFilter::contradict(std::size_t place, RelativeUpdate& update) {
 }
 
 void RelativeFilter::hold(std::size_t place, std::size_t reference, double cycles) {
-  // A tenth of a millimetre: far below what any phase can tell, far above rounding.
+  // A tenth of a millimetre: far below the phase noise, far above rounding.
   constexpr double kHoldVariance = 1e-8;
   const double wavelength = gnss::wavelength(channels_[place].signal);
-  Estimate::Vector slope = Estimate::Vector::Zero();
-  slope(ambiguity_index(place)) = 1.0;
-  slope(ambiguity_index(reference)) = -1.0;
+  Estimate::Vector jacobian = Estimate::Vector::Zero();
+  jacobian(ambiguity_index(place)) = 1.0;
+  jacobian(ambiguity_index(reference)) = -1.0;
   const double difference = estimate_.mean(ambiguity_index(place)) - estimate_.mean(ambiguity_index(reference));
-  estimate_.update(slope, wavelength * cycles - difference, kHoldVariance, kNoGate);
+  estimate_.update(jacobian, wavelength * cycles - difference, kHoldVariance, kNoGate);
   channels_.set_fixed(place, true);
   channels_.set_fixed(reference, true);
 }
@@ -336,7 +336,7 @@ void RelativeFilter::release(double position_sigma_m) {
   for (std::size_t place = 0; place < kPhaseChannels; ++place) {
     if (channels_[place].in_use) lose(place);
   }
-  // An orbit's own time scale turns the displacement into a velocity: 1/n is about 1000 s.
+  // The time scale of the orbit converts the displacement into a velocity: 1/n is about 1000 s.
   const double velocity_sigma = 1e-3 * position_sigma_m;
   for (int axis = 0; axis < 3; ++axis) {
     estimate_.add_noise(kPosition + axis, position_sigma_m * position_sigma_m);

@@ -1,13 +1,13 @@
 #pragma once
-// The relative orbit from differences of carrier phase and code: one unscented filter over the relative orbit, what
-// pushes the two spacecraft apart, where the antennas really are, clocks, and the carrier ambiguities in metres.
+// The relative orbit from differences of carrier phase and code: one unscented filter over the relative orbit, the
+// differential accelerations, the antenna offsets, clocks, and the carrier ambiguities in metres.
 //
-// The orbit is sampled; everything else enters linearly and follows by the slope (fsw/estimation/unscented.h). Receiver
+// The orbit is sampled; all other states enter linearly through the Jacobian (fsw/estimation/unscented.h). Receiver
 // clocks are free at every epoch. The phase centres' jitter is a state of its own, new at every epoch, because it moves
-// all satellites' ranges together: as noise of each signal it would have to be independent, which it is not. Antenna
-// offsets are constant in each body: across a spacecraft that keeps its attitude they look like a displacement, and
-// only the dynamics tell the two apart - radially and cross-track well, along-track not at all. So they are estimated,
-// and what cannot be told stays in the covariance.
+// the ranges of all satellites together: as noise of each signal it would be independent, which it is not. Antenna
+// offsets are constant in each body: for a spacecraft with constant attitude they are equivalent to a displacement, and
+// only the dynamics separate the two - radial and cross-track well, along-track not at all. They are therefore
+// estimated, and their unobservable part stays in the covariance.
 
 #include <array>
 #include <cstdint>
@@ -22,19 +22,19 @@
 
 namespace vbar::fsw::navigation {
 
-/// 1-sigma figures of what the filter starts from and does not model.
+/// 1-sigma values of the initial state and of unmodelled effects.
 struct RelativeFilterSettings {
-  double start_velocity_sigma = 0.2;       ///< m/s, beside the rate of the orbit times the separation
-  double acceleration_sigma = 3e-8;        ///< m/s^2, of differential drag, sunlight and higher gravity, each RTN axis
+  double start_velocity_sigma = 0.2;       ///< m/s, in addition to the mean motion times the separation
+  double acceleration_sigma = 3e-8;        ///< m/s^2, of differential drag, radiation pressure and gravity, per axis
   double acceleration_time_s = 1500.0;     ///< their correlation time
-  double antenna_offset_sigma_m = 3.2e-3;  ///< of each axis of each antenna against its nominal place
-  double phase_centre_jitter_m = 1.0e-3;   ///< of each axis of each antenna, from epoch to epoch
+  double antenna_offset_sigma_m = 3.2e-3;  ///< per axis of each antenna with respect to its nominal position
+  double phase_centre_jitter_m = 1.0e-3;   ///< per axis of each antenna, from epoch to epoch
   double code_bias_sigma_m = 2.0;          ///< between signals, of the difference of two receivers
-  double maneuver_sigma = 2e-6;            ///< m/s, each axis, of a burn
+  double maneuver_sigma = 2e-6;            ///< m/s, per axis of a burn
   double maneuver_sigma_relative = 2e-3;   ///< of its size
 };
 
-/// What one receiver stands on at an epoch.
+/// A-priori state of one receiver at an epoch.
 struct ReceiverPlatform {
   orbit::CartesianState state;  ///< of the centre of mass at the tag
   Matrix3 R_eci_body = Matrix3::Identity();
@@ -42,15 +42,15 @@ struct ReceiverPlatform {
   double clock_m = 0.0;                      ///< c times the receiver clock's advance
 };
 
-/// What came of one epoch.
+/// Results of one epoch.
 struct RelativeUpdate {
   std::int32_t codes_used = 0;
   std::int32_t codes_refused = 0;
   std::int32_t phases_used = 0;
   std::int32_t phases_refused = 0;
   std::int32_t slips = 0;
-  std::int32_t contradictions = 0;  ///< held channels given up although their receivers told of no loss
-  double code_nis = 0.0;            ///< sums over what was used; each is expected to be near the count
+  std::int32_t contradictions = 0;  ///< held channels released although their receivers reported no loss of lock
+  double code_nis = 0.0;            ///< sums over the observations used; each is expected to be near their number
   double phase_nis = 0.0;
 };
 
@@ -63,7 +63,7 @@ class RelativeFilter {
     static constexpr int kSize = 3;  ///< m/s^2, RTN, of the target over the servicer
   };
   struct ServicerAntenna {
-    static constexpr int kSize = 3;  ///< offset from the nominal place, m, body
+    static constexpr int kSize = 3;  ///< offset from the nominal position, m, body
   };
   struct TargetAntenna {
     static constexpr int kSize = 3;
@@ -86,36 +86,36 @@ class RelativeFilter {
 
   explicit RelativeFilter(const RelativeFilterSettings& settings = {}) : settings_(settings) {}
 
-  /// Forgets everything but the settings.
+  /// Resets all but the settings.
   void reset();
 
-  /// Replaces the settings and forgets everything else.
+  /// Replaces the settings and resets all else.
   void configure(const RelativeFilterSettings& settings) {
     settings_ = settings;
     reset();
   }
 
-  /// Begins at `time` with a relative position (m, ECI) known to `sigma_m` an axis.
+  /// Initialises at `time` with a relative position (m, ECI) known to `sigma_m` per axis.
   void begin(GpsTime time, const Vector3& position_eci, double sigma_m, double mean_motion);
 
   [[nodiscard]] bool started() const { return started_; }
   [[nodiscard]] GpsTime epoch() const { return epoch_; }
 
-  /// Moves the estimate to `time`; `servicer` is its absolute state at the current epoch.
+  /// Propagates the estimate to `time`; `servicer` is its absolute state at the current epoch.
   void advance_to(GpsTime time, const orbit::CartesianState& servicer);
 
-  /// The servicer burns at the epoch.
+  /// A burn of the servicer at the epoch.
   void add_servicer_impulse(const Vector3& dv_eci);
 
-  /// Folds an epoch's differences in; the filter must stand at its time. `servicer` and `target`: platforms, the
-  /// target's state is not read.
+  /// Processes the differences of an epoch; the filter must be at its time. `servicer` and `target`: platforms, the
+  /// state of the target is not used.
   RelativeUpdate take(const DifferentialEpoch& epoch, const ReceiverPlatform& servicer, const ReceiverPlatform& target);
 
-  /// The single differences of two channels of one signal differ by a whole number of cycles: held from now on.
+  /// The single differences of two channels of one signal differ by an integer number of cycles, held from now on.
   void hold(std::size_t place, std::size_t reference, double cycles);
 
-  /// Every integer is given up; the orbit keeps its covariance, widened by `position_sigma_m` and what that is a
-  /// second-scale velocity of: what was held wrongly may have moved it so far.
+  /// Releases all integers; the orbit keeps its covariance, inflated by `position_sigma_m` and the corresponding
+  /// velocity: wrong integers may have shifted it by as much.
   void release(double position_sigma_m);
 
   [[nodiscard]] const Estimate& estimate() const { return estimate_; }
@@ -132,11 +132,11 @@ class RelativeFilter {
   static constexpr int kGeometry = State::offset<Ambiguities>();                     ///< all but ambiguities
   using Geometry = Eigen::Matrix<double, kGeometry, 1>;
 
-  /// An observation's model about the state before the epoch's first measurement.
+  /// Measurement model of an observation about the state before the first update of the epoch.
   struct Row {
-    Geometry slope = Geometry::Zero();  ///< of the range difference, clock included, code bias not
+    Geometry jacobian = Geometry::Zero();  ///< of the range difference, clock included, code bias not
     double predicted = 0.0;
-    double extra_variance = 0.0;  ///< of the curvature
+    double extra_variance = 0.0;  ///< of the nonlinearity
     std::optional<std::size_t> channel;
   };
 
@@ -150,7 +150,7 @@ class RelativeFilter {
   void lose(std::size_t place);
   void contradict(std::size_t place, RelativeUpdate& update);
   [[nodiscard]] double residual(const Row& row, double measured) const;
-  [[nodiscard]] Estimate::Vector full_slope(const Row& row) const;
+  [[nodiscard]] Estimate::Vector full_jacobian(const Row& row) const;
 
   RelativeFilterSettings settings_;
   bool started_ = false;
@@ -158,7 +158,7 @@ class RelativeFilter {
   Estimate estimate_;
   PhaseChannels channels_;
   std::array<Row, gnss::kMaxObservations> rows_{};
-  Geometry reference_ = Geometry::Zero();  ///< the state the rows are linear about
+  Geometry reference_ = Geometry::Zero();  ///< the linearisation point of the rows
 };
 
 }  // namespace vbar::fsw::navigation

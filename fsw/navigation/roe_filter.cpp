@@ -10,12 +10,12 @@ namespace {
 
 using Filter = RoeFilter;
 
-constexpr int kAlongTrack = Filter::State::offset<Filter::Pushes>();
+constexpr int kAlongTrack = Filter::State::offset<Filter::DifferentialAccelerations>();
 constexpr int kFromSun = kAlongTrack + 1;
 constexpr int kBrightness = Filter::State::offset<Filter::BrightnessOffset>();
 constexpr int kBias = Filter::State::offset<Filter::BearingBias>();
 
-// Bearings further apart than this are no neighbours.
+// Innovations of bearings further apart than this are not neighbours.
 constexpr Duration kNeighbours = duration_of_seconds(300);
 
 constexpr double square(double x) {
@@ -95,26 +95,26 @@ void RoeFilter::advance(const Propagation& propagation, const orbit::CartesianSt
   const auto regression = transform.regress<kSampled>(moved);
 
   Estimate::Vector mean = estimate_.mean();
-  Estimate::Matrix slope = Estimate::Matrix::Identity();
+  Estimate::Matrix jacobian = Estimate::Matrix::Identity();
   Estimate::Matrix noise = process_noise(before.value(), dt);
   mean.head<kSampled>() = regression.mean;
-  slope.topLeftCorner<kSampled, kSampled>() = regression.slope;
-  noise.topLeftCorner<kSampled, kSampled>() += regression.remainder;
+  jacobian.topLeftCorner<kSampled, kSampled>() = regression.jacobian;
+  noise.topLeftCorner<kSampled, kSampled>() += regression.nonlinearity;
   const double brightness_decay = math::exp(-dt / settings_.brightness_offset_time_s);
   const double bias_decay = math::exp(-dt / settings_.bearing_bias_time_s);
   mean(kBrightness) =
       settings_.brightness_offset_m + brightness_decay * (mean(kBrightness) - settings_.brightness_offset_m);
-  slope(kBrightness, kBrightness) = brightness_decay;
+  jacobian(kBrightness, kBrightness) = brightness_decay;
   for (int axis = 0; axis < 2; ++axis) {
     mean(kBias + axis) *= bias_decay;
-    slope(kBias + axis, kBias + axis) = bias_decay;
+    jacobian(kBias + axis, kBias + axis) = bias_decay;
   }
-  estimate_.transform_head<State::kSize>(mean, slope, noise);
+  estimate_.transform_head<State::kSize>(mean, jacobian, noise);
   if (!estimate_.is_sound()) reset();
 }
 
-/// Of white accelerations in RTN, by Gauss's three points over the interval: Gamma takes an impulse to the elements,
-/// and only the mean longitude drifts on. The first-order processes get back what they lose.
+/// White accelerations in RTN, by three-point Gauss quadrature in the interval: Gamma maps an impulse to the elements,
+/// and only the mean longitude drifts. The Gauss-Markov states receive the noise that keeps their variance.
 RoeFilter::Estimate::Matrix RoeFilter::process_noise(const orbit::QnsElements& servicer, double dt) const {
   constexpr std::array<double, 3> kAt = {0.1127016653792583, 0.5, 0.8872983346207417};
   constexpr std::array<double, 3> kWeight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
@@ -158,7 +158,7 @@ Result<RoeFilter::Model> RoeFilter::model_of(const Matrix3& axes, const Vector3&
   const Vector3 camera = servicer.position_eci + origin_eci;
   std::array<Vector2, Transform::kPoints> values;
   Model model;
-  model.slope.setZero();
+  model.jacobian.setZero();
   for (std::size_t k = 0; k < Transform::kPoints; ++k) {
     const auto target = target_from_roe(chief.value(), transform.point(k));
     if (!target.ok()) return target.status();
@@ -167,14 +167,14 @@ Result<RoeFilter::Model> RoeFilter::model_of(const Matrix3& axes, const Vector3&
     const double range = math::sqrt(sight.squaredNorm());
     values[k] = axes.topRows<2>() * sight / range;
     if (k == 0)
-      model.slope.col(kBrightness) =
+      model.jacobian.col(kBrightness) =
           axes.topRows<2>() * (sun_eci - sight.dot(sun_eci) / (range * range) * sight) / range;
   }
   const auto regression = transform.regress<2>(values);
   model.value = regression.mean + estimate_.mean().segment<2>(kBias);
-  model.slope.leftCols<6>() = regression.slope;
-  model.slope.block<2, 2>(0, kBias) = Matrix2::Identity();
-  model.remainder = regression.remainder;
+  model.jacobian.leftCols<6>() = regression.jacobian;
+  model.jacobian.block<2, 2>(0, kBias) = Matrix2::Identity();
+  model.nonlinearity = regression.nonlinearity;
   return model;
 }
 
@@ -185,10 +185,10 @@ BearingUpdate RoeFilter::take(const BearingMeasurement& bearing, const orbit::Ca
   const Matrix3 axes = bearing_axes(bearing.direction_eci, servicer);
   const auto model = model_of(axes, bearing.origin_eci, servicer, sun_eci);
   if (!model.ok()) return update;
-  const auto& h = model.value().slope;
-  update.prefit = -model.value().value;  // the measured direction has no component across itself
+  const auto& h = model.value().jacobian;
+  update.prefit = -model.value().value;  // the components of the measured direction across itself are zero
   const double variance = square(bearing.sigma) + square(settings_.resolved_share * bearing.apparent_radius);
-  const Matrix2 noise = model.value().remainder + variance * Matrix2::Identity();
+  const Matrix2 noise = model.value().nonlinearity + variance * Matrix2::Identity();
   Eigen::Matrix<double, 2, State::kSize> hp = Eigen::Matrix<double, 2, State::kSize>::Zero();
   for (int i = 0; i < State::kSize; ++i) {
     for (int j = 0; j < State::kSize; ++j) hp.col(i) += h.col(j) * estimate_.covariance(j, i);
@@ -204,7 +204,7 @@ BearingUpdate RoeFilter::take(const BearingMeasurement& bearing, const orbit::Ca
   update.postfit = update.prefit;
   if (!(update.nis <= settings_.gate)) return update;
 
-  // One after the other, the second freed of what it shares with the first.
+  // One after the other, the second decorrelated from the first.
   constexpr double kNoGate = 1e300;
   const double shared = noise(1, 0) / noise(0, 0);
   const Estimate::Vector old = estimate_.mean();
@@ -220,7 +220,7 @@ BearingUpdate RoeFilter::take(const BearingMeasurement& bearing, const orbit::Ca
   return update;
 }
 
-/// Of bearings to a point only: the centroid of a disk wanders with the target's attitude, which looks like a lag.
+/// Only for bearings to an unresolved target: the centroid of a disk varies with its attitude, which resembles a lag.
 void RoeFilter::adapt(const BearingMeasurement& bearing, const BearingUpdate& update) {
   if (bearing.time - last_bearing_ > kNeighbours) noise_.interrupt();
   last_bearing_ = bearing.time;
@@ -238,17 +238,18 @@ Result<BearingPrediction> RoeFilter::predict(const orbit::CartesianState& servic
   prediction.direction_eci = sight / math::sqrt(sight.squaredNorm());
   const auto model = model_of(bearing_axes(prediction.direction_eci, servicer), origin_eci, servicer, sun_eci);
   if (!model.ok()) return model.status();
-  const auto& h = model.value().slope;
+  const auto& h = model.value().jacobian;
   for (int i = 0; i < State::kSize; ++i) {
     for (int j = 0; j < State::kSize; ++j) {
       prediction.covariance += estimate_.covariance(i, j) * h.col(i) * h.col(j).transpose();
     }
   }
-  prediction.covariance += model.value().remainder;
+  prediction.covariance += model.value().nonlinearity;
   return prediction;
 }
 
-void RoeFilter::doubt(const orbit::CartesianState& servicer, double velocity_sigma, double longitude_share) {
+void RoeFilter::inflate_covariance(const orbit::CartesianState& servicer, double velocity_sigma,
+                                   double longitude_share) {
   const auto chief = orbit::qns_from_cartesian(servicer);
   if (!started_ || !chief.ok()) return;
   const Matrix63 gamma = orbit::roe_control_matrix(chief.value());

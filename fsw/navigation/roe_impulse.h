@@ -1,5 +1,5 @@
 #pragma once
-// What a burn of the servicer does to a filter on the target's ROE: the frame that they are told in moves.
+// Effect of a burn of the servicer on a filter on the target's ROE: the frame of the elements changes.
 
 #include <array>
 
@@ -12,7 +12,7 @@
 namespace vbar::fsw::navigation {
 
 /// The first six components of `estimate` are ROE (dimensionless) with respect to the servicer, at `servicer` before it
-/// burns `dv_eci` (m/s), known to `sigma` (m/s, each axis). False, with nothing changed, where no orbit is left or the
+/// burns `dv_eci` (m/s), known to `sigma` (m/s, per axis). False, with nothing changed, if the orbit is invalid or the
 /// covariance is not positive definite.
 template <int N>
 [[nodiscard]] bool move_frame_of_roe(estimation::Estimate<N>& estimate, const orbit::CartesianState& servicer,
@@ -30,8 +30,8 @@ template <int N>
   }
   const auto regression = transform.regress<6>(moved);
   const Matrix63 gamma = orbit::roe_control_matrix(before.value());
-  const Matrix6 noise = regression.remainder + (sigma * sigma * gamma).lazyProduct(gamma.transpose());
-  estimate.template transform_head<6>(regression.mean, regression.slope, noise);
+  const Matrix6 noise = regression.nonlinearity + (sigma * sigma * gamma).lazyProduct(gamma.transpose());
+  estimate.template transform_head<6>(regression.mean, regression.jacobian, noise);
   return true;
 }
 

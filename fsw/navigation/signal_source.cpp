@@ -15,17 +15,17 @@ Vector3 EarthFrame::eci_from_itrf(const Vector3& itrf, double seconds_later) con
   const double angle = orbit::kEarthRotationRate * seconds_later;
   const double s = math::sin(angle);
   const double c = math::cos(angle);
-  const Vector3 turned(c * itrf.x() - s * itrf.y(), s * itrf.x() + c * itrf.y(), itrf.z());
-  return R_itrf_gcrf.transpose() * turned;
+  const Vector3 rotated(c * itrf.x() - s * itrf.y(), s * itrf.x() + c * itrf.y(), itrf.z());
+  return R_itrf_gcrf.transpose() * rotated;
 }
 
 Result<SignalSource> signal_source(gnss::SatelliteId satellite, double pseudorange_m, GpsTime receiver_time,
                                    const EphemerisStore& ephemerides, const EarthFrame& frame) {
-  // Written so that a NaN is refused.
+  // Written such that a NaN is refused.
   if (!(pseudorange_m >= kShortestRange && pseudorange_m <= kLongestRange)) return Status::kOutOfRange;
   const gnss::Ephemeris* ephemeris = ephemerides.find(satellite, receiver_time);
   if (ephemeris == nullptr) return Status::kNotReady;
-  // By the satellite's clock the signal left at receiver_time - P/c, whatever the receiver's clock error.
+  // By the satellite's clock the signal was transmitted at receiver_time - P/c, whatever the receiver's clock error.
   const GpsTime by_satellite_clock = receiver_time - nearest_duration(pseudorange_m / gnss::kSpeedOfLight);
   const Result<gnss::SatelliteState> first = gnss::satellite_state(*ephemeris, by_satellite_clock);
   if (!first.ok()) return first.status();

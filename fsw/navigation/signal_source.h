@@ -1,5 +1,5 @@
 #pragma once
-// Where and when a received signal left its satellite: what the pseudorange itself tells, no receiver position needed.
+// Position and time of transmission of a received signal, from the pseudorange alone, without the receiver position.
 
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
@@ -9,7 +9,7 @@
 
 namespace vbar::fsw::navigation {
 
-/// The Earth-fixed frame about one instant: exact there, turned by the mean rate within a second of it.
+/// The Earth-fixed frame about one instant: exact there, rotated by the mean rate within a second of it.
 struct EarthFrame {
   GpsTime time;
   Matrix3 R_itrf_gcrf = Matrix3::Identity();
@@ -22,12 +22,12 @@ struct EarthFrame {
 };
 
 struct SignalSource {
-  Vector3 position_eci = Vector3::Zero();  ///< of the satellite when it sent
+  Vector3 position_eci = Vector3::Zero();  ///< of the satellite at transmission
   double clock_m = 0.0;  ///< c times the satellite clock's advance: to be added to the pseudorange and to the phase
 };
 
 /// Of the signal with `pseudorange_m` received when the receiver's clock showed `receiver_time`. kNotReady without an
-/// ephemeris of that satellite; kOutOfRange for a pseudorange that no navigation satellite has (below 15,000 km, above
+/// ephemeris of that satellite; kOutOfRange for a pseudorange outside that of navigation satellites (15,000 km to
 /// 60,000 km, clock error of the receiver included).
 Result<SignalSource> signal_source(gnss::SatelliteId satellite, double pseudorange_m, GpsTime receiver_time,
                                    const EphemerisStore& ephemerides, const EarthFrame& frame);

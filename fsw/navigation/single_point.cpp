@@ -11,22 +11,22 @@ namespace {
 constexpr std::size_t kMaxSatellites = gnss::kMaxObservations;
 constexpr int kMaxIterations = 12;
 
-// What broadcast orbits and clocks, and on one frequency the ionosphere above the receiver, leave in a pseudorange.
+// Residual errors of broadcast orbits and clocks and, with one frequency, of the ionosphere above the receiver.
 constexpr double kBroadcastSigma_m = 1.5;
 constexpr double kIonosphereSigma_m = 4.0;
-// The ionosphere parts two frequencies by less.
-constexpr double kMostDispersion_m = 200.0;
-// A residual beyond so many of its sigmas does not belong.
+// Upper bound of the ionospheric difference between two frequencies.
+constexpr double kMaxDispersion_m = 200.0;
+// A residual beyond this number of sigma is an outlier.
 constexpr double kWorstResidual = 5.0;
-// Clocks of the other constellations run within so much of GPS time: keeps the equations regular without them.
+// Clock offsets of the other constellations from GPS time: keeps the equations regular without them.
 constexpr double kSystemOffsetSigma_m = 300.0;
-// Low orbits, and the ground for a bench.
-constexpr double kLeastRadius = 6.3e6;
+// Low orbits, and the surface for bench tests.
+constexpr double kMinRadius = 6.3e6;
 constexpr double kGreatestRadius = 9.5e6;
 
 struct Range {
   SignalSource source;
-  double corrected_m = 0.0;  ///< pseudorange plus the satellite's clock
+  double corrected_m = 0.0;  ///< pseudorange plus the satellite clock
   double sigma_m = 0.0;
   std::size_t system = 0;
   bool used = true;
@@ -37,7 +37,7 @@ struct Ranges {
   std::size_t count = 0;
 };
 
-/// One range a satellite: GPS free of the ionosphere where L2 is there.
+/// One range per satellite: ionosphere-free for GPS if L2 is available.
 Ranges ranges_of(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephemerides, const EarthFrame& frame) {
   constexpr double kGamma = (gnss::kL1_Hz / gnss::kL2_Hz) * (gnss::kL1_Hz / gnss::kL2_Hz);
   Ranges ranges;
@@ -54,7 +54,7 @@ Ranges ranges_of(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephe
     if (first.signal == gnss::Signal::kGpsL1 && k + 1 < epoch.count &&
         epoch.observations[k + 1].satellite == first.satellite) {
       const gnss::Observation& second = epoch.observations[k + 1];
-      if (!(math::abs(second.pseudorange_m - first.pseudorange_m) < kMostDispersion_m)) continue;
+      if (!(math::abs(second.pseudorange_m - first.pseudorange_m) < kMaxDispersion_m)) continue;
       pseudorange = (kGamma * first.pseudorange_m - second.pseudorange_m) / (kGamma - 1.0);
       noise = math::hypot(kGamma * first.pseudorange_sigma_m, second.pseudorange_sigma_m) / (kGamma - 1.0);
       unmodelled = 0.0;
@@ -135,7 +135,7 @@ std::size_t unknown_count(const Ranges& ranges) {
   return count;
 }
 
-/// Takes the range with the worst residual out; false if all of them fit.
+/// Removes the range with the worst residual; false if all of them fit.
 bool drop_worst(Ranges& ranges, const Unknowns& x) {
   double worst = kWorstResidual;
   std::size_t place = ranges.count;
@@ -157,18 +157,18 @@ bool drop_worst(Ranges& ranges, const Unknowns& x) {
 Result<SinglePoint> single_point(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephemerides,
                                  const EarthFrame& frame) {
   Ranges ranges = ranges_of(epoch, ephemerides, frame);
-  const std::size_t most_dropped = ranges.count / 4;
+  const std::size_t max_dropped = ranges.count / 4;
   Unknowns x = Unknowns::Zero();
   // The first iteration starts at the Earth's centre; a metre along any axis keeps directions defined.
   x(0) = 1.0;
-  for (std::size_t dropped = 0; dropped <= most_dropped; ++dropped) {
+  for (std::size_t dropped = 0; dropped <= max_dropped; ++dropped) {
     if (used_count(ranges) < unknown_count(ranges) + 1) return Status::kNotReady;
     const Fit fitted = fit(ranges, x);
     if (fitted.status != Status::kOk) return fitted.status;
     x = fitted.x;
     if (drop_worst(ranges, x)) continue;
     const double radius = x.head<3>().norm();
-    if (radius < kLeastRadius || radius > kGreatestRadius) return Status::kDidNotConverge;
+    if (radius < kMinRadius || radius > kGreatestRadius) return Status::kDidNotConverge;
     return SinglePoint{.position_eci = x.head<3>(),
                        .clock_m = x(3),
                        .sigma_m = math::sqrt(fitted.position_variance),

@@ -1,5 +1,5 @@
 #pragma once
-// Position and clock of one receiver from one epoch of pseudoranges: iterated least squares from no knowledge at all.
+// Position and clock of one receiver from one epoch of pseudoranges: iterated least squares without a-priori values.
 
 #include <cstddef>
 
@@ -11,18 +11,18 @@
 namespace vbar::fsw::navigation {
 
 struct SinglePoint {
-  Vector3 position_eci = Vector3::Zero();  ///< of the antenna when it received
+  Vector3 position_eci = Vector3::Zero();  ///< of the antenna at reception
   double clock_m = 0.0;                    ///< c times the receiver clock's advance over GPS time
   double sigma_m = 0.0;                    ///< 1 sigma of a position component, from the geometry and the residuals
   std::size_t used = 0;                    ///< satellites
 };
 
-/// From at least five satellites (one more than the unknowns of a single constellation, so that there is a check; each
-/// further constellation brings an unknown of its own). GPS on two frequencies free of the ionosphere, everything else
-/// as it is, with the weight that leaves. Satellites whose residual does not fit are left out, the worst first, up to
+/// From at least five satellites (one more than the unknowns of a single constellation, for redundancy; each
+/// further constellation adds an unknown). GPS on two frequencies ionosphere-free, all others
+/// uncorrected, with a corresponding weight. Satellites whose residuals do not fit are removed, the worst first, up to
 /// a quarter of them.
 /// kNotReady: too few satellites with an ephemeris; kSingular: geometry; kDidNotConverge: residuals that do not fit, or
-/// a position that is not one of a low orbit.
+/// a position outside low orbits.
 Result<SinglePoint> single_point(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephemerides,
                                  const EarthFrame& frame);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The memory of one run of the network: 1.1 MB, each store used by layers of one shape, so that borders stay 0.
+// Memory of one run of the network: 1.1 MB, each store used by layers of one shape, so that borders stay 0.
 
 #include "fsw/network/convolution.h"
 #include "fsw/network/feature_map.h"
@@ -9,8 +9,8 @@ namespace vbar::fsw::network {
 struct Activations {
   FeatureStore<128, 1> input;
   FeatureStore<64, 24> stem;
-  FeatureStore<32, 40> passing_32;  ///< on the way down, and again on the way up
-  FeatureStore<32, 40> kept_32;     ///< of the way down, until the way up has been added to it
+  FeatureStore<32, 40> passing_32;  ///< of the encoder, reused in the decoder
+  FeatureStore<32, 40> kept_32;     ///< skip connection: of the encoder, until added in the decoder
   FeatureStore<16, 64> passing_16;
   FeatureStore<16, 64> kept_16;
   FeatureStore<8, 128> first_8;

@@ -1,10 +1,10 @@
 #pragma once
-// The layers of the keypoint network and where they lie in a weights file. For the code of this folder and its tests.
+// The layers of the keypoint network and their positions in a weights file. For the code of this folder and its tests.
 //
 // A weights file of data/networks, little endian:
 //
 //   16 bytes     "vbar keypoints 2"
-//   4 u32        layers (13), side of the input (128), side of the maps (32), keypoints (11)
+//   4 u32        layers (13), side of the input (128), side of the heatmaps (32), keypoints (11)
 //   13 x 8 u32   a layer: channels in, channels out, side of the kernel, stride, 1 if rectified, 0, 0, 0
 //   8 f32        calibration: covariance_scale, covariance_floor, target_sigma_cells, least_peak, stretch, 0, 0, 0
 //   per layer    f32 weights [row of the kernel][column][channel in][channel out], then f32 biases [channel out]
@@ -44,9 +44,9 @@ inline constexpr int kMapChannels = 12;
 inline constexpr std::array<Layer, kLayerCount> kLayers{{
     {.in = 1, .out = 24, .kernel = 3, .stride = 2},                       // 0: to 64 a side
     {.in = 24, .out = 40, .kernel = 3, .stride = 2},                      // 1: to 32
-    {.in = 40, .out = 40, .kernel = 3},                                   // 2: kept for layer 10
+    {.in = 40, .out = 40, .kernel = 3},                                   // 2: skip connection to layer 10
     {.in = 40, .out = 64, .kernel = 3, .stride = 2},                      // 3: to 16
-    {.in = 64, .out = 64, .kernel = 3},                                   // 4: kept for layer 8
+    {.in = 64, .out = 64, .kernel = 3},                                   // 4: skip connection to layer 8
     {.in = 64, .out = 128, .kernel = 3, .stride = 2},                     // 5: to 8
     {.in = 128, .out = 128, .kernel = 3},                                 // 6
     {.in = 128, .out = 128, .kernel = 3},                                 // 7
@@ -54,7 +54,7 @@ inline constexpr std::array<Layer, kLayerCount> kLayers{{
     {.in = 64, .out = 64, .kernel = 3},                                   // 9
     {.in = 64, .out = 40, .kernel = 1, .is_rectified = false},            // 10: at 16, added to 2 at 32
     {.in = 40, .out = 40, .kernel = 3},                                   // 11
-    {.in = 40, .out = kMapChannels, .kernel = 1, .is_rectified = false},  // 12: the maps
+    {.in = 40, .out = kMapChannels, .kernel = 1, .is_rectified = false},  // 12: the heatmaps
 }};
 
 inline constexpr std::size_t kMagicBytes = 16;

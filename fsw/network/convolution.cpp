@@ -11,18 +11,18 @@ namespace {
 constexpr int kBlockCells = 4;
 
 /// Four lanes of each of four neighbouring cells. Written out, not an array with a loop over it, so that it stays in
-/// registers whatever the compiler makes of loops.
+/// registers independent of the compiler's loop optimisation.
 struct Cells {
   Lanes a, b, c, d;
 };
 
-/// What a block of output reads.
+/// Inputs of a block of output.
 struct Window {
   const float* first = nullptr;  ///< first channel under the first cell's kernel
   std::ptrdiff_t row_step = 0;
   std::ptrdiff_t cell_step = 0;  ///< from one output cell to the next
   int rows = 0;                  ///< of the kernel
-  int run = 0;                   ///< numbers of a kernel's row: its columns and their channels lie side by side
+  int run = 0;                   ///< values of a kernel's row: its columns and their channels are contiguous
 };
 
 /// Sums of four cells, kGroups times four channels.
@@ -51,7 +51,7 @@ inline void add_products(Block<2>& block, const float* weights, const Cells& x) 
   add_products<k>(block.groups[1], load(weights + kLanes), x);
 }
 
-/// The sums go in and out by value: then no store in the loop, for fear that they lie where it reads. `weights` in the
+/// The sums are passed by value to avoid stores in the loop because of possible aliasing. `weights` in the
 /// panel's order. The run must be a multiple of four.
 template <int kGroups>
 inline Block<kGroups> add_window(Block<kGroups> block, const Window& window, const float* weights) {
@@ -72,7 +72,7 @@ inline Block<kGroups> add_window(Block<kGroups> block, const Window& window, con
   return block;
 }
 
-/// The same for the first layer, whose one channel does not fill four lanes.
+/// Likewise for the first layer, whose single channel does not fill four lanes.
 template <int kGroups>
 inline Block<kGroups> add_grey_window(Block<kGroups> block, const Window& window, const float* weights) {
   const std::ptrdiff_t step = window.cell_step;
@@ -139,7 +139,7 @@ void convolve_channels(const Layer& layer, const FeatureMap& in, int channel, co
   }
 }
 
-/// `sink(row, column, first channel, four channels)` gets all of the convolution.
+/// `sink(row, column, first channel, four channels)` receives the complete convolution.
 template <class Sink>
 void convolve(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in, WeightPanel& panel,
               const Sink& sink) {
@@ -159,7 +159,7 @@ void convolve(const Layer& layer, std::span<const std::byte> weights, const Feat
 void convolve_rectified(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
                         const FeatureMap& out, WeightPanel& panel) {
   convolve(layer, weights, in, panel, [&out](int row, int column, int channel, Lanes x) {
-    store(out.cell(row, column) + channel, where_above(x, kLeastActivation));
+    store(out.cell(row, column) + channel, where_above(x, kMinActivation));
   });
 }
 
@@ -168,7 +168,7 @@ void convolve_and_add_enlarged(const Layer& layer, std::span<const std::byte> we
   convolve(layer, weights, in, panel, [&sum_map](int row, int column, int channel, Lanes x) {
     for (int part = 0; part < 4; ++part) {
       float* const place = sum_map.cell(2 * row + part / 2, 2 * column + part % 2) + channel;
-      store(place, where_beyond(sum(load(place), x), kLeastActivation));
+      store(place, where_beyond(sum(load(place), x), kMinActivation));
     }
   });
 }

@@ -1,9 +1,9 @@
 #pragma once
 // Convolution of a feature map with a layer's kernels.
 //
-// Every output number is one sum: its bias, then the products in the order of the weights file, rows of the kernel, its
-// columns, channels in. Four output channels are four lanes; eight of them, over four cells of a row, are worked out
-// together, so that what is loaded is used several times.
+// Every output value is one sum: its bias, then the products in the order of the weights file, rows of the kernel, its
+// columns, channels in. Four output channels are four lanes; eight of them, over four cells of a row, are computed
+// together, so that loaded values are reused.
 
 #include <array>
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace vbar::fsw::network {
 
 inline constexpr int kPanelChannels = 8;
 
-/// The weights of eight output channels, put side by side: they are read once for each four cells.
+/// The weights of eight output channels, contiguous: they are read once for each four cells.
 struct WeightPanel {
   static constexpr std::size_t kRows = 9 * 128;
 
@@ -33,7 +33,7 @@ void convolve_rectified(const Layer& layer, std::span<const std::byte> weights, 
 void convolve_and_add_enlarged(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
                                const FeatureMap& sum, WeightPanel& panel);
 
-/// The convolution of in, channel by channel, rows from the top; channels beyond the maps are left out.
+/// The convolution of in, channel by channel, rows from the top; channels beyond the heatmaps are left out.
 void convolve_to_maps(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
                       std::span<std::array<float, kMapCells>> maps, WeightPanel& panel);
 

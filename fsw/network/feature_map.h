@@ -1,13 +1,13 @@
 #pragma once
-// The channels of a layer over the image plane, and the memory they lie in.
+// The channels of a layer over the image plane, and their memory.
 
 #include <array>
 #include <cstddef>
 
 namespace vbar::fsw::network {
 
-/// Rows from the top, cells from the left, channels of a cell side by side. Around it lies a border of one cell, which
-/// stays 0: what a kernel finds beyond the edge.
+/// Rows from the top, cells from the left, channels of a cell contiguous. They are surrounded by a border of one cell,
+/// which stays 0: the zero padding of the kernels.
 struct FeatureMap {
   float* numbers = nullptr;  ///< of the border's first cell
   int side = 0;              ///< cells, without the border

@@ -35,8 +35,8 @@ Status KeypointNetwork::take_in(std::span<const float, kInputSamples> crop) {
     for (int column = 0; column < kInputSide; ++column) {
       const float sample = crop[static_cast<std::size_t>(row * kInputSide + column)];
       const float size = sample < 0.0F ? -sample : sample;
-      all_good = all_good && size <= kGreatestSample;  // written so that a NaN is not
-      *input.cell(row, column) = size > kLeastActivation ? sample : 0.0F;
+      all_good = all_good && size <= kGreatestSample;  // written such that a NaN is refused
+      *input.cell(row, column) = size > kMinActivation ? sample : 0.0F;
     }
   }
   return all_good ? Status::kOk : Status::kNotFinite;

@@ -1,9 +1,9 @@
 #pragma once
-// The keypoint network (after SPN, Park and D'Amico 2023): a crop of the image in, a map of each keypoint out.
+// The keypoint network (after SPN, Park and D'Amico 2023): input a crop of the image, output a heatmap per keypoint.
 //
-// A convolutional encoder down to a sixteenth of the crop and back up to a quarter, rectifiers only. Single precision;
-// every sum in a fixed order and no denormal number in it (number_range.h), so that the maps are the same bits on every
-// target.
+// A convolutional encoder down to a sixteenth of the crop and a decoder up to a quarter, with ReLU. Single precision;
+// every sum in a fixed order and without denormal numbers (number_range.h), so that the heatmaps are bit-identical on
+// every target.
 
 #include <array>
 #include <cstddef>
@@ -18,20 +18,20 @@ namespace vbar::fsw::network {
 
 class KeypointNetwork {
  public:
-  /// Uses `weights`, a file of data/networks, where it stands: it must stay there. Checks all of it first: kTooShort,
+  /// Uses `weights`, a file of data/networks, in place: it must stay valid. Checks all of it first: kTooShort,
   /// kTooLong, kWrongType (not such a file, or of another architecture), kBadChecksum, kNotFinite, kOutOfRange (a
-  /// weight that is not 0 and below 2^-40 or from 2^20 on in size, a calibration that cannot be). After a failure there
+  /// weight that is not 0 and below 2^-40 or from 2^20 on in size, an invalid calibration). After a failure there
   /// is no network.
   Status load(std::span<const std::byte> weights);
   [[nodiscard]] bool is_loaded() const { return !weights_.empty(); }
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
 
-  /// Rows from the top. kNotReady without weights; kNotFinite for a sample that is not a number or above 2^20 in size,
-  /// or where the maps come out as no numbers: the maps then say nothing.
+  /// Rows from the top. kNotReady without weights; kNotFinite for a sample that is NaN or above 2^20 in size,
+  /// or if the heatmaps are not finite: they are then not valid.
   Status run(std::span<const float, kInputSamples> crop);
 
-  /// Of the last run: the logits of keypoint k, cells in rows. Their softmax over the map is the distribution of where
-  /// the keypoint lies.
+  /// Of the last run: the logits of keypoint k, cells in rows. Their softmax over the heatmap is the probability
+  /// distribution of the keypoint position.
   [[nodiscard]] std::span<const float, kMapCells> logits(int keypoint) const {
     return maps_[static_cast<std::size_t>(keypoint)];
   }

@@ -1,8 +1,8 @@
 #pragma once
-// Four single-precision numbers side by side. Every operation rounds as IEEE 754 says, one operation at a time: the
-// same bits on every target.
+// Four single-precision numbers side by side. Every operation rounds according to IEEE 754, one operation at a time:
+// bit-identical on every target.
 //
-// On 32-bit ARM these are NEON's instructions: the compiler writes floating point into NEON only where it is told to,
+// On 32-bit ARM these are NEON's instructions: the compiler uses NEON for floating point only if requested explicitly,
 // because NEON flushes denormal numbers to zero (the network has none: number_range.h). VMLA of the Cortex-A9 rounds
 // the product and then the sum; VFMA, which rounds once, is never used. Elsewhere they are the compiler's own vectors.
 

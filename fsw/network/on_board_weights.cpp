@@ -2,7 +2,7 @@
 
 #include "fsw/network/keypoint_network.h"
 
-// As the linker placed them (on_board_weights.S).
+// Positions set by the linker (on_board_weights.S).
 extern "C" {
 extern const std::byte vbar_keypoint_weights[];
 extern const std::uint32_t vbar_keypoint_weights_bytes;

@@ -1,5 +1,5 @@
 #pragma once
-// What goes into the keypoint network and what comes out.
+// Sizes of the input and output of the keypoint network.
 
 #include <cstddef>
 

@@ -38,7 +38,7 @@ bool is_of_this_architecture(std::span<const std::byte> file) {
 
 bool checksum_holds(std::span<const std::byte> file) {
   const std::size_t covered = kFileBytes - kChecksumBytes;
-  // Bytes may be looked at as whatever byte type the checksum is written for.
+  // The bytes are passed to the checksum as its byte type.
   const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(file.data()), covered);
   return packets::crc32_ieee(bytes) == read<std::uint32_t>(file, covered);
 }
@@ -53,8 +53,8 @@ Status check_weights(std::span<const std::byte> file) {
     const auto weight = read<float>(file, offset);
     if (!is_finite(weight)) return Status::kNotFinite;
     const float size = weight < 0.0F ? -weight : weight;
-    // Denormal numbers are compared here, which the vector unit does not do: a compiler writes this for the scalar one.
-    if (weight != 0.0F && !(size >= kLeastWeight && size < kGreatestWeight)) status = Status::kOutOfRange;
+    // Denormal numbers are compared here, which the vector unit cannot: the compiler generates scalar code.
+    if (weight != 0.0F && !(size >= kMinWeight && size < kGreatestWeight)) status = Status::kOutOfRange;
   }
   return status;
 }

@@ -8,18 +8,18 @@
 
 namespace vbar::fsw::network {
 
-/// What was found on images that training never saw, and what use of the maps goes by.
+/// Calibration on images that were not used in training.
 struct Calibration {
-  float covariance_scale = 1.0F;    ///< of a map's second moments, less the training target's own
+  float covariance_scale = 1.0F;    ///< of a heatmap's second moments, less the variance of the training target
   float covariance_floor = 0.0F;    ///< added to each axis, cells^2
-  float target_sigma_cells = 1.0F;  ///< of the Gaussian maps that training asked for
-  float least_peak = 0.0F;          ///< a map whose highest 3 x 3 cells hold less tells nothing
-  /// Places are to be so much, as a share, farther from the crop's middle than the maps have them: a network that does
-  /// not know how large the target is leans towards the size it saw most.
+  float target_sigma_cells = 1.0F;  ///< of the Gaussian that is the training target
+  float least_peak = 0.0F;          ///< minimum share of the probability in the highest 3 x 3 cells
+  /// Factor, as a share, by which positions are moved away from the crop's centre: since the scale of the target is not
+  /// observable, the network is biased towards the mean scale of its training data.
   float stretch = 0.0F;
 };
 
-/// Is it such a file, of this architecture, whole, and every number in its range? What load() answers.
+/// Whether it is a valid weights file of this architecture, complete, with all values in range: the result of load().
 Status check_weights_file(std::span<const std::byte> file);
 
 /// Of a file that was checked.

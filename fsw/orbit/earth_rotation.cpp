@@ -23,8 +23,8 @@ struct Term {
   double y_cos;
 };
 
-// IERS Conventions 2010, tables 5.2a and b: terms above 1.5 mas. The largest at their printed values; the small ones
-// stand for their neighbours too, fitted to the full series over 2000 to 2040.
+// IERS Conventions 2010, tables 5.2a and b: terms above 1.5 mas. The largest have their printed values; the small ones
+// include the effect of neighbouring terms, fitted to the full series over 2000 to 2040.
 constexpr std::array<Term, 19> kNutation{{
     {{0, 0, 0, 0, 1}, -6.844318, 9.205236},   {{0, 0, 2, -2, 2}, -0.523908, 0.573033},
     {{0, 0, 2, 0, 2}, -0.090552, 0.097847},   {{0, 0, 0, 0, 2}, 0.082169, -0.089618},
@@ -45,8 +45,8 @@ constexpr double kNodeRateYSin = 0.153042;
 /// Delaunay arguments, rad: l, l', F, D, node (IERS Conventions 2010, eq. 5.43), t in centuries of TT.
 std::array<double, 5> delaunay_arguments(double t) {
   const auto arcseconds = [t](double c0, double c1, double c2) {
-    constexpr double kTurn = 1296000.0;
-    return math::fmod(c0 + t * (c1 + t * c2), kTurn) * kArcsecond;
+    constexpr double kRevolution = 1296000.0;
+    return math::fmod(c0 + t * (c1 + t * c2), kRevolution) * kArcsecond;
   };
   return {arcseconds(485868.249036, 1717915923.2178, 31.8792), arcseconds(1287104.79305, 129596581.0481, -0.5532),
           arcseconds(335779.526232, 1739527262.8478, -12.7512), arcseconds(1072260.70369, 1602961601.2090, -6.3706),
@@ -82,15 +82,15 @@ Matrix3 rotation_about_z(double angle) {
   return rotation;
 }
 
-/// Earth rotation angle, rad; the days of UT1 are split so that nothing is lost to their count.
+/// Earth rotation angle, rad; the days of UT1 are split to preserve precision.
 double earth_rotation_angle(Duration since_j2000_gps, double ut1_minus_gps_s) {
   constexpr std::int64_t kDay_ns = 86400 * kNanosecondsPerSecond;
   const std::int64_t days = since_j2000_gps.ns / kDay_ns;
   const double fraction = (seconds(Duration{since_j2000_gps.ns % kDay_ns}) + ut1_minus_gps_s) / kDay_s;
   constexpr double kExcess = 0.00273781191135448;
-  const double turns =
-      0.7790572732640 + fraction + kExcess * (static_cast<double>(days) + fraction);  // whole days are whole turns
-  return math::kTwoPi * (turns - math::floor(turns));
+  const double revolutions =
+      0.7790572732640 + fraction + kExcess * (static_cast<double>(days) + fraction);  // whole days: revolutions
+  return math::kTwoPi * (revolutions - math::floor(revolutions));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// Where the Earth-fixed frame stands, as a flight computer knows it: precession in full, the nineteen largest terms of
-// nutation, the Earth rotation angle, and what only the ground can tell (UT1, polar motion) from a telecommand.
+// Orientation of the Earth-fixed frame for on-board use: precession in full, the nineteen largest terms of
+// nutation, the Earth rotation angle, and the quantities measured on the ground (UT1, polar motion) by telecommand.
 // Equations of the IERS Conventions 2010, chapter 5 (CIO-based), truncated.
 
 #include "fsw/core/gps_time.h"
@@ -8,7 +8,7 @@
 
 namespace vbar::fsw::orbit {
 
-/// Earth orientation as telecommanded: straight lines through an epoch, good for some days.
+/// Earth orientation as telecommanded: linear in time about an epoch, valid for some days.
 struct EarthOrientation {
   GpsTime epoch;
   double ut1_minus_gps_s = -15.0;  ///< (UT1 - UTC) less the leap seconds since 1980, 15 in 2011

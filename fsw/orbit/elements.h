@@ -27,7 +27,7 @@ struct QnsElements {
 /// Mean motion, rad/s, of a Keplerian orbit with semi-major axis a (m, > 0).
 double mean_motion(double a);
 
-/// True argument of latitude, rad in (-pi, pi]; NaN for elements that no bound orbit has (e > 0.95, not finite).
+/// True argument of latitude, rad in (-pi, pi]; NaN for invalid elements (e > 0.95, not finite).
 double true_argument_of_latitude(const QnsElements& elements);
 
 /// ECI state of osculating elements. kOutOfRange unless 0 <= e <= 0.95, a > 0; kNotFinite; kDidNotConverge (Kepler).

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kLast = kGravityDegree + 1;  // degree and order of the gradient's series
 
-/// Newton's method, for numbers near one: what the compiler works out must not depend on whose library it has.
+/// Newton's method, for values near one: compile-time results must not depend on the library of the compiler.
 constexpr double square_root(double x) {
   double root = x > 1.0 ? x : 1.0;
   for (int k = 0; k < 40; ++k) {
@@ -20,7 +20,7 @@ constexpr double square_root(double x) {
   return root;
 }
 
-/// What a harmonic of the gradient weighs in the three components, and c of the recursion p_k = z p_(k-1) - q c
+/// Weights of a harmonic of the gradient in the three components, and c of the recursion p_k = z p_(k-1) - q c
 /// p_(k-2).
 struct Term {
   double recursion = 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-// Where a spacecraft stands in its orbital plane, from QNS elements, without the argument of perigee: regular at e = 0.
+// Position of a spacecraft in its orbital plane, from QNS elements, without the argument of perigee: regular at e = 0.
 
 #include "fsw/orbit/elements.h"
 

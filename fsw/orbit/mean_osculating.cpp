@@ -4,8 +4,8 @@
 #include "fsw/orbit/constants.h"
 #include "fsw/orbit/in_plane.h"
 
-// Brouwer's first-order formulas are written with e, w and M, which lose their meaning on a circular orbit. What they
-// change, the eccentricity vector and the mean argument of latitude, does not. So the corrections are carried as
+// Brouwer's first-order formulas are written with e, w and M, which are not defined on a circular orbit. The quantities
+// that they change, the eccentricity vector and the mean argument of latitude, are. So the corrections are applied as
 // changes of those:
 //   (ex + i ey)' = exp(i du) [ex + i ey + (de - i e dM) exp(i w)],
 // which is the usual recombination of e, M and w through (e + de, e dM), with the mean anomaly eliminated. At e = 0 the
@@ -170,7 +170,7 @@ Result<QnsElements> brouwer(const QnsElements& q, Direction direction) {
   d.draan += slow.draan;
   d.dlongitude += slow.dlongitude;
   const QnsElements image = apply(q, incl, d);
-  // Far below the Earth's surface the first order is no longer small, and its result no orbit.
+  // Far below the Earth's surface the first order is no longer small, and its result is not a valid orbit.
   if (!(image.a > 0.0) || !math::is_finite(image.i) || !math::is_finite(image.u)) return Status::kOutOfRange;
   return image;
 }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMaxStep = 10.0;  // s
 
-// The polar radius: nothing flies below it.
+// The polar radius: no valid orbit lies below it.
 constexpr double kMinRadius = 6.35e6;  // m
 
 CartesianState runge_kutta_4(const CartesianState& s, double h) {

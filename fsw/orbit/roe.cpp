@@ -38,7 +38,7 @@ Matrix6 roe_transition_j2(const QnsElements& chief_mean, double tau) {
   const double ey = chief_mean.ey;
   const double eta = math::sqrt(1.0 - ex * ex - ey * ey);
 
-  // The letters of Koenig, Guffanti and D'Amico 2017.
+  // Notation of Koenig, Guffanti and D'Amico 2017.
   const double E = 1.0 + eta;
   const double F = 4.0 + 3.0 * eta;
   const double G = 1.0 / (eta * eta);

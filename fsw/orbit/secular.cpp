@@ -20,11 +20,11 @@ SecularRates secular_rates(const QnsElements& mean) {
 
 QnsElements propagate_secular(const QnsElements& mean, double dt) {
   const SecularRates rates = secular_rates(mean);
-  const double cos_turn = math::cos(rates.perigee * dt);
-  const double sin_turn = math::sin(rates.perigee * dt);
+  const double cos_angle = math::cos(rates.perigee * dt);
+  const double sin_angle = math::sin(rates.perigee * dt);
   return QnsElements{.a = mean.a,
-                     .ex = mean.ex * cos_turn - mean.ey * sin_turn,
-                     .ey = mean.ex * sin_turn + mean.ey * cos_turn,
+                     .ex = mean.ex * cos_angle - mean.ey * sin_angle,
+                     .ey = mean.ex * sin_angle + mean.ey * cos_angle,
                      .i = mean.i,
                      .raan = mean.raan + rates.raan * dt,
                      .u = mean.u + rates.mean_argument_of_latitude() * dt};

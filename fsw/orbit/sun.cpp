@@ -45,7 +45,7 @@ constexpr double kEarthFromBarycentre = 4.671e6;  // mean
 constexpr double kEarthSpeedByMoon = 12.43;
 constexpr double kSunSpeedByJupiter = 12.47;
 
-/// What Venus (twice) and Jupiter add to the longitude (Meeus 1982, chapter 18; its time is from 1900).
+/// Perturbations of the longitude by Venus (two terms) and Jupiter (Meeus 1982, chapter 18; its time is from 1900).
 double perturbations(double t) {
   const double t1900 = t + 1.0;
   return math::kDegree * (0.00134 * math::cos(radians(153.23 + 22518.7541 * t1900)) +
@@ -91,7 +91,7 @@ Vector3 earth_velocity_over_c_gcrf(GpsTime time) {
   const double longitude = true_longitude(t);
   const double moon = moon_longitude(t);
   const double jupiter = jupiter_longitude(t);
-  // Along the ellipse; back by the Moon, along its own path; and with the Sun, which Jupiter swings.
+  // Along the ellipse; corrected for the Moon, along its own path; and for the motion of the Sun due to Jupiter.
   const double x = -speed * (math::sin(longitude) + e * math::sin(perihelion(t))) +
                    kEarthSpeedByMoon * math::sin(moon) + kSunSpeedByJupiter * math::sin(jupiter);
   const double y = speed * (math::cos(longitude) + e * math::cos(perihelion(t))) - kEarthSpeedByMoon * math::cos(moon) -

@@ -13,12 +13,12 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 using Matrix39 = Eigen::Matrix<double, 3, 9>;
 
 constexpr int kStarts = 4;  ///< eigenvectors; three belong to the form's null space if the points lie in a plane
-constexpr int kMostSteps = 20;
+constexpr int kMaxSteps = 20;
 constexpr double kSmallestStep = 1e-9;  ///< rad; Newton's next step would be its square
 constexpr double kSameRotation = 1e-3;  ///< rad
-constexpr double kLeastDistance = 0.1;  ///< m, along the boresight
+constexpr double kMinDistance = 0.1;    ///< m, along the boresight
 
-/// r' form r with r the rotation's rows one after the other; the best position is `position` r.
+/// r' form r with r the rows of the rotation stacked; the best position is `position` r.
 struct QuadraticForm {
   Matrix9 form = Matrix9::Zero();
   Matrix39 position = Matrix39::Zero();
@@ -57,7 +57,7 @@ Result<QuadraticForm> form_of(std::span<const SeenPoint> points) {
     }
   }
   const math::Cholesky<3> cholesky(sum_q);
-  // One line of sight leaves the distance along it open.
+  // A single line of sight leaves the distance along it undetermined.
   if (!(cholesky.smallest_pivot() > 1e-12 * sum_q.trace())) return Status::kSingular;
   for (int k = 0; k < 9; ++k) f.position.col(k) = -cholesky.solve(sum_qa.col(k));
   f.form += sum_qa.transpose().lazyProduct(f.position);
@@ -68,10 +68,10 @@ double cost_of(const Matrix9& form, const Vector9& r) {
   return r.dot(form.lazyProduct(r));
 }
 
-/// Slope and curvature of the cost by a turn about the camera's axes.
+/// Gradient and Hessian of the cost with respect to a rotation about the camera's axes.
 struct Slopes {
   Vector3 gradient = Vector3::Zero();
-  Matrix3 first_order = Matrix3::Zero();  ///< of the curvature, what is never negative
+  Matrix3 first_order = Matrix3::Zero();  ///< positive semidefinite part of the Hessian
   Matrix3 curvature = Matrix3::Zero();
 };
 
@@ -88,11 +88,11 @@ Slopes slopes_at(const Matrix9& form, const Matrix3& R) {
   return s;
 }
 
-/// Newton's method, damped where it does not go down.
+/// Newton's method, damped where the cost does not decrease.
 Matrix3 minimum_from(const Matrix9& form, Matrix3 R) {
   double cost = cost_of(form, elements_of(R));
   double damping = 0.0;
-  for (int k = 0; k < kMostSteps; ++k) {
+  for (int k = 0; k < kMaxSteps; ++k) {
     const Slopes s = slopes_at(form, R);
     const double scale = s.first_order.trace();
     if (!(scale > 0.0)) return R;
@@ -120,19 +120,19 @@ Matrix3 minimum_from(const Matrix9& form, Matrix3 R) {
 bool is_before_camera(const TargetPose& pose, std::span<const SeenPoint> points) {
   for (const SeenPoint& point : points) {
     const double depth = (pose.R_camera_body * point.body + pose.position_camera_m).z();
-    if (!(depth > kLeastDistance)) return false;
+    if (!(depth > kMinDistance)) return false;
   }
   return true;
 }
 
-/// In the order of costs; one of those that are the same.
+/// In the order of costs; duplicates are merged.
 void keep(const TargetPose& pose, double cost, ClosedFormPoses& all) {
   for (std::size_t k = 0; k < all.count; ++k) {
     if (angle_between(pose.R_camera_body, all.poses[k].R_camera_body) > kSameRotation) continue;
     return;
   }
-  if (all.count == ClosedFormPoses::kMost && !(cost < all.costs[all.count - 1])) return;
-  std::size_t place = all.count < ClosedFormPoses::kMost ? all.count++ : all.count - 1;
+  if (all.count == ClosedFormPoses::kMaxPoses && !(cost < all.costs[all.count - 1])) return;
+  std::size_t place = all.count < ClosedFormPoses::kMaxPoses ? all.count++ : all.count - 1;
   for (; place > 0 && cost < all.costs[place - 1]; --place) {
     all.poses[place] = all.poses[place - 1];
     all.costs[place] = all.costs[place - 1];

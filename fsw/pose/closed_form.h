@@ -1,8 +1,8 @@
 #pragma once
-// Poses from keypoints without a start: SQPnP (Terzakis and Lourakis 2020). The squared distances of the points from
-// their lines of sight, the position eliminated, are a quadratic form of the nine elements of the rotation. Starts are
-// the rotations nearest to its lowest eigenvectors, with either sign; from each the form is minimised, here by Newton's
-// method on the rotations themselves. Works for points in a plane.
+// Poses from keypoints without initial value: SQPnP (Terzakis and Lourakis 2020). The squared distances of the points
+// from their lines of sight, the position eliminated, are a quadratic form in the nine elements of the rotation. The
+// start values are the rotations nearest to its lowest eigenvectors, with either sign; from each it is minimised, by
+// Newton's method on the rotations themselves. Works for coplanar points.
 
 #include <array>
 #include <span>
@@ -19,15 +19,15 @@ struct SeenPoint {
   double weight = 1.0;
 };
 
-/// Its minima, lowest first, all points before the camera.
+/// Its minima, lowest first, all points in front of the camera.
 struct ClosedFormPoses {
-  static constexpr std::size_t kMost = 4;
-  std::array<TargetPose, kMost> poses{};
-  std::array<double, kMost> costs{};
+  static constexpr std::size_t kMaxPoses = 4;
+  std::array<TargetPose, kMaxPoses> poses{};
+  std::array<double, kMaxPoses> costs{};
   std::size_t count = 0;
 };
 
-/// None of fewer than three points, of points on one line of sight, or not finite.
+/// No pose for fewer than three points, points on one line of sight, or values that are not finite.
 ClosedFormPoses closed_form_poses(std::span<const SeenPoint> points);
 
 }  // namespace vbar::fsw::pose

@@ -5,8 +5,8 @@
 namespace vbar::fsw::pose {
 namespace {
 
-constexpr double kLeastSide = 16.0;
-constexpr double kLeastDeviation = 0.5;  // root of DN
+constexpr double kMinSide = 16.0;
+constexpr double kMinDeviation = 0.5;  // root of DN
 
 double larger(double a, double b) {
   return a > b ? a : b;
@@ -39,7 +39,7 @@ Cover cover_of(double edge, double step, int sample, int pixels) {
   return cover;
 }
 
-/// Sum over a row's covered pixels of what exceeds the dark level.
+/// Sum over a row's covered pixels of the values above the dark level.
 double row_sum(const std::uint16_t* row, const Cover& across, double dark_level_dn) {
   double sum = 0.0;
   for (int x = across.first; x <= across.last; ++x) {
@@ -59,7 +59,7 @@ void standardise_samples(CropSamples& samples) {
   }
   const double mean = sum / kCropSamples;
   const double variance = larger(0.0, squares / kCropSamples - mean * mean);
-  const double by = 1.0 / larger(kLeastDeviation, math::sqrt(variance));
+  const double by = 1.0 / larger(kMinDeviation, math::sqrt(variance));
   for (float& sample : samples) sample = static_cast<float>((static_cast<double>(sample) - mean) * by);
 }
 
@@ -70,8 +70,8 @@ Status cut_crop(const imaging::ImageView& image, const CropRegion& region, doubl
   const imaging::ImageFrame& frame = image.frame;
   const Vector2 middle(frame.origin_x + 0.5 * (frame.width - 1), frame.origin_y + 0.5 * (frame.height - 1));
   const double off = (region.centre_px - middle).norm();
-  // Written so that a NaN is refused.
-  if (!(region.side_px >= kLeastSide && region.side_px <= imaging::kMaxSide && off <= imaging::kMaxSide)) {
+  // Written such that a NaN is refused.
+  if (!(region.side_px >= kMinSide && region.side_px <= imaging::kMaxSide && off <= imaging::kMaxSide)) {
     return Status::kOutOfRange;
   }
   const double step = region.side_px / kCropSide;

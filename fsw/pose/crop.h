@@ -1,5 +1,5 @@
 #pragma once
-// What the keypoint network is shown: a square of the image around the target, brought to a fixed size and brightness.
+// Input of the keypoint network: a square of the image around the target, resampled to a fixed size and brightness.
 
 #include <array>
 #include <cstddef>
@@ -19,12 +19,12 @@ struct CropRegion {
   Vector2 centre_px = Vector2::Zero();
   double side_px = 0.0;
 
-  /// Where on the detector a place of the crop lies, in samples of `samples` a side (128 of the crop itself, 32 of a
+  /// Position on the detector of a point of the crop, in samples of `samples` a side (128 of the crop itself, 32 of a
   /// heatmap); an integer is the centre of a sample.
   [[nodiscard]] Vector2 pixel_of(const Vector2& place, int samples) const {
     return centre_px + side_px * ((place.array() + 0.5) / samples - 0.5).matrix();
   }
-  /// And back.
+  /// Its inverse.
   [[nodiscard]] Vector2 place_of(const Vector2& pixel, int samples) const {
     return ((pixel - centre_px).array() / side_px + 0.5).matrix() * samples - Vector2::Constant(0.5);
   }
@@ -33,13 +33,13 @@ struct CropRegion {
 /// Rows from the top, samples from the left.
 using CropSamples = std::array<float, kCropSamples>;
 
-/// Cuts `region` out of the image. A sample is the root of the mean of the pixels it covers, in parts where it covers
-/// them in part, above `dark_level_dn`; the root because photon noise is then alike everywhere, and shadows count
-/// beside glints. What the image does not hold (beside it, missing tiles) is dark.
+/// Crops `region` of the image. A sample is the root of the mean of the pixels it covers, weighted by the covered area,
+/// above `dark_level_dn`; the root makes photon noise uniform, and shadows count
+/// beside glints. Pixels that the image does not contain (outside it, missing tiles) are dark.
 ///
-/// With `standardise` the samples are brought to mean 0 and deviation 1 over the crop; of a crop that is almost even
-/// (less than half a root of a DN) noise is not blown up. kOutOfRange unless the region is 16 to 4096 px a side, with
-/// its centre at most as far from the image's.
+/// With `standardise` the samples are scaled to mean 0 and standard deviation 1 over the crop; in a crop that is almost
+/// uniform (below half a root of a DN) noise is not amplified. kOutOfRange unless the region is 16 to 4096 px a side,
+/// with its centre at most as far from the image's.
 Status cut_crop(const imaging::ImageView& image, const CropRegion& region, double dark_level_dn, CropSamples& out,
                 bool standardise = true);
 

@@ -9,9 +9,9 @@ namespace {
 using Logits = std::span<const float, network::kMapCells>;
 
 constexpr int kSide = network::kMapSide;
-constexpr int kReach = 3;  ///< cells of the window beside its middle
-constexpr double kMostSecond = 0.6;
-/// exp(-40) of the highest: 1024 of them are nothing to it.
+constexpr int kReach = 3;  ///< cells of the window on either side of its centre
+constexpr double kMaxSecond = 0.6;
+/// exp(-40) of the maximum: 1024 of them are negligible.
 constexpr double kNegligible = -40.0;
 
 struct Cell {
@@ -19,7 +19,7 @@ struct Cell {
   int row = 0;
 };
 
-/// The part of a square of cells that lies on the map.
+/// The part of a square of cells that lies on the heatmap.
 struct Window {
   int left, right, top, bottom;
 
@@ -34,7 +34,7 @@ struct Window {
   }
 };
 
-/// The map's probabilities over that of its highest cell.
+/// The heatmap's probabilities relative to that of its highest cell.
 class Likelihood {
  public:
   Likelihood(Logits logits, float highest) : logits_(logits), highest_(static_cast<double>(highest)) {}
@@ -67,7 +67,7 @@ Moments moments_of(const Likelihood& map, const Window& window) {
   double sum = 0.0;
   Vector2 first = Vector2::Zero();
   Matrix2 second = Matrix2::Zero();
-  // From the window's corner, so that nothing large cancels.
+  // From the window's corner, to avoid cancellation.
   for (int row = window.top; row <= window.bottom; ++row) {
     for (int column = window.left; column <= window.right; ++column) {
       const double weight = map.at(column, row);
@@ -101,22 +101,22 @@ CutGaussian cut_gaussian(double centre, double sigma, int first, int last) {
   return {centre + mean, two / sum - mean * mean};
 }
 
-/// Replaces the mean of one axis by the centre of the Gaussian that would have it, and takes that Gaussian's variance
-/// off.
+/// Replaces the mean of one axis by the centre of the Gaussian that has this mean in the window, and subtracts that
+/// Gaussian's variance.
 void allow_for_cut(double sigma, int first, int last, double& mean, double& variance) {
   double centre = mean;
   CutGaussian cut = cut_gaussian(centre, sigma, first, last);
-  constexpr double kLeastSlope = 0.3;  // of the cut mean by the centre; beside the edge it is 0.5
+  constexpr double kMinSlope = 0.3;  // derivative of the truncated mean with respect to the centre; 0.5 at the edge
   for (int k = 0; k < 4; ++k) {
     const double slope = cut.variance / (sigma * sigma);
-    centre += (mean - cut.mean) / (slope > kLeastSlope ? slope : kLeastSlope);
+    centre += (mean - cut.mean) / (slope > kMinSlope ? slope : kMinSlope);
     cut = cut_gaussian(centre, sigma, first, last);
   }
   mean = centre;
   variance -= cut.variance;
 }
 
-/// The cell that a place lies in; places are within the map.
+/// The cell of a position; positions are within the heatmap.
 Cell cell_of(const Vector2& place) {
   return {static_cast<int>(place.x() + 0.5), static_cast<int>(place.y() + 0.5)};
 }
@@ -145,7 +145,7 @@ MapPeak read_map(Logits logits, double target_sigma_cells) {
     }
   }
   peak.peak = map.sum(Window(top, 1)) / total;
-  // Once more around the mean: a window that cuts one side of the peak more than the other draws the mean away from it.
+  // Repeated around the mean: a window that truncates one side of the peak more than the other biases the mean.
   const Window window(cell_of(moments_of(map, around).mean), kReach);
   const Moments moments = moments_of(map, window);
   peak.place = moments.mean;
@@ -177,7 +177,7 @@ Keypoint keypoint_of(const MapPeak& peak, const network::Calibration& calibratio
   keypoint.covariance_px2 = cell_px * cell_px * place_covariance(peak, calibration);
   keypoint.peak = peak.peak;
   keypoint.is_usable =
-      !peak.is_at_border && peak.peak >= static_cast<double>(calibration.least_peak) && peak.second <= kMostSecond;
+      !peak.is_at_border && peak.peak >= static_cast<double>(calibration.least_peak) && peak.second <= kMaxSecond;
   return keypoint;
 }
 

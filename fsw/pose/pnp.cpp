@@ -10,34 +10,34 @@
 namespace vbar::fsw::pose {
 namespace {
 
-constexpr std::size_t kMost = network::kKeypoints;
+constexpr std::size_t kMaxKeypoints = network::kKeypoints;
 constexpr std::size_t kMinimalSet = 4;
-constexpr int kMostSets = 64;
-/// Enough sets are drawn when with this chance at most none of them was free of outliers.
-constexpr double kMostDoubt = 1e-4;
-/// Limits of an inlier widened by so much for poses of minimal sets, in which four keypoints' noise is all.
+constexpr int kMaxSets = 64;
+/// Enough sets are drawn when the probability that none of them was free of outliers is at most this.
+constexpr double kMaxFailureProbability = 1e-4;
+/// Factor on the inlier limits for poses of minimal sets, which depend on the noise of four keypoints.
 constexpr double kLoose = 2.0;
 
 /// The usable keypoints.
 struct Problem {
-  std::array<Observation, kMost> observations{};
-  std::array<SeenPoint, kMost> points{};
-  std::array<std::size_t, kMost> keypoint{};  ///< which one it is
+  std::array<Observation, kMaxKeypoints> observations{};
+  std::array<SeenPoint, kMaxKeypoints> points{};
+  std::array<std::size_t, kMaxKeypoints> keypoint{};  ///< its index
   std::size_t count = 0;
 };
 
-/// How well a pose does: more inliers, then less cost.
+/// Score of a pose: more inliers, then smaller cost.
 struct Verdict {
-  std::array<bool, kMost> is_inlier{};
+  std::array<bool, kMaxKeypoints> is_inlier{};
   int inliers = 0;
-  double cost = 0.0;  ///< whitened squares over their limit, at most 1 a keypoint
+  double cost = 0.0;  ///< whitened squares over their limit, at most 1 per keypoint
 
   [[nodiscard]] bool is_better_than(const Verdict& other) const {
     return inliers != other.inliers ? inliers > other.inliers : cost < other.cost;
   }
 };
 
-struct Judged {
+struct Evaluated {
   RefinedPose refined;
   Verdict verdict;
 };
@@ -73,9 +73,9 @@ Problem problem_of(const Keypoints& keypoints, const KeypointShape& shape, const
   return problem;
 }
 
-Verdict judge(const Problem& problem, const TargetPose& pose, const imaging::CameraModel& camera,
-              const PnpSettings& settings, double widening) {
-  const double most_squares = widening * widening * settings.inlier_sigmas * settings.inlier_sigmas;
+Verdict evaluate(const Problem& problem, const TargetPose& pose, const imaging::CameraModel& camera,
+                 const PnpSettings& settings, double widening) {
+  const double max_squares = widening * widening * settings.inlier_sigmas * settings.inlier_sigmas;
   const double floor_px = widening * settings.inlier_floor_px;
   Verdict verdict;
   for (std::size_t k = 0; k < problem.count; ++k) {
@@ -84,8 +84,8 @@ Verdict judge(const Problem& problem, const TargetPose& pose, const imaging::Cam
     double share = 1.0;
     if (miss.ok()) {
       const double squares = (observation.whitening * miss.value()).squaredNorm();
-      verdict.is_inlier[k] = squares <= most_squares || miss.value().squaredNorm() <= floor_px * floor_px;
-      if (squares < most_squares) share = squares / most_squares;
+      verdict.is_inlier[k] = squares <= max_squares || miss.value().squaredNorm() <= floor_px * floor_px;
+      if (squares < max_squares) share = squares / max_squares;
     }
     if (verdict.is_inlier[k]) ++verdict.inliers;
     verdict.cost += share;
@@ -95,7 +95,7 @@ Verdict judge(const Problem& problem, const TargetPose& pose, const imaging::Cam
 
 Result<RefinedPose> refine_inliers(const Problem& problem, const Verdict& verdict, const imaging::CameraModel& camera,
                                    const TargetPose& start) {
-  std::array<Observation, kMost> inliers{};
+  std::array<Observation, kMaxKeypoints> inliers{};
   std::size_t count = 0;
   for (std::size_t k = 0; k < problem.count; ++k) {
     if (verdict.is_inlier[k]) inliers[count++] = problem.observations[k];
@@ -104,21 +104,21 @@ Result<RefinedPose> refine_inliers(const Problem& problem, const Verdict& verdic
   return refine_pose(std::span(inliers).first(count), camera, start);
 }
 
-/// Refined over its inliers by wide limits, then twice over those by the true ones.
-Result<Judged> polish(const Problem& problem, const TargetPose& start, const imaging::CameraModel& camera,
-                      const PnpSettings& settings) {
-  Judged judged;
-  judged.refined.pose = start;
+/// Refined over its inliers by wide limits, then twice over those by the nominal ones.
+Result<Evaluated> polish(const Problem& problem, const TargetPose& start, const imaging::CameraModel& camera,
+                         const PnpSettings& settings) {
+  Evaluated evaluated;
+  evaluated.refined.pose = start;
   for (const double widening : {kLoose, 1.0, 1.0}) {
-    judged.verdict = judge(problem, judged.refined.pose, camera, settings, widening);
-    const Result<RefinedPose> refined = refine_inliers(problem, judged.verdict, camera, judged.refined.pose);
+    evaluated.verdict = evaluate(problem, evaluated.refined.pose, camera, settings, widening);
+    const Result<RefinedPose> refined = refine_inliers(problem, evaluated.verdict, camera, evaluated.refined.pose);
     if (!refined.ok()) return refined.status();
-    judged.refined = refined.value();
+    evaluated.refined = refined.value();
   }
-  return judged;
+  return evaluated;
 }
 
-/// Of the closed form's poses of these points the one that most keypoints agree with.
+/// Of the closed form's poses of these points the one with the largest consensus.
 struct Guess {
   TargetPose pose;
   Verdict verdict;
@@ -128,7 +128,7 @@ void guess_from(std::span<const SeenPoint> points, const Problem& problem, const
                 const PnpSettings& settings, Guess& best) {
   const ClosedFormPoses poses = closed_form_poses(points);
   for (std::size_t k = 0; k < poses.count; ++k) {
-    const Verdict verdict = judge(problem, poses.poses[k], camera, settings, kLoose);
+    const Verdict verdict = evaluate(problem, poses.poses[k], camera, settings, kLoose);
     if (best.is_there && !verdict.is_better_than(best.verdict)) continue;
     best = {poses.poses[k], verdict, true};
   }
@@ -154,23 +154,23 @@ class Draws {
   std::uint32_t count_ = 1;
 };
 
-/// Chance that none of so many sets is of inliers alone, if so many of all keypoints are.
-double doubt_after(int sets, int inliers, std::size_t keypoints) {
+/// Probability that none of `sets` sets consists of inliers alone, given the share of inliers.
+double failure_probability(int sets, int inliers, std::size_t keypoints) {
   double chance = 1.0;
   for (std::size_t k = 0; k < kMinimalSet; ++k) {
     chance *= (inliers - static_cast<double>(k)) / static_cast<double>(keypoints - k);
   }
-  double doubt = 1.0;
-  for (int k = 0; k < sets; ++k) doubt *= 1.0 - chance;
-  return doubt;
+  double probability = 1.0;
+  for (int k = 0; k < sets; ++k) probability *= 1.0 - chance;
+  return probability;
 }
 
 Guess guess_by_sets(const Problem& problem, const imaging::CameraModel& camera, const PnpSettings& settings,
                     std::uint32_t seed) {
   Draws draws(seed);
   Guess best;
-  for (int set = 0; set < kMostSets; ++set) {
-    std::array<SeenPoint, kMost> points = problem.points;
+  for (int set = 0; set < kMaxSets; ++set) {
+    std::array<SeenPoint, kMaxKeypoints> points = problem.points;
     for (std::size_t k = 0; k < kMinimalSet; ++k) {
       const std::size_t other = k + draws.below(problem.count - k);
       const SeenPoint drawn = points[other];
@@ -178,22 +178,23 @@ Guess guess_by_sets(const Problem& problem, const imaging::CameraModel& camera, 
       points[k] = drawn;
     }
     guess_from(std::span(points).first(kMinimalSet), problem, camera, settings, best);
-    if (best.is_there && doubt_after(set + 1, best.verdict.inliers, problem.count) < kMostDoubt) break;
+    if (best.is_there && failure_probability(set + 1, best.verdict.inliers, problem.count) < kMaxFailureProbability)
+      break;
   }
   return best;
 }
 
-/// A solution's starts are the closed form of all points that agree with it, too: it may find a lower minimum.
+/// The closed form of all points that agree is used as initial value as well: it may find a lower minimum.
 void polish_further(const Problem& problem, const imaging::CameraModel& camera, const PnpSettings& settings,
-                    Judged& best) {
-  std::array<SeenPoint, kMost> points{};
+                    Evaluated& best) {
+  std::array<SeenPoint, kMaxKeypoints> points{};
   std::size_t count = 0;
   for (std::size_t k = 0; k < problem.count; ++k) {
     if (best.verdict.is_inlier[k]) points[count++] = problem.points[k];
   }
   const ClosedFormPoses poses = closed_form_poses(std::span(points).first(count));
   for (std::size_t k = 0; k < poses.count; ++k) {
-    const Result<Judged> other = polish(problem, poses.poses[k], camera, settings);
+    const Result<Evaluated> other = polish(problem, poses.poses[k], camera, settings);
     if (!other.ok()) continue;
     const Verdict& verdict = other.value().verdict;
     const bool is_lower = verdict.inliers == best.verdict.inliers && other.value().refined.cost < best.refined.cost;
@@ -201,15 +202,15 @@ void polish_further(const Problem& problem, const imaging::CameraModel& camera, 
   }
 }
 
-Result<PnpSolution> solution_of(const Problem& problem, const Judged& judged, const imaging::CameraModel& camera,
+Result<PnpSolution> solution_of(const Problem& problem, const Evaluated& evaluated, const imaging::CameraModel& camera,
                                 const PnpSettings& settings) {
   PnpSolution solution;
-  solution.pose = judged.refined.pose;
+  solution.pose = evaluated.refined.pose;
   const double range = math::sqrt(solution.pose.position_camera_m.squaredNorm());
   if (!(range >= settings.nearest_m && range <= settings.farthest_m)) return Status::kOutOfRange;
   double squares = 0.0;
   for (std::size_t k = 0; k < problem.count; ++k) {
-    if (!judged.verdict.is_inlier[k]) continue;
+    if (!evaluated.verdict.is_inlier[k]) continue;
     const Result<Vector2> miss = miss_of(problem.observations[k], solution.pose, camera);
     if (!miss.ok()) return miss.status();
     squares += (problem.observations[k].whitening * miss.value()).squaredNorm();
@@ -217,8 +218,8 @@ Result<PnpSolution> solution_of(const Problem& problem, const Judged& judged, co
     ++solution.inliers;
   }
   solution.mean_square = squares / (2 * solution.inliers - 6);
-  if (!(solution.mean_square <= settings.most_mean_square)) return Status::kDidNotConverge;
-  const math::Cholesky6 cholesky(judged.refined.information);
+  if (!(solution.mean_square <= settings.max_mean_square)) return Status::kDidNotConverge;
+  const math::Cholesky6 cholesky(evaluated.refined.information);
   if (!cholesky.ok()) return Status::kDidNotConverge;
   solution.covariance = cholesky.inverse();
   return solution;
@@ -229,25 +230,25 @@ Result<PnpSolution> solution_of(const Problem& problem, const Judged& judged, co
 Result<PnpSolution> solve_pnp(const Keypoints& keypoints, const KeypointShape& shape,
                               const imaging::CameraModel& camera, const PnpSettings& settings, std::uint32_t seed) {
   const Problem problem = problem_of(keypoints, shape, camera);
-  const int least =
-      settings.least_inliers > static_cast<int>(kMinimalSet) ? settings.least_inliers : static_cast<int>(kMinimalSet);
-  if (static_cast<int>(problem.count) < least) return Status::kNotReady;
+  const int minimum =
+      settings.min_inliers > static_cast<int>(kMinimalSet) ? settings.min_inliers : static_cast<int>(kMinimalSet);
+  if (static_cast<int>(problem.count) < minimum) return Status::kNotReady;
 
-  // Mostly all keypoints agree, and no set need be drawn.
+  // Usually all keypoints agree, and no set is drawn.
   Guess guess;
   guess_from(std::span(problem.points).first(problem.count), problem, camera, settings, guess);
-  Result<Judged> best = guess.is_there ? polish(problem, guess.pose, camera, settings) : Status::kDidNotConverge;
+  Result<Evaluated> best = guess.is_there ? polish(problem, guess.pose, camera, settings) : Status::kDidNotConverge;
   if (!best.ok() || best.value().verdict.inliers < static_cast<int>(problem.count)) {
     const Guess drawn = guess_by_sets(problem, camera, settings, seed);
     if (drawn.is_there) {
-      const Result<Judged> other = polish(problem, drawn.pose, camera, settings);
+      const Result<Evaluated> other = polish(problem, drawn.pose, camera, settings);
       if (other.ok() && (!best.ok() || other.value().verdict.is_better_than(best.value().verdict))) best = other;
     }
   }
-  if (!best.ok() || best.value().verdict.inliers < least) return Status::kDidNotConverge;
-  Judged judged = best.value();
-  polish_further(problem, camera, settings, judged);
-  return solution_of(problem, judged, camera, settings);
+  if (!best.ok() || best.value().verdict.inliers < minimum) return Status::kDidNotConverge;
+  Evaluated evaluated = best.value();
+  polish_further(problem, camera, settings, evaluated);
+  return solution_of(problem, evaluated, camera, settings);
 }
 
 }  // namespace vbar::fsw::pose

@@ -7,7 +7,7 @@
 namespace vbar::fsw::pose {
 namespace {
 
-constexpr int kMostSteps = 25;
+constexpr int kMaxSteps = 25;
 constexpr double kSmallestStep = 1e-9;  ///< rad, and of the distance
 
 struct Normals {
@@ -21,13 +21,13 @@ Result<Normals> normals_at(std::span<const Observation> observations, const imag
                            const TargetPose& pose) {
   Normals n;
   for (const Observation& o : observations) {
-    const Vector3 turned = pose.R_camera_body * o.body;
-    const Result<imaging::Projection> seen = imaging::project(camera, turned + pose.position_camera_m);
+    const Vector3 rotated = pose.R_camera_body * o.body;
+    const Result<imaging::Projection> seen = imaging::project(camera, rotated + pose.position_camera_m);
     if (!seen.ok()) return seen.status();
     const Vector2 miss = o.whitening * (seen.value().pixel - o.pixel);
     Eigen::Matrix<double, 2, 6> J;
     const Eigen::Matrix<double, 2, 3> by_position = o.whitening * seen.value().derivative;
-    J << -(by_position * cross_matrix(turned)), by_position;
+    J << -(by_position * cross_matrix(rotated)), by_position;
     const double length = math::sqrt(miss.squaredNorm());
     const bool is_far = length > kHuberSigmas;
     const double weight = is_far ? kHuberSigmas / length : 1.0;
@@ -60,7 +60,7 @@ Result<RefinedPose> refine_pose(std::span<const Observation> observations, const
   Result<Normals> here = normals_at(observations, camera, pose);
   if (!here.ok()) return here.status();
   double damping = 0.0;  // times the diagonal
-  for (int k = 0; k < kMostSteps; ++k) {
+  for (int k = 0; k < kMaxSteps; ++k) {
     Matrix6 damped = here.value().weighted;
     damped.diagonal() *= 1.0 + damping;
     const math::Cholesky6 cholesky(damped);

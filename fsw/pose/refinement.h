@@ -18,19 +18,19 @@ struct Observation {
   Vector3 body = Vector3::Zero();
 };
 
-/// Residuals beyond so many sigmas weigh by their length, not its square.
+/// Residuals beyond this number of sigma have a linear cost (Huber).
 inline constexpr double kHuberSigmas = 3.0;
 
 struct RefinedPose {
   TargetPose pose;
-  double cost = 0.0;                      ///< half of the whitened squares, by Huber
-  Matrix6 information = Matrix6::Zero();  ///< J'J of turn (about the camera's axes, rad) and position (m)
+  double cost = 0.0;                      ///< half of the whitened squares, with Huber's weights
+  Matrix6 information = Matrix6::Zero();  ///< J'J of rotation (about the camera's axes, rad) and position (m)
 };
 
-/// Where the pose puts the keypoint, less where it was seen, px. kOutOfRange if it is not before the camera.
+/// Predicted minus observed position of the keypoint, px. kOutOfRange if it is not in front of the camera.
 Result<Vector2> miss_of(const Observation& observation, const TargetPose& pose, const imaging::CameraModel& camera);
 
-/// From a pose with all points before the camera, else kOutOfRange. kSingular where the points leave the pose open.
+/// From a pose with all points in front of the camera, else kOutOfRange. kSingular if the points leave the pose open.
 Result<RefinedPose> refine_pose(std::span<const Observation> observations, const imaging::CameraModel& camera,
                                 const TargetPose& start);
 

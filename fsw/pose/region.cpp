@@ -6,7 +6,7 @@ namespace vbar::fsw::pose {
 
 namespace {
 
-/// A crop's side in radii of the target as it looks: what training's crops had on average.
+/// Side of a crop in apparent radii of the target: the mean of the training data.
 constexpr double kSides = 2.3;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Which square of the detector to cut out.
+// The square of the detector to crop.
 
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
@@ -9,7 +9,7 @@
 
 namespace vbar::fsw::pose {
 
-/// The crop for a target there: the square around all its keypoints, however it is turned. kOutOfRange if behind.
+/// The crop for a target at a pose: the square around all its keypoints, for any attitude. kOutOfRange if behind.
 Result<CropRegion> region_of(const Vector3& position_camera_m, const imaging::CameraModel& model,
                              const KeypointShape& shape);
 

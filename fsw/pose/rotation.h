@@ -14,9 +14,9 @@ inline Matrix3 cross_matrix(const Vector3& v) {
   return m;
 }
 
-/// exp([turn]x), the active rotation about `turn` by its length, rad (Rodrigues).
-inline Matrix3 rotation_by(const Vector3& turn) {
-  const double square = turn.squaredNorm();
+/// exp([rotation]x), the active rotation about `rotation` by its length, rad (Rodrigues).
+inline Matrix3 rotation_by(const Vector3& rotation) {
+  const double square = rotation.squaredNorm();
   const double angle = math::sqrt(square);
   double along = 1.0 - square / 6.0;    // sin(a) / a
   double across = 0.5 - square / 24.0;  // (1 - cos(a)) / a^2
@@ -25,11 +25,11 @@ inline Matrix3 rotation_by(const Vector3& turn) {
     along = math::sin(angle) / angle;
     across = 2.0 * half * half / square;
   }
-  const Matrix3 k = cross_matrix(turn);
+  const Matrix3 k = cross_matrix(rotation);
   return Matrix3::Identity() + along * k + across * k * k;
 }
 
-/// Angle of the rotation that leads from one to the other, rad, to rounding of its square.
+/// Angle of the rotation between the two, rad, to rounding of its square.
 inline double angle_between(const Matrix3& a, const Matrix3& b) {
   const double chord = 0.125 * (a - b).squaredNorm();  // sin^2 of half the angle
   return 2.0 * math::asin(chord < 1.0 ? math::sqrt(chord) : 1.0);

@@ -7,14 +7,14 @@
 namespace vbar::fsw::pose {
 namespace {
 
-/// What two poses of the same image may differ by.
-constexpr double kMostTurn = 30.0 * math::kDegree;
-constexpr double kMostShift = 0.2;  ///< of the range
+/// Limits of the difference between two poses of the same image.
+constexpr double kMaxRotation = 30.0 * math::kDegree;
+constexpr double kMaxShift = 0.2;  ///< of the range
 
 bool agree(const TargetPose& a, const TargetPose& b) {
   const double range = math::sqrt(b.position_camera_m.squaredNorm());
   const double shift = math::sqrt((a.position_camera_m - b.position_camera_m).squaredNorm());
-  return angle_between(a.R_camera_body, b.R_camera_body) <= kMostTurn && shift <= kMostShift * range;
+  return angle_between(a.R_camera_body, b.R_camera_body) <= kMaxRotation && shift <= kMaxShift * range;
 }
 
 bool is_within(const imaging::ImageFrame& frame, const Vector2& pixel) {
@@ -28,7 +28,7 @@ bool is_within(const imaging::ImageFrame& frame, const Vector2& pixel) {
 void SpacecraftPoseNetwork::configure(const PoseCameraSettings& settings) {
   settings_ = settings;
   sighting_ = {};
-  // Without weights process() says kInvalid.
+  // Without weights process() returns kInvalid.
   if (!network_.is_loaded()) static_cast<void>(network_.load(network::weights_on_board()));
 }
 
@@ -106,19 +106,19 @@ CropRegion SpacecraftPoseNetwork::second_region() const {
         region_of(sighting_.pnp->pose.position_camera_m, settings_.model, settings_.shape);
     if (region.ok()) return region.value();
   }
-  constexpr double kMargin = 1.4;  // training's crops leave that much beside the keypoints on average
-  constexpr double kLeastShare = 0.7;
-  Vector2 least = Vector2::Constant(1e9);
-  Vector2 most = Vector2::Constant(-1e9);
+  constexpr double kMargin = 1.4;  // mean margin of the training crops beside the keypoints
+  constexpr double kMinShare = 0.7;
+  Vector2 minimum = Vector2::Constant(1e9);
+  Vector2 maximum = Vector2::Constant(-1e9);
   for (const Keypoint& keypoint : sighting_.keypoints) {
     if (!keypoint.is_usable) continue;
-    least = least.cwiseMin(keypoint.pixel);
-    most = most.cwiseMax(keypoint.pixel);
+    minimum = minimum.cwiseMin(keypoint.pixel);
+    maximum = maximum.cwiseMax(keypoint.pixel);
   }
   CropRegion region = sighting_.region;
-  region.centre_px = 0.5 * (least + most);
-  const double side = kMargin * (most - least).maxCoeff();
-  region.side_px = side > kLeastShare * region.side_px ? side : kLeastShare * region.side_px;
+  region.centre_px = 0.5 * (minimum + maximum);
+  const double side = kMargin * (maximum - minimum).maxCoeff();
+  region.side_px = side > kMinShare * region.side_px ? side : kMinShare * region.side_px;
   return region;
 }
 

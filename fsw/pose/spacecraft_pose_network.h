@@ -1,6 +1,6 @@
 #pragma once
-// From an image to the target's keypoints and pose (after SPN, Park and D'Amico 2023): find the target, cut it out, run
-// the network, read its maps, solve for the pose.
+// From an image to the target's keypoints and pose (after SPN, Park and D'Amico 2023): detect the target, crop, run
+// the network, evaluate its heatmaps, solve for the pose.
 
 #include <optional>
 
@@ -29,11 +29,11 @@ struct PoseCameraSettings {
 
 enum class SightingStatus : std::uint8_t {
   kPose = 0,     ///< keypoints and a pose
-  kKeypoints,    ///< keypoints (at least one usable), but no pose that they agree on
-  kNoKeypoints,  ///< the network saw none
-  kNoTarget,     ///< nothing in the image that could be the target
+  kKeypoints,    ///< keypoints (at least one usable), but no consistent pose
+  kNoKeypoints,  ///< no keypoint detected
+  kNoTarget,     ///< no object in the image can be the target
   kDark,         ///< no light but noise
-  kBlinded,      ///< more of the image saturated than a target can
+  kBlinded,      ///< a larger part of the image is saturated than a target can saturate
   kInvalid,      ///< not the frame of the settings, or no network
 };
 
@@ -47,20 +47,20 @@ struct PoseSighting {
   std::optional<PnpSolution> pnp;
 };
 
-/// Some 2 MB, nearly all of it the network's.
+/// Some 2 MB, nearly all of it the network.
 class SpacecraftPoseNetwork {
  public:
   /// Replaces the settings; loads the weights on board if that is not done yet.
   void configure(const PoseCameraSettings& settings);
 
-  /// `predicted`: where navigation expects the target, camera axes. Without it, or where the image cannot hold what it
-  /// says, the target is found in the image alone, in two rounds: the second cuts out anew what the first made of it.
-  /// Poses of the two that contradict each other are none.
+  /// `predicted`: pose predicted by navigation, camera axes. Without it, or if it is outside the image,
+  /// the target is detected in the image alone, in two rounds: the second crops again around the result of the first.
+  /// If the poses of the two contradict each other, neither is returned.
   const PoseSighting& process(GpsTime time, std::int32_t image_number, const imaging::ImageView& image,
                               const std::optional<Vector3>& predicted_position_camera_m);
 
   [[nodiscard]] const PoseSighting& sighting() const { return sighting_; }
-  /// Its maps of the last image.
+  /// Its heatmaps of the last image.
   [[nodiscard]] const network::KeypointNetwork& keypoint_network() const { return network_; }
 
  private:

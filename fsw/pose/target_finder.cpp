@@ -5,16 +5,16 @@
 namespace vbar::fsw::pose {
 namespace {
 
-constexpr double kMostSaturated = 0.4;  ///< of the pixels
-constexpr int kReach = 2;               ///< blocks: one without light between two is no gap
-constexpr int kLeastLit = 5;            ///< blocks: no speck is so large
-constexpr int kLeastBlocks = 12;
-constexpr int kLeastSide = 6;          ///< blocks: 48 px
-constexpr int kMostSide = 80;          ///< blocks: 640 px
-constexpr double kMostAtEdge = 0.5;    ///< blocks at the image's edge, of the structure's longer side
-constexpr double kLeastFilled = 0.12;  ///< of its rectangle
+constexpr double kMaxSaturated = 0.4;  ///< of the pixels
+constexpr int kReach = 2;              ///< blocks: a single dark block is not a gap
+constexpr int kMinLit = 5;             ///< blocks: larger than any speck
+constexpr int kMinBlocks = 12;
+constexpr int kMinSide = 6;          ///< blocks: 48 px
+constexpr int kMaxSide = 80;         ///< blocks: 640 px
+constexpr double kMaxAtEdge = 0.5;   ///< blocks at the image's edge, of the structure's longer side
+constexpr double kMinFilled = 0.12;  ///< of its rectangle
 constexpr double kNoises = 6.0;
-constexpr int kMostLevels = 8;
+constexpr int kMaxLevels = 8;
 constexpr double kLevelFactor = 2.5;
 constexpr double kMargin = 1.3;
 
@@ -26,18 +26,18 @@ int larger(int a, int b) {
   return a > b ? a : b;
 }
 
-/// Of four the mean of the middle two, of fewer the least: a speck lies in one quarter of a block.
+/// Of four the mean of the middle two, of fewer the minimum: a speck lies in one quarter of a block.
 double without_speck(const std::array<double, 4>& values, int count) {
-  double least = values[0];
-  double most = values[0];
+  double minimum = values[0];
+  double maximum = values[0];
   double sum = 0.0;
   for (int k = 0; k < count; ++k) {
     const double value = values[static_cast<std::size_t>(k)];
-    if (value < least) least = value;
-    if (value > most) most = value;
+    if (value < minimum) minimum = value;
+    if (value > maximum) maximum = value;
     sum += value;
   }
-  return count == 4 ? 0.5 * (sum - least - most) : least;
+  return count == 4 ? 0.5 * (sum - minimum - maximum) : minimum;
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ void TargetFinder::average_block(const imaging::ImageView& image, const Detector
   if (quarters_there > 0) {
     light = without_speck(quarters, quarters_there);
   } else {
-    // Of a block that never arrived the one above says most: a target is not torn apart.
+    // A missing block is replaced by the one above, which is most similar: a target is contiguous.
     light = row > 0 ? light_[place(column, row - 1)] : 0.0;
   }
 }
@@ -83,7 +83,7 @@ void TargetFinder::average_blocks(const imaging::ImageView& image, const Detecto
   }
 }
 
-/// What this share of the blocks is below of, to 0.01 DN.
+/// The level below which this share of the blocks lies, to 0.01 DN.
 double TargetFinder::level_below(double share) const {
   const int blocks = columns_ * rows_;
   double low = -4096.0;
@@ -106,7 +106,7 @@ TargetFinder::Structure TargetFinder::grow_from(int column, int row) {
   std::size_t waiting = 0;
   is_open_[place(column, row)] = false;
   to_visit_[waiting++] = static_cast<std::int16_t>(place(column, row));
-  while (waiting > 0) {  // a block waits at most once
+  while (waiting > 0) {  // a block is queued at most once
     const int block = to_visit_[--waiting];
     const int x = block % columns_;
     const int y = block / columns_;
@@ -131,8 +131,8 @@ bool TargetFinder::is_like_target(const Structure& structure) const {
   const int width = structure.right - structure.left + 1;
   const int height = structure.bottom - structure.top + 1;
   const int side = larger(width, height);
-  return structure.blocks >= kLeastBlocks && side >= kLeastSide && side <= kMostSide &&
-         structure.at_edge <= kMostAtEdge * side && structure.blocks >= kLeastFilled * width * height;
+  return structure.blocks >= kMinBlocks && side >= kMinSide && side <= kMaxSide &&
+         structure.at_edge <= kMaxAtEdge * side && structure.blocks >= kMinFilled * width * height;
 }
 
 bool TargetFinder::find_above(double level, Structure& best) {
@@ -146,7 +146,7 @@ bool TargetFinder::find_above(double level, Structure& best) {
     for (int column = 0; column < columns_; ++column) {
       if (!is_open_[place(column, row)]) continue;
       const Structure structure = grow_from(column, row);
-      if (structure.blocks >= kLeastLit) is_large_ = true;
+      if (structure.blocks >= kMinLit) is_large_ = true;
       if (structure.blocks > best.blocks && is_like_target(structure)) best = structure;
     }
   }
@@ -173,16 +173,16 @@ Finding TargetFinder::find(const imaging::ImageView& image, const DetectorLevels
     return Finding::kNothing;
   }
   average_blocks(image, levels);
-  if (saturated_ > kMostSaturated * pixels_there_) return Finding::kBlinded;
+  if (saturated_ > kMaxSaturated * pixels_there_) return Finding::kBlinded;
 
-  // A quarter of the blocks show nothing even beside a target that fills the image. From the 5 % to the 25 % point is a
+  // A quarter of the blocks are dark even beside a target that fills the image. From the 5 % to the 25 % point is one
   // sigma of blocks of noise; 32 pixels are in the middle of four quarters.
   const double background = level_below(0.25);
   const double expected = levels.noise_dn / math::sqrt(32.0);
   const double scatter = background - level_below(0.05);
   double above = kNoises * (scatter > expected ? scatter : expected);
   bool is_light = background > levels.noise_dn;
-  for (int k = 0; k < kMostLevels; ++k) {
+  for (int k = 0; k < kMaxLevels; ++k) {
     Structure best;
     if (find_above(background + above, best)) {
       region_ = region_around(best, frame);

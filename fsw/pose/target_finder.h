@@ -1,11 +1,11 @@
 #pragma once
-// Where in an image a large bright structure is that could be the target, without knowing anything of where it should
-// be.
+// Detection of a large bright structure that may be the target, without a-priori position.
+// The method:
 //
-// The image in blocks of 8 x 8 px: stars and hot pixels vanish in them, and a shadow's faint light stands out of the
-// noise. Blocks well above the image's dark part, gaps of one block bridged, make structures; the largest is the target
-// unless it is too small, too large or along the image's edge, as the Earth's limb and glare from beside are. Where
-// nothing will do the level is raised: stray light that falls off across the image then falls apart.
+// The image is divided into blocks of 8 x 8 px: stars and hot pixels vanish in them, and faint light in shadow is
+// detected. Blocks well above the image's dark part, gaps of one block bridged, form structures; the largest is the
+// target unless it is too small, too large or along the image's edge, as the Earth's limb and lateral glare are. If
+// none is acceptable the level is raised: stray light with a gradient across the image then breaks up.
 
 #include <array>
 #include <cstddef>
@@ -18,22 +18,22 @@ namespace vbar::fsw::pose {
 
 enum class Finding : std::uint8_t {
   kTarget = 0,
-  kNothing,  ///< light, but not the target's
-  kDark,     ///< no more than noise and specks
-  kBlinded,  ///< more of the image saturated than a target can
+  kNothing,  ///< light, but not that of the target
+  kDark,     ///< only noise and specks
+  kBlinded,  ///< a larger part of the image is saturated than a target can saturate
 };
 
-/// What the detector gives without light, and with too much.
+/// Levels of the detector without light and at saturation.
 struct DetectorLevels {
   double dark_level_dn = 64.0;
   double noise_dn = 2.0;  ///< 1 sigma of a pixel
   int saturation_dn = 4000;
 };
 
-/// Some 100 kB, all of it work space.
+/// Some 100 kB, all of it workspace.
 class TargetFinder {
  public:
-  /// The image has width * height pixels. Bad levels find nothing.
+  /// The image has width * height pixels. With invalid levels nothing is detected.
   Finding find(const imaging::ImageView& image, const DetectorLevels& levels);
 
   /// After kTarget: the square around it, a margin included.
@@ -66,9 +66,9 @@ class TargetFinder {
   int rows_ = 0;
   int pixels_there_ = 0;
   int saturated_ = 0;
-  bool is_large_ = false;                   ///< of the level in work: a structure was more than a speck
+  bool is_large_ = false;                   ///< at the current level: a structure was larger than a speck
   std::array<double, kMaxBlocks> light_{};  ///< above the dark level, DN
-  std::array<bool, kMaxBlocks> is_open_{};  ///< above the level in work and in no structure yet
+  std::array<bool, kMaxBlocks> is_open_{};  ///< above the current level and in no structure yet
   std::array<std::int16_t, kMaxBlocks> to_visit_{};
   CropRegion region_;
 };

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSqrtHalf = 0.70710678118654752440;
 constexpr double kInverseSqrtTwoPi = 0.39894228040143267794;
-constexpr double kTail = 8.5;  ///< standard deviations; what lies beyond weighs less than 1e-16
+constexpr double kTail = 8.5;  ///< standard deviations; the probability beyond is less than 1e-16
 
 double density(double z) {
   return kInverseSqrtTwoPi * math::exp(-0.5 * z * z);
@@ -44,15 +44,15 @@ struct Normal {
   [[nodiscard]] double between(double low, double high) const {
     return interval((low - mean) / sigma, (high - mean) / sigma);
   }
-  /// How much of a radius can matter to the other coordinates: |x| below it is out of this one's reach.
+  /// The radius that remains for the other coordinates: |x| below it is outside the integral of this one.
   [[nodiscard]] double nearest() const {
     const double reach = math::abs(mean) - kTail * sigma;
     return reach > 0.0 ? reach : 0.0;
   }
 };
 
-/// Integral over |x| <= limit of density(x) inner(x). x = limit sin(angle) takes the root out of chords at the rim;
-/// only the stretch where the density has weight is sampled.
+/// Integral over |x| <= limit of density(x) inner(x). x = limit sin(angle) removes the root of chords at the rim;
+/// only the interval of non-negligible density is sampled.
 template <class Inner>
 double integrate_chords(const Normal& x, double limit, const Inner& inner) {
   const double low = math::asin(clamp((x.mean - kTail * x.sigma) / limit, -1.0, 1.0));
@@ -124,7 +124,7 @@ Result<Encounter> encounter_plane(const Vector3& r, const Vector3& v, const Matr
 Result<double> collision_probability_isotropic(double distance, double sigma, double radius) {
   if (!math::is_finite(distance + sigma + radius)) return Status::kNotFinite;
   if (distance < 0.0 || sigma <= 0.0 || radius < 0.0) return Status::kOutOfRange;
-  // Towards zero distance the two densities cancel; the limit differs from the true value by (distance / sigma)^2 of
+  // For distances near zero the two densities cancel; the limit differs from the true value by (distance / sigma)^2 of
   // it.
   constexpr double kConcentric = 1e-5;
   const double reach = radius / sigma;
@@ -139,7 +139,7 @@ Result<double> collision_probability(const Vector3& mean, const Matrix3& covaria
   if (const Status status = check_radius(radius); status != Status::kOk) return status;
   const Result<Principal<3>> principal = principal_axes<3>(mean, covariance);
   if (!principal.ok()) return principal.status();
-  // Closed form along the sharpest axis x, whose distribution may be far narrower than the ball.
+  // Closed form along the axis x of the smallest sigma, whose distribution may be far narrower than the ball.
   const Normal& x = principal.value().axis[0];
   const Normal& y = principal.value().axis[1];
   const Normal& z = principal.value().axis[2];

@@ -1,9 +1,9 @@
 #pragma once
 // Probability that two spacecraft whose relative position is normally distributed are within the sum of their radii.
 //
-// In proximity operations relative speeds are millimetres to metres a second: there is no short encounter, and the
-// measure is the instantaneous probability, its maximum over a drift being the risk. Along track the position is known
-// worst; the probability in the RN plane takes it as not known at all and so bounds the risk of e/i-separated orbits
+// In proximity operations relative speeds are millimetres to metres per second: there is no short encounter, and the
+// measure is the instantaneous probability, its maximum over a drift being the risk. The along-track position has the
+// largest uncertainty; the probability in the RN plane treats it as unknown, which bounds the risk of such formations
 // from above.
 
 #include "fsw/core/result.h"
@@ -35,9 +35,9 @@ Result<double> collision_probability_in_plane(const Vector2& mean, const Matrix2
 Result<double> collision_probability_short_encounter(const Vector3& relative_position, const Vector3& relative_velocity,
                                                      const Matrix3& covariance, double radius);
 
-/// The largest probability that any scaling of the covariance can give for a short encounter with a radius small
-/// against the miss, R^2 / (exp(1) s1 s2 d_M^2) with d_M the Mahalanobis distance (dilution; Alfano 2005): what remains
-/// possible when the size of the covariance is not believed. 1 where the miss is within the radius.
+/// The largest probability for any scaling of the covariance, for a short encounter with a radius small
+/// against the miss, R^2 / (exp(1) s1 s2 d_M^2) with d_M the Mahalanobis distance (dilution; Alfano 2005): an upper
+/// bound if the size of the covariance is uncertain. 1 if the miss is within the radius.
 Result<double> maximum_probability_short_encounter(const Vector3& relative_position, const Vector3& relative_velocity,
                                                    const Matrix3& covariance, double radius);
 

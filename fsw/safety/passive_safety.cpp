@@ -11,7 +11,7 @@ using orbit::QnsElements;
 
 constexpr int kSamplesPerRevolution = 100;
 constexpr double kMaxRevolutions = 40.0;
-constexpr double kMaxRoe = 0.5;  ///< beyond it the relative-motion map says nothing
+constexpr double kMaxRoe = 0.5;  ///< beyond it the relative-motion map is not valid
 
 bool within_model(const Vector6& roe) {
   for (int k = 0; k < 6; ++k) {
@@ -20,8 +20,8 @@ bool within_model(const Vector6& roe) {
   return true;
 }
 
-/// Position of the target in the servicer's RTN during a drift. The ROE move from their values at the start to those at
-/// the end in a straight line: all but the e-vector's slow rotation is linear in time anyway.
+/// Position of the target in the servicer's RTN during a drift. The ROE change linearly from their values at the start
+/// to those at the end: all but the slow rotation of the e-vector is linear in time.
 class DriftPath {
  public:
   DriftPath(const QnsElements& servicer, const Vector6& roe, const Vector6& roe_end, double duration)
@@ -51,7 +51,7 @@ class DriftPath {
   Vector6 roe_rate_;
 };
 
-/// Squared distances of which PositionBound leaves nothing in doubt.
+/// Squared distances, reduced by PositionBound.
 struct Clearance {
   double spatial_squared;
   double radial_normal_squared;
@@ -69,13 +69,13 @@ Clearance clearance(const DriftPath& path, double t, const PositionBound& bound)
           .radial_normal_squared = radial_normal * radial_normal};
 }
 
-/// Least of a function sampled at equal steps. Holds the last three samples and asks for one more where they bend
-/// upwards.
+/// Minimum of a function sampled at equal steps. Holds the last three samples and requests one more where they are
+/// convex.
 class Minimum {
  public:
   explicit Minimum(double step) : step_(step) {}
 
-  /// Takes the sample at `t`. True if a minimum was passed; then `vertex()` is where to look again.
+  /// Adds the sample at `t`. True if a minimum was passed; then `vertex()` is its estimated time.
   bool add(double t, double squared) {
     note(t, squared);
     before_ = previous_;
@@ -89,14 +89,14 @@ class Minimum {
   }
 
   void note(double t, double squared) {
-    if (noted_ && squared >= least_squared_) return;
+    if (noted_ && squared >= min_squared_) return;
     noted_ = true;
-    least_squared_ = squared;
+    min_squared_ = squared;
     time_ = t;
   }
 
   [[nodiscard]] double vertex() const { return vertex_; }
-  [[nodiscard]] Closest closest() const { return {.distance = math::sqrt(least_squared_), .time = time_}; }
+  [[nodiscard]] Closest closest() const { return {.distance = math::sqrt(min_squared_), .time = time_}; }
 
  private:
   double step_;
@@ -104,7 +104,7 @@ class Minimum {
   double previous_ = 0.0;
   double last_ = 0.0;
   double vertex_ = 0.0;
-  double least_squared_ = 0.0;
+  double min_squared_ = 0.0;
   double time_ = 0.0;
   int count_ = 0;
   bool noted_ = false;
@@ -177,13 +177,13 @@ Result<PlanSafety> assess_plan(GpsTime start, const QnsElements& servicer_mean, 
     const Result<DriftSafety> drift = assess_drift(servicer, orbit::roe_from_qns(servicer, target), watched, bound);
     if (!drift.ok()) return drift.status();
     const DriftSafety& d = drift.value();
-    if (prefix == 0 || d.spatial.distance < worst.least_distance) {
-      worst.least_distance = d.spatial.distance;
+    if (prefix == 0 || d.spatial.distance < worst.min_distance) {
+      worst.min_distance = d.spatial.distance;
       worst.time = seconds(now - start) + d.spatial.time;
       worst.prefix = prefix;
     }
-    if (prefix == 0 || d.radial_normal.distance < worst.least_rn_distance) {
-      worst.least_rn_distance = d.radial_normal.distance;
+    if (prefix == 0 || d.radial_normal.distance < worst.min_rn_distance) {
+      worst.min_rn_distance = d.radial_normal.distance;
     }
     if (!more) break;
 
@@ -191,10 +191,10 @@ Result<PlanSafety> assess_plan(GpsTime start, const QnsElements& servicer_mean, 
     target = orbit::propagate_secular(target, until_next);
     bound.along_track += bound.along_track_rate * until_next;
     now = plan.burns[prefix].time;
-    // The control matrix gives what the impulse does to the orbit it acts on, in the form of ROE.
+    // The control matrix gives the effect of the impulse on the orbit, in terms of ROE.
     servicer = orbit::qns_from_roe(servicer, orbit::roe_control_matrix(servicer) * plan.burns[prefix].dv_rtn);
   }
-  worst.safe = worst.least_distance >= criterion.keep_out_radius;
+  worst.safe = worst.min_distance >= criterion.keep_out_radius;
   return worst;
 }
 

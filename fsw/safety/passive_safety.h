@@ -1,8 +1,8 @@
 #pragma once
-// Passive safety: how close the spacecraft drift if nothing more is done, now and after every burn of a plan.
+// Passive safety: the minimum distance of the spacecraft in free drift, now and after every burn of a plan.
 //
-// The drift is seen through the linear near-circular map with its along-track and cross-track coordinates read as
-// angles (curvilinear), and the ROE drifting under J2. Against the exact map through both osculating orbits its least
+// The drift is computed by the linear near-circular map with its along-track and cross-track coordinates interpreted as
+// angles (curvilinear), and the ROE drifting under J2. Against the exact map through both osculating orbits its minimum
 // distances err by under 0.6 (e + J2) of the largest separation on the way, 1.3 cm for 10 m and 95 m for 75 km on the
 // mission's orbit, for its waypoints and most others; the worst of 1,500 random drifts by 0.85 (e + J2).
 
@@ -16,28 +16,28 @@
 
 namespace vbar::fsw::safety {
 
-/// Least distance, m, in the plane perpendicular to the flight direction over a revolution, from the dimensionless
+/// Minimum distance, m, in the plane perpendicular to the flight direction over a revolution, from the dimensionless
 /// ROE's eccentricity and inclination vectors alone (da = 0; otherwise the bound is this less a |da|). `a` in m.
 /// D'Amico 2010, eq. 2.22.
 double eccentricity_inclination_separation(const Vector6& roe, double a);
 
-/// How well the relative position is known: bounds, not sigmas, so that the caller chooses the confidence. All m, >= 0.
+/// Uncertainty of the relative position: bounds, not sigmas, so that the caller chooses the confidence. All m, >= 0.
 struct PositionBound {
   double radial_normal = 0.0;     ///< of the position in the RN plane
   double along_track = 0.0;       ///< of the T coordinate at the start
   double along_track_rate = 0.0;  ///< its growth, m/s: 1.5 n times the bound of a da
 };
 
-/// A least distance and when it occurs, s after the start.
+/// A minimum distance and when it occurs, s after the start.
 struct Closest {
   double distance = 0.0;
   double time = 0.0;
 };
 
-/// Closest points of a free drift, what `PositionBound` leaves uncertain already subtracted, never below zero.
+/// Minimum distances of a free drift, reduced by `PositionBound`, never below zero.
 struct DriftSafety {
-  /// In space. At each time what is certain in the RN plane and what is certain along track are combined, so that an
-  /// along-track position of no certainty at all leaves the RN distance.
+  /// In space. At each time the guaranteed separations in the RN plane and along track are combined, so that with an
+  /// unknown along-track position the RN distance remains.
   Closest spatial;
   Closest radial_normal;  ///< in the RN plane only
 };
@@ -48,26 +48,26 @@ struct DriftSafety {
 Result<DriftSafety> assess_drift(const orbit::QnsElements& servicer_mean, const Vector6& mean_roe, double horizon,
                                  const PositionBound& bound = {});
 
-/// What a plan is held against.
+/// Criteria of a plan.
 struct SafetyCriterion {
   double keep_out_radius = 0.0;  ///< m
-  double horizon = 0.0;          ///< s, how long a drift is watched after each burn
+  double horizon = 0.0;          ///< s, how long each drift is evaluated
   PositionBound bound{};
 };
 
-/// The worst drift of a plan. Prefix k: the first k burns fly, the rest are missed.
+/// The worst drift of a plan. Prefix k: the first k burns are executed, the others are missed.
 struct PlanSafety {
-  bool safe = false;               ///< least_distance reaches the keep-out radius
-  double least_distance = 0.0;     ///< m, in space, bound subtracted, over all prefixes
-  double least_rn_distance = 0.0;  ///< m, in the RN plane, bound subtracted, over all prefixes
-  double time = 0.0;               ///< s after `start`, of least_distance
-  std::size_t prefix = 0;          ///< with which it occurs
+  bool safe = false;             ///< min_distance reaches the keep-out radius
+  double min_distance = 0.0;     ///< m, in space, bound subtracted, over all prefixes
+  double min_rn_distance = 0.0;  ///< m, in the RN plane, bound subtracted, over all prefixes
+  double time = 0.0;             ///< s after `start`, of min_distance
+  std::size_t prefix = 0;        ///< with which it occurs
 };
 
-/// Watches the drift after each prefix of the plan's burns (the servicer's, in its RTN), from 0 burns at `start` to
+/// Evaluates the drift after each prefix of the plan's burns (the servicer's, in its RTN), from 0 burns at `start` to
 /// all, for the horizon and at least until the next burn. Elements and ROE hold at `start`. kInvalidArgument unless the
-/// burns are in order of time and none before `start`; errors of assess_drift. A plan that cannot be assessed is not
-/// safe.
+/// burns are in order of time and none before `start`; errors of assess_drift. A plan that cannot be assessed is
+/// unsafe.
 Result<PlanSafety> assess_plan(GpsTime start, const orbit::QnsElements& servicer_mean, const Vector6& mean_roe,
                                const control::Plan& plan, const SafetyCriterion& criterion);
 

@@ -88,8 +88,8 @@ Result<AttitudeEstimate> determine_attitude(std::span<const DirectionPair> pairs
 
 Result<RobustAttitude> determine_attitude_robustly(std::span<DirectionPair> pairs, std::span<int> tags) {
   if (tags.size() != pairs.size()) return Status::kInvalidArgument;
-  const std::size_t most_dropped = pairs.size() / 3;
-  for (std::size_t dropped = 0; dropped <= most_dropped; ++dropped) {
+  const std::size_t max_dropped = pairs.size() / 3;
+  for (std::size_t dropped = 0; dropped <= max_dropped; ++dropped) {
     const std::size_t count = pairs.size() - dropped;
     const Result<AttitudeEstimate> found = determine_attitude(pairs.first(count));
     if (!found.ok()) return found.status();

@@ -1,5 +1,5 @@
 #pragma once
-// Attitude from directions: the rotation that carries known directions nearest to measured ones (Wahba 1965), by
+// Attitude determination: the rotation that best maps known directions to measured ones (Wahba 1965), by
 // Davenport's q-method (Wertz 1978, 12.2.2), its covariance and a test of the residuals (Shuster & Oh 1981).
 
 #include <cstddef>
@@ -32,9 +32,9 @@ Result<AttitudeEstimate> determine_attitude(std::span<const DirectionPair> pairs
 /// 1931).
 double chi_square_limit(int degrees);
 
-/// The same, but where the residuals are larger than noise can be, the worst direction is dropped and the rest tried
-/// again, until they agree. Dropped pairs are moved to the end of `pairs` (order and `tags`, one a pair, change alike);
-/// `kept` is how many are left. Beside the above, kDidNotConverge: a third would have to be dropped, or fewer than
+/// Likewise, but if the residuals are larger than the noise allows, the worst direction is removed and the others tried
+/// again, until they agree. Removed pairs are moved to the end of `pairs` (order and `tags`, one per pair, alike);
+/// `kept` is the number left. In addition, kDidNotConverge: a third would have to be removed, or fewer than
 /// three are left.
 struct RobustAttitude {
   AttitudeEstimate estimate;

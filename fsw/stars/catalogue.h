@@ -1,5 +1,5 @@
 #pragma once
-// The stars on board: ESA's Hipparcos catalogue to V 8 (data/stars), moved to one epoch when the program was built,
+// The star catalogue on board: ESA's Hipparcos catalogue to V 8 (data/stars), propagated to one epoch at build time,
 // with pairs closer than 70 arcsec merged. A star is its number, 0 to catalogue_size() - 1.
 
 #include <cstddef>
@@ -14,15 +14,15 @@ int catalogue_size();
 /// Julian year of the positions.
 double catalogue_epoch();
 
-/// Unit vector in GCRF (to 1e-9) as from the solar system's barycentre: without aberration. `star` must be in range.
+/// Unit vector in GCRF (to 1e-9) as seen from the solar-system barycentre: without aberration. `star` must be in range.
 Vector3 star_direction_eci(int star);
 /// Johnson V.
 double star_magnitude(int star);
 /// Hipparcos number; 0 for the few stars without one.
 int star_hipparcos(int star);
 
-/// Stars within `radius` (rad, at most 0.5) of a unit vector, written to `found` as far as it holds them; how many that
-/// are. kOutOfRange for a larger radius, kNotFinite.
+/// Stars within `radius` (rad, at most 0.5) of a unit vector, written to `found` up to its size; returns how many were
+/// written. kOutOfRange for a larger radius, kNotFinite.
 Result<int> stars_in_cone(const Vector3& axis_eci, double radius, std::span<int> found);
 
 }  // namespace vbar::fsw::stars

@@ -9,13 +9,13 @@ namespace vbar::fsw::stars {
 namespace {
 
 constexpr double kArcsecond = math::kPi / 648000.0;
-constexpr double kVaguest = 15.0 * kArcsecond;   // objects less precise make no patterns
+constexpr double kVaguest = 15.0 * kArcsecond;   // objects less precise are not used in patterns
 constexpr double kPairGate = 3.0;                // sigma of a distance
 constexpr double kPairSlack = 4.5 * kArcsecond;  // aberration differs by up to 4 arcsec between two stars, doubles
-constexpr double kPlaceGate = 3.5;               // sigma of a third object's place
+constexpr double kPlaceGate = 3.5;               // sigma of a third object's position
 constexpr double kSuppositionSigma = 15.0 * kArcsecond;
-constexpr int kNeeded = 2;    // other objects with a star at their place, for a hypothesis to be looked at closely
-constexpr int kPatience = 8;  // objects without a star, and none with one, until it is given up
+constexpr int kNeeded = 2;    // number of other objects with a star at their position for a hypothesis to be verified
+constexpr int kPatience = 8;  // objects without a star, and none with one, until it is rejected
 constexpr MagnitudeGate kGate{};
 
 /// Axes of a pair: towards its middle, from the first to the second, and across both.
@@ -66,12 +66,12 @@ void StarIdentifier::make_pattern(std::span<const ObservedStar> objects, std::si
   const double pair_variance = first.sigma_rad * first.sigma_rad + second.sigma_rad * second.sigma_rad;
   pattern_.others = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    // From both ends of the order of brightness: bright objects may all be no stars, and so may faint ones.
+    // From both ends of the order of brightness: bright objects may all be false, and so may faint ones.
     const std::size_t place = k % 2 == 0 ? k / 2 : count - 1 - k / 2;
     if (place == i || place == j) continue;
     const ObservedStar& other = objects[order_[place]];
     const Vector3 direction = pattern_.R_camera_pattern.transpose() * other.direction_camera;
-    // The pair's own error moves its middle, and turns it: that grows with the distance from the middle.
+    // The pair's own error moves its middle and rotates it: the effect grows with the distance from the middle.
     const double arm = math::hypot(direction.y(), direction.z()) / half_chord;
     const double variance = other.sigma_rad * other.sigma_rad + 0.25 * pair_variance * (1.0 + arm * arm);
     const double tolerance = kPlaceGate * math::sqrt(variance) + kPairSlack;
@@ -138,7 +138,7 @@ Status StarIdentifier::lost_in_space(std::span<const ObservedStar> objects, cons
   if (status != Status::kOk) return status;
   const std::size_t count = sort_pattern_objects(objects);
   hypotheses_ = 0;
-  // By the sum of their places in the order of brightness: no single false object is in all early pairs.
+  // In order of the sum of their brightness ranks: no single false object is in all early pairs.
   for (std::size_t sum = 1; sum + 2 < 2 * count; ++sum) {
     for (std::size_t i = sum < count ? 0 : sum - count + 1; 2 * i < sum; ++i) {
       const std::size_t j = sum - i;

@@ -1,5 +1,5 @@
 #pragma once
-// What a camera saw, for star identification, and what comes of it.
+// Input and result of star identification.
 
 #include <array>
 #include <cstddef>
@@ -13,17 +13,17 @@ namespace vbar::fsw::stars {
 struct ObservedStar {
   Vector3 direction_camera = Vector3::UnitZ();  ///< unit vector
   double sigma_rad = 0.0;                       ///< 1 sigma, each axis across it
-  double magnitude = 0.0;                       ///< by its flux; good to a magnitude will do
+  double magnitude = 0.0;                       ///< from its flux; accurate to a magnitude
 };
 
-/// Cone around all of the field of view, for the density of stars in it.
+/// Cone around the complete field of view, for the density of stars in it.
 struct Field {
   Vector3 centre_camera = Vector3::UnitZ();
   double radius_rad = 0.0;
 };
 
 struct StarMatch {
-  int object = 0;     ///< index in what was observed
+  int object = 0;     ///< index in the observed objects
   int catalogue = 0;  ///< star of the catalogue
 };
 
@@ -34,10 +34,10 @@ struct AttitudeFix {
   double sigma_rad = 0.0;                       ///< of the boresight's direction, worst axis
   double sigma_roll_rad = 0.0;                  ///< about the boresight
   double chi_square = 0.0;                      ///< of the residuals
-  double log_chance = 0.0;                      ///< ln of how many such agreements chance was expected to give
+  double log_chance = 0.0;                      ///< ln of the expected number of such agreements by chance
   double magnitude_offset = 0.0;                ///< median of observed less catalogue magnitude
-  int hypotheses = 0;                           ///< tried until this one
-  int matches = 0;                              ///< how many elements of `match` count
+  int hypotheses = 0;                           ///< tried up to this one
+  int matches = 0;                              ///< number of valid elements of `match`
   std::array<StarMatch, imaging::kMaxObjects> match{};
 };
 

@@ -1,7 +1,7 @@
 #pragma once
-// Which objects of an image are which stars, and from that the camera's attitude: from nothing (lost in space) or near
-// a predicted attitude (tracking). Both suppose attitudes and let verification.h decide, so the same certainty holds
-// for both: objects that are no stars may be many and bright, and an identification that chance could have made is
+// Star identification and attitude of the camera: without prior attitude (lost in space) or near
+// a predicted attitude (tracking). Both generate hypotheses that verification.h accepts or rejects, so that the same
+// confidence holds for both: false objects may be many and bright, and an identification that could be due to chance is
 // refused.
 
 #include <array>
@@ -13,27 +13,27 @@
 
 namespace vbar::fsw::stars {
 
-/// Work of one identification lost in space: pairs of objects are tried, brightest first, until one fits or this many
-/// pairs of stars have been laid over one.
+/// Work limit of a lost-in-space identification: pairs of objects are tried, brightest first, until one fits or this
+/// many catalogue pairs have been matched.
 inline constexpr int kMaxHypotheses = 200'000;
-/// Of the brightest objects patterns are made.
+/// Number of the brightest objects used in patterns.
 inline constexpr std::size_t kMaxPatternObjects = 48;
 /// Largest tolerance of a predicted attitude, rad (1 degree).
 inline constexpr double kLargestTolerance = 0.0175;
 
-/// With all it works on, 95 kB; what it holds between calls is only the last fix.
+/// 95 kB with all workspace; between calls only the last fix is kept.
 class StarIdentifier {
  public:
-  /// Attitude of a camera that may look anywhere. `velocity_over_c_eci`: the observer's, barycentric, for aberration.
-  /// kOk: fix() holds the attitude. kDidNotConverge: nothing that could be trusted. kTooLong: more than kMaxObjects;
+  /// Attitude of a camera with unknown pointing. `velocity_over_c_eci`: the observer's, barycentric, for aberration.
+  /// kOk: fix() holds the attitude. kDidNotConverge: no reliable solution. kTooLong: more than kMaxObjects;
   /// kNotFinite; kInvalidArgument: a sigma or the field's radius is not positive.
-  /// Two stars of the catalogue's pair table that are as far apart as two objects give an attitude (Black 1974); the
-  /// other objects say which.
+  /// Two stars of the catalogue's pair table with the separation of two objects yield an attitude (Black 1974); the
+  /// other objects confirm or reject it.
   Status lost_in_space(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci);
 
-  /// Attitude near a predicted one, the camera turned from it by `tolerance_rad` about any axis at most. As above; and
-  /// kOutOfRange: tolerance above kLargestTolerance. Each object votes for the shifts that would carry a star of the
-  /// neighbourhood onto it; the shifts with most votes are verified.
+  /// Attitude near a predicted one, within a rotation of `tolerance_rad` about any axis. As above; and
+  /// kOutOfRange: tolerance above kLargestTolerance. Each object votes for the shifts that would map a star of the
+  /// neighbourhood to it; the shifts with most votes are verified.
   Status track(std::span<const ObservedStar> objects, const Field& field, const Matrix3& predicted_R_camera_eci,
                double tolerance_rad, const Vector3& velocity_over_c_eci);
 
@@ -50,7 +50,7 @@ class StarIdentifier {
   static constexpr std::size_t kMaxVotes = 512;
   static constexpr int kMaxSeeds = 5;
 
-  /// What is common to all hypotheses of a pair of objects.
+  /// Data common to all hypotheses of a pair of objects.
   struct Pattern {
     Matrix3 R_camera_pattern = Matrix3::Identity();
     std::size_t others = 0;
@@ -82,7 +82,7 @@ class StarIdentifier {
   std::array<DirectionPair, imaging::kMaxObjects> seed_pair_{};
 };
 
-/// What both ask of their input.
+/// Checks of the input common to both.
 Status check_objects(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci);
 
 }  // namespace vbar::fsw::stars

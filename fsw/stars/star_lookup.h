@@ -1,13 +1,13 @@
 #pragma once
-// Which star of the catalogue is here? For the code of this folder.
+// Search for the star of the catalogue in a direction. For the code of this folder.
 
 #include "fsw/stars/catalogue.h"
 #include "fsw/stars/star_tables.h"
 
 namespace vbar::fsw::stars {
 
-/// How well an observed magnitude must agree. Bright stars saturate a detector, so an object may be any amount too
-/// faint for a star brighter than kSaturating.
+/// Tolerance of observed magnitudes. Bright stars saturate a detector, so that an object may be fainter by any amount
+/// than a star brighter than kSaturating.
 struct MagnitudeGate {
   double offset = 0.0;  ///< of observed magnitudes
   double width = 2.0;

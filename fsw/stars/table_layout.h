@@ -1,6 +1,6 @@
 #pragma once
-// Geometry that the star tables share with the program that makes them (toolchains/star_tables): how the sky is cut
-// into cells, and the steps of the pair table. Plain arithmetic, so that both compilers agree.
+// Geometry that the star tables share with the program that makes them (toolchains/star_tables): division of the sky
+// into cells, and the steps of the pair table. Integer arithmetic where possible, so that both compilers agree.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@ namespace vbar::fsw::stars {
 /// here?", coarse ones "which stars are near here?".
 inline constexpr int kFineEdge = 128;
 inline constexpr int kCoarseEdge = 16;
-/// The finest say only whether there is a star at all: a bit each, which mostly answers the first question with no.
+/// The finest only contain whether there is a star at all: a bit each, by which most searches end without one.
 inline constexpr int kOccupancyEdge = 512;
 inline constexpr int kOccupancyWords = 6 * kOccupancyEdge * kOccupancyEdge / 32;
 inline constexpr int kFineCells = 6 * kFineEdge * kFineEdge;
@@ -19,7 +19,7 @@ inline constexpr int kCoarseCells = 6 * kCoarseEdge * kCoarseEdge;
 /// where cells are largest (0.0882), rounded up.
 inline constexpr double kCoarseRadius = 0.0890;
 
-/// A fine cell lists every star that lies in it or within this of it, rad (100 arcsec): so one cell suffices to find
+/// A fine cell lists every star that lies in it or within this of it, rad (100 arcsec): one cell is sufficient to find
 /// the stars within this of a direction.
 inline constexpr double kCellMargin = 4.8481e-4;
 

@@ -17,7 +17,7 @@ std::size_t StarIdentifier::cast_votes(std::span<const ObservedStar> objects, co
   const Vector3 axis = without_aberration(R_camera_eci.transpose() * field.centre_camera, velocity_over_c_eci);
   const Result<int> near = stars_in_cone(axis, field.radius_rad + 2.0 * tolerance, in_cone_);
   if (!near.ok()) return 0;
-  // The length of the shift: about two axes across the boresight, and what roll adds at the edge of the field.
+  // Length of the shift: two axes across the boresight, and the effect of roll at the edge of the field.
   const double reach = tolerance * 1.5;
   constexpr MagnitudeGate kGate;
   std::size_t votes = 0;

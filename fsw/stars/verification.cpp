@@ -12,12 +12,12 @@ constexpr double kGate = 4.0;                         // sigma; a true star is o
 constexpr double kCatalogueSigma = 1.0 * kArcsecond;  // proper motion, doubles' centre of light
 constexpr int kRounds = 4;
 
-/// 1 sigma of where an object should be, by the attitude's error and its own.
+/// 1 sigma of the predicted position of an object, from the attitude's error and its own.
 double placement_sigma(const ObservedStar& object, const Matrix3& covariance_camera) {
-  // The larger axis is not worth an eigenvalue: the trace of the covariance across the direction.
+  // An upper bound of the larger axis: the trace of the covariance across the direction.
   const Vector3& b = object.direction_camera;
   const double attitude = covariance_camera.trace() - b.dot(covariance_camera * b);
-  // A rotation about b leaves b; one about an axis across b moves it by its size.
+  // A rotation about b does not change b; one about an axis across b moves it by its size.
   return math::sqrt(object.sigma_rad * object.sigma_rad + kCatalogueSigma * kCatalogueSigma + 0.5 * attitude);
 }
 
@@ -25,15 +25,15 @@ double placement_sigma(const ObservedStar& object, const Matrix3& covariance_cam
 
 double log_chance_of(int count, double expected) {
   if (count <= 0 || count <= expected) return 0.0;
-  const double least = 1e-30;
-  const double mean = expected > least ? expected : least;
+  const double minimum = 1e-30;
+  const double mean = expected > minimum ? expected : minimum;
   return count - mean + count * math::log(mean / count);
 }
 
 void Verification::add_match(int object, const Neighbour& neighbour) {
   for (std::size_t k = 0; k < count_; ++k) {
     if (star_[k].star != neighbour.star) continue;
-    if (neighbour.squared_distance < star_[k].squared_distance) {  // a star is one object: the nearer
+    if (neighbour.squared_distance < star_[k].squared_distance) {  // a star is one object: the closer
       object_[k] = object;
       star_[k] = neighbour;
     }
@@ -51,7 +51,7 @@ void Verification::match(std::span<const ObservedStar> objects, const Vector3& v
   for (std::size_t k = 0; k < objects.size(); ++k) {
     const double sigma = placement_sigma(objects[k], covariance_camera);
     const double tolerance = kGate * sigma < kCellMargin ? kGate * sigma : kCellMargin;
-    if (objects[k].sigma_rad > 0.5 * kCellMargin) continue;  // too vague to tell stars apart
+    if (objects[k].sigma_rad > 0.5 * kCellMargin) continue;  // too imprecise to separate stars
     tolerance_area_ += math::kPi * tolerance * tolerance;
     const Vector3 place = without_aberration(R_eci_camera * objects[k].direction_camera, velocity_over_c_eci);
     const Neighbour neighbour = nearest_star(place, tolerance, objects[k].magnitude, gate);
@@ -70,9 +70,9 @@ double Verification::median_magnitude_offset(std::span<const ObservedStar> objec
 double Verification::star_density(const Vector3& centre_eci, double radius) {
   const Result<int> found = stars_in_cone(centre_eci, radius, in_field_);
   const double solid_angle = math::kTwoPi * (1.0 - math::cos(radius));
-  const double least = 1.0 / (4.0 * math::kPi);  // never none
+  const double minimum = 1.0 / (4.0 * math::kPi);  // at least one
   if (!found.ok() || !(solid_angle > 0.0)) return catalogue_size() / (4.0 * math::kPi);
-  return found.value() / solid_angle + least;
+  return found.value() / solid_angle + minimum;
 }
 
 Status Verification::verify(std::span<const ObservedStar> objects, const Field& field,

@@ -1,7 +1,7 @@
 #pragma once
-// Is a supposed attitude true? The catalogue is laid over the image: if more objects have a star at their place than
-// chance can put there, it is. Chance is counted: objects that are no stars agree with the catalogue's density times
-// the area of tolerance; the number of agreements is then bounded by Chernoff's inequality.
+// Verification of an attitude hypothesis. The catalogue is compared with the image: if more objects have a star at
+// their position than chance can explain, it is accepted. False objects agree by chance with the catalogue density
+// times the tolerance area; the probability of the number of agreements is bounded by Chernoff's inequality.
 
 #include <array>
 #include <span>
@@ -13,11 +13,11 @@
 
 namespace vbar::fsw::stars {
 
-/// A supposed attitude and what it cost to come by it.
+/// An attitude hypothesis and the degrees of freedom used to find it.
 struct Supposition {
   Matrix3 R_camera_eci = Matrix3::Identity();
-  double sigma_rad = 0.0;    ///< error to be expected, anywhere in the image
-  int agreements_spent = 0;  ///< matches that were assumed to make it: two for a pair, one for an offset
+  double sigma_rad = 0.0;    ///< expected error, anywhere in the image
+  int agreements_spent = 0;  ///< matches assumed in making it: two for a pair, one for an offset
   int hypotheses = 1;        ///< tried so far for this image
 };
 
@@ -25,13 +25,13 @@ struct Supposition {
 /// where count <= expected.
 double log_chance_of(int count, double expected);
 
-/// An identification is accepted where chance would give fewer than this many of its kind in an image.
+/// An identification is accepted if chance would produce fewer than this many of its kind in an image.
 inline constexpr double kLogAcceptedChance = -16.118;  // ln 1e-7
 inline constexpr int kFewestMatches = 4;
 
 class Verification {
  public:
-  /// Fills `fix` and returns kOk where the supposition is accepted; else kDidNotConverge, and `fix` is of no use.
+  /// Fills `fix` and returns kOk if the hypothesis is accepted; otherwise kDidNotConverge, and `fix` is not valid.
   /// Objects must be finite with positive sigma, at most kMaxObjects.
   Status verify(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci,
                 const Supposition& supposed, AttitudeFix& fix);

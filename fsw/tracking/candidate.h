@@ -1,5 +1,5 @@
 #pragma once
-// What target tracking is given at an image: the objects that star identification left over, and the servicer's own
+// Inputs of target tracking at an image: the objects that are not identified stars, and the servicer's own
 // burns.
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace vbar::fsw::tracking {
 
 inline constexpr std::size_t kMaxCandidates = imaging::kMaxObjects;
 
-/// An object of the image that is no identified star.
+/// An object of the image that is not an identified star.
 struct Candidate {
   Vector3 direction_rtn = Vector3::UnitX();  ///< unit vector from the servicer, in its RTN at the image's time
   double sigma = 0.0;                        ///< rad, 1 sigma of the direction, each axis: centroid and attitude
@@ -23,7 +23,7 @@ struct Candidate {
 struct OwnBurn {
   GpsTime time;
   Vector3 dv_rtn = Vector3::Zero();  ///< m/s, servicer's RTN at its time
-  double sigma = 0.0;                ///< m/s, 1 sigma of each axis
+  double sigma = 0.0;                ///< m/s, 1 sigma per axis
 };
 
 }  // namespace vbar::fsw::tracking

@@ -1,8 +1,8 @@
 #pragma once
-// Hot pixels learned on board. A hot pixel is a single pixel of the detector that shows in image after image, while
-// the stars run through the field. The target, too, stays near one place, since the camera follows it; but its light
-// spreads over several pixels and pointing jitter moves it. So only objects too sharp for the camera's point-spread
-// function are learned, and only such are taken for a known hot pixel.
+// Hot pixels learned on board. A hot pixel is a single pixel of the detector that is bright in successive images, while
+// the stars move through the field. The target, too, stays near one position, as the camera follows it; but its light
+// is spread over several pixels and pointing jitter moves it. Therefore only objects sharper than the camera's
+// point-spread function are learned, and only such objects are matched with known hot pixels.
 
 #include <array>
 #include <cstddef>
@@ -13,10 +13,10 @@
 namespace vbar::fsw::tracking {
 
 struct HotPixelSettings {
-  double least_sharpness = 0.5;  ///< share of its light in one pixel
-  double place_px = 0.6;         ///< its centroid stays within this of the first, each axis
-  int sightings = 4;             ///< so many make it known
-  int forget_after = 60;         ///< images without it
+  double min_sharpness = 0.5;  ///< share of its light in one pixel
+  double place_px = 0.6;       ///< its centroid stays within this of the first, each axis
+  int sightings = 4;           ///< number that makes it known
+  int forget_after = 60;       ///< images without it
 };
 
 class HotPixelMap {
@@ -25,15 +25,15 @@ class HotPixelMap {
 
   explicit HotPixelMap(const HotPixelSettings& settings = {}) : settings_(settings) {}
 
-  /// Opens an image: all its objects that are no stars are then given to see().
+  /// Starts an image: all its objects that are not stars are then passed to see().
   void begin_image() { ++image_; }
 
-  /// True if the object is a known hot pixel, seen often enough before and sharp. Learns it otherwise, if it is sharp;
-  /// a place is free if its pixel was not seen for `forget_after` images, or else for the longest time of those not
-  /// yet known.
+  /// True if the object is a known hot pixel, seen often enough before and sharp. Otherwise learns it if it is sharp;
+  /// an entry is free if its pixel was not seen for `forget_after` images, or else the one unseen for longest of those
+  /// not yet known.
   bool see(const imaging::DetectedObject& object);
 
-  /// How often the object's place has shown something sharp, this image included; 0 if the object is not sharp.
+  /// How often a sharp object was seen at this position, this image included; 0 if the object is not sharp.
   [[nodiscard]] int sightings_of(const imaging::DetectedObject& object) const;
 
   [[nodiscard]] std::size_t known() const;
@@ -46,7 +46,7 @@ class HotPixelMap {
   };
 
   [[nodiscard]] bool is_sharp(const imaging::DetectedObject& object) const {
-    return object.sharpness >= settings_.least_sharpness;
+    return object.sharpness >= settings_.min_sharpness;
   }
   [[nodiscard]] std::size_t find(const Vector2& place_px) const;
   [[nodiscard]] std::size_t free_place() const;

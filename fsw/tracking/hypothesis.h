@@ -1,5 +1,5 @@
 #pragma once
-// One account of which object of each image was the same satellite.
+// One hypothesis on which object of each image was the same satellite.
 
 #include <array>
 #include <cstddef>
@@ -12,9 +12,9 @@ namespace vbar::fsw::tracking {
 inline constexpr std::size_t kMaxHypotheses = 64;
 inline constexpr std::size_t kHistory = 8;  ///< images
 
-inline constexpr double kMostMisfit = 9.0;  ///< (3 sigma)^2, of Hypothesis::misfit
+inline constexpr double kMaxMisfit = 9.0;  ///< (3 sigma)^2, of Hypothesis::misfit
 
-/// Entries of a hypothesis' history that are no index of a candidate.
+/// Entries of a hypothesis' history that are not an index of a candidate.
 inline constexpr std::int16_t kMissed = -1;
 inline constexpr std::int16_t kUnborn = -2;
 
@@ -27,14 +27,14 @@ struct Hypothesis {
   double identity = 0.0;    ///< worst recent distance from the prediction (chi-square, 4 degrees of freedom)
   double identity_now = 0.0;
   std::int32_t hits = 0;              ///< in all
-  std::int32_t hits_since_gap = 0;    ///< since it was last unseen for long
+  std::int32_t hits_since_gap = 0;    ///< since its last long gap
   std::int32_t images_since_hit = 0;  ///< in which it was expected
-  std::uint32_t recent = 0;           ///< a bit an image in which it was expected or seen, newest lowest: 1 seen
-  bool established = false;           ///< was once seen in M of N images with residuals as expected
+  std::uint32_t recent = 0;           ///< one bit per image in which it was expected or seen, newest lowest: 1 seen
+  bool established = false;           ///< was seen in M of N images with residuals as expected
   std::array<std::int16_t, kHistory> history{};  ///< candidates by image, newest first
 };
 
-/// A step that one hypothesis may take in an image.
+/// A possible continuation of a hypothesis in an image.
 struct Branch {
   std::int16_t parent = -1;     ///< -1: a new track
   std::int16_t candidate = -1;  ///< kMissed: none

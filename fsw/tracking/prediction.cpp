@@ -6,7 +6,7 @@
 namespace vbar::fsw::tracking {
 namespace {
 
-// 1/s: no orbit that stays within 60 degrees of the T axis turns its bearing faster.
+// 1/s: upper bound of the bearing rate of orbits within 60 degrees of the T axis.
 constexpr double kUnknownRate = 0.01;
 constexpr double kUnknownFraction = 1.0;
 
@@ -56,7 +56,7 @@ Result<Prediction> prediction_of(const Vector3& direction_rtn, const Matrix2& co
   if (!is_covariance(covariance) || !math::is_finite(along_track_m)) return Status::kOutOfRange;
   Prediction prediction;
   prediction.slopes.head<2>() = slopes.value();
-  // An angle is less than its slope by cos^2; the smaller terms do not matter to a gate.
+  // An angle is less than its slope by cos^2; the smaller terms are negligible for a gate.
   const double stretch = 1.0 + slopes.value().squaredNorm();
   prediction.covariance.topLeftCorner<2, 2>() = stretch * stretch * covariance;
   prediction.covariance(2, 2) = kUnknownRate * kUnknownRate;

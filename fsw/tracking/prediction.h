@@ -1,5 +1,5 @@
 #pragma once
-// Where navigation expects the target: what tells it from other objects that move like satellites.
+// Predicted position of the target from navigation: separates it from other objects that move like satellites.
 
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
@@ -19,12 +19,12 @@ struct Prediction {
   double along_track_sigma_fraction = 1.0;  ///< 1 sigma of along_track_m as a part of it
 };
 
-/// Of the relative state in the servicer's RTN and its 6x6 covariance (position m, velocity m/s, stacked), as a filter
-/// or an orbit of two-line-element quality gives them. kNotFinite; kOutOfRange if the target is expected more than 60
+/// From the relative state in the servicer's RTN and its 6x6 covariance (position m, velocity m/s, stacked), of a
+/// filter or an orbit of two-line-element quality. kNotFinite; kOutOfRange if the target is predicted more than 60
 /// degrees from the T axis, or a variance is negative.
 Result<Prediction> prediction_of(const orbit::RelativeState& target, const Matrix6& covariance);
 
-/// Of a bearing alone: `covariance` (rad^2) in the directions of growing R and N; rates are unknown.
+/// From a bearing alone: `covariance` (rad^2) in the directions of growing R and N; rates are unknown.
 /// `along_track_m` may be 0. Errors as above.
 Result<Prediction> prediction_of(const Vector3& direction_rtn, const Matrix2& covariance, double along_track_m);
 

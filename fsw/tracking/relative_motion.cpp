@@ -7,18 +7,18 @@ namespace {
 
 using Row5 = Eigen::Matrix<double, 1, 5>;
 
-// Beyond these the range would change by more than a target does that stays in view of a camera along T.
-constexpr double kLeastStretch = 0.2;
-constexpr double kMostStretch = 5.0;
+// Beyond these the range would change by more than that of a target that stays in the field of a camera along T.
+constexpr double kMinStretch = 0.2;
+constexpr double kMaxStretch = 5.0;
 
 /// Rows that multiply s, and their derivatives with respect to u.
 struct Regressors {
-  Row5 radial;       ///< numerator of y
-  Row5 normal;       ///< numerator of z
-  Row5 along;        ///< den - 1
-  Row5 radial_turn;  ///< d/du
-  Row5 normal_turn;
-  Row5 along_turn;
+  Row5 radial;     ///< numerator of y
+  Row5 normal;     ///< numerator of z
+  Row5 along;      ///< den - 1
+  Row5 radial_du;  ///< d/du
+  Row5 normal_du;
+  Row5 along_du;
 };
 
 Regressors regressors(double latitude) {
@@ -28,14 +28,14 @@ Regressors regressors(double latitude) {
   rows.radial << 1.0, -c, -s, 0.0, 0.0;
   rows.normal << 0.0, 0.0, 0.0, s, -c;
   rows.along << 0.0, 2.0 * s, -2.0 * c, 0.0, 0.0;
-  rows.radial_turn << 0.0, s, -c, 0.0, 0.0;
-  rows.normal_turn << 0.0, 0.0, 0.0, c, s;
-  rows.along_turn << 0.0, 2.0 * c, 2.0 * s, 0.0, 0.0;
+  rows.radial_du << 0.0, s, -c, 0.0, 0.0;
+  rows.normal_du << 0.0, 0.0, 0.0, c, s;
+  rows.along_du << 0.0, 2.0 * c, 2.0 * s, 0.0, 0.0;
   return rows;
 }
 
 double limited(double den) {
-  return den > kLeastStretch ? den : kLeastStretch;
+  return den > kMinStretch ? den : kMinStretch;
 }
 
 void symmetrise(Matrix5& p) {
@@ -66,7 +66,7 @@ RelativeMotion unknown_motion(const MotionSettings& settings) {
 bool propagate(RelativeMotion& motion, double mean_motion, double dt, const MotionSettings& settings) {
   const double rate = 1.5 * mean_motion * dt;
   const double stretch = 1.0 - rate * motion.shape[0];  // of dlambda
-  if (!(stretch > kLeastStretch && stretch < kMostStretch)) return false;
+  if (!(stretch > kMinStretch && stretch < kMaxStretch)) return false;
   const double inverse = 1.0 / stretch;
   motion.shape *= inverse;
   Matrix5 transition = Matrix5::Identity() * inverse;
@@ -148,18 +148,18 @@ SlopeState slope_state(const RelativeMotion& motion, const ServicerView& view, d
   const double drift = 1.5 * view.mean_motion;  // of s: ds/dt = drift s0 s
   const double inverse = 1.0 / limited(1.0 + rows.along.dot(shape));
   const double along = rows.along.dot(shape);
-  const double along_rate = view.latitude_rate * rows.along_turn.dot(shape) + drift * shape[0] * along;
-  Row5 along_rate_row = view.latitude_rate * rows.along_turn + drift * shape[0] * rows.along;
+  const double along_rate = view.latitude_rate * rows.along_du.dot(shape) + drift * shape[0] * along;
+  Row5 along_rate_row = view.latitude_rate * rows.along_du + drift * shape[0] * rows.along;
   along_rate_row[0] += drift * along;
 
   SlopeState state;
   Eigen::Matrix<double, 4, 5> jacobian;
-  const auto fill = [&](int k, const Row5& row, const Row5& turn) {
+  const auto fill = [&](int k, const Row5& row, const Row5& row_du) {
     const double numerator = row.dot(shape);
     const double slope = numerator * inverse;
-    const double numerator_rate = view.latitude_rate * turn.dot(shape) + drift * shape[0] * numerator;
+    const double numerator_rate = view.latitude_rate * row_du.dot(shape) + drift * shape[0] * numerator;
     const double rate = (numerator_rate - slope * along_rate) * inverse;
-    Row5 numerator_rate_row = view.latitude_rate * turn + drift * shape[0] * row;
+    Row5 numerator_rate_row = view.latitude_rate * row_du + drift * shape[0] * row;
     numerator_rate_row[0] += drift * numerator;
     jacobian.row(k) = (row - slope * rows.along) * inverse;
     jacobian.row(k + 2) =
@@ -167,11 +167,11 @@ SlopeState slope_state(const RelativeMotion& motion, const ServicerView& view, d
     state.slopes[k] = slope;
     state.slopes[k + 2] = rate;
   };
-  fill(0, rows.radial, rows.radial_turn);
-  fill(1, rows.normal, rows.normal_turn);
+  fill(0, rows.radial, rows.radial_du);
+  fill(1, rows.normal, rows.normal_du);
   state.slopes[0] += view.path_slope + bend;
   state.slopes[2] += view.path_slope_rate + bend_rate;
-  state.slopes[3] += view.plane_turn_rate;
+  state.slopes[3] += view.plane_rotation_rate;
   const Eigen::Matrix<double, 4, 5> spread = jacobian * motion.covariance;
   state.covariance = spread * jacobian.transpose();
   return state;

@@ -1,14 +1,14 @@
 #pragma once
-// The motion that a sequence of bearings shows, range left open: what every hypothesis of the tracker estimates.
+// Relative motion from a sequence of bearings, up to scale: the state of every hypothesis of the tracker.
 //
-// Bearings of a near-circular relative orbit tell the relative orbital elements up to their scale (Woffinden, Geller
+// Bearings of a near-circular relative orbit determine the relative elements up to their scale (Woffinden, Geller
 // 2009), so the state is s = [da, dex, dey, dix, diy] / dlambda. With u the servicer's argument of latitude the linear
 // map of D'Amico (2010) gives the slopes as exact ratios,
 //   y = path_slope - T / (2 a) + (s0 - s1 cos u - s2 sin u) / den,   z = (s3 sin u - s4 cos u) / den,
 //   den = 1 + 2 s1 sin u - 2 s2 cos u,
-// which multiplied by den are linear in s for a measured slope: a linear filter needs no starting value. T / (2 a) is
+// which multiplied by den are linear in s for a measured slope: a linear filter needs no initial value. T / (2 a) is
 // the bend of the orbit between the two. These are the regressors 1, t, cos u, sin u of bearing-only curve fitting with
-// their coefficients bound to one orbit, and right also where the range varies by a part of itself within an orbit.
+// their coefficients constrained to one orbit, valid also if the range varies by a fraction of itself within an orbit.
 
 #include "fsw/tracking/candidate.h"
 #include "fsw/tracking/prediction.h"
@@ -22,9 +22,9 @@ using Matrix25 = Eigen::Matrix<double, 2, 5>;
 
 struct MotionSettings {
   double shape_sigma = 0.08;     ///< of each element of s before the first bearing
-  double model_sigma = 5e-5;     ///< rad, added to each bearing: what the equations above leave out from image to image
+  double model_sigma = 5e-5;     ///< rad, added to each bearing: modelling errors from image to image
   double drift_sigma = 1e-4;     ///< of each element of s after an orbit: random walk
-  double drift_fraction = 3e-3;  ///< the same as a part of |s|: J2 turns the relative eccentricity and inclination
+  double drift_fraction = 3e-3;  ///< likewise as a part of |s|: J2 rotates the relative eccentricity and inclination
 };
 
 struct RelativeMotion {
@@ -32,7 +32,7 @@ struct RelativeMotion {
   Matrix5 covariance = Matrix5::Zero();
 };
 
-/// Where the measured slopes differ from the expected ones.
+/// Residual of the measured slopes with respect to the predicted ones.
 struct Innovation {
   Vector2 residual = Vector2::Zero();
   Matrix2 covariance = Matrix2::Identity();
@@ -41,7 +41,7 @@ struct Innovation {
   double determinant = 1.0;  ///< of the covariance
 };
 
-/// A candidate as the filter takes it.
+/// Measurement of a candidate.
 struct SlopeMeasurement {
   Vector2 slopes = Vector2::Zero();
   Vector2 variance = Vector2::Zero();
@@ -50,13 +50,13 @@ struct SlopeMeasurement {
 /// Bearing of a unit vector with 1 sigma (rad) of each axis. Errors of slopes_of; kOutOfRange for sigma <= 0.
 Result<SlopeMeasurement> slope_measurement(const Vector3& direction_rtn, double sigma, const MotionSettings& settings);
 
-/// Nothing known but the size of the elements.
+/// Only the size of the elements is known.
 RelativeMotion unknown_motion(const MotionSettings& settings);
 
-/// `dt` seconds on. False if the target would pass the servicer: the state is then of no use.
+/// Propagation by `dt` seconds. False if the target would pass the servicer: the state is then invalid.
 bool propagate(RelativeMotion& motion, double mean_motion, double dt, const MotionSettings& settings);
 
-/// An own burn at argument of latitude `latitude` (rad). Without `along_track_m` (0) the elements are nearly forgotten.
+/// An own burn at argument of latitude `latitude` (rad). Without `along_track_m` (0) the elements are almost reset.
 void apply_burn(RelativeMotion& motion, const OwnBurn& burn, double latitude, const ServicerView& view,
                 const Prediction& prediction, const MotionSettings& settings);
 
@@ -67,7 +67,7 @@ Innovation innovation_of(const RelativeMotion& motion, const ServicerView& view,
 /// Kalman update.
 void update(RelativeMotion& motion, const Innovation& innovation);
 
-/// Expected slopes and rates with covariance, as a prediction has them (in axes that turn about N only). `bend_rate`:
+/// Predicted slopes and rates with covariance, as in a prediction (in axes that rotate about N only). `bend_rate`:
 /// of `bend`, 1/s.
 struct SlopeState {
   Vector4 slopes = Vector4::Zero();

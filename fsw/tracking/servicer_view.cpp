@@ -27,7 +27,7 @@ Result<ServicerView> servicer_view(const orbit::CartesianState& servicer) {
   view.semi_major_axis = elements.value().a;
   view.path_slope = radial_speed / transverse_speed;
   view.path_slope_rate = (radial_rate - view.path_slope * transverse_rate) / transverse_speed;
-  view.plane_turn_rate = acceleration_rtn.z() / transverse_speed;
+  view.plane_rotation_rate = acceleration_rtn.z() / transverse_speed;
   return view;
 }
 

@@ -1,25 +1,25 @@
 #pragma once
-// What target tracking needs to know of the servicer's orbit at an image.
+// Quantities of the servicer's orbit used by target tracking at an image.
 
 #include "fsw/core/result.h"
 #include "fsw/orbit/elements.h"
 
 namespace vbar::fsw::tracking {
 
-/// Directions near the -T or +T axis are told by two slopes, those of their R and N component against their T
+/// Directions near the -T or +T axis are represented by two slopes, those of their R and N component against their T
 /// component: y = d_R / d_T, z = d_N / d_T. Their sign does not depend on whether the target is ahead or behind.
 struct ServicerView {
   double latitude = 0.0;         ///< true argument of latitude, rad
   double latitude_rate = 0.0;    ///< rad/s
   double mean_motion = 0.0;      ///< rad/s, of the osculating orbit
   double semi_major_axis = 0.0;  ///< m, osculating
-  /// Slope of the servicer's own path, v_R / v_T: there a target would be seen that follows or leads on the same orbit.
+  /// Slope of the servicer's own path, v_R / v_T: the direction of a target that follows or leads on the same orbit.
   /// Eccentricity and the short-period terms of J2 move this direction by hundreds of arc seconds an orbit, whatever
   /// the range.
   double path_slope = 0.0;
   double path_slope_rate = 0.0;  ///< 1/s
-  /// Rate at which J2 turns RTN about R, rad/s. Relative velocities of fsw/orbit/rtn.h leave this turn out.
-  double plane_turn_rate = 0.0;
+  /// Rate at which J2 rotates RTN about R, rad/s. Relative velocities of fsw/orbit/rtn.h exclude this rotation.
+  double plane_rotation_rate = 0.0;
 };
 
 /// Of the servicer's osculating ECI state. Accelerations are those of point mass and J2. Errors of

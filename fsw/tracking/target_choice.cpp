@@ -1,4 +1,4 @@
-// Which track is the target's, and whether its object in this image is certain: the tracker's part that decides.
+// Selection of the target's track, and whether its object in this image is certain: the decision of the tracker.
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ constexpr int kDeposeAfter = 3;
 }  // namespace
 
 void TargetTracker::compare_with_prediction(double dt) {
-  const double faded = math::exp(-dt / settings_.identity_memory_s);
+  const double decay = math::exp(-dt / settings_.identity_memory_s);
   for (std::size_t k = 0; k < count_; ++k) {
     Hypothesis& hypothesis = hypotheses_[k];
     if (!work_.has_prediction) continue;
@@ -24,12 +24,12 @@ void TargetTracker::compare_with_prediction(double dt) {
     hypothesis.identity_now =
         distance_between(state.slopes, state.covariance, work_.prediction.slopes, work_.prediction.covariance,
                          settings_.slope_floor, settings_.rate_floor);
-    hypothesis.identity = std::max(hypothesis.identity * faded, hypothesis.identity_now);
+    hypothesis.identity = std::max(hypothesis.identity * decay, hypothesis.identity_now);
   }
 }
 
 void TargetTracker::choose_target() {
-  // The track nearest to the prediction, and the nearest of its rivals.
+  // The track closest to the prediction, and the closest of the others.
   const Hypothesis* best = nullptr;
   const Hypothesis* second = nullptr;
   for (std::size_t k = 0; k < count_; ++k) {
@@ -61,7 +61,7 @@ void TargetTracker::choose_target() {
     }
     return;
   }
-  // A target stays the target unless the prediction speaks against it for some time.
+  // The target track is kept unless the prediction contradicts it for some time.
   const bool misplaced = target->history[0] >= 0 && target->identity_now > settings_.identity_gate;
   const bool beaten = best->track != target_track_ && best->established &&
                       0.5 * (target->identity_now - best->identity) > settings_.identity_margin;
@@ -72,8 +72,8 @@ void TargetTracker::choose_target() {
   }
 }
 
-// By how much a track's best account with the candidate in this image beats its best one without; no account with it
-// or none without: -kAlone or kAlone.
+// By how much a track's best hypothesis with the candidate in this image exceeds its best one without; no hypothesis
+// with it or none without: -kAlone or kAlone.
 double TargetTracker::claim(std::uint32_t track, std::int16_t candidate) const {
   const Hypothesis* with = nullptr;
   const Hypothesis* without = nullptr;
@@ -87,8 +87,8 @@ double TargetTracker::claim(std::uint32_t track, std::int16_t candidate) const {
   return without == nullptr ? kAlone : with->score - without->score;
 }
 
-// The strongest claim of another satellite's track to the target's candidate. A short track is another satellite's if
-// it saw objects that the target's did not.
+// The strongest association of another satellite's track with the target's candidate. A short track is another
+// satellite's if it includes objects that the target's does not.
 double TargetTracker::rival_claim(const Hypothesis& target) const {
   const std::int16_t candidate = target.history[0];
   double strongest = -kAlone;
@@ -129,10 +129,10 @@ TrackerOutput TargetTracker::report() {
     if (h.history[0] == seen) agreeing += weight;
   }
   const bool certain = agreeing >= settings_.certainty * all;
-  // Either the target shows and the rival is missed, or the other way round.
+  // Either the target is visible and the rival is missed, or vice versa.
   const double odds = math::log(settings_.certainty / (1.0 - settings_.certainty));
   const bool own = claim(target_track_, seen) > rival_claim(*target) + odds;
-  const bool fits = target->misfit < kMostMisfit && target->hits_since_gap >= settings_.hits_after_gap;
+  const bool fits = target->misfit < kMaxMisfit && target->hits_since_gap >= settings_.hits_after_gap;
   output.candidate = seen;
   output.confirmed = certain && own && fits && deposing_images_ == 0;
   if (output.confirmed) {

@@ -7,16 +7,16 @@
 namespace vbar::fsw::tracking {
 namespace {
 
-constexpr double kLeastProbability = 1e-3;
-constexpr double kMostProbability = 0.99;
-// Below it an image says nothing by not showing the target.
+constexpr double kMinProbability = 1e-3;
+constexpr double kMaxProbability = 0.99;
+// Below this detection probability a missed detection carries no information.
 constexpr double kExpected = 0.5;
-// A new track's score before its first object: it is sooner a false detection.
+// A new track's score before its first object: a false detection is more likely.
 constexpr double kBirthScore = -2.0;
 constexpr double kNarrowGate = 0.02;  // false detections in it
 constexpr double kFluxGain = 0.2;
-// However odd its brightness, the target may show it: a glint, a penumbra.
-constexpr double kMostDislike = 4.5;
+// Limit of the brightness term: the target may show a glint or a penumbra.
+constexpr double kMaxDislike = 4.5;
 constexpr double kMisfitGain = 0.15;
 
 bool is_direction(const Vector3& d) {
@@ -38,7 +38,7 @@ Result<TrackerOutput> TargetTracker::step(const TrackerInput& input) {
   const double per_m = -0.5 / work_.view.semi_major_axis;
   work_.bend = per_m * work_.prediction.along_track_m;
   work_.bend_rate = per_m * work_.prediction.along_track_rate;
-  const double probability = std::clamp(input.detection_probability, kLeastProbability, kMostProbability);
+  const double probability = std::clamp(input.detection_probability, kMinProbability, kMaxProbability);
   work_.detection_probability = probability;
   work_.log_miss = math::log(1.0 - probability);
   const double dt = has_image_ ? seconds(input.time - time_) : 0.0;
@@ -84,7 +84,7 @@ Status TargetTracker::check(const TrackerInput& input) const {
   return Status::kOk;
 }
 
-// Leaves out known hot pixels and what is far from the prediction.
+// Removes known hot pixels and objects far from the prediction.
 void TargetTracker::select_eligible(const TrackerInput& input) {
   hot_pixels_.begin_image();
   work_.eligible_count = 0;
@@ -116,7 +116,7 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
     eligible.is_in_gate = is_in_gate;
     eligible.log_flux = math::log(candidate.object.flux_dn > 1.0 ? candidate.object.flux_dn : 1.0);
     eligible.handicap =
-        candidate.object.sharpness >= settings_.hot_pixels.least_sharpness ? -settings_.sharp_object_loss : 0.0;
+        candidate.object.sharpness >= settings_.hot_pixels.min_sharpness ? -settings_.sharp_object_loss : 0.0;
     eligible.index = static_cast<std::int16_t>(k);
   }
   const double count = static_cast<double>(std::max<std::size_t>(input.candidates.size() - hot, 1));
@@ -148,7 +148,7 @@ double TargetTracker::gain_of(const Hypothesis& parent, const Innovation& innova
   if (parent.hits > 0) {
     constexpr double kMagnitudesPerLog = 1.0857362047581296;  // 2.5 / ln 10
     const double off = (candidate.log_flux - parent.log_flux) * kMagnitudesPerLog / settings_.magnitude_sigma;
-    brightness = -std::min(0.5 * off * off, kMostDislike);
+    brightness = -std::min(0.5 * off * off, kMaxDislike);
   }
   return likelihood + brightness + candidate.handicap;
 }
@@ -204,7 +204,7 @@ Hypothesis TargetTracker::child_of(const Branch& branch) {
   }
   const Eligible& candidate = work_.eligible[static_cast<std::size_t>(branch.candidate)];
   const Innovation innovation = innovation_of(child.motion, work_.view, work_.bend, candidate.measurement);
-  // After a gap a narrow gate, in which hardly anything else can be, needs no further proof.
+  // After a gap a narrow gate, in which false detections are unlikely, is sufficient.
   const double gate_sr = math::kPi * settings_.association_gate * math::sqrt(innovation.determinant);
   const bool is_narrow = gate_sr * math::exp(work_.log_density) < kNarrowGate;
   update(child.motion, innovation);
@@ -215,7 +215,7 @@ Hypothesis TargetTracker::child_of(const Branch& branch) {
   ++child.hits;
   child.hits_since_gap =
       is_narrow && child.established && child.hits_since_gap == 0 ? settings_.hits_after_gap : child.hits_since_gap + 1;
-  if (hits_of(child.recent, settings_.confirm_images) >= settings_.confirm_hits && child.misfit < kMostMisfit) {
+  if (hits_of(child.recent, settings_.confirm_images) >= settings_.confirm_hits && child.misfit < kMaxMisfit) {
     child.established = true;
   }
   return child;

@@ -1,11 +1,11 @@
 #pragma once
-// Which object of an image is the target: multi-hypothesis tracking (Reid 1979; track-oriented, after Blackman 2004) of
-// everything that moves as a satellite near the servicer does, and the choice of the one that moves as navigation
-// expects the target to. What cannot be told apart is not chosen: no bearing is better than another object's.
+// Identification of the target in an image: multi-hypothesis tracking (Reid 1979; track-oriented, after Blackman 2004)
+// of all objects that move like satellites near the servicer, and selection of the one that moves as navigation
+// predicts for the target. Ambiguous objects are not selected: no bearing is better than one to another object.
 //
-// Kinematics make tracks, navigation names one of them. The two are kept apart because the noise of two satellites'
-// bearings says nothing about which of them is the target: tracks are scored without the prediction (beyond its gate),
-// and compared by how far each is from it in bearing and bearing rate, the worst of the last hour or two.
+// Kinematics form tracks, navigation selects one of them. The two are separated because the noise of two satellites'
+// bearings contains no information on which of them is the target: tracks are scored without the prediction (beyond its
+// gate), and compared by their distance from it in bearing and bearing rate, the worst of the last hour or two.
 
 #include <array>
 #include <optional>
@@ -22,23 +22,23 @@ namespace vbar::fsw::tracking {
 struct TrackerSettings {
   MotionSettings motion;
   HotPixelSettings hot_pixels;
-  double field_sr = 0.0113;           ///< solid angle in which candidates are looked for: 4.8 by 7.7 degrees
+  double field_sr = 0.0113;           ///< solid angle of the search for candidates: 4.8 by 7.7 degrees
   double surroundings = 0.03;         ///< rad about the predicted bearing in which other satellites are tracked as well
   double association_gate = 13.8;     ///< chi-square, 2 degrees of freedom: 99.9 %
-  double prediction_gate = 18.4;      ///< the same about the predicted bearing: 99.99 %
+  double prediction_gate = 18.4;      ///< likewise about the predicted bearing: 99.99 %
   double identity_gate = 23.5;        ///< chi-square, 4 degrees of freedom: 99.99 %
-  double identity_memory_s = 6000.0;  ///< the worst distance fades by a factor e
-  double identity_margin = 6.0;       ///< log-likelihood by which the target beats all others
-  double slope_floor = 1.5e-4;        ///< 1 sigma by which predicted bearings may be better than they say, 30 arcsec
+  double identity_memory_s = 6000.0;  ///< s: decay time of the worst distance
+  double identity_margin = 6.0;       ///< log-likelihood by which the target must exceed all others
+  double slope_floor = 1.5e-4;        ///< 1-sigma floor of the errors of predicted bearings, 30 arcsec
   double rate_floor = 3e-7;           ///< 1/s
   double certainty = 0.99;            ///< of the association in an image
   double magnitude_sigma = 1.5;       ///< of a tumbling target from image to image
   double sharp_object_loss = 2.3;     ///< log-likelihood: the target's light falls on more than one pixel
   int confirm_hits = 5;               ///< M
   int confirm_images = 7;             ///< of N
-  int gap_images = 5;                 ///< unseen for longer: so many images
-  int hits_after_gap = 3;             ///< are needed again
-  int give_up_images = 15;            ///< unseen, though expected
+  int gap_images = 5;                 ///< a gap: number of images without detection
+  int hits_after_gap = 3;             ///< detections needed again after a gap
+  int give_up_images = 15;            ///< images without detection, though expected, until given up
 };
 
 struct TrackerInput {
@@ -51,21 +51,21 @@ struct TrackerInput {
 };
 
 enum class TrackerState : std::uint8_t {
-  kSearching,  ///< no track is known to be the target
+  kSearching,  ///< no track is identified as the target
   kTracking,   ///< one is
-  kCoasting,   ///< one is, but it is not seen in this image, or not for certain
+  kCoasting,   ///< one is, but it is not detected in this image, or not for certain
   kAmbiguous,  ///< two or more tracks may be the target
 };
 
 struct TrackerOutput {
   TrackerState state = TrackerState::kSearching;
   int candidate = -1;      ///< index of the target among the candidates, -1 none
-  bool confirmed = false;  ///< `candidate` is the target: never without one
+  bool confirmed = false;  ///< `candidate` is the target: never true without one
   int hypotheses = 0;
   int tracks = 0;
   int hot_pixels = 0;            ///< known
   double score_margin = 0.0;     ///< log-likelihood of the best track's identity over the next one's; large if alone
-  double residual_sigmas = 0.0;  ///< root mean square of the target's recent residuals over their expectation
+  double residual_sigmas = 0.0;  ///< root mean square of the target's recent residuals over their standard deviation
 };
 
 class TargetTracker {
@@ -73,9 +73,9 @@ class TargetTracker {
   explicit TargetTracker(const TrackerSettings& settings = {})
       : settings_(settings), hot_pixels_(settings.hot_pixels) {}
 
-  /// Folds in an image. kInvalidArgument: not after the last image, or a burn after it or before that; kTooLong: more
+  /// Processes an image. kInvalidArgument: not after the last image, or a burn after it or before that; kTooLong: more
   /// candidates than kMaxCandidates; kNotFinite, kOutOfRange: of state, candidates (sigma <= 0), burns, prediction or
-  /// probability. Nothing is changed then. Candidates more than 60 degrees from the T axis are passed over.
+  /// probability. Nothing is changed then. Candidates more than 60 degrees from the T axis are ignored.
   Result<TrackerOutput> step(const TrackerInput& input);
 
   /// Whether the object is a known hot pixel, for telemetry.
@@ -120,7 +120,7 @@ class TargetTracker {
   GpsTime time_;
   std::uint32_t next_track_ = 1;
   std::uint32_t target_track_ = 0;  ///< 0: none
-  int images_watched_ = 0;          ///< in which the target was expected, since the tracks were last forgotten
+  int images_watched_ = 0;          ///< in which the target was expected, since the last reset of the tracks
   int deposing_images_ = 0;
   bool ambiguous_ = false;
   double score_margin_ = 0.0;
@@ -128,7 +128,7 @@ class TargetTracker {
   std::size_t count_ = 0;
   std::array<Hypothesis, kMaxHypotheses> hypotheses_{};
 
-  // Of the image in hand.
+  // Of the current image
   struct Workspace {
     ServicerView view;
     Prediction prediction;

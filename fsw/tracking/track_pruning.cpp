@@ -1,4 +1,4 @@
-// Which hypotheses stay: the tracker's part that forgets.
+// Pruning of hypotheses: the part of the tracker that deletes them.
 
 #include "fsw/math/math.h"
 #include "fsw/tracking/target_tracker.h"
@@ -7,10 +7,10 @@ namespace vbar::fsw::tracking {
 namespace {
 
 constexpr double kDropScore = -7.0;
-// An unestablished track that was missed so often in a row is dropped.
+// An unestablished track that was missed in this number of consecutive images is deleted.
 constexpr int kPatience = 3;
-constexpr std::size_t kScan = 5;        // images after which only one account of a track remains
-constexpr std::size_t kSame = 3;        // images that two accounts must share to be one
+constexpr std::size_t kScan = 5;        // images after which only one hypothesis of a track remains
+constexpr std::size_t kSame = 3;        // images that two hypotheses must share to be one
 constexpr double kSameDistance = 25.0;  // chi-square, 4 degrees of freedom: 5e-5
 
 }  // namespace
@@ -51,7 +51,7 @@ void TargetTracker::prune() {
     const int patience = hypothesis.established ? settings_.give_up_images : kPatience;
     const bool hopeless = !hypothesis.established && hypothesis.score < kDropScore;
     const Hypothesis* best = best_of(hypothesis.track);
-    // Accounts that parted from the track's best one more than kScan images ago.
+    // Hypotheses that separated from the track's best one more than kScan images ago.
     const bool parted = best != nullptr && hypothesis.history[kScan - 1] != best->history[kScan - 1];
     if (hopeless || parted || hypothesis.images_since_hit >= patience) work_.erased[k] = true;
   }
@@ -61,7 +61,7 @@ void TargetTracker::prune() {
   merge_tracks();
 }
 
-// Of two accounts of a track that share the last images the better stays.
+// Of two hypotheses of a track that share the last images the better stays.
 void TargetTracker::merge_accounts() {
   work_.erased.fill(false);
   for (std::size_t a = 0; a < count_; ++a) {
@@ -75,8 +75,8 @@ void TargetTracker::merge_accounts() {
   erase_marked();
 }
 
-// Of two tracks that have become the same the target's stays, else an established one, else the better: the other is a
-// ghost that lives on the first one's objects.
+// Of two tracks that have become equal the target's stays, else an established one, else the better: the other is a
+// duplicate that is maintained by the first one's objects.
 void TargetTracker::merge_tracks() {
   std::array<std::size_t, kMaxHypotheses> best{};
   std::size_t tracks = 0;

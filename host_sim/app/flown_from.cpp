@@ -9,9 +9,9 @@
 
 #include "host_sim/app/build_info.h"
 #include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/app/data_directory.h"
 #include "host_sim/files/data_stream.h"
 #include "host_sim/files/sha256.h"
+#include "host_sim/mission/data_directory.h"
 #include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::app {
@@ -34,7 +34,7 @@ std::string utc_now() {
 }
 
 fs::path data_root() {
-  return fs::absolute(data_directory()).lexically_normal();
+  return fs::absolute(mission::data_directory()).lexically_normal();
 }
 
 std::string short_hash(const std::string& sha256) {

@@ -46,14 +46,14 @@ int true_object(const telemetry_objects& objects, const Eigen::Vector2d& target_
 }
 
 /// The spacecraft in the direction of a bearing, nearest first by what its size allows.
-std::string spacecraft_at(const Vector3& bearing_eci, const TrueCamera& camera, const mission::Spacecraft& servicer,
-                          const twins::TruthSnapshot& truth) {
+std::string spacecraft_at(const Vector3& bearing_eci, const TrueCamera& camera, const std::string& servicer,
+                          const twins::camera::CameraSettings& settings, const twins::TruthSnapshot& truth) {
   std::string found = "nothing";
   double least = 1.0;
   for (const twins::SpacecraftTruth& other : truth.spacecraft) {
-    if (other.name == servicer.name) continue;
+    if (other.name == servicer) continue;
     const Vector3 los = camera.towards(other);
-    const double share = angle_between(bearing_eci, los) / same_object(servicer.camera->settings, los.norm());
+    const double share = angle_between(bearing_eci, los) / same_object(settings, los.norm());
     if (!(share <= least)) continue;
     least = share;
     found = other.name;
@@ -91,7 +91,7 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
   const Vector3 bearing_eci = vector(image.bearing_eci);
   if (image.status == telemetry_image::kStatusBearing && bearing_eci.norm() > 0.5) {
     add_bearing_error(row, bearing_eci, los_eci, camera.q_camera_eci);
-    row.chosen = spacecraft_at(bearing_eci, camera, servicer, truth);
+    row.chosen = spacecraft_at(bearing_eci, camera, servicer.name, sensor->settings, truth);
   }
   if (image.star_method != telemetry_image::kStarMethodNone) {
     const double(&q)[4] = image.q_eci_camera;

@@ -56,7 +56,7 @@ target_compile_options(vbar_flight_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>
   -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Wswitch-enum)
 
-# vbar_fsw_library(name SOURCES ... DEPENDS ...): a static library of flight code. What every target flies (fsw and
+# vbar_fsw_library(name SOURCES ... DEPENDS ...): a static library of flight code. The set common to all targets (fsw and
 # boards/common) is in the global property VBAR_FLIGHT_LIBRARIES, which the target flight_code and the flight rules go by.
 function(vbar_fsw_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})

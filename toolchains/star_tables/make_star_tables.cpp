@@ -1,9 +1,9 @@
-// Makes the star tables of flight software from the star file. Runs on the computer that builds, whatever is built, so
-// that all targets carry the same bytes.
+// Generates the star tables of flight software from the star file. Runs on the build computer for every target, so
+// that all targets have the same bytes.
 //
 //   make_star_tables STAR_FILE EPOCH TABLES SIZES
 //
-// EPOCH is a Julian year; TABLES is the binary file that fsw/stars/star_tables.S takes in (little-endian, the order of
+// EPOCH is a Julian year; TABLES is the binary file included by fsw/stars/star_tables.S (little-endian, the order of
 // struct StarTables); SIZES is a header with the lengths of its arrays.
 
 #include <bit>
@@ -28,7 +28,7 @@ using namespace vbar::star_tables;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kArcsecond = kDegree / 3600.0;
 
-/// Two pixels of a camera of 35 arcsec a pixel: nearer stars are seen as one.
+/// Two pixels of a camera of 35 arcsec per pixel: closer stars are not resolved.
 constexpr double kSeparation = 70.0 * kArcsecond;
 
 // The guides: about nine in the smallest field of view, 4.8 by 7.7 degrees.

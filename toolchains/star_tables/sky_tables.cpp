@@ -22,12 +22,12 @@ int cell_of_direction(const Direction& d, int edge) {
   return cell_of(d.x, d.y, d.z, edge);
 }
 
-/// Brightest first; the direction decides between equals, so that the order is one and the same everywhere.
+/// Brightest first; the direction decides between equals, so that the order is unique.
 bool brighter(const Star& a, const Star& b) {
   return std::tie(a.magnitude, a.hipparcos, a.direction.x) < std::tie(b.magnitude, b.hipparcos, b.direction.x);
 }
 
-/// Stars in a band of height z, to find neighbours without trying all: indices sorted by z.
+/// Stars in a band of height z, to find neighbours without an exhaustive search: indices sorted by z.
 class ByHeight {
  public:
   explicit ByHeight(const std::vector<Star>& stars) : stars_(stars), order_(stars.size()) {
@@ -59,8 +59,8 @@ Star together(const Star& a, const Star& b) {
           a.hipparcos != 0 ? a.hipparcos : b.hipparcos};
 }
 
-/// Cells within the margin of a direction. Cells are at least four times as wide as the margin, so a circle of points
-/// finds them all. The circle is 1 per cent wider than the margin, since between two points it comes that much nearer.
+/// Cells within the margin of a direction. Cells are at least four times as wide as the margin, so that a circle of
+/// points finds them all. The circle is 1 per cent wider than the margin, to cover the chord between two points.
 std::vector<int> cells_around(const Direction& d, int edge) {
   constexpr int kPoints = 32;
   const double across = std::hypot(d.x, d.y);

@@ -29,7 +29,7 @@ constexpr std::array<Column, kColumns> kAccepted{{{"hip", 0, 130000},
                                                   {"v", -2, 8},
                                                   {"b_v", -1, 10}}};
 
-/// Where in the file we are, for messages.
+/// Position in the file, for messages.
 struct Place {
   const std::string& path;
   std::size_t line;
@@ -65,7 +65,7 @@ std::array<double, kColumns> fields(std::string_view line, const Place& place) {
   return values;
 }
 
-/// Straight motion on the tangent plane; over some decades the bend of the path and the perspective effect stay below
+/// Straight motion on the tangent plane; over some decades the path curvature and the perspective effect stay below
 /// 0.1 arcsec for the fastest star.
 Star star_at(const std::array<double, kColumns>& row, double years) {
   const double ra = row[1] * kDegree;

@@ -1,5 +1,5 @@
 #pragma once
-// The star file data/stars/hipparcos_v8.csv as the maker of the flight tables reads it.
+// The star file data/stars/hipparcos_v8.csv, read by the generator of the flight tables.
 
 #include <string>
 #include <vector>
@@ -17,9 +17,9 @@ struct Star {
   int hipparcos = 0;       ///< 0: has none
 };
 
-/// Rows of the file, moved by their proper motion from J2000.0 to the Julian year `epoch`, in the file's order. Throws
-/// std::runtime_error "file:line: what was found, what is accepted" for a file that is damaged or cut short: it says
-/// itself, in a line "# rows N", how many rows it must have.
+/// Rows of the file, propagated by their proper motion from J2000.0 to the Julian year `epoch`, in the file's order.
+/// Throws std::runtime_error "file:line: found, accepted" for a file that is damaged or truncated: a line "# rows N"
+/// states the number of its rows.
 std::vector<Star> read_star_file(const std::string& path, double epoch);
 
 }  // namespace vbar::star_tables

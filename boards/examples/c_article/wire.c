@@ -32,7 +32,7 @@ static void write_big_endian(uint8_t* bytes, size_t size, uint64_t value) {
 }
 
 bool wire_open(struct wire_reader* reader, const uint8_t* packet, size_t size) {
-  if (size < HEADER_BYTES + CRC_BYTES || size > WIRE_MOST_BYTES || read_big_endian(packet + 4, 2) + 7U != size ||
+  if (size < HEADER_BYTES + CRC_BYTES || size > WIRE_MAX_BYTES || read_big_endian(packet + 4, 2) + 7U != size ||
       crc16(packet, size - CRC_BYTES) != read_big_endian(packet + size - CRC_BYTES, CRC_BYTES)) {
     return false;
   }

@@ -12,7 +12,7 @@ enum {
   WIRE_APID_IDEAL_NAVIGATION = 0x010,
   WIRE_APID_MANEUVER_COMMAND = 0x401,
   WIRE_APID_TELEMETRY_NAVIGATION = 0x501,
-  WIRE_MOST_BYTES = 1376
+  WIRE_MAX_BYTES = 1376
 };
 
 /* Type hashes, as lcm-gen makes them of vbar.lcm: the first eight bytes of a payload. */
@@ -22,7 +22,7 @@ enum {
 #define WIRE_HASH_TELEMETRY_NAVIGATION UINT64_C(0x1c935749ce107812)
 
 /* A packet being read, or written; `position` walks through its payload. A reader checks before it reads
- * (wire_open, wire_begins_with), a writer never exceeds WIRE_MOST_BYTES because its messages are of fixed size. */
+ * (wire_open, wire_begins_with), a writer never exceeds WIRE_MAX_BYTES because its messages are of fixed size. */
 struct wire_reader {
   const uint8_t* bytes;
   size_t position;
@@ -33,7 +33,7 @@ struct wire_reader {
 };
 
 struct wire_writer {
-  uint8_t bytes[WIRE_MOST_BYTES];
+  uint8_t bytes[WIRE_MAX_BYTES];
   size_t position;
 };
 

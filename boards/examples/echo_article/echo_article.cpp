@@ -1,6 +1,6 @@
-// A test article that exercises links: every step it sends telemetry packets whose number, sizes and bytes depend on
-// every byte it has ever been given and on every step time. Any packet lost, changed, repeated or moved to another step
-// on the way to it or from it shows in all later packets, and answers run from one packet to more than a window of the
+// A test article that exercises links: at every step it sends telemetry packets whose number, sizes and bytes depend on
+// every byte received so far and on every step time. Any packet lost, corrupted, repeated or moved to another step
+// on the way in either direction changes all later packets, and answers range from one packet to more than a window of
 // link.
 
 #include <algorithm>
@@ -48,7 +48,7 @@ struct EchoArticle {
     std::array<std::uint8_t, packets::kMaxPayloadBytes> payload{};
     const std::size_t size = 1 + static_cast<std::size_t>(next(random) % payload.size());
     for (std::uint8_t& byte : std::span(payload).first(size)) byte = static_cast<std::uint8_t>(next(random) >> 56U);
-    // Runs of zeros and of other bytes, which is where byte stuffing can go wrong.
+    // Runs of zeros and of other bytes, the critical cases of byte stuffing.
     if (next(random) % 2 == 0) std::fill_n(payload.begin(), size / 2, std::uint8_t{0});
 
     packets::PacketHeader header;

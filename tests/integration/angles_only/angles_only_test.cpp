@@ -44,8 +44,8 @@ Outcome navigate(const TrueFlight& flight, const SensorErrors& errors, unsigned 
   int far = 0;
   for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
     const nav::AnglesOnlyEpoch epoch = sensors.measure(k);
-    const nav::BearingFate fate = navigation->update(epoch, sensors.known_burns());
-    if (fate == nav::BearingFate::kFilter && epoch.bearing->apparent_radius < 0.5 * epoch.bearing->sigma) {
+    const nav::BearingEditStatus status = navigation->update(epoch, sensors.known_burns());
+    if (status == nav::BearingEditStatus::kFilter && epoch.bearing->apparent_radius < 0.5 * epoch.bearing->sigma) {
       outcome.far_nis += navigation->last_update().nis;
       ++far;
     }
@@ -132,7 +132,7 @@ TEST(AnglesOnly, StraysDoNotMatter) {
   const Outcome outcome = navigate(flight, errors, 1);
   ASSERT_EQ(outcome.waypoints.size(), 1u);
   EXPECT_EQ(outcome.counters.restarts, 0);
-  EXPECT_EQ(outcome.counters.doubts, 0);
+  EXPECT_EQ(outcome.counters.inflations, 0);
   EXPECT_LT(outcome.waypoints[0].error_m, 130.0);  // three sigma of the filter's 44 m
 }
 

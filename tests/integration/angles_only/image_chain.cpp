@@ -136,11 +136,11 @@ const fsw::angles_only::Sighting& ImageChain::look_at_uniform(const Scene& scene
 
 const fsw::angles_only::Sighting& ImageChain::process(const Scene& scene, const std::vector<image_tile>& tiles) {
   for (const image_tile& tile : tiles) static_cast<void>(assembly_->take(scene.exposure.time, 0, tile));
-  fsw::angles_only::Circumstances circumstances;
-  circumstances.is_orbit_known = true;
-  circumstances.servicer = scene.servicer;
-  circumstances.velocity_over_c_eci = (scene.exposure.earth_velocity_bcrs + scene.servicer.velocity_eci) / 299792458.0;
-  circumstances.R_camera_eci = scene.R_commanded_eci;
+  fsw::angles_only::ImagePriors priors;
+  priors.is_orbit_known = true;
+  priors.servicer = scene.servicer;
+  priors.velocity_over_c_eci = (scene.exposure.earth_velocity_bcrs + scene.servicer.velocity_eci) / 299792458.0;
+  priors.R_camera_eci = scene.R_commanded_eci;
   // A thousandth of the range, and a part in a million of it a second.
   const double range = (scene.target.position_eci - scene.servicer.position_eci).norm();
   fsw::Matrix6 covariance = fsw::Matrix6::Zero();
@@ -148,11 +148,10 @@ const fsw::angles_only::Sighting& ImageChain::process(const Scene& scene, const 
   covariance.diagonal().tail<3>().setConstant(1e-12 * range * range);
   const auto prediction =
       fsw::tracking::prediction_of(fsw::orbit::relative_state_rtn(scene.servicer, scene.target), covariance);
-  if (prediction.ok()) circumstances.target = prediction.value();
-  circumstances.detection_probability = scene.exposure.objects.at(0).sunlit > 0.5 ? 0.95 : 0.0;
+  if (prediction.ok()) priors.target = prediction.value();
+  priors.detection_probability = scene.exposure.objects.at(0).sunlit > 0.5 ? 0.95 : 0.0;
   const auto& sighting = tracking_->process(
-      {assembly_->image_time(), assembly_->image_number(), assembly_->tiles_missing(), assembly_->view()},
-      circumstances);
+      {assembly_->image_time(), assembly_->image_number(), assembly_->tiles_missing(), assembly_->view()}, priors);
   if (assembly_->has_image()) assembly_->clear();
   return sighting;
 }

@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
     const auto& counters = navigation->counters();
     std::printf(" | psd %.0e nis %.3f used %d refused %d failed %d doubts %d restarts %d\n",
                 navigation->filter().acceleration_psd(), nis / updates, counters.bearings_used,
-                counters.bearings_refused, counters.batches_failed, counters.doubts, counters.restarts);
+                counters.bearings_refused, counters.batches_failed, counters.inflations, counters.restarts);
   }
   std::printf("med");
   for (const auto& of : errors) std::printf(" | %8.2f          ", vbar::accuracy::median(of));

@@ -14,7 +14,7 @@ namespace nav = fsw::navigation;
 namespace orbit = fsw::orbit;
 using Information = Eigen::Matrix<double, 8, 8>;
 
-constexpr double kLittle_m = 10.0;
+constexpr double kDifferenceStep_m = 10.0;
 constexpr double kTargetRadius_m = 0.35;
 
 /// Target orbits beside the true one: element k a little more and less.
@@ -26,7 +26,7 @@ std::array<orbit::CartesianState, 12> neighbours(const TrueEpoch& start, double&
   std::array<orbit::CartesianState, 12> result;
   for (int k = 0; k < 12; ++k) {
     fsw::Vector6 shifted = roe;
-    shifted(k / 2) += (k % 2 == 0 ? kLittle_m : -kLittle_m) / a;
+    shifted(k / 2) += (k % 2 == 0 ? kDifferenceStep_m : -kDifferenceStep_m) / a;
     result[static_cast<std::size_t>(k)] = orbit::cartesian_from_qns(orbit::qns_from_roe(servicer, shifted)).value();
   }
   return result;
@@ -57,7 +57,7 @@ std::vector<double> position_bound(const TrueFlight& flight, const std::vector<s
     Eigen::Matrix<double, 3, 6> moves;  // of the target's position, m, per metre of a * ROE at the start
     for (int j = 0; j < 6; ++j) {
       const auto plus = static_cast<std::size_t>(2 * j);
-      moves.col(j) = (orbits[plus].position_eci - orbits[plus + 1].position_eci) / (2.0 * kLittle_m);
+      moves.col(j) = (orbits[plus].position_eci - orbits[plus + 1].position_eci) / (2.0 * kDifferenceStep_m);
     }
     const fsw::Vector3 sight = epoch.target.position_eci - epoch.servicer.position_eci;
     const double range = sight.norm();

@@ -173,7 +173,7 @@ std::optional<EmulatedPair::Offer> EmulatedPair::offer() const {
     if (!is_first) offer.pairs.emplace_back(k, place->second);
   }
   const auto count = static_cast<Eigen::Index>(offer.pairs.size());
-  if (count < fsw::navigation::AmbiguityResolution::kLeastHeld) return std::nullopt;
+  if (count < fsw::navigation::AmbiguityResolution::kMinHeld) return std::nullopt;
   constexpr Eigen::Index kSize = RelativeFilter::State::kSize;
   Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(count, kSize);
   for (Eigen::Index row = 0; row < count; ++row) {

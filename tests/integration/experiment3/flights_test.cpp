@@ -46,13 +46,13 @@ TEST(Experiment3, TenSeedsAreAsGoodAsThePaper) {
         1e3 * record.summary.dv_mps);
   }
   const std::string paper = "the paper's software in the loop; median of seeds 1 to 10";
-  accuracy::expect_below("experiment 3: relative position once fixed, mean of the flight", paper,
+  accuracy::expect_below("experiment 3: relative position after the first fix, mean of the flight", paper,
                          1e3 * accuracy::median(mean), 8.7, "mm");
   accuracy::expect_below("experiment 3: relative position at waypoint 9", paper, 1e3 * accuracy::median(at_9), 6.7,
                          "mm");
   accuracy::expect_below("experiment 3: relative position at waypoint 10", paper, 1e3 * accuracy::median(at_10), 12.4,
                          "mm");
-  accuracy::expect_below("experiment 3: relative velocity once fixed, mean of the flight", paper,
+  accuracy::expect_below("experiment 3: relative velocity after the first fix, mean of the flight", paper,
                          1e3 * accuracy::median(velocity), 0.024, "mm/s");
   const std::string mission = "the mission's limit; worst of seeds 1 to 10";
   accuracy::expect_below("experiment 3: control error at waypoints 9 and 10", mission, 1e3 * largest_control_m, 50.0,

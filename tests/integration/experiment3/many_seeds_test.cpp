@@ -33,7 +33,7 @@ CoastingPair coast_of(int seed, int duration_s) {
   return CoastingPair(duration_s, {fmt::format("mission.start_h={}", 39.0 + 0.033 * seed)});
 }
 
-TEST(ManySeeds, EveryHeldIntegerIsTheTrueOneAndTheFilterIsHonest) {
+TEST(ManySeeds, EveryHeldIntegerIsTheTrueOneAndTheFilterIsConsistent) {
   long wrong = 0;
   int releases = 0;
   accuracy::Largest latest_fix_s;
@@ -73,7 +73,7 @@ TEST(ManySeeds, EveryHeldIntegerIsTheTrueOneAndTheFilterIsHonest) {
 }
 
 // Why the flights above begin all around the orbit: the differential acceleration that the filter has to guess.
-TEST(ManySeeds, TheForcesAreAsTheFilterIsTold) {
+TEST(ManySeeds, TheForcesAreThoseConfiguredInTheFilter) {
   constexpr int kOrbit_s = 5940;
   const CoastingPair coast = coast_of(0, kOrbit_s);
   fsw::Vector3 sum_of_squares = fsw::Vector3::Zero();

@@ -23,11 +23,11 @@ LabelledView view_of(const training::LabelledCrop& crop, const twins::camera::Ca
   LabelledView view;
   view.samples = crop.samples;
   standardise(view.samples);
-  view.region = crop.circumstances.region;
+  view.region = crop.priors.region;
   std::ranges::fill(view.camera.focal_length_px, camera.focal_length_px());
   view.camera.principal_point_px = {camera.optics.principal_point_px[0], camera.optics.principal_point_px[1]};
   std::ranges::copy(camera.optics.distortion, view.camera.distortion.begin());
-  view.truth = {crop.circumstances.R_camera_body, crop.circumstances.centre_of_mass_camera};
+  view.truth = {crop.priors.R_camera_body, crop.priors.centre_of_mass_camera};
   view.cells = crop.cells;
   view.counts = crop.counts;
   return view;
@@ -50,7 +50,7 @@ const FrontEndErrors& held_out() {
 
 TEST(FrontEnd, KeypointsOfHeldOutCrops) {
   const FrontEndErrors& errors = held_out();
-  accuracy::expect_below("keypoints of the network that are used, median error",
+  accuracy::expect_below("accepted keypoints of the network, median error",
                          fmt::format("truth, {} held-out crops of 128 x 128 samples", kCrops),
                          errors.median_keypoint_samples(), 1.5, "samples");
   EXPECT_GT(errors.usable_share(), 0.7);
@@ -62,9 +62,9 @@ TEST(FrontEnd, CovariancesAreTrue) {
   std::vector<double> squares;
   for (const KeypointError& error : held_out().keypoints()) squares.push_back(error.normalised);
   const double median = accuracy::quantile(squares, 0.5);
-  accuracy::expect_below("covariances of keypoints: normalised error squared, median, off from chi-square's 1.386",
-                         fmt::format("truth, {} held-out crops", kCrops), std::abs(median / 1.386 - 1.0), 0.36,
-                         "relative");
+  accuracy::expect_below(
+      "keypoint covariances: median of the normalised squared error, deviation from 1.386 (chi-square)",
+      fmt::format("truth, {} held-out crops", kCrops), std::abs(median / 1.386 - 1.0), 0.36, "relative");
 }
 
 TEST(FrontEnd, PosesOfHeldOutCrops) {
@@ -77,7 +77,7 @@ TEST(FrontEnd, PosesOfHeldOutCrops) {
     wrong += is_sure && pose.attitude_deg > 10.0 ? 1 : 0;
   }
   EXPECT_GT(sure, 0.7 * kCrops);
-  accuracy::expect_below("poses from one image with 8 inliers and more that are 10 deg off and more",
+  accuracy::expect_below("single-image poses of 8 or more inliers with an error of 10 deg or more",
                          fmt::format("truth, {} held-out crops", kCrops), static_cast<double>(wrong) / sure, 0.02,
                          "of them");
 }

@@ -68,8 +68,8 @@ int main(int argc, char** argv) {
   app.add_option("shards", order.shards, "files of vbar_training_crops")->required()->check(CLI::ExistingFile);
   app.add_option("--weights", order.weights, "file of weights; else those on board");
   app.add_option("--most", order.most, "crops");
-  app.add_option("--least-inliers", order.pnp.least_inliers, "of a pose")->capture_default_str();
-  app.add_option("--most-mean-square", order.pnp.most_mean_square, "of a pose's whitened residuals")
+  app.add_option("--least-inliers", order.pnp.min_inliers, "of a pose")->capture_default_str();
+  app.add_option("--most-mean-square", order.pnp.max_mean_square, "of a pose's whitened residuals")
       ->capture_default_str();
   app.add_option("--inlier-sigmas", order.pnp.inlier_sigmas, "of an inlier")->capture_default_str();
   app.add_option("--inlier-floor-px", order.pnp.inlier_floor_px, "of an inlier")->capture_default_str();

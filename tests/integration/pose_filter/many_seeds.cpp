@@ -46,13 +46,13 @@ int main(int argc, char** argv) {
     fsw::navigation::PoseSettings settings = test::pose_settings(flight);
     auto& filter = settings.filter;
     filter.correlated_share = option("F_SHARE", filter.correlated_share);
-    filter.correlated_turn = option("F_TURN", filter.correlated_turn);
+    filter.correlation_angle = option("F_TURN", filter.correlation_angle);
     filter.stretch_sigma = option("F_STRETCH", filter.stretch_sigma);
     filter.lasting_stretch_sigma = option("F_LASTING_STRETCH", filter.lasting_stretch_sigma);
     filter.shift_sigma_px = option("F_SHIFT", filter.shift_sigma_px);
-    filter.acceleration.psd_most = option("F_ACC_MOST", filter.acceleration.psd_most);
-    filter.angular_acceleration.psd_least = option("F_ANG_LEAST", filter.angular_acceleration.psd_least);
-    filter.angular_acceleration.psd_most = option("F_ANG_MOST", filter.angular_acceleration.psd_most);
+    filter.acceleration.psd_max = option("F_ACC_MOST", filter.acceleration.psd_max);
+    filter.angular_acceleration.psd_min = option("F_ANG_LEAST", filter.angular_acceleration.psd_min);
+    filter.angular_acceleration.psd_max = option("F_ANG_MOST", filter.angular_acceleration.psd_max);
     auto navigation = std::make_unique<fsw::navigation::PoseNavigation>();
     if (navigation->configure(settings) != fsw::Status::kOk) return 1;
     double position = 0.0, attitude = 0.0, roe_nees = 0.0, attitude_nees = 0.0, nis = 0.0, rows = 0.0;
@@ -60,11 +60,11 @@ int main(int argc, char** argv) {
     int count = 0;
     int first = -1;
     for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
-      const auto fate = navigation->update(network.measure(k), network.known_burns());
+      const auto status = navigation->update(network.measure(k), network.known_burns());
       if (!navigation->valid()) continue;
       if (first < 0) first = static_cast<int>(k);
       const test::PoseError error = test::pose_error(flight.epochs[k], attitudes[k], *navigation);
-      if (fate == fsw::navigation::PoseFate::kFilter) {
+      if (status == fsw::navigation::PoseEditStatus::kFilter) {
         nis += navigation->last_update().nis;
         rows += 2.0 * navigation->last_update().used;
       }
@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
         std::printf(
             "   %5.0f s fate %d lit %d range %5.2f err %6.1f %6.1f %6.1f mm (%5.1f %5.1f %5.1f) att %6.3f deg (%6.3f) "
             "rate %7.4f deg/s nees %6.1f %6.1f used %d psd %.0e %.0e scale %.1f\n",
-            5.0 * static_cast<double>(k), static_cast<int>(fate), flight.epochs[k].is_target_lit,
+            5.0 * static_cast<double>(k), static_cast<int>(status), flight.epochs[k].is_target_lit,
             (flight.epochs[k].target.position_eci - flight.epochs[k].servicer.position_eci).norm(),
             1e3 * error.position_rtn(0), 1e3 * error.position_rtn(1), 1e3 * error.position_rtn(2),
             1e3 * std::sqrt(c(0, 0)), 1e3 * std::sqrt(c(1, 1)), 1e3 * std::sqrt(c(2, 2)), error.attitude * 57.3,
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
             navigation->last_update().used, navigation->filter().acceleration_psd(),
             navigation->filter().angular_acceleration_psd(), navigation->last_update().noise_scale);
       }
-      if (k < 120 || fate != fsw::navigation::PoseFate::kFilter) continue;  // ten minutes to settle
+      if (k < 120 || status != fsw::navigation::PoseEditStatus::kFilter) continue;  // ten minutes to settle
       position += error.position_m;
       attitude += error.attitude * 57.2958;
       worst_position.add(error.position_m);

@@ -52,8 +52,8 @@ Outcome navigate(const nav::PoseSettings& settings, const KeypointErrors& errors
   double rows = 0.0;
   int count = 0;
   for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
-    const nav::PoseFate fate = navigation->update(network.measure(k), network.known_burns());
-    if (fate != nav::PoseFate::kFilter || k < kSettled) continue;
+    const nav::PoseEditStatus status = navigation->update(network.measure(k), network.known_burns());
+    if (status != nav::PoseEditStatus::kFilter || k < kSettled) continue;
     const PoseError error = pose_error(flight.epochs[k], attitudes[k], *navigation);
     outcome.position_m += error.position_m;
     outcome.attitude_deg += error.attitude / kDegree;
@@ -88,21 +88,21 @@ Outcome mean_of_seeds(const nav::PoseSettings& settings, const KeypointErrors& e
 
 constexpr unsigned kSeeds = 8;
 // Chi-square of 48 degrees of freedom: 99.9 % between 22 and 88.
-constexpr double kLeastNees = 22.0 / kSeeds;
-constexpr double kMostNees = 88.0 / kSeeds;
+constexpr double kMinNees = 22.0 / kSeeds;
+constexpr double kMaxNees = 88.0 / kSeeds;
 
-TEST(PoseFilter, IsHonestInWhiteNoise) {
+TEST(PoseFilter, IsConsistentInWhiteNoise) {
   nav::PoseSettings settings = pose_settings(whole_flight());
   settings.filter.correlated_share = 0.0;
   settings.filter.stretch_sigma = 1e-6;
   settings.filter.lasting_stretch_sigma = 1e-6;
   settings.filter.shift_sigma_px = 0.05;
   const Outcome mean = mean_of_seeds(settings, {}, kSeeds);
-  EXPECT_GT(mean.roe_nees, kLeastNees);
-  EXPECT_LT(mean.roe_nees, kMostNees);
+  EXPECT_GT(mean.roe_nees, kMinNees);
+  EXPECT_LT(mean.roe_nees, kMaxNees);
   // The truth has no torque but gravity's; the filter allows for others, so its attitude is better than it says.
   EXPECT_GT(mean.attitude_nees, 0.5);
-  EXPECT_LT(mean.attitude_nees, kMostNees);
+  EXPECT_LT(mean.attitude_nees, kMaxNees);
   // What passes a gate of 99 % has 0.953 of its expectation; that the scale learned is never below one takes a little.
   EXPECT_NEAR(mean.nis_share, 0.953, 0.02);
 }
@@ -121,9 +121,9 @@ TEST(PoseFilter, KnowsThePoseFromANetworkThatErrsAlikeInNeighbouringImages) {
                          "truth, gravity gradient, simulated keypoints of 2 px, 8 seeds", mean.attitude_deg, 1.0,
                          "deg");
   EXPECT_GT(mean.roe_nees, 0.5);
-  EXPECT_LT(mean.roe_nees, kMostNees);
+  EXPECT_LT(mean.roe_nees, kMaxNees);
   EXPECT_GT(mean.attitude_nees, 0.5);
-  EXPECT_LT(mean.attitude_nees, kMostNees);
+  EXPECT_LT(mean.attitude_nees, kMaxNees);
 }
 
 TEST(PoseFilter, LearnsThatANetworkIsTooSureOfItself) {
@@ -154,14 +154,14 @@ class Disturbed : public testing::Test {
     return errors;
   }
 
-  nav::PoseFate step(const Eigen::Quaterniond& turned = Eigen::Quaterniond::Identity()) {
-    const nav::PoseFate fate = navigation->update(network.measure(next, turned), burns);
+  nav::PoseEditStatus step(const Eigen::Quaterniond& turned = Eigen::Quaterniond::Identity()) {
+    const nav::PoseEditStatus status = navigation->update(network.measure(next, turned), burns);
     if (navigation->valid()) {
       error = pose_error(flight.epochs[next], {attitudes[next].q_eci_body * turned, attitudes[next].rate_body},
                          *navigation);
     }
     ++next;
-    return fate;
+    return status;
   }
 
   const CloseFlight& flight = whole_flight();
@@ -174,14 +174,14 @@ class Disturbed : public testing::Test {
 };
 
 TEST_F(Disturbed, BeginsWithThreeImages) {
-  EXPECT_EQ(step(), nav::PoseFate::kStart);
+  EXPECT_EQ(step(), nav::PoseEditStatus::kStart);
   EXPECT_FALSE(navigation->valid());
-  EXPECT_EQ(step(), nav::PoseFate::kStart);
+  EXPECT_EQ(step(), nav::PoseEditStatus::kStart);
   EXPECT_EQ(navigation->target().status(), fsw::Status::kNotReady);
-  EXPECT_EQ(step(), nav::PoseFate::kStart);
+  EXPECT_EQ(step(), nav::PoseEditStatus::kStart);
   EXPECT_TRUE(navigation->valid());
   EXPECT_TRUE(navigation->has_attitude());
-  EXPECT_EQ(step(), nav::PoseFate::kFilter);
+  EXPECT_EQ(step(), nav::PoseEditStatus::kFilter);
   EXPECT_EQ(navigation->last_measurement(), flight.epochs[3].time);
   for (int k = 0; k < 6; ++k) step();
   EXPECT_LT(error.position_m, 0.3);
@@ -200,15 +200,15 @@ TEST_F(Disturbed, BeginsWithWhatWasHandedOver) {
   nav::PoseEpoch epoch = network.measure(next++);
   epoch.keypoints = nullptr;
   epoch.pnp.reset();
-  EXPECT_EQ(navigation->update(epoch, {}), nav::PoseFate::kNone);
+  EXPECT_EQ(navigation->update(epoch, {}), nav::PoseEditStatus::kNone);
   ASSERT_TRUE(navigation->valid());
   EXPECT_FALSE(navigation->has_attitude());
   const fsw::Vector3 apart = navigation->target().value().position_eci - navigation->servicer().position_eci;
   const fsw::Vector3 truth = start.target.position_eci - start.servicer.position_eci;
   EXPECT_NEAR((apart - truth).norm(), 0.5, 0.1);
-  EXPECT_EQ(step(), nav::PoseFate::kPosition);
-  EXPECT_EQ(step(), nav::PoseFate::kPosition);
-  EXPECT_EQ(step(), nav::PoseFate::kFilter);
+  EXPECT_EQ(step(), nav::PoseEditStatus::kPosition);
+  EXPECT_EQ(step(), nav::PoseEditStatus::kPosition);
+  EXPECT_EQ(step(), nav::PoseEditStatus::kFilter);
   EXPECT_TRUE(navigation->has_attitude());
   for (int k = 0; k < 10; ++k) step();
   EXPECT_LT(error.position_m, 0.1);
@@ -229,7 +229,7 @@ TEST_F(Disturbed, WaitsForLightWithWhatWasHandedOver) {
     nav::PoseEpoch epoch = network.measure(next);
     epoch.keypoints = nullptr;
     epoch.pnp.reset();
-    EXPECT_EQ(navigation->update(epoch, burns), nav::PoseFate::kNone);
+    EXPECT_EQ(navigation->update(epoch, burns), nav::PoseEditStatus::kNone);
     ASSERT_TRUE(navigation->valid()) << next;
     EXPECT_FALSE(navigation->has_attitude());
   }
@@ -243,7 +243,7 @@ TEST_F(Disturbed, WhatWasHandedOverLongAgoIsNotUsed) {
   nav::PoseSettings settings = pose_settings(flight);
   settings.apriori.emplace().time = flight.epochs[0].time - fsw::duration_of_seconds(601);
   navigation = navigation_with(settings);
-  EXPECT_EQ(step(), nav::PoseFate::kStart);
+  EXPECT_EQ(step(), nav::PoseEditStatus::kStart);
   EXPECT_FALSE(navigation->valid());
 }
 
@@ -281,7 +281,7 @@ TEST_F(Disturbed, TwentyMinutesWithoutAnImageAreSurvived) {
     nav::PoseEpoch epoch = network.measure(next);
     epoch.keypoints = nullptr;
     epoch.pnp.reset();
-    EXPECT_EQ(navigation->update(epoch, burns), nav::PoseFate::kNone);
+    EXPECT_EQ(navigation->update(epoch, burns), nav::PoseEditStatus::kNone);
   }
   ASSERT_TRUE(navigation->valid());
   const auto target = navigation->target().value();
@@ -307,18 +307,18 @@ TEST_F(Disturbed, NumbersThatAreNoneChangeNothing) {
   epoch.keypoints = &keypoints;
   epoch.pnp->pose.position_camera_m.x() = nan;
   epoch.pnp->pose.R_camera_body.setConstant(nan);
-  EXPECT_EQ(navigation->update(epoch, burns), nav::PoseFate::kNone);
+  EXPECT_EQ(navigation->update(epoch, burns), nav::PoseEditStatus::kNone);
   for (auto& keypoint : keypoints) {
     keypoint.pixel = {400.0, 300.0};
     keypoint.covariance_px2.setZero();
   }
-  EXPECT_EQ(navigation->update(epoch, burns), nav::PoseFate::kNone);
+  EXPECT_EQ(navigation->update(epoch, burns), nav::PoseEditStatus::kNone);
   epoch.R_camera_eci->setConstant(nan);
-  EXPECT_EQ(navigation->update(epoch, burns), nav::PoseFate::kNone);
+  EXPECT_EQ(navigation->update(epoch, burns), nav::PoseEditStatus::kNone);
   EXPECT_EQ(navigation->a_roe_m(), before);
   // An epoch from before is ignored.
-  EXPECT_EQ(navigation->update(network.measure(5), burns), nav::PoseFate::kNone);
-  for (int k = 0; k < 10; ++k) EXPECT_EQ(step(), nav::PoseFate::kFilter);
+  EXPECT_EQ(navigation->update(network.measure(5), burns), nav::PoseEditStatus::kNone);
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(step(), nav::PoseEditStatus::kFilter);
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ report::WaypointRow waypoint(const report::RunRecord& record, int index) {
   for (const report::WaypointRow& row : record.waypoints) {
     if (row.index == index) return row;
   }
-  ADD_FAILURE() << "waypoint " << index << " was not judged";
+  ADD_FAILURE() << "waypoint " << index << " was not evaluated";
   return {};
 }
 

@@ -35,7 +35,7 @@ double dv_commanded_for(const report::RunRecord& record, int first, int last);
 /// As above: how many maneuvers.
 int maneuvers_commanded_for(const report::RunRecord& record, int first, int last);
 
-/// The row of a waypoint. Fails the test, and gives an empty row, if it was never judged.
+/// The row of a waypoint. Fails the test, and gives an empty row, if it was never evaluated.
 report::WaypointRow waypoint(const report::RunRecord& record, int index);
 
 }  // namespace vbar::test

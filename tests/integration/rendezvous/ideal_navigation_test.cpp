@@ -93,7 +93,7 @@ TEST(IdealNavigation, EveryCommandIsFlown) {
 
 // Navigation is fed the truth at every step, so what it says must be the truth, to the last bit but one: the difference
 // of two positions of 7e6 m is good to 1e-9 m, turned into RTN to a few of these.
-TEST(IdealNavigation, NavigationSaysWhatItWasTold) {
+TEST(IdealNavigation, NavigationReportsTheIdealState) {
   for (const report::WaypointRow& row : the_flight().record.waypoints) {
     ASSERT_TRUE(row.navigation_error_m.has_value()) << row.index;
     EXPECT_LT(*row.navigation_error_m, 1e-8) << row.index;

@@ -55,7 +55,7 @@ std::vector<Facts> ours(const cv::Mat& mask) {
   components->finish();
   std::vector<Facts> all;
   for (const Component& c : components->kept()) {
-    all.push_back({c.x_least, c.y_least, c.x_most - c.x_least + 1, c.y_most - c.y_least + 1, c.pixels});
+    all.push_back({c.x_min, c.y_min, c.x_max - c.x_min + 1, c.y_max - c.y_min + 1, c.pixels});
   }
   std::sort(all.begin(), all.end());
   return all;

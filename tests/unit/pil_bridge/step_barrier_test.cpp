@@ -164,7 +164,8 @@ TEST(StepBarrier, IgnoresAnAnswerOfAnotherSessionAndCountsIt) {
 TEST(StepBarrier, PassesOnWhyABoardCannotFly) {
   ScriptedBoard board({{{.type = FrameType::kHelloAck, .session = kSession}, "error: no room for the state"}});
   StepBarrier barrier(board, kSession, hasty(), watch_nothing);
-  EXPECT_EQ(link_error_of([&] { barrier.connect(kSpacecraft); }), "the board cannot fly: no room for the state");
+  EXPECT_EQ(link_error_of([&] { barrier.connect(kSpacecraft); }),
+            "the board cannot run its flight software: no room for the state");
 }
 
 TEST(StepBarrier, GivesUpOnABoardThatStallsInAStep) {

@@ -44,7 +44,7 @@ TEST(UdpTransport, CarriesOneFrameADatagram) {
   EXPECT_EQ(pair.other->counters().bytes_received, 3 + longest.size());
 }
 
-TEST(UdpTransport, IgnoresAndCountsStrangers) {
+TEST(UdpTransport, IgnoresAndCountsForeignDatagrams) {
   const Pair pair;
   const auto stranger = make_udp_transport("127.0.0.1", pair.port);
   stranger->send(Bytes{6, 6, 6});

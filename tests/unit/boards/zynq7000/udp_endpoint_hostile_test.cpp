@@ -31,7 +31,7 @@ class HostileFramesTest : public testing::Test {
   }
 
   UdpEndpoint endpoint_{kBoardMac, kBoardAddress, kBoardPort};
-  std::array<std::uint8_t, kMostFrameBytes> reply_{};
+  std::array<std::uint8_t, kMaxEthernetFrameBytes> reply_{};
 };
 
 TEST_F(HostileFramesTest, TruncatedAnywhere) {
@@ -79,7 +79,7 @@ TEST_F(HostileFramesTest, LengthsThatLie) {
   Frame long_header = good;
   long_header[14] = 0x4F;  // 60 bytes of header in a packet of 33
   expect_malformed(long_header);
-  expect_malformed(Frame(kMostFrameBytes + 1, 0));
+  expect_malformed(Frame(kMaxEthernetFrameBytes + 1, 0));
 }
 
 TEST_F(HostileFramesTest, Fragments) {

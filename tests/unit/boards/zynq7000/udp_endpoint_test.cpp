@@ -27,7 +27,7 @@ class UdpEndpointTest : public testing::Test {
 
   Frame frame_;
   UdpEndpoint endpoint_{kBoardMac, kBoardAddress, kBoardPort};
-  std::array<std::uint8_t, kMostFrameBytes> reply_{};
+  std::array<std::uint8_t, kMaxEthernetFrameBytes> reply_{};
 };
 
 TEST_F(UdpEndpointTest, AnswersArpOfLibslirp) {
@@ -61,7 +61,7 @@ TEST_F(UdpEndpointTest, TakesDatagramOfLibslirp) {
 TEST_F(UdpEndpointTest, EthernetPaddingIsNotPayload) {
   const std::array<std::uint8_t, 2> payload{7, 8};
   Frame frame = ipv4_frame(udp(payload));
-  frame.resize(kLeastFrameBytes, 0xEE);
+  frame.resize(kMinEthernetFrameBytes, 0xEE);
   EXPECT_THAT(receive(frame).bytes, ElementsAreArray(payload));
 }
 
@@ -98,14 +98,14 @@ TEST_F(UdpEndpointTest, AnswersPing) {
 // What one endpoint writes another takes, at every size that fits, and the frame's checksums hold by another road.
 TEST_F(UdpEndpointTest, WritesWhatAnotherEndpointReads) {
   UdpEndpoint host(kHostMac, kHostAddress, 40000);
-  std::array<std::uint8_t, kMostFrameBytes> frame{};
-  std::array<std::uint8_t, kMostDatagramBytes> payload{};
+  std::array<std::uint8_t, kMaxEthernetFrameBytes> frame{};
+  std::array<std::uint8_t, kMaxDatagramBytes> payload{};
   std::iota(payload.begin(), payload.end(), std::uint8_t{1});
-  for (std::size_t size = 0; size <= kMostDatagramBytes; ++size) {
+  for (std::size_t size = 0; size <= kMaxDatagramBytes; ++size) {
     const auto sent = std::span(payload).first(size);
     const auto written = endpoint_.write_datagram({kHostMac, kHostAddress, 40000}, sent, frame);
     ASSERT_TRUE(written.ok()) << size;
-    ASSERT_GE(written.value(), kLeastFrameBytes);
+    ASSERT_GE(written.value(), kMinEthernetFrameBytes);
     EXPECT_EQ(reference_checksum(std::span(frame).subspan(14, 20)), 0);
     EXPECT_EQ(reference_checksum(std::span(frame).subspan(34, 8 + size),
                                  pseudo_header_sum(kBoardAddress, kHostAddress, 8 + size)),
@@ -119,7 +119,7 @@ TEST_F(UdpEndpointTest, WritesWhatAnotherEndpointReads) {
 
 // RFC 768: a checksum that comes out as zero is sent as all ones, since zero means none.
 TEST_F(UdpEndpointTest, ZeroChecksumIsSentAsOnes) {
-  std::array<std::uint8_t, kMostFrameBytes> frame{};
+  std::array<std::uint8_t, kMaxEthernetFrameBytes> frame{};
   int found = 0;
   for (unsigned word = 0; word <= 0xFFFF; ++word) {
     const std::array<std::uint8_t, 2> payload{static_cast<std::uint8_t>(word >> 8U), static_cast<std::uint8_t>(word)};
@@ -131,8 +131,8 @@ TEST_F(UdpEndpointTest, ZeroChecksumIsSentAsOnes) {
 }
 
 TEST_F(UdpEndpointTest, RefusesDatagramThatDoesNotFit) {
-  std::array<std::uint8_t, 2 * kMostFrameBytes> frame{};
-  std::array<std::uint8_t, kMostDatagramBytes + 1> payload{};
+  std::array<std::uint8_t, 2 * kMaxEthernetFrameBytes> frame{};
+  std::array<std::uint8_t, kMaxDatagramBytes + 1> payload{};
   EXPECT_EQ(endpoint_.write_datagram({}, payload, frame).status(), fsw::Status::kTooLong);
   EXPECT_EQ(endpoint_.write_datagram({}, std::span(payload).first(100), std::span(frame).first(141)).status(),
             fsw::Status::kTooLong);

@@ -34,7 +34,7 @@ std::vector<Matrix63> random_effects(std::mt19937& random, std::size_t count) {
 TEST(LeastNormCorrection, IsThePseudoInverseOfTheWeightedEffects) {
   std::mt19937 random(3);
   std::normal_distribution<double> standard;
-  const CorrectionSettings settings{.radial_price = 3.0, .least_gain = 1e-4};
+  const CorrectionSettings settings{.radial_price = 3.0, .min_gain = 1e-4};
   for (int trial = 0; trial < 20; ++trial) {
     const std::vector<Matrix63> effects = random_effects(random, 2 + static_cast<std::size_t>(trial) % 5);
     const Vector6 residual = 1e-6 * Vector6::NullaryExpr([&] { return standard(random); });

@@ -45,7 +45,7 @@ struct PolarToCartesian {
   };
 
   Vector2 variances(const UnscentedTransform<2>::Regression<2>& r) const {
-    return (r.slope * covariance * r.slope.transpose() + r.remainder).diagonal();
+    return (r.jacobian * covariance * r.jacobian.transpose() + r.nonlinearity).diagonal();
   }
 };
 
@@ -86,8 +86,8 @@ TEST(Unscented, LinearFunctionIsExact) {
   const auto r = transform.regress<3>(values);
   // Differences of numbers near 7e6 keep 1e-9; the smallest factor divided by is 1e-3.
   EXPECT_LT((r.mean - a * mean).norm(), 2e-8);
-  EXPECT_LT((r.slope - a).norm(), 1e-5);
-  EXPECT_LT(r.remainder.norm(), 1e-15);
+  EXPECT_LT((r.jacobian - a).norm(), 1e-5);
+  EXPECT_LT(r.nonlinearity.norm(), 1e-15);
 }
 
 TEST(Unscented, SecondMomentOfASquare) {
@@ -100,8 +100,8 @@ TEST(Unscented, SecondMomentOfASquare) {
   for (std::size_t k = 0; k < 3; ++k) values[k] = transform.point(k).cwiseAbs2();
   const auto r = transform.regress<1>(values);
   EXPECT_NEAR(r.mean(0), 1.0, 1e-15);
-  EXPECT_NEAR(r.slope(0), 0.0, 1e-15);
-  EXPECT_NEAR(r.remainder(0), 2.0, 1e-14);
+  EXPECT_NEAR(r.jacobian(0), 0.0, 1e-15);
+  EXPECT_NEAR(r.nonlinearity(0), 2.0, 1e-14);
 }
 
 TEST(Unscented, RefusesWhatIsNoCovariance) {

@@ -125,15 +125,14 @@ TEST(Inbox, RefusesATickWithoutAPeriod) {
 // Sums and differences of what gets in must stay within an int64.
 TEST(Inbox, RefusesTimesOutsideTheClocksRange) {
   Inbox inbox(kServicer);
-  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-  for (const std::int64_t ns :
-       {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(), kLatestTime.ns + 1, kMost}) {
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t ns : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(), kLatestTime.ns + 1, kMax}) {
     EXPECT_EQ(inbox.receive(packet_of({ns}, ideal_navigation{})), Status::kOutOfRange) << ns;
   }
   EXPECT_EQ(inbox.counters().rejected_content, 4);
   EXPECT_EQ(inbox.receive(packet_of(kLatestTime, ideal_navigation{})), Status::kOk);
   tick message{};
-  message.period_ns = kMost;
+  message.period_ns = kMax;
   EXPECT_EQ(inbox.receive(packet_of({1}, message)), Status::kOutOfRange);
 }
 

@@ -127,7 +127,7 @@ TEST_F(ManagementTest, RefusesAConfigurationWithAnImpossibleFieldAndKeepsTheOld)
 
 // Spans that, added to a time, could leave the clock's range, and waypoints outside it.
 TEST_F(ManagementTest, RefusesSpansAndTimesThatOverflow) {
-  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
   std::int32_t refusals = 0;
   const auto refused = [&](const auto& message) {
     send(message);
@@ -136,7 +136,7 @@ TEST_F(ManagementTest, RefusesSpansAndTimesThatOverflow) {
   };
   const auto with = [this](std::int64_t gnc_configuration::*span) {
     gnc_configuration c = management_.configuration();
-    c.*span = kMost;
+    c.*span = kMax;
     return c;
   };
   EXPECT_TRUE(refused(with(&gnc_configuration::compute_latency_ns)));
@@ -149,10 +149,10 @@ TEST_F(ManagementTest, RefusesSpansAndTimesThatOverflow) {
   c.station_keeping_horizon_s = 0.0;
   EXPECT_TRUE(refused(c));
   waypoint_table table = table_of_three();
-  table.waypoints[2].gps_time_ns = kMost;
+  table.waypoints[2].gps_time_ns = kMax;
   EXPECT_TRUE(refused(table));
   table = table_of_three();
-  table.waypoints[0].gps_time_ns = -kMost;
+  table.waypoints[0].gps_time_ns = -kMax;
   EXPECT_TRUE(refused(table));
 }
 

@@ -66,9 +66,9 @@ TEST(PoseConfiguration, SettingsAreTheMessages) {
   EXPECT_EQ(camera.value().shape[10], test::tango_shape()[10]);
   const auto settings = pose_settings(good_camera(), p, {});
   ASSERT_TRUE(settings.ok());
-  EXPECT_EQ(settings.value().filter.acceleration.psd_most, 1e-11);
+  EXPECT_EQ(settings.value().filter.acceleration.psd_max, 1e-11);
   EXPECT_EQ(settings.value().filter.inertia(1, 1), 2.5);
-  EXPECT_EQ(settings.value().start.least_images, 3);
+  EXPECT_EQ(settings.value().start.min_images, 3);
   ASSERT_TRUE(settings.value().apriori.has_value());
   EXPECT_EQ(settings.value().apriori->time.ns, 7);
   EXPECT_EQ(settings.value().apriori->a_roe_m(5), 3.0);

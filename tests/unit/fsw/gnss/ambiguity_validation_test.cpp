@@ -62,7 +62,7 @@ TEST_F(AmbiguityValidation, HoldsAllOfAStrongSession) {
         problems::draw(problems::session_covariance(Session{.code_sigma_m = 0.3}, n, random), random);
     const AmbiguityDecision decision = decide(problem).value();
     ASSERT_EQ(decision.count, problem.size());
-    EXPECT_EQ(decision.obstacle, Obstacle::kNone);
+    EXPECT_EQ(decision.rejection_reason, RejectionReason::kNone);
     EXPECT_TRUE(right(decision, problem));
     EXPECT_EQ(decision.tried, 1U);
     for (std::size_t i = 0; i < decision.count; ++i) EXPECT_EQ(decision.position[i], i);
@@ -77,7 +77,7 @@ TEST_F(AmbiguityValidation, HoldsNoneOfAHopelessSession) {
   const Problem problem = problems::draw(problems::session_covariance(session, 8, random), random);
   const AmbiguityDecision decision = decide(problem).value();
   EXPECT_EQ(decision.count, 0U);
-  EXPECT_EQ(decision.obstacle, Obstacle::kWeak);
+  EXPECT_EQ(decision.rejection_reason, RejectionReason::kWeak);
 }
 
 TEST_F(AmbiguityValidation, LeavesOutTheSatellitesThatHaveJustRisen) {
@@ -90,7 +90,7 @@ TEST_F(AmbiguityValidation, LeavesOutTheSatellitesThatHaveJustRisen) {
     q(7, 7) += 1.0;
     const Problem problem = problems::draw(q, random);
     const AmbiguityDecision decision = decide(problem).value();
-    EXPECT_EQ(decision.obstacle, Obstacle::kWeak);
+    EXPECT_EQ(decision.rejection_reason, RejectionReason::kWeak);
     EXPECT_FALSE(holds(decision, 3));
     EXPECT_FALSE(holds(decision, 7));
     EXPECT_TRUE(right(decision, problem));
@@ -109,7 +109,7 @@ TEST_F(AmbiguityValidation, LeavesOutAnAmbiguityThatHasSlippedByHalfACycle) {
     const AmbiguityDecision decision = decide(problem).value();
     EXPECT_FALSE(holds(decision, slipped));
     EXPECT_TRUE(right(decision, problem));
-    if (decision.count == 11 && decision.obstacle == Obstacle::kNoFit) ++found;
+    if (decision.count == 11 && decision.rejection_reason == RejectionReason::kNoFit) ++found;
   }
   EXPECT_EQ(found, 20);
 }
@@ -121,7 +121,7 @@ TEST_F(AmbiguityValidation, HoldsNothingThatDoesNotFit) {
   const Problem problem = problems::draw(q, random);
   const AmbiguityDecision decision = decide(problem.ambiguities, 1e-4 * q).value();
   EXPECT_EQ(decision.count, 0U);
-  EXPECT_EQ(decision.obstacle, Obstacle::kNoFit);
+  EXPECT_EQ(decision.rejection_reason, RejectionReason::kNoFit);
 }
 
 /// Float ambiguities of the others once some are held: conditional mean and covariance.
@@ -169,7 +169,7 @@ TEST_F(AmbiguityValidation, LeavesOutWhatDependsOnOthers) {
   const Matrix q = twice * problem.covariance * twice.transpose();
   const AmbiguityDecision decision = decide(twice * problem.ambiguities, q).value();
   EXPECT_EQ(decision.count, 8U);
-  EXPECT_EQ(decision.obstacle, Obstacle::kSearch);
+  EXPECT_EQ(decision.rejection_reason, RejectionReason::kSearch);
   EXPECT_NE(holds(decision, 7), holds(decision, 8));
 }
 
@@ -237,14 +237,14 @@ TEST_F(AmbiguityValidation, RefusesWhatIsNoProblem) {
   EXPECT_EQ(decide(a, q, {.min_success_rate = 0.5}).status(), Status::kInvalidArgument);
   EXPECT_EQ(decide(a, q, {.min_ratio = nan}).status(), Status::kInvalidArgument);
   EXPECT_EQ(decide(a, q, {.min_count = 0}).status(), Status::kInvalidArgument);
-  EXPECT_EQ(decide(Vector(), Matrix()).value().obstacle, Obstacle::kTooFew);
-  EXPECT_EQ(decide(Vector::Zero(3), 1e-4 * Matrix::Identity(3, 3)).value().obstacle, Obstacle::kTooFew);
+  EXPECT_EQ(decide(Vector(), Matrix()).value().rejection_reason, RejectionReason::kTooFew);
+  EXPECT_EQ(decide(Vector::Zero(3), 1e-4 * Matrix::Identity(3, 3)).value().rejection_reason, RejectionReason::kTooFew);
   for (const Matrix& bad : {Matrix(Matrix::Zero(4, 4)), Matrix(-q), Matrix(Matrix::Ones(4, 4))}) {
     const AmbiguityDecision decision = decide(a, bad).value();
     EXPECT_EQ(decision.count, 0U);
-    EXPECT_EQ(decision.obstacle, Obstacle::kSearch);
+    EXPECT_EQ(decision.rejection_reason, RejectionReason::kSearch);
   }
-  EXPECT_EQ(decide(Vector::Constant(4, 1e300), q).value().obstacle, Obstacle::kSearch);
+  EXPECT_EQ(decide(Vector::Constant(4, 1e300), q).value().rejection_reason, RejectionReason::kSearch);
 }
 
 TEST_F(AmbiguityValidation, AsksNothingOfTheHeap) {

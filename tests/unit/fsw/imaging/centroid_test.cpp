@@ -110,8 +110,8 @@ TEST(Centroid, IsUnbiasedWhereverInAPixelThePointIs) {
   }
   // Sampled by pixels, a Gaussian of 0.85 px under the window of 1.06 px gives a bias of some thousandths (Poisson's
   // sum: 4 pi s^2 exp(-2 pi^2 s^2) with s = 0.66 px of their product is 0.001 px each axis).
-  accuracy::expect_below("star centroid, bias over the places within a pixel",
-                         "pixel-integrated Gaussians, still and smeared 1.2 px, 900 places", worst, 0.004, "px");
+  accuracy::expect_below("star centroid, bias over positions within a pixel",
+                         "pixel-integrated Gaussians, static and smeared by 1.2 px, 900 positions", worst, 0.004, "px");
 }
 
 TEST(Centroid, IsUnbiasedForSharpAndForSoftLenses) {
@@ -141,7 +141,7 @@ TEST(Centroid, ScattersHardlyMoreThanItMustAndSaysHowMuch) {
       EXPECT_LT(std::hypot(e.mean_x, e.mean_y), 0.002 + 0.13 * e.rms) << electrons;
     }
   }
-  accuracy::expect_below("star centroid, scatter over the least possible, magnitudes 8.3 to 2.4",
+  accuracy::expect_below("star centroid, standard deviation over its lower bound, magnitudes 8.3 to 2.4",
                          "Cramer-Rao bound, 11,250 centroids", worst_ratio, 1.25, "relative");
 }
 
@@ -165,7 +165,7 @@ TEST(Centroid, OfATargetThatSaturates) {
   }
   // What rounding of a disc's edge to pixels leaves: a disc of 3 px has some 10 pixels at its edge, each wrong by 0.3.
   accuracy::expect_below("centroid of a point from magnitude 3 to -8, saturated from 1.5 on",
-                         "where it was drawn, 300 points with 1 % scattered light", worst, 0.087, "px");
+                         "true position, 300 points with 1 % scattered light", worst, 0.087, "px");
 }
 
 TEST(Centroid, OfADiscIsItsMiddle) {

@@ -100,8 +100,7 @@ std::vector<Facts> labelled(const Mask& mask) {
   const auto components = std::make_unique<Components>();
   scan(*components, mask, 1'000'000);
   std::vector<Facts> all;
-  for (const Component& c : components->kept())
-    all.push_back({c.pixels, c.x, c.y, c.x_least, c.x_most, c.y_least, c.y_most});
+  for (const Component& c : components->kept()) all.push_back({c.pixels, c.x, c.y, c.x_min, c.x_max, c.y_min, c.y_max});
   EXPECT_EQ(components->found(), static_cast<int>(all.size()));
   EXPECT_EQ(components->runs_dropped(), 0);
   std::sort(all.begin(), all.end());
@@ -150,8 +149,8 @@ TEST(Components, OfTooManyTheBrightestAreKept) {
   ASSERT_EQ(components->kept().size(), kMaxObjects);
   for (std::size_t k = 0; k < kMaxObjects; ++k) EXPECT_EQ(components->kept()[k].flux, k < 200 ? 2 : 1);
   // Of those that are alike, the topmost
-  EXPECT_EQ(components->kept()[200].y_least, 0);
-  EXPECT_LE(components->kept()[255].y_least, 2);
+  EXPECT_EQ(components->kept()[200].y_min, 0);
+  EXPECT_LE(components->kept()[255].y_min, 2);
 }
 
 TEST(Components, ExtendedOnesAreCountedAndLeftOut) {

@@ -48,7 +48,7 @@ TEST(ObjectDetector, HardlyFindsWhatIsNotThere) {
   Detection d;
   int found = 0;
   for (int image = 0; image < 25; ++image) found += d.expose(test::SyntheticImage(500, 800)).objects;
-  accuracy::expect_below("false objects an image of 400,000 pixels at five sigmas", "synthetic dark images, 25",
+  accuracy::expect_below("false objects per image of 400,000 pixels at five sigma", "synthetic dark images, 25",
                          found / 25.0, 0.6, "objects");
 }
 
@@ -85,7 +85,7 @@ TEST(ObjectDetector, AHotPixelHasNoWidth) {
   for (const DetectedObject& object : d.objects->objects()) EXPECT_LT(object.radius_px, 0.4);
 }
 
-TEST(ObjectDetector, TheBrightestOfTooManyAreTold) {
+TEST(ObjectDetector, TheBrightestOfTooManyAreReported) {
   Detection d;
   test::SyntheticImage scene(500, 800);
   std::vector<double> fluxes;

@@ -7,7 +7,7 @@
 namespace vbar::fsw::navigation {
 namespace {
 
-constexpr AdaptiveNoiseSettings kSettings{.psd = 1e-13, .psd_least = 1e-14, .psd_most = 1e-11};
+constexpr AdaptiveNoiseSettings kSettings{.psd = 1e-13, .psd_min = 1e-14, .psd_max = 1e-11};
 
 /// First-order correlated pairs, as a filter that lags leaves them. `scale`: their standard deviation.
 void feed(AdaptiveNoise& noise, double correlation, double scale, int count, bool interrupted = false) {
@@ -23,14 +23,14 @@ void feed(AdaptiveNoise& noise, double correlation, double scale, int count, boo
 TEST(AdaptiveNoise, RisesToItsBoundWhereInnovationsAreCorrelated) {
   AdaptiveNoise noise(kSettings);
   feed(noise, 0.7, 1.5, 200);
-  EXPECT_EQ(noise.psd(), kSettings.psd_most);
+  EXPECT_EQ(noise.psd(), kSettings.psd_max);
 }
 
 TEST(AdaptiveNoise, FallsToItsBoundWhereTheyAreWhiteEvenIfTheyAreLarge) {
   for (const double scale : {1.0, 3.0}) {
     AdaptiveNoise noise(kSettings);
     feed(noise, 0.0, scale, 1000);
-    EXPECT_EQ(noise.psd(), kSettings.psd_least);
+    EXPECT_EQ(noise.psd(), kSettings.psd_min);
   }
 }
 

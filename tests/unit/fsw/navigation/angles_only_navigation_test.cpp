@@ -87,7 +87,7 @@ class Watched : public testing::Test {
 TEST_F(Watched, FirstPointsByWhatWasKnownThenByTheBatchThenByTheFilter) {
   EXPECT_FALSE(navigation->has_target());
   EXPECT_EQ(navigation->predict(now, Vector3::Zero(), scene_sun(), {}).status(), Status::kNotReady);
-  EXPECT_EQ(navigation->update(epoch(false), burns), BearingFate::kNone);
+  EXPECT_EQ(navigation->update(epoch(false), burns), BearingEditStatus::kNone);
   EXPECT_TRUE(navigation->has_target());
   EXPECT_FALSE(navigation->valid());
   const auto prediction = navigation->predict(now, Vector3::Zero(), scene_sun(), {});
@@ -95,12 +95,12 @@ TEST_F(Watched, FirstPointsByWhatWasKnownThenByTheBatchThenByTheFilter) {
   // 100 m at 20 km.
   EXPECT_NEAR(std::sqrt(prediction.value().covariance(1, 1)), 100.0 / 20300.0, 0.3 * 100.0 / 20300.0);
   move();
-  for (int k = 0; k < 29; ++k, move()) EXPECT_EQ(navigation->update(epoch(), burns), BearingFate::kBatch);
+  for (int k = 0; k < 29; ++k, move()) EXPECT_EQ(navigation->update(epoch(), burns), BearingEditStatus::kBatch);
   EXPECT_FALSE(navigation->valid());
-  EXPECT_EQ(navigation->update(epoch(), burns), BearingFate::kBatch);
+  EXPECT_EQ(navigation->update(epoch(), burns), BearingEditStatus::kBatch);
   EXPECT_TRUE(navigation->valid());
   move();
-  EXPECT_EQ(navigation->update(epoch(), burns), BearingFate::kFilter);
+  EXPECT_EQ(navigation->update(epoch(), burns), BearingEditStatus::kFilter);
   EXPECT_EQ(navigation->last_bearing(), now);
   EXPECT_NEAR(navigation->counters().bearings_used, 31, 1);
   move();
@@ -151,11 +151,11 @@ TEST_F(Watched, ABurnNobodyToldOfIsRefusedThenBelieved) {
   watch(240);
   const AnglesOnlyCounters& counters = navigation->counters();
   EXPECT_GT(counters.bearings_refused, 0);
-  EXPECT_GT(counters.doubts + counters.restarts, 0);
+  EXPECT_GT(counters.inflations + counters.restarts, 0);
   EXPECT_TRUE(navigation->valid());
   // Right again by its own account, and on the target: a bearing is worth 1.2 m here.
   EXPECT_LT(error(), 4.0 * sigma());
-  EXPECT_EQ(navigation->update(epoch(), burns), BearingFate::kFilter);
+  EXPECT_EQ(navigation->update(epoch(), burns), BearingEditStatus::kFilter);
 }
 
 TEST_F(Watched, WhatComesLateIsIgnored) {
@@ -164,7 +164,7 @@ TEST_F(Watched, WhatComesLateIsIgnored) {
   AnglesOnlyEpoch late = epoch();
   late.time = navigation->epoch() - duration_of_seconds(1);
   late.bearing->time = late.time;
-  EXPECT_EQ(navigation->update(late, burns), BearingFate::kNone);
+  EXPECT_EQ(navigation->update(late, burns), BearingEditStatus::kNone);
   EXPECT_EQ(navigation->filter().roe(), roe);
 }
 

@@ -68,8 +68,8 @@ struct Arc {
 
 // The sum of ten chi-squares of six degrees of freedom: 60, and 99.9 % of them between 30 and 103.
 constexpr int kArcs = 10;
-constexpr double kLeast = 30.0 / kArcs;
-constexpr double kMost = 103.0 / kArcs;
+constexpr double kMinNees = 30.0 / kArcs;
+constexpr double kMaxNees = 103.0 / kArcs;
 
 TEST(BearingBatch, IsAsGoodAsItSaysAndBetterThanWhatWasKnown) {
   double nees = 0.0;
@@ -83,8 +83,8 @@ TEST(BearingBatch, IsAsGoodAsItSaysAndBetterThanWhatWasKnown) {
     EXPECT_LT(kA * std::sqrt(solution.value().covariance(4, 4)), 20.0);
     EXPECT_LT(solution.value().covariance(1, 1), arc.prior_covariance(1, 1));
   }
-  EXPECT_GT(nees, kLeast);
-  EXPECT_LT(nees, kMost);
+  EXPECT_GT(nees, kMinNees);
+  EXPECT_LT(nees, kMaxNees);
 }
 
 TEST(BearingBatch, KnowsItsBurns) {
@@ -95,8 +95,8 @@ TEST(BearingBatch, KnowsItsBurns) {
     ASSERT_TRUE(solution.ok());
     nees += arc.nees(solution.value()) / kArcs;
   }
-  EXPECT_GT(nees, kLeast);
-  EXPECT_LT(nees, kMost);
+  EXPECT_GT(nees, kMinNees);
+  EXPECT_LT(nees, kMaxNees);
 }
 
 TEST(BearingBatch, BearsWithStrayBearings) {
@@ -109,7 +109,7 @@ TEST(BearingBatch, BearsWithStrayBearings) {
     nees += arc.nees(solution.value()) / kArcs;
   }
   // Four strays of ten arc minutes pull as three sigma each: half as much again may be lost.
-  EXPECT_LT(nees, 1.5 * kMost);
+  EXPECT_LT(nees, 1.5 * kMaxNees);
 }
 
 TEST(BearingBatch, RefusesWhatIsNoOrbit) {

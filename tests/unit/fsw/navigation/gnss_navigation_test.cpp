@@ -40,7 +40,7 @@ TEST(GnssNavigation, EveryHeldIntegerIsTheTrueOneOverFiftySeeds) {
 }
 
 // Normalised error squared of the six relative states, over seeds, against chi-square with 6 x 40 degrees of freedom.
-TEST(GnssNavigation, IsHonestAboutItsErrors) {
+TEST(GnssNavigation, IsConsistentWithItsErrors) {
   double nees = 0.0;
   double nis = 0.0;
   double nis_count = 0.0;
@@ -67,7 +67,7 @@ TEST(GnssNavigation, IsHonestAboutItsErrors) {
   EXPECT_NEAR(nis / nis_count, 1.0, 0.05);
 }
 
-TEST(GnssNavigation, ASlipThatReceiversTellIsMendedAtOnce) {
+TEST(GnssNavigation, ASlipReportedByTheReceiversIsCorrectedAtOnce) {
   CooperatingPair pair(5);
   pair.fly(15);
   for (std::size_t k = 0; k < 60; k += 7) {
@@ -129,7 +129,7 @@ TEST(GnssNavigation, BurnsAreFollowed) {
   const Vector3 dv_rtn(0.002, -0.003, 0.001);
   const orbit::CartesianState before = pair.servicer.state_at(burn_time);
   const orbit::CartesianState after = orbit::apply_impulse_rtn(before, dv_rtn);
-  pair.servicer.start = propagate_pushed(after, Vector3::Zero(), -seconds(burn_time - test::start_time()));
+  pair.servicer.start = propagate_accelerated(after, Vector3::Zero(), -seconds(burn_time - test::start_time()));
   const std::array<Burn, 1> burns{{{burn_time, dv_rtn}}};
   pair.take(Receiver::kServicer);
   pair.take(Receiver::kTarget);

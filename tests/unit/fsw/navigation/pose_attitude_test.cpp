@@ -40,7 +40,7 @@ TEST(PoseAttitude, ASpinningTopPrecessesAsEulerFound) {
   start.q_eci_body = Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Vector3(0.3, 0.5, -0.2).normalized()));
   start.rate_body = Vector3(0.01, 0.0, 0.02);
   const double t = 300.0;
-  const AttitudeState end = turned_on(start, top, {}, t);
+  const AttitudeState end = propagate_attitude(start, top, {}, t);
   const double turned = (3.0 - 2.0) / 2.0 * 0.02 * t;
   // Runge-Kutta 4 with 2.5 s: (rate * step)^4 / 120 of the angle turned, 6 rad.
   EXPECT_NEAR(end.rate_body.x(), 0.01 * std::cos(turned), 1e-8);
@@ -57,11 +57,11 @@ TEST(PoseAttitude, MomentumOfATumbleStandsInSpaceAndTimeRunsBack) {
   const Inertia tango = body(2.686, 3.458, 3.106);
   AttitudeState start;
   start.rate_body = Vector3(0.01, 0.02, -0.015);
-  const AttitudeState end = turned_on(start, tango, {}, 900.0);
+  const AttitudeState end = propagate_attitude(start, tango, {}, 900.0);
   const Vector3 before = start.q_eci_body * (tango.tensor * start.rate_body);
   const Vector3 after = end.q_eci_body * (tango.tensor * end.rate_body);
   EXPECT_LT((after - before).norm() / before.norm(), 2e-6);
-  const AttitudeState back = turned_on(end, tango, {}, -900.0);
+  const AttitudeState back = propagate_attitude(end, tango, {}, -900.0);
   EXPECT_LT(back.q_eci_body.angularDistance(start.q_eci_body), 2e-6);
 }
 
@@ -73,7 +73,7 @@ TEST(PoseAttitude, GravityTurnsTheLongAxisUp) {
   GravityGradient gradient;
   gradient.vertical_eci = start.q_eci_body * Vector3(1.0, 1.0, 0.0).normalized();
   gradient.strength = 3.4e-6;
-  const AttitudeState end = turned_on(start, inertia, gradient, 1.0);
+  const AttitudeState end = propagate_attitude(start, inertia, gradient, 1.0);
   EXPECT_NEAR(end.rate_body.z(), 3.4e-6 * 0.5 / 2.5, 1e-14);
   EXPECT_NEAR(end.rate_body.head<2>().norm(), 0.0, 1e-14);
   // At 7000 km: 3 mu / r^3.

@@ -75,7 +75,7 @@ class Coast : public testing::Test {
 TEST_F(Coast, FollowsTheTruthsIntegratorInTheSameField) {
   fly(kOrbit_s);
   // Runge and Kutta's error at 20 s steps, 16/81 of the 1.23 m found at 30 s, and the on-board frame's 0.02 arcsec.
-  accuracy::expect_below("on-board coast of an orbit, 20x20", "the truth's DOPRI5, same field", absolute_error, 0.5,
+  accuracy::expect_below("on-board orbit propagation, 20x20", "the truth's DOPRI5, same field", absolute_error, 0.5,
                          "m");
   accuracy::expect_below("the same, relative position of a pair 75 km apart", "the truth's DOPRI5, same field",
                          relative_error, 0.01, "m");

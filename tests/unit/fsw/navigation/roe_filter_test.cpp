@@ -26,7 +26,7 @@ Matrix6 diagonal_covariance(double da, double dl, double rest) {
 
 RoeFilterSettings without_pushes() {
   RoeFilterSettings settings;
-  settings.acceleration = {.psd = 1e-30, .psd_least = 1e-30, .psd_most = 1e-30};
+  settings.acceleration = {.psd = 1e-30, .psd_min = 1e-30, .psd_max = 1e-30};
   settings.along_track_sigma = 1e-15;
   settings.from_sun_sigma = 1e-15;
   return settings;

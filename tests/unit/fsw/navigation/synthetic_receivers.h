@@ -53,7 +53,7 @@ struct SyntheticReceiver {
   std::vector<double> lock_start_s = std::vector<double>(80, 0.0);
 
   orbit::CartesianState state_at(GpsTime time) const {
-    return propagate_pushed(start, Vector3::Zero(), seconds(time - start_time()));
+    return propagate_accelerated(start, Vector3::Zero(), seconds(time - start_time()));
   }
 
   /// Zenith pointing: body z up, x along-track.

@@ -52,7 +52,7 @@ TEST(Denormals, DoNotAriseFromTheSmallestWeightsAndSamples) {
     // Denormal samples are put aside by a comparison, which the processor notes as well: they are not looked at here.
     auto crop = vbar::test::tiny_crop(seed);
     for (float& sample : crop) {
-      if (!(sample > kLeastActivation || sample < -kLeastActivation)) sample = 0.0F;
+      if (!(sample > kMinActivation || sample < -kMinActivation)) sample = 0.0F;
     }
     clear_flags();
     ASSERT_EQ(network->run(crop), vbar::fsw::Status::kOk);

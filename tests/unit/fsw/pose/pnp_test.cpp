@@ -83,7 +83,7 @@ TEST(Pnp, CovarianceIsThatOfTheErrors) {
 TEST(Pnp, KeypointsInAPlaneAreEnough) {
   std::mt19937_64 random(5);
   PnpSettings four;
-  four.least_inliers = 4;
+  four.min_inliers = 4;
   for (int n = 0; n < 200; ++n) {
     const TargetPose truth = test::random_pose(random, 5.0, 13.0);
     Keypoints keypoints = test::seen_keypoints(truth, 0.0, 1.0, random);
@@ -123,7 +123,7 @@ TEST(Pnp, WhatIsNoPose) {
   far.nearest_m = 20.0;
   EXPECT_EQ(solve(good, far).status(), Status::kOutOfRange);
   PnpSettings strict;
-  strict.most_mean_square = 1e-6;
+  strict.max_mean_square = 1e-6;
   EXPECT_EQ(solve(good, strict).status(), Status::kDidNotConverge);
 
   Keypoints one_point = good;

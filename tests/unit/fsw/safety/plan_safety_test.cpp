@@ -88,12 +88,12 @@ TEST(PlanSafety, SeesTheDriftThatAMissedBrakingBurnLeavesBehind) {
   const PlanSafety verdict = assess_plan(kStart, mission::kServicerMean, roe, plan, criterion).value();
   EXPECT_FALSE(verdict.safe);
   EXPECT_EQ(verdict.prefix, 1U);
-  EXPECT_LT(verdict.least_distance, 10.0);          // J2 shifts the rendezvous by metres
+  EXPECT_LT(verdict.min_distance, 10.0);            // J2 shifts the rendezvous by metres
   EXPECT_NEAR(verdict.time, 600.0 + 5926.0, 60.0);  // a revolution after the burn
   const Truth truth = fly_all_prefixes(roe, plan);
   EXPECT_EQ(truth.prefix, 1U);
   EXPECT_NEAR(truth.time, verdict.time, 30.0);
-  EXPECT_NEAR(truth.least, verdict.least_distance,
+  EXPECT_NEAR(truth.least, verdict.min_distance,
               5.0);  // 0.6 (e + J2) of 1.4 km, and 1.7 m between truth's samples
 
   // Without the first burn nothing happens; the sign of a servicer's burn matters: prograde opens the distance.
@@ -123,7 +123,7 @@ TEST(PlanSafety, AgreesWithTruthForEveryKindOfBurn) {
     const Truth truth = fly_all_prefixes(c.roe, plan);
     // The stated 0.6 (e + J2) of the largest separation, and what truth misses between its samples of 10 s.
     const double tolerance = 1.3e-3 * truth.farthest + 5e-3 * truth.least;
-    EXPECT_NEAR(verdict.least_distance, truth.least, tolerance) << (mission::kReferenceA * c.roe).transpose();
+    EXPECT_NEAR(verdict.min_distance, truth.least, tolerance) << (mission::kReferenceA * c.roe).transpose();
     EXPECT_EQ(verdict.prefix, truth.prefix) << (mission::kReferenceA * c.roe).transpose();
   }
 }
@@ -137,7 +137,7 @@ TEST(PlanSafety, WatchesUntilTheNextBurnHoweverLateItIs) {
   const PlanSafety verdict = assess_plan(kStart, mission::kServicerMean, roe, late, criterion).value();
   EXPECT_FALSE(verdict.safe);
   EXPECT_EQ(verdict.prefix, 0U);
-  EXPECT_NEAR(verdict.least_distance, 30.0, 3.0);  // passes at a da; 0.6 (e + J2) of 1.2 km
+  EXPECT_NEAR(verdict.min_distance, 30.0, 3.0);  // passes at a da; 0.6 (e + J2) of 1.2 km
   EXPECT_NEAR(verdict.time, 3.5 * 5934.0, 0.05 * 5934.0);
 }
 
@@ -147,8 +147,8 @@ TEST(PlanSafety, OfNoBurnsIsThatOfTheDrift) {
       assess_plan(kStart, mission::kServicerMean, roe, {}, {.keep_out_radius = 1.0, .horizon = kHorizon}).value();
   const DriftSafety drift = assess_drift(mission::kServicerMean, roe, kHorizon).value();
   // The plan carries the target as elements: ROE round to 2e-16, 1.5e-9 m.
-  EXPECT_NEAR(plan.least_distance, drift.spatial.distance, 1e-8);
-  EXPECT_NEAR(plan.least_rn_distance, drift.radial_normal.distance, 1e-8);
+  EXPECT_NEAR(plan.min_distance, drift.spatial.distance, 1e-8);
+  EXPECT_NEAR(plan.min_rn_distance, drift.radial_normal.distance, 1e-8);
   EXPECT_NEAR(plan.time, drift.spatial.time, 1e-3);
   EXPECT_TRUE(plan.safe);
 }
@@ -160,7 +160,7 @@ TEST(PlanSafety, UncertaintyCanFailAPlan) {
   criterion.bound = {.radial_normal = 0.3, .along_track = 10.0, .along_track_rate = 0.0};
   const PlanSafety verdict = assess_plan(kStart, mission::kServicerMean, roe, {}, criterion).value();
   EXPECT_FALSE(verdict.safe);
-  EXPECT_NEAR(verdict.least_distance, 0.7, 2e-3);  // the separation of 1 m, J2 turning de against di, less 0.3
+  EXPECT_NEAR(verdict.min_distance, 0.7, 2e-3);  // the separation of 1 m, J2 turning de against di, less 0.3
 }
 
 TEST(PlanSafety, RefusesWhatIsNoPlan) {

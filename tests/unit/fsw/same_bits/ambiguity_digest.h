@@ -50,7 +50,7 @@ inline std::uint64_t ambiguity_digest() {
         gnss::decide_ambiguities(std::span(floats).first(n), std::span(covariance).first(n * n), {}, *workspace);
     const gnss::AmbiguityDecision& decision = result.value();
     digest.add(static_cast<double>(result.status()));
-    digest.add(static_cast<double>(decision.obstacle));
+    digest.add(static_cast<double>(decision.rejection_reason));
     digest.add(static_cast<double>(decision.tried));
     for (std::size_t i = 0; i < decision.count; ++i) {
       digest.add(static_cast<double>(decision.position[i]));

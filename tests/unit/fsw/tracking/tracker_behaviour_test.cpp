@@ -127,7 +127,7 @@ TEST(TargetTracker, WithoutAPredictionNoneOfTwoSatellitesIsConfirmed) {
 }
 
 // Two satellites at equal distances from where the target is expected.
-TEST(TargetTracker, TwoThatFitThePredictionAlikeAreNotToldApart) {
+TEST(TargetTracker, TwoThatFitThePredictionEquallyAreAmbiguous) {
   SceneSettings settings = clean_scene();
   settings.sigma_a_roe_m = six(20.0, 1000.0, 300.0, 300.0, 300.0, 300.0);
   settings.refined_after_s = 1e9;

@@ -1,4 +1,4 @@
-#include "fsw/navigation/pose_start.h"
+#include "fsw/navigation/pose_initialiser.h"
 
 #include <cmath>
 
@@ -43,7 +43,7 @@ class PoseStarts : public testing::Test {
 
   static constexpr double kSpin = 0.02;
   const Eigen::Quaterniond first{Eigen::AngleAxisd(2.0, Vector3(1.0, 2.0, -1.0).normalized())};
-  PoseStart start;
+  PoseInitialiser start;
   GpsTime now = scene_start();
   double elapsed = 0.0;
   orbit::CartesianState servicer, target;

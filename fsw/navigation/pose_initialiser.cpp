@@ -1,4 +1,4 @@
-#include "fsw/navigation/pose_start.h"
+#include "fsw/navigation/pose_initialiser.h"
 
 #include "fsw/math/cholesky6.h"
 #include "fsw/math/math.h"
@@ -12,7 +12,7 @@ namespace {
 constexpr Duration kOldest = duration_of_seconds(75);
 constexpr double kLongestPair_s = 20.0;
 constexpr double kPriorPosition_m = 300.0;
-// Neighbouring images err alike: so many of them are worth one.
+// Errors of neighbouring images are correlated: this number of them counts as one.
 constexpr double kAlike = 3.0;
 constexpr int kRounds = 3;
 
@@ -20,27 +20,27 @@ constexpr double square(double x) {
   return x * x;
 }
 
-/// The target's state from where it is and how it moves in the servicer's RTN.
+/// The target's state from its position and velocity in the servicer's RTN.
 orbit::CartesianState target_at(const orbit::CartesianState& servicer, const Vector6& rtn) {
   const Matrix3 R_eci_rtn = orbit::R_rtn_eci(servicer).transpose();
-  const double turning = math::sqrt(servicer.position_eci.cross(servicer.velocity_eci).squaredNorm()) /
-                         servicer.position_eci.squaredNorm();
+  const double angular_rate = math::sqrt(servicer.position_eci.cross(servicer.velocity_eci).squaredNorm()) /
+                              servicer.position_eci.squaredNorm();
   const Vector3 position = rtn.head<3>();
-  const Vector3 velocity = rtn.tail<3>() + Vector3(-turning * position.y(), turning * position.x(), 0.0);
+  const Vector3 velocity = rtn.tail<3>() + Vector3(-angular_rate * position.y(), angular_rate * position.x(), 0.0);
   return {.position_eci = servicer.position_eci + R_eci_rtn * position,
           .velocity_eci = servicer.velocity_eci + R_eci_rtn * velocity};
 }
 
-Matrix6 roe_of_rtn_slope(const orbit::QnsElements& chief) {
-  Matrix6 slope;
-  for (int k = 0; k < 6; ++k) slope.col(k) = orbit::roe_from_rtn_linear(chief, Vector6::Unit(k));
-  return slope;
+Matrix6 roe_rtn_jacobian(const orbit::QnsElements& chief) {
+  Matrix6 jacobian;
+  for (int k = 0; k < 6; ++k) jacobian.col(k) = orbit::roe_from_rtn_linear(chief, Vector6::Unit(k));
+  return jacobian;
 }
 
 }  // namespace
 
-void PoseStart::add(const PoseSample& sample) {
-  std::size_t drop = size_ == kMost ? 1 : 0;
+void PoseInitialiser::add(const PoseSample& sample) {
+  std::size_t drop = size_ == kMaxSamples ? 1 : 0;
   while (drop < size_ && sample.time - samples_[drop].time > kOldest) ++drop;
   for (std::size_t k = drop; k < size_; ++k) samples_[k - drop] = samples_[k];
   size_ -= drop;
@@ -48,10 +48,10 @@ void PoseStart::add(const PoseSample& sample) {
   samples_[size_++] = sample;
 }
 
-PoseStart::Agreement PoseStart::agreement_with(const AttitudeState& attitude, std::size_t from) const {
+PoseInitialiser::Agreement PoseInitialiser::agreement_with(const AttitudeState& attitude, std::size_t from) const {
   Agreement agreement;
   for (std::size_t k = 0; k < size_; ++k) {
-    const AttitudeState then = turned_on(attitude, inertia_, {}, seconds_between(from, k));
+    const AttitudeState then = propagate_attitude(attitude, inertia_, {}, seconds_between(from, k));
     agreement.misses[k] = rotation_vector_of(then.q_eci_body.conjugate() * samples_[k].q_eci_body);
     const double miss = agreement.misses[k].squaredNorm();
     agreement.is_in[k] = miss <= square(settings_.agreement);
@@ -62,9 +62,9 @@ PoseStart::Agreement PoseStart::agreement_with(const AttitudeState& attitude, st
   return agreement;
 }
 
-Result<AttitudeStart> PoseStart::attitude() const {
-  if (static_cast<int>(size_) < settings_.least_images) return Status::kNotReady;
-  // Each pair of neighbours, and of next neighbours, is a motion; the one most others agree with is it.
+Result<AttitudeStart> PoseInitialiser::attitude() const {
+  if (static_cast<int>(size_) < settings_.min_images) return Status::kNotReady;
+  // Each pair of neighbours, and of next neighbours, defines a motion; the one with the largest consensus is chosen.
   Agreement best;
   AttitudeState motion;
   std::size_t from = 0;
@@ -75,7 +75,7 @@ Result<AttitudeStart> PoseStart::attitude() const {
       AttitudeState pair;
       pair.q_eci_body = samples_[k].q_eci_body;
       pair.rate_body = rotation_vector_of(samples_[k].q_eci_body.conjugate() * samples_[k + step].q_eci_body) / dt;
-      if (pair.rate_body.squaredNorm() > square(settings_.most_rate)) continue;
+      if (pair.rate_body.squaredNorm() > square(settings_.max_rate)) continue;
       const Agreement agreement = agreement_with(pair, k);
       if (agreement.count < best.count || (agreement.count == best.count && agreement.squares >= best.squares))
         continue;
@@ -84,9 +84,9 @@ Result<AttitudeStart> PoseStart::attitude() const {
       from = k;
     }
   }
-  if (best.count < settings_.least_images || 2 * best.count <= static_cast<int>(size_)) return Status::kDidNotConverge;
+  if (best.count < settings_.min_images || 2 * best.count <= static_cast<int>(size_)) return Status::kDidNotConverge;
 
-  // A straight line through the misses of those that agree, weighted alike: at the last sample, and its slope.
+  // Linear fit to the residuals of the consensus set, with equal weights: value and rate at the last sample.
   const std::size_t last = size_ - 1;
   AttitudeStart start;
   double own_variance = 0.0;
@@ -110,11 +110,11 @@ Result<AttitudeStart> PoseStart::attitude() const {
     const double determinant = count * t2 - t1 * t1;
     if (!(determinant > 0.0)) return Status::kDidNotConverge;
     const Vector3 offset = (t2 * sum - t1 * sum_t) / determinant;
-    const Vector3 slope = (count * sum_t - t1 * sum) / determinant;
-    AttitudeState at_last = turned_on(motion, inertia_, {}, seconds_between(from, last));
+    const Vector3 drift = (count * sum_t - t1 * sum) / determinant;
+    AttitudeState at_last = propagate_attitude(motion, inertia_, {}, seconds_between(from, last));
     at_last.q_eci_body = (at_last.q_eci_body * quaternion_of_rotation_vector(offset)).normalized();
-    // A body that is turned by `offset` sees the same rate from other axes; that of the miss comes on top.
-    at_last.rate_body += slope + at_last.rate_body.cross(offset);
+    // A body rotated by `offset` has the same rate in other axes; the rate of the residual is added.
+    at_last.rate_body += drift + at_last.rate_body.cross(offset);
     start.attitude = at_last;
     start.agreeing = best.count;
     const double variance = kAlike * (own_variance / count + square(settings_.attitude_sigma));
@@ -128,31 +128,31 @@ Result<AttitudeStart> PoseStart::attitude() const {
     motion = at_last;
     from = last;
     best = agreement_with(motion, from);
-    if (best.count < settings_.least_images) return Status::kDidNotConverge;
+    if (best.count < settings_.min_images) return Status::kDidNotConverge;
   }
   return start;
 }
 
-Result<OrbitStart> PoseStart::orbit() const {
-  if (static_cast<int>(size_ - orbit_from_) < settings_.least_images) return Status::kNotReady;
+Result<OrbitStart> PoseInitialiser::orbit() const {
+  if (static_cast<int>(size_ - orbit_from_) < settings_.min_images) return Status::kNotReady;
   const std::size_t last = size_ - 1;
   const auto chief = orbit::qns_from_cartesian(samples_[last].servicer);
   if (!chief.ok()) return chief.status();
-  const Matrix6 roe_slope = roe_of_rtn_slope(chief.value());
+  const Matrix6 roe_jacobian = roe_rtn_jacobian(chief.value());
   const double n = orbit::mean_motion(chief.value().a);
 
-  std::array<Eigen::Matrix<double, 3, 6>, kMost> rows;  // whitened
-  std::array<Vector3, kMost> values;
-  std::array<bool, kMost> is_in{};
+  std::array<Eigen::Matrix<double, 3, 6>, kMaxSamples> rows;  // whitened
+  std::array<Vector3, kMaxSamples> values;
+  std::array<bool, kMaxSamples> is_in{};
   int used = 0;
   for (std::size_t k = orbit_from_; k < size_; ++k) {
     const auto then = orbit::qns_from_cartesian(samples_[k].servicer);
     if (!then.ok()) return then.status();
-    Matrix6 drifted = roe_slope;
-    drifted.row(1) -= 1.5 * n * seconds_between(last, k) * roe_slope.row(0);
+    Matrix6 drifted = roe_jacobian;
+    drifted.row(1) -= 1.5 * n * seconds_between(last, k) * roe_jacobian.row(0);
     const Matrix3 R_rtn_eci = orbit::R_rtn_eci(samples_[k].servicer);
     const Vector3 position = R_rtn_eci * samples_[k].relative_eci;
-    // What the pose says, and a share of the distance along the line of sight.
+    // Covariance of the pose, and a share of the distance along the line of sight.
     const Vector3 range_sigma = settings_.range_sigma_share * position;
     const Matrix3 covariance = R_rtn_eci * samples_[k].covariance_eci * R_rtn_eci.transpose() +
                                range_sigma * range_sigma.transpose() + 1e-4 * Matrix3::Identity();
@@ -169,13 +169,13 @@ Result<OrbitStart> PoseStart::orbit() const {
 
   Matrix6 formation = Matrix6::Zero();
   for (int element = 0; element < 6; ++element) {
-    const Vector6 slope = chief.value().a / settings_.sigma_a_roe_m(element) * roe_slope.row(element).transpose();
-    formation += slope * slope.transpose();
+    const Vector6 jacobian = chief.value().a / settings_.sigma_a_roe_m(element) * roe_jacobian.row(element).transpose();
+    formation += jacobian * jacobian.transpose();
   }
 
   OrbitStart start;
   for (int round = 0; round < kRounds; ++round) {
-    if (used < settings_.least_images) return Status::kDidNotConverge;
+    if (used < settings_.min_images) return Status::kDidNotConverge;
     Matrix6 normal = Matrix6::Zero();
     Vector6 right = Vector6::Zero();
     for (int axis = 0; axis < 3; ++axis) {
@@ -193,20 +193,20 @@ Result<OrbitStart> PoseStart::orbit() const {
     const auto roe = roe_of_target(samples_[last].servicer, target_at(samples_[last].servicer, rtn));
     if (!roe.ok()) return roe.status();
     start.roe = roe.value();
-    start.covariance = roe_slope.lazyProduct(factor.inverse()).lazyProduct(roe_slope.transpose());
+    start.covariance = roe_jacobian.lazyProduct(factor.inverse()).lazyProduct(roe_jacobian.transpose());
     start.used = used;
-    // The worst that does not fit is left out.
-    std::size_t worst = kMost;
-    double most = settings_.position_gate / kAlike;
+    // The worst outlier is removed.
+    std::size_t worst = kMaxSamples;
+    double maximum = settings_.position_gate / kAlike;
     for (std::size_t k = orbit_from_; k < size_; ++k) {
       if (!is_in[k]) continue;
       const double miss = (values[k] - rows[k] * rtn).squaredNorm();
-      if (miss > most) {
-        most = miss;
+      if (miss > maximum) {
+        maximum = miss;
         worst = k;
       }
     }
-    if (worst == kMost) return start;
+    if (worst == kMaxSamples) return start;
     is_in[worst] = false;
     --used;
   }
