@@ -53,8 +53,8 @@ Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraf
   const auto state_at_start = [&](std::string_view spacecraft) {
     return truth.state(truth.index_of(std::string(spacecraft)));
   };
-  timetable.first_packets = sensors::telecommands_of(
-      {mission, servicer, data_directory, *truth.data().earth_orientation, state_at_start});
+  timetable.first_packets =
+      sensors::telecommands_of({mission, servicer, data_directory, *truth.data().earth_orientation, state_at_start});
   return timetable;
 }
 
@@ -128,8 +128,7 @@ class LineWatch final : public RunObserver {
   LineUsage usage_;
 };
 
-void summarise_mission(const mission::Mission& mission, const mission::Spacecraft& servicer,
-                       report::Summary& summary) {
+void summarise_mission(const mission::Mission& mission, const mission::Spacecraft& servicer, report::Summary& summary) {
   summary.mission = mission.name;
   summary.seed = mission.seed;
   summary.target = servicer.observes();

@@ -22,8 +22,8 @@ void append_residuals(const report::ImageRow& row, std::vector<report::ResidualR
   const double sigma_arcsec = std::hypot(row.prefit[0], row.prefit[1]) / std::sqrt(row.nis) / kArcsecond;
   const char* const sensors[] = {"bearing_in_plane_arcsec", "bearing_cross_plane_arcsec"};
   for (const std::size_t axis : {0U, 1U})
-    rows.push_back({row.time_s, sensors[axis], row.prefit[axis] / kArcsecond, row.postfit[axis] / kArcsecond,
-                    sigma_arcsec});
+    rows.push_back(
+        {row.time_s, sensors[axis], row.prefit[axis] / kArcsecond, row.postfit[axis] / kArcsecond, sigma_arcsec});
 }
 
 }  // namespace vbar::app

@@ -10,10 +10,10 @@
 namespace vbar::report {
 
 std::string html_report(const RunRecord& record) {
-  const std::vector<Section> sections{waypoint_section(record),    trajectory_section(record), elements_section(record),
-                                      maneuver_section(record),    navigation_section(record), gnss_section(record),
-                                      angles_only_section(record), pose_section(record),       attitude_section(record),
-                                      guidance_section(record),    health_section(record),     computer_section(record)};
+  const std::vector<Section> sections{
+      waypoint_section(record),   trajectory_section(record), elements_section(record),    maneuver_section(record),
+      navigation_section(record), gnss_section(record),       angles_only_section(record), pose_section(record),
+      attitude_section(record),   guidance_section(record),   health_section(record),      computer_section(record)};
   std::string body = overview(record) + contents(sections);
   for (const Section& section : sections) body += section_html(section);
   return html_page(fmt::format("{} (seed {})", record.summary.mission, record.summary.seed), body);

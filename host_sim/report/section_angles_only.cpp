@@ -102,16 +102,15 @@ std::string facts(const RunRecord& record) {
   const ImageRow& last = record.images.back();
   const auto with_nees = static_cast<std::size_t>(
       std::ranges::count_if(record.images, [](const ImageRow& row) { return row.nees.has_value(); }));
-  std::vector<Fact> facts{
-      {"images", fmt::format("{}, {} with a bearing, {} without stars", counts.images, counts.with_bearing,
-                             last.images_without_stars)},
-      {"wrong target selected",
-       fmt::format("{} of {} images with truth", counts.wrong_targets, counts.images - counts.without_truth)},
-      {"bearings", fmt::format("{} used, {} rejected", last.bearings_used, last.bearings_refused)},
-      {"stars per image", stars_text(record)},
-      nis_fact(record),
-      consistency_fact("NEES of the orbit, mean", s.navigation_nees, 6.0, with_nees),
-      {"image tiles rejected", std::to_string(last.tiles_refused)}};
+  std::vector<Fact> facts{{"images", fmt::format("{}, {} with a bearing, {} without stars", counts.images,
+                                                 counts.with_bearing, last.images_without_stars)},
+                          {"wrong target selected", fmt::format("{} of {} images with truth", counts.wrong_targets,
+                                                                counts.images - counts.without_truth)},
+                          {"bearings", fmt::format("{} used, {} rejected", last.bearings_used, last.bearings_refused)},
+                          {"stars per image", stars_text(record)},
+                          nis_fact(record),
+                          consistency_fact("NEES of the orbit, mean", s.navigation_nees, 6.0, with_nees),
+                          {"image tiles rejected", std::to_string(last.tiles_refused)}};
   if (const auto& error = s.bearing_error_arcsec) {
     facts.push_back({"bearing error, target within a pixel", fmt::format("noise {} arcsec per axis, bias {} arcsec",
                                                                          fixed(error->std, 2), fixed(error->bias, 2))});

@@ -44,9 +44,8 @@ mission::Mission parse_mission(std::string_view text, const std::filesystem::pat
   return mission::parse_mission(text, file, overrides, installation());
 }
 
-std::vector<twins::NamedSource> make_sources(const mission::Mission& mission,
-                                                               const mission::Spacecraft& servicer,
-                                                               const std::filesystem::path& data_directory) {
+std::vector<twins::NamedSource> make_sources(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                                             const std::filesystem::path& data_directory) {
   std::vector<twins::NamedSource> sources;
   SharedObjects shared;
   const MakeContext context{mission, servicer, data_directory, shared};

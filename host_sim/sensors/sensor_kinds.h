@@ -27,8 +27,9 @@ mission::Mission parse_mission(std::string_view text, const std::filesystem::pat
                                std::span<const std::string> overrides = {});
 
 /// The sources of all that the flight software of `servicer` receives from its sensors.
-[[nodiscard]] std::vector<twins::NamedSource> make_sources(
-    const mission::Mission& mission, const mission::Spacecraft& servicer, const std::filesystem::path& data_directory);
+[[nodiscard]] std::vector<twins::NamedSource> make_sources(const mission::Mission& mission,
+                                                           const mission::Spacecraft& servicer,
+                                                           const std::filesystem::path& data_directory);
 
 /// What the flight software is told before its first step, in this order: guidance, its sensors, the waypoints, the
 /// mode.

@@ -145,8 +145,7 @@ twins::TileSource tile_source(std::span<const std::vector<std::uint8_t>> recipes
   return source;
 }
 
-void add_sources(const Sensor& sensor, const MakeContext& context,
-                 std::vector<twins::NamedSource>& sources) {
+void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<twins::NamedSource>& sources) {
   const auto& camera = settings_of<CameraSensor>(sensor);
   const std::string name = source_name(context.servicer, sensor);
   if (camera.source == "recorded") {

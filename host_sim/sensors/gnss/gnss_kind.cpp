@@ -56,8 +56,7 @@ std::unique_ptr<twins::PacketSource> make_receiver(const MakeContext& context, c
   return std::make_unique<twins::GnssSensor>(sensor, std::move(receiver), std::move(crosslink));
 }
 
-void add_sources(const Sensor& sensor, const MakeContext& context,
-                 std::vector<twins::NamedSource>& sources) {
+void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<twins::NamedSource>& sources) {
   if (sensor.settings->source == "recorded") {
     using fsw::packets::Apid;
     const twins::RecordedLog::Selection selection{
@@ -74,8 +73,7 @@ void add_sources(const Sensor& sensor, const MakeContext& context,
         mission.seed);
   });
   const auto add = [&](const Spacecraft& carrier) {
-    sources.push_back(
-        {source_name(carrier, sensor), sensor.settings->source, make_receiver(context, carrier, sky)});
+    sources.push_back({source_name(carrier, sensor), sensor.settings->source, make_receiver(context, carrier, sky)});
   };
   add(context.servicer);
   if (const Spacecraft* const partner = mission.find_spacecraft(sensor.settings->observed)) add(*partner);

@@ -29,8 +29,7 @@ void check(const TableReader& section, const mission::Sensor& sensor, const miss
       section.refuse("", "a second sensor of kind " + sensor.kind, "one, whose states navigation can take for true");
 }
 
-void add_sources(const mission::Sensor& sensor, const MakeContext& context,
-                 std::vector<twins::NamedSource>& sources) {
+void add_sources(const mission::Sensor& sensor, const MakeContext& context, std::vector<twins::NamedSource>& sources) {
   const auto& own = settings_of<NavigationSensor>(sensor);
   const std::string name = source_name(context.servicer, sensor);
   if (own.source == "recorded") {

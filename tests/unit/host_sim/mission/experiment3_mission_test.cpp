@@ -34,10 +34,10 @@ TEST(Experiment3Mission, WaypointsAreThePapers) {
 
 TEST(Experiment3Mission, EveryKeyOfGnssIsExplained) {
   const std::string sensor = "spacecraft.servicer.sensors.gnss";
-  expect_all_shown(text_of_file(kFile), kFile,
-                   {sensor, sensor + ".visibility", sensor + ".link_budget", sensor + ".tracking", sensor + ".start",
-                    sensor + ".clock", sensor + ".body_frame", "navigation.carrier_phase", "constellation",
-                    "links.crosslink"});
+  expect_all_shown(
+      text_of_file(kFile), kFile,
+      {sensor, sensor + ".visibility", sensor + ".link_budget", sensor + ".tracking", sensor + ".start",
+       sensor + ".clock", sensor + ".body_frame", "navigation.carrier_phase", "constellation", "links.crosslink"});
 }
 
 // A mission without the tables has the same values, but for the loss of the crosslink, of which the file says so.

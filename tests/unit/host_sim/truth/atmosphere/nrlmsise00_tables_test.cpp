@@ -1,5 +1,4 @@
 #include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
-#include "tests/support/paths.h"
 
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+
+#include "tests/support/paths.h"
 
 namespace vbar::truth {
 namespace {

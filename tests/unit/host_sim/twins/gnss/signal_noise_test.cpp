@@ -1,11 +1,12 @@
 #include "host_sim/twins/gnss/signal_noise.h"
-#include "tests/support/paths.h"
 
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/paths.h"
 
 namespace vbar::twins::gnss {
 namespace {
