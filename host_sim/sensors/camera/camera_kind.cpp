@@ -40,8 +40,8 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
     section.refuse("", "a camera without a flight computer", "a camera of a spacecraft that flies software");
   const Sensor* receiver = nullptr;
   for (const Sensor& other : servicer.sensors) {
-    if (other.settings->navigation == 1) receiver = &other;
-    if (&other != &sensor && other.settings->navigation > 1)
+    if (other.settings->navigation == vbar::navigation_configuration::kSourceGnss) receiver = &other;
+    if (&other != &sensor && other.settings->navigation > vbar::navigation_configuration::kSourceGnss)
       section.refuse("navigation", "a second camera whose images navigation uses",
                      "\"none\" for all cameras of a spacecraft but one");
   }

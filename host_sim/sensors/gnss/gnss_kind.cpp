@@ -23,11 +23,12 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
   for (const Sensor& other : spacecraft.sensors) {
     if (&other == &sensor) continue;
     if (other.kind == sensor.kind) section.refuse("", "a second sensor of kind gnss", "one on a spacecraft");
-    if (other.settings->navigation == 0)
+    if (other.settings->navigation == vbar::navigation_configuration::kSourceIdealNavigation)
       section.refuse("", "a second way to navigate", "a sensor of kind navigation or gnss, not both");
   }
-  const bool is_beside_camera =
-      std::ranges::any_of(spacecraft.sensors, [](const Sensor& other) { return other.settings->navigation > 1; });
+  const bool is_beside_camera = std::ranges::any_of(spacecraft.sensors, [](const Sensor& other) {
+    return other.settings->navigation > vbar::navigation_configuration::kSourceGnss;
+  });
   if (!spacecraft.flight_computer || is_beside_camera) return;
   const Spacecraft* const partner = mission.find_spacecraft(sensor.settings->observed);
   if (partner == nullptr || find_settings<GnssSensor>(*partner) == nullptr)

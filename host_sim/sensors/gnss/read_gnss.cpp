@@ -98,7 +98,7 @@ std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& sect
   auto sensor = std::make_shared<GnssSensor>();
   const std::vector<std::string>& names = context.spacecraft_names;
   mission::read_source(section, "digital", context, *sensor);
-  sensor->navigation = 1;
+  sensor->navigation = vbar::navigation_configuration::kSourceGnss;
   sensor->observed = section.text("partner", "");
   const bool is_known = std::find(names.begin(), names.end(), sensor->observed) != names.end();
   if (!sensor->observed.empty() && (!is_known || sensor->observed == context.spacecraft))

@@ -25,7 +25,7 @@ std::shared_ptr<const mission::SensorSettings> read(const TableReader& section, 
 void check(const TableReader& section, const mission::Sensor& sensor, const mission::Spacecraft& spacecraft,
            const mission::Mission& /*mission*/) {
   for (const mission::Sensor& other : spacecraft.sensors)
-    if (&other != &sensor && other.settings->navigation == 0 && other.kind == sensor.kind)
+    if (&other != &sensor && other.kind == sensor.kind)
       section.refuse("", "a second sensor of kind " + sensor.kind, "one, whose states navigation can take for true");
 }
 

@@ -54,12 +54,12 @@ TEST(AttitudeKeys, TumbleLeavesItsStartToTheSeed) {
 }
 
 TEST(AttitudeKeys, TumbleAsToldInEveryKey) {
-  const auto tumble = std::get<Tumble>(attitude_of(
-      "profile = \"tumble\"\nq_body_eci = [0.6, 0.0, 0.0, 0.8]\nrate_degps = [1, -2, 0.5]\nbody = \"mango\"\n"
-      "inertia_kgm2 = [2, 3, 4, 0.1, -0.2, 0.3]\ntorques = [\"radiation\", \"gravity_gradient\"]"));
+  const auto tumble = std::get<Tumble>(
+      attitude_of("profile = \"tumble\"\nq_body_eci = [0.6, 0.0, 0.0, 0.8]\nrate_degps = [1, -2, 0.5]\n"
+                  "inertia_kgm2 = [2, 3, 4, 0.1, -0.2, 0.3]\ntorques = [\"radiation\", \"gravity_gradient\"]"));
   EXPECT_TRUE(tumble.q_body_eci->isApprox(Quaterniond(0.6, 0.0, 0.0, 0.8), 1e-15));
   EXPECT_TRUE(tumble.rate_body->isApprox(kDegree * Vector3(1.0, -2.0, 0.5), 1e-15));
-  EXPECT_EQ(tumble.body, "mango");
+  EXPECT_EQ(tumble.body, "tango");
   fsw::Matrix3 inertia;
   inertia << 2.0, 0.1, -0.2, 0.1, 3.0, 0.3, -0.2, 0.3, 4.0;
   EXPECT_EQ(*tumble.inertia_kgm2, inertia);
@@ -87,8 +87,9 @@ TEST(AttitudeKeys, PointingProfiles) {
   EXPECT_EQ(zenith.spacecraft, "");
   EXPECT_EQ(pointed("profile = \"nadir\"").pointing.boresight_to, Direction::kNadir);
   EXPECT_EQ(pointed("profile = \"along_track\"").pointing.boresight_to, Direction::kAlongTrack);
-  const auto target =
-      pointed("profile = \"target\"\nboresight_body = [1, 0, 0]\nsecond_body = [0, 0, -1]\nsecond_to = \"sun\"");
+  const auto target = pointed(
+      "profile = \"target\"\nboresight_body = [1, 0, 0]\nsecondary_axis_body = [0, 0, -1]\nsecondary_direction = "
+      "\"sun\"");
   EXPECT_EQ(target.pointing.boresight_to, Direction::kSpacecraft);
   EXPECT_EQ(target.pointing.boresight_body, Vector3::UnitX());
   EXPECT_EQ(target.pointing.second_body, Vector3(0.0, 0.0, -1.0));
@@ -209,13 +210,13 @@ INSTANTIATE_TEST_SUITE_P(
                     ".boresight_body: found an axis along the other one; accepted: boresight_body and "
                     "secondary_axis_body in two "
                     "different directions"},
-        BadAttitude{"NoAxis", "profile = \"nadir\"\nsecond_body = [0, 0, 0]",
+        BadAttitude{"NoAxis", "profile = \"nadir\"\nsecondary_axis_body = [0, 0, 0]",
                     ".secondary_axis_body: found an axis along the other one; accepted: boresight_body and "
                     "secondary_axis_body in two "
                     "different directions"},
-        BadAttitude{"OneDirectionTwice", "profile = \"nadir\"\nsecond_to = \"zenith\"",
+        BadAttitude{"OneDirectionTwice", "profile = \"nadir\"\nsecondary_direction = \"zenith\"",
                     ".secondary_direction: found the line that the boresight follows; accepted: another direction"},
-        BadAttitude{"UnknownDirection", "profile = \"nadir\"\nsecond_to = \"moon\"",
+        BadAttitude{"UnknownDirection", "profile = \"nadir\"\nsecondary_direction = \"moon\"",
                     ".secondary_direction: found the text \"moon\"; accepted: orbit_normal, along_track, zenith, nadir "
                     "or sun"}),
     [](const auto& test) { return std::string(test.param.label); });

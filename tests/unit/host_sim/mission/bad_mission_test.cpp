@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "dv_max_mps", "guidance.dv_max_mps: found the number 0.001; accepted: more than dv_min_mmps"},
         BadChange{"KeyOfAnotherDistribution", "[mission]",
                   "[links.board]\nlatency = { distribution = \"exponential\", max_s = 1 }\n[mission]", "exponential",
-                  "links.board.latency.max_s: found an unknown key (did you mean min_s?); accepted: distribution, "
+                  "links.board.latency.max_s: found an unknown key (did you mean mean_s?); accepted: distribution, "
                   "mean_s or min_s"},
         BadChange{"EmptyInterval", "[mission]",
                   "[links.board]\nlatency = { distribution = \"uniform\", min_s = 1, max_s = 1 }\n[mission]", "uniform",

@@ -77,8 +77,8 @@ TEST(SpacecraftGroup, BadOnesEndWithOneMessage) {
       "m.toml:8: spacecraft.swarm.spacing.mass_kg: found 0 for swarm_11; accepted: a number above 0, up to 1000000");
   EXPECT_EQ(message("mass_kg = 0.25", "mas_kg = 0.25"),
             "m.toml:8: spacecraft.swarm.spacing.mas_kg: found an unknown key (did you mean mass_kg?); accepted: "
-            "semi_major_axis_km, ex, ey, inclination_deg, raan_deg, mean_argument_of_latitude_deg, mass_kg, "
-            "drag_area_m2, drag_coefficient, radiation_area_m2 or radiation_coefficient");
+            "mass_kg, drag_area_m2, drag_coefficient, radiation_area_m2, radiation_coefficient, semi_major_axis_km, "
+            "ex, ey, inclination_deg, raan_deg or mean_argument_of_latitude_deg");
   EXPECT_EQ(message("\"observer\"", "\"swarm_07\""),
             "m.toml:18: spacecraft.1.name: found a second spacecraft \"swarm_07\"; accepted: a name used once");
   EXPECT_EQ(message("mass_kg = 10.0", "mass_kg = 10.0\nnumber = 250"),
@@ -87,7 +87,7 @@ TEST(SpacecraftGroup, BadOnesEndWithOneMessage) {
 
 TEST(SpacecraftGroup, CannotStandAtOneWaypoint) {
   EXPECT_EQ(message_of(changed(kSmallMission.data(), "name = \"target\"", "name = \"target\"\ncount = 2")),
-            "m.toml:20: spacecraft.1.relative: found one place for 2 spacecraft; accepted: elements, with a spacing");
+            "m.toml:21: spacecraft.1.relative: found one place for 2 spacecraft; accepted: elements, with a spacing");
 }
 
 }  // namespace

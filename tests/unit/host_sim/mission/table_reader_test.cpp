@@ -70,7 +70,7 @@ TEST(TableReader, ReportsTheFirstFault) {
   EXPECT_EQ(error_of_text("mass = -1\ncount = 99\n"),
             "t.toml:1: mass: found the integer -1; accepted: a number above 0, up to 10");
   EXPECT_EQ(error_of_text("mass = nan\n"), "t.toml:1: mass: found nan; accepted: a number above 0, up to 10");
-  EXPECT_EQ(error_of_text(""), "t.toml: mass: found nothing; accepted: a number above 0, up to 10");
+  EXPECT_EQ(error_of_text(""), "t.toml:1: mass: found nothing; accepted: a number above 0, up to 10");
 }
 
 // What is refused after a value that was replaced may be a consequence of the replacement.
