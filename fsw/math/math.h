@@ -8,6 +8,7 @@ namespace vbar::fsw::math {
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTwoPi = 6.28318530717958647692;
 inline constexpr double kDegree = kPi / 180.0;
+inline constexpr double kArcsecond = kPi / 648000.0;
 
 double sin(double x);
 double cos(double x);

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "fsw/math/math.h"
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/run_columns.h"
 #include "host_sim/report/text_file.h"
@@ -70,7 +71,7 @@ struct OldColumn {
   int offset = 0;
 };
 
-constexpr double kArcsecond = M_PI / 648000.0;
+using fsw::math::kArcsecond;
 constexpr OldColumn kOldColumns[] = {
     {"images.csv", "attitude_sigma_arcsec", "attitude_sigma_rad", kArcsecond},
     {"images.csv", "bearing_sigma_arcsec", "bearing_sigma_rad", kArcsecond},
