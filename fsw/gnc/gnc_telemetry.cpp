@@ -23,7 +23,7 @@ constexpr bool is_reported_as(Enumerator enumerator, int constant) {
 static_assert(is_reported_as(Status::kNotReady, telemetry_control::kStatusNotReady));
 static_assert(is_reported_as(kFaultClock, telemetry_health::kFaultClock));
 static_assert(is_reported_as(NavigationSource::kPose, telemetry_navigation::kSourcePose));
-static_assert(is_reported_as(gnss::Obstacle::kSearch, telemetry_gnss::kObstacleSearch));
+static_assert(is_reported_as(gnss::RejectionReason::kSearch, telemetry_gnss::kObstacleSearch));
 static_assert(is_reported_as(angles_only::SightingStatus::kNoOrbit, telemetry_image::kStatusOwnOrbitUnknown));
 static_assert(is_reported_as(angles_only::StarMethod::kPredicted, telemetry_image::kStarMethodPrediction));
 static_assert(is_reported_as(angles_only::ObjectKind::kHotPixel, telemetry_objects::kKindHotPixel));

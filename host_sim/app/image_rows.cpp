@@ -4,10 +4,12 @@
 #include <cmath>
 #include <iterator>
 
+#include "fsw/math/math.h"
+
 namespace vbar::app {
 namespace {
 
-constexpr double kArcsecond = M_PI / 648000.0;
+using fsw::math::kArcsecond;
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "fsw/math/math.h"
 #include "host_sim/app/true_camera.h"
 
 namespace vbar::app {
@@ -14,7 +15,7 @@ namespace {
 using Eigen::Quaterniond;
 using fsw::Vector3;
 
-constexpr double kArcsecond = M_PI / 648000.0;
+using fsw::math::kArcsecond;
 /// A bearing farther off than this from all of a spacecraft is the bearing of another object.
 constexpr double kSameObject_px = 3.0;
 

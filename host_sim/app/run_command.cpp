@@ -120,7 +120,7 @@ void report_health(const report::Summary& summary) {
 }  // namespace
 
 int run_command(const RunOptions& options) {
-  const mission::Mission mission = sensors::load_mission(mission::find_mission(options.mission), options.overrides);
+  const mission::Mission mission = sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
   const std::string mission_text = mission::whole_mission_text(mission.file);
   catch_stop_signals();
   const std::unique_ptr<AssembledMission> assembled = assemble(mission, !options.check);

@@ -47,12 +47,12 @@ std::filesystem::path missions_directory() {
   return data_directory().parent_path() / "missions";
 }
 
-std::filesystem::path find_mission(const std::filesystem::path& path_or_name) {
+std::filesystem::path find_mission(const std::filesystem::path& path_or_name, const Installation& installation) {
   std::error_code error;
   if (std::filesystem::is_regular_file(path_or_name, error)) return path_or_name;
   std::vector<CatalogueEntry> missions;
   try {
-    missions = list_missions(missions_directory());
+    missions = list_missions(missions_directory(), installation);
   } catch (const std::exception&) {  // no catalogue: then only a path can be meant
   }
   std::vector<std::string_view> names;

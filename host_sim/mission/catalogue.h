@@ -25,7 +25,8 @@ struct CatalogueEntry {
 [[nodiscard]] std::filesystem::path missions_directory();
 
 /// The mission file that a path or a name of the catalogue means. Throws MissionError that names the nearest mission.
-[[nodiscard]] std::filesystem::path find_mission(const std::filesystem::path& path_or_name);
+[[nodiscard]] std::filesystem::path find_mission(const std::filesystem::path& path_or_name,
+                                                 const Installation& installation);
 
 /// One line of the catalogue, without a line end: name, duration in hours, description; names padded to `name_width`.
 [[nodiscard]] std::string line_of(const CatalogueEntry& entry, std::size_t name_width);

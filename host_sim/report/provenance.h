@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 namespace vbar::report {
 
 struct FileDigest {
@@ -33,10 +31,5 @@ struct Provenance {
 
 /// Nothing if the file cannot be read.
 [[nodiscard]] std::optional<FileDigest> digest_of(const std::filesystem::path& file);
-
-[[nodiscard]] nlohmann::ordered_json json_of(const Provenance& provenance);
-
-/// What is missing stays empty. Throws nlohmann::json::exception for a value of another type.
-[[nodiscard]] Provenance provenance_from(const nlohmann::ordered_json& json);
 
 }  // namespace vbar::report

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/report/consistency.h"
+#include "fsw/math/math.h"
 #include "host_sim/report/gallery_html.h"
 #include "host_sim/report/html_page.h"
 #include "host_sim/report/maneuver_series.h"
@@ -19,6 +20,8 @@
 
 namespace vbar::report {
 namespace {
+
+using fsw::math::kArcsecond;
 
 // ------------------------------------------------------------------------------------------------- table of the paper
 

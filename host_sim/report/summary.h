@@ -9,6 +9,8 @@
 
 #include <vbar/fields.h>
 
+#include "host_sim/report/provenance.h"
+
 namespace vbar::report {
 
 struct MeanAndDeviation {
@@ -81,6 +83,7 @@ struct RunFacts {
     // Of a digital camera, on a thread of its own: beside the others, not part of their sum.
     double render_s = 0.0, detector_s = 0.0, packing_s = 0.0;
   } wall_share;
+  Provenance provenance;
 };
 
 struct Summary : RunFacts {

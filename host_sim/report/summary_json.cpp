@@ -97,6 +97,28 @@ void members(Is<telemetry_health> auto& s, auto& visit) {
   visit_fields(s, [&](const Field& field, auto& value) { visit(field.name, value, field.codes); });
 }
 
+void members(Is<FileDigest> auto& s, auto& visit) {
+  visit("file", s.file);
+  visit("bytes", s.bytes);
+  visit("sha256", s.sha256);
+}
+
+void members(Is<Provenance> auto& s, auto& visit) {
+  visit("vbar_version", s.vbar_version);
+  visit("commit", s.commit);
+  visit("compiler", s.compiler);
+  visit("build_type", s.build_type);
+  visit("program_sha256", s.program_sha256);
+  visit("host", s.host);
+  visit("started_utc", s.started_utc);
+  visit("epoch_utc", s.epoch_utc);
+  visit("mission_sha256", s.mission_sha256);
+  visit("overrides", s.overrides);
+  visit("flight_software", s.flight_software);
+  visit("data", s.data);
+  visit("packet_log", s.packet_log);
+}
+
 void members(Is<WaypointRow> auto& s, auto& visit) {
   visit("index", s.index);
   visit("time_s", s.time_s);
@@ -145,6 +167,7 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit("deadlines", s.deadlines);
   visit("sources", s.sources);
   visit("wall_share", s.wall_share);
+  visit("provenance", s.provenance);
 }
 
 /// Members into a JSON object. JSON has no NaN: a number that is not finite is null, as nlohmann writes it, and so is a
@@ -168,7 +191,7 @@ struct Writer {
   static Json json_of(const Value& value) {
     if constexpr (std::is_same_v<Value, std::string>) {
       return value.empty() ? Json(nullptr) : Json(value);
-    } else if constexpr (requires { value.push_back(value.front()); }) {
+    } else if constexpr (requires { value.begin(); }) {
       Json all = Json::array();
       for (const auto& one : value) all.push_back(json_of(one));
       return all;

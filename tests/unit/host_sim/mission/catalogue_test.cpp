@@ -51,11 +51,11 @@ TEST(ShippedMissions, AllLoad) {
 // The names are those of the project's own missions.
 TEST_F(Catalogue, FindsMissionsByPathAndByName) {
   write("b.toml", kSmallMission);
-  EXPECT_EQ(find_mission(folder_ / "b.toml"), folder_ / "b.toml");
-  EXPECT_EQ(find_mission("experiment3").filename(), "experiment3.toml");
+  EXPECT_EQ(find_mission(folder_ / "b.toml", sensors::installation()), folder_ / "b.toml");
+  EXPECT_EQ(find_mission("experiment3", sensors::installation()).filename(), "experiment3.toml");
   for (const char* wrong : {"experiment33", "missions/experment3.toml"}) {
     try {
-      static_cast<void>(find_mission(wrong));
+      static_cast<void>(find_mission(wrong, sensors::installation()));
       ADD_FAILURE() << wrong;
     } catch (const MissionError& error) {
       EXPECT_NE(std::string(error.what()).find("did you mean experiment3?"), std::string::npos) << error.what();
