@@ -20,6 +20,7 @@ namespace {
 
 namespace app = vbar::app;
 namespace mission = vbar::mission;
+namespace sensors = vbar::sensors;
 
 const std::string kRoot = vbar::tests::source_path();
 

@@ -9,7 +9,7 @@
 
 #include "fuzz_file.h"
 #include "host_sim/mission/body_file.h"
-#include "host_sim/mission/camera_file.h"
+#include "host_sim/sensors/camera/camera_file.h"
 #include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
 #include "host_sim/truth/earth/earth_orientation.h"
 #include "host_sim/truth/earth/space_weather.h"
@@ -69,7 +69,7 @@ void load(unsigned loader, const fs::path& file) {
       static_cast<void>(twins::camera::StarSky::load(DataDirectory("stars/hipparcos_v8.csv", file).path(), 1e10));
       break;
     case 7:
-      static_cast<void>(mission::load_camera(file));
+      static_cast<void>(sensors::load_camera(file));
       break;
     case 8:
       static_cast<void>(mission::load_body(file));

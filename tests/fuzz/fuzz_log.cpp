@@ -11,7 +11,7 @@ namespace {
 using namespace vbar;
 
 void play(const std::filesystem::path& file, std::size_t records) {
-  twins::RecordedLog log(file, {.spacecraft = 1, .apid = fsw::packets::Apid::kIdealNavigation});
+  twins::RecordedLog log(file, {.spacecraft = 1, .apids = {fsw::packets::Apid::kIdealNavigation}});
   twins::TruthSnapshot truth;
   std::size_t played = 0;
   auto next = log.next_epoch(fsw::GpsTime{INT64_MIN});

@@ -4,14 +4,15 @@
 #include <string_view>
 
 #include "fuzz_target.h"
-#include "host_sim/mission/load.h"
+#include "host_sim/mission/mission_error.h"
+#include "host_sim/sensors/sensor_kinds.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   // Other files are another target's.
   if (text.find("extends") != std::string_view::npos) return 0;
   try {
-    const auto mission = vbar::mission::parse_mission(text, "/fuzz/fuzz.toml");
+    const auto mission = vbar::sensors::parse_mission(text, "/fuzz/fuzz.toml");
     VBAR_FUZZ_EXPECT(mission.step.ns > 0 && mission.duration.ns > 0);
   } catch (const vbar::mission::MissionError& error) {
     VBAR_FUZZ_EXPECT(std::string_view(error.what()).starts_with("/fuzz/"));
