@@ -126,8 +126,8 @@ class PacketSource {
   /// What its snapshots hold.
   [[nodiscard]] virtual TruthDetail truth_detail() const { return TruthDetail::kStates; }
 
-  /// Whether the flight software reports on its measurements one by one, later and by their time (images): their truth
-  /// is then kept until it has.
+  /// Whether its measurements are evaluated one by one, later and by their time: observers of the run then get the
+  /// truth of each.
   [[nodiscard]] virtual bool truth_is_compared() const { return false; }
 
   /// How long, on the wall, the simulation waits for what is pending before it ends the run.
