@@ -10,11 +10,12 @@
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
 #include "host_sim/sensors/ideal_navigation/ideal_navigation_kind.h"
+#include "host_sim/sensors/range_finder/range_finder_kind.h"
 
 namespace vbar::sensors {
 namespace {
 
-constexpr const SensorKind* kSensorKinds[] = {&kIdealNavigation, &kGnss, &kCamera};
+constexpr const SensorKind* kSensorKinds[] = {&kIdealNavigation, &kGnss, &kCamera, &kRangeFinder};
 
 }  // namespace
 
