@@ -381,7 +381,7 @@ TEST_F(RunFolderTest, ColumnsAreFoundByTheirNames) {
   EXPECT_EQ(row.sigma, 4.0);
   EXPECT_TRUE(std::isnan(row.postfit));
   EXPECT_EQ(row.prefit, 0.0) << "no such column: the default";
-  EXPECT_THAT(record.notes, ElementsAre(AllOf(HasSubstr("residuals.csv"), HasSubstr("mood"))));
+  EXPECT_THAT(record.reading_notes, ElementsAre(AllOf(HasSubstr("residuals.csv"), HasSubstr("mood"))));
 }
 
 TEST_F(RunFolderTest, CodesAreWords) {
