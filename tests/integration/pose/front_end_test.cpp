@@ -23,11 +23,11 @@ LabelledView view_of(const training::LabelledCrop& crop, const twins::camera::Ca
   LabelledView view;
   view.samples = crop.samples;
   standardise(view.samples);
-  view.region = crop.priors.region;
+  view.region = crop.circumstances.region;
   std::ranges::fill(view.camera.focal_length_px, camera.focal_length_px());
   view.camera.principal_point_px = {camera.optics.principal_point_px[0], camera.optics.principal_point_px[1]};
   std::ranges::copy(camera.optics.distortion, view.camera.distortion.begin());
-  view.truth = {crop.priors.R_camera_body, crop.priors.centre_of_mass_camera};
+  view.truth = {crop.circumstances.R_camera_body, crop.circumstances.centre_of_mass_camera};
   view.cells = crop.cells;
   view.counts = crop.counts;
   return view;

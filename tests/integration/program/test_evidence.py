@@ -256,8 +256,8 @@ class Provenance(Evidence):
 
     def refuse_data(self, change, file):
         result = self.with_data(change, "run", MISSION, "--out", self.folder / "run", "--set", SHORT, "--force")
-        self.expect(result, FAILED, str(file))
-        self.assertFalse(summary_of(self.folder / "run")["complete"])
+        self.expect(result, REFUSED, str(file))
+        self.assertFalse((self.folder / "run").exists())
 
     def test_a_replay_says_what_has_changed(self):
         def edit(data):

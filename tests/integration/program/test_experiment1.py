@@ -121,24 +121,20 @@ class Experiment1SixHours(unittest.TestCase):
 class Experiment1BadInput(unittest.TestCase):
     """One message that names the place."""
 
-    def refuse(self, mission, *parts, settings=(), started=False, data=None):
-        """`started`: the mission file is good, what it names is not; the run's folder says that it is incomplete."""
+    def refuse(self, mission, *parts, settings=(), data=None):
         if data:
             os.environ["VBAR_DATA"] = str(data)
             self.addCleanup(os.environ.pop, "VBAR_DATA", None)
         with scratch() as folder:
             result = vbar("run", mission, "--out", folder / "run", *overrides(*SHORT, *settings))
-            self.assertEqual(result.returncode, 1 if started else 2, result.stderr)
+            self.assertEqual(result.returncode, 2, result.stderr)
             self.assertEqual(result.stderr.count("vbar:"), 1, result.stderr)
             for part in parts:
                 self.assertIn(part, result.stderr)
-            if started:
-                self.assertFalse(summary_of(folder / "run")["complete"])
-            else:
-                self.assertFalse((folder / "run").exists())
+            self.assertFalse((folder / "run").exists())
 
     def test_a_model_that_is_not_there(self):
-        self.refuse(EXPERIMENT1, "teapot.obj: no such file", settings=["spacecraft.target.model=teapot"], started=True)
+        self.refuse(EXPERIMENT1, "teapot.obj: no such file", settings=["spacecraft.target.model=teapot"])
 
     def test_an_unknown_camera(self):
         self.refuse(EXPERIMENT1, "polaroid", "optical_stimulator or tron",
@@ -161,7 +157,7 @@ class Experiment1BadInput(unittest.TestCase):
             for room in (SOURCE / "data").iterdir():
                 if room.name != "stars":
                     (data / room.name).symlink_to(room)
-            self.refuse(EXPERIMENT1, "hipparcos_v8.csv", "cannot open", data=data, started=True)
+            self.refuse(EXPERIMENT1, "hipparcos_v8.csv", "cannot open", data=data)
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@
 #include "host_sim/app/image_rows.h"
 #include "host_sim/report/summarise.h"
 #include "host_sim/sensors/sensor_kinds.h"
+#include "tests/unit/host_sim/app/editable_camera.h"
 
 namespace vbar::app {
 namespace {
@@ -108,7 +109,7 @@ TEST_F(ImageTruth, ChoicesAreNamed) {
 TEST_F(ImageTruth, TheSameObjectIsWithinThreePixelsOfThisCamera) {
   truth_.spacecraft.pop_back();
   for (const double focal_length_mm : {35.0, 7.0}) {
-    mission_.spacecraft[0].camera->settings.optics.focal_length_mm = focal_length_mm;
+    editable_camera(mission_.spacecraft[0]).settings.optics.focal_length_mm = focal_length_mm;
     const double pixel = 5.86e-3 / focal_length_mm;
     const double limit_px = 3.0 + 0.73e-4 / pixel;
     for (const double off_px : {limit_px - 0.05, limit_px + 0.05}) {

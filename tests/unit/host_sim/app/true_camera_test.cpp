@@ -10,6 +10,7 @@
 #include "fsw/orbit/constants.h"
 #include "host_sim/mission/body_file.h"
 #include "host_sim/mission/data_directory.h"
+#include "host_sim/sensors/camera/camera_kind.h"
 #include "tests/support/figures.h"
 
 namespace vbar::app {
@@ -48,7 +49,7 @@ TEST(TrueCamera, ThereIsNoPixelBehindTheCameraOrOfANan) {
 
 // The body is turned by 90 degrees about z: its x axis lies along ECI's y. The camera's boresight is the body's x axis.
 TEST(TrueCamera, StandsAndLooksWhereItsMountSays) {
-  mission::CameraSensor camera;
+  sensors::CameraSensor camera;
   camera.position_body_m = {0.5, 0.0, 0.2};
   camera.q_camera_body = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitX(), Vector3::UnitZ());
   twins::SpacecraftTruth servicer{"servicer", {{7.0e6, 0.0, 0.0}, {0.0, 7.5e3, 0.0}}, truth::AttitudeState{}};

@@ -21,7 +21,7 @@ RunRecord earlier_run(const std::string& name) {
 TEST(EarlierRuns, ImagesAreConverted) {
   const RunRecord record = earlier_run("experiment1");
   ASSERT_EQ(record.images.size(), 5U);
-  EXPECT_THAT(record.notes, testing::IsEmpty());
+  EXPECT_THAT(record.reading_notes, testing::IsEmpty());
   const ImageRow& first = record.images.front();
   EXPECT_EQ(first.status, telemetry_image::kStatusNoTarget);
   EXPECT_EQ(first.star_method, telemetry_image::kStarMethodLostInSpace);
