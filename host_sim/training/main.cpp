@@ -1,5 +1,5 @@
-// vbar_training_crops: labelled crops for the keypoint network, in shards of a folder. Shards that are there already
-// stay, so an interrupted run goes on where it was, and several processes can share the work.
+// vbar_training_crops: labelled crops for the keypoint network, in shards of a folder. Existing shards
+// are kept, so an interrupted run continues, and several processes can share the work.
 
 #include <algorithm>
 #include <chrono>
