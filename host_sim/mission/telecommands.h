@@ -7,7 +7,7 @@
 
 namespace vbar::mission {
 
-/// All waypoints of the mission; including those that have passed at the start, which the flight software skips.
+/// All waypoints of the mission, including those that have passed at the start, which the flight software skips.
 /// A mission has at most kMaxWaypoints of them (checked by the loader).
 [[nodiscard]] vbar::waypoint_table waypoint_table_of(const Mission& mission);
 
