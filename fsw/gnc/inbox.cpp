@@ -68,6 +68,8 @@ Status Inbox::file(const PacketView& packet) {
       if (!message.ok()) return message.status();
       return image_.take(packet.header.time, packet.header.unit, message.value());
     }
+    case Apid::kRangeMeasurement:  // navigation does not use it: accepted if it is valid, then ignored
+      return packets::decode<range_measurement>(packet).status();
     case Apid::kManeuverCommand:
     case Apid::kPointingCommand:
     case Apid::kTelemetryNavigation:

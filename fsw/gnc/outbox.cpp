@@ -29,6 +29,7 @@ std::size_t Outbox::sequence_slot(packets::Apid apid) {
     case Apid::kAttitude:
     case Apid::kCrosslinkAttitude:
     case Apid::kImageTile:
+    case Apid::kRangeMeasurement:
     case Apid::kExecutedManeuver:
     case Apid::kWaypointTable:
     case Apid::kGncConfiguration:

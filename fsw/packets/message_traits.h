@@ -20,6 +20,7 @@
   X(::vbar::attitude, kAttitude)                                 \
   X(::vbar::crosslink_attitude, kCrosslinkAttitude)              \
   X(::vbar::image_tile, kImageTile)                              \
+  X(::vbar::range_measurement, kRangeMeasurement)                \
   X(::vbar::executed_maneuver, kExecutedManeuver)                \
   X(::vbar::waypoint_table, kWaypointTable)                      \
   X(::vbar::gnc_configuration, kGncConfiguration)                \

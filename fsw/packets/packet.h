@@ -34,6 +34,7 @@ enum class Apid : std::uint16_t {
   kAttitude = 0x013,
   kCrosslinkAttitude = 0x014,
   kImageTile = 0x015,
+  kRangeMeasurement = 0x016,
   kExecutedManeuver = 0x020,
   kWaypointTable = 0x101,
   kGncConfiguration = 0x102,

@@ -62,7 +62,11 @@ Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraf
 class Recording final : public RunObserver {
  public:
   Recording(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunRecord& record)
-      : mission_(mission), servicer_(servicer), recorder_(mission, servicer, record), record_(record) {}
+      : mission_(mission),
+        servicer_(servicer),
+        recorder_(mission, servicer, record),
+        evaluations_(sensors::make_evaluations(mission, servicer, record)),
+        record_(record) {}
 
   void on_note(fsw::GpsTime time, std::string_view source, const twins::Note& note) override {
     const auto value = std::isnan(note.value) ? std::nullopt : std::optional<double>(note.value);
@@ -71,7 +75,11 @@ class Recording final : public RunObserver {
   void on_failure(fsw::GpsTime time, std::string_view source, std::string_view reason) override {
     add_note(time, source, "failure", std::nullopt, reason);
   }
-  void on_measured(const twins::TruthSnapshot& truth) override { recorder_.on_measured(truth); }
+  void on_measured(std::string_view source, const twins::TruthSnapshot& truth) override {
+    const auto found = std::ranges::find(evaluations_, source, &sensors::NamedEvaluation::source);
+    if (found == evaluations_.end()) return recorder_.on_measured(truth);
+    found->evaluation->on_measured(truth);
+  }
   void on_waypoint(std::size_t waypoint, const twins::TruthSnapshot& truth) override {
     recorder_.on_waypoint(mission_.waypoints[waypoint], pair_in(truth, servicer_));
   }
@@ -85,17 +93,35 @@ class Recording final : public RunObserver {
   void on_step(std::uint32_t, fsw::GpsTime time, std::span<const pil::Packet> inputs,
                std::span<const pil::Packet>) override {
     recorder_.on_inputs(time, inputs);
+    if (evaluations_.empty()) return;
+    const std::vector<fsw::packets::PacketView> packets = parsed(inputs);
+    for (const auto& [source, evaluation] : evaluations_) evaluation->on_inputs(time, packets);
   }
-  void on_answer(fsw::GpsTime time, const pil::StepResult& answer) override { recorder_.on_answer(time, answer); }
+  void on_answer(fsw::GpsTime time, const pil::StepResult& answer) override {
+    recorder_.on_answer(time, answer);
+    if (evaluations_.empty()) return;
+    const std::vector<fsw::packets::PacketView> packets = parsed(answer.packets);
+    for (const auto& [source, evaluation] : evaluations_) evaluation->on_answer(time, packets);
+  }
   void on_prescribed(fsw::GpsTime time, const maneuver_command& command) override {
     recorder_.on_prescribed(time, command);
   }
   void on_execution(fsw::GpsTime time, const executed_maneuver& executed) override {
     recorder_.on_execution(time, executed);
   }
-  void finish() { recorder_.finish(); }
+  void finish() {
+    recorder_.finish();
+    for (const auto& [source, evaluation] : evaluations_) evaluation->finish();
+  }
 
  private:
+  /// Packets that are none are in the log only.
+  static std::vector<fsw::packets::PacketView> parsed(std::span<const pil::Packet> packets) {
+    std::vector<fsw::packets::PacketView> views;
+    for (const pil::Packet& bytes : packets)
+      if (const auto packet = fsw::packets::parse_packet(bytes); packet.ok()) views.push_back(packet.value());
+    return views;
+  }
   void add_note(fsw::GpsTime time, std::string_view source, std::string_view name, std::optional<double> value,
                 std::string_view text) {
     record_.notes.push_back(
@@ -105,6 +131,7 @@ class Recording final : public RunObserver {
   const mission::Mission& mission_;
   const mission::Spacecraft& servicer_;
   FlightRecorder recorder_;
+  std::vector<sensors::NamedEvaluation> evaluations_;
   report::RunRecord& record_;
 };
 

@@ -12,13 +12,14 @@
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/summarise.h"
 #include "host_sim/report/waypoint_table.h"
+#include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
 namespace {
 
 /// A run as its tables have it, figures computed from them.
 report::RunRecord evaluated_run(const std::filesystem::path& folder) {
-  report::RunRecord record = report::read_run(folder);
+  report::RunRecord record = report::read_run(folder, sensors::extensions());
   for (const std::string& note : record.reading_notes) fmt::print(stderr, "vbar: {}\n", note);
   report::evaluate(record);
   const std::string health = record.summary.health ? report::health_line(*record.summary.health) : "";

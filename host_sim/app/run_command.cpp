@@ -120,7 +120,8 @@ void report_health(const report::Summary& summary) {
 }  // namespace
 
 int run_command(const RunOptions& options) {
-  const mission::Mission mission = sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
+  const mission::Mission mission =
+      sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
   const std::string mission_text = mission::whole_mission_text(mission.file);
   catch_stop_signals();
   const std::unique_ptr<AssembledMission> assembled = assemble(mission, !options.check);
@@ -129,10 +130,12 @@ int run_command(const RunOptions& options) {
     return kDone;
   }
   report::RunRecord record;
+  record.extensions = sensors::extensions();
   record.summary = start_of(mission);
   record.summary.provenance = provenance_of(mission, options.overrides, mission_text);
   RunFolder folder(options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out,
-                   record.summary, options.force ? RunFolder::Existing::kReplace : RunFolder::Existing::kRefuse);
+                   record.summary, options.force ? RunFolder::Existing::kReplace : RunFolder::Existing::kRefuse,
+                   sensors::extensions());
   keep_mission(mission_text, options, folder.path());
 
   const std::optional<std::string> trouble = fly_into(folder, mission, *assembled, options.quiet, record);

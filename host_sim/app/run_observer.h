@@ -21,8 +21,8 @@ class RunObserver {
   RunObserver& operator=(const RunObserver&) = delete;
   virtual ~RunObserver() = default;
 
-  /// The truth of a measurement that the flight software reports on later (PacketSource::truth_is_compared).
-  virtual void on_measured(const twins::TruthSnapshot& /*truth*/) {}
+  /// The truth of a measurement of a source that is evaluated (PacketSource::truth_is_compared).
+  virtual void on_measured(std::string_view /*source*/, const twins::TruthSnapshot& /*truth*/) {}
   /// From what packets that are yet to come can be made again (twins::Measurement::recipe).
   virtual void on_recipe(fsw::GpsTime /*time*/, std::span<const std::uint8_t> /*recipe*/) {}
   /// A source or an actuator said something about a measurement or a burn.

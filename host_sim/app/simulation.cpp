@@ -119,7 +119,7 @@ void Simulation::handle(const TakeMeasurement& taken) {
   world_.truth.advance_to(now);
   const twins::TruthSnapshot truth = world_.truth.snapshot(source.packets->truth_detail());
   if (source.packets->truth_is_compared())
-    for (RunObserver* observer : world_.observers) observer->on_measured(truth);
+    for (RunObserver* observer : world_.observers) observer->on_measured(source.name, truth);
 
   ++facts_.sources[taken.source].epochs;
   twins::Measurement measurement;

@@ -69,10 +69,11 @@ struct SensorSettings {
   SensorSettings& operator=(const SensorSettings&) = default;
   virtual ~SensorSettings() = default;
 
-  std::string source;          ///< provider of its data: "digital", "recorded" or the name of a testbed
-  std::filesystem::path log;   ///< of source "recorded": the packet log
-  std::string observed;        ///< the other spacecraft that it measures or exchanges data with; empty: none
-  std::int8_t navigation = 0;  ///< its use in navigation, as in vbar.lcm, navigation_configuration.source
+  std::string source;         ///< provider of its data: "digital", "recorded" or the name of a testbed
+  std::filesystem::path log;  ///< of source "recorded": the packet log
+  std::string observed;       ///< the other spacecraft that it measures or exchanges data with; empty: none
+  /// Its use in navigation, as in vbar.lcm, navigation_configuration.source; negative: none.
+  std::int8_t navigation = -1;
 };
 
 /// What a kind of sensor has read from tables of the document, for all of its sensors.

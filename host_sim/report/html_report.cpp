@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/report/extension.h"
 #include "host_sim/report/html_page.h"
 #include "host_sim/report/report_sections.h"
 #include "host_sim/report/run_folder.h"
@@ -10,10 +11,13 @@
 namespace vbar::report {
 
 std::string html_report(const RunRecord& record) {
-  const std::vector<Section> sections{
-      waypoint_section(record),   trajectory_section(record), elements_section(record),    maneuver_section(record),
-      navigation_section(record), gnss_section(record),       angles_only_section(record), pose_section(record),
-      attitude_section(record),   guidance_section(record),   health_section(record),      computer_section(record)};
+  std::vector<Section> sections{waypoint_section(record),    trajectory_section(record), elements_section(record),
+                                maneuver_section(record),    navigation_section(record), gnss_section(record),
+                                angles_only_section(record), pose_section(record)};
+  for (const Extension* extension : record.extensions)
+    if (extension->section != nullptr) sections.push_back(extension->section(record));
+  for (auto* const section : {attitude_section, guidance_section, health_section, computer_section})
+    sections.push_back(section(record));
   std::string body = overview(record) + contents(sections);
   for (const Section& section : sections) body += section_html(section);
   return html_page(fmt::format("{} (seed {})", record.summary.mission, record.summary.seed), body);

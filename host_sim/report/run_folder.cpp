@@ -78,7 +78,7 @@ fs::path report_file(const fs::path& run_folder) {
   return run_folder / kReport;
 }
 
-RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing)
+RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing, Extensions extensions)
     : folder_(std::move(folder)), tables_(folder_) {
   try {
     check_may_be_used(folder_, existing);
@@ -89,7 +89,7 @@ RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing)
     running.complete = false;
     running.incomplete_reason = fmt::format("running in process {}, or killed", ::getpid());
     replace_text_file(folder_ / kSummary, summary_json(running, {}));
-    for (const std::string& name : table_files()) {
+    for (const std::string& name : table_files(extensions)) {
       fs::remove(folder_ / name);
       fs::remove(PartialFile::part_of(folder_ / name));
     }
@@ -130,9 +130,10 @@ void RunFolder::give_up(Summary summary, const std::string& reason) const {
   }
 }
 
-RunRecord read_run(const fs::path& run_folder) {
+RunRecord read_run(const fs::path& run_folder, Extensions extensions) {
   if (!fs::is_directory(run_folder)) fail(run_folder, "no such run folder");
   RunRecord record;
+  record.extensions = extensions;
   record.summary = read_summary(run_folder / kSummary);
   const fs::path truth = run_folder / "truth.csv";
   if (!record.summary.complete && !fs::exists(truth) && !fs::exists(PartialFile::part_of(truth))) {

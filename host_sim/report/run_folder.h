@@ -30,7 +30,8 @@ class RunFolder {
   /// of an earlier run are removed; files that no run writes stay. Throws FolderRefused that names the folder if it
   /// holds anything but a run, a run that is not to be replaced, or one under way; std::runtime_error if it cannot be
   /// made or written.
-  RunFolder(std::filesystem::path folder, const Summary& start, Existing existing = Existing::kReplace);
+  RunFolder(std::filesystem::path folder, const Summary& start, Existing existing = Existing::kReplace,
+            Extensions extensions = {});
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] std::filesystem::path packet_log() const { return packet_log_file(folder_); }
@@ -53,6 +54,6 @@ class RunFolder {
 };
 
 /// Throws std::runtime_error that names the file and the line for a folder that is no run's, or damaged.
-[[nodiscard]] RunRecord read_run(const std::filesystem::path& run_folder);
+[[nodiscard]] RunRecord read_run(const std::filesystem::path& run_folder, Extensions extensions = {});
 
 }  // namespace vbar::report

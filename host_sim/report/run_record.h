@@ -3,12 +3,16 @@
 // report. SI units; frames in the names; ROE are mean, times the reference semi-major axis. A row about a message of
 // telemetry is that message (fsw/packets/vbar.lcm) with the truth beside it.
 
+#include <any>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
+#include <typeindex>
 #include <utility>
 #include <vector>
 
@@ -202,6 +206,30 @@ Row row_of(const Message& message) {
   return row;
 }
 
+/// Rows of any types: tables that this library does not know.
+class TableSet {
+ public:
+  template <class Row>
+  [[nodiscard]] std::vector<Row>& rows() {
+    std::any& rows = tables_[typeid(Row)];
+    if (!rows.has_value()) rows = std::vector<Row>();
+    return std::any_cast<std::vector<Row>&>(rows);
+  }
+  template <class Row>
+  [[nodiscard]] const std::vector<Row>& rows() const {
+    static const std::vector<Row> kNone;
+    const auto found = tables_.find(typeid(Row));
+    return found == tables_.end() ? kNone : std::any_cast<const std::vector<Row>&>(found->second);
+  }
+
+ private:
+  std::map<std::type_index, std::any> tables_;
+};
+
+struct Extension;
+/// What modules outside this library add to record, summary and report (extension.h).
+using Extensions = std::span<const Extension* const>;
+
 struct RunRecord {
   Summary summary;
   std::vector<WaypointRow> waypoints;
@@ -218,6 +246,8 @@ struct RunRecord {
   std::vector<ResidualRow> residuals;
   std::vector<NoteRow> notes;
   TelemetryTables telemetry;
+  Extensions extensions;
+  TableSet tables;                         ///< of the extensions
   std::vector<std::string> reading_notes;  ///< what reading the folder had to leave out
 
   template <class Message>

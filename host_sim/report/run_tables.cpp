@@ -1,7 +1,7 @@
 #include "host_sim/report/run_tables.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -9,6 +9,7 @@
 
 #include "fsw/math/math.h"
 #include "host_sim/report/csv_table.h"
+#include "host_sim/report/extension.h"
 #include "host_sim/report/run_columns.h"
 #include "host_sim/report/text_file.h"
 
@@ -18,69 +19,62 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
-enum class Rows { kGrow, kChange };            ///< change: until the end of the run
-enum class Presence { kAlways, kIfNotEmpty };  ///< of the file, once the run has ended
-
-template <class Row>
-struct Table {
-  const char* file;
-  std::vector<Row> RunRecord::*rows;
-  Rows kind;
-  Presence presence;
+using fsw::math::kArcsecond;
+constexpr OldColumn kOldImageColumns[] = {
+    {"attitude_sigma_arcsec", "attitude_sigma_rad", kArcsecond},
+    {"bearing_sigma_arcsec", "bearing_sigma_rad", kArcsecond},
+    {"prefit_*_arcsec", "prefit_*_rad", kArcsecond},
+    {"postfit_*_arcsec", "postfit_*_rad", kArcsecond},
+    {"used", "fate", 1.0, 1},  // 0 was refused or none
+    {"covariance_a_roe_m2_*", "covariance_a_roe_*_m2"},
 };
+constexpr OldColumn kOldPoseColumns[] = {{"covariance_a_roe_m2_*", "covariance_a_roe_*_m2"}};
 
-/// The one list of tables.
-constexpr std::tuple kTables{
-    Table{"waypoints.csv", &RunRecord::waypoints, Rows::kChange, Presence::kAlways},
-    Table{"truth.csv", &RunRecord::truth, Rows::kGrow, Presence::kAlways},
-    Table{"attitude.csv", &RunRecord::attitudes, Rows::kGrow, Presence::kIfNotEmpty},
-    Table{"estimate.csv", &RunRecord::estimates, Rows::kGrow, Presence::kAlways},
-    Table{"gnss.csv", &RunRecord::gnss, Rows::kGrow, Presence::kIfNotEmpty},
-    Table{"images.csv", &RunRecord::images, Rows::kGrow, Presence::kIfNotEmpty},
-    Table{"objects.csv", &RunRecord::objects, Rows::kGrow, Presence::kIfNotEmpty},
-    Table{"poses.csv", &RunRecord::poses, Rows::kGrow, Presence::kIfNotEmpty},
-    Table{"keypoints.csv", &RunRecord::keypoints, Rows::kGrow, Presence::kIfNotEmpty},
-    Table{"gallery.csv", &RunRecord::gallery, Rows::kChange, Presence::kIfNotEmpty},
-    Table{"maneuvers.csv", &RunRecord::maneuvers, Rows::kChange, Presence::kAlways},
-    Table{"residuals.csv", &RunRecord::residuals, Rows::kGrow, Presence::kIfNotEmpty},
-    Table{"notes.csv", &RunRecord::notes, Rows::kGrow, Presence::kIfNotEmpty},
+/// The rows of a message of telemetry.
+template <class Message>
+struct TelemetryRows {
+  auto& operator()(auto& record) const { return std::get<std::vector<TelemetryRow<Message>>>(record.telemetry); }
 };
 
 template <class Message>
-std::string file_of(const std::vector<TelemetryRow<Message>>& /*rows*/) {
-  return std::string(Message::getTypeName()) + ".csv";
+TableKind table_of(const std::vector<TelemetryRow<Message>>& /*rows*/) {
+  return table_kind<TelemetryRows<Message>{}>(std::string(Message::getTypeName()) + ".csv");
 }
 
-/// Calls visit(file name, rows, kind, presence) for every table of the record.
-template <class Record, class Visit>
-void for_each_table(Record& record, const Visit& visit) {
-  std::apply(
-      [&](const auto&... table) {
-        (visit(std::string(table.file), record.*table.rows, table.kind, table.presence), ...);
-      },
-      kTables);
-  std::apply([&](auto&... rows) { (visit(file_of(rows), rows, Rows::kGrow, Presence::kIfNotEmpty), ...); },
-             record.telemetry);
+/// The one list of this library's tables.
+std::vector<TableKind> own_tables() {
+  using enum Rows;
+  using enum Presence;
+  std::vector<TableKind> tables{
+      table_kind<&RunRecord::waypoints>("waypoints.csv", kChange, kAlways),
+      table_kind<&RunRecord::truth>("truth.csv", kGrow, kAlways),
+      table_kind<&RunRecord::attitudes>("attitude.csv"),
+      table_kind<&RunRecord::estimates>("estimate.csv", kGrow, kAlways),
+      table_kind<&RunRecord::gnss>("gnss.csv"),
+      table_kind<&RunRecord::images>("images.csv", kGrow, kIfNotEmpty, kOldImageColumns),
+      table_kind<&RunRecord::objects>("objects.csv"),
+      table_kind<&RunRecord::poses>("poses.csv", kGrow, kIfNotEmpty, kOldPoseColumns),
+      table_kind<&RunRecord::keypoints>("keypoints.csv"),
+      table_kind<&RunRecord::gallery>("gallery.csv", kChange),
+      table_kind<&RunRecord::maneuvers>("maneuvers.csv", kChange, kAlways),
+      table_kind<&RunRecord::residuals>("residuals.csv"),
+      table_kind<&RunRecord::notes>("notes.csv"),
+  };
+  std::apply([&](const auto&... rows) { (tables.push_back(table_of(rows)), ...); }, TelemetryTables{});
+  return tables;
 }
 
-/// A column of files made by an older version: its values times `factor` plus `offset` are those of the new one. A star
-/// stands for the same part of both names.
-struct OldColumn {
-  std::string_view file, old_name, new_name;
-  double factor = 1.0;
-  int offset = 0;
-};
-
-using fsw::math::kArcsecond;
-constexpr OldColumn kOldColumns[] = {
-    {"images.csv", "attitude_sigma_arcsec", "attitude_sigma_rad", kArcsecond},
-    {"images.csv", "bearing_sigma_arcsec", "bearing_sigma_rad", kArcsecond},
-    {"images.csv", "prefit_*_arcsec", "prefit_*_rad", kArcsecond},
-    {"images.csv", "postfit_*_arcsec", "postfit_*_rad", kArcsecond},
-    {"images.csv", "used", "fate", 1.0, 1},  // 0 was refused or none
-    {"images.csv", "covariance_a_roe_m2_*", "covariance_a_roe_*_m2"},
-    {"poses.csv", "covariance_a_roe_m2_*", "covariance_a_roe_*_m2"},
-};
+/// All tables of a record with these extensions.
+std::vector<TableKind> tables_with(Extensions extensions) {
+  static const std::vector<TableKind> kOwn = own_tables();
+  std::vector<TableKind> tables = kOwn;
+  for (const Extension* extension : extensions) {
+    if (extension->tables == nullptr) continue;
+    std::vector<TableKind> more = extension->tables();
+    std::ranges::move(more, std::back_inserter(tables));
+  }
+  return tables;
+}
 
 /// The new name of an old column; nothing if the column is not the one that `old` means.
 std::optional<std::string> new_name(const OldColumn& old, std::string_view name) {
@@ -99,56 +93,32 @@ std::optional<std::string> new_name(const OldColumn& old, std::string_view name)
   throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), line, what));
 }
 
-template <class Row>
-Names column_names() {
-  Names names;
-  const Row row;
-  const auto collect = [&](const ColumnName& name, const auto&) { names.push_back(name.text()); };
-  visit_columns(row, collect);
-  return names;
+std::string head_line(const TableKind& table) {
+  return fmt::format("{}\n", fmt::join(table.columns(), ","));
 }
 
-template <class Row>
-std::string head_line() {
-  return fmt::format("{}\n", fmt::join(column_names<Row>(), ","));
-}
-
-template <class Row>
-void append_rows(std::string& text, const std::vector<Row>& rows, std::size_t from) {
-  for (std::size_t k = from; k < rows.size(); ++k) {
-    bool first = true;
-    const auto append = [&](const ColumnName&, const auto& value) {
-      if (!first) text += ',';
-      first = false;
-      append_value(text, value);
-    };
-    visit_columns(rows[k], append);
+void append_rows(std::string& text, const TableKind& table, const RunRecord& record, std::size_t from) {
+  for (std::size_t row = from; row < table.count(record); ++row) {
+    table.append(record, row, text);
     text += '\n';
   }
 }
 
-template <class Row>
-std::string text_of(const std::vector<Row>& rows) {
-  std::string text = head_line<Row>();
-  append_rows(text, rows, 0);
+std::string text_of(const TableKind& table, const RunRecord& record) {
+  std::string text = head_line(table);
+  append_rows(text, table, record, 0);
   return text;
 }
 
-/// Where a column of the row stands in the file, and what it was called and measured in there.
-struct Source {
-  std::optional<std::size_t> cell;
-  const OldColumn* old = nullptr;
-};
-
-std::vector<Source> sources_of(const fs::path& file, const std::string& table, const Names& wanted, const Names& found,
-                               Names& notes) {
-  std::vector<Source> sources(wanted.size());
+std::vector<CellSource> sources_of(const fs::path& file, const TableKind& table, const Names& found, Names& notes) {
+  const Names wanted = table.columns();
+  std::vector<CellSource> sources(wanted.size());
   Names unknown;
   for (std::size_t cell = 0; cell < found.size(); ++cell) {
-    Source source{cell, nullptr};
+    CellSource source{cell, nullptr};
     auto place = std::ranges::find(wanted, found[cell]);
-    for (const OldColumn& old : kOldColumns) {
-      if (place != wanted.end() || old.file != table) continue;
+    for (const OldColumn& old : table.old_columns) {
+      if (place != wanted.end()) continue;
       const auto renamed = new_name(old, found[cell]);
       if (!renamed) continue;
       place = std::ranges::find(wanted, *renamed);
@@ -158,7 +128,7 @@ std::vector<Source> sources_of(const fs::path& file, const std::string& table, c
       unknown.push_back(found[cell]);
       continue;
     }
-    Source& taken = sources[static_cast<std::size_t>(place - wanted.begin())];
+    CellSource& taken = sources[static_cast<std::size_t>(place - wanted.begin())];
     if (taken.cell) fail(file, 1, fmt::format("column \"{}\" stands there twice", *place));
     taken = source;
   }
@@ -167,114 +137,84 @@ std::vector<Source> sources_of(const fs::path& file, const std::string& table, c
   return sources;
 }
 
-template <class Value>
-void convert(Value& value, const OldColumn& old) {
-  if constexpr (std::is_same_v<Value, std::optional<double>>) {
-    if (value) convert(*value, old);
-  } else if constexpr (std::is_floating_point_v<Value>) {
-    value = static_cast<Value>(static_cast<double>(value) * old.factor);
-  } else if constexpr (requires { value.codes; }) {
-    value.value = static_cast<std::remove_reference_t<decltype(value.value)>>(value.value + old.offset);
-  }
-}
-
-/// Takes the cells of a line in the order of the row's columns.
-struct CellReader {
-  const fs::path& file;
-  std::size_t line;
-  const Names& cells;
-  const std::vector<Source>& sources;
-  std::size_t next = 0;
-
-  template <class Value>
-  void operator()(const ColumnName& name, Value&& value) {
-    const Source& source = sources[next++];
-    if (!source.cell) return;
-    const std::string& cell = cells[*source.cell];
-    if (!read_value(cell, value))
-      fail(file, line, fmt::format("{} is \"{}\", which is no value of that column", name.text(), cell));
-    if (source.old != nullptr) convert(value, *source.old);
-  }
-};
-
 /// `cut_short`: the last line may be half a row, for the program was killed.
-template <class Row>
-std::vector<Row> read_rows(const fs::path& file, const std::string& table, bool cut_short, Names& notes) {
+void read_rows(const fs::path& file, const TableKind& table, bool cut_short, RunRecord& record) {
   Names lines = read_lines(file);
   if (cut_short && !lines.empty() && !read_text_file(file).ends_with('\n')) lines.pop_back();
   if (lines.empty()) fail(file, 1, "the file is empty: not even column names");
   Names head, cells;
   if (!split_cells(lines.front(), head)) fail(file, 1, "a quote is not closed");
-  const std::vector<Source> sources = sources_of(file, table, column_names<Row>(), head, notes);
-  std::vector<Row> rows;
+  const std::vector<CellSource> sources = sources_of(file, table, head, record.reading_notes);
   for (std::size_t k = 1; k < lines.size(); ++k) {
     const std::size_t line = k + 1;
     if (!split_cells(lines[k], cells)) fail(file, line, "a quote is not closed");
     if (cells.size() != head.size()) fail(file, line, fmt::format("{} cells, expected {}", cells.size(), head.size()));
-    CellReader reader{file, line, cells, sources};
-    visit_columns(rows.emplace_back(), reader);
+    CellReader reader{cells, sources};
+    table.read(record, reader);
+    if (!reader.refused.empty()) fail(file, line, reader.refused);
   }
-  return rows;
 }
 
 }  // namespace
 
-Names table_files() {
+Names table_files(Extensions extensions) {
   Names names;
-  const RunRecord none;
-  for_each_table(none, [&](const std::string& name, const auto&, Rows, Presence) { names.push_back(name); });
+  for (const TableKind& table : tables_with(extensions)) names.push_back(table.file);
   return names;
 }
 
 std::string table_text(const RunRecord& record, const std::string& name) {
-  std::string text;
-  for_each_table(record, [&](const std::string& file, const auto& rows, Rows, Presence) {
-    if (file == name) text = text_of(rows);
-  });
-  return text;
+  for (const TableKind& table : tables_with(record.extensions))
+    if (table.file == name) return text_of(table, record);
+  return {};
 }
 
-template <class Row>
-void TableWriter::append(const std::string& name, const std::vector<Row>& rows) {
-  const bool is_new = !growing_.contains(name);
-  if (is_new) growing_.emplace(name, Growing{PartialFile(folder_ / name)});
-  Growing& table = growing_.at(name);
-  std::string text = is_new ? head_line<Row>() : "";
-  append_rows(text, rows, table.rows);
-  table.file.append(text);
-  table.rows = rows.size();
+void TableWriter::append(const TableKind& table, const RunRecord& record) {
+  const bool is_new = !growing_.contains(table.file);
+  if (is_new) growing_.emplace(table.file, Growing{PartialFile(folder_ / table.file)});
+  Growing& growing = growing_.at(table.file);
+  std::string text = is_new ? head_line(table) : "";
+  append_rows(text, table, record, growing.rows);
+  growing.file.append(text);
+  growing.rows = table.count(record);
 }
 
 void TableWriter::update(const RunRecord& record) {
-  for_each_table(record, [&](const std::string& name, const auto& rows, Rows kind, Presence) {
-    if (rows.empty()) return;
-    if (kind == Rows::kChange) return replace_text_file(PartialFile::part_of(folder_ / name), text_of(rows));
-    append(name, rows);
-    growing_.at(name).file.flush();
-  });
+  for (const TableKind& table : tables_with(record.extensions)) {
+    if (table.count(record) == 0) continue;
+    if (table.rows == Rows::kChange) {
+      replace_text_file(PartialFile::part_of(folder_ / table.file), text_of(table, record));
+      continue;
+    }
+    append(table, record);
+    growing_.at(table.file).file.flush();
+  }
 }
 
 void TableWriter::finish(const RunRecord& record) {
-  for_each_table(record, [&](const std::string& name, const auto& rows, Rows kind, Presence presence) {
-    if (kind == Rows::kChange) fs::remove(PartialFile::part_of(folder_ / name));
-    if (rows.empty() && presence == Presence::kIfNotEmpty) return;
-    if (kind == Rows::kChange) return replace_text_file(folder_ / name, text_of(rows));
-    append(name, rows);
-    growing_.at(name).file.finish();
-  });
+  for (const TableKind& table : tables_with(record.extensions)) {
+    const bool changes = table.rows == Rows::kChange;
+    if (changes) fs::remove(PartialFile::part_of(folder_ / table.file));
+    if (table.count(record) == 0 && table.presence == Presence::kIfNotEmpty) continue;
+    if (changes) {
+      replace_text_file(folder_ / table.file, text_of(table, record));
+      continue;
+    }
+    append(table, record);
+    growing_.at(table.file).file.finish();
+  }
   growing_.clear();
 }
 
 void read_tables(const fs::path& folder, RunRecord& record) {
   const bool complete = record.summary.complete;
-  for_each_table(record, [&](const std::string& name, auto& rows, Rows, Presence presence) {
-    using Row = typename std::remove_reference_t<decltype(rows)>::value_type;
-    fs::path file = folder / name;
+  for (const TableKind& table : tables_with(record.extensions)) {
+    fs::path file = folder / table.file;
     const bool is_part = !complete && !fs::exists(file);
     if (is_part) file = PartialFile::part_of(file);
-    if ((is_part || presence == Presence::kIfNotEmpty) && !fs::exists(file)) return;
-    rows = read_rows<Row>(file, name, is_part, record.reading_notes);
-  });
+    if ((is_part || table.presence == Presence::kIfNotEmpty) && !fs::exists(file)) continue;
+    read_rows(file, table, is_part, record);
+  }
 }
 
 }  // namespace vbar::report

@@ -13,8 +13,10 @@
 
 namespace vbar::report {
 
+struct TableKind;
+
 /// The names of all files that tables are written to.
-[[nodiscard]] std::vector<std::string> table_files();
+[[nodiscard]] std::vector<std::string> table_files(Extensions extensions = {});
 
 /// A table's text: head and rows of the file `name` of table_files().
 [[nodiscard]] std::string table_text(const RunRecord& record, const std::string& name);
@@ -36,8 +38,7 @@ class TableWriter {
     PartialFile file;
     std::size_t rows = 0;
   };
-  template <class Row>
-  void append(const std::string& name, const std::vector<Row>& rows);
+  void append(const TableKind& table, const RunRecord& record);
 
   std::filesystem::path folder_;
   std::map<std::string, Growing> growing_;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "host_sim/report/csv_table.h"
+#include "host_sim/report/extension.h"
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/navigation_errors.h"
 #include "host_sim/report/statistics.h"
@@ -161,6 +162,9 @@ Summary summarise(const RunRecord& record) {
   summarise_images(record, summary);
   summarise_poses(record, summary);
   summarise_flight_steps(record, summary);
+  summary.sensor_figures.clear();
+  for (const Extension* extension : record.extensions)
+    if (extension->summarise != nullptr) extension->summarise(record, summary);
   if (!record.of<telemetry_health>().empty()) summary.health = record.of<telemetry_health>().back().message;
   return summary;
 }

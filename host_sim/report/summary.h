@@ -3,6 +3,7 @@
 // (summarise.h).
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -100,6 +101,8 @@ struct Summary : RunFacts {
   std::optional<ImageCounts> images;
   // Navigation by the pose network only.
   std::optional<PoseFigures> pose;
+  /// Of modules: numbers by name, for each sensor.
+  std::map<std::string, std::map<std::string, double>> sensor_figures;
   double dv_mps = 0.0;
   int maneuvers = 0;
   struct FlightStep {

@@ -157,6 +157,7 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit.part("wrong_targets", s.images, &ImageCounts::wrong_targets);
   visit.part("images_without_truth", s.images, &ImageCounts::without_truth);
   visit("pose", s.pose);
+  visit("sensor_figures", s.sensor_figures);
   visit("dv_mps", s.dv_mps);
   visit("maneuvers", s.maneuvers);
   visit("commands_sha256", s.commands_sha256);
@@ -191,6 +192,10 @@ struct Writer {
   static Json json_of(const Value& value) {
     if constexpr (std::is_same_v<Value, std::string>) {
       return value.empty() ? Json(nullptr) : Json(value);
+    } else if constexpr (requires { typename Value::mapped_type; }) {
+      Json all = Json::object();
+      for (const auto& [key, one] : value) all[key] = json_of(one);
+      return all;
     } else if constexpr (requires { value.begin(); }) {
       Json all = Json::array();
       for (const auto& one : value) all.push_back(json_of(one));
@@ -248,6 +253,8 @@ struct Reader {
       value = from.is_null() ? std::numeric_limits<double>::quiet_NaN() : from.get<double>();
     } else if constexpr (std::is_same_v<Value, std::string>) {
       value = from.is_null() ? std::string() : from.get<std::string>();
+    } else if constexpr (requires { typename Value::mapped_type; }) {
+      for (const auto& [key, one] : from.items()) read(one, value[key]);
     } else if constexpr (requires { value.push_back(value.front()); }) {
       for (const Json& one : from) read(one, value.emplace_back());
     } else if constexpr (std::is_class_v<Value>) {

@@ -14,6 +14,8 @@
 #include "fsw/orbit/elements.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/mission/sensor_reader.h"
+#include "host_sim/report/extension.h"
+#include "host_sim/sensors/evaluation.h"
 #include "host_sim/truth/earth/earth_orientation.h"
 #include "host_sim/twins/packet_source.h"
 
@@ -80,10 +82,14 @@ struct MakeContext {
 struct SensorKind : mission::SensorReader {
   /// Adds what the flight software is told about the sensor before its first step. Null: nothing.
   void (*add_telecommands)(const mission::Sensor& sensor, const TelecommandContext& context,
-                           Telecommands& telecommands);
+                           Telecommands& telecommands) = nullptr;
   /// Adds the sources of the sensor's packets. Throws what a recorded log and data files throw.
   void (*add_sources)(const mission::Sensor& sensor, const MakeContext& context,
-                      std::vector<twins::NamedSource>& sources);
+                      std::vector<twins::NamedSource>& sources) = nullptr;
+  /// Compares the measurements of the sensor with the truth. Null: nothing does.
+  std::unique_ptr<Evaluation> (*evaluate)(const mission::Sensor& sensor, const EvaluationContext& context) = nullptr;
+  /// Tables, summary figures and report section, for all sensors of the kind together.
+  report::Extension report{};
 };
 
 /// "servicer/gnss"

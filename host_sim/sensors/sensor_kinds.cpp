@@ -1,6 +1,8 @@
 #include "host_sim/sensors/sensor_kinds.h"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <stdexcept>
 
 #include "host_sim/mission/data_directory.h"
@@ -8,11 +10,12 @@
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
 #include "host_sim/sensors/ideal_navigation/ideal_navigation_kind.h"
+#include "host_sim/sensors/range_finder/range_finder_kind.h"
 
 namespace vbar::sensors {
 namespace {
 
-constexpr const SensorKind* kSensorKinds[] = {&kIdealNavigation, &kGnss, &kCamera};
+constexpr const SensorKind* kSensorKinds[] = {&kIdealNavigation, &kGnss, &kCamera, &kRangeFinder};
 
 }  // namespace
 
@@ -51,6 +54,25 @@ std::vector<twins::NamedSource> make_sources(const mission::Mission& mission, co
   const MakeContext context{mission, servicer, data_directory, shared};
   for (const mission::Sensor& sensor : servicer.sensors) kind_of(sensor).add_sources(sensor, context, sources);
   return sources;
+}
+
+std::vector<NamedEvaluation> make_evaluations(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                                              report::RunRecord& record) {
+  std::vector<NamedEvaluation> evaluations;
+  const EvaluationContext context{mission, servicer, record};
+  for (const mission::Sensor& sensor : servicer.sensors)
+    if (const SensorKind& kind = kind_of(sensor); kind.evaluate != nullptr)
+      evaluations.push_back({source_name(servicer, sensor), kind.evaluate(sensor, context)});
+  return evaluations;
+}
+
+report::Extensions extensions() {
+  static const auto kExtensions = [] {
+    std::array<const report::Extension*, std::size(kSensorKinds)> all{};
+    std::ranges::transform(kSensorKinds, all.begin(), [](const SensorKind* kind) { return &kind->report; });
+    return all;
+  }();
+  return kExtensions;
 }
 
 std::vector<twins::Packet> telecommands_of(const TelecommandContext& context) {

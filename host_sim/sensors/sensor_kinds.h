@@ -31,6 +31,14 @@ mission::Mission parse_mission(std::string_view text, const std::filesystem::pat
                                                            const mission::Spacecraft& servicer,
                                                            const std::filesystem::path& data_directory);
 
+/// The evaluations of the sensors of `servicer`, whose kinds have one.
+[[nodiscard]] std::vector<NamedEvaluation> make_evaluations(const mission::Mission& mission,
+                                                            const mission::Spacecraft& servicer,
+                                                            report::RunRecord& record);
+
+/// What the kinds add to record, summary and report.
+[[nodiscard]] report::Extensions extensions();
+
 /// What the flight software is told before its first step, in this order: guidance, its sensors, the waypoints, the
 /// mode.
 [[nodiscard]] std::vector<twins::Packet> telecommands_of(const TelecommandContext& context);

@@ -126,8 +126,8 @@ class PacketSource {
   /// The content that its snapshots need.
   [[nodiscard]] virtual TruthDetail truth_detail() const { return TruthDetail::kStates; }
 
-  /// Whether the flight software reports on its measurements individually, later and by their time (images): their
-  /// truth is then kept until the report.
+  /// Whether its measurements are evaluated individually, later and by their time (images): observers of the run then
+  /// receive the truth of each.
   [[nodiscard]] virtual bool truth_is_compared() const { return false; }
 
   /// Wall-clock time that the simulation waits for pending packets before it ends the run.

@@ -118,7 +118,7 @@ class TestWall final : public engine::WallClock {
 /// Writes down what it sees.
 class Diary final : public RunObserver {
  public:
-  void on_measured(const twins::TruthSnapshot& truth) override { measured.push_back(truth.time); }
+  void on_measured(std::string_view, const twins::TruthSnapshot& truth) override { measured.push_back(truth.time); }
   void on_note(fsw::GpsTime time, std::string_view source, const twins::Note& note) override {
     notes.push_back({time, std::string(source) + ":" + note.name});
   }

@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadChange{
             "UnknownSensor", "sensors.navigation = {}", "sensors.radar = {}", "radar",
             "spacecraft.servicer.sensors.radar.kind: found nothing, and the sensor has the name \"radar\"; accepted: "
-            "navigation, gnss or camera"},
+            "navigation, gnss, camera or range_finder"},
         BadChange{"BoardWithoutDevice", "flight_computer = {}", "flight_computer = { target = \"board\" }", "board",
                   "spacecraft.servicer.flight_computer.device: found nothing; accepted: the tty of the board, e.g. "
                   "/dev/ttyUSB0"},

@@ -55,8 +55,8 @@ TEST(Sensors, AreRefusedWithOneMessage) {
               HasSubstr("cannot redefine existing table"));
   EXPECT_THAT(
       message_of(with_sensors("sensors.eye = { kind = \"kamera\" }")),
-      HasSubstr("sensors.eye.kind: found the text \"kamera\" (did you mean camera?); accepted: navigation, gnss "
-                "or camera"));
+      HasSubstr("sensors.eye.kind: found the text \"kamera\" (did you mean camera?); accepted: navigation, gnss, "
+                "camera or range_finder"));
   EXPECT_THAT(message_of(with_sensors("sensors.eye = {}")),
               HasSubstr("sensors.eye.kind: found nothing, and the sensor has the name \"eye\"; accepted: "));
   EXPECT_THAT(message_of(with_sensors("sensors.navigation = { readout_s = 1 }")),

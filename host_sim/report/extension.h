@@ -1,0 +1,21 @@
+#pragma once
+// What a module outside this library adds to the record of a run: tables, figures of the summary, a section of the
+// report. A sensor's module is one (host_sim/sensors).
+
+#include <vector>
+
+#include "host_sim/report/html_page.h"
+#include "host_sim/report/table_kind.h"
+
+namespace vbar::report {
+
+/// Functions that are null add nothing.
+struct Extension {
+  std::vector<TableKind> (*tables)() = nullptr;
+  /// Computes the figures of the module from its tables.
+  void (*summarise)(const RunRecord& record, Summary& summary) = nullptr;
+  /// Without content, where the run has nothing to show.
+  Section (*section)(const RunRecord& record) = nullptr;
+};
+
+}  // namespace vbar::report

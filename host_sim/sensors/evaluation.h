@@ -1,0 +1,46 @@
+#pragma once
+// The measurements of a sensor beside the truth: rows of the record, made while the mission flies.
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/packets/packet.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/report/run_record.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::sensors {
+
+/// Is called as things happen, in their order; overrides what it wants to see.
+class Evaluation {
+ public:
+  Evaluation() = default;
+  Evaluation(const Evaluation&) = delete;
+  Evaluation& operator=(const Evaluation&) = delete;
+  virtual ~Evaluation() = default;
+
+  /// The truth of a measurement of this sensor, if its source is one whose truth is compared.
+  virtual void on_measured(const twins::TruthSnapshot& /*truth*/) {}
+  /// What the flight software received, from all sensors, with the step at `time`.
+  virtual void on_inputs(fsw::GpsTime /*time*/, std::span<const fsw::packets::PacketView> /*inputs*/) {}
+  /// Its answer: telemetry and commands.
+  virtual void on_answer(fsw::GpsTime /*time*/, std::span<const fsw::packets::PacketView> /*answer*/) {}
+  /// The run is over, however it ended.
+  virtual void finish() {}
+};
+
+struct EvaluationContext {
+  const mission::Mission& mission;
+  const mission::Spacecraft& servicer;  ///< carries the sensor and the flight software
+  report::RunRecord& record;            ///< outlives the evaluation
+};
+
+/// An evaluation and the source whose truth it is told.
+struct NamedEvaluation {
+  std::string source;  ///< "servicer/lidar"
+  std::unique_ptr<Evaluation> evaluation;
+};
+
+}  // namespace vbar::sensors

@@ -1,0 +1,78 @@
+#include "host_sim/sensors/range_finder/range_finder_kind.h"
+
+#include "fsw/math/math.h"
+#include "host_sim/mission/read_attitude.h"
+#include "host_sim/twins/recorded_log.h"
+
+namespace vbar::sensors {
+namespace {
+
+using mission::above_to;
+using mission::from_to;
+using mission::TableReader;
+
+std::shared_ptr<const mission::SensorSettings> read(const TableReader& section, const mission::SensorContext& context) {
+  auto sensor = std::make_shared<RangeFinderSensor>();
+  RangeFinderSettings& settings = sensor->range_finder;
+  mission::read_source(section, "digital", context, *sensor);
+  sensor->target = mission::read_other_spacecraft(section, context.spacecraft, context.spacecraft_names);
+  settings.period = section.span("period_s", 1.0, from_to(0.01, 1e4), 1.0);
+  settings.range_min_m = section.number("range_min_m", from_to(0.0, 1e6), 0.5);
+  settings.range_max_m = section.number("range_max_m", above_to(0.0, 1e6), 1000.0);
+  settings.bias_sigma_m = section.number("bias_sigma_m", from_to(0.0, 1e3), 0.02);
+  settings.noise_sigma_m = section.number("noise_sigma_m", from_to(0.0, 1e3), 0.01);
+  settings.half_angle_rad =
+      0.5 * section.number("field_of_view_deg", above_to(0.0, 180.0), 20.0) * fsw::math::kPi / 180.0;
+  const auto axis = section.three_numbers("boresight_body", from_to(-1.0, 1.0), std::array{0.0, 0.0, 1.0});
+  section.finish();
+  const fsw::Vector3 boresight(axis[0], axis[1], axis[2]);
+  if (!(boresight.norm() > 1e-6)) section.refuse_value("boresight_body", "an axis that is not zero");
+  settings.boresight_body = boresight.normalized();
+  if (!(settings.range_min_m < settings.range_max_m)) section.refuse_value("range_max_m", "a range above range_min_m");
+  return sensor;
+}
+
+void check(const TableReader& section, const mission::Sensor& /*sensor*/, const mission::Spacecraft& spacecraft,
+           const mission::Mission& /*mission*/) {
+  if (!spacecraft.attitude)
+    section.refuse("", "no attitude of " + spacecraft.name,
+                   "a spacecraft with an attitude: the boresight points somewhere");
+}
+
+void add_sources(const mission::Sensor& sensor, const MakeContext& context, std::vector<twins::NamedSource>& sources) {
+  const auto& own = settings_of<RangeFinderSensor>(sensor);
+  const std::string name = source_name(context.servicer, sensor);
+  if (own.source == "recorded") {
+    const twins::RecordedLog::Selection selection{context.servicer.number, {fsw::packets::Apid::kRangeMeasurement}};
+    sources.push_back({name, own.source, std::make_unique<twins::RecordedLog>(own.log, selection)});
+    return;
+  }
+  const RangeFinder::Place place{context.servicer.name, own.target, context.servicer.number,
+                                 unit_of(sensor, context.servicer), context.mission.start_time()};
+  sources.push_back(
+      {name, own.source,
+       std::make_unique<RangeFinder>(own.range_finder, place, engine::RandomStream(context.mission.seed, name))});
+}
+
+std::vector<report::TableKind> tables() {
+  return {report::table_of_extension<RangeRow>("range_finder.csv")};
+}
+
+}  // namespace
+
+std::uint8_t unit_of(const mission::Sensor& sensor, const mission::Spacecraft& carrier) {
+  std::uint8_t unit = 0;
+  for (const mission::Sensor& other : carrier.sensors) {
+    if (&other == &sensor || other.name == sensor.name) break;
+    if (other.kind == sensor.kind) ++unit;
+  }
+  return unit;
+}
+
+const SensorKind kRangeFinder{{"range_finder", "", read, nullptr, check},
+                              nullptr,
+                              add_sources,
+                              evaluate_ranges,
+                              {tables, summarise_ranges, range_section}};
+
+}  // namespace vbar::sensors

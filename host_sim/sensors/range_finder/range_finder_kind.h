@@ -1,0 +1,29 @@
+#pragma once
+// kind = "range_finder": a laser range finder.
+
+#include "host_sim/sensors/range_finder/range_finder.h"
+#include "host_sim/sensors/range_finder/range_row.h"
+#include "host_sim/sensors/sensor_kind.h"
+
+namespace vbar::sensors {
+
+/// It observes no spacecraft in the sense of SensorSettings::observed: navigation does not use it.
+struct RangeFinderSensor : mission::SensorSettings {
+  std::string target;
+  RangeFinderSettings range_finder;
+};
+
+extern const SensorKind kRangeFinder;
+
+/// Number of the sensor among those of its kind on the spacecraft, as in packet headers.
+[[nodiscard]] std::uint8_t unit_of(const mission::Sensor& sensor, const mission::Spacecraft& carrier);
+
+// In range_evaluation.cpp.
+[[nodiscard]] std::unique_ptr<Evaluation> evaluate_ranges(const mission::Sensor& sensor,
+                                                          const EvaluationContext& context);
+
+// In range_report.cpp.
+void summarise_ranges(const report::RunRecord& record, report::Summary& summary);
+[[nodiscard]] report::Section range_section(const report::RunRecord& record);
+
+}  // namespace vbar::sensors

@@ -1,0 +1,35 @@
+#pragma once
+// A measurement of a laser range finder beside the truth (range_finder.csv).
+
+#include <optional>
+#include <string>
+
+#include "host_sim/report/run_columns.h"
+
+namespace vbar::sensors {
+
+struct RangeRow {
+  double time_s = 0.0;               ///< since the mission's epoch
+  std::string sensor;                ///< its name
+  std::optional<double> measured_m;  ///< as the flight software received it; absent: it received none
+  std::optional<double> true_m;      ///< between centres of mass; absent: a recorded measurement
+  std::optional<double> error_m;     ///< measured less true
+  std::optional<double> off_boresight_deg;
+  bool in_field_of_view = false;
+  double sigma_m = 0.0;  ///< of an error, bias and noise together
+};
+
+template <report::columns::RowOf<RangeRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  using report::ColumnName;
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"sensor"}, row.sensor);
+  visit(ColumnName{"measured_m"}, row.measured_m);
+  visit(ColumnName{"true_m"}, row.true_m);
+  visit(ColumnName{"error_m"}, row.error_m);
+  visit(ColumnName{"off_boresight_deg"}, row.off_boresight_deg);
+  visit(ColumnName{"in_field_of_view"}, row.in_field_of_view);
+  visit(ColumnName{"sigma_m"}, row.sigma_m);
+}
+
+}  // namespace vbar::sensors
