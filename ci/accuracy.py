@@ -62,7 +62,7 @@ def test_programs(build):
 
 
 def recording_sources():
-    """Source file of a test -> the claims and titles it writes out as a literal."""
+    """Source file of a test -> the claims and titles that it contains as literals."""
     found = {}
     for source in sorted((ROOT / "tests").rglob("*_test.cpp")):
         text = source.read_text()

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the tests, runs those that compare with references from outside, writes docs/accuracy.md.
+# Builds the tests, runs those that compare with independent references, writes docs/accuracy.md.
 #   ci/accuracy.sh           accuracy alone
-#   ci/accuracy.sh --cost    and what it costs, by the benchmark program
+#   ci/accuracy.sh --cost    and computing cost, by the benchmark program
 set -euo pipefail
 cd "$(dirname "$0")/.."
 cmake --preset host --log-level=WARNING

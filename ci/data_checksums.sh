@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Lists the data files with their SHA-256 in data/SHA256SUMS, after a change that is intended. The program refuses a data file
+# Lists the data files with their SHA-256 in data/SHA256SUMS, after a change that is intended. The program rejects a data file
 # that differs from the list.
 set -euo pipefail
 cd "$(dirname "$0")/../data"

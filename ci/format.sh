@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # clang-format over every C and C++ file of the tree.
-#   ci/format.sh         says what is not in the tree's format, and fails if anything is not
-#   ci/format.sh --fix   puts it in format
+#   ci/format.sh         reports files that are not in the format of the tree, and fails if there are any
+#   ci/format.sh --fix   formats them
 set -euo pipefail
 cd "$(dirname "$0")/.."
 mode=(--dry-run -Werror)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# ci/fuzz.sh [SECONDS]: runs every libFuzzer program of the sanitizer tree, 20 s each unless said otherwise. What a program finds
-# is kept in build/asan/fuzz_findings/<target>; copy it to tests/fuzz/corpus/<target> with its correction.
+# ci/fuzz.sh [SECONDS]: runs every libFuzzer program of the sanitizer tree, 20 s each by default. Failing inputs
+# are kept in build/asan/fuzz_findings/<target>; copy it to tests/fuzz/corpus/<target> with its correction.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-20}

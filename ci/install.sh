@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that are missing; safe to run again.
-#   ci/install.sh fly      what builds and flies missions, in process and on the emulated Zynq
-#   ci/install.sh test     fly, and what compiles and runs the unit and integration tests, formats and lints
-#   ci/install.sh peers    the independent programs that tests compare with (half a gigabyte); their tests are skipped without
-#   ci/install.sh train    what trains the keypoint network
-# Several at once are possible; none means fly.
+# Installs the Debian 12 packages that are missing; may be run repeatedly.
+#   ci/install.sh fly      packages to build and fly missions, in process and on the emulated Zynq
+#   ci/install.sh test     fly, and packages for the unit and integration tests, format and lint
+#   ci/install.sh peers    the independent programs that tests compare with (half a gigabyte); without them their tests are skipped
+#   ci/install.sh train    packages to train the keypoint network
+# Several groups may be given; the default is fly.
 set -euo pipefail
 
 fly=(
@@ -24,7 +24,7 @@ test=(
 peers=(python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev libopencv-dev tshark)
 train=("${fly[@]}" python3 python3-numpy python3-torch)
 
-# The wire formats' peer is an npm package. Only where another npm is not already there: a vendor's node conflicts with
+# The wire formats' peer is an npm package. Only if no other npm is installed: a vendor's node conflicts with
 # Debian's.
 command -v npm >/dev/null 2>&1 || peers+=(nodejs npm)
 

@@ -18,7 +18,7 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MUTATIONS = ["nan", "zero", "sign"]
-SECONDS = 60  # of a run: a mutant may make a loop of a test endless
+SECONDS = 60  # time limit of a run: a mutant may result in an endless loop
 CALLED = "this kernel is called"
 
 WRAPPER = """
@@ -155,7 +155,7 @@ def wrapper_source(kernel, symbol):
 
 
 class Build:
-    """What the build folder says of a test program."""
+    """Build commands of a test program."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -206,7 +206,7 @@ def call(command, folder):
 
 
 def run(program, tests, mutation):
-    """How a test program ends: 'passed', or by what a mutant is detected; and its output."""
+    """Result of a test program: 'passed', or how a mutant is detected; and its output."""
     environment = {**os.environ, "VBAR_MUTATION": mutation, "GTEST_FILTER": tests, "GTEST_FAIL_FAST": "1", "GTEST_BRIEF": "1"}
     try:
         done = subprocess.run([program], env=environment, capture_output=True, text=True, errors="replace", timeout=SECONDS)
@@ -223,7 +223,7 @@ def judge(build, kernel, scratch):
     source, compiled, mutant = (str(scratch / (symbol + kernel["program"])) + end for end in (".cpp", ".o", ""))
     pathlib.Path(source).write_text(wrapper_source(kernel, symbol), encoding="utf-8")
     call(build.compile(kernel["program"], source, compiled), build.folder)
-    output_at = words.index("-o")  # the wrapper before the libraries, for it is what asks for the real kernel
+    output_at = words.index("-o")  # the wrapper before the libraries, because it references the real kernel
     call([*words[:output_at], compiled, f"-Wl,--wrap={symbol}", "-o", mutant, *words[output_at + 2:]], build.folder)
     verdict, output = run(mutant, kernel["tests"], "none")
     if verdict != "passed":

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Are the unit tests of this project able to fail? Kernels are made to return NaN, zero and the opposite sign, each in turn, and
-# a test of the kernel's own module must notice. Prints a table; exits with 1 if a mutant survives.
+# Mutation test of the unit tests. Kernels are modified to return NaN, zero and the opposite sign, each in turn, and
+# a test of the kernel's own module must fail. Prints a table; exits with 1 if a mutant survives.
 #   ci/mutate.sh            all kernels of ci/mutants.toml: minutes, once the unit tests are built
 #   ci/mutate.sh orbit      those whose name contains a word
 set -euo pipefail

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# From a bare Debian 12 to the paper's sample trajectory: installs, builds, flies the whole mission in this process and on the
-# emulated Zynq, prints the waypoint table, whether the two gave the same bits, and where the report is.
+# From a bare Debian 12 to the paper's sample trajectory: installs, builds, flies the complete mission in process and on the
+# emulated Zynq, prints the waypoint table, the comparison of the two runs bit for bit, and the path of the report.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ci/install.sh fly
-# The program and all small products beside it: the flight software as a process, the example article.
+# The program and all small products: the flight software as a process, the example article.
 cmake --preset host --log-level=WARNING -DVBAR_TESTS=OFF
 cmake --build --preset host
 ci/build.sh zynq

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds for every target and runs all tests: short arcs where a whole mission would be long.
-# The whole missions are flown by ci/verify.sh; the first verdict on a change comes from ci/quick.sh.
+# Installs missing packages, builds for every target and runs all tests: short arcs in place of long missions.
+# The complete missions are flown by ci/verify.sh; the first verdict on a change is that of ci/quick.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 started=$SECONDS

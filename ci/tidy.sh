@@ -15,7 +15,7 @@ elif [[ ${1:-} == --changed ]]; then
   base=$(git merge-base HEAD origin/main 2>/dev/null || true)
   if [[ -z $base || $base == "$(git rev-parse HEAD)" ]]; then base=$(git rev-parse --verify --quiet HEAD~1 || true); fi
   mapfile -t sources < <(git diff --name-only --diff-filter=d ${base:+"$base"} -- '*.cpp')
-  # One commit that touches everything (a renaming, say) is for --all.
+  # A commit that changes everything (for example a renaming) is checked by --all.
   if ((${#sources[@]} > 40)); then
     echo "clang-tidy: ${#sources[@]} sources differ from ${base:0:12}; the first 40 are checked, ci/tidy.sh --all checks every file"
     sources=("${sources[@]:0:40}")
@@ -38,7 +38,7 @@ trap 'rm -f "$log"' EXIT
 status=0
 run-clang-tidy -quiet -j "$(nproc)" -p build/asan "${analyzer[@]}" \
   "${sources[@]/#/^$root/}" >"$log" 2>&1 || status=$?
-# What is left are the findings: a header's once, and neither the commands nor the counts of suppressed warnings.
+# The remaining lines are the findings, each once, without the commands and the counts of suppressed warnings.
 grep -vE '^(clang-tidy|[0-9]+ warnings? (generated|treated)|Suppressed|Use -header-filter|Enabled checks:|$)' "$log" |
   awk '/(error|warning): / { show = !seen[$0]++ } show' || true
 ((status == 0)) && echo "clang-tidy: no findings in ${sources[*]}"

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Makes the crops, trains the keypoint network and calibrates it: data/networks/tango_keypoints.{bin,toml}. Some 75
-# minutes on two idle cores. An interrupted run goes on where it was (folder build/training).
+# Renders the crops, trains the keypoint network and calibrates it: data/networks/tango_keypoints.{bin,toml}. Some 75
+# minutes on two idle cores. An interrupted run continues (folder build/training).
 #   ci/train.sh [minutes of training]     default 55
 set -euo pipefail
 cd "$(dirname "$0")/.."
 minutes=${1:-55}
 
-# Beside what ci/install.sh installs. Debian's Python, whatever else is called python3.
+# In addition to the packages of ci/install.sh. Debian's Python, not another python3.
 python=/usr/bin/python3
 if ! "$python" -c 'import torch, numpy' 2>/dev/null; then
   sudo=()
@@ -22,7 +22,7 @@ cmake --preset host --log-level=WARNING
 cmake --build --preset host --target vbar_training_crops --parallel
 render=build/host/vbar_training_crops
 
-# Two processes share the crops for training; what comes from another seed comes first and last.
+# Two processes share the crops for training; crops of other seeds are rendered first and last.
 "$render" --kind held_out --seed 3 --count 2000 --shard-size 500 --out "$crops"
 "$render" --kind training --seed 1 --count 54000 --part 0 --parts 2 --out "$crops" &
 "$render" --kind training --seed 1 --count 54000 --part 1 --parts 2 --out "$crops"

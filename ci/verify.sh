@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Everything at full length: all tests, then the whole missions on every flight computer. Writes docs/verification.md.
+# Complete verification: all tests, then the complete missions on every flight computer. Writes docs/verification.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ci/test.sh

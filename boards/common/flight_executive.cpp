@@ -19,8 +19,8 @@ constexpr std::size_t kMaxHelloText = 120;
 
 template <class Integer>
 constexpr Integer saturated(std::uint64_t value) {
-  constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<Integer>::max());
-  return static_cast<Integer>(std::min(value, kMost));
+  constexpr auto kMax = static_cast<std::uint64_t>(std::numeric_limits<Integer>::max());
+  return static_cast<Integer>(std::min(value, kMax));
 }
 
 std::span<const std::uint8_t> bytes_of(const char* text) {
@@ -172,7 +172,7 @@ void FlightExecutive::on_poll(const FrameHeader& header) {
 
 void FlightExecutive::begin_step(std::uint32_t step) {
   inputs_.open(session_, step);
-  // The first step keeps what the flight software said while it was made.
+  // The first step keeps the output of the flight software from its construction.
   if (has_answer_) outbox_.clear();
   has_answer_ = false;
 }
@@ -184,7 +184,7 @@ void FlightExecutive::close_step(std::span<const std::uint8_t> last_packet) {
   if (ends_in_tick) {
     step_time_ = packet.value().header.time;
     const std::uint64_t before = read_counter();
-    // A step that failed says so in the flight software's telemetry; the barrier closes either way.
+    // A failed step is reported in the flight software's telemetry; the barrier closes in either case.
     static_cast<void>(vbar_gnc_step(gnc_state_.data(), step_time_.ns));
     cost = read_counter() - before;
   } else {

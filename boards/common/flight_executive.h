@@ -1,6 +1,6 @@
 #pragma once
-// What every board runs: frames in, flight software stepped at the barrier, frames out (the board's side of
-// fsw/link/frame.h). A board supplies a `Platform`; it has no other say in what happens.
+// The executive of every board: frames in, flight software stepped at the barrier, frames out (the board's side of
+// fsw/link/frame.h). The only part specific to a board is its `Platform`.
 
 #include <array>
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace vbar::boards {
 /// Unit of Platform::counter, as step_report.unit has it.
 enum class CounterUnit : std::int8_t { kNone = 0, kEmulatedTimerTicks = 1, kCycles = 2 };
 
-/// What a board supplies. All functions get `context`; none may block for good.
+/// Functions of a board. All receive `context`; none may block indefinitely.
 struct Platform {
   void* context = nullptr;
   const char* name = "";                                                       ///< ASCII, shown to the host
@@ -38,8 +38,8 @@ enum class Activity : std::uint8_t { kIdle, kStepped, kGoodbye };
 /// One per image, in static memory (it is large). Not thread-safe, not re-entrant, and it stays where it is: the flight
 /// software is given its address.
 ///
-/// A kHello of another session makes a new flight software and forgets everything else; one of the same session is only
-/// answered again. A flight software that does not fit this executive is never run: the kHelloAck says why ("error:
+/// A kHello of another session constructs a new flight software and discards all else; one of the same session is only
+/// answered again. A flight software that does not fit this executive is never run: the kHelloAck states why ("error:
 /// ...").
 class FlightExecutive {
  public:
@@ -52,7 +52,7 @@ class FlightExecutive {
   /// kStepped also for a batch that ended without a tick: its answer is the report alone, and nothing was stepped.
   Activity on_frame(std::span<const std::uint8_t> frame);
 
-  /// Frames a board dropped before they became frames (COBS errors, datagrams of strangers): into the step report.
+  /// Frames a board dropped before they became frames (COBS errors, foreign datagrams): into the step report.
   void count_rejected(std::uint32_t frames) { counters_.rejected += frames; }
 
  private:
@@ -74,7 +74,7 @@ class FlightExecutive {
   void on_poll(const fsw::link::FrameHeader& header);
 
   void begin_session(std::uint32_t session, std::span<const std::uint8_t> hello_payload);
-  /// Null if the flight software was made, otherwise the text for the host.
+  /// Null if the flight software was constructed, otherwise the text for the host.
   const char* start_flight_software(std::span<const std::uint8_t> hello_payload);
   void begin_step(std::uint32_t step);
   void close_step(std::span<const std::uint8_t> last_packet);

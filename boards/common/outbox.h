@@ -19,7 +19,7 @@ class Outbox {  // NOLINT(cppcoreguidelines-pro-type-member-init): see bytes_
  public:
   void clear();
 
-  /// Adds a packet of the flight software. False, and nothing is kept, if it has not the size of a packet, or if there
+  /// Adds a packet of the flight software. False, and nothing is kept, if its size is not that of a packet, or if there
   /// would be no room left for a report.
   [[nodiscard]] bool append(std::span<const std::uint8_t> packet);
   /// Adds the packet that closes the answer. There is always room for one.
@@ -32,7 +32,7 @@ class Outbox {  // NOLINT(cppcoreguidelines-pro-type-member-init): see bytes_
  private:
   void store(std::span<const std::uint8_t> packet);
 
-  // Left uninitialised on purpose: start-up need not write what count_ says is empty.
+  // Left uninitialised on purpose: start-up need not write elements beyond count_.
   std::array<std::uint8_t, kOutboxBytes> bytes_;
   std::array<std::uint32_t, kOutboxPackets> end_;  ///< of packet i in bytes_; it begins where its predecessor ends
   std::uint16_t count_ = 0;

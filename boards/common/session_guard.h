@@ -1,9 +1,9 @@
 #pragma once
-// Who may speak to the flight software. Anybody may send to a board; a session has one peer.
+// Admission of senders. Any program may send to a board; a session has one peer.
 //
-// The first sender of a valid kHello becomes the peer. Frames of anybody else are refused and counted until the session
-// ends: with its kGoodbye, or, so that a host that died does not lock a board, once the peer has been silent for a
-// while and somebody else says hello.
+// The first sender of a valid kHello becomes the peer. Frames of other senders are rejected and counted until the
+// session ends: with its kGoodbye, or, so that a host that died does not lock a board, once the peer has been silent
+// for a while and another sender sends a kHello.
 
 #include <cstdint>
 #include <span>
@@ -12,11 +12,11 @@
 
 namespace vbar::boards {
 
-/// `Sender`: a sender, as far as the board's interfaces can tell senders apart; it has operator==.
+/// `Sender`: a sender, as far as the board's interfaces distinguish senders; it has operator==.
 template <class Sender>
 class SessionGuard {
  public:
-  /// `silence` in the unit of the times given to `admits`: how long a peer may say nothing before another may take
+  /// `silence` in the unit of the times given to `admits`: time without frames of the peer after which another may take
   /// over.
   explicit SessionGuard(std::uint64_t silence) : silence_(silence) {}
 
@@ -35,11 +35,11 @@ class SessionGuard {
     return true;
   }
 
-  /// The peer said goodbye.
+  /// The peer sent kGoodbye.
   void end_session() { has_peer_ = false; }
 
   [[nodiscard]] bool has_peer() const { return has_peer_; }
-  /// Where answers go; meaningful while has_peer().
+  /// Destination of answers; valid while has_peer().
   [[nodiscard]] const Sender& peer() const { return peer_; }
 
  private:

@@ -35,7 +35,7 @@ bool set_raw(int fd, const Rate* rate) {
   return ::tcsetattr(fd, TCSANOW, &settings) == 0;
 }
 
-/// Closes `fd` without losing the errno that says why.
+/// Closes `fd` and preserves errno.
 int give_up(int fd) {
   const int reason = errno;
   ::close(fd);

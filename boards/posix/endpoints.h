@@ -1,5 +1,5 @@
 #pragma once
-// Opens what a frame link runs over. Functions that return a file descriptor return -1 and leave errno on failure.
+// Opens the endpoints of frame links. Functions that return a file descriptor return -1 and leave errno on failure.
 
 #include <cstdint>
 
@@ -7,7 +7,7 @@
 
 namespace vbar::boards::posix {
 
-/// A serial device: raw, 8N1, no flow control, modem lines ignored. A baud rate the system does not know: EINVAL.
+/// A serial device: raw, 8N1, no flow control, modem lines ignored. An unknown baud rate: EINVAL.
 int open_serial(const char* device, std::uint32_t baud);
 
 /// Connects to a listening Unix stream socket.

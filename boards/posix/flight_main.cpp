@@ -23,7 +23,7 @@ constexpr const char* kUsage =
     "the flight software as a process of its own; LINK is one of\n"
     "  --serial DEVICE [--baud N]             a serial device or pseudo-terminal, 921600 baud unless said otherwise\n"
     "  --unix PATH                            a Unix stream socket on which the host listens\n"
-    "  --udp ADDRESS:PORT [--peer HOST:PORT]  listen for datagrams; without --peer, of whoever says hello\n"
+    "  --udp ADDRESS:PORT [--peer HOST:PORT]  listen for datagrams; without --peer, of the first sender of a hello\n"
     "  --stream FD                            an open stream, inherited\n"
     "  --datagram FD [--peer HOST:PORT]       a bound UDP socket, inherited\n";
 
@@ -87,7 +87,7 @@ int open_datagram(const Options& options) {
   return -1;
 }
 
-/// Its memory is static, for it is large; it is built when the link it talks through is there.
+/// Its memory is static, because it is large; it is constructed when its link exists.
 alignas(FlightExecutive) std::array<std::byte, sizeof(FlightExecutive)> executive_memory;
 
 std::uint32_t measure_stack(void* /*context*/) {
@@ -156,7 +156,7 @@ int flight_main(const char* name, int argc, char** argv) {
     std::fprintf(stderr, kUsage, argv[0]);
     return 2;
   }
-  // A host that is gone shows as a failed write, which ends this program in good order.
+  // A host that has ended results in a failed write, which ends this program in an orderly way.
   (void)std::signal(SIGPIPE, SIG_IGN);
   const bool datagrams = options.udp != nullptr || options.datagram != nullptr;
   return datagrams ? fly_over_datagrams(name, argv[0], options) : fly_over_stream(name, argv[0], options);

@@ -3,8 +3,8 @@
 
 namespace vbar::boards::posix {
 
-/// Parses the command line, opens the link and flies until the host says goodbye or is gone. `name` is what the host
-/// sees. Returns the exit status: 0 after either, 1 if the link failed, 2 for a command line that is not understood.
+/// Parses the command line, opens the link and flies until the host sends goodbye or ends. `name` is reported to the
+/// host. Returns the exit status: 0 after either, 1 if the link failed, 2 for an invalid command line.
 int flight_main(const char* name, int argc, char** argv);
 
 }  // namespace vbar::boards::posix

@@ -23,7 +23,7 @@ bool is_passing(int fd, short event) {
   return true;
 }
 
-/// Errors by which a stream or a terminal says that nobody is at the other end.
+/// Errors by which a stream or a terminal reports that the other end is closed.
 bool says_peer_gone(int error) {
   return error == EIO || error == EPIPE || error == ECONNRESET;
 }
@@ -79,7 +79,7 @@ void DatagramLink::send(void* context, std::span<const std::uint8_t> frame) {
   if (!link->peer_is_fixed_ && !link->guard_.has_peer()) return;
   const DatagramSender& peer = link->peer_is_fixed_ ? link->fixed_peer_ : link->guard_.peer();
   const auto* const address = reinterpret_cast<const sockaddr*>(&peer.address);
-  // What the system does not take is lost like any datagram, and asked for again.
+  // A datagram that the system does not accept is lost, and requested again.
   while (::sendto(link->fd_, frame.data(), frame.size(), 0, address, sizeof peer.address) < 0 && errno == EINTR) {
   }
 }
@@ -91,7 +91,7 @@ LinkEnd DatagramLink::serve(FlightExecutive& executive) {
     auto* const address = reinterpret_cast<sockaddr*>(&sender.address);
     const ssize_t count = ::recvfrom(fd_, received_.data(), received_.size(), 0, address, &length);
     if (count < 0) {
-      // An earlier datagram of ours found nobody at home: no reason to stop listening.
+      // An earlier datagram of this program was not received: no reason to stop listening.
       if (errno == ECONNREFUSED || is_passing(fd_, POLLIN)) continue;
       return LinkEnd::kFailed;
     }

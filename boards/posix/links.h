@@ -18,7 +18,7 @@ namespace vbar::boards::posix {
 enum class LinkEnd : std::uint8_t {
   kGoodbye,   ///< the host ended the run
   kPeerGone,  ///< the other end of the stream was closed
-  kFailed,    ///< the system refused to read or write; errno says why
+  kFailed,    ///< a read or write failed; errno gives the reason
 };
 
 class StreamLink {
@@ -53,7 +53,7 @@ class DatagramLink {
  public:
   static constexpr std::uint64_t kSilence_ms = 5'000;  ///< as on the Zynq
 
-  /// `fd`, a bound UDP socket, stays the caller's. Serves the first who sends a valid kHello, and another only once
+  /// `fd`, a bound UDP socket, stays the caller's. Serves the first sender of a valid kHello, and another only once
   /// that one has been silent.
   explicit DatagramLink(int fd, std::uint64_t silence_ms = kSilence_ms) : fd_(fd), guard_(silence_ms) {}
   /// Serves `peer` alone.
@@ -72,7 +72,7 @@ class DatagramLink {
   SessionGuard<DatagramSender> guard_{kSilence_ms};
   DatagramSender fixed_peer_;
   bool peer_is_fixed_ = false;
-  // One byte more than a frame may have, so that a longer datagram is seen to be longer.
+  // One byte more than a frame may have, so that a longer datagram is detected.
   std::array<std::uint8_t, fsw::link::kMaxFrameBytes + 1> received_{};
 };
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kGuardBytes = std::size_t{64} * 1024;  // a multiple of every page size in use on these processors
 constexpr std::uint64_t kPaint = 0x5AFEC0DE5AFEC0DEU;
-/// So much paint in one piece ends the search. Larger than any array that a frame of flight code might leave untouched;
-/// searching all of the stack would cost more than many a step.
+/// This length of contiguous paint ends the search. Larger than any array that a flight-code frame may leave untouched;
+/// a search of the whole stack would cost more than many steps.
 constexpr std::size_t kCleanWords = std::size_t{64} * 1024 / sizeof(std::uint64_t);
 
 struct FlightStack {
@@ -53,11 +53,11 @@ bool run_on_measured_stack(void (*function)(void*), void* context) {
                        ::pthread_create(&thread, &attributes, &enter, &call) == 0;
   ::pthread_attr_destroy(&attributes);
   if (started) ::pthread_join(thread, nullptr);
-  // Whoever walks through static memory later on (a leak checker does) must find it readable.
+  // It must be readable for programs that scan static memory later (a leak checker).
   return ::mprotect(flight_stack.guard.data(), kGuardBytes, PROT_READ | PROT_WRITE) == 0 && started;
 }
 
-// It looks at frames that have been left, which an address sanitizer would take for an error.
+// It reads frames that have been left, which an address sanitizer would report as an error.
 __attribute__((no_sanitize("address"))) std::uint32_t stack_high_water() {
   const volatile std::uint64_t* const bottom =
       flight_stack.words.data();  // volatile: written as a stack, read as words

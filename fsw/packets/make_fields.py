@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes visitors of all fields of all messages from their definitions: make_fields.py vbar.lcm fields.h
+"""Generates visitors of all fields of all messages from their definitions: make_fields.py vbar.lcm fields.h
 
 The notation of comments that name units, elements of arrays and codes is explained in vbar.lcm. A field whose name
 already ends in its unit (`range_m`) keeps its place for the names of elements: `range_m[2]` with elements x and y has the

@@ -93,7 +93,7 @@ template <class Value>
   }
 }
 
-/// The message's name as vbar.lcm has it (also its LCM type name); null for an APID that carries none.
+/// The message's name in vbar.lcm (also its LCM type name); null for an APID without a message.
 [[nodiscard]] const char* message_name(Apid apid);
 
 }  // namespace vbar::fsw::packets

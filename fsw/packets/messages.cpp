@@ -16,7 +16,7 @@ Result<std::size_t> encode(PacketHeader header, const Message& message, std::spa
   if (payload_bytes > kMaxPayloadBytes || out.size() < kPacketHeaderBytes + payload_bytes + kPacketCrcBytes) {
     return Status::kTooLong;
   }
-  // Encoded where it belongs: write_packet recognises the place and does not copy.
+  // Encoded in place: write_packet recognises this and does not copy.
   const std::span<std::uint8_t> payload = out.subspan(kPacketHeaderBytes, payload_bytes);
   if (message.encode(payload.data(), 0, static_cast<int>(payload_bytes)) != static_cast<int>(payload_bytes)) {
     return Status::kTooLong;

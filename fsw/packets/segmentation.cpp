@@ -61,7 +61,7 @@ Result<PacketView> SegmentAssembly::push(const PacketView& packet) {
 }
 
 bool SegmentAssembly::is_past(const PacketHeader& header) const {
-  // The time tells a repetition from a sender that was started again and counts from zero.
+  // The time distinguishes a repetition from a sender that was restarted and counts from zero.
   return has_completed_ && is_before(header.sequence_count, completed_until_) && header.time <= completed_time_;
 }
 

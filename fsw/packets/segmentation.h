@@ -34,24 +34,24 @@ class Segmenter {
   bool done_ = false;
 };
 
-/// Which packets a reassembler listens to.
+/// The packets that a reassembler accepts.
 struct Stream {
   Apid apid = Apid::kTick;
   std::uint8_t spacecraft = 0;
   std::uint8_t unit = 0;
 };
 
-/// Puts the segments of one stream together in memory of its owner. What does not fit in place changes nothing but a
-/// counter, so a message survives duplicates and segments that come too early, as long as the missing one is sent
+/// Puts the segments of one stream together in memory of its owner. A segment that does not fit changes only a
+/// counter, so a message survives duplicates and segments that arrive early, as long as the missing one is sent
 /// again.
 class SegmentAssembly {
  public:
   struct Counters {
     std::uint32_t messages = 0;    ///< completed
-    std::uint32_t duplicates = 0;  ///< segments or packets that were seen already
+    std::uint32_t duplicates = 0;  ///< segments or packets that were received already
     std::uint32_t misplaced = 0;   ///< segments without a beginning, or ahead of a missing one
     std::uint32_t abandoned = 0;   ///< messages whose end never came before the next message began
-    std::uint32_t oversized = 0;   ///< messages longer than the memory: dropped whole
+    std::uint32_t oversized = 0;   ///< messages longer than the memory, dropped completely
   };
 
   SegmentAssembly(const Stream& stream, std::span<std::uint8_t> memory) : stream_(stream), memory_(memory) {}

@@ -31,7 +31,8 @@ fsw::GpsTime now() {
 }  // namespace
 
 int propagate_command(const PropagateOptions& options) {
-  const mission::Mission mission = sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
+  const mission::Mission mission =
+      sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
   Propagation propagation = [&] {
     try {
       return Propagation(mission, mission::data_directory());

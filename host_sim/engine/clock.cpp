@@ -6,7 +6,7 @@
 namespace vbar::engine {
 namespace {
 
-// Longest sleep between two looks at whether the run shall stop.
+// Longest sleep between two checks for a request to stop the run.
 constexpr WallClock::Span kLongestSleep = std::chrono::milliseconds(100);
 
 void book(Lateness& lateness, WallClock::Span late) {
@@ -62,7 +62,7 @@ bool RunClock::begin_step(fsw::GpsTime time, const std::function<bool()>& stop_r
     const std::optional<Arrival> arrival = await(time, stop_requested);
     if (!arrival) return false;
     if (!arrival->slept) {
-      // Arrears that only shrink, or that a late exchange explains, are no new lateness.
+      // Arrears that only decrease, or that a late exchange explains, are not counted again.
       const WallClock::Span behind = arrival->late;
       if (behind > arrears_ + settings_.wake_tolerance && !exchange_late_) book(report_.simulation_late, behind);
       arrears_ = behind;

@@ -1,12 +1,12 @@
 #pragma once
-// How simulated time relates to the wall: lock-step (as fast as possible; simulated time waits for everybody) or real
-// time (paced by the wall clock, with a speed factor). The clock changes when things happen on the wall, never what
-// happens: both modes and every speed factor give the same run.
+// Simulated time against wall-clock time: lock-step (as fast as possible; simulated time waits for all parts) or real
+// time (paced by the wall clock, with a speed factor). The clock changes when events occur in wall-clock time, never
+// what happens: both modes and every speed factor give the same run.
 //
-// In real time it keeps the books on lateness, one cause a column, because each has another remedy:
+// In real time it records lateness, one column per cause, because each cause has a different remedy:
 //   step late         the flight computer's own computing exceeded its budget
 //   link late         what the exchange of a step took beyond the computing exceeded the link's budget
-//   woke late         the operating system gave the processor back later than asked
+//   woke late         the operating system resumed this program later than requested
 //   simulation late   this program was still busy (truth, renderer, testbed) when the next step was due
 // A late step is not skipped: the schedule stays, and the run catches up.
 
@@ -23,16 +23,16 @@ enum class ClockMode { kLockStep, kRealTime };
 
 struct ClockSettings {
   ClockMode mode = ClockMode::kLockStep;
-  double speed_factor = 1.0;  ///< real time: simulated seconds a wall second, > 0
+  double speed_factor = 1.0;  ///< real time: simulated seconds per second of wall-clock time, > 0
   fsw::Duration compute_budget =
-      fsw::duration_of_seconds(1);                          ///< simulated time; on the wall divided by the speed factor
+      fsw::duration_of_seconds(1);                          ///< simulated time: wall-clock time times the speed factor
   fsw::Duration link_budget = fsw::duration_of_seconds(1);  ///< as compute_budget
   WallClock::Span wake_tolerance = std::chrono::milliseconds(2);  ///< waking up to this late is not counted
 };
 
 struct Lateness {
   std::uint64_t count = 0;
-  WallClock::Span worst{0};  ///< wall time beyond the budget, the tolerance included where there is one
+  WallClock::Span worst{0};  ///< wall-clock time beyond the budget, including the tolerance if there is one
 };
 
 struct DeadlineReport {
@@ -48,19 +48,19 @@ class RunClock {
   /// `wall` must outlive the clock.
   RunClock(const ClockSettings& settings, WallClock& wall);
 
-  /// Ties the simulated `time` to the wall's present. To be called before the first step.
+  /// Ties the simulated `time` to the present wall-clock time. To be called before the first step.
   void start(fsw::GpsTime time);
 
-  /// Waits until an event at `time` is due; in lock-step at once. One that begins late beyond the tolerance is booked
-  /// in `late`, if that is not null, whatever the cause. False if `stop_requested` (asked about ten times a second, may
-  /// be empty) said so before.
+  /// Waits until an event at `time` is due; in lock-step returns at once. Lateness beyond the tolerance is recorded in
+  /// `late`, if that is not null, whatever the cause. False if `stop_requested` (called about ten times a second, may
+  /// be empty) returned true before.
   bool wait_until(fsw::GpsTime time, Lateness* late, const std::function<bool()>& stop_requested = {});
 
-  /// The same for the step at `time`, with the books of the report.
+  /// The same for the step at `time`; the lateness is recorded for the report.
   bool begin_step(fsw::GpsTime time, const std::function<bool()>& stop_requested = {});
 
-  /// Books the exchange of the step: wall time from the first packet out to the last packet in, and how much of it the
-  /// flight computer spent computing.
+  /// Records the exchange of the step: wall time from the first packet out to the last packet in, and how much of it
+  /// the flight computer spent computing.
   void end_exchange(WallClock::Span round_trip, WallClock::Span compute);
 
   [[nodiscard]] const DeadlineReport& report() const { return report_; }
@@ -79,8 +79,8 @@ class RunClock {
   WallClock& wall_;
   fsw::GpsTime start_;
   WallClock::Span wall_start_{0};
-  WallClock::Span arrears_{0};  ///< how late the run was when it was last booked
-  bool exchange_late_ = false;  ///< the last exchange exceeded a budget: the delay it causes is booked already
+  WallClock::Span arrears_{0};  ///< lateness of the run when it was last recorded
+  bool exchange_late_ = false;  ///< the last exchange exceeded a budget: the delay that it causes is recorded already
   DeadlineReport report_;
 };
 

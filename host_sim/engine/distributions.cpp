@@ -79,7 +79,7 @@ double truncated_normal_quantile(double p, double low, double high) {
   const double p_high = normal_distribution(high);
   constexpr double kLargestBelowOne = 1.0 - 0x1p-53;
   const double inside = std::min(p_low + p * (p_high - p_low), kLargestBelowOne);
-  // An interval so far out that a double holds no probability in it: all the mass is at its nearer end.
+  // An interval so far out that its probability underflows in double precision: all the mass is at its nearer end.
   if (!(inside > 0.0)) return high;
   return std::clamp(normal_quantile(inside), low, high);
 }

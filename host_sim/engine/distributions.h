@@ -1,6 +1,6 @@
 #pragma once
-// From uniform numbers to others by inverting the distribution function: one number in, one out, no rejection, so that
-// a draw always takes the same count of random numbers. The standard library's distributions are not used: each
+// Random numbers from uniform ones by inversion of the distribution function: one in, one out, no rejection, so that
+// a draw always consumes the same number of random numbers. The standard library's distributions are not used: each
 // vendor's differ.
 
 #include <cstdint>
@@ -13,7 +13,7 @@ constexpr double open_unit_interval(std::uint64_t bits) {
 }
 
 /// Quantile of the standard normal distribution at p in (0, 1), to about 1e-16 relative (Wichura 1988, algorithm AS
-/// 241, PPND16). p outside (0, 1) has no quantile: NaN.
+/// 241, PPND16). p outside (0, 1) yields NaN.
 double normal_quantile(double p);
 
 /// Distribution function of the standard normal distribution.

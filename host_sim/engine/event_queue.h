@@ -1,7 +1,7 @@
 #pragma once
-// The simulation's future: events ordered by (time, priority, insertion) and by nothing else, so that a run is the same
-// run on every computer. What an event is, the user says: a small plain type, which can be written down for a
-// checkpoint.
+// The event queue of a simulation: events ordered by (time, priority, insertion) and by nothing else, so that a run is
+// the same on every computer. The type of the events is a parameter of the template. No event is
+// scheduled in the past.
 
 #include <compare>
 #include <cstdint>
@@ -30,10 +30,10 @@ class EventQueue {
     Event event;
   };
 
-  /// An empty queue whose present is `now`.
+  /// An empty queue at the time `now`.
   explicit EventQueue(fsw::GpsTime now) : now_(now) {}
 
-  /// Schedules `event`. kOutOfRange: `time` lies before now(), and the past is not changed.
+  /// Schedules `event`. kOutOfRange: `time` lies before now().
   fsw::Result<EventId> schedule(fsw::GpsTime time, std::int32_t priority, Event event) {
     if (time < now_) return fsw::Status::kOutOfRange;
     const EventId id{time, priority, next_insertion_++};
@@ -41,7 +41,7 @@ class EventQueue {
     return id;
   }
 
-  /// Takes an event back. False if it has happened or was cancelled before.
+  /// Cancels an event. False if it has occurred or was cancelled before.
   bool cancel(const EventId& id) { return pending_.erase(id) != 0; }
 
   /// Removes the next event and moves now() to its time; empty when nothing is scheduled.

@@ -1,6 +1,6 @@
 #pragma once
-// A simulated link: how long a packet is under way, and whether it arrives. (Faults of the real line to a flight
-// computer are mended by the step barrier and never seen here.)
+// A simulated link: latency and loss of each packet. (Faults of the real line to a flight
+// computer are corrected by the step barrier and do not occur here.)
 
 #include <cstdint>
 
@@ -12,7 +12,7 @@ namespace vbar::engine {
 
 enum class LatencyKind { kConstant, kUniform, kNormal, kExponential };
 
-/// Distribution of the time under way, s. Which fields count depends on the kind.
+/// Distribution of the latency, s. The fields that are used depend on the kind.
 struct LatencyDistribution {
   LatencyKind kind = LatencyKind::kConstant;
   double mean_s = 0.0;  ///< constant: the value; normal: before truncation; exponential: mean, the minimum included
@@ -28,7 +28,7 @@ struct LinkSettings {
   friend bool operator==(const LinkSettings&, const LinkSettings&) = default;
 };
 
-/// What became of one packet.
+/// Result of the transmission of one packet.
 struct Transfer {
   bool lost = false;
   fsw::GpsTime delivery;  ///< when it arrives; when it would have, if lost
@@ -39,8 +39,8 @@ struct LinkCounters {
   std::uint64_t lost = 0;
 };
 
-/// kNotFinite, kOutOfRange (negative times, empty intervals, a mean below the minimum, latencies above 9e8 s, no
-/// probability).
+/// kNotFinite, kOutOfRange (negative times, empty intervals, a mean below the minimum, latencies above 9e8 s, an
+/// invalid probability).
 fsw::Status check_link_settings(const LinkSettings& settings);
 
 class LinkModel {
@@ -49,7 +49,7 @@ class LinkModel {
   LinkModel(const LinkSettings& settings, const RandomStream& stream);
 
   /// Sends the next packet. Its draws belong to its number: loss does not depend on the latency distribution, nor a
-  /// packet's latency on what became of others. Packets may overtake one another.
+  /// packet's latency on the loss of others. Packets may overtake one another.
   Transfer send(fsw::GpsTime now);
 
   [[nodiscard]] const LinkCounters& counters() const { return counters_; }

@@ -1,6 +1,6 @@
 #pragma once
 // Random numbers by counter: a stream is named by (seed, name) and its k-th number is a pure function of (seed, name,
-// k). Adding, removing or reordering streams therefore changes no other stream, and where a stream stands is one
+// k). Adding, removing or reordering streams therefore changes no other stream, and the position of a stream is one
 // integer.
 //
 // Philox4x64-10 of Random123 (Salmon, Moraes, Dror, Shaw 2011: "Parallel random numbers: as easy as 1, 2, 3"), with the
@@ -29,7 +29,7 @@ class RandomStream {
   /// Exponential with mean 1; takes one number of the stream.
   double exponential();
 
-  /// Four uniform numbers on (0, 1) that belong to the thing numbered `index` (a packet, a burn), whatever was drawn
+  /// Four uniform numbers on (0, 1) that belong to the item numbered `index` (a packet, a burn), whatever was drawn
   /// before. They share no bits with the numbers drawn in sequence.
   [[nodiscard]] std::array<double, 4> uniforms_of(std::uint64_t index) const;
 
@@ -49,7 +49,7 @@ class RandomStream {
   std::uint64_t cached_index_ = ~std::uint64_t{0};
 };
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo): a hash whose value is the same everywhere and for ever.
+/// FNV-1a, 64 bits (Fowler, Noll, Vo): a hash whose value is the same on every computer.
 constexpr std::uint64_t fnv1a_64(std::string_view text) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const char c : text) {

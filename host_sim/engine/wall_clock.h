@@ -1,6 +1,6 @@
 #pragma once
-// The time of the world outside, as the run's clock sees it. Tests put their own in its place; a testbed may put a
-// clock there that follows its PPS edges.
+// Wall-clock time, as the clock of a run sees it. Tests substitute their own; a testbed may substitute a
+// clock that follows its PPS edges.
 
 #include <chrono>
 #include <memory>
@@ -17,9 +17,9 @@ class WallClock {
   WallClock& operator=(const WallClock&) = delete;
   virtual ~WallClock() = default;
 
-  /// Since an origin of the clock's own; never goes back.
+  /// Since an origin of the clock's own; monotonic.
   virtual Span now() = 0;
-  /// Returns at `wake` or later, at once if it is past.
+  /// Returns at `wake` or later; at once if it has passed.
   virtual void sleep_until(Span wake) = 0;
 };
 
@@ -33,7 +33,7 @@ class SteadyWallClock final : public WallClock {
 /// A source of time, by the name that missions use.
 struct WallClockSource {
   std::string_view name;
-  /// `device`: what follows "<name>:" in the mission, empty if nothing does.
+  /// `device`: the text after "<name>:" in the mission, possibly empty.
   std::unique_ptr<WallClock> (*make)(std::string_view device);
 };
 

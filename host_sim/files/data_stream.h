@@ -1,6 +1,6 @@
 #pragma once
-// The data files that a run reads. Each is read whole through here, so that what was parsed is what is recorded in the
-// run's provenance, and so that a file that differs from the checksums of its data directory is refused.
+// The data files that a run reads. Each is read completely here, so that the parsed bytes are those recorded in the
+// run's provenance, and a file that differs from the checksums of its data directory is rejected.
 
 #include <filesystem>
 #include <sstream>
@@ -23,7 +23,7 @@ struct FileRead {
 /// a folder above it lists other contents.
 void note_file_read(const std::filesystem::path& file, std::string_view contents);
 
-/// In the place of std::ifstream: the contents of a file, recorded. Its state is bad if the file cannot be read; throws
+/// Replaces std::ifstream: the contents of a file, recorded. Its state is bad if the file cannot be read; throws
 /// as note_file_read.
 class DataStream : public std::istringstream {
  public:

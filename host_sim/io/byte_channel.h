@@ -25,10 +25,10 @@ class ByteChannel {
   ByteChannel& operator=(const ByteChannel&) = delete;
   virtual ~ByteChannel() = default;
 
-  /// Writes all of `bytes`. Throws ChannelError if the line is closed or does not take them by `deadline`.
+  /// Writes all of `bytes`. Throws ChannelError if the line is closed or does not accept them by `deadline`.
   virtual void write(std::span<const std::uint8_t> bytes, Clock::time_point deadline) = 0;
 
-  /// What has arrived: at least one byte, or none if nothing came by `deadline`. Valid until the next call. Throws
+  /// The received bytes; empty if none arrived by `deadline`. Valid until the next call. Throws
   /// ChannelError.
   virtual std::span<const std::uint8_t> read(Clock::time_point deadline) = 0;
 

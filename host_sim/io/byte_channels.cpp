@@ -72,8 +72,8 @@ class AsioChannel final : public ByteChannel {
   [[nodiscard]] std::string description() const override { return description_; }
 
  private:
-  /// Runs one completion handler; false if none was ready by `deadline`. What is ready when the deadline has passed
-  /// already (this program was stopped for a while, say) still counts.
+  /// Runs one completion handler; false if none was ready by `deadline`. A completion that is ready when the deadline
+  /// has passed already (for example because this program was stopped) still counts.
   bool run_one(Clock::time_point deadline) {
     if (context_->stopped()) context_->restart();
     return context_->run_one_until(deadline) != 0 || context_->poll_one() != 0;
@@ -85,7 +85,7 @@ class AsioChannel final : public ByteChannel {
     stream_.async_read_some(asio::buffer(buffer_), [this](const error_code& error, std::size_t count) {
       reading_ = false;
       arrived_.insert(arrived_.end(), buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(count));
-      // A write that gave up cancels the read with it; the next call reads on.
+      // A write that timed out also cancels the read; the next call continues reading.
       if (error && error != asio::error::operation_aborted) read_error_ = error;
     });
   }
@@ -174,7 +174,7 @@ std::unique_ptr<ByteChannel> open_serial(const std::string& device, unsigned bau
   set_raw(port.native_handle(), device);
   port.set_option(asio::serial_port::baud_rate(baud), error);
   require(("setting " + std::to_string(baud) + " baud").c_str());
-  // What an earlier run left in the driver's buffers belongs to nobody.
+  // Bytes of an earlier run in the driver's buffers are discarded.
   ::tcflush(port.native_handle(), TCIOFLUSH);
   return make_channel(std::move(context), std::move(port), device + " at " + std::to_string(baud) + " baud");
 }

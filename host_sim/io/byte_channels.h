@@ -13,10 +13,10 @@ namespace vbar::io {
 /// A serial device (or the slave end of a pseudo-terminal): raw, 8N1, no flow control, modem lines ignored.
 std::unique_ptr<ByteChannel> open_serial(const std::string& device, unsigned baud);
 
-/// Connects to a Unix stream socket; tries again until `deadline` while nobody listens yet.
+/// Connects to a Unix stream socket; retries until `deadline` while no program listens.
 std::unique_ptr<ByteChannel> connect_unix(const std::string& path, Clock::time_point deadline);
 
-/// Connects to a TCP port, without Nagle's delay; tries again until `deadline` while nobody listens yet.
+/// Connects to a TCP port, without Nagle's delay; retries until `deadline` while no program listens.
 std::unique_ptr<ByteChannel> connect_tcp(const std::string& host, const std::string& port, Clock::time_point deadline);
 
 /// Takes over a connected Unix stream socket.
@@ -36,8 +36,8 @@ struct Pty {
 /// A new pseudo-terminal in raw mode.
 Pty make_pty();
 
-/// Slows `channel` down, in both directions, to a serial line of `bits_per_s` with 10 bits a byte (8N1): what is
-/// written or read comes out at the other end once the last of its bytes would have.
+/// Limits `channel`, in both directions, to the rate of a serial line of `bits_per_s` with 10 bits per byte (8N1): data
+/// arrive at the other end when the last of their bytes would have.
 std::unique_ptr<ByteChannel> paced(std::unique_ptr<ByteChannel> channel, double bits_per_s);
 
 }  // namespace vbar::io

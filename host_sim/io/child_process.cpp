@@ -26,7 +26,7 @@ constexpr std::chrono::milliseconds kExitPollPeriod{2};
   throw std::system_error(error, std::generic_category(), what);
 }
 
-/// What the child needs between fork and exec, prepared before the fork: only async-signal-safe calls are allowed
+/// Data of the child between fork and exec, prepared before the fork: only async-signal-safe calls are allowed
 /// there.
 struct ExecPlan {
   std::vector<char*> arguments;
@@ -39,7 +39,7 @@ struct ExecPlan {
 /// (close-on-exec).
 bool arrange_descriptors(ExecPlan& plan) {
   const int count = static_cast<int>(plan.descriptors.size());
-  // First out of the way of the numbers they may still occupy, then into place; dup2 clears close-on-exec.
+  // First away from the numbers that they may occupy, then to the planned ones; dup2 clears close-on-exec.
   for (int& fd : plan.descriptors) {
     fd = ::fcntl(fd, F_DUPFD_CLOEXEC, count + 1);
     if (fd < 0) return false;
@@ -51,7 +51,7 @@ bool arrange_descriptors(ExecPlan& plan) {
   }
   if (::dup3(report, count, O_CLOEXEC) < 0) return false;
   plan.report_errno_to = count;
-  // A kernel without close_range still closes what was opened close-on-exec, which is all this library opens.
+  // A kernel without close_range still closes descriptors opened close-on-exec, as all those of this library.
   (void)::close_range(static_cast<unsigned>(count) + 1U, ~0U, 0);
   return true;
 }
@@ -74,7 +74,7 @@ bool arrange_descriptors(ExecPlan& plan) {
 ChildProcess::ChildProcess(const std::vector<std::string>& arguments, std::vector<FileDescriptor> inherited) {
   if (arguments.empty()) throw std::invalid_argument("a child process needs a program");
   program_ = arguments[0];
-  // A memory file rather than a pipe: the child can never block on it and nobody has to read along.
+  // A memory file rather than a pipe: the child can never block on it and no reader is required.
   output_ = FileDescriptor(::memfd_create("vbar child output", MFD_CLOEXEC));
   FileDescriptor null(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   int pipe_ends[2];
@@ -97,7 +97,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments, std::vecto
   if (pid_ < 0) throw_errno("starting " + program_, errno);
   if (pid_ == 0) become(plan);
 
-  // Also here, so that the group exists whichever of the two runs first.
+  // Also here, so that the group exists in either order of execution.
   (void)::setpgid(pid_, pid_);
   inherited.clear();
   error_writer.reset();

@@ -1,6 +1,6 @@
 #pragma once
-// A child process that cannot be left behind: it is ended and reaped by its owner's destructor, also while an exception
-// unwinds, and by the kernel if this program dies first.
+// A child process that does not outlive its owner: it is ended and reaped by its owner's destructor, also while an
+// exception unwinds, and by the kernel if this program dies first.
 
 #include <chrono>
 #include <optional>
@@ -17,7 +17,7 @@ class ChildProcess {
  public:
   /// Starts `arguments[0]` (looked up in PATH if it has no slash) without a shell, in a process group of its own. It
   /// finds `inherited[i]` as file descriptor 3 + i, nothing on its standard input, and no other descriptor of this
-  /// program; what it writes to standard output and error is kept for `output_tail`.
+  /// program; its standard output and error are kept for `output_tail`.
   ///
   /// The kernel kills the child when the thread that called this ends: call it from a thread that outlives the child.
   /// Throws std::system_error if the program cannot be started.
@@ -32,14 +32,14 @@ class ChildProcess {
   /// Waits for the child to end by itself; true if it did.
   bool wait_for_end(std::chrono::milliseconds patience);
 
-  /// Ends the child's process group: SIGTERM first, SIGKILL for what is still there after `patience`. Returns when it
+  /// Ends the child's process group: SIGTERM first, SIGKILL for processes that remain after `patience`. Returns when it
   /// is reaped.
   void terminate(std::chrono::milliseconds patience);
 
   /// "exit status 3", "killed by signal 9 (Killed)"; "running".
   [[nodiscard]] std::string status_text() const;
 
-  /// The last bytes of what the child wrote to standard output and error, at most `limit`.
+  /// The last bytes of the child's standard output and error, at most `limit`.
   [[nodiscard]] std::string output_tail(std::size_t limit = 2000) const;
 
   [[nodiscard]] pid_t pid() const { return pid_; }

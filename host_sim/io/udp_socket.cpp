@@ -52,7 +52,7 @@ struct UdpSocket::State {
   udp::socket socket;
   udp::endpoint peer;
   udp::endpoint sender;
-  std::vector<std::uint8_t> datagram;  ///< one byte more than accepted, so that a longer one is seen to be longer
+  std::vector<std::uint8_t> datagram;  ///< one byte more than accepted, so that a longer one is detected
   std::size_t size = 0;
   error_code error;
   bool receiving = false;
@@ -86,7 +86,7 @@ UdpSocket::~UdpSocket() = default;
 void UdpSocket::send(std::span<const std::uint8_t> bytes) {
   error_code error;
   state_->socket.send_to(asio::buffer(bytes.data(), bytes.size()), state_->peer, 0, error);
-  // The peer is not there yet, or there is no buffer.
+  // The peer does not exist yet, or there is no buffer.
   if (error && error != asio::error::connection_refused && error != asio::error::no_buffer_space)
     fail(description(), error);
 }

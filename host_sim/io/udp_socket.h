@@ -14,7 +14,7 @@ namespace vbar::io {
 
 class UdpSocket {
  public:
-  /// `local_port` 0: any free one. The socket is bound to the loopback interface when the peer is there, else to all
+  /// `local_port` 0: any free one. The socket is bound to the loopback interface if the peer is there, otherwise to all
   /// interfaces. Datagrams of more than `max_bytes` are delivered with one byte more than that. Throws ChannelError.
   UdpSocket(const std::string& peer_address, std::uint16_t peer_port, std::uint16_t local_port, std::size_t max_bytes);
   /// On a socket that is bound already.
@@ -24,11 +24,11 @@ class UdpSocket {
   UdpSocket(const UdpSocket&) = delete;
   UdpSocket& operator=(const UdpSocket&) = delete;
 
-  /// Sends one datagram; one that the system cannot take now or that nobody receives is lost, as datagrams may be.
+  /// Sends one datagram; one that the system does not accept now or that is not received is lost, as for UDP.
   /// Throws ChannelError.
   void send(std::span<const std::uint8_t> bytes);
 
-  /// The next datagram of the peer, possibly an empty one; nothing if none came by `deadline`. Valid until the next
+  /// The next datagram of the peer, possibly an empty one; nothing if none arrived by `deadline`. Valid until the next
   /// call. Throws ChannelError.
   std::optional<std::span<const std::uint8_t>> receive(Clock::time_point deadline);
 

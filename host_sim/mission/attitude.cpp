@@ -48,7 +48,7 @@ truth::ControlError drawn_control_error(std::uint64_t seed, std::string_view spa
 }
 
 double drawn_mass_error_kg(std::uint64_t seed, std::string_view spacecraft, double sigma_kg) {
-  // The first number of the stream of what is unknown about the body; the receiver's antenna draws the others.
+  // The first number of the stream of the unknown properties of the body; the receiver's antenna draws the others.
   return sigma_kg * engine::RandomStream(seed, "gnss/" + std::string(spacecraft) + "/body_frame").normal();
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a mission file says of a spacecraft's attitude, and what it leaves to the seed.
+// The attitude of a spacecraft in a mission file, with the draws by the seed.
 
 #include <cstdint>
 #include <optional>
@@ -17,27 +17,27 @@ namespace vbar::mission {
 
 /// profile = "tumble": a rigid body, from the start of the run on.
 struct Tumble {
-  std::optional<Eigen::Quaterniond> q_body_eci;  ///< at the start; else drawn
-  std::optional<fsw::Vector3> rate_body;         ///< at the start, rad/s; else drawn between the next two
+  std::optional<Eigen::Quaterniond> q_body_eci;  ///< at the start; default: drawn
+  std::optional<fsw::Vector3> rate_body;         ///< at the start, rad/s; default: drawn between the next two
   double slowest_radps = 0.0;
   double fastest_radps = 0.0;
   std::string body;                          ///< names its file in data/bodies
-  std::optional<fsw::Matrix3> inertia_kgm2;  ///< instead of that of the file
+  std::optional<fsw::Matrix3> inertia_kgm2;  ///< replaces that of the file
   std::vector<truth::TorqueKind> torques;
 };
 
 /// profile = "inertial".
 struct Inertial {
-  std::optional<Eigen::Quaterniond> q_body_eci;  ///< else drawn
+  std::optional<Eigen::Quaterniond> q_body_eci;  ///< default: drawn
 };
 
-/// profile = "commanded": the flight software says where the boresight goes.
+/// profile = "commanded": the flight software commands the boresight.
 struct Commanded {
   truth::CommandedAxes axes;
   double control_error = 0.0;  ///< rad, 1 sigma of each axis over time
 };
 
-/// The profiles that point need nothing drawn.
+/// The pointing profiles need no draws.
 using Attitude = std::variant<Tumble, Inertial, truth::PointedSettings, Commanded>;
 
 /// An attitude drawn for a spacecraft: uniform over all rotations.
@@ -46,14 +46,14 @@ using Attitude = std::variant<Tumble, Inertial, truth::PointedSettings, Commande
 /// A rate in body axes, rad/s: about an axis uniform on the sphere, its size uniform from `slowest` to `fastest`.
 [[nodiscard]] fsw::Vector3 drawn_rate(std::uint64_t seed, std::string_view spacecraft, double slowest, double fastest);
 
-/// What attitude control misses, each body axis on its own: five sinusoids with periods of 20 to 600 s and phases of
-/// the seed's, equally strong, so that the root mean square over a long time is `sigma` (rad).
+/// Attitude control error, each body axis independently: five sinusoids with periods of 20 to 600 s and phases drawn
+/// by the seed, of equal amplitude, so that the root mean square over a long time is `sigma` (rad).
 [[nodiscard]] truth::ControlError drawn_control_error(std::uint64_t seed, std::string_view spacecraft, double sigma);
 
 /// True minus nominal mass of a spacecraft, kg: normal with `sigma_kg`.
 [[nodiscard]] double drawn_mass_error_kg(std::uint64_t seed, std::string_view spacecraft, double sigma_kg);
 
-/// The attitude at the start of the run, drawn where the file does not say it.
+/// The attitude at the start of the run, drawn where the file does not specify it.
 [[nodiscard]] truth::AttitudeState start_of(const Tumble& tumble, std::uint64_t seed, std::string_view spacecraft);
 
 }  // namespace vbar::mission

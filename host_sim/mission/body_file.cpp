@@ -25,7 +25,7 @@ truth::Facet read_facet(const TableReader& section, const std::vector<Vector3>& 
   std::vector<Vector3> polygon_m;
   if (corners_m.empty()) section.refuse("corners", "a facet of a body without corners", "a body with `corners`");
   for (const double index : section.numbers("corners", 3, 64, from_to(0.0, last))) {
-    if (index != std::floor(index)) section.refuse("corners", "a number that is no integer", "places in `corners`");
+    if (index != std::floor(index)) section.refuse("corners", "a number that is not an integer", "places in `corners`");
     polygon_m.push_back(corners_m[static_cast<std::size_t>(index)]);
   }
   const Range share = from_to(0.0, 1.0);
@@ -33,7 +33,7 @@ truth::Facet read_facet(const TableReader& section, const std::vector<Vector3>& 
   try {
     return truth::facet_of_polygon(polygon_m, specular, diffuse);
   } catch (const std::invalid_argument& error) {
-    section.refuse("", std::string("what is no facet: ") + error.what(),
+    section.refuse("", std::string("an invalid facet: ") + error.what(),
                    "a plane convex polygon, anticlockwise from outside, and reflectivities that add to at most 1");
   }
 }

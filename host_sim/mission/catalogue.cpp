@@ -53,7 +53,7 @@ std::filesystem::path find_mission(const std::filesystem::path& path_or_name, co
   std::vector<CatalogueEntry> missions;
   try {
     missions = list_missions(missions_directory(), installation);
-  } catch (const std::exception&) {  // no catalogue: then only a path can be meant
+  } catch (const std::exception&) {  // no catalogue: then only a path is possible
   }
   std::vector<std::string_view> names;
   for (const CatalogueEntry& entry : missions) {

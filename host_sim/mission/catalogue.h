@@ -1,5 +1,5 @@
 #pragma once
-// What can be run: the mission files of a folder.
+// The catalogue: the mission files of a folder.
 
 #include <filesystem>
 #include <string>
@@ -11,8 +11,8 @@ namespace vbar::mission {
 
 struct CatalogueEntry {
   std::filesystem::path file;
-  std::string name;         ///< the file's stem if the file is bad
-  std::string description;  ///< or the message that says why it is bad
+  std::string name;         ///< the file's stem if the file is invalid
+  std::string description;  ///< or the error message if the file is invalid
   double duration_h = 0.0;
   bool good = false;
 };
@@ -21,10 +21,10 @@ struct CatalogueEntry {
 [[nodiscard]] std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder,
                                                         const Installation& installation);
 
-/// The folder of the mission files: `missions` here, or the one beside the data directory. Throws MissionError.
+/// The folder of the mission files: `missions` here, or the one next to the data directory. Throws MissionError.
 [[nodiscard]] std::filesystem::path missions_directory();
 
-/// The mission file that a path or a name of the catalogue means. Throws MissionError that names the nearest mission.
+/// The mission file of a path or a name of the catalogue. Throws MissionError that names the nearest mission.
 [[nodiscard]] std::filesystem::path find_mission(const std::filesystem::path& path_or_name,
                                                  const Installation& installation);
 

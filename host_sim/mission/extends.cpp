@@ -15,7 +15,7 @@ constexpr int kLongestChain = 4;
 
 void put_over(toml::table& base, toml::table& own);
 
-/// The key by which the elements of an array of tables are told apart; empty for other arrays.
+/// The key that identifies the elements of an array of tables; empty for other arrays.
 std::string_view label_key(std::string_view array) {
   if (array == "spacecraft") return "name";
   return array == "waypoint" ? "index" : "";
@@ -40,7 +40,7 @@ void put_elements_over(toml::array& base, toml::array& own, std::string_view key
     if (old != nullptr) {
       put_over(*old, *table);
     } else {
-      // Moved, not copied: a copy forgets where it came from.
+      // Moved, not copied: a copy loses its source location.
       element.visit([&](auto&& value) { base.push_back(std::forward<decltype(value)>(value)); });
     }
   }
@@ -69,7 +69,7 @@ void resolve(toml::table& document, const std::filesystem::path& file, int depth
     try {
       return parse_toml(read_text_file(other, "a mission file (TOML)"), other.string());
     } catch (const MissionError& error) {
-      reader.refuse("extends", std::string("a file that is none: ") + error.what(), "a mission file");
+      reader.refuse("extends", std::string("an invalid file: ") + error.what(), "a mission file");
     }
   }();
   document.erase("extends");

@@ -19,7 +19,7 @@ void without_installation(const TableReader& document, Mission& mission, const I
   read(document, mission);
 }
 
-/// In the order of reading, because later ones look at what earlier ones filled.
+/// In the order of reading, because later ones depend on the results of earlier ones.
 constexpr Section kSections[] = {{"mission", without_installation<read_general>},
                                  {"truth", without_installation<read_truth>},
                                  {"testbed", read_testbeds},

@@ -1,5 +1,5 @@
 #pragma once
-// From a mission file to a checked mission.
+// Loads and checks a mission file.
 
 #include <filesystem>
 #include <map>
@@ -14,17 +14,17 @@
 
 namespace vbar::mission {
 
-/// Reads `file`, puts the overrides ("path=value", overrides.h) over it in order, checks everything. Throws
+/// Reads `file`, applies the overrides ("path=value", overrides.h) to it in order, checks all. Throws
 /// MissionError.
 Mission load_mission(const std::filesystem::path& file, std::span<const std::string> overrides,
                      const Installation& installation);
 
-/// As load_mission, for a text already in memory; `file` is what messages call it and what relative paths in it start
-/// from.
+/// As load_mission, for a text already in memory; `file` is its name in messages and the base of relative paths
+/// in it.
 Mission parse_mission(std::string_view text, const std::filesystem::path& file, std::span<const std::string> overrides,
                       const Installation& installation);
 
-/// The keys that the tables of a mission accept, by the dotted path of the table: those that were asked for when it was
+/// The keys that the tables of a mission accept, by the dotted path of the table: those that were read when it was
 /// loaded. Throws MissionError for a mission that does not load.
 std::map<std::string, std::vector<std::string>> accepted_keys(const std::filesystem::path& file,
                                                               std::span<const std::string> overrides,

@@ -1,6 +1,6 @@
 #pragma once
-// A mission file's content, checked and in SI units: plain structs. What each key means, its default and its range
-// stand with the functions that read it (read_*.cpp) and, by example, in missions/ideal_navigation.toml.
+// A mission file's content, checked and in SI units: plain structs. The meaning of each key, its default and its range
+// are in the functions that read it (read_*.cpp) and, by example, in missions/ideal_navigation.toml.
 
 #include <array>
 #include <cstdint>
@@ -49,14 +49,14 @@ using truth::SurfaceProperties;
 enum class FlightTarget { kInProcess, kHostProcess, kZynqQemu, kZynqLinuxQemu, kBoard };
 enum class FlightLink { kSerial, kUdp };
 
-/// Where a spacecraft's flight software runs, and how packets get there.
+/// The computer of a spacecraft's flight software, and its link.
 struct FlightComputer {
   FlightTarget target = FlightTarget::kInProcess;
   FlightLink link = FlightLink::kSerial;
-  std::string library;            ///< shared library of another test article; empty: vbar's own
+  std::string library;            ///< shared library of another flight software; empty: vbar's own
   fsw::Duration compute_latency;  ///< from a step to the moment its outputs take effect
   std::string device;             ///< board on a serial link: the tty
-  /// Serial link: the tty's rate (board: 921,600 unless said); for others the bridge slows the line down to it.
+  /// Serial link: the tty's rate (board: 921,600 by default); for others the bridge limits the rate to it.
   std::optional<int> baud;
   std::string address;  ///< board on UDP
   int port = 0;         ///< board on UDP
@@ -69,10 +69,10 @@ struct SensorSettings {
   SensorSettings& operator=(const SensorSettings&) = default;
   virtual ~SensorSettings() = default;
 
-  std::string source;         ///< what provides its data: "digital", "recorded" or the name of a testbed
+  std::string source;         ///< provider of its data: "digital", "recorded" or the name of a testbed
   std::filesystem::path log;  ///< of source "recorded": the packet log
   std::string observed;       ///< the other spacecraft that it measures or exchanges data with; empty: none
-  /// What navigation makes of it, as in vbar.lcm, navigation_configuration.source; negative: nothing.
+  /// Its use in navigation, as in vbar.lcm, navigation_configuration.source; negative: none.
   std::int8_t navigation = -1;
 };
 
@@ -103,7 +103,7 @@ struct Testbed {
   std::shared_ptr<const TestbedSettings> settings;
 };
 
-/// A burn that the flight software is told of but did not ask for.
+/// A burn that is reported to the flight software but was not commanded by it.
 struct PrescribedBurn {
   fsw::GpsTime time;
   fsw::Vector3 dv_rtn = fsw::Vector3::Zero();
@@ -118,10 +118,10 @@ struct Thruster {
 struct Spacecraft {
   std::string name;
   std::uint8_t number = 0;     ///< as in packet headers
-  std::string body;            ///< names its file in data/bodies; empty: none
+  std::string body;            ///< names its file in data/bodies; may be empty
   SurfaceProperties surface;   ///< nominal
   double mass_sigma_kg = 0.0;  ///< of its true mass
-  std::string model;           ///< CAD file that cameras see it by, data/models/<model>.obj; empty: no camera sees it
+  std::string model;           ///< CAD file for cameras, data/models/<model>.obj; empty: invisible to cameras
   std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe> orbit;
   std::optional<Attitude> attitude;
   std::optional<FlightComputer> flight_computer;
@@ -140,7 +140,7 @@ template <class Settings>
   return nullptr;
 }
 
-/// Which solver plans the leg that ends at a waypoint; numbers as in vbar.lcm.
+/// The solver that plans the leg ending at a waypoint; numbers as in vbar.lcm.
 enum class Solver : std::int8_t { kClosedForm = 0, kKoenigDamico = 1, kLeastSquares = 2 };
 
 struct Waypoint {
@@ -154,7 +154,7 @@ struct Waypoint {
 /// Numbers as in vbar.lcm, mode_command.
 enum class Mode : std::int8_t { kIdle = 0, kApproach = 1, kStationKeeping = 2, kHold = 3 };
 
-/// What is telecommanded to the flight software at the start.
+/// Telecommands to the flight software at the start.
 struct Guidance {
   Mode mode = Mode::kApproach;
   double reference_semi_major_axis_m = 0.0;
@@ -167,9 +167,9 @@ struct LcmMirror {
   std::string url;
 };
 
-/// What the log of a run keeps of a digital camera's images.
+/// Content of the log of a run for the images of a digital camera.
 enum class ImagesInLog {
-  kRecipes,  ///< from what they can be made again
+  kRecipes,  ///< from which they are regenerated
   kTiles,    ///< their packets
 };
 
@@ -186,7 +186,7 @@ struct Mission {
   fsw::Duration duration;  ///< from the first step to the end of the run
   fsw::Duration step;      ///< between flight steps
   std::uint64_t seed = 1;
-  truth::TruthSettings truth;  ///< all but the data folder, which the program knows
+  truth::TruthSettings truth;  ///< all but the data folder, which the program determines
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
   std::vector<std::shared_ptr<const SharedSettings>> shared;  ///< one of each kind of sensor
@@ -206,7 +206,7 @@ struct Mission {
   /// Whether any spacecraft carries flight software.
   [[nodiscard]] bool flies() const;
 
-  /// Null if there is none of that name / with that index.
+  /// Null for an unknown name or index.
   [[nodiscard]] const Spacecraft* find_spacecraft(std::string_view spacecraft_name) const;
   [[nodiscard]] const Waypoint* find_waypoint(int index) const;
 };

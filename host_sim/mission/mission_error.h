@@ -1,5 +1,5 @@
 #pragma once
-// The one message a bad mission file ends with.
+// The one message for an invalid mission file.
 
 #include <stdexcept>
 #include <string>
@@ -9,7 +9,7 @@ namespace vbar::mission {
 /// what() is "<where>: <key>: found <found>; accepted: <accepted>".
 class MissionError : public std::runtime_error {
  public:
-  /// `where`: "file:line", a file alone, or "--set path=value"; `key`: the dotted path, empty if the complaint is about
+  /// `where`: "file:line", a file alone, or "--set path=value"; `key`: the dotted path, empty if the error concerns
   /// all of it.
   MissionError(const std::string& where, const std::string& key, const std::string& found, const std::string& accepted)
       : std::runtime_error(where + ": " + (key.empty() ? "" : key + ": ") + "found " + found +

@@ -8,7 +8,7 @@
 namespace vbar::mission {
 
 /// The name among `names` nearest to `word` by edit distance (insert, delete, replace, swap of neighbours), the first
-/// of equals; none if all are further than a third of the word's length, rounded up.
+/// of equals; empty if all are further than a third of the word's length, rounded up.
 [[nodiscard]] std::optional<std::string_view> nearest_name(std::string_view word,
                                                            const std::vector<std::string_view>& names);
 

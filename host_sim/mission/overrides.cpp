@@ -88,7 +88,7 @@ toml::table parse_value(const Override& set) {
   try {
     return toml::parse("value = \"" + quoted + "\"", set.where);
   } catch (const toml::parse_error& error) {
-    set.refuse("a value that is no TOML (" + std::string(error.description()) + ")", "a TOML value or plain text");
+    set.refuse("an invalid TOML value (" + std::string(error.description()) + ")", "a TOML value or plain text");
   }
 }
 
@@ -124,7 +124,7 @@ void apply_override(toml::table& document, const std::string& assignment) {
     table = inner->as_table();
   }
   toml::table parsed = parse_value(set);
-  // Moved, not copied: a copy forgets where it came from.
+  // Moved, not copied: a copy loses its source location.
   parsed.get("value")->visit([&](auto&& value) { table->insert_or_assign(path.back(), std::move(value)); });
 }
 

@@ -39,9 +39,9 @@ constexpr Names<TorqueKind, 3> kTorques{{{"gravity_gradient", TorqueKind::kGravi
                                          {"aerodynamic", TorqueKind::kAerodynamic},
                                          {"radiation", TorqueKind::kRadiation}}};
 
-// Ten turns a second: integrating hours of it takes minutes.
+// Ten revolutions per second: integrating hours of it takes minutes.
 constexpr double kFastest_degps = 3600.0;
-// The tumbles that the experiments with an uncooperative target fly.
+// The tumble rates of the experiments with a non-cooperative target.
 constexpr double kDefaultRateMin_degps = 0.3;
 constexpr double kDefaultRateMax_degps = 1.5;
 
@@ -123,7 +123,7 @@ Commanded read_commanded(const TableReader& section) {
     section.refuse(section.has("boresight_body") ? "boresight_body" : "secondary_axis_body",
                    "an axis along the other one", "boresight_body and secondary_axis_body in two different directions");
   if (!truth::leaves_zenith_clear(axes.initial_boresight_rtn, Vector3::Zero()))
-    section.refuse("initial_boresight_rtn", "a boresight at the zenith or the nadir, or none",
+    section.refuse("initial_boresight_rtn", "a zero boresight, or one at the zenith or the nadir",
                    "a direction [R, T, N] that leaves the second axis a zenith to keep near to");
   return commanded;
 }
@@ -143,7 +143,7 @@ std::optional<fsw::Matrix3> read_inertia(const TableReader& section) {
   try {
     truth::check_inertia(inertia);
   } catch (const std::invalid_argument& error) {
-    section.refuse("inertia_kgm2", std::string("numbers that are no body's: ") + error.what(),
+    section.refuse("inertia_kgm2", std::string("an invalid inertia: ") + error.what(),
                    "principal moments above 0, none above the sum of the other two");
   }
   return inertia;

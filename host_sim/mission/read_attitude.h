@@ -12,10 +12,10 @@
 namespace vbar::mission {
 
 /// inertia_kgm2 of the table: [xx, yy, zz] or [xx, yy, zz, xy, xz, yz]; nothing if it is missing. Throws MissionError
-/// for what is not the inertia of a body (truth::check_inertia).
+/// for an invalid inertia (truth::check_inertia).
 [[nodiscard]] std::optional<fsw::Matrix3> read_inertia(const TableReader& section);
 
-/// A rotation [w, x, y, z] under `key`, to the digits that people write; nothing if it is missing. Throws MissionError.
+/// A rotation [w, x, y, z] under `key`, normalised; nothing if it is missing. Throws MissionError.
 [[nodiscard]] std::optional<Eigen::Quaterniond> read_quaternion(const TableReader& section, std::string_view key);
 
 /// The value of `target`, "target" if it is missing: another spacecraft than `own`. Throws MissionError.

@@ -16,7 +16,7 @@ fsw::Duration longest_compute_latency(const Mission& mission) {
 }  // namespace
 
 // Periods of the control loop are the paper's (its table of control solvers). Where the paper gives none, the defaults
-// are those the flight software starts with (fsw/gnc/management.cpp).
+// are the initial values of the flight software (fsw/gnc/management.cpp).
 void read_guidance(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("guidance");
   constexpr Range kPeriod_s = from_to(1e-3, 1e6);

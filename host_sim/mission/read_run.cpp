@@ -10,7 +10,7 @@ namespace {
 using engine::LatencyDistribution;
 using engine::LatencyKind;
 
-// Longest simulated latency, s: a link slower than an hour is an error of the file.
+// Longest simulated latency, s: a higher latency is an error in the file.
 constexpr double kLongestLatency_s = 3600.0;
 
 }  // namespace
@@ -69,7 +69,7 @@ void read_clock(const TableReader& document, Mission& mission, const Installatio
   engine::ClockSettings& clock = mission.clock;
   clock.mode = section.choice<engine::ClockMode>("mode", kClockModes, engine::ClockMode::kLockStep);
   clock.speed_factor = section.number("speed_factor", from_to(1e-3, 1e6), 1.0);
-  // What the run assumes: outputs take effect after the compute latency, and a step is over before the next one.
+  // Assumptions of the run: outputs take effect after the compute latency, and a step is over before the next one.
   clock.compute_budget =
       section.span("compute_budget_s", 1.0, above_to(0.0, 3600.0),
                    std::max(1e-3, 1e-9 * static_cast<double>(mission.guidance.configuration.compute_latency_ns)));

@@ -16,7 +16,7 @@ std::vector<std::string_view> names_of(const Readers& readers) {
   return names;
 }
 
-/// Index of the kind in the program's list. A sensor that has the name of a kind need not give it.
+/// Index of the kind in the program's list. A sensor with the name of a kind need not specify the kind.
 std::size_t kind_of(const TableReader& section, const std::string& name, const Installation& installation) {
   const std::vector<std::string_view> kinds = names_of(installation.kinds);
   const auto place_of = [&](std::string_view kind) {

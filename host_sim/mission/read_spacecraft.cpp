@@ -13,12 +13,12 @@ namespace {
 
 using fsw::math::kDegree;
 
-// PRISMA's two spacecraft: Mango, the servicer, and Tango, the target (figures of the literature, to the digits known).
+// PRISMA's two spacecraft: Mango, the servicer, and Tango, the target (values from the literature, to known digits).
 constexpr std::string_view kDefaultBody = "mango";
 constexpr std::pair<std::string_view, SurfaceProperties> kKnownBodies[] = {{"mango", {154.0, 1.3, 2.5, 2.5, 1.32}},
                                                                            {"tango", {40.0, 0.38, 2.25, 0.55, 1.2}}};
 
-/// One of the spacecraft that a section stands for.
+/// One of the spacecraft of a section.
 struct Member {
   const SpacecraftGroup& group;
   int index;
@@ -32,7 +32,7 @@ struct Member {
   }
 };
 
-/// Keys that are missing have the values of the body; they are required for a body that is not known here.
+/// Keys that are missing have the values of the body; they are required for other bodies.
 SurfaceProperties read_surface(const TableReader& section, const Member& member, std::string_view body) {
   const auto known = std::ranges::find(kKnownBodies, body, [](const auto& entry) { return entry.first; });
   const auto default_of = [&](double SurfaceProperties::*value) {
@@ -71,7 +71,7 @@ using Orbit = std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe>;
 
 Orbit read_relative(const TableReader& section, const Mission& mission) {
   const std::string to = section.name("to");
-  // Only one that stands above, so that the orbits can be made in order.
+  // Only a preceding one, so that the orbits can be computed in order.
   if (mission.find_spacecraft(to) == nullptr)
     section.refuse_value("to", "the name of a spacecraft further up in the file");
   if (section.has("a_roe_m")) {

@@ -8,7 +8,7 @@
 namespace vbar::mission {
 namespace {
 
-/// A data file: of the data folder, or, if it is absolute or begins with "./" or "../", seen from the mission file.
+/// A data file: of the data folder, or, if it is absolute or begins with "./" or "../", relative to the mission file.
 std::filesystem::path read_file(const TableReader& section, std::string_view key,
                                 const std::filesystem::path& default_value, const Mission& mission) {
   const std::string text = section.text(key, default_value.string());
@@ -17,7 +17,7 @@ std::filesystem::path read_file(const TableReader& section, std::string_view key
   return std::filesystem::absolute(mission.file).parent_path() / text;
 }
 
-/// A force that acts if its key says so; without a file's word, what the paper's truth has.
+/// A force that acts if its key is true; the default is the truth model of the paper.
 truth::ForceModel read_forces(const TableReader& section) {
   truth::ForceModel forces;
   forces.drag = section.flag("drag", forces.drag);
@@ -39,7 +39,7 @@ void read_truth(const TableReader& document, Mission& mission) {
   truth::TruthSettings& truth = mission.truth;
   truth.epoch = mission.epoch;
   truth.end = mission.end_time();
-  // How far the gravity file goes is known when it is read; 2190 is the degree of the largest ever published.
+  // The degree of the gravity file is checked when it is read; 2190 is the degree of the largest ever published.
   truth.gravity_degree = static_cast<int>(section.integer("gravity_degree", 0, 2190, truth.gravity_degree));
   const int order = std::min(truth.gravity_order, truth.gravity_degree);
   truth.gravity_order = static_cast<int>(section.integer("gravity_order", 0, truth.gravity_degree, order));

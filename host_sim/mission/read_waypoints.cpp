@@ -4,7 +4,7 @@
 namespace vbar::mission {
 namespace {
 
-constexpr double kLargestARoe_m = 1e6;  // what the flight software takes
+constexpr double kLargestARoe_m = 1e6;  // limit of the flight software
 
 Waypoint read_waypoint(const TableReader& section, const Mission& mission) {
   Waypoint waypoint;

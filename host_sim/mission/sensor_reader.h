@@ -1,5 +1,5 @@
 #pragma once
-// What the loader of missions has to know of a kind of sensor or of a testbed: how its tables are read.
+// The interface of the mission loader to a kind of sensor or a testbed: how its tables are read.
 
 #include <filesystem>
 #include <memory>
@@ -16,9 +16,9 @@ namespace vbar::mission {
 
 struct Installation;
 
-/// What is known when the table of a sensor is read.
+/// Context in which the table of a sensor is read.
 struct SensorContext {
-  const Mission& mission;  ///< the spacecraft further down are missing
+  const Mission& mission;  ///< without the spacecraft further down
   const Installation& installation;
   const std::string& spacecraft;                     ///< that carries the sensor
   const std::vector<std::string>& spacecraft_names;  ///< of all spacecraft
@@ -32,7 +32,7 @@ struct SensorReader {
   std::shared_ptr<const SensorSettings> (*read)(const TableReader& section, const SensorContext& context);
   /// Reads the tables of the document that belong to the kind. Null if it has none.
   std::shared_ptr<const SharedSettings> (*read_shared)(const TableReader& document, const Mission& mission);
-  /// Refuses what does not fit the rest of the mission, which has been read. `section` is the table of the sensor.
+  /// Rejects settings that are inconsistent with the complete mission. `section` is the table of the sensor.
   void (*check)(const TableReader& section, const Sensor& sensor, const Spacecraft& spacecraft, const Mission& mission);
 };
 
@@ -42,7 +42,7 @@ struct TestbedReader {
   std::shared_ptr<const TestbedSettings> (*read)(const TableReader& section);
 };
 
-/// What a program offers to missions.
+/// The sensors, testbeds and clocks of a program.
 struct Installation {
   std::filesystem::path data_directory;
   std::vector<const SensorReader*> kinds;
@@ -50,7 +50,7 @@ struct Installation {
   std::vector<const engine::WallClockSource*> clocks;  ///< of which the first is the default
 };
 
-/// The clock that the mission names. The loader has seen to it that the program has it.
+/// The clock that the mission names, which the loader has checked.
 [[nodiscard]] std::unique_ptr<engine::WallClock> make_wall_clock(const Mission& mission,
                                                                  const Installation& installation);
 

@@ -7,7 +7,7 @@
 namespace vbar::mission {
 namespace {
 
-constexpr int kMostSpacecraft = 255;  // of their numbers in packet headers
+constexpr int kMaxSpacecraft = 255;  // of their numbers in packet headers
 constexpr double kTurn_deg = 360.0;
 
 }  // namespace
@@ -15,7 +15,7 @@ constexpr double kTurn_deg = 360.0;
 SpacecraftGroup::SpacecraftGroup(const TableReader& section)
     : name_(section.name("name")),
       counted_(section.has("count")),
-      count_(static_cast<int>(section.integer("count", 1, kMostSpacecraft, 1))),
+      count_(static_cast<int>(section.integer("count", 1, kMaxSpacecraft, 1))),
       spacing_(section.table("spacing")) {
   spacing_.rename("spacecraft." + name_ + ".spacing");
   if (section.has("spacing") && !counted_) section.refuse("count", "nothing", "how many spacecraft the spacing is for");

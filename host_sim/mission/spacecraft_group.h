@@ -1,5 +1,5 @@
 #pragma once
-// One [[spacecraft]] section for many spacecraft: `count` of them, each a `spacing` on from the one before.
+// One [[spacecraft]] section for many spacecraft: `count` of them, each offset by `spacing` from the previous one.
 //
 //   [[spacecraft]]
 //   name = "swarm"                     swarm_01, swarm_02, ... swarm_50
@@ -32,7 +32,7 @@ class SpacecraftGroup {
   [[nodiscard]] double number(const TableReader& section, int member, std::string_view key, Range range,
                               std::optional<double> default_value = std::nullopt) const;
 
-  /// The same for an angle in degrees: a sum outside a turn is brought back into it, to -180 ... 180.
+  /// The same for an angle in degrees: the sum is wrapped to -180 ... 180.
   [[nodiscard]] double angle_deg(const TableReader& section, int member, std::string_view key) const;
 
  private:

@@ -34,7 +34,7 @@ bool is_name_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
 }
 
-// A table that an override had to make has no place of its own; what was put into it has.
+// A table created by an override has no source location of its own; its contents have.
 const toml::node* first_with_location(const toml::node& node) {
   if (node.source().begin.line != 0) return &node;
   if (const auto* table = node.as_table()) {
@@ -54,7 +54,7 @@ std::string location_of(const toml::node& node, const std::string& file) {
   const toml::node* located = first_with_location(node);
   if (located == nullptr) return file;
   const toml::source_region& source = located->source();
-  const std::string& path = source.path ? *source.path : file;  // another one if the file extends it
+  const std::string& path = source.path ? *source.path : file;  // the extended file, where it applies
   if (path.starts_with("--set ")) return path;
   return path + ":" + std::to_string(source.begin.line);
 }
@@ -101,14 +101,14 @@ std::string listing_of(const std::vector<std::string_view>& names) {
   return listing;
 }
 
-/// What has been asked of each table of a document, and the first error that waits for finish().
+/// The keys that were read from each table of a document, and the first error, deferred until finish().
 struct TableReader::Book {
   struct Entry {
     std::string path;
     std::vector<std::string> keys;
   };
   std::map<const toml::table*, Entry> entries;
-  std::deque<toml::table> missing;  ///< what readers of tables that the file does not have read
+  std::deque<toml::table> missing;  ///< stand-ins for tables that the file lacks
   const toml::table* refused_in = nullptr;
   std::exception_ptr refused;
 };
@@ -220,7 +220,7 @@ const toml::node& TableReader::required(std::string_view key, const std::string&
 }
 
 double TableReader::checked_number(const toml::node& node, std::string_view key, Range range) const {
-  // TOML tells integers from floats; a person who writes 60 for 60.0 means the same.
+  // TOML distinguishes integers from floats; 60 is accepted for 60.0.
   const std::optional<double> value = node.is_number() ? node.value<double>() : std::nullopt;
   const bool good = value && std::isfinite(*value) && (range.above ? *value > range.low : *value >= range.low) &&
                     *value <= range.high;

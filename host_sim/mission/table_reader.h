@@ -1,5 +1,5 @@
 #pragma once
-// Reads one TOML table key by key and refuses what is not as it should be with a MissionError that says where.
+// Reads one TOML table key by key and rejects invalid content with a MissionError that names the location.
 
 #include <array>
 #include <cstdint>
@@ -30,22 +30,22 @@ constexpr Range above_to(double low, double high) {
   return {low, high, true};
 }
 
-/// A key that has been asked for is a known key: finish() refuses all others, so that no list of keys is written.
+/// A key that has been read is a known key: finish() rejects all others, so that no list of keys is needed.
 class TableReader {
  public:
   /// Reads the document `table`, which must outlive the reader and all readers of its inner tables; `file` is the
   /// file's name.
   TableReader(const toml::table& table, std::string file);
 
-  /// To be called when all keys have been asked for. Throws, in this order: for a key of the table that nobody asked
-  /// for; likewise for its inner tables; for the first number or flag of the table that was refused (number, numbers,
-  /// integer and flag return an accepted value then, so that the remaining keys are asked for before the message).
+  /// To be called when all keys have been read. Throws, in this order: for a key of the table that was not
+  /// read; likewise for its inner tables; for the first number or flag of the table that was rejected (number, numbers,
+  /// integer and flag return an accepted value then, so that the remaining keys are read before the message).
   void finish() const;
 
-  /// Refuses a key that has not been asked for so far, without looking at inner tables.
+  /// Rejects a key that has not been read so far, without checking inner tables.
   void refuse_unknown_keys() const;
 
-  /// The keys that have been asked for, in that order.
+  /// The keys that have been read, in that order.
   [[nodiscard]] std::vector<std::string> asked() const;
   /// The same for all tables of the document that have been read, by their dotted paths.
   [[nodiscard]] std::map<std::string, std::vector<std::string>> asked_of_all() const;
@@ -53,10 +53,10 @@ class TableReader {
   [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// The keys of the table, in alphabetical order; none of them counts as asked for.
+  /// The keys of the table, in alphabetical order; this does not count as reading them.
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  // A value or, where the key is missing, `default_value`; without it the key is required.
+  // A value or, if the key is missing, `default_value`; without it the key is required.
   double number(std::string_view key, Range range, std::optional<double> default_value = std::nullopt) const;
   std::int64_t integer(std::string_view key, std::int64_t low, std::int64_t high,
                        std::optional<std::int64_t> default_value = std::nullopt) const;
@@ -92,7 +92,7 @@ class TableReader {
     return std::string(has(key) ? names[chosen(key, names)] : default_value);
   }
 
-  /// The enumerators whose names are in the array, each at most once; none where the key is missing.
+  /// The enumerators whose names are in the array, each at most once; empty if the key is missing.
   template <class Enum, std::size_t N>
   std::vector<Enum> choices(std::string_view key, const std::array<std::pair<std::string_view, Enum>, N>& names) const {
     std::vector<std::string_view> accepted;
@@ -104,14 +104,14 @@ class TableReader {
 
   /// A table inside this one; an empty one if it is missing.
   [[nodiscard]] TableReader table(std::string_view key) const;
-  /// The elements of an array of tables; none if it is missing. Their paths are key.0, key.1, ... until renamed.
+  /// The elements of an array of tables; empty if it is missing. Their paths are key.0, key.1, ... until renamed.
   [[nodiscard]] std::vector<TableReader> tables(std::string_view key) const;
-  /// Gives the table the path by which people know it.
+  /// Sets the path of the table in messages.
   void rename(std::string path);
 
-  /// Refuses the value of `key` (the whole table if empty) for a reason of the caller's.
+  /// Rejects the value of `key` (the whole table if empty) for a reason given by the caller.
   [[noreturn]] void refuse(std::string_view key, const std::string& found, const std::string& accepted) const;
-  /// As above; what was found is the value itself.
+  /// As above; the value itself is reported as found.
   [[noreturn]] void refuse_value(std::string_view key, const std::string& accepted) const;
 
  private:
@@ -119,7 +119,7 @@ class TableReader {
 
   TableReader(const toml::table& table, std::string path, const TableReader& parent);
 
-  /// The node of a key, which counts as asked for; null if it is missing.
+  /// The node of a key, which counts as read; null if it is missing.
   [[nodiscard]] const toml::node* find(std::string_view key) const;
   void finish(const toml::table& table) const;
   void refuse_unknown_keys(const toml::table& table) const;
@@ -142,10 +142,10 @@ class TableReader {
 inline constexpr std::string_view kNameRule = "a name of 1 to 64 letters, digits, '_' and '-'";
 [[nodiscard]] bool is_name(std::string_view text);
 
-/// "file:line" of a node, or the override it came from; `file` alone if it came from nowhere.
+/// "file:line" of a node, or its override; `file` alone without a location.
 [[nodiscard]] std::string location_of(const toml::node& node, const std::string& file);
 
-/// The value as a message shows it: `the text "abc"`, `the number 2.5`, `nan`, `a table`, ...
+/// The value as shown in messages: `the text "abc"`, `the number 2.5`, `nan`, `a table`, ...
 [[nodiscard]] std::string description_of(const toml::node& node);
 
 /// "from 0 to 1", "above 0, up to 1".

@@ -1,5 +1,5 @@
 #pragma once
-// What a mission telecommands to its flight software at the start, whatever its sensors, as messages of the packet
+// Initial telecommands of a mission to its flight software that do not depend on its sensors, as messages of the packet
 // contract. (The parameters of guidance are such a message in the mission.)
 
 #include "fsw/packets/messages.h"
@@ -7,8 +7,8 @@
 
 namespace vbar::mission {
 
-/// All waypoints of the mission; those that are past at the start are in it too, and the flight software passes over
-/// them. A mission has at most kMaxWaypoints of them (the loader sees to it).
+/// All waypoints of the mission, including those that have passed at the start, which the flight software skips.
+/// A mission has at most kMaxWaypoints of them (checked by the loader).
 [[nodiscard]] vbar::waypoint_table waypoint_table_of(const Mission& mission);
 
 [[nodiscard]] vbar::mode_command mode_command_of(const Mission& mission);

@@ -13,7 +13,7 @@ toml::table parse_toml(std::string_view text, const std::string& file) {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     throw MissionError(file + ":" + std::to_string(error.source().begin.line), "",
-                       "text that is no TOML: " + std::string(error.description()), "a TOML 1.0 document");
+                       "invalid TOML: " + std::string(error.description()), "a TOML 1.0 document");
   }
 }
 

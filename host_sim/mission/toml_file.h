@@ -1,5 +1,5 @@
 #pragma once
-// TOML text and files into tables, with MissionErrors for what is none.
+// TOML text and files to tables, with MissionErrors for invalid input.
 
 #include <filesystem>
 #include <string>
@@ -12,7 +12,7 @@ namespace vbar::mission {
 /// `file`: its name, for messages.
 [[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& file);
 
-/// The text of a file; `kind` is what it should be: "a mission file (TOML)".
+/// The text of a file; `kind` is the expected kind: "a mission file (TOML)".
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file, const std::string& kind);
 
 /// The same of a data file, which becomes part of the run's provenance (host_sim/files/data_stream.h).

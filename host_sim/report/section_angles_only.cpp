@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/report/consistency.h"
 #include "fsw/math/math.h"
+#include "host_sim/report/consistency.h"
 #include "host_sim/report/gallery_html.h"
 #include "host_sim/report/html_page.h"
 #include "host_sim/report/maneuver_series.h"

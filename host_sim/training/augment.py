@@ -1,4 +1,4 @@
-"""What training does to crops that the renderer does not: turns, noise, blur, contrast, things in the way."""
+"""Augmentation of crops in addition to the renderer: rotations, noise, blur, contrast, occlusions."""
 
 import math
 
@@ -8,11 +8,11 @@ from torch.nn import functional
 import crops
 
 BYTES_A_SAMPLE = 4.0
-LEAST_DEVIATION = 0.5  # as fsw/pose/crop.cpp has it
+LEAST_DEVIATION = 0.5  # as in fsw/pose/crop.cpp
 
 
 def standardised(samples):
-    """Mean 0 and deviation 1 of each crop, as cut_crop does it. batch x 1 x side x side."""
+    """Mean 0 and deviation 1 of each crop, as in cut_crop. batch x 1 x side x side."""
     flat = samples.flatten(1)
     mean = flat.mean(1)
     deviation = torch.sqrt(((flat - mean[:, None])**2).mean(1)).clamp(min=LEAST_DEVIATION)
@@ -24,7 +24,7 @@ def samples_of(images):
 
 
 def turned(images, cells, turns):
-    """By quarters, anticlockwise; places turn along."""
+    """By quarters, anticlockwise, together with the keypoints."""
     last = crops.MAP_SIDE - 1
     x, y = cells[..., 0], cells[..., 1]
     for _ in range(turns):
@@ -45,7 +45,7 @@ def happens(count, share):
 
 
 def blurred(x):
-    """A tenth to all of the way to a 3 x 3 binomial mean, of a quarter of the crops."""
+    """Blur of a quarter of the crops: 10 to 100 % of a 3 x 3 binomial mean."""
     kernel = torch.tensor([1.0, 2.0, 1.0]) / 4.0
     soft = functional.conv2d(functional.pad(x, (1, 1, 1, 1), mode="replicate"), torch.outer(kernel, kernel)[None, None])
     part = uniform(len(x), 0.1, 1.0) * happens(len(x), 0.25)
@@ -53,7 +53,7 @@ def blurred(x):
 
 
 def with_patches(x):
-    """A bar or patch of an even brightness over a tenth of the crops."""
+    """A bar or patch of uniform brightness over a tenth of the crops."""
     count, side = len(x), x.shape[-1]
     place = torch.arange(side)
     middle = torch.rand(count, 2) * side

@@ -1,4 +1,4 @@
-"""How far the network's maps can be trusted: fits the calibration on crops that training never saw, writes it into the
+"""Calibration of the network's heatmaps: fits it on crops that are not part of the training set, writes it into the
 weights file, and the figures on held-out crops into a file beside it."""
 
 import argparse
@@ -29,7 +29,7 @@ def peaks_of(layers, table):
 
 
 def errors_of(peaks, table, stretch):
-    """Errors (cells, n x 2) and peaks of the keypoints that count."""
+    """Errors (cells, n x 2) and peaks of the valid keypoints."""
     counts = table["counts"] > 0.5
     return (decode.stretched(peaks.places, stretch) - table["cells"])[counts], peaks[counts]
 
@@ -54,7 +54,7 @@ def fit_stretch(peaks, table, least):
 
 
 def least_peak(errors, peaks):
-    """The least peak above which no more than MOST_GROSS are wrong."""
+    """The minimum peak above which at most a fraction MOST_GROSS is wrong."""
     is_gross = numpy.linalg.norm(errors, axis=1) > GROSS_CELLS
     for least in numpy.arange(0.10, 0.70, 0.01):
         accepted = peaks.accepted(least)
@@ -124,9 +124,9 @@ def page(options, calibration, counts, held_out):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--crops", type=pathlib.Path, required=True)
-    parser.add_argument("--weights", type=pathlib.Path, required=True, help="read, and with --out written there")
+    parser.add_argument("--weights", type=pathlib.Path, required=True, help="weights to read")
     parser.add_argument("--out", type=pathlib.Path, help="calibrated weights; its figures get the same name and .toml")
-    parser.add_argument("--checkpoint", type=pathlib.Path, help="of the training, for how long it took")
+    parser.add_argument("--checkpoint", type=pathlib.Path, help="of the training, for its duration")
     parser.add_argument("--command", default="ci/train.sh")
     options = parser.parse_args()
     kept = torch.load(options.checkpoint) if options.checkpoint else {"step": 0, "elapsed_s": 0.0}
@@ -139,7 +139,7 @@ def main():
     errors, peaks = errors_of(all_peaks, calibration_table, stretch)
     inexact = peaks.accepted(least) & (numpy.linalg.norm(errors, axis=1) <= GROSS_CELLS)
     calibration = (*fit_covariance(errors[inexact], peaks.excess[inexact]), TARGET_SIGMA_CELLS, least, stretch)
-    # As the file holds them.
+    # As stored in the file.
     calibration = tuple(float(numpy.float32(value)) for value in calibration)
     held_out_errors = errors_of(peaks_of(layers, held_out_table), held_out_table, calibration[4])
     held_out = {name: float(value) if not isinstance(value, int) else value

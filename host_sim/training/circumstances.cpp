@@ -17,9 +17,9 @@ using fsw::Vector3;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kEarthRadiusM = 6378137.0;
-constexpr double kCropRadii = 2.2;  // a crop's side in radii of the target as it looks
+constexpr double kCropRadii = 2.2;  // side of a crop in apparent radii of the target
 
-/// Where the target's centre lies on the detector: mostly where all of it is in the image if it fits, else anywhere.
+/// The target's centre on the detector: mostly with the complete target in the image if it fits, otherwise anywhere.
 Vector2 draw_centre(const twins::camera::Region& region, double radius_px, engine::RandomStream& stream) {
   const bool is_whole = stream.uniform() < 0.9;
   const auto along = [&](int first, int pixels) {
@@ -31,7 +31,7 @@ Vector2 draw_centre(const twins::camera::Region& region, double radius_px, engin
   return {x, along(region.y, region.height)};
 }
 
-/// Turns the sky at random about the camera, with the Earth's centre along nadir_camera and the pole somewhere.
+/// A random attitude of the sky about the camera, with the Earth's centre along nadir_camera.
 Eigen::Quaterniond draw_sky(engine::RandomStream& stream) {
   return attitude(stream);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What one crop shows: where the target is, what lights it, what is behind it, how it was exposed and where it is cut.
+// The scene of one crop: pose of the target, illumination, background, exposure and region of the crop.
 
 #include <filesystem>
 
@@ -12,11 +12,11 @@
 
 namespace vbar::training {
 
-/// The close-range camera as its images are read: TRON's lens, pixels in groups of 2 x 2 (data/cameras/tron.toml). Its
+/// The close-range camera with its binning: TRON's lens, pixels in groups of 2 x 2 (data/cameras/tron.toml). Its
 /// exposure is kNominalExposureS.
 [[nodiscard]] twins::camera::CameraSettings close_range_camera(const std::filesystem::path& data_directory);
 
-/// A white surface that looks at the Sun and at the camera fills 60 % of the full well.
+/// A white surface that faces the Sun and the camera fills 60 % of the full well.
 inline constexpr double kNominalExposureS = 47e-6;
 
 /// Camera axes: z boresight, x right, y down.

@@ -1,4 +1,4 @@
-"""Crops with their keypoints marked, as one picture to look at: contact_sheet.py SHARD PNG [FIRST]."""
+"""Crops with their keypoints marked, as one image for inspection: contact_sheet.py SHARD PNG [FIRST]."""
 
 import struct
 import sys

@@ -1,11 +1,11 @@
 #pragma once
-// What crops are for.
+// The purpose of crops.
 
 #include <string_view>
 
 namespace vbar::training {
 
-/// Held-out crops show materials near those of the target's own file, which no crop of the other kinds does.
+/// Held-out crops show materials near those of the target's own file, unlike all crops of the other kinds.
 enum class CropKind { kTraining, kCalibration, kHeldOut };
 
 [[nodiscard]] constexpr std::string_view name_of(CropKind kind) {

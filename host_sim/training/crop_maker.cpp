@@ -155,7 +155,7 @@ void CropMaker::draw_stars(const Circumstances& c, const CameraSettings& camera)
   }
 }
 
-/// Before what was drawn so far.
+/// In front of what was drawn so far.
 void CropMaker::draw_target(const Circumstances& c, const CameraSettings& camera) {
   const Place place(c);
   const EarthDisc earth(place.camera_eci, place.sun_eci);
@@ -218,7 +218,7 @@ void CropMaker::draw_background(const Circumstances& c) {
     }
 }
 
-/// One detector for each size of window, wherever the window lies.
+/// One detector for each size of window, at any position of the window.
 twins::camera::Detector& CropMaker::detector() {
   const int side = window_.width;
   const auto found = detectors_.find(side);

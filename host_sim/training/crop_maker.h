@@ -1,5 +1,5 @@
 #pragma once
-// Crops for training: drawn, lit, exposed and read as the camera twin does it, cut by the flight software.
+// Crops for training: rendered, illuminated, exposed and read as by the camera twin, cut by the flight software.
 //
 // The light of the target, the sky, the Earth and the detector are the twin's. Only the lens differs, for speed: light
 // is gathered on whole pixels and softened there, the target on one and a half to three texels a sample of the crop.
@@ -18,7 +18,7 @@
 
 namespace vbar::training {
 
-/// A crop and what is true of it.
+/// A crop and its labels.
 struct LabelledCrop {
   fsw::pose::CropSamples samples;  ///< not standardised
   Circumstances circumstances;
@@ -33,7 +33,7 @@ class CropMaker {
   /// Throws std::runtime_error if a file of `data_directory` cannot be read.
   CropMaker(const std::filesystem::path& data_directory, CropKind kind, std::uint64_t seed);
 
-  /// Crop `index` of the seed: always the same, whatever was made before (on the same processor).
+  /// Crop `index` of the seed: independent of the crops made before (on the same processor).
   void make(std::int64_t index, LabelledCrop& crop);
 
   [[nodiscard]] const twins::camera::CameraSettings& camera() const { return camera_; }

@@ -1,4 +1,4 @@
-"""Keypoints from maps, as the flight software finds them (fsw/pose/heatmap.cpp): mean and second moments in a window about
+"""Keypoints from heatmaps, as in the flight software (fsw/pose/heatmap.cpp): mean and second moments in a window about
 the highest cell, less what the Gaussian that training asked for has of them itself."""
 
 import dataclasses
@@ -89,7 +89,7 @@ def decode(logits, sigma=1.0):
 
 
 def stretched(places, stretch):
-    """Farther from the crop's middle by a share."""
+    """Scaled away from the centre of the crop."""
     middle = 0.5 * (crops.MAP_SIDE - 1)
     return middle + (1.0 + stretch) * (places - middle)
 

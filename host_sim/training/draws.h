@@ -1,5 +1,5 @@
 #pragma once
-// Random things of more than one number.
+// Random vectors and rotations.
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ inline fsw::Vector3 perpendicular(const fsw::Vector3& axis, engine::RandomStream
   return (v - axis * axis.dot(v)).normalized();
 }
 
-/// At `angle` (rad) from `axis` (unit), all turns about it alike.
+/// At `angle` (rad) from `axis` (unit), uniform about it.
 inline fsw::Vector3 at_angle(const fsw::Vector3& axis, double angle, engine::RandomStream& stream) {
   return std::cos(angle) * axis + std::sin(angle) * perpendicular(axis, stream);
 }

@@ -12,7 +12,7 @@ KEYPOINTS = 11
 INPUT_SIDE = 128
 MAP_SIDE = 32
 MAPS = 12  # the twelfth is unused: maps come in fours
-# in, out, kernel, stride, rectified
+# in, out, kernel, stride, ReLU
 LAYERS = [(1, 24, 3, 2, 1), (24, 40, 3, 2, 1), (40, 40, 3, 1, 1), (40, 64, 3, 2, 1), (64, 64, 3, 1, 1),
           (64, 128, 3, 2, 1), (128, 128, 3, 1, 1), (128, 128, 3, 1, 1), (128, 64, 1, 1, 0), (64, 64, 3, 1, 1),
           (64, 40, 1, 1, 0), (40, 40, 3, 1, 1), (40, MAPS, 1, 1, 0)]
@@ -23,7 +23,7 @@ CALIBRATION = 5  # numbers, then three zeros
 
 
 def run(x, layer):
-    """The network's structure: `layer(number from 1, input)` does a layer, rectifier included."""
+    """The network's structure: `layer(number from 1, input)` computes a layer, ReLU included."""
     a = layer(3, layer(2, layer(1, x)))
     b = layer(5, layer(4, a))
     x = layer(8, layer(7, layer(6, b)))
@@ -33,7 +33,7 @@ def run(x, layer):
 
 
 class KeypointNetwork(nn.Module):
-    """Logits of the eleven maps, batch x 11 x 32 x 32. All layers but the last are normalised over the batch."""
+    """Logits of the eleven heatmaps, batch x 11 x 32 x 32. All layers but the last use batch normalisation."""
 
     def __init__(self):
         super().__init__()
@@ -58,7 +58,7 @@ class KeypointNetwork(nn.Module):
 
 
 def folded(model):
-    """Weights (out, in, ky, kx) and biases of each layer, the normalisation folded in, tiny ones zero."""
+    """Weights (out, in, ky, kx) and biases of each layer, including the normalisation, tiny ones zero."""
     layers = []
     for number, convolution in enumerate(model.convolutions):
         weight = convolution.weight.detach().double()
@@ -84,7 +84,7 @@ def tidy(values):
 
 
 def run_folded(layers, x):
-    """Maps as the flight software computes them, but for the order of its sums."""
+    """Heatmaps as in the flight software, except for the order of its sums."""
 
     def layer(number, x):
         weight, bias = layers[number - 1]

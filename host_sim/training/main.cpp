@@ -1,5 +1,5 @@
-// vbar_training_crops: labelled crops for the keypoint network, in shards of a folder. Shards that are there already
-// stay, so an interrupted run goes on where it was, and several processes can share the work.
+// vbar_training_crops: labelled crops for the keypoint network, in shards of a folder. Existing shards
+// are kept, so an interrupted run continues, and several processes can share the work.
 
 #include <algorithm>
 #include <chrono>
@@ -61,17 +61,17 @@ int main(int argc, char** argv) {
   CLI::App app("Labelled crops for the keypoint network");
   const std::map<std::string, CropKind> kinds{
       {"training", CropKind::kTraining}, {"calibration", CropKind::kCalibration}, {"held_out", CropKind::kHeldOut}};
-  app.add_option("--seed", order.seed, "of the draws")->capture_default_str();
-  app.add_option("--count", order.count, "crops in all")->check(CLI::Range(1, 10'000'000))->capture_default_str();
+  app.add_option("--seed", order.seed, "seed of the draws")->capture_default_str();
+  app.add_option("--count", order.count, "crops in total")->check(CLI::Range(1, 10'000'000))->capture_default_str();
   app.add_option("--shard-size", order.shard_size, "crops a file")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   app.add_option("--kind", order.kind, "training, calibration or held_out")->transform(CLI::CheckedTransformer(kinds));
-  app.add_option("--part", order.part, "of the work, from 0")->check(CLI::Range(0, 63))->capture_default_str();
-  app.add_option("--parts", order.parts, "that share it")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--part", order.part, "part of the work, from 0")->check(CLI::Range(0, 63))->capture_default_str();
+  app.add_option("--parts", order.parts, "number of parts")->check(CLI::Range(1, 64))->capture_default_str();
   app.add_option("--out", order.out, "folder of the shards")->required();
   CLI11_PARSE(app, argc, argv);
-  // Mesa's own threads cost more than they give on small pictures; processes share the work.
+  // Mesa's own threads cost more than they gain on small images; processes share the work.
   setenv("LP_NUM_THREADS", "0", 0);
   try {
     make_shards(order);

@@ -10,28 +10,28 @@ namespace {
 
 using twins::camera::Material;
 
-constexpr double kMostReflected = 0.95;
-constexpr double kMostExponent = 3000.0;
+constexpr double kMaxReflected = 0.95;
+constexpr double kMaxExponent = 3000.0;
 
 Material grey(const Material& like, double diffuse, double specular, double exponent) {
   const double sum = diffuse + specular;
-  const double by = sum > kMostReflected ? kMostReflected / sum : 1.0;
+  const double by = sum > kMaxReflected ? kMaxReflected / sum : 1.0;
   Material material = like;
   material.diffuse.fill(by * diffuse);
   material.specular.fill(by * specular);
-  material.exponent = std::min(exponent, kMostExponent);
+  material.exponent = std::min(exponent, kMaxExponent);
   return material;
 }
 
 Material near(const Material& own, engine::RandomStream& stream) {
-  // Inside of what training leaves out, also after rounding.
+  // Inside the range that training excludes, also after rounding.
   constexpr double kNear = 0.999 * kOwnFamily;
   double diffuse = stream.uniform(-kNear, kNear) * own.grey_diffuse();
   double specular = stream.uniform(-kNear, kNear) * own.grey_specular();
   const double exponent = own.exponent * stream.uniform(1.0 - kNear, 1.0 + kNear);
-  // No brighter than can be: then part of the way.
+  // Limited to physical reflectivities: then part of the way.
   const double own_sum = own.grey_diffuse() + own.grey_specular();
-  const double part = std::min(1.0, (kMostReflected - own_sum) / std::max(diffuse + specular, 1e-9));
+  const double part = std::min(1.0, (kMaxReflected - own_sum) / std::max(diffuse + specular, 1e-9));
   diffuse = own.grey_diffuse() + part * diffuse;
   specular = own.grey_specular() + part * specular;
   return grey(own, diffuse, specular, exponent);
@@ -39,7 +39,7 @@ Material near(const Material& own, engine::RandomStream& stream) {
 
 Material far(std::span<const Material> file, std::size_t which, engine::RandomStream& stream) {
   constexpr double kSwapped = 0.3;
-  constexpr int kTries = 100;  // one in ten is too near
+  constexpr int kTries = 100;  // one in ten is too close
   const Material& own = file[which];
   Material drawn;
   for (int i = 0; i < kTries; ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// How the surfaces of the target look in one crop: nobody has measured them, so the network sees many.
+// Surface materials of the target in one crop: they have not been measured, so the network is trained with many.
 
 #include <span>
 #include <vector>
@@ -12,8 +12,8 @@ namespace vbar::training {
 
 inline constexpr double kOwnFamily = 0.3;  ///< of a value, either way: what counts as near the file's
 
-/// Grey materials for the faces, one for each of `file`'s. Training and calibration: matt and glossy part a third to
-/// three times those of the material itself or (three in ten) of another one, exponents a fifth to five times; never
+/// Grey materials for the faces, one for each of `file`'s. Training and calibration: diffuse and specular part a third
+/// to three times those of the material itself or (three in ten) of another one, exponents a fifth to five times; never
 /// both parts within kOwnFamily of the material itself. Held out: both parts and the exponent within kOwnFamily.
 [[nodiscard]] std::vector<twins::camera::Material> draw_materials(CropKind kind,
                                                                   std::span<const twins::camera::Material> file,

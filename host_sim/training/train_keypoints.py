@@ -43,14 +43,14 @@ class Crops:
         return int(self.starts[-1])
 
     def batch(self, indices):
-        """Bytes, places in cells, which count."""
+        """Bytes, positions in cells, validity."""
         tables = numpy.searchsorted(self.starts, indices, "right") - 1
         records = numpy.stack([self.tables[t][i - self.starts[t]] for t, i in zip(tables, indices)])
         return records["image"].copy(), records["cells"].copy(), records["counts"].copy()
 
 
 def target_maps(cells):
-    """Normalised Gaussians about the places, batch x 11 x 1024."""
+    """Normalised Gaussians about the keypoints, batch x 11 x 1024."""
     axis = torch.arange(crops.MAP_SIDE)
     along = torch.exp(-0.5 * ((axis - cells[..., None]) / TARGET_SIGMA_CELLS)**2)  # batch x 11 x (x, y) x 32
     maps = along[..., 1, :, None] * along[..., 0, None, :]
@@ -72,7 +72,7 @@ def maps_of(model, images):
 
 
 def errors_of(model, table):
-    """Keypoint errors, samples of the crop, of those that count."""
+    """Errors of the valid keypoints, samples of the crop."""
     places = decode.decode(maps_of(model, table["image"]), TARGET_SIGMA_CELLS).places
     return 4.0 * numpy.linalg.norm(places - table["cells"], axis=2)[table["counts"] > 0.5]
 
@@ -95,7 +95,7 @@ class Training:
         self.averaged.load_state_dict(kept["averaged"])
         self.optimiser.load_state_dict(kept["optimiser"])
         self.step, self.elapsed_s = kept["step"], kept["elapsed_s"]
-        print(f"goes on at step {self.step}, {self.elapsed_s / 60:.1f} min", flush=True)
+        print(f"continuing at step {self.step}, {self.elapsed_s / 60:.1f} min", flush=True)
 
     def save(self):
         part = self.checkpoint.with_suffix(".part")
@@ -110,7 +110,7 @@ class Training:
         os.replace(part, self.options.out)
 
     def rate(self):
-        """Up over three parts in a hundred of the time, then down as a cosine to nothing."""
+        """Linear increase over 3 % of the time, then cosine decay to zero."""
         part = min(self.elapsed_s / (60.0 * self.options.minutes), 1.0)
         if part < 0.03:
             return self.options.rate * (0.1 + 0.9 * part / 0.03)
@@ -176,7 +176,7 @@ class Training:
                 if self.elapsed_s - exported > 60.0 * options.export_every:
                     self.export()
                     exported = self.elapsed_s
-                    print("weights so far written", flush=True)
+                    print("intermediate weights written", flush=True)
         self.save()
         self.export()
         self.report(losses or [0.0], 0.0, available, held_out)
@@ -185,16 +185,16 @@ class Training:
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--crops", type=pathlib.Path, required=True, help="folder of the shards")
-    parser.add_argument("--out", type=pathlib.Path, required=True, help="weights file; the checkpoint lies beside it")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="weights file; the checkpoint is stored with it")
     parser.add_argument("--minutes", type=float, default=50.0)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--rate", type=float, default=2.5e-3, help="of learning, at its highest")
+    parser.add_argument("--rate", type=float, default=2.5e-3, help="maximum learning rate")
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--least-crops", type=int, default=3000, help="to begin with")
+    parser.add_argument("--least-crops", type=int, default=3000, help="minimum number of crops to start")
     parser.add_argument("--export-every", type=float, default=1e9, help="minutes")
     parser.add_argument("--report-s", type=float, default=120.0)
     options = parser.parse_args()
-    # Half the time where the processor multiplies bfloat16 itself, else much more.
+    # Half the time if the processor supports bfloat16, otherwise much more.
     options.bfloat16 = "avx512_bf16" in pathlib.Path("/proc/cpuinfo").read_text()
     torch.set_num_threads(options.threads)
     torch.set_flush_denormal(True)

@@ -20,7 +20,7 @@
 
 namespace vbar::truth {
 
-/// What an integration has cost so far.
+/// Cost of an integration so far.
 struct IntegrationStatistics {
   std::int64_t accepted_steps = 0;
   std::int64_t rejected_steps = 0;
@@ -62,7 +62,7 @@ class Dopri5 {
   Dopri5(Rhs rhs, const Tolerance& tolerance) : rhs_(std::move(rhs)), tolerance_(tolerance) {
     for (int i = 0; i < N; ++i) {
       const double relative = tolerance.relative[i], absolute = tolerance.absolute[i];
-      // Ten units in the last place, as DOPRI5: below, rounding and not the method decides about the step.
+      // Ten units in the last place, as DOPRI5: below, rounding and not the method determines the step.
       const bool too_fine = absolute == 0.0 && relative < 10.0 * std::numeric_limits<double>::epsilon();
       if (!std::isfinite(relative) || !std::isfinite(absolute) || relative < 0.0 || absolute < 0.0 || too_fine) {
         throw std::invalid_argument("an integration tolerance must be finite and above what doubles can hold");
@@ -87,7 +87,7 @@ class Dopri5 {
     rate_ = evaluate(time_, state_);
   }
 
-  /// Adds a constant under which the right-hand side does not change (a full turn of an angle).
+  /// Adds a constant under which the right-hand side does not change (a full revolution of an angle).
   void translate(const State& offset) { state_ += offset; }
 
   /// One accepted step, not beyond `limit`. Throws std::runtime_error if no step, however small, meets the tolerance.
@@ -109,14 +109,14 @@ class Dopri5 {
         shrink = std::clamp(shrink / kSafety, 1.0 / kLargestGrowth, kLargestShrink);
         double next = h / shrink;
         if (just_rejected_) next = direction_ * std::min(std::abs(next), std::abs(h));
-        // A step shortened by the limit says little about the one after it: the size chosen before stands.
+        // A step shortened by the limit is not used to choose the next one: the size chosen before is kept.
         if (std::abs(h) < std::abs(step_) && std::abs(next) < std::abs(step_)) next = step_;
         previous_error_ = std::max(error, kSmallestError);
         just_rejected_ = false;
         step_ = next;
         return;
       }
-      // Not a number counts as the largest error.
+      // A NaN counts as the largest error.
       step_ = h / (std::isfinite(error) ? std::min(kLargestShrink, fac11 / kSafety) : kLargestShrink);
       just_rejected_ = true;
       ++statistics_.rejected_steps;

@@ -14,7 +14,7 @@ namespace {
 
 using Function = std::function<double(double)>;
 
-constexpr std::uintmax_t kMostEvaluations = 200;  // bisection alone would need fewer than 64
+constexpr std::uintmax_t kMaxEvaluations = 200;  // bisection alone would need fewer than 64
 
 struct Sample {
   double time;
@@ -33,16 +33,16 @@ double just_beyond(const Function& g, const Sample& near, const Sample& far, dou
   const bool forward = near.time < far.time;
   const Sample& low = forward ? near : far;
   const Sample& high = forward ? far : near;
-  std::uintmax_t evaluations = kMostEvaluations;
+  std::uintmax_t evaluations = kMaxEvaluations;
   const auto close_enough = [&](double a, double b) { return std::abs(a - b) <= 0.5 * resolution; };
   const auto [begin, end] =
       boost::math::tools::toms748_solve(g, low.time, high.time, low.g, high.g, close_enough, evaluations);
   return forward ? std::min(begin + resolution, far.time) : std::max(end - resolution, far.time);
 }
 
-/// The bottom of a dip between three equally spaced samples, if it may reach zero.
+/// The minimum between three equally spaced samples, if it may reach zero.
 std::optional<Sample> bottom_of_dip(const Function& g, const Sample& a, const Sample& b, const Sample& c) {
-  // The parabola through the samples, x = -1, 0, 1; its vertex may be a quarter outside, for what a parabola is worth.
+  // The parabola through the samples, x = -1, 0, 1; its vertex may lie a quarter outside (an approximation).
   constexpr double kFarthest = 1.25;
   const double slope = 0.5 * (c.g - a.g);
   const double curvature = c.g - 2.0 * b.g + a.g;
@@ -50,10 +50,10 @@ std::optional<Sample> bottom_of_dip(const Function& g, const Sample& a, const Sa
   const double vertex = b.g - 0.5 * slope * slope / curvature;
   const double spread = std::max({a.g, b.g, c.g}) - std::min({a.g, b.g, c.g});
   if (vertex > spread) return std::nullopt;
-  // The bottom is found to half the digits of a double, which is all that a smooth minimum has; from the middle sample,
-  // so that they are digits of the spacing and not of the date.
+  // The minimum is found to half the digits of a double, the resolution of a smooth minimum; relative to the middle
+  // sample, so that they are digits of the spacing and not of the date.
   constexpr int kBits = std::numeric_limits<double>::digits / 2;
-  std::uintmax_t evaluations = kMostEvaluations;
+  std::uintmax_t evaluations = kMaxEvaluations;
   const double spacing = std::abs(c.time - b.time);
   const auto [offset, value] = boost::math::tools::brent_find_minima(
       [&](double from_middle) { return g(b.time + from_middle); }, -spacing, spacing, kBits, evaluations);

@@ -1,5 +1,5 @@
 #pragma once
-// When a function of time changes sign: shadow edges, apsides, anything an integration must stop at.
+// When a function of time changes sign: shadow edges, apsides, any event at which an integration must stop.
 
 #include <functional>
 #include <optional>
@@ -7,9 +7,9 @@
 namespace vbar::truth {
 
 /// The first time after `from` (up to `to`, either direction) at which `g` is no longer positive. It counts as positive
-/// at `from` whatever rounding says, so that an edge just located is not found again. The function is looked at in
+/// at `from` regardless of rounding, so that an edge just located is not found again. The function is sampled in
 /// `samples` (> 0, rounded up to even) equal parts; it may have one extremum in any two of them. A dip below zero
-/// between samples is found however short it is, if the parabola through the samples comes near zero: the dip's bottom
+/// between samples is found however short it is, if the parabola through the samples comes near zero: the minimum
 /// is then searched (Brent's method). The change is located to `resolution` (> 0, in the unit of time) by the TOMS 748
 /// bracketing method (Alefeld, Potra, Shi 1995); the time returned lies on its far side. Throws std::invalid_argument
 /// for samples or resolution not above 0 and for a `g` that is not a number.

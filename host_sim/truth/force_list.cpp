@@ -25,7 +25,7 @@ constexpr const char* kAtmosphereFile = "atmosphere/nrlmsise00.csv";
 /// a high orbit, that overruns the data is refused when it happens.
 constexpr std::int64_t kLongestStep_s = 3600;
 
-/// Refuses now, and not in flight, a run that `look_up` has no data for. `look_up`: of an instant, throws
+/// Rejects before the run starts an epoch or end for which `look_up` has no data. `look_up`: of an instant, throws
 /// std::out_of_range.
 template <class LookUp>
 void check_reach(const TruthSettings& settings, const std::filesystem::path& file, const LookUp& look_up) {
@@ -60,7 +60,7 @@ void load_earth_orientation(const TruthSettings& settings, ForceData& data) {
   check_reach(settings, file, [&](fsw::GpsTime time) { static_cast<void>(data.earth_orientation->at(time)); });
 }
 
-/// A force on the surface is that of an area over a mass: without one of them there is none, which nobody asks for.
+/// A force on the surface is proportional to area over mass: both are required, or the force would vanish silently.
 void require(const SpacecraftSettings& spacecraft, std::string_view force, std::string_view property, double value) {
   if (value > 0.0) return;
   throw std::invalid_argument(

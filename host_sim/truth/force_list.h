@@ -1,5 +1,5 @@
 #pragma once
-// From the switches of a mission to the forces on a spacecraft.
+// The forces on a spacecraft from the switches of a mission.
 
 #include <memory>
 #include <vector>
@@ -15,7 +15,7 @@
 
 namespace vbar::truth {
 
-/// What is large and constant: loaded once, shared by the forces of all spacecraft and by all threads.
+/// Large constant data: loaded once, shared by the forces of all spacecraft and by all threads.
 struct ForceData {
   std::shared_ptr<const GravityField> gravity;
   TideSystem tide_system = TideSystem::kZeroTide;  ///< of the gravity model; read only if the tides act
@@ -25,12 +25,12 @@ struct ForceData {
 };
 
 /// Loads what the forces of `settings` need. Throws std::runtime_error for a missing or damaged file,
-/// std::invalid_argument for a degree or order that the gravity file has not, std::out_of_range if the data do not
+/// std::invalid_argument for a degree or order above the gravity file's, std::out_of_range if the data do not
 /// reach from the epoch to the end.
 ForceData load_force_data(const TruthSettings& settings);
 
-/// Loads the atmosphere and its solar indices, which load_force_data() leaves out without drag; nothing if they are
-/// there. Throws as load_force_data().
+/// Loads the atmosphere and its solar indices, which load_force_data() omits without drag; nothing if they are
+/// loaded. Throws as load_force_data().
 void load_atmosphere(const TruthSettings& settings, ForceData& data);
 
 /// The forces on one spacecraft, gravity first. Throws std::invalid_argument, naming spacecraft, force and property, if

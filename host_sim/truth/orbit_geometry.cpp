@@ -17,13 +17,13 @@ struct SineCosine {
   double sine, cosine;
 };
 
-/// Eccentric argument of latitude F of F - ex sin F + ey cos F = u. Newton's method from a start that is right to first
+/// Eccentric argument of latitude F of F - ex sin F + ey cos F = u. Newton's method from a start correct to first
 /// order in the eccentricity converges in a few iterations for near-circular orbits, and the bound covers e up to 0.99.
 SineCosine solve_kepler(double ex, double ey, double u) {
-  constexpr int kMostIterations = 50;
+  constexpr int kMaxIterations = 50;
   double f = u + ex * std::sin(u) - ey * std::cos(u);
   if (ex * ex + ey * ey > 0.25) f = u;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const double sine = std::sin(f), cosine = std::cos(f);
     const double slope = 1.0 - ex * cosine - ey * sine;
     const double correction = (f - ex * sine + ey * cosine - u) / slope;

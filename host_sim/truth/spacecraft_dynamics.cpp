@@ -171,7 +171,7 @@ fsw::Vector3 SpacecraftDynamics::sun_eci_at(double seconds) {
 
 void SpacecraftDynamics::check_altitude(double seconds, const fsw::Vector3& position_eci) const {
   const double altitude = position_eci.norm() - earth_radius_;
-  // Written so that a state that is not a number is refused as well.
+  // Written so that a NaN is rejected as well.
   if (!(altitude > kReentryAltitude)) {
     throw std::domain_error(fmt::format("re-enters: {:.1f} km above the Earth at {}", 1e-3 * altitude, date(seconds)));
   }

@@ -1,8 +1,8 @@
 #pragma once
 // The equations of motion of one spacecraft: Gauss's variational equations driven by a list of forces.
 //
-// Forces with edges (force.h) act on the side they were told last. The dynamics keep count of the sides, over all
-// forces in a row; who integrates (spacecraft_propagator.h) finds the edges and turns them over.
+// Forces with edges (force.h) act on the side that was set last. The dynamics number the sides over all
+// forces; the integration (spacecraft_propagator.h) locates the edges and changes the sides.
 
 #include <cstdint>
 #include <limits>
@@ -25,26 +25,26 @@ struct ForceAcceleration {
   fsw::Vector3 acceleration_eci;  ///< m/s^2
 };
 
-/// Wall-clock time spent in one force, or in what all of them share.
+/// Wall-clock time spent in one force, or in computations that all of them share.
 struct ForceTime {
   std::string_view force;  ///< the force's name, or "frames" for the Earth's rotation, the Sun and the Moon
   double wall_s;
 };
 
-/// Where the motion is: the date from which the forces' interval runs, of each edge whether it is positive, and the
-/// longest step (s) that the forces bear there.
+/// Regime of the motion: the date from which the forces' interval runs, of each edge whether it is positive, and the
+/// longest step (s) that the forces allow there.
 struct ForceRegime {
   double seconds = 0.0;
   std::vector<bool> sides;
   double longest_step = std::numeric_limits<double>::infinity();
 };
 
-/// Not thread-safe: one object a spacecraft.
+/// Not thread-safe: one object per spacecraft.
 class SpacecraftDynamics {
  public:
   /// A spacecraft this low (m, above a sphere of the Earth's radius, so up to 101 km above the ellipsoid near a pole)
   /// has re-entered: no orbit is completed there (perigees of the last orbits of real satellites lie at 80 to 90 km,
-  /// McDowell 2018), and drag as of free molecules means nothing.
+  /// McDowell 2018), and free-molecular drag no longer applies.
   static constexpr double kReentryAltitude = 80e3;
 
   /// `name` for messages; `gm` (m^3/s^2) and `earth_radius` (m) of the central body; forces beside the point mass.
@@ -52,18 +52,18 @@ class SpacecraftDynamics {
                      std::vector<std::unique_ptr<Force>> forces);
 
   /// Rates of the osculating elements [a, ex, ey, i, raan, u] `seconds` after the epoch. Throws std::domain_error, with
-  /// the date, if the spacecraft is below kReentryAltitude or its orbit no ellipse.
+  /// the date, if the spacecraft is below kReentryAltitude or its orbit is not an ellipse.
   fsw::Vector6 element_rates(double seconds, const fsw::Vector6& elements);
 
   /// Sum of all forces, m/s^2 in ECI, beside the point mass: what a Cartesian integration would use. Throws as
   /// element_rates() on re-entry.
   fsw::Vector3 perturbation_eci(double seconds, const fsw::orbit::CartesianState& state);
 
-  /// The shares of the sum, in the forces' order, in the regime of that very instant; the regime told is left as it
-  /// was.
+  /// The shares of the sum, in the forces' order, in the regime of that very instant; the regime set is left
+  /// unchanged.
   std::vector<ForceAcceleration> accelerations(double seconds, const fsw::orbit::CartesianState& state);
 
-  /// All forces' edges, counted through, and their values.
+  /// The edges of all forces, numbered consecutively, and their values.
   int edge_count() const { return static_cast<int>(edges_.size()); }
   double edge(int index, double seconds, const fsw::orbit::CartesianState& state);
 
@@ -82,7 +82,7 @@ class SpacecraftDynamics {
   /// The first date after `seconds` at which a force jumps by itself.
   double next_jump_after(double seconds) const;
 
-  /// What forces, and torques beside them, are given at an instant. The Sun and the Moon only if a force needs them or
+  /// Inputs of forces and torques at an instant. The Sun and the Moon only if a force needs them or
   /// provide_sun_and_moon() was called.
   ForceInput input_at(double seconds, const fsw::orbit::CartesianState& state);
   void provide_sun_and_moon() { needs_sun_and_moon_ = true; }
@@ -90,7 +90,7 @@ class SpacecraftDynamics {
   /// Geocentric position of the Sun, m.
   fsw::Vector3 sun_eci_at(double seconds);
 
-  /// Takes the time that each force takes from now on (some 50 ns a force are added to it), or stops doing so.
+  /// Measures the time of each force from now on (which adds some 50 ns per force), or stops measuring.
   void measure_time(bool on);
   std::vector<ForceTime> times() const;
 

@@ -23,7 +23,7 @@ Tolerance element_tolerance(double tolerance) {
 
 constexpr double kTwoPi = 2.0 * M_PI;
 
-/// Runs `work` and puts the spacecraft's name before the message of what it throws.
+/// Runs `work` and prefixes the message of what it throws with the spacecraft's name.
 template <class Work>
 void naming(const std::string& name, const Work& work) {
   try {
@@ -47,15 +47,15 @@ fsw::orbit::QnsElements dated_elements(const SpacecraftDynamics& dynamics, const
   }
 }
 
-/// In how many equal parts a step of `size` (s) is looked at: two, or so many that the parts are no longer than a
-/// twelfth of the period of a circular orbit at the perigee. Faster than that circle nothing turns about the Earth but
-/// by the eccentricity's factor below 1.5.
+/// Number of equal parts in which a step of `size` (s) is sampled: two, or enough that the parts are no longer than a
+/// twelfth of the period of a circular orbit at the perigee, which bounds the angular rate about the Earth up to a
+/// factor below 1.5 by the eccentricity.
 int looks_along(double size, const fsw::Vector6& elements, double gm) {
   constexpr double kPartsOfPeriod = 12.0;
-  constexpr int kMostParts = 10000;  // a step of weeks, in the loosest of orbits: bounds the work
+  constexpr int kMaxParts = 10000;  // a step of weeks, in the loosest of orbits: bounds the work
   const double perigee = elements[0] * (1.0 - std::hypot(elements[1], elements[2]));
   const double longest = kTwoPi / kPartsOfPeriod * std::sqrt(perigee / gm) * perigee;
-  return std::clamp(static_cast<int>(std::ceil(std::min(size / longest, 1.0 * kMostParts))), 2, kMostParts);
+  return std::clamp(static_cast<int>(std::ceil(std::min(size / longest, 1.0 * kMaxParts))), 2, kMaxParts);
 }
 
 }  // namespace
@@ -101,8 +101,8 @@ void SpacecraftPropagator::step() {
   const bool jumped = integrator_.time() == jump;
   if (jumped) dynamics_->enter_interval(jump);
   if (crossing || jumped) integrator_.restart(integrator_.state());
-  // The mean argument of latitude is kept within a turn, so that its rounding stays that of an angle and not of a count
-  // of turns.
+  // The mean argument of latitude is kept within one revolution, so that its rounding stays that of an angle and not of
+  // a number of revolutions.
   if (integrator_.state()[5] > M_PI) {
     fsw::Vector6 turn = fsw::Vector6::Zero();
     turn[5] = -kTwoPi;
@@ -173,7 +173,7 @@ AttitudeState SpacecraftPropagator::attitude_at(double seconds) const {
 
 void SpacecraftPropagator::apply_impulse_rtn(const fsw::Vector3& dv_rtn) {
   if (!dv_rtn.allFinite())
-    throw std::invalid_argument(fmt::format("spacecraft \"{}\": an impulse is not a number", name()));
+    throw std::invalid_argument(fmt::format("spacecraft \"{}\": an impulse is not finite", name()));
   naming(name(), [&] {
     if (current_ < integrator_.time()) retake_last_step_to(current_);
     const OrbitGeometry before = orbit_geometry(elements_from_vector(integrator_.state()), dynamics_->gm());
@@ -187,7 +187,7 @@ void SpacecraftPropagator::apply_impulse_rtn(const fsw::Vector3& dv_rtn) {
 }
 
 void SpacecraftPropagator::retake_last_step_to(double seconds) {
-  // The step may have ended at an edge or a jump, and the forces been told of what follows.
+  // The step may have ended at an edge or a jump, and the forces been set to what follows.
   dynamics_->set_regime(regime_of_last_step_);
   integrator_.cut_last_step(seconds);
   kept_.back() = {seconds, integrator_.last_step()};

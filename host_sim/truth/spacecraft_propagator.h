@@ -1,5 +1,5 @@
 #pragma once
-// One spacecraft carried through time: its dynamics, the integrator, and the last few steps' continuous solution.
+// Propagation of one spacecraft: its dynamics, the integrator, and the dense output of the last few steps.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,12 +20,12 @@
 namespace vbar::truth {
 
 /// Times are seconds after the model's epoch. The integrator's steps do not depend on the times asked for, so neither
-/// does the trajectory; only impulses and the forces' jumps end a step. Not thread-safe: one thread a spacecraft.
+/// does the trajectory; only impulses and the forces' jumps end a step. Not thread-safe: one thread per spacecraft.
 ///
 /// Where a force jumps (force.h), a step ends: at dates exactly, at edges within kEdgeResolution beyond the edge of the
-/// dense output. Along each step every edge is looked at twice or more, at most a twelfth of the perigee circle's
-/// period apart (8 minutes in a low orbit; steps are shorter there), and a dip between these looks is followed to its
-/// bottom: a spacecraft that grazes the shadow for a tenth of a second is seen.
+/// dense output. Along each step every edge is sampled twice or more, at most a twelfth of the perigee circle's
+/// period apart (8 minutes in a low orbit; steps are shorter there), and a dip between these samples is followed to its
+/// minimum: a grazing passage through the shadow of a tenth of a second is detected.
 class SpacecraftPropagator {
  public:
   /// Starts at `seconds` with an osculating state. `tolerance`: local error of each element a step, relative for the
@@ -36,22 +36,22 @@ class SpacecraftPropagator {
                        const fsw::orbit::CartesianState& osculating);
 
   /// Moves the current time to `seconds`, not before it. Throws std::domain_error, naming the spacecraft
-  /// and the date, on re-entry or if a force turns the orbit into no ellipse.
+  /// and the date, on re-entry or if the orbit ceases to be an ellipse.
   void advance_to(double seconds);
 
   /// State at the current time.
   fsw::orbit::CartesianState state() const { return state_at(current_); }
 
   /// State at a time from the beginning of the steps still kept (some minutes; kKeptSteps) to the end of the last one,
-  /// which may lie after the current time. At an impulse's time: after it. Throws std::out_of_range outside, saying
+  /// which may lie after the current time. At an impulse's time: after it. Throws std::out_of_range outside, stating
   /// what is kept.
   fsw::orbit::CartesianState state_at(double seconds) const;
 
   /// The same with all of the acceleration.
   OrbitalMotion motion_at(double seconds) const;
 
-  /// What torques are given at a time as in state_at, or for one after the last step's end what they are given there:
-  /// an attitude's first guess of a step, or rounding, may reach beyond.
+  /// Input of torques at a time as in state_at; for a time after the end of the last step, the input there:
+  /// the first guess of an attitude step, or rounding, may reach beyond.
   ForceInput surroundings_at(double seconds) const;
 
   /// Gives the spacecraft an attitude, known at the current time; from then on it is carried along.

@@ -16,7 +16,7 @@ namespace {
 /// Starting threads costs as much as about this many seconds of simulated flight; below it one thread is faster.
 constexpr double kWorthThreads_s = 120.0;
 
-/// Adds the wall-clock time of its life to a sum.
+/// Adds the wall-clock time of its lifetime to a sum.
 class WallClock {
  public:
   explicit WallClock(double& sum_s) : sum_s_(sum_s), start_(std::chrono::steady_clock::now()) {}
@@ -118,7 +118,7 @@ void TruthModel::advance_in_parallel(const std::vector<SpacecraftPropagator*>& s
     for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back(work);
     work();
   }
-  // The same spacecraft's error whichever thread met one first.
+  // The error of the same spacecraft whichever thread threw first.
   for (const auto& error : errors) {
     if (error) std::rethrow_exception(error);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// The true motion of all spacecraft of a run: the ground truth that every error is measured against.
+// The true motion of all spacecraft of a run: the reference of every error.
 
 #include <cstddef>
 #include <cstdint>
@@ -55,7 +55,7 @@ class TruthModel {
 
   /// Moves all spacecraft to exactly `time`. Throws std::invalid_argument for a time before the current one,
   /// std::domain_error if a spacecraft re-enters or leaves its ellipse, std::out_of_range if the Earth orientation data
-  /// end; the model is then of no further use.
+  /// end; the model must not be used any more.
   void advance_to(fsw::GpsTime time);
 
   fsw::GpsTime time() const { return time_; }
@@ -78,13 +78,13 @@ class TruthModel {
   /// Adds a velocity (m/s, in the spacecraft's own RTN) at the current time.
   void apply_impulse_rtn(std::size_t index, const fsw::Vector3& dv_rtn);
 
-  /// Gives a spacecraft an attitude from the current time on. Throws std::invalid_argument for settings that make none
-  /// (a body that is none, axes that are not two, a spacecraft to point at that is not there).
+  /// Gives a spacecraft an attitude from the current time on. Throws std::invalid_argument for inconsistent settings
+  /// (an invalid body, parallel axes, an unknown spacecraft to point at).
   void set_attitude(std::size_t index, const AttitudeSettings& settings);
 
-  /// Turns a spacecraft with a commanded attitude to a direction in its own RTN: a unit vector and its rate there
-  /// (1/s), at `time`. One that has passed counts from now on, where its line has led by now. False if it is refused
-  /// (CommandedAttitude::take). Throws std::logic_error if the spacecraft's attitude is not one that is commanded.
+  /// Commands the boresight of a spacecraft with a commanded attitude to a direction in its own RTN: a unit vector and
+  /// its rate there (1/s), at `time`. A command for the past takes effect now, with its line advanced to now. False if
+  /// it is rejected (CommandedAttitude::take). Throws std::logic_error if the attitude is not a commanded one.
   bool command_pointing(std::size_t index, fsw::GpsTime time, const fsw::Vector3& boresight_rtn,
                         const fsw::Vector3& boresight_rate_rtn);
 
@@ -104,7 +104,7 @@ class TruthModel {
   /// The forces' shares of a spacecraft's acceleration beside the Earth's point mass, at the current time.
   std::vector<ForceAcceleration> accelerations(std::size_t index) { return spacecraft_.at(index)->accelerations(); }
 
-  /// From now on takes the time that each force takes, or stops doing so. Times are sums over the spacecraft, in the
+  /// Measures the time of each force from now on, or stops measuring. Times are sums over the spacecraft, in the
   /// forces' order, that of the frames first.
   void measure_force_times(bool on);
   std::vector<ForceTime> force_times() const;

@@ -1,4 +1,4 @@
-// The truth model's attitudes: what surrounds each, taken from the spacecraft's own orbit and forces.
+// The attitudes of the truth model, with inputs from the spacecraft's own orbit and forces.
 
 #include <algorithm>
 #include <stdexcept>
@@ -13,7 +13,7 @@
 namespace vbar::truth {
 namespace {
 
-/// Air and light on facets do not depend on the sphere that stands for a spacecraft in its orbit's forces.
+/// Air and light on facets do not depend on the sphere that represents a spacecraft in the forces on its orbit.
 constexpr SurfaceProperties kAnySphere{1.0, 1.0, 1.0, 1.0, 1.0};
 
 bool has_torque(const AttitudeSettings& settings, TorqueKind kind) {

@@ -1,5 +1,5 @@
 #pragma once
-// What the truth of a run is made of: its time, gravity, forces, accuracy and data files.
+// Settings of the truth model of a run: time, gravity, forces, accuracy and data files.
 
 #include <filesystem>
 #include <string>
@@ -19,7 +19,7 @@ struct TruthSettings {
   ForceModel forces;         ///< beside gravity
   double tolerance = 1e-12;  ///< local error a step, in units of the orbit's size: kSmallestTolerance to
                              ///< kLargestTolerance
-  int threads = 1;           ///< at most so many spacecraft are propagated at a time; does not change a bit
+  int threads = 1;           ///< maximum number of spacecraft propagated concurrently; same bits for any
 
   // Data files: absolute, or from the data folder. Space weather is read only if a force needs it.
   std::filesystem::path data_directory;
@@ -27,17 +27,17 @@ struct TruthSettings {
   std::filesystem::path earth_orientation_file = "earth/eop_2009_2013.csv";
   std::filesystem::path space_weather_file = "earth/space_weather_2009_2013.csv";
 
-  /// Below it rounding, which a step cannot beat, would decide about the step size.
+  /// Below it rounding would determine the step size.
   static constexpr double kSmallestTolerance = 1e-14;
-  /// Above it a day's error is that of an orbit's size: the steps no longer resolve the forces.
+  /// Above it the error of a day reaches the size of the orbit: the steps no longer resolve the forces.
   static constexpr double kLargestTolerance = 1e-6;
 };
 
-/// A spacecraft as the truth takes it.
+/// Initial state and properties of a spacecraft.
 struct SpacecraftSettings {
   std::string name;
   fsw::orbit::CartesianState osculating;  ///< position and velocity in GCRF
-  SurfaceProperties surface;              ///< only forces on the surface look at it
+  SurfaceProperties surface;              ///< used by forces on the surface only
 };
 
 }  // namespace vbar::truth

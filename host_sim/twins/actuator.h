@@ -1,5 +1,5 @@
 #pragma once
-// Turns a maneuver command into an executed maneuver.
+// Executes maneuver commands.
 
 #include <vector>
 
@@ -9,12 +9,12 @@
 
 namespace vbar::twins {
 
-/// What an actuator did with a command.
+/// Result of the execution of a command.
 struct Execution {
   fsw::GpsTime time;  ///< of the impulse, or of the refused one
   vbar::executed_maneuver
       maneuver{};  ///< accepted or not, and the impulse that happened, m/s in the servicer's RTN at `time`
-  Packet packet;   ///< `maneuver` as the flight software gets it
+  Packet packet;   ///< `maneuver` as sent to the flight software
   std::vector<Note> notes;
 };
 

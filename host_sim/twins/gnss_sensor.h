@@ -1,7 +1,7 @@
 #pragma once
 // A GNSS receiver and a star tracker as a packet source: at each epoch the receiver's bytes and the attitude, straight
-// to the flight software, or by way of the crosslink if they are those of another spacecraft. Whether the receiver is
-// a twin or a device is the receiver's affair (gnss/receiver_bytes.h).
+// to the flight software, or by way of the crosslink if they are those of another spacecraft. The receiver is
+// a twin or a device (gnss/receiver_bytes.h).
 
 #include <memory>
 #include <optional>
@@ -19,9 +19,9 @@ class GnssSensor final : public PacketSource {
  public:
   struct Settings {
     std::string spacecraft;          ///< that carries the receiver
-    std::uint8_t flight_number = 0;  ///< of the spacecraft whose flight software gets the packets
+    std::uint8_t flight_number = 0;  ///< of the spacecraft whose flight software receives the packets
     fsw::GpsTime start;              ///< first epoch
-    fsw::Duration period;            ///< > 0, whole milliseconds: between calls of the receiver
+    fsw::Duration period;            ///< > 0, integer milliseconds: between calls of the receiver
   };
 
   /// `crosslink`: how the bytes reach the flight software; null: by wire. `receiver` must not be null.
@@ -36,7 +36,7 @@ class GnssSensor final : public PacketSource {
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
   /// The packets of one epoch: receiver bytes in pieces, and the attitude. No packets if the crosslink loses them,
-  /// which it does whole. kFailed if the truth lacks the spacecraft or its attitude, or the receiver fails.
+  /// which applies to all of them. kFailed if the truth lacks the spacecraft or its attitude, or the receiver fails.
   Measurement measure(const TruthSnapshot& truth) override;
 
   [[nodiscard]] const gnss::ReceiverBytes& receiver() const { return *receiver_; }

@@ -29,8 +29,8 @@ void LcmLogReader::fail(std::uint64_t offset, const std::string& what) const {
   throw DamagedLog(file_.string() + ": byte " + std::to_string(offset) + ": " + what);
 }
 
-/// The event at `offset` reaches beyond the end of the file. A log that was cut has nothing more behind it; if another
-/// event follows, it is the size that is wrong.
+/// The event at `offset` reaches beyond the end of the file. A truncated log ends there; if another
+/// event follows, the size is wrong.
 void LcmLogReader::take_rest_as_cut(std::uint64_t offset) {
   stream_.clear();
   stream_.seekg(static_cast<std::streamoff>(offset + sizeof kSyncWord));

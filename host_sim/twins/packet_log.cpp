@@ -65,7 +65,7 @@ using LogHandle = std::unique_ptr<lcm_eventlog_t, LogCloser>;
 }
 
 // The size that a record claims, at its place in the encoded record, must be that of the event: the generated decoder
-// makes room for whatever is claimed before it looks whether the bytes are there.
+// allocates the claimed size before it checks that the bytes exist.
 bool claims_its_size(const LoggedEvent& event) {
   constexpr std::size_t kSizeAt = 8 + 8 + 8 + 1;  // type hash, step, time, direction
   constexpr std::size_t kPacketAt = kSizeAt + 4;
@@ -122,7 +122,7 @@ void take(LoggedEvent& event, const std::filesystem::path& file, PacketLog& log)
   } else if (event.data.size() == sizeof log.events) {
     log.events_at_end = fsw::packets::read_big_endian<std::uint64_t>(event.data, 0);
   } else {
-    fail(file, event, "a damaged end");
+    fail(file, event, "a damaged end record");
   }
 }
 

@@ -1,15 +1,15 @@
 #pragma once
-// Logs of packets in LCM's log format: what a run leaves (packets.lcmlog), and what lcm-logger writes when it listens
-// to a live run. A packet is two events:
+// Logs of packets in LCM's log format: the log of a run (packets.lcmlog), and the log that lcm-logger writes when it
+// listens to a live run. A packet is two events:
 //   VBAR_PACKET                               a vbar_host.packet_record: the whole space packet, its step and direction
 //   vbar/<message>/<spacecraft>/<unit>        the LCM message inside it, for lcm-spy and other LCM programs that only
 //   listen
-// Of a digital camera's images there may stand instead
-//   VBAR_IMAGE_RECIPE                         a vbar_host.image_recipe: from what an image can be made again
-//   VBAR_IMAGE_TILES                          a vbar_host.tile_run: in the place of some of its tiles
+// Images of a digital camera may be replaced by
+//   VBAR_IMAGE_RECIPE                         a vbar_host.image_recipe: from which an image can be regenerated
+//   VBAR_IMAGE_TILES                          a vbar_host.tile_run: in place of some of its tiles
 // The last event of a run that ended is
 //   VBAR_END                                  the number of events before it, 8 bytes big-endian
-// Only the channels in capitals are read back. Event times are the simulated GPS time, so that the same run makes the
+// Only the channels in capitals are read back. Event times are the simulated GPS time, so that the same run writes the
 // same log.
 
 #include <cstdint>
@@ -31,17 +31,17 @@ inline constexpr const char* kRecipeChannel = "VBAR_IMAGE_RECIPE";
 inline constexpr const char* kTilesChannel = "VBAR_IMAGE_TILES";
 inline constexpr const char* kEndChannel = "VBAR_END";
 
-/// A packet as it crossed the border of a flight computer.
+/// A packet at the interface of a flight computer.
 struct PacketRecord {
-  std::uint32_t step = 0;  ///< of the flight step that took it (its inputs and its tick) or made it
+  std::uint32_t step = 0;  ///< of the flight step that received it (its inputs and its tick) or sent it
   fsw::GpsTime time;       ///< of that step
   bool to_flight = false;
   Packet packet;
-  /// Packets that are not in the log, in the place of `packet`, which is empty then.
+  /// Packets that are not in the log, in place of `packet`, which is empty then.
   std::optional<TileRun> tiles = std::nullopt;
 };
 
-/// What goes out on LCM for a packet.
+/// LCM messages of a packet.
 struct LcmEvent {
   std::string channel;
   std::vector<std::uint8_t> data;
@@ -52,13 +52,13 @@ struct LcmEvent {
 
 class PacketLogWriter {
  public:
-  /// Makes or empties `file`. Throws std::runtime_error that names it.
+  /// Creates or truncates `file`. Throws std::runtime_error that names it.
   explicit PacketLogWriter(const std::filesystem::path& file);
   ~PacketLogWriter();
   PacketLogWriter(const PacketLogWriter&) = delete;
   PacketLogWriter& operator=(const PacketLogWriter&) = delete;
 
-  /// Throws std::runtime_error if the file takes no more.
+  /// Throws std::runtime_error if the file cannot be written.
   void write(const PacketRecord& record);
   /// The same of a recipe (Measurement::recipe) of this time.
   void write_recipe(fsw::GpsTime time, std::vector<std::uint8_t> recipe);
@@ -75,8 +75,8 @@ class PacketLogWriter {
   fsw::GpsTime last_;
 };
 
-/// Two events that stand one after the other although their numbers do not follow: events between them were removed.
-/// Before the first event stands event -1.
+/// Two consecutive events whose numbers are not consecutive: events between them were removed.
+/// The first event is preceded by event -1.
 struct EventGap {
   std::uint64_t offset = 0;  ///< of the second in the file
   std::int64_t before = 0, after = 0;
@@ -92,7 +92,7 @@ struct PacketLog {
   std::optional<std::uint64_t> events_at_end;      ///< as VBAR_END states; none if the log has no end
 };
 
-/// Reads all packets of a log; events of other channels are passed over. Throws std::runtime_error that names a file
+/// Reads all packets of a log; events of other channels are ignored. Throws std::runtime_error that names a file
 /// that cannot be read, and DamagedLog (lcm_log_reader.h) for one that is not an LCM log or holds a damaged record.
 [[nodiscard]] PacketLog read_packet_log(const std::filesystem::path& file);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Whatever the flight software senses comes from a PacketSource: a digital twin, the driver of a testbed, a recorded
-// log.
+// All measurements of the flight software come from a PacketSource: a digital twin, the driver of a testbed, or a
+// recorded log.
 
 #include <chrono>
 #include <cstdint>
@@ -25,7 +25,7 @@ struct SpacecraftTruth {
   std::string name;
   fsw::orbit::CartesianState orbit;
   std::optional<truth::AttitudeState> attitude = std::nullopt;  ///< if it has one
-  // Of a source that asks for them (TruthDetail); empty where they are not known.
+  // For a source that requests them (TruthDetail); otherwise empty.
   std::optional<fsw::Vector3> acceleration_eci = std::nullopt;  ///< the point mass included, m/s^2
   std::optional<fsw::Vector3> angular_acceleration_body =
       std::nullopt;  ///< rate of change of the angular rate in body axes, rad/s^2
@@ -47,8 +47,8 @@ struct TruthSnapshot {
 
 enum class TruthDetail { kStates, kAccelerations };
 
-/// The true motion near the present, for a device with a latency. It does not know of burns and pointing commands to
-/// come.
+/// The true motion near the present, for a device with a latency, without future burns and pointing
+/// commands.
 class TruthOutlook {
  public:
   TruthOutlook() = default;
@@ -62,7 +62,7 @@ class TruthOutlook {
   [[nodiscard]] virtual TruthSnapshot at(fsw::GpsTime time) = 0;
 };
 
-/// Something a source or an actuator knows about its own truth (an achieved pose, an error it made), or what it cost;
+/// A true value of a source or an actuator (an achieved pose, an error), or its cost;
 /// for the record only.
 struct Note {
   std::string name;  ///< with the unit, if it has one: "pointing_error_rad"
@@ -71,26 +71,26 @@ struct Note {
 };
 
 enum class MeasurementStatus {
-  kReady,   ///< the packets are there (possibly none: nothing to be seen), or pending
-  kFailed,  ///< there will be none for this epoch
+  kReady,   ///< the packets are available (possibly none), or pending
+  kFailed,  ///< no packets for this epoch
 };
 
-/// What a source was still making when it measured.
+/// Output of a source that is completed after measure().
 struct Completion {
   std::vector<Packet> packets;
   std::vector<Note> notes;
-  std::string failure = {};  ///< if there are no packets after all: why, one sentence
+  std::string failure = {};  ///< if there are no packets: the reason, one sentence
 };
 
 struct Measurement {
   MeasurementStatus status = MeasurementStatus::kFailed;
   std::vector<Packet> packets;
-  /// More packets, still in the making on another thread: collected at `available`, when the simulation waits for them
+  /// Packets that another thread is still producing: collected at `available`, when the simulation waits for them
   /// up to the source's time limit. They must not depend on when they are collected: a pure function of what measure()
   /// was given, or recorded.
   std::future<Completion> pending;
-  /// From what the pending packets can be made again (for images, an encoded vbar_host.image_recipe): a log may keep it
-  /// in their place. Empty: they cannot be.
+  /// Input from which the pending packets can be regenerated (for images, an encoded vbar_host.image_recipe): a log may
+  /// keep it in their place. Empty: not possible.
   std::vector<std::uint8_t> recipe;
   fsw::GpsTime available;  ///< when the packets leave the sensor: the epoch or later
   bool bypasses_link =
@@ -108,32 +108,32 @@ class PacketSource {
   PacketSource& operator=(const PacketSource&) = delete;
   virtual ~PacketSource() = default;
 
-  /// Before there is a run folder: a device answers, is homed and calibrated. `first_epoch` is the start of the run.
-  /// Throws std::runtime_error, one sentence, if the run shall not begin.
+  /// Before the run folder exists: a device answers, is homed and calibrated. `first_epoch` is the start of the run.
+  /// Throws std::runtime_error, one sentence, if the run must not start.
   virtual void start(fsw::GpsTime first_epoch) { static_cast<void>(first_epoch); }
 
   /// The run is over, however it ended: motion stops, and what is pending is completed or abandoned without delay.
-  /// Called once after start(), also after one that threw. What it throws is reported and ends nothing else.
+  /// Called once after start(), also after one that threw. An exception is reported and has no other effect.
   virtual void stop(StopReason reason) { static_cast<void>(reason); }
 
-  /// The first epoch at or after `from` at which it measures; none if it never will again.
+  /// The first epoch at or after `from` at which it measures; empty after the last one.
   [[nodiscard]] virtual std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const = 0;
 
-  /// Measures at the epoch of `truth`. Epochs come in order. It should return within a second, since nothing interrupts
-  /// it: what takes longer is `pending`.
+  /// Measures at the epoch of `truth`. Epochs are in order. It should return within a second, since it cannot be
+  /// interrupted: longer work is `pending`.
   virtual Measurement measure(const TruthSnapshot& truth) = 0;
 
-  /// What its snapshots hold.
+  /// The content that its snapshots need.
   [[nodiscard]] virtual TruthDetail truth_detail() const { return TruthDetail::kStates; }
 
-  /// Whether its measurements are evaluated one by one, later and by their time: observers of the run then get the
-  /// truth of each.
+  /// Whether its measurements are evaluated individually, later and by their time (images): observers of the run then
+  /// receive the truth of each.
   [[nodiscard]] virtual bool truth_is_compared() const { return false; }
 
-  /// How long, on the wall, the simulation waits for what is pending before it ends the run.
+  /// Wall-clock time that the simulation waits for pending packets before it ends the run.
   [[nodiscard]] virtual std::chrono::milliseconds wait_limit() const { return std::chrono::minutes(1); }
 
-  /// What it has done so far, for the summary. Must not wait for what is pending.
+  /// Figures so far, for the summary. Must not wait for pending packets.
   [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A recorded run as a sensor: the packets of a log, at the steps they were delivered in.
+// A recorded run as a sensor: the packets of a log, at the steps of their delivery.
 
 #include <filesystem>
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace vbar::twins {
 
-/// What gives back image tiles that a log holds as recipes only (camera/recipe_log.h).
+/// Restores image tiles that a log holds as recipes only (camera/recipe_log.h).
 struct TileSource {
   std::function<std::vector<Packet>(const TileRun&)> packets_of;
   std::map<fsw::GpsTime, std::vector<std::uint8_t>> recipes;  ///< as encoded, by the time of the exposure
@@ -25,7 +25,7 @@ using MakeTileSource = std::function<TileSource(std::span<const std::vector<std:
 
 class RecordedLog final : public PacketSource {
  public:
-  /// Which packets of the log it plays, of those that went to the flight software.
+  /// Packets of the log to replay, among those sent to the flight software.
   struct Selection {
     std::uint8_t spacecraft = 0;
     std::vector<fsw::packets::Apid> apids;
@@ -35,12 +35,12 @@ class RecordedLog final : public PacketSource {
   /// for a log without any such packet, and for one that lacks tiles without `make_tiles`.
   RecordedLog(const std::filesystem::path& file, const Selection& selection, const MakeTileSource& make_tiles = {});
 
-  /// Time of the next recorded delivery, or of the next exposure of a recorded image: its truth is then looked at.
+  /// Time of the next recorded delivery, or of the next exposure of a recorded image: its truth is then recorded.
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
   /// The packets delivered at the epoch, byte for byte and in the recorded order, past any simulated link. kReady with
   /// none if none were. At an exposure also its recipe, for the log of this run. Throws std::runtime_error for tiles
-  /// that cannot be made again.
+  /// that cannot be regenerated.
   Measurement measure(const TruthSnapshot& truth) override;
 
   /// Of a camera.

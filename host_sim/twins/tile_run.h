@@ -1,5 +1,5 @@
 #pragma once
-// Image tiles that stand in a log without their pixels.
+// Image tiles that a log holds without their pixels.
 
 #include <cstdint>
 #include <optional>
@@ -20,10 +20,10 @@ struct TileRun {
   friend bool operator==(const TileRun&, const TileRun&) = default;
 };
 
-/// The run of this packet alone; none if it is not an image tile.
+/// The run of this packet alone; empty if it is not an image tile.
 [[nodiscard]] std::optional<TileRun> tile_run_of(const Packet& packet);
 
-/// Adds a run of one that follows on; false if it does not, and the run stays as it was. `packet` is the tile.
+/// Appends the run of the next tile; false, without a change, if it is not the next one. `packet` is the tile.
 bool extend(TileRun& run, const TileRun& next, const Packet& packet);
 
 /// The checksum of a run of these packets, each a whole space packet.

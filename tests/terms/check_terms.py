@@ -8,12 +8,13 @@ import pathlib
 import re
 import sys
 
-# Documents, and folders of sources.
+# Documents, folders of sources, and folders of scripts and mission files, whose comments begin with #.
 DOCUMENTS = ["README.md", "NOTICE", "docs", "data"]
-SOURCES = ["fsw", "boards/examples", "boards/host", "boards/zynq7000", "boards/zynq7000_linux", "pil_bridge",
-           "toolchains/star_tables"]
-# Another vocabulary: generated files, and the messages, whose field names are part of their type hashes.
-EXEMPT = ["fsw/packets", "fsw/orbit/gravity_coefficients.h", "docs/images"]
+SOURCES = ["fsw", "boards", "pil_bridge", "toolchains/star_tables", "host_sim/engine", "host_sim/files", "host_sim/io",
+           "host_sim/mission", "host_sim/training", "host_sim/truth", "host_sim/twins"]
+SCRIPTS = ["ci", "missions"]
+# Generated.
+EXEMPT = ["fsw/orbit/gravity_coefficients.h", "docs/images"]
 
 # (expression, write instead), searched without regard to case.
 TERMS = [(re.compile(pattern, re.I), instead) for pattern, instead in [
@@ -52,14 +53,14 @@ TERMS = [(re.compile(pattern, re.I), instead) for pattern, instead in [
 
 # (expression in code, write instead).
 NAMES = [(re.compile(pattern), instead) for pattern, instead in [
-    (r"\bkLeast(?!Squares\b)[A-Z]\w*|\bkLeast\b", "kMin..."),
-    (r"\bkMost[A-Z]\w*|\bkMost\b", "kMax..."),
-    (r"\bleast_(?!squares|norm|peak|certain|fitting)\w+|\b(?!acceleration_psd)\w+_least\b", "min_...; ..._min"),
+    (r"\bkLeast(?!Squares\b|Angle_rad\b|RangeM\b)[A-Z]\w*|\bkLeast\b", "kMin..."),
+    (r"\bkMost(?!RangeM\b)[A-Z]\w*|\bkMost\b", "kMax..."),
+    (r"\bleast_(?!squares|norm|peak|certain|fitting|reach\b)\w+|\b(?!acceleration_psd)\w+_least\b", "min_...; ..._min"),
     (r"\bmost_\w+|\b(?!acceleration_psd)\w+_most\b", "max_...; ..._max"),
     (r"\babsorb_turn\b|\bturned_on\b", "reset_attitude_error, propagate_attitude"),
     (r"\b\w*[Pp]ushe[sd]\w*\b", "differential accelerations"),
     (r"\b(\w+_)?fate_?\b(?<!keypoint_fate)(?<!message\.fate)|\b\w+Fate\b", "edit_status"),
-    (r"\b\w*[Oo]bstacle\w*\b(?<!message\.obstacle)", "rejection_reason"),
+    (r"(?<!telemetry_gnss::)\b\w*[Oo]bstacle\w*\b(?<!message\.obstacle)", "rejection_reason"),
     (r"\b\w*[Dd]oubt\w*\b", "inflate..., uncertainty"),
     (r"\bkLittle\w*\b", "kDifferenceStep"),
 ]]
@@ -101,6 +102,12 @@ def split_source(text):
     return "\n".join(comments), "\n".join(code)
 
 
+def comments_of_script(text):
+    """The same lines with their comments alone, which begin with # outside strings."""
+    lines = (re.sub(r"'[^'\n]*'", "''", STRING.sub('""', line)).partition("#")[2] for line in text.split("\n"))
+    return "\n".join(re.sub(r"`[^`]*`", " ", line) for line in lines)
+
+
 def matches(rules, text):
     """(line, what was found, what to write instead). A comment that goes on in the next line is read as one."""
     for number, line in enumerate(text.split("\n"), 1):
@@ -111,10 +118,13 @@ def matches(rules, text):
 
 def findings(path, text):
     """Of one file; `path` is relative to the root, with slashes."""
-    if pathlib.PurePosixPath(path).suffix in {".h", ".cpp", ".c"}:
+    suffix = pathlib.PurePosixPath(path).suffix
+    if suffix in {".h", ".cpp", ".c"}:
         comments, code = split_source(text)
         yield from matches(TERMS, comments)
         yield from matches(NAMES, code)
+    elif suffix in {".py", ".sh", ".toml"}:
+        yield from matches(TERMS, comments_of_script(text))
     else:
         yield from matches(TERMS, prose_of_document(text))
 
@@ -125,6 +135,8 @@ def files_below(root):
         yield from [path] if path.is_file() else sorted(p for p in path.rglob("*") if p.suffix == ".md")
     for folder in SOURCES:
         yield from sorted(p for p in (root / folder).rglob("*") if p.suffix in {".h", ".cpp", ".c"})
+    for folder in SCRIPTS:
+        yield from sorted(p for p in (root / folder).rglob("*") if p.suffix in {".py", ".sh", ".toml"})
 
 
 def main():

@@ -1,5 +1,5 @@
 #pragma once
-// A cubic spline with given slopes at both ends, through a handful of points, and its integral.
+// A cubic spline with given slopes at both ends, through a few points, and its integral.
 
 #include <array>
 

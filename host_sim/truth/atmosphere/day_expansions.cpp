@@ -96,7 +96,7 @@ LowerAtmosphereVariations DayExpansions::lower_atmosphere(const HorizontalSeries
   if (!lower_atmosphere_ready_) {
     const auto quantities = lower_atmosphere_quantities(*tables_);
     for (std::size_t i = 0; i < quantities.size(); ++i) {
-      // The published coefficients have no response to geomagnetic activity down here.
+      // The published coefficients have no response to geomagnetic activity below 72.5 km.
       lower_atmosphere_.set(static_cast<int>(i), lower_expansion(quantities[i], day_of_year_, indices_).quiet);
     }
     lower_atmosphere_ready_ = true;

@@ -1,5 +1,5 @@
 #pragma once
-// All series of NRLMSISE-00 for one day and one level of solar activity, ready to be summed at a place and time of day.
+// All series of NRLMSISE-00 for one day and one level of solar activity, to be summed at a place and time of day.
 
 #include <array>
 #include <memory>
@@ -33,14 +33,14 @@ struct LowerAtmosphereVariations {
   double joint_gradient;               ///< at 32.5 km
 };
 
-/// Working out the series costs some 50 evaluations, so it is done when day or indices change and not before.
+/// Computing the series costs some 50 evaluations, so it is done only when day or indices change.
 class DayExpansions {
  public:
   explicit DayExpansions(std::shared_ptr<const Nrlmsise00Tables> tables) : tables_(std::move(tables)) {}
 
   void set_day(int day_of_year, const SolarIndices& indices);
 
-  /// The wave of the year that moves the turbopause, one way in the north and the other in the south: -1 to 1.
+  /// The annual wave that displaces the turbopause, with opposite signs in the two hemispheres: -1 to 1.
   double turbopause_season() const { return turbopause_season_; }
 
   UpperVariations upper(const HorizontalSeries& functions, double latitude_deg) const;

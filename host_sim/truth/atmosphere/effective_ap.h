@@ -1,6 +1,6 @@
 #pragma once
-// The geomagnetic activity that a quantity of NRLMSISE-00 responds to: ap above its quiet value of 4, bent by the
-// saturation that the model found, from the day's mean or from the fading memory of the last 57 hours.
+// The geomagnetic activity that a quantity of NRLMSISE-00 responds to: ap above its quiet value of 4, with the
+// saturation of the model, from the daily mean or from an exponentially weighted mean of the last 57 hours.
 
 #include <array>
 
@@ -16,14 +16,14 @@ class EffectiveAp {
   /// `p`: the coefficients of the quantity.
   EffectiveAp(const Nrlmsise00Tables::Upper& p, const SolarIndices& indices);
 
-  /// The memory depends on the latitude's distance from 45 deg.
+  /// The decay depends on the distance of the latitude from 45 deg.
   double at(double latitude_deg) const;
 
  private:
   bool remembers_ = false;
   double daily_ = 0.0;
   std::array<double, 6> history_{};  // saturated
-  double fading_ = 0.0;              // over three hours: exp(-fading) at 45 deg
+  double fading_ = 0.0;              // over three hours: exp(-fading_) at 45 deg
   double latitude_slope_ = 0.0;
 };
 

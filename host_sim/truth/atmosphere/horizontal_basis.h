@@ -1,5 +1,5 @@
 #pragma once
-// How NRLMSISE-00 varies over the globe: associated Legendre functions of latitude times waves of local time, longitude
+// Horizontal variation of NRLMSISE-00: associated Legendre functions of latitude times waves of local time, longitude
 // and universal time (Hedin 1987, J. Geophys. Res. 92, appendix, and the later terms of the published coefficients).
 // Every quantity of the model is a series in these functions, whose coefficients depend on the day and the solar
 // indices alone; so the functions are computed once for an instant and place, and a quantity is one dot product.
@@ -23,7 +23,7 @@ enum HorizontalGroup : int {
   kTerdiurnal = kSemidiurnal + 2 * 4,       ///< P_33, P_34, P_36 x three times the local time
   kLongitude = kTerdiurnal + 2 * 3,         ///< P_11 ... P_16 x longitude
   kLongitudeOdd = kLongitude + 2 * 6,       ///< the same times P_10
-  kLowerSize = kLongitudeOdd + 2 * 6,       ///< what the atmosphere below 120 km varies with ends here
+  kLowerSize = kLongitudeOdd + 2 * 6,       ///< the functions for the atmosphere below 120 km end here
   kUniversalTime = kLowerSize,              ///< P_10, P_30, P_50 x universal time; again times P_10; times P_10^2
   kLongitudeTime = kUniversalTime + 2 * 9,  ///< P_23, P_25, P_27 x (universal time + twice the longitude)
   kHorizontalSize = kLongitudeTime + 2 * 3,

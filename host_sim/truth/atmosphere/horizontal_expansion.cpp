@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kMeanFlux = 150.0;
 
-/// A wave of the year (`per_year` cycles) that is largest on day `peak`.
+/// An annual wave (`per_year` cycles) with its maximum on day `peak`.
 double season(int day_of_year, int per_year, double peak) {
   return std::cos(per_year * kModelDay * (day_of_year - peak));
 }
@@ -39,7 +39,7 @@ void add_tides(HorizontalSeries& series, const Coefficients& p, double factor, d
   add(kTerdiurnal, 0, p[40], p[39]);
 }
 
-/// Where the coefficients of the response to geomagnetic activity stand: there is one set for daily and one for
+/// Places of the coefficients of the response to geomagnetic activity: there is one set for daily and one for
 /// three-hourly indices. Each number is the first of a run of three where there are three Legendre functions.
 struct MagneticPlaces {
   int zonal[3];

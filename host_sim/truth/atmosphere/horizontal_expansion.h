@@ -1,6 +1,6 @@
 #pragma once
 // The coefficients of NRLMSISE-00's series in the horizontal functions on one day at one level of solar activity: the
-// published expansion with its seasons and fluxes worked out, so that only place and time of day are left.
+// published expansion evaluated for season and flux, so that only place and time of day remain.
 
 #include "host_sim/truth/atmosphere/horizontal_basis.h"
 #include "host_sim/truth/atmosphere/nrlmsise00_tables.h"

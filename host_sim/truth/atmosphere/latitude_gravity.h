@@ -1,5 +1,5 @@
 #pragma once
-// Gravity as NRLMSISE-00 has it: its value at the surface and the radius with which it falls off, by latitude
+// The gravity model of NRLMSISE-00: surface value and effective radius for the decrease with altitude, by latitude
 // (Lambert's formula, as in the U.S. Standard Atmosphere 1976).
 
 namespace vbar::truth {

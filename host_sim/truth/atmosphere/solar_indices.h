@@ -1,5 +1,5 @@
 #pragma once
-// What drives the upper atmosphere: the Sun's radio flux and the geomagnetic indices of an instant.
+// The drivers of the upper atmosphere: solar radio flux and geomagnetic indices at one instant.
 
 #include <array>
 
@@ -11,8 +11,8 @@ struct SolarIndices {
   double f107 = 0.0;          ///< 10.7 cm flux of the day before, observed, 1e-22 W/m^2/Hz
   double f107_average = 0.0;  ///< its mean over 81 days centred on the day
   GeomagneticIndex geomagnetic_index = GeomagneticIndex::kDaily;
-  double ap_daily = 0.0;  ///< the day's mean ap; all that kDaily uses
-  /// What kThreeHourly uses: ap of the current three hours and of 3, 6, 9 hours before; the mean of the eight from 12
+  double ap_daily = 0.0;  ///< daily mean ap; the only index that kDaily uses
+  /// Used by kThreeHourly: ap of the current three hours and of 3, 6, 9 hours before; the mean of the eight from 12
   /// to 33 hours before; that of the eight from 36 to 57 hours before.
   std::array<double, 6> ap_history{};
 

@@ -1,9 +1,9 @@
 #pragma once
-// The constituents of the air that NRLMSISE-00 tells apart.
+// The constituents of the air in NRLMSISE-00.
 
 namespace vbar::truth {
 
-/// Number densities, in a unit that the user's name says.
+/// Number densities, in the unit that the name of the variable states.
 struct SpeciesDensities {
   double he = 0.0;
   double o = 0.0;
@@ -12,7 +12,7 @@ struct SpeciesDensities {
   double ar = 0.0;
   double h = 0.0;
   double n = 0.0;
-  double anomalous_o = 0.0;  ///< hot and ionised oxygen, which drags at night above 500 km
+  double anomalous_o = 0.0;  ///< hot and ionised oxygen, relevant to drag at night above 500 km
 };
 
 }  // namespace vbar::truth

@@ -133,7 +133,7 @@ LowerThermosphereNodes Thermosphere::lower_nodes(const LowerThermosphereVariatio
 }
 
 BatesProfile Thermosphere::bates_profile(double altitude_km, const UpperVariations& upper) const {
-  // The model leaves out what has no effect on density far below.
+  // The model omits terms that have no effect on density far below.
   BatesProfile bates;
   bates.exospheric = mean_exospheric_;
   if (altitude_km > mean_nodes_.altitude_km[0]) bates.exospheric *= 1.0 + upper.exospheric_temperature;
@@ -152,7 +152,7 @@ double Thermosphere::log_diffusive(const Species& species, double variation, con
 
 double Thermosphere::log_at_homopause(const Species& species, double homopause_km, double variation,
                                       const Column& column) const {
-  // What a mixed atmosphere needs at 120 km to have the density of the diffusive one at the homopause.
+  // The density at 120 km with which a mixed atmosphere has the density of the diffusive one at the homopause.
   const ThermosphereLevel homopause = column.profile.at(homopause_km);
   return species.log_reference + variation + species.thermal_diffusion * homopause.log_cooling +
          (species.mass - mixed_mass_) * homopause.weight;

@@ -13,11 +13,11 @@
 
 namespace vbar::truth {
 
-/// What the thermosphere of an instant and place depends on besides the altitude.
+/// Quantities that the thermosphere of an instant and place depends on besides the altitude.
 struct ThermosphereConditions {
   UpperVariations upper{};
-  LowerThermosphereVariations lower{};  ///< matters below Thermosphere::kLowerVariationsCeilingKm only; 0 above
-  double turbopause_season = 0.0;       ///< sine of latitude times the wave of the year that moves the turbopause
+  LowerThermosphereVariations lower{};  ///< used below Thermosphere::kLowerVariationsCeilingKm only; 0 above
+  double turbopause_season = 0.0;       ///< sine of latitude times the annual wave that displaces the turbopause
   double flux_excess = 0.0;             ///< 81-day mean of F10.7, less 150
 };
 
@@ -43,7 +43,7 @@ class Thermosphere {
                        const ThermosphereConditions& conditions) const;
 
  private:
-  /// A correction that fades out upwards about a height: ln n += amplitude / (1 + mean of exp((z - height) / scale)).
+  /// A correction that vanishes upwards about a height: ln n += amplitude / (1 + mean of exp((z - height) / scale)).
   struct Transition {
     double height_km = 0.0, scale_km = 1.0, second_scale_km = 1.0;
 
@@ -53,7 +53,7 @@ class Thermosphere {
   struct Species {
     double mass = 0.0;
     double thermal_diffusion = 0.0;
-    double mixing_ceiling_km = 0.0;  ///< above it, mixing and chemistry below are not felt
+    double mixing_ceiling_km = 0.0;  ///< above it, mixing and chemistry below have no effect
     double log_reference = 0.0;      ///< ln of the mean density at 120 km, 1/cm^3
     double homopause_km = 0.0;
     double log_mixing_ratio = 0.0;  ///< ln of its share of the mixed atmosphere, relative to N2

@@ -1,5 +1,5 @@
 #pragma once
-// The temperature profile of NRLMSISE-00 from 72.5 km up, with what diffusive equilibrium needs of it. Above 123 km it
+// The temperature profile of NRLMSISE-00 from 72.5 km up, with the quantities of diffusive equilibrium. Above 123 km it
 // is Bates's: exponential in geopotential altitude, for which equilibrium has a closed form (Walker 1965); below, a
 // spline.
 

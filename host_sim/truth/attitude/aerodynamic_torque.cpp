@@ -25,7 +25,7 @@ AerodynamicTorque::AerodynamicTorque(std::vector<Facet> facets, double drag_coef
 
 Vector3 AerodynamicTorque::torque_body(const ForceInput& orbit, const AttitudeState& attitude) {
   const Vector3 velocity_body = attitude.q_body_eci * velocity_through_air_eci(orbit);
-  const Vector3 flow = velocity_body.normalized();  // the body's way through the air
+  const Vector3 flow = velocity_body.normalized();  // direction of motion through the air
   Vector3 area_times_arm = Vector3::Zero();
   for (const Facet& facet : facets_) {
     const double cosine = facet.normal.dot(flow);

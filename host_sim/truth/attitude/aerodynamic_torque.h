@@ -2,7 +2,7 @@
 // Torque of the air on a body's facets. Each facet that meets the flow takes from it the momentum of a Newtonian
 // (hyperthermal) stream with one drag coefficient: dF = -1/2 rho C_D v^2 A cos(angle) along the flow (Wertz 1978, eq.
 // 17-57). So a body's force is that of a cannonball with its projected area; lift, which needs the surface's
-// accommodation, and the damping by the body's own rotation (cm/s against km/s) are left out. Facets do not shade each
+// accommodation, and the damping by the body's own rotation (cm/s against km/s) are neglected. Facets do not shade each
 // other (a convex body).
 
 #include <limits>
@@ -14,7 +14,7 @@
 
 namespace vbar::truth {
 
-/// The air at a spacecraft. Where it jumps it has dates, as a torque has (torque.h).
+/// The air at a spacecraft. Its discontinuities have dates, as those of a torque have (torque.h).
 class Air {
  public:
   Air() = default;
@@ -47,7 +47,7 @@ class AerodynamicTorque final : public Torque {
   std::unique_ptr<Air> air_;
 };
 
-/// Velocity with respect to an atmosphere that turns with the Earth, m/s, in ECI.
+/// Velocity with respect to an atmosphere that rotates with the Earth, m/s, in ECI.
 [[nodiscard]] fsw::Vector3 velocity_through_air_eci(const ForceInput& orbit);
 
 }  // namespace vbar::truth

@@ -30,9 +30,9 @@ Vector3 unit_rate(const Vector3& v, const Vector3& rate) {
 AttitudeState aimed_attitude(const Vector3& boresight_body, const Vector3& second_body, const MovingDirection& primary,
                              const MovingDirection& secondary) {
   const Vector3 across = primary.along.cross(secondary.along);
-  // Written so that what is not a number is refused as well.
+  // Written so that a NaN is rejected as well.
   if (!(across.norm() > kLeastAngle_rad * primary.along.norm() * secondary.along.norm())) {
-    throw std::domain_error("the boresight lies along the direction that should fix the turn about it");
+    throw std::domain_error("the boresight lies along the direction that should fix the rotation about it");
   }
   const Matrix3 axes_eci = axes_of(primary.along, secondary.along);
   const Matrix3 axes_body = axes_of(boresight_body, second_body);

@@ -1,6 +1,6 @@
 #pragma once
-// Attitude from two directions: one that a body axis must meet, one that a second axis comes as near to as it can. And
-// the rate that belongs to it, from the directions' own rates: exact, nothing is differenced.
+// Attitude from two directions: a primary one, which a body axis follows, and a secondary one, which fixes the rotation
+// about that axis; and the angular rate, from the rates of the directions: exact, without finite differences.
 
 #include "fsw/core/types.h"
 #include "host_sim/truth/attitude/attitude_state.h"
@@ -13,9 +13,9 @@ struct MovingDirection {
   fsw::Vector3 rate = fsw::Vector3::Zero();
 };
 
-/// Turns body axis `boresight_body` exactly along `primary` and, with the freedom left, `second_body` as near as
-/// possible to `secondary` (both body axes of any length, not parallel). Within kLeastAngle_rad of parallel or
-/// antiparallel the secondary says nothing about the turn about the boresight: throws std::domain_error, as it does for
+/// Aligns body axis `boresight_body` exactly with `primary` and, with the remaining freedom, `second_body` as closely
+/// as possible with `secondary` (both body axes of any length, not parallel). Within kLeastAngle_rad of parallel or
+/// antiparallel the secondary does not fix the rotation about the boresight: throws std::domain_error, as it does for
 /// directions that are zero or not finite. Towards that limit the rate about the boresight grows as 1 / angle.
 AttitudeState aimed_attitude(const fsw::Vector3& boresight_body, const fsw::Vector3& second_body,
                              const MovingDirection& primary, const MovingDirection& secondary);

@@ -1,5 +1,5 @@
 #pragma once
-// Air and sunlight on an attitude, as they are on the orbit: the same models, switches and files.
+// Air and sunlight for torques, by the same models, switches and files as for the forces on the orbit.
 
 #include <memory>
 #include <utility>
@@ -11,7 +11,7 @@
 
 namespace vbar::truth {
 
-/// The air that a drag force knows.
+/// The air of a drag force.
 class AirOfDrag final : public Air {
  public:
   explicit AirOfDrag(std::unique_ptr<DragForce> drag) : drag_(std::move(drag)) {}
@@ -24,7 +24,7 @@ class AirOfDrag final : public Air {
   std::unique_ptr<DragForce> drag_;
 };
 
-/// The sunlight that a force of radiation pressure knows.
+/// The sunlight of a radiation pressure force.
 class SunlightOfRadiationPressure final : public Sunlight {
  public:
   explicit SunlightOfRadiationPressure(std::unique_ptr<RadiationPressureForce> pressure)

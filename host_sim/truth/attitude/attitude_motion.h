@@ -1,12 +1,12 @@
 #pragma once
-// The attitude of one spacecraft over time, whether it follows from torques (RigidBody) or from what the spacecraft
-// points at (PointingProfile). The orbit is given; it does not feel the attitude.
+// The attitude of one spacecraft over time, whether it follows from torques (RigidBody) or from a pointing profile
+// (PointingProfile). The orbit is given and does not depend on the attitude.
 
 #include "host_sim/truth/attitude/attitude_state.h"
 
 namespace vbar::truth {
 
-/// Times are seconds after the model's epoch. Not thread-safe: one thread a spacecraft.
+/// Times are seconds after the model's epoch. Not thread-safe: one thread per spacecraft.
 class AttitudeMotion {
  public:
   AttitudeMotion() = default;
@@ -14,7 +14,7 @@ class AttitudeMotion {
   AttitudeMotion& operator=(const AttitudeMotion&) = delete;
   virtual ~AttitudeMotion() = default;
 
-  /// Makes the attitude known up to `seconds`, not before the time of the last call. `orbit_step_end` (>= seconds) is
+  /// Computes the attitude up to `seconds`, not before the time of the last call. `orbit_step_end` (>= seconds) is
   /// where the spacecraft's current orbit integration step ends: beyond it the orbit is not known yet. To be called at
   /// least once in each of these steps.
   virtual void advance_to(double seconds, double orbit_step_end) = 0;
@@ -22,7 +22,7 @@ class AttitudeMotion {
   /// An impulse has changed the orbit from `seconds` on, the time of the last advance_to.
   virtual void orbit_changed(double seconds) = 0;
 
-  /// Attitude at a time for which both the attitude and the orbit are kept. Throws std::out_of_range outside, saying
+  /// Attitude at a time for which both the attitude and the orbit are kept. Throws std::out_of_range outside, stating
   /// what is kept; std::domain_error if the attitude is not defined there.
   [[nodiscard]] virtual AttitudeState state_at(double seconds) const = 0;
 };

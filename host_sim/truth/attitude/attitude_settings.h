@@ -1,5 +1,5 @@
 #pragma once
-// How the attitude of a spacecraft comes about: what a mission file says of it, in SI units, nothing left to draw.
+// The attitude of a spacecraft as the mission file specifies it, in SI units, after all random draws.
 
 #include <string>
 #include <variant>
@@ -14,7 +14,7 @@ namespace vbar::truth {
 
 enum class TorqueKind { kGravityGradient, kAerodynamic, kRadiation };
 
-/// A rigid body left to itself (torque-free) or to torques.
+/// A rigid body, torque-free or under torques.
 struct TumbleSettings {
   Body body;
   std::vector<TorqueKind> torques;
@@ -22,18 +22,18 @@ struct TumbleSettings {
   AttitudeState start;
 };
 
-/// A body that keeps still among the stars.
+/// A body with a constant inertial attitude.
 struct InertialSettings {
   Eigen::Quaterniond q_body_eci = Eigen::Quaterniond::Identity();
 };
 
-/// A body that points.
+/// A body that follows a pointing profile.
 struct PointedSettings {
   PointingSettings pointing;
   std::string spacecraft;  ///< pointed at, if a direction of `pointing` is kSpacecraft
 };
 
-/// A body that points where it is told.
+/// A body that follows pointing commands.
 struct CommandedSettings {
   CommandedAxes axes;
   ControlError control_error{};

@@ -1,5 +1,5 @@
 #pragma once
-// How a body is turned and how fast it turns, at one instant.
+// Attitude and angular rate of a body at one instant.
 
 #include <Eigen/Geometry>
 

@@ -8,13 +8,13 @@
 
 namespace vbar::truth {
 
-/// A flat piece of the outer surface. What it does not reflect it absorbs.
+/// A flat part of the outer surface. Light that it does not reflect is absorbed.
 struct Facet {
   double area_m2 = 0.0;
   fsw::Vector3 centre_m = fsw::Vector3::Zero();  ///< centroid, in body axes, from the centre of mass
   fsw::Vector3 normal = fsw::Vector3::Zero();    ///< unit vector outwards, in body axes
-  double specular = 0.0;                         ///< fraction of light that it mirrors
-  double diffuse = 0.0;                          ///< fraction of light that it scatters by Lambert's law
+  double specular = 0.0;                         ///< fraction of light reflected specularly
+  double diffuse = 0.0;                          ///< fraction of light reflected by Lambert's law
 };
 
 /// Facet of a plane convex polygon whose corners (m, body axes, from the centre of mass) go anticlockwise seen from
@@ -26,7 +26,7 @@ struct Body {
   std::string name;
   fsw::Matrix3 inertia_kgm2 = fsw::Matrix3::Zero();      ///< about the centre of mass, in body axes
   fsw::Vector3 centre_of_mass_m = fsw::Vector3::Zero();  ///< from the origin of the body frame
-  std::vector<Facet> facets;                             ///< of a convex body; none: its shape is not known
+  std::vector<Facet> facets;                             ///< of a convex body; empty: its shape is unknown
 };
 
 }  // namespace vbar::truth

@@ -19,7 +19,7 @@ using fsw::Vector3;
 constexpr double kZenithClearance_rad = 0.0087;  // half a degree
 
 /// A direction given in RTN, and its rate there, in ECI. The frame turns at (r f_N / h, 0, h / r^2): the acceleration
-/// across the plane tilts it about the position, the rest is the motion along the orbit.
+/// across the plane tilts it about the position, the other component is the motion along the orbit.
 MovingDirection in_eci(const OrbitalMotion& own, const Vector3& along_rtn, const Vector3& rate_rtn) {
   const Vector3& position = own.position_eci;
   const Vector3 momentum = position.cross(own.velocity_eci);
@@ -51,7 +51,7 @@ Turn turn_of(const ControlError& error, double seconds) {
   return turn;
 }
 
-/// `commanded`, with the body turned on by `turn` in its own axes. The body's rate against the commanded one is
+/// `commanded`, with the body rotated further by `turn` in its own axes. The body's rate against the commanded one is
 /// J(angle) rate with the right Jacobian of the rotation group (Chirikjian 2011, section 10.6), here to second order:
 /// the third is below 1e-16 of the rate for errors of some arc minutes.
 AttitudeState turned(const AttitudeState& commanded, const Turn& turn) {
@@ -76,7 +76,7 @@ bool leaves_zenith_clear(const Vector3& boresight_rtn, const Vector3& rate_rtn) 
   const Eigen::Vector2d across = boresight_rtn.tail<2>(), across_rate = rate_rtn.tail<2>();
   const Eigen::Vector2d turn = across_rate * boresight_rtn.x() - across * rate_rtn.x();
   const double extreme_s = -across.dot(turn) / across_rate.dot(turn);
-  const bool is_inside = extreme_s > 0.0 && extreme_s < kLongestLine_s;  // false for what is not a number
+  const bool is_inside = extreme_s > 0.0 && extreme_s < kLongestLine_s;  // false for a NaN
   return is_clear(0.0) && is_clear(kLongestLine_s) && (!is_inside || is_clear(extreme_s));
 }
 
@@ -104,7 +104,7 @@ AttitudeState CommandedAttitude::state_at(double seconds) const {
   const double age_s = seconds - command.seconds;
   const bool moves = age_s <= kLongestLine_s;
   const Vector3 rate_rtn = moves ? command.boresight_rate_rtn : Vector3::Zero();
-  // The first command's age has no end; its rate is zero.
+  // The age of the first command is unbounded; its rate is zero.
   const Vector3 along_rtn = command.boresight_rtn + std::min(age_s, kLongestLine_s) * command.boresight_rate_rtn;
   const OrbitalMotion own = own_(seconds);
   const AttitudeState commanded = aimed_attitude(

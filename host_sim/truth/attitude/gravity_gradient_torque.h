@@ -1,5 +1,5 @@
 #pragma once
-// Gravity pulls harder at a body's near end than at its far end: T = 3 gm / r^3 (u x J u), u the unit vector from the
+// Torque of the gravity gradient over the body: T = 3 gm / r^3 (u x J u), u the unit vector from the
 // Earth's centre (Hughes 2004, eq. 8.1.15; Wertz 1978, eq. 17-31). Of the point mass only: the Earth's oblateness adds
 // a thousandth of it.
 

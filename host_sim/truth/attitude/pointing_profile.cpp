@@ -11,13 +11,13 @@ namespace {
 
 using fsw::Vector3;
 
-/// The Sun moves 2e-7 rad/s: over two minutes 2.4e-5 rad, whose curvature is nothing and whose rounding 1e-18 rad/s.
+/// The Sun moves 2e-7 rad/s: over two minutes 2.4e-5 rad, with negligible curvature and rounding of 1e-18 rad/s.
 constexpr double kSunDifference_s = 60.0;
 
 }  // namespace
 
 bool are_two_axes(const Vector3& a, const Vector3& b) {
-  // Written so that what is not a number is refused as well.
+  // Written so that a NaN is rejected as well.
   return a.cross(b).norm() > kLeastAngle_rad * a.norm() * b.norm();
 }
 

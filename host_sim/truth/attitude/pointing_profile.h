@@ -1,7 +1,7 @@
 #pragma once
-// The attitude of a spacecraft that points: a body axis, the boresight, follows a direction without error, and the turn
-// about it keeps a second axis as near as possible to another direction. Errors of control and of knowledge are matters
-// of sensors and of control, not of this.
+// The attitude of a pointing spacecraft: a body axis, the boresight, follows a direction without error, and the
+// rotation about it keeps a second axis as close as possible to another direction. Errors of attitude control and
+// knowledge are modelled elsewhere.
 
 #include <functional>
 
@@ -22,7 +22,7 @@ using MotionOfTime = std::function<OrbitalMotion(double seconds)>;
 /// Geocentric direction to the Sun, m.
 using SunOfTime = std::function<fsw::Vector3(double seconds)>;
 
-/// What a body axis is turned to.
+/// Direction that a body axis follows.
 enum class Direction {
   kZenith,       ///< away from the Earth's centre: R of RTN
   kNadir,        ///< to the Earth's centre
@@ -48,9 +48,9 @@ struct PointingSettings {
 /// A pure function of the orbits: it holds no state.
 class PointingProfile final : public AttitudeMotion {
  public:
-  /// `own`: of the spacecraft that points. `other`: of the one pointed at, and `sun`: needed only if a direction of the
-  /// settings says so. Throws std::invalid_argument for body axes that are not two, directions on one line, and for
-  /// what is needed and missing.
+  /// `own`: of the pointing spacecraft. `other`: of the one pointed at, and `sun`: needed only if a direction of the
+  /// settings says so. Throws std::invalid_argument for parallel body axes, directions on one line, and for
+  /// missing motions that are needed.
   PointingProfile(const PointingSettings& settings, MotionOfTime own, MotionOfTime other, SunOfTime sun);
 
   void advance_to(double /*seconds*/, double /*orbit_step_end*/) override {}
@@ -69,7 +69,7 @@ class PointingProfile final : public AttitudeMotion {
   SunOfTime sun_;
 };
 
-/// The attitude of a spacecraft that keeps still among the stars.
+/// A constant inertial attitude.
 class InertialAttitude final : public AttitudeMotion {
  public:
   explicit InertialAttitude(const Eigen::Quaterniond& q_body_eci)

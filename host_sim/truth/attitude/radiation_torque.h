@@ -1,7 +1,7 @@
 #pragma once
 // Torque of sunlight on a body's facets, each of which absorbs, mirrors and scatters its share (Wertz 1978, eq. 17-52):
 //   F = -P A cos(angle) [(1 - specular) s + 2 (specular cos(angle) + diffuse / 3) n],   s to the Sun, n outwards.
-// Facets do not shade each other (a convex body). Light from the Earth is left out.
+// Facets do not shade each other (a convex body). Light from the Earth is neglected.
 
 #include <memory>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace vbar::truth {
 
-/// How much of the Sun a spacecraft sees. Where that jumps it has an edge, as a torque has (torque.h).
+/// Visible fraction of the Sun. Where it jumps it has an edge, as a torque has (torque.h).
 class Sunlight {
  public:
   Sunlight() = default;
@@ -19,7 +19,7 @@ class Sunlight {
   Sunlight& operator=(const Sunlight&) = delete;
   virtual ~Sunlight() = default;
 
-  /// 0 (dark) to 1 (all of the Sun), on the side last told.
+  /// 0 (eclipse) to 1 (full Sun), on the side last set.
   [[nodiscard]] virtual double fraction(const ForceInput& orbit) const = 0;
 
   [[nodiscard]] virtual int edge_count() const { return 0; }

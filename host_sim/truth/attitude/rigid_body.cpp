@@ -20,7 +20,7 @@ using fsw::Vector3;
 /// Of an attitude step at which the angular momentum of a body at rest is measured: once around in a low orbit.
 constexpr double kOrbitRate_radps = 1e-3;
 
-/// An edge is crossed in some seconds and a step takes no more than a minute: four parts miss none that matters.
+/// An edge is crossed in some seconds and a step takes no more than a minute: four parts miss no relevant one.
 constexpr int kEdgeSamples = 4;
 constexpr double kEdgeResolution_s = 1e-7;
 
@@ -62,7 +62,7 @@ RigidBody::RigidBody(const Matrix3& inertia_kgm2, std::vector<std::unique_ptr<To
   const Eigen::Quaterniond q = start.q_body_eci.normalized();
   // Eigen leaves a quaternion of zeros as it is.
   if (!(q.squaredNorm() > 0.5) || !start.rate_body.allFinite()) {
-    throw std::invalid_argument("an initial attitude is no rotation or its rate no number");
+    throw std::invalid_argument("an initial attitude is not a rotation, or its rate is not finite");
   }
   const Vector3 momentum_body = inertia_ * start.rate_body;
   momentum_scale_ = std::max(momentum_body.norm(), inertia_.trace() / 3.0 * kOrbitRate_radps);
@@ -97,7 +97,7 @@ RigidBody::Vector7 RigidBody::rates(double seconds, const Vector7& y) {
 
 void RigidBody::advance_to(double seconds, double orbit_step_end) {
   if (!(seconds >= current_)) throw std::invalid_argument("the attitude does not go back in time");
-  // Torques see the orbit's polynomial of the current step; a torque-free body does not care about orbits.
+  // Torques see the orbit's polynomial of the current step; a torque-free body does not depend on the orbit.
   const double limit = torques_.empty() ? std::numeric_limits<double>::infinity() : orbit_step_end;
   while (integrator_.time() < seconds) step(limit);
   current_ = seconds;
@@ -137,7 +137,7 @@ std::optional<double> RigidBody::first_edge_of_last_step() const {
   return first;
 }
 
-/// Sides of all edges and intervals of all jumps, as they are at an instant.
+/// Sides of all edges and intervals of all jumps at an instant.
 void RigidBody::enter_regime_of(double seconds) {
   if (torques_.empty()) return;
   const ForceInput orbit = orbit_(seconds);
@@ -151,7 +151,7 @@ void RigidBody::orbit_changed(double seconds) {
   if (torques_.empty()) return;
   if (seconds < integrator_.time()) {
     // advance_to went no further than the step that holds `seconds`. The step may have ended at an edge or a jump, and
-    // the torques been told of what follows.
+    // the torques been set to what follows.
     enter_regime_of(integrator_.last_step().start);
     integrator_.cut_last_step(seconds);
     kept_.back() = {seconds, integrator_.last_step()};

@@ -47,12 +47,12 @@ class RigidBody final : public AttitudeMotion {
 
   [[nodiscard]] const IntegrationStatistics& statistics() const { return integrator_.statistics(); }
 
-  /// Longer than what an orbit propagator keeps is of no use; shorter would limit those who ask for both.
+  /// Not longer than an orbit propagator keeps its steps; a shorter span would limit callers that need both.
   static constexpr double kKeptSpan_s = 900.0;
 
  private:
   /// Quaternion q_body_eci (x, y, z, w) and angular momentum in ECI axes (N m s) over its scale. The equations do not
-  /// depend on the quaternion's length, so its slow drift from 1 is not mended on the way: whoever looks normalises.
+  /// depend on the quaternion's length, so its slow drift from 1 is not corrected here: state_at() normalises.
   using Vector7 = Eigen::Matrix<double, 7, 1>;
 
   struct Rates {

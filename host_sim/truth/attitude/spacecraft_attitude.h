@@ -12,7 +12,7 @@
 
 namespace vbar::truth {
 
-/// What attitudes look at. What a spacecraft's settings do not call for may be empty.
+/// Inputs of the attitude models. Those that the settings of a spacecraft do not require may be empty.
 struct AttitudeSurroundings {
   double gm = 0.0;         ///< of the Earth, m^3/s^2
   double tolerance = 0.0;  ///< of the integration (RigidBody)
@@ -25,7 +25,7 @@ struct AttitudeSurroundings {
   SunOfTime sun;
 };
 
-/// Throws std::invalid_argument for settings that make no attitude, or call for what the surroundings lack.
+/// Throws std::invalid_argument for inconsistent settings, and for settings that require what the surroundings lack.
 [[nodiscard]] std::unique_ptr<AttitudeMotion> make_attitude(const AttitudeSettings& settings,
                                                             AttitudeSurroundings surroundings);
 

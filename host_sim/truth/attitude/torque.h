@@ -1,10 +1,10 @@
 #pragma once
-// What every torque on a rigid body looks like: one call, one small file each, as the forces on its orbit
+// The interface of every torque on a rigid body: one call, one small file each, as the forces on its orbit
 // (forces/force.h). A torque object belongs to one spacecraft.
 //
 // A torque may jump, as a force may: at an edge (a zero of a function of time and orbit: sunlight ends) or at a date
 // known beforehand (the day's solar flux). The integration ends a step exactly there; in between the torque acts as on
-// the side, or in the interval, that it was told.
+// the side, or in the interval, that was set.
 
 #include <limits>
 #include <string_view>
@@ -32,7 +32,7 @@ class Torque {
   [[nodiscard]] virtual int edge_count() const { return 0; }
   [[nodiscard]] virtual double edge(int /*index*/, const ForceInput& /*orbit*/) const { return 1.0; }
 
-  /// From here on (until told otherwise) the motion is on this side of the edge: edge() positive, or not.
+  /// From here on (until the next call) the motion is on this side of the edge: edge() positive, or not.
   virtual void set_side(int /*index*/, bool /*positive*/) {}
 
   /// The first date (seconds after the epoch) after `seconds` at which it jumps by itself.

@@ -30,8 +30,8 @@ bool parse_numbers(std::string_view line, std::array<double, N>& numbers) {
   return at == end;
 }
 
-/// Calls `take(mjd_utc, numbers)` for each row; it answers with what is accepted instead, or with nothing if all is
-/// well. `what` names the file in messages. Throws std::runtime_error naming file, line, what was found and what is
+/// Calls `take(mjd_utc, numbers)` for each row; it returns what is accepted instead, or nothing if the row
+/// is valid. `what` names the file in messages. Throws std::runtime_error naming file, line, what was found and what is
 /// accepted.
 template <std::size_t N, class Take>
 void read_daily_table(const std::filesystem::path& file, std::string_view what, std::string_view columns, Take&& take) {

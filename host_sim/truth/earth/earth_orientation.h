@@ -2,7 +2,7 @@
 // Earth orientation parameters: how the real Earth deviates from the models of rotation and precession-nutation.
 // Daily values of the IERS C04 series, interpolated by Lagrange polynomials through four days (as IERS recommends);
 // UT1-TAI is interpolated, since UT1-UTC jumps at leap seconds. The daily and half-daily ocean tides (below 1 mas, 0.1
-// ms) are left out.
+// ms) are neglected.
 
 #include <filesystem>
 #include <vector>

@@ -28,7 +28,7 @@ CelestialPole celestial_pole_iau2006a(JulianDate tt);
 
 /// The same by interpolation: error below 1e-12 rad in x, y and s (held by its test), some 20 ns a call.
 /// Nodes lie at fixed instants, so the result depends on the date only, never on earlier calls.
-/// Not thread-safe (nodes are kept): one object a thread.
+/// Not thread-safe (nodes are cached): one object per thread.
 class CelestialPoleInterpolator {
  public:
   CelestialPole at(JulianDate tt);
@@ -48,7 +48,7 @@ class CelestialPoleInterpolator {
 /// Rotation to ITRF from GCRF out of its parts; era, pole_x, pole_y, sp (TIO locator s') in rad.
 fsw::Matrix3 R_itrf_gcrf(const CelestialPole& pole, double era, double pole_x, double pole_y, double sp);
 
-/// The real Earth's rotation about one epoch. Not thread-safe: one object a thread.
+/// The real Earth's rotation about one epoch. Not thread-safe: one object per thread.
 class EarthRotation {
  public:
   /// `orientation` must not be null.

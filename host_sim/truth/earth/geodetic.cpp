@@ -1,5 +1,5 @@
 // GeographicLib's conversion differs in the last bit, which drag carries into the truth: the output hashes of
-// experiment 3 would change. The test holds this one to that library.
+// experiment 3 would change. The test compares this one with that library.
 
 #include "host_sim/truth/earth/geodetic.h"
 

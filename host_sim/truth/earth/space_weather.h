@@ -1,6 +1,6 @@
 #pragma once
-// The Sun's radio flux and the geomagnetic indices as observed, day by day, and what an atmosphere model is given of
-// them at an instant. Indices are constant in steps: the force that uses them says where they jump (force.h).
+// The Sun's radio flux and the geomagnetic indices as observed, day by day, and the indices that an atmosphere
+// model needs at an instant. They are piecewise constant: the force that uses them states where they jump (force.h).
 
 #include <array>
 #include <filesystem>
@@ -32,7 +32,7 @@ class SpaceWeather {
   explicit SpaceWeather(std::vector<Day> days);
 
   /// The indices that hold at `time`. F10.7 is the day before's. Throws std::out_of_range, naming date and range, where
-  /// the series has not the day itself, the day before and, three-hourly, 57 hours before.
+  /// the series lacks the day itself, the day before or, three-hourly, the 57 hours before.
   SolarIndices indices_at(fsw::GpsTime time, GeomagneticIndex geomagnetic_index) const;
 
   /// The first instant after `time` at which indices change: 0h UTC, and three-hourly 3h, 6h, ... UTC too.

@@ -8,14 +8,14 @@ namespace vbar::truth {
 namespace {
 
 constexpr double kJ2000 = 2451545.0;
-// Six hours apart: the Moon's shortest terms of size (some days) leave decimetres, and a day of flight needs ten nodes.
+// Six hours apart: the shortest relevant lunar terms (some days) leave decimetres, and a day of flight needs ten nodes.
 constexpr double kNodesPerDay = 4.0;
 
 }  // namespace
 
 SunMoon sun_moon_series(JulianDate tt) {
   double heliocentric[2][3], barycentric[2][3], moon[2][3];
-  // Its status only warns of a date outside 1900 to 2100, where the series grow slowly worse.
+  // Its status only warns of a date outside 1900 to 2100, where the series degrade slowly.
   static_cast<void>(eraEpv00(tt.day, tt.fraction, heliocentric, barycentric));
   eraMoon98(tt.day, tt.fraction, moon);
   SunMoon positions;

@@ -1,14 +1,14 @@
 #pragma once
-// Where the Sun and the Moon are, seen from the Earth's centre.
+// Geocentric positions of the Sun and the Moon.
 //
 // Sources, both through ERFA: the Sun as minus the heliocentric Earth of eraEpv00 (Bretagnon's VSOP2000, shortened; 4
 // km root mean square, 13 km at most, against JPL DE405 by its notes), the Moon by eraMoon98 (Meeus 1998, chapter 47,
 // after ELP 2000; by its notes 6 km root mean square, 32 km at most, against ELP/MPP02).
 //
-// Positions are geometric: no light time, no aberration. That is what gravitation needs. Sunlight arrives from 20.5
-// arcsec (1e-4 rad) further back along the Sun's yearly path, which turns the shadow by as much: edges come up to 0.1 s
-// earlier or later in a low orbit, both the same way. The Earth's velocity that causes it is left out of the radiation
-// force for the same reason: 1e-4 of a force that is itself known to some per cent.
+// Positions are geometric: no light time, no aberration. These are required for gravitation. Sunlight arrives from 20.5
+// arcsec (1e-4 rad) further back along the Sun's yearly path, which rotates the shadow by the same angle: edges come up
+// to 0.1 s earlier or later in a low orbit, both the same way. The Earth's velocity that causes it is neglected in the
+// radiation force for the same reason: 1e-4 of a force that is itself known to some per cent.
 //
 // eraEpv00 asks for TDB and is given TT: 1.7 ms at most, in which the Sun moves 50 m.
 
@@ -34,7 +34,7 @@ SunMoon sun_moon_series(JulianDate tt);
 
 /// The same by interpolation between nodes: error below 1 m for the Moon and 0.1 m for the Sun (held by its test).
 /// Nodes lie at fixed instants, so the result depends on the date only, never on earlier calls.
-/// Not thread-safe (nodes are kept): one object a thread.
+/// Not thread-safe (nodes are cached): one object per thread.
 class SunMoonInterpolator {
  public:
   SunMoon at(JulianDate tt);

@@ -1,5 +1,5 @@
 #pragma once
-// The one place where the project's clock (integer nanoseconds of GPS time) meets the other time scales.
+// Conversion between the clock of the project (integer nanoseconds of GPS time) and other time scales.
 // GPS = TAI - 19 s exactly; TT = TAI + 32.184 s exactly; UTC by the leap-second table of ERFA; UT1 needs Earth
 // orientation data (earth_orientation.h). Julian dates are ERFA's two-part form, so that a nanosecond survives.
 
@@ -12,8 +12,8 @@ namespace vbar::truth {
 
 inline constexpr double kSecondsPerDay = 86400.0;
 
-/// A Julian date in two parts, days, in the time scale that the variable's name says; their sum is the date.
-/// `day` is the large part (a multiple of 0.5), `fraction` the rest.
+/// A Julian date in two parts, days, in the time scale that the variable's name states; their sum is the date.
+/// `day` is the large part (a multiple of 0.5), `fraction` the remainder.
 struct JulianDate {
   double day = 0.0;
   double fraction = 0.0;
@@ -35,8 +35,8 @@ JulianDate ut1_of(JulianDate tai, double ut1_minus_tai_s);
 double tai_minus_utc_s(int mjd_utc);
 
 /// The instant of an ISO 8601 UTC text: YYYY-MM-DDThh:mm:ss[.fraction][Z], a blank for the T allowed, at most nine
-/// decimals, second 60 only where there was a leap second. Throws std::invalid_argument, which quotes the text and says
-/// what is accepted.
+/// decimals, second 60 only where there was a leap second. Throws std::invalid_argument, which quotes the text and
+/// states what is accepted.
 fsw::GpsTime gps_from_utc(std::string_view iso8601);
 
 /// UTC text, e.g. "2011-07-18T01:00:00.000Z", rounded to `decimals` (0 to 9) digits of the second.

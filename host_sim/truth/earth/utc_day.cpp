@@ -38,7 +38,7 @@ int day_of_year(int mjd_utc) {
   double fraction = 0.0, zero = 0.0, mjd_of_first_january = 0.0;
   if (eraJd2cal(ERFA_DJM0, mjd_utc, &year, &month, &day, &fraction) != 0 ||
       eraCal2jd(year, 1, 1, &zero, &mjd_of_first_january) != 0) {
-    throw std::out_of_range(fmt::format("modified Julian day {} is no date of the calendar", mjd_utc));
+    throw std::out_of_range(fmt::format("modified Julian day {} is not a calendar date", mjd_utc));
   }
   return mjd_utc - static_cast<int>(mjd_of_first_january) + 1;
 }

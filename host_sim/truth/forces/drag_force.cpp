@@ -19,7 +19,7 @@ constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 constexpr double kSecondsPerHour = 3600.0;
 constexpr double kDegreesPerHour = 15.0;
 
-// Dates as seconds from the epoch are rounded: an instant so close before a jump is the jump.
+// Dates as seconds from the epoch are rounded: an instant this close before a jump counts as the jump.
 constexpr fsw::Duration kSameInstant{1000};
 
 double positive(double value, std::string_view what) {

@@ -1,18 +1,18 @@
 #pragma once
-// Atmospheric drag on a sphere (cannonball) in the air of NRLMSISE-00, which turns with the Earth:
+// Atmospheric drag on a sphere (cannonball) in the air of NRLMSISE-00, which rotates with the Earth:
 //   a = -1/2 (C_D A / m) rho |v_air| v_air,   v_air = v - omega x r   (Montenbruck & Gill 2000, eq. 3.97).
 //
 // - Density is that with anomalous oxygen, at geodetic latitude, longitude and altitude (WGS 84).
-// - Local solar time is the model's own: universal time plus longitude, so without the equation of time; it was fitted
-// so.
-// - The air turns about ITRF's pole with the rate of the Earth rotation angle: against the true axis (polar motion,
+// - Local solar time is the model's own: universal time plus longitude, without the equation of time, as it
+// was fitted.
+// - The air rotates about ITRF's pole with the rate of the Earth rotation angle: against the true axis (polar motion,
 // length
 //   of day) an error of the air's velocity below 3 mm/s in low orbit, 1e-6 of the drag.
-// - Winds are left out.
+// - Winds are neglected.
 //
 // Solar indices are constant from one change to the next (0h UTC; every three hours with three-hourly indices), and so
-// is the day of the year: there the force jumps, and says so (force.h). The air has no upper end: above the 1000 km to
-// which the model was fitted, its formulas go on. Below the ground it has none: std::domain_error.
+// is the day of the year: there the force jumps, and reports it (force.h). There is no upper limit: above the 1000 km
+// to which the model was fitted, its formulas are extrapolated. Below the ground: std::domain_error.
 
 #include <memory>
 
@@ -35,7 +35,7 @@ class DragForce final : public Force {
 
   std::string_view name() const override { return "drag"; }
 
-  /// Throws std::domain_error below the ground (and for a state that is no number std::invalid_argument).
+  /// Throws std::domain_error below the ground (and std::invalid_argument for a state that is not finite).
   fsw::Vector3 acceleration_eci(const ForceInput& input) override;
 
   double next_jump_after(double seconds) const override;

@@ -13,7 +13,7 @@
 namespace vbar::truth {
 namespace {
 
-constexpr int kHighestDegree = 2190;  // of the largest published models: bounds what a damaged header can ask for
+constexpr int kHighestDegree = 2190;  // of the largest published models: limits damaged headers
 
 /// The lines of a coefficient file, comments skipped, and errors that name file and line.
 class LineReader {
@@ -22,7 +22,7 @@ class LineReader {
     if (!in_) throw std::runtime_error(fmt::format("{}: cannot open the gravity model", file.string()));
   }
 
-  /// The words of the next line; at the end of the file an error saying what should have come.
+  /// The words of the next line; at the end of the file an error stating what was expected.
   const std::vector<std::string_view>& next(std::string_view expected) {
     do {
       ++number_;

@@ -2,11 +2,11 @@
 // Acceleration of a spherical-harmonic gravity field, fast and without singularity at the poles.
 //
 // Each Cartesian component of the gradient of a harmonic function is harmonic itself (Cunningham 1970), so the field is
-// turned, once, into three ordinary harmonic series of one degree more, one for each component. What is left per
-// evaluation is a three-term recursion shared by the three and six multiply-adds a term. The Legendre functions are
-// divided by cos^m(latitude) (Pines 1973) and by their leading coefficient, so that the recursion p_k = z p_(k-1) - c_k
-// p_(k-2) has one coefficient and no square root; the factors taken out are in the series' coefficients. Four orders m
-// run side by side.
+// converted, once, into three ordinary harmonic series of one degree more, one for each component. An
+// evaluation is then a three-term recursion shared by the three and six multiply-adds a term. The Legendre functions
+// are divided by cos^m(latitude) (Pines 1973) and by their leading coefficient, so that the recursion p_k = z p_(k-1) -
+// c_k p_(k-2) has one coefficient and no square root; the factors removed are in the series' coefficients. Four orders
+// m run side by side.
 
 #include "fsw/core/types.h"
 #include "host_sim/truth/forces/gravity_coefficients.h"

@@ -47,7 +47,7 @@ int RadiationPressureForce::edge_count() const {
     case Shadow::kConical:
       return 2;
   }
-  throw std::logic_error("a shadow that is none of them");
+  throw std::logic_error("an unknown kind of shadow");
 }
 
 double RadiationPressureForce::edge(int index, const ForceInput& input) const {

@@ -14,12 +14,12 @@ inline constexpr double kSpeedOfLight = 299792458.0;  ///< m/s
 /// Pressure of full sunlight on a black surface across it at 1 au: 4.54e-6 N/m^2.
 inline constexpr double kSolarPressure = kSolarIrradiance / kSpeedOfLight;
 
-/// What light pushes away from the Sun with: (1 au / distance)^2 * kSolarPressure * C_R A / m * sunlit fraction.
+/// Acceleration away from the Sun: (1 au / distance)^2 * kSolarPressure * C_R A / m * sunlit fraction.
 ///
 /// Its edges: the cylinder's one; of the cone the penumbra's outer rim (0) and inner rim (1); none without a shadow.
 ///
-/// In the penumbra the light begins and ends with the power 3/2 of the way from the rim, where a method of order 5 is
-/// not one: there its steps are no longer than it takes to orbit through an eighth of the Sun's diameter (1.1 s in a
+/// In the penumbra the light varies with the power 3/2 of the distance from the rim, where a method of order 5 loses
+/// its order: there its steps are no longer than it takes to orbit through an eighth of the Sun's diameter (1.1 s in a
 /// low orbit), which leaves as little error as the cylinder's sharp edge.
 class RadiationPressureForce final : public Force {
  public:
@@ -35,7 +35,7 @@ class RadiationPressureForce final : public Force {
 
   double longest_step(const ForceInput& input) const override;
 
-  /// Part of the Sun's light that arrives, 0 to 1, on the side of the edges that it was told.
+  /// Part of the Sun's light that arrives, 0 to 1, on the side of the edges that was set.
   double sunlit_fraction(const ForceInput& input) const;
 
  private:

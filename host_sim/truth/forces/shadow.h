@@ -1,5 +1,5 @@
 #pragma once
-// How much of the Sun a spacecraft sees past the Earth, and where that changes.
+// Fraction of the Sun that is visible past the Earth, and where it changes.
 //
 // The Earth's figure is an ellipsoid of revolution about the z axis of GCRF (the true pole is 1e-3 rad away in 2011,
 // which moves the limb by 25 m). Stretching z by 1/(1 - flattening) makes it a sphere and keeps straight lines

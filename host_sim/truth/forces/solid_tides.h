@@ -1,8 +1,8 @@
 #pragma once
-// The Earth's elastic yielding to the Moon, the Sun and its own wobble, as changes of the low degrees of its gravity
+// The elastic response of the Earth to the Moon, the Sun and polar motion, as changes of the low degrees of its gravity
 // field (IERS Conventions 2010, IERS Technical Note 36, chapter 6):
-//   step 1   every frequency answered with the same Love numbers (section 6.2.1, eq. 6.6 and 6.7);
-//   step 2   what the core's resonance and anelasticity add, frequency by frequency (eq. 6.8, tables 6.5a, b, c);
+//   step 1   the same Love numbers for every frequency (section 6.2.1, eq. 6.6 and 6.7);
+//   step 2   corrections for core resonance and anelasticity by frequency (eq. 6.8, tables 6.5a, b, c);
 //   pole     the change of the centrifugal potential by polar motion, of the solid Earth and of the oceans
 //            (sections 6.4 and 6.5, of the oceans degree 2 alone, nine tenths of it).
 // Corrections to normalised coefficients. Not here: the ocean tides (section 6.3), which need a model of some hundred
@@ -16,8 +16,8 @@
 
 namespace vbar::truth {
 
-/// What a gravity model's C20 holds of the permanent tide, the mean of the tide over time: its deformation
-/// (zero tide) or nothing of it (tide free).
+/// The part of the permanent tide, the mean of the tide over time, in C20 of a gravity model: its deformation
+/// (zero tide) or none of it (tide free).
 enum class TideSystem { kZeroTide, kTideFree };
 
 /// The tide system of a coefficient file: "zero_tide" or "tide_free". Throws std::invalid_argument, naming both, for
@@ -30,18 +30,18 @@ struct TidalBody {
   fsw::Vector3 position_itrf = fsw::Vector3::Zero();  ///< geocentric, m
 };
 
-/// Adds step 1's answer to one body: degree 2 with the Love numbers of an anelastic Earth, degree 3, and degree 4 as
+/// Adds the part of step 1 by one body: degree 2 with the Love numbers of an anelastic Earth, degree 3, and degree 4 as
 /// changed by the degree-2 tide through the Earth's flattening. `radius`: the gravity model's reference radius, m.
 void add_love_number_response(const TidalBody& body, double radius, LowDegreeCoefficients& change);
 
-/// Step 1's mean of C20 over all time (section 6.2.2, eq. 6.14): A0 H0 k20 = -4.2e-9. Step 1 answers the whole tide,
-/// mean included; a zero-tide C20 holds the mean's deformation already, so it is taken off again there, and is counted
+/// Step 1's mean of C20 over all time (section 6.2.2, eq. 6.14): A0 H0 k20 = -4.2e-9. Step 1 contains the whole tide,
+/// mean included; a zero-tide C20 contains the deformation of the mean already, so it is subtracted there, and counted
 /// once.
 double permanent_tide_c20();
 
 /// Step 2. The sums over the tables' 71 lines are e^(i m (GMST + pi)) times sums that change over days; those are kept
 /// at hours of TT and interpolated by cubics: error under 1e-18, some 1e-5 of the tables' last digit. The result
-/// depends on the date only. Not thread-safe: one object a thread.
+/// depends on the date only. Not thread-safe: one object per thread.
 class FrequencyDependentTides {
  public:
   /// Adds the corrections of an instant with Greenwich mean sidereal time `gmst`, rad.

@@ -11,7 +11,7 @@
 
 namespace vbar::truth {
 
-/// One object a spacecraft, as it keeps step 2's sums.
+/// One object per spacecraft, as it caches the sums of step 2.
 class SolidTidesForce final : public Force {
  public:
   /// `gm` (m^3/s^2), `radius` (m) and `tide_system` of the gravity model that it goes with; `orientation` of the days

@@ -1,5 +1,5 @@
 #pragma once
-// A spacecraft as forces on its surface see it: a sphere with a mass, an area and a coefficient (cannonball).
+// A spacecraft for the forces on its surface: a sphere with a mass, an area and a coefficient (cannonball).
 
 namespace vbar::truth {
 

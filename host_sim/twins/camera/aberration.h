@@ -1,5 +1,5 @@
 #pragma once
-// Where a moving observer sees a light that comes from `direction`.
+// Apparent direction, for a moving observer, of light that comes from `direction`.
 
 #include <cmath>
 

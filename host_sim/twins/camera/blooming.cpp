@@ -16,7 +16,7 @@ double bloom(const BloomingSettings& settings, int width, int height, std::vecto
   const auto full_well = static_cast<float>(settings.full_well_electrons);
   const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
   double drained = 0.0;
-  std::vector<std::size_t> suspects;  // pixels that may hold too much
+  std::vector<std::size_t> suspects;  // pixels that may exceed the full well
   for (std::size_t pixel = 0; pixel < columns * rows; ++pixel)
     if (charge[pixel] > full_well) suspects.push_back(pixel);
 
@@ -24,7 +24,7 @@ double bloom(const BloomingSettings& settings, int width, int height, std::vecto
   for (int round = 0; !suspects.empty(); ++round) {
     excesses.clear();
     for (const std::size_t pixel : suspects) {
-      if (!(charge[pixel] > full_well)) continue;  // seen before, or only suspected
+      if (!(charge[pixel] > full_well)) continue;  // processed before, or below the full well
       excesses.push_back({pixel, charge[pixel] - full_well});
       charge[pixel] = full_well;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Charge that a full pixel cannot hold.
+// Charge beyond the full well of a pixel.
 
 #include <vector>
 
@@ -12,9 +12,9 @@ struct BloomingSettings {
 
 /// Spills and drains what exceeds the full well in `charge` (rows of `width`, electrons), in rounds, each of all pixels
 /// at once, so that no direction is preferred: a quarter of what spills goes to each neighbour, over the image's edge
-/// it is lost. Afterwards no pixel holds more than the full well. The rounds end when nothing exceeds it any more;
-/// after kBloomingRounds all that does is drained. Returns the electrons drained or lost: those kept and these are all
-/// there were.
+/// it is lost. Afterwards no pixel holds more than the full well. The rounds end when no pixel exceeds it;
+/// after kBloomingRounds the excess is drained. Returns the electrons drained or lost: these and those kept add up to
+/// the input.
 double bloom(const BloomingSettings& settings, int width, int height, std::vector<float>& charge);
 
 inline constexpr int kBloomingRounds = 200;

@@ -8,7 +8,7 @@
 namespace vbar::twins::camera {
 namespace {
 
-/// Refuses before the first image what no recipe could hold.
+/// Rejects, before the first image, settings that no recipe could hold.
 void check_models(const CameraMount& mount) {
   Exposure exposure;
   for (const CameraMount::Model& model : mount.models) {

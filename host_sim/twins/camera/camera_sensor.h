@@ -1,6 +1,6 @@
 #pragma once
 // A camera as a packet source: an image every period, taken on a thread of its own while the simulation goes on,
-// because it leaves the camera only when it has been read out. How it is taken is the taker's (image_taker.h).
+// because it leaves the camera only when it has been read out. An ImageTaker produces it (image_taker.h).
 
 #include <atomic>
 #include <memory>
@@ -38,14 +38,14 @@ class CameraSensor final : public PacketSource {
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// Begins the image, whose packets are `pending`; `recipe` is from what they can be made again, if they can. kFailed
+  /// Begins the image, whose packets are `pending`; `recipe` regenerates them, if that is possible. kFailed
   /// if the truth lacks the spacecraft or its attitude.
   Measurement measure(const TruthSnapshot& truth) override;
 
   [[nodiscard]] bool truth_is_compared() const override { return true; }
   [[nodiscard]] std::chrono::milliseconds wait_limit() const override { return settings_.timeout; }
 
-  /// "images" taken, "packing_s" of the wall clock spent on their packets, and what the taker tells.
+  /// "images" taken, "packing_s" of the wall clock spent on their packets, and the figures of the taker.
   [[nodiscard]] std::vector<Note> statistics() const override;
 
  private:

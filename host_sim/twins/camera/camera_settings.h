@@ -24,14 +24,14 @@ struct OpticsSettings {
   double halo_fraction = 0.01;  ///< of a point's light, in a wide second Gaussian (scatter in the lens)
   double halo_sigma_px = 4.0;
   double vignetting = 0.15;              ///< light lost in the corners of the detector, as the radius to the fourth
-  double sun_exclusion_deg = 30.0;       ///< nearer to the boresight than this the Sun lights the baffle: stray light
+  double sun_exclusion_deg = 30.0;       ///< closer to the boresight the Sun illuminates the baffle: stray light
   double stray_light_electrons = 2.0e4;  ///< a pixel and second, with the Sun at the edge of the field
 };
 
 struct DetectorSettings {
   int width = 1920, height = 1200;
   double pixel_pitch_um = 5.86;
-  double quantum_efficiency = 0.7;  ///< where the response is best; photometry.h
+  double quantum_efficiency = 0.7;  ///< at the peak of the response; photometry.h
   double full_well_electrons = 32000.0;
   double gain_dn_per_electron = 0.125;
   int bits = 12;  ///< of a pixel on the link, 8 or 12

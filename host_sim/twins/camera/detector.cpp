@@ -37,7 +37,7 @@ Detector::Detector(const CameraSettings& settings, std::uint64_t seed, std::stri
   draw_hot_pixels(seed, camera_name);
 }
 
-/// By the pixel's place on the detector, so that another region shows the same pattern.
+/// By the position of the pixel on the detector, so that another region shows the same pattern.
 void Detector::draw_fixed_pattern(std::uint64_t seed, std::string_view camera_name) {
   const DetectorSettings& detector = settings_.detector;
   const Region& region = settings_.region;

@@ -31,7 +31,7 @@ class Detector {
   Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name);
 
   /// Exposes and reads the region: `dn` gets its pixels, rows from the top. Throws std::invalid_argument for an image
-  /// of another region. Expected electrons that are negative or not numbers count as none.
+  /// of another region. Negative and NaN expected electrons count as zero.
   void expose(const PhotonImage& image, std::int64_t exposure_number, std::vector<std::uint16_t>& dn);
 
   [[nodiscard]] std::span<const HotPixel> hot_pixels() const { return hot_pixels_; }

@@ -13,7 +13,7 @@ namespace {
 
 using fsw::Vector3;
 
-/// Calls take(x, y) with the places of a square grid within the unit circle.
+/// Calls take(x, y) with the points of a square grid within the unit circle.
 template <class Take>
 void for_each_in_circle(int points_across, Take&& take) {
   for (int row = 0; row < points_across; ++row) {

@@ -1,6 +1,6 @@
 #pragma once
-// The Earth before a camera: what it hides, and how bright it is. An ellipsoid (WGS 84, its pole along z of GCRF as in
-// truth/forces/shadow.h) with neither air nor weather, a Lambert surface of albedo 0.3 in the Sun's light, dark at
+// The Earth in the view of a camera: occultation and radiance. An ellipsoid (WGS 84, its pole along z of GCRF as in
+// truth/forces/shadow.h) without atmosphere or clouds, a Lambert surface of albedo 0.3 in the Sun's light, dark at
 // night.
 
 #include "fsw/core/types.h"
@@ -28,7 +28,7 @@ class EarthDisc {
   [[nodiscard]] double angular_radius() const { return angular_radius_; }
   [[nodiscard]] const fsw::Vector3& centre_direction_eci() const { return centre_direction_eci_; }
 
-  /// Photons/(m^2 s sr) of a surface that looks at the Sun, for sunlight of so many photons/(m^2 s).
+  /// Photons/(m^2 s sr) of a surface that faces the Sun, for sunlight of the given photons/(m^2 s).
   [[nodiscard]] static double radiance(double sun_photons_per_m2_s);
 
   /// Light of the Earth at the camera: the sum of all its directions' light, each times its unit vector,
@@ -37,7 +37,7 @@ class EarthDisc {
 
  private:
   fsw::Vector3 position_, sun_direction_;  // ECI
-  fsw::Vector3 stretched_position_;        // where the Earth is a sphere
+  fsw::Vector3 stretched_position_;        // in coordinates in which the Earth is a sphere
   fsw::Vector3 centre_direction_eci_;
   double angular_radius_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Everything one exposure of a camera depends on beside the camera itself: with it the image can be made again, bit for
+// All inputs of one exposure beside the settings of the camera: they determine the image bit for
 // bit.
 
 #include <cstdint>
@@ -13,14 +13,14 @@
 
 namespace vbar::twins::camera {
 
-/// A spacecraft in view, or out of it.
+/// A spacecraft, in the field of view or not.
 struct ObjectInView {
   std::string name;                                  ///< of the spacecraft
   std::string model;                                 ///< its CAD file, data/models/<model>.obj
   fsw::Vector3 position_eci = fsw::Vector3::Zero();  ///< of its body frame's origin from the camera, m
   fsw::Vector3 velocity_eci = fsw::Vector3::Zero();  ///< the same, m/s
   Eigen::Quaterniond q_body_eci = Eigen::Quaterniond::Identity();
-  double sunlit = 1.0;  ///< fraction of the Sun's disc that it sees, 0 to 1
+  double sunlit = 1.0;  ///< visible fraction of the Sun's disc, 0 to 1
 
   friend bool operator==(const ObjectInView& a, const ObjectInView& b) {
     return a.name == b.name && a.model == b.model && a.position_eci == b.position_eci &&
@@ -32,7 +32,7 @@ struct ObjectInView {
 /// object cancel, so objects are drawn where they are; stars, Sun and Moon are drawn where aberration puts them.
 struct Exposure {
   fsw::GpsTime time;
-  std::int64_t number = 0;                                           ///< from 0; numbers the noise
+  std::int64_t number = 0;                                           ///< from 0; selects the noise
   Eigen::Quaterniond q_camera_eci = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
   fsw::Vector3 rate_camera = fsw::Vector3::Zero();  ///< of the camera with respect to ECI, in its own axes, rad/s
   fsw::Vector3 camera_position_eci = fsw::Vector3::Zero();  ///< geocentric, m

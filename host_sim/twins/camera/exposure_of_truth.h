@@ -1,5 +1,5 @@
 #pragma once
-// The truth of an instant as a camera on one of the spacecraft sees it.
+// Exposures from the truth of an instant, for a camera on one of the spacecraft.
 
 #include <string>
 #include <vector>
@@ -12,13 +12,13 @@
 
 namespace vbar::twins::camera {
 
-/// How a camera sits on its spacecraft, and what else is about.
+/// Mounting of a camera on its spacecraft, and the shapes of the other spacecraft.
 struct CameraMount {
   std::string spacecraft;
   Eigen::Quaterniond q_camera_body = Eigen::Quaterniond::Identity();
   fsw::Vector3 position_body = fsw::Vector3::Zero();  ///< from the centre of mass, m
 
-  /// A spacecraft that has a shape.
+  /// A spacecraft with a shape.
   struct Model {
     std::string spacecraft;
     std::string model;                                        ///< its CAD file
@@ -31,9 +31,9 @@ struct CameraMount {
 double sunlit_fraction(const fsw::Vector3& position_eci, const fsw::Vector3& sun_eci);
 
 /// Exposure `number` at the instant of `truth`. The objects are the spacecraft of `mount.models` other than the
-/// camera's own, in that order; those that the truth lacks, or that have no attitude, are left out. Sun, Moon and the
+/// camera's own, in that order; those that the truth lacks, or that have no attitude, are omitted. Sun, Moon and the
 /// Earth's velocity by ERFA, sunlight on the objects by the umbra and penumbra of the ellipsoidal Earth. Throws
-/// std::invalid_argument, which says what is missing, if the camera's spacecraft or its attitude is.
+/// std::invalid_argument, which names what is missing, if the camera's spacecraft or its attitude is.
 Exposure exposure_of_truth(const CameraMount& mount, const TruthSnapshot& truth, std::int64_t number);
 
 }  // namespace vbar::twins::camera

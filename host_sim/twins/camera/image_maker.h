@@ -1,6 +1,6 @@
 #pragma once
 // The digital camera: from an exposure to an image by renderer and detector. The sensor takes its images with it; a
-// replay makes packets with it from the recipes of a log.
+// replay regenerates the packets with it from the recipes of a log.
 
 #include <atomic>
 #include <chrono>
@@ -28,14 +28,14 @@ class ImageMaker final : public ImageTaker {
     CameraSettings camera;
     std::string name;  ///< of the camera, e.g. "servicer/camera": names its random numbers
     std::uint64_t seed = 0;
-    std::uint8_t spacecraft = 0;  ///< flight number of the spacecraft whose flight software gets the images
-    std::uint8_t unit = 0;        ///< which of its cameras
+    std::uint8_t spacecraft = 0;  ///< flight number of the spacecraft whose flight software receives the images
+    std::uint8_t unit = 0;        ///< number of the camera
   };
 
   /// `renderer` must not be empty.
   ImageMaker(const Settings& settings, Renderer renderer);
 
-  /// A pure function of the settings and the exposure, whatever was made before.
+  /// A pure function of the settings and the exposure.
   TakenImage take(const Exposure& exposure) override;
   [[nodiscard]] bool is_reproducible() const override { return true; }
   /// "render_s" and "detector_s": wall-clock time spent.
@@ -60,7 +60,7 @@ class ImageMaker final : public ImageTaker {
 std::vector<Packet> packets_of(const ImageMaker::Settings& settings, const Exposure& exposure,
                                std::span<const std::uint16_t> dn);
 
-/// Adds the time from its making to its end, s.
+/// Adds the time from its construction to its destruction, s.
 class Stopwatch {
  public:
   explicit Stopwatch(std::atomic<double>& total_s) : total_s_(total_s) {}

@@ -7,7 +7,7 @@ namespace vbar::twins::camera {
 /// A point of an image.
 struct ImagePoint {
   fsw::Vector2 pixel = fsw::Vector2::Zero();  ///< at the middle of the exposure
-  double electrons = 0.0;                     ///< all that it gives
+  double electrons = 0.0;                     ///< in total
 };
 
 }  // namespace vbar::twins::camera

@@ -1,5 +1,5 @@
 #pragma once
-// An exposure as bytes, for a log: with the camera's settings and the seed it is the whole image.
+// An exposure as bytes, for a log: with the camera's settings and the seed it determines the image.
 
 #include <cstdint>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace vbar::twins::camera {
 
-/// What an LCM message vbar_host.image_recipe holds.
+/// Limits of an LCM message vbar_host.image_recipe.
 inline constexpr std::size_t kMaxObjectsInView = 8;
 inline constexpr std::size_t kMaxNameBytes = 63;
 
@@ -25,7 +25,7 @@ struct ImageRecipe {
 /// a model longer than kMaxNameBytes.
 [[nodiscard]] std::vector<std::uint8_t> bytes_of(const ImageRecipe& recipe);
 
-/// The recipe, every number to the last bit; none if the bytes are not the whole of such a message.
+/// The recipe, every number to the last bit; empty if the bytes are not exactly one such message.
 [[nodiscard]] std::optional<ImageRecipe> recipe_of(std::span<const std::uint8_t> bytes);
 
 }  // namespace vbar::twins::camera

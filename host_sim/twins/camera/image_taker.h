@@ -1,5 +1,5 @@
 #pragma once
-// What turns an exposure into pixels: the renderer and the detector of the digital twin, or the driver of an optical
+// Converts an exposure into pixels: the renderer and the detector of the digital twin, or the driver of an optical
 // testbed. Timing, numbering and packets are the sensor's (camera_sensor.h).
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace vbar::twins::camera {
 
 struct TakenImage {
   std::vector<std::uint16_t> dn;  ///< the pixels of the camera's region, rows from the top
-  std::vector<Note> notes = {};   ///< what is known of this image: achieved pose, retries
+  std::vector<Note> notes = {};   ///< on this image: achieved pose, retries
   std::string failure = {};       ///< if there is no image: why, one sentence
 };
 
@@ -29,10 +29,10 @@ class ImageTaker {
   /// From another thread than take(), which then returns without delay.
   virtual void stop(StopReason reason) { static_cast<void>(reason); }
 
-  /// On the sensor's own thread, always the same one. What it throws ends the run.
+  /// On the sensor's own thread, always the same one. An exception ends the run.
   virtual TakenImage take(const Exposure& exposure) = 0;
 
-  /// Whether take() is a pure function of the exposure, so that a log may keep that in place of the pixels.
+  /// Whether take() is a pure function of the exposure, so that a log may keep the exposure in place of the pixels.
   [[nodiscard]] virtual bool is_reproducible() const { return false; }
 
   /// So far; while take() runs, too.

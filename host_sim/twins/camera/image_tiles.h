@@ -11,17 +11,17 @@
 
 namespace vbar::twins::camera {
 
-/// The number that an image has in its packets.
+/// The number of an image in its packets.
 constexpr std::int32_t image_number_on_link(std::int64_t exposure_number) {
   return static_cast<std::int32_t>(exposure_number & 0x7FFFFFFF);
 }
 
-/// Which image, and whose.
+/// Identifies an image and its receiver.
 struct ImageLabel {
   fsw::GpsTime time;            ///< middle of the exposure
   std::int64_t number = 0;      ///< of the exposure, 0 or above; the link counts it modulo 2^31
-  std::uint8_t spacecraft = 0;  ///< whose flight software gets it
-  std::uint8_t unit = 0;        ///< which of its cameras
+  std::uint8_t spacecraft = 0;  ///< whose flight software receives it
+  std::uint8_t unit = 0;        ///< number of the camera
 };
 
 /// `dn`: the pixels of `region`, rows from the top, of `bits` (8 or 12) each. One packet a tile, in order; sequence

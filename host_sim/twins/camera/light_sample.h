@@ -1,5 +1,5 @@
 #pragma once
-// The light of an extended thing as a camera receives it: many points, each with its direction and its flux.
+// The light of an extended object as a camera receives it: many points, each with direction and flux.
 
 #include "fsw/core/types.h"
 

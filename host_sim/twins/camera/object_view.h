@@ -1,5 +1,5 @@
 #pragma once
-// What is asked of whoever renders the spacecraft before the camera.
+// The interface between scene and renderers of spacecraft.
 
 #include <functional>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace vbar::twins::camera {
 
-/// A spacecraft before the camera and the light that falls on it; camera axes.
+/// A spacecraft in view of the camera and its illumination; camera axes.
 struct ObjectView {
   std::string model;                                     ///< its CAD file, data/models/<model>.obj
   fsw::Vector3 position_camera = fsw::Vector3::UnitZ();  ///< of its body frame's origin, m
@@ -21,14 +21,14 @@ struct ObjectView {
   fsw::Vector3 earth_direction_camera = fsw::Vector3::UnitZ();  ///< to the middle of the Earth's light, unit
   double earth_photons_per_m2_s = 0.0;                          ///< on a surface that looks there
   double earth_half_angle = 1.1;                                ///< of the Earth's disc as the object sees it, rad
-  double pixel_rad = 0.0;                                       ///< what a pixel of the camera sees
+  double pixel_rad = 0.0;                                       ///< angle subtended by a pixel of the camera
 };
 
 /// Appends the object's light to `out`. One call at a time.
 using ObjectRenderer = std::function<void(const ObjectView& view, std::vector<LightSample>& out)>;
 
-/// Replaces `covered` by the share of each pixel of `region`, in rows, behind which nothing is seen of what is farther
-/// away than the object. One call at a time.
+/// Replaces `covered` by the fraction of each pixel of `region`, in rows, in which the object hides the
+/// background. One call at a time.
 using ObjectCover = std::function<void(const ObjectView& view, const Optics& optics, const Region& region,
                                        std::vector<float>& covered)>;
 

@@ -1,5 +1,5 @@
 #pragma once
-// The lens: from directions to the detector, and how much of the light arrives.
+// The lens: projection of directions onto the detector, and transmission.
 
 #include <optional>
 
@@ -20,18 +20,18 @@ class Optics {
  public:
   explicit Optics(const CameraSettings& settings);
 
-  /// Where light from `direction_camera` (any length) falls, on the detector or beside it; nothing if it comes from
+  /// Image point of light from `direction_camera` (any length), on the detector or beside it; empty if it is
   /// more than 70 deg off the boresight.
   [[nodiscard]] std::optional<fsw::Vector2> project(const fsw::Vector3& direction_camera) const;
 
-  /// Motion of that place (px/s) as the direction (unit) changes by `rate_camera` (1/s).
+  /// Motion of that point (px/s) as the direction (unit) changes by `rate_camera` (1/s).
   [[nodiscard]] fsw::Vector2 image_velocity(const fsw::Vector3& direction_camera,
                                             const fsw::Vector3& rate_camera) const;
 
   /// The unit vector that project() sends to `pixel`, by Newton's method from the undistorted one.
   [[nodiscard]] fsw::Vector3 direction_of(const fsw::Vector2& pixel) const;
 
-  /// Part of the light that arrives, 1 at the principal point.
+  /// Transmitted fraction of the light, 1 at the principal point.
   [[nodiscard]] double vignetting(const fsw::Vector2& pixel) const;
 
   /// The narrowest cone about the region's middle that holds the region grown by `margin_px` on each side.

@@ -1,8 +1,8 @@
 #pragma once
-// How much light: stars and the Sun in the photons that a silicon detector counts.
+// Photometry: stars and the Sun in photons that a silicon detector counts.
 //
 // A photon here is one at the peak of the detector's response: a flux is the integral over 400 to 900 nm of photons
-// times response relative to its peak, so one quantum efficiency (the peak's) turns every colour into electrons.
+// times response relative to its peak, so one quantum efficiency (the peak's) converts every colour to electrons.
 // Spectra are log-linear between the effective wavelengths of B, V, R and I.
 //
 // Flux of a star of magnitude 0 and no colour (A0 V): Bessell, Castelli, Plez 1998, table A2, in 1e-11 erg/(cm^2 s A):

@@ -1,5 +1,5 @@
 #pragma once
-// What light does to the detector, before any noise: expected photo-electrons a pixel of one exposure.
+// The noise-free image: expected photo-electrons per pixel of one exposure.
 
 #include <cstddef>
 #include <vector>

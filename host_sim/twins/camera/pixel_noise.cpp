@@ -34,7 +34,7 @@ void philox_round(Blocks& blocks, std::uint32_t key0, std::uint32_t key1) {
 // ----------------------------------------------------------------------------------------------------- normal numbers
 
 // The lower half of a word's range, m + 1/2 in units of 2^-32, is the probability of a tail. As a float its exponent
-// and its first four bits number a segment, the other 19 bits say where in it.
+// and its first four bits number a segment, the other 19 bits give the position in it.
 constexpr unsigned kBitsInSegment = 19;
 constexpr std::uint32_t kFirstSegment = std::bit_cast<std::uint32_t>(0.5F) >> kBitsInSegment;
 constexpr std::uint32_t kSegments = (std::bit_cast<std::uint32_t>(0x1p31F) >> kBitsInSegment) - kFirstSegment + 1;
@@ -63,11 +63,11 @@ std::array<Quadratic, kSegments> make_quadratics() {
 
 // ---------------------------------------------------------------------------------------------------- Poisson numbers
 
-// More than so many at kGaussianMean have a probability of 1e-8.
-constexpr int kMostBySearch = 40;
+// Larger numbers at kGaussianMean have a probability of 1e-8.
+constexpr int kMaxBySearch = 40;
 
-constexpr std::array<float, kMostBySearch + 1> kReciprocal = [] {
-  std::array<float, kMostBySearch + 1> reciprocal{};
+constexpr std::array<float, kMaxBySearch + 1> kReciprocal = [] {
+  std::array<float, kMaxBySearch + 1> reciprocal{};
   for (std::size_t k = 1; k < reciprocal.size(); ++k) reciprocal[k] = static_cast<float>(1.0 / static_cast<double>(k));
   return reciprocal;
 }();
@@ -89,7 +89,7 @@ inline float exp_of_minus(float x) {
   return series * std::bit_cast<float>((127 - whole) << 23);
 }
 
-/// How many of a distribution's steps lie at or below the uniform number: for means below kGaussianMean, and 0 for
+/// Number of steps of the distribution at or below the uniform number: for means below kGaussianMean, and 0 for
 /// others, which are left to the expansion.
 void search(const ChunkWords& words, std::span<const float, kChunk> means, std::span<float, kChunk> numbers) {
   ChunkFloats uniform, mean, term, sum;
@@ -100,7 +100,7 @@ void search(const ChunkWords& words, std::span<const float, kChunk> means, std::
     sum[k] = term[k];
     numbers[k] = 0.0F;
   }
-  for (std::size_t count = 1; count <= kMostBySearch; ++count) {
+  for (std::size_t count = 1; count <= kMaxBySearch; ++count) {
     const float reciprocal = kReciprocal[count];
     std::int32_t beyond = 0;
     for (std::size_t k = 0; k < kChunk; ++k) {
@@ -115,7 +115,7 @@ void search(const ChunkWords& words, std::span<const float, kChunk> means, std::
 }
 
 inline float by_expansion(float expected, float w) {
-  const float mean = std::min(expected, 1e12F);  // infinity too has a result
+  const float mean = std::min(expected, 1e12F);  // so that infinity has a result as well
   const float root = std::sqrt(mean), w2 = w * w;
   const float first = (1.0F / 3.0F) + w2 * (1.0F / 6.0F);
   const float second = w * (-1.0F / 36.0F - w2 * (1.0F / 72.0F)) / root;

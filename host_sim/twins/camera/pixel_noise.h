@@ -1,5 +1,5 @@
 #pragma once
-// Random numbers for the pixels of an image: many at a time, each a pure function of where it belongs.
+// Random numbers for the pixels of an image: computed in chunks, each a pure function of its position.
 //
 // Bits: Philox4x32-10 (Salmon, Moraes, Dror, Shaw 2011), the four words of a block shared out to four pixels. Normal
 // numbers: the inverse of the distribution function by a quadratic in each of 16 segments an octave of the tail
@@ -22,7 +22,7 @@ inline constexpr std::size_t kBlocksOfChunk = kChunk / 4;
 using ChunkWords = std::array<std::uint32_t, kChunk>;
 using ChunkFloats = std::array<float, kChunk>;
 
-/// What the noise of one exposure is drawn for: shot noise and read noise share no bits.
+/// The kind of noise of one exposure: shot noise and read noise share no bits.
 enum class NoiseKind : std::uint32_t { kShot = 0, kRead = 1 };
 
 struct NoiseKey {

@@ -18,7 +18,7 @@ float* row_of(PhotonImage& image, int y) {
 
 }  // namespace
 
-// Least reaches, a square's half width: beyond 4.5 sigma lies 1.4e-5 of the core, beyond 3.3 sigma 2e-3 of the halo.
+// Minimum reaches, half widths: beyond 4.5 sigma lies 1.4e-5 of the core, beyond 3.3 sigma 2e-3 of the halo.
 PointSpread::PointSpread(const OpticsSettings& optics)
     : components_{Component{1.0 - optics.halo_fraction, optics.point_spread_sigma_px, 4.5},
                   Component{optics.halo_fraction, optics.halo_sigma_px, 3.3}},
@@ -34,24 +34,24 @@ double PointSpread::reach_px(double electrons) const {
   return std::max(reach_px(components_[0], electrons), reach_px(components_[1], electrons));
 }
 
-/// Gauss-Legendre, three nodes for every sigma of the way: the spread's moments to 1e-6.
+/// Gauss-Legendre, three nodes for every sigma of the smear: moments correct to 1e-6.
 void PointSpread::place_smear_nodes(const Vector2& smear_px, double sigma_px) {
   constexpr std::array<double, 3> kPlace{-0.7745966692414834, 0.0, 0.7745966692414834};
   constexpr std::array<double, 3> kWeight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-  constexpr double kMostPieces = 2000.0;
+  constexpr double kMaxPieces = 2000.0;
   nodes_.clear();
   const double length = smear_px.norm();
   if (length < 1e-6) {
     nodes_.push_back({Vector2::Zero(), 1.0});
     return;
   }
-  const double pieces = std::min(std::ceil(length / sigma_px), kMostPieces);
+  const double pieces = std::min(std::ceil(length / sigma_px), kMaxPieces);
   for (double piece = 0.0; piece < pieces; piece += 1.0)
     for (std::size_t i = 0; i < kPlace.size(); ++i)
       nodes_.push_back({((piece + 0.5 + 0.5 * kPlace[i]) / pieces - 0.5) * smear_px, kWeight[i] / pieces});
 }
 
-/// Pixels from `begin` to before `end` only; none at all if the reach ends outside of them.
+/// Pixels from `begin` to before `end` only; none if the reach ends outside of them.
 void PointSpread::fill(Profile& profile, double centre, double reach, double sigma_px, int begin, int end) {
   profile.weights.clear();
   const double low = std::max(std::floor(centre - reach + 0.5), static_cast<double>(begin));
@@ -93,7 +93,7 @@ void PointSpread::add(std::span<const ImagePoint> points, const Vector2& smear_p
   for (const Component& component : components_) add_component(component, points, smear_px, image);
 }
 
-/// False, and nothing is added, if the points that can be seen are not wide.
+/// False, and nothing is added, if the visible points are not wide.
 bool PointSpread::add_wide(std::span<const ImagePoint> points, const Vector2& smear_px, PhotonImage& image) {
   if (!wide_.can_spread()) return false;
   double electrons = 0.0;
@@ -123,7 +123,7 @@ void PointSpread::add_component(const Component& component, std::span<const Imag
   const double reach = reach_px(component, electrons);
   place_smear_nodes(smear_px, component.sigma_px);
 
-  // What lies farther outside than the reach cannot be seen.
+  // Points outside by more than the reach are not visible.
   const Vector2 margin = Vector2::Constant(reach + 1.0) + 0.5 * smear_px.cwiseAbs();
   const Vector2 least = Vector2(region.x, region.y) - margin;
   const Vector2 most = Vector2(region.x + region.width, region.y + region.height) + margin;

@@ -1,6 +1,6 @@
 #pragma once
-// Light on the pixels: what the lens and the camera's turning make of a point, integrated over every pixel. A point's
-// image is a Gaussian core and a wide Gaussian halo, drawn along a straight line during the exposure.
+// Point-spread function of the lens with the smear by camera rotation, integrated over every pixel. The image of a
+// point is a Gaussian core and a wide Gaussian halo, drawn along a straight line during the exposure.
 
 #include <array>
 #include <span>
@@ -17,7 +17,7 @@ class PointSpread {
  public:
   explicit PointSpread(const OpticsSettings& optics);
 
-  /// Adds a point that moves by `smear_px` in all during the exposure, at constant speed.
+  /// Adds a point that moves by `smear_px` in total during the exposure, at constant speed.
   void add(const ImagePoint& point, const fsw::Vector2& smear_px, PhotonImage& image);
 
   /// Adds many points that move alike and belong together: an object, a disc. They are first gathered on a grid, of a
@@ -28,7 +28,7 @@ class PointSpread {
 
   static constexpr double kWide_px = 96.0;
 
-  /// Pixels from a point of so many electrons at which its light is lost: 0.05 electrons a pixel, 1e-4 of all of it.
+  /// Distance in pixels from a point of given electrons at which its light is lost: 0.05 electrons a pixel, 1e-4 of it.
   [[nodiscard]] double reach_px(double electrons) const;
 
  private:

@@ -26,7 +26,7 @@ ImageKey key_of(const ImageRecipe& recipe) {
 
 void RecipeLogWriter::write_recipe(fsw::GpsTime time, std::span<const std::uint8_t> recipe) {
   const auto decoded = recipe_of(recipe);
-  if (!decoded) throw std::runtime_error("a sensor gave a recipe that is not one of an image");
+  if (!decoded) throw std::runtime_error("a sensor gave an invalid image recipe");
   known_.insert(key_of(*decoded));
   writer_.write_recipe(time, {recipe.begin(), recipe.end()});
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A log of a run without the pixels of its images: their recipes stand there instead, and runs of tiles in the place
+// A log of a run without the pixels of its images: it holds their recipes instead, and runs of tiles in place
 // of the tiles that went to the flight software. A recipe and its runs are some 2 kB an image, the tiles 600 kB.
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace vbar::twins::camera {
 
-/// Which image, as its tiles say: spacecraft, unit, number.
+/// Identifies an image as its tiles do: spacecraft, unit, number.
 using ImageKey = std::tuple<std::uint8_t, std::uint8_t, std::int32_t>;
 
 /// Writes such a log. Tiles of images whose recipe it was not given stay whole.
@@ -26,7 +26,7 @@ class RecipeLogWriter {
   /// As PacketLogWriter.
   explicit RecipeLogWriter(const std::filesystem::path& file) : writer_(file) {}
 
-  /// Before the tiles of its image. Throws std::runtime_error for bytes that are no recipe.
+  /// Before the tiles of its image. Throws std::runtime_error for an invalid recipe.
   void write_recipe(fsw::GpsTime time, std::span<const std::uint8_t> recipe);
 
   /// Packets in order. A tile may be held back until it is known how far its run goes.
@@ -46,7 +46,7 @@ class RecipeLogWriter {
   std::optional<PacketRecord> run_;
 };
 
-/// Gives the tiles back, by making the images again. One image at a time is kept.
+/// Restores the tiles by regenerating the images. One image at a time is kept.
 class TileRestorer {
  public:
   /// The packets of an image, all its tiles in order.
@@ -55,8 +55,8 @@ class TileRestorer {
   /// `recipes` of a log (PacketLog::recipes). Throws std::runtime_error for a damaged one.
   TileRestorer(std::span<const std::vector<std::uint8_t>> recipes, MakeImage make_image);
 
-  /// The packets of a run. Throws std::runtime_error, which names the image, if there is no recipe for it, or if what
-  /// is made now is not what was flown, as its checksum tells.
+  /// The packets of a run. Throws std::runtime_error, which names the image, if there is no recipe for it, or if the
+  /// checksum of the regenerated tiles differs from that of the flown ones.
   std::vector<Packet> packets_of(const TileRun& run);
 
  private:

@@ -46,7 +46,7 @@ struct SceneRenderer::View {
                      earth.angular_radius() + detector_cone.half_angle;
   }
 
-  /// Part of the light from `direction_eci` that the Earth lets pass, 0 to 1.
+  /// Fraction of the light from `direction_eci` that the Earth does not block, 0 to 1.
   [[nodiscard]] double passed_by_earth(const Vector3& direction_eci) const {
     return 1.0 - earth.look(direction_eci, pixel_rad).covered;
   }
@@ -171,13 +171,13 @@ void SceneRenderer::add_object(const View& view, const ObjectInView& object, Pho
   for (const LightSample& sample : samples_)
     if (const auto pixel = optics_.project(sample.direction_camera))
       points_.push_back({*pixel, electrons_of(sample, *pixel)});
-  // The way across the line of sight turns the direction; the camera's turning does the rest.
+  // Motion across the line of sight rotates the direction; the rotation of the camera adds to it.
   const Vector3 across = object.velocity_eci - direction_eci * direction_eci.dot(object.velocity_eci);
   const Vector3 direction_rate = view.R_camera_eci * across / distance + direction.cross(view.exposure.rate_camera);
   spread_.add(points_, settings_.exposure_s * optics_.image_velocity(direction, direction_rate), image);
 }
 
-/// Electrons that they leave on the detector.
+/// Their electrons on the detector.
 double SceneRenderer::add_sun_and_moon(const View& view, PhotonImage& image) {
   const Exposure& exposure = view.exposure;
   const auto across_of = [&](double radius) { return static_cast<int>(4.0 * radius / view.pixel_rad) + 2; };
@@ -197,7 +197,7 @@ double SceneRenderer::add_sun_and_moon(const View& view, PhotonImage& image) {
     samples_.clear();
     moon_disc(view.moon, (view.sun - view.moon).normalized(), settings_.zero_magnitude_photons,
               across_of(kMoonRadiusM / view.moon.norm()), samples_);
-    electrons += add_disc(view, exposure.camera_velocity_eci, image);  // it goes around the Sun with the Earth
+    electrons += add_disc(view, exposure.camera_velocity_eci, image);  // it orbits the Sun with the Earth
   }
   return electrons;
 }
@@ -250,7 +250,7 @@ double SceneRenderer::add_earth(const View& view, PhotonImage& image) const {
   return sum * detector.width * detector.height / (kAcross * kDown);
 }
 
-/// Part of the Sun's disc that the Earth does not hide, 0 to 1.
+/// Fraction of the Sun's disc that the Earth does not hide, 0 to 1.
 double SceneRenderer::sun_in_sight(const View& view) {
   samples_.clear();
   uniform_disc(view.sun.normalized(), std::asin(truth::kSunRadius / view.sun.norm()), 1.0, 12, samples_);
@@ -260,7 +260,7 @@ double SceneRenderer::sun_in_sight(const View& view) {
   return in_sight;
 }
 
-/// Veiling glare, even, and the Sun on the baffle: full where the Sun is at the field's edge or within, falling with
+/// Uniform veiling glare, and the Sun on the baffle: full where the Sun is at the field's edge or within, falling with
 /// the square to nothing at the exclusion angle, half as much again on the Sun's side of the detector as in its middle.
 void SceneRenderer::add_background(const View& view, double scattered, PhotonImage& image) {
   const DetectorSettings& detector = settings_.detector;

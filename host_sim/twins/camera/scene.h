@@ -14,32 +14,32 @@
 
 namespace vbar::twins::camera {
 
-/// Part of the light of Sun, Moon and Earth on the detector that lens and housing scatter evenly over all of it
+/// Fraction of the light of Sun, Moon and Earth on the detector that lens and housing scatter uniformly over it
 /// (veiling glare).
 inline constexpr double kVeilingGlare = 1e-3;
 
-/// Makes one image at a time.
+/// Renders one image at a time.
 ///
-/// - Stars, Sun and Moon move over the image by the camera's turning, objects by that and their own way; the Earth's
-/// limb
-///   stands still during an exposure, and has no spread.
-/// - The Earth hides what is behind it, and so does a spacecraft so near that a pixel sees less than a centimetre of
-/// it.
+/// - Stars, Sun and Moon move over the image by the rotation of the camera, objects by that and their own motion; the
+///   limb of the Earth is fixed during an exposure, and is
+///   not blurred by the lens.
+/// - The Earth hides the background, and so does a spacecraft so near that a pixel subtends less than a centimetre of
+///   it.
 ///   A star behind a farther one shines through it (a spacecraft at 1 km is 4 pixels wide, and a star in a thousand
 ///   images is behind it). Spacecraft do not hide each other.
-/// - Sun and Earth on the detector drown everything else, as they do in a real camera, by kVeilingGlare.
+/// - Sun and Earth on the detector outshine all other objects, as in a real camera, by kVeilingGlare.
 class SceneRenderer {
  public:
-  /// Reads the star catalogue of `data_directory`; throws std::runtime_error if that cannot be. `objects` renders
-  /// spacecraft; by default each is a matt sphere of 0.7 m and albedo 0.3. Without `covers` they hide nothing.
+  /// Reads the star catalogue of `data_directory`; throws std::runtime_error if it cannot be read. `objects` renders
+  /// spacecraft; by default each is a Lambert sphere of 0.7 m and albedo 0.3. Without `covers` they hide nothing.
   SceneRenderer(const CameraSettings& settings, const std::filesystem::path& data_directory,
                 ObjectRenderer objects = {}, ObjectCover covers = {});
 
-  /// Expected photo-electrons of the region that is read, into `image`, whatever it held. No dark current, no noise.
+  /// Expected photo-electrons of the region that is read, replacing `image`. No dark current, no noise.
   void render(const Exposure& exposure, PhotonImage& image);
 
  private:
-  struct View;  // what an exposure's parts have in common
+  struct View;  // common quantities of an exposure
 
   [[nodiscard]] double electrons_of(const LightSample& light, const fsw::Vector2& pixel) const;
   void add_stars(const View& view, PhotonImage& image);

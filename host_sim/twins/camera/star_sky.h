@@ -1,5 +1,5 @@
 #pragma once
-// The stars that a camera may see: ESA's Hipparcos catalogue (SP-1200) to V 8.
+// The stars of the camera images: ESA's Hipparcos catalogue (SP-1200) to V 8.
 
 #include <filesystem>
 #include <vector>
@@ -9,7 +9,7 @@
 namespace vbar::twins::camera {
 
 struct SkyStar {
-  int hip = 0;                                           ///< 0: without a number of its own
+  int hip = 0;                                           ///< 0: not in the Hipparcos catalogue
   fsw::Vector3 direction_j2000 = fsw::Vector3::UnitX();  ///< ICRS, barycentric, at J2000.0; unit
   fsw::Vector3 motion_per_year = fsw::Vector3::Zero();   ///< of the direction, rad a Julian year
   double v = 0.0;                                        ///< magnitude
@@ -19,7 +19,7 @@ struct SkyStar {
 
 struct ApparentStar {
   const SkyStar* star = nullptr;
-  fsw::Vector3 direction_eci = fsw::Vector3::UnitX();  ///< as the observer sees it, GCRF axes, unit
+  fsw::Vector3 direction_eci = fsw::Vector3::UnitX();  ///< apparent, GCRF axes, unit
 };
 
 class StarSky {

@@ -11,8 +11,8 @@ namespace {
 
 using fsw::Vector2;
 
-// Points come in rows up to half a pixel apart. A coarser grid than this beats with them, and the spread no longer
-// takes that away.
+// Points come in rows up to half a pixel apart. A coarser grid than this aliases with them, and the spread no longer
+// suppresses that.
 constexpr double kCoarsestStep = 0.67;  // sigmas of the core
 
 /// Integrals over pixel 0 of a Gaussian at `offset` pixels, for offsets of -reach to reach by steps of 1 / nodes; the
@@ -35,8 +35,8 @@ std::vector<float> pixel_weights(double sigma, int nodes, int reach_nodes) {
   return normalised;
 }
 
-/// Shares of the nodes before, at and after a point that lies `u` from the middle one, -1/2 to 1/2: a quadratic
-/// B-spline. Its sum is 1, its mean u and its variance a quarter wherever the point lies.
+/// Weights of the nodes before, at and after a point that lies `u` from the middle one, -1/2 to 1/2: a quadratic
+/// B-spline. Its sum is 1, its mean u and its variance a quarter at every position of the point.
 std::array<float, 3> spline_weights(float u) {
   return {0.5F * (0.5F - u) * (0.5F - u), 0.75F - u * u, 0.5F * (0.5F + u) * (0.5F + u)};
 }
@@ -56,7 +56,7 @@ WideSpread::WideSpread(const Settings& settings)
   halo_variance_ = settings.halo_sigma_px * settings.halo_sigma_px - variance;
 }
 
-/// A body beside the camera has points all over the half space before it; the grid is for those that matter.
+/// A body beside the camera has points all over the half space before it; the grid covers the relevant ones.
 std::span<const ImagePoint> WideSpread::within_reach(std::span<const ImagePoint> points, double margin,
                                                      const Region& region) {
   const auto matters = [&](const ImagePoint& point) {
@@ -71,7 +71,7 @@ std::span<const ImagePoint> WideSpread::within_reach(std::span<const ImagePoint>
 
 void WideSpread::add(std::span<const ImagePoint> all_points, const Vector2& all_smear_px, double core_reach,
                      double halo_reach, PhotonImage& image) {
-  // Nor has such a body a way on the detector that says anything.
+  // Nor is the motion of such a body on the detector meaningful.
   const double longest = image.region.width + image.region.height;
   const Vector2 smear_px = all_smear_px.norm() < longest ? all_smear_px : Vector2(Vector2::Zero());
   const double margin = core_reach + halo_reach + 0.5 * smear_px.norm() + 2.0;
@@ -90,7 +90,7 @@ void WideSpread::add(std::span<const ImagePoint> all_points, const Vector2& all_
   from.height = floor_of(high.y()) + 2 - from.y;
   gather(points, smear_px, from);
 
-  // What the core leaves beside the region still gives its halo there.
+  // The part of the core beside the region still contributes its halo inside.
   const Region& region = image.region;
   const int beside = static_cast<int>(std::ceil(halo_reach)) + 1, reach = static_cast<int>(std::ceil(core_reach)) + 1;
   const int spread = reach + beside;
@@ -112,7 +112,7 @@ void WideSpread::gather(std::span<const ImagePoint> points, const Vector2& smear
   grid_width_ = static_cast<std::size_t>(box.width * nodes_a_pixel_) + 1;
   grid_height_ = static_cast<std::size_t>(box.height * nodes_a_pixel_) + 1;
   grid_.assign(grid_width_ * grid_height_, 0.0F);
-  // A way shorter than a tenth of the core widens it by less than 0.1 %.
+  // A smear shorter than a tenth of the core widens it by less than 0.1 %.
   const double length = smear_px.norm();
   const int pieces = length < 0.1 * settings_.core_sigma_px
                          ? 1

@@ -1,11 +1,11 @@
 #pragma once
-// The spread of something large: many thousand points that fill tens of pixels each way.
+// Point-spread function of an extended object: many thousand points that fill tens of pixels each way.
 //
 // The points are gathered on a grid whose nodes divide the pixels evenly, by the weights of a quadratic
 // B-spline (Hockney and Eastwood 1981, "triangular-shaped cloud"), so that the spread of a node over the pixels is the
 // same for all nodes at the same place of a pixel: one set of weights for rows and columns. The spline widens by a
-// quarter of a step's square; the Gaussian is so much narrower. A wide halo is the
-// spread of what the narrow core has left on the pixels.
+// quarter of a step's square; the Gaussian is narrower by that. A wide halo is the
+// image of the narrow core, spread again.
 
 #include <span>
 #include <vector>
@@ -26,10 +26,10 @@ class WideSpread {
 
   explicit WideSpread(const Settings& settings);
 
-  /// Whether the halo is wide enough to be made of the core.
+  /// Whether the halo is wide enough to be computed from the image of the core.
   [[nodiscard]] bool can_spread() const { return halo_variance_ >= 1.0 || settings_.halo_fraction == 0.0; }
 
-  /// Adds the points, each spread over `core_reach` and `halo_reach` pixels at most. `smear_px`: their common way
+  /// Adds the points, each spread over `core_reach` and `halo_reach` pixels at most. `smear_px`: their common motion
   /// during the exposure, at constant speed. Sums and centroids are exact but for what is beyond the reaches.
   void add(std::span<const ImagePoint> points, const fsw::Vector2& smear_px, double core_reach, double halo_reach,
            PhotonImage& image);
@@ -48,7 +48,7 @@ class WideSpread {
 
   Settings settings_;
   int nodes_a_pixel_;
-  double core_sigma_;  // less what gathering adds
+  double core_sigma_;  // less the widening by the grid
   double halo_variance_;
   // Work space.
   std::vector<ImagePoint> near_;

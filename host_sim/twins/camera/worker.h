@@ -1,5 +1,5 @@
 #pragma once
-// One thread of its own for work that must stay on one thread (an OpenGL context), in the order it was asked for.
+// A thread for work that must stay on one thread (an OpenGL context), in the order of the requests.
 
 #include <condition_variable>
 #include <deque>
@@ -16,7 +16,7 @@ namespace vbar::twins::camera {
 class Worker {
  public:
   Worker();
-  /// Finishes the job at hand; of those not begun the futures are broken (std::future_error).
+  /// Finishes the job at hand; the futures of jobs not started are broken (std::future_error).
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;

@@ -27,7 +27,7 @@ Vector3 normal_vector(engine::RandomStream& stream, double sigma) {
 double mean_square_m2(const BodyFrameSettings& settings) {
   const double com_m = settings.com_radius_mm * 1e-3;
   const double pco_m = settings.pco_bias_mm * 1e-3;
-  // Of a ball: 3/5 R^2. Of a small rotation about each axis: twice the squared lever arm.
+  // For a ball: 3/5 R^2. For a small rotation about each axis: twice the squared lever arm.
   const double lever_m = settings.antenna_in_body_m.norm() * settings.attitude_knowledge_arcsec * kArcsecond;
   return 0.6 * com_m * com_m + pco_m * pco_m + 2.0 * lever_m * lever_m;
 }

@@ -42,7 +42,7 @@ double eccentric_anomaly(double mean_anomaly, double e) {
   return anomaly;
 }
 
-// Rotation of coordinates into a frame turned by `angle` about z.
+// Rotation of coordinates into a frame rotated by `angle` about z.
 Matrix3 turn_about_z(double angle) {
   return Eigen::AngleAxisd(-angle, Vector3::UnitZ()).toRotationMatrix();
 }
@@ -57,7 +57,7 @@ Rated harmonic(double c, double s, const Rated& latitude) {
   return {c * cos2u + s * sin2u, 2.0 * latitude.rate * (s * cos2u - c * sin2u)};
 }
 
-// The orbit plane of a geostationary set after its frame has turned on for `elapsed_s`: the same plane and perigee,
+// The orbit plane of a geostationary set after its frame has rotated for `elapsed_s`: the same plane and perigee,
 // seen in the frame that is tilted at the later reference time.
 void turn_geostationary_plane(Ephemeris& set, double elapsed_s) {
   const Matrix3 tilt = turn_about_x(kGeostationaryTilt);
@@ -125,7 +125,7 @@ SatelliteState satellite_state(const Ephemeris& ephemeris, fsw::GpsTime time, do
   const double node_rate = is_geostationary(ephemeris.satellite) ? ephemeris.omega_dot : ephemeris.omega_dot - rate;
   const double node = ephemeris.node_at_toe + node_rate * tk;
 
-  // In the orbit plane, x to the node; then turned by inclination and node.
+  // In the orbit plane, x to the node; then rotated by inclination and node.
   const double x = r.value * std::cos(u.value);
   const double y = r.value * std::sin(u.value);
   const double vx = r.rate * std::cos(u.value) - y * u.rate;

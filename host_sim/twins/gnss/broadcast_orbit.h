@@ -1,6 +1,6 @@
 #pragma once
-// The orbit and clock model of the broadcast ephemerides: what a satellite says of itself, and, here, what its true
-// motion follows up to the errors of constellation.h.
+// The orbit and clock model of the broadcast ephemerides: the motion that a satellite broadcasts, and, here, its true
+// motion up to the errors of constellation.h.
 // IS-GPS-200N 20.3.3.4.3 and 20.3.3.3.3.1; Galileo OS SIS ICD 2.1, 5.1; BDS-SIS-ICD-B1I-3.0, 5.2.4.9 to 5.2.4.12.
 
 #include "fsw/core/gps_time.h"
@@ -10,11 +10,11 @@
 namespace vbar::twins::gnss {
 
 /// One set of elements. Unlike the broadcast one it names the node by its Earth-fixed longitude at toe, so that it
-/// knows no week and can be moved to another day; omega0 = node_at_toe + Earth rate * (seconds of week of toe). The
-/// clock's reference time is toe.
+/// depends on no week and can be moved to another day; omega0 = node_at_toe + Earth rate * (seconds of week of toe).
+/// The clock's reference time is toe.
 struct Ephemeris {
   SatelliteId satellite;
-  fsw::GpsTime toe;     ///< GPS time, whatever the system's own
+  fsw::GpsTime toe;     ///< GPS time for every system
   double sqrt_a = 0.0;  ///< m^(1/2)
   double e = 0.0;
   double m0 = 0.0;           ///< rad, as all angles
@@ -44,12 +44,12 @@ double earth_rate(System system);
 /// Mean motion, delta_n included, rad/s.
 double mean_motion(const Ephemeris& ephemeris);
 
-/// State `offset_s` after `time`. The model is evaluated however far from toe: it is defined for ever.
+/// State `offset_s` after `time`. The model is evaluated at any distance from toe.
 SatelliteState satellite_state(const Ephemeris& ephemeris, fsw::GpsTime time, double offset_s = 0.0);
 
 /// The set of elements with reference time `toe` that describes the same motion. Exact: every term of the model is
 /// constant or linear in time. (Sets of geostationary BeiDou satellites must have no harmonic terms or rates, as
-/// constellation.h makes them: their tilted frame turns with toe.)
+/// constellation.h makes them: their tilted frame rotates with toe.)
 Ephemeris with_reference_time(const Ephemeris& ephemeris, fsw::GpsTime toe);
 
 }  // namespace vbar::twins::gnss

@@ -21,7 +21,7 @@ using fsw::Vector3;
 
 constexpr std::int64_t kDay_ns = 86400 * fsw::kNanosecondsPerSecond;
 
-// A Walker delta pattern 24/3/1 of circular orbits whose nodes turn by J2, at its reference point at `toe`.
+// A Walker delta pattern 24/3/1 of circular orbits whose nodes precess by J2, at its reference point at `toe`.
 struct WalkerPattern {
   System system;
   double semi_major_axis_m;
@@ -58,9 +58,9 @@ std::vector<Ephemeris> walker_satellites(const WalkerPattern& pattern, fsw::GpsT
   return satellites;
 }
 
-// The tilted frame of the geostationary satellites' model turns with its reference time, so that only sets without
+// The tilted frame of the geostationary satellites' model rotates with its reference time, so that only sets without
 // harmonics and rates describe one motion. Their orbit keeps its shape; the node's rate goes into the mean motion, so
-// that the satellite stays over its place.
+// that the satellite stays at its longitude.
 Ephemeris without_rates(Ephemeris set) {
   set.delta_n += set.omega_dot * std::cos(set.i0);
   set.omega_dot = set.i_dot = 0.0;

@@ -1,13 +1,13 @@
 #pragma once
-// The navigation satellites of a run: where they truly are, and what they say. One object serves every receiver.
+// The navigation satellites of a run: true motion and broadcast messages. One object serves every receiver.
 //
-// A satellite truly moves as one set of real broadcast elements says, plus an error in radial, transverse and normal
-// direction and of its clock, each a constant and a sine of the orbit's period, drawn per satellite and seed: the
-// "uncorrected broadcast" of the paper's table. The broadcast sets of all reference times describe that same motion
+// The true motion of a satellite follows one set of real broadcast elements, plus an error in radial, transverse and
+// normal direction and of its clock, each a constant and a sine of the orbit's period, drawn per satellite and seed:
+// the "uncorrected broadcast" of the paper's table. The broadcast sets of all reference times describe that same motion
 // without the error, rounded to the bits of the navigation message: so the difference steps by centimetres where a new
-// set begins, as real ones do by decimetres. The elements' day is moved to the mission's by whole days with Earth-fixed
-// geometry kept: at the same time of day each satellite stands over the same place. Real elements are fitted to four
-// hours; here they define the motion for as long as the run lasts.
+// set begins, as that of real ones does by decimetres. The elements' day is moved to the mission's by whole days with
+// Earth-fixed geometry kept: at the same time of day each satellite is above the same point. Real elements are fitted
+// to four hours; here they define the motion for as long as the run lasts.
 
 #include <cstdint>
 #include <filesystem>
@@ -45,7 +45,7 @@ struct BroadcastCorrections {
   double utc_a1 = 0.0;
 };
 
-/// A broadcast set and the number that tells it from its neighbours (IODE, IODnav, AODE).
+/// A broadcast set and the number that identifies it (IODE, IODnav, AODE).
 struct BroadcastSet {
   Ephemeris ephemeris;  ///< rounded to the message's bits
   int issue = 0;
@@ -53,7 +53,7 @@ struct BroadcastSet {
 
 class Constellation {
  public:
-  /// Reads data_directory/gps. `epoch` tells the day the elements are moved to. Errors are drawn from the streams
+  /// Reads data_directory/gps. `epoch` gives the day that the elements are moved to. Errors are drawn from the streams
   /// "gnss/constellation/<satellite>" of `seed`. Throws std::runtime_error naming file and line,
   /// std::invalid_argument for settings.
   Constellation(const std::filesystem::path& data_directory, const ConstellationSettings& settings, fsw::GpsTime epoch,
@@ -63,7 +63,7 @@ class Constellation {
   [[nodiscard]] std::size_t size() const { return satellites_.size(); }
   [[nodiscard]] SatelliteId id(std::size_t index) const { return satellites_[index].base.satellite; }
 
-  /// Where the satellite truly is and what its clock truly shows, `offset_s` after `time`. The errors' own velocity
+  /// True state and clock of the satellite, `offset_s` after `time`. The errors' own velocity
   /// (0.2 mm/s) is included in position only.
   [[nodiscard]] SatelliteState true_state(std::size_t index, fsw::GpsTime time, double offset_s) const;
 

@@ -22,7 +22,7 @@ void check(const CrosslinkSettings& settings) {
     throw std::invalid_argument(fmt::format("loss_probability = {}: accepted is 0 to 1", loss));
   if (engine::check_link_settings(settings.link) != fsw::Status::kOk)
     throw std::invalid_argument(
-        fmt::format("latency mean {} s, standard deviation {} s, from {} to {} s is no distribution of latencies: "
+        fmt::format("latency mean {} s, standard deviation {} s, from {} to {} s is not a valid distribution: "
                     "accepted are finite, ordered, positive times up to 9e8 s",
                     settings.link.latency.mean_s, settings.link.latency.standard_deviation_s,
                     settings.link.latency.minimum_s, settings.link.latency.maximum_s));

@@ -10,7 +10,7 @@
 
 namespace vbar::twins::gnss {
 
-/// Beside the link's own settings: a silence, during which nothing that is sent arrives.
+/// In addition to the settings of the link: an interruption, during which no message arrives.
 struct CrosslinkSettings {
   engine::LinkSettings link{.latency = {.kind = engine::LatencyKind::kUniform, .minimum_s = 0.05, .maximum_s = 0.5},
                             .loss_probability = 0.0};
@@ -27,8 +27,8 @@ class Crosslink {
   /// Draws from the stream "crosslink/<name>" of `seed`. Throws as check().
   Crosslink(const CrosslinkSettings& settings, std::uint64_t seed, std::string_view name);
 
-  /// One message is sent; times must not go back. Returns when it will arrive, whole, or nothing if it never will.
-  /// Messages may overtake one another. Carrying them until then is the caller's.
+  /// One message is sent; times must not decrease. Returns the time of its arrival, complete, or nothing if it is lost.
+  /// Messages may overtake one another. The caller keeps them until then.
   std::optional<fsw::GpsTime> send(fsw::GpsTime now);
 
   [[nodiscard]] const engine::LinkCounters& counters() const { return counters_; }

@@ -57,7 +57,7 @@ SatelliteId satellite_of(std::string_view name) {
   const char* const end = name.data() + name.size();
   if (system == std::string_view::npos || std::from_chars(name.data() + 1, end, satellite.prn).ptr != end ||
       satellite.prn < 1 || satellite.prn > 63)
-    throw LineError(fmt::format("\"{}\" is no satellite; accepted are G, E or C and a number from 01 to 63", name));
+    throw LineError(fmt::format("\"{}\" is not a satellite; accepted are G, E or C and a number from 01 to 63", name));
   satellite.system = static_cast<System>(system);
   return satellite;
 }

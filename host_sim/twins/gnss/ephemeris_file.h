@@ -10,8 +10,8 @@
 namespace vbar::twins::gnss {
 
 struct EphemerisFile {
-  std::vector<Ephemeris> satellites;  ///< as the file's own day has them
-  BroadcastCorrections corrections;   ///< zero where the file has none
+  std::vector<Ephemeris> satellites;  ///< for the day of the file
+  BroadcastCorrections corrections;   ///< zero if missing in the file
 };
 
 /// Throws std::runtime_error naming file, line and what is accepted.

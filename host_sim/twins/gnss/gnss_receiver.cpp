@@ -15,7 +15,7 @@ namespace {
 using fsw::Vector3;
 using fsw::gnss::kSpeedOfLight;
 
-// A satellite's time is known after one subframe.
+// The time of a satellite is decoded after one subframe.
 constexpr double kTimeDecoding_s = 6.0;
 
 const std::shared_ptr<const Constellation>& needed(const std::shared_ptr<const Constellation>& constellation) {
@@ -30,7 +30,7 @@ const GnssReceiverSettings& checked(const GnssReceiverSettings& settings) {
 
 void check_truth(const BodyTruth& truth) {
   if (truth.time.ns % 1'000'000 != 0)
-    throw std::invalid_argument(fmt::format("GNSS receiver: epoch {} ns is not a whole millisecond", truth.time.ns));
+    throw std::invalid_argument(fmt::format("GNSS receiver: epoch {} ns is not a multiple of 1 ms", truth.time.ns));
   const bool finite = truth.position_eci.allFinite() && truth.velocity_eci.allFinite() &&
                       truth.rate_body_eci.allFinite() && truth.q_body_eci.coeffs().allFinite() &&
                       truth.R_ecef_eci.allFinite();
@@ -126,7 +126,7 @@ AntennaState GnssReceiver::antenna_state(const BodyTruth& truth) {
   const double z = antenna_noise_.normal();
   truth_.antenna_from_com_body_m = antenna_from_com(body, body_errors_) + body.pco_noise_mm * 1e-3 * Vector3(x, y, z);
 
-  // The clock shows the epoch `offset` before the true epoch: there the antenna is, by its own motion in free fall.
+  // The clock shows the epoch `offset` before the true epoch: the antenna position there, by free-fall motion.
   AntennaState antenna;
   antenna.time = truth.time;
   antenna.offset_s = -clock_.offset_s();
@@ -136,7 +136,7 @@ AntennaState GnssReceiver::antenna_state(const BodyTruth& truth) {
   const Vector3 gravity = -fsw::gnss::kGmGps / (radius * radius * radius) * truth.position_eci;
   const Vector3 velocity = truth.velocity_eci + truth.rate_body_eci.cross(arm);
   const Vector3 position = truth.position_eci + arm + (velocity + 0.5 * t * gravity) * t;
-  // The Earth turns on to that instant.
+  // The Earth rotates until that instant.
   const double turn = fsw::gnss::kEarthRateGps * t;
   const fsw::Matrix3 R_ecef_eci = Eigen::AngleAxisd(-turn, Vector3::UnitZ()).toRotationMatrix() * truth.R_ecef_eci;
   antenna.position_ecef = R_ecef_eci * position;
@@ -214,7 +214,7 @@ void GnssReceiver::observe_signal(SignalTrack& track, const SignalPath& path, do
   record.pseudorange_sigma_m = code_noise_m(settings_.tracking, signal, track.cn0_dbhz);
   record.carrier_sigma_cycles = carrier_noise_m(settings_.tracking, signal, track.cn0_dbhz) / lambda;
   const double rate_sigma_mps = range_rate_noise_mps(settings_.tracking, signal, track.cn0_dbhz);
-  // Drawn in any case: noise on or off, the stream goes on the same way.
+  // Always drawn: the stream is the same with noise on or off.
   const double code_draw = track.stream.normal();
   const double carrier_draw = track.stream.normal();
   const double rate_draw = track.stream.normal();
@@ -244,7 +244,7 @@ void GnssReceiver::hear_messages(fsw::GpsTime now) {
       message.received = true;
       continue;
     }
-    // A set has been heard when it was sent for the whole of the last half minute.
+    // A set has been received when it was sent during all of the last half minute.
     if (!heard_since || now - decoding < *heard_since) continue;
     const BroadcastSet set = constellation_->broadcast_set(index, now - decoding);
     if (message.received && message.set.ephemeris.toe == set.ephemeris.toe) continue;

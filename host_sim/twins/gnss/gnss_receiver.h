@@ -1,13 +1,13 @@
 #pragma once
 // A NovAtel OEM628 on a spacecraft, as bytes: GPS L1/L2, Galileo E1, BeiDou B1I.
 //
-// What it measures, in metres (code P, carrier L; r receiver, s satellite, f signal):
+// Observables, in metres (code P, carrier L; r receiver, s satellite, f signal):
 //   P = range + Shapiro + c (dt_r - dt_s + TGD_f) + I_f + b_rf + noise
 //   L = range + Shapiro + c (dt_r - dt_s)         - I_f + lambda_f (N_rsf + beta_rf) + noise
 // at the instant at which its own clock shows the epoch. N is an integer, beta a fraction of a cycle that all carriers
 // of one signal share in one receiver: double differences within a signal hold integers. Half-cycle ambiguities do not
-// occur. Phase wind-up is left out: it is the same in antennas of parallel attitude, which the missions fly (each 20
-// arcsec of relative yaw would make 3e-6 m). Multipath is left out, as in the paper's table. Noise of two epochs is
+// occur. Phase wind-up is neglected: it is the same in antennas of parallel attitude, which the missions fly (each 20
+// arcsec of relative yaw would make 3e-6 m). Multipath is neglected, as in the paper's table. Noise of two epochs is
 // independent: right for periods above the code loop's 2 s, while at 1 Hz real code noise would be correlated.
 
 #include <cstdint>
@@ -46,7 +46,7 @@ struct ObservationTruth {
   int slips = 0;
 };
 
-/// What the receiver's last epoch truly was.
+/// The truth of the receiver's last epoch.
 struct ReceiverTruth {
   double clock_offset_s = 0.0;
   double clock_drift = 0.0;
@@ -81,7 +81,7 @@ class GnssReceiver final : public ReceiverBytes {
   [[nodiscard]] const GnssReceiverSettings& settings() const { return settings_; }
 
  private:
-  // What one satellite's messages have told, and when it was last passed on.
+  // Content of one satellite's messages, and the time when it was last sent.
   struct MessageState {
     bool received = false;
     BroadcastSet set;

@@ -81,7 +81,7 @@ void check_output(const OutputSettings& output) {
   need_between("period_s", output.period_s, 0.1, 60.0);
   if (std::abs(output.period_s * 1000.0 - std::round(output.period_s * 1000.0)) > 1e-9)
     throw std::invalid_argument(
-        fmt::format("period_s = {}: accepted is a whole number of milliseconds", output.period_s));
+        fmt::format("period_s = {}: accepted is an integer number of milliseconds", output.period_s));
   need_between("ephemeris_period_s", output.ephemeris_period_s, 1.0, 1e5);
   need_between("corrections_period_s", output.corrections_period_s, 1.0, 1e5);
 }

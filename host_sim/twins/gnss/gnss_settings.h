@@ -1,6 +1,6 @@
 #pragma once
-// Everything about one receiver and its antenna that a mission may set. Defaults are those of the paper's Appendix A
-// (marked A) or, where it is silent, of a NovAtel OEM628 and a typical patch antenna.
+// Settings of one receiver and its antenna in a mission. Defaults are those of the paper's Appendix A
+// (marked A) or, otherwise of a NovAtel OEM628 and a typical patch antenna.
 
 #include <cstdint>
 
@@ -12,12 +12,12 @@ namespace vbar::twins::gnss {
 struct VisibilitySettings {
   double transmit_aperture_deg = 170.0;   ///< A, "GNSS aperture": full cone about the satellite's nadir
   double receiver_mask_deg = 190.0;       ///< A: full cone about the antenna's boresight
-  double horizon_mask_deg = -20.0;        ///< A: least elevation above the local horizontal
+  double horizon_mask_deg = -20.0;        ///< A: minimum elevation above the local horizontal
   double occultation_altitude_km = 50.0;  ///< a line of sight that dips below this altitude is blocked
   friend bool operator==(const VisibilitySettings&, const VisibilitySettings&) = default;
 };
 
-/// From transmitted power to C/N0. The satellites' antennas radiate alike in all directions (A: spherical gain).
+/// From transmitted power to C/N0. The antennas of the satellites are isotropic (A: spherical gain).
 struct LinkBudgetSettings {
   double boresight_gain_dbi = 4.0;  ///< with the pattern of data/gps below it
   double antenna_temperature_k = 130.0;
@@ -28,7 +28,7 @@ struct LinkBudgetSettings {
   friend bool operator==(const LinkBudgetSettings&, const LinkBudgetSettings&) = default;
 };
 
-/// Loops and what becomes of them. Noise: formulas of the coherent early-late and Costas loops.
+/// Tracking loops. Noise: formulas of the coherent early-late and Costas loops.
 struct TrackingSettings {
   bool thermal_noise = true;
   double code_loop_bandwidth_hz = 0.25;
@@ -37,25 +37,25 @@ struct TrackingSettings {
   double acquisition_threshold_dbhz = 33.0;
   double loss_threshold_dbhz = 28.0;
   double cycle_slips_per_hour = 0.02;  ///< of each signal; every slip is seen by the receiver: the lock time restarts
-  double undetected_slip_fraction = 0.0;  ///< of those slips, the share that the receiver does not detect
+  double undetected_slip_fraction = 0.0;  ///< fraction of these slips that the receiver does not detect
   double code_bias_sigma_m = 0.0;         ///< constant code delay of each signal in the receiver
   friend bool operator==(const TrackingSettings&, const TrackingSettings&) = default;
 };
 
 enum class StartMode : std::uint8_t {
-  kCold,  ///< knows nothing: searches the sky satellite by satellite
-  kWarm,  ///< A: time, place and almanac roughly known
+  kCold,  ///< no a-priori information: searches satellite by satellite
+  kWarm,  ///< A: approximate time, position and almanac available
   kHot,   ///< the same, and ephemerides from before
 };
 
-/// How tracking begins. Each satellite's delay is uniform in its interval.
+/// Start of tracking. Each satellite's delay is uniform in its interval.
 struct StartSettings {
   StartMode mode = StartMode::kWarm;
   double cold_search_min_s = 20.0;
   double cold_search_max_s = 60.0;
   double reacquisition_min_s = 1.0;  ///< warm, hot, and every satellite that rises later
   double reacquisition_max_s = 8.0;
-  double ephemeris_decoding_s = 30.0;  ///< a message's set has been received after so long in lock
+  double ephemeris_decoding_s = 30.0;  ///< time in lock until a message's set has been received
   friend bool operator==(const StartSettings&, const StartSettings&) = default;
 };
 
@@ -70,7 +70,7 @@ struct ClockSettings {
   friend bool operator==(const ClockSettings&, const ClockSettings&) = default;
 };
 
-/// Where the antenna truly is (A, second table). Vectors in the body frame.
+/// True position of the antenna (A, second table). Vectors in the body frame.
 struct BodyFrameSettings {
   fsw::Vector3 antenna_in_body_m = fsw::Vector3(0.0, 0.0, 0.3);  ///< from the nominal centre of mass
   fsw::Vector3 boresight_in_body = fsw::Vector3::UnitZ();
@@ -78,13 +78,13 @@ struct BodyFrameSettings {
   double pco_bias_mm = 5.0;                 ///< A: length of a constant vector of random direction
   double pco_noise_mm = 1.0;                ///< A: each axis, each epoch, all signals alike
   double antenna_direction_arcsec = 30.0;   ///< A: each axis
-  double attitude_knowledge_arcsec = 20.0;  ///< A: each axis; the body against the attitude it is thought to have
+  double attitude_knowledge_arcsec = 20.0;  ///< A: each axis; true minus known attitude of the body
   friend bool operator==(const BodyFrameSettings&, const BodyFrameSettings&) = default;
 };
 
 enum class GpsEphemerisLog : std::uint8_t { kRawEphem, kGpsEphem };
 
-/// What the receiver was asked to log.
+/// Logs requested from the receiver.
 struct OutputSettings {
   double period_s = 10.0;               ///< of RANGE, BESTXYZ, TIME: 0.1 to 60, whole milliseconds
   double ephemeris_period_s = 300.0;    ///< each ephemeris again; new ones at once

@@ -16,7 +16,7 @@ struct KlobucharCoefficients {
 double klobuchar_delay_m(const KlobucharCoefficients& coefficients, double latitude, double longitude, double elevation,
                          double azimuth, double seconds_of_week);
 
-/// The same straight up from a point of the ionosphere (latitude, longitude of the piercing point), m.
+/// The vertical delay at a point of the ionosphere (latitude, longitude of the piercing point), m.
 double klobuchar_vertical_delay_m(const KlobucharCoefficients& coefficients, double latitude, double longitude,
                                   double seconds_of_week);
 
@@ -25,7 +25,7 @@ double klobuchar_vertical_delay_m(const KlobucharCoefficients& coefficients, dou
 /// satellites"). Altitudes below the ground count as the ground.
 double electron_content_above(double altitude_m);
 
-/// Altitude of the thin shell that stands for the electrons above `altitude_m`: half of them lie below it, m (the same
+/// Altitude of the thin shell that represents the electrons above `altitude_m`: half of them lie below it, m (the same
 /// source).
 double shell_altitude_m(double altitude_m);
 

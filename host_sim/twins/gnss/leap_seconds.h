@@ -1,5 +1,5 @@
 #pragma once
-// UTC as the satellites tell it: its whole-second offset, and the last leap second.
+// UTC parameters of the satellites: the offset in seconds, and the last leap second.
 
 #include "fsw/core/gps_time.h"
 
@@ -11,7 +11,7 @@ struct UtcOffset {
   int change_day = 1;   ///< that day of the week, 1 to 7 (Sunday is 1)
 };
 
-/// At `time`. Looks back for the last change for ten years, then says week 0, day 1. Throws std::out_of_range before
+/// At `time`. Looks back for the last change for ten years, then returns week 0, day 1. Throws std::out_of_range before
 /// 1980-01-06.
 UtcOffset utc_offset_at(fsw::GpsTime time);
 

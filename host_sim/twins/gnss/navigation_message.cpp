@@ -88,7 +88,7 @@ class SubframeWriter {
     bits(static_cast<std::uint64_t>(static_cast<std::int64_t>(scaled)), count);
   }
 
-  /// An angle: half a turn more than fits is half a turn less.
+  /// An angle: one above half a revolution wraps around.
   void angle(double value, int count) {
     const double scaled = std::nearbyint(wrapped(value) / (0x1p-31 * kSemicircle));
     bits(static_cast<std::uint64_t>(static_cast<std::int64_t>(scaled)), count);
@@ -108,7 +108,7 @@ void write_head(SubframeWriter& writer, unsigned subframe, std::int64_t transmis
   writer.bits(static_cast<std::uint64_t>(next), 17);
   writer.bits(0, 2);  // alert, anti-spoof
   writer.bits(subframe, 3);
-  writer.bits(0, 2);  // solved for parity, which is taken off
+  writer.bits(0, 2);  // solved for parity, which is removed
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// What the satellites' navigation messages can carry: the grid of each number, and GPS's subframes.
+// Resolution of the navigation messages of the satellites: the grid of each number, and the GPS subframes.
 // IS-GPS-200N, tables 20-I and 20-III, figure 20-1; Galileo OS SIS ICD 2.1, tables 67 to 70 and 76;
 // BDS-SIS-ICD-B1I-3.0, tables 5-8 to 5-11.
 
@@ -10,13 +10,13 @@
 
 namespace vbar::twins::gnss {
 
-/// The set as its message can say it: every number rounded to the message's least significant bit.
+/// The set as broadcast: every number rounded to the least significant bit of the message.
 Ephemeris rounded_to_message(const Ephemeris& ephemeris);
 
 /// omega0 as the message has it: longitude of the node at the beginning of the system's week, rad in [-pi, pi].
 double node_at_week_begin(const Ephemeris& ephemeris);
 
-/// Ten words of 24 bits, parity taken off, as a receiver writes them.
+/// Ten words of 24 bits, without parity, as a receiver writes them.
 using Subframe = std::array<std::uint8_t, 30>;
 
 /// Subframes 1 to 3 of the GPS LNAV message for a healthy satellite, user range accuracy index 0 (2.4 m).

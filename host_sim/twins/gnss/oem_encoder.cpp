@@ -34,7 +34,7 @@ constexpr std::array<std::uint32_t, 256> kCrcTable = [] {
   return table;
 }();
 
-// NovAtel's CRC-32: the usual polynomial, but begun at 0 and not inverted.
+// NovAtel's CRC-32: the standard polynomial, but initialised with 0 and not inverted.
 std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
   std::uint32_t crc = 0;
   for (const std::uint8_t byte : bytes) crc = (crc >> 8U) ^ kCrcTable[(crc ^ byte) & 0xFFU];

@@ -15,12 +15,12 @@ namespace vbar::twins::gnss::oem {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// How well the receiver knows the time, as the header says it.
+/// The time status of the receiver, as in the header.
 enum class TimeStatus : std::uint8_t { kUnknown = 20, kApproximate = 60, kCoarse = 100, kFine = 160 };
 
-/// What all logs of one epoch have in common.
+/// The common header of all logs of one epoch.
 struct Header {
-  fsw::GpsTime time;  ///< by the receiver's clock, whole milliseconds; not told while the status is kUnknown
+  fsw::GpsTime time;  ///< by the receiver's clock, integer milliseconds; not sent while the status is kUnknown
   TimeStatus status = TimeStatus::kUnknown;
   bool position_valid = false;
 };

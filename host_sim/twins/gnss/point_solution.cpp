@@ -12,7 +12,7 @@ namespace {
 using Vector4 = Eigen::Matrix<double, 4, 1>;
 using Matrix4 = Eigen::Matrix<double, 4, 4>;
 
-// What a receiver expects of a range beside its loop's noise: satellites and ionosphere.
+// Range errors that a receiver expects beside the noise of its loops: satellites and ionosphere.
 constexpr double kExpectedRangeError_m = 1.5;
 constexpr double kExpectedRangeRateError_mps = 0.02;
 
@@ -35,7 +35,7 @@ std::optional<PointSolution> solve_point(const std::vector<PointResidual>& resid
   }
   const Eigen::LLT<Matrix4> factor(information);
   const Eigen::LLT<Matrix4> rate_factor(rate_information);
-  // Below this a solution would be out by kilometres: no receiver reports one.
+  // Weaker geometry would result in errors of kilometres: no receiver reports such a solution.
   if (factor.info() != Eigen::Success || factor.rcond() < 1e-8) return std::nullopt;
   const Vector4 x = factor.solve(code);
   const Vector4 v = rate_factor.solve(rate);

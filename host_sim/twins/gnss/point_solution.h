@@ -1,7 +1,7 @@
 #pragma once
-// The receiver's own position, velocity and time, as BESTXYZ and TIME tell them: least squares of the GPS L1 code and
-// Doppler with the broadcast satellites. Instead of iterating from nowhere it is solved once about the truth, which is
-// the same to second order (errors of metres over ranges of 20,000 km).
+// The receiver's own position, velocity and time, as in BESTXYZ and TIME: least squares of the GPS L1 code and
+// Doppler with the broadcast satellites. Instead of an iteration it is solved once, linearised about the truth, which
+// is the same to second order (errors of metres over ranges of 20,000 km).
 
 #include <optional>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace vbar::twins::gnss {
 
-/// One satellite: observed minus predicted at the true antenna, receiver clock left in.
+/// One satellite: observed minus predicted at the true antenna, receiver clock included.
 struct PointResidual {
   fsw::Vector3 line_of_sight = fsw::Vector3::Zero();  ///< antenna to satellite
   double code_m = 0.0;

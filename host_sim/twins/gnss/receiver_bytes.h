@@ -1,6 +1,6 @@
 #pragma once
-// What turns the motion of a body into the bytes of a GNSS receiver: the digital twin, or the driver of a testbed.
-// Attitude, crosslink and packets are the sensor's (gnss_sensor.h).
+// Converts the motion of a body to the bytes of a GNSS receiver: the digital twin, or the driver of a testbed.
+// The sensor handles attitude, crosslink and packets (gnss_sensor.h).
 
 #include <cstdint>
 #include <optional>
@@ -21,21 +21,21 @@ struct BodyTruth {
   fsw::Vector3 position_eci = fsw::Vector3::Zero();  ///< of the centre of mass
   fsw::Vector3 velocity_eci = fsw::Vector3::Zero();
   Eigen::Quaterniond q_body_eci =
-      Eigen::Quaterniond::Identity();                  ///< as the body's attitude is known; body axes from ECI
+      Eigen::Quaterniond::Identity();                  ///< the known attitude of the body; body axes from ECI
   fsw::Vector3 rate_body_eci = fsw::Vector3::Zero();   ///< angular velocity against ECI, rad/s, ECI components
   fsw::Matrix3 R_ecef_eci = fsw::Matrix3::Identity();  ///< the truth's own Earth rotation at `time`
-  // Of a receiver that asks for them; empty where they are not known.
+  // For a receiver that requests them; otherwise empty.
   std::optional<fsw::Vector3> acceleration_eci;           ///< of the centre of mass, m/s^2
   std::optional<fsw::Vector3> angular_acceleration_body;  ///< rad/s^2, body axes
 };
 
-/// What a receiver gave at one call.
+/// Output of a receiver at one call.
 struct ReceiverOutput {
   std::vector<std::uint8_t> bytes;
   bool is_epoch = true;      ///< false: nothing is delivered, a trajectory sample was taken in between two epochs
-  fsw::Duration delay = {};  ///< from the epoch until the last byte was there, >= 0
+  fsw::Duration delay = {};  ///< from the epoch until the last byte was available, >= 0
   std::vector<Note> notes = {};
-  std::string failure = {};  ///< if the receiver gave nothing for this epoch: why, one sentence
+  std::string failure = {};  ///< if the receiver gave no data for this epoch: the reason, one sentence
 };
 
 class ReceiverBytes {

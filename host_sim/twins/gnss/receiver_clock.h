@@ -1,5 +1,5 @@
 #pragma once
-// The receiver's clock: a crystal of two states, set by whole milliseconds where it strays.
+// The receiver's clock: a two-state crystal oscillator, reset by integer milliseconds when its offset grows.
 
 #include <string_view>
 
@@ -19,7 +19,7 @@ class ReceiverClock {
 
   [[nodiscard]] double offset_s() const { return offset_s_; }  ///< clock minus GPS time
   [[nodiscard]] double drift() const { return drift_; }        ///< s/s
-  [[nodiscard]] int jumps() const { return jumps_; }           ///< how often it was set
+  [[nodiscard]] int jumps() const { return jumps_; }           ///< number of resets
 
  private:
   ClockSettings settings_;

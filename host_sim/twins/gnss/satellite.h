@@ -1,5 +1,5 @@
 #pragma once
-// Navigation satellites and their signals by name, and what the emulator has to know of each signal's structure.
+// Navigation satellites and their signals by name, and the structure of each signal as far as the emulator needs it.
 
 #include <array>
 #include <compare>
@@ -40,7 +40,7 @@ struct SignalStructure {
   double chip_rate_hz;
   double
       correlator_spacing_chips;  ///< early to late; narrow on wide chips, limited by the front end's bandwidth on P(Y)
-  double received_power_dbw;     ///< least power on the ground that the interface document promises
+  double received_power_dbw;     ///< minimum power on the ground by the interface document
 };
 
 /// Powers: IS-GPS-200N table 3-Va (L1 C/A, L2 P(Y) of blocks IIR-M and IIF); Galileo OS SIS ICD 2.1, table 11;

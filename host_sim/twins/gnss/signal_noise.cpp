@@ -18,7 +18,7 @@ double power_ratio(double db) {
   return std::pow(10.0, db / 10.0);
 }
 
-// Where each system's document promises its power: at 5 deg elevation on the ground, from the orbit's height.
+// Reference point of the specified power: at 5 deg elevation on the ground, from the orbit's height.
 double reference_distance_m(System system) {
   switch (system) {
     case System::kGps:
@@ -49,7 +49,7 @@ AntennaPattern AntennaPattern::load(const std::filesystem::path& data_directory)
         pattern.nodes_.empty() ? node.angle_deg == 0.0 : node.angle_deg > pattern.nodes_.back().angle_deg;
     if (!read || !rising)
       throw std::runtime_error(
-          fmt::format("{}:{}: \"{}\" is no angle (from 0 on, rising) and attenuation", file.string(), number, line));
+          fmt::format("{}:{}: \"{}\" is not an ascending angle and an attenuation", file.string(), number, line));
     pattern.nodes_.push_back(node);
   }
   if (pattern.nodes_.size() < 2 || pattern.nodes_.back().angle_deg != 180.0)

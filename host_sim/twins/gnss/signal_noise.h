@@ -27,7 +27,7 @@ class AntennaPattern {
   std::vector<Node> nodes_;
 };
 
-/// C/N0 (dB-Hz) at `distance_m` from a satellite that promises the signal's power on the ground at 5 deg elevation
+/// C/N0 (dB-Hz) at `distance_m` from a satellite with the specified power on the ground at 5 deg elevation
 /// (25,240 km for GPS), spread by free space; noise of antenna and amplifier chain after Friis.
 double carrier_to_noise_dbhz(const LinkBudgetSettings& settings, Signal signal, double distance_m,
                              double antenna_attenuation_db);

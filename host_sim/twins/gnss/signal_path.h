@@ -1,8 +1,8 @@
 #pragma once
-// The way of a signal from a satellite to the receiver, without what ionosphere, electronics and noise add.
+// The path of a signal from a satellite to the receiver, without ionosphere, electronics and noise.
 //
-// Everything stands in the Earth-fixed frame of the instant of reception: the satellite's position of the instant of
-// transmission is turned by the Earth's rotation under way (Sagnac).
+// All quantities are in the Earth-fixed frame of the instant of reception: the satellite's position at
+// transmission is rotated by the Earth rotation during the signal's travel (Sagnac).
 
 #include <optional>
 
@@ -31,11 +31,11 @@ struct SignalPath {
   double satellite_clock_drift = 0.0;
 };
 
-/// The true path from satellite `index`; none if it is not visible under `settings`.
+/// The true path from satellite `index`; empty if it is not visible under `settings`.
 std::optional<SignalPath> visible_path(const Constellation& constellation, std::size_t index,
                                        const AntennaState& antenna, const VisibilitySettings& settings);
 
-/// The path that a broadcast set predicts to the true antenna: what the receiver's own point solution compares with.
+/// The path that a broadcast set predicts to the true antenna: the prediction of the receiver's own point solution.
 SignalPath broadcast_path(const Ephemeris& ephemeris, const AntennaState& antenna);
 
 }  // namespace vbar::twins::gnss

@@ -14,8 +14,8 @@ struct WeekTime {
   [[nodiscard]] double seconds_of_week() const { return static_cast<double>(ns_of_week) / 1e9; }
 };
 
-/// How far GPS time is ahead of the system's own: BeiDou time began on 2006-01-01 UTC, when GPS-UTC was 14 s. Galileo
-/// and GPS time are taken as equal (their real offset of nanoseconds cannot be told from a receiver's code bias).
+/// GPS time minus the system's own time: BeiDou time began on 2006-01-01 UTC, when GPS-UTC was 14 s. Galileo
+/// and GPS time are taken as equal (their real offset of nanoseconds is inseparable from a receiver's code bias).
 constexpr fsw::Duration gps_minus_system_time(System system) {
   return fsw::duration_of_seconds(system == System::kBeidou ? 14 : 0);
 }

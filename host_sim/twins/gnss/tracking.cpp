@@ -7,7 +7,7 @@
 namespace vbar::twins::gnss {
 namespace {
 
-// Integers that a count of cycles begins with: large enough that none can be guessed.
+// Initial integers of a count of cycles: large enough not to be guessed.
 constexpr double kLargestAmbiguity_cycles = 0x1p22;
 constexpr double kLargestSlip_cycles = 100.0;
 
@@ -37,7 +37,7 @@ void SatelliteTracking::update(fsw::GpsTime now, bool first, const std::vector<d
   const double elapsed_s = first ? 0.0 : seconds(now - last_update_);
   last_update_ = now;
   for (std::size_t k = 0; k < cn0_dbhz.size(); ++k) signals_[k].cn0_dbhz = cn0_dbhz[k];
-  // Everything hangs on the first signal: it is found by its code, and steers the others' loops.
+  // All signals depend on the first one: it is acquired by its code, and aids the loops of the others.
   SignalTrack& leader = signals_.front();
   const double needed = leader.tracking ? tracking_.loss_threshold_dbhz : tracking_.acquisition_threshold_dbhz;
   if (cn0_dbhz.empty() || leader.cn0_dbhz < needed) {

@@ -1,6 +1,6 @@
 #pragma once
-// The tracking of one satellite: when its signals are acquired and lost, the integer their carriers' count began with,
-// cycle slips, and which navigation messages have been heard.
+// The tracking of one satellite: when its signals are acquired and lost, the initial integer of their carriers' count,
+// cycle slips, and which navigation messages have been received.
 
 #include <cstdint>
 #include <optional>
@@ -21,9 +21,9 @@ struct SignalTrack {
   Signal signal;
   engine::RandomStream stream;  ///< of its slips, ambiguities and noise
   bool tracking = false;
-  fsw::GpsTime lock_since;            ///< of the unbroken count, as the receiver knows it
+  fsw::GpsTime lock_since;            ///< of the continuous count, as the receiver reports it
   std::int64_t ambiguity_cycles = 0;  ///< added to the true phase
-  int slips = 0;                      ///< seen and unseen, since the start
+  int slips = 0;                      ///< detected and undetected, since the start
   double cn0_dbhz = 0.0;              ///< of the last update
 };
 
@@ -44,7 +44,7 @@ class SatelliteTracking {
   [[nodiscard]] std::vector<SignalTrack>& signals() { return signals_; }
   [[nodiscard]] const std::vector<SignalTrack>& signals() const { return signals_; }
 
-  /// Since when the navigation message has been heard without a break; none while it is not.
+  /// Start of the continuous reception of the navigation message; empty without reception.
   [[nodiscard]] std::optional<fsw::GpsTime> heard_since() const { return heard_since_; }
 
  private:

@@ -191,7 +191,7 @@ class Experiment1BadInput(unittest.TestCase):
         self.assertEqual(len(sections) - len(kept), 2)
         with scratch() as folder:
             (folder / "blind.toml").write_text("".join(kept))
-            self.refuse(folder / "blind.toml", "blind.toml", "gnss")
+            self.refuse(folder / "blind.toml", "blind.toml", "a camera without a GNSS receiver")
 
     def test_a_star_catalogue_that_is_not_there(self):
         with scratch() as data:

@@ -1,4 +1,4 @@
-// Reading of CAD files, with what assimp lets pass in silence: an OBJ file's material that no MTL file defines.
+// Reading of CAD files, with a check that assimp omits: materials of an OBJ file that no MTL file defines.
 
 #include <map>
 #include <set>
@@ -24,7 +24,7 @@ using fsw::Vector3;
   throw std::runtime_error(file.string() + ": " + what);
 }
 
-// The rest of a line after its first word, without blanks around.
+// The remainder of a line after its first word, without surrounding blanks.
 std::string rest_of(std::istringstream& line) {
   std::string rest;
   std::getline(line >> std::ws, rest);
@@ -45,7 +45,7 @@ void read_material_names(const std::filesystem::path& file, std::set<std::string
   }
 }
 
-// What assimp does not say, or not plainly: it replaces a material that it cannot find by a grey one and goes on.
+// Errors that assimp does not report: it replaces a material that it cannot find by a grey one and continues.
 void check_obj(const std::filesystem::path& file) {
   files::DataStream stream(file);
   std::set<std::string> defined;
@@ -110,7 +110,7 @@ CadModel load_cad_model(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) refuse(file, "no such file");
   if (file.extension() == ".obj") check_obj(file);
   Assimp::Importer importer;
-  // Points and lines are no surface: they go. Transformations of a scene's parts are applied.
+  // Points and lines are not part of the surface and are removed. Transformations of a scene's parts are applied.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* const scene =
       importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);

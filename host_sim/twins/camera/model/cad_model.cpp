@@ -25,10 +25,10 @@ void check_finite(const std::string& source, const std::vector<Triangle>& triang
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k)
       if (!triangles[i].corners[k].allFinite() || !triangles[i].normals[k].allFinite())
-        refuse(source, fmt::format("corner {} of triangle {} is no finite number", k + 1, i + 1));
+        refuse(source, fmt::format("corner {} of triangle {} is not finite", k + 1, i + 1));
 }
 
-// Ritter (1990), "An efficient bounding sphere", begun at the middle of the bounding box: within some per cent of the
+// Ritter (1990), "An efficient bounding sphere", started at the centre of the bounding box: within some per cent of the
 // smallest sphere.
 void find_sphere(CadModel& model) {
   Vector3 low = model.triangles[0].corners[0], high = low;
@@ -68,7 +68,7 @@ void drop_faces_without_area(CadModel& model) {
            fmt::format("{} of {} triangles have no area; accepted is 1 %", model.faces_without_area, before));
 }
 
-// Where a file gives no normal the face is flat.
+// Without a normal in the file the face is flat.
 void complete_normals(Triangle& t) {
   const Vector3 flat = (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).normalized();
   for (Vector3& normal : t.normals) normal = normal.norm() > 1e-6 ? Vector3(normal.normalized()) : flat;

@@ -11,12 +11,12 @@
 
 namespace vbar::twins::camera {
 
-/// How a surface reflects. Red, green, blue, linear; a monochrome camera sees the mean of the three.
+/// Reflection of a surface. Red, green, blue, linear; a monochrome camera uses the mean of the three.
 struct Material {
   std::string name;
   std::array<double, 3> diffuse{};   ///< albedo of the Lambert part (Kd of an MTL file)
-  std::array<double, 3> specular{};  ///< reflectivity of the glossy part at normal incidence (Ks)
-  double exponent = 0.0;             ///< of the glossy lobe (Ns): 0 dull, 1000 nearly a mirror
+  std::array<double, 3> specular{};  ///< reflectivity of the specular part at normal incidence (Ks)
+  double exponent = 0.0;             ///< of the specular lobe (Ns): 0 dull, 1000 nearly a mirror
 
   [[nodiscard]] double grey_diffuse() const { return (diffuse[0] + diffuse[1] + diffuse[2]) / 3.0; }
   [[nodiscard]] double grey_specular() const { return (specular[0] + specular[1] + specular[2]) / 3.0; }
@@ -29,20 +29,20 @@ struct Triangle {
 };
 
 struct CadModel {
-  std::string source;  ///< what messages call it: the file
+  std::string source;  ///< name in messages: the file
   std::vector<Material> materials;
   std::vector<Triangle> triangles;
   fsw::Vector3 centre = fsw::Vector3::Zero();  ///< of a sphere around everything, body frame, m
   double radius_m = 0.0;
-  std::size_t faces_without_area = 0;  ///< that the file had and `triangles` has not
+  std::size_t faces_without_area = 0;  ///< of the file that are not in `triangles`
 };
 
 inline constexpr std::size_t kMaxMaterials = 64;
 inline constexpr double kMinModelRadiusM = 0.05;
 inline constexpr double kMaxModelRadiusM = 100.0;
 
-/// A model of these triangles, its sphere found, its faces without area left out. Throws std::runtime_error, naming
-/// `source` and what is wrong: no faces, a corner that is no finite number, more than 1 % of the faces without area, a
+/// A model of these triangles with its bounding sphere, without the faces of zero area. Throws std::runtime_error,
+/// naming `source` and what is wrong: no faces, a corner that is not finite, more than 1 % of the faces without area, a
 /// sphere outside kMinModelRadiusM to kMaxModelRadiusM, no or too many materials.
 CadModel make_cad_model(std::string source, std::vector<Triangle> triangles, std::vector<Material> materials);
 

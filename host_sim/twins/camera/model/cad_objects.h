@@ -1,5 +1,5 @@
 #pragma once
-// Spacecraft drawn from their CAD files, for the scene renderer.
+// Spacecraft rendered from their CAD files, for the scene renderer.
 
 #include <filesystem>
 #include <span>
@@ -10,7 +10,7 @@
 namespace vbar::twins::camera {
 
 /// Loads data_directory/models/<model>.obj of every model; throws std::runtime_error as load_cad_model and
-/// TargetRenderer do. The renderer that comes back throws std::invalid_argument for a model that is none of these, and
+/// TargetRenderer do. The returned renderer throws std::invalid_argument for an unknown model, and
 /// for a camera inside the sphere around a body. Copies of it share the models; one call at a time among them all.
 ObjectRenderer cad_objects(const std::filesystem::path& data_directory, std::span<const std::string> models);
 

@@ -5,18 +5,18 @@
 
 namespace vbar::twins::camera {
 
-/// One OpenGL 3.3 core context. It belongs to no thread: whoever draws makes it current for the time.
+/// One OpenGL 3.3 core context. It belongs to no thread: the caller makes it current while rendering.
 class GlContext {
  public:
   /// Throws std::runtime_error if there is no such context. The first one keeps Mesa from writing a shader cache into
   /// the home folder, unless MESA_SHADER_CACHE_DISABLE is set to something else: it sets that environment variable, so
-  /// make the first one before other threads start.
+  /// create the first one before other threads start.
   GlContext();
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
-  /// While it lives the context is the calling thread's; then it is nobody's.
+  /// During its lifetime the context is current in the calling thread, afterwards in none.
   class Current {
    public:
     explicit Current(GlContext& context);

@@ -1,5 +1,5 @@
 #pragma once
-// The few OpenGL objects of the target renderer, as owners. All need the context that made them current, in their
+// Owners of the OpenGL objects of the target renderer. All need their context to be current in their
 // constructors, destructors and calls.
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace vbar::twins::camera {
 
-/// A linked vertex and fragment shader. Throws std::runtime_error with the compiler's words.
+/// A linked vertex and fragment shader. Throws std::runtime_error with the message of the compiler.
 class GlProgram {
  public:
   GlProgram(std::string_view vertex_source, std::string_view fragment_source);
@@ -42,7 +42,7 @@ class GlTriangles {
   GLsizei vertices_ = 0;
 };
 
-/// A square of depths that a shader can read: how far a parallel light comes.
+/// A square of depths that a shader can read: the range of parallel light.
 class GlShadowMap {
  public:
   explicit GlShadowMap(int size);
@@ -59,7 +59,7 @@ class GlShadowMap {
   int size_ = 0;
 };
 
-/// A row of numbers that a shader interpolates in.
+/// A row of numbers that a shader interpolates.
 class GlTable {
  public:
   GlTable();

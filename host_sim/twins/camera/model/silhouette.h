@@ -1,5 +1,5 @@
 #pragma once
-// Which part of each pixel the target covers, so that it hides what is behind it.
+// The fraction of each pixel that the target covers, for occultation of the background.
 
 #include <span>
 #include <vector>
@@ -14,8 +14,8 @@ class Silhouette {
  public:
   explicit Silhouette(const CadModel& model);
 
-  /// Covered shares, 0 to 1 in quarters (2 x 2 points a pixel), rows of `region`. `origin_camera`: of the model, m, all
-  /// of it in front of the camera.
+  /// Covered fractions, 0 to 1 in quarters (2 x 2 points a pixel), rows of `region`. `origin_camera`: of the model, m,
+  /// all of it in front of the camera.
   void draw(const Optics& optics, const fsw::Vector3& origin_camera, const fsw::Matrix3& R_camera_body,
             const Region& region, std::vector<float>& covered);
 

@@ -38,7 +38,7 @@ Matrix3 axes_towards(const Vector3& direction) {
   return R_picture_camera;
 }
 
-// Sizes of pictures: powers of two and one and a half times them, so that framebuffers are seldom made anew.
+// Sizes of pictures: powers of two and one and a half times them, so that framebuffers are rarely reallocated.
 int texels_for(double wanted) {
   int size = TargetRenderer::kMinTexels;
   while (size < wanted && size < TargetRenderer::kMaxTexels) size = size % 3 == 0 ? size / 3 * 4 : size / 2 * 3;
@@ -69,8 +69,8 @@ std::vector<float> surface_of(const CadModel& model) {
   return floats;
 }
 
-// What the shader takes: albedo, reflectivity, the same at grazing incidence, roughness. A reflectivity below 4 %,
-// glass with a coating or plain paint, rises less at grazing incidence; none stays none. Roughness from the exponent:
+// Inputs of the shader: albedo, reflectivity, the same at grazing incidence, roughness. A reflectivity below 4 %,
+// glass with a coating or plain paint, rises less at grazing incidence; zero stays zero. Roughness from the exponent:
 // Walter et al. (2007), section 5.2.
 std::array<float, 4> shader_material(const Material& m) {
   const double specular = m.grey_specular();

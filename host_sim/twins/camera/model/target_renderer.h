@@ -1,9 +1,9 @@
 #pragma once
-// Light of a spacecraft near or far: its CAD model drawn at its own scale, in linear radiometric units.
+// Light of a spacecraft at any range: its CAD model rendered at its own scale, in linear radiometric units.
 //
-// The picture is fitted to the sphere around the body and has a number of texels that follows from how large the body
-// looks; a body of a hundredth of a pixel is drawn as carefully as a near one, so its brightness varies with attitude
-// and phase as a real one's does.
+// The picture is fitted to the sphere around the body and has a number of texels that follows from the apparent
+// size; a body of a hundredth of a pixel is rendered with the accuracy of a near one, so its brightness varies with
+// attitude and phase as that of a real one.
 
 #include <memory>
 #include <span>
@@ -15,13 +15,13 @@
 
 namespace vbar::twins::camera {
 
-/// One body before the camera. Camera axes: z boresight, x right, y down; they need not look at the body.
+/// One body and its illumination. Camera axes: z boresight, x right, y down; the body may be out of the field.
 struct TargetView {
   fsw::Vector3 position_camera = fsw::Vector3::Zero();  ///< of the body frame's origin from the camera, m
   fsw::Matrix3 R_camera_body = fsw::Matrix3::Identity();
   fsw::Vector3 sun_camera = fsw::Vector3::UnitZ();    ///< unit vector from the body towards the Sun
   double sun_photons_per_m2_s = 0.0;                  ///< on an area that faces the Sun, out of any shadow
-  double sunlit = 1.0;                                ///< share of the Sun's disc that the body sees, 0 to 1
+  double sunlit = 1.0;                                ///< visible fraction of the Sun's disc, 0 to 1
   fsw::Vector3 nadir_camera = fsw::Vector3::UnitY();  ///< unit vector from the body to the Earth's centre
   double earth_photons_per_m2_s = 0.0;                ///< from the Earth, on an area that faces the nadir
   double earth_half_angle = 1.1;                      ///< that the Earth's disc subtends, rad, up to pi/2
@@ -39,8 +39,8 @@ class TargetRenderer {
   TargetRenderer(const TargetRenderer&) = delete;
   TargetRenderer& operator=(const TargetRenderer&) = delete;
 
-  /// Replaces `out` by the light of every texel that is not dark, in rows of the picture. Self-shadowing by the Sun is
-  /// in; light from one part of the body to another, and the body's shadow in the Earth's light, are not. Same bits for
+  /// Replaces `out` by the light of every texel that is not dark, in rows of the picture. Self-shadowing in sunlight is
+  /// modelled; interreflection, and the body's shadow in the Earth's light, are not. Same bits for
   /// the same view on the same processor. From any thread, one at a time. Throws std::invalid_argument if a number is
   /// not finite or the camera is inside the sphere around the body.
   void render(const TargetView& view, std::vector<LightSample>& out);

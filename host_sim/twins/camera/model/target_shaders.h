@@ -43,8 +43,8 @@ void main() {
 //
 // Reflection: Lambert plus Cook and Torrance (1982), "A reflectance model for computer graphics", with the distribution
 // and masking of Walter, Marschner, Li, Torrance (2007), "Microfacet models for refraction through rough surfaces"
-// (GGX, eqs. 33 and 34) and Schlick's (1994) Fresnel term. What the surface mirrors at grazing angles it does not
-// scatter: the Lambert part fades as the Fresnel term rises, in both directions, so that reciprocity holds.
+// (GGX, eqs. 33 and 34) and Schlick's (1994) Fresnel term. Light that the surface reflects specularly at grazing angles
+// is not scattered: the Lambert part falls as the Fresnel term rises, in both directions, so that reciprocity holds.
 //
 // The Earth is a disc of even radiance: its light scattered by the Lambert part, horizon included, and its mirror
 // image, as much of the lobe about the mirrored view as falls on the disc.
@@ -95,7 +95,7 @@ float reflected(vec3 n, vec3 l, vec3 v, vec4 m) {
   return (lambert + glossy) * nl;
 }
 
-// Share of the Sun that reaches p: a mean over the texels of the shadow map around it, their weights moving with p. Each
+// Sunlit fraction at p: a mean over the texels of the shadow map around it, their weights moving with p. Each
 // texel is compared with the depth that the plane of the face has at the texel's middle: no face shades itself, and
 // shadows begin where bodies touch. Where the Sun only grazes a face the slope is limited, and so is the light.
 float sunlight(vec3 flat_normal) {

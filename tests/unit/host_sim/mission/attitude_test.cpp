@@ -192,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadAttitude{"FiveInertias", "profile = \"tumble\"\ninertia_kgm2 = [1, 1, 1, 0, 0]",
                     ".inertia_kgm2: found an array of 5; accepted: [xx, yy, zz] or [xx, yy, zz, xy, xz, yz]"},
         BadAttitude{"InertiaOfNoBody", "profile = \"tumble\"\ninertia_kgm2 = [1, 1, 3]",
-                    ".inertia_kgm2: found numbers that are no body's: no body has a principal moment of inertia above "
+                    ".inertia_kgm2: found an invalid inertia: no body has a principal moment of inertia above "
                     "the sum of the other two; accepted: "},
         BadAttitude{"UnknownTorque", "profile = \"tumble\"\ntorques = [\"gravity_gradient\", \"magnetic\"]",
                     ".torques: found the text \"magnetic\"; accepted: an array of distinct names out of "

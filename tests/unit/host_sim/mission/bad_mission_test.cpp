@@ -93,10 +93,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadChange{"SpacecraftNumberTwice", "name = \"target\"", "name = \"target\"\nnumber = 1", "number",
                   "spacecraft.target.number: found the number 1 of servicer; accepted: a number used once"},
         BadChange{"KeyTwice", "duration_h = 2.0", "duration_h = 2.0\nduration_h = 3.0", "duration_h = 3.0",
-                  "found text that is no TOML: Error while parsing key-value pair: cannot redefine existing "
+                  "found invalid TOML: Error while parsing key-value pair: cannot redefine existing "
                   "floating-point 'duration_h'; accepted: a TOML 1.0 document"},
         BadChange{"NoToml", "duration_h = 2.0", "duration_h = ", "duration_h",
-                  "found text that is no TOML: Error while parsing key-value pair: expected value, saw '\\n'; "
+                  "found invalid TOML: Error while parsing key-value pair: expected value, saw '\\n'; "
                   "accepted: a TOML 1.0 document"},
         BadChange{
             "NoUtc", "[mission]", "[mission]\nepoch_utc = \"yesterday\"", "epoch_utc",

@@ -105,12 +105,12 @@ TEST_F(BodyFile, WhatIsNoneIsRefusedWithOneMessage) {
   EXPECT_THAT(message_of(kPlate + "[[facet]]\ncorners = [0, 1, 3]\nspecular = 0\ndiffuse = 0\n"),
               HasSubstr("facet.0.corners[2]: found the integer 3; accepted: a number from 0 to 2"));
   EXPECT_THAT(message_of(kPlate + "[[facet]]\ncorners = [0, 1.5, 2]\nspecular = 0\ndiffuse = 0\n"),
-              HasSubstr("facet.0.corners: found a number that is no integer"));
+              HasSubstr("facet.0.corners: found a number that is not an integer"));
   EXPECT_THAT(message_of(kPlate + "[[facet]]\ncorners = [0, 1, 2]\nspecular = 0.7\ndiffuse = 0.7\n"),
-              HasSubstr("facet.0: found what is no facet"));
+              HasSubstr("facet.0: found an invalid facet"));
   EXPECT_THAT(message_of(kPlate + "[[facet]]\ncorners = [0, 1, 1]\nspecular = 0\ndiffuse = 0\n"),
-              HasSubstr("facet.0: found what is no facet: a facet has no area; accepted: "));
-  EXPECT_THAT(message_of("inertia_kgm2 = ["), HasSubstr("text that is no TOML"));
+              HasSubstr("facet.0: found an invalid facet: a facet has no area; accepted: "));
+  EXPECT_THAT(message_of("inertia_kgm2 = ["), HasSubstr("invalid TOML"));
   std::filesystem::remove(file_);
   EXPECT_THROW(static_cast<void>(load_body(file_)), MissionError);
 }

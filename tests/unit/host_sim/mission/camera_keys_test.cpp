@@ -349,7 +349,7 @@ TEST(CommandedProfile, KeysAndDefaults) {
   EXPECT_EQ(told.axes.initial_boresight_rtn, fsw::Vector3(0, 1, 0));
   EXPECT_EQ(told.axes.boresight_body, fsw::Vector3(1, 0, 0));
   EXPECT_THAT(message_of(camera_mission(), {"spacecraft.servicer.attitude.initial_boresight_rtn=[1, 0, 0]"}),
-              HasSubstr("initial_boresight_rtn: found a boresight at the zenith or the nadir, or none"));
+              HasSubstr("initial_boresight_rtn: found a zero boresight, or one at the zenith or the nadir"));
   EXPECT_THAT(message_of(camera_mission(), {"spacecraft.servicer.attitude.secondary_axis_body=[0, 0, 1]"}),
               HasSubstr("secondary_axis_body: found an axis along the other one"));
 }

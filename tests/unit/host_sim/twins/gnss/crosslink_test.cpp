@@ -76,7 +76,7 @@ TEST(Crosslink, RefusesWithOneClearError) {
   EXPECT_EQ(message(settings), "silence_duration_s = -1: accepted is 0 to 1e9");
   settings = {};
   settings.link.latency.maximum_s = 0.01;
-  EXPECT_NE(message(settings).find("is no distribution of latencies"), std::string::npos);
+  EXPECT_NE(message(settings).find("is not a valid distribution"), std::string::npos);
 }
 
 }  // namespace

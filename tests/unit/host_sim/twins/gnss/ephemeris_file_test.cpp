@@ -67,7 +67,7 @@ TEST(EphemerisFile, RefusesWithLineAndReason) {
   const std::string head = kColumns;
   EXPECT_EQ(refusal(""), ": holds no satellite");
   EXPECT_EQ(refusal(head + "X05," + kNumbers),
-            ":2: \"X05\" is no satellite; accepted are G, E or C and a number from 01 to 63");
+            ":2: \"X05\" is not a satellite; accepted are G, E or C and a number from 01 to 63");
   EXPECT_EQ(refusal(head + "G05,1658,12\n"), ":2: 2 numbers instead of 22");
   EXPECT_EQ(refusal(head + "G05,nan," + kNumbers), ":2: \"nan\" is not a number");
   EXPECT_EQ(refusal(head + "G05,1," + kNumbers), ":2: more than 22 numbers");

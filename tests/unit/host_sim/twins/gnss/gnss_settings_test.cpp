@@ -68,7 +68,7 @@ TEST(GnssSettings, RefusesWithOneClearError) {
             "pco_bias_mm = inf: accepted is 0 to 10000");
   EXPECT_EQ(refusal_after([](Settings& s) { s.output.period_s = 0.01; }), "period_s = 0.01: accepted is 0.1 to 60");
   EXPECT_EQ(refusal_after([](Settings& s) { s.output.period_s = 0.1234567; }),
-            "period_s = 0.1234567: accepted is a whole number of milliseconds");
+            "period_s = 0.1234567: accepted is an integer number of milliseconds");
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST_F(CadFiles, WhoseMaterialReflectsTooMuch) {
 
 TEST_F(CadFiles, WithACornerThatIsNoNumber) {
   EXPECT_THAT(complaint("mtllib white.mtl\nv 0 0 0\nv 1 nan 0\nv 0 1 0\nusemtl white\nf 1 2 3\n"),
-              AllOf(HasSubstr("body.obj"), HasSubstr("no finite number")));
+              AllOf(HasSubstr("body.obj"), HasSubstr("is not finite")));
 }
 
 TEST_F(CadFiles, WithFacesWithoutArea) {
