@@ -11,9 +11,6 @@
 #include "host_sim/app/line_usage.h"
 #include "host_sim/app/make_thruster.h"
 #include "host_sim/report/summarise.h"
-#include "host_sim/sensors/camera/camera_kind.h"
-#include "host_sim/sensors/gnss/gnss_kind.h"
-#include "host_sim/sensors/ideal_navigation/ideal_navigation_kind.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
@@ -64,7 +61,7 @@ class Recording final : public RunObserver {
   Recording(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunRecord& record)
       : mission_(mission),
         servicer_(servicer),
-        recorder_(mission, servicer, record),
+        recorder_(mission, record),
         evaluations_(sensors::make_evaluations(mission, servicer, record)),
         record_(record) {}
 
@@ -77,8 +74,7 @@ class Recording final : public RunObserver {
   }
   void on_measured(std::string_view source, const twins::TruthSnapshot& truth) override {
     const auto found = std::ranges::find(evaluations_, source, &sensors::NamedEvaluation::source);
-    if (found == evaluations_.end()) return recorder_.on_measured(truth);
-    found->evaluation->on_measured(truth);
+    if (found != evaluations_.end()) found->evaluation->on_measured(truth);
   }
   void on_waypoint(std::size_t waypoint, const twins::TruthSnapshot& truth) override {
     recorder_.on_waypoint(mission_.waypoints[waypoint], pair_in(truth, servicer_));
@@ -92,10 +88,7 @@ class Recording final : public RunObserver {
   }
   void on_step(std::uint32_t, fsw::GpsTime time, std::span<const pil::Packet> inputs,
                std::span<const pil::Packet>) override {
-    recorder_.on_inputs(time, inputs);
-    if (evaluations_.empty()) return;
-    const std::vector<fsw::packets::PacketView> packets = parsed(inputs);
-    for (const auto& [source, evaluation] : evaluations_) evaluation->on_inputs(time, packets);
+    for (const auto& [source, evaluation] : evaluations_) evaluation->on_inputs(time, inputs);
   }
   void on_answer(fsw::GpsTime time, const pil::StepResult& answer) override {
     recorder_.on_answer(time, answer);
@@ -110,7 +103,6 @@ class Recording final : public RunObserver {
     recorder_.on_execution(time, executed);
   }
   void finish() {
-    recorder_.finish();
     for (const auto& [source, evaluation] : evaluations_) evaluation->finish();
   }
 
@@ -160,17 +152,7 @@ void summarise_mission(const mission::Mission& mission, const mission::Spacecraf
   summary.seed = mission.seed;
   summary.target = servicer.observes();
   summary.flight_computer = mission::name_of(servicer.flight_computer->target);
-  const auto* const camera = mission::find_settings<sensors::CameraSensor>(servicer);
-  const auto* const gnss = mission::find_settings<sensors::GnssSensor>(servicer);
-  const auto* const navigation = mission::find_settings<sensors::NavigationSensor>(servicer);
-  const bool is_by_pose = camera != nullptr && camera->use == sensors::CameraNavigation::kPose;
-  summary.navigation = is_by_pose          ? "pose"
-                       : camera != nullptr ? "angles_only"
-                       : gnss != nullptr   ? "gnss"
-                                           : navigation->source;
-  summary.gnss = gnss != nullptr ? gnss->source : "";
-  summary.camera = camera != nullptr ? camera->source : "";
-  summary.static_floor_m = sensors::gnss_static_floor_m(mission, servicer);
+  sensors::add_facts(mission, servicer, summary);
 }
 
 void summarise_run(const RunFacts& facts, std::span<const Source> sources, report::Summary& summary) {

@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
-#include "host_sim/app/image_rows.h"
-#include "host_sim/app/image_truth.h"
-#include "host_sim/app/pose_truth.h"
-#include "host_sim/mission/data_directory.h"
-#include "host_sim/sensors/camera/camera_kind.h"
 
 namespace vbar::app {
 namespace {
@@ -59,18 +53,6 @@ QnsElements mean_elements(const CartesianState& state) {
 }
 
 }  // namespace
-
-FlightRecorder::FlightRecorder(const mission::Mission& mission, const mission::Spacecraft& servicer,
-                               report::RunRecord& record)
-    : mission_(mission),
-      servicer_(servicer),
-      record_(record),
-      gallery_(mission, servicer),
-      pose_gallery_(mission, servicer) {
-  const auto* const camera = mission::find_settings<sensors::CameraSensor>(servicer);
-  if (camera != nullptr && camera->use == sensors::CameraNavigation::kPose)
-    known_target_ = sensors::pose_configuration_of(mission, *camera, mission::data_directory());
-}
 
 void FlightRecorder::on_truth(fsw::GpsTime time, const PairTruth& truth) {
   report::TruthRow row;
@@ -120,7 +102,6 @@ void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer)
   row.time_s = mission_seconds(time);
   row.step_cost = answer.report.count;
   row.stack_bytes = answer.report.stack_bytes;
-  ImageTelemetry told;
   for (const pil::Packet& bytes : answer.packets) {
     const auto packet = fsw::packets::parse_packet(bytes);
     if (!packet.ok()) continue;  // hashed and logged as it came; it only has no row
@@ -128,11 +109,9 @@ void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer)
       on_command(time, packet.value());
     } else {
       on_any_telemetry(row.time_s, packet.value());
-      on_telemetry(row, told, packet.value());
+      on_telemetry(row, packet.value());
     }
   }
-  if (told.image) on_image(row, told);
-  if (told.pose) on_pose(row, told);
   record_.estimates.push_back(row);
 }
 
@@ -145,9 +124,8 @@ void FlightRecorder::on_any_telemetry(double step_time_s, const fsw::packets::Pa
   std::apply([&](auto&... rows) { (record(rows), ...); }, record_.telemetry);
 }
 
-/// What has a table with the truth beside it.
-void FlightRecorder::on_telemetry(report::EstimateRow& row, ImageTelemetry& told,
-                                  const fsw::packets::PacketView& packet) {
+/// What makes the row of the step.
+void FlightRecorder::on_telemetry(report::EstimateRow& row, const fsw::packets::PacketView& packet) {
   if (const auto navigation = fsw::packets::decode<telemetry_navigation>(packet); navigation.ok()) {
     const telemetry_navigation& m = navigation.value();
     row.step = m.step;
@@ -173,46 +151,7 @@ void FlightRecorder::on_telemetry(report::EstimateRow& row, ImageTelemetry& told
     row.planned_dv_mps = m.planned_dv;
     row.passive_safety_distance_m = m.passive_safety_distance_m;
     row.commanded_dv_mps = m.commanded_dv;
-  } else if (const auto gnss = fsw::packets::decode<telemetry_gnss>(packet); gnss.ok()) {
-    auto& gnss_row = record_.gnss.emplace_back(report::row_of<report::GnssRow>(gnss.value()));
-    gnss_row.time_s = row.time_s;
-    if (gnss_row.epoch_gps_ns != 0) gnss_row.epoch_s = mission_seconds(fsw::GpsTime{gnss_row.epoch_gps_ns});
-  } else if (const auto image = fsw::packets::decode<telemetry_image>(packet); image.ok()) {
-    told.exposure = packet.header.time;
-    told.image = image.value();
-  } else if (const auto objects = fsw::packets::decode<telemetry_objects>(packet); objects.ok()) {
-    told.objects = objects.value();
-  } else if (const auto pose = fsw::packets::decode<telemetry_pose>(packet); pose.ok()) {
-    told.exposure = packet.header.time;
-    told.pose = pose.value();
   }
-}
-
-void FlightRecorder::on_image(const report::EstimateRow& step, const ImageTelemetry& told) {
-  auto row = report::row_of<report::ImageRow>(*told.image);
-  row.time_s = mission_seconds(told.exposure);
-  row.step_time_s = step.time_s;
-  const telemetry_objects* const objects =
-      told.objects && told.objects->image == told.image->image ? &*told.objects : nullptr;
-  const auto truth = kept_truth_.take(told.exposure);
-  if (truth) add_truth(row, *told.image, objects, mission_, servicer_, *truth);
-  if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
-  if (objects != nullptr) append_objects(row.time_s, *objects, record_.objects);
-  record_.images.push_back(row);
-  gallery_.on_image({told.exposure, row, objects}, record_.gallery);
-}
-
-void FlightRecorder::on_pose(const report::EstimateRow& step, const ImageTelemetry& told) {
-  const double exposure_s = mission_seconds(told.exposure);
-  auto row = report::row_of<report::PoseRow>(*told.pose);
-  row.time_s = exposure_s;
-  row.step_time_s = step.time_s;
-  append_keypoints(exposure_s, *told.pose, record_.keypoints);
-  const auto truth = kept_truth_.take(told.exposure);
-  if (truth && known_target_)
-    add_truth(row, record_.keypoints, *told.pose, known_target_->keypoints_body_m, mission_, servicer_, *truth);
-  record_.poses.push_back(row);
-  pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
 }
 
 void FlightRecorder::on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet) {
@@ -241,10 +180,6 @@ void FlightRecorder::on_execution(fsw::GpsTime time, const executed_maneuver& ex
     row.accepted = executed.accepted != 0;
     row.executed_dv_rtn_mps = triple(executed.dv_rtn);
   }
-}
-
-void FlightRecorder::finish() {
-  gallery_.finish(record_.gallery);
 }
 
 }  // namespace vbar::app

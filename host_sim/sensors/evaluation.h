@@ -23,8 +23,8 @@ class Evaluation {
 
   /// The truth of a measurement of this sensor, if its source is one whose truth is compared.
   virtual void on_measured(const twins::TruthSnapshot& /*truth*/) {}
-  /// What the flight software received, from all sensors, with the step at `time`.
-  virtual void on_inputs(fsw::GpsTime /*time*/, std::span<const fsw::packets::PacketView> /*inputs*/) {}
+  /// The bytes that the flight software received, from all sensors, with the step at `time`.
+  virtual void on_inputs(fsw::GpsTime /*time*/, std::span<const twins::Packet> /*inputs*/) {}
   /// Its answer: telemetry and commands.
   virtual void on_answer(fsw::GpsTime /*time*/, std::span<const fsw::packets::PacketView> /*answer*/) {}
   /// The run is over, however it ended.

@@ -86,7 +86,10 @@ struct SensorKind : mission::SensorReader {
   /// Adds the sources of the sensor's packets. Throws what a recorded log and data files throw.
   void (*add_sources)(const mission::Sensor& sensor, const MakeContext& context,
                       std::vector<twins::NamedSource>& sources) = nullptr;
-  /// Compares the measurements of the sensor with the truth. Null: nothing does.
+  /// Adds what the summary says of the sensor: its source, the navigation by it. Null: nothing.
+  void (*add_facts)(const mission::Sensor& sensor, const mission::Mission& mission, const mission::Spacecraft& servicer,
+                    report::RunFacts& facts) = nullptr;
+  /// Compares the measurements of the sensor with the truth. Null, or a null result: nothing does.
   std::unique_ptr<Evaluation> (*evaluate)(const mission::Sensor& sensor, const EvaluationContext& context) = nullptr;
   /// Tables, summary figures and report section, for all sensors of the kind together.
   report::Extension report{};
@@ -95,6 +98,16 @@ struct SensorKind : mission::SensorReader {
 /// "servicer/gnss"
 [[nodiscard]] inline std::string source_name(const mission::Spacecraft& carrier, const mission::Sensor& sensor) {
   return carrier.name + "/" + sensor.name;
+}
+
+/// Number of the sensor among those of its kind on the spacecraft: the unit in packet headers.
+[[nodiscard]] inline std::uint8_t unit_of(const mission::Sensor& sensor, const mission::Spacecraft& carrier) {
+  std::uint8_t unit = 0;
+  for (const mission::Sensor& other : carrier.sensors) {
+    if (other.name == sensor.name) break;
+    if (other.kind == sensor.kind) ++unit;
+  }
+  return unit;
 }
 
 /// The settings of a sensor of the kind whose settings are `Settings`.

@@ -60,10 +60,18 @@ std::vector<NamedEvaluation> make_evaluations(const mission::Mission& mission, c
                                               report::RunRecord& record) {
   std::vector<NamedEvaluation> evaluations;
   const EvaluationContext context{mission, servicer, record};
-  for (const mission::Sensor& sensor : servicer.sensors)
-    if (const SensorKind& kind = kind_of(sensor); kind.evaluate != nullptr)
-      evaluations.push_back({source_name(servicer, sensor), kind.evaluate(sensor, context)});
+  for (const mission::Sensor& sensor : servicer.sensors) {
+    const SensorKind& kind = kind_of(sensor);
+    auto evaluation = kind.evaluate != nullptr ? kind.evaluate(sensor, context) : nullptr;
+    if (evaluation) evaluations.push_back({source_name(servicer, sensor), std::move(evaluation)});
+  }
   return evaluations;
+}
+
+void add_facts(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunFacts& facts) {
+  for (const mission::Sensor& sensor : servicer.sensors)
+    if (const SensorKind& kind = kind_of(sensor); kind.add_facts != nullptr)
+      kind.add_facts(sensor, mission, servicer, facts);
 }
 
 report::Extensions extensions() {

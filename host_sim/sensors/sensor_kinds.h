@@ -36,6 +36,9 @@ mission::Mission parse_mission(std::string_view text, const std::filesystem::pat
                                                             const mission::Spacecraft& servicer,
                                                             report::RunRecord& record);
 
+/// What the summary says of the sensors of `servicer`.
+void add_facts(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunFacts& facts);
+
 /// What the kinds add to record, summary and report.
 [[nodiscard]] report::Extensions extensions();
 

@@ -1,6 +1,8 @@
 #include "host_sim/sensors/camera/camera_kind.h"
 
+#include <map>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "host_sim/mission/body_file.h"
@@ -52,6 +54,18 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
                    "a GNSS receiver without a partner: the target does not cooperate");
 }
 
+/// The unit in packet headers. The flight software takes the images of unit 0: those of the camera that navigation
+/// uses.
+std::uint8_t camera_unit(const Sensor& sensor, const Spacecraft& carrier) {
+  std::uint8_t unit = navigation_camera(carrier) != nullptr ? 1 : 0;
+  if (sensor.settings->navigation >= 0) return 0;
+  for (const Sensor& other : carrier.sensors) {
+    if (other.name == sensor.name) break;
+    if (other.kind == sensor.kind && other.settings->navigation < 0) ++unit;
+  }
+  return unit;
+}
+
 twins::camera::ImageMaker::Settings image_settings(const Mission& mission, const Spacecraft& spacecraft,
                                                    const Sensor& sensor) {
   twins::camera::ImageMaker::Settings settings;
@@ -59,6 +73,7 @@ twins::camera::ImageMaker::Settings image_settings(const Mission& mission, const
   settings.name = spacecraft.name + "/" + sensor.name;
   settings.seed = mission.seed;
   settings.spacecraft = spacecraft.number;
+  settings.unit = camera_unit(sensor, spacecraft);
   return settings;
 }
 
@@ -161,19 +176,44 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
   sources.push_back({name, camera.source, std::move(twin)});
 }
 
+void add_facts(const Sensor& sensor, const Mission& /*mission*/, const Spacecraft& /*servicer*/,
+               report::RunFacts& facts) {
+  const CameraNavigation use = settings_of<CameraSensor>(sensor).use;
+  if (use != CameraNavigation::kNone || facts.camera.empty()) facts.camera = sensor.settings->source;
+  if (use != CameraNavigation::kNone) facts.navigation = use == CameraNavigation::kPose ? "pose" : "angles_only";
+}
+
 }  // namespace
 
-const SensorKind kCamera{{"camera", "", read_camera, read_camera_shared, check}, add_camera_telecommands, add_sources};
+const SensorKind kCamera{{"camera", "", read_camera, read_camera_shared, check},
+                         add_camera_telecommands,
+                         add_sources,
+                         add_facts,
+                         evaluate_camera};
+
+const CameraSensor* navigation_camera(const Spacecraft& carrier) {
+  for (const Sensor& sensor : carrier.sensors)
+    if (const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
+        camera != nullptr && camera->use != CameraNavigation::kNone)
+      return camera;
+  return nullptr;
+}
 
 twins::camera::TileRestorer::MakeImage make_image_maker(const Mission& mission, const Spacecraft& servicer,
                                                         const std::filesystem::path& data_directory) {
-  for (const Sensor& sensor : servicer.sensors) {
-    const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
-    if (camera != nullptr && camera->source == "digital")
-      return image_maker_of(mission, servicer, sensor, data_directory);
-  }
-  throw std::runtime_error("spacecraft \"" + servicer.name +
-                           "\" has no digital camera that could render the images of the log again");
+  // By unit; made when the first image of its camera is, since a renderer is large.
+  const auto makers = std::make_shared<std::map<std::uint8_t, twins::camera::TileRestorer::MakeImage>>();
+  return [makers, &mission, &servicer, data_directory](const twins::camera::ImageRecipe& recipe) {
+    for (const Sensor& sensor : servicer.sensors) {
+      const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
+      if (camera == nullptr || camera->source != "digital" || camera_unit(sensor, servicer) != recipe.unit) continue;
+      auto& maker = (*makers)[recipe.unit];
+      if (!maker) maker = image_maker_of(mission, servicer, sensor, data_directory);
+      return maker(recipe);
+    }
+    throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no digital camera of unit " +
+                             std::to_string(recipe.unit) + " that could render the images of the log again");
+  };
 }
 
 }  // namespace vbar::sensors

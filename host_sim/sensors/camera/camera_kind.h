@@ -27,6 +27,9 @@ struct CameraSensor : mission::SensorSettings {
   fsw::Vector3 position_body_m = fsw::Vector3::Zero();                ///< from the centre of mass
 };
 
+/// The camera whose images navigation uses; null if there is none.
+[[nodiscard]] const CameraSensor* navigation_camera(const mission::Spacecraft& carrier);
+
 /// [navigation.angles_only] and [navigation.pose]: what does not depend on camera and target.
 struct CameraShared : mission::SharedSettings {
   vbar::angles_only_configuration angles_only{};
@@ -37,6 +40,10 @@ struct CameraShared : mission::SharedSettings {
 };
 
 extern const SensorKind kCamera;
+
+// In camera_evaluation.cpp.
+[[nodiscard]] std::unique_ptr<Evaluation> evaluate_camera(const mission::Sensor& sensor,
+                                                          const EvaluationContext& context);
 
 // In read_camera.cpp and read_camera_navigation.cpp.
 std::shared_ptr<const mission::SensorSettings> read_camera(const mission::TableReader& section,
@@ -64,8 +71,8 @@ void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandCon
                                                      const fsw::orbit::CartesianState& servicer_state,
                                                      const fsw::orbit::CartesianState& target_state);
 
-/// Makes the images of the first digital camera of `servicer` again, for a replay. Throws std::runtime_error if it has
-/// none.
+/// Makes the images of the digital cameras of `servicer` again, for a replay. Mission and servicer must outlive it. It
+/// throws std::runtime_error for an image of a camera that there is not.
 [[nodiscard]] twins::camera::TileRestorer::MakeImage make_image_maker(const mission::Mission& mission,
                                                                       const mission::Spacecraft& servicer,
                                                                       const std::filesystem::path& data_directory);

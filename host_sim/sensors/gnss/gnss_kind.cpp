@@ -91,9 +91,42 @@ std::int8_t navigation_of(const Spacecraft& servicer) {
   return navigation;
 }
 
+void add_facts(const Sensor& sensor, const Mission& mission, const Spacecraft& servicer, report::RunFacts& facts) {
+  facts.gnss = sensor.settings->source;
+  facts.navigation = "gnss";
+  facts.static_floor_m = gnss_static_floor_m(mission, servicer);
+}
+
+/// Telemetry of navigation by GNSS as rows.
+class GnssEvaluation final : public Evaluation {
+ public:
+  explicit GnssEvaluation(const EvaluationContext& context) : context_(context) {}
+
+  void on_answer(fsw::GpsTime time, std::span<const fsw::packets::PacketView> answer) override {
+    for (const fsw::packets::PacketView& packet : answer) {
+      const auto telemetry = fsw::packets::decode<telemetry_gnss>(packet);
+      if (!telemetry.ok()) continue;
+      auto row = report::row_of<report::GnssRow>(telemetry.value());
+      row.time_s = seconds_of(time);
+      if (row.epoch_gps_ns != 0) row.epoch_s = seconds_of(fsw::GpsTime{row.epoch_gps_ns});
+      context_.record.gnss.push_back(row);
+    }
+  }
+
+ private:
+  [[nodiscard]] double seconds_of(fsw::GpsTime time) const { return fsw::seconds(time - context_.mission.epoch); }
+
+  EvaluationContext context_;
+};
+
+std::unique_ptr<Evaluation> evaluate(const Sensor& /*sensor*/, const EvaluationContext& context) {
+  return std::make_unique<GnssEvaluation>(context);
+}
+
 }  // namespace
 
-const SensorKind kGnss{{"gnss", "constellation", read_gnss, read_gnss_shared, check}, add_telecommands, add_sources};
+const SensorKind kGnss{
+    {"gnss", "constellation", read_gnss, read_gnss_shared, check}, add_telecommands, add_sources, add_facts, evaluate};
 
 vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer,
                                                            const truth::EarthOrientationSeries& orientation) {

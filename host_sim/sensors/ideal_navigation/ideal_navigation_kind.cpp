@@ -47,8 +47,13 @@ void add_sources(const mission::Sensor& sensor, const MakeContext& context, std:
   sources.push_back({name, own.source, std::make_unique<twins::IdealNavigation>(settings)});
 }
 
+void add_facts(const mission::Sensor& sensor, const mission::Mission& /*mission*/,
+               const mission::Spacecraft& /*servicer*/, report::RunFacts& facts) {
+  facts.navigation = sensor.settings->source;
+}
+
 }  // namespace
 
-const SensorKind kIdealNavigation{{"navigation", "", read, nullptr, check}, nullptr, add_sources};
+const SensorKind kIdealNavigation{{"navigation", "", read, nullptr, check}, nullptr, add_sources, add_facts};
 
 }  // namespace vbar::sensors

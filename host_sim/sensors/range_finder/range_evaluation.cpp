@@ -31,11 +31,13 @@ class RangeEvaluation final : public Evaluation {
     pending_.push_back({truth.time, row});
   }
 
-  void on_inputs(fsw::GpsTime time, std::span<const fsw::packets::PacketView> inputs) override {
-    for (const fsw::packets::PacketView& packet : inputs)
-      if (const auto message = fsw::packets::decode<range_measurement>(packet);
-          message.ok() && packet.header.unit == unit_)
-        take(packet.header.time, message.value().range_m);
+  void on_inputs(fsw::GpsTime time, std::span<const twins::Packet> inputs) override {
+    for (const twins::Packet& bytes : inputs) {
+      const auto packet = fsw::packets::parse_packet(bytes);
+      if (!packet.ok() || packet.value().header.unit != unit_) continue;
+      if (const auto message = fsw::packets::decode<range_measurement>(packet.value()); message.ok())
+        take(packet.value().header.time, message.value().range_m);
+    }
     while (!pending_.empty() && (pending_.front().row.measured_m || pending_.front().time + kLongestDelay < time))
       release();
   }

@@ -60,19 +60,8 @@ std::vector<report::TableKind> tables() {
 
 }  // namespace
 
-std::uint8_t unit_of(const mission::Sensor& sensor, const mission::Spacecraft& carrier) {
-  std::uint8_t unit = 0;
-  for (const mission::Sensor& other : carrier.sensors) {
-    if (&other == &sensor || other.name == sensor.name) break;
-    if (other.kind == sensor.kind) ++unit;
-  }
-  return unit;
-}
-
-const SensorKind kRangeFinder{{"range_finder", "", read, nullptr, check},
-                              nullptr,
-                              add_sources,
-                              evaluate_ranges,
-                              {tables, summarise_ranges, range_section}};
+const SensorKind kRangeFinder{
+    {"range_finder", "", read, nullptr, check}, nullptr, add_sources, nullptr, evaluate_ranges,
+    {tables, summarise_ranges, range_section}};
 
 }  // namespace vbar::sensors

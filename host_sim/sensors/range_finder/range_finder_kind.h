@@ -15,9 +15,6 @@ struct RangeFinderSensor : mission::SensorSettings {
 
 extern const SensorKind kRangeFinder;
 
-/// Number of the sensor among those of its kind on the spacecraft, as in packet headers.
-[[nodiscard]] std::uint8_t unit_of(const mission::Sensor& sensor, const mission::Spacecraft& carrier);
-
 // In range_evaluation.cpp.
 [[nodiscard]] std::unique_ptr<Evaluation> evaluate_ranges(const mission::Sensor& sensor,
                                                           const EvaluationContext& context);

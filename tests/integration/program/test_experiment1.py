@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Experiment 1 on every flight computer: the same bits, images made again in a replay, and input that does not serve."""
+import collections
 import csv
 import os
 import re
 import shutil
+import struct
 import unittest
 
 from vbar_program import SOURCE, ZYNQ_IMAGE, fly, hashes, main, missing, overrides, scratch, summary_of, vbar
@@ -27,6 +29,45 @@ def require_zynq(test):
 def bearings_folded_in(folder):
     with (folder / "images.csv").open() as file:
         return [row["fate"] for row in csv.DictReader(file)].count("filter")
+
+
+def recipes_by_unit(folder):
+    """How many images of each camera a log has the recipes of."""
+    log = (folder / "packets.lcmlog").read_bytes()
+    units = collections.Counter()
+    at = 0
+    while at < len(log):
+        channel, data = struct.unpack_from(">II", log, at + 20)
+        body = at + 28 + channel
+        if log[at + 28:body] == b"VBAR_IMAGE_RECIPE":
+            units[struct.unpack_from(">h", log, body + 10)[0]] += 1  # after the type's hash and the spacecraft
+        at = body + data
+    return dict(units)
+
+
+class TwoCameras(unittest.TestCase):
+    """A second camera of the spacecraft is recorded beside the one that navigation uses, and changes nothing else."""
+
+    # Before the other by its name, but after it by its unit.
+    SECOND = tuple(f"spacecraft.servicer.sensors.a_wide.{setting}" for setting in (
+        "kind=camera", "camera=tron", "navigation=none", "period_s=120"))
+    SHORT = ("mission.duration_h=0.25",)
+
+    def test_both_are_recorded(self):
+        with scratch() as folder:
+            one = fly(folder / "one", *self.SHORT, mission=EXPERIMENT1)
+            two = fly(folder / "two", *self.SHORT, *self.SECOND, mission=EXPERIMENT1)
+            self.assertEqual(hashes(two), hashes(one))
+            self.assertEqual(two["images"], one["images"])
+            self.assertEqual(two["images_without_truth"], 0)
+            self.assertEqual(two["navigation"], "angles_only")
+            epochs = {source["name"]: source["epochs"] for source in two["sources"]}
+            self.assertEqual((epochs["servicer/a_wide"], epochs["servicer/camera"]), (7, 15))
+            self.assertEqual(recipes_by_unit(folder / "one"), {0: 15})
+            self.assertEqual(recipes_by_unit(folder / "two"), {0: 15, 1: 7})
+            result = vbar("replay", folder / "two")
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertIn("identical", result.stdout)
 
 
 class Experiment1(unittest.TestCase):

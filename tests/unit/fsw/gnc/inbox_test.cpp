@@ -113,6 +113,17 @@ TEST(Inbox, RefusesNaN) {
   EXPECT_EQ(inbox.counters().rejected_content, 1);
 }
 
+// No navigation uses it.
+TEST(Inbox, AcceptsARangeAndIgnoresIt) {
+  Inbox inbox(kServicer);
+  range_measurement message{};
+  message.range_m = 12.5;
+  EXPECT_EQ(inbox.receive(packet_of({10}, message)), Status::kOk);
+  EXPECT_EQ(inbox.receive(packet_of({10}, message)), Status::kOk);
+  EXPECT_EQ(inbox.counters().accepted, 2);
+  EXPECT_EQ(inbox.counters().rejected_type, 0);
+}
+
 TEST(Inbox, RefusesATickWithoutAPeriod) {
   Inbox inbox(kServicer);
   tick message{};

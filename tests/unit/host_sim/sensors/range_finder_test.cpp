@@ -187,15 +187,15 @@ class RangeEvaluation : public testing::Test {
     ASSERT_EQ(evaluations_.size(), 1U);
     EXPECT_EQ(evaluations_[0].source, "servicer/lidar");
     evaluations_[0].evaluation->on_measured(truth);
-    std::vector<fsw::packets::PacketView> packets;
+    std::vector<twins::Packet> packets;
     twins::PacketEncoder encoder(1, 0), other_unit(1, 1);
     range_measurement message{};
     message.range_m = measured_m;
     const auto packet = encoder.encode(truth.time, message);
     message.range_m = 1e3;
     const auto stranger = other_unit.encode(truth.time, message);
-    packets.push_back(fsw::packets::parse_packet(*stranger).value());
-    if (packet) packets.push_back(fsw::packets::parse_packet(*packet).value());
+    packets.push_back(*stranger);
+    if (packet) packets.push_back(*packet);
     evaluations_[0].evaluation->on_inputs(truth.time + fsw::duration_of_seconds(1), packets);
   }
   void fly() {

@@ -1,19 +1,18 @@
 // Telemetry of an image against a truth that can be worked out by hand: camera axes along ECI, target straight ahead.
 
-#include "host_sim/app/image_truth.h"
+#include "host_sim/sensors/camera/image_truth.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "fsw/orbit/roe.h"
-#include "host_sim/app/flight_recorder.h"
-#include "host_sim/app/image_rows.h"
 #include "host_sim/report/summarise.h"
+#include "host_sim/sensors/camera/image_rows.h"
 #include "host_sim/sensors/sensor_kinds.h"
-#include "tests/unit/host_sim/app/editable_camera.h"
+#include "tests/unit/host_sim/sensors/editable_camera.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 using fsw::Vector3;
@@ -219,24 +218,27 @@ TEST_F(ImageTruth, SummaryTakesTheUnresolvedTargetOnly) {
   EXPECT_FALSE(report::summarise(record).images.has_value());
 }
 
-pil::Packet packet_of(fsw::GpsTime time, const auto& message) {
+twins::Packet packet_of(fsw::GpsTime time, const auto& message) {
   fsw::packets::PacketHeader header;
   header.time = time;
-  pil::Packet packet(fsw::packets::kMaxPacketBytes);
+  twins::Packet packet(fsw::packets::kMaxPacketBytes);
   packet.resize(fsw::packets::encode(header, message, packet).value());
   return packet;
 }
 
 // Telemetry of an image comes a step after the image; its header says which truth it is about.
-TEST_F(ImageTruth, TheRecorderTakesTheTruthOfTheExposure) {
+TEST_F(ImageTruth, TheEvaluationTakesTheTruthOfTheExposure) {
   report::RunRecord record;
-  FlightRecorder recorder(mission_, mission_.spacecraft[0], record);
+  const std::vector<NamedEvaluation> evaluations = make_evaluations(mission_, mission_.spacecraft[0], record);
+  const auto camera = std::ranges::find(evaluations, "servicer/camera", &NamedEvaluation::source);
+  ASSERT_NE(camera, evaluations.end());
+  Evaluation& evaluation = *camera->evaluation;
   const fsw::GpsTime exposure = mission_.epoch + fsw::duration_of_seconds(60);
   truth_.time = exposure;
-  recorder.on_measured(truth_);
+  evaluation.on_measured(truth_);
   truth_.time = exposure + fsw::duration_of_seconds(60);
   truth_.spacecraft[1].orbit.position_eci += Vector3(500.0, 0.0, 0.0);
-  recorder.on_measured(truth_);
+  evaluation.on_measured(truth_);
 
   image_.image = 7;
   image_.fate = 2;
@@ -247,10 +249,11 @@ TEST_F(ImageTruth, TheRecorderTakesTheTruthOfTheExposure) {
   objects.count = 1;
   objects.x_px[0] = 959.5F;
   objects.y_px[0] = 599.5F;
-  pil::StepResult answer;
-  answer.packets = {packet_of(exposure, objects), packet_of(exposure, image_)};
-  recorder.on_answer(truth_.time, answer);
-  recorder.finish();
+  const twins::Packet packets[] = {packet_of(exposure, objects), packet_of(exposure, image_)};
+  const fsw::packets::PacketView answer[] = {fsw::packets::parse_packet(packets[0]).value(),
+                                             fsw::packets::parse_packet(packets[1]).value()};
+  evaluation.on_answer(truth_.time, answer);
+  evaluation.finish();
   ASSERT_EQ(record.images.size(), 1U);
   EXPECT_EQ(record.images[0].time_s, 60.0);
   EXPECT_EQ(record.images[0].step_time_s, 120.0);
@@ -259,8 +262,9 @@ TEST_F(ImageTruth, TheRecorderTakesTheTruthOfTheExposure) {
   EXPECT_EQ(record.objects.size(), 1U);
   EXPECT_EQ(record.residuals.size(), 2U);
 
-  answer.packets = {packet_of(exposure + fsw::duration_of_seconds(1), image_)};  // no truth was kept of that
-  recorder.on_answer(truth_.time, answer);
+  const twins::Packet stranger = packet_of(exposure + fsw::duration_of_seconds(1), image_);  // no truth was kept of that
+  const fsw::packets::PacketView without_truth[] = {fsw::packets::parse_packet(stranger).value()};
+  evaluation.on_answer(truth_.time, without_truth);
   EXPECT_FALSE(record.images[1].range_m.has_value());
 }
 
@@ -296,4 +300,4 @@ TEST(ImageRows, ResidualsAndObjectsAreRows) {
 }
 
 }  // namespace
-}  // namespace vbar::app
+}  // namespace vbar::sensors

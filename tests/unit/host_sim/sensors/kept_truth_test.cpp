@@ -1,8 +1,8 @@
-#include "host_sim/app/kept_truth.h"
+#include "host_sim/sensors/camera/kept_truth.h"
 
 #include <gtest/gtest.h>
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 twins::TruthSnapshot truth_at(std::int64_t s) {
@@ -41,4 +41,4 @@ TEST(KeptTruth, CountsImagesWithout) {
 }
 
 }  // namespace
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -1,16 +1,16 @@
-#include "host_sim/app/pose_gallery.h"
+#include "host_sim/sensors/camera/pose_gallery.h"
 
 #include <string>
 
 #include <fmt/format.h>
 
 #include "fsw/pose/spacecraft_pose_network.h"
-#include "host_sim/app/pose_picture.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/report/code_names.h"
 #include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/camera/pose_picture.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 std::string caption(const report::PoseRow& row) {
@@ -26,20 +26,20 @@ std::string caption(const report::PoseRow& row) {
 }  // namespace
 
 PoseGallery::PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  const auto* const camera = mission::find_settings<sensors::CameraSensor>(servicer);
-  if (camera == nullptr || camera->use != sensors::CameraNavigation::kPose) return;
+  const auto* const camera = navigation_camera(servicer);
+  if (camera == nullptr || camera->use != CameraNavigation::kPose) return;
   work_ = std::make_unique<Work>();
   static_cast<void>(work_->network.load(fsw::network::weights_on_board()));  // without it, pictures without maps
-  const pose_configuration configuration = sensors::pose_configuration_of(mission, *camera, mission::data_directory());
+  const pose_configuration configuration = pose_configuration_of(mission, *camera, mission::data_directory());
   dark_level_dn_ = configuration.dark_level_dn;
   noise_dn_ = configuration.noise_dn;
   for (int k = 0; k < kPictures; ++k)
     moments_.push_back(mission.start_time() + fsw::Duration{mission.duration.ns / kPictures * k});
 }
 
-void PoseGallery::on_inputs(fsw::GpsTime now, std::span<const pil::Packet> inputs) {
+void PoseGallery::on_inputs(fsw::GpsTime now, std::span<const twins::Packet> inputs) {
   if (!work_ || next_ == moments_.size() || now < moments_[next_]) return;
-  for (const pil::Packet& bytes : inputs) {
+  for (const twins::Packet& bytes : inputs) {
     const auto packet = fsw::packets::parse_packet(bytes);
     if (!packet.ok()) continue;
     const auto tile = fsw::packets::decode<image_tile>(packet.value());
@@ -69,4 +69,4 @@ void PoseGallery::on_pose(fsw::GpsTime exposure, const telemetry_pose& pose, con
   while (next_ < moments_.size() && exposure >= moments_[next_]) ++next_;
 }
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -6,12 +6,12 @@
 
 #include "host_sim/sensors/camera/camera_kind.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 
 /// The settings of the first camera, no longer shared with another copy of the mission.
-inline sensors::CameraSensor& editable_camera(mission::Spacecraft& spacecraft) {
+inline CameraSensor& editable_camera(mission::Spacecraft& spacecraft) {
   mission::Sensor& sensor = *std::ranges::find(spacecraft.sensors, "camera", &mission::Sensor::kind);
-  auto copy = std::make_shared<sensors::CameraSensor>(sensors::settings_of<sensors::CameraSensor>(sensor));
+  auto copy = std::make_shared<CameraSensor>(sensors::settings_of<CameraSensor>(sensor));
   sensor.settings = copy;
   return *copy;
 }
@@ -20,4 +20,4 @@ inline void remove_camera(mission::Spacecraft& spacecraft) {
   std::erase_if(spacecraft.sensors, [](const mission::Sensor& sensor) { return sensor.kind == "camera"; });
 }
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -11,7 +11,7 @@
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/twins/packet_source.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 
 /// Of the sphere about the centre of mass of Tango, the spacecraft that cameras see here, that holds its body and
 /// antennas.
@@ -28,7 +28,7 @@ struct TrueCamera {
 };
 
 /// `servicer` must have an attitude.
-[[nodiscard]] TrueCamera true_camera(const sensors::CameraSensor& camera, const twins::SpacecraftTruth& servicer);
+[[nodiscard]] TrueCamera true_camera(const CameraSensor& camera, const twins::SpacecraftTruth& servicer);
 
 /// Pinhole and Brown-Conrady distortion, forwards (Brown 1966); none behind the camera.
 [[nodiscard]] std::optional<Eigen::Vector2d> pixel_of(const twins::camera::CameraSettings& settings,
@@ -45,4 +45,4 @@ struct TrueCamera {
                                                 const fsw::orbit::CartesianState& servicer,
                                                 const fsw::orbit::CartesianState& target, double a);
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -8,7 +8,7 @@
 
 #include "host_sim/twins/packet_source.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 
 class KeptTruth {
  public:
@@ -32,4 +32,4 @@ class KeptTruth {
   int without_truth_ = 0;
 };
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -1,4 +1,4 @@
-#include "host_sim/app/image_rows.h"
+#include "host_sim/sensors/camera/image_rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "fsw/math/math.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 using fsw::math::kArcsecond;
@@ -28,4 +28,4 @@ void append_residuals(const report::ImageRow& row, std::vector<report::ResidualR
         {row.time_s, sensors[axis], row.prefit[axis] / kArcsecond, row.postfit[axis] / kArcsecond, sigma_arcsec});
 }
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

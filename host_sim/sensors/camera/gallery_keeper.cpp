@@ -1,4 +1,4 @@
-#include "host_sim/app/gallery_keeper.h"
+#include "host_sim/sensors/camera/gallery_keeper.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include "fsw/angles_only/sighting.h"
-#include "host_sim/app/true_camera.h"
 #include "host_sim/report/code_names.h"
 #include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/camera/true_camera.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 using fsw::GpsTime;
@@ -40,8 +40,8 @@ std::string caption(const report::ImageRow& row) {
 }  // namespace
 
 GalleryKeeper::GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  const auto* const camera = mission::find_settings<sensors::CameraSensor>(servicer);
-  if (camera == nullptr || camera->use != sensors::CameraNavigation::kAnglesOnly) return;
+  const auto* const camera = navigation_camera(servicer);
+  if (camera == nullptr || camera->use != CameraNavigation::kAnglesOnly) return;
   assembly_ = std::make_unique<fsw::imaging::ImageAssembly>();
   before_ = fsw::Duration{kExposuresBefore * camera->period.ns};
   focal_length_px_ = camera->settings.focal_length_px();
@@ -63,9 +63,9 @@ std::optional<GpsTime> GalleryKeeper::moment_of(GpsTime exposure) const {
   return *moment;
 }
 
-void GalleryKeeper::on_inputs(GpsTime now, std::span<const pil::Packet> inputs) {
+void GalleryKeeper::on_inputs(GpsTime now, std::span<const twins::Packet> inputs) {
   if (!assembly_ || !may_be_wanted(now)) return;
-  for (const pil::Packet& bytes : inputs) {
+  for (const twins::Packet& bytes : inputs) {
     const auto packet = fsw::packets::parse_packet(bytes);
     if (!packet.ok()) continue;
     const auto tile = fsw::packets::decode<image_tile>(packet.value());
@@ -115,4 +115,4 @@ report::GalleryImage GalleryKeeper::picture(const Candidate& candidate) const {
           .png = report::png_of(picture, report::stretch_for(picture))};
 }
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -1,12 +1,12 @@
-#include "host_sim/app/true_camera.h"
+#include "host_sim/sensors/camera/true_camera.h"
 
 #include <Eigen/Cholesky>
 
 #include "fsw/orbit/roe.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 
-TrueCamera true_camera(const sensors::CameraSensor& camera, const twins::SpacecraftTruth& servicer) {
+TrueCamera true_camera(const CameraSensor& camera, const twins::SpacecraftTruth& servicer) {
   const Eigen::Quaterniond& q_body_eci = servicer.attitude->q_body_eci;
   return {servicer.orbit.position_eci + q_body_eci.conjugate() * camera.position_body_m,
           camera.q_camera_body * q_body_eci};
@@ -47,4 +47,4 @@ std::optional<double> nees_of_roe(const double (&a_roe_m)[6], const double (&cov
   return normalised_square(error, symmetric(covariance_m2));
 }
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

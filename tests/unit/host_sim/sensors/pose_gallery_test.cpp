@@ -1,6 +1,6 @@
 // Which images of a run with navigation by poses go into its gallery, and what their pictures show, decoded by libpng.
 
-#include "host_sim/app/pose_gallery.h"
+#include "host_sim/sensors/camera/pose_gallery.h"
 
 #include <array>
 #include <cmath>
@@ -10,12 +10,12 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include "host_sim/app/pose_picture.h"
+#include "host_sim/sensors/camera/pose_picture.h"
 #include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/camera/image_tiles.h"
-#include "tests/unit/host_sim/app/editable_camera.h"
+#include "tests/unit/host_sim/sensors/editable_camera.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 using testing::HasSubstr;
@@ -214,7 +214,7 @@ TEST_F(PoseGalleryTest, CaptionSaysWhatIsKnown) {
 
 TEST_F(PoseGalleryTest, NeedsACameraThatNavigatesByPoses) {
   mission::Mission other = mission_;
-  editable_camera(other.spacecraft[0]).use = sensors::CameraNavigation::kAnglesOnly;
+  editable_camera(other.spacecraft[0]).use = CameraNavigation::kAnglesOnly;
   PoseGallery by_angles(other, other.spacecraft[0]);
   remove_camera(other.spacecraft[0]);
   PoseGallery blind(other, other.spacecraft[0]);
@@ -226,4 +226,4 @@ TEST_F(PoseGalleryTest, NeedsACameraThatNavigatesByPoses) {
 }
 
 }  // namespace
-}  // namespace vbar::app
+}  // namespace vbar::sensors

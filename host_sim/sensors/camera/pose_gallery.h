@@ -12,9 +12,9 @@
 #include "fsw/packets/messages.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
-#include "pil_bridge/flight_computer.h"
+#include "host_sim/twins/packet_source.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 
 class PoseGallery {
  public:
@@ -24,7 +24,7 @@ class PoseGallery {
   PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer);
 
   /// The packets that the flight software got with the step at `now`.
-  void on_inputs(fsw::GpsTime now, std::span<const pil::Packet> inputs);
+  void on_inputs(fsw::GpsTime now, std::span<const twins::Packet> inputs);
 
   /// After on_inputs() of the same step: what the flight software said of an image, and its row.
   void on_pose(fsw::GpsTime exposure, const telemetry_pose& pose, const report::PoseRow& row,
@@ -44,4 +44,4 @@ class PoseGallery {
   std::size_t next_ = 0;
 };
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -1,4 +1,4 @@
-#include "host_sim/app/image_truth.h"
+#include "host_sim/sensors/camera/image_truth.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <Eigen/Geometry>
 
 #include "fsw/math/math.h"
-#include "host_sim/app/true_camera.h"
+#include "host_sim/sensors/camera/true_camera.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 using Eigen::Quaterniond;
@@ -84,7 +84,7 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
                const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);
   const twins::SpacecraftTruth* const target = truth.find(servicer.observes());
-  const auto* const sensor = mission::find_settings<sensors::CameraSensor>(servicer);
+  const auto* const sensor = navigation_camera(servicer);
   if (sensor == nullptr || own == nullptr || target == nullptr || !own->attitude) return;
   const TrueCamera camera = true_camera(*sensor, *own);
   const Vector3 los_eci = camera.towards(*target);
@@ -109,4 +109,4 @@ void add_truth(report::ImageRow& row, const telemetry_image& image, const teleme
                            mission.guidance.reference_semi_major_axis_m);
 }
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -9,7 +9,7 @@
 #include "fsw/network/keypoint_network.h"
 #include "fsw/packets/messages.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 
 /// The crop is enlarged to this width and height, and stands right of the image.
 inline constexpr int kCropPicturePx = 512;
@@ -23,4 +23,4 @@ inline constexpr int kCropPicturePx = 512;
                                                      double dark_level_dn, double noise_dn,
                                                      fsw::network::KeypointNetwork& network);
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -8,7 +8,7 @@
 #include "host_sim/report/run_record.h"
 #include "host_sim/twins/packet_source.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 
 /// Eleven rows, nothing of the truth yet.
 void append_keypoints(double exposure_s, const telemetry_pose& pose, std::vector<report::KeypointRow>& rows);
@@ -19,4 +19,4 @@ void add_truth(report::PoseRow& row, std::vector<report::KeypointRow>& keypoints
                const double (&keypoints_body_m)[33], const mission::Mission& mission,
                const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

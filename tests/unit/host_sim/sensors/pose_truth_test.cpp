@@ -1,7 +1,7 @@
 // Telemetry of a pose against a truth that can be worked out by hand: camera axes along ECI, the target straight ahead
 // or at a place whose pixel OpenCV gives.
 
-#include "host_sim/app/pose_truth.h"
+#include "host_sim/sensors/camera/pose_truth.h"
 
 #include <cmath>
 #include <limits>
@@ -11,9 +11,9 @@
 #include "fsw/orbit/roe.h"
 #include "host_sim/report/summarise.h"
 #include "host_sim/sensors/sensor_kinds.h"
-#include "tests/unit/host_sim/app/editable_camera.h"
+#include "tests/unit/host_sim/sensors/editable_camera.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -321,4 +321,4 @@ TEST(PoseSummary, ANanIsSeen) {
 }
 
 }  // namespace
-}  // namespace vbar::app
+}  // namespace vbar::sensors

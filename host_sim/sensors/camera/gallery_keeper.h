@@ -17,9 +17,9 @@
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/image_png.h"
 #include "host_sim/report/run_record.h"
-#include "pil_bridge/flight_computer.h"
+#include "host_sim/twins/packet_source.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 
 /// What the flight software said of an image (telemetry_image, telemetry_objects).
 struct ImageFindings {
@@ -37,7 +37,7 @@ class GalleryKeeper {
 
   /// The packets that the flight software got with the step at `now`: tiles among them are assembled if they may be
   /// wanted. One image is kept, as in the flight software.
-  void on_inputs(fsw::GpsTime now, std::span<const pil::Packet> inputs);
+  void on_inputs(fsw::GpsTime now, std::span<const twins::Packet> inputs);
 
   /// After on_inputs() of the same step. Images come in order of time.
   void on_image(const ImageFindings& found, std::vector<report::GalleryImage>& gallery);
@@ -68,4 +68,4 @@ class GalleryKeeper {
   std::optional<Candidate> best_;
 };
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

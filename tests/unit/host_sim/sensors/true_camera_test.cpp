@@ -1,6 +1,6 @@
 // What a camera's image should show, against OpenCV, exact fractions and orbits that can be worked out by hand.
 
-#include "host_sim/app/true_camera.h"
+#include "host_sim/sensors/camera/true_camera.h"
 
 #include <cmath>
 #include <limits>
@@ -13,7 +13,7 @@
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "tests/support/figures.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 using fsw::Vector3;
@@ -49,7 +49,7 @@ TEST(TrueCamera, ThereIsNoPixelBehindTheCameraOrOfANan) {
 
 // The body is turned by 90 degrees about z: its x axis lies along ECI's y. The camera's boresight is the body's x axis.
 TEST(TrueCamera, StandsAndLooksWhereItsMountSays) {
-  sensors::CameraSensor camera;
+  CameraSensor camera;
   camera.position_body_m = {0.5, 0.0, 0.2};
   camera.q_camera_body = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitX(), Vector3::UnitZ());
   twins::SpacecraftTruth servicer{"servicer", {{7.0e6, 0.0, 0.0}, {0.0, 7.5e3, 0.0}}, truth::AttitudeState{}};
@@ -143,4 +143,4 @@ TEST(TrueCamera, ASpacecraftsRadiusHoldsTangoWithItsAntennas) {
 }
 
 }  // namespace
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -1,4 +1,4 @@
-#include "host_sim/app/pose_picture.h"
+#include "host_sim/sensors/camera/pose_picture.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "fsw/pose/crop.h"
 #include "host_sim/report/colour_picture.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 using fsw::Status;
@@ -101,4 +101,4 @@ std::vector<std::uint8_t> pose_picture(const fsw::imaging::ImageView& image, con
   return picture.png();
 }
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -9,7 +9,7 @@
 #include "host_sim/report/run_record.h"
 #include "host_sim/twins/packet_source.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 
 /// Fills the true part of `row` (range, errors, which object and which spacecraft the choice really is, NEES) from the
 /// truth at the exposure. `servicer` must have a camera, and it and what it observes must be in the truth; without
@@ -17,4 +17,4 @@ namespace vbar::app {
 void add_truth(report::ImageRow& row, const telemetry_image& image, const telemetry_objects* objects,
                const mission::Mission& mission, const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

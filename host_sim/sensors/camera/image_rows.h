@@ -6,7 +6,7 @@
 #include "fsw/packets/messages.h"
 #include "host_sim/report/run_record.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 
 void append_objects(double exposure_s, const telemetry_objects& objects, std::vector<report::ObjectRow>& rows);
 
@@ -14,4 +14,4 @@ void append_objects(double exposure_s, const telemetry_objects& objects, std::ve
 /// deviation of the innovation along the residual vector: |prefit| / sqrt(NIS). None for a bearing of the batch.
 void append_residuals(const report::ImageRow& row, std::vector<report::ResidualRow>& rows);
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

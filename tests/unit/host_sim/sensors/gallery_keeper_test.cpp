@@ -1,7 +1,7 @@
 // Which images of a run go into its gallery, and what they show. Images are patterns that differ by number; what the
 // gallery should hold is drawn from the same patterns.
 
-#include "host_sim/app/gallery_keeper.h"
+#include "host_sim/sensors/camera/gallery_keeper.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/camera/image_tiles.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 using testing::HasSubstr;
@@ -160,4 +160,4 @@ TEST_F(Gallery, NeedsACamera) {
 }
 
 }  // namespace
-}  // namespace vbar::app
+}  // namespace vbar::sensors

@@ -1,4 +1,4 @@
-#include "host_sim/app/pose_truth.h"
+#include "host_sim/sensors/camera/pose_truth.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <Eigen/Cholesky>
 
 #include "fsw/orbit/sun.h"
-#include "host_sim/app/true_camera.h"
+#include "host_sim/sensors/camera/true_camera.h"
 #include "host_sim/twins/camera/exposure_of_truth.h"
 
-namespace vbar::app {
+namespace vbar::sensors {
 namespace {
 
 using Eigen::Quaterniond;
@@ -77,7 +77,7 @@ void add_truth(report::PoseRow& row, std::vector<report::KeypointRow>& keypoints
                const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);
   const twins::SpacecraftTruth* const target = truth.find(servicer.observes());
-  const auto* const settings = mission::find_settings<sensors::CameraSensor>(servicer);
+  const auto* const settings = navigation_camera(servicer);
   if (settings == nullptr || own == nullptr || target == nullptr || !own->attitude || !target->attitude) return;
   const TrueCamera camera = true_camera(*settings, *own);
   const Vector3 position_camera = camera.q_camera_eci * camera.towards(*target);
@@ -101,4 +101,4 @@ void add_truth(report::PoseRow& row, std::vector<report::KeypointRow>& keypoints
   }
 }
 
-}  // namespace vbar::app
+}  // namespace vbar::sensors

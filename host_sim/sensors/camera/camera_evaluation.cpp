@@ -1,0 +1,114 @@
+// Telemetry of images as rows, the truth of their exposures beside it, and pictures of a few.
+
+#include <optional>
+
+#include "fsw/packets/messages.h"
+#include "host_sim/mission/data_directory.h"
+#include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/camera/gallery_keeper.h"
+#include "host_sim/sensors/camera/image_rows.h"
+#include "host_sim/sensors/camera/image_truth.h"
+#include "host_sim/sensors/camera/kept_truth.h"
+#include "host_sim/sensors/camera/pose_gallery.h"
+#include "host_sim/sensors/camera/pose_truth.h"
+
+namespace vbar::sensors {
+namespace {
+
+/// What a step said of an image, in two packets.
+struct ImageTelemetry {
+  fsw::GpsTime exposure;
+  std::optional<telemetry_image> image;
+  std::optional<telemetry_objects> objects;
+  std::optional<telemetry_pose> pose;
+};
+
+ImageTelemetry image_telemetry(std::span<const fsw::packets::PacketView> answer) {
+  ImageTelemetry told;
+  for (const fsw::packets::PacketView& packet : answer) {
+    if (const auto image = fsw::packets::decode<telemetry_image>(packet); image.ok()) {
+      told.exposure = packet.header.time;
+      told.image = image.value();
+    } else if (const auto objects = fsw::packets::decode<telemetry_objects>(packet); objects.ok()) {
+      told.objects = objects.value();
+    } else if (const auto pose = fsw::packets::decode<telemetry_pose>(packet); pose.ok()) {
+      told.exposure = packet.header.time;
+      told.pose = pose.value();
+    }
+  }
+  return told;
+}
+
+class CameraEvaluation final : public Evaluation {
+ public:
+  CameraEvaluation(const CameraSensor& camera, const EvaluationContext& context)
+      : context_(context),
+        record_(context.record),
+        gallery_(context.mission, context.servicer),
+        pose_gallery_(context.mission, context.servicer) {
+    if (camera.use == CameraNavigation::kPose)
+      known_target_ = pose_configuration_of(context.mission, camera, mission::data_directory());
+  }
+
+  void on_measured(const twins::TruthSnapshot& truth) override { kept_truth_.keep(truth); }
+
+  void on_inputs(fsw::GpsTime time, std::span<const twins::Packet> inputs) override {
+    gallery_.on_inputs(time, inputs);
+    pose_gallery_.on_inputs(time, inputs);
+  }
+
+  void on_answer(fsw::GpsTime time, std::span<const fsw::packets::PacketView> answer) override {
+    const ImageTelemetry told = image_telemetry(answer);
+    if (told.image) on_image(seconds_of(time), told);
+    if (told.pose) on_pose(seconds_of(time), told);
+  }
+
+  void finish() override { gallery_.finish(record_.gallery); }
+
+ private:
+  [[nodiscard]] double seconds_of(fsw::GpsTime time) const { return fsw::seconds(time - context_.mission.epoch); }
+
+  void on_image(double step_time_s, const ImageTelemetry& told) {
+    auto row = report::row_of<report::ImageRow>(*told.image);
+    row.time_s = seconds_of(told.exposure);
+    row.step_time_s = step_time_s;
+    const telemetry_objects* const objects =
+        told.objects && told.objects->image == told.image->image ? &*told.objects : nullptr;
+    const auto truth = kept_truth_.take(told.exposure);
+    if (truth) add_truth(row, *told.image, objects, context_.mission, context_.servicer, *truth);
+    if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
+    if (objects != nullptr) append_objects(row.time_s, *objects, record_.objects);
+    record_.images.push_back(row);
+    gallery_.on_image({told.exposure, row, objects}, record_.gallery);
+  }
+
+  void on_pose(double step_time_s, const ImageTelemetry& told) {
+    auto row = report::row_of<report::PoseRow>(*told.pose);
+    row.time_s = seconds_of(told.exposure);
+    row.step_time_s = step_time_s;
+    append_keypoints(row.time_s, *told.pose, record_.keypoints);
+    const auto truth = kept_truth_.take(told.exposure);
+    if (truth && known_target_)
+      add_truth(row, record_.keypoints, *told.pose, known_target_->keypoints_body_m, context_.mission,
+                context_.servicer, *truth);
+    record_.poses.push_back(row);
+    pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
+  }
+
+  EvaluationContext context_;
+  report::RunRecord& record_;
+  KeptTruth kept_truth_;
+  std::optional<pose_configuration> known_target_;  ///< as telecommanded, with navigation by the pose network
+  GalleryKeeper gallery_;
+  PoseGallery pose_gallery_;
+};
+
+}  // namespace
+
+std::unique_ptr<Evaluation> evaluate_camera(const mission::Sensor& sensor, const EvaluationContext& context) {
+  const auto& camera = settings_of<CameraSensor>(sensor);
+  if (camera.use == CameraNavigation::kNone) return nullptr;  // the flight software says nothing of its images
+  return std::make_unique<CameraEvaluation>(camera, context);
+}
+
+}  // namespace vbar::sensors
