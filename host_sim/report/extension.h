@@ -14,8 +14,8 @@ struct Extension {
   std::vector<TableKind> (*tables)() = nullptr;
   /// Computes the figures of the module from its tables.
   void (*summarise)(const RunRecord& record, Summary& summary) = nullptr;
-  /// Without content, where the run has nothing to show.
-  Section (*section)(const RunRecord& record) = nullptr;
+  /// Those without content are left out: the run has nothing to show.
+  std::vector<Section> (*sections)(const RunRecord& record) = nullptr;
 };
 
 }  // namespace vbar::report

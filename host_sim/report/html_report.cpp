@@ -1,5 +1,7 @@
 #include "host_sim/report/html_report.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "host_sim/report/extension.h"
@@ -11,11 +13,12 @@
 namespace vbar::report {
 
 std::string html_report(const RunRecord& record) {
-  std::vector<Section> sections{waypoint_section(record),    trajectory_section(record), elements_section(record),
-                                maneuver_section(record),    navigation_section(record), gnss_section(record),
-                                angles_only_section(record), pose_section(record)};
-  for (const Extension* extension : record.extensions)
-    if (extension->section != nullptr) sections.push_back(extension->section(record));
+  std::vector<Section> sections{waypoint_section(record), trajectory_section(record), elements_section(record),
+                                maneuver_section(record), navigation_section(record)};
+  for (const Extension* extension : record.extensions) {
+    if (extension->sections == nullptr) continue;
+    for (Section& section : extension->sections(record)) sections.push_back(std::move(section));
+  }
   for (auto* const section : {attitude_section, guidance_section, health_section, computer_section})
     sections.push_back(section(record));
   std::string body = overview(record) + contents(sections);

@@ -26,16 +26,6 @@ namespace vbar::report {
 /// Errors of navigation and the bounds that its filter claims (section_navigation.cpp).
 [[nodiscard]] Section navigation_section(const RunRecord& record);
 
-/// Carrier-phase navigation: beside the paper, integers, consistency (section_gnss.cpp).
-[[nodiscard]] Section gnss_section(const RunRecord& record);
-
-/// Angles-only navigation: beside the paper, bearings, star attitude, range, pictures (section_angles_only.cpp).
-[[nodiscard]] Section angles_only_section(const RunRecord& record);
-
-/// Navigation by the pose network: beside the paper, attitude, poses of single images, keypoints, pictures
-/// (section_pose.cpp).
-[[nodiscard]] Section pose_section(const RunRecord& record);
-
 /// True attitudes and rates (section_attitude.cpp).
 [[nodiscard]] Section attitude_section(const RunRecord& record);
 

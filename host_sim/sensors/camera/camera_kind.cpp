@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host_sim/mission/body_file.h"
+#include "host_sim/sensors/camera/camera_report.h"
 #include "host_sim/twins/camera/camera_sensor.h"
 #include "host_sim/twins/camera/model/cad_objects.h"
 #include "host_sim/twins/camera/scene.h"
@@ -183,13 +184,18 @@ void add_facts(const Sensor& sensor, const Mission& /*mission*/, const Spacecraf
   if (use != CameraNavigation::kNone) facts.navigation = use == CameraNavigation::kPose ? "pose" : "angles_only";
 }
 
+std::vector<report::Section> sections(const report::RunRecord& record) {
+  return {angles_only_section(record), pose_section(record)};
+}
+
 }  // namespace
 
 const SensorKind kCamera{{"camera", "", read_camera, read_camera_shared, check},
                          add_camera_telecommands,
                          add_sources,
                          add_facts,
-                         evaluate_camera};
+                         evaluate_camera,
+                         {nullptr, summarise_images, sections}};
 
 const CameraSensor* navigation_camera(const Spacecraft& carrier) {
   for (const Sensor& sensor : carrier.sensors)

@@ -123,10 +123,18 @@ std::unique_ptr<Evaluation> evaluate(const Sensor& /*sensor*/, const EvaluationC
   return std::make_unique<GnssEvaluation>(context);
 }
 
+std::vector<report::Section> sections(const report::RunRecord& record) {
+  return {gnss_section(record)};
+}
+
 }  // namespace
 
-const SensorKind kGnss{
-    {"gnss", "constellation", read_gnss, read_gnss_shared, check}, add_telecommands, add_sources, add_facts, evaluate};
+const SensorKind kGnss{{"gnss", "constellation", read_gnss, read_gnss_shared, check},
+                       add_telecommands,
+                       add_sources,
+                       add_facts,
+                       evaluate,
+                       {nullptr, nullptr, sections}};
 
 vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer,
                                                            const truth::EarthOrientationSeries& orientation) {

@@ -27,6 +27,9 @@ struct GnssShared : mission::SharedSettings {
 
 extern const SensorKind kGnss;
 
+/// Carrier-phase navigation: beside the paper, integers, consistency (section_gnss.cpp).
+[[nodiscard]] report::Section gnss_section(const report::RunRecord& record);
+
 // In read_gnss.cpp.
 std::shared_ptr<const mission::SensorSettings> read_gnss(const mission::TableReader& section,
                                                          const mission::SensorContext& context);

@@ -58,10 +58,14 @@ std::vector<report::TableKind> tables() {
   return {report::table_of_extension<RangeRow>("range_finder.csv")};
 }
 
+std::vector<report::Section> sections(const report::RunRecord& record) {
+  return {range_section(record)};
+}
+
 }  // namespace
 
 const SensorKind kRangeFinder{
     {"range_finder", "", read, nullptr, check}, nullptr, add_sources, nullptr, evaluate_ranges,
-    {tables, summarise_ranges, range_section}};
+    {tables, summarise_ranges, sections}};
 
 }  // namespace vbar::sensors

@@ -7,6 +7,7 @@
 #include "host_sim/report/html_report.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/summarise.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "tests/support/paths.h"
 
 namespace vbar::report::test {
@@ -15,7 +16,7 @@ namespace {
 constexpr double kArcsecond = M_PI / 648000.0;
 
 RunRecord earlier_run(const std::string& name) {
-  return read_run(vbar::tests::source_path("tests/data/earlier_runs/" + name));
+  return read_run(vbar::tests::source_path("tests/data/earlier_runs/" + name), sensors::extensions());
 }
 
 TEST(EarlierRuns, ImagesAreConverted) {

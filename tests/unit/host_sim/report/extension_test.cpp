@@ -36,9 +36,10 @@ constexpr Extension kTides{
         [](const RunRecord& record, Summary& summary) {
           summary.sensor_figures["gauge"]["count"] = static_cast<double>(record.tables.rows<TideRow>().size());
         },
-    .section =
+    .sections =
         [](const RunRecord& record) {
-          return record.tables.rows<TideRow>().empty() ? Section{} : Section{"Tides", "<p>high</p>", {"tides.csv"}};
+          return std::vector<Section>{
+              record.tables.rows<TideRow>().empty() ? Section{} : Section{"Tides", "<p>high</p>", {"tides.csv"}}};
         },
 };
 constexpr Extension kNothing{};

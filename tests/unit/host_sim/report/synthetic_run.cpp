@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "host_sim/sensors/sensor_kinds.h"
+
 namespace vbar::report::test {
 namespace {
 
@@ -347,6 +349,7 @@ Summary summary() {
 
 RunRecord synthetic_run() {
   RunRecord record;
+  record.extensions = sensors::extensions();
   record.summary = summary();
   record.notes = {{60.0, "servicer/gnss", "failure", std::nullopt, "no lock"},
                   {120.0, "thruster", "magnitude_error", 0.015625, ""}};

@@ -201,6 +201,7 @@ TEST_F(ImageTruth, SummaryTakesTheUnresolvedTargetOnly) {
   rows.push_back({});
   rows.back().status = 2;
   report::RunRecord record;
+  record.extensions = extensions();
   record.summary.target = "target";
   record.images = rows;
   const report::Summary summary = report::summarise(record);
@@ -229,6 +230,7 @@ twins::Packet packet_of(fsw::GpsTime time, const auto& message) {
 // Telemetry of an image comes a step after the image; its header says which truth it is about.
 TEST_F(ImageTruth, TheEvaluationTakesTheTruthOfTheExposure) {
   report::RunRecord record;
+  record.extensions = extensions();
   const std::vector<NamedEvaluation> evaluations = make_evaluations(mission_, mission_.spacecraft[0], record);
   const auto camera = std::ranges::find(evaluations, "servicer/camera", &NamedEvaluation::source);
   ASSERT_NE(camera, evaluations.end());
@@ -262,7 +264,8 @@ TEST_F(ImageTruth, TheEvaluationTakesTheTruthOfTheExposure) {
   EXPECT_EQ(record.objects.size(), 1U);
   EXPECT_EQ(record.residuals.size(), 2U);
 
-  const twins::Packet stranger = packet_of(exposure + fsw::duration_of_seconds(1), image_);  // no truth was kept of that
+  const twins::Packet stranger =
+      packet_of(exposure + fsw::duration_of_seconds(1), image_);  // no truth was kept of that
   const fsw::packets::PacketView without_truth[] = {fsw::packets::parse_packet(stranger).value()};
   evaluation.on_answer(truth_.time, without_truth);
   EXPECT_FALSE(record.images[1].range_m.has_value());

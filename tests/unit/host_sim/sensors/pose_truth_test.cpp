@@ -264,6 +264,7 @@ report::KeypointRow keypoint(double error_x_px, double error_y_px, double varian
 
 TEST(PoseSummary, CountsAndAveragesOverTheRun) {
   report::RunRecord record;
+  record.extensions = extensions();
   record.poses = {image(10.0, 2.0, 1.0), image(20.0, 11.0, 0.5), image(30.0, 170.0, 0.0), {}};
   record.poses[3].step_time_s = 40.0;
   record.poses[0].attitude_error_deg = 1.0;
@@ -308,6 +309,7 @@ TEST(PoseSummary, WithoutImagesIsNone) {
 
 TEST(PoseSummary, ANanIsSeen) {
   report::RunRecord record;
+  record.extensions = extensions();
   record.poses = {image(10.0, kNan, 1.0)};
   record.poses[0].nees = record.poses[0].attitude_nees = record.poses[0].attitude_error_deg = kNan;
   record.keypoints = {keypoint(1.0, 0.0, 1.0), keypoint(kNan, 0.0, 1.0), keypoint(2.0, 0.0, 1.0)};

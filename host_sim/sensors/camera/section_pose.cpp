@@ -15,12 +15,14 @@
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/paper_experiment2.h"
-#include "host_sim/report/report_sections.h"
 #include "host_sim/report/section_parts.h"
 #include "host_sim/report/statistics.h"
+#include "host_sim/sensors/camera/camera_report.h"
 
-namespace vbar::report {
+namespace vbar::sensors {
 namespace {
+
+using namespace report;  // NOLINT(google-build-using-namespace): a section is made of its parts
 
 constexpr int kKeypoints = 11;
 
@@ -386,7 +388,7 @@ std::string marks(const RunRecord& record, const GalleryImage& image) {
 
 }  // namespace
 
-Section pose_section(const RunRecord& record) {
+report::Section pose_section(const report::RunRecord& record) {
   if (record.poses.empty()) return {};
   const View view = whole_run(record);
   std::vector<std::string> files{"poses.csv"};
@@ -409,4 +411,4 @@ Section pose_section(const RunRecord& record) {
       files};
 }
 
-}  // namespace vbar::report
+}  // namespace vbar::sensors

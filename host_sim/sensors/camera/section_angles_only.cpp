@@ -15,11 +15,13 @@
 #include "host_sim/report/navigation_errors.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/paper_experiment1.h"
-#include "host_sim/report/report_sections.h"
 #include "host_sim/report/section_parts.h"
+#include "host_sim/sensors/camera/camera_report.h"
 
-namespace vbar::report {
+namespace vbar::sensors {
 namespace {
+
+using namespace report;  // NOLINT(google-build-using-namespace): a section is made of its parts
 
 using fsw::math::kArcsecond;
 
@@ -295,7 +297,7 @@ std::string marks(const RunRecord& record, const GalleryImage& image) {
 
 }  // namespace
 
-Section angles_only_section(const RunRecord& record) {
+report::Section angles_only_section(const report::RunRecord& record) {
   if (record.images.empty()) return {};
   const View view = whole_run(record);
   std::vector<std::string> files{"images.csv"};
@@ -319,4 +321,4 @@ Section angles_only_section(const RunRecord& record) {
           files};
 }
 
-}  // namespace vbar::report
+}  // namespace vbar::sensors

@@ -12,11 +12,13 @@
 #include "host_sim/report/navigation_errors.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/paper_experiment3.h"
-#include "host_sim/report/report_sections.h"
 #include "host_sim/report/section_parts.h"
+#include "host_sim/sensors/gnss/gnss_kind.h"
 
-namespace vbar::report {
+namespace vbar::sensors {
 namespace {
+
+using namespace report;  // NOLINT(google-build-using-namespace): a section is made of its parts
 
 constexpr double kMillimetres = 1e3;
 
@@ -213,7 +215,7 @@ Plot nis_plot(const RunRecord& record, const View& view, const NisKind& kind) {
 
 }  // namespace
 
-Section gnss_section(const RunRecord& record) {
+report::Section gnss_section(const report::RunRecord& record) {
   if (record.gnss.empty()) return {};
   const View view = whole_run(record);
   return {"Carrier-phase navigation",
@@ -229,4 +231,4 @@ Section gnss_section(const RunRecord& record) {
           {"gnss.csv", "estimate.csv"}};
 }
 
-}  // namespace vbar::report
+}  // namespace vbar::sensors

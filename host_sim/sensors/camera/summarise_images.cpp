@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "host_sim/report/maneuver_series.h"
+#include "host_sim/report/navigation_errors.h"
+#include "host_sim/report/statistics.h"
+#include "host_sim/sensors/camera/camera_report.h"
+
+namespace vbar::sensors {
+namespace {
+
+using namespace report;  // NOLINT(google-build-using-namespace): figures are made of rows
+
+/// The target, 0.7 m, is a pixel of 35 arcsec there.
+constexpr double kUnresolvedRange_m = 5000.0;
+constexpr double kLargePoseError_deg = 10.0;
+
+/// NaN if any value is: it has no place in an order.
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  if (std::ranges::any_of(values, [](double value) { return std::isnan(value); })) return std::nan("");
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+void summarise_angles_only(const RunRecord& record, Summary& summary) {
+  if (record.images.empty() || summary.target.empty()) return;
+  ImageCounts counts;
+  counts.images = static_cast<int>(record.images.size());
+  std::vector<double> x, y, size, across, all_nees;
+  for (const ImageRow& row : record.images) {
+    if (row.status == telemetry_image::kStatusBearing) ++counts.with_bearing;
+    if (!row.range_m) ++counts.without_truth;
+    if (!row.chosen.empty() && row.chosen != summary.target) ++counts.wrong_targets;
+    if (row.attitude_error_across_arcsec) across.push_back(*row.attitude_error_across_arcsec);
+    if (row.nees) all_nees.push_back(*row.nees);
+    // A wrong choice is counted as one; its bearing says nothing of the target's.
+    if (!row.bearing_error_x_arcsec || row.chosen != summary.target || !(row.range_m > kUnresolvedRange_m)) continue;
+    x.push_back(*row.bearing_error_x_arcsec);
+    y.push_back(row.bearing_error_y_arcsec.value_or(0.0));
+    size.push_back(std::hypot(x.back(), y.back()));
+  }
+  summary.images = counts;
+  summary.star_attitude_error_arcsec = statistics_of(across);
+  if (!all_nees.empty()) summary.navigation_nees = mean_of(all_nees);
+  summary.bearing_error_arcsec.reset();
+  if (size.empty()) return;
+  const MeanAndDeviation of_x = statistics(x), of_y = statistics(y);
+  summary.bearing_error_arcsec =
+      BearingError{statistics(size).mean, std::hypot(of_x.std, of_y.std) / M_SQRT2, std::hypot(of_x.mean, of_y.mean)};
+}
+
+/// Error' covariance^-1 error of a keypoint.
+double chi_square(const KeypointRow& row) {
+  const double xx = row.covariance_xx_px2, xy = row.covariance_xy_px2, yy = row.covariance_yy_px2;
+  const double ex = *row.error_x_px, ey = row.error_y_px.value_or(0.0);
+  return (yy * ex * ex - 2.0 * xy * ex * ey + xx * ey * ey) / (xx * yy - xy * xy);
+}
+
+/// Position errors at the steps that told of an image of a lit target.
+std::vector<double> lit_errors(const RunRecord& record) {
+  std::vector<double> errors;
+  auto image = record.poses.begin();
+  for (const NavigationError& error : navigation_errors(record)) {
+    while (image != record.poses.end() && image->step_time_s < error.time_s) ++image;
+    if (image != record.poses.end() && image->step_time_s == error.time_s && image->sunlit.value_or(0.0) > 0.0)
+      errors.push_back(magnitude(error.position_rtn));
+  }
+  return errors;
+}
+
+void summarise_poses(const RunRecord& record, Summary& summary) {
+  if (record.poses.empty()) return;
+  PoseFigures figures;
+  std::vector<double> attitude_errors, nees, attitude_nees, keypoint_errors, chi_squares;
+  for (const PoseRow& row : record.poses) {
+    ++figures.images;
+    if (!row.range_m) ++figures.without_truth;
+    if (row.pnp_inliers > 0) ++figures.with_pose;
+    if (!(row.pnp_error_deg.value_or(0.0) <= kLargePoseError_deg)) ++figures.poses_over_10_deg;
+    if (row.attitude_error_deg) attitude_errors.push_back(*row.attitude_error_deg);
+    if (row.nees) nees.push_back(*row.nees);
+    if (row.attitude_nees && row.fate == telemetry_pose::kEditKeypoints) attitude_nees.push_back(*row.attitude_nees);
+  }
+  for (const KeypointRow& row : record.keypoints) {
+    if (!row.error_x_px) continue;
+    keypoint_errors.push_back(std::hypot(*row.error_x_px, row.error_y_px.value_or(0.0)));
+    chi_squares.push_back(chi_square(row));
+  }
+  figures.keypoint_error_px = median(keypoint_errors);
+  figures.keypoint_chi_square = median(chi_squares);
+  figures.lit_navigation_error_m = statistics_of(lit_errors(record)).value_or(MeanAndDeviation{});
+  figures.attitude_nees = mean_of(attitude_nees);
+  figures.attitude_restarts = record.poses.back().attitude_restarts;
+  figures.restarts = record.poses.back().restarts;
+  summary.pose = figures;
+  summary.attitude_error_deg = statistics_of(attitude_errors);
+  if (!nees.empty()) summary.navigation_nees = mean_of(nees);
+}
+
+}  // namespace
+
+void summarise_images(const report::RunRecord& record, report::Summary& summary) {
+  summarise_angles_only(record, summary);
+  summarise_poses(record, summary);
+}
+
+}  // namespace vbar::sensors
