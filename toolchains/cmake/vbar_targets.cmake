@@ -95,7 +95,14 @@ function(vbar_test name)
     set_property(GLOBAL APPEND PROPERTY VBAR_UNIT_TEST_MODULES "${module} ${name}")
   endif()
   list(APPEND ARG_LABELS ${module})
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  # A property of a discovered test cannot be a list, so ctest sets the labels when it reads the tests.
+  set(labels_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
+  file(WRITE ${labels_file} "foreach(test IN LISTS ${name}_TESTS)
+  set_tests_properties(\"\${test}\" PROPERTIES LABELS \"${ARG_LABELS}\")
+endforeach()
+")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels_file})
 endfunction()
 
 # vbar_add_rooms(): every folder below this one that has a CMakeLists.txt.
