@@ -76,7 +76,7 @@ std::string same_as_first(const RunRecord& run, const RunRecord& first, std::str
   const std::string &own = run.summary.*hash, &expected = first.summary.*hash;
   if (own.empty() || expected.empty()) return "–";
   if (own == expected) return "same bits";
-  return expect_same_outputs(run.summary, first.summary) ? "DIFFERENT" : "other mission or seed";
+  return expect_same_outputs(run.summary, first.summary) ? "DIFFERENT" : "other mission, seed or settings";
 }
 
 std::string cost(const Summary::FlightStep& step) {
@@ -132,7 +132,14 @@ bool same_outputs(const Summary& a, const Summary& b) {
 }
 
 bool expect_same_outputs(const Summary& a, const Summary& b) {
-  return a.mission == b.mission && a.seed == b.seed;
+  // Where the flight software runs must not matter.
+  const auto settings_of = [](const Summary& summary) {
+    std::vector<std::string> settings = summary.provenance.overrides;
+    std::erase_if(settings, [](const std::string& one) { return one.find("flight_computer.") != std::string::npos; });
+    std::ranges::sort(settings);
+    return settings;
+  };
+  return a.mission == b.mission && a.seed == b.seed && settings_of(a) == settings_of(b);
 }
 
 std::vector<std::string> run_names(const std::vector<std::filesystem::path>& folders) {

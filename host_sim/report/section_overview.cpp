@@ -42,6 +42,17 @@ std::string or_none(const std::string& text) {
   return text.empty() ? "none" : text;
 }
 
+/// Nothing for a folder of an older version, which has none.
+void append_provenance(const Provenance& provenance, std::vector<Fact>& facts) {
+  if (provenance.vbar_version.empty()) return;
+  facts.push_back({"vbar", fmt::format("{}, commit {}", provenance.vbar_version, or_none(provenance.commit))});
+  facts.push_back({"build", fmt::format("{}, {}", provenance.compiler, provenance.build_type)});
+  facts.push_back({"host", provenance.host});
+  facts.push_back({"started, UTC", provenance.started_utc});
+  facts.push_back({"mission epoch, UTC", provenance.epoch_utc});
+  facts.push_back({"overrides", or_none(fmt::format("{}", fmt::join(provenance.overrides, ", ")))});
+}
+
 }  // namespace
 
 std::string overview(const RunRecord& record) {
@@ -58,6 +69,11 @@ std::string overview(const RunRecord& record) {
                           {"seed", std::to_string(s.seed)},
                           {"commands SHA-256", s.commands_sha256},
                           {"telemetry SHA-256", s.telemetry_sha256}};
+  append_provenance(s.provenance, facts);
+  for (const SourceFigures& source : s.sources)
+    if (source.failures > 0)
+      facts.push_back({"failures of " + source.name, fmt::format("{} of {} epochs; the last: {}", source.failures,
+                                                                 source.epochs, source.last_failure)});
   return out + fact_list(facts) + "<p class=\"files\">Data: <a href=\"summary.json\">summary.json</a></p>\n";
 }
 

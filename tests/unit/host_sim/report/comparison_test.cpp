@@ -54,8 +54,19 @@ TEST(Comparison, OtherMissionsAndSeedsAreExpectedToDiffer) {
   EXPECT_TRUE(expect_same_outputs(runs[0].record.summary, runs[1].record.summary));
   runs[1].record.summary.seed = 2;
   EXPECT_FALSE(expect_same_outputs(runs[0].record.summary, runs[1].record.summary));
-  EXPECT_THAT(cells_of(comparison_rows(runs), "maneuver commands"), ElementsAre("same bits", "other mission or seed"));
+  EXPECT_THAT(cells_of(comparison_rows(runs), "maneuver commands"),
+              ElementsAre("same bits", "other mission, seed or settings"));
   EXPECT_EQ(cells_of(comparison_rows(runs), "waypoint 0"), std::vector<std::string>{"no such row"}) << "the start";
+}
+
+TEST(Comparison, OverridesOfTheFlightComputerAloneMustNotChangeOutputs) {
+  Summary a, b;
+  b.provenance.overrides = {"flight_computer.target=zynq_qemu"};
+  EXPECT_TRUE(expect_same_outputs(a, b));
+  b.provenance.overrides.emplace_back("truth.drag=true");
+  EXPECT_FALSE(expect_same_outputs(a, b));
+  a.provenance.overrides = {"truth.drag=true"};
+  EXPECT_TRUE(expect_same_outputs(a, b));
 }
 
 TEST(Comparison, RunsInFoldersOfTheSameNameAreToldApart) {

@@ -70,6 +70,21 @@ TEST_F(HtmlReport, TellsTheWholeRun) {
   EXPECT_THAT(html, HasSubstr("at most 350,000, on average 250,001 instructions; at most 21,000 bytes of stack"));
 }
 
+TEST_F(HtmlReport, ShowsProvenanceAndFailuresOfSources) {
+  RunRecord record = synthetic_run();
+  EXPECT_THAT(html_report(record), Not(HasSubstr("mission epoch, UTC"))) << "a folder of an older version";
+  Provenance& provenance = record.summary.provenance;
+  provenance.vbar_version = "0.1.0";
+  provenance.commit = "0123456789ab+";
+  provenance.epoch_utc = "2011-07-18T01:00:00.000Z";
+  provenance.overrides = {"mission.seed=3", "truth.drag=true"};
+  record.summary.sources = {{"servicer/gnss", "digital", 100, 2, "no lock", 0, 0.0}};
+  const std::string html = html_report(record);
+  for (const char* text : {"0.1.0, commit 0123456789ab+", "2011-07-18T01:00:00.000Z", "mission.seed=3, truth.drag=true",
+                           "failures of servicer/gnss", "2 of 100 epochs; the last: no lock"})
+    EXPECT_THAT(html, HasSubstr(text));
+}
+
 TEST_F(HtmlReport, DrawsMarksOverThePictures) {
   const std::string html = html_report(synthetic_run());
   // Objects of image 403: 712.34, 722.34 and 732.34 px by 500.5 px, in a picture from 80, 50 px on.
