@@ -63,7 +63,7 @@ void check_trust(const mission::FlightComputer& computer, const ReplayOptions& o
        {"device", is_board && is_serial ? computer.device : ""},
        {"address", is_board && !is_serial ? computer.address : ""}}};
   for (const auto& [key, value] : named) {
-    const auto is_this = [&](const std::string& assignment) { return flight_computer_key(assignment) == key; };
+    const auto is_this = [key = key](const std::string& assignment) { return flight_computer_key(assignment) == key; };
     if (value.empty() || std::ranges::any_of(options.overrides, is_this)) continue;
     throw Refused(fmt::format("{}: names flight_computer.{} = \"{}\", which is used only with --trust, or with --set",
                               options.run_folder.string(), key, value));
