@@ -13,7 +13,7 @@ fsw::GpsTime read_epoch(const TableReader& section) {
   try {
     return truth::gps_from_utc(text);
   } catch (const std::invalid_argument&) {
-    section.refuse_value("epoch_utc", "a UTC time like 2011-07-18T01:00:00Z, from 1980-01-06 on");
+    section.refuse_value("epoch_utc", "a UTC time like 2011-07-18T01:00:00Z, from 1980-01-06 to the year 2200");
   }
 }
 

@@ -31,7 +31,7 @@ JulianDate date_after(double julian_day, std::int64_t ns, double seconds) {
 [[noreturn]] void refuse(std::string_view text) {
   throw std::invalid_argument(
       fmt::format("\"{}\" is not a UTC time; accepted is YYYY-MM-DDThh:mm:ss with up to nine decimals and an optional "
-                  "Z, from 1980-01-06 on",
+                  "Z, from 1980-01-06 to the year 2200",
                   text));
 }
 
@@ -136,8 +136,9 @@ fsw::GpsTime gps_from_utc(std::string_view iso8601) {
   reader.end();
 
   double midnight = 0.0, mjd = 0.0, tai_minus_utc = 0.0, tai_minus_utc_next_day = 0.0;
-  if (year < 1980 || hour > 23 || minute > 59 || eraCal2jd(year, month, day, &midnight, &mjd) != 0 ||
-      eraDat(year, month, day, 0.0, &tai_minus_utc) < 0) {
+  constexpr int kLastYear = 2200;  // GPS time in nanoseconds ends in 2272; missions reach beyond their epoch
+  if (year < 1980 || year > kLastYear || hour > 23 || minute > 59 ||
+      eraCal2jd(year, month, day, &midnight, &mjd) != 0 || eraDat(year, month, day, 0.0, &tai_minus_utc) < 0) {
     refuse(iso8601);
   }
   tai_minus_utc_next_day = tai_minus_utc_s(static_cast<int>(mjd) + 1);

@@ -99,6 +99,7 @@ TEST(TimeScales, RefusesWhatIsNoUtcTime) {
                            "2011-07-18T01:00:00ZZ",
                            "-011-07-18T01:00:00",
                            "1979-12-31T00:00:00",
+                           "3342-07-18T01:00:00Z",
                            "1980-01-05T23:59:59",
                            "nonsense"}) {
     EXPECT_THROW(gps_from_utc(text), std::invalid_argument) << text;
