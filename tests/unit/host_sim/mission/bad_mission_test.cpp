@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadChange{
             "NoUtc", "[mission]", "[mission]\nepoch_utc = \"yesterday\"", "epoch_utc",
             "mission.epoch_utc: found the text \"yesterday\"; accepted: a UTC time like 2011-07-18T01:00:00Z, from "
-            "1980-01-06 on"},
+            "1980-01-06 to the year 2200"},
         BadChange{"NameThatIsNoPath", "[mission]", "[mission]\nname = \"../a\"", "name",
                   "mission.name: found the text \"../a\"; accepted: a name of 1 to 64 letters, digits, '_' and '-'"},
         BadChange{"NeitherOrbit",
