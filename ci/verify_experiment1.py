@@ -43,7 +43,7 @@ def other_rows(flown, alone):
         return (what, f"{found:.{digits}f} {unit}", f"{max(values):.{digits}f} {unit}", f"{limit:g} {unit}", found <= limit)
 
     nees = [s["navigation_nees"] for s in flown]
-    wrong = sum(s["wrong_targets"] for s in flown)
+    wrong = sum(s["sensor_figures"]["images"]["wrong_targets"] for s in flown)
     return [
         row("delta-v, waypoints 0 to 7", [s["dv_mps"] for s in flown], DV_LIMIT, 3, "m/s"),
         row("bearing noise, target beyond 5 km", [s["bearing_error_arcsec"]["std"] for s in flown], 15.0, 2, "arcsec"),
@@ -81,7 +81,7 @@ def section(build, root, runs, table):
     others = other_rows(flown[MISSION], alone)
     complete = all(s["complete"] for summaries in flown.values() for s in summaries)
     ok = complete and same and all(row[-1] for row in (*nominal, *as_printed, *others))
-    images = [s["images_with_bearing"] / s["images"] for s in flown[MISSION]]
+    images = [s["sensor_figures"]["images"]["with_bearing"] / s["sensor_figures"]["images"]["images"] for s in flown[MISSION]]
     step = zynq["flight_step"]
     lines = [
         "## Experiment 1",

@@ -29,7 +29,7 @@ def waypoint(summary, index, key):
 # quantity, its value in the summary of a run, limit, factor, digits, unit
 FIGURES = [
     ("navigation error, mean", lambda s: s["navigation_error_m"]["mean"], 0.046, 100, 2, "cm"),
-    ("the same without eclipse", lambda s: s["pose"]["lit_navigation_error_m"]["mean"], 0.046, 100, 2, "cm"),
+    ("the same without eclipse", lambda s: s["sensor_figures"]["pose"]["lit_navigation_error_mean_m"], 0.046, 100, 2, "cm"),
     ("navigation error, waypoint 9", lambda s: waypoint(s, 9, "navigation_error_m"), 0.035, 100, 2, "cm"),
     ("navigation error, waypoint 10", lambda s: waypoint(s, 10, "navigation_error_m"), 0.051, 100, 2, "cm"),
     ("attitude error, mean", lambda s: s["attitude_error_deg"]["mean"], 3.2, 1, 2, "deg"),
@@ -67,15 +67,15 @@ def consistency_rows(flown, nis_ratios):
 
     return [
         row("NEES of the relative orbit, mean over the images processed", [s["navigation_nees"] for s in flown], "6"),
-        row("NEES of attitude and rate", [s["pose"]["attitude_nees"] for s in flown], "6"),
+        row("NEES of attitude and rate", [s["sensor_figures"]["pose"]["attitude_nees"] for s in flown], "6"),
         row("NIS per degree of freedom", nis_ratios, "1"),
-        row("keypoints: normalised squared error, median", [s["pose"]["keypoint_chi_square"] for s in flown], "1.39"),
-        row("keypoints: error, median, px of the image", [s["pose"]["keypoint_error_px"] for s in flown], ""),
-        row("images with a single-image pose, %", [100 * s["pose"]["with_pose"] / s["pose"]["images"] for s in flown], ""),
+        row("keypoints: normalised squared error, median", [s["sensor_figures"]["pose"]["keypoint_chi_square"] for s in flown], "1.39"),
+        row("keypoints: error, median, px of the image", [s["sensor_figures"]["pose"]["keypoint_error_px"] for s in flown], ""),
+        row("images with a single-image pose, %", [100 * s["sensor_figures"]["pose"]["with_pose"] / s["sensor_figures"]["pose"]["images"] for s in flown], ""),
         row("of these with an error of more than 10 deg, %",
-            [100 * s["pose"]["poses_over_10_deg"] / max(1, s["pose"]["with_pose"]) for s in flown], ""),
-        row("attitude re-initialised", [s["pose"]["attitude_restarts"] for s in flown], ""),
-        row("filter restarts", [s["pose"]["restarts"] for s in flown], "0"),
+            [100 * s["sensor_figures"]["pose"]["poses_over_10_deg"] / max(1, s["sensor_figures"]["pose"]["with_pose"]) for s in flown], ""),
+        row("attitude re-initialised", [s["sensor_figures"]["pose"]["attitude_restarts"] for s in flown], ""),
+        row("filter restarts", [s["sensor_figures"]["pose"]["restarts"] for s in flown], "0"),
     ]
 
 
@@ -110,7 +110,7 @@ def section(build, root, runs, table):
     printed = lambda r: [(*row[:-1], yes(row[-1])) for row in r]
     ok = all(s["complete"] for runs_ in flown.values() for s in runs_) and same and all(row[-1] for row in rows)
     step = zynq["flight_step"]
-    images = reference["pose"]["images"]
+    images = reference["sensor_figures"]["pose"]["images"]
     as_printed = [(row[0], row[1], row[2]) for row in figure_rows(flown[AS_PRINTED])]
     lines = [
         "## Experiment 2",

@@ -8,6 +8,7 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
+#include "host_sim/report/extension.h"
 
 namespace vbar::app {
 namespace {
@@ -115,8 +116,9 @@ void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer)
   record_.estimates.push_back(row);
 }
 
-/// Every message of telemetry, whatever it is.
+/// Every message of telemetry that no module makes rows of.
 void FlightRecorder::on_any_telemetry(double step_time_s, const fsw::packets::PacketView& packet) {
+  if (report::is_in_table_of_module(record_.extensions, packet.header.apid)) return;
   const auto record = [&]<class Message>(std::vector<report::TelemetryRow<Message>>& rows) {
     if (const auto message = fsw::packets::decode<Message>(packet); message.ok())
       rows.push_back({mission_seconds(packet.header.time), step_time_s, message.value()});

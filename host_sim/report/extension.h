@@ -2,6 +2,8 @@
 // What a module outside this library adds to the record of a run: tables, figures of the summary, a section of the
 // report. A sensor's module is one (host_sim/sensors).
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "host_sim/report/html_page.h"
@@ -16,6 +18,16 @@ struct Extension {
   void (*summarise)(const RunRecord& record, Summary& summary) = nullptr;
   /// Those without content are left out: the run has nothing to show.
   std::vector<Section> (*sections)(const RunRecord& record) = nullptr;
+  /// Messages of telemetry whose every field is in a table of the module, with the truth beside it: they have no table
+  /// of their own.
+  std::span<const fsw::packets::Apid> messages{};
 };
+
+/// Whether a module makes rows of the message.
+[[nodiscard]] inline bool is_in_table_of_module(Extensions extensions, fsw::packets::Apid message) {
+  return std::ranges::any_of(extensions, [message](const Extension* extension) {
+    return std::ranges::find(extension->messages, message) != extension->messages.end();
+  });
+}
 
 }  // namespace vbar::report

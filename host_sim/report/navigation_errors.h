@@ -13,10 +13,6 @@ struct NavigationError {
   double time_s = 0.0;  ///< since the mission's epoch
   Triple position_rtn{}, velocity_rtn{};
   Sextuple sigma_rtn{};  ///< as navigation claims
-  /// Normalised estimation error squared, six degrees of freedom: of fresh GNSS estimates. Navigation tells its
-  /// covariance at the epoch of its last measurements; it is carried on to the estimate's time by the
-  /// Clohessy-Wiltshire equations, without what a burn in between adds.
-  std::optional<double> nees;
 };
 
 /// Of all steps that have a valid estimate and a truth, in order.

@@ -60,65 +60,6 @@ struct EstimateRow {
   std::uint32_t stack_bytes = 0;
 };
 
-/// What navigation by GNSS said of itself at a step (gnss.csv, only if a run has such navigation).
-struct GnssRow : telemetry_gnss {
-  GnssRow() : telemetry_gnss{} {}
-  double time_s = 0.0;
-  std::optional<double> epoch_s;  ///< of the last measurements used, as time_s
-};
-
-/// What angles-only navigation said of an image, and what was true at its exposure (images.csv, only if a run has such
-/// navigation).
-struct ImageRow : telemetry_image {
-  ImageRow() : telemetry_image{} {}
-  double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
-  double step_time_s = 0.0;  ///< of the step whose telemetry reported it
-  // The truth. Errors are estimated less true; absent where the flight software gave nothing.
-  int true_object = -1;  ///< the object that is really the target; -1: none is, or nobody can tell
-  std::string chosen;    ///< the spacecraft that the choice really is, "nothing" if none; empty without a choice
-  std::optional<double> range_m;
-  std::optional<double> bearing_error_x_arcsec, bearing_error_y_arcsec;            ///< against the centre of mass
-  std::optional<double> attitude_error_across_arcsec, attitude_error_roll_arcsec;  ///< of the boresight, and about it
-  std::optional<double> nees;  ///< of the osculating ROE, six degrees of freedom; of images that the filter used
-};
-
-/// What the flight software took an object of an image for (objects.csv).
-struct ObjectRow {
-  double time_s = 0.0;
-  std::int32_t image = 0;
-  int object = 0;  ///< brightest first
-  int kind = 0;    ///< telemetry_objects::kKind...
-  std::int32_t star = 0;
-  float x_px = 0.0F, y_px = 0.0F;  ///< on the detector
-};
-
-/// What navigation by the pose network said of an image, and what was true at its exposure (poses.csv, only if a run
-/// has such navigation). The keypoints are rows of their own.
-struct PoseRow : telemetry_pose {
-  PoseRow() : telemetry_pose{} {}
-  double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
-  double step_time_s = 0.0;  ///< of the step whose telemetry reported it
-  // The truth. Errors are estimated less true; absent where the flight software gave nothing.
-  std::optional<double> range_m, sunlit;
-  std::optional<double> pnp_error_x_m, pnp_error_y_m, pnp_error_z_m, pnp_error_deg;        ///< in camera axes
-  std::optional<double> attitude_error_deg;                                                ///< in all
-  std::optional<double> attitude_error_x_deg, attitude_error_y_deg, attitude_error_z_deg;  ///< about body axes
-  std::optional<double> rate_error_radps;
-  std::optional<double> nees, attitude_nees;  ///< of osculating ROE, of turn and rate: six degrees of freedom each
-};
-
-/// A keypoint of such an image (keypoints.csv).
-struct KeypointRow {
-  double time_s = 0.0;
-  std::int32_t image = 0;
-  int keypoint = 0;
-  int fate = 0;  ///< telemetry_pose::kKeypoint...
-  float peak = 0.0F;
-  float x_px = 0.0F, y_px = 0.0F;  ///< on the detector
-  float covariance_xx_px2 = 0.0F, covariance_xy_px2 = 0.0F, covariance_yy_px2 = 0.0F;
-  std::optional<double> error_x_px, error_y_px;
-};
-
 /// An image of the report's gallery (gallery.csv and gallery/<image>.png), and which pixels of the detector it shows.
 /// All sizes are zero in folders whose pictures have their marks in the pixels.
 struct GalleryImage {
@@ -167,24 +108,12 @@ struct TelemetryRow {
   Message message{};
 };
 
-/// True for messages whose every field is in a table that has the truth beside it.
 template <class Message>
-inline constexpr bool kHasTableWithTruth = false;
-template <>
-inline constexpr bool kHasTableWithTruth<telemetry_gnss> = true;
-template <>
-inline constexpr bool kHasTableWithTruth<telemetry_image> = true;
-template <>
-inline constexpr bool kHasTableWithTruth<telemetry_objects> = true;
-template <>
-inline constexpr bool kHasTableWithTruth<telemetry_pose> = true;
-
-template <class Message>
-using TelemetryTable = std::conditional_t<fsw::packets::is_telemetry(fsw::packets::MessageTraits<Message>::kApid) &&
-                                              !kHasTableWithTruth<Message>,
+using TelemetryTable = std::conditional_t<fsw::packets::is_telemetry(fsw::packets::MessageTraits<Message>::kApid),
                                           std::tuple<std::vector<TelemetryRow<Message>>>, std::tuple<>>;
 
-/// A table of every other message of telemetry: one that is new in vbar.lcm is here without a line.
+/// A table of every message of telemetry: one that is new in vbar.lcm is here without a line. Those of which a module
+/// makes rows beside the truth (Extension::messages) stay empty.
 #define VBAR_MESSAGE(type, enumerator) , std::declval<TelemetryTable<type>>()
 using TelemetryTables = decltype(std::tuple_cat(std::tuple<>() VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)));
 #undef VBAR_MESSAGE
@@ -236,11 +165,6 @@ struct RunRecord {
   std::vector<TruthRow> truth;
   std::vector<AttitudeRow> attitudes;
   std::vector<EstimateRow> estimates;
-  std::vector<GnssRow> gnss;
-  std::vector<ImageRow> images;
-  std::vector<ObjectRow> objects;
-  std::vector<PoseRow> poses;
-  std::vector<KeypointRow> keypoints;
   std::vector<GalleryImage> gallery;
   std::vector<ManeuverRow> maneuvers;
   std::vector<ResidualRow> residuals;

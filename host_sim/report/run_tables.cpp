@@ -7,7 +7,6 @@
 #include <tuple>
 #include <utility>
 
-#include "fsw/math/math.h"
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/extension.h"
 #include "host_sim/report/run_columns.h"
@@ -19,55 +18,53 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
-using fsw::math::kArcsecond;
-constexpr OldColumn kOldImageColumns[] = {
-    {"attitude_sigma_arcsec", "attitude_sigma_rad", kArcsecond},
-    {"bearing_sigma_arcsec", "bearing_sigma_rad", kArcsecond},
-    {"prefit_*_arcsec", "prefit_*_rad", kArcsecond},
-    {"postfit_*_arcsec", "postfit_*_rad", kArcsecond},
-    {"used", "fate", 1.0, 1},  // 0 was refused or none
-    {"covariance_a_roe_m2_*", "covariance_a_roe_*_m2"},
-};
-constexpr OldColumn kOldPoseColumns[] = {{"covariance_a_roe_m2_*", "covariance_a_roe_*_m2"}};
-
 /// The rows of a message of telemetry.
 template <class Message>
 struct TelemetryRows {
   auto& operator()(auto& record) const { return std::get<std::vector<TelemetryRow<Message>>>(record.telemetry); }
 };
 
+/// The table of a message of telemetry.
+struct TelemetryTableKind {
+  fsw::packets::Apid message;
+  TableKind table;
+};
+
 template <class Message>
-TableKind table_of(const std::vector<TelemetryRow<Message>>& /*rows*/) {
-  return table_kind<TelemetryRows<Message>{}>(std::string(Message::getTypeName()) + ".csv");
+TelemetryTableKind table_of(const std::vector<TelemetryRow<Message>>& /*rows*/) {
+  return {fsw::packets::MessageTraits<Message>::kApid,
+          table_kind<TelemetryRows<Message>{}>(std::string(Message::getTypeName()) + ".csv")};
+}
+
+std::vector<TelemetryTableKind> telemetry_tables() {
+  std::vector<TelemetryTableKind> tables;
+  std::apply([&](const auto&... rows) { (tables.push_back(table_of(rows)), ...); }, TelemetryTables{});
+  return tables;
 }
 
 /// The one list of this library's tables.
 std::vector<TableKind> own_tables() {
   using enum Rows;
   using enum Presence;
-  std::vector<TableKind> tables{
+  return {
       table_kind<&RunRecord::waypoints>("waypoints.csv", kChange, kAlways),
       table_kind<&RunRecord::truth>("truth.csv", kGrow, kAlways),
       table_kind<&RunRecord::attitudes>("attitude.csv"),
       table_kind<&RunRecord::estimates>("estimate.csv", kGrow, kAlways),
-      table_kind<&RunRecord::gnss>("gnss.csv"),
-      table_kind<&RunRecord::images>("images.csv", kGrow, kIfNotEmpty, kOldImageColumns),
-      table_kind<&RunRecord::objects>("objects.csv"),
-      table_kind<&RunRecord::poses>("poses.csv", kGrow, kIfNotEmpty, kOldPoseColumns),
-      table_kind<&RunRecord::keypoints>("keypoints.csv"),
       table_kind<&RunRecord::gallery>("gallery.csv", kChange),
       table_kind<&RunRecord::maneuvers>("maneuvers.csv", kChange, kAlways),
       table_kind<&RunRecord::residuals>("residuals.csv"),
       table_kind<&RunRecord::notes>("notes.csv"),
   };
-  std::apply([&](const auto&... rows) { (tables.push_back(table_of(rows)), ...); }, TelemetryTables{});
-  return tables;
 }
 
 /// All tables of a record with these extensions.
 std::vector<TableKind> tables_with(Extensions extensions) {
   static const std::vector<TableKind> kOwn = own_tables();
+  static const std::vector<TelemetryTableKind> kTelemetry = telemetry_tables();
   std::vector<TableKind> tables = kOwn;
+  for (const TelemetryTableKind& telemetry : kTelemetry)
+    if (!is_in_table_of_module(extensions, telemetry.message)) tables.push_back(telemetry.table);
   for (const Extension* extension : extensions) {
     if (extension->tables == nullptr) continue;
     std::vector<TableKind> more = extension->tables();

@@ -16,15 +16,14 @@ namespace {
 // Statistics of carrier-phase navigation are those after the first fix, as the paper's are.
 void summarise_navigation(const RunRecord& record, Summary& summary) {
   const std::optional<double> fix_s = first_fix(record);
-  std::vector<double> position_errors, velocity_errors, nees;
+  std::vector<double> position_errors, velocity_errors;
   for (const NavigationError& error : navigation_errors(record)) {
     if (fix_s && error.time_s < *fix_s) continue;
     position_errors.push_back(magnitude(error.position_rtn));
     velocity_errors.push_back(magnitude(error.velocity_rtn));
-    if (error.nees) nees.push_back(*error.nees);
   }
   summary.first_fix_s = fix_s && !record.truth.empty() ? std::optional(*fix_s - record.truth.front().time_s) : fix_s;
-  summary.navigation_nees = mean_of(nees);
+  summary.navigation_nees.reset();  // of the module that navigates
   summary.navigation_error_m = statistics_of(position_errors);
   summary.navigation_velocity_error_mps = statistics_of(velocity_errors);
 }

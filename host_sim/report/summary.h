@@ -25,27 +25,6 @@ struct BearingError {
   double bias = 0.0;  ///< size of the mean
 };
 
-struct ImageCounts {
-  int images = 0;
-  int with_bearing = 0;
-  int wrong_targets = 0;  ///< images whose choice is not the target; those without truth are not evaluated
-  int without_truth = 0;
-};
-
-/// Of navigation by the pose network.
-struct PoseFigures {
-  int images = 0;
-  int with_pose = 0;                 ///< by PnP
-  int poses_over_10_deg = 0;         ///< of them, more than 10 deg off
-  double keypoint_error_px = 0.0;    ///< median of those usable
-  double keypoint_chi_square = 0.0;  ///< median normalised squared error of those usable; 1.39 if consistent
-  /// Position error over the images of a lit target alone, m.
-  MeanAndDeviation lit_navigation_error_m;
-  std::optional<double> attitude_nees;  ///< mean; turn and rate, 6 if consistent
-  int attitude_restarts = 0, restarts = 0;
-  int without_truth = 0;  ///< images, not evaluated
-};
-
 /// How often a source measured, failed and, in real time, began late.
 struct SourceFigures {
   std::string name;  ///< "servicer/gnss"
@@ -98,10 +77,7 @@ struct Summary : RunFacts {
   // Angles-only navigation only.
   std::optional<BearingError> bearing_error_arcsec;
   std::optional<MeanAndDeviation> star_attitude_error_arcsec;  ///< of the boresight
-  std::optional<ImageCounts> images;
-  // Navigation by the pose network only.
-  std::optional<PoseFigures> pose;
-  /// Of modules: numbers by name, for each sensor.
+  /// Of modules: numbers by name, for each subject ("pose") or sensor.
   std::map<std::string, std::map<std::string, double>> sensor_figures;
   double dv_mps = 0.0;
   int maneuvers = 0;

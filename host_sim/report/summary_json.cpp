@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Of the keys below. A file of a newer one is refused: what it means is not known here.
-constexpr int kSchema = 1;
+constexpr int kSchema = 2;
 
 template <class Some, class Type>
 concept Is = std::is_same_v<std::remove_const_t<Some>, Type>;
@@ -32,19 +32,6 @@ void members(Is<BearingError> auto& s, auto& visit) {
   visit("mean", s.mean);
   visit("std", s.std);
   visit("bias", s.bias);
-}
-
-void members(Is<PoseFigures> auto& s, auto& visit) {
-  visit("images", s.images);
-  visit("with_pose", s.with_pose);
-  visit("poses_over_10_deg", s.poses_over_10_deg);
-  visit("keypoint_error_px", s.keypoint_error_px);
-  visit("keypoint_chi_square", s.keypoint_chi_square);
-  visit("lit_navigation_error_m", s.lit_navigation_error_m);
-  visit("attitude_nees", s.attitude_nees);
-  visit("attitude_restarts", s.attitude_restarts);
-  visit("restarts", s.restarts);
-  visit("images_without_truth", s.without_truth);
 }
 
 void members(Is<SourceFigures> auto& s, auto& visit) {
@@ -152,11 +139,6 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit("navigation_nees", s.navigation_nees);
   visit("bearing_error_arcsec", s.bearing_error_arcsec);
   visit("star_attitude_error_arcsec", s.star_attitude_error_arcsec);
-  visit.part("images", s.images, &ImageCounts::images);
-  visit.part("images_with_bearing", s.images, &ImageCounts::with_bearing);
-  visit.part("wrong_targets", s.images, &ImageCounts::wrong_targets);
-  visit.part("images_without_truth", s.images, &ImageCounts::without_truth);
-  visit("pose", s.pose);
   visit("sensor_figures", s.sensor_figures);
   visit("dv_mps", s.dv_mps);
   visit("maneuvers", s.maneuvers);
@@ -183,11 +165,6 @@ struct Writer {
     for (int k = 0; k < codes.count; ++k)
       if ((value & codes.codes[k].value) != 0) json[key].push_back(codes.codes[k].word);
   }
-  template <class Whole, class Part>
-  void part(const char* key, const std::optional<Whole>& whole, Part Whole::*part) {
-    json[key] = whole ? Json((*whole).*part) : Json(nullptr);
-  }
-
   template <class Value>
   static Json json_of(const Value& value) {
     if constexpr (std::is_same_v<Value, std::string>) {
@@ -237,13 +214,6 @@ struct Reader {
       for (int k = 0; k < codes.count; ++k)
         if (word == codes.codes[k].word) value |= codes.codes[k].value;
   }
-  template <class Whole, class Part>
-  void part(const char* key, std::optional<Whole>& whole, Part Whole::*part) {
-    if (!json.contains(key) || json.at(key).is_null()) return;
-    if (!whole) whole.emplace();
-    (*this)(key, (*whole).*part);
-  }
-
   template <class Value>
   static void read(const Json& from, Value& value) {
     if constexpr (requires { value.has_value(); }) {

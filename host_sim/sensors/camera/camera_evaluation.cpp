@@ -69,7 +69,7 @@ class CameraEvaluation final : public Evaluation {
   [[nodiscard]] double seconds_of(fsw::GpsTime time) const { return fsw::seconds(time - context_.mission.epoch); }
 
   void on_image(double step_time_s, const ImageTelemetry& told) {
-    auto row = report::row_of<report::ImageRow>(*told.image);
+    auto row = report::row_of<ImageRow>(*told.image);
     row.time_s = seconds_of(told.exposure);
     row.step_time_s = step_time_s;
     const telemetry_objects* const objects =
@@ -77,21 +77,21 @@ class CameraEvaluation final : public Evaluation {
     const auto truth = kept_truth_.take(told.exposure);
     if (truth) add_truth(row, *told.image, objects, context_.mission, context_.servicer, *truth);
     if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
-    if (objects != nullptr) append_objects(row.time_s, *objects, record_.objects);
-    record_.images.push_back(row);
+    if (objects != nullptr) append_objects(row.time_s, *objects, record_.tables.rows<ObjectRow>());
+    record_.tables.rows<ImageRow>().push_back(row);
     gallery_.on_image({told.exposure, row, objects}, record_.gallery);
   }
 
   void on_pose(double step_time_s, const ImageTelemetry& told) {
-    auto row = report::row_of<report::PoseRow>(*told.pose);
+    auto row = report::row_of<PoseRow>(*told.pose);
     row.time_s = seconds_of(told.exposure);
     row.step_time_s = step_time_s;
-    append_keypoints(row.time_s, *told.pose, record_.keypoints);
+    append_keypoints(row.time_s, *told.pose, record_.tables.rows<KeypointRow>());
     const auto truth = kept_truth_.take(told.exposure);
     if (truth && known_target_)
-      add_truth(row, record_.keypoints, *told.pose, known_target_->keypoints_body_m, context_.mission,
+      add_truth(row, record_.tables.rows<KeypointRow>(), *told.pose, known_target_->keypoints_body_m, context_.mission,
                 context_.servicer, *truth);
-    record_.poses.push_back(row);
+    record_.tables.rows<PoseRow>().push_back(row);
     pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
   }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "fsw/math/math.h"
 #include "host_sim/mission/body_file.h"
 #include "host_sim/sensors/camera/camera_report.h"
 #include "host_sim/twins/camera/camera_sensor.h"
@@ -184,6 +185,30 @@ void add_facts(const Sensor& sensor, const Mission& /*mission*/, const Spacecraf
   if (use != CameraNavigation::kNone) facts.navigation = use == CameraNavigation::kPose ? "pose" : "angles_only";
 }
 
+using fsw::math::kArcsecond;
+constexpr report::OldColumn kOldImageColumns[] = {
+    {"attitude_sigma_arcsec", "attitude_sigma_rad", kArcsecond},
+    {"bearing_sigma_arcsec", "bearing_sigma_rad", kArcsecond},
+    {"prefit_*_arcsec", "prefit_*_rad", kArcsecond},
+    {"postfit_*_arcsec", "postfit_*_rad", kArcsecond},
+    {"used", "fate", 1.0, 1},  // 0 was refused or none
+    {"covariance_a_roe_m2_*", "covariance_a_roe_*_m2"},
+};
+constexpr report::OldColumn kOldPoseColumns[] = {{"covariance_a_roe_m2_*", "covariance_a_roe_*_m2"}};
+
+constexpr fsw::packets::Apid kMessagesInTables[] = {
+    fsw::packets::Apid::kTelemetryImage, fsw::packets::Apid::kTelemetryObjects, fsw::packets::Apid::kTelemetryPose};
+
+std::vector<report::TableKind> tables() {
+  using report::table_of_extension;
+  using enum report::Rows;
+  using enum report::Presence;
+  return {table_of_extension<ImageRow>("images.csv", kGrow, kIfNotEmpty, kOldImageColumns),
+          table_of_extension<ObjectRow>("objects.csv"),
+          table_of_extension<PoseRow>("poses.csv", kGrow, kIfNotEmpty, kOldPoseColumns),
+          table_of_extension<KeypointRow>("keypoints.csv")};
+}
+
 std::vector<report::Section> sections(const report::RunRecord& record) {
   return {angles_only_section(record), pose_section(record)};
 }
@@ -195,7 +220,7 @@ const SensorKind kCamera{{"camera", "", read_camera, read_camera_shared, check},
                          add_sources,
                          add_facts,
                          evaluate_camera,
-                         {nullptr, summarise_images, sections}};
+                         {tables, summarise_images, sections, kMessagesInTables}};
 
 const CameraSensor* navigation_camera(const Spacecraft& carrier) {
   for (const Sensor& sensor : carrier.sensors)

@@ -1,12 +1,42 @@
 #pragma once
 // Summary figures and report sections of navigation by camera.
 
+#include <optional>
+
 #include "host_sim/report/html_page.h"
 #include "host_sim/report/run_record.h"
+#include "host_sim/sensors/camera/camera_rows.h"
 
 namespace vbar::sensors {
 
-/// Of images and of poses, where the run has any (summarise_images.cpp).
+/// Of angles-only navigation.
+struct ImageCounts {
+  int images = 0;
+  int with_bearing = 0;
+  int wrong_targets = 0;  ///< images whose choice is not the target; those without truth are not evaluated
+  int without_truth = 0;
+};
+
+/// Of navigation by the pose network.
+struct PoseFigures {
+  int images = 0;
+  int with_pose = 0;                 ///< by PnP
+  int poses_over_10_deg = 0;         ///< of them, more than 10 deg off
+  double keypoint_error_px = 0.0;    ///< median of those usable
+  double keypoint_chi_square = 0.0;  ///< median normalised squared error of those usable; 1.39 if consistent
+  /// Position error over the images of a lit target alone, m.
+  report::MeanAndDeviation lit_navigation_error_m;
+  std::optional<double> attitude_nees;  ///< mean; turn and rate, 6 if consistent
+  int attitude_restarts = 0, restarts = 0;
+  int without_truth = 0;  ///< images, not evaluated
+};
+
+/// None if the run has no such images.
+[[nodiscard]] std::optional<ImageCounts> image_counts(const report::RunRecord& record);
+[[nodiscard]] std::optional<PoseFigures> pose_figures(const report::RunRecord& record);
+
+/// Of images and of poses, where the run has any (summarise_images.cpp): sensor_figures "images" and "pose", and the
+/// summary's own figures of attitude and bearing.
 void summarise_images(const report::RunRecord& record, report::Summary& summary);
 
 /// Angles-only navigation: beside the paper, bearings, star attitude, range, pictures (section_angles_only.cpp).

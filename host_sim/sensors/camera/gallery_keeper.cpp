@@ -20,7 +20,7 @@ using fsw::angles_only::SightingStatus;
 // radius of a spacecraft of this size.
 constexpr double kTargetRadius = 13.0;
 
-bool has_bearing(const report::ImageRow& row) {
+bool has_bearing(const ImageRow& row) {
   return row.status == static_cast<int>(SightingStatus::kBearing);
 }
 
@@ -29,7 +29,7 @@ std::string range_text(double range_m) {
 }
 
 /// The time of the exposure is the report's own to tell.
-std::string caption(const report::ImageRow& row) {
+std::string caption(const ImageRow& row) {
   std::string text = row.range_m ? "true range " + range_text(*row.range_m) + ", " : "";
   text += fmt::format("{} objects, {} stars, {}", row.objects, row.stars, report::sighting_name(row.status));
   if (has_bearing(row)) text += row.fate >= telemetry_image::kEditFilter ? ", used" : ", refused by the filter";

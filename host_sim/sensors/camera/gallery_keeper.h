@@ -16,7 +16,7 @@
 #include "fsw/packets/messages.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/image_png.h"
-#include "host_sim/report/run_record.h"
+#include "host_sim/sensors/camera/camera_rows.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::sensors {
@@ -24,7 +24,7 @@ namespace vbar::sensors {
 /// What the flight software said of an image (telemetry_image, telemetry_objects).
 struct ImageFindings {
   fsw::GpsTime exposure;
-  report::ImageRow row;
+  ImageRow row;
   const telemetry_objects* objects = nullptr;  ///< null if it said nothing of them
 };
 
@@ -49,7 +49,7 @@ class GalleryKeeper {
   /// An image that goes into the gallery unless a better one comes before `moment`.
   struct Candidate {
     fsw::GpsTime moment;
-    report::ImageRow row;
+    ImageRow row;
     fsw::imaging::ImageFrame frame;
     std::vector<std::uint16_t> dn;
   };

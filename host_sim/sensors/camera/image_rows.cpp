@@ -13,13 +13,13 @@ using fsw::math::kArcsecond;
 
 }  // namespace
 
-void append_objects(double exposure_s, const telemetry_objects& objects, std::vector<report::ObjectRow>& rows) {
+void append_objects(double exposure_s, const telemetry_objects& objects, std::vector<ObjectRow>& rows) {
   const int count = std::min<int>(objects.count, static_cast<int>(std::size(objects.kind)));
   for (int k = 0; k < count; ++k)
     rows.push_back({exposure_s, objects.image, k, objects.kind[k], objects.star[k], objects.x_px[k], objects.y_px[k]});
 }
 
-void append_residuals(const report::ImageRow& row, std::vector<report::ResidualRow>& rows) {
+void append_residuals(const ImageRow& row, std::vector<report::ResidualRow>& rows) {
   if (!(row.nis > 0.0)) return;  // the filter did not run
   const double sigma_arcsec = std::hypot(row.prefit[0], row.prefit[1]) / std::sqrt(row.nis) / kArcsecond;
   const char* const sensors[] = {"bearing_in_plane_arcsec", "bearing_cross_plane_arcsec"};

@@ -62,7 +62,7 @@ std::string spacecraft_at(const Vector3& bearing_eci, const TrueCamera& camera, 
   return found;
 }
 
-void add_bearing_error(report::ImageRow& row, const Vector3& bearing_eci, const Vector3& los_eci,
+void add_bearing_error(ImageRow& row, const Vector3& bearing_eci, const Vector3& los_eci,
                        const Quaterniond& q_camera_eci) {
   const Vector3 los = (q_camera_eci * los_eci).normalized(), bearing = q_camera_eci * bearing_eci;
   const Vector3 x = Vector3::UnitY().cross(los).normalized(), y = los.cross(x);
@@ -70,7 +70,7 @@ void add_bearing_error(report::ImageRow& row, const Vector3& bearing_eci, const 
   row.bearing_error_y_arcsec = std::atan2(bearing.dot(y), bearing.dot(los)) / kArcsecond;
 }
 
-void add_attitude_error(report::ImageRow& row, const Quaterniond& q_eci_camera, const Quaterniond& q_camera_eci) {
+void add_attitude_error(ImageRow& row, const Quaterniond& q_eci_camera, const Quaterniond& q_camera_eci) {
   const Eigen::AngleAxisd turn(q_camera_eci * q_eci_camera.normalized());
   const Vector3 error = turn.angle() * turn.axis();
   row.attitude_error_across_arcsec = std::hypot(error.x(), error.y()) / kArcsecond;
@@ -79,7 +79,7 @@ void add_attitude_error(report::ImageRow& row, const Quaterniond& q_eci_camera, 
 
 }  // namespace
 
-void add_truth(report::ImageRow& row, const telemetry_image& image, const telemetry_objects* objects,
+void add_truth(ImageRow& row, const telemetry_image& image, const telemetry_objects* objects,
                const mission::Mission& mission, const mission::Spacecraft& servicer,
                const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);

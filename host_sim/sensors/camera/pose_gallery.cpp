@@ -13,7 +13,7 @@
 namespace vbar::sensors {
 namespace {
 
-std::string caption(const report::PoseRow& row) {
+std::string caption(const PoseRow& row) {
   std::string text = row.range_m ? fmt::format("true range {:.1f} m, ", *row.range_m) : "";
   text += report::pose_sighting_name(row.status);
   if (row.pnp_inliers > 0) text += fmt::format(" by {} keypoints", row.pnp_inliers);
@@ -49,7 +49,7 @@ void PoseGallery::on_inputs(fsw::GpsTime now, std::span<const twins::Packet> inp
   }
 }
 
-void PoseGallery::on_pose(fsw::GpsTime exposure, const telemetry_pose& pose, const report::PoseRow& row,
+void PoseGallery::on_pose(fsw::GpsTime exposure, const telemetry_pose& pose, const PoseRow& row,
                           std::vector<report::GalleryImage>& gallery) {
   if (!work_ || next_ == moments_.size() || exposure < moments_[next_]) return;
   if (pose.status == static_cast<int>(fsw::pose::SightingStatus::kDark)) return;  // a black picture shows nothing

@@ -11,7 +11,7 @@
 #include "fsw/network/keypoint_network.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/mission/mission.h"
-#include "host_sim/report/run_record.h"
+#include "host_sim/sensors/camera/camera_rows.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::sensors {
@@ -27,7 +27,7 @@ class PoseGallery {
   void on_inputs(fsw::GpsTime now, std::span<const twins::Packet> inputs);
 
   /// After on_inputs() of the same step: what the flight software said of an image, and its row.
-  void on_pose(fsw::GpsTime exposure, const telemetry_pose& pose, const report::PoseRow& row,
+  void on_pose(fsw::GpsTime exposure, const telemetry_pose& pose, const PoseRow& row,
                std::vector<report::GalleryImage>& gallery);
 
  private:

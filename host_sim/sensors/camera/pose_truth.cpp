@@ -30,7 +30,7 @@ Vector3 turn_between(const Quaterniond& from, const Quaterniond& to) {
   return angle * turn.axis();
 }
 
-void add_pnp_error(report::PoseRow& row, const telemetry_pose& pose, const Quaterniond& q_camera_body,
+void add_pnp_error(PoseRow& row, const telemetry_pose& pose, const Quaterniond& q_camera_body,
                    const Vector3& position_camera) {
   const Vector3 error = Eigen::Map<const Vector3>(pose.pnp_position_camera_m) - position_camera;
   row.pnp_error_x_m = error.x();
@@ -39,7 +39,7 @@ void add_pnp_error(report::PoseRow& row, const telemetry_pose& pose, const Quate
   row.pnp_error_deg = q_camera_body.angularDistance(quaternion(pose.pnp_q_camera_body)) / kDegree;
 }
 
-void add_attitude_error(report::PoseRow& row, const telemetry_pose& pose, const Quaterniond& q_camera_body,
+void add_attitude_error(PoseRow& row, const telemetry_pose& pose, const Quaterniond& q_camera_body,
                         const Vector3& rate_body) {
   const Vector3 turn = turn_between(q_camera_body, quaternion(pose.q_camera_body));
   row.attitude_error_deg = turn.norm() / kDegree;
@@ -55,9 +55,9 @@ void add_attitude_error(report::PoseRow& row, const telemetry_pose& pose, const 
 
 }  // namespace
 
-void append_keypoints(double exposure_s, const telemetry_pose& m, std::vector<report::KeypointRow>& rows) {
+void append_keypoints(double exposure_s, const telemetry_pose& m, std::vector<KeypointRow>& rows) {
   for (int k = 0; k < kKeypoints; ++k) {
-    report::KeypointRow row;
+    KeypointRow row;
     row.time_s = exposure_s;
     row.image = m.image;
     row.keypoint = k;
@@ -72,7 +72,7 @@ void append_keypoints(double exposure_s, const telemetry_pose& m, std::vector<re
   }
 }
 
-void add_truth(report::PoseRow& row, std::vector<report::KeypointRow>& keypoints, const telemetry_pose& pose,
+void add_truth(PoseRow& row, std::vector<KeypointRow>& keypoints, const telemetry_pose& pose,
                const double (&keypoints_body_m)[33], const mission::Mission& mission,
                const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);
@@ -92,7 +92,7 @@ void add_truth(report::PoseRow& row, std::vector<report::KeypointRow>& keypoints
                              mission.guidance.reference_semi_major_axis_m);
   }
   for (int k = 0; k < kKeypoints; ++k) {
-    report::KeypointRow& keypoint = keypoints[keypoints.size() - kKeypoints + static_cast<std::size_t>(k)];
+    KeypointRow& keypoint = keypoints[keypoints.size() - kKeypoints + static_cast<std::size_t>(k)];
     const Vector3 at_body = Eigen::Map<const Vector3>(keypoints_body_m + 3 * k);
     const auto pixel = pixel_of(settings->settings, position_camera + q_camera_body * at_body);
     if (keypoint.fate == telemetry_pose::kKeypointUnusable || !pixel) continue;

@@ -5,17 +5,17 @@
 
 #include "fsw/packets/messages.h"
 #include "host_sim/mission/mission.h"
-#include "host_sim/report/run_record.h"
+#include "host_sim/sensors/camera/camera_rows.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::sensors {
 
 /// Eleven rows, nothing of the truth yet.
-void append_keypoints(double exposure_s, const telemetry_pose& pose, std::vector<report::KeypointRow>& rows);
+void append_keypoints(double exposure_s, const telemetry_pose& pose, std::vector<KeypointRow>& rows);
 
 /// Sets what was true at the exposure beside the row and the last eleven of `keypoints`, the row's own.
 /// `keypoints_body_m`: from the target's centre of mass, as telecommanded. Nothing where the truth lacks an attitude.
-void add_truth(report::PoseRow& row, std::vector<report::KeypointRow>& keypoints, const telemetry_pose& pose,
+void add_truth(PoseRow& row, std::vector<KeypointRow>& keypoints, const telemetry_pose& pose,
                const double (&keypoints_body_m)[33], const mission::Mission& mission,
                const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
 

@@ -82,7 +82,7 @@ bool is_filtered(const ImageRow& row) {
 Fact nis_fact(const RunRecord& record) {
   double sum = 0.0;
   std::size_t count = 0;
-  for (const ImageRow& row : record.images) {
+  for (const ImageRow& row : record.tables.rows<ImageRow>()) {
     if (!is_filtered(row)) continue;
     sum += row.nis;
     ++count;
@@ -94,7 +94,7 @@ Fact nis_fact(const RunRecord& record) {
 /// Of the images that had an attitude.
 std::string stars_text(const RunRecord& record) {
   std::vector<int> stars;
-  for (const ImageRow& row : record.images)
+  for (const ImageRow& row : record.tables.rows<ImageRow>())
     if (row.star_method != 0) stars.push_back(row.stars);
   if (stars.empty()) return "never";
   std::ranges::sort(stars);
@@ -103,10 +103,10 @@ std::string stars_text(const RunRecord& record) {
 
 std::string facts(const RunRecord& record) {
   const Summary& s = record.summary;
-  const ImageCounts counts = s.images.value_or(ImageCounts{});
-  const ImageRow& last = record.images.back();
+  const ImageCounts counts = image_counts(record).value_or(ImageCounts{});
+  const ImageRow& last = record.tables.rows<ImageRow>().back();
   const auto with_nees = static_cast<std::size_t>(
-      std::ranges::count_if(record.images, [](const ImageRow& row) { return row.nees.has_value(); }));
+      std::ranges::count_if(record.tables.rows<ImageRow>(), [](const ImageRow& row) { return row.nees.has_value(); }));
   std::vector<Fact> facts{{"images", fmt::format("{}, {} with a bearing, {} without stars", counts.images,
                                                  counts.with_bearing, last.images_without_stars)},
                           {"wrong target selected", fmt::format("{} of {} images with truth", counts.wrong_targets,
@@ -137,7 +137,7 @@ Plot empty_plot(const RunRecord& record, const View& view, const char* title, co
 template <class Value>
 std::vector<Point> points_of(const RunRecord& record, const View& view, const Value& value) {
   std::vector<Point> points;
-  for (const ImageRow& row : record.images) {
+  for (const ImageRow& row : record.tables.rows<ImageRow>()) {
     const std::optional<double> one = value(row);
     if (one && view.holds(row.time_s)) points.push_back({hours(row.time_s), *one});
   }
@@ -238,7 +238,8 @@ Plot objects_plot(const RunRecord& record, const View& view) {
   plot.series = {{"detected", 5, Mark::kDots, values(&ImageRow::objects)},
                  {"stars identified", 0, Mark::kDots, values(&ImageRow::stars)}};
   double most = 1.0;
-  for (const ImageRow& row : record.images) most = std::max({most, 1.0 * row.objects, 1.0 * row.stars});
+  for (const ImageRow& row : record.tables.rows<ImageRow>())
+    most = std::max({most, 1.0 * row.objects, 1.0 * row.stars});
   plot.y.range = from_zero_to(most);
   return plot;
 }
@@ -274,7 +275,7 @@ Plot range_plot(const RunRecord& record, const View& view) {
 std::string marks(const RunRecord& record, const GalleryImage& image) {
   constexpr double kRadius = 8.0;
   std::string all, target;
-  for (const ObjectRow& row : record.objects) {
+  for (const ObjectRow& row : record.tables.rows<ObjectRow>()) {
     if (row.image != image.image) continue;
     MarkAt at{in_picture(static_cast<double>(row.x_px), image.origin_x_px),
               in_picture(static_cast<double>(row.y_px), image.origin_y_px)};
@@ -298,10 +299,10 @@ std::string marks(const RunRecord& record, const GalleryImage& image) {
 }  // namespace
 
 report::Section angles_only_section(const report::RunRecord& record) {
-  if (record.images.empty()) return {};
+  if (record.tables.rows<ImageRow>().empty()) return {};
   const View view = whole_run(record);
   std::vector<std::string> files{"images.csv"};
-  if (!record.objects.empty()) files.emplace_back("objects.csv");
+  if (!record.tables.rows<ObjectRow>().empty()) files.emplace_back("objects.csv");
   if (!record.gallery.empty()) files.emplace_back("gallery.csv");
   if (!record.residuals.empty()) files.emplace_back("residuals.csv");
   return {"Angles-only navigation",

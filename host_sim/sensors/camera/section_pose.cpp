@@ -93,7 +93,7 @@ std::string percent(double part, double whole) {
 Fact nis_fact(const RunRecord& record) {
   double sum = 0.0;
   std::size_t degrees = 0;
-  for (const PoseRow& row : record.poses) {
+  for (const PoseRow& row : record.tables.rows<PoseRow>()) {
     if (row.fate != telemetry_pose::kEditKeypoints || row.nis_degrees <= 0 || !std::isfinite(row.nis)) continue;
     sum += row.nis;
     degrees += static_cast<std::size_t>(row.nis_degrees);
@@ -103,13 +103,13 @@ Fact nis_fact(const RunRecord& record) {
 }
 
 std::size_t count_of(const RunRecord& record, std::optional<double> PoseRow::*value) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(record.poses, [&](const PoseRow& row) { return (row.*value).has_value(); }));
+  return static_cast<std::size_t>(std::ranges::count_if(record.tables.rows<PoseRow>(),
+                                                        [&](const PoseRow& row) { return (row.*value).has_value(); }));
 }
 
 std::string facts(const RunRecord& record) {
-  const PoseFigures f = record.summary.pose.value_or(PoseFigures{});
-  const PoseRow& last = record.poses.back();
+  const PoseFigures f = pose_figures(record).value_or(PoseFigures{});
+  const PoseRow& last = record.tables.rows<PoseRow>().back();
   return fact_list(
       {{"images", fmt::format("{}, {} ({}) with a PnP pose, {} of them with an attitude error over 10 deg", f.images,
                               f.with_pose, percent(f.with_pose, f.images), f.poses_over_10_deg)},
@@ -131,7 +131,7 @@ std::string facts(const RunRecord& record) {
 /// Images by outcome.
 std::string outcome_table(const RunRecord& record) {
   std::map<int, std::array<int, 4>> counts;  // of a status: all, rejected, used, kept for the initialisation
-  for (const PoseRow& row : record.poses) {
+  for (const PoseRow& row : record.tables.rows<PoseRow>()) {
     std::array<int, 4>& count = counts[row.status];
     ++count[0];
     if (row.fate >= 1 && row.fate <= 3) ++count[static_cast<std::size_t>(row.fate)];
@@ -154,7 +154,7 @@ std::string keypoint_table(const RunRecord& record) {
     std::vector<double> errors, sigmas;
   };
   std::array<Of, kKeypoints> of{};
-  for (const KeypointRow& row : record.keypoints) {
+  for (const KeypointRow& row : record.tables.rows<KeypointRow>()) {
     if (row.keypoint < 0 || row.keypoint >= kKeypoints) continue;
     Of& keypoint = of[static_cast<std::size_t>(row.keypoint)];
     ++keypoint.images;
@@ -196,7 +196,7 @@ Plot empty_plot(const RunRecord& record, const View& view, std::string title, co
 template <class Value>
 std::vector<Point> points_of(const RunRecord& record, const Value& value) {
   std::vector<Point> points;
-  for (const PoseRow& row : record.poses)
+  for (const PoseRow& row : record.tables.rows<PoseRow>())
     if (const std::optional<double> one = value(row)) points.push_back({hours(row.time_s), *one});
   return points;
 }
@@ -217,7 +217,7 @@ template <class Value>
 std::vector<Point> line_of(const RunRecord& record, const Value& value) {
   constexpr double kGap_s = 60.0;
   std::vector<Point> points;
-  for (const PoseRow& row : record.poses) {
+  for (const PoseRow& row : record.tables.rows<PoseRow>()) {
     const std::optional<double> one = value(row);
     if (!one) continue;
     if (!points.empty() && hours(row.time_s) - points.back().x > hours(kGap_s))
@@ -315,7 +315,7 @@ Plot range_plot(const RunRecord& record, const View& view) {
 Plot keypoint_count_plot(const RunRecord& record, const View& view) {
   Plot plot = empty_plot(record, view, "Keypoints per image", "keypoints", Unit::kNone);
   std::map<std::int32_t, std::pair<int, int>> counts;  // of an image: usable, used
-  for (const KeypointRow& row : record.keypoints) {
+  for (const KeypointRow& row : record.tables.rows<KeypointRow>()) {
     counts[row.image].first += row.fate != telemetry_pose::kKeypointUnusable ? 1 : 0;
     counts[row.image].second += row.fate == telemetry_pose::kKeypointUsed ? 1 : 0;
   }
@@ -334,7 +334,7 @@ Plot keypoint_count_plot(const RunRecord& record, const View& view) {
 /// Squared errors over what the covariances claim, by what share of the keypoints is below: beside chi-square.
 Plot consistency_plot(const RunRecord& record) {
   std::vector<double> squares;
-  for (const KeypointRow& row : record.keypoints) {
+  for (const KeypointRow& row : record.tables.rows<KeypointRow>()) {
     if (!row.error_x_px || !row.error_y_px) continue;
     const double xx = row.covariance_xx_px2, xy = row.covariance_xy_px2, yy = row.covariance_yy_px2;
     const double determinant = xx * yy - xy * xy;
@@ -366,14 +366,14 @@ Plot consistency_plot(const RunRecord& record) {
 /// The crop in the image, and the keypoints in the enlarged crop with ellipses of three sigma.
 std::string marks(const RunRecord& record, const GalleryImage& image) {
   constexpr double kCross = 5.0, kSigmas = 3.0;
-  const auto pose = std::ranges::find(record.poses, image.image, &PoseRow::image);
-  if (pose == record.poses.end() || image.crop_side == 0 || !(pose->region_px[2] > 0.0)) return {};
+  const auto pose = std::ranges::find(record.tables.rows<PoseRow>(), image.image, &PoseRow::image);
+  if (pose == record.tables.rows<PoseRow>().end() || image.crop_side == 0 || !(pose->region_px[2] > 0.0)) return {};
   const auto [centre_x, centre_y, side] = pose->region_px;
   std::string all = box_mark({in_picture(centre_x, image.origin_x_px), in_picture(centre_y, image.origin_y_px), "green",
                               "crop for the network"},
                              0.5 * side);
   const double scale = image.crop_side / side;
-  for (const KeypointRow& row : record.keypoints) {
+  for (const KeypointRow& row : record.tables.rows<KeypointRow>()) {
     if (row.image != image.image || row.fate == 0) continue;
     MarkAt at{image.crop_left + scale * (static_cast<double>(row.x_px) - centre_x + 0.5 * side),
               scale * (static_cast<double>(row.y_px) - centre_y + 0.5 * side), row.fate == 1 ? "red" : "white",
@@ -389,10 +389,10 @@ std::string marks(const RunRecord& record, const GalleryImage& image) {
 }  // namespace
 
 report::Section pose_section(const report::RunRecord& record) {
-  if (record.poses.empty()) return {};
+  if (record.tables.rows<PoseRow>().empty()) return {};
   const View view = whole_run(record);
   std::vector<std::string> files{"poses.csv"};
-  if (!record.keypoints.empty()) files.emplace_back("keypoints.csv");
+  if (!record.tables.rows<KeypointRow>().empty()) files.emplace_back("keypoints.csv");
   if (!record.gallery.empty()) files.emplace_back("gallery.csv");
   return {
       "Navigation by the pose network",

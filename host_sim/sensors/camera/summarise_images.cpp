@@ -26,14 +26,15 @@ double median(std::vector<double> values) {
 }
 
 void summarise_angles_only(const RunRecord& record, Summary& summary) {
-  if (record.images.empty() || summary.target.empty()) return;
-  ImageCounts counts;
-  counts.images = static_cast<int>(record.images.size());
+  const std::optional<ImageCounts> counts = image_counts(record);
+  if (!counts) return;
+  summary.sensor_figures["images"] = {{"images", counts->images},
+                                      {"with_bearing", counts->with_bearing},
+                                      {"wrong_targets", counts->wrong_targets},
+                                      {"without_truth", counts->without_truth}};
+  if (summary.target.empty()) return;
   std::vector<double> x, y, size, across, all_nees;
-  for (const ImageRow& row : record.images) {
-    if (row.status == telemetry_image::kStatusBearing) ++counts.with_bearing;
-    if (!row.range_m) ++counts.without_truth;
-    if (!row.chosen.empty() && row.chosen != summary.target) ++counts.wrong_targets;
+  for (const ImageRow& row : record.tables.rows<ImageRow>()) {
     if (row.attitude_error_across_arcsec) across.push_back(*row.attitude_error_across_arcsec);
     if (row.nees) all_nees.push_back(*row.nees);
     // A wrong choice is counted as one; its bearing says nothing of the target's.
@@ -42,7 +43,6 @@ void summarise_angles_only(const RunRecord& record, Summary& summary) {
     y.push_back(row.bearing_error_y_arcsec.value_or(0.0));
     size.push_back(std::hypot(x.back(), y.back()));
   }
-  summary.images = counts;
   summary.star_attitude_error_arcsec = statistics_of(across);
   if (!all_nees.empty()) summary.navigation_nees = mean_of(all_nees);
   summary.bearing_error_arcsec.reset();
@@ -62,29 +62,68 @@ double chi_square(const KeypointRow& row) {
 /// Position errors at the steps that told of an image of a lit target.
 std::vector<double> lit_errors(const RunRecord& record) {
   std::vector<double> errors;
-  auto image = record.poses.begin();
+  auto image = record.tables.rows<PoseRow>().begin();
   for (const NavigationError& error : navigation_errors(record)) {
-    while (image != record.poses.end() && image->step_time_s < error.time_s) ++image;
-    if (image != record.poses.end() && image->step_time_s == error.time_s && image->sunlit.value_or(0.0) > 0.0)
+    while (image != record.tables.rows<PoseRow>().end() && image->step_time_s < error.time_s) ++image;
+    if (image != record.tables.rows<PoseRow>().end() && image->step_time_s == error.time_s &&
+        image->sunlit.value_or(0.0) > 0.0)
       errors.push_back(magnitude(error.position_rtn));
   }
   return errors;
 }
 
 void summarise_poses(const RunRecord& record, Summary& summary) {
-  if (record.poses.empty()) return;
+  const std::optional<PoseFigures> figures = pose_figures(record);
+  if (!figures) return;
+  summary.sensor_figures["pose"] = {{"images", figures->images},
+                                    {"with_pose", figures->with_pose},
+                                    {"poses_over_10_deg", figures->poses_over_10_deg},
+                                    {"keypoint_error_px", figures->keypoint_error_px},
+                                    {"keypoint_chi_square", figures->keypoint_chi_square},
+                                    {"lit_navigation_error_mean_m", figures->lit_navigation_error_m.mean},
+                                    {"lit_navigation_error_std_m", figures->lit_navigation_error_m.std},
+                                    {"attitude_restarts", figures->attitude_restarts},
+                                    {"restarts", figures->restarts},
+                                    {"without_truth", figures->without_truth}};
+  if (figures->attitude_nees) summary.sensor_figures["pose"]["attitude_nees"] = *figures->attitude_nees;
+  std::vector<double> attitude_errors, nees;
+  for (const PoseRow& row : record.tables.rows<PoseRow>()) {
+    if (row.attitude_error_deg) attitude_errors.push_back(*row.attitude_error_deg);
+    if (row.nees) nees.push_back(*row.nees);
+  }
+  summary.attitude_error_deg = statistics_of(attitude_errors);
+  if (!nees.empty()) summary.navigation_nees = mean_of(nees);
+}
+
+}  // namespace
+
+std::optional<ImageCounts> image_counts(const RunRecord& record) {
+  const std::vector<ImageRow>& images = record.tables.rows<ImageRow>();
+  if (images.empty()) return std::nullopt;
+  const std::string& target = record.summary.target;  // unknown in folders of earlier versions
+  ImageCounts counts;
+  counts.images = static_cast<int>(images.size());
+  for (const ImageRow& row : images) {
+    if (row.status == telemetry_image::kStatusBearing) ++counts.with_bearing;
+    if (!row.range_m) ++counts.without_truth;
+    if (!row.chosen.empty() && !target.empty() && row.chosen != target) ++counts.wrong_targets;
+  }
+  return counts;
+}
+
+std::optional<PoseFigures> pose_figures(const RunRecord& record) {
+  const std::vector<PoseRow>& poses = record.tables.rows<PoseRow>();
+  if (poses.empty()) return std::nullopt;
   PoseFigures figures;
-  std::vector<double> attitude_errors, nees, attitude_nees, keypoint_errors, chi_squares;
-  for (const PoseRow& row : record.poses) {
+  std::vector<double> attitude_nees, keypoint_errors, chi_squares;
+  for (const PoseRow& row : poses) {
     ++figures.images;
     if (!row.range_m) ++figures.without_truth;
     if (row.pnp_inliers > 0) ++figures.with_pose;
     if (!(row.pnp_error_deg.value_or(0.0) <= kLargePoseError_deg)) ++figures.poses_over_10_deg;
-    if (row.attitude_error_deg) attitude_errors.push_back(*row.attitude_error_deg);
-    if (row.nees) nees.push_back(*row.nees);
     if (row.attitude_nees && row.fate == telemetry_pose::kEditKeypoints) attitude_nees.push_back(*row.attitude_nees);
   }
-  for (const KeypointRow& row : record.keypoints) {
+  for (const KeypointRow& row : record.tables.rows<KeypointRow>()) {
     if (!row.error_x_px) continue;
     keypoint_errors.push_back(std::hypot(*row.error_x_px, row.error_y_px.value_or(0.0)));
     chi_squares.push_back(chi_square(row));
@@ -93,14 +132,10 @@ void summarise_poses(const RunRecord& record, Summary& summary) {
   figures.keypoint_chi_square = median(chi_squares);
   figures.lit_navigation_error_m = statistics_of(lit_errors(record)).value_or(MeanAndDeviation{});
   figures.attitude_nees = mean_of(attitude_nees);
-  figures.attitude_restarts = record.poses.back().attitude_restarts;
-  figures.restarts = record.poses.back().restarts;
-  summary.pose = figures;
-  summary.attitude_error_deg = statistics_of(attitude_errors);
-  if (!nees.empty()) summary.navigation_nees = mean_of(nees);
+  figures.attitude_restarts = poses.back().attitude_restarts;
+  figures.restarts = poses.back().restarts;
+  return figures;
 }
-
-}  // namespace
 
 void summarise_images(const report::RunRecord& record, report::Summary& summary) {
   summarise_angles_only(record, summary);

@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "fsw/math/math.h"
+#include "host_sim/report/navigation_errors.h"
+#include "host_sim/report/statistics.h"
+#include "host_sim/sensors/gnss/gnss_row.h"
 #include "host_sim/twins/gnss/body_frame.h"
 #include "host_sim/twins/gnss/gnss_receiver.h"
 #include "host_sim/twins/gnss_sensor.h"
@@ -106,10 +109,10 @@ class GnssEvaluation final : public Evaluation {
     for (const fsw::packets::PacketView& packet : answer) {
       const auto telemetry = fsw::packets::decode<telemetry_gnss>(packet);
       if (!telemetry.ok()) continue;
-      auto row = report::row_of<report::GnssRow>(telemetry.value());
+      auto row = report::row_of<GnssRow>(telemetry.value());
       row.time_s = seconds_of(time);
       if (row.epoch_gps_ns != 0) row.epoch_s = seconds_of(fsw::GpsTime{row.epoch_gps_ns});
-      context_.record.gnss.push_back(row);
+      context_.record.tables.rows<GnssRow>().push_back(row);
     }
   }
 
@@ -123,6 +126,21 @@ std::unique_ptr<Evaluation> evaluate(const Sensor& /*sensor*/, const EvaluationC
   return std::make_unique<GnssEvaluation>(context);
 }
 
+constexpr fsw::packets::Apid kMessagesInTables[] = {fsw::packets::Apid::kTelemetryGnss};
+
+std::vector<report::TableKind> tables() {
+  return {report::table_of_extension<GnssRow>("gnss.csv")};
+}
+
+void summarise(const report::RunRecord& record, report::Summary& summary) {
+  if (record.tables.rows<GnssRow>().empty()) return;
+  const std::optional<double> fix_s = report::first_fix(record);
+  std::vector<double> nees;
+  for (const auto& [time_s, value] : gnss_nees(record))
+    if (!fix_s || time_s >= *fix_s) nees.push_back(value);
+  summary.navigation_nees = report::mean_of(nees);
+}
+
 std::vector<report::Section> sections(const report::RunRecord& record) {
   return {gnss_section(record)};
 }
@@ -134,7 +152,7 @@ const SensorKind kGnss{{"gnss", "constellation", read_gnss, read_gnss_shared, ch
                        add_sources,
                        add_facts,
                        evaluate,
-                       {nullptr, nullptr, sections}};
+                       {tables, summarise, sections, kMessagesInTables}};
 
 vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer,
                                                            const truth::EarthOrientationSeries& orientation) {

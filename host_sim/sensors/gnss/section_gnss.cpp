@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "host_sim/report/paper_experiment3.h"
 #include "host_sim/report/section_parts.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/sensors/gnss/gnss_row.h"
 
 namespace vbar::sensors {
 namespace {
@@ -101,7 +103,7 @@ constexpr NisKind kPhase{"carrier phase", &GnssRow::phases_used, &GnssRow::phase
 std::vector<EpochNis> epochs_of(const RunRecord& record, const NisKind& kind) {
   std::vector<EpochNis> epochs;
   std::int32_t pairs = 0;
-  for (const GnssRow& row : record.gnss) {
+  for (const GnssRow& row : record.tables.rows<GnssRow>()) {
     const bool is_new = row.pairs != pairs;
     pairs = row.pairs;
     const std::int32_t used = row.*kind.used;
@@ -134,14 +136,13 @@ Fact nis_fact(const char* name, const std::vector<EpochNis>& epochs) {
 
 /// Estimates that the mean NEES is of.
 std::size_t count_nees(const RunRecord& record) {
-  const double from_s = first_fix(record).value_or(0.0);
-  return static_cast<std::size_t>(std::ranges::count_if(
-      navigation_errors(record), [&](const NavigationError& e) { return e.nees && e.time_s >= from_s; }));
+  const auto nees = gnss_nees(record);
+  return static_cast<std::size_t>(std::distance(nees.lower_bound(first_fix(record).value_or(0.0)), nees.end()));
 }
 
 std::string facts(const RunRecord& record) {
   const Summary& s = record.summary;
-  const GnssRow& last = record.gnss.back();
+  const GnssRow& last = record.tables.rows<GnssRow>().back();
   const std::string fix = s.first_fix_s ? fmt::format("{} s after the start", fixed(*s.first_fix_s, 0)) : "never";
   return fact_list(
       {{"first fix", fix},
@@ -191,11 +192,12 @@ Plot size_plot(const RunRecord& record, const View& view) {
 Plot carriers_plot(const RunRecord& record, const View& view) {
   Plot plot = empty_plot(record, view, "Carriers tracked by both receivers", "carriers", Unit::kNone);
   const auto points = [&](std::int32_t GnssRow::*count) {
-    return over_time(record.gnss, view, [count](const GnssRow& row) { return static_cast<double>(row.*count); });
+    return over_time(record.tables.rows<GnssRow>(), view,
+                     [count](const GnssRow& row) { return static_cast<double>(row.*count); });
   };
   plot.series = {{"tracked", 5, Mark::kStairs, points(&GnssRow::tracked)},
                  {"fixed to integers", 2, Mark::kStairs, points(&GnssRow::fixed)}};
-  plot.y.range = from_zero_to(std::ranges::max(record.gnss, {}, &GnssRow::tracked).tracked);
+  plot.y.range = from_zero_to(std::ranges::max(record.tables.rows<GnssRow>(), {}, &GnssRow::tracked).tracked);
   return plot;
 }
 
@@ -216,7 +218,7 @@ Plot nis_plot(const RunRecord& record, const View& view, const NisKind& kind) {
 }  // namespace
 
 report::Section gnss_section(const report::RunRecord& record) {
-  if (record.gnss.empty()) return {};
+  if (record.tables.rows<GnssRow>().empty()) return {};
   const View view = whole_run(record);
   return {"Carrier-phase navigation",
           performance_table(record) +

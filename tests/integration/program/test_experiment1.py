@@ -58,8 +58,8 @@ class TwoCameras(unittest.TestCase):
             one = fly(folder / "one", *self.SHORT, mission=EXPERIMENT1)
             two = fly(folder / "two", *self.SHORT, *self.SECOND, mission=EXPERIMENT1)
             self.assertEqual(hashes(two), hashes(one))
-            self.assertEqual(two["images"], one["images"])
-            self.assertEqual(two["images_without_truth"], 0)
+            self.assertEqual(two["sensor_figures"]["images"]["images"], one["sensor_figures"]["images"]["images"])
+            self.assertEqual(two["sensor_figures"]["images"]["without_truth"], 0)
             self.assertEqual(two["navigation"], "angles_only")
             epochs = {source["name"]: source["epochs"] for source in two["sources"]}
             self.assertEqual((epochs["servicer/a_wide"], epochs["servicer/camera"]), (7, 15))
@@ -91,9 +91,9 @@ class Experiment1(unittest.TestCase):
 
     def test_the_target_is_found_and_the_filter_runs(self):
         summary = self.reference
-        self.assertGreaterEqual(summary["images"], 60)
-        self.assertEqual(summary["wrong_targets"], 0)
-        self.assertGreater(summary["images_with_bearing"], summary["images"] / 2)
+        self.assertGreaterEqual(summary["sensor_figures"]["images"]["images"], 60)
+        self.assertEqual(summary["sensor_figures"]["images"]["wrong_targets"], 0)
+        self.assertGreater(summary["sensor_figures"]["images"]["with_bearing"], summary["sensor_figures"]["images"]["images"] / 2)
         self.assertGreaterEqual(bearings_folded_in(self.reference_folder), 10)
 
     def test_in_process_again(self):
@@ -140,7 +140,7 @@ class Experiment1(unittest.TestCase):
         small = fly(self.folder / "run", settings[0], mission=EXPERIMENT1)
         self.assertEqual(hashes(summary), hashes(small))
         # 500 x 800 pixels of 12 bits.
-        self.assertGreater((folder / "packets.lcmlog").stat().st_size, summary["images"] * 500 * 800 * 12 / 8)
+        self.assertGreater((folder / "packets.lcmlog").stat().st_size, summary["sensor_figures"]["images"]["images"] * 500 * 800 * 12 / 8)
         # With the tiles in the log nothing is made again: another seed changes nothing.
         with (folder / "overrides.txt").open("a") as file:
             file.write("mission.seed=2\n")
@@ -155,7 +155,7 @@ class Experiment1SixHours(unittest.TestCase):
         with scratch() as folder:
             here = fly(folder / "here", *SIX_HOURS, mission=EXPERIMENT1)
             self.assertGreater(here["maneuvers"], 0)
-            self.assertEqual(here["wrong_targets"], 0)
+            self.assertEqual(here["sensor_figures"]["images"]["wrong_targets"], 0)
             self.assertEqual(hashes(fly(folder / "zynq", *SIX_HOURS, *ZYNQ, mission=EXPERIMENT1)), hashes(here))
 
 

@@ -38,7 +38,7 @@ class Experiment2(unittest.TestCase):
         self.assertGreaterEqual(len(lit), 150)
         used = [row for row in lit if row["fate"] == "keypoints"]
         self.assertGreater(len(used), 0.7 * len(lit))
-        self.assertEqual(self.reference["pose"]["restarts"], 0)
+        self.assertEqual(self.reference["sensor_figures"]["pose"]["restarts"], 0)
         last = [float(row["attitude_error_deg"]) for row in self.poses[-60:]]
         self.assertLess(sum(last) / len(last), 3.2)
         self.assertGreater(self.reference["maneuvers"], 0)

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/report/maneuver_series.h"
+#include "host_sim/sensors/gnss/gnss_row.h"
 #include "tests/integration/rendezvous/flown_mission.h"
 
 namespace vbar::test {
@@ -31,14 +32,14 @@ TEST(GnssRecord, HasARowAStepAndStatisticsFromTheFirstFixOn) {
   const FlownMission flown = fly("experiment3.toml", {"mission.duration_h=0.1"});
   const report::RunRecord& record = flown.record;
   ASSERT_EQ(record.estimates.size(), 37U) << "six minutes at 10 s, both ends";
-  ASSERT_EQ(record.gnss.size(), record.estimates.size());
+  ASSERT_EQ(record.tables.rows<sensors::GnssRow>().size(), record.estimates.size());
   ASSERT_EQ(record.truth.size(), record.estimates.size());
   EXPECT_EQ(record.summary.simulated_s, 360.0) << "what the crosslink delivers after the end does not count";
 
   double sum = 0.0;
   int count = 0;
-  for (std::size_t k = 0; k < record.gnss.size(); ++k) {
-    const report::GnssRow& row = record.gnss[k];
+  for (std::size_t k = 0; k < record.tables.rows<sensors::GnssRow>().size(); ++k) {
+    const sensors::GnssRow& row = record.tables.rows<sensors::GnssRow>()[k];
     EXPECT_EQ(row.step, static_cast<std::int64_t>(k));
     EXPECT_EQ(row.time_s, record.truth[k].time_s);
     EXPECT_LE(row.fixed, row.tracked);
@@ -51,7 +52,7 @@ TEST(GnssRecord, HasARowAStepAndStatisticsFromTheFirstFixOn) {
     const report::Triple& b = record.truth[k].relative_position_rtn;
     sum += std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
     if (count == 0) {
-      EXPECT_EQ(record.summary.first_fix_s, row.time_s - record.gnss.front().time_s);
+      EXPECT_EQ(record.summary.first_fix_s, row.time_s - record.tables.rows<sensors::GnssRow>().front().time_s);
     }
     ++count;
   }
@@ -82,7 +83,7 @@ TEST(GnssRecord, NavigationFliesAloneThroughPrescribedBurns) {
 
 TEST(GnssRecord, IsEmptyWithoutGnss) {
   const FlownMission flown = fly("ideal_navigation.toml", {"mission.duration_h=0.1"});
-  EXPECT_TRUE(flown.record.gnss.empty());
+  EXPECT_TRUE(flown.record.tables.rows<sensors::GnssRow>().empty());
   EXPECT_FALSE(flown.record.summary.first_fix_s.has_value());
   EXPECT_FALSE(flown.record.summary.static_floor_m.has_value());
   EXPECT_FALSE(flown.record.summary.navigation_nees.has_value());

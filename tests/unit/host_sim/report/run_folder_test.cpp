@@ -10,6 +10,9 @@
 #include <unistd.h>
 
 #include "host_sim/report/summary_json.h"
+#include "host_sim/sensors/camera/camera_rows.h"
+#include "host_sim/sensors/gnss/gnss_row.h"
+#include "host_sim/sensors/sensor_kinds.h"
 #include "tests/unit/host_sim/report/scratch_folder.h"
 #include "tests/unit/host_sim/report/synthetic_run.h"
 
@@ -31,7 +34,7 @@ class RunFolderTest : public ScratchFolder {
 
   [[nodiscard]] std::string error_of_reading() const {
     try {
-      static_cast<void>(read_run(run()));
+      static_cast<void>(read_run(run(), sensors::extensions()));
     } catch (const std::runtime_error& error) {
       return error.what();
     }
@@ -50,7 +53,7 @@ class RunFolderTest : public ScratchFolder {
   /// All tables and the summary as text.
   static std::string everything(const RunRecord& record) {
     std::string text = summary_json(record.summary, record.waypoints);
-    for (const std::string& name : table_files()) text += name + "\n" + table_text(record, name);
+    for (const std::string& name : table_files(record.extensions)) text += name + "\n" + table_text(record, name);
     for (const GalleryImage& image : record.gallery) text.append(image.png.begin(), image.png.end());
     return text;
   }
@@ -74,13 +77,13 @@ TEST_F(RunFolderTest, StandsWhereMissionAndSeedSay) {
 TEST_F(RunFolderTest, GivesBackEveryRow) {
   const RunRecord record = synthetic_run();
   leave_a_run();
-  EXPECT_EQ(everything(read_run(run())), everything(record));
+  EXPECT_EQ(everything(read_run(run(), sensors::extensions())), everything(record));
 }
 
 TEST_F(RunFolderTest, WritingWhatWasReadGivesTheSameFiles) {
   leave_a_run();
   RunFolder again(scratch_ / "again", {});
-  again.finish(read_run(run()));
+  again.finish(read_run(run(), sensors::extensions()));
   for (const char* name : {"summary.json", "waypoints.csv", "truth.csv", "attitude.csv", "estimate.csv", "gnss.csv",
                            "images.csv", "objects.csv", "poses.csv", "keypoints.csv", "telemetry_health.csv",
                            "gallery.csv", "gallery/00003.png", "maneuvers.csv", "residuals.csv"}) {
@@ -93,8 +96,9 @@ TEST_F(RunFolderTest, WritingWhatWasReadGivesTheSameFiles) {
 TEST_F(RunFolderTest, ColumnsAreAsAgreed) {
   RunFolder folder(run(), {});
   RunRecord record;
+  record.extensions = sensors::extensions();
   record.attitudes.emplace_back();
-  record.gnss.emplace_back();
+  record.tables.rows<sensors::GnssRow>().emplace_back();
   folder.finish(record);
   const auto group = [](std::string name, std::initializer_list<const char*> members) {
     std::string text;
@@ -137,7 +141,8 @@ TEST_F(RunFolderTest, ColumnsAreAsAgreed) {
 TEST_F(RunFolderTest, ColumnsOfGnssAreAsAgreed) {
   RunFolder folder(run(), {});
   RunRecord record;
-  record.gnss.emplace_back();
+  record.extensions = sensors::extensions();
+  record.tables.rows<sensors::GnssRow>().emplace_back();
   folder.finish(record);
   std::string covariance;
   const char* const kStates[] = {"r", "t", "n", "vr", "vt", "vn"};
@@ -154,8 +159,9 @@ TEST_F(RunFolderTest, ColumnsOfGnssAreAsAgreed) {
 TEST_F(RunFolderTest, ColumnsOfImagesAreAsAgreed) {
   RunFolder folder(run(), {});
   RunRecord record;
-  record.images.emplace_back();
-  record.objects.emplace_back();
+  record.extensions = sensors::extensions();
+  record.tables.rows<sensors::ImageRow>().emplace_back();
+  record.tables.rows<sensors::ObjectRow>().emplace_back();
   record.gallery.emplace_back();
   folder.finish(record);
   std::string covariance;
@@ -182,13 +188,13 @@ TEST_F(RunFolderTest, ImagesAreFilesOnlyWhereACameraNavigates) {
   leave_a_run();
   EXPECT_TRUE(fs::exists(run() / "gallery" / "00403.png"));
   RunRecord record = synthetic_run();
-  record.images.clear();
-  record.objects.clear();
+  record.tables.rows<sensors::ImageRow>().clear();
+  record.tables.rows<sensors::ObjectRow>().clear();
   record.gallery.clear();
-  RunFolder(run(), record.summary).finish(record);
+  RunFolder(run(), record.summary, RunFolder::Existing::kReplace, sensors::extensions()).finish(record);
   for (const char* name : {"images.csv", "objects.csv", "gallery.csv", "gallery"})
     EXPECT_FALSE(fs::exists(run() / name)) << name;
-  EXPECT_EQ(everything(read_run(run())), everything(record));
+  EXPECT_EQ(everything(read_run(run(), sensors::extensions())), everything(record));
 }
 
 TEST_F(RunFolderTest, APictureThatIsGoneIsNamed) {
@@ -200,10 +206,10 @@ TEST_F(RunFolderTest, APictureThatIsGoneIsNamed) {
 TEST_F(RunFolderTest, GnssIsAFileOnlyWhereItNavigates) {
   leave_a_run();
   RunRecord record = synthetic_run();
-  record.gnss.clear();
-  RunFolder(run(), record.summary).finish(record);
+  record.tables.rows<sensors::GnssRow>().clear();
+  RunFolder(run(), record.summary, RunFolder::Existing::kReplace, sensors::extensions()).finish(record);
   EXPECT_FALSE(fs::exists(run() / "gnss.csv"));
-  EXPECT_EQ(everything(read_run(run())), everything(record));
+  EXPECT_EQ(everything(read_run(run(), sensors::extensions())), everything(record));
 }
 
 // A mission without attitudes leaves the files it always left.
@@ -211,24 +217,22 @@ TEST_F(RunFolderTest, AttitudesAreAFileOnlyWhereThereAreSome) {
   leave_a_run();
   RunRecord record = synthetic_run();
   record.attitudes.clear();
-  RunFolder(run(), record.summary).finish(record);
+  RunFolder(run(), record.summary, RunFolder::Existing::kReplace, sensors::extensions()).finish(record);
   EXPECT_FALSE(fs::exists(run() / "attitude.csv"));
-  EXPECT_EQ(everything(read_run(run())), everything(record));
+  EXPECT_EQ(everything(read_run(run(), sensors::extensions())), everything(record));
 }
 
 // So are the keys of the summary.
 TEST_F(RunFolderTest, SummaryIsAsAgreed) {
   leave_a_run();
   const Json json = Json::parse(content(run() / "summary.json"));
-  EXPECT_THAT(
-      keys(json),
-      ElementsAre("schema", "mission", "seed", "complete", "incomplete_reason", "flight_computer", "flight_software",
-                  "camera", "gnss", "navigation", "target", "simulated_s", "wall_s", "speed_factor",
-                  "navigation_error_m", "navigation_velocity_error_mps", "attitude_error_deg", "first_fix_s",
-                  "static_floor_m", "navigation_nees", "bearing_error_arcsec", "star_attitude_error_arcsec", "images",
-                  "images_with_bearing", "wrong_targets", "images_without_truth", "pose", "sensor_figures", "dv_mps",
-                  "maneuvers", "commands_sha256", "telemetry_sha256", "health", "flight_step", "link", "deadlines",
-                  "sources", "wall_share", "provenance", "waypoints"));
+  EXPECT_THAT(keys(json), ElementsAre("schema", "mission", "seed", "complete", "incomplete_reason", "flight_computer",
+                                      "flight_software", "camera", "gnss", "navigation", "target", "simulated_s",
+                                      "wall_s", "speed_factor", "navigation_error_m", "navigation_velocity_error_mps",
+                                      "attitude_error_deg", "first_fix_s", "static_floor_m", "navigation_nees",
+                                      "bearing_error_arcsec", "star_attitude_error_arcsec", "sensor_figures", "dv_mps",
+                                      "maneuvers", "commands_sha256", "telemetry_sha256", "health", "flight_step",
+                                      "link", "deadlines", "sources", "wall_share", "provenance", "waypoints"));
   EXPECT_THAT(keys(json.at("waypoints").at(3)),
               ElementsAre("index", "time_s", "navigation_error_m", "navigation_velocity_error_mps", "control_error_m",
                           "leg_dv_mps", "cumulative_dv_mps", "leg_maneuvers"));
@@ -244,17 +248,15 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
   EXPECT_THAT(keys(json.at("bearing_error_arcsec")), ElementsAre("mean", "std", "bias"));
   EXPECT_EQ(json.at("bearing_error_arcsec").at("bias"), 2.5);
   EXPECT_THAT(keys(json.at("star_attitude_error_arcsec")), ElementsAre("mean", "std"));
-  EXPECT_EQ(json.at("images"), 2476);
-  EXPECT_EQ(json.at("wrong_targets"), 43);
-  EXPECT_EQ(json.at("images_without_truth"), 17);
+  EXPECT_EQ(json.at("sensor_figures").at("images").at("images"), 2476);
+  EXPECT_EQ(json.at("sensor_figures").at("images").at("without_truth"), 17);
   EXPECT_THAT(keys(json.at("sources").at(0)),
               ElementsAre("name", "kind", "epochs", "failures", "last_failure", "late", "latest_s"));
   EXPECT_EQ(json.at("sources").at(0).at("last_failure"), "no lock");
   EXPECT_TRUE(json.at("camera").is_null());
   EXPECT_TRUE(json.at("incomplete_reason").is_null());
   EXPECT_EQ(json.at("attitude_error_deg").at("mean"), 2.5);
-  EXPECT_EQ(json.at("pose").at("images"), 136);
-  EXPECT_EQ(json.at("pose").at("lit_navigation_error_m").at("mean"), 0.0445);
+  EXPECT_EQ(json.at("sensor_figures").at("pose").at("lit_navigation_error_mean_m"), 0.0445);
   EXPECT_TRUE(json.at("waypoints").at(0).at("navigation_error_m").is_null());
   EXPECT_EQ(json.at("seed").get<std::uint64_t>(), 18446744073709551615ULL);
 }
@@ -265,13 +267,11 @@ TEST_F(RunFolderTest, SummaryWithoutGnssHasNulls) {
   const Json json = Json::parse(content(run() / "summary.json"));
   for (const char* key : {"first_fix_s", "static_floor_m", "navigation_nees"})
     EXPECT_TRUE(json.at(key).is_null()) << key;
-  EXPECT_FALSE(read_run(run()).summary.first_fix_s.has_value());
-  for (const char* key : {"images", "images_with_bearing", "wrong_targets"}) EXPECT_TRUE(json.at(key).is_null()) << key;
+  EXPECT_FALSE(read_run(run(), sensors::extensions()).summary.first_fix_s.has_value());
+  EXPECT_TRUE(json.at("sensor_figures").empty());
   EXPECT_TRUE(json.at("bearing_error_arcsec").at("bias").is_null());
-  EXPECT_TRUE(json.at("pose").is_null());
   EXPECT_TRUE(json.at("attitude_error_deg").at("mean").is_null());
-  EXPECT_FALSE(read_run(run()).summary.images.has_value());
-  EXPECT_FALSE(read_run(run()).summary.bearing_error_arcsec.has_value());
+  EXPECT_FALSE(read_run(run(), sensors::extensions()).summary.bearing_error_arcsec.has_value());
 }
 
 TEST_F(RunFolderTest, SaysIncompleteUntilFinished) {
@@ -290,8 +290,8 @@ TEST_F(RunFolderTest, AStoppedRunIsReadWithItsReason) {
   RunRecord record = synthetic_run();
   record.summary.complete = false;
   record.summary.incomplete_reason = "interrupted";
-  RunFolder(run(), record.summary).finish(record);
-  EXPECT_EQ(everything(read_run(run())), everything(record));
+  RunFolder(run(), record.summary, RunFolder::Existing::kReplace, sensors::extensions()).finish(record);
+  EXPECT_EQ(everything(read_run(run(), sensors::extensions())), everything(record));
 }
 
 TEST_F(RunFolderTest, ReplacesAnEarlierRunButNotWhatIsNotItsOwn) {
@@ -341,12 +341,13 @@ TEST_F(RunFolderTest, AFailureToWriteNamesTheFile) {
 
 TEST_F(RunFolderTest, NumbersThatAreNoneBecomeEmptyAndNull) {
   RunRecord record;
+  record.extensions = sensors::extensions();
   record.summary.dv_mps = std::numeric_limits<double>::quiet_NaN();
   record.waypoints.emplace_back().control_error_m = std::numeric_limits<double>::infinity();
   RunFolder(run(), {}).finish(record);
   EXPECT_TRUE(Json::parse(content(run() / "summary.json")).at("dv_mps").is_null());
   EXPECT_THAT(content(run() / "waypoints.csv"), testing::Not(HasSubstr("inf")));
-  const RunRecord back = read_run(run());
+  const RunRecord back = read_run(run(), sensors::extensions());
   EXPECT_TRUE(std::isnan(back.summary.dv_mps));
   EXPECT_TRUE(std::isnan(back.waypoints.front().control_error_m));
 }
@@ -374,7 +375,7 @@ TEST_F(RunFolderTest, DamagedFoldersAreRefusedWithFileAndLine) {
 TEST_F(RunFolderTest, ColumnsAreFoundByTheirNames) {
   leave_a_run();
   write(run() / "residuals.csv", "sigma,mood,sensor,time_s,postfit\n4,good,camera,1,\n");
-  const RunRecord record = read_run(run());
+  const RunRecord record = read_run(run(), sensors::extensions());
   ASSERT_EQ(record.residuals.size(), 1U);
   const ResidualRow& row = record.residuals.front();
   EXPECT_EQ(row.time_s, 1.0);
@@ -391,10 +392,10 @@ TEST_F(RunFolderTest, CodesAreWords) {
   const std::pair<std::string, int> cells[] = {{"koenig_damico", 1}, {"1", 1}, {"none", -1}, {"-1", -1}, {"", -1}};
   for (const auto& [cell, solver] : cells) {
     write(run() / "maneuvers.csv", maneuvers + "1,2," + cell + ",1\n");
-    EXPECT_EQ(read_run(run()).maneuvers.front().solver, solver) << cell;
+    EXPECT_EQ(read_run(run(), sensors::extensions()).maneuvers.front().solver, solver) << cell;
   }
   EXPECT_THAT(content(run() / "telemetry_health.csv"), HasSubstr("hold+inbox_full"));
-  const auto health = read_run(run()).of<telemetry_health>();
+  const auto health = read_run(run(), sensors::extensions()).of<telemetry_health>();
   ASSERT_FALSE(health.empty());
   EXPECT_EQ(health.front().message.faults, 6);
   write(run() / "maneuvers.csv", maneuvers + "1,2,brute_force,1\n");
@@ -413,7 +414,7 @@ TEST_F(RunFolderTest, AKilledRunLeavesItsTables) {
   folder.update(half);
   EXPECT_FALSE(fs::exists(run() / "truth.csv"));
   write(run() / "truth.csv.part", content(run() / "truth.csv.part") + "660,1");  // killed in the middle of a row
-  const RunRecord read = read_run(run());
+  const RunRecord read = read_run(run(), sensors::extensions());
   EXPECT_FALSE(read.summary.complete);
   EXPECT_EQ(table_text(read, "truth.csv"), table_text(half, "truth.csv"));
   EXPECT_EQ(read.truth.size(), 11U);
@@ -425,7 +426,7 @@ TEST_F(RunFolderTest, ASummaryWithoutSomeKeysHasDefaults) {
   Json json = Json::parse(content(run() / "summary.json"));
   for (const char* key : {"schema", "static_floor_m", "health", "target", "link"}) json.erase(key);
   write(run() / "summary.json", json.dump());
-  const Summary summary = read_run(run()).summary;
+  const Summary summary = read_run(run(), sensors::extensions()).summary;
   EXPECT_EQ(summary.mission, "synthetic");
   EXPECT_FALSE(summary.static_floor_m.has_value());
   EXPECT_FALSE(summary.health.has_value());
@@ -439,9 +440,9 @@ TEST_F(RunFolderTest, DamagedSummariesAreRefused) {
   write(run() / "summary.json", good.substr(0, good.size() / 2));
   EXPECT_THAT(error_of_reading(), AllOf(HasSubstr("summary.json"), HasSubstr("line")));
   Json json = Json::parse(good);
-  json["schema"] = 2;
+  json["schema"] = 3;
   write(run() / "summary.json", json.dump());
-  EXPECT_THAT(error_of_reading(), AllOf(HasSubstr("summary.json"), HasSubstr("newer version"), HasSubstr("schema 2")));
+  EXPECT_THAT(error_of_reading(), AllOf(HasSubstr("summary.json"), HasSubstr("newer version"), HasSubstr("schema 3")));
   json = Json::parse(good);
   json["maneuvers"] = "many";
   write(run() / "summary.json", json.dump());
@@ -485,12 +486,12 @@ TEST_F(RunFolderTest, ProvenanceIsReadBack) {
   provenance.flight_software = FileDigest{"libarticle.so", 12, "ab"};
   provenance.data = {{"gravity/field.txt", 3, "cd"}, {"/elsewhere/stars.csv", 4, "ef"}};
   RunFolder(run(), {}).finish(record);
-  EXPECT_TRUE(read_run(run()).summary.provenance == provenance);
+  EXPECT_TRUE(read_run(run(), sensors::extensions()).summary.provenance == provenance);
   // A folder of an earlier version has none.
   Json json = Json::parse(content(run() / "summary.json"));
   json.erase("provenance");
   write(run() / "summary.json", json.dump());
-  EXPECT_TRUE(read_run(run()).summary.provenance == Provenance{});
+  EXPECT_TRUE(read_run(run(), sensors::extensions()).summary.provenance == Provenance{});
 }
 
 }  // namespace

@@ -31,8 +31,8 @@ TEST(Summarise, FiguresComeFromTheTables) {
   ASSERT_TRUE(s.health.has_value());
   EXPECT_EQ(s.health->step, 2475);
   EXPECT_EQ(s.health->inbox_dropped, 12);
-  EXPECT_EQ(s.images->images, 2476);
-  EXPECT_EQ(s.pose->images, 136);
+  EXPECT_EQ(s.sensor_figures.at("images").at("images"), 2476);
+  EXPECT_EQ(s.sensor_figures.at("pose").at("images"), 136);
   EXPECT_EQ(s.seed, stored.seed) << "a fact, not a figure";
   EXPECT_EQ(s.telemetry_sha256, stored.telemetry_sha256);
   EXPECT_EQ(record.waypoints[5].leg_maneuvers, 3) << "17 was not executed";

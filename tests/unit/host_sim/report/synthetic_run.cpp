@@ -112,8 +112,8 @@ void set(Number (&field)[size], const std::array<double, size>& values) {
   std::ranges::copy(values, field);
 }
 
-GnssRow gnss_of(const EstimateRow& estimate) {
-  GnssRow row;
+sensors::GnssRow gnss_of(const EstimateRow& estimate) {
+  sensors::GnssRow row;
   row.time_s = estimate.time_s;
   row.step = estimate.step;
   row.messages = static_cast<std::int32_t>(7 * estimate.step);
@@ -148,8 +148,8 @@ TelemetryRow<telemetry_health> health_of(const EstimateRow& estimate) {
 }
 
 /// An image a minute; every seventh is dark, in every fiftieth the decoy is taken for the target.
-ImageRow image_of(const EstimateRow& estimate) {
-  ImageRow row;
+sensors::ImageRow image_of(const EstimateRow& estimate) {
+  sensors::ImageRow row;
   row.step = estimate.step;
   row.time_s = estimate.time_s - 60.0;
   row.step_time_s = estimate.time_s;
@@ -189,15 +189,15 @@ ImageRow image_of(const EstimateRow& estimate) {
   return row;
 }
 
-void add_objects(RunRecord& record, const ImageRow& image) {
+void add_objects(RunRecord& record, const sensors::ImageRow& image) {
   for (int k = 0; k < 3; ++k)
-    record.objects.push_back(
+    record.tables.rows<sensors::ObjectRow>().push_back(
         {image.time_s, image.image, k, k, k == 1 ? 32349 : 0, 712.34F + 10.0F * static_cast<float>(k), 500.5F});
 }
 
 /// An image of the close range a minute; every ninth in the dark, every fifth refused.
-PoseRow pose_of(const EstimateRow& estimate) {
-  PoseRow row;
+sensors::PoseRow pose_of(const EstimateRow& estimate) {
+  sensors::PoseRow row;
   row.step = estimate.step;
   row.time_s = estimate.time_s - 3.0;
   row.step_time_s = estimate.time_s;
@@ -244,9 +244,9 @@ PoseRow pose_of(const EstimateRow& estimate) {
   return row;
 }
 
-void add_keypoints(RunRecord& record, const PoseRow& pose) {
+void add_keypoints(RunRecord& record, const sensors::PoseRow& pose) {
   for (int k = 0; k < 11; ++k) {
-    KeypointRow row;
+    sensors::KeypointRow row;
     row.time_s = pose.time_s;
     row.image = pose.image;
     row.keypoint = k;
@@ -261,7 +261,7 @@ void add_keypoints(RunRecord& record, const PoseRow& pose) {
       row.error_x_px = wobble(pose.time_s, 30.0 + k);
       row.error_y_px = 1.5 * wobble(pose.time_s, 50.0 + k);
     }
-    record.keypoints.push_back(row);
+    record.tables.rows<sensors::KeypointRow>().push_back(row);
   }
 }
 
@@ -326,9 +326,9 @@ Summary summary() {
   s.navigation_nees = 5.9;
   s.bearing_error_arcsec = BearingError{14.5, 11.25, 2.5};
   s.star_attitude_error_arcsec = MeanAndDeviation{4.5, 1.5};
-  s.images = ImageCounts{2476, 2122, 43, 17};
+  s.sensor_figures["images"] = {{"images", 2476}, {"without_truth", 17}};
   s.attitude_error_deg = MeanAndDeviation{2.5, 1.25};
-  s.pose = PoseFigures{136, 120, 7, 0.75, 1.5, {0.0445, 0.0125}, 5.5, 2, 1, 3};
+  s.sensor_figures["pose"] = {{"images", 136}, {"lit_navigation_error_mean_m", 0.0445}};
   s.sources = {{"servicer/gnss", "digital", 14857, 2, "no lock", 5, 0.125}};
   s.dv_mps = 3.8345;
   s.maneuvers = 39;
@@ -356,15 +356,15 @@ RunRecord synthetic_run() {
   for (std::int64_t step = 0; step <= 2475; ++step) {
     record.truth.push_back(truth_at(60.0 * static_cast<double>(step)));
     record.estimates.push_back(estimate_of(record.truth.back(), step));
-    record.gnss.push_back(gnss_of(record.estimates.back()));
+    record.tables.rows<sensors::GnssRow>().push_back(gnss_of(record.estimates.back()));
     std::get<std::vector<TelemetryRow<telemetry_health>>>(record.telemetry)
         .push_back(health_of(record.estimates.back()));
-    record.images.push_back(image_of(record.estimates.back()));
+    record.tables.rows<sensors::ImageRow>().push_back(image_of(record.estimates.back()));
     if (step % 400 == 3 || step == 2404) {
-      add_objects(record, record.images.back());
+      add_objects(record, record.tables.rows<sensors::ImageRow>().back());
       // The first is of a folder whose pictures have their marks in the pixels.
-      record.gallery.push_back({.time_s = record.images.back().time_s,
-                                .image = record.images.back().image,
+      record.gallery.push_back({.time_s = record.tables.rows<sensors::ImageRow>().back().time_s,
+                                .image = record.tables.rows<sensors::ImageRow>().back().image,
                                 .caption = "target & <decoy>",
                                 .origin_x_px = step > 3 ? 80 : 0,
                                 .origin_y_px = step > 3 ? 50 : 0,
@@ -376,8 +376,8 @@ RunRecord synthetic_run() {
                                 .png = kPicture});
     }
     if (step >= 2340) {
-      record.poses.push_back(pose_of(record.estimates.back()));
-      add_keypoints(record, record.poses.back());
+      record.tables.rows<sensors::PoseRow>().push_back(pose_of(record.estimates.back()));
+      add_keypoints(record, record.tables.rows<sensors::PoseRow>().back());
     }
     const double t = record.truth.back().time_s;
     if (step % 10 == 0) record.residuals.push_back({t, "camera, \"left\"", wobble(t, 5.0), 0.5 * wobble(t, 5.0), 0.4});

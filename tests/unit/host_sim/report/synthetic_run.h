@@ -3,6 +3,8 @@
 // noise, refused burns, solvers that failed and steps without a valid estimate.
 
 #include "host_sim/report/run_record.h"
+#include "host_sim/sensors/camera/camera_rows.h"
+#include "host_sim/sensors/gnss/gnss_row.h"
 
 namespace vbar::report::test {
 

@@ -74,7 +74,7 @@ class Gallery : public testing::Test {
     auto tiles = twins::camera::image_tiles({exposure, number, 1, 0}, kRegion, 12, pattern(number));
     if (lost_tile >= 0) tiles.erase(tiles.begin() + lost_tile);
     keeper_.on_inputs(exposure + kMinute, tiles);
-    report::ImageRow row;
+    ImageRow row;
     row.time_s = 60.0 * minute;
     row.image = number;
     row.status = status;

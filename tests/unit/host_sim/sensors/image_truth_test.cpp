@@ -56,8 +56,8 @@ class ImageTruth : public testing::Test {
     image_.star_method = 1;
   }
 
-  [[nodiscard]] report::ImageRow row(const telemetry_objects* objects = nullptr) const {
-    auto row = report::row_of<report::ImageRow>(image_);
+  [[nodiscard]] ImageRow row(const telemetry_objects* objects = nullptr) const {
+    auto row = report::row_of<ImageRow>(image_);
     add_truth(row, image_, objects, mission_, mission_.spacecraft[0], truth_);
     return row;
   }
@@ -76,7 +76,7 @@ class ImageTruth : public testing::Test {
 
 TEST_F(ImageTruth, BearingErrorIsInTheCamerasAxes) {
   point({std::tan(20.0 * kArcsecond), std::tan(-7.0 * kArcsecond), 1.0});
-  const report::ImageRow seen = row();
+  const ImageRow seen = row();
   EXPECT_NEAR(seen.bearing_error_x_arcsec.value(), 20.0, 1e-6);
   EXPECT_NEAR(seen.bearing_error_y_arcsec.value(), -7.0, 1e-6);
   EXPECT_NEAR(seen.range_m.value(), 1e4, 1e-6) << "from the camera, half a metre nearer than the centre of mass";
@@ -135,7 +135,7 @@ TEST_F(ImageTruth, ANanOfTheTruthIsNotAnErrorOfZero) {
   truth_.spacecraft[1].orbit.position_eci.x() = std::nan("");
   telemetry_objects objects{};
   objects.count = 1;
-  const report::ImageRow seen = row(&objects);
+  const ImageRow seen = row(&objects);
   EXPECT_TRUE(std::isnan(seen.range_m.value()));
   EXPECT_TRUE(std::isnan(seen.bearing_error_x_arcsec.value()));
   EXPECT_EQ(seen.chosen, "nothing");
@@ -188,7 +188,7 @@ TEST_F(ImageTruth, WithoutTheTruthThereAreNoErrors) {
 }
 
 TEST_F(ImageTruth, SummaryTakesTheUnresolvedTargetOnly) {
-  std::vector<report::ImageRow> rows;
+  std::vector<ImageRow> rows;
   for (const double x_arcsec : {12.0, -8.0, 12.0, -8.0}) {
     point({x_arcsec * kArcsecond, 3.0 * kArcsecond, 1.0});
     rows.push_back(row());
@@ -203,20 +203,20 @@ TEST_F(ImageTruth, SummaryTakesTheUnresolvedTargetOnly) {
   report::RunRecord record;
   record.extensions = extensions();
   record.summary.target = "target";
-  record.images = rows;
+  record.tables.rows<ImageRow>() = rows;
   const report::Summary summary = report::summarise(record);
-  ASSERT_TRUE(summary.images.has_value());
-  EXPECT_EQ(summary.images->images, 7);
-  EXPECT_EQ(summary.images->with_bearing, 6);
-  EXPECT_EQ(summary.images->wrong_targets, 1);
-  EXPECT_EQ(summary.images->without_truth, 1);
+  const auto& figures = summary.sensor_figures.at("images");
+  EXPECT_EQ(figures.at("images"), 7);
+  EXPECT_EQ(figures.at("with_bearing"), 6);
+  EXPECT_EQ(figures.at("wrong_targets"), 1);
+  EXPECT_EQ(figures.at("without_truth"), 1);
   EXPECT_NEAR(summary.bearing_error_arcsec->bias, std::hypot(2.0, 3.0), 1e-6);
   EXPECT_NEAR(summary.bearing_error_arcsec->std, 10.0 / std::sqrt(2.0), 1e-6) << "of two axes, one of them still";
   EXPECT_NEAR(summary.bearing_error_arcsec->mean, 0.5 * (std::hypot(12.0, 3.0) + std::hypot(8.0, 3.0)), 1e-6);
   EXPECT_EQ(summary.star_attitude_error_arcsec->mean, 0.0);
 
-  record.images.clear();
-  EXPECT_FALSE(report::summarise(record).images.has_value());
+  record.tables.rows<ImageRow>().clear();
+  EXPECT_FALSE(report::summarise(record).sensor_figures.contains("images"));
 }
 
 twins::Packet packet_of(fsw::GpsTime time, const auto& message) {
@@ -256,19 +256,19 @@ TEST_F(ImageTruth, TheEvaluationTakesTheTruthOfTheExposure) {
                                              fsw::packets::parse_packet(packets[1]).value()};
   evaluation.on_answer(truth_.time, answer);
   evaluation.finish();
-  ASSERT_EQ(record.images.size(), 1U);
-  EXPECT_EQ(record.images[0].time_s, 60.0);
-  EXPECT_EQ(record.images[0].step_time_s, 120.0);
-  EXPECT_EQ(record.images[0].true_object, 0);
-  EXPECT_NEAR(record.images[0].bearing_error_x_arcsec.value(), 0.0, 1e-9);
-  EXPECT_EQ(record.objects.size(), 1U);
+  ASSERT_EQ(record.tables.rows<ImageRow>().size(), 1U);
+  EXPECT_EQ(record.tables.rows<ImageRow>()[0].time_s, 60.0);
+  EXPECT_EQ(record.tables.rows<ImageRow>()[0].step_time_s, 120.0);
+  EXPECT_EQ(record.tables.rows<ImageRow>()[0].true_object, 0);
+  EXPECT_NEAR(record.tables.rows<ImageRow>()[0].bearing_error_x_arcsec.value(), 0.0, 1e-9);
+  EXPECT_EQ(record.tables.rows<ObjectRow>().size(), 1U);
   EXPECT_EQ(record.residuals.size(), 2U);
 
   const twins::Packet stranger =
       packet_of(exposure + fsw::duration_of_seconds(1), image_);  // no truth was kept of that
   const fsw::packets::PacketView without_truth[] = {fsw::packets::parse_packet(stranger).value()};
   evaluation.on_answer(truth_.time, without_truth);
-  EXPECT_FALSE(record.images[1].range_m.has_value());
+  EXPECT_FALSE(record.tables.rows<ImageRow>()[1].range_m.has_value());
 }
 
 TEST(ImageRows, ResidualsAndObjectsAreRows) {
@@ -277,11 +277,11 @@ TEST(ImageRows, ResidualsAndObjectsAreRows) {
   image.prefit[1] = 30.0 * kArcsecond;
   image.postfit[0] = -5.0 * kArcsecond;
   std::vector<report::ResidualRow> residuals;
-  append_residuals(report::row_of<report::ImageRow>(image), residuals);
+  append_residuals(report::row_of<ImageRow>(image), residuals);
   EXPECT_TRUE(residuals.empty()) << "the filter did not run";
   // An innovation of 50 arcsec with a variance of 20^2 arcsec^2 in all directions.
   image.nis = 6.25;
-  append_residuals(report::row_of<report::ImageRow>(image), residuals);
+  append_residuals(report::row_of<ImageRow>(image), residuals);
   ASSERT_EQ(residuals.size(), 2U);
   EXPECT_EQ(residuals[0].sensor, "bearing_in_plane_arcsec");
   EXPECT_NEAR(residuals[0].postfit, -5.0, 1e-12);
@@ -293,7 +293,7 @@ TEST(ImageRows, ResidualsAndObjectsAreRows) {
   objects.count = 2;
   objects.kind[1] = 1;
   objects.star[1] = 32349;
-  std::vector<report::ObjectRow> rows;
+  std::vector<ObjectRow> rows;
   append_objects(60.0, objects, rows);
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[1].star, 32349);

@@ -156,7 +156,7 @@ class PoseGalleryTest : public testing::Test {
     gallery_.on_inputs(exposure + kMinute, twins::camera::image_tiles({exposure, minute, 1, 0}, kRegion, 8, dn));
     telemetry_pose pose{};
     pose.image = told_number >= 0 ? told_number : minute;
-    report::PoseRow row = row_;
+    PoseRow row = row_;
     row.time_s = 60.0 * minute;
     row.image = pose.image;
     gallery_.on_pose(exposure, pose, row, pictures_);
@@ -170,7 +170,7 @@ class PoseGalleryTest : public testing::Test {
 
   const mission::Mission mission_ = sensors::parse_mission(kMission, "m.toml");
   PoseGallery gallery_{mission_, mission_.spacecraft[0]};
-  report::PoseRow row_;
+  PoseRow row_;
   std::vector<report::GalleryImage> pictures_;
 };
 

@@ -69,8 +69,8 @@ class PoseTruth : public testing::Test {
     for (int k = 0, place = 0; k < 6; place += ++k + 1) pose_.covariance_attitude[place] = 1.0;
   }
 
-  [[nodiscard]] report::PoseRow row() {
-    auto row = report::row_of<report::PoseRow>(pose_);
+  [[nodiscard]] PoseRow row() {
+    auto row = report::row_of<PoseRow>(pose_);
     keypoints_.clear();
     append_keypoints(100.0, pose_, keypoints_);
     add_truth(row, keypoints_, pose_, keypoints_body_m_, mission_, mission_.spacecraft[0], truth_);
@@ -92,11 +92,11 @@ class PoseTruth : public testing::Test {
   twins::TruthSnapshot truth_;
   telemetry_pose pose_{};
   double keypoints_body_m_[33] = {};
-  std::vector<report::KeypointRow> keypoints_;
+  std::vector<KeypointRow> keypoints_;
 };
 
 TEST_F(PoseTruth, AnExactPoseHasNoError) {
-  const report::PoseRow exact = row();
+  const PoseRow exact = row();
   EXPECT_NEAR(exact.range_m.value(), std::sqrt(1.44 + 0.49 + 36.0), 1e-9);
   EXPECT_NEAR(exact.pnp_error_deg.value(), 0.0, 1e-6);
   EXPECT_NEAR(exact.attitude_error_deg.value(), 0.0, 1e-12);
@@ -107,7 +107,7 @@ TEST_F(PoseTruth, AnExactPoseHasNoError) {
 TEST_F(PoseTruth, PnpErrorIsInTheCamerasAxes) {
   set(pose_.pnp_position_camera_m, kAhead + Vector3(0.1, -0.2, 0.3));
   set(pose_.pnp_q_camera_body, kQ * Quaterniond(AngleAxisd(5.0 * kDegree, Vector3(0.0, 0.6, 0.8))));
-  const report::PoseRow off = row();
+  const PoseRow off = row();
   EXPECT_NEAR(off.pnp_error_x_m.value(), 0.1, 1e-9);
   EXPECT_NEAR(off.pnp_error_y_m.value(), -0.2, 1e-9);
   EXPECT_NEAR(off.pnp_error_z_m.value(), 0.3, 1e-9);
@@ -124,7 +124,7 @@ TEST_F(PoseTruth, AttitudeErrorIsARotationAboutBodyAxes) {
     set(pose_.q_camera_body, q);
     set(pose_.rate_body, kRate + rate);
     set_attitude_sigmas(rotation, rate);
-    const report::PoseRow off = row();
+    const PoseRow off = row();
     EXPECT_NEAR(off.attitude_error_x_deg.value(), 1.0, 1e-9);
     EXPECT_NEAR(off.attitude_error_y_deg.value(), -2.0, 1e-9);
     EXPECT_NEAR(off.attitude_error_z_deg.value(), 2.0, 1e-9);
@@ -206,7 +206,7 @@ TEST_F(PoseTruth, SunlightIsThatOfTheTargetsPlace) {
   EXPECT_EQ(row().sunlit.value(), 0.0);
 }
 
-bool has_no_truth(const report::PoseRow& row) {
+bool has_no_truth(const PoseRow& row) {
   return !row.range_m && !row.sunlit && !row.pnp_error_x_m && !row.pnp_error_deg && !row.attitude_error_deg &&
          !row.attitude_error_x_deg && !row.rate_error_radps && !row.nees && !row.attitude_nees;
 }
@@ -224,13 +224,13 @@ TEST_F(PoseTruth, WithoutTheTruthThereAreNoErrors) {
   truth_ = whole;
   remove_camera(mission_.spacecraft[0]);
   EXPECT_TRUE(has_no_truth(row())) << "the camera";
-  for (const report::KeypointRow& keypoint : keypoints_) EXPECT_FALSE(keypoint.error_x_px.has_value());
+  for (const KeypointRow& keypoint : keypoints_) EXPECT_FALSE(keypoint.error_x_px.has_value());
 }
 
 TEST_F(PoseTruth, ANanOfTheTruthIsNotAnErrorOfZero) {
   truth_.spacecraft[1].orbit.position_eci.x() = kNan;
   pose_.keypoint_fate[0] = 2;
-  const report::PoseRow of_place = row();
+  const PoseRow of_place = row();
   EXPECT_TRUE(std::isnan(of_place.range_m.value()));
   EXPECT_TRUE(std::isnan(of_place.pnp_error_x_m.value()));
   EXPECT_FALSE(keypoints_[0].error_x_px.has_value());
@@ -238,14 +238,14 @@ TEST_F(PoseTruth, ANanOfTheTruthIsNotAnErrorOfZero) {
   SetUp();
   truth_.spacecraft[1].attitude->q_body_eci.x() = kNan;
   truth_.spacecraft[1].attitude->rate_body.x() = kNan;
-  const report::PoseRow of_attitude = row();
+  const PoseRow of_attitude = row();
   EXPECT_TRUE(std::isnan(of_attitude.pnp_error_deg.value()));
   EXPECT_TRUE(std::isnan(of_attitude.attitude_error_deg.value()));
   EXPECT_TRUE(std::isnan(of_attitude.attitude_nees.value()));
 }
 
-report::PoseRow image(double step_time_s, double pnp_error_deg, double sunlit) {
-  report::PoseRow row;
+PoseRow image(double step_time_s, double pnp_error_deg, double sunlit) {
+  PoseRow row;
   row.step_time_s = step_time_s;
   row.pnp_inliers = 7;
   row.pnp_error_deg = pnp_error_deg;
@@ -254,8 +254,8 @@ report::PoseRow image(double step_time_s, double pnp_error_deg, double sunlit) {
   return row;
 }
 
-report::KeypointRow keypoint(double error_x_px, double error_y_px, double variance_px2) {
-  report::KeypointRow row;
+KeypointRow keypoint(double error_x_px, double error_y_px, double variance_px2) {
+  KeypointRow row;
   row.covariance_xx_px2 = row.covariance_yy_px2 = static_cast<float>(variance_px2);
   row.error_x_px = error_x_px;
   row.error_y_px = error_y_px;
@@ -265,18 +265,18 @@ report::KeypointRow keypoint(double error_x_px, double error_y_px, double varian
 TEST(PoseSummary, CountsAndAveragesOverTheRun) {
   report::RunRecord record;
   record.extensions = extensions();
-  record.poses = {image(10.0, 2.0, 1.0), image(20.0, 11.0, 0.5), image(30.0, 170.0, 0.0), {}};
-  record.poses[3].step_time_s = 40.0;
-  record.poses[0].attitude_error_deg = 1.0;
-  record.poses[1].attitude_error_deg = 3.0;
-  record.poses[0].nees = 5.0;
-  record.poses[1].nees = 8.0;
-  record.poses[0].attitude_nees = 4.0;
-  record.poses[1].attitude_nees = 40.0;
-  record.poses[1].fate = 3;  // by position alone: the attitude's is not the filter's own
-  record.poses[3].attitude_restarts = 2;
-  record.poses[3].restarts = 1;
-  record.keypoints = {keypoint(3.0, 4.0, 25.0), keypoint(0.6, 0.8, 0.5), keypoint(6.0, 8.0, 1.0), {}};
+  record.tables.rows<PoseRow>() = {image(10.0, 2.0, 1.0), image(20.0, 11.0, 0.5), image(30.0, 170.0, 0.0), {}};
+  record.tables.rows<PoseRow>()[3].step_time_s = 40.0;
+  record.tables.rows<PoseRow>()[0].attitude_error_deg = 1.0;
+  record.tables.rows<PoseRow>()[1].attitude_error_deg = 3.0;
+  record.tables.rows<PoseRow>()[0].nees = 5.0;
+  record.tables.rows<PoseRow>()[1].nees = 8.0;
+  record.tables.rows<PoseRow>()[0].attitude_nees = 4.0;
+  record.tables.rows<PoseRow>()[1].attitude_nees = 40.0;
+  record.tables.rows<PoseRow>()[1].fate = 3;  // by position alone: the attitude's is not the filter's own
+  record.tables.rows<PoseRow>()[3].attitude_restarts = 2;
+  record.tables.rows<PoseRow>()[3].restarts = 1;
+  record.tables.rows<KeypointRow>() = {keypoint(3.0, 4.0, 25.0), keypoint(0.6, 0.8, 0.5), keypoint(6.0, 8.0, 1.0), {}};
   for (const double time_s : {10.0, 20.0, 30.0, 40.0}) {
     report::EstimateRow estimate;
     estimate.time_s = time_s;
@@ -287,37 +287,39 @@ TEST(PoseSummary, CountsAndAveragesOverTheRun) {
     record.truth.back().time_s = time_s;
   }
   const report::Summary summary = report::summarise(record);
-  ASSERT_TRUE(summary.pose.has_value());
-  EXPECT_EQ(summary.pose->images, 4);
-  EXPECT_EQ(summary.pose->with_pose, 3);
-  EXPECT_EQ(summary.pose->poses_over_10_deg, 2);
-  EXPECT_NEAR(summary.pose->keypoint_error_px, 5.0, 1e-12);    // of 1, 5 and 10
-  EXPECT_NEAR(summary.pose->keypoint_chi_square, 2.0, 1e-12);  // of 1, 2 and 100
-  EXPECT_NEAR(summary.pose->lit_navigation_error_m.mean, 1.5, 1e-12) << "1 m and 2 m; the third image is in eclipse";
-  EXPECT_NEAR(summary.pose->attitude_nees.value(), 4.0, 1e-12);
-  EXPECT_EQ(summary.pose->attitude_restarts, 2);
-  EXPECT_EQ(summary.pose->restarts, 1);
+  const auto& figures = summary.sensor_figures.at("pose");
+  EXPECT_EQ(figures.at("images"), 4);
+  EXPECT_EQ(figures.at("with_pose"), 3);
+  EXPECT_EQ(figures.at("poses_over_10_deg"), 2);
+  EXPECT_NEAR(figures.at("keypoint_error_px"), 5.0, 1e-12);    // of 1, 5 and 10
+  EXPECT_NEAR(figures.at("keypoint_chi_square"), 2.0, 1e-12);  // of 1, 2 and 100
+  EXPECT_NEAR(figures.at("lit_navigation_error_mean_m"), 1.5, 1e-12) << "1 m and 2 m; the third image is in eclipse";
+  EXPECT_NEAR(figures.at("attitude_nees"), 4.0, 1e-12);
+  EXPECT_EQ(figures.at("attitude_restarts"), 2);
+  EXPECT_EQ(figures.at("restarts"), 1);
   EXPECT_NEAR(summary.attitude_error_deg.value().mean, 2.0, 1e-12);
   EXPECT_NEAR(summary.navigation_nees.value(), 6.5, 1e-12);
 }
 
 TEST(PoseSummary, WithoutImagesIsNone) {
   const report::Summary summary = report::summarise({});
-  EXPECT_FALSE(summary.pose.has_value());
+  EXPECT_TRUE(summary.sensor_figures.empty());
   EXPECT_FALSE(summary.navigation_nees.has_value());
 }
 
 TEST(PoseSummary, ANanIsSeen) {
   report::RunRecord record;
   record.extensions = extensions();
-  record.poses = {image(10.0, kNan, 1.0)};
-  record.poses[0].nees = record.poses[0].attitude_nees = record.poses[0].attitude_error_deg = kNan;
-  record.keypoints = {keypoint(1.0, 0.0, 1.0), keypoint(kNan, 0.0, 1.0), keypoint(2.0, 0.0, 1.0)};
+  record.tables.rows<PoseRow>() = {image(10.0, kNan, 1.0)};
+  record.tables.rows<PoseRow>()[0].nees = record.tables.rows<PoseRow>()[0].attitude_nees =
+      record.tables.rows<PoseRow>()[0].attitude_error_deg = kNan;
+  record.tables.rows<KeypointRow>() = {keypoint(1.0, 0.0, 1.0), keypoint(kNan, 0.0, 1.0), keypoint(2.0, 0.0, 1.0)};
   const report::Summary summary = report::summarise(record);
-  EXPECT_EQ(summary.pose->poses_over_10_deg, 1);
-  EXPECT_TRUE(std::isnan(summary.pose->keypoint_error_px));
-  EXPECT_TRUE(std::isnan(summary.pose->keypoint_chi_square));
-  EXPECT_TRUE(std::isnan(summary.pose->attitude_nees.value()));
+  const auto& figures = summary.sensor_figures.at("pose");
+  EXPECT_EQ(figures.at("poses_over_10_deg"), 1);
+  EXPECT_TRUE(std::isnan(figures.at("keypoint_error_px")));
+  EXPECT_TRUE(std::isnan(figures.at("keypoint_chi_square")));
+  EXPECT_TRUE(std::isnan(figures.at("attitude_nees")));
   EXPECT_TRUE(std::isnan(summary.navigation_nees.value()));
   EXPECT_TRUE(std::isnan(summary.attitude_error_deg.value().mean));
 }

@@ -1,0 +1,134 @@
+#pragma once
+// Rows of images beside the truth: angles-only navigation (images.csv, objects.csv) and navigation by the pose network
+// (poses.csv, keypoints.csv).
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/report/run_columns.h"
+
+namespace vbar::sensors {
+
+/// What angles-only navigation said of an image, and what was true at its exposure (images.csv, only if a run has such
+/// navigation).
+struct ImageRow : telemetry_image {
+  ImageRow() : telemetry_image{} {}
+  double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
+  double step_time_s = 0.0;  ///< of the step whose telemetry reported it
+  // The truth. Errors are estimated less true; absent where the flight software gave nothing.
+  int true_object = -1;  ///< the object that is really the target; -1: none is, or nobody can tell
+  std::string chosen;    ///< the spacecraft that the choice really is, "nothing" if none; empty without a choice
+  std::optional<double> range_m;
+  std::optional<double> bearing_error_x_arcsec, bearing_error_y_arcsec;            ///< against the centre of mass
+  std::optional<double> attitude_error_across_arcsec, attitude_error_roll_arcsec;  ///< of the boresight, and about it
+  std::optional<double> nees;  ///< of the osculating ROE, six degrees of freedom; of images that the filter used
+};
+
+/// What the flight software took an object of an image for (objects.csv).
+struct ObjectRow {
+  double time_s = 0.0;
+  std::int32_t image = 0;
+  int object = 0;  ///< brightest first
+  int kind = 0;    ///< telemetry_objects::kKind...
+  std::int32_t star = 0;
+  float x_px = 0.0F, y_px = 0.0F;  ///< on the detector
+};
+
+/// What navigation by the pose network said of an image, and what was true at its exposure (poses.csv, only if a run
+/// has such navigation). The keypoints are rows of their own.
+struct PoseRow : telemetry_pose {
+  PoseRow() : telemetry_pose{} {}
+  double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
+  double step_time_s = 0.0;  ///< of the step whose telemetry reported it
+  // The truth. Errors are estimated less true; absent where the flight software gave nothing.
+  std::optional<double> range_m, sunlit;
+  std::optional<double> pnp_error_x_m, pnp_error_y_m, pnp_error_z_m, pnp_error_deg;        ///< in camera axes
+  std::optional<double> attitude_error_deg;                                                ///< in all
+  std::optional<double> attitude_error_x_deg, attitude_error_y_deg, attitude_error_z_deg;  ///< about body axes
+  std::optional<double> rate_error_radps;
+  std::optional<double> nees, attitude_nees;  ///< of osculating ROE, of turn and rate: six degrees of freedom each
+};
+
+/// A keypoint of such an image (keypoints.csv).
+struct KeypointRow {
+  double time_s = 0.0;
+  std::int32_t image = 0;
+  int keypoint = 0;
+  int fate = 0;  ///< telemetry_pose::kKeypoint...
+  float peak = 0.0F;
+  float x_px = 0.0F, y_px = 0.0F;  ///< on the detector
+  float covariance_xx_px2 = 0.0F, covariance_xy_px2 = 0.0F, covariance_yy_px2 = 0.0F;
+  std::optional<double> error_x_px, error_y_px;
+};
+
+template <report::columns::RowOf<ImageRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(report::ColumnName{"time_s"}, row.time_s);
+  visit(report::ColumnName{"step_time_s"}, row.step_time_s);
+  report::columns::fields(visit, report::columns::message_of<telemetry_image>(row));
+  visit(report::ColumnName{"true_object"}, row.true_object);
+  visit(report::ColumnName{"chosen"}, row.chosen);
+  visit(report::ColumnName{"range_m"}, row.range_m);
+  visit(report::ColumnName{"bearing_error_x_arcsec"}, row.bearing_error_x_arcsec);
+  visit(report::ColumnName{"bearing_error_y_arcsec"}, row.bearing_error_y_arcsec);
+  visit(report::ColumnName{"attitude_error_across_arcsec"}, row.attitude_error_across_arcsec);
+  visit(report::ColumnName{"attitude_error_roll_arcsec"}, row.attitude_error_roll_arcsec);
+  visit(report::ColumnName{"nees"}, row.nees);
+}
+
+template <report::columns::RowOf<ObjectRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(report::ColumnName{"time_s"}, row.time_s);
+  visit(report::ColumnName{"image"}, row.image);
+  visit(report::ColumnName{"object"}, row.object);
+  report::columns::coded(visit, "kind", report::columns::words(codes::telemetry_objects_kKind), row.kind);
+  visit(report::ColumnName{"star"}, row.star);
+  visit(report::ColumnName{"x_px"}, row.x_px);
+  visit(report::ColumnName{"y_px"}, row.y_px);
+}
+
+template <report::columns::RowOf<PoseRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(report::ColumnName{"time_s"}, row.time_s);
+  visit(report::ColumnName{"step_time_s"}, row.step_time_s);
+  report::columns::fields(visit, report::columns::message_of<telemetry_pose>(row), false);
+  visit(report::ColumnName{"range_m"}, row.range_m);
+  visit(report::ColumnName{"sunlit"}, row.sunlit);
+  visit(report::ColumnName{"pnp_error_x_m"}, row.pnp_error_x_m);
+  visit(report::ColumnName{"pnp_error_y_m"}, row.pnp_error_y_m);
+  visit(report::ColumnName{"pnp_error_z_m"}, row.pnp_error_z_m);
+  visit(report::ColumnName{"pnp_error_deg"}, row.pnp_error_deg);
+  visit(report::ColumnName{"attitude_error_deg"}, row.attitude_error_deg);
+  visit(report::ColumnName{"attitude_error_x_deg"}, row.attitude_error_x_deg);
+  visit(report::ColumnName{"attitude_error_y_deg"}, row.attitude_error_y_deg);
+  visit(report::ColumnName{"attitude_error_z_deg"}, row.attitude_error_z_deg);
+  visit(report::ColumnName{"rate_error_radps"}, row.rate_error_radps);
+  visit(report::ColumnName{"nees"}, row.nees);
+  visit(report::ColumnName{"attitude_nees"}, row.attitude_nees);
+}
+
+template <report::columns::RowOf<KeypointRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(report::ColumnName{"time_s"}, row.time_s);
+  visit(report::ColumnName{"image"}, row.image);
+  visit(report::ColumnName{"keypoint"}, row.keypoint);
+  report::columns::coded(visit, "fate", report::columns::words(codes::telemetry_pose_kKeypoint), row.fate);
+  visit(report::ColumnName{"peak"}, row.peak);
+  visit(report::ColumnName{"x_px"}, row.x_px);
+  visit(report::ColumnName{"y_px"}, row.y_px);
+  visit(report::ColumnName{"covariance_xx_px2"}, row.covariance_xx_px2);
+  visit(report::ColumnName{"covariance_xy_px2"}, row.covariance_xy_px2);
+  visit(report::ColumnName{"covariance_yy_px2"}, row.covariance_yy_px2);
+  visit(report::ColumnName{"error_x_px"}, row.error_x_px);
+  visit(report::ColumnName{"error_y_px"}, row.error_y_px);
+}
+
+/// The rows of a record; `Row` is one of the above.
+template <class Row>
+[[nodiscard]] const std::vector<Row>& rows_of(const report::RunRecord& record) {
+  return record.tables.rows<Row>();
+}
+
+}  // namespace vbar::sensors
