@@ -3,9 +3,11 @@
 // measurement. All operations work in place: with 80 components a second covariance would exceed the stack on board.
 //
 // Components may be inactive (an ambiguity of a satellite not in view): their variance is zero; no operation changes
-// them.
+// them. Those behind the last active one cost no time.
 //
 // Products are Eigen's lazy ones: its blocked kernels for larger matrices leave heap calls in the object code.
+
+#include <array>
 
 #include <Eigen/Core>
 
@@ -32,21 +34,23 @@ class Estimate {
 
   [[nodiscard]] const Vector& mean() const { return mean_; }
   [[nodiscard]] double mean(int i) const { return mean_(i); }
-  [[nodiscard]] double variance(int i) const { return covariance_(i, i); }
-  [[nodiscard]] double covariance(int i, int j) const { return covariance_(i, j); }
+  [[nodiscard]] double variance(int i) const { return matrix()(i, i); }
+  [[nodiscard]] double covariance(int i, int j) const { return matrix()(i, j); }
   /// Of the first M components.
   template <int M>
   [[nodiscard]] Eigen::Matrix<double, M, M> head_covariance() const {
-    return covariance_.template topLeftCorner<M, M>();
+    return matrix().template topLeftCorner<M, M>();
   }
-  [[nodiscard]] bool is_idle(int i) const { return covariance_(i, i) == 0.0; }
+  [[nodiscard]] bool is_idle(int i) const { return matrix()(i, i) == 0.0; }
 
   /// Component i is `mean` with `variance`, independent of all others; variance 0 deactivates it.
   void reset(int i, double mean, double variance) {
     mean_(i) = mean;
-    covariance_.row(i).setZero();
-    covariance_.col(i).setZero();
-    covariance_(i, i) = variance;
+    matrix().row(i).head(extent_).setZero();
+    matrix().col(i).head(extent_).setZero();
+    matrix()(i, i) = variance;
+    if (variance != 0.0) extend_to(i);
+    while (extent_ > 0 && is_idle(extent_ - 1)) --extent_;
   }
 
   /// Shifts the mean: a known change, such as a maneuver.
@@ -55,27 +59,31 @@ class Estimate {
   /// Component i is multiplied by `factor`, as in a Gauss-Markov decay.
   void scale(int i, double factor) {
     mean_(i) *= factor;
-    covariance_.row(i) *= factor;
-    covariance_.col(i) *= factor;
+    matrix().row(i).head(extent_) *= factor;
+    matrix().col(i).head(extent_) *= factor;
   }
 
   /// Independent noise on component i.
-  void add_noise(int i, double variance) { covariance_(i, i) += variance; }
+  void add_noise(int i, double variance) {
+    matrix()(i, i) += variance;
+    extend_to(i);
+  }
 
   /// The first M components are propagated by x <- mean + A (x - old mean) plus independent noise of covariance Q.
   template <int M>
   void transform_head(const Eigen::Matrix<double, M, 1>& mean, const Eigen::Matrix<double, M, M>& a,
                       const Eigen::Matrix<double, M, M>& q) {
     mean_.template head<M>() = mean;
-    for (int c = 0; c < N; ++c) {
-      const Eigen::Matrix<double, M, 1> column = covariance_.col(c).template head<M>();
-      covariance_.col(c).template head<M>() = a.lazyProduct(column);
+    extend_to(M - 1);
+    for (int c = 0; c < extent_; ++c) {
+      const Eigen::Matrix<double, M, 1> column = matrix().col(c).template head<M>();
+      matrix().col(c).template head<M>() = a.lazyProduct(column);
     }
-    for (int r = 0; r < N; ++r) {
-      const Eigen::Matrix<double, M, 1> row = covariance_.row(r).template head<M>().transpose();
-      covariance_.row(r).template head<M>() = a.lazyProduct(row).transpose();
+    for (int r = 0; r < extent_; ++r) {
+      const Eigen::Matrix<double, M, 1> row = matrix().row(r).template head<M>().transpose();
+      matrix().row(r).template head<M>() = a.lazyProduct(row).transpose();
     }
-    covariance_.template topLeftCorner<M, M>() += q;
+    matrix().template topLeftCorner<M, M>() += q;
     symmetrise();
   }
 
@@ -92,14 +100,15 @@ class Estimate {
     // Written such that a NaN is refused.
     if (!(innovation.variance > 0.0) || !(innovation.nis() <= gate)) return innovation;
     innovation.accepted = true;
-    mean_ += ph * (residual / innovation.variance);
-    for (int c = 0; c < N; ++c) {
+    mean_.head(extent_) += ph.head(extent_) * (residual / innovation.variance);
+    Eigen::Map<Matrix> p = matrix();
+    for (int c = 0; c < extent_; ++c) {
       if (ph(c) == 0.0) continue;
       const double gain = ph(c) / innovation.variance;
-      for (int r = c; r < N; ++r) {
-        const double less = covariance_(r, c) - ph(r) * gain;
-        covariance_(r, c) = less;
-        covariance_(c, r) = less;
+      for (int r = c; r < extent_; ++r) {
+        const double less = p(r, c) - ph(r) * gain;
+        p(r, c) = less;
+        p(c, r) = less;
       }
     }
     return innovation;
@@ -109,35 +118,44 @@ class Estimate {
   [[nodiscard]] bool is_sound() const {
     double sum = 0.0;
     double minimum = 0.0;
-    for (int i = 0; i < N; ++i) {
-      sum += mean_(i) + covariance_.col(i).sum();
-      minimum = covariance_(i, i) < minimum ? covariance_(i, i) : minimum;
+    for (int i = 0; i < N; ++i) sum += mean_(i);
+    for (int i = 0; i < extent_; ++i) {
+      sum += matrix().col(i).head(extent_).sum();
+      minimum = matrix()(i, i) < minimum ? matrix()(i, i) : minimum;
     }
     return math::is_finite(sum) && minimum >= 0.0;
   }
 
  private:
+  [[nodiscard]] Eigen::Map<Matrix> matrix() { return Eigen::Map<Matrix>(elements_.data()); }
+  [[nodiscard]] Eigen::Map<const Matrix> matrix() const { return Eigen::Map<const Matrix>(elements_.data()); }
+
+  void extend_to(int i) { extent_ = extent_ > i ? extent_ : i + 1; }
+
   /// P h. A measurement depends on few of the components; the columns of the others are skipped.
   [[nodiscard]] Vector covariance_times(const Vector& h) const {
     Vector product = Vector::Zero();
-    for (int c = 0; c < N; ++c) {
-      if (h(c) != 0.0) product += h(c) * covariance_.col(c);
+    for (int c = 0; c < extent_; ++c) {
+      if (h(c) != 0.0) product.head(extent_) += h(c) * matrix().col(c).head(extent_);
     }
     return product;
   }
 
   void symmetrise() {
-    for (int c = 0; c < N; ++c) {
+    Eigen::Map<Matrix> p = matrix();
+    for (int c = 0; c < extent_; ++c) {
       for (int r = 0; r < c; ++r) {
-        const double both = 0.5 * (covariance_(r, c) + covariance_(c, r));
-        covariance_(r, c) = both;
-        covariance_(c, r) = both;
+        const double both = 0.5 * (p(r, c) + p(c, r));
+        p(r, c) = both;
+        p(c, r) = both;
       }
     }
   }
 
   Vector mean_ = Vector::Zero();
-  Matrix covariance_ = Matrix::Zero();
+  std::array<double, static_cast<std::size_t>(N* N)>
+      elements_{};  ///< of the covariance: Eigen limits the size of its own storage
+  int extent_ = 0;  ///< all components from here on are inactive
 };
 
 }  // namespace vbar::fsw::estimation

@@ -9,10 +9,13 @@ Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_config
   const auto positive = [](double x, double maximum) { return x > 0.0 && x <= maximum; };
   const Vector3 servicer_antenna = vector(c.servicer_antenna_body_m);
   const Vector3 target_antenna = vector(c.target_antenna_body_m);
+  const auto within = [](double x, double minimum, double maximum) { return x >= minimum && x <= maximum; };
+  const bool wander_usable = within(c.phase_wander_sigma_m, 0.0, 1.0) && within(c.phase_wander_time_s, 0.0, 1e6) &&
+                             (c.phase_wander_sigma_m == 0.0 || c.phase_wander_time_s > 0.0);
   const bool usable = c.source >= 0 && c.source <= 3 && positive(c.min_success_rate, 1.0) && c.min_ratio >= 1.0 &&
                       c.min_ratio <= 1e6 && is_usable(Duration{c.pair_wait_ns}) && servicer_antenna.norm() < 100.0 &&
                       target_antenna.norm() < 100.0 && positive(c.antenna_offset_sigma_m, 10.0) &&
-                      positive(c.phase_centre_jitter_m, 1.0) && positive(c.code_bias_sigma_m, 1e3) &&
+                      positive(c.phase_centre_jitter_m, 1.0) && wander_usable && positive(c.code_bias_sigma_m, 1e3) &&
                       positive(c.start_velocity_sigma, 1e3) && positive(c.acceleration_sigma, 1.0) &&
                       positive(c.acceleration_time_s, 1e6) && positive(c.maneuver_sigma, 1.0) &&
                       c.maneuver_sigma_relative >= 0.0 && c.maneuver_sigma_relative <= 1.0 &&
@@ -25,6 +28,8 @@ Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_config
                        .acceleration_time_s = c.acceleration_time_s,
                        .antenna_offset_sigma_m = c.antenna_offset_sigma_m,
                        .phase_centre_jitter_m = c.phase_centre_jitter_m,
+                       .phase_wander_sigma_m = c.phase_wander_sigma_m,
+                       .phase_wander_time_s = c.phase_wander_time_s,
                        .code_bias_sigma_m = c.code_bias_sigma_m,
                        .maneuver_sigma = c.maneuver_sigma,
                        .maneuver_sigma_relative = c.maneuver_sigma_relative};

@@ -80,6 +80,7 @@ Status Inbox::file(const PacketView& packet) {
     case Apid::kTelemetryObjects:
     case Apid::kTelemetryPose:
     case Apid::kStepReport:
+    case Apid::kWiredBytes:
       break;
   }
   return Status::kWrongType;

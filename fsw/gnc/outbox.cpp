@@ -40,6 +40,7 @@ std::size_t Outbox::sequence_slot(packets::Apid apid) {
     case Apid::kTargetApriori:
     case Apid::kPoseConfiguration:
     case Apid::kStepReport:
+    case Apid::kWiredBytes:
       break;
   }
   return 0;

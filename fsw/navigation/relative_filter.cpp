@@ -120,8 +120,22 @@ void RelativeFilter::advance_to(GpsTime time, const orbit::CartesianState& servi
     noise(kAcceleration + axis, kAcceleration + axis) += (1.0 - decay * decay) * acceleration_variance;
   }
   estimate_.transform_head<kHead>(regression.mean, regression.jacobian, noise);
+  advance_wander(dt);
   epoch_ = time;
   if (!estimate_.is_sound()) reset();
+}
+
+/// Gauss-Markov decay; the variance tends to that of a difference of two receivers.
+void RelativeFilter::advance_wander(double dt) {
+  if (settings_.phase_wander_sigma_m == 0.0) return;
+  const double decay = math::exp(-dt / settings_.phase_wander_time_s);
+  const double variance = 2.0 * settings_.phase_wander_sigma_m * settings_.phase_wander_sigma_m;
+  for (std::size_t place = 0; place < kPhaseChannels; ++place) {
+    const int index = wander_index(place);
+    if (estimate_.is_idle(index)) continue;
+    estimate_.scale(index, decay);
+    estimate_.add_noise(index, (1.0 - decay * decay) * variance);
+  }
 }
 
 void RelativeFilter::add_servicer_impulse(const Vector3& dv_eci) {
@@ -136,8 +150,7 @@ RelativeUpdate RelativeFilter::take(const DifferentialEpoch& epoch, const Receiv
                                     const ReceiverPlatform& target) {
   RelativeUpdate update;
   if (!started_ || epoch.count == 0) return update;
-  channels_.give_back_unseen(epoch.time,
-                             [this](std::size_t place) { estimate_.reset(ambiguity_index(place), 0.0, 0.0); });
+  channels_.give_back_unseen(epoch.time, [this](std::size_t place) { deactivate(place); });
   renew_epoch_states(servicer, target);
   if (linearise(epoch, servicer, target) != Status::kOk) {
     reset();
@@ -205,6 +218,19 @@ double RelativeFilter::residual(const Row& row, double measured) const {
   return measured - row.predicted - row.jacobian.dot(estimate_.mean().head<kGeometry>() - reference_);
 }
 
+/// Measured minus predicted phase of a channel, all states included.
+double RelativeFilter::phase_residual(const Row& row, std::size_t place, double measured) const {
+  const double offset = estimate_.mean(ambiguity_index(place)) + estimate_.mean(wander_index(place));
+  return residual(row, measured) - offset;
+}
+
+RelativeFilter::Estimate::Vector RelativeFilter::phase_jacobian(const Row& row, std::size_t place) const {
+  Estimate::Vector jacobian = full_jacobian(row);
+  jacobian(ambiguity_index(place)) = 1.0;
+  jacobian(wander_index(place)) = 1.0;
+  return jacobian;
+}
+
 RelativeFilter::Estimate::Vector RelativeFilter::full_jacobian(const Row& row) const {
   Estimate::Vector jacobian = Estimate::Vector::Zero();
   jacobian.head<kGeometry>() = row.jacobian;
@@ -254,8 +280,7 @@ void RelativeFilter::find_slips_by_median(const DifferentialEpoch& epoch, Relati
   for (std::size_t n = 0; n < epoch.count; ++n) {
     const std::optional<std::size_t>& place = rows_[n].channel;
     if (!place || channels_[*place].epochs == 0) continue;
-    const double value = residual(rows_[n], epoch.observations[n].phase_m) - estimate_.mean(ambiguity_index(*place));
-    residuals.add({n, value});
+    residuals.add({n, phase_residual(rows_[n], *place, epoch.observations[n].phase_m)});
   }
   if (residuals.count < kMinForMedian) return;
   const std::size_t middle = residuals.median().observation;
@@ -263,9 +288,8 @@ void RelativeFilter::find_slips_by_median(const DifferentialEpoch& epoch, Relati
     const std::size_t n = residuals.sorted[k].observation;
     if (n == middle) continue;
     const std::size_t place = *rows_[n].channel;
-    Estimate::Vector jacobian = full_jacobian(rows_[n]) - full_jacobian(rows_[middle]);
-    jacobian(ambiguity_index(place)) += 1.0;
-    jacobian(ambiguity_index(*rows_[middle].channel)) -= 1.0;
+    const Estimate::Vector jacobian =
+        phase_jacobian(rows_[n], place) - phase_jacobian(rows_[middle], *rows_[middle].channel);
     const double sigma_m = math::hypot(epoch.observations[n].phase_sigma_m, epoch.observations[middle].phase_sigma_m);
     const estimation::Innovation apart =
         estimate_.predict(jacobian, residuals.sorted[k].value - residuals.median().value, sigma_m * sigma_m);
@@ -283,12 +307,10 @@ void RelativeFilter::use_phases(const DifferentialEpoch& epoch, RelativeUpdate& 
       const std::optional<std::size_t>& place = rows_[n].channel;
       if (!place || (channels_[*place].epochs > 0) != known) continue;
       const DifferentialObservation& observation = epoch.observations[n];
-      const int index = ambiguity_index(*place);
-      if (!known) begin_ambiguity(*place, residual(rows_[n], observation.phase_m));
-      Estimate::Vector jacobian = full_jacobian(rows_[n]);
-      jacobian(index) = 1.0;
+      if (!known) begin_channel(*place, residual(rows_[n], observation.phase_m));
+      const Estimate::Vector jacobian = phase_jacobian(rows_[n], *place);
       const double variance = observation.phase_sigma_m * observation.phase_sigma_m + rows_[n].extra_variance;
-      const double value = residual(rows_[n], observation.phase_m) - estimate_.mean(index);
+      const double value = phase_residual(rows_[n], *place, observation.phase_m);
       const estimation::Innovation innovation = estimate_.update(jacobian, value, variance, known ? kGate : kNoGate);
       if (!innovation.accepted) {
         ++update.phases_refused;
@@ -305,13 +327,20 @@ void RelativeFilter::use_phases(const DifferentialEpoch& epoch, RelativeUpdate& 
   }
 }
 
-void RelativeFilter::begin_ambiguity(std::size_t place, double value_m) {
+/// The wander starts with its stationary variance: a restarted channel may have assigned a slip to it.
+void RelativeFilter::begin_channel(std::size_t place, double value_m) {
   estimate_.reset(ambiguity_index(place), value_m, kAmbiguitySigma_m * kAmbiguitySigma_m);
+  estimate_.reset(wander_index(place), 0.0, 2.0 * settings_.phase_wander_sigma_m * settings_.phase_wander_sigma_m);
+}
+
+void RelativeFilter::deactivate(std::size_t place) {
+  estimate_.reset(ambiguity_index(place), 0.0, 0.0);
+  estimate_.reset(wander_index(place), 0.0, 0.0);
 }
 
 void RelativeFilter::lose(std::size_t place) {
   channels_.restart(place);
-  estimate_.reset(ambiguity_index(place), 0.0, 0.0);
+  deactivate(place);
 }
 
 void RelativeFilter::contradict(std::size_t place, RelativeUpdate& update) {

@@ -8,6 +8,11 @@
 // offsets are constant in each body: for a spacecraft with constant attitude they are equivalent to a displacement, and
 // only the dynamics separate the two - radial and cross-track well, along-track not at all. They are therefore
 // estimated, and their unobservable part stays in the covariance.
+//
+// Carrier phases may carry a time-correlated error beside their white noise (an RF generator's channels, multipath):
+// a phase is then range + ambiguity + wander + noise, with one first-order Gauss-Markov state a channel. An average
+// over its correlation time does not reduce it, which a filter that takes it for white would assume. The integers are
+// held on the ambiguities alone; their covariance is marginal, so that the integer validation includes the wander.
 
 #include <array>
 #include <cstdint>
@@ -29,6 +34,8 @@ struct RelativeFilterSettings {
   double acceleration_time_s = 1500.0;     ///< their correlation time
   double antenna_offset_sigma_m = 3.2e-3;  ///< per axis of each antenna with respect to its nominal position
   double phase_centre_jitter_m = 1.0e-3;   ///< per axis of each antenna, from epoch to epoch
+  double phase_wander_sigma_m = 0.0;       ///< of the phase of one receiver's channel; 0: phase noise is white
+  double phase_wander_time_s = 0.0;        ///< its correlation time, above 0 where the sigma is
   double code_bias_sigma_m = 2.0;          ///< between signals, of the difference of two receivers
   double maneuver_sigma = 2e-6;            ///< m/s, per axis of a burn
   double maneuver_sigma_relative = 2e-3;   ///< of its size
@@ -80,8 +87,11 @@ class RelativeFilter {
   struct Ambiguities {
     static constexpr int kSize = static_cast<int>(kPhaseChannels);  ///< m, single differences
   };
+  struct PhaseWander {
+    static constexpr int kSize = static_cast<int>(kPhaseChannels);  ///< m, single differences; idle without wander
+  };
   using State = estimation::Layout<RelativeOrbit, EmpiricalAcceleration, ServicerAntenna, TargetAntenna,
-                                   PhaseCentreJitter, ClockDifference, CodeBiases, Ambiguities>;
+                                   PhaseCentreJitter, ClockDifference, CodeBiases, Ambiguities, PhaseWander>;
   using Estimate = estimation::Estimate<State::kSize>;
 
   explicit RelativeFilter(const RelativeFilterSettings& settings = {}) : settings_(settings) {}
@@ -124,6 +134,10 @@ class RelativeFilter {
   [[nodiscard]] static constexpr int ambiguity_index(std::size_t place) {
     return State::offset<Ambiguities>() + static_cast<int>(place);
   }
+  /// Index in the estimate of a channel's wander.
+  [[nodiscard]] static constexpr int wander_index(std::size_t place) {
+    return State::offset<PhaseWander>() + static_cast<int>(place);
+  }
   [[nodiscard]] Vector3 position_eci() const { return estimate_.mean().head<3>(); }
   [[nodiscard]] Vector3 velocity_eci() const { return estimate_.mean().segment<3>(3); }
 
@@ -146,11 +160,15 @@ class RelativeFilter {
   void follow_channels(const DifferentialEpoch& epoch, RelativeUpdate& update);
   void find_slips_by_median(const DifferentialEpoch& epoch, RelativeUpdate& update);
   void use_phases(const DifferentialEpoch& epoch, RelativeUpdate& update);
-  void begin_ambiguity(std::size_t place, double value_m);
+  void begin_channel(std::size_t place, double value_m);
+  void deactivate(std::size_t place);
+  void advance_wander(double dt);
   void lose(std::size_t place);
   void contradict(std::size_t place, RelativeUpdate& update);
   [[nodiscard]] double residual(const Row& row, double measured) const;
+  [[nodiscard]] double phase_residual(const Row& row, std::size_t place, double measured) const;
   [[nodiscard]] Estimate::Vector full_jacobian(const Row& row) const;
+  [[nodiscard]] Estimate::Vector phase_jacobian(const Row& row, std::size_t place) const;
 
   RelativeFilterSettings settings_;
   bool started_ = false;

@@ -69,6 +69,51 @@ TEST(Estimate, ScalarUpdatesAreTheLeastSquaresSolution) {
   }
 }
 
+// Components become active and inactive in any order, the last ones too: the operations then run over others, with the
+// results of the textbook's dense equations.
+TEST(Estimate, ActivationInAnyOrderIsTheDenseFilter) {
+  constexpr int kN = 9;
+  using Matrix = Eigen::Matrix<double, kN, kN>;
+  using Vector = Eigen::Matrix<double, kN, 1>;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::uniform_int_distribution<int> component(0, kN - 1);
+  Estimate<kN> estimate;
+  Vector mean = Vector::Zero();
+  Matrix covariance = Matrix::Zero();
+  for (int step = 0; step < 400; ++step) {
+    const int i = component(random);
+    const auto scaled = [&](double factor) {
+      Matrix scaling = Matrix::Identity();
+      scaling(i, i) = factor;
+      covariance = scaling * covariance * scaling;
+      mean(i) *= factor;
+    };
+    const bool is_off = step % 3 == 0;
+    estimate.reset(i, 0.5 * i, is_off ? 0.0 : 2.0);
+    scaled(0.0);
+    mean(i) = 0.5 * i;
+    covariance(i, i) = is_off ? 0.0 : 2.0;
+    const int k = component(random);
+    if (step % 5 == 0) estimate.add_noise(k, 0.3);
+    if (step % 5 == 0) covariance(k, k) += 0.3;
+    estimate.scale(i, 0.8);
+    scaled(0.8);
+    Vector h;
+    for (int n = 0; n < kN; ++n) h(n) = normal(random);
+    const double z = normal(random);
+    const Vector gain = covariance * h / (h.dot(covariance * h) + 0.25);
+    estimate.update(h, z - h.dot(estimate.mean()), 0.25, kNoGate);
+    mean += gain * (z - h.dot(mean));
+    covariance -= gain * (h.transpose() * covariance).eval();
+    ASSERT_TRUE(estimate.is_sound());
+    for (int c = 0; c < kN; ++c) {
+      ASSERT_NEAR(estimate.mean(c), mean(c), 1e-11) << step;  // numbers near 1, rounding of a few hundred updates
+      for (int r = 0; r < kN; ++r) ASSERT_NEAR(estimate.covariance(r, c), covariance(r, c), 1e-12) << step;
+    }
+  }
+}
+
 TEST(Estimate, IdleComponentsStayIdle) {
   Estimate<4> estimate;
   estimate.reset(0, 1.0, 4.0);

@@ -3,6 +3,7 @@
 // what a filter must get right before it meets an emulator.
 
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -48,9 +49,13 @@ struct SyntheticReceiver {
   double code_sigma_m = 0.4;
   double phase_sigma_m = 0.7e-3;
   double jitter_m = 0.0;
+  double wander_sigma_m = 0.0;  ///< Gauss-Markov error of each phase
+  double wander_time_s = 60.0;
   std::mt19937_64 random{1};
   std::vector<double> cycles = std::vector<double>(80, 0.0);  ///< ambiguities
   std::vector<double> lock_start_s = std::vector<double>(80, 0.0);
+  std::vector<double> wander_m = std::vector<double>(80, 0.0);
+  std::optional<GpsTime> wander_time;
 
   orbit::CartesianState state_at(GpsTime time) const {
     return propagate_accelerated(start, Vector3::Zero(), seconds(time - start_time()));
@@ -64,11 +69,22 @@ struct SyntheticReceiver {
     return R_rtn.transpose() * R_rtn_body;
   }
 
+  /// The wander of all phases at `tag`, whether they are in view or not.
+  void advance_wander(GpsTime tag) {
+    if (wander_sigma_m == 0.0) return;
+    std::normal_distribution<double> normal;
+    const double decay = wander_time ? std::exp(-seconds(tag - *wander_time) / wander_time_s) : 0.0;
+    for (double& wander : wander_m)
+      wander = decay * wander + std::sqrt(1.0 - decay * decay) * wander_sigma_m * normal(random);
+    wander_time = tag;
+  }
+
   gnss::ObservationEpoch observe(GpsTime tag, const std::vector<gnss::Ephemeris>& satellites,
                                  const orbit::EarthOrientation& earth) {
     std::normal_distribution<double> normal;
     gnss::ObservationEpoch epoch;
     epoch.receiver_time = tag;
+    advance_wander(tag);
     const EarthFrame frame = EarthFrame::at(tag, earth);
     const orbit::CartesianState at_tag = state_at(tag);
     const Vector3 gravity = -3.986004415e14 / std::pow(at_tag.position_eci.norm(), 3) * at_tag.position_eci;
@@ -99,7 +115,8 @@ struct SyntheticReceiver {
         o.signal = signal;
         o.phase_usable = true;
         o.pseudorange_m = true_m + code_sigma_m * normal(random);
-        o.carrier_phase_cycles = (true_m + phase_sigma_m * normal(random)) / gnss::wavelength(signal) + cycles[channel];
+        o.carrier_phase_cycles =
+            (true_m + wander_m[channel] + phase_sigma_m * normal(random)) / gnss::wavelength(signal) + cycles[channel];
         o.pseudorange_sigma_m = code_sigma_m;
         o.phase_sigma_cycles = phase_sigma_m / gnss::wavelength(signal);
         o.lock_time_s = 1000.0 + seconds(tag - start_time()) - lock_start_s[channel];

@@ -1,0 +1,86 @@
+#include "fsw/gnc/gnss_configuration.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fsw/gnc/inbox.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+navigation_configuration good() {
+  navigation_configuration c{};
+  c.source = navigation_configuration::kSourceGnss;
+  c.resolve_ambiguities = 1;
+  c.min_success_rate = 0.999;
+  c.min_ratio = 3.0;
+  c.pair_wait_ns = 12'000'000'000;
+  c.antenna_offset_sigma_m = 3.2e-3;
+  c.phase_centre_jitter_m = 1e-3;
+  c.phase_wander_sigma_m = 0.5e-3;
+  c.phase_wander_time_s = 60.0;
+  c.code_bias_sigma_m = 2.0;
+  c.start_velocity_sigma = 0.2;
+  c.acceleration_sigma = 1e-8;
+  c.acceleration_time_s = 1500.0;
+  c.maneuver_sigma = 2e-6;
+  c.maneuver_sigma_relative = 2e-3;
+  c.earth_epoch_ns = 994'986'015'000'000'000;
+  c.ut1_minus_gps_s = -15.3;
+  return c;
+}
+
+TEST(GnssConfiguration, ReachesTheFilter) {
+  const auto settings = gnss_settings(good());
+  ASSERT_TRUE(settings.ok());
+  const navigation::RelativeFilterSettings& relative = settings.value().relative;
+  EXPECT_EQ(relative.antenna_offset_sigma_m, 3.2e-3);
+  EXPECT_EQ(relative.phase_centre_jitter_m, 1e-3);
+  EXPECT_EQ(relative.phase_wander_sigma_m, 0.5e-3);
+  EXPECT_EQ(relative.phase_wander_time_s, 60.0);
+  EXPECT_EQ(relative.acceleration_time_s, 1500.0);
+  EXPECT_EQ(settings.value().ambiguities.min_ratio, 3.0);
+  EXPECT_EQ(settings.value().pair_wait.ns, 12'000'000'000);
+}
+
+TEST(GnssConfiguration, WithoutWanderItsTimeMayBeZero) {
+  navigation_configuration c = good();
+  c.phase_wander_sigma_m = c.phase_wander_time_s = 0.0;
+  EXPECT_TRUE(gnss_settings(c).ok());
+}
+
+TEST(GnssConfiguration, InvalidFieldsAreRefused) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  using Spoil = std::function<void(navigation_configuration&)>;
+  const std::vector<std::pair<const char*, Spoil>> spoils = {
+      {"a source that does not exist", [](auto& c) { c.source = 4; }},
+      {"a ratio below one", [](auto& c) { c.min_ratio = 0.5; }},
+      {"no jitter", [](auto& c) { c.phase_centre_jitter_m = 0.0; }},
+      {"a negative wander", [](auto& c) { c.phase_wander_sigma_m = -1e-3; }},
+      {"a wander of metres", [](auto& c) { c.phase_wander_sigma_m = 2.0; }},
+      {"a wander that is not a number", [](auto& c) { c.phase_wander_sigma_m = kNan; }},
+      {"a wander without a time", [](auto& c) { c.phase_wander_time_s = 0.0; }},
+      {"a negative time", [](auto& c) { c.phase_wander_time_s = -60.0; }},
+      {"an infinite time", [](auto& c) { c.phase_wander_time_s = kInfinity; }},
+      {"a time that is not a number", [](auto& c) { c.phase_wander_time_s = kNan; }},
+      {"a time that is not a number, without wander",
+       [](auto& c) {
+         c.phase_wander_sigma_m = 0.0;
+         c.phase_wander_time_s = kNan;
+       }},
+  };
+  for (const auto& [what, spoil] : spoils) {
+    navigation_configuration c = good();
+    spoil(c);
+    EXPECT_EQ(gnss_settings(c).status(), Status::kOutOfRange) << what;
+  }
+}
+
+}  // namespace
+}  // namespace vbar::fsw::gnc

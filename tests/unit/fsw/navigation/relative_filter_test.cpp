@@ -1,0 +1,227 @@
+// The filter's phase wander against generalised least squares. Two coincident spacecraft of known orbit leave only the
+// clock of each epoch, the ambiguities and the wander unknown; channels of equal noise are exchangeable, so that the
+// difference of two of them depends on their own phases only: a constant in Gauss-Markov and white noise.
+
+#include "fsw/navigation/relative_filter.h"
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+#include "tests/unit/fsw/navigation/cooperating_pair.h"
+
+namespace vbar::fsw::navigation {
+namespace {
+
+constexpr std::size_t kSatellites = 5;
+constexpr double kWander_m = 1.5e-3;
+constexpr double kWanderTime_s = 60.0;
+constexpr double kPhase_m = 0.9e-3;  // single difference
+constexpr double kCycles = 15.0;     // of each channel against that before it
+// Orbit, antennas and prior of the ambiguities contribute 1e-4 of the variances below.
+constexpr double kTolerance = 5e-4;
+
+RelativeFilterSettings known_orbit(double wander_sigma_m) {
+  RelativeFilterSettings settings;
+  settings.start_velocity_sigma = 1e-12;
+  settings.acceleration_sigma = 1e-15;
+  settings.antenna_offset_sigma_m = 1e-9;
+  settings.phase_centre_jitter_m = 1e-9;
+  settings.phase_wander_sigma_m = wander_sigma_m;
+  settings.phase_wander_time_s = wander_sigma_m > 0.0 ? kWanderTime_s : 0.0;
+  return settings;
+}
+
+class KnownOrbit {
+ public:
+  explicit KnownOrbit(double wander_sigma_m = kWander_m, double phase_sigma_m = kPhase_m)
+      : filter(known_orbit(wander_sigma_m)), phase_sigma_m_(phase_sigma_m) {
+    filter.begin(time, Vector3::Zero(), 1e-9, 0.0);
+  }
+
+  /// The next epoch, `dt_s` after the last; each phase is the ambiguity plus noise that no gate refuses.
+  void take(double dt_s, std::size_t satellites = kSatellites) {
+    time = time + nearest_duration(dt_s);
+    // In two steps, as with a burn between.
+    filter.advance_to(time - nearest_duration(0.3 * dt_s), orbit_);
+    orbit_ = propagate_accelerated(orbit_, Vector3::Zero(), 0.7 * dt_s);
+    filter.advance_to(time, orbit_);
+    orbit_ = propagate_accelerated(orbit_, Vector3::Zero(), 0.3 * dt_s);
+    DifferentialEpoch epoch;
+    epoch.time = time;
+    epoch.count = satellites;
+    const double clock_m = 5.0 * normal_(random_);
+    for (std::size_t k = 0; k < satellites; ++k) {
+      DifferentialObservation& o = epoch.observations[k];
+      o.satellite = {gnss::Constellation::kGps, static_cast<std::uint8_t>(k + 1)};
+      o.code_m = clock_m;
+      o.code_sigma_m = 100.0;
+      o.phase_usable = true;
+      o.phase_m = clock_m + kCycles * gnss::wavelength(gnss::Signal::kGpsL1) * static_cast<double>(k) +
+                  0.5e-3 * normal_(random_);
+      o.phase_sigma_m = phase_sigma_m_;
+      o.servicer_lock_s = o.target_lock_s = seconds(time - locked_since);
+      const double angle = 1.2 * static_cast<double>(k);
+      o.servicer_source_eci = o.target_source_eci = 2.66e7 * Vector3(std::cos(angle), std::sin(angle), 0.5);
+      phases[k].push_back(o.phase_m);
+    }
+    times.push_back(seconds(time - GpsTime{}));
+    const ReceiverPlatform platform{.state = orbit_};
+    filter.take(epoch, platform, platform);
+  }
+
+  /// All carriers are acquired again at `time`.
+  void lose_lock() {
+    locked_since = time;
+    times.clear();
+    for (std::vector<double>& of_satellite : phases) of_satellite.clear();
+  }
+
+  /// Mean and variance of the difference of two channels' components.
+  template <class Index>
+  [[nodiscard]] double mean(const Index& index, std::size_t a, std::size_t b) const {
+    return filter.estimate().mean(index(a)) - filter.estimate().mean(index(b));
+  }
+  template <class Index>
+  [[nodiscard]] double variance(const Index& index, std::size_t a, std::size_t b) const {
+    const RelativeFilter::Estimate& e = filter.estimate();
+    return e.variance(index(a)) - 2.0 * e.covariance(index(a), index(b)) + e.variance(index(b));
+  }
+
+  RelativeFilter filter;
+  GpsTime time = test::start_time();
+  GpsTime locked_since = time - duration_of_seconds(1000);
+  std::vector<double> times;
+  std::array<std::vector<double>, kSatellites> phases;
+
+ private:
+  double phase_sigma_m_;
+  orbit::CartesianState orbit_ = test::servicer_start();
+  std::mt19937_64 random_{17};
+  std::normal_distribution<double> normal_;
+};
+
+/// A constant `ambiguity` and the Gauss-Markov value `wander` at the last time, of the difference of two channels.
+struct Reference {
+  double ambiguity, ambiguity_variance;
+  double wander, wander_variance;
+};
+
+/// `known_ambiguity`: not estimated.
+Reference least_squares(const KnownOrbit& flight, std::size_t a, std::size_t b,
+                        const double* known_ambiguity = nullptr) {
+  const auto n = static_cast<Eigen::Index>(flight.times.size());
+  Eigen::MatrixXd covariance(n, n);
+  Eigen::VectorXd difference(n), with_last(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto at = [&](Eigen::Index k) { return flight.times[static_cast<std::size_t>(k)]; };
+    // Two receivers, two channels.
+    const auto wander = [&](Eigen::Index j) {
+      return 4.0 * kWander_m * kWander_m * std::exp(-std::abs(at(i) - at(j)) / kWanderTime_s);
+    };
+    for (Eigen::Index j = 0; j < n; ++j) covariance(i, j) = wander(j) + (i == j ? 2.0 * kPhase_m * kPhase_m : 0.0);
+    with_last(i) = wander(n - 1);
+    difference(i) = flight.phases[a][static_cast<std::size_t>(i)] - flight.phases[b][static_cast<std::size_t>(i)];
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
+  const Eigen::VectorXd weights = factor.solve(ones);
+  const Eigen::VectorXd gain = factor.solve(with_last);
+  Reference reference{};
+  reference.ambiguity_variance = known_ambiguity ? 0.0 : 1.0 / weights.sum();
+  reference.ambiguity = known_ambiguity ? *known_ambiguity : reference.ambiguity_variance * weights.dot(difference);
+  reference.wander = gain.dot(difference - reference.ambiguity * ones);
+  const double left = gain.sum();
+  reference.wander_variance =
+      4.0 * kWander_m * kWander_m - gain.dot(with_last) + left * left * reference.ambiguity_variance;
+  return reference;
+}
+
+void expect_reference(const KnownOrbit& flight, const Reference& reference, std::size_t a, std::size_t b) {
+  const auto ambiguity = RelativeFilter::ambiguity_index;
+  const auto wander = RelativeFilter::wander_index;
+  EXPECT_NEAR(flight.variance(ambiguity, a, b), reference.ambiguity_variance,
+              kTolerance * reference.ambiguity_variance);
+  EXPECT_NEAR(flight.mean(ambiguity, a, b), reference.ambiguity, 1e-3 * std::sqrt(reference.ambiguity_variance));
+  EXPECT_NEAR(flight.variance(wander, a, b), reference.wander_variance, kTolerance * reference.wander_variance);
+  EXPECT_NEAR(flight.mean(wander, a, b), reference.wander, 1e-3 * std::sqrt(reference.wander_variance));
+}
+
+TEST(PhaseWander, AmbiguitiesAndWanderAreTheLeastSquaresSolution) {
+  KnownOrbit flight;
+  for (const double dt_s : {10.0, 10.0, 10.0, 30.0, 1.0, 5.0, 100.0, 10.0, 10.0, 20.0}) {
+    flight.take(dt_s);
+    for (const std::size_t k : {1U, 4U}) expect_reference(flight, least_squares(flight, k, 0), k, 0);
+  }
+}
+
+// The best mean of n samples of a Gauss-Markov process of correlation e from one to the next has the variance
+// sigma^2 (1 + e) / (n - (n - 2) e); n of them as white noise would have sigma^2 / n, less than a sixth of it here.
+TEST(PhaseWander, AnAverageIsAsUncertainAsThatOfTheProcess) {
+  KnownOrbit flight(kWander_m, 1e-7);
+  const double e = std::exp(-10.0 / kWanderTime_s);
+  for (int n = 1; n <= 30; ++n) {
+    flight.take(10.0);
+    const double expected = 4.0 * kWander_m * kWander_m * (1.0 + e) / (n - (n - 2) * e);
+    EXPECT_NEAR(flight.variance(RelativeFilter::ambiguity_index, 2, 0), expected, 1e-3 * expected) << n;
+  }
+}
+
+TEST(PhaseWander, HeldIntegersLeaveItFree) {
+  KnownOrbit flight;
+  for (int k = 0; k < 6; ++k) flight.take(10.0);
+  for (const std::size_t k : {1U, 2U, 3U, 4U}) flight.filter.hold(k, 0, kCycles * static_cast<double>(k));
+  const double known_m = kCycles * gnss::wavelength(gnss::Signal::kGpsL1);
+  for (int k = 0; k < 12; ++k) {
+    flight.take(10.0);
+    const Reference reference = least_squares(flight, 1, 0, &known_m);
+    EXPECT_LT(flight.variance(RelativeFilter::ambiguity_index, 1, 0), 1.001e-8);
+    // Integers are held to 0.1 mm, a hundredth of the wander's variance.
+    EXPECT_NEAR(flight.variance(RelativeFilter::wander_index, 1, 0), reference.wander_variance,
+                0.02 * reference.wander_variance);
+    EXPECT_NEAR(flight.mean(RelativeFilter::wander_index, 1, 0), reference.wander, 2e-4);
+  }
+}
+
+TEST(PhaseWander, ARestartedChannelForgetsIt) {
+  KnownOrbit flight;
+  for (int k = 0; k < 8; ++k) flight.take(10.0);
+  flight.lose_lock();
+  for (int k = 0; k < 5; ++k) {
+    flight.take(10.0);
+    expect_reference(flight, least_squares(flight, 3, 0), 3, 0);
+  }
+}
+
+TEST(PhaseWander, AReleasedChannelIsInactive) {
+  KnownOrbit flight;
+  for (int k = 0; k < 3; ++k) flight.take(10.0);
+  const std::size_t last = kSatellites - 1;
+  EXPECT_FALSE(flight.filter.estimate().is_idle(RelativeFilter::wander_index(last)));
+  for (int k = 0; k < 13; ++k) flight.take(10.0, last);
+  EXPECT_TRUE(flight.filter.estimate().is_idle(RelativeFilter::wander_index(last)));
+  EXPECT_TRUE(flight.filter.estimate().is_idle(RelativeFilter::ambiguity_index(last)));
+  EXPECT_FALSE(flight.filter.estimate().is_idle(RelativeFilter::wander_index(0)));
+  flight.filter.release(0.05);
+  for (std::size_t k = 0; k < kPhaseChannels; ++k)
+    EXPECT_TRUE(flight.filter.estimate().is_idle(RelativeFilter::wander_index(k))) << k;
+}
+
+TEST(PhaseWander, NoneIsEstimatedWithoutASigma) {
+  KnownOrbit flight(0.0);
+  for (int k = 0; k < 3; ++k) flight.take(10.0);
+  for (std::size_t k = 0; k < kPhaseChannels; ++k) {
+    EXPECT_TRUE(flight.filter.estimate().is_idle(RelativeFilter::wander_index(k))) << k;
+    EXPECT_EQ(flight.filter.estimate().mean(RelativeFilter::wander_index(k)), 0.0) << k;
+  }
+  // White noise of n phases.
+  EXPECT_NEAR(flight.variance(RelativeFilter::ambiguity_index, 1, 0), 2.0 * kPhase_m * kPhase_m / 3.0,
+              kTolerance * kPhase_m * kPhase_m);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::navigation
