@@ -27,6 +27,14 @@ struct StepReport {
   std::uint32_t stack_bytes = 0;  ///< high-water mark since start-up; 0 if not measured
 };
 
+/// Of a receiver that is wired to the flight computer, since it was started.
+struct WiredStatistics {
+  std::uint64_t bytes = 0;     ///< given to the flight software
+  std::uint64_t dropped = 0;   ///< by the flight computer, because its buffer was full
+  std::uint64_t timeouts = 0;  ///< steps that began before all bytes that were sent had arrived
+  std::uint64_t missing = 0;   ///< bytes that were sent and had not arrived by these timeouts
+};
+
 /// Since the flight computer was started, both directions and both ends of the link.
 struct LinkStatistics {
   std::uint64_t bytes_sent = 0;         ///< by the host, as encoded on the wire
@@ -36,10 +44,13 @@ struct LinkStatistics {
   std::uint64_t frames_duplicated = 0;  ///< valid, but received before
   std::uint64_t strangers_ignored = 0;  ///< datagrams from an address other than that of the flight computer
   std::uint64_t polls = 0;              ///< number of polls for an overdue answer
+  WiredStatistics wired = {};
 };
 
 struct StepResult {
   std::vector<Packet> packets;  ///< from the flight software, in its order; the step report is not among them
+  /// Inputs that the flight computer received on a line of its own and gave to the flight software before the tick.
+  std::vector<Packet> wired = {};
   StepReport report;
   double compute_wall_s = 0.0;  ///< wall-clock time of the whole exchange, link included
 };

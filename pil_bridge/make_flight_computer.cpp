@@ -100,7 +100,39 @@ RemoteParts parts_for(const FlightComputerOptions& options) {
   parts.name = full_name(options);
   parts.timing = options.timing;
   parts.spacecraft = options.spacecraft;
+  parts.receiver = options.receiver;
   return parts;
+}
+
+/// Arguments of vbar_flight for its link and for the receiver that is wired to it.
+std::vector<std::string> flight_arguments(const ChildLink& link, const FlightComputerOptions& options) {
+  std::vector<std::string> arguments = link.flight_arguments;
+  if (options.receiver) arguments.insert(arguments.end(), {"--receiver", options.receiver->device});
+  return arguments;
+}
+
+/// A receiver is wired only to a flight computer that has a line for it.
+void check_receiver(const FlightComputerOptions& options) {
+  if (!options.receiver) return;
+  const std::string wired = "sensors.gnss.wired = \"board\": ";
+  if (options.target == Target::kInProcess)
+    throw FlightComputerError(wired +
+                              "the flight computer in_process has no line for a receiver; set flight_computer.target "
+                              "to host_process, zynq_qemu, zynq_linux_qemu or board");
+  if (options.target == Target::kZynqQemu && options.link != LinkKind::kUdp)
+    throw FlightComputerError(wired +
+                              "the receiver needs UART0 of zynq_qemu, which is its link; set flight_computer.link to "
+                              "udp");
+  if (options.target != Target::kBoard && options.receiver->device.empty())
+    throw FlightComputerError(wired + "the device of the receiver's log port is unknown");
+}
+
+/// Discards what a line has brought before the flight computer was started: an emulator would pass a part of it on.
+void discard_received(const io::WiredReceiver& receiver) {
+  const auto line = io::open_serial(receiver.device, receiver.baud);
+  constexpr std::chrono::milliseconds kQuiet{20};
+  while (!line->read(Clock::now() + kQuiet).empty()) {
+  }
 }
 
 std::unique_ptr<io::ChildProcess> start(const std::vector<std::string>& arguments,
@@ -149,7 +181,8 @@ std::unique_ptr<FlightComputer> make_host_process(const FlightComputerOptions& o
   const std::string image = find_image(options);
   ChildLink link = make_child_link(options);
   std::vector<std::string> arguments{image};
-  arguments.insert(arguments.end(), link.flight_arguments.begin(), link.flight_arguments.end());
+  const auto of_flight = flight_arguments(link, options);
+  arguments.insert(arguments.end(), of_flight.begin(), of_flight.end());
   RemoteParts parts = parts_for(options);
   parts.process = start(arguments, only(std::move(link.child_end)));
   parts.transport = std::move(link.transport);
@@ -160,19 +193,21 @@ std::unique_ptr<FlightComputer> make_zynq_linux_qemu(const FlightComputerOptions
   const std::string image = find_image(options);
   ChildLink link = make_child_link(options);
   RemoteParts parts = parts_for(options);
-  parts.process = start(linux_arm_qemu(image, link.flight_arguments), only(std::move(link.child_end)));
+  parts.process = start(linux_arm_qemu(image, flight_arguments(link, options)), only(std::move(link.child_end)));
   parts.transport = std::move(link.transport);
   return std::make_unique<RemoteComputer>(std::move(parts));
 }
 
 std::unique_ptr<FlightComputer> make_zynq_qemu_over_udp(const FlightComputerOptions& options,
                                                         const std::string& image) {
+  const std::string receiver = options.receiver ? options.receiver->device : "";
+  if (options.receiver) discard_received(*options.receiver);
   for (int attempt = 1;; ++attempt) {
     // Found free, released, and taken by the emulator: another program may take it in between, hence the retry.
     const std::uint16_t port = io::bind_udp_loopback().port;
     RemoteParts parts = parts_for(options);
     parts.icount_shift = options.icount_shift;
-    parts.process = start(zynq_qemu_over_udp(image, options.icount_shift, port));
+    parts.process = start(zynq_qemu_over_udp(image, options.icount_shift, port, receiver));
     parts.transport = finish(make_udp_transport("127.0.0.1", port), options);
     try {
       return std::make_unique<RemoteComputer>(std::move(parts));
@@ -282,6 +317,7 @@ std::string software_file(const FlightComputerOptions& options) {
 }
 
 std::unique_ptr<FlightComputer> make_flight_computer(const FlightComputerOptions& options) {
+  check_receiver(options);
   try {
     switch (options.target) {
       case Target::kInProcess:

@@ -4,9 +4,11 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "host_sim/io/wired_receiver.h"
 #include "pil_bridge/flight_computer.h"
 #include "pil_bridge/link_faults.h"
 #include "pil_bridge/qemu.h"
@@ -55,6 +57,10 @@ struct FlightComputerOptions {
   std::string endpoint;
   unsigned baud = 921600;            ///< board, serial device
   std::uint16_t local_udp_port = 0;  ///< board; 0: any
+
+  /// The receiver that is wired to the flight computer, if there is one. Not in_process, and not zynq_qemu over its
+  /// UART.
+  std::optional<io::WiredReceiver> receiver = std::nullopt;
 
   double paced_bits_per_s = 0.0;  ///< serial and pty: limits the rate of the line to this; 0: unlimited
   BarrierTiming timing;

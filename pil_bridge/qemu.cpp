@@ -18,6 +18,13 @@ std::vector<std::string> zynq_machine(const std::string& elf, int icount_shift) 
           "-semihosting-config", "enable=on,target=native", "-chardev", "stdio,id=console,signal=off", "-kernel", elf};
 }
 
+/// As the value of an option: QEMU writes a comma twice.
+std::string option_value(const std::string& text) {
+  std::string value;
+  for (const char c : text) value += c == ',' ? ",," : std::string(1, c);
+  return value;
+}
+
 void append(std::vector<std::string>& arguments, std::initializer_list<std::string> more) {
   arguments.insert(arguments.end(), more);
 }
@@ -31,10 +38,12 @@ std::vector<std::string> zynq_qemu_over_serial(const std::string& elf, int icoun
   return arguments;
 }
 
-std::vector<std::string> zynq_qemu_over_udp(const std::string& elf, int icount_shift, std::uint16_t host_port) {
+std::vector<std::string> zynq_qemu_over_udp(const std::string& elf, int icount_shift, std::uint16_t host_port,
+                                            const std::string& receiver) {
   auto arguments = zynq_machine(elf, icount_shift);
+  if (!receiver.empty()) append(arguments, {"-chardev", "serial,id=receiver,path=" + option_value(receiver)});
   append(arguments,
-         {"-serial", "null", "-serial", "chardev:console", "-nic",
+         {"-serial", receiver.empty() ? "null" : "chardev:receiver", "-serial", "chardev:console", "-nic",
           "user,model=cadence_gem,hostfwd=udp:127.0.0.1:" + std::to_string(host_port) + "-" + kBoardAddressAndPort});
   return arguments;
 }

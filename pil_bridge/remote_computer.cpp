@@ -41,25 +41,36 @@ RemoteComputer::RemoteComputer(RemoteParts parts)
     : parts_(std::move(parts)),
       barrier_(*parts_.transport, draw_session(), parts_.timing, [this] { check_process(); }) {
   try {
-    board_name_ = barrier_.connect(parts_.spacecraft);
+    board_name_ = barrier_.connect(parts_.spacecraft, parts_.receiver ? parts_.receiver->baud : 0U);
   } catch (const LinkError& error) {
     fail("while starting", error.what());
   }
+  if (parts_.receiver) wired_.emplace(*parts_.receiver, parts_.timing.wired_limit);
 }
 
 StepResult RemoteComputer::step(std::uint32_t step, std::span<const Packet> packets) {
   if (!failure_.empty()) throw FlightComputerError(failure_);
   if (closed_) throw FlightComputerError("flight computer " + parts_.name + " is closed");
-  const auto start = Clock::now();
   StepResult result;
   try {
+    if (wired_) wired_->wait([this](Clock::time_point deadline) { return barrier_.receiver_count(deadline); });
+    const auto start = Clock::now();
     result.packets = barrier_.exchange(step, packets);
+    result.compute_wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+    sort_answer(result);
   } catch (const LinkError& error) {
     fail("at step " + std::to_string(step), error.what());
   }
-  result.compute_wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-  std::erase_if(result.packets, [&](const Packet& packet) { return take_step_report(packet, result.report); });
   return result;
+}
+
+void RemoteComputer::sort_answer(StepResult& result) {
+  std::erase_if(result.packets, [&](const Packet& packet) {
+    if (take_step_report(packet, result.report)) return true;
+    auto input = wired_ ? wired_->take(packet) : std::nullopt;
+    if (input) result.wired.push_back(std::move(*input));
+    return input.has_value();
+  });
 }
 
 LinkStatistics RemoteComputer::statistics() const {
@@ -71,7 +82,8 @@ LinkStatistics RemoteComputer::statistics() const {
           .frames_rejected = host.frames_rejected + line.frames_rejected + board_counters_.frames_rejected,
           .frames_duplicated = host.frames_duplicated + board_counters_.frames_duplicated,
           .strangers_ignored = line.foreign_datagrams,
-          .polls = host.polls};
+          .polls = host.polls,
+          .wired = wired_ ? wired_->statistics() : WiredStatistics{}};
 }
 
 void RemoteComputer::close() {

@@ -10,6 +10,7 @@
 #include "pil_bridge/flight_computer.h"
 #include "pil_bridge/step_barrier.h"
 #include "pil_bridge/transport.h"
+#include "pil_bridge/wired_bytes.h"
 
 namespace vbar::pil {
 
@@ -21,6 +22,7 @@ struct RemoteParts {
   std::uint8_t spacecraft = 0;
   /// Of the emulator; without it the board's timer ticks cannot be converted to instructions.
   std::optional<int> icount_shift;
+  std::optional<io::WiredReceiver> receiver = std::nullopt;  ///< that is wired to the flight computer
 };
 
 class RemoteComputer final : public FlightComputer {
@@ -41,11 +43,14 @@ class RemoteComputer final : public FlightComputer {
   /// Ends the process and throws FlightComputerError with all known information on the cause.
   [[noreturn]] void fail(const std::string& when, const std::string& cause);
   void check_process() const;
+  /// Takes everything out of the answer that is not from the flight software.
+  void sort_answer(StepResult& result);
   /// If `packet` is a step report: keeps its counters, fills `report`, and returns true.
   bool take_step_report(const Packet& packet, StepReport& report);
 
   RemoteParts parts_;
   StepBarrier barrier_;
+  std::optional<WiredBytes> wired_;
   std::string board_name_;
   std::string failure_;  ///< why this computer can no longer be used; empty while it can
   bool closed_ = false;

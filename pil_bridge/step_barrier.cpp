@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "fsw/packets/big_endian.h"
+
 namespace vbar::pil {
 namespace {
 
@@ -27,10 +29,13 @@ StepBarrier::StepBarrier(FrameTransport& transport, std::uint32_t session, const
                          std::function<void()> watch)
     : transport_(transport), session_(session), timing_(timing), watch_(std::move(watch)) {}
 
-std::string StepBarrier::connect(std::uint8_t spacecraft) {
+std::string StepBarrier::connect(std::uint8_t spacecraft, std::uint32_t receiver_baud) {
+  std::array<std::uint8_t, fsw::link::kHelloWithReceiverBytes> hello{spacecraft};
+  fsw::packets::write_big_endian(receiver_baud, std::span<std::uint8_t>(hello), fsw::link::kHelloBytes);
+  const auto payload = std::span(hello).first(receiver_baud == 0 ? fsw::link::kHelloBytes : hello.size());
   const auto give_up = Clock::now() + timing_.boot_limit;
   while (Clock::now() < give_up) {
-    send({.type = FrameType::kHello, .session = session_}, std::span(&spacecraft, 1));
+    send({.type = FrameType::kHello, .session = session_}, payload);
     const auto next_hello = std::min(give_up, Clock::now() + timing_.hello_period);
     while (const auto frame = receive(next_hello)) {
       if (frame->header.type != FrameType::kHelloAck) {
@@ -46,6 +51,17 @@ std::string StepBarrier::connect(std::uint8_t spacecraft) {
     watch_();
   }
   throw LinkError("no answer to hello within " + seconds_text(timing_.boot_limit) + " on " + transport_.description());
+}
+
+std::optional<std::uint64_t> StepBarrier::receiver_count(Clock::time_point deadline) {
+  send({.type = FrameType::kReceiverPoll, .session = session_});
+  while (const auto frame = receive(deadline)) {
+    if (frame->header.type == FrameType::kReceiverCount && frame->payload.size() == fsw::link::kReceiverCountBytes)
+      return fsw::packets::read_big_endian<std::uint64_t>(frame->payload, 0);
+    ++counters_.frames_duplicated;  // of a step that has been answered
+  }
+  watch_();
+  return std::nullopt;
 }
 
 std::vector<Packet> StepBarrier::exchange(std::uint32_t step, std::span<const Packet> packets) {
@@ -107,7 +123,8 @@ void StepBarrier::poll(Exchange& exchange) {
 }
 
 bool StepBarrier::take(Exchange& exchange, const FrameView& frame) {
-  if (frame.header.type == FrameType::kHelloAck) {  // the board received more than one hello
+  // The board received more than one hello, or more than one question for its count.
+  if (frame.header.type == FrameType::kHelloAck || frame.header.type == FrameType::kReceiverCount) {
     ++counters_.frames_duplicated;
     return false;
   }

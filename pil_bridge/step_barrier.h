@@ -29,6 +29,8 @@ struct BarrierTiming {
   std::chrono::milliseconds hello_period{100};
   /// For the first answer to a hello.
   std::chrono::milliseconds boot_limit{30000};
+  /// Without another byte of a receiver that is wired to the flight computer, while a step waits for its bytes.
+  std::chrono::milliseconds wired_limit{2000};
 };
 
 struct BarrierCounters {
@@ -44,9 +46,14 @@ class StepBarrier {
   StepBarrier(FrameTransport& transport, std::uint32_t session, const BarrierTiming& timing,
               std::function<void()> watch);
 
-  /// Sends hello until the board answers, which makes it construct the flight software of `spacecraft`; returns the
-  /// name of the board. Throws LinkError, also with the reason of a board that cannot run its flight software.
-  std::string connect(std::uint8_t spacecraft);
+  /// Sends hello until the board answers, which makes it construct the flight software of `spacecraft`, with its
+  /// receiver on a line of its own at `receiver_baud` if that is not 0; returns the name of the board. Throws
+  /// LinkError, also with the reason of a board that cannot run its flight software.
+  std::string connect(std::uint8_t spacecraft, std::uint32_t receiver_baud = 0);
+
+  /// Number of bytes that the receiver's line has brought to the board since the hello; nothing if the board has not
+  /// answered by `deadline`. Throws LinkError.
+  std::optional<std::uint64_t> receiver_count(Clock::time_point deadline);
 
   /// Sends the packets of `step` and returns the packets of the answer. Throws LinkError.
   std::vector<Packet> exchange(std::uint32_t step, std::span<const Packet> packets);

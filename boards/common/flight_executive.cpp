@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "fsw/packets/big_endian.h"
 #include "fsw/packets/messages.h"
 
 namespace vbar::boards {
@@ -27,6 +28,15 @@ std::span<const std::uint8_t> bytes_of(const char* text) {
   std::size_t length = 0;
   while (length < kMaxHelloText && text[length] != '\0') ++length;
   return {reinterpret_cast<const std::uint8_t*>(text), length};  // NOLINT: ASCII on the wire
+}
+
+/// The time of the step that `packet` starts; a status if it is not a tick.
+fsw::Result<fsw::GpsTime> tick_time(std::span<const std::uint8_t> packet) {
+  const fsw::Result<fsw::packets::PacketView> view = fsw::packets::parse_packet(packet);
+  if (!view.ok()) return view.status();
+  const fsw::Result<vbar::tick> tick = fsw::packets::decode<vbar::tick>(view.value());
+  if (!tick.ok()) return tick.status();
+  return view.value().header.time;
 }
 
 bool alignment_fits(std::size_t alignment) {
@@ -64,10 +74,15 @@ Activity FlightExecutive::on_frame(std::span<const std::uint8_t> bytes) {
       }
       return Activity::kIdle;
     case FrameType::kGoodbye:
+      close_receiver();
       return Activity::kGoodbye;
+    case FrameType::kReceiverPoll:
+      on_receiver_poll();
+      return Activity::kIdle;
     case FrameType::kHello:
     case FrameType::kHelloAck:
-      break;  // the first was handled above, the second is never sent to a board
+    case FrameType::kReceiverCount:
+      break;  // the first was handled above, the others are never sent to a board
   }
   ++counters_.rejected;
   return Activity::kIdle;
@@ -91,13 +106,15 @@ void FlightExecutive::begin_session(std::uint32_t session, std::span<const std::
   inputs_ = BatchReceiver{};
   answer_ = fsw::link::BatchSender{};
   outbox_.clear();
-  const char* const error = start_flight_software(hello_payload);
+  const char* error = start_flight_software(hello_payload);
+  if (error == nullptr) error = open_receiver(hello_payload);
   can_fly_ = error == nullptr;
   hello_text_ = can_fly_ ? platform_.name : error;
 }
 
 const char* FlightExecutive::start_flight_software(std::span<const std::uint8_t> hello_payload) {
-  if (hello_payload.size() != 1) return "error: a hello carries one byte, the spacecraft number";
+  if (hello_payload.size() != fsw::link::kHelloBytes && hello_payload.size() != fsw::link::kHelloWithReceiverBytes)
+    return "error: a hello carries the spacecraft number and, for a receiver wired to the board, its rate in baud";
   spacecraft_ = hello_payload[0];
   if (vbar_gnc_abi_version() != VBAR_GNC_ABI_VERSION) return "error: the flight software has another interface version";
   if (vbar_gnc_state_size() > gnc_state_.size())
@@ -109,6 +126,62 @@ const char* FlightExecutive::start_flight_software(std::span<const std::uint8_t>
     return "error: the flight software refused to start";
   }
   return nullptr;
+}
+
+const char* FlightExecutive::open_receiver(std::span<const std::uint8_t> hello_payload) {
+  close_receiver();
+  if (hello_payload.size() != fsw::link::kHelloWithReceiverBytes) return nullptr;
+  const auto baud = fsw::packets::read_big_endian<std::uint32_t>(hello_payload, fsw::link::kHelloBytes);
+  const bool is_possible = baud != 0 && platform_.open_receiver != nullptr && platform_.read_receiver != nullptr;
+  if (!is_possible || !platform_.open_receiver(platform_.context, baud))
+    return "error: no line to a receiver at this rate, or the line is the link to the host";
+  receiver_.open(spacecraft_);
+  return nullptr;
+}
+
+void FlightExecutive::close_receiver() {
+  receiver_.close();
+  if (platform_.open_receiver != nullptr) static_cast<void>(platform_.open_receiver(platform_.context, 0));
+}
+
+void FlightExecutive::read_receiver() {
+  if (!receiver_.is_open()) return;
+  constexpr std::size_t kPiece = 256;
+  constexpr std::size_t kMaxPieces =
+      ReceiverPort::kRingBytes / kPiece;  // a line that never pauses does not stop a board
+  std::array<std::uint8_t, kPiece> bytes{};
+  for (std::size_t k = 0; k < kMaxPieces; ++k) {
+    const std::size_t count = platform_.read_receiver(platform_.context, bytes);
+    if (count == 0) return;
+    receiver_.take(std::span(bytes).first(count));
+  }
+}
+
+void FlightExecutive::on_receiver_poll() {
+  if (!receiver_.is_open()) {
+    ++counters_.rejected;
+    return;
+  }
+  read_receiver();
+  FrameHeader header;
+  header.type = FrameType::kReceiverCount;
+  header.session = session_;
+  std::array<std::uint8_t, fsw::link::kReceiverCountBytes> count{};
+  fsw::packets::write_big_endian(receiver_.received(), std::span<std::uint8_t>(count), 0);
+  send_frame(header, count);
+}
+
+void FlightExecutive::deliver_receiver_bytes(fsw::GpsTime step_time) {
+  read_receiver();
+  receiver_.begin_step();
+  WiredPiece piece;
+  for (std::size_t k = 0; k < ReceiverPort::kPacketsPerStep; ++k) {
+    receiver_.next_piece(step_time, piece);
+    // Only what the host is given as well: otherwise the run could not be replayed. What finds no room waits.
+    if (piece.count == 0 || !outbox_.append(std::span(piece.mirror).first(piece.mirror_size))) return;
+    static_cast<void>(vbar_gnc_receive(gnc_state_.data(), piece.input.data(), piece.input_size));
+    receiver_.accept(piece);
+  }
 }
 
 Activity FlightExecutive::on_data(const FrameView& frame) {
@@ -134,6 +207,10 @@ Activity FlightExecutive::on_data(const FrameView& frame) {
     case BatchReceiver::Verdict::kForeign:
       ++counters_.rejected;
       return Activity::kIdle;
+  }
+  if (inputs_.complete() && receiver_.is_open()) {
+    if (const fsw::Result<fsw::GpsTime> time = tick_time(frame.payload); time.ok())
+      deliver_receiver_bytes(time.value());
   }
   // A packet that the flight software refuses is in its own counters; for the barrier it has arrived.
   static_cast<void>(vbar_gnc_receive(gnc_state_.data(), frame.payload.data(), frame.payload.size()));
@@ -178,11 +255,10 @@ void FlightExecutive::begin_step(std::uint32_t step) {
 }
 
 void FlightExecutive::close_step(std::span<const std::uint8_t> last_packet) {
-  const fsw::Result<fsw::packets::PacketView> packet = fsw::packets::parse_packet(last_packet);
-  const bool ends_in_tick = packet.ok() && fsw::packets::decode<vbar::tick>(packet.value()).ok();
+  const fsw::Result<fsw::GpsTime> time = tick_time(last_packet);
   std::uint64_t cost = 0;
-  if (ends_in_tick) {
-    step_time_ = packet.value().header.time;
+  if (time.ok()) {
+    step_time_ = time.value();
     const std::uint64_t before = read_counter();
     // A failed step is reported in the flight software's telemetry; the barrier closes in either case.
     static_cast<void>(vbar_gnc_step(gnc_state_.data(), step_time_.ns));

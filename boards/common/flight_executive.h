@@ -8,6 +8,7 @@
 #include <span>
 
 #include "boards/common/outbox.h"
+#include "boards/common/receiver_port.h"
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
 #include "fsw/gnc/vbar_gnc.h"
@@ -27,6 +28,12 @@ struct Platform {
   std::uint64_t (*counter)(void* context) = nullptr;                           ///< cost counter; may be null
   std::uint32_t (*stack_high_water)(void* context) = nullptr;                  ///< bytes; may be null
   CounterUnit counter_unit = CounterUnit::kNone;
+  /// Makes the line on which a GNSS receiver is wired to the board ready at this rate; bytes that it brought before are
+  /// discarded. False if there is no such line, or if the host uses it as its link. 0 baud: the session has no receiver
+  /// there. Null: the board has no such line.
+  bool (*open_receiver)(void* context, std::uint32_t baud) = nullptr;
+  /// Moves bytes that the line has brought to `out` and returns their number, 0 if there are none. Null as above.
+  std::size_t (*read_receiver)(void* context, std::span<std::uint8_t> out) = nullptr;
 };
 
 /// Room for the flight software's state (vbar_gnc_state_size() must not exceed it), and how it is aligned.
@@ -55,6 +62,12 @@ class FlightExecutive {
   /// Frames a board dropped before they became frames (COBS errors, foreign datagrams): into the step report.
   void count_rejected(std::uint32_t frames) { counters_.rejected += frames; }
 
+  /// True during a session whose receiver is wired to the board.
+  [[nodiscard]] bool has_receiver() const { return receiver_.is_open(); }
+  /// Takes what the receiver's line has brought. A board calls it when bytes have arrived, so that its own buffer does
+  /// not overflow between two ticks.
+  void read_receiver();
+
  private:
   /// Since the session began, for the step report.
   struct Counters {
@@ -76,6 +89,12 @@ class FlightExecutive {
   void begin_session(std::uint32_t session, std::span<const std::uint8_t> hello_payload);
   /// Null if the flight software was constructed, otherwise the text for the host.
   const char* start_flight_software(std::span<const std::uint8_t> hello_payload);
+  /// Null if the session has the receiver that its hello asks for, or asks for none, otherwise the text for the host.
+  const char* open_receiver(std::span<const std::uint8_t> hello_payload);
+  void close_receiver();
+  void on_receiver_poll();
+  /// Gives the flight software what the receiver's line has brought, and the host the same bytes in the answer.
+  void deliver_receiver_bytes(fsw::GpsTime step_time);
   void begin_step(std::uint32_t step);
   void close_step(std::span<const std::uint8_t> last_packet);
   void append_step_report(std::uint64_t cost);
@@ -97,6 +116,7 @@ class FlightExecutive {
   fsw::link::BatchReceiver inputs_;
   fsw::link::BatchSender answer_;
   Outbox outbox_;
+  ReceiverPort receiver_;
   alignas(kGncStateAlignment) std::array<std::byte, kGncStateBytes> gnc_state_;
 };
 

@@ -13,19 +13,21 @@
 #include "boards/common/flight_executive.h"
 #include "boards/posix/endpoints.h"
 #include "boards/posix/links.h"
+#include "boards/posix/receiver_line.h"
 #include "boards/posix/stack_meter.h"
 
 namespace vbar::boards::posix {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: %s LINK\n"
+    "usage: %s LINK [--receiver DEVICE]\n"
     "the flight software as a process of its own; LINK is one of\n"
     "  --serial DEVICE [--baud N]             a serial device or pseudo-terminal, 921600 baud unless said otherwise\n"
     "  --unix PATH                            a Unix stream socket on which the host listens\n"
     "  --udp ADDRESS:PORT [--peer HOST:PORT]  listen for datagrams; without --peer, of the first sender of a hello\n"
     "  --stream FD                            an open stream, inherited\n"
-    "  --datagram FD [--peer HOST:PORT]       a bound UDP socket, inherited\n";
+    "  --datagram FD [--peer HOST:PORT]       a bound UDP socket, inherited\n"
+    "DEVICE is the serial device of a GNSS receiver that is wired to this flight computer\n";
 
 struct Options {
   const char* serial = nullptr;
@@ -34,6 +36,7 @@ struct Options {
   const char* stream = nullptr;
   const char* datagram = nullptr;
   const char* peer = nullptr;
+  const char* receiver = nullptr;
   const char* baud = "921600";
 };
 
@@ -45,7 +48,7 @@ bool parse(int argc, char** argv, Options& options) {
   const std::array known{Known{"--serial", &options.serial},     Known{"--unix", &options.unix_path},
                          Known{"--udp", &options.udp},           Known{"--stream", &options.stream},
                          Known{"--datagram", &options.datagram}, Known{"--peer", &options.peer},
-                         Known{"--baud", &options.baud}};
+                         Known{"--baud", &options.baud},         Known{"--receiver", &options.receiver}};
   for (int i = 1; i < argc; i += 2) {
     const char** value = nullptr;
     for (const Known& option : known) {
@@ -98,23 +101,34 @@ template <class Link>
 struct Flight {
   const char* name;
   Link* link;
+  ReceiverLine* receiver;
   LinkEnd end;
 
+  static Flight& of(void* context) { return *static_cast<Flight*>(context); }
+  static void send(void* context, std::span<const std::uint8_t> frame) { Link::send(of(context).link, frame); }
+  static bool open_receiver(void* context, std::uint32_t baud) { return of(context).receiver->open(baud); }
+  static std::size_t read_receiver(void* context, std::span<std::uint8_t> out) {
+    return of(context).receiver->read(out);
+  }
+
   static void fly(void* context) {
-    auto* const flight = static_cast<Flight*>(context);
+    Flight& flight = of(context);
     Platform platform;
-    platform.context = flight->link;
-    platform.name = flight->name;
-    platform.send = &Link::send;
+    platform.context = context;
+    platform.name = flight.name;
+    platform.send = &Flight::send;
     platform.stack_high_water = &measure_stack;
+    platform.open_receiver = &Flight::open_receiver;
+    platform.read_receiver = &Flight::read_receiver;
     auto* const executive = ::new (static_cast<void*>(executive_memory.data())) FlightExecutive(platform);
-    flight->end = flight->link->serve(*executive);
+    flight.end = flight.link->serve(*executive, flight.receiver);
   }
 };
 
 template <class Link>
-int fly(const char* name, Link& link) {
-  Flight<Link> flight{name, &link, LinkEnd::kFailed};
+int fly(const char* name, Link& link, const Options& options) {
+  ReceiverLine receiver(options.receiver);
+  Flight<Link> flight{name, &link, &receiver, LinkEnd::kFailed};
   if (run_on_measured_stack(&Flight<Link>::fly, &flight) && flight.end != LinkEnd::kFailed) return 0;
   std::fprintf(stderr, "%s: the link failed: %s\n", name, std::strerror(errno));
   return 1;
@@ -134,7 +148,7 @@ int fly_over_datagrams(const char* name, const char* program, const Options& opt
   const int fd = open_datagram(options);
   if (fd < 0) return refuse(program, options.udp != nullptr ? options.udp : options.datagram);
   DatagramLink link = options.peer != nullptr ? DatagramLink(fd, peer) : DatagramLink(fd);
-  return fly(name, link);
+  return fly(name, link, options);
 }
 
 int fly_over_stream(const char* name, const char* program, const Options& options) {
@@ -145,7 +159,7 @@ int fly_over_stream(const char* name, const char* program, const Options& option
                                                           : options.stream);
   }
   StreamLink link(fd);
-  return fly(name, link);
+  return fly(name, link, options);
 }
 
 }  // namespace

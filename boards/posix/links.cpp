@@ -1,5 +1,6 @@
 #include "boards/posix/links.h"
 
+#include <array>
 #include <cerrno>
 #include <ctime>
 
@@ -21,6 +22,19 @@ bool is_passing(int fd, short event) {
   if (errno != EAGAIN && errno != EWOULDBLOCK) return false;
   wait_until(fd, event);
   return true;
+}
+
+/// Waits until `link` can be read; meanwhile the executive takes what the receiver brings.
+void wait_for_link(int link, FlightExecutive& executive, const ReceiverLine* receiver) {
+  for (;;) {
+    const int receiver_fd = receiver != nullptr && executive.has_receiver() ? receiver->fd() : -1;
+    if (receiver_fd < 0) return;  // the read of the link waits
+    std::array<pollfd, 2> requests{
+        {{.fd = link, .events = POLLIN, .revents = 0}, {.fd = receiver_fd, .events = POLLIN, .revents = 0}}};
+    if (::poll(requests.data(), requests.size(), -1) < 0 && errno != EINTR) return;
+    if (requests[1].revents != 0) executive.read_receiver();
+    if (requests[0].revents != 0) return;
+  }
 }
 
 /// Errors by which a stream or a terminal reports that the other end is closed.
@@ -55,9 +69,10 @@ void StreamLink::send(void* context, std::span<const std::uint8_t> frame) {
   link->broken_ = !write_all(link->fd_, std::span(link->coded_).first(size.value()));
 }
 
-LinkEnd StreamLink::serve(FlightExecutive& executive) {
+LinkEnd StreamLink::serve(FlightExecutive& executive, const ReceiverLine* receiver) {
   std::uint32_t rejected = 0;
   for (;;) {
+    wait_for_link(fd_, executive, receiver);
     const ssize_t count = ::read(fd_, received_.data(), received_.size());
     if (count == 0) return LinkEnd::kPeerGone;
     if (count < 0) {
@@ -84,8 +99,9 @@ void DatagramLink::send(void* context, std::span<const std::uint8_t> frame) {
   }
 }
 
-LinkEnd DatagramLink::serve(FlightExecutive& executive) {
+LinkEnd DatagramLink::serve(FlightExecutive& executive, const ReceiverLine* receiver) {
   for (;;) {
+    wait_for_link(fd_, executive, receiver);
     DatagramSender sender;
     socklen_t length = sizeof sender.address;
     auto* const address = reinterpret_cast<sockaddr*>(&sender.address);

@@ -11,6 +11,7 @@
 
 #include "boards/common/flight_executive.h"
 #include "boards/common/session_guard.h"
+#include "boards/posix/receiver_line.h"
 #include "fsw/link/cobs.h"
 
 namespace vbar::boards::posix {
@@ -29,8 +30,8 @@ class StreamLink {
   /// `Platform::send`, with a StreamLink as context.
   static void send(void* context, std::span<const std::uint8_t> frame);
 
-  /// Feeds `executive` until the link ends.
-  LinkEnd serve(FlightExecutive& executive);
+  /// Feeds `executive` until the link ends; also with what `receiver`, if it is not null, brings meanwhile.
+  LinkEnd serve(FlightExecutive& executive, const ReceiverLine* receiver = nullptr);
 
  private:
   int fd_;
@@ -62,8 +63,8 @@ class DatagramLink {
   /// `Platform::send`, with a DatagramLink as context.
   static void send(void* context, std::span<const std::uint8_t> frame);
 
-  /// Feeds `executive` until the link ends. Datagrams of other senders are counted as rejected.
-  LinkEnd serve(FlightExecutive& executive);
+  /// As StreamLink::serve. Datagrams of other senders are counted as rejected.
+  LinkEnd serve(FlightExecutive& executive, const ReceiverLine* receiver = nullptr);
 
  private:
   [[nodiscard]] bool admits(const DatagramSender& sender, std::span<const std::uint8_t> datagram);

@@ -23,6 +23,7 @@ namespace vbar::boards::zynq7000 {
 namespace {
 
 constexpr std::uint32_t kLinkBaud = 921'600;
+constexpr std::uint32_t kMinReceiverBaud = 2'400;
 constexpr MacAddress kMac{0x02, 0x76, 0x62, 0x61, 0x72, 0x15};  // locally administered
 constexpr Ipv4Address kAddress{10, 0, 2, 15};
 constexpr std::uint16_t kPort = 5000;
@@ -46,12 +47,16 @@ class FlightBoard {
   void goodbye();
   void print_counters() const;
   void wait_for_input() const;
+  void set_uart_rate(std::uint32_t baud);
 
+  static bool open_receiver(void* self, std::uint32_t baud);
+  static std::size_t read_receiver(void* self, std::span<std::uint8_t> out);
   static void send(void* self, std::span<const std::uint8_t> frame);
   void send_serial(std::span<const std::uint8_t> frame);
   void send_datagram(const UdpPeer& to, std::span<const std::uint8_t> frame);
 
-  Uart uart_{kUart0, kInterruptUart0};
+  Uart uart_{kUart0, kInterruptUart0};  ///< the link, or the line of the receiver while the link is Ethernet
+  std::uint32_t uart_baud_ = kLinkBaud;
   Ethernet ethernet_;
   UdpEndpoint endpoint_{kMac, kAddress, kPort};
   fsw::link::CobsDecoder decoder_;
@@ -72,11 +77,13 @@ Platform FlightBoard::platform() {
   platform.counter = [](void*) { return cost_counter(); };
   platform.stack_high_water = [](void*) { return stack_high_water(); };
   platform.counter_unit = cost_counter_unit();
+  platform.open_receiver = &FlightBoard::open_receiver;
+  platform.read_receiver = &FlightBoard::read_receiver;
   return platform;
 }
 
 void FlightBoard::open() {
-  uart_.open(kLinkBaud);
+  uart_.open(uart_baud_);
   ethernet_.open(kMac);
   link_asked_ = global_timer();
   print("vbar zynq7000: ");
@@ -102,6 +109,10 @@ void FlightBoard::run() {
 
 // One frame per call, so that neither interface starves the other.
 bool FlightBoard::serve_serial() {
+  if (executive_.has_receiver()) {
+    executive_.read_receiver();
+    return false;
+  }
   std::uint8_t byte = 0;
   while (uart_.read(byte)) {
     const bool complete = decoder_.push(byte);
@@ -193,6 +204,44 @@ void FlightBoard::print_counters() const {
     print_decimal(counter.value);
     print("\n");
   }
+}
+
+// Of the emulator as well: it passes the rate on to the terminal that is UART0 there.
+void FlightBoard::set_uart_rate(std::uint32_t baud) {
+  if (baud != uart_baud_) {
+    uart_baud_ = baud;
+    uart_.open(baud);
+  }
+}
+
+// UART0 is the receiver's only if the host uses Ethernet.
+bool FlightBoard::open_receiver(void* self, std::uint32_t baud) {
+  auto* const board = static_cast<FlightBoard*>(self);
+  if (baud == 0) {
+    board->set_uart_rate(kLinkBaud);
+    return true;
+  }
+  if (board->guard_.peer().interface != Interface::kEthernet || baud < kMinReceiverBaud || baud > kLinkBaud) {
+    return false;
+  }
+  board->set_uart_rate(baud);
+  std::uint8_t discarded = 0;
+  for (std::size_t i = 0; i < Uart::kRingBytes && board->uart_.read(discarded); ++i) {
+  }
+  return true;
+}
+
+std::size_t FlightBoard::read_receiver(void* self, std::span<std::uint8_t> out) {
+  Uart& uart = static_cast<FlightBoard*>(self)->uart_;
+  {
+    const InterruptsMasked masked;
+    uart.take_received();  // a count of received bytes includes those below the trigger level of the FIFO
+  }
+  std::size_t count = 0;
+  while (count < out.size() && uart.read(out[count])) {
+    ++count;
+  }
+  return count;
 }
 
 void FlightBoard::wait_for_input() const {

@@ -41,6 +41,8 @@ class Uart {
 
   /// Next received byte; false if there is none.
   bool read(std::uint8_t& byte) { return received_.pop(byte); }
+  /// Takes what is in the FIFO without waiting for its interrupt. To be called with interrupts masked.
+  void take_received() { drain(); }
   [[nodiscard]] bool has_input() const { return !received_.empty(); }
 
   /// As UartTransmitter::write; counts the bytes dropped.

@@ -10,7 +10,9 @@
 //   bytes 10-11  index: kData, position of this packet in its batch; kAck and kPoll, packets received without a gap
 //   byte  12     flags: bit 0, last packet of the batch; bit 1, answer with kAck at once
 //   byte  13     0
-//   14 ...       kData: one space packet; kHelloAck: the board's name in ASCII
+//   14 ...       kData: one space packet; kHello: the spacecraft's number (1 byte) and, if the board has its GNSS
+//                receiver on a line of its own, the rate of that line in baud (4 bytes); kHelloAck: the board's name
+//                in ASCII; kReceiverCount: the bytes that this line has brought since the hello (8 bytes)
 //   last 4       CRC-32 (IEEE 802.3, little-endian) over everything before it
 //
 // All but the CRC big-endian. Over a byte stream a frame is COBS-coded and ends with a zero byte; over UDP one frame is
@@ -24,6 +26,8 @@
 //   host  acknowledges the answer the same way; after a time without reception: kPoll(N, packets received).
 //   board on kPoll: if its inputs of N are incomplete, kAck with their number; else its answer again from that index
 //         on. kData of a step already run is a duplicate: the answer is on its way or will be polled for
+//   host  before a step, kReceiverPoll: the board answers kReceiverCount at once. In lock-step the host begins the step
+//         when the board has all that the receiver has sent.
 //   host  kGoodbye ends the run: the board stops.
 
 #include <cstddef>
@@ -44,7 +48,21 @@ inline constexpr std::size_t kMaxCobsFrameBytes = kMaxFrameBytes + kMaxFrameByte
 inline constexpr std::uint16_t kWindow = 32;
 static_assert(packets::kMaxPacketBytes + kFrameHeaderBytes + kFrameCrcBytes <= kMaxFrameBytes);
 
-enum class FrameType : std::uint8_t { kHello = 1, kHelloAck = 2, kData = 3, kAck = 4, kPoll = 5, kGoodbye = 6 };
+/// Payload of a kHello without and with the rate of the receiver's line, and of a kReceiverCount.
+inline constexpr std::size_t kHelloBytes = 1;
+inline constexpr std::size_t kHelloWithReceiverBytes = 5;
+inline constexpr std::size_t kReceiverCountBytes = 8;
+
+enum class FrameType : std::uint8_t {
+  kHello = 1,
+  kHelloAck = 2,
+  kData = 3,
+  kAck = 4,
+  kPoll = 5,
+  kGoodbye = 6,
+  kReceiverPoll = 7,
+  kReceiverCount = 8
+};
 
 struct FrameHeader {
   FrameType type = FrameType::kHello;

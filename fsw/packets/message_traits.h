@@ -39,7 +39,8 @@
   X(::vbar::telemetry_image, kTelemetryImage)                    \
   X(::vbar::telemetry_objects, kTelemetryObjects)                \
   X(::vbar::telemetry_pose, kTelemetryPose)                      \
-  X(::vbar::step_report, kStepReport)
+  X(::vbar::step_report, kStepReport)                            \
+  X(::vbar::wired_bytes, kWiredBytes)
 
 namespace vbar::fsw::packets {
 

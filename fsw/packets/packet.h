@@ -54,6 +54,7 @@ enum class Apid : std::uint16_t {
   kTelemetryObjects = 0x506,
   kTelemetryPose = 0x507,
   kStepReport = 0x601,
+  kWiredBytes = 0x602,
 };
 
 /// True for APIDs of telemetry, whose bytes make `telemetry_sha256`.

@@ -6,7 +6,7 @@ import socket
 import struct
 import zlib
 
-HELLO, HELLO_ACK, DATA, ACK, POLL, GOODBYE = 1, 2, 3, 4, 5, 6
+HELLO, HELLO_ACK, DATA, ACK, POLL, GOODBYE, RECEIVER_POLL, RECEIVER_COUNT = 1, 2, 3, 4, 5, 6, 7, 8
 LAST, ACKNOWLEDGE_NOW = 1, 2
 WINDOW = 32
 
@@ -114,10 +114,11 @@ class Session:
         data = self.line.receive(timeout)
         return None if data is None else Frame(data)
 
-    def hello(self):
-        """Says hello until somebody answers; the board's name."""
+    def hello(self, receiver_baud=None):
+        """Says hello until somebody answers; the board's name. With a rate, the receiver is wired to the board."""
+        payload = bytes([self.spacecraft]) + (b"" if receiver_baud is None else struct.pack(">I", receiver_baud))
         for _ in range(self.TRIES):
-            self.line.send(frame(HELLO, self.number, payload=bytes([self.spacecraft])))
+            self.line.send(frame(HELLO, self.number, payload=payload))
             answer = self.next_frame(self.PATIENCE_S)
             while answer is not None:
                 if answer.kind == HELLO_ACK and answer.session == self.number:
@@ -161,6 +162,15 @@ class Session:
         self.send_step(step, packets)
         return self.answer(step)
 
+    def receiver_count(self):
+        """Bytes that the receiver's line has brought to the board."""
+        for _ in range(self.TRIES):
+            self.line.send(frame(RECEIVER_POLL, self.number))
+            received = self.next_frame(self.PATIENCE_S)
+            if received is not None and received.kind == RECEIVER_COUNT:
+                return struct.unpack(">Q", received.payload)[0]
+        raise TimeoutError("the board does not count")
+
     def goodbye(self):
         self.line.send(frame(GOODBYE, self.number))
 
@@ -202,7 +212,7 @@ class Packet:
 TICK = struct.pack(">Q", 0x864DD63EDF53B0E7)
 IDEAL_NAVIGATION = struct.pack(">Q", 0xC7135961C1142A68)
 APID_TICK, APID_IDEAL_NAVIGATION = 0x001, 0x010
-APID_MANEUVER_COMMAND, APID_TELEMETRY_NAVIGATION, APID_STEP_REPORT = 0x401, 0x501, 0x601
+APID_MANEUVER_COMMAND, APID_TELEMETRY_NAVIGATION, APID_STEP_REPORT, APID_WIRED_BYTES = 0x401, 0x501, 0x601, 0x602
 
 
 def tick(step, time_ns, period_ns, spacecraft=1):
@@ -218,3 +228,9 @@ class StepReport:
     def __init__(self, packet):
         (_, self.step, self.unit, self.count, self.stack_bytes, self.received, self.rejected, self.duplicated,
          self.resent, self.packets_dropped, self.ticks_missing) = struct.unpack(">QqbqiiiiIII", packet.payload)
+
+
+class WiredBytes:
+    def __init__(self, packet):
+        _, self.received, self.dropped, count, data = struct.unpack(">Qqqi1280s", packet.payload)
+        self.data = data[:count]

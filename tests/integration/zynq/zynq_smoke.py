@@ -15,8 +15,8 @@ import tempfile
 import time
 import unittest
 
-from board_link import (ACK, APID_MANEUVER_COMMAND, APID_TELEMETRY_NAVIGATION, HELLO, POLL, Datagrams,
-                        Packet, SerialLine, Session, StepReport, frame, ideal_navigation, tick)
+from board_link import (ACK, APID_MANEUVER_COMMAND, APID_TELEMETRY_NAVIGATION, APID_WIRED_BYTES, HELLO, POLL, Datagrams,
+                        Packet, SerialLine, Session, StepReport, WiredBytes, frame, ideal_navigation, tick)
 from emulated_board import EmulatedBoard
 from neighbour import (ADDRESS, ARP_REPLY, BOARD_ADDRESS, BOARD_MAC, ECHO_REPLY, ECHO_REQUEST, ICMP, MAC, UDP,
                        Neighbour, echo, internet_checksum, ipv4)
@@ -128,6 +128,36 @@ class ZynqSmoke(unittest.TestCase):
         self.assertEqual(costs[0], costs[1])
         self.assertEqual(costs[0], costs[2])
         print(f"a step of the example article: {min(costs[0])} to {max(costs[0])} instructions")
+
+    def test_wired_receiver(self):
+        """With the link on Ethernet UART0 is the receiver's line; after the goodbye it is the link again."""
+        with self.example(semihosting=False) as board:
+            refused = Session(SerialLine(board.serial), 31)
+            self.assertIn("error: no line to a receiver", refused.hello(receiver_baud=115200))
+            refused.goodbye()
+            session = Session(self.datagrams(board), 32)
+            self.assertIn("zynq7000", session.hello(receiver_baud=115200))
+            self.assertEqual(session.receiver_count(), 0)
+            sent = 0
+            for step in range(10):
+                data = bytes((7 * i + step) % 256 for i in range(700 * step))
+                board.serial.sendall(data)
+                sent += len(data)
+                start = time.monotonic()
+                while session.receiver_count() < sent and time.monotonic() - start < 10:
+                    pass
+                answer = [Packet(packet) for packet in session.step(step, inputs(step))]
+                wired = [packet for packet in answer if packet.apid == APID_WIRED_BYTES]
+                self.assertEqual(b"".join(WiredBytes(packet).data for packet in wired), data)
+                self.assertEqual(wired, answer[:len(wired)])
+                for packet in wired:
+                    self.assertEqual((packet.time_ns, packet.spacecraft), (START_NS + step * PERIOD_NS, 1))
+                    self.assertEqual((WiredBytes(packet).received, WiredBytes(packet).dropped), (sent, 0))
+                self.assertEqual(StepReport(answer[-1]).rejected, 0)
+            session.goodbye()
+            session = Session(SerialLine(board.serial), 33)
+            session.hello()
+            self.check_flight(*fly(session, 5))
 
     def test_barrier(self):
         """A step runs once, when all its packets are in, and its answer can be had again."""

@@ -64,6 +64,17 @@ TEST(MakeFlightComputer, AnIcountShiftThatDoesNotWorkIsRefused) {
   }
 }
 
+TEST(MakeFlightComputer, AWiredReceiverNeedsALineOfItsOwn) {
+  FlightComputerOptions options;
+  options.article = linked_test_article();
+  options.receiver = io::WiredReceiver{};
+  EXPECT_THAT(error_of(options), AllOf(HasSubstr("sensors.gnss.wired"), HasSubstr("set flight_computer.target to")));
+  options.target = Target::kZynqQemu;
+  EXPECT_THAT(error_of(options), AllOf(HasSubstr("sensors.gnss.wired"), HasSubstr("set flight_computer.link to udp")));
+  options.target = Target::kHostProcess;
+  EXPECT_THAT(error_of(options), AllOf(HasSubstr("sensors.gnss.wired"), HasSubstr("device")));
+}
+
 TEST(MakeFlightComputer, ABoardNeedsAnEndpointThatMakesSense) {
   FlightComputerOptions options;
   options.target = Target::kBoard;

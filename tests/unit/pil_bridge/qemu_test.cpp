@@ -1,5 +1,7 @@
 #include "pil_bridge/qemu.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,6 +28,15 @@ TEST(Qemu, EmulationIsDeterministicAndIsolated) {
   EXPECT_THAT(serial, Contains("socket,id=link,fd=3"));
   const auto udp = zynq_qemu_over_udp("image.elf", 6, 16000);
   EXPECT_THAT(udp, Contains("user,model=cadence_gem,hostfwd=udp:127.0.0.1:16000-10.0.2.15:5000"));
+}
+
+// QEMU's first serial port is UART0 of the board. A comma within a value is written twice (QEMU's manual, -chardev).
+TEST(Qemu, ConnectsAWiredReceiverToUart0) {
+  const auto none = zynq_qemu_over_udp("image.elf", 6, 16000);
+  EXPECT_EQ(*(std::ranges::find(none, "-serial") + 1), "null");
+  const auto wired = zynq_qemu_over_udp("image.elf", 6, 16000, "/dev/a,b");
+  EXPECT_THAT(wired, Contains("serial,id=receiver,path=/dev/a,,b"));
+  EXPECT_EQ(*(std::ranges::find(wired, "-serial") + 1), "chardev:receiver");
 }
 
 }  // namespace

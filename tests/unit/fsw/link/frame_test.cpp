@@ -53,8 +53,9 @@ TEST(Frame, ChecksumIsInTheOrderOfTheStandard) {
 }
 
 TEST(Frame, ParsesWhatWasWritten) {
-  for (const FrameType type : {FrameType::kHello, FrameType::kHelloAck, FrameType::kData, FrameType::kAck,
-                               FrameType::kPoll, FrameType::kGoodbye}) {
+  for (const FrameType type :
+       {FrameType::kHello, FrameType::kHelloAck, FrameType::kData, FrameType::kAck, FrameType::kPoll,
+        FrameType::kGoodbye, FrameType::kReceiverPoll, FrameType::kReceiverCount}) {
     for (int flags = 0; flags < 4; ++flags) {
       FrameHeader header = example_header();
       header.type = type;
@@ -111,7 +112,7 @@ TEST(Frame, AnotherVersionTypeOrFlagIsTheWrongType) {
   const struct {
     std::size_t at;
     std::uint8_t value;
-  } cases[] = {{0, 0}, {0, 2}, {1, 0}, {1, 7}, {1, 255}, {12, 4}, {12, 0x80}, {13, 1}};
+  } cases[] = {{0, 0}, {0, 2}, {1, 0}, {1, 9}, {1, 255}, {12, 4}, {12, 0x80}, {13, 1}};
   for (const auto& c : cases) {
     Bytes frame = written(example_header(), {});
     frame[c.at] = c.value;
