@@ -20,7 +20,7 @@ RunClock::RunClock(const ClockSettings& settings, WallClock& wall) : settings_(s
 
 void RunClock::start(fsw::GpsTime time) {
   start_ = time;
-  wall_start_ = wall_.now();
+  wall_start_ = wall_.start_of_run();
 }
 
 WallClock::Span RunClock::on_the_wall(fsw::Duration simulated) const {

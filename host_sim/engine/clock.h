@@ -48,7 +48,8 @@ class RunClock {
   /// `wall` must outlive the clock.
   RunClock(const ClockSettings& settings, WallClock& wall);
 
-  /// Ties the simulated `time` to the present wall-clock time. To be called before the first step.
+  /// Ties the simulated `time` to the present wall-clock time, or to the start that the clock sets. To be called before
+  /// the first step.
   void start(fsw::GpsTime time);
 
   /// Waits until an event at `time` is due; in lock-step returns at once. Lateness beyond the tolerance is recorded in

@@ -33,6 +33,8 @@ class GnssSensor final : public PacketSource {
   [[nodiscard]] TruthDetail truth_detail() const override { return receiver_->truth_detail(); }
   [[nodiscard]] std::vector<Note> statistics() const override { return receiver_->statistics(); }
 
+  [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const override { return receiver_->wired_receiver(); }
+
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
   /// The packets of one epoch: receiver bytes in pieces, and the attitude. No packets if the crosslink loses them,
@@ -43,7 +45,7 @@ class GnssSensor final : public PacketSource {
 
  private:
   template <class BytesMessage, class AttitudeMessage>
-  bool append_packets(fsw::GpsTime time, const std::vector<std::uint8_t>& bytes, const truth::AttitudeState& attitude,
+  bool append_packets(fsw::GpsTime arrival, const gnss::ReceiverOutput& output, const gnss::EpochAttitude& measured,
                       std::vector<Packet>& packets);
 
   Settings settings_;

@@ -13,6 +13,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
+#include "host_sim/io/wired_receiver.h"
 #include "host_sim/truth/attitude/attitude_state.h"
 
 namespace vbar::twins {
@@ -125,6 +126,10 @@ class PacketSource {
 
   /// The content that its snapshots need.
   [[nodiscard]] virtual TruthDetail truth_detail() const { return TruthDetail::kStates; }
+
+  /// After start(): the receiver whose bytes reach the flight computer on a line of its own, not in packets of this
+  /// source.
+  [[nodiscard]] virtual std::optional<io::WiredReceiver> wired_receiver() const { return std::nullopt; }
 
   /// Whether its measurements are evaluated individually, later and by their time (images): observers of the run then
   /// receive the truth of each.

@@ -43,19 +43,6 @@ void check_truth(const BodyTruth& truth) {
     throw std::invalid_argument("GNSS receiver: the attitude quaternion is not of unit length");
 }
 
-// The delay of code against the satellite's clock, s: the clock refers to a combination of two signals (IS-GPS-200N
-// 20.3.3.3.3.2; Galileo OS SIS ICD 2.1, 5.1.5; BDS-SIS-ICD-B1I-3.0, 5.2.4.10).
-double code_delay_s(Signal signal, double group_delay_s) {
-  constexpr double kGamma = (fsw::gnss::kL1_Hz / fsw::gnss::kL2_Hz) * (fsw::gnss::kL1_Hz / fsw::gnss::kL2_Hz);
-  return signal == Signal::kGpsL2 ? kGamma * group_delay_s : group_delay_s;
-}
-
-// Group delay of the ionosphere goes with the inverse square of the frequency.
-double ionosphere_scale(Signal signal) {
-  const double ratio = fsw::gnss::kL1_Hz / structure(signal).frequency_hz;
-  return ratio * ratio;
-}
-
 }  // namespace
 
 GnssReceiver::GnssReceiver(const GnssReceiverSettings& settings, std::shared_ptr<const Constellation> constellation,
@@ -204,6 +191,7 @@ void GnssReceiver::observe_signal(SignalTrack& track, const SignalPath& path, do
   truth.elevation = elevation;
   truth.ambiguity_cycles = track.ambiguity_cycles;
   truth.carrier_fraction_cycles = bias.carrier_fraction_cycles;
+  truth.carrier_wander_m = track.carrier_wander_m.at(now);
   truth.slips = track.slips;
   truth_.observations.push_back(truth);
 
@@ -223,7 +211,8 @@ void GnssReceiver::observe_signal(SignalTrack& track, const SignalPath& path, do
                           noise * rate_draw * rate_sigma_mps;
   record.pseudorange_m = truth.code_m + noise * code_draw * record.pseudorange_sigma_m;
   record.carrier_phase_cycles = truth.carrier_m / lambda + static_cast<double>(track.ambiguity_cycles) +
-                                bias.carrier_fraction_cycles + noise * carrier_draw * record.carrier_sigma_cycles;
+                                bias.carrier_fraction_cycles + noise * carrier_draw * record.carrier_sigma_cycles +
+                                truth.carrier_wander_m / lambda;
   record.doppler_hz = -rate_mps / lambda;
   record.cn0_dbhz = track.cn0_dbhz;
   record.lock_time_s = seconds(now - track.lock_since);

@@ -3,12 +3,13 @@
 //
 // Observables, in metres (code P, carrier L; r receiver, s satellite, f signal):
 //   P = range + Shapiro + c (dt_r - dt_s + TGD_f) + I_f + b_rf + noise
-//   L = range + Shapiro + c (dt_r - dt_s)         - I_f + lambda_f (N_rsf + beta_rf) + noise
+//   L = range + Shapiro + c (dt_r - dt_s)         - I_f + lambda_f (N_rsf + beta_rf) + w_rsf + noise
 // at the instant at which its own clock shows the epoch. N is an integer, beta a fraction of a cycle that all carriers
-// of one signal share in one receiver: double differences within a signal hold integers. Half-cycle ambiguities do not
-// occur. Phase wind-up is neglected: it is the same in antennas of parallel attitude, which the missions fly (each 20
-// arcsec of relative yaw would make 3e-6 m). Multipath is neglected, as in the paper's table. Noise of two epochs is
-// independent: right for periods above the code loop's 2 s, while at 1 Hz real code noise would be correlated.
+// of one signal share in one receiver: double differences within a signal hold integers. w is the carrier wander, a
+// first-order Gauss-Markov process of each receiver, satellite and signal. Half-cycle ambiguities do not occur. Phase
+// wind-up is neglected: it is the same in antennas of parallel attitude, which the missions fly (each 20 arcsec of
+// relative yaw would make 3e-6 m). Multipath is neglected, as in the paper's table. Noise of two epochs is independent:
+// right for periods above the code loop's 2 s, while at 1 Hz real code noise would be correlated.
 
 #include <cstdint>
 #include <memory>
@@ -43,6 +44,7 @@ struct ObservationTruth {
   double elevation = 0.0;     ///< above the local horizontal, rad
   std::int64_t ambiguity_cycles = 0;
   double carrier_fraction_cycles = 0.0;  ///< beta
+  double carrier_wander_m = 0.0;         ///< w
   int slips = 0;
 };
 

@@ -49,6 +49,8 @@ void check_tracking(const TrackingSettings& tracking) {
   need_between("cycle_slips_per_hour", tracking.cycle_slips_per_hour, 0.0, 3600.0);
   need_between("undetected_slip_fraction", tracking.undetected_slip_fraction, 0.0, 1.0);
   need_between("code_bias_sigma_m", tracking.code_bias_sigma_m, 0.0, 1000.0);
+  need_between("carrier_wander_sigma_mm", tracking.carrier_wander_sigma_mm, 0.0, 100.0);
+  need_between("carrier_wander_time_s", tracking.carrier_wander_time_s, 1e-3, 1e6);
 }
 
 void check_start(const StartSettings& start) {

@@ -39,6 +39,8 @@ struct TrackingSettings {
   double cycle_slips_per_hour = 0.02;  ///< of each signal; every slip is seen by the receiver: the lock time restarts
   double undetected_slip_fraction = 0.0;  ///< fraction of these slips that the receiver does not detect
   double code_bias_sigma_m = 0.0;         ///< constant code delay of each signal in the receiver
+  double carrier_wander_sigma_mm = 0.0;   ///< first-order Gauss-Markov error of each satellite's and signal's carrier
+  double carrier_wander_time_s = 60.0;    ///< its correlation time
   friend bool operator==(const TrackingSettings&, const TrackingSettings&) = default;
 };
 

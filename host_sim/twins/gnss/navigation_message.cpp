@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -68,7 +70,8 @@ double wrapped(double angle) {
 // Writes fields of bits, most significant first, as the signal carries them.
 class SubframeWriter {
  public:
-  SubframeWriter(Subframe& subframe, SatelliteId satellite) : subframe_(subframe), satellite_(satellite) {}
+  /// `source` names the origin of the numbers in messages.
+  SubframeWriter(Subframe& subframe, std::string source) : subframe_(subframe), source_(std::move(source)) {}
 
   void bits(std::uint64_t value, int count) {
     for (int k = count - 1; k >= 0; --k, ++position_)
@@ -83,8 +86,7 @@ class SubframeWriter {
     const double low = is_signed ? -std::ldexp(1.0, count - 1) : 0.0;
     const double high = std::ldexp(1.0, is_signed ? count - 1 : count) - 1.0;
     if (!(scaled >= low && scaled <= high))
-      throw std::out_of_range(
-          fmt::format("{}: {} = {} does not fit the navigation message", name_of(satellite_), name, value));
+      throw std::out_of_range(fmt::format("{}: {} = {} does not fit the navigation message", source_, name, value));
     bits(static_cast<std::uint64_t>(static_cast<std::int64_t>(scaled)), count);
   }
 
@@ -96,9 +98,15 @@ class SubframeWriter {
 
  private:
   Subframe& subframe_;
-  SatelliteId satellite_;
+  std::string source_;
   std::size_t position_ = 0;
 };
+
+constexpr double kUtcReferenceTime_s = 147456.0;  // of the week, a multiple of 4096 s
+
+std::int64_t seconds_of_week(fsw::GpsTime time) {
+  return week_time(System::kGps, time).ns_of_week / fsw::kNanosecondsPerSecond;
+}
 
 // Telemetry word and handover word: preamble; time of week at the beginning of the NEXT subframe in units of 6 s.
 void write_head(SubframeWriter& writer, unsigned subframe, std::int64_t transmission_s) {
@@ -146,7 +154,7 @@ std::array<Subframe, 3> lnav_subframes(const Ephemeris& ephemeris, int issue, fs
   const std::int64_t sent_s = sent.ns_of_week / fsw::kNanosecondsPerSecond;
   std::array<Subframe, 3> subframes{};
 
-  SubframeWriter first(subframes[0], ephemeris.satellite);
+  SubframeWriter first(subframes[0], name_of(ephemeris.satellite));
   write_head(first, 1, sent_s);
   first.bits(static_cast<std::uint64_t>(sent.week % 1024), 10);
   first.bits(1, 2);                 // P code on L2
@@ -161,7 +169,7 @@ std::array<Subframe, 3> lnav_subframes(const Ephemeris& ephemeris, int issue, fs
   first.number("af1", ephemeris.af1, grid.af1, 16);
   first.number("af0", ephemeris.af0, grid.af0, 22);
 
-  SubframeWriter second(subframes[1], ephemeris.satellite);
+  SubframeWriter second(subframes[1], name_of(ephemeris.satellite));
   write_head(second, 2, sent_s);
   second.bits(issue_bits, 8);
   second.number("crs", ephemeris.crs, grid.harmonic_radius, 16);
@@ -175,7 +183,7 @@ std::array<Subframe, 3> lnav_subframes(const Ephemeris& ephemeris, int issue, fs
   second.bits(0, 1);  // fit interval: four hours
   second.bits(0, 5);  // age of data offset
 
-  SubframeWriter third(subframes[2], ephemeris.satellite);
+  SubframeWriter third(subframes[2], name_of(ephemeris.satellite));
   write_head(third, 3, sent_s);
   third.number("cic", ephemeris.cic, grid.harmonic_angle, 16);
   third.angle(node_at_week_begin(ephemeris), 32);
@@ -187,6 +195,40 @@ std::array<Subframe, 3> lnav_subframes(const Ephemeris& ephemeris, int issue, fs
   third.bits(issue_bits, 8);
   third.number("i dot", ephemeris.i_dot, grid.angle_rate, 14);
   return subframes;
+}
+
+Subframe lnav_page_18(const BroadcastCorrections& corrections, const UtcOffset& utc, fsw::GpsTime transmission) {
+  constexpr std::uint64_t kDataId = 1;
+  constexpr std::uint64_t kPageId = 56;
+  Subframe subframe{};
+  SubframeWriter page(subframe, "ionosphere and UTC");
+  write_head(page, 4, seconds_of_week(transmission));
+  page.bits(kDataId, 2);
+  page.bits(kPageId, 6);
+  constexpr std::array<double, 4> kAlphaGrid{0x1p-30, 0x1p-27, 0x1p-24, 0x1p-24};
+  constexpr std::array<double, 4> kBetaGrid{0x1p11, 0x1p14, 0x1p16, 0x1p16};
+  for (std::size_t k = 0; k < 4; ++k) page.number("alpha", corrections.klobuchar.alpha[k], kAlphaGrid[k], 8);
+  for (std::size_t k = 0; k < 4; ++k) page.number("beta", corrections.klobuchar.beta[k], kBetaGrid[k], 8);
+  page.number("A1", corrections.utc_a1, 0x1p-50, 24);
+  page.number("A0", corrections.utc_a0_s, 0x1p-30, 32);
+  page.number("tot", kUtcReferenceTime_s, 0x1p12, 8, false);
+  page.bits(static_cast<std::uint64_t>(week_time(System::kGps, transmission).week % 256), 8);
+  page.number("leap seconds", utc.gps_minus_utc_s, 1.0, 8);
+  page.bits(static_cast<std::uint64_t>(utc.change_week % 256), 8);
+  page.bits(static_cast<std::uint64_t>(utc.change_day), 8);
+  page.number("leap seconds", utc.gps_minus_utc_s, 1.0, 8);
+  return subframe;
+}
+
+Subframe lnav_dummy_page(unsigned subframe, fsw::GpsTime transmission) {
+  constexpr int kContentBits = 240 - 48 - 8;
+  Subframe bytes{};
+  SubframeWriter page(bytes, "dummy page");
+  write_head(page, subframe, seconds_of_week(transmission));
+  page.bits(1, 2);  // data identification
+  page.bits(0, 6);  // dummy satellite
+  for (int k = 0; k < kContentBits / 2 - 1; ++k) page.bits(0b10, 2);
+  return bytes;  // the last two bits are solved for parity
 }
 
 }  // namespace vbar::twins::gnss

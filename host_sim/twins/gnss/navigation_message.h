@@ -7,6 +7,8 @@
 #include <cstdint>
 
 #include "host_sim/twins/gnss/broadcast_orbit.h"
+#include "host_sim/twins/gnss/constellation.h"
+#include "host_sim/twins/gnss/leap_seconds.h"
 
 namespace vbar::twins::gnss {
 
@@ -23,5 +25,13 @@ using Subframe = std::array<std::uint8_t, 30>;
 /// `transmission` is when subframe 1 begins; `issue` is 0 to 255 and becomes IODC and IODE.
 /// Throws std::out_of_range, naming satellite and number, where one does not fit its field.
 std::array<Subframe, 3> lnav_subframes(const Ephemeris& ephemeris, int issue, fsw::GpsTime transmission);
+
+/// Page 18 of subframe 4: ionosphere and UTC parameters. `transmission` is when subframe 1 of the frame begins. Throws
+/// std::out_of_range where a number does not fit its field.
+Subframe lnav_page_18(const BroadcastCorrections& corrections, const UtcOffset& utc, fsw::GpsTime transmission);
+
+/// A page of subframe 4 or 5 without content: the almanac of dummy satellite 0, alternating ones and zeros (IS-GPS-200N
+/// 20.3.3.5.1.2).
+Subframe lnav_dummy_page(unsigned subframe, fsw::GpsTime transmission);
 
 }  // namespace vbar::twins::gnss

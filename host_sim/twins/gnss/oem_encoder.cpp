@@ -1,98 +1,17 @@
 #include "host_sim/twins/gnss/oem_encoder.h"
 
-#include <array>
-#include <bit>
 #include <cmath>
-#include <concepts>
+#include <numbers>
 
+#include "host_sim/truth/earth/geodetic.h"
 #include "host_sim/twins/gnss/navigation_message.h"
+#include "host_sim/twins/gnss/oem_writer.h"
 #include "host_sim/twins/gnss/system_time.h"
 
 namespace vbar::twins::gnss::oem {
 namespace {
 
-enum class LogId : std::uint16_t {
-  kGpsEphem = 7,
-  kIonUtc = 8,
-  kRawEphem = 41,
-  kRange = 43,
-  kTime = 101,
-  kBestXyz = 241,
-  kGalEphemeris = 1122,
-  kBdsEphemeris = 1696,
-};
-
 constexpr double kUserRangeAccuracy_m = 2.0;
-
-constexpr std::array<std::uint32_t, 256> kCrcTable = [] {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t k = 0; k < 256; ++k) {
-    std::uint32_t crc = k;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
-    table[k] = crc;
-  }
-  return table;
-}();
-
-// NovAtel's CRC-32: the standard polynomial, but initialised with 0 and not inverted.
-std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
-  std::uint32_t crc = 0;
-  for (const std::uint8_t byte : bytes) crc = (crc >> 8U) ^ kCrcTable[(crc ^ byte) & 0xFFU];
-  return crc;
-}
-
-// One log: the header is written at once, its length and the CRC by finish().
-class LogWriter {
- public:
-  LogWriter(Bytes& bytes, LogId id, const Header& header) : bytes_(bytes), begin_(bytes.size()) {
-    const bool told = header.status != TimeStatus::kUnknown;
-    const WeekTime time = week_time(System::kGps, header.time);
-    constexpr std::uint32_t kPositionInvalid = 1U << 19U;
-    for (const std::uint8_t byte : {0xAA, 0x44, 0x12, 28}) u8(byte);
-    u16(static_cast<std::uint16_t>(id));
-    u8(0);     // binary, original message
-    u8(0x20);  // COM1
-    u16(0);    // body length, later
-    u16(0);    // last of its sequence
-    u8(180);   // idle time, half percents
-    u8(static_cast<std::uint8_t>(header.status));
-    u16(static_cast<std::uint16_t>(told ? time.week : 0));
-    u32(static_cast<std::uint32_t>(told ? time.ns_of_week / 1'000'000 : 0));
-    u32(header.position_valid ? 0U : kPositionInvalid);
-    u16(0);  // message definition
-    u16(0);  // software version
-  }
-
-  void u8(std::uint8_t value) { bytes_.push_back(value); }
-  void u16(std::uint16_t value) { little_endian(value); }
-  void u32(std::uint32_t value) { little_endian(value); }
-  void i32(std::int32_t value) { little_endian(static_cast<std::uint32_t>(value)); }
-  void f32(double value) { little_endian(std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
-  void f64(double value) { little_endian(std::bit_cast<std::uint64_t>(value)); }
-  void f64s(std::initializer_list<double> values) {
-    for (const double value : values) f64(value);
-  }
-  void zeros(int count) {
-    for (int k = 0; k < count; ++k) u8(0);
-  }
-
-  void finish() {
-    const std::size_t body = bytes_.size() - begin_ - 28;
-    bytes_[begin_ + 8] = static_cast<std::uint8_t>(body & 0xFFU);
-    bytes_[begin_ + 9] = static_cast<std::uint8_t>(body >> 8U);
-    u32(crc32(std::span(bytes_).subspan(begin_)));
-  }
-
- private:
-  template <std::unsigned_integral T>
-  void little_endian(T value) {
-    for (std::size_t k = 0; k < sizeof(T); ++k)
-      bytes_.push_back(static_cast<std::uint8_t>((value >> (8U * k)) & 0xFFU));
-  }
-
-  Bytes& bytes_;
-  std::size_t begin_;
-};
 
 std::uint32_t signal_code(SatelliteId satellite, Signal signal) {
   switch (signal) {
@@ -121,14 +40,15 @@ std::uint32_t system_code(System system) {
 }
 
 std::uint32_t tracking_status(const RangeRecord& record) {
-  constexpr std::uint32_t kPhaseLockLoop = 4;
   constexpr std::uint32_t kPhaseLock = 1U << 10U;
   constexpr std::uint32_t kParityKnown = 1U << 11U;
   constexpr std::uint32_t kCodeLock = 1U << 12U;
   constexpr std::uint32_t kNarrowCorrelator = 2U << 13U;
   const std::uint32_t primary = record.signal == Signal::kGpsL2 ? 0U : 1U << 27U;
-  return kPhaseLockLoop | static_cast<std::uint32_t>(record.channel & 31) << 5U | kPhaseLock | kParityKnown |
-         kCodeLock | kNarrowCorrelator | system_code(record.satellite.system) << 16U |
+  const TrackingState& tracking = record.tracking;
+  return (tracking.state & 31U) | static_cast<std::uint32_t>(record.channel & 31) << 5U |
+         (tracking.phase_lock ? kPhaseLock : 0U) | (tracking.parity_known ? kParityKnown : 0U) |
+         (tracking.code_lock ? kCodeLock : 0U) | kNarrowCorrelator | system_code(record.satellite.system) << 16U |
          (record.grouped ? 1U << 20U : 0U) | signal_code(record.satellite, record.signal) << 21U | primary;
 }
 
@@ -137,7 +57,7 @@ std::uint32_t whole_seconds(double seconds_of_week) {
 }
 
 // Fifteen numbers from sqrt(a) on.
-void append_galileo_orbit(LogWriter& log, const Ephemeris& e) {
+void append_galileo_orbit(MessageWriter& log, const Ephemeris& e) {
   log.f64s({e.sqrt_a, e.delta_n, e.m0, e.e, e.omega, e.cuc, e.cus, e.crc, e.crs, e.cic, e.cis, e.i0, e.i_dot,
             node_at_week_begin(e), e.omega_dot});
 }
@@ -145,7 +65,7 @@ void append_galileo_orbit(LogWriter& log, const Ephemeris& e) {
 }  // namespace
 
 void append_range(Bytes& bytes, const Header& header, std::span<const RangeRecord> records) {
-  LogWriter log(bytes, LogId::kRange, header);
+  MessageWriter log(bytes, MessageId::kRange, header);
   log.u32(static_cast<std::uint32_t>(records.size()));
   for (const RangeRecord& record : records) {
     log.u16(static_cast<std::uint16_t>(record.satellite.prn));
@@ -163,7 +83,7 @@ void append_range(Bytes& bytes, const Header& header, std::span<const RangeRecor
 }
 
 void append_rawephem(Bytes& bytes, const Header& header, const BroadcastSet& set, fsw::GpsTime heard) {
-  LogWriter log(bytes, LogId::kRawEphem, header);
+  MessageWriter log(bytes, MessageId::kRawEphem, header);
   const WeekTime toe = week_time(System::kGps, set.ephemeris.toe);
   log.u32(static_cast<std::uint32_t>(set.ephemeris.satellite.prn));
   log.u32(static_cast<std::uint32_t>(toe.week));
@@ -174,7 +94,7 @@ void append_rawephem(Bytes& bytes, const Header& header, const BroadcastSet& set
 }
 
 void append_gpsephem(Bytes& bytes, const Header& header, const BroadcastSet& set, fsw::GpsTime heard) {
-  LogWriter log(bytes, LogId::kGpsEphem, header);
+  MessageWriter log(bytes, MessageId::kGpsEphem, header);
   const Ephemeris& e = set.ephemeris;
   const WeekTime toe = week_time(System::kGps, e.toe);
   const WeekTime sent = week_time(System::kGps, heard);
@@ -197,7 +117,7 @@ void append_gpsephem(Bytes& bytes, const Header& header, const BroadcastSet& set
 }
 
 void append_galephemeris(Bytes& bytes, const Header& header, const BroadcastSet& set) {
-  LogWriter log(bytes, LogId::kGalEphemeris, header);
+  MessageWriter log(bytes, MessageId::kGalEphemeris, header);
   const Ephemeris& e = set.ephemeris;
   const std::uint32_t toe = whole_seconds(week_time(System::kGalileo, e.toe).seconds_of_week());
   constexpr std::uint8_t kAccuracyIndex = 107;  // 3.12 m, Galileo OS SIS ICD 2.1, table 89
@@ -219,7 +139,7 @@ void append_galephemeris(Bytes& bytes, const Header& header, const BroadcastSet&
 }
 
 void append_bdsephemeris(Bytes& bytes, const Header& header, const BroadcastSet& set) {
-  LogWriter log(bytes, LogId::kBdsEphemeris, header);
+  MessageWriter log(bytes, MessageId::kBdsEphemeris, header);
   const Ephemeris& e = set.ephemeris;
   const WeekTime toe = week_time(System::kBeidou, e.toe);
   log.u32(static_cast<std::uint32_t>(e.satellite.prn));
@@ -238,7 +158,7 @@ void append_bdsephemeris(Bytes& bytes, const Header& header, const BroadcastSet&
 }
 
 void append_ionutc(Bytes& bytes, const Header& header, const BroadcastCorrections& corrections, const UtcOffset& utc) {
-  LogWriter log(bytes, LogId::kIonUtc, header);
+  MessageWriter log(bytes, MessageId::kIonUtc, header);
   constexpr std::uint32_t kReferenceTime_s = 589824;  // a multiple of 4096 s, as the message has it
   for (const double a : corrections.klobuchar.alpha) log.f64(a);
   for (const double b : corrections.klobuchar.beta) log.f64(b);
@@ -254,7 +174,7 @@ void append_ionutc(Bytes& bytes, const Header& header, const BroadcastCorrection
 }
 
 void append_bestxyz(Bytes& bytes, const Header& header, const PositionRecord& position) {
-  LogWriter log(bytes, LogId::kBestXyz, header);
+  MessageWriter log(bytes, MessageId::kBestXyz, header);
   const std::uint32_t status = position.solved ? 0U : 1U;  // solution computed; insufficient observations
   log.u32(status);
   log.u32(position.solved ? 16U : 0U);  // single point; none
@@ -277,8 +197,58 @@ void append_bestxyz(Bytes& bytes, const Header& header, const PositionRecord& po
   log.finish();
 }
 
+void append_bestpos(Bytes& bytes, const Header& header, const PositionRecord& position) {
+  MessageWriter log(bytes, MessageId::kBestPos, header);
+  const truth::GeodeticPosition geodetic =
+      position.solved ? truth::geodetic_from_itrf(position.position_ecef) : truth::GeodeticPosition{};
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  constexpr std::uint32_t kWgs84 = 61;
+  log.u32(position.solved ? 0U : 1U);
+  log.u32(position.solved ? 16U : 0U);
+  log.f64s({geodetic.latitude / kDegree, geodetic.longitude / kDegree, geodetic.altitude});
+  log.f32(0.0);  // undulation: the height is above the ellipsoid
+  log.u32(kWgs84);
+  // One sigma for north, east and up: the root mean square of the three axes.
+  for (int k = 0; k < 3; ++k) log.f32(position.position_sigma_m.norm() / std::numbers::sqrt3);
+  log.zeros(4);  // base station
+  log.f32(0.0);  // age of differential corrections
+  log.f32(0.0);  // age of the solution
+  log.u8(static_cast<std::uint8_t>(position.satellites_tracked));
+  for (int k = 0; k < 2; ++k) log.u8(static_cast<std::uint8_t>(position.satellites_used));
+  log.zeros(4);
+  log.u8(position.solved ? 1 : 0);  // GPS L1 used
+  log.finish();
+}
+
+void append_version(Bytes& bytes, const Header& header, const VersionRecord& version) {
+  MessageWriter log(bytes, MessageId::kVersion, header);
+  log.u32(1);  // components
+  log.u32(1);  // a GNSS card
+  for (const std::string_view text : {version.model, version.serial, version.hardware, version.software, version.boot})
+    log.text(text, 16);
+  for (const std::string_view text : {version.date, version.time}) log.text(text, 12);
+  log.finish();
+}
+
+void append_status_event(Bytes& bytes, const Header& header, const StatusEvent& event) {
+  MessageWriter log(bytes, MessageId::kRxStatusEvent, header);
+  log.u32(1);  // the receiver status word
+  log.u32(event.bit);
+  log.u32(event.set ? 1U : 0U);
+  log.text(event.text, 32);
+  log.finish();
+}
+
+void append_response(Bytes& bytes, const Header& header, std::uint16_t id, std::uint32_t response,
+                     std::string_view text) {
+  MessageWriter log(bytes, static_cast<MessageId>(id), header, true);
+  log.u32(response);
+  log.text(text, text.size());
+  log.finish();
+}
+
 void append_time(Bytes& bytes, const Header& header, const ClockRecord& clock, const UtcOffset& utc) {
-  LogWriter log(bytes, LogId::kTime, header);
+  MessageWriter log(bytes, MessageId::kTime, header);
   const CalendarTime calendar = clock.valid ? utc_calendar(header.time, utc) : CalendarTime{};
   log.u32(clock.valid ? 0U : 3U);  // valid; invalid
   log.f64(clock.offset_s);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
@@ -15,14 +16,55 @@ namespace vbar::twins::gnss::oem {
 
 using Bytes = std::vector<std::uint8_t>;
 
+enum class MessageId : std::uint16_t {
+  kGpsEphem = 7,
+  kIonUtc = 8,
+  kVersion = 37,
+  kRawEphem = 41,
+  kBestPos = 42,
+  kRange = 43,
+  kRxStatusEvent = 94,
+  kTime = 101,
+  kBestXyz = 241,
+  kGalEphemeris = 1122,
+  kBdsEphemeris = 1696,
+};
+
 /// The time status of the receiver, as in the header.
-enum class TimeStatus : std::uint8_t { kUnknown = 20, kApproximate = 60, kCoarse = 100, kFine = 160 };
+enum class TimeStatus : std::uint8_t {
+  kUnknown = 20,
+  kApproximate = 60,
+  kCoarse = 100,
+  kCoarseSteering = 120,
+  kFreewheeling = 130,
+  kFine = 160,
+  kFineSteering = 180,
+};
+
+/// Bits of the receiver status word.
+inline constexpr unsigned kTransmitOverrunBit = 8;  ///< of COM1; those of COM2 and COM3 follow
+inline constexpr unsigned kPositionInvalidBit = 19;
+inline constexpr unsigned kClockModelInvalidBit = 22;
 
 /// The common header of all logs of one epoch.
 struct Header {
   fsw::GpsTime time;  ///< by the receiver's clock, integer milliseconds; not sent while the status is kUnknown
   TimeStatus status = TimeStatus::kUnknown;
   bool position_valid = false;
+  std::uint8_t port = 0x20;            ///< COM1
+  std::uint32_t more_status_bits = 0;  ///< of the receiver status word, beside "position invalid"
+
+  [[nodiscard]] std::uint32_t status_word() const {
+    return more_status_bits | (position_valid ? 0U : 1U << kPositionInvalidBit);
+  }
+};
+
+/// What the tracking status word says of a channel's loops.
+struct TrackingState {
+  unsigned state = 4;  ///< 1 search, 2 pull-in, 4 phase lock loop, 7 frequency lock loop
+  bool phase_lock = true;
+  bool parity_known = true;
+  bool code_lock = true;
 };
 
 /// One signal in RANGE.
@@ -38,6 +80,7 @@ struct RangeRecord {
   double carrier_sigma_cycles = 0.0;
   double cn0_dbhz = 0.0;
   double lock_time_s = 0.0;
+  TrackingState tracking = {};
 };
 void append_range(Bytes& bytes, const Header& header, std::span<const RangeRecord> records);
 
@@ -63,6 +106,9 @@ struct PositionRecord {
 };
 void append_bestxyz(Bytes& bytes, const Header& header, const PositionRecord& position);
 
+/// BESTPOS: the same in geodetic coordinates, height above the ellipsoid.
+void append_bestpos(Bytes& bytes, const Header& header, const PositionRecord& position);
+
 /// TIME: the clock's offset as the receiver estimates it (GPS time = receiver time - offset), and UTC.
 struct ClockRecord {
   bool valid = false;
@@ -70,5 +116,24 @@ struct ClockRecord {
   double sigma_s = 0.0;
 };
 void append_time(Bytes& bytes, const Header& header, const ClockRecord& clock, const UtcOffset& utc);
+
+/// VERSION: one component, the receiver itself.
+struct VersionRecord {
+  std::string_view model, serial, hardware, software, boot;  ///< up to 16 characters
+  std::string_view date, time;                               ///< of the software, up to 12 characters
+};
+void append_version(Bytes& bytes, const Header& header, const VersionRecord& version);
+
+/// RXSTATUSEVENT: a bit of the receiver status word has changed.
+struct StatusEvent {
+  unsigned bit = 0;
+  bool set = false;
+  std::string_view text;  ///< up to 32 characters
+};
+void append_status_event(Bytes& bytes, const Header& header, const StatusEvent& event);
+
+/// The answer to the binary command `id`.
+void append_response(Bytes& bytes, const Header& header, std::uint16_t id, std::uint32_t response,
+                     std::string_view text);
 
 }  // namespace vbar::twins::gnss::oem

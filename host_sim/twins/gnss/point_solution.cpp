@@ -49,6 +49,7 @@ std::optional<PointSolution> solve_point(const std::vector<PointResidual>& resid
   solution.position_sigma = covariance.diagonal().head<3>().cwiseSqrt();
   solution.velocity_sigma = rate_covariance.diagonal().head<3>().cwiseSqrt();
   solution.clock_offset_s = x(3) / fsw::gnss::kSpeedOfLight;
+  solution.clock_drift = v(3) / fsw::gnss::kSpeedOfLight;
   solution.clock_sigma_s = std::sqrt(covariance(3, 3)) / fsw::gnss::kSpeedOfLight;
   return solution;
 }

@@ -26,6 +26,7 @@ struct PointSolution {
   fsw::Vector3 velocity_sigma = fsw::Vector3::Zero();
   double clock_offset_s = 0.0;  ///< estimated
   double clock_sigma_s = 0.0;
+  double clock_drift = 0.0;  ///< estimated, s/s
 };
 
 /// None with fewer than four satellites or a singular geometry.

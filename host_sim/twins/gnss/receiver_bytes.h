@@ -11,6 +11,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
+#include "host_sim/io/wired_receiver.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::twins::gnss {
@@ -29,14 +30,27 @@ struct BodyTruth {
   std::optional<fsw::Vector3> angular_acceleration_body;  ///< rad/s^2, body axes
 };
 
+/// The known attitude of the body at an epoch of the receiver.
+struct EpochAttitude {
+  fsw::GpsTime time;
+  Eigen::Quaterniond q_body_eci = Eigen::Quaterniond::Identity();
+  fsw::Vector3 rate_body = fsw::Vector3::Zero();  ///< rad/s, body axes
+};
+
 /// Output of a receiver at one call.
 struct ReceiverOutput {
   std::vector<std::uint8_t> bytes;
   bool is_epoch = true;      ///< false: nothing is delivered, a trajectory sample was taken in between two epochs
-  fsw::Duration delay = {};  ///< from the epoch until the last byte was available, >= 0
+  fsw::Duration delay = {};  ///< from the call until the last byte was available, >= 0
+  /// Of bytes that a device measured before the call: the attitude then. Empty: the epoch is that of the call.
+  std::optional<EpochAttitude> measured = std::nullopt;
+  bool bytes_bypass_host = false;  ///< the flight computer receives the bytes by a line of its own
   std::vector<Note> notes = {};
   std::string failure = {};  ///< if the receiver gave no data for this epoch: the reason, one sentence
 };
+
+/// The truth about one spacecraft, which must have an attitude.
+[[nodiscard]] BodyTruth body_truth(const TruthSnapshot& truth, const SpacecraftTruth& spacecraft);
 
 class ReceiverBytes {
  public:
@@ -50,8 +64,12 @@ class ReceiverBytes {
   virtual void stop(StopReason reason) { static_cast<void>(reason); }
   [[nodiscard]] virtual TruthDetail truth_detail() const { return TruthDetail::kStates; }
   [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
+  [[nodiscard]] virtual std::optional<io::WiredReceiver> wired_receiver() const { return std::nullopt; }
 
-  /// Once every period of the sensor, in order.
+  /// Between calls of output_at; empty: the sensor's period.
+  [[nodiscard]] virtual std::optional<fsw::Duration> call_period() const { return std::nullopt; }
+
+  /// Once every period, in order.
   virtual ReceiverOutput output_at(const BodyTruth& truth) = 0;
 };
 

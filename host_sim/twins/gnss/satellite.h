@@ -59,4 +59,17 @@ constexpr double wavelength_m(Signal signal) {
   return fsw::gnss::kSpeedOfLight / structure(signal).frequency_hz;
 }
 
+/// The delay of code against the satellite's clock, s: the clock refers to a combination of two signals (IS-GPS-200N
+/// 20.3.3.3.3.2; Galileo OS SIS ICD 2.1, 5.1.5; BDS-SIS-ICD-B1I-3.0, 5.2.4.10).
+constexpr double code_delay_s(Signal signal, double group_delay_s) {
+  constexpr double kGamma = (fsw::gnss::kL1_Hz / fsw::gnss::kL2_Hz) * (fsw::gnss::kL1_Hz / fsw::gnss::kL2_Hz);
+  return signal == Signal::kGpsL2 ? kGamma * group_delay_s : group_delay_s;
+}
+
+/// Delay by the ionosphere relative to that of GPS L1: group delay goes with the inverse square of the frequency.
+constexpr double ionosphere_scale(Signal signal) {
+  const double ratio = fsw::gnss::kL1_Hz / structure(signal).frequency_hz;
+  return ratio * ratio;
+}
+
 }  // namespace vbar::twins::gnss

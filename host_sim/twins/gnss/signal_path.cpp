@@ -39,12 +39,6 @@ Transmission transmission(const StateAt& state_at, const AntennaState& antenna, 
   return {turned(state.position_ecef), turned(state.velocity_ecef), state.clock_s, state.clock_drift};
 }
 
-double shapiro_delay_m(double transmitter_radius_m, double receiver_radius_m, double range_m) {
-  constexpr double kTwoGmPerC2 = 2.0 * fsw::gnss::kGmGps / (kSpeedOfLight * kSpeedOfLight);
-  const double sum_m = transmitter_radius_m + receiver_radius_m;
-  return kTwoGmPerC2 * std::log((sum_m + range_m) / (sum_m - range_m));
-}
-
 template <class StateAt>
 SignalPath path_from(const StateAt& state_at, const AntennaState& antenna, double travel_s, int passes) {
   Transmission sent{};
@@ -69,24 +63,31 @@ SignalPath path_from(const StateAt& state_at, const AntennaState& antenna, doubl
   return path;
 }
 
-bool visible(const Vector3& satellite, const AntennaState& antenna, const VisibilitySettings& settings) {
-  const Vector3 to_satellite = (satellite - antenna.position_ecef).normalized();
+}  // namespace
+
+bool is_visible(const Vector3& satellite_ecef, const AntennaState& antenna, const VisibilitySettings& settings) {
+  const Vector3 to_satellite = (satellite_ecef - antenna.position_ecef).normalized();
   const double radius_m = antenna.position_ecef.norm();
   const double sin_elevation = to_satellite.dot(antenna.position_ecef) / radius_m;
   if (sin_elevation < std::sin(radians(settings.horizon_mask_deg))) return false;
   if (to_satellite.dot(antenna.boresight_ecef) < std::cos(radians(settings.receiver_mask_deg / 2.0))) return false;
-  if (to_satellite.dot(satellite.normalized()) < std::cos(radians(settings.transmit_aperture_deg / 2.0))) return false;
+  if (to_satellite.dot(satellite_ecef.normalized()) < std::cos(radians(settings.transmit_aperture_deg / 2.0)))
+    return false;
   const double closest_m = radius_m * std::sqrt(std::max(0.0, 1.0 - sin_elevation * sin_elevation));
   return sin_elevation >= 0.0 || closest_m > kEarthRadius_m + settings.occultation_altitude_km * 1e3;
 }
 
-}  // namespace
+double shapiro_delay_m(double transmitter_radius_m, double receiver_radius_m, double range_m) {
+  constexpr double kTwoGmPerC2 = 2.0 * fsw::gnss::kGmGps / (kSpeedOfLight * kSpeedOfLight);
+  const double sum_m = transmitter_radius_m + receiver_radius_m;
+  return kTwoGmPerC2 * std::log((sum_m + range_m) / (sum_m - range_m));
+}
 
 std::optional<SignalPath> visible_path(const Constellation& constellation, std::size_t index,
                                        const AntennaState& antenna, const VisibilitySettings& settings) {
   const auto state_at = [&](double offset_s) { return constellation.true_state(index, antenna.time, offset_s); };
   const Transmission about = transmission(state_at, antenna, kFirstTravel_s);
-  if (!visible(about.position, antenna, settings)) return std::nullopt;
+  if (!is_visible(about.position, antenna, settings)) return std::nullopt;
   const double travel_s = (about.position - antenna.position_ecef).norm() / kSpeedOfLight;
   return path_from(state_at, antenna, travel_s, kPasses - 1);
 }

@@ -29,7 +29,9 @@ SatelliteTracking::SatelliteTracking(SatelliteId satellite, const StartSettings&
   for (std::size_t k = 0; k < kSignals; ++k) {
     if (kSignalStructures[k].system != satellite.system) continue;
     const std::string name = stream_name(receiver, satellite) + "/" + kSignalStructures[k].name;
-    signals_.emplace_back(static_cast<Signal>(k), engine::RandomStream(seed, name));
+    signals_.emplace_back(static_cast<Signal>(k), engine::RandomStream(seed, name),
+                          engine::GaussMarkov(1e-3 * tracking.carrier_wander_sigma_mm, tracking.carrier_wander_time_s,
+                                              engine::RandomStream(seed, name + "/carrier_wander")));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fsw/core/gps_time.h"
+#include "host_sim/engine/gauss_markov.h"
 #include "host_sim/engine/random_stream.h"
 #include "host_sim/twins/gnss/gnss_settings.h"
 #include "host_sim/twins/gnss/satellite.h"
@@ -16,10 +17,12 @@ namespace vbar::twins::gnss {
 
 /// One signal's loops.
 struct SignalTrack {
-  SignalTrack(Signal of, const engine::RandomStream& draws) : signal(of), stream(draws) {}
+  SignalTrack(Signal of, const engine::RandomStream& draws, const engine::GaussMarkov& wander_m)
+      : signal(of), stream(draws), carrier_wander_m(wander_m) {}
 
   Signal signal;
-  engine::RandomStream stream;  ///< of its slips, ambiguities and noise
+  engine::RandomStream stream;           ///< of its slips, ambiguities and noise
+  engine::GaussMarkov carrier_wander_m;  ///< continues whether the signal is tracked or not
   bool tracking = false;
   fsw::GpsTime lock_since;            ///< of the continuous count, as the receiver reports it
   std::int64_t ambiguity_cycles = 0;  ///< added to the true phase
@@ -29,7 +32,8 @@ struct SignalTrack {
 
 class SatelliteTracking {
  public:
-  /// Draws from the streams "gnss/<receiver>/<satellite>" and "gnss/<receiver>/<satellite>/<signal>" of `seed`.
+  /// Draws from the streams "gnss/<receiver>/<satellite>", "gnss/<receiver>/<satellite>/<signal>", and
+  /// "gnss/<receiver>/<satellite>/<signal>/carrier_wander" of `seed`.
   SatelliteTracking(SatelliteId satellite, const StartSettings& start, const TrackingSettings& tracking,
                     std::uint64_t seed, std::string_view receiver);
 

@@ -71,6 +71,26 @@ TEST(RunClock, RealTimeIsPacedByTheSpeedFactor) {
             0U);
 }
 
+class StartingWall final : public WallClock {
+ public:
+  Span now() override { return now_; }
+  Span start_of_run() override { return 10s; }
+  void sleep_until(Span wake) override { now_ = wake; }
+
+ private:
+  Span now_{4s};
+};
+
+TEST(RunClock, RunStartsWhenTheClockSaysSo) {
+  StartingWall wall;
+  RunClock clock(real_time(1.0), wall);
+  clock.start(at(1000));
+  EXPECT_TRUE(clock.begin_step(at(1000)));
+  EXPECT_EQ(wall.now(), 10s);
+  EXPECT_TRUE(clock.wait_until(at(1003), nullptr));
+  EXPECT_EQ(wall.now(), 13s);
+}
+
 TEST(RunClock, LateWakingIsTheOperatingSystems) {
   TestWall wall;
   RunClock clock(real_time(1.0), wall);

@@ -63,6 +63,31 @@ TEST_F(GnssSensorTest, PassesOnWhatTheReceiverGaveWhenItWasComplete) {
   EXPECT_EQ(receiver_->last.acceleration_eci.value(), fsw::Vector3(-8.0, 0.0, 0.0));
 }
 
+// A device delivers an epoch some tenths of a second after it: the attitude is that of the epoch.
+TEST_F(GnssSensorTest, AttitudeIsThatOfTheEpochThatWasMeasured) {
+  const Eigen::Quaterniond q_then(Eigen::AngleAxisd(0.1, fsw::Vector3::UnitX()));
+  receiver_->output.bytes = {1};
+  receiver_->output.measured =
+      gnss::EpochAttitude{kStart - fsw::Duration{300'000'000}, q_then, fsw::Vector3(0.0, 0.0, 1e-3)};
+  const Measurement measurement = sensor_->measure(snapshot(kStart));
+  ASSERT_EQ(measurement.packets.size(), 2U);
+  EXPECT_EQ(fsw::packets::parse_packet(measurement.packets[0]).value().header.time, kStart);
+  const auto packet = fsw::packets::parse_packet(measurement.packets[1]).value();
+  EXPECT_EQ(packet.header.time, kStart - fsw::Duration{300'000'000});
+  const attitude message = fsw::packets::decode<attitude>(packet).value();
+  EXPECT_EQ(message.q_eci_body[0], q_then.w());
+  EXPECT_EQ(message.q_eci_body[1], -q_then.x());  // to ECI from body: the inverse
+  EXPECT_EQ(message.rate_body[2], 1e-3);
+}
+
+TEST_F(GnssSensorTest, BytesThatReachTheFlightComputerOnTheirOwnLineAreNotSent) {
+  receiver_->output.bytes = {1, 2, 3};
+  receiver_->output.bytes_bypass_host = true;
+  const Measurement measurement = sensor_->measure(snapshot(kStart));
+  ASSERT_EQ(measurement.packets.size(), 1U);
+  EXPECT_EQ(fsw::packets::parse_packet(measurement.packets[0]).value().header.apid, fsw::packets::Apid::kAttitude);
+}
+
 TEST_F(GnssSensorTest, SampleBetweenEpochsDeliversNothing) {
   receiver_->output.is_epoch = false;
   const Measurement measurement = sensor_->measure(snapshot(kStart));

@@ -58,6 +58,10 @@ TEST(GnssSettings, RefusesWithOneClearError) {
             "loss_threshold_dbhz = 35 is above acquisition_threshold_dbhz = 33");
   EXPECT_EQ(refusal_after([](Settings& s) { s.tracking.undetected_slip_fraction = 2.0; }),
             "undetected_slip_fraction = 2: accepted is 0 to 1");
+  EXPECT_EQ(refusal_after([](Settings& s) { s.tracking.carrier_wander_sigma_mm = -1.0; }),
+            "carrier_wander_sigma_mm = -1: accepted is 0 to 100");
+  EXPECT_EQ(refusal_after([](Settings& s) { s.tracking.carrier_wander_time_s = 0.0; }),
+            "carrier_wander_time_s = 0: accepted is 0.001 to 1000000");
   EXPECT_EQ(refusal_after([](Settings& s) { s.start.cold_search_min_s = 100.0; }),
             "cold_search_min_s = 100 is above cold_search_max_s = 60");
   EXPECT_EQ(refusal_after([](Settings& s) { s.clock.jump_threshold_ms = 0.1; }),

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -53,6 +54,56 @@ TEST(GnssReceiverNoise, HasTheLoopsVariances) {
   EXPECT_GT(sums[Signal::kGpsL1].count, 15000);
   accuracy::expect_below("GNSS emulator: noise of code and carrier, variance", "loop formulas of Kaplan and Hegarty",
                          worst, 0.04, "relative");
+}
+
+/// The carrier of each observation of an epoch.
+std::map<std::pair<SatelliteId, Signal>, double> carriers_cycles(const GnssReceiver& receiver) {
+  std::map<std::pair<SatelliteId, Signal>, double> carriers;
+  for (const oem::RangeRecord& record : receiver.observations())
+    carriers[{record.satellite, record.signal}] = record.carrier_phase_cycles;
+  return carriers;
+}
+
+// The wander of a receiver is the only difference to the same receiver without it. 1.5 mm over 60 s at every 60 s: each
+// value has a correlation of exp(-1) with the next one, so that n values weigh as n (1 - exp(-2)) / (1 + exp(-2)) =
+// 0.76 n independent squares.
+TEST(GnssReceiverNoise, WanderIsThatOfASeparateStreamOfEachCarrier) {
+  GnssReceiverSettings wandering;
+  wandering.tracking.carrier_wander_sigma_mm = 1.5;
+  wandering.tracking.carrier_wander_time_s = 60.0;
+  GnssReceiver plain({}, test::constellation(11), test::data_directory(), 11, "servicer");
+  GnssReceiver receiver(wandering, test::constellation(11), test::data_directory(), 11, "servicer");
+  std::map<std::pair<SatelliteId, Signal>, double> before_mm;
+  double squares = 0.0, products = 0.0, across_signals = 0.0;
+  int count = 0, pairs = 0, signal_pairs = 0;
+  for (int k = 0; k < 300; ++k) {
+    receiver.bytes_at(test::in_orbit(60.0 * k));
+    plain.bytes_at(test::in_orbit(60.0 * k));
+    const auto without = carriers_cycles(plain);
+    std::map<std::pair<SatelliteId, Signal>, double> now_mm;
+    for (const auto& [channel, cycles] : carriers_cycles(receiver)) {
+      const double wander_mm = 1e3 * wavelength_m(channel.second) * (cycles - without.at(channel));
+      now_mm[channel] = wander_mm;
+      squares += wander_mm * wander_mm;
+      ++count;
+      if (const auto last = before_mm.find(channel); last != before_mm.end()) {
+        products += wander_mm * last->second;
+        ++pairs;
+      }
+      const auto first_signal = now_mm.find({channel.first, Signal::kGpsL1});
+      if (channel.second == Signal::kGpsL2 && first_signal != now_mm.end()) {
+        across_signals += wander_mm * first_signal->second;
+        ++signal_pairs;
+      }
+    }
+    before_mm = now_mm;
+  }
+  ASSERT_GT(count, 3000);
+  ASSERT_GT(signal_pairs, 1000);
+  const double variance = 1.5 * 1.5;
+  EXPECT_NEAR(squares / count / variance, 1.0, 4.0 * std::sqrt(2.0 / (0.76 * count)));
+  EXPECT_NEAR(products / pairs / variance, std::exp(-1.0), 4.0 * std::sqrt(1.4 / (0.76 * pairs)));
+  EXPECT_NEAR(across_signals / signal_pairs / variance, 0.0, 4.0 * std::sqrt(1.0 / (0.76 * signal_pairs)));
 }
 
 }  // namespace
