@@ -18,6 +18,8 @@
 #include <sys/socket.h>
 #include <termios.h>
 
+#include "host_sim/io/raw_terminal.h"
+
 namespace vbar::io {
 namespace {
 
@@ -117,16 +119,6 @@ void connect_patiently(const std::string& description, Clock::time_point deadlin
     if (!nobody_there || Clock::now() >= deadline) fail(description, error);
     std::this_thread::sleep_for(kConnectRetryPeriod);
   }
-}
-
-/// 8N1, no echo, no translation, no flow control, modem lines ignored.
-void set_raw(int fd, const std::string& description) {
-  termios settings{};
-  if (::tcgetattr(fd, &settings) != 0) fail_errno(description);
-  ::cfmakeraw(&settings);
-  settings.c_cflag |= CLOCAL | CREAD;
-  settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
-  if (::tcsetattr(fd, TCSANOW, &settings) != 0) fail_errno(description);
 }
 
 class PacedChannel final : public ByteChannel {
