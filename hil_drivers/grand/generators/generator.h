@@ -19,7 +19,7 @@ namespace vbar::grand {
 
 enum class Pace { kLockStep, kRealTime };
 
-/// What all generators are told before a run.
+/// What all generators are configured with before a run.
 struct GeneratorPlan {
   fsw::GpsTime start;                 ///< of the first sample; whole second
   std::vector<std::string> vehicles;  ///< in the order of the `vehicle` arguments below
@@ -54,7 +54,7 @@ class Generator {
   virtual void prepare(std::span<const TrajectorySample> first) = 0;
 
   /// Real time: returns the host's clock (std::chrono::steady_clock) at the generator's time 0, as well as the
-  /// generator says it; empty if its edges must tell. Lock-step: the generator runs as far as its samples reach.
+  /// generator says it; empty if only its edges state it. Lock-step: the generator runs as far as its samples reach.
   virtual std::optional<std::chrono::steady_clock::time_point> start() = 0;
 
   virtual void send(std::size_t vehicle, const TrajectorySample& sample) = 0;
@@ -84,6 +84,7 @@ struct GeneratorKind {
   /// Reads the kind's own table; throws MissionError.
   std::shared_ptr<const GeneratorSettings> (*read)(const mission::TableReader& section);
   std::unique_ptr<Generator> (*make)(const GeneratorPlan& plan, const GeneratorSettings& settings);
+  bool has_instance_per_vehicle = false;  ///< with a control port each, in sequence
 };
 
 /// All kinds of this program; the first is the default.

@@ -15,8 +15,9 @@ struct TrajectorySample {
   fsw::Vector3 velocity_ecef_mps = fsw::Vector3::Zero();
   fsw::Vector3 acceleration_ecef_mps2 = fsw::Vector3::Zero();
   fsw::Vector3 jerk_ecef_mps3 = fsw::Vector3::Zero();
-  /// Yaw, pitch, roll (rad) of the antenna frame against the local north-east-down frame, rotation order z, y, x. The
-  /// antenna frame has -z along the boresight, so that an antenna that points to the zenith has zero pitch and roll.
+  /// Yaw, pitch, roll (rad) of the antenna frame against the local north-east-down frame (geodetic, WGS 84), rotation
+  /// order z, y, x. The antenna frame has -z along the boresight, so that an antenna that points to the zenith has zero
+  /// pitch and roll. Rate and acceleration are those against the same local frame: derivatives of this attitude.
   fsw::Vector3 yaw_pitch_roll = fsw::Vector3::Zero();
   fsw::Vector3 angular_rate = fsw::Vector3::Zero();          ///< of the antenna frame about its own axes, rad/s
   fsw::Vector3 angular_acceleration = fsw::Vector3::Zero();  ///< rad/s^2

@@ -1,0 +1,240 @@
+// The Skydel driver and the emulated Skydel: the whole conversation, lost samples, refusals, silence, a closed
+// connection.
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/hil_drivers/grand/generators/loopback.h"
+
+namespace vbar::grand::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+bench::ControlSettings skydel() {
+  return {};
+}
+
+/// Time for an answer: short enough for a test of silence, long enough for a loaded machine.
+const std::string kImpatient = "answer_limit_ms = 1500\n";
+
+TEST(SkydelLoopback, FliesBothVehiclesInLockStep) {
+  Loopback loopback(skydel());
+  const auto generator = loopback.generator("skydel");
+  prepare(*generator);
+  EXPECT_EQ(generator->start(), std::nullopt);
+  for (int n = 1; n <= 20; ++n) {
+    // One vehicle after the other: each runs as far as its own samples.
+    for (const std::size_t vehicle : {0U, 1U}) {
+      generator->send(vehicle, sample_at(tenths(n), static_cast<double>(vehicle)));
+      EXPECT_EQ(generator->wait_for(vehicle, tenths(n), soon()), tenths(n));
+    }
+  }
+  const GeneratorState state = generator->state(1);
+  EXPECT_EQ(state.text, "Streaming RF");
+  EXPECT_TRUE(state.is_streaming);
+  EXPECT_EQ(state.extrapolation, Extrapolation::kDeterministic);
+  generator->stop();
+  loopback.in_server([](FakeEngine& engine, bench::ControlServers&) {
+    EXPECT_EQ(engine.calls, "reset arm start stop ");
+    EXPECT_EQ(engine.start_time, kStart);
+    EXPECT_EQ(engine.join, fsw::Duration{165'000'000});
+    EXPECT_EQ(engine.delay, fsw::duration_of_seconds(2));
+    for (const std::size_t vehicle : {0U, 1U}) {
+      ASSERT_EQ(engine.samples[vehicle].size(), 21U);
+      for (int n = 0; n <= 20; ++n)
+        EXPECT_TRUE(is_same(engine.samples[vehicle][n], sample_at(tenths(n), static_cast<double>(vehicle))));
+    }
+  });
+  EXPECT_EQ(loopback.statistics().refused, 0U);
+}
+
+TEST(SkydelLoopback, FliesOneVehicle) {
+  Loopback loopback(skydel(), 1);
+  const auto generator = loopback.generator("skydel");
+  prepare(*generator, 1);
+  generator->start();
+  generator->send(0, sample_at(kTenth));
+  EXPECT_EQ(generator->wait_for(0, kTenth, soon()), kTenth);
+}
+
+// UDP may lose a sample: it is sent again after 0.2 s.
+TEST(SkydelLoopback, ALostSampleIsSentAgain) {
+  Loopback loopback(skydel());
+  const auto generator = loopback.generator("skydel");
+  prepare(*generator);
+  generator->start();
+  loopback.in_server([](FakeEngine& engine, bench::ControlServers&) { engine.ignored_samples = 2; });
+  generator->send(0, sample_at(kTenth));
+  EXPECT_EQ(generator->wait_for(0, kTenth, soon(5.0)), kTenth);
+}
+
+// The vehicle information may be lost as well: a sample that comes again is answered.
+TEST(SkydelLoopback, AnAnswerToARepeatedSampleReplacesLostVehicleInformation) {
+  Loopback loopback(skydel());
+  const auto generator = loopback.generator("skydel");
+  prepare(*generator);
+  generator->start();
+  loopback.set_faults({.is_silent = true});
+  generator->send(0, sample_at(kTenth));
+  EXPECT_EQ(generator->wait_for(0, kTenth, soon(0.1)), fsw::Duration{});
+  loopback.set_faults({});
+  EXPECT_EQ(generator->wait_for(0, kTenth, soon(5.0)), kTenth);
+  loopback.in_server([](FakeEngine& engine, bench::ControlServers&) { EXPECT_EQ(engine.reports[0].time, kTenth); });
+}
+
+TEST(SkydelLoopback, InRealTimeTheStartIsThatOfTheGeneratorsClock) {
+  Loopback loopback(skydel());
+  using namespace std::chrono;
+  const auto now_ms = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
+  loopback.in_server([&](FakeEngine& engine, bench::ControlServers&) { engine.pps0_ms = now_ms; });
+  const auto reference = steady_clock::now();
+  const auto generator = loopback.generator("skydel", "start_after_pps_ms = 1500", Pace::kRealTime);
+  prepare(*generator);
+  const auto start = generator->start();
+  ASSERT_TRUE(start.has_value());
+  // PPS0 was taken just before `reference`; on a loaded machine the thread may be interrupted between two readings of
+  // the clocks.
+  EXPECT_NEAR(duration<double>(*start - reference).count(), 1.5, 0.3);
+}
+
+TEST(SkydelLoopback, WithoutATimeOfTheEdgeTheEdgesMustTell) {
+  Loopback loopback(skydel());
+  const auto generator = loopback.generator("skydel", "", Pace::kRealTime);
+  prepare(*generator);
+  EXPECT_EQ(generator->start(), std::nullopt);
+}
+
+TEST(SkydelLoopback, ARefusedCommandIsOneSentence) {
+  for (const char* command : {"New", "SetHilTjoin", "ArmPPS"}) {
+    Loopback loopback(skydel());
+    loopback.set_faults({.refused_command = command, .refusal = "No license"});
+    const auto generator = loopback.generator("skydel");
+    EXPECT_EQ(error_of([&] { prepare(*generator); }),
+              "Skydel at 127.0.0.1:" + std::to_string(loopback.control_ports()[0]) + ": " + command +
+                  ": answered ErrorResult: No license");
+  }
+}
+
+TEST(SkydelLoopback, ARefusalOfTheEngineReachesTheDriver) {
+  Loopback loopback(skydel());
+  loopback.in_server(
+      [](FakeEngine& engine, bench::ControlServers&) { engine.refusal = "No ephemerides for that day"; });
+  const auto generator = loopback.generator("skydel");
+  EXPECT_THAT(error_of([&] { prepare(*generator); }),
+              HasSubstr("SetGpsStartTime: answered ErrorResult: No ephemerides for that day"));
+}
+
+TEST(SkydelLoopback, AMissingAnswerEndsTheWait) {
+  Loopback loopback(skydel());
+  loopback.set_faults({.unanswered_command = "GetEngineLatency"});
+  const auto generator = loopback.generator("skydel", kImpatient);
+  EXPECT_THAT(error_of([&] { prepare(*generator); }), HasSubstr("GetEngineLatency: no answer within 1.5 s"));
+}
+
+TEST(SkydelLoopback, AGeneratorThatDoesNotExistIsOneSentence) {
+  Loopback other(skydel());
+  const auto generator = [&] {
+    Loopback loopback(skydel());
+    return loopback.generator("skydel", kImpatient);
+  }();
+  EXPECT_THAT(error_of([&] { prepare(*generator); }), AllOf(HasSubstr("Skydel at 127.0.0.1"), HasSubstr("connecting")));
+}
+
+TEST(SkydelLoopback, AClosedConnectionIsNoticedInEveryState) {
+  Loopback loopback(skydel());
+  loopback.set_faults({.closing_command = "SetVehicleTrajectory"});
+  auto generator = loopback.generator("skydel", kImpatient);
+  EXPECT_THAT(error_of([&] { prepare(*generator); }),
+              HasSubstr("SetVehicleTrajectory: the generator closed the connection"));
+
+  loopback.set_faults({.refuses_connections = true});
+  generator = loopback.generator("skydel", kImpatient);
+  EXPECT_THAT(error_of([&] { prepare(*generator); }), HasSubstr("API version: the generator closed the connection"));
+
+  loopback.set_faults({});
+  generator = loopback.generator("skydel", kImpatient);
+  prepare(*generator);
+  generator->start();
+  loopback.in_server([](FakeEngine&, bench::ControlServers& servers) {
+    servers.set_faults({.is_silent = true});
+    servers.close_connections();
+  });
+  generator->send(0, sample_at(kTenth));
+  EXPECT_THAT(error_of([&] { generator->wait_for(0, kTenth, soon(5.0)); }),
+              HasSubstr("the generator closed the connection"));
+  generator->stop();  // does not throw
+}
+
+TEST(SkydelLoopback, ReportsExtrapolationAndErrors) {
+  Loopback loopback(skydel());
+  const auto generator = loopback.generator("skydel");
+  prepare(*generator);
+  generator->start();
+  // The worst state since the last question is kept until it is asked for.
+  loopback.in_server([](FakeEngine& engine, bench::ControlServers&) {
+    engine.reports[0].snaps = 1;
+    for (const auto& call : engine.on_progress) call(0);
+  });
+  EXPECT_EQ(generator->state(0).extrapolation, Extrapolation::kSnap);
+  EXPECT_EQ(generator->state(0).extrapolation, Extrapolation::kDeterministic);
+  EXPECT_EQ(generator->state(1).extrapolation, Extrapolation::kDeterministic);
+  loopback.in_server([](FakeEngine& engine, bench::ControlServers&) {
+    engine.stage = bench::EngineState::kError;
+    engine.error_text = "The radio has stopped";
+  });
+  const GeneratorState state = generator->state(0);
+  EXPECT_FALSE(state.is_streaming);
+  EXPECT_EQ(state.error, "The radio has stopped");
+}
+
+TEST(SkydelLoopback, AGeneratorThatFailsOrRestartsEndsTheWait) {
+  Loopback loopback(skydel());
+  auto generator = loopback.generator("skydel");
+  prepare(*generator);
+  generator->start();
+  const auto stop_engine = [&](bench::EngineState state, const std::string& text) {
+    loopback.in_server([&](FakeEngine& engine, bench::ControlServers&) {
+      engine.stage = state;
+      engine.error_text = text;
+    });
+  };
+  stop_engine(bench::EngineState::kError, "The radio has stopped");
+  generator->send(0, sample_at(kTenth));
+  EXPECT_THAT(error_of([&] { generator->wait_for(0, kTenth, soon(5.0)); }),
+              HasSubstr("the generator reports \"The radio has stopped\""));
+  stop_engine(bench::EngineState::kIdle, "");
+  EXPECT_THAT(error_of([&] { generator->wait_for(0, kTenth, soon(5.0)); }),
+              HasSubstr("the generator is \"Idle\", not streaming"));
+  // It can be configured again.
+  generator = loopback.generator("skydel");
+  EXPECT_EQ(error_of([&] { prepare(*generator); }), "");
+}
+
+// "Tjoin > engine latency + period + network" (GRAND.md, section 1).
+TEST(SkydelLoopback, AJoinTimeBelowLatencyAndPeriodIsRefused) {
+  bench::ControlSettings settings = skydel();
+  settings.engine_latency_ms = 100;
+  Loopback loopback(settings);
+  const auto generator = loopback.generator("skydel");
+  EXPECT_THAT(error_of([&] { prepare(*generator); }), HasSubstr("answered 100 ms: join_ms = 165 is below"));
+}
+
+// A second run on the same instances.
+TEST(SkydelLoopback, FliesAgainAfterAStop) {
+  Loopback loopback(skydel());
+  for (int run = 0; run < 2; ++run) {
+    const auto generator = loopback.generator("skydel");
+    prepare(*generator);
+    generator->start();
+    loopback.in_server([](FakeEngine& engine, bench::ControlServers&) { engine.reports[0].time = {}; });
+    generator->send(0, sample_at(kTenth));
+    EXPECT_EQ(generator->wait_for(0, kTenth, soon()), kTenth);
+  }
+}
+
+}  // namespace
+}  // namespace vbar::grand::test
