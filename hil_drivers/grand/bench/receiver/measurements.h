@@ -1,0 +1,86 @@
+#pragma once
+// What a receiver measures and knows, without its ports: by the emulated loops (measurement_engine.h) or by another
+// program on baseband samples (../samples/gnss_sdr).
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "hil_drivers/grand/bench/receiver/message_reception.h"
+#include "hil_drivers/grand/bench/receiver/own_solution.h"
+#include "hil_drivers/grand/bench/receiver/receiver_settings.h"
+#include "hil_drivers/grand/bench/rf_block.h"
+#include "host_sim/twins/gnss/oem_encoder.h"
+
+namespace vbar::grand::bench {
+
+/// State for the record of the bench; nothing of it enters a byte.
+struct ReceiverReport {
+  int time_status = 20;  ///< as in the header of a log
+  int signals_searched = 0;
+  int signals_tracked = 0;  ///< with code lock
+  int signals_phase_locked = 0;
+  int ephemerides = 0;
+  double clock_offset_s = 0.0;  ///< true: clock minus GPS time; 0 until the clock has been set
+  std::uint64_t epochs = 0;
+  std::uint64_t phase_locks_lost = 0;
+  std::uint64_t logs = 0, logs_dropped = 0;
+  std::uint64_t commands = 0, commands_refused = 0;
+  std::uint64_t garbage_bytes = 0;  ///< received at a wrong baud rate
+};
+
+/// The measurements of one epoch of the receiver's clock.
+struct EpochData {
+  std::int64_t number = 0;  ///< of 10 ms of the reading
+  fsw::GpsTime reading;
+  double after_begin_s = 0.0;  ///< when it was, from the beginning of the block
+  std::vector<twins::gnss::oem::RangeRecord> ranges;
+  std::optional<OwnSolution> solution;
+  int satellites_tracked = 0;
+};
+
+class Measurements {
+ public:
+  Measurements() = default;
+  Measurements(const Measurements&) = delete;
+  Measurements& operator=(const Measurements&) = delete;
+  virtual ~Measurements() = default;
+
+  /// Forgets everything but what is stored.
+  virtual void restart(StoredData stored) = 0;
+
+  struct Listener {
+    std::function<bool(std::int64_t epoch)> wants;   ///< whether a log is due at this epoch
+    std::function<void(const EpochData&)> on_epoch;  ///< called for these and for every whole second
+  };
+  /// Lets the 100 ms of the block pass.
+  virtual void advance(const RfBlock& block, double cn0_offset_db, const Listener& listener) = 0;
+
+  // Commands; those that do not apply are accepted without effect.
+  virtual void set_approximate_time(fsw::GpsTime /*time*/) {}
+  virtual void set_approximate_position(const fsw::Vector3& /*position_ecef*/) {}
+  virtual void enable_steering(bool /*on*/) {}
+  virtual void set_smoothing(double /*smoothing_s*/) {}
+  virtual void set_elevation_cutoff(double /*elevation*/) {}
+
+  [[nodiscard]] virtual twins::gnss::oem::TimeStatus time_status() const = 0;
+  /// The clock has been set by a time of week received.
+  [[nodiscard]] bool time_is_set() const { return time_status() >= twins::gnss::oem::TimeStatus::kCoarse; }
+  /// The reading of the clock at the end of the block, whole milliseconds.
+  [[nodiscard]] virtual fsw::GpsTime reading() const = 0;
+
+  /// Messages received, by the constellation's index.
+  [[nodiscard]] virtual std::size_t satellites() const = 0;
+  [[nodiscard]] virtual const MessageReception& reception(std::size_t satellite) const = 0;
+  [[nodiscard]] virtual bool corrections_known() const = 0;
+  /// Of the last block: satellites with a new set, and whether ionosphere and UTC were received.
+  [[nodiscard]] virtual const std::vector<std::size_t>& new_sets() const = 0;
+  [[nodiscard]] virtual bool new_corrections() const = 0;
+
+  /// Fills the state of clock, search and tracking.
+  virtual void report(ReceiverReport& report) const = 0;
+};
+
+}  // namespace vbar::grand::bench

@@ -1,0 +1,54 @@
+#pragma once
+// The output of a serial port: whole messages wait in a buffer and leave byte by byte at the baud rate (8N1: ten bits a
+// byte). Times are the receiver's own local time, ns since it was made.
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "host_sim/engine/random_stream.h"
+
+namespace vbar::grand::bench {
+
+using Bytes = std::vector<std::uint8_t>;
+
+class SerialLine {
+ public:
+  SerialLine(unsigned baud, int buffer_bytes, engine::RandomStream garbage);
+
+  /// The message is ready at `ready_ns`, not before the one queued last. False if it does not fit into the buffer: it
+  /// is dropped as a whole.
+  bool queue(std::span<const std::uint8_t> message, std::int64_t ready_ns);
+  /// The rate of what is queued from now on.
+  void set_baud(unsigned baud) { baud_ = baud; }
+  [[nodiscard]] unsigned baud() const { return baud_; }
+  /// Everything that has not left is lost.
+  void clear();
+
+  /// The bytes whose stop bit has passed by `now_ns`, as a listener at `host_baud` (0: the right rate) receives them.
+  [[nodiscard]] Bytes take(std::int64_t now_ns, unsigned host_baud);
+  /// Whether a byte has not left yet.
+  [[nodiscard]] bool busy(std::int64_t now_ns) const { return free_ns_ > now_ns; }
+
+  /// What arrives of `bytes` sent at another rate than the listener's: random bytes, in proportion to the rates.
+  Bytes garbage(std::span<const std::uint8_t> bytes, unsigned sent_baud, unsigned heard_baud);
+
+ private:
+  struct Message {
+    Bytes bytes;
+    std::size_t left = 0;  ///< bytes that have left
+    std::int64_t begin_ns = 0;
+    unsigned baud = 0;
+  };
+  [[nodiscard]] std::size_t waiting_at(std::int64_t ns) const;
+  void forget_unheard(std::int64_t ns);
+
+  unsigned baud_;
+  std::size_t buffer_bytes_;
+  engine::RandomStream garbage_;
+  std::deque<Message> queue_;
+  std::int64_t free_ns_ = 0;  ///< when the last byte queued will have left
+};
+
+}  // namespace vbar::grand::bench
