@@ -1,0 +1,155 @@
+#include "hil_drivers/grand/bench/samples/gnss_sdr/monitor_datagrams.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace vbar::grand::bench {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// Fields by the encoding rules of Protocol Buffers (protobuf.dev, "Encoding").
+void varint(Bytes& out, std::uint64_t value) {
+  for (; value >= 0x80; value >>= 7U) out.push_back(static_cast<std::uint8_t>(value | 0x80U));
+  out.push_back(static_cast<std::uint8_t>(value));
+}
+void number(Bytes& out, unsigned tag, std::uint64_t value) {
+  varint(out, tag << 3U);
+  varint(out, value);
+}
+void real(Bytes& out, unsigned tag, double value) {
+  varint(out, tag << 3U | 1U);
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  for (unsigned k = 0; k < 64; k += 8) out.push_back(static_cast<std::uint8_t>(bits >> k));
+}
+void bytes(Bytes& out, unsigned tag, std::span<const std::uint8_t> value) {
+  varint(out, tag << 3U | 2U);
+  varint(out, value.size());
+  out.insert(out.end(), value.begin(), value.end());
+}
+void text(Bytes& out, unsigned tag, const std::string& value) {
+  bytes(out, tag, {reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
+}
+
+struct Sent {
+  std::string system = "G", signal = "1C";
+  std::uint64_t prn = 6;
+  double pseudorange_m = 21097944.542;
+  double carrier_rad = 2376076.3107;
+  double rx_time_s = 230459.8;
+};
+
+Bytes observable(const Sent& sent) {
+  Bytes inner;
+  text(inner, 1, sent.system);
+  text(inner, 2, sent.signal);
+  number(inner, 3, sent.prn);
+  number(inner, 4, 7);
+  number(inner, 10, 2'600'000);
+  real(inner, 13, 45.39);
+  real(inner, 14, -9309.98);
+  real(inner, 15, sent.carrier_rad);
+  number(inner, 17, 155454975);
+  real(inner, 22, sent.pseudorange_m);
+  real(inner, 23, sent.rx_time_s);
+  number(inner, 24, 1);
+  Bytes out;
+  bytes(out, 1, inner);
+  return out;
+}
+
+TEST(MonitorDatagrams, ObservableHasTheFieldsOfGnssSynchro) {
+  const auto read = read_observables(observable({}));
+  ASSERT_TRUE(read);
+  ASSERT_EQ(read->size(), 1U);
+  const Observable& o = read->front();
+  EXPECT_EQ(o.channel, 7);
+  EXPECT_EQ(o.prn, 6);
+  EXPECT_TRUE(o.valid);
+  EXPECT_EQ(o.pseudorange_m, 21097944.542);
+  EXPECT_DOUBLE_EQ(o.carrier_phase_cycles, 2376076.3107 / (2.0 * std::numbers::pi));
+  EXPECT_EQ(o.doppler_hz, -9309.98);
+  EXPECT_EQ(o.cn0_dbhz, 45.39);
+  EXPECT_EQ(o.rx_time_s, 230459.8);
+}
+
+// A datagram of gnss-sdr 0.0.17 for a channel without a satellite: fields that are zero are not sent.
+TEST(MonitorDatagrams, ChannelWithoutSatelliteHasOnlyTheTime) {
+  Bytes inner;
+  real(inner, 23, 230412.1);
+  Bytes datagram;
+  bytes(datagram, 1, inner);
+  const auto read = read_observables(datagram);
+  ASSERT_TRUE(read);
+  ASSERT_EQ(read->size(), 1U);
+  EXPECT_FALSE(read->front().valid);
+  EXPECT_EQ(read->front().prn, 0);
+}
+
+TEST(MonitorDatagrams, OtherSignalsAreLeftOut) {
+  const auto read = read_observables(observable({.system = "E", .signal = "1B"}));
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(read->empty());
+}
+
+TEST(MonitorDatagrams, ImplausibleNumbersAreRefused) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const Sent& sent : {Sent{.prn = 0}, Sent{.prn = 33}, Sent{.pseudorange_m = kNan}, Sent{.pseudorange_m = -1.0},
+                           Sent{.carrier_rad = kInfinity}, Sent{.rx_time_s = kNan}, Sent{.rx_time_s = 604801.0}})
+    EXPECT_FALSE(read_observables(observable(sent)));
+}
+
+TEST(MonitorDatagrams, EveryTruncationIsRefused) {
+  const Bytes whole = observable({});
+  for (std::size_t size = 1; size < whole.size(); ++size)
+    EXPECT_FALSE(read_observables(std::span(whole).first(size))) << size;
+}
+
+TEST(MonitorDatagrams, TooManyObservablesAreRefused) {
+  Bytes datagram;
+  for (int k = 0; k < 65; ++k) {
+    const Bytes one = observable({});
+    datagram.insert(datagram.end(), one.begin(), one.end());
+  }
+  EXPECT_FALSE(read_observables(datagram));
+}
+
+// Sent by gnss-sdr 0.0.17 for PRN 32 with samples of the test orbit: subframe 5 of a frame without content.
+constexpr const char* kBits =
+    "100010110000000000000000010010010010110000000100001010011000110101000000000101110101100100001100111111111001010000"
+    "011111001101111001100111111000000011000000010011100000000110101000001110110101110100001110110001000100000011011010"
+    "100001001110000011000101001110111101100110001110100000001000000000100100";
+
+TEST(MonitorDatagrams, SubframeHasItsTenWords) {
+  Bytes datagram;
+  text(datagram, 1, "G");
+  text(datagram, 2, "1C");
+  number(datagram, 3, 32);
+  number(datagram, 4, 230412000);
+  text(datagram, 5, kBits);
+  const auto read = read_subframe(datagram);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->prn, 32);
+  EXPECT_EQ(read->tow_ms, 230412000);
+  EXPECT_EQ(read->words[0] >> 22U, 0x8BU);           // preamble
+  EXPECT_EQ((read->words[1] >> 13U) * 6U, 230412U);  // time of week in the handover word
+}
+
+TEST(MonitorDatagrams, SubframesOfAnotherLengthOrContentAreRefused) {
+  for (const std::string& bits :
+       {std::string(kBits).substr(1), std::string(kBits) + "0", "2" + std::string(kBits).substr(1), std::string()}) {
+    Bytes datagram;
+    number(datagram, 3, 32);
+    text(datagram, 5, bits);
+    EXPECT_FALSE(read_subframe(datagram));
+  }
+}
+
+}  // namespace
+}  // namespace vbar::grand::bench
