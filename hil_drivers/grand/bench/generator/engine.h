@@ -18,6 +18,8 @@ struct VehicleReport {
   int extrapolation = 0;        ///< 0 deterministic, 1 non-deterministic (no sample for 1 s), 2 snap
   double extrapolated_s = 0.0;  ///< time since the last sample
   std::uint64_t samples = 0, late = 0, doubled = 0, snaps = 0;
+  std::uint64_t out_of_order = 0;  ///< older than the sample in use, ignored
+  std::uint64_t rejected = 0;      ///< not usable: not finite, not in an orbit, more than 10 s ahead
 };
 
 /// Single-threaded: everything is called from the event loop of the program.

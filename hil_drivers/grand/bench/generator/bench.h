@@ -1,0 +1,42 @@
+#pragma once
+// The whole bench: generator, receivers, their lines, control servers, edges and faults in one directory and one event
+// loop.
+
+#include <filesystem>
+#include <memory>
+
+#include <boost/asio/io_context.hpp>
+
+#include "hil_drivers/grand/bench/generator/bench_engine.h"
+#include "hil_drivers/grand/bench/generator/fault_injector.h"
+#include "hil_drivers/grand/bench/generator/fault_line.h"
+
+namespace vbar::grand::bench {
+
+class Bench {
+ public:
+  /// Makes everything and, when it listens, writes DIR/addresses.json. The directory is made if it does not exist.
+  /// Throws std::runtime_error, std::invalid_argument; each one sentence.
+  Bench(boost::asio::io_context& context, const Scenario& scenario, const std::filesystem::path& data_directory,
+        std::filesystem::path directory, const ReceiverFactory& make_receiver);
+  /// Removes what it made, except the list of faults.
+  ~Bench();
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+  [[nodiscard]] BenchEngine& engine() { return *engine_; }
+  [[nodiscard]] ControlServers& control() { return *control_; }
+  [[nodiscard]] FaultInjector& faults() { return *faults_; }
+
+ private:
+  void write_addresses(const Scenario& scenario) const;
+
+  std::filesystem::path directory_;
+  std::unique_ptr<EdgeBroadcaster> edges_;
+  std::unique_ptr<BenchEngine> engine_;
+  std::unique_ptr<ControlServers> control_;
+  std::unique_ptr<FaultInjector> faults_;
+  std::unique_ptr<FaultLine> fault_line_;
+};
+
+}  // namespace vbar::grand::bench

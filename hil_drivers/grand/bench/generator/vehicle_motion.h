@@ -1,0 +1,100 @@
+#pragma once
+// The motion that the generator flies for one vehicle: the last sample extrapolated by its derivatives, joined smoothly
+// to what was flown before.
+//
+// A sample is used from its own time on, or from the present on if that has passed (it is late then). The curve flown
+// from there is the sample's polynomial of degree 3 plus a quintic that takes up the difference of position, velocity
+// and acceleration to the old curve and vanishes with two derivatives after the join time. Differences above
+// kSnapDistance_m are not joined: the motion jumps.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/types.h"
+#include "hil_drivers/grand/wire/trajectory_sample.h"
+
+namespace vbar::grand::bench {
+
+/// Position and two derivatives, Earth-fixed frame.
+struct MotionState {
+  fsw::Vector3 position = fsw::Vector3::Zero();
+  fsw::Vector3 velocity = fsw::Vector3::Zero();
+  fsw::Vector3 acceleration = fsw::Vector3::Zero();
+};
+
+enum class Reception {
+  kAccepted,    ///< will be used at its time
+  kLate,        ///< its time had passed: used from now on
+  kDoubled,     ///< the same time as a sample received before: ignored
+  kOutOfOrder,  ///< older than the sample in use: ignored
+  kRejected,    ///< not finite, not between the ground and geostationary orbits, or too far in the future: ignored
+};
+
+struct MotionCounters {
+  std::uint64_t samples = 0;  ///< all that were received
+  std::uint64_t late = 0, doubled = 0, out_of_order = 0, rejected = 0, snaps = 0;
+};
+
+class VehicleMotion {
+ public:
+  static constexpr double kSnapDistance_m = 10.0;
+  static constexpr fsw::Duration kMaxLead = fsw::duration_of_seconds(10);
+  static constexpr fsw::Duration kExtrapolationLimit = fsw::duration_of_seconds(1);  ///< then state 1
+  static constexpr fsw::Duration kRadiationLimit = fsw::duration_of_seconds(5);      ///< then no RF
+
+  explicit VehicleMotion(fsw::Duration join) : join_(join) {}
+
+  Reception receive(const TrajectorySample& sample);
+
+  /// Flies up to `time`, not before now(). A sample of exactly that time is used from the next call on, so that at() is
+  /// the motion at the end of what was flown.
+  void advance(fsw::Duration time);
+
+  [[nodiscard]] fsw::Duration now() const { return now_; }
+  /// False before the first sample: there is no motion.
+  [[nodiscard]] bool is_defined() const { return current_.has_value(); }
+  /// Time of the newest sample, used or not yet used.
+  [[nodiscard]] fsw::Duration newest() const { return newest_; }
+  /// Time without a sample, at now().
+  [[nodiscard]] fsw::Duration age() const;
+  [[nodiscard]] bool is_deterministic() const { return age() <= kExtrapolationLimit; }
+  [[nodiscard]] bool is_radiated() const { return is_defined() && age() <= kRadiationLimit; }
+
+  /// On the curve flown now; times before or after now() extrapolate that curve. Requires is_defined().
+  [[nodiscard]] MotionState at(fsw::Duration time) const;
+  /// Position, derivatives and attitude at now(), as a sample.
+  [[nodiscard]] TrajectorySample flown() const;
+  /// Unit vector of the antenna's boresight, Earth-fixed frame: the attitude of the sample in use against north,
+  /// east, down, rotated on by its angular rate and acceleration.
+  [[nodiscard]] fsw::Vector3 boresight_ecef(fsw::Duration time) const;
+
+  /// True once after the motion jumped.
+  [[nodiscard]] bool take_snap();
+  [[nodiscard]] const MotionCounters& counters() const { return counters_; }
+  void set_join(fsw::Duration join) { join_ = join; }
+
+ private:
+  /// Quintic in the time since `begin`, zero from `end` on.
+  struct Join {
+    fsw::Duration begin, end;
+    std::array<fsw::Vector3, 6> coefficients{};
+  };
+
+  void use(const TrajectorySample& sample);
+  [[nodiscard]] static MotionState extrapolated(const TrajectorySample& sample, fsw::Duration time);
+  [[nodiscard]] static Join join_of(const MotionState& difference, fsw::Duration begin, fsw::Duration length);
+
+  fsw::Duration join_;
+  fsw::Duration now_;
+  fsw::Duration newest_;
+  std::optional<TrajectorySample> current_;
+  Join joined_;
+  std::vector<TrajectorySample> pending_;  ///< by time, rising; all after now_
+  bool snapped_ = false;
+  MotionCounters counters_;
+};
+
+}  // namespace vbar::grand::bench
