@@ -1,0 +1,76 @@
+#include "hil_drivers/grand/pps/chrony_output.h"
+
+#include <bit>
+#include <stdexcept>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/local/datagram_protocol.hpp>
+#include <fmt/format.h>
+#include <sys/time.h>
+
+namespace vbar::grand {
+namespace {
+
+namespace asio = boost::asio;
+using asio::local::datagram_protocol;
+using boost::system::error_code;
+using Span = engine::WallClock::Span;
+
+struct SockSample {
+  timeval time;   ///< of the system's clock
+  double offset;  ///< reference minus system, s
+  int pulse;      ///< 1: the second is not known; such a source needs another one to number its seconds
+  int leap;
+  int padding;
+  int magic;
+};
+static_assert(sizeof(SockSample) == kChronySampleBytes);
+constexpr int kMagic = 0x534F434B;
+
+Span realtime_at(Span monotonic) {
+  const Span realtime = std::chrono::system_clock::now().time_since_epoch();
+  return realtime - (Span(std::chrono::steady_clock::now().time_since_epoch()) - monotonic);
+}
+
+}  // namespace
+
+std::array<std::uint8_t, kChronySampleBytes> chrony_sample(Span realtime) {
+  const auto stamp = std::chrono::floor<std::chrono::microseconds>(realtime);
+  const auto second = std::chrono::floor<std::chrono::seconds>(stamp);
+  SockSample sample{};
+  sample.time.tv_sec = second.count();
+  sample.time.tv_usec = std::chrono::microseconds(stamp - second).count();
+  // The offset is that of the edge; between it and the stamp lies less than a microsecond.
+  sample.offset = std::chrono::duration<double>(std::chrono::round<std::chrono::seconds>(realtime) - realtime).count();
+  sample.magic = kMagic;
+  return std::bit_cast<std::array<std::uint8_t, kChronySampleBytes>>(sample);
+}
+
+struct ChronyOutput::State {
+  explicit State(const std::string& path) : socket(context), consumer(path) {
+    socket.open(datagram_protocol());
+    socket.non_blocking(true);
+  }
+  asio::io_context context;
+  datagram_protocol::socket socket;
+  datagram_protocol::endpoint consumer;
+};
+
+ChronyOutput::ChronyOutput(const std::string& path) {
+  try {
+    state_ = std::make_unique<State>(path);
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(fmt::format("chrony socket {}: {}", path, error.code().message()));
+  }
+}
+
+ChronyOutput::~ChronyOutput() = default;
+
+void ChronyOutput::forward(const Edge& edge) {
+  const auto bytes = chrony_sample(realtime_at(edge.monotonic));
+  error_code error;
+  state_->socket.send_to(asio::buffer(bytes), state_->consumer, 0, error);
+  if (!error) ++sent_;
+}
+
+}  // namespace vbar::grand

@@ -1,0 +1,84 @@
+#pragma once
+// The time of a 1PPS as a function of the host's monotonic clock: offset and rate, estimated by a Kalman filter over
+// the edges. Time here is in seconds of the edge source, divided by the speed factor, since the first edge.
+//
+// State: offset p (s) and rate error r (s/s) of the edges' time against the host's clock. Between edges p grows by r
+// dt, and r is a random walk of spectral density rate_walk^2: covariance rate_walk^2 [dt^3/3, dt^2/2; dt^2/2, dt]. An
+// edge measures p with edge_sigma_s. (Bar-Shalom, Li, Kirubarajan: Estimation with Applications to Tracking and
+// Navigation, 2001, section 6.2.2.)
+
+#include <cstdint>
+#include <optional>
+
+#include "hil_drivers/grand/pps/edge_source.h"
+
+namespace vbar::grand {
+
+struct EdgeFilterSettings {
+  double edge_sigma_s = 100e-6;        ///< jitter of one edge
+  double rate_walk = 1e-8;             ///< of the rate error, per square root of a second
+  double initial_rate_sigma = 100e-6;  ///< of the host's clock before the first edges
+  double gate_sigmas = 3.0;
+  int accept_after = 3;       ///< consecutive rejected edges that agree with each other are where the edges are now
+  double speed_factor = 1.0;  ///< seconds of the edges per second of the host's clock
+};
+
+enum class EdgeVerdict { kAccepted, kDoubled, kRejected, kReinitialised };
+
+class EdgeFilter {
+ public:
+  using Span = engine::WallClock::Span;
+
+  explicit EdgeFilter(const EdgeFilterSettings& settings) : settings_(settings) {}
+
+  /// Edges in the order of their arrival.
+  EdgeVerdict add(const Edge& edge);
+
+  [[nodiscard]] bool has_started() const { return started_; }
+  /// Time of the edges at a time of the host's clock, and the inverse. The first edge has time 0.
+  [[nodiscard]] Span at(Span host) const;
+  [[nodiscard]] Span host_at(Span time) const;
+
+  /// GPS time of the first edge according to the present labels; empty if the edges have none.
+  [[nodiscard]] std::optional<fsw::GpsTime> origin_gps() const { return origin_gps_; }
+
+  /// Of the last edge that was not doubled: predicted minus measured, s. Before the edge was used.
+  [[nodiscard]] double host_minus_edge_s() const { return host_minus_edge_s_; }
+  /// Time of the last edge that was not doubled, and whole seconds of the source that passed since the one before.
+  [[nodiscard]] Span edge_time() const { return last_label_; }
+  [[nodiscard]] std::int64_t seconds_since_previous() const { return seconds_since_previous_; }
+
+  /// Rate error of the host's clock: positive if the edges' seconds are shorter than the host's.
+  [[nodiscard]] double rate_error() const { return rate_; }
+  [[nodiscard]] double offset_sigma_s() const;
+  [[nodiscard]] double rate_sigma() const;
+
+ private:
+  void start(const Edge& edge);
+  void propagate(Span host);
+  void update(double innovation_s);
+  void move_to(double innovation_s);
+  [[nodiscard]] double innovation_variance() const { return p00_ + settings_.edge_sigma_s * settings_.edge_sigma_s; }
+  [[nodiscard]] Span period() const;
+  [[nodiscard]] Span label_of(const Edge& edge, std::int64_t seconds) const;
+  EdgeVerdict reject(double innovation_s);
+
+  EdgeFilterSettings settings_;
+  bool started_ = false;
+  std::optional<fsw::GpsTime> origin_gps_;
+  // State and covariance at `epoch_` of the host's clock: the edges' time there is time_ + offset_.
+  Span epoch_{0};
+  Span time_{0};
+  double offset_ = 0.0;  ///< below a nanosecond after each update
+  double rate_ = 0.0;
+  double p00_ = 0.0, p01_ = 0.0, p11_ = 0.0;
+
+  Span last_host_{0};   ///< of the last edge that was not doubled
+  Span last_label_{0};  ///< its time as the source means it
+  std::int64_t seconds_since_previous_ = 0;
+  double host_minus_edge_s_ = 0.0;
+  int rejected_in_a_row_ = 0;
+  double rejected_innovation_s_ = 0.0;
+};
+
+}  // namespace vbar::grand

@@ -1,0 +1,61 @@
+#pragma once
+// Where edges of a 1PPS come from. A kind of source is a file beside this one and one line in edge_sources.cpp.
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "fsw/core/gps_time.h"
+#include "host_sim/engine/wall_clock.h"
+
+namespace vbar::grand {
+
+struct Edge {
+  std::optional<fsw::GpsTime> gps = std::nullopt;  ///< if the source labels its edges; a whole second
+  engine::WallClock::Span monotonic{0};            ///< CLOCK_MONOTONIC (std::chrono::steady_clock) at the edge
+  std::uint32_t count = 0;                         ///< as numbered by the source
+};
+
+class EdgeSource {
+ public:
+  EdgeSource() = default;
+  EdgeSource(const EdgeSource&) = delete;
+  EdgeSource& operator=(const EdgeSource&) = delete;
+  virtual ~EdgeSource() = default;
+
+  /// The next edge; empty if there is none by `deadline`. With a deadline that has passed, returns at once: an edge
+  /// that has been waiting, or nothing. Throws std::runtime_error, one sentence with the device, if the source has
+  /// failed.
+  virtual std::optional<Edge> next(std::chrono::steady_clock::time_point deadline) = 0;
+
+  /// "socket:/run/bench/pps.sock"
+  [[nodiscard]] virtual std::string description() const = 0;
+  /// Datagrams that were not edges.
+  [[nodiscard]] virtual std::uint64_t malformed() const { return 0; }
+};
+
+struct EdgeSourceKind {
+  std::string_view name;  ///< what stands before the colon in a mission
+  std::string_view form;  ///< as shown to users: "kernel:DEVICE"
+  bool has_device = false;
+  /// `device`: the text after the colon. Throws std::runtime_error.
+  std::unique_ptr<EdgeSource> (*make)(const std::string& device);
+};
+
+/// All kinds of this program.
+[[nodiscard]] std::span<const EdgeSourceKind* const> edge_source_kinds();
+
+/// The kind of "kernel:/dev/pps0"; null if the name is unknown, or the device is missing or superfluous.
+[[nodiscard]] const EdgeSourceKind* find_edge_source(std::string_view text);
+
+/// Opens the source. Throws std::runtime_error; for an unknown one with the list of the known.
+[[nodiscard]] std::unique_ptr<EdgeSource> make_edge_source(std::string_view text);
+
+/// "kernel:DEVICE", "socket:PATH", "timer"
+[[nodiscard]] std::string edge_source_forms();
+
+}  // namespace vbar::grand

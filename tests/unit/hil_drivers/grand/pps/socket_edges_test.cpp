@@ -1,0 +1,194 @@
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "hil_drivers/grand/pps/edge_broadcaster.h"
+#include "hil_drivers/grand/pps/edge_source.h"
+#include "host_sim/io/file_descriptor.h"
+
+namespace vbar::grand {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr Clock::time_point kAtOnce{};
+
+class SocketEdgesTest : public testing::Test {
+ protected:
+  SocketEdgesTest() {
+    char name[] = "/tmp/vbar_pps_XXXXXX";
+    if (::mkdtemp(name) == nullptr) throw std::runtime_error("mkdtemp");
+    folder_ = name;
+    path = (folder_ / "pps.sock").string();
+  }
+  ~SocketEdgesTest() override { std::filesystem::remove_all(folder_); }
+
+  static wire::PpsDatagram datagram(std::int64_t k) {
+    return {fsw::GpsTime{} + fsw::duration_of_seconds(1000 + k), 2'000'000'000 + k, static_cast<std::uint32_t>(k)};
+  }
+  [[nodiscard]] std::unique_ptr<EdgeSource> open() const { return make_edge_source("socket:" + path); }
+
+  std::string path;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+TEST_F(SocketEdgesTest, DeliversEdgesInOrder) {
+  EdgeBroadcaster broadcaster(path);
+  const auto source = open();
+  EXPECT_FALSE(source->next(kAtOnce));  // subscribes
+  broadcaster.send(datagram(1));
+  broadcaster.send(datagram(2));
+  EXPECT_EQ(broadcaster.subscribers(), 1U);
+  for (const int k : {1, 2}) {
+    const auto edge = source->next(kAtOnce);
+    ASSERT_TRUE(edge);
+    EXPECT_EQ(edge->gps, datagram(k).gps);
+    EXPECT_EQ(edge->monotonic.count(), datagram(k).monotonic_ns);
+    EXPECT_EQ(edge->count, static_cast<std::uint32_t>(k));
+  }
+  const auto begin = Clock::now();
+  EXPECT_FALSE(source->next(begin + 30ms));
+  EXPECT_GE(Clock::now() - begin, 30ms);
+}
+
+TEST_F(SocketEdgesTest, SubscribesAgainToASenderThatWasStartedLater) {
+  const auto source = open();
+  EXPECT_FALSE(source->next(kAtOnce));  // nobody there
+  for (const int run : {1, 2}) {
+    EdgeBroadcaster broadcaster(path);
+    std::optional<Edge> edge;
+    for (int k = 0; k < 80 && !edge; ++k) {
+      edge = source->next(Clock::now() + 50ms);
+      if (!edge) broadcaster.send(datagram(run));
+    }
+    ASSERT_TRUE(edge) << "run " << run;
+    EXPECT_EQ(edge->count, static_cast<std::uint32_t>(run));
+  }
+}
+
+TEST_F(SocketEdgesTest, FaultsOfTheSender) {
+  EdgeBroadcaster broadcaster(path);
+  const auto source = open();
+  EXPECT_FALSE(source->next(kAtOnce));
+  broadcaster.miss(2);
+  broadcaster.send(datagram(1));
+  broadcaster.send(datagram(2));
+  broadcaster.repeat(1);
+  broadcaster.send(datagram(3));
+  broadcaster.jump(fsw::duration_of_seconds(-1));
+  broadcaster.send(datagram(4));
+  broadcaster.delay(fsw::Duration{2'000'000});
+  broadcaster.send(datagram(5));
+  broadcaster.send(datagram(6));
+  std::vector<Edge> edges;
+  while (const auto edge = source->next(kAtOnce)) edges.push_back(*edge);
+  ASSERT_EQ(edges.size(), 5U);
+  EXPECT_EQ(edges[0].count, 3U);
+  EXPECT_EQ(edges[1].count, 3U);
+  EXPECT_EQ(edges[2].gps, datagram(3).gps);
+  EXPECT_EQ(edges[3].monotonic.count(), datagram(5).monotonic_ns + 2'000'000);
+  EXPECT_EQ(edges[4].monotonic.count(), datagram(6).monotonic_ns);
+}
+
+TEST_F(SocketEdgesTest, ASubscriberThatHasEndedIsForgotten) {
+  EdgeBroadcaster broadcaster(path);
+  {
+    const auto source = open();
+    EXPECT_FALSE(source->next(kAtOnce));
+    broadcaster.send(datagram(1));
+    EXPECT_EQ(broadcaster.subscribers(), 1U);
+  }
+  broadcaster.send(datagram(2));
+  EXPECT_EQ(broadcaster.subscribers(), 0U);
+}
+
+TEST_F(SocketEdgesTest, AFullQueueLosesEdgesAndDoesNotHoldTheSender) {
+  EdgeBroadcaster broadcaster(path);
+  const auto source = open();
+  EXPECT_FALSE(source->next(kAtOnce));
+  for (int k = 0; k < 5000; ++k) broadcaster.send(datagram(k));
+  EXPECT_EQ(broadcaster.subscribers(), 1U);
+  const auto edge = source->next(kAtOnce);
+  ASSERT_TRUE(edge);
+  EXPECT_EQ(edge->count, 0U);
+}
+
+/// A sender of whatever it likes.
+class RawSender {
+ public:
+  explicit RawSender(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_DGRAM, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+    if (::bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+      throw std::runtime_error("bind");
+  }
+  /// Waits for a subscription.
+  void accept() {
+    std::array<char, 8> request{};
+    size_ = sizeof subscriber_;
+    if (::recvfrom(socket_.get(), request.data(), request.size(), 0, reinterpret_cast<sockaddr*>(&subscriber_),
+                   &size_) != 1)
+      throw std::runtime_error("subscription");
+  }
+  void send(std::span<const std::uint8_t> bytes) { send_from(socket_.get(), bytes); }
+  /// From another socket than the one subscribed to.
+  void forge(std::span<const std::uint8_t> bytes) {
+    const io::FileDescriptor other(::socket(AF_UNIX, SOCK_DGRAM, 0));
+    send_from(other.get(), bytes);
+  }
+
+ private:
+  void send_from(int socket, std::span<const std::uint8_t> bytes) {
+    (void)!::sendto(socket, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&subscriber_), size_);
+  }
+  io::FileDescriptor socket_;
+  sockaddr_un subscriber_{};
+  socklen_t size_ = 0;
+};
+
+TEST_F(SocketEdgesTest, HostileDatagramsAreCountedAndSkipped) {
+  RawSender sender(path);
+  const auto source = open();
+  EXPECT_FALSE(source->next(kAtOnce));
+  sender.accept();
+  const auto good = wire::encode_pps_datagram(datagram(9));
+  std::vector<std::uint8_t> longer(good.begin(), good.end());
+  longer.resize(4000);
+  auto negative = good;
+  negative[7] = 0x80;
+  sender.send({});
+  sender.send(std::span(good).first(19));
+  sender.send(longer);
+  sender.send(negative);
+  sender.forge(good);
+  sender.send(good);
+  const auto edge = source->next(Clock::now() + 1s);
+  ASSERT_TRUE(edge);
+  EXPECT_EQ(edge->count, 9U);
+  EXPECT_EQ(source->malformed(), 4U);
+  EXPECT_FALSE(source->next(kAtOnce)) << "an edge of a foreign sender was accepted";
+}
+
+TEST_F(SocketEdgesTest, ReplacesTheSocketThatADeadProgramLeft) {
+  { const RawSender dead(path); }
+  EXPECT_TRUE(std::filesystem::exists(path));
+  EXPECT_NO_THROW(EdgeBroadcaster{path});
+  EXPECT_FALSE(std::filesystem::exists(path));
+  const EdgeBroadcaster alive(path);
+  EXPECT_THROW(EdgeBroadcaster{path}, std::runtime_error);
+  EXPECT_TRUE(std::filesystem::exists(path));
+}
+
+}  // namespace
+}  // namespace vbar::grand
