@@ -139,12 +139,29 @@ class LineWatch final : public RunObserver {
     const pil::LinkStatistics link = computer_.statistics();
     summary = {link.bytes_sent + link.bytes_received, link.frames_resent, link.frames_rejected, link.frames_duplicated,
                link.strangers_ignored};
+    summary.wired_bytes = link.wired.bytes;
+    summary.wired_bytes_dropped = link.wired.dropped;
+    summary.wired_bytes_missing = link.wired.missing;
+    summary.wired_timeouts = link.wired.timeouts;
     usage_.summarise(summary);
   }
 
  private:
   const pil::FlightComputer& computer_;
   LineUsage usage_;
+};
+
+/// The clock of the run, or that of a testbed once its time has started.
+class SelectedClock final : public engine::WallClock {
+ public:
+  explicit SelectedClock(engine::WallClock& of_run) : clock_(&of_run) {}
+  void select(engine::WallClock& of_testbed) { clock_ = &of_testbed; }
+  Span now() override { return clock_->now(); }
+  Span start_of_run() override { return clock_->start_of_run(); }
+  void sleep_until(Span wake) override { clock_->sleep_until(wake); }
+
+ private:
+  engine::WallClock* clock_;
 };
 
 void summarise_mission(const mission::Mission& mission, const mission::Spacecraft& servicer, report::Summary& summary) {
@@ -187,10 +204,16 @@ AssembledMission::AssembledMission(const mission::Mission& mission, const std::f
     : mission_(mission),
       servicer_(complete_servicer(mission)),
       truth_(mission, servicer_, data_directory),
-      sources_(sensors::make_sources(mission, servicer_, data_directory)),
+      made_(sensors::make_sources(mission, servicer_, data_directory, &truth_)),
       thruster_(make_thruster(mission, servicer_)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
       timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())) {}
+
+std::optional<io::WiredReceiver> AssembledMission::wired_receiver() const {
+  for (const Source& source : made_.sources)
+    if (auto receiver = source.packets->wired_receiver()) return receiver;
+  return std::nullopt;
+}
 
 bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& record) {
   start();
@@ -198,12 +221,13 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
   LineWatch line(mission_, servicer_, surroundings.flight_computer);
   std::vector<RunObserver*> observers(surroundings.observers.begin(), surroundings.observers.end());
   observers.insert(observers.end(), {&recording, &line});
+  SelectedClock wall(surroundings.wall);
   const World world{truth_,
-                    sources_,
+                    made_.sources,
                     *thruster_,
                     surroundings.flight_computer,
                     board_link_,
-                    surroundings.wall,
+                    wall,
                     observers,
                     surroundings.progress,
                     surroundings.stop_requested};
@@ -212,9 +236,10 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
   const auto finish = [&](twins::StopReason reason) {
     facts_ = simulation.facts();
     const std::string trouble = started_.stop(reason);
+    for (const auto& testbed : made_.testbeds) testbed->finish();
     recording.finish();
     summarise_mission(mission_, servicer_, record.summary);
-    summarise_run(facts_, sources_, record.summary);
+    summarise_run(facts_, made_.sources, record.summary);
     record.summary.flight_software = surroundings.flight_computer.description();
     record.summary.flight_step.unit = facts_.cost_unit;
     line.summarise(record.summary.link);
@@ -223,6 +248,10 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
   };
   bool complete = false;
   try {
+    for (const auto& testbed : made_.testbeds) {
+      testbed->begin(record, surroundings.folder);
+      if (engine::WallClock* const clock = testbed->clock()) wall.select(*clock);
+    }
     complete = simulation.run();
   } catch (...) {
     finish(twins::StopReason::kFailed);

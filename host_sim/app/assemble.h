@@ -4,14 +4,17 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "host_sim/app/flown_truth.h"
 #include "host_sim/app/simulation.h"
 #include "host_sim/app/started_sources.h"
+#include "host_sim/io/wired_receiver.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
+#include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
 
@@ -24,6 +27,7 @@ class AssembledMission {
     std::span<RunObserver* const> observers;
     std::function<void(fsw::Duration)> progress;  ///< as in World
     std::function<bool()> stop_requested;         ///< as in World
+    std::filesystem::path folder = {};            ///< of the run, for files of testbeds; empty: none are kept
   };
 
   /// `mission` must outlive it. Throws what truth, orbits, attitudes, twins and their data throw, and
@@ -39,19 +43,22 @@ class AssembledMission {
   /// then holds what was flown. Starts the sources if nobody did. To be called once.
   bool fly(const Surroundings& surroundings, report::RunRecord& record);
 
+  /// The receiver that is to be connected to the flight computer, of a source that was started.
+  [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const;
+
   [[nodiscard]] const RunFacts& facts() const { return facts_; }
-  [[nodiscard]] std::span<const Source> sources() const { return sources_; }
+  [[nodiscard]] std::span<const Source> sources() const { return made_.sources; }
 
  private:
   const mission::Mission& mission_;
   const mission::Spacecraft& servicer_;
   FlownTruth truth_;
-  std::vector<Source> sources_;
+  sensors::MadeSources made_;
   std::unique_ptr<twins::Actuator> thruster_;
   engine::LinkModel board_link_;
   Timetable timetable_;
   RunFacts facts_;
-  StartedSources started_{sources_};  // last: it stops the sources
+  StartedSources started_{made_.sources};  // last: it stops the sources
 };
 
 }  // namespace vbar::app

@@ -46,8 +46,11 @@ std::string flight_software_file(const mission::Spacecraft& spacecraft) {
   }
 }
 
-std::unique_ptr<pil::FlightComputer> connect_flight_computer(const mission::Spacecraft& spacecraft) {
-  return pil::make_flight_computer(options_for(spacecraft));
+std::unique_ptr<pil::FlightComputer> connect_flight_computer(const mission::Spacecraft& spacecraft,
+                                                             const std::optional<io::WiredReceiver>& receiver) {
+  pil::FlightComputerOptions options = options_for(spacecraft);
+  options.receiver = receiver;
+  return pil::make_flight_computer(options);
 }
 
 }  // namespace vbar::app

@@ -51,7 +51,8 @@ std::optional<std::string> fly(const mission::Mission& mission, AssembledMission
                                bool quiet, report::RunRecord& record) {
   constexpr std::chrono::seconds kBetweenUpdates{1};
   PacketKeepers keepers(mission, folder.path());
-  const std::unique_ptr<pil::FlightComputer> flight_computer = connect_flight_computer(flying_spacecraft(mission));
+  const std::unique_ptr<pil::FlightComputer> flight_computer =
+      connect_flight_computer(flying_spacecraft(mission), assembled.wired_receiver());
   const auto wall = mission::make_wall_clock(mission, sensors::installation());
   ProgressLine progress(mission.duration, quiet);
   auto updated = std::chrono::steady_clock::now();
@@ -63,8 +64,8 @@ std::optional<std::string> fly(const mission::Mission& mission, AssembledMission
   };
   std::optional<std::string> trouble;
   try {
-    const bool complete =
-        assembled.fly({*flight_computer, *wall, keepers.observers(), after_step, stop_requested}, record);
+    const bool complete = assembled.fly(
+        {*flight_computer, *wall, keepers.observers(), after_step, stop_requested, folder.path()}, record);
     if (!complete) trouble = kInterruption;
     keepers.finish();
   } catch (const std::exception& error) {

@@ -35,7 +35,7 @@ class RunObserver {
 
   /// A flight step begins.
   virtual void on_truth(const twins::TruthSnapshot& /*truth*/) {}
-  /// It is over: all its packets, the tick last, and the packets of the answer.
+  /// It is over: all its packets, those of a wired receiver included and the tick last, and the packets of the answer.
   virtual void on_step(std::uint32_t /*step*/, fsw::GpsTime /*time*/, std::span<const pil::Packet> /*inputs*/,
                        std::span<const pil::Packet> /*outputs*/) {}
   /// The same answer with what it cost.

@@ -222,7 +222,7 @@ void Simulation::handle(const StepFlight&) {
   for (RunObserver* observer : world_.observers) observer->on_truth(truth);
 
   arrived_.push_back(make_tick());
-  const std::vector<twins::Packet> inputs = std::exchange(arrived_, {});
+  std::vector<twins::Packet> inputs = std::exchange(arrived_, {});
   double exchange_s = 0.0;
   pil::StepResult answer;
   {
@@ -233,6 +233,8 @@ void Simulation::handle(const StepFlight&) {
   if (answer.report.present) facts_.cost_unit = answer.report.unit;
   facts_.flight_s += answer.compute_wall_s;
   facts_.link_s += exchange_s - answer.compute_wall_s;
+  // What it received on a line of its own it gave to the flight software before the tick, which is the last.
+  inputs.insert(inputs.end() - 1, answer.wired.begin(), answer.wired.end());
 
   for (RunObserver* observer : world_.observers) {
     observer->on_step(step_, now, inputs, answer.packets);

@@ -1,6 +1,8 @@
 #include "host_sim/mission/overrides.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <vector>
 
 #include "host_sim/mission/mission_error.h"
@@ -10,6 +12,15 @@ namespace vbar::mission {
 namespace {
 
 constexpr const char* kAssignment = "path=value with a dotted path, e.g. mission.seed=3";
+
+// Arrays of tables whose elements are addressed by the value of a key. Vehicles are those of a scenario file of the
+// emulated GNSS testbed.
+struct LabelledArray {
+  std::string_view name;
+  const char* label;
+};
+constexpr std::array<LabelledArray, 3> kLabelledArrays{
+    {{"spacecraft", "name"}, {"waypoint", "index"}, {"vehicle", "name"}}};
 
 struct Override {
   std::string where;  // "--set path=value"
@@ -110,10 +121,11 @@ void apply_override(toml::table& document, const std::string& assignment) {
 
   toml::table* table = &document;
   std::size_t next = 0;
-  if (path.front() == "spacecraft" || path.front() == "waypoint") {
+  const auto* const labelled = std::ranges::find(kLabelledArrays, path.front(), &LabelledArray::name);
+  if (labelled != kLabelledArrays.end()) {
     if (path.size() < 3)
       set.refuse("a path that ends too early", "spacecraft.NAME.KEY=value or waypoint.INDEX.KEY=value");
-    table = &element_by_label(document, set, path[0], path[0] == "spacecraft" ? "name" : "index", path[1]);
+    table = &element_by_label(document, set, path[0], labelled->label, path[1]);
     next = 2;
   }
   for (; next + 1 < path.size(); ++next) {

@@ -64,11 +64,52 @@ std::unique_ptr<engine::WallClock> make_wall_clock(const Mission& mission, const
   return clock->make(colon == std::string_view::npos ? std::string_view() : source.substr(colon + 1));
 }
 
+namespace {
+
+struct RequiredClock {
+  std::string testbed;
+  engine::ClockMode mode;
+};
+
+/// What the testbeds of the mission require of its clock; the last one prevails, and the others are in conflict with
+/// it.
+std::vector<RequiredClock> clocks_required(const Mission& mission, const Installation& installation) {
+  std::vector<RequiredClock> required;
+  for (const Testbed& testbed : mission.testbeds) {
+    const auto reader = std::ranges::find(installation.testbeds, testbed.name, &TestbedReader::name);
+    if (reader == installation.testbeds.end() || (*reader)->clock_mode == nullptr) continue;
+    if (const auto mode = (*reader)->clock_mode(*testbed.settings)) required.push_back({testbed.name, *mode});
+  }
+  return required;
+}
+
+std::string quoted_name(engine::ClockMode mode) {
+  const auto found = std::ranges::find(kClockModes, mode, [](const auto& entry) { return entry.second; });
+  return "\"" + std::string(found->first) + "\"";
+}
+
+/// The clock of a run with testbeds is theirs.
+void check_clock(const TableReader& section, const engine::ClockSettings& clock,
+                 const std::vector<RequiredClock>& required) {
+  for (const RequiredClock& testbed : required) {
+    if (clock.mode != testbed.mode)
+      section.refuse("mode", quoted_name(clock.mode),
+                     quoted_name(testbed.mode) + ", as testbed." + testbed.testbed + ".pace");
+    if (clock.mode == engine::ClockMode::kRealTime && clock.speed_factor != 1.0)
+      section.refuse_value("speed_factor", "1, as testbed." + testbed.testbed + " runs in real time");
+  }
+}
+
+}  // namespace
+
 void read_clock(const TableReader& document, Mission& mission, const Installation& installation) {
   const TableReader section = document.table("clock");
   engine::ClockSettings& clock = mission.clock;
-  clock.mode = section.choice<engine::ClockMode>("mode", kClockModes, engine::ClockMode::kLockStep);
+  const std::vector<RequiredClock> required = clocks_required(mission, installation);
+  clock.mode = section.choice<engine::ClockMode>(
+      "mode", kClockModes, required.empty() ? engine::ClockMode::kLockStep : required.front().mode);
   clock.speed_factor = section.number("speed_factor", from_to(1e-3, 1e6), 1.0);
+  check_clock(section, clock, required);
   // Assumptions of the run: outputs take effect after the compute latency, and a step is over before the next one.
   clock.compute_budget =
       section.span("compute_budget_s", 1.0, above_to(0.0, 3600.0),

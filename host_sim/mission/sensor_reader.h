@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "host_sim/engine/clock.h"
 #include "host_sim/engine/wall_clock.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/mission/table_reader.h"
@@ -40,6 +42,8 @@ struct SensorReader {
 struct TestbedReader {
   std::string_view name;
   std::shared_ptr<const TestbedSettings> (*read)(const TableReader& section);
+  /// The mode that the clock of a run with these settings must have. Null, or no value: any.
+  std::optional<engine::ClockMode> (*clock_mode)(const TestbedSettings& settings) = nullptr;
 };
 
 /// The sensors, testbeds and clocks of a program.

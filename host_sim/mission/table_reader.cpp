@@ -266,6 +266,21 @@ std::string TableReader::text(std::string_view key, std::optional<std::string> d
   return value->get();
 }
 
+std::vector<std::string> TableReader::texts(std::string_view key) const {
+  std::vector<std::string> values;
+  if (!has(key)) return values;
+  const std::string accepted = "an array of texts, each on one line";
+  const auto* array = table_->get(key)->as_array();
+  if (array == nullptr) refuse_value(key, accepted);
+  for (const toml::node& element : *array) {
+    const auto* value = element.as_string();
+    if (value == nullptr || std::any_of(value->get().begin(), value->get().end(), is_control_character))
+      throw MissionError(location_of(element, file_), path_of(key), description_of(element), accepted);
+    values.push_back(value->get());
+  }
+  return values;
+}
+
 std::string TableReader::name(std::string_view key, std::optional<std::string> default_value) const {
   const std::string value = text(key, std::move(default_value));
   if (!is_name(value)) refuse(key, "the text \"" + value + "\"", std::string(kNameRule));

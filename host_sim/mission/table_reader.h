@@ -63,6 +63,8 @@ class TableReader {
   bool flag(std::string_view key, bool default_value) const;
   /// Text of printable characters; an unquoted TOML date-time counts as its text.
   std::string text(std::string_view key, std::optional<std::string> default_value = std::nullopt) const;
+  /// An array of texts of printable characters; empty if the key is missing.
+  std::vector<std::string> texts(std::string_view key) const;
   /// Letters, digits, '_' and '-' only: a name that can stand in a path.
   std::string name(std::string_view key, std::optional<std::string> default_value = std::nullopt) const;
   /// An array of `min_count` to `max_count` numbers.

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "host_sim/report/html_page.h"
+#include "host_sim/report/loop_name.h"
 #include "host_sim/report/maneuver_series.h"
+#include "host_sim/report/number_text.h"
 #include "host_sim/report/section_parts.h"
 #include "host_sim/report/text_file.h"
 
@@ -44,9 +46,33 @@ std::string verdict(Runs runs) {
          "although mission and seed are the same. Runs with different settings are expected to differ.</p>\n";
 }
 
+/// A run that was stopped must not be read as one that came to its end.
+std::string incomplete_runs(Runs runs) {
+  std::string text;
+  for (const ComparedRun& run : runs) {
+    const Summary& s = run.record.summary;
+    if (s.complete) continue;
+    text += fmt::format(
+        "<p><span class=\"status bad\">incomplete</span> {}: {}. Its figures are those of the {} flown.</p>\n",
+        escaped(run.name), escaped(s.incomplete_reason), duration_text(s.simulated_s));
+  }
+  return text;
+}
+
+std::string emulated_benches(Runs runs) {
+  std::string text;
+  for (const ComparedRun& run : runs)
+    for (const std::string& testbed : emulated_testbeds(run.record.summary))
+      text += fmt::format(
+          "<p><span class=\"status\">emulated bench</span> {}: the testbed {} is emulated. Programs on this computer "
+          "use the wire protocols of its hardware; docs/{}.md states what this does not prove.</p>\n",
+          escaped(run.name), escaped(testbed), escaped(testbed));
+  return text;
+}
+
 Section metrics(Runs runs) {
   std::vector<Column> columns{{"", false}};
-  for (const ComparedRun& run : runs) columns.push_back({run.name});
+  for (const std::string& name : column_names(runs)) columns.push_back({name});
   std::vector<std::vector<std::string>> rows;
   for (const ComparisonRow& row : comparison_rows(runs)) {
     std::vector<std::string>& cells = rows.emplace_back();
@@ -102,8 +128,8 @@ Section elements(Runs runs) {
 std::string html_comparison(Runs runs) {
   std::string names;
   for (const ComparedRun& run : runs) names += (names.empty() ? "" : " | ") + run.name;
-  std::string body =
-      fmt::format("<h1>Runs side by side</h1>\n<p class=\"lead\">{}</p>\n", escaped(names)) + verdict(runs);
+  std::string body = fmt::format("<h1>Runs side by side</h1>\n<p class=\"lead\">{}</p>\n", escaped(names)) +
+                     verdict(runs) + incomplete_runs(runs) + emulated_benches(runs);
   for (const Section& section : {metrics(runs), delta_v(runs), elements(runs)}) body += section_html(section);
   return html_page(names, body);
 }

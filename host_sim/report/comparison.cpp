@@ -5,22 +5,51 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
+#include "host_sim/report/extension.h"
+#include "host_sim/report/loop_name.h"
 #include "host_sim/report/mission_views.h"
 #include "host_sim/report/number_text.h"
+#include "host_sim/report/paper_table.h"
 
 namespace vbar::report {
 namespace {
 
 using Runs = std::span<const ComparedRun>;
 
+using Papers = std::vector<PaperColumn>;
+constexpr const char* kNone = "–";
+
 template <class Cell>
 ComparisonRow row_of(std::string name, Runs runs, const Cell& cell) {
   ComparisonRow row{std::move(name), {}};
   for (const ComparedRun& run : runs) row.cells.push_back(cell(run.record));
   return row;
+}
+
+/// The same, with what the paper says of it.
+template <class Cell, class PaperCell>
+ComparisonRow row_of(std::string name, Runs runs, const Papers& papers, const Cell& cell,
+                     const PaperCell& papers_cell) {
+  ComparisonRow row = row_of(std::move(name), runs, cell);
+  for (const PaperColumn& paper : papers) row.cells.push_back(papers_cell(paper));
+  return row;
+}
+
+/// Lengths of navigation by carrier phases are millimetres.
+struct Unit {
+  double scale = 1.0;
+  const char* name = "m";
+  int decimals = 4;
+};
+constexpr int kVelocityDecimals = 4;
+Unit navigation_unit(Runs runs) {
+  const bool has_fix =
+      std::ranges::any_of(runs, [](const ComparedRun& run) { return run.record.summary.first_fix_s.has_value(); });
+  return has_fix ? Unit{1e3, "mm", 3} : Unit{};
 }
 
 /// Index and time of every waypoint that any run reached.
@@ -38,22 +67,37 @@ const WaypointRow* find_waypoint(const RunRecord& record, int index) {
 }
 
 /// A value of each waypoint, a row a waypoint under a heading. Nothing if no run has any.
-using WaypointValue = std::function<std::optional<double>(const WaypointRow&)>;
-void append_by_waypoint(std::vector<ComparisonRow>& rows, Runs runs, const std::string& heading,
-                        const WaypointValue& value, int decimals) {
+struct WaypointValue {
+  std::string heading;
+  std::function<std::optional<double>(const WaypointRow&)> value;
+  std::optional<double> PaperColumn::AtWaypoint::*papers_value = nullptr;
+  double scale = 1.0;
+  int decimals = 4;
+};
+void append_by_waypoint(std::vector<ComparisonRow>& rows, Runs runs, const Papers& papers, const WaypointValue& of) {
   bool any = false;
+  const auto text = [&](const std::optional<double>& value) {
+    return fixed(value ? std::optional(of.scale * *value) : std::nullopt, of.decimals);
+  };
   std::vector<ComparisonRow> values;
   for (const auto& [index, time_s] : waypoint_times(runs)) {
+    const WaypointRow* met = nullptr;
+    for (const ComparedRun& run : runs)
+      if (met == nullptr) met = find_waypoint(run.record, index);
     const auto cell = [&, wanted = index](const RunRecord& record) {
       const WaypointRow* waypoint = find_waypoint(record, wanted);
-      const std::optional<double> found = waypoint != nullptr ? value(*waypoint) : std::nullopt;
+      const std::optional<double> found = waypoint != nullptr ? of.value(*waypoint) : std::nullopt;
       any = any || found.has_value();
-      return fixed(found, decimals);
+      return text(found);
     };
-    values.push_back(row_of(fmt::format("  waypoint {}, {:.2f} h", index, time_s / 3600.0), runs, cell));
+    const auto papers_cell = [&](const PaperColumn& paper) {
+      return of.papers_value == nullptr ? std::string(kNone) : text(paper.at(*met).*of.papers_value);
+    };
+    values.push_back(
+        row_of(fmt::format("  waypoint {}, {:.2f} h", index, time_s / 3600.0), runs, papers, cell, papers_cell));
   }
   if (!any) return;
-  rows.push_back({heading, {}});
+  rows.push_back({of.heading, {}});
   rows.insert(rows.end(), values.begin(), values.end());
 }
 
@@ -67,43 +111,79 @@ std::optional<double> largest_difference(const RunRecord& a, const RunRecord& b)
   return largest;
 }
 
-std::string mean_and_deviation(const std::optional<MeanAndDeviation>& value) {
-  return value ? fmt::format("{} ± {}", fixed(value->mean, 4), fixed(value->std, 4)) : fixed(std::nullopt, 4);
+std::string mean_and_deviation(const std::optional<MeanAndDeviation>& value, const Unit& unit) {
+  return plus_minus(value, unit.decimals, unit.scale);
 }
 
 /// Different outputs are set off only where they should be the same.
 std::string same_as_first(const RunRecord& run, const RunRecord& first, std::string Summary::*hash) {
   const std::string &own = run.summary.*hash, &expected = first.summary.*hash;
-  if (own.empty() || expected.empty()) return "–";
+  if (own.empty() || expected.empty()) return kNone;
   if (own == expected) return "same bits";
   return expect_same_outputs(run.summary, first.summary) ? "DIFFERENT" : "other mission, seed or settings";
 }
 
 std::string cost(const Summary::FlightStep& step) {
-  return step.max == 0 ? "–" : fmt::format("{} {}", grouped(step.max), step.unit);
+  return step.max == 0 ? kNone : fmt::format("{} {}", grouped(step.max), step.unit);
 }
 
 void append_setting(std::vector<ComparisonRow>& rows, Runs runs) {
+  rows.push_back(row_of("in the loop", runs, [](const RunRecord& r) { return loop_name(r.summary); }));
   rows.push_back(row_of("mission", runs, [](const RunRecord& r) { return r.summary.mission; }));
   rows.push_back(row_of("seed", runs, [](const RunRecord& r) { return std::to_string(r.summary.seed); }));
   rows.push_back(row_of("flight computer", runs, [](const RunRecord& r) { return r.summary.flight_computer; }));
   rows.push_back(row_of("outcome", runs, [](const RunRecord& r) {
-    return r.summary.complete ? std::string("complete") : "incomplete: " + r.summary.incomplete_reason;
+    return r.summary.complete ? std::string("complete") : "INCOMPLETE: " + r.summary.incomplete_reason;
   }));
 }
 
-void append_totals(std::vector<ComparisonRow>& rows, Runs runs) {
+void append_totals(std::vector<ComparisonRow>& rows, Runs runs, const Papers& papers) {
+  const Unit unit = navigation_unit(runs);
   rows.push_back({"whole run", {}});
-  rows.push_back(row_of("  delta-v, m/s", runs, [](const RunRecord& r) { return fixed(r.summary.dv_mps, 6); }));
-  rows.push_back(row_of("  maneuvers", runs, [](const RunRecord& r) { return std::to_string(r.summary.maneuvers); }));
-  rows.push_back(row_of("  navigation error, m (mean ± std)", runs,
-                        [](const RunRecord& r) { return mean_and_deviation(r.summary.navigation_error_m); }));
+  rows.push_back(row_of(
+      fmt::format("  delta-v, {}/s", unit.name), runs, papers,
+      [&](const RunRecord& r) { return fixed(unit.scale * r.summary.dv_mps, unit.scale == 1.0 ? 6 : 3); },
+      [&](const PaperColumn& p) { return fixed(unit.scale * p.dv_mps, 3); }));
+  rows.push_back(row_of(
+      "  maneuvers", runs, papers, [](const RunRecord& r) { return std::to_string(r.summary.maneuvers); },
+      [](const PaperColumn& p) { return std::to_string(p.maneuvers); }));
+  rows.push_back(row_of(
+      fmt::format("  navigation error, {} (mean ± std)", unit.name), runs, papers,
+      [&](const RunRecord& r) { return mean_and_deviation(r.summary.navigation_error_m, unit); },
+      [&](const PaperColumn& p) { return mean_and_deviation(p.navigation_error_m, unit); }));
+  if (unit.scale != 1.0)
+    rows.push_back(row_of(
+        fmt::format("  navigation velocity error, {}/s (mean ± std)", unit.name), runs, papers,
+        [&](const RunRecord& r) {
+          return plus_minus(r.summary.navigation_velocity_error_mps, kVelocityDecimals, unit.scale);
+        },
+        [&](const PaperColumn& p) {
+          return plus_minus(p.navigation_velocity_error_mps, kVelocityDecimals, unit.scale);
+        }));
   rows.push_back(row_of("  longest flight step", runs, [](const RunRecord& r) { return cost(r.summary.flight_step); }));
   rows.push_back(row_of("  most stack, bytes", runs, [](const RunRecord& r) {
     const auto bytes = r.summary.flight_step.stack_bytes_max;
-    return bytes == 0 ? std::string("–") : grouped(bytes);
+    return bytes == 0 ? std::string(kNone) : grouped(bytes);
   }));
   rows.push_back(row_of("  wall-clock time", runs, [](const RunRecord& r) { return duration_text(r.summary.wall_s); }));
+}
+
+/// The figures of each sensor that at least one run has.
+void append_sensor_figures(std::vector<ComparisonRow>& rows, Runs runs) {
+  std::map<std::string, std::set<std::string>> sensors;
+  for (const ComparedRun& run : runs)
+    for (const auto& [sensor, figures] : run.record.summary.sensor_figures)
+      for (const auto& [name, value] : figures) sensors[sensor].insert(name);
+  for (const auto& [sensor, names] : sensors) {
+    rows.push_back({"sensors." + sensor, {}});
+    for (const std::string& name : names)
+      rows.push_back(row_of("  " + name, runs, [&, &of = sensor](const RunRecord& r) {
+        const auto figures = r.summary.sensor_figures.find(of);
+        if (figures == r.summary.sensor_figures.end()) return std::string(kNone);
+        const auto found = figures->second.find(name);
+        return found == figures->second.end() ? std::string(kNone) : significant(found->second, 3);
+      }));
+  }
 }
 
 void append_differences(std::vector<ComparisonRow>& rows, Runs runs) {
@@ -111,7 +191,7 @@ void append_differences(std::vector<ComparisonRow>& rows, Runs runs) {
   rows.push_back({"against " + runs.front().name, {}});
   rows.push_back(row_of("  largest difference of control error, m", runs, [&](const RunRecord& r) {
     const auto difference = largest_difference(first, r);
-    return difference ? significant(*difference, 3) : std::string("–");
+    return difference ? significant(*difference, 3) : std::string(kNone);
   }));
   rows.push_back(row_of("  maneuver commands", runs,
                         [&](const RunRecord& r) { return same_as_first(r, first, &Summary::commands_sha256); }));
@@ -167,34 +247,69 @@ std::vector<std::string> run_names(const std::vector<std::filesystem::path>& fol
   return {names.begin(), names.end()};
 }
 
+std::vector<PaperColumn> paper_columns(Runs runs) {
+  for (const ComparedRun& run : runs) {
+    for (const Extension* extension : run.record.extensions) {
+      if (extension->paper_columns == nullptr) continue;
+      if (std::vector<PaperColumn> papers = extension->paper_columns(run.record); !papers.empty()) return papers;
+    }
+  }
+  return {};
+}
+
+std::vector<std::string> column_names(Runs runs) {
+  std::vector<std::string> names;
+  for (const ComparedRun& run : runs) names.push_back(run.name);
+  for (const PaperColumn& paper : paper_columns(runs)) names.push_back(paper.name);
+  return names;
+}
+
 std::vector<ComparisonRow> comparison_rows(Runs runs) {
   std::vector<ComparisonRow> rows;
   if (runs.empty()) return rows;
+  using AtWaypoint = PaperColumn::AtWaypoint;
+  const Papers papers = paper_columns(runs);
+  const Unit unit = navigation_unit(runs);
   append_setting(rows, runs);
   append_by_waypoint(
-      rows, runs, "control error, m", [](const WaypointRow& w) { return w.control_error_m; }, 4);
+      rows, runs, papers,
+      {"control error, m", [](const WaypointRow& w) { return w.control_error_m; }, &AtWaypoint::control_error_m});
   append_by_waypoint(
-      rows, runs, "navigation error, m", [](const WaypointRow& w) { return w.navigation_error_m; }, 4);
+      rows, runs, papers,
+      {fmt::format("navigation error, {}", unit.name), [](const WaypointRow& w) { return w.navigation_error_m; },
+       &AtWaypoint::navigation_error_m, unit.scale, unit.decimals});
+  if (unit.scale != 1.0)
+    append_by_waypoint(rows, runs, papers,
+                       {fmt::format("navigation velocity error, {}/s", unit.name),
+                        [](const WaypointRow& w) { return w.navigation_velocity_error_mps; },
+                        &AtWaypoint::navigation_velocity_error_mps, unit.scale, kVelocityDecimals});
   append_by_waypoint(
-      rows, runs, "cumulative delta-v, m/s", [](const WaypointRow& w) { return w.cumulative_dv_mps; }, 6);
-  append_totals(rows, runs);
+      rows, runs, papers,
+      {fmt::format("cumulative delta-v, {}/s", unit.name), [](const WaypointRow& w) { return w.cumulative_dv_mps; },
+       nullptr, unit.scale, unit.scale == 1.0 ? 6 : 3});
+  append_totals(rows, runs, papers);
+  append_sensor_figures(rows, runs);
   if (runs.size() > 1) append_differences(rows, runs);
+  // What the paper does not say.
+  for (ComparisonRow& row : rows)
+    if (!row.cells.empty()) row.cells.resize(runs.size() + papers.size(), kNone);
   return rows;
 }
 
 std::string comparison_table(Runs runs) {
   const std::vector<ComparisonRow> rows = comparison_rows(runs);
+  const std::vector<std::string> names = column_names(runs);
   std::size_t name_width = 0;
   for (const ComparisonRow& row : rows) name_width = std::max(name_width, width_of(row.name));
   std::vector<std::size_t> widths;
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    widths.push_back(width_of(runs[k].name));
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    widths.push_back(width_of(names[k]));
     for (const ComparisonRow& row : rows) {
       if (!row.cells.empty()) widths[k] = std::max(widths[k], width_of(row.cells[k]));
     }
   }
   std::string text(name_width, ' ');
-  for (std::size_t k = 0; k < runs.size(); ++k) text += fmt::format("  {:>{}}", runs[k].name, widths[k]);
+  for (std::size_t k = 0; k < names.size(); ++k) text += fmt::format("  {:>{}}", names[k], widths[k]);
   text += '\n';
   for (const ComparisonRow& row : rows) {
     if (row.cells.empty()) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/report/paper_column.h"
 #include "host_sim/report/run_record.h"
 
 namespace vbar::report {
@@ -26,7 +27,13 @@ struct ComparedRun {
 /// Names of runs by the names of their folders, with as many parent folders as tell equal ones apart.
 [[nodiscard]] std::vector<std::string> run_names(const std::vector<std::filesystem::path>& folders);
 
-/// A line of the comparison: a cell for each run, or a heading without cells.
+/// Published figures of the experiment that the runs repeat, if they do: further columns.
+[[nodiscard]] std::vector<PaperColumn> paper_columns(std::span<const ComparedRun> runs);
+
+/// The names of the runs, and of the paper's columns.
+[[nodiscard]] std::vector<std::string> column_names(std::span<const ComparedRun> runs);
+
+/// A line of the comparison: a cell for each column, or a heading without cells.
 struct ComparisonRow {
   std::string name;
   std::vector<std::string> cells;

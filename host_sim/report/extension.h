@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host_sim/report/html_page.h"
+#include "host_sim/report/paper_column.h"
 #include "host_sim/report/table_kind.h"
 
 namespace vbar::report {
@@ -21,6 +22,8 @@ struct Extension {
   /// Messages of telemetry whose every field is in a table of the module, with the truth beside it: they have no table
   /// of their own.
   std::span<const fsw::packets::Apid> messages{};
+  /// Published figures of the experiment that the run repeats; none for any other run.
+  std::vector<PaperColumn> (*paper_columns)(const RunRecord& record) = nullptr;
 };
 
 /// Whether a module makes rows of the message.

@@ -24,6 +24,7 @@ struct Provenance {
   std::string mission_sha256;          ///< of mission.toml in the run folder
   std::string program_sha256;
   std::optional<FileDigest> flight_software;  ///< the library or image that flew; none: in the program, or on a board
+  std::vector<FileDigest> testbed;            ///< program and scenario of an emulated bench
   std::vector<FileDigest> data;
   std::optional<FileDigest> packet_log;
   friend bool operator==(const Provenance&, const Provenance&) = default;

@@ -62,6 +62,11 @@ void add_link(const Summary::Link& link, std::vector<Fact>& facts) {
                                               {"rejected", link.frames_rejected},
                                               {"duplicated", link.frames_duplicated},
                                               {"foreign", link.strangers_ignored}}));
+  if (link.wired_bytes + link.wired_timeouts == 0) return;
+  facts.push_back({"bytes of the receiver on the board's own line", grouped(link.wired_bytes)});
+  facts.push_back(counts("irregularities of that line", {{"bytes missing", link.wired_bytes_missing},
+                                                         {"bytes dropped", link.wired_bytes_dropped},
+                                                         {"timeouts", link.wired_timeouts}}));
 }
 
 /// Shares that add up to 100 % of their sum.

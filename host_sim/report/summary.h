@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <vbar/fields.h>
@@ -35,6 +36,9 @@ struct SourceFigures {
   double latest_s = 0.0;  ///< largest lateness
 };
 
+/// What a testbed says of the run, by name with the unit: "edges_missing", "bench".
+using TestbedFigures = std::map<std::string, std::variant<double, std::string>>;
+
 /// What a run is and what the tables do not hold.
 struct RunFacts {
   std::string mission;
@@ -53,11 +57,14 @@ struct RunFacts {
     std::uint64_t bytes = 0, frames_resent = 0, frames_rejected = 0, frames_duplicated = 0, strangers_ignored = 0;
     int baud = 0;                                        ///< of a serial line; 0: none, or as fast as it goes
     double step_share_max = 0.0, step_share_mean = 0.0;  ///< of a step's period, that its bytes take at that rate
+    // Of a receiver that is wired to the flight computer (pil::WiredStatistics).
+    std::uint64_t wired_bytes = 0, wired_bytes_dropped = 0, wired_bytes_missing = 0, wired_timeouts = 0;
   } link;
   struct Deadlines {
     std::uint64_t compute_overruns = 0, wakeups_late = 0, link_late = 0, simulation_late = 0;
   } deadlines;
   std::vector<SourceFigures> sources;
+  std::map<std::string, TestbedFigures> testbeds;  ///< by the name of the testbed, which is its key in summary.json
   struct WallShare {
     double truth_s = 0.0, flight_s = 0.0, link_s = 0.0, other_s = 0.0;
     // Of a digital camera, on a thread of its own: beside the others, not part of their sum.

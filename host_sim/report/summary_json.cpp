@@ -61,6 +61,10 @@ void members(Is<RunFacts::Link> auto& s, auto& visit) {
   visit("baud", s.baud);
   visit("step_share_max", s.step_share_max);
   visit("step_share_mean", s.step_share_mean);
+  visit("wired_bytes", s.wired_bytes);
+  visit("wired_bytes_dropped", s.wired_bytes_dropped);
+  visit("wired_bytes_missing", s.wired_bytes_missing);
+  visit("wired_timeouts", s.wired_timeouts);
 }
 
 void members(Is<RunFacts::Deadlines> auto& s, auto& visit) {
@@ -102,6 +106,7 @@ void members(Is<Provenance> auto& s, auto& visit) {
   visit("mission_sha256", s.mission_sha256);
   visit("overrides", s.overrides);
   visit("flight_software", s.flight_software);
+  visit("testbed", s.testbed);
   visit("data", s.data);
   visit("packet_log", s.packet_log);
 }
@@ -173,6 +178,8 @@ struct Writer {
       Json all = Json::object();
       for (const auto& [key, one] : value) all[key] = json_of(one);
       return all;
+    } else if constexpr (requires { value.valueless_by_exception(); }) {
+      return std::visit([](const auto& one) { return json_of(one); }, value);
     } else if constexpr (requires { value.begin(); }) {
       Json all = Json::array();
       for (const auto& one : value) all.push_back(json_of(one));
@@ -223,6 +230,12 @@ struct Reader {
       value = from.is_null() ? std::numeric_limits<double>::quiet_NaN() : from.get<double>();
     } else if constexpr (std::is_same_v<Value, std::string>) {
       value = from.is_null() ? std::string() : from.get<std::string>();
+    } else if constexpr (requires { value.valueless_by_exception(); }) {
+      if (from.is_string()) {
+        read(from, value.template emplace<std::string>());
+      } else {
+        read(from, value.template emplace<double>());
+      }
     } else if constexpr (requires { typename Value::mapped_type; }) {
       for (const auto& [key, one] : from.items()) read(one, value[key]);
     } else if constexpr (requires { value.push_back(value.front()); }) {
@@ -242,6 +255,11 @@ struct Reader {
 std::string summary_json(const Summary& summary, const std::vector<WaypointRow>& waypoints) {
   Json json = {{"schema", kSchema}};
   json.update(Writer::json_of(summary));
+  json["testbeds"] = Json::array();
+  for (const auto& [name, figures] : summary.testbeds) {
+    json["testbeds"].push_back(name);
+    json[name] = Writer::json_of(figures);
+  }
   json["waypoints"] = Json::array();
   for (const WaypointRow& row : waypoints) json["waypoints"].push_back(Writer::json_of(row));
   // Text that is not UTF-8 (a library's own name for itself) is written with replacement characters, never refused.
@@ -262,6 +280,8 @@ Summary read_summary(const std::filesystem::path& file) {
                                std::to_string(schema) + "; this one reads up to " + std::to_string(kSchema) + ")");
     }
     Reader::read(json, summary);
+    for (const Json& name : json.value("testbeds", Json::array()))
+      Reader::read(json.at(name.get<std::string>()), summary.testbeds[name.get<std::string>()]);
   } catch (const Json::exception& error) {
     fail(error.what());
   } catch (const std::runtime_error& error) {

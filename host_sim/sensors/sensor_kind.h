@@ -13,6 +13,7 @@
 
 #include "fsw/orbit/elements.h"
 #include "fsw/packets/messages.h"
+#include "hil_drivers/testbeds.h"
 #include "host_sim/mission/sensor_reader.h"
 #include "host_sim/report/extension.h"
 #include "host_sim/sensors/evaluation.h"
@@ -57,7 +58,7 @@ struct TelecommandContext {
   std::function<fsw::orbit::CartesianState(std::string_view spacecraft)> state_at_start;
 };
 
-/// Objects that several sources of one run share, by name: the sky over all receivers, a testbed with two channels.
+/// Objects that several sources of one run share, by name: the sky over all receivers.
 class SharedObjects {
  public:
   /// The object of that name, which the first caller makes.
@@ -77,6 +78,8 @@ struct MakeContext {
   const mission::Spacecraft& servicer;  ///< carries the sensor and the flight software
   std::filesystem::path data_directory;
   SharedObjects& shared;
+  testbeds::OpenTestbeds& testbeds;
+  twins::TruthOutlook* outlook;  ///< null: no testbed can be used
 };
 
 struct SensorKind : mission::SensorReader {

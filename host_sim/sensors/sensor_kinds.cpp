@@ -1,10 +1,10 @@
 #include "host_sim/sensors/sensor_kinds.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <stdexcept>
 
+#include "hil_drivers/grand/pps/edge_clock.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/mission/telecommands.h"
 #include "host_sim/sensors/camera/camera_kind.h"
@@ -34,7 +34,9 @@ mission::Installation installation() {
   mission::Installation installation;
   installation.data_directory = mission::data_directory();
   installation.kinds.assign(std::begin(kSensorKinds), std::end(kSensorKinds));
-  installation.clocks = {&engine::kMonotonicClock};
+  const auto testbeds = testbeds::testbed_kinds();
+  installation.testbeds.assign(testbeds.begin(), testbeds.end());
+  installation.clocks = {&engine::kMonotonicClock, &grand::kPpsClock};
   return installation;
 }
 
@@ -47,13 +49,15 @@ mission::Mission parse_mission(std::string_view text, const std::filesystem::pat
   return mission::parse_mission(text, file, overrides, installation());
 }
 
-std::vector<twins::NamedSource> make_sources(const mission::Mission& mission, const mission::Spacecraft& servicer,
-                                             const std::filesystem::path& data_directory) {
-  std::vector<twins::NamedSource> sources;
+MadeSources make_sources(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                         const std::filesystem::path& data_directory, twins::TruthOutlook* outlook) {
+  MadeSources made;
   SharedObjects shared;
-  const MakeContext context{mission, servicer, data_directory, shared};
-  for (const mission::Sensor& sensor : servicer.sensors) kind_of(sensor).add_sources(sensor, context, sources);
-  return sources;
+  testbeds::OpenTestbeds testbeds;
+  const MakeContext context{mission, servicer, data_directory, shared, testbeds, outlook};
+  for (const mission::Sensor& sensor : servicer.sensors) kind_of(sensor).add_sources(sensor, context, made.sources);
+  made.testbeds = testbeds.runs();
+  return made;
 }
 
 std::vector<NamedEvaluation> make_evaluations(const mission::Mission& mission, const mission::Spacecraft& servicer,
@@ -76,8 +80,9 @@ void add_facts(const mission::Mission& mission, const mission::Spacecraft& servi
 
 report::Extensions extensions() {
   static const auto kExtensions = [] {
-    std::array<const report::Extension*, std::size(kSensorKinds)> all{};
-    std::ranges::transform(kSensorKinds, all.begin(), [](const SensorKind* kind) { return &kind->report; });
+    std::vector<const report::Extension*> all;
+    for (const SensorKind* const kind : kSensorKinds) all.push_back(&kind->report);
+    for (const testbeds::TestbedKind* const kind : testbeds::testbed_kinds()) all.push_back(&kind->report);
     return all;
   }();
   return kExtensions;

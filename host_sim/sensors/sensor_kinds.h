@@ -26,10 +26,16 @@ mission::Mission load_mission(const std::filesystem::path& file, std::span<const
 mission::Mission parse_mission(std::string_view text, const std::filesystem::path& file,
                                std::span<const std::string> overrides = {});
 
-/// The sources of all that the flight software of `servicer` receives from its sensors.
-[[nodiscard]] std::vector<twins::NamedSource> make_sources(const mission::Mission& mission,
-                                                           const mission::Spacecraft& servicer,
-                                                           const std::filesystem::path& data_directory);
+struct MadeSources {
+  std::vector<twins::NamedSource> sources;
+  std::vector<std::shared_ptr<testbeds::TestbedRun>> testbeds;  ///< that provide some of them
+};
+
+/// The sources of all that the flight software of `servicer` receives from its sensors. `outlook`, which must outlive
+/// them, is required by testbeds.
+[[nodiscard]] MadeSources make_sources(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                                       const std::filesystem::path& data_directory,
+                                       twins::TruthOutlook* outlook = nullptr);
 
 /// The evaluations of the sensors of `servicer`, whose kinds have one.
 [[nodiscard]] std::vector<NamedEvaluation> make_evaluations(const mission::Mission& mission,
@@ -39,7 +45,7 @@ mission::Mission parse_mission(std::string_view text, const std::filesystem::pat
 /// What the summary says of the sensors of `servicer`.
 void add_facts(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunFacts& facts);
 
-/// What the kinds add to record, summary and report.
+/// What the kinds and the testbeds add to record, summary and report.
 [[nodiscard]] report::Extensions extensions();
 
 /// What the flight software is told before its first step, in this order: guidance, its sensors, the waypoints, the

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "fsw/math/math.h"
-#include "host_sim/report/navigation_errors.h"
-#include "host_sim/report/statistics.h"
+#include "host_sim/sensors/gnss/gnss_evaluation.h"
 #include "host_sim/sensors/gnss/gnss_row.h"
 #include "host_sim/twins/gnss/body_frame.h"
 #include "host_sim/twins/gnss/gnss_receiver.h"
@@ -21,8 +21,19 @@ using mission::Sensor;
 using mission::Spacecraft;
 using mission::TableReader;
 
+/// The receivers of a pair are in one testbed or in none.
+void check_sources(const TableReader& section, const Sensor& sensor, const Spacecraft& partner) {
+  const std::string& own = sensor.settings->source;
+  const std::string& other = find_settings<GnssSensor>(partner)->source;
+  if (own == other) return;
+  if (testbeds::find_testbed(own) == nullptr && testbeds::find_testbed(other) == nullptr) return;
+  section.refuse_value("source", other + ", the source of " + partner.name + ": the receivers of a pair share a sky");
+}
+
 /// Both ends of relative navigation by GNSS have what it takes.
 void check(const TableReader& section, const Sensor& sensor, const Spacecraft& spacecraft, const Mission& mission) {
+  if (settings_of<GnssSensor>(sensor).line.wired == testbeds::Wiring::kBoard && !spacecraft.flight_computer)
+    section.refuse_value("wired", "host: " + spacecraft.name + " has no flight computer");
   for (const Sensor& other : spacecraft.sensors) {
     if (&other == &sensor) continue;
     if (other.kind == sensor.kind) section.refuse("", "a second sensor of kind gnss", "one on a spacecraft");
@@ -37,26 +48,48 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
   if (partner == nullptr || find_settings<GnssSensor>(*partner) == nullptr)
     section.refuse("partner", partner == nullptr ? "nothing" : "the spacecraft \"" + partner->name + "\" without GNSS",
                    "a spacecraft that has sensors.gnss too");
+  check_sources(section, sensor, *partner);
   for (const Spacecraft* one : {&spacecraft, partner})
     if (!one->attitude)
       section.refuse("", "no attitude of " + one->name, "both spacecraft with an attitude: antennas point somewhere");
 }
 
-std::unique_ptr<twins::PacketSource> make_receiver(const MakeContext& context, const Spacecraft& carrier,
-                                                   const std::shared_ptr<const twins::gnss::Constellation>& sky) {
+std::unique_ptr<twins::gnss::ReceiverBytes> make_twin(const MakeContext& context, const Spacecraft& carrier) {
   const Mission& mission = context.mission;
-  const twins::gnss::GnssReceiverSettings& settings = find_settings<GnssSensor>(carrier)->receiver;
+  const auto sky = context.shared.get<const twins::gnss::Constellation>("gnss/sky", [&] {
+    return std::make_shared<const twins::gnss::Constellation>(
+        context.data_directory, mission::shared_settings<GnssShared>(mission).constellation, mission.start_time(),
+        mission.seed);
+  });
+  return std::make_unique<twins::gnss::GnssReceiver>(find_settings<GnssSensor>(carrier)->receiver, sky,
+                                                     context.data_directory, mission.seed, carrier.name);
+}
+
+std::unique_ptr<twins::gnss::ReceiverBytes> make_of_testbed(const testbeds::TestbedKind& testbed,
+                                                            const MakeContext& context, const Spacecraft& carrier) {
+  if (context.outlook == nullptr) throw std::logic_error("a testbed requires the truth of the run");
+  const auto run = context.testbeds.run_of(testbed, {context.mission, context.data_directory, *context.outlook});
+  const GnssSensor& settings = *find_settings<GnssSensor>(carrier);
+  auto receiver = run->make_receiver({carrier.name, settings.receiver, settings.line});
+  if (!receiver) throw std::runtime_error("testbed \"" + std::string(testbed.name) + "\" has no GNSS receivers");
+  return receiver;
+}
+
+std::unique_ptr<twins::PacketSource> make_receiver(const MakeContext& context, const std::string& source,
+                                                   const Spacecraft& carrier) {
+  const Mission& mission = context.mission;
+  const testbeds::TestbedKind* const testbed = testbeds::find_testbed(source);
   twins::GnssSensor::Settings sensor;
   sensor.spacecraft = carrier.name;
   sensor.flight_number = context.servicer.number;
   sensor.start = mission.start_time();
-  sensor.period = fsw::nearest_duration(settings.output.period_s);
+  auto receiver = testbed != nullptr ? make_of_testbed(*testbed, context, carrier) : make_twin(context, carrier);
+  sensor.period = receiver->call_period().value_or(
+      fsw::nearest_duration(find_settings<GnssSensor>(carrier)->receiver.output.period_s));
   std::unique_ptr<twins::gnss::Crosslink> crosslink;
   if (&carrier != &context.servicer)
     crosslink = std::make_unique<twins::gnss::Crosslink>(mission::shared_settings<GnssShared>(mission).crosslink,
                                                          mission.seed, carrier.name);
-  auto receiver =
-      std::make_unique<twins::gnss::GnssReceiver>(settings, sky, context.data_directory, mission.seed, carrier.name);
   return std::make_unique<twins::GnssSensor>(sensor, std::move(receiver), std::move(crosslink));
 }
 
@@ -70,17 +103,12 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
                        std::make_unique<twins::RecordedLog>(sensor.settings->log, selection)});
     return;
   }
-  const Mission& mission = context.mission;
-  const auto sky = context.shared.get<const twins::gnss::Constellation>("gnss/sky", [&] {
-    return std::make_shared<const twins::gnss::Constellation>(
-        context.data_directory, mission::shared_settings<GnssShared>(mission).constellation, mission.start_time(),
-        mission.seed);
-  });
+  const std::string& source = sensor.settings->source;
   const auto add = [&](const Spacecraft& carrier) {
-    sources.push_back({source_name(carrier, sensor), sensor.settings->source, make_receiver(context, carrier, sky)});
+    sources.push_back({source_name(carrier, sensor), source, make_receiver(context, source, carrier)});
   };
   add(context.servicer);
-  if (const Spacecraft* const partner = mission.find_spacecraft(sensor.settings->observed)) add(*partner);
+  if (const Spacecraft* const partner = context.mission.find_spacecraft(sensor.settings->observed)) add(*partner);
 }
 
 void add_telecommands(const Sensor& /*sensor*/, const TelecommandContext& context, Telecommands& telecommands) {
@@ -100,28 +128,6 @@ void add_facts(const Sensor& sensor, const Mission& mission, const Spacecraft& s
   facts.static_floor_m = gnss_static_floor_m(mission, servicer);
 }
 
-/// Telemetry of navigation by GNSS as rows.
-class GnssEvaluation final : public Evaluation {
- public:
-  explicit GnssEvaluation(const EvaluationContext& context) : context_(context) {}
-
-  void on_answer(fsw::GpsTime time, std::span<const fsw::packets::PacketView> answer) override {
-    for (const fsw::packets::PacketView& packet : answer) {
-      const auto telemetry = fsw::packets::decode<telemetry_gnss>(packet);
-      if (!telemetry.ok()) continue;
-      auto row = report::row_of<GnssRow>(telemetry.value());
-      row.time_s = seconds_of(time);
-      if (row.epoch_gps_ns != 0) row.epoch_s = seconds_of(fsw::GpsTime{row.epoch_gps_ns});
-      context_.record.tables.rows<GnssRow>().push_back(row);
-    }
-  }
-
- private:
-  [[nodiscard]] double seconds_of(fsw::GpsTime time) const { return fsw::seconds(time - context_.mission.epoch); }
-
-  EvaluationContext context_;
-};
-
 std::unique_ptr<Evaluation> evaluate(const Sensor& /*sensor*/, const EvaluationContext& context) {
   return std::make_unique<GnssEvaluation>(context);
 }
@@ -129,20 +135,12 @@ std::unique_ptr<Evaluation> evaluate(const Sensor& /*sensor*/, const EvaluationC
 constexpr fsw::packets::Apid kMessagesInTables[] = {fsw::packets::Apid::kTelemetryGnss};
 
 std::vector<report::TableKind> tables() {
-  return {report::table_of_extension<GnssRow>("gnss.csv")};
-}
-
-void summarise(const report::RunRecord& record, report::Summary& summary) {
-  if (record.tables.rows<GnssRow>().empty()) return;
-  const std::optional<double> fix_s = report::first_fix(record);
-  std::vector<double> nees;
-  for (const auto& [time_s, value] : gnss_nees(record))
-    if (!fix_s || time_s >= *fix_s) nees.push_back(value);
-  summary.navigation_nees = report::mean_of(nees);
+  return {report::table_of_extension<GnssRow>("gnss.csv"),
+          report::table_of_extension<SignalNoiseRow>("signal_noise.csv")};
 }
 
 std::vector<report::Section> sections(const report::RunRecord& record) {
-  return {gnss_section(record)};
+  return {gnss_section(record), signal_noise_section(record)};
 }
 
 }  // namespace
@@ -152,7 +150,7 @@ const SensorKind kGnss{{"gnss", "constellation", read_gnss, read_gnss_shared, ch
                        add_sources,
                        add_facts,
                        evaluate,
-                       {tables, summarise, sections, kMessagesInTables}};
+                       {tables, summarise_gnss, sections, kMessagesInTables, gnss_paper_columns}};
 
 vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer,
                                                            const truth::EarthOrientationSeries& orientation) {

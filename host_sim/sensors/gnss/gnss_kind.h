@@ -16,6 +16,7 @@ namespace vbar::sensors {
 /// partner, or they are all there is, beside a camera.
 struct GnssSensor : mission::SensorSettings {
   twins::gnss::GnssReceiverSettings receiver;
+  testbeds::ReceiverLine line;  ///< of a receiver in a testbed
 };
 
 /// [navigation.carrier_phase], [constellation] and [links.crosslink].
@@ -29,6 +30,14 @@ extern const SensorKind kGnss;
 
 /// Carrier-phase navigation: beside the paper, integers, consistency (section_gnss.cpp).
 [[nodiscard]] report::Section gnss_section(const report::RunRecord& record);
+/// The paper's experiment 3, software and hardware in the loop, if the run meets its waypoints by GNSS.
+[[nodiscard]] std::vector<report::PaperColumn> gnss_paper_columns(const report::RunRecord& record);
+
+// In gnss_figures.cpp: how hardware differs from a twin.
+[[nodiscard]] report::Section signal_noise_section(const report::RunRecord& record);
+/// Time (s) from the run's first step until the relative position error stays below 20 mm; empty: it does not.
+[[nodiscard]] std::optional<double> time_to_20_mm(const report::RunRecord& record);
+void summarise_gnss(const report::RunRecord& record, report::Summary& summary);
 
 // In read_gnss.cpp.
 std::shared_ptr<const mission::SensorSettings> read_gnss(const mission::TableReader& section,

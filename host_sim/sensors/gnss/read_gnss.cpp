@@ -4,6 +4,7 @@
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/sensors/gnss/settings/read_radio.h"
 
 namespace vbar::sensors {
 namespace {
@@ -15,15 +16,14 @@ using mission::Range;
 using mission::TableReader;
 
 using twins::gnss::GpsEphemerisLog;
-using twins::gnss::SatelliteSet;
 using twins::gnss::StartMode;
 
 constexpr Names<StartMode, 3> kStartModes{
     {{"cold", StartMode::kCold}, {"warm", StartMode::kWarm}, {"hot", StartMode::kHot}}};
-constexpr Names<SatelliteSet, 3> kSatelliteSets{
-    {{"none", SatelliteSet::kNone}, {"broadcast", SatelliteSet::kBroadcast}, {"nominal", SatelliteSet::kNominal}}};
 constexpr Names<GpsEphemerisLog, 2> kEphemerisLogs{
     {{"rawephem", GpsEphemerisLog::kRawEphem}, {"gpsephem", GpsEphemerisLog::kGpsEphem}}};
+
+constexpr Names<testbeds::Wiring, 2> kWirings{{{"host", testbeds::Wiring::kHost}, {"board", testbeds::Wiring::kBoard}}};
 
 /// Reads a number whose default is the one that the settings were made with.
 void read(const TableReader& section, std::string_view key, Range range, double& value) {
@@ -33,22 +33,6 @@ void read(const TableReader& section, std::string_view key, Range range, double&
 void read_vector(const TableReader& section, std::string_view key, Range range, fsw::Vector3& value) {
   const auto xyz = section.three_numbers(key, range, std::array<double, 3>{value.x(), value.y(), value.z()});
   value = {xyz[0], xyz[1], xyz[2]};
-}
-
-void read_visibility(const TableReader& section, twins::gnss::VisibilitySettings& settings) {
-  read(section, "transmit_aperture_deg", above_to(0.0, 360.0), settings.transmit_aperture_deg);
-  read(section, "receiver_mask_deg", above_to(0.0, 360.0), settings.receiver_mask_deg);
-  read(section, "horizon_mask_deg", from_to(-90.0, 90.0), settings.horizon_mask_deg);
-  read(section, "occultation_altitude_km", from_to(0.0, 1000.0), settings.occultation_altitude_km);
-}
-
-void read_link_budget(const TableReader& section, twins::gnss::LinkBudgetSettings& settings) {
-  read(section, "boresight_gain_dbi", from_to(-20.0, 40.0), settings.boresight_gain_dbi);
-  read(section, "antenna_temperature_k", above_to(0.0, 1e4), settings.antenna_temperature_k);
-  read(section, "lna_gain_db", from_to(0.0, 80.0), settings.lna_gain_db);
-  read(section, "lna_noise_figure_db", from_to(0.0, 30.0), settings.lna_noise_figure_db);
-  read(section, "receiver_noise_figure_db", from_to(0.0, 30.0), settings.receiver_noise_figure_db);
-  read(section, "losses_db", from_to(0.0, 40.0), settings.losses_db);
 }
 
 void read_tracking(const TableReader& section, twins::gnss::TrackingSettings& settings) {
@@ -61,6 +45,8 @@ void read_tracking(const TableReader& section, twins::gnss::TrackingSettings& se
   read(section, "cycle_slips_per_hour", from_to(0.0, 1e4), settings.cycle_slips_per_hour);
   read(section, "undetected_slip_fraction", from_to(0.0, 1.0), settings.undetected_slip_fraction);
   read(section, "code_bias_sigma_m", from_to(0.0, 100.0), settings.code_bias_sigma_m);
+  read(section, "carrier_wander_sigma_mm", from_to(0.0, 100.0), settings.carrier_wander_sigma_mm);
+  read(section, "carrier_wander_time_s", above_to(0.0, 1e6), settings.carrier_wander_time_s);
 }
 
 void read_start(const TableReader& section, twins::gnss::StartSettings& settings) {
@@ -91,6 +77,15 @@ void read_body_frame(const TableReader& section, twins::gnss::BodyFrameSettings&
   read(section, "attitude_knowledge_arcsec", from_to(0.0, 1e5), settings.attitude_knowledge_arcsec);
 }
 
+void read_line(const TableReader& section, double period_s, testbeds::ReceiverLine& line) {
+  line.port = section.text("port", line.port);
+  line.baud = static_cast<int>(section.integer("baud", 2400, 460800, line.baud));
+  line.wired = section.choice<testbeds::Wiring>("wired", kWirings, line.wired);
+  const double latest_s = std::max(0.0, period_s - 0.1);
+  line.log_offset_s = section.number("log_offset_s", from_to(0.0, latest_s), std::min(line.log_offset_s, latest_s));
+  line.clock_adjust = section.flag("clock_adjust", line.clock_adjust);
+}
+
 }  // namespace
 
 std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& section,
@@ -110,6 +105,7 @@ std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& sect
   receiver.output.gps_ephemeris =
       section.choice<GpsEphemerisLog>("gps_ephemeris", kEphemerisLogs, receiver.output.gps_ephemeris);
   receiver.ionosphere = section.flag("ionosphere", receiver.ionosphere);
+  read_line(section, receiver.output.period_s, sensor->line);
   read_visibility(section.table("visibility"), receiver.visibility);
   read_link_budget(section.table("link_budget"), receiver.link_budget);
   read_tracking(section.table("tracking"), receiver.tracking);
@@ -135,23 +131,6 @@ void read_crosslink(const TableReader& section, twins::gnss::CrosslinkSettings& 
   section.finish();
 }
 
-void read_constellation(const TableReader& section, twins::gnss::ConstellationSettings& settings) {
-  settings.gps = section.choice<SatelliteSet>("gps", kSatelliteSets, settings.gps);
-  settings.galileo = section.choice<SatelliteSet>("galileo", kSatelliteSets, settings.galileo);
-  settings.beidou = section.choice<SatelliteSet>("beidou", kSatelliteSets, settings.beidou);
-  constexpr Range kError = from_to(0.0, 1e4);
-  read(section, "orbit_error_radial_m", kError, settings.orbit_error_radial_m);
-  read(section, "orbit_error_transverse_m", kError, settings.orbit_error_transverse_m);
-  read(section, "orbit_error_normal_m", kError, settings.orbit_error_normal_m);
-  read(section, "clock_error_ns", kError, settings.clock_error_ns);
-  section.finish();
-  try {
-    twins::gnss::check(settings);
-  } catch (const std::invalid_argument& error) {
-    section.refuse("", error.what(), "settings that fit together");
-  }
-}
-
 // Defaults: what the paper's Appendix A makes of each axis of an antenna (a vector of 5 mm of any direction, a ball of
 // 3 mm), and differential forces of two spacecraft whose drag and sunlight are not modelled on board.
 void read_carrier_phase(const TableReader& section, vbar::navigation_configuration& navigation) {
@@ -161,6 +140,10 @@ void read_carrier_phase(const TableReader& section, vbar::navigation_configurati
   navigation.pair_wait_ns = section.span("pair_timeout_s", 1.0, from_to(0.1, 600.0), 12.0).ns;
   navigation.antenna_offset_sigma_m = 1e-3 * section.number("antenna_offset_sigma_mm", above_to(0.0, 1e3), 3.2);
   navigation.phase_centre_jitter_m = 1e-3 * section.number("phase_centre_jitter_mm", above_to(0.0, 100.0), 1.0);
+  navigation.phase_wander_sigma_m = 1e-3 * section.number("phase_wander_sigma_mm", from_to(0.0, 100.0), 0.0);
+  navigation.phase_wander_time_s = section.number("phase_wander_time_s", from_to(0.0, 1e6), 0.0);
+  if (navigation.phase_wander_sigma_m > 0.0 && navigation.phase_wander_time_s == 0.0)
+    section.refuse_value("phase_wander_time_s", "a number above 0 where phase_wander_sigma_mm is above 0");
   navigation.code_bias_sigma_m = section.number("code_bias_sigma_m", above_to(0.0, 100.0), 2.0);
   navigation.start_velocity_sigma = section.number("initial_velocity_sigma_mps", above_to(0.0, 100.0), 0.2);
   navigation.acceleration_sigma = 1e-9 * section.number("acceleration_sigma_nmps2", above_to(0.0, 1e6), 10.0);

@@ -30,27 +30,47 @@ std::optional<double> in_millimetres(const std::optional<double>& value) {
   return value ? std::optional(kMillimetres * *value) : std::nullopt;
 }
 
+std::string maneuvers(double dv_mps, int count) {
+  return fmt::format("{} in {} maneuvers", fixed(kMillimetres * dv_mps, 3), count);
+}
+
 /// A row of the table: a value at each waypoint and one of the whole run, of the run and of the paper.
 struct Metric {
   std::string name;
   std::function<std::optional<double>(const WaypointRow&)> value;
   std::function<std::optional<double>(const paper3::Figures&)> papers_value;
-  std::string whole, papers_whole;
+  std::string whole;
+  std::function<std::string(const paper3::Totals&)> papers_whole;
 };
 
 std::vector<Metric> metrics(const Summary& s) {
-  return {{"navigation error, mm", [](const WaypointRow& row) { return in_millimetres(row.navigation_error_m); },
-           [](const paper3::Figures& paper) { return paper.navigation_error_mm; },
-           plus_minus(s.navigation_error_m, 3, kMillimetres), paper3::kNavigationError_mm},
-          {"navigation velocity error, mm/s",
-           [](const WaypointRow& row) { return in_millimetres(row.navigation_velocity_error_mps); },
-           [](const paper3::Figures& paper) { return paper.navigation_velocity_error_mmps; },
-           plus_minus(s.navigation_velocity_error_mps, 3, kMillimetres), paper3::kNavigationVelocityError_mmps},
-          {"control error, m", [](const WaypointRow& row) { return row.control_error_m; },
-           [](const paper3::Figures& paper) { return paper.control_error_m; }, "", ""},
-          {"cumulative delta-v, mm/s", [](const WaypointRow& row) { return kMillimetres * row.cumulative_dv_mps; },
-           [](const paper3::Figures&) { return std::nullopt; },
-           fmt::format("{} in {} maneuvers", fixed(kMillimetres * s.dv_mps, 3), s.maneuvers), paper3::kDeltaV_mmps}};
+  return {
+      {"navigation error, mm", [](const WaypointRow& row) { return in_millimetres(row.navigation_error_m); },
+       [](const paper3::Figures& paper) { return in_millimetres(paper.navigation_error_m); },
+       plus_minus(s.navigation_error_m, 3, kMillimetres),
+       [](const paper3::Totals& paper) { return plus_minus(paper.navigation_error_m, 3, kMillimetres); }},
+      {"navigation velocity error, mm/s",
+       [](const WaypointRow& row) { return in_millimetres(row.navigation_velocity_error_mps); },
+       [](const paper3::Figures& paper) { return in_millimetres(paper.navigation_velocity_error_mps); },
+       plus_minus(s.navigation_velocity_error_mps, 3, kMillimetres),
+       [](const paper3::Totals& paper) { return plus_minus(paper.navigation_velocity_error_mps, 3, kMillimetres); }},
+      {"control error, m", [](const WaypointRow& row) { return row.control_error_m; },
+       [](const paper3::Figures& paper) { return paper.control_error_m; }, "",
+       [](const paper3::Totals&) { return std::string(); }},
+      {"cumulative delta-v, mm/s", [](const WaypointRow& row) { return kMillimetres * row.cumulative_dv_mps; },
+       [](const paper3::Figures&) { return std::nullopt; }, maneuvers(s.dv_mps, s.maneuvers),
+       [](const paper3::Totals& paper) { return maneuvers(paper.dv_mps, paper.maneuvers); }}};
+}
+
+std::vector<std::string> papers_row(const std::vector<WaypointRow>& waypoints, const Metric& metric, const char* name,
+                                    const paper3::Figures paper3::Loops::*loop, const paper3::Totals& totals) {
+  std::vector<std::string> cells{"", name};
+  for (const WaypointRow& row : waypoints) {
+    const paper3::Loops* const same = at_waypoint(paper3::kWaypoints, row);
+    cells.push_back(fixed(same != nullptr ? metric.papers_value(same->*loop) : std::nullopt, 3));
+  }
+  cells.push_back(metric.papers_whole(totals));
+  return cells;
 }
 
 /// The paper's figures stand below those of a run that meets its waypoints.
@@ -62,19 +82,25 @@ std::string performance_table(const RunRecord& record) {
 
   std::vector<std::vector<std::string>> rows;
   for (const Metric& metric : metrics(record.summary)) {
-    std::vector<std::string> run{metric.name, kThisRun};
-    std::vector<std::string> paper{"", kPaperSoftware};
-    for (const WaypointRow& row : waypoints) {
-      run.push_back(fixed(metric.value(row), 3));
-      const paper3::Figures* const same = at_waypoint(paper3::kWaypoints, row);
-      paper.push_back(fixed(same != nullptr ? metric.papers_value(*same) : std::nullopt, 3));
-    }
+    std::vector<std::string>& run = rows.emplace_back();
+    run = {metric.name, kThisRun};
+    for (const WaypointRow& row : waypoints) run.push_back(fixed(metric.value(row), 3));
     run.push_back(metric.whole);
-    paper.push_back(metric.papers_whole);
-    rows.push_back(std::move(run));
-    if (meets_paper(paper3::kWaypoints, waypoints)) rows.push_back(std::move(paper));
+    if (!meets_paper(paper3::kWaypoints, waypoints)) continue;
+    rows.push_back(papers_row(waypoints, metric, kPaperSoftware, &paper3::Loops::software, paper3::kSoftware));
+    rows.push_back(papers_row(waypoints, metric, kPaperHardware, &paper3::Loops::hardware, paper3::kHardware));
   }
   return table(columns, rows);
+}
+
+PaperColumn paper_column(const char* name, const paper3::Figures paper3::Loops::*loop, const paper3::Totals& totals) {
+  const auto at = [loop](const WaypointRow& row) -> PaperColumn::AtWaypoint {
+    const paper3::Loops* const same = at_waypoint(paper3::kWaypoints, row);
+    if (same == nullptr) return {};
+    const paper3::Figures& figures = same->*loop;
+    return {figures.control_error_m, figures.navigation_error_m, figures.navigation_velocity_error_mps};
+  };
+  return {name, at, totals.navigation_error_m, totals.navigation_velocity_error_mps, totals.dv_mps, totals.maneuvers};
 }
 
 // ----------------------------------------------------------------------------------------------------------- in words
@@ -216,6 +242,12 @@ Plot nis_plot(const RunRecord& record, const View& view, const NisKind& kind) {
 }
 
 }  // namespace
+
+std::vector<report::PaperColumn> gnss_paper_columns(const report::RunRecord& record) {
+  if (record.summary.navigation != "gnss" || !meets_paper(paper3::kWaypoints, reached_waypoints(record))) return {};
+  return {paper_column(kPaperSoftware, &paper3::Loops::software, paper3::kSoftware),
+          paper_column(kPaperHardware, &paper3::Loops::hardware, paper3::kHardware)};
+}
 
 report::Section gnss_section(const report::RunRecord& record) {
   if (record.tables.rows<GnssRow>().empty()) return {};

@@ -63,7 +63,7 @@ EmulatedPair::EmulatedPair(const CoastingPair& coast, std::uint64_t seed, const 
       navigation_(std::make_unique<fsw::gnc::Navigation>()) {
   mission_.seed = seed;
   const mission::Spacecraft& servicer = *mission_.find_spacecraft("servicer");
-  sensors_ = sensors::make_sources(mission_, servicer, kRoot + "/data");
+  sensors_ = sensors::make_sources(mission_, servicer, kRoot + "/data").sources;
   twins::PacketEncoder encoder(kServicerNumber, 0);
   const auto packet = encoder.encode(
       mission_.start_time(), sensors::navigation_configuration_of(mission_, servicer, coast.earth_orientation()));

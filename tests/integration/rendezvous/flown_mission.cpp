@@ -51,15 +51,18 @@ std::string sha256(std::span<const std::uint8_t> bytes) {
   return fmt::format("{:02x}", fmt::join(digest, ""));
 }
 
-FlownMission fly(const std::string& file, const std::vector<std::string>& overrides, const Wrap& wrap) {
+FlownMission fly(const std::string& file, const std::vector<std::string>& overrides, const Wrap& wrap,
+                 app::RunObserver* observer) {
   const std::string root = vbar::tests::source_path();
   const mission::Mission mission = sensors::load_mission(root + "/missions/" + file, overrides);
   std::unique_ptr<pil::FlightComputer> computer = app::connect_flight_computer(app::flying_spacecraft(mission));
   if (wrap) computer = wrap(std::move(computer));
 
   FlownMission flown;
+  flown.record.extensions = sensors::extensions();  // whose figures are part of the summary
   OutputCollector collector(flown);
-  const std::array<app::RunObserver*, 1> observers{&collector};
+  std::vector<app::RunObserver*> observers{&collector};
+  if (observer != nullptr) observers.push_back(observer);
   engine::SteadyWallClock wall;
   app::AssembledMission assembled(mission, root + "/data");
   flown.complete = assembled.fly({*computer, wall, observers, {}, {}}, flown.record);

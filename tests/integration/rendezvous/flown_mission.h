@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/app/run_observer.h"
 #include "host_sim/report/run_record.h"
 #include "pil_bridge/flight_computer.h"
 
@@ -26,8 +27,9 @@ std::string sha256(std::span<const std::uint8_t> bytes);
 /// Puts something between the simulation and the flight computer; empty: nothing.
 using Wrap = std::function<std::unique_ptr<pil::FlightComputer>(std::unique_ptr<pil::FlightComputer>)>;
 
-/// Flies missions/`file` with `overrides` ("path=value", as on the command line).
-FlownMission fly(const std::string& file, const std::vector<std::string>& overrides = {}, const Wrap& wrap = {});
+/// Flies missions/`file` with `overrides` ("path=value", as on the command line). `observer` watches it; may be null.
+FlownMission fly(const std::string& file, const std::vector<std::string>& overrides = {}, const Wrap& wrap = {},
+                 app::RunObserver* observer = nullptr);
 
 /// Delta-v (m/s) executed by maneuvers that were commanded for waypoints `first` to `last`.
 double dv_commanded_for(const report::RunRecord& record, int first, int last);

@@ -81,6 +81,7 @@ class FakeComputer final : public pil::FlightComputer {
     steps.emplace_back(packets.begin(), packets.end() - 1);
     pil::StepResult result;
     if (answer) result.packets = answer(steps.size() - 1);
+    if (wired) result.wired = wired(steps.size() - 1);
     return result;
   }
   pil::LinkStatistics statistics() const override { return {}; }
@@ -89,6 +90,7 @@ class FakeComputer final : public pil::FlightComputer {
 
   std::vector<std::vector<pil::Packet>> steps;
   std::function<std::vector<pil::Packet>(std::size_t)> answer;
+  std::function<std::vector<pil::Packet>(std::size_t)> wired;
 };
 
 class FakeThruster final : public twins::Actuator {
@@ -128,12 +130,15 @@ class Diary final : public RunObserver {
   void on_waypoint(std::size_t waypoint, const twins::TruthSnapshot& truth) override {
     waypoints.push_back({truth.time, std::to_string(waypoint)});
   }
-  void on_step(std::uint32_t, fsw::GpsTime time, std::span<const pil::Packet>, std::span<const pil::Packet>) override {
+  void on_step(std::uint32_t, fsw::GpsTime time, std::span<const pil::Packet> packets,
+               std::span<const pil::Packet>) override {
     steps.push_back(time);
+    inputs.emplace_back(packets.begin(), packets.end());
   }
 
   using Line = std::pair<fsw::GpsTime, std::string>;
   std::vector<fsw::GpsTime> measured, steps;
+  std::vector<std::vector<pil::Packet>> inputs;  ///< of each step, the tick included
   std::vector<Line> notes, failures, waypoints;
 };
 

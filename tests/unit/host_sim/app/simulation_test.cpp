@@ -54,6 +54,26 @@ TEST(Simulation, StepsGetWhatHasArrivedByTheirTime) {
   EXPECT_TRUE(simulation.facts().complete);
 }
 
+// What the log holds is what the flight software was given, in that order: others, wired ones, the tick.
+TEST(Simulation, BytesOfAWiredReceiverAreRecordedAsInputsBeforeTheTick) {
+  FakeWorld world;
+  world.add("prompt", 10.0, delivering(0.0));
+  world.computer.wired = [](std::size_t step) {
+    return step == 2 ? std::vector<pil::Packet>{byte(7), byte(8)} : std::vector<pil::Packet>{};
+  };
+  Simulation simulation = world.simulation();
+  EXPECT_TRUE(simulation.run());
+  EXPECT_THAT(world.computer.steps[2], ElementsAre(byte(1))) << "they do not take the link as well";
+  ASSERT_THAT(world.diary.inputs, SizeIs(7));
+  EXPECT_THAT(world.diary.inputs[1], SizeIs(2));
+  ASSERT_THAT(world.diary.inputs[2], SizeIs(4));
+  EXPECT_THAT(std::vector(world.diary.inputs[2].begin(), world.diary.inputs[2].end() - 1),
+              ElementsAre(byte(1), byte(7), byte(8)));
+  const auto tick = fsw::packets::parse_packet(world.diary.inputs[2].back());
+  ASSERT_TRUE(tick.ok());
+  EXPECT_EQ(tick.value().header.apid, fsw::packets::Apid::kTick);
+}
+
 TEST(Simulation, PendingPacketsArriveWhenTheyAreDueNotWhenTheyAreMade) {
   FakeWorld world;
   std::vector<std::thread> threads;

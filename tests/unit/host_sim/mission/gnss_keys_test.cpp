@@ -82,6 +82,15 @@ INSTANTIATE_TEST_SUITE_P(
                   "burn.0.dv_rtn_mmps: found nothing; accepted: an array of 3 numbers from -1000000 to 1000000"},
         BadChange{"BurnOfNoNumber", "[mission]", "[[burn]]\ntime_h = 1.5\ndv_rtn_mmps = [0, nan, 0]\n[mission]", "nan",
                   "burn.0.dv_rtn_mmps[1]: found nan; accepted: a number from -1000000 to 1000000"},
+        BadChange{"WanderWithoutATime", "[mission]",
+                  "[navigation.carrier_phase]\nphase_wander_sigma_mm = 0.5\n[mission]", "[navigation.carrier_phase]",
+                  "navigation.carrier_phase.phase_wander_time_s: found nothing; accepted: a number above 0 where "
+                  "phase_wander_sigma_mm is above 0"},
+        BadChange{"WanderOfNoTime", "[mission]",
+                  "[navigation.carrier_phase]\nphase_wander_sigma_mm = 0.5\nphase_wander_time_s = 0\n[mission]",
+                  "phase_wander_time_s",
+                  "navigation.carrier_phase.phase_wander_time_s: found the integer 0; accepted: a number above 0 where "
+                  "phase_wander_sigma_mm is above 0"},
         BadChange{"LossAbove1", "[mission]", "[links.crosslink]\nloss_probability = 1.5\n[mission]", "loss",
                   "links.crosslink.loss_probability: found the number 1.5; accepted: a number from 0 to 1"},
         BadChange{"SilenceBeforeTheStart", "[mission]", "[links.crosslink]\nsilence_begin_s = -1\n[mission]", "silence",
@@ -139,6 +148,8 @@ std::vector<BadValue> bad_values() {
       {"tracking.cycle_slips_per_hour", "from 0 to 10000"},
       {"tracking.undetected_slip_fraction", "from 0 to 1"},
       {"tracking.code_bias_sigma_m", "from 0 to 100"},
+      {"tracking.carrier_wander_sigma_mm", "from 0 to 100"},
+      {"tracking.carrier_wander_time_s", "above 0, up to 1000000"},
       {"start.cold_search_min_s", "from 0 to 3600"},
       {"start.cold_search_max_s", "from 0 to 3600"},
       {"start.reacquisition_min_s", "from 0 to 3600"},
@@ -161,6 +172,8 @@ std::vector<BadValue> bad_values() {
       {"navigation.carrier_phase.pair_timeout_s", "from 0.1 to 600"},
       {"navigation.carrier_phase.antenna_offset_sigma_mm", "above 0, up to 1000"},
       {"navigation.carrier_phase.phase_centre_jitter_mm", "above 0, up to 100"},
+      {"navigation.carrier_phase.phase_wander_sigma_mm", "from 0 to 100"},
+      {"navigation.carrier_phase.phase_wander_time_s", "from 0 to 1000000"},
       {"navigation.carrier_phase.code_bias_sigma_m", "above 0, up to 100"},
       {"navigation.carrier_phase.initial_velocity_sigma_mps", "above 0, up to 100"},
       {"navigation.carrier_phase.acceleration_sigma_nmps2", "above 0, up to 1000000"},
@@ -219,6 +232,7 @@ TEST(GnssKeys, GoodOnesArriveInSiUnits) {
       gnss_mission(), "[mission]",
       "[[burn]]\ntime_h = 0.5\ndv_rtn_mmps = [1, -2, 3]\n[navigation.carrier_phase]\nantenna_offset_sigma_mm = 4\n"
       "acceleration_sigma_nmps2 = 20\nmaneuver_sigma_mmps = 0.5\nmaneuver_sigma_percent = 3\npair_timeout_s = 7\n"
+      "phase_wander_sigma_mm = 0.5\nphase_wander_time_s = 60\n"
       "[links.crosslink]\nsilence_begin_s = 100\nsilence_duration_s = 600\n[mission]");
   const Mission mission = parse_mission(text, "m.toml");
   EXPECT_EQ(sensor_of<GnssSensor>(mission).observed, "target");
@@ -233,6 +247,8 @@ TEST(GnssKeys, GoodOnesArriveInSiUnits) {
   EXPECT_DOUBLE_EQ(shared.navigation.acceleration_sigma, 2e-8);
   EXPECT_DOUBLE_EQ(shared.navigation.maneuver_sigma, 5e-4);
   EXPECT_DOUBLE_EQ(shared.navigation.maneuver_sigma_relative, 0.03);
+  EXPECT_DOUBLE_EQ(shared.navigation.phase_wander_sigma_m, 5e-4);
+  EXPECT_DOUBLE_EQ(shared.navigation.phase_wander_time_s, 60.0);
   EXPECT_EQ(shared.navigation.pair_wait_ns, std::int64_t{7} * 1000000000);
   EXPECT_EQ(shared.crosslink.silence_begin_s, 100.0);
   EXPECT_EQ(shared.crosslink.silence_duration_s, 600.0);

@@ -84,5 +84,18 @@ TEST(TableReader, AnEarlierFaultComesBeforeOneOfTheCaller) {
             "t.toml:1: mass: found the integer -1; accepted: a number above 0, up to 10");
 }
 
+TEST(TableReader, ReadsAnArrayOfTexts) {
+  const auto read = [](const std::string& text) {
+    const toml::table table = parse_toml(text, "t.toml");
+    return TableReader(table, "t.toml").texts("lines");
+  };
+  EXPECT_THAT(read("lines = [\"a\", \"\"]\n"), ElementsAre("a", ""));
+  EXPECT_THAT(read(""), ElementsAre());
+  const std::string accepted = "; accepted: an array of texts, each on one line";
+  EXPECT_EQ(error_of([&] { read("lines = \"a\"\n"); }), "t.toml:1: lines: found the text \"a\"" + accepted);
+  EXPECT_EQ(error_of([&] { read("lines = [\"a\",\n 2]\n"); }), "t.toml:2: lines: found the integer 2" + accepted);
+  EXPECT_THAT(error_of([&] { read("lines = [\"a\\nb\"]\n"); }), testing::EndsWith(accepted));
+}
+
 }  // namespace
 }  // namespace vbar::mission::test

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "host_sim/report/extension.h"
+#include "host_sim/report/loop_name.h"
 #include "tests/unit/host_sim/report/synthetic_run.h"
 
 namespace vbar::report::test {
@@ -41,7 +43,7 @@ TEST(Comparison, SameOutputsNeedsBothHashes) {
 
 TEST(Comparison, HoldsEachRunAgainstTheFirst) {
   const std::vector<ComparisonRow> rows = comparison_rows(two_runs());
-  EXPECT_THAT(cells_of(rows, "outcome"), ElementsAre("complete", "incomplete: interrupted"));
+  EXPECT_THAT(cells_of(rows, "outcome"), ElementsAre("complete", "INCOMPLETE: interrupted"));
   EXPECT_THAT(cells_of(rows, "largest difference of control error"), ElementsAre("0", "0.125"));
   EXPECT_THAT(cells_of(rows, "maneuver commands"), ElementsAre("same bits", "DIFFERENT"));
   EXPECT_THAT(cells_of(rows, "telemetry"), ElementsAre("same bits", "same bits"));
@@ -79,6 +81,70 @@ TEST(Comparison, OneRunIsHeldAgainstNothing) {
   const std::vector<ComparedRun> one{{"sil", synthetic_run()}};
   for (const ComparisonRow& row : comparison_rows(one)) EXPECT_EQ(row.name.find("against"), std::string::npos);
   EXPECT_TRUE(comparison_rows({}).empty());
+}
+
+TEST(Comparison, ColumnsSayWhatWasInTheLoop) {
+  std::vector<ComparedRun> runs = two_runs();
+  runs[0].record.summary.flight_computer = "in_process";
+  runs[1].record.summary.flight_computer = "zynq_qemu";
+  EXPECT_THAT(cells_of(comparison_rows(runs), "in the loop"), ElementsAre("SIL, in process", "PIL, emulated Zynq"));
+}
+
+TEST(LoopName, IsMadeOfSourcesAndFlightComputer) {
+  Summary summary;
+  summary.gnss = "digital";
+  summary.flight_computer = "host_process";
+  EXPECT_EQ(loop_name(summary), "SIL, process of its own");
+  summary.flight_computer = "board";
+  summary.gnss = "recorded";
+  EXPECT_EQ(loop_name(summary), "PIL, board");
+  summary.gnss = "grand";
+  // A testbed that does not say what it is counts as neither.
+  EXPECT_EQ(loop_name(summary), "HIL, testbed grand, board");
+  EXPECT_TRUE(emulated_testbeds(summary).empty());
+  summary.flight_computer = "in_process";
+  EXPECT_EQ(loop_name(summary), "HIL, testbed grand");
+  summary.testbeds["grand"]["bench"] = std::string("hardware");
+  EXPECT_EQ(loop_name(summary), "HIL, hardware bench");
+  EXPECT_TRUE(emulated_testbeds(summary).empty());
+  summary.testbeds["grand"]["bench"] = std::string("emulated");
+  EXPECT_EQ(loop_name(summary), "HIL, emulated bench");
+  EXPECT_THAT(emulated_testbeds(summary), ElementsAre("grand"));
+}
+
+/// The paper's figures, and a run with carrier phases.
+std::vector<PaperColumn> one_paper(const RunRecord& record) {
+  if (record.waypoints.empty()) return {};
+  PaperColumn paper;
+  paper.name = "paper";
+  paper.at = [](const WaypointRow& row) -> PaperColumn::AtWaypoint {
+    return row.index == 3 ? PaperColumn::AtWaypoint{0.364, 5.05e-3, 0.031e-3} : PaperColumn::AtWaypoint{};
+  };
+  paper.navigation_error_m = MeanAndDeviation{8.367e-3, 2.679e-3};
+  paper.dv_mps = 15.596e-3;
+  paper.maneuvers = 11;
+  return {paper};
+}
+
+TEST(Comparison, ThePaperHasColumnsBesideTheRuns) {
+  const Extension extension{.paper_columns = one_paper};
+  const Extension* const extensions[] = {&extension};
+  std::vector<ComparedRun> runs = two_runs();
+  for (ComparedRun& run : runs) {
+    run.record.extensions = extensions;
+    run.record.summary.first_fix_s = 80.0;  // carrier phases: millimetres
+    run.record.summary.sensor_figures["gnss"]["time_to_20_mm_s"] = 80.0;
+  }
+  runs[1].record.summary.sensor_figures.clear();
+  EXPECT_THAT(column_names(runs), ElementsAre("sil", "pil", "paper"));
+  const std::vector<ComparisonRow> rows = comparison_rows(runs);
+  EXPECT_THAT(cells_of(rows, "waypoint 3"), ElementsAre("0.3000", "0.4250", "0.3640")) << "control error";
+  EXPECT_THAT(cells_of(rows, "waypoint 10"), ElementsAre("1.0000", "–", "–"));
+  EXPECT_EQ(cells_of(rows, "navigation error, mm (mean").at(2), "8.367 ± 2.679");
+  EXPECT_EQ(cells_of(rows, "  delta-v, mm/s").at(2), "15.596");
+  EXPECT_EQ(cells_of(rows, "  maneuvers").at(2), "11");
+  EXPECT_THAT(cells_of(rows, "time_to_20_mm_s"), ElementsAre("80", "–", "–"));
+  EXPECT_EQ(cells_of(rows, "telemetry").at(2), "–") << "the paper has no bits to compare";
 }
 
 // Columns stand below each other although "–" and "±" are more than a byte.

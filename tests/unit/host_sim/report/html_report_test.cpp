@@ -263,6 +263,16 @@ TEST_F(HtmlReport, RunsSideBySideAreAPageToo) {
   EXPECT_THAT(html_comparison(runs), HasSubstr("Not all runs gave the same"));
   runs[1].record.summary.seed = 2;
   EXPECT_THAT(html_comparison(runs), HasSubstr("not expected to be the same"));
+  EXPECT_THAT(html_comparison(runs), testing::Not(HasSubstr("status bad\">incomplete")));
+  runs[1].record.summary.complete = false;
+  runs[1].record.summary.incomplete_reason = "the receiver <of the target> was lost";
+  EXPECT_THAT(html_comparison(runs),
+              HasSubstr("incomplete</span> pil &amp; &lt;more&gt;: the receiver &lt;of the target"));
+  EXPECT_THAT(html_comparison(runs), testing::Not(HasSubstr("emulated bench")));
+  runs[1].record.summary.gnss = "grand";
+  runs[1].record.summary.testbeds["grand"]["bench"] = std::string("emulated");
+  EXPECT_THAT(html_comparison(runs),
+              HasSubstr("emulated bench</span> pil &amp; &lt;more&gt;: the testbed grand is emulated"));
   runs.push_back({"never flew", {}});
   EXPECT_EQ(complaints(html_comparison(runs)), "");
 }

@@ -1,0 +1,39 @@
+#pragma once
+// What the testbed adds to record, summary and report: grand.csv, the object "grand" of summary.json, a section.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hil_drivers/grand/generators/generator.h"
+#include "hil_drivers/grand/grand_row.h"
+#include "hil_drivers/grand/pps/edge_clock.h"
+#include "hil_drivers/grand/receiver_link.h"
+#include "host_sim/report/extension.h"
+#include "host_sim/report/provenance.h"
+
+namespace vbar::grand {
+
+/// What is known at the end of a run, beside the rows.
+struct RunFigures {
+  Pace pace = Pace::kLockStep;
+  std::string_view generator;
+  std::vector<report::FileDigest> bench_files;  ///< of an emulated bench: program and scenario; empty: hardware
+  bool is_emulated = false;
+  std::map<std::string, int> faults;                              ///< of an emulated bench, that have taken effect
+  std::optional<EdgeStatistics> edges;                            ///< real time with edges only
+  std::vector<std::pair<std::string, LinkStatistics>> receivers;  ///< by spacecraft
+};
+
+/// Into record.summary.testbeds["grand"] and, for the files, its provenance.
+void add_figures(const RunFigures& figures, report::RunRecord& record);
+
+// The extension.
+[[nodiscard]] std::vector<report::TableKind> tables();
+void summarise(const report::RunRecord& record, report::Summary& summary);
+[[nodiscard]] std::vector<report::Section> sections(const report::RunRecord& record);
+
+}  // namespace vbar::grand

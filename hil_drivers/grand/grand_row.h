@@ -1,0 +1,56 @@
+#pragma once
+// A second of the testbed (grand.csv).
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "host_sim/report/run_columns.h"
+
+namespace vbar::grand {
+
+/// One receiver in that second.
+struct ReceiverSecond {
+  std::int64_t bytes = 0;
+  int time_status = 0;              ///< of its last epoch, as in the header of its logs
+  int tracked_signals = 0;          ///< in its last epoch
+  bool is_lost = false;             ///< not connected, or silent
+  std::optional<double> latency_s;  ///< from an epoch to its last byte at the host, of an epoch that arrived
+};
+
+struct GrandRow {
+  double time_s = 0.0;                                            ///< since the mission's epoch
+  std::optional<double> edge_s;                                   ///< the last edge, since the generator's start
+  std::optional<double> host_minus_edge_ms;                       ///< predicted by the host's clock minus measured
+  std::optional<double> sample_lead_min_ms, sample_lead_mean_ms;  ///< a sample's own time before its sending
+  std::int64_t samples = 0, samples_late = 0, samples_missing = 0;
+  std::string generator_state;
+  std::optional<double> extrapolation;  ///< 0 deterministic, 1 not deterministic, 2 snap; the worst of the vehicles
+  ReceiverSecond servicer, target;
+};
+
+template <report::columns::RowOf<GrandRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  using report::ColumnName;
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"edge_s"}, row.edge_s);
+  visit(ColumnName{"host_minus_edge_ms"}, row.host_minus_edge_ms);
+  visit(ColumnName{"sample_lead_min_ms"}, row.sample_lead_min_ms);
+  visit(ColumnName{"sample_lead_mean_ms"}, row.sample_lead_mean_ms);
+  visit(ColumnName{"samples"}, row.samples);
+  visit(ColumnName{"samples_late"}, row.samples_late);
+  visit(ColumnName{"samples_missing"}, row.samples_missing);
+  visit(ColumnName{"generator_state"}, row.generator_state);
+  visit(ColumnName{"extrapolation"}, row.extrapolation);
+  const auto receiver = [&](std::string_view spacecraft, auto& of) {
+    visit(ColumnName{spacecraft, "bytes"}, of.bytes);
+    visit(ColumnName{spacecraft, "time_status"}, of.time_status);
+    visit(ColumnName{spacecraft, "tracked_signals"}, of.tracked_signals);
+    visit(ColumnName{spacecraft, "lost"}, of.is_lost);
+    visit(ColumnName{spacecraft, "latency_s"}, of.latency_s);
+  };
+  receiver("servicer", row.servicer);
+  receiver("target", row.target);
+}
+
+}  // namespace vbar::grand

@@ -1,0 +1,32 @@
+#pragma once
+// The bytes of one receiver as they came, kept in memory until there is a run folder, then in a file of it. Public
+// tools read such files (RTKLIB: convbin -r nov).
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace vbar::grand {
+
+class RawRecord {
+ public:
+  /// From any thread. Throws std::runtime_error if the file takes no more.
+  void add(std::span<const std::uint8_t> bytes);
+  /// What has come so far and comes from now on is in the file. Throws std::runtime_error that names it.
+  void keep_in(const std::filesystem::path& file);
+  void flush();
+
+ private:
+  void write(std::span<const std::uint8_t> bytes);
+
+  std::mutex mutex_;
+  std::vector<std::uint8_t> early_;
+  std::filesystem::path path_;
+  std::ofstream file_;
+};
+
+}  // namespace vbar::grand

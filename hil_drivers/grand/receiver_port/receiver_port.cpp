@@ -1,0 +1,187 @@
+#include "hil_drivers/grand/receiver_port/receiver_port.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace vbar::grand {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr const char* kQuestion = "LOG THISPORT VERSIONB ONCE";
+// After a silence of this length no answer to an earlier attempt is on its way.
+constexpr milliseconds kQuiet{100};
+// Between two checks of whether the caller has abandoned the search.
+constexpr milliseconds kLongestWait{100};
+
+double seconds(milliseconds span) {
+  return std::chrono::duration<double>(span).count();
+}
+
+}  // namespace
+
+ReceiverPort::ReceiverPort(std::string spacecraft, std::string device, ReceiverConfiguration configuration, Keep keep,
+                           Patience patience)
+    : spacecraft_(std::move(spacecraft)),
+      device_(std::move(device)),
+      configuration_(std::move(configuration)),
+      keep_(std::move(keep)),
+      patience_(patience) {}
+
+void ReceiverPort::refuse(const std::string& what) const {
+  throw ReceiverRefusal(fmt::format("receiver of {} on {}: {}", spacecraft_, device_, what));
+}
+
+void ReceiverPort::open(bool with_restart, const PortTime& time) {
+  time_ = time;
+  inbox_.clear();
+  line_ = std::make_unique<io::SerialLine>(device_, configuration_.baud);
+  try {
+    find_rate();
+    if (with_restart && configuration_.start == twins::gnss::StartMode::kCold) restart();
+    set_rate();
+    for (const std::string& text : configuration_commands(configuration_)) {
+      // Bytes before the first log are answers and remains of an earlier run.
+      if (text.starts_with("CLOCKADJUST")) inbox_.clear();
+      command(text);
+    }
+  } catch (...) {
+    line_.reset();
+    throw;
+  }
+}
+
+void ReceiverPort::find_rate() {
+  const std::vector<unsigned> rates = rates_to_ask(configuration_.baud);
+  for (int round = 0; round < patience_.attempts; ++round)
+    for (const unsigned rate : rates)
+      if (answers_at(rate)) return;
+  const auto [slowest, fastest] = std::ranges::minmax(rates);
+  refuse(fmt::format("no answer to \"{}\" at any rate from {} to {} baud; check cable and power", kQuestion, slowest,
+                     fastest));
+}
+
+// At a wrong rate the receiver has collected remains of a line, which the first answer may be about.
+bool ReceiverPort::answers_at(unsigned baud) {
+  line_->set_baud(baud);
+  inbox_.clear();
+  write("\r");
+  const auto answer = ask(kQuestion, patience_.probe);
+  return answer && (answer->is_accepted || ask(kQuestion, patience_.probe));
+}
+
+// The receiver prompts when it has restarted; the rate is the one that it has saved.
+void ReceiverPort::restart() {
+  inbox_.clear();
+  write("RESET\r");
+  const Deadline until = now() + patience_.restart;
+  receive(now() + kQuiet);
+  const std::vector<unsigned> rates = rates_to_ask(configuration_.baud);
+  while (now() < until) {
+    for (const unsigned rate : rates) {
+      wait_until_quiet();
+      if (answers_at(rate)) return;
+    }
+  }
+  refuse(fmt::format("no answer within {:g} s of the command \"RESET\"", seconds(patience_.restart)));
+}
+
+// The answer may come at either rate, so the question at the new one decides.
+void ReceiverPort::set_rate() {
+  if (line_->baud() == configuration_.baud) return;
+  const std::string text = rate_command(configuration_.baud);
+  const auto answer = ask(text, milliseconds(300));
+  if (answer && !answer->is_accepted) refuse(fmt::format("command \"{}\" was refused: \"{}\"", text, answer->text));
+  for (int attempt = 0; attempt < patience_.attempts; ++attempt)
+    if (answers_at(configuration_.baud)) return;
+  refuse(fmt::format("no answer at {} baud after the command \"{}\"", configuration_.baud, text));
+}
+
+void ReceiverPort::command(const std::string& text) {
+  for (int attempt = 0; attempt < patience_.attempts; ++attempt) {
+    if (attempt > 0) wait_until_quiet();
+    const auto answer = ask(text, patience_.answer);
+    if (!answer) continue;
+    if (!answer->is_accepted)
+      refuse(fmt::format("command \"{}\" was refused at {} baud: \"{}\"", text, line_->baud(), answer->text));
+    if (attempt > 0) wait_until_quiet();
+    return;
+  }
+  const auto since = std::span(inbox_).subspan(asked_);
+  refuse(fmt::format("command \"{}\" was not answered in {} attempts of {:g} s at {} baud ({})", text,
+                     patience_.attempts, seconds(patience_.answer), line_->baud(),
+                     since.empty() ? "nothing received" : "received \"" + printable(since) + "\""));
+}
+
+std::optional<CommandAnswer> ReceiverPort::ask(const std::string& text, milliseconds limit) {
+  asked_ = inbox_.size();
+  write(text + "\r");
+  const Deadline until = now() + limit;
+  for (;;) {
+    receive(until);
+    const auto since = std::span(inbox_).subspan(asked_);
+    if (const auto prompt = find_prompt(since)) port_name_ = *prompt;
+    if (const auto answer = find_answer(since)) return answer;
+    if (now() >= until) return std::nullopt;
+  }
+}
+
+/// Waits for something to arrive.
+void ReceiverPort::receive(Deadline deadline) {
+  if (time_.abandoned && time_.abandoned()) refuse("the search for it was abandoned, as the run ends");
+  const Deadline until = std::min(deadline, now() + kLongestWait);
+  if (time_.wait) {
+    time_.wait(until);
+  } else {
+    line_->wait_for_input(until);
+  }
+  take_available();
+}
+
+void ReceiverPort::take_available() {
+  const std::size_t before = inbox_.size();
+  const auto keep = [&] {
+    if (keep_ && inbox_.size() > before) keep_(std::span(inbox_).subspan(before));
+  };
+  try {
+    line_->read_available(inbox_);
+  } catch (...) {
+    keep();
+    throw;
+  }
+  keep();
+}
+
+void ReceiverPort::write(const std::string& text) {
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  line_->write(bytes, io::Clock::now() + patience_.answer);
+}
+
+void ReceiverPort::wait_until_quiet() {
+  // A receiver that logs is never quiet for long: the wait is bounded.
+  for (int k = 0; k < 10; ++k) {
+    const std::size_t before = inbox_.size();
+    receive(now() + kQuiet);
+    if (inbox_.size() == before) return;
+  }
+}
+
+void ReceiverPort::read(Bytes& bytes) {
+  if (!line_) return;
+  const auto deliver = [&] {
+    bytes.insert(bytes.end(), inbox_.begin(), inbox_.end());
+    inbox_.clear();
+  };
+  try {
+    take_available();
+  } catch (const io::ChannelError&) {
+    deliver();
+    line_.reset();
+    throw;
+  }
+  deliver();
+}
+
+}  // namespace vbar::grand

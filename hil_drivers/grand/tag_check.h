@@ -1,0 +1,32 @@
+#pragma once
+// Compares the time tags of a receiver with the time of the run: receivers count weeks modulo 1024 and add a constant
+// of their firmware, and a scenario may have been started at another time.
+
+#include <optional>
+#include <string>
+
+#include "fsw/core/gps_time.h"
+
+namespace vbar::grand {
+
+class TagCheck {
+ public:
+  /// `receiver` begins the messages: "receiver of servicer on /dev/ttyUSB0".
+  TagCheck(std::string receiver, bool accepts_week_shift)
+      : receiver_(std::move(receiver)), accepts_week_shift_(accepts_week_shift) {}
+
+  /// Of an epoch whose status is FINE or better, and whose last byte arrived at `arrival`. Throws std::runtime_error,
+  /// one sentence, if it is another time than the run's.
+  void check(fsw::GpsTime tag, fsw::GpsTime arrival);
+
+  /// Weeks to be added to the receiver's; 0 before the first tag.
+  [[nodiscard]] int weeks() const { return weeks_.value_or(0); }
+  [[nodiscard]] bool has_checked() const { return weeks_.has_value(); }
+
+ private:
+  std::string receiver_;
+  bool accepts_week_shift_;
+  std::optional<int> weeks_;
+};
+
+}  // namespace vbar::grand

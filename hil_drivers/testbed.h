@@ -1,0 +1,78 @@
+#pragma once
+// A testbed: hardware, or an emulator of it that uses the same wire protocols, in the place of digital twins. A driver
+// is a folder beside this file, and one line in testbeds.cpp.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "host_sim/engine/wall_clock.h"
+#include "host_sim/mission/sensor_reader.h"
+#include "host_sim/report/extension.h"
+#include "host_sim/report/run_record.h"
+#include "host_sim/twins/gnss/gnss_settings.h"
+#include "host_sim/twins/gnss/receiver_bytes.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::testbeds {
+
+/// What carries the receiver's data to the flight software of its own spacecraft.
+enum class Wiring {
+  kHost,   ///< a serial line of the host, which passes the bytes on
+  kBoard,  ///< another port of the receiver to a UART of the board; the line of the host mirrors it
+};
+
+/// How a GNSS receiver of a testbed is connected and configured.
+struct ReceiverLine {
+  std::string port;  ///< tty of the receiver's command port; empty: as the testbed says
+  int baud = 115200;
+  Wiring wired = Wiring::kHost;
+  double log_offset_s = 9.0;  ///< of the receiver's epochs after a flight step, modulo their period
+  bool clock_adjust = true;   ///< the receiver steers its clock to GPS time
+};
+
+/// The receiver of one spacecraft.
+struct ReceiverPlan {
+  std::string spacecraft;
+  twins::gnss::GnssReceiverSettings settings;
+  ReceiverLine line;
+};
+
+struct RunContext {
+  const mission::Mission& mission;
+  std::filesystem::path data_directory;
+  twins::TruthOutlook& outlook;
+};
+
+/// A testbed during one run, shared by all sensors that it provides. In order: the sensors are made, their sources are
+/// started and prepare the testbed, begin(), the run, the sources are stopped, finish(). The last two follow any end of
+/// a run that had begun.
+class TestbedRun {
+ public:
+  TestbedRun() = default;
+  TestbedRun(const TestbedRun&) = delete;
+  TestbedRun& operator=(const TestbedRun&) = delete;
+  virtual ~TestbedRun() = default;
+
+  /// Null: it has no GNSS receivers. Throws std::runtime_error if the plan cannot be met. The receiver keeps this run
+  /// alive.
+  [[nodiscard]] virtual std::unique_ptr<twins::gnss::ReceiverBytes> make_receiver(const ReceiverPlan& plan) = 0;
+
+  /// The run is recorded in `record` and, unless the path is empty, in `folder`, from now on; the testbed's time
+  /// starts. Throws std::runtime_error, one sentence. `record` outlives the run.
+  virtual void begin(report::RunRecord& record, const std::filesystem::path& folder) = 0;
+
+  /// The clock that the run follows, after begin(); null: the mission's.
+  [[nodiscard]] virtual engine::WallClock* clock() { return nullptr; }
+
+  /// Adds to the record what is known at the end. Does not throw.
+  virtual void finish() noexcept = 0;
+};
+
+struct TestbedKind : mission::TestbedReader {
+  std::shared_ptr<TestbedRun> (*open)(const mission::TestbedSettings& settings, const RunContext& context);
+  /// Tables, figures of the summary and report section.
+  report::Extension report{};
+};
+
+}  // namespace vbar::testbeds

@@ -1,0 +1,44 @@
+#pragma once
+// The noise of one signal, from differences between the two receivers of a run (signal_noise.csv).
+
+#include <optional>
+#include <string>
+
+#include "host_sim/report/run_columns.h"
+
+namespace vbar::sensors {
+
+/// Sigmas are those of double differences. Absent: too few measurements.
+struct SignalNoiseRow {
+  std::string signal;            ///< "GPS L1"
+  std::size_t measurements = 0;  ///< differences between the receivers
+  std::size_t excluded = 0;      ///< differences a quarter of a wavelength or more from an integer
+  std::optional<double> phase_sigma_mm;
+  std::optional<double> phase_sigma_stated_mm;  ///< by the receivers' own estimates
+  std::optional<double> phase_correlation_10s;
+  std::optional<double> code_sigma_m;
+  std::optional<double> code_sigma_stated_m;
+  std::optional<double> code_correlation_10s;
+  /// Of one channel of one receiver: the correlated part of the phase, as a first-order Gauss-Markov process. Absent:
+  /// not significant.
+  std::optional<double> phase_wander_sigma_mm;
+  std::optional<double> phase_wander_time_s;
+};
+
+template <report::columns::RowOf<SignalNoiseRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  using report::ColumnName;
+  visit(ColumnName{"signal"}, row.signal);
+  visit(ColumnName{"measurements"}, row.measurements);
+  visit(ColumnName{"excluded"}, row.excluded);
+  visit(ColumnName{"phase_sigma_mm"}, row.phase_sigma_mm);
+  visit(ColumnName{"phase_sigma_stated_mm"}, row.phase_sigma_stated_mm);
+  visit(ColumnName{"phase_correlation_10s"}, row.phase_correlation_10s);
+  visit(ColumnName{"code_sigma_m"}, row.code_sigma_m);
+  visit(ColumnName{"code_sigma_stated_m"}, row.code_sigma_stated_m);
+  visit(ColumnName{"code_correlation_10s"}, row.code_correlation_10s);
+  visit(ColumnName{"phase_wander_sigma_mm"}, row.phase_wander_sigma_mm);
+  visit(ColumnName{"phase_wander_time_s"}, row.phase_wander_time_s);
+}
+
+}  // namespace vbar::sensors

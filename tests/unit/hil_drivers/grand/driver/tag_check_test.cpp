@@ -1,0 +1,62 @@
+// A receiver's time against the run's: rollover of the week number (IS-GPS-200, 20.3.3.3.1.1: ten bits), scenarios
+// started at another time.
+
+#include "hil_drivers/grand/tag_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace vbar::grand {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr std::int64_t kWeek_s = 604'800;
+constexpr fsw::GpsTime kEpoch{fsw::duration_of_seconds(1658 * kWeek_s + 345'679).ns};
+constexpr fsw::Duration kLatency{300'000'000};
+
+std::string refusal(fsw::GpsTime tag, bool accepts_week_shift = false, fsw::Duration latency = kLatency) {
+  TagCheck check("receiver of servicer on /dev/ttyUSB0", accepts_week_shift);
+  try {
+    check.check(tag, kEpoch + latency);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TagCheck, AcceptsTheTimeOfTheRun) {
+  EXPECT_EQ(refusal(kEpoch), "");
+  EXPECT_EQ(refusal(kEpoch, false, fsw::Duration{0}), "");
+  EXPECT_EQ(refusal(kEpoch, false, fsw::Duration{900'000'000}), "");
+}
+
+TEST(TagCheck, RefusesARolloverUnlessItMayBeShifted) {
+  for (const int cycles : {-1, 1, 2}) {
+    const fsw::GpsTime tag = kEpoch + fsw::duration_of_seconds(cycles * 1024 * kWeek_s);
+    EXPECT_THAT(refusal(tag), AllOf(HasSubstr("receiver of servicer on /dev/ttyUSB0"), HasSubstr("week_shift"),
+                                    HasSubstr(std::to_string(-1024 * cycles) + " weeks")));
+    TagCheck check("receiver", true);
+    check.check(tag, kEpoch + kLatency);
+    EXPECT_EQ(check.weeks(), -1024 * cycles);
+  }
+}
+
+TEST(TagCheck, RefusesAScenarioOffByASecond) {
+  for (const std::int64_t s : {-1, 1, 15, -604800}) {
+    EXPECT_THAT(refusal(kEpoch + fsw::duration_of_seconds(s)), HasSubstr("start time of the scenario")) << s;
+    EXPECT_THAT(refusal(kEpoch + fsw::duration_of_seconds(s + 1024 * kWeek_s), true), HasSubstr("start time")) << s;
+  }
+}
+
+TEST(TagCheck, LaterAcceptsASlowLineButNoOtherWeek) {
+  TagCheck check("receiver", true);
+  check.check(kEpoch, kEpoch + kLatency);
+  check.check(kEpoch, kEpoch + fsw::duration_of_seconds(3));
+  EXPECT_EQ(check.weeks(), 0);
+  EXPECT_THROW(check.check(kEpoch + fsw::duration_of_seconds(1024 * kWeek_s), kEpoch + kLatency), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace vbar::grand

@@ -1,0 +1,158 @@
+// The driver's end of a receiver's command port against a receiver on a pseudo-terminal. Commands and answers: OEM6
+// Family Firmware Reference Manual, OM-20000129.
+
+#include "hil_drivers/grand/receiver_port/receiver_port.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fake_receiver.h"
+
+namespace vbar::grand {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using std::chrono::milliseconds;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr Patience kShort{milliseconds(60), milliseconds(150), milliseconds(1000), 2};
+
+ReceiverConfiguration configuration() {
+  ReceiverConfiguration plan;
+  plan.approximate_time = fsw::GpsTime{} + fsw::duration_of_seconds(1658 * 604800LL + 345'675);
+  plan.approximate_position_ecef_m = {7'000'000.0, 0.0, 0.0};
+  plan.log_offset_s = 4.0;
+  return plan;
+}
+
+/// The message of the refusal; empty if there was none.
+std::string refusal(FakeReceiver& receiver, const ReceiverConfiguration& plan = configuration()) {
+  ReceiverPort port("servicer", receiver.device(), plan, {}, kShort);
+  try {
+    port.open(true);
+  } catch (const ReceiverRefusal& error) {
+    EXPECT_FALSE(port.is_open());
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ReceiverPort, ConfiguresAReceiverAtItsOwnRate) {
+  FakeReceiver receiver({.baud = 115200, .answers = {}, .logs = {}});
+  ReceiverPort port("servicer", receiver.device(), configuration(), {}, kShort);
+  port.open(true);
+  EXPECT_TRUE(port.is_open());
+  EXPECT_EQ(port.port_name(), "COM1");
+  EXPECT_THAT(receiver.commands(),
+              ElementsAre("UNLOGALL THISPORT TRUE", "SETAPPROXTIME 1658 345675.000",
+                          HasSubstr("SETAPPROXPOS 0.000000 0.000000 621863.0"), "CLOCKADJUST ENABLE",
+                          "LOG THISPORT RANGEB ONTIME 10 4", "LOG THISPORT RAWEPHEMB ONCHANGED",
+                          "LOG THISPORT GALEPHEMERISB ONCHANGED", "LOG THISPORT BDSEPHEMERISB ONCHANGED",
+                          "LOG THISPORT IONUTCB ONCHANGED", "LOG THISPORT BESTXYZB ONTIME 10 4",
+                          "LOG THISPORT TIMEB ONTIME 10 4"));
+}
+
+TEST(ReceiverPort, FindsEveryRateAndSetsTheConfiguredOne) {
+  for (const unsigned rate : {2400U, 9600U, 57600U, 460800U}) {
+    FakeReceiver receiver({.baud = rate, .answers = {}, .logs = {}});
+    EXPECT_EQ(refusal(receiver), "") << rate;
+    EXPECT_EQ(receiver.baud(), 115200U) << rate;
+    EXPECT_THAT(receiver.commands(), Contains("SERIALCONFIG THISPORT 115200 N 8 1 N ON"));
+  }
+}
+
+TEST(ReceiverPort, FindsAnswersInGarbage) {
+  FakeReceiver receiver({.baud = 9600, .answers = {}, .logs = {}, .sends_garbage_before_answers = true});
+  EXPECT_EQ(refusal(receiver), "");
+}
+
+TEST(ReceiverPort, NamesPortCommandAndAnswerOfARefusal) {
+  FakeReceiver receiver(
+      {.baud = 115200, .answers = {{"LOG THISPORT GALEPHEMERISB", "<ERROR:Invalid Message ID"}}, .logs = {}});
+  EXPECT_THAT(refusal(receiver), AllOf(HasSubstr("servicer"), HasSubstr(receiver.device()),
+                                       HasSubstr("\"LOG THISPORT GALEPHEMERISB ONCHANGED\" was refused"),
+                                       HasSubstr("\"<ERROR:Invalid Message ID\"")));
+}
+
+TEST(ReceiverPort, NamesACommandThatIsNotAnswered) {
+  FakeReceiver receiver({.baud = 115200, .answers = {{"CLOCKADJUST", ""}}, .logs = {}});
+  EXPECT_THAT(refusal(receiver), AllOf(HasSubstr(receiver.device()),
+                                       HasSubstr("\"CLOCKADJUST ENABLE\" was not answered in 2 attempts of 0.15 s"),
+                                       HasSubstr("nothing received")));
+  EXPECT_EQ(std::ranges::count(receiver.commands(), "CLOCKADJUST ENABLE"), 2);
+}
+
+TEST(ReceiverPort, ShowsWhatCameInsteadOfAnAnswer) {
+  FakeReceiver receiver({.baud = 115200, .answers = {{"CLOCKADJUST", "HELLO"}}, .logs = {}});
+  EXPECT_THAT(refusal(receiver), HasSubstr("HELLO"));
+}
+
+TEST(ReceiverPort, NamesASilentLine) {
+  FakeReceiver receiver({.baud = 115200, .answers = {{"", ""}}, .logs = {}});
+  EXPECT_THAT(refusal(receiver), AllOf(HasSubstr(receiver.device()), HasSubstr("2400 to 460800 baud")));
+}
+
+TEST(ReceiverPort, RestartsForAColdStartOnly) {
+  ReceiverConfiguration cold = configuration();
+  cold.start = twins::gnss::StartMode::kCold;
+  FakeReceiver receiver({.baud = 115200, .answers = {}, .logs = {}});
+  EXPECT_EQ(refusal(receiver, cold), "");
+  EXPECT_THAT(receiver.commands(), AllOf(Contains("RESET"), Not(Contains(HasSubstr("SETAPPROX")))));
+  EXPECT_EQ(receiver.baud(), 115200U);  // after the factory's 9600
+
+  FakeReceiver warm({.baud = 115200, .answers = {}, .logs = {}});
+  EXPECT_EQ(refusal(warm), "");
+  EXPECT_THAT(warm.commands(), Not(Contains("RESET")));
+
+  FakeReceiver again({.baud = 115200, .answers = {}, .logs = {}});
+  ReceiverPort port("servicer", again.device(), cold, {}, kShort);
+  port.open(false);
+  EXPECT_THAT(again.commands(), Not(Contains("RESET")));
+}
+
+TEST(ReceiverPort, LosesNothingOfALogThatFollowsItsCommand) {
+  const Bytes log{0xAA, 0x44, 0x12, 1, 2, 3};
+  FakeReceiver receiver({.baud = 115200, .answers = {}, .logs = {{"LOG THISPORT IONUTCB", log}}});
+  Bytes kept;
+  ReceiverPort port(
+      "servicer", receiver.device(), configuration(),
+      [&](std::span<const std::uint8_t> bytes) { kept.insert(kept.end(), bytes.begin(), bytes.end()); }, kShort);
+  port.open(true);
+  Bytes read;
+  port.read(read);
+  EXPECT_NE(std::search(read.begin(), read.end(), log.begin(), log.end()), read.end());
+  EXPECT_NE(std::search(kept.begin(), kept.end(), log.begin(), log.end()), kept.end());
+  const std::size_t before = kept.size();
+  receiver.send({7, 8, 9});
+  read.clear();
+  port.read(read);
+  EXPECT_EQ(read, (Bytes{7, 8, 9}));
+  EXPECT_EQ(kept.size(), before + 3);
+}
+
+TEST(ReceiverPort, ReportsAHangUpAndOpensAgain) {
+  FakeReceiver receiver({.baud = 115200, .answers = {}, .logs = {}});
+  ReceiverPort port("servicer", receiver.device(), configuration(), {}, kShort);
+  port.open(true);
+  receiver.hang_up();
+  Bytes bytes;
+  EXPECT_THROW(port.read(bytes), io::ChannelError);
+  EXPECT_FALSE(port.is_open());
+  EXPECT_THROW(port.open(false), io::ChannelError);
+  receiver.come_back();
+  port.open(false);
+  EXPECT_TRUE(port.is_open());
+  EXPECT_EQ(std::ranges::count(receiver.commands(), "CLOCKADJUST ENABLE"), 2);
+}
+
+TEST(ReceiverPort, ASearchCanBeAbandoned) {
+  FakeReceiver receiver({.baud = 115200, .answers = {{"", ""}}, .logs = {}});
+  ReceiverPort port("servicer", receiver.device(), configuration(), {}, Patience{});
+  EXPECT_THROW(port.open(true, {.now = {}, .wait = {}, .abandoned = [] { return true; }}), ReceiverRefusal);
+}
+
+}  // namespace
+}  // namespace vbar::grand
