@@ -3,4 +3,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ci/test.sh
+# gnss-sdr behind the ports of a receiver; 120 s of two spacecraft through it and RTKLIB: double differences and the fixed baseline.
+gnss_sdr=(python3 tests/peers/gnss_sdr/check_gnss_sdr.py build/host/tests/peers/gnss_sdr/vbar_gnss_sdr_tool)
+"${gnss_sdr[@]}" receiver
+"${gnss_sdr[@]}" baseline
 python3 ci/verify.py
+# Last, because it needs both cores for itself for ten minutes.
+python3 ci/verify_gnss_sdr.py

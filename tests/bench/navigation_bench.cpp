@@ -31,8 +31,11 @@ Epoch epoch_of(test::SyntheticReceiver& receiver, const CooperatingPair& pair, G
   return epoch;
 }
 
-void epoch(benchmark::State& state) {
+void epoch(benchmark::State& state, double wander_sigma_m) {
   CooperatingPair pair(1);
+  pair.settings.relative.phase_wander_sigma_m = wander_sigma_m;
+  pair.settings.relative.phase_wander_time_s = 60.0;
+  pair.begin();
   pair.fly(kSettling);
   const auto settled = std::make_unique<GnssNavigation>(*pair.navigation);
   std::vector<Epoch> ours, theirs;
@@ -61,6 +64,9 @@ void epoch(benchmark::State& state) {
                                                benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-BENCHMARK(epoch)->Name("navigation/vbar/epoch")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(epoch, white, 0.0)->Name("navigation/vbar/epoch")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(epoch, wander, 0.5e-3)
+    ->Name("navigation/vbar/epoch_with_phase_wander")
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

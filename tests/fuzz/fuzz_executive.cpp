@@ -3,7 +3,8 @@
 // greeted with, and it steps at most once for each batch that was ended.
 //
 //   byte 0  bits 0-2: frame type (0: raw bytes), bit 3: last, bit 4: acknowledge now, bit 5: another session, bit 6: a
-//   tick byte 1  step     byte 2  index     byte 3  payload length     then the payload
+//   tick, bit 7: the payload comes on the line of a wired receiver instead
+//   byte 1  step     byte 2  index     byte 3  payload length     then the payload
 
 #include <algorithm>
 #include <array>
@@ -27,7 +28,21 @@ constexpr std::size_t kCommandBytes = 4;
 struct Watch {
   std::uint32_t session = 0;
   int batches_ended = 0;
+  std::span<const std::uint8_t> line;  ///< what the receiver has sent and the board has not read
 };
+
+bool open_receiver(void* context, std::uint32_t baud) {
+  static_cast<Watch*>(context)->line = {};
+  return baud != 1;  // a rate that the line does not have
+}
+
+std::size_t read_receiver(void* context, std::span<std::uint8_t> out) {
+  auto& line = static_cast<Watch*>(context)->line;
+  const std::size_t count = std::min(out.size(), line.size());
+  std::copy_n(line.begin(), count, out.begin());
+  line = line.subspan(count);
+  return count;
+}
 
 void check_sent(void* context, std::span<const std::uint8_t> bytes) {
   const auto* const watch = static_cast<const Watch*>(context);
@@ -47,7 +62,12 @@ std::size_t tick_payload(std::uint8_t step, std::span<std::uint8_t> out) {
 void play(FlightExecutive& board, Watch& watch, std::span<const std::uint8_t> command,
           std::span<const std::uint8_t> payload) {
   const std::uint8_t type = command[0] & 7U;
-  if (type == 0 || type > 6) {
+  if ((command[0] & 128U) != 0) {
+    watch.line = payload;
+    board.read_receiver();
+    return;
+  }
+  if (type == 0) {
     board.on_frame(payload);
     return;
   }
@@ -78,6 +98,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   vbar::boards::Platform platform;
   platform.context = &watch;
   platform.send = check_sent;
+  platform.open_receiver = open_receiver;
+  platform.read_receiver = read_receiver;
   auto* const board = new (memory.data()) FlightExecutive(platform);
   std::span<const std::uint8_t> rest(data, size);
   while (rest.size() >= kCommandBytes) {
