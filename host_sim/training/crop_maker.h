@@ -14,6 +14,7 @@
 #include "host_sim/twins/camera/detector.h"
 #include "host_sim/twins/camera/model/silhouette.h"
 #include "host_sim/twins/camera/model/target_renderer.h"
+#include "host_sim/twins/camera/optics.h"
 #include "host_sim/twins/camera/star_sky.h"
 
 namespace vbar::training {

@@ -10,6 +10,7 @@
 #include "host_sim/twins/camera/detector.h"
 #include "host_sim/twins/camera/image_tiles.h"
 #include "host_sim/twins/camera/model/cad_objects.h"
+#include "host_sim/twins/camera/optics.h"
 #include "host_sim/twins/camera/point_spread.h"
 #include "host_sim/twins/camera/scene.h"
 #include "tests/support/camera_scene.h"

@@ -7,7 +7,7 @@
 
 #include "fsw/core/types.h"
 #include "host_sim/twins/camera/light_sample.h"
-#include "host_sim/twins/camera/optics.h"
+#include "host_sim/twins/camera/projection.h"
 
 namespace vbar::twins::camera {
 
@@ -29,7 +29,7 @@ using ObjectRenderer = std::function<void(const ObjectView& view, std::vector<Li
 
 /// Replaces `covered` by the fraction of each pixel of `region`, in rows, in which the object hides the
 /// background. One call at a time.
-using ObjectCover = std::function<void(const ObjectView& view, const Optics& optics, const Region& region,
+using ObjectCover = std::function<void(const ObjectView& view, const Projection& optics, const Region& region,
                                        std::vector<float>& covered)>;
 
 }  // namespace vbar::twins::camera

@@ -8,6 +8,7 @@
 #include "host_sim/twins/camera/aberration.h"
 #include "host_sim/twins/camera/discs.h"
 #include "host_sim/twins/camera/lambert_sphere.h"
+#include "host_sim/twins/camera/optics.h"
 #include "host_sim/twins/camera/photometry.h"
 
 namespace vbar::twins::camera {
@@ -33,14 +34,14 @@ bool is_on(const DetectorSettings& detector, const Vector2& pixel) {
 }  // namespace
 
 struct SceneRenderer::View {
-  View(const Exposure& from, const CameraSettings& settings, const Cone& detector_cone)
+  View(const Exposure& from, const CameraSettings& settings, const Projection& projection, const Cone& detector_cone)
       : exposure(from),
         R_camera_eci(from.q_camera_eci.normalized().toRotationMatrix()),
         earth(from.camera_position_eci, from.sun_eci),
         sun(from.sun_eci - from.camera_position_eci),
         moon(from.moon_eci - from.camera_position_eci),
         sun_photons(camera::sun_photons(settings.zero_magnitude_photons, sun.norm())),
-        pixel_rad(1.0 / settings.focal_length_px()),
+        pixel_rad(1.0 / projection.focal_length_px()),
         moon_radius(std::asin(std::min(1.0, kMoonRadiusM / moon.norm()))) {
     earth_in_field = angle_between(R_camera_eci * earth.centre_direction_eci(), detector_cone.axis) <
                      earth.angular_radius() + detector_cone.half_angle;
@@ -62,21 +63,21 @@ struct SceneRenderer::View {
 };
 
 SceneRenderer::SceneRenderer(const CameraSettings& settings, const std::filesystem::path& data_directory,
-                             ObjectRenderer objects, ObjectCover covers)
+                             ObjectRenderer objects, ObjectCover covers, std::shared_ptr<const Projection> projection)
     : settings_(settings),
-      optics_(settings),
+      projection_(projection ? std::move(projection) : std::make_shared<const Optics>(settings)),
       spread_(settings.optics),
       sky_(StarSky::load(data_directory, settings.zero_magnitude_photons)),
       objects_(objects ? std::move(objects) : lambert_sphere(0.35, 0.3)),
       covers_(std::move(covers)),
-      region_cone_(optics_.cone_of(settings.region, kMarginPx)),
-      detector_cone_(optics_.cone_of({0, 0, settings.detector.width, settings.detector.height}, kMarginPx)) {}
+      region_cone_(projection_->cone_of(settings.region, kMarginPx)),
+      detector_cone_(projection_->cone_of({0, 0, settings.detector.width, settings.detector.height}, kMarginPx)) {}
 
 void SceneRenderer::render(const Exposure& exposure, PhotonImage& image) {
   image.region = settings_.region;
   image.electrons.assign(
       static_cast<std::size_t>(settings_.region.width) * static_cast<std::size_t>(settings_.region.height), 0.0F);
-  const View view(exposure, settings_, detector_cone_);
+  const View view(exposure, settings_, *projection_, detector_cone_);
   add_stars(view, image);
   const bool one_hides =
       std::ranges::any_of(exposure.objects, [&](const ObjectInView& object) { return hides(view, object); });
@@ -95,7 +96,7 @@ void SceneRenderer::render(const Exposure& exposure, PhotonImage& image) {
 
 double SceneRenderer::electrons_of(const LightSample& light, const Vector2& pixel) const {
   return light.photons_per_m2_s * settings_.electrons_per_photon_m2() * settings_.exposure_s *
-         optics_.vignetting(pixel);
+         projection_->vignetting(pixel);
 }
 
 void SceneRenderer::add_stars(const View& view, PhotonImage& image) {
@@ -107,13 +108,13 @@ void SceneRenderer::add_stars(const View& view, PhotonImage& image) {
             exposure.earth_velocity_bcrs + exposure.camera_velocity_eci, stars_);
   for (const ApparentStar& star : stars_) {
     const Vector3 direction = view.R_camera_eci * star.direction_eci;
-    const auto pixel = optics_.project(direction);
+    const auto pixel = projection_->project(direction);
     if (!pixel) continue;
     if (angle_between(star.direction_eci, view.moon) < view.moon_radius) continue;
     const double passed = view.earth_in_field ? view.passed_by_earth(star.direction_eci) : 1.0;
     if (passed == 0.0) continue;
     const Vector2 smear_px =
-        settings_.exposure_s * optics_.image_velocity(direction, direction.cross(exposure.rate_camera));
+        settings_.exposure_s * projection_->image_velocity(direction, direction.cross(exposure.rate_camera));
     spread_.add(ImagePoint{*pixel, passed * electrons_of({direction, star.star->photons_per_m2_s}, *pixel)}, smear_px,
                 image);
   }
@@ -138,7 +139,7 @@ void SceneRenderer::hide_behind(const View& view, const ObjectInView& object, Ph
   constexpr float kNoticed = 0.5F;  // electrons
   const bool is_noticed = std::ranges::any_of(image.electrons, [](float electrons) { return electrons > kNoticed; });
   if (!is_noticed || !hides(view, object)) return;
-  covers_(view_of(view, object), optics_, image.region, covered_);
+  covers_(view_of(view, object), *projection_, image.region, covered_);
   for (std::size_t k = 0; k < covered_.size(); ++k) image.electrons[k] *= 1.0F - covered_[k];
 }
 
@@ -169,12 +170,12 @@ void SceneRenderer::add_object(const View& view, const ObjectInView& object, Pho
 
   points_.clear();
   for (const LightSample& sample : samples_)
-    if (const auto pixel = optics_.project(sample.direction_camera))
+    if (const auto pixel = projection_->project(sample.direction_camera))
       points_.push_back({*pixel, electrons_of(sample, *pixel)});
   // Motion across the line of sight rotates the direction; the rotation of the camera adds to it.
   const Vector3 across = object.velocity_eci - direction_eci * direction_eci.dot(object.velocity_eci);
   const Vector3 direction_rate = view.R_camera_eci * across / distance + direction.cross(view.exposure.rate_camera);
-  spread_.add(points_, settings_.exposure_s * optics_.image_velocity(direction, direction_rate), image);
+  spread_.add(points_, settings_.exposure_s * projection_->image_velocity(direction, direction_rate), image);
 }
 
 /// Their electrons on the detector.
@@ -210,7 +211,7 @@ double SceneRenderer::add_disc(const View& view, const Vector3& velocity, Photon
   for (const LightSample& sample : samples_) {
     const double passed = view.passed_by_earth(sample.direction_camera);
     const Vector3 direction = view.R_camera_eci * apparent_direction(sample.direction_camera, velocity);
-    const auto pixel = optics_.project(direction);
+    const auto pixel = projection_->project(direction);
     if (!pixel || passed == 0.0) continue;
     points_.push_back({*pixel, passed * electrons_of(sample, *pixel)});
     middle += direction;
@@ -218,7 +219,7 @@ double SceneRenderer::add_disc(const View& view, const Vector3& velocity, Photon
   }
   if (points_.empty()) return 0.0;
   middle.normalize();
-  const Vector2 velocity_px = optics_.image_velocity(middle, middle.cross(view.exposure.rate_camera));
+  const Vector2 velocity_px = projection_->image_velocity(middle, middle.cross(view.exposure.rate_camera));
   spread_.add(points_, settings_.exposure_s * velocity_px, image);
   return electrons;
 }
@@ -228,11 +229,11 @@ double SceneRenderer::add_earth(const View& view, PhotonImage& image) const {
   const double from_surface = EarthDisc::radiance(view.sun_photons) * settings_.electrons_per_photon_m2() *
                               settings_.exposure_s * view.pixel_rad * view.pixel_rad;
   const auto electrons_at = [&](const Vector2& pixel) {
-    const Vector3 direction = optics_.direction_of(pixel);
+    const Vector3 direction = projection_->direction_of(pixel);
     const EarthSight sight = view.earth.look(view.R_camera_eci.transpose() * direction, view.pixel_rad);
     if (sight.covered == 0.0 || sight.cosine_of_sun <= 0.0) return 0.0;
     const double pixel_solid_angle = direction.z() * direction.z() * direction.z();  // against that on the boresight
-    return sight.covered * sight.cosine_of_sun * from_surface * pixel_solid_angle * optics_.vignetting(pixel);
+    return sight.covered * sight.cosine_of_sun * from_surface * pixel_solid_angle * projection_->vignetting(pixel);
   };
   const Region& region = image.region;
   const Vector3 centre = view.R_camera_eci * view.earth.centre_direction_eci();

@@ -2,14 +2,15 @@
 // All that a camera sees, as expected photo-electrons: stars, spacecraft, Sun, Moon, Earth and stray light.
 
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 #include "host_sim/twins/camera/earth_disc.h"
 #include "host_sim/twins/camera/exposure.h"
 #include "host_sim/twins/camera/object_view.h"
-#include "host_sim/twins/camera/optics.h"
 #include "host_sim/twins/camera/photon_image.h"
 #include "host_sim/twins/camera/point_spread.h"
+#include "host_sim/twins/camera/projection.h"
 #include "host_sim/twins/camera/star_sky.h"
 
 namespace vbar::twins::camera {
@@ -32,8 +33,10 @@ class SceneRenderer {
  public:
   /// Reads the star catalogue of `data_directory`; throws std::runtime_error if it cannot be read. `objects` renders
   /// spacecraft; by default each is a Lambert sphere of 0.7 m and albedo 0.3. Without `covers` they hide nothing.
+  /// `projection`: onto the image, whose size is that of the settings' detector; by default the lens of the settings.
   SceneRenderer(const CameraSettings& settings, const std::filesystem::path& data_directory,
-                ObjectRenderer objects = {}, ObjectCover covers = {});
+                ObjectRenderer objects = {}, ObjectCover covers = {},
+                std::shared_ptr<const Projection> projection = nullptr);
 
   /// Expected photo-electrons of the region that is read, replacing `image`. No dark current, no noise.
   void render(const Exposure& exposure, PhotonImage& image);
@@ -55,7 +58,7 @@ class SceneRenderer {
   [[nodiscard]] double sun_in_sight(const View& view);
 
   CameraSettings settings_;
-  Optics optics_;
+  std::shared_ptr<const Projection> projection_;
   PointSpread spread_;
   StarSky sky_;
   ObjectRenderer objects_;

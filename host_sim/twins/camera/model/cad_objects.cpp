@@ -57,7 +57,7 @@ ObjectCover cad_covers(const std::filesystem::path& data_directory, std::span<co
   for (const std::string& model : models)
     if (!loaded->contains(model))
       loaded->try_emplace(model, load_cad_model(data_directory / "models" / (model + ".obj")));
-  return [loaded](const ObjectView& view, const Optics& optics, const Region& region, std::vector<float>& covered) {
+  return [loaded](const ObjectView& view, const Projection& optics, const Region& region, std::vector<float>& covered) {
     loaded_model(*loaded, view.model)->second.draw(optics, view.position_camera, view.R_camera_body, region, covered);
   };
 }

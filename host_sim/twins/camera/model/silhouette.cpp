@@ -52,7 +52,7 @@ void Silhouette::fill(const std::array<Vector2, 3>& corners) {
   }
 }
 
-void Silhouette::draw(const Optics& optics, const Vector3& origin_camera, const fsw::Matrix3& R_camera_body,
+void Silhouette::draw(const Projection& optics, const Vector3& origin_camera, const fsw::Matrix3& R_camera_body,
                       const Region& region, std::vector<float>& covered) {
   points_across_ = kPoints * region.width;
   points_down_ = kPoints * region.height;

@@ -6,7 +6,7 @@
 
 #include "fsw/core/types.h"
 #include "host_sim/twins/camera/model/cad_model.h"
-#include "host_sim/twins/camera/optics.h"
+#include "host_sim/twins/camera/projection.h"
 
 namespace vbar::twins::camera {
 
@@ -16,7 +16,7 @@ class Silhouette {
 
   /// Covered fractions, 0 to 1 in quarters (2 x 2 points a pixel), rows of `region`. `origin_camera`: of the model, m,
   /// all of it in front of the camera.
-  void draw(const Optics& optics, const fsw::Vector3& origin_camera, const fsw::Matrix3& R_camera_body,
+  void draw(const Projection& optics, const fsw::Vector3& origin_camera, const fsw::Matrix3& R_camera_body,
             const Region& region, std::vector<float>& covered);
 
  private:

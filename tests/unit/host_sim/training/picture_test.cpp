@@ -8,6 +8,7 @@
 #include "host_sim/training/circumstances.h"
 #include "host_sim/training/soft_picture.h"
 #include "host_sim/twins/camera/model/silhouette.h"
+#include "host_sim/twins/camera/optics.h"
 
 namespace vbar::training {
 namespace {
