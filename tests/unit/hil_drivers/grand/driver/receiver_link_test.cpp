@@ -21,7 +21,7 @@ using twins::gnss::BodyTruth;
 using twins::gnss::ReceiverOutput;
 
 constexpr fsw::GpsTime kStart{fsw::duration_of_seconds(1658 * 604800LL + 345'670).ns};
-constexpr Patience kShort{milliseconds(60), milliseconds(150), milliseconds(1000), 1};
+constexpr Patience kPatient{milliseconds(500), milliseconds(5000), milliseconds(60000), 20};
 
 fsw::GpsTime at(double s) {
   return kStart + fsw::nearest_duration(s);
@@ -45,7 +45,7 @@ class ReceiverLinkTest : public ::testing::Test {
     link.configuration.approximate_position_ecef_m = {7e6, 0.0, 0.0};
     link.period = fsw::duration_of_seconds(10);
     link.give_up = fsw::duration_of_seconds(120);
-    link.start_patience = kShort;
+    link.start_patience = kPatient;
     link.reopen_patience = {.probe = milliseconds(1000), .answer = milliseconds(2000), .attempts = 1};
     return link;
   }
@@ -55,8 +55,8 @@ class ReceiverLinkTest : public ::testing::Test {
     std::vector<ReceiverOutput> delivered;
     for (int k = static_cast<int>(from_s * 10 + 0.5); k <= static_cast<int>(to_s * 10 + 0.5); ++k) {
       ReceiverOutput output = link.take(truth_at(0.1 * k), at(0.1 * k));
-      // The receiver of this test answers in the host's time.
-      if (link.is_lost()) std::this_thread::sleep_for(milliseconds(3));
+      // The receiver of this test answers in the host's time, on a loaded machine late.
+      if (link.is_lost()) std::this_thread::sleep_for(pause_);
       if (!output.failure.empty()) failures_.push_back(output.failure);
       if (output.is_epoch) delivered.push_back(output);
     }
@@ -65,6 +65,7 @@ class ReceiverLinkTest : public ::testing::Test {
 
   FakeReceiver receiver_{{.baud = 115200, .answers = {}, .logs = {}}};
   std::vector<std::string> failures_;
+  milliseconds pause_{1};
 };
 
 TEST_F(ReceiverLinkTest, DeliversABurstWithTheAttitudeOfItsEpoch) {
@@ -108,6 +109,7 @@ TEST_F(ReceiverLinkTest, ComesBackAfterAHangUp) {
   EXPECT_THAT(failures_.back(), HasSubstr("receiver of servicer on " + receiver_.device()));
   EXPECT_TRUE(link.second().is_lost);
   receiver_.come_back();
+  pause_ = milliseconds(30);
   run(link, 31.1, 38.0);
   EXPECT_FALSE(link.second().is_lost);
   const LinkStatistics statistics = link.statistics();
@@ -136,6 +138,7 @@ TEST_F(ReceiverLinkTest, TakesThreeSilentEpochsForALoss) {
   link.open();
   run(link, 0.0, 30.0);
   EXPECT_EQ(link.statistics().losses, 0U);
+  pause_ = milliseconds(30);
   run(link, 30.1, 38.0);  // the receiver still answers: found again
   EXPECT_EQ(link.statistics().losses, 1U);
   EXPECT_EQ(link.statistics().reconnects, 1U);

@@ -18,6 +18,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+// Of a receiver that answers, whatever the load of the machine; and of one that does not.
+constexpr Patience kPatient{milliseconds(250), milliseconds(5000), milliseconds(60000), 20};
 constexpr Patience kShort{milliseconds(60), milliseconds(150), milliseconds(1000), 2};
 
 ReceiverConfiguration configuration() {
@@ -29,8 +31,9 @@ ReceiverConfiguration configuration() {
 }
 
 /// The message of the refusal; empty if there was none.
-std::string refusal(FakeReceiver& receiver, const ReceiverConfiguration& plan = configuration()) {
-  ReceiverPort port("servicer", receiver.device(), plan, {}, kShort);
+std::string refusal(FakeReceiver& receiver, const ReceiverConfiguration& plan = configuration(),
+                    const Patience& patience = kPatient) {
+  ReceiverPort port("servicer", receiver.device(), plan, {}, patience);
   try {
     port.open(true);
   } catch (const ReceiverRefusal& error) {
@@ -42,7 +45,7 @@ std::string refusal(FakeReceiver& receiver, const ReceiverConfiguration& plan = 
 
 TEST(ReceiverPort, ConfiguresAReceiverAtItsOwnRate) {
   FakeReceiver receiver({.baud = 115200, .answers = {}, .logs = {}});
-  ReceiverPort port("servicer", receiver.device(), configuration(), {}, kShort);
+  ReceiverPort port("servicer", receiver.device(), configuration(), {}, kPatient);
   port.open(true);
   EXPECT_TRUE(port.is_open());
   EXPECT_EQ(port.port_name(), "COM1");
@@ -79,20 +82,24 @@ TEST(ReceiverPort, NamesPortCommandAndAnswerOfARefusal) {
 
 TEST(ReceiverPort, NamesACommandThatIsNotAnswered) {
   FakeReceiver receiver({.baud = 115200, .answers = {{"CLOCKADJUST", ""}}, .logs = {}});
-  EXPECT_THAT(refusal(receiver), AllOf(HasSubstr(receiver.device()),
-                                       HasSubstr("\"CLOCKADJUST ENABLE\" was not answered in 2 attempts of 0.15 s"),
-                                       HasSubstr("nothing received")));
+  constexpr Patience kTwoAttempts{milliseconds(500), milliseconds(400), milliseconds(1000), 2};
+  EXPECT_THAT(
+      refusal(receiver, configuration(), kTwoAttempts),
+      AllOf(HasSubstr(receiver.device()), HasSubstr("\"CLOCKADJUST ENABLE\" was not answered in 2 attempts of 0.4 s"),
+            HasSubstr("nothing received")));
   EXPECT_EQ(std::ranges::count(receiver.commands(), "CLOCKADJUST ENABLE"), 2);
 }
 
 TEST(ReceiverPort, ShowsWhatCameInsteadOfAnAnswer) {
   FakeReceiver receiver({.baud = 115200, .answers = {{"CLOCKADJUST", "HELLO"}}, .logs = {}});
-  EXPECT_THAT(refusal(receiver), HasSubstr("HELLO"));
+  constexpr Patience kTwoAttempts{milliseconds(500), milliseconds(400), milliseconds(1000), 2};
+  EXPECT_THAT(refusal(receiver, configuration(), kTwoAttempts), HasSubstr("HELLO"));
 }
 
 TEST(ReceiverPort, NamesASilentLine) {
   FakeReceiver receiver({.baud = 115200, .answers = {{"", ""}}, .logs = {}});
-  EXPECT_THAT(refusal(receiver), AllOf(HasSubstr(receiver.device()), HasSubstr("2400 to 460800 baud")));
+  EXPECT_THAT(refusal(receiver, configuration(), kShort),
+              AllOf(HasSubstr(receiver.device()), HasSubstr("2400 to 460800 baud")));
 }
 
 TEST(ReceiverPort, RestartsForAColdStartOnly) {
@@ -108,7 +115,7 @@ TEST(ReceiverPort, RestartsForAColdStartOnly) {
   EXPECT_THAT(warm.commands(), Not(Contains("RESET")));
 
   FakeReceiver again({.baud = 115200, .answers = {}, .logs = {}});
-  ReceiverPort port("servicer", again.device(), cold, {}, kShort);
+  ReceiverPort port("servicer", again.device(), cold, {}, kPatient);
   port.open(false);
   EXPECT_THAT(again.commands(), Not(Contains("RESET")));
 }
@@ -119,7 +126,7 @@ TEST(ReceiverPort, LosesNothingOfALogThatFollowsItsCommand) {
   Bytes kept;
   ReceiverPort port(
       "servicer", receiver.device(), configuration(),
-      [&](std::span<const std::uint8_t> bytes) { kept.insert(kept.end(), bytes.begin(), bytes.end()); }, kShort);
+      [&](std::span<const std::uint8_t> bytes) { kept.insert(kept.end(), bytes.begin(), bytes.end()); }, kPatient);
   port.open(true);
   Bytes read;
   port.read(read);
@@ -135,7 +142,7 @@ TEST(ReceiverPort, LosesNothingOfALogThatFollowsItsCommand) {
 
 TEST(ReceiverPort, ReportsAHangUpAndOpensAgain) {
   FakeReceiver receiver({.baud = 115200, .answers = {}, .logs = {}});
-  ReceiverPort port("servicer", receiver.device(), configuration(), {}, kShort);
+  ReceiverPort port("servicer", receiver.device(), configuration(), {}, kPatient);
   port.open(true);
   receiver.hang_up();
   Bytes bytes;
