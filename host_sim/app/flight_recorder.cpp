@@ -42,7 +42,7 @@ void forget_state(report::EstimateRow& row) {
 }
 
 double distance(const report::Triple& a, const report::Triple& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+  return report::magnitude({a[0] - b[0], a[1] - b[1], a[2] - b[2]});
 }
 
 QnsElements mean_elements(const CartesianState& state) {

@@ -8,10 +8,6 @@
 
 namespace vbar::report {
 
-double magnitude(const Triple& v) {
-  return std::hypot(v[0], v[1], v[2]);
-}
-
 std::vector<ManeuverRow> executed_in_order(const RunRecord& record) {
   std::vector<ManeuverRow> executed;
   std::ranges::copy_if(record.maneuvers, std::back_inserter(executed), &ManeuverRow::accepted);

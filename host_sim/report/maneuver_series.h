@@ -9,8 +9,6 @@
 
 namespace vbar::report {
 
-[[nodiscard]] double magnitude(const Triple& v);
-
 /// Those that were executed, by the time they were.
 [[nodiscard]] std::vector<ManeuverRow> executed_in_order(const RunRecord& record);
 

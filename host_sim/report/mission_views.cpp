@@ -12,8 +12,7 @@ namespace {
 constexpr double kNearer = 20.0;
 
 double range_m(const WaypointRow& row) {
-  const Triple& p = row.desired_position_rtn;
-  return std::hypot(p[0], p[1], p[2]);
+  return magnitude(row.desired_position_rtn);
 }
 
 void complete(View& view, const RunRecord& record) {

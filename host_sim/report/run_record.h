@@ -5,6 +5,7 @@
 
 #include <any>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -27,6 +28,11 @@ using Sextuple = std::array<double, 6>;
 using Quadruple = std::array<double, 4>;
 /// A symmetric 6x6 matrix: lower triangle by rows.
 using LowerTriangle6 = std::array<double, 21>;
+
+/// Length of a vector; NaN if a component is NaN. Not std::hypot of three, in which GCC 12 loses a NaN between zeros.
+[[nodiscard]] inline double magnitude(const Triple& v) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
 
 /// Truth at a step (truth.csv).
 struct TruthRow {

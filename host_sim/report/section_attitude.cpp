@@ -57,9 +57,7 @@ Plot size_plot(const std::string& spacecraft, const std::vector<AttitudeRow>& ro
   Plot plot = time_plot(view, fmt::format("{}, magnitude of the rate, whole run", spacecraft), "rate",
                         Unit::kRadiansPerSecond, 220.0);
   plot.y.least_span = kLeastRateSpan_radps;
-  const auto size = [](const AttitudeRow& row) {
-    return std::hypot(row.rate_body_radps[0], row.rate_body_radps[1], row.rate_body_radps[2]);
-  };
+  const auto size = [](const AttitudeRow& row) { return magnitude(row.rate_body_radps); };
   plot.series = {{"", 0, Mark::kLine, over_time(rows, view, size)}};
   return plot;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fsw/imaging/image.h"
+#include "host_sim/mission/read_number.h"
 #include "host_sim/mission/toml_file.h"
 #include "host_sim/twins/camera/binning.h"
 
@@ -21,14 +22,6 @@ using twins::camera::OpticsSettings;
 using twins::camera::Region;
 
 constexpr int kLargestDetector_px = 16384;
-
-void read(const TableReader& section, std::string_view key, Range range, double& value) {
-  value = section.number(key, range, value);
-}
-
-void read(const TableReader& section, std::string_view key, int low, int high, int& value) {
-  value = static_cast<int>(section.integer(key, low, high, value));
-}
 
 template <std::size_t size>
 void read(const TableReader& section, std::string_view key, Range range, std::array<double, size>& values) {

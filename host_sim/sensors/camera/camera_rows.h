@@ -125,10 +125,4 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(report::ColumnName{"error_y_px"}, row.error_y_px);
 }
 
-/// The rows of a record; `Row` is one of the above.
-template <class Row>
-[[nodiscard]] const std::vector<Row>& rows_of(const report::RunRecord& record) {
-  return record.tables.rows<Row>();
-}
-
 }  // namespace vbar::sensors

@@ -245,7 +245,7 @@ Plot attitude_plot(const RunRecord& record, const View& view) {
                })},
       {"3σ of the filter", 1, Mark::kDashedLine, line_of(record, [](const PoseRow& row) -> std::optional<double> {
          if (!row.attitude_error_deg) return std::nullopt;
-         return 3.0 * std::hypot(attitude_sigma(row, 0), attitude_sigma(row, 1), attitude_sigma(row, 2));
+         return 3.0 * magnitude({attitude_sigma(row, 0), attitude_sigma(row, 1), attitude_sigma(row, 2)});
        })}};
   return plot;
 }

@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "host_sim/mission/names.h"
+#include "host_sim/mission/read_number.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
 #include "host_sim/sensors/gnss/settings/read_radio.h"
@@ -24,11 +25,6 @@ constexpr Names<GpsEphemerisLog, 2> kEphemerisLogs{
     {{"rawephem", GpsEphemerisLog::kRawEphem}, {"gpsephem", GpsEphemerisLog::kGpsEphem}}};
 
 constexpr Names<testbeds::Wiring, 2> kWirings{{{"host", testbeds::Wiring::kHost}, {"board", testbeds::Wiring::kBoard}}};
-
-/// Reads a number whose default is the one that the settings were made with.
-void read(const TableReader& section, std::string_view key, Range range, double& value) {
-  value = section.number(key, range, value);
-}
 
 void read_vector(const TableReader& section, std::string_view key, Range range, fsw::Vector3& value) {
   const auto xyz = section.three_numbers(key, range, std::array<double, 3>{value.x(), value.y(), value.z()});

@@ -192,7 +192,7 @@ Plot empty_plot(const RunRecord& record, const View& view, const char* title, co
 }
 
 double claimed(const NavigationError& e) {
-  return std::hypot(e.sigma_rtn[0], e.sigma_rtn[1], e.sigma_rtn[2]);
+  return magnitude({e.sigma_rtn[0], e.sigma_rtn[1], e.sigma_rtn[2]});
 }
 
 /// Both size and claim against the floor.

@@ -6,6 +6,7 @@
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/overrides.h"
+#include "host_sim/mission/read_number.h"
 #include "host_sim/mission/toml_file.h"
 #include "host_sim/sensors/gnss/settings/read_radio.h"
 
@@ -21,10 +22,6 @@ constexpr Names<Pace, 2> kPaces{{{"lock_step", Pace::kLockStep}, {"real_time", P
 constexpr Names<ControlProtocol, 3> kProtocols{{{"skydel", ControlProtocol::kSkydel},
                                                 {"simgen", ControlProtocol::kSimgen},
                                                 {"template", ControlProtocol::kTemplate}}};
-
-void read(const TableReader& section, std::string_view key, Range range, double& value) {
-  value = section.number(key, range, value);
-}
 
 /// Key in milliseconds.
 void read_ms(const TableReader& section, std::string_view key, Range range, fsw::Duration& value) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include <GeographicLib/Geocentric.hpp>
+
 #include "hil_drivers/grand/bench/receiver/baud_rates.h"
 #include "hil_drivers/grand/bench/receiver/console.h"
 #include "hil_drivers/grand/bench/receiver/log_writer.h"
@@ -23,16 +25,10 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kBreakPair_ns = 3 * kSecond_ns;
 constexpr std::int64_t kResetDelay_ns = kSecond_ns / 2;  ///< the answer to RESET leaves before the restart
 
-/// WGS 84.
 fsw::Vector3 ecef_of_geodetic(double latitude_deg, double longitude_deg, double height_m) {
-  constexpr double kSemiMajor_m = 6378137.0;
-  constexpr double kEccentricitySquared = 6.69437999014e-3;
-  const double latitude = latitude_deg * std::numbers::pi / 180.0;
-  const double longitude = longitude_deg * std::numbers::pi / 180.0;
-  const double s = std::sin(latitude);
-  const double n = kSemiMajor_m / std::sqrt(1.0 - kEccentricitySquared * s * s);
-  return {(n + height_m) * std::cos(latitude) * std::cos(longitude),
-          (n + height_m) * std::cos(latitude) * std::sin(longitude), (n * (1.0 - kEccentricitySquared) + height_m) * s};
+  fsw::Vector3 ecef;
+  GeographicLib::Geocentric::WGS84().Forward(latitude_deg, longitude_deg, height_m, ecef.x(), ecef.y(), ecef.z());
+  return ecef;
 }
 
 const std::shared_ptr<const twins::gnss::Constellation>& needed(

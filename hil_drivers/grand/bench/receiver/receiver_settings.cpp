@@ -3,6 +3,7 @@
 #include <array>
 
 #include "hil_drivers/grand/bench/receiver/baud_rates.h"
+#include "host_sim/mission/read_number.h"
 
 namespace vbar::grand::bench {
 namespace {
@@ -14,15 +15,6 @@ using mission::TableReader;
 
 constexpr std::array<std::pair<std::string_view, StoredData>, 3> kStoredData{
     {{"nothing", StoredData::kNothing}, {"almanac", StoredData::kAlmanac}, {"ephemerides", StoredData::kEphemerides}}};
-
-/// The default of a number is the one that the settings were made with.
-void read(const TableReader& section, std::string_view key, Range range, double& value) {
-  value = section.number(key, range, value);
-}
-
-void read(const TableReader& section, std::string_view key, int low, int high, int& value) {
-  value = static_cast<int>(section.integer(key, low, high, value));
-}
 
 void read_loops(const TableReader& section, LoopSettings& loops) {
   read(section, "carrier_order", 2, 3, loops.carrier_order);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "host_sim/mission/names.h"
+#include "host_sim/mission/read_number.h"
 
 namespace vbar::sensors {
 namespace {
@@ -16,11 +17,6 @@ using twins::gnss::SatelliteSet;
 
 constexpr Names<SatelliteSet, 3> kSatelliteSets{
     {{"none", SatelliteSet::kNone}, {"broadcast", SatelliteSet::kBroadcast}, {"nominal", SatelliteSet::kNominal}}};
-
-/// Reads a number whose default is the one that the settings were made with.
-void read(const TableReader& section, std::string_view key, Range range, double& value) {
-  value = section.number(key, range, value);
-}
 
 }  // namespace
 

@@ -71,5 +71,13 @@ TEST(Summarise, HealthIsOneLineOfWhatIsNotNominal) {
   EXPECT_EQ(health_line(health), "inbox dropped 11123, faults navigation_timeout+inbox_full");
 }
 
+TEST(Magnitude, IsNaNIfOneComponentIs) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const Triple& v :
+       {Triple{kNan, 0.0, 0.0}, Triple{0.0, kNan, 0.0}, Triple{0.0, 0.0, kNan}, Triple{1.0, kNan, 0.0}})
+    EXPECT_TRUE(std::isnan(magnitude(v)));
+  EXPECT_EQ(magnitude({2.0, -3.0, 6.0}), 7.0);
+}
+
 }  // namespace
 }  // namespace vbar::report::test
