@@ -232,7 +232,7 @@ RelativeFilter::Estimate::Vector RelativeFilter::phase_jacobian(const Row& row, 
   return jacobian;
 }
 
-RelativeFilter::Estimate::Vector RelativeFilter::full_jacobian(const Row& row) const {
+RelativeFilter::Estimate::Vector RelativeFilter::full_jacobian(const Row& row) {
   Estimate::Vector jacobian = Estimate::Vector::Zero();
   jacobian.head<kGeometry>() = row.jacobian;
   return jacobian;

@@ -171,7 +171,7 @@ class RelativeFilter {
   [[nodiscard]] double code_residual(const Row& row, const DifferentialObservation& observation) const;
   [[nodiscard]] Estimate::Vector code_jacobian(const Row& row, gnss::Signal signal) const;
   [[nodiscard]] double phase_residual(const Row& row, std::size_t place, double measured) const;
-  [[nodiscard]] Estimate::Vector full_jacobian(const Row& row) const;
+  [[nodiscard]] static Estimate::Vector full_jacobian(const Row& row);
   [[nodiscard]] Estimate::Vector phase_jacobian(const Row& row, std::size_t place) const;
 
   RelativeFilterSettings settings_;
