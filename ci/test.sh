@@ -22,5 +22,5 @@ cmake --preset asan --log-level=WARNING
 cmake --build --preset asan --target flight_code vbar unit_tests
 ctest --preset asan --parallel 2 --label-regex '^unit$'
 say "fuzzing: every decoder and loader for a few seconds"
-ci/fuzz.sh 5
+ci/fuzz.sh 3
 say "all passed"
