@@ -20,6 +20,7 @@ test=(
   ccache git ca-certificates libgtest-dev libgmock-dev libbenchmark-dev python3 iproute2
   clang clang-format clang-tidy libclang-rt-14-dev
   g++-arm-linux-gnueabihf qemu-user
+  libsdl2-dev libxrandr-dev xvfb x11-apps  # the display of the Optical Stimulator, and a server for its tests
 )
 peers=(chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr libopencv-dev tshark)
 train=("${fly[@]}" python3 python3-numpy python3-torch)
