@@ -104,8 +104,10 @@ struct TestbedKind : mission::TestbedReader {
   std::shared_ptr<TestbedRun> (*open)(const mission::TestbedSettings& settings, const RunContext& context);
   /// Tables, figures of the summary and report section.
   report::Extension report{};
-  /// The camera of the mission as the testbed has calibrated it. Null: as the mission has it.
-  CalibratedCamera (*calibrated_camera)(const mission::TestbedSettings& settings,
+  /// The camera of the mission as the testbed has calibrated it. Null: as the mission has it. Throws MissionError for a
+  /// calibration that cannot be read.
+  CalibratedCamera (*calibrated_camera)(const mission::TestbedSettings& settings, const mission::Mission& mission,
+                                        const std::filesystem::path& data_directory,
                                         const twins::camera::CameraSettings& of_mission) = nullptr;
 };
 

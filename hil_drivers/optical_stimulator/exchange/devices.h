@@ -23,8 +23,7 @@ struct CameraFrame {
   std::vector<std::uint16_t> dn;  ///< of the region, rows from the top
   int packets_resent = 0;
   int tries = 1;           ///< triggers until it was whole
-  double expose_s = 0.0;   ///< wall clock, from the trigger to the first packet
-  double receive_s = 0.0;  ///< from then on
+  double receive_s = 0.0;  ///< wall clock, from the trigger
 };
 
 class FrameCamera {

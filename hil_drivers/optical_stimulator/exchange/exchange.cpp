@@ -71,7 +71,6 @@ CameraFrame Exchange::take_frame(ExchangedImage& image) {
     try {
       CameraFrame frame = camera_.take();
       image.packets_resent += frame.packets_resent;
-      image.expose_s += frame.expose_s;
       image.receive_s += frame.receive_s;
       image.tries += frame.tries - 1;
       return frame;

@@ -32,8 +32,8 @@ struct ExchangedImage {
   int stale = 0;                  ///< of these, those that showed another picture
   int packets_resent = 0;
   int reconnects = 0;
-  double brightness = 0.0;                               ///< of the strip, relative to the calibration
-  double show_s = 0.0, expose_s = 0.0, receive_s = 0.0;  ///< wall clock, of all tries
+  double brightness = 0.0;               ///< of the strip, relative to the calibration
+  double show_s = 0.0, receive_s = 0.0;  ///< wall clock, of all tries
 };
 
 class Exchange {

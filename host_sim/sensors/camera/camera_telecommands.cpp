@@ -57,14 +57,15 @@ struct KnownCamera {
 };
 
 /// As the mission has it or, of a testbed that calibrates its camera, as calibrated.
-KnownCamera known_camera(const CameraSensor& camera, const Mission& mission) {
+KnownCamera known_camera(const CameraSensor& camera, const TelecommandContext& context) {
+  const Mission& mission = context.mission;
   KnownCamera known{camera, std::nullopt};
   const testbeds::TestbedKind* const testbed = testbeds::find_testbed(camera.source);
   if (testbed == nullptr || testbed->calibrated_camera == nullptr) return known;
   const auto of_mission = std::ranges::find(mission.testbeds, testbed->name, &mission::Testbed::name);
   if (of_mission == mission.testbeds.end())
     throw std::logic_error("the mission has no [testbed." + std::string(testbed->name) + "]");
-  const auto calibrated = testbed->calibrated_camera(*of_mission->settings, camera.settings);
+  const auto calibrated = testbed->calibrated_camera(*of_mission->settings, mission, context.data_directory, camera.settings);
   known.sensor.settings = calibrated.settings;
   known.centroid_floor_px = calibrated.centroid_floor_px;
   return known;
@@ -145,7 +146,7 @@ vbar::target_apriori target_apriori_of(const Mission& mission, const Spacecraft&
 void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandContext& context,
                              Telecommands& telecommands) {
   if (settings_of<CameraSensor>(sensor).use == CameraNavigation::kNone) return;
-  const KnownCamera known = known_camera(settings_of<CameraSensor>(sensor), context.mission);
+  const KnownCamera known = known_camera(settings_of<CameraSensor>(sensor), context);
   const CameraSensor& camera = known.sensor;
   telecommands.add(camera_configuration_of(camera));
   const fsw::orbit::CartesianState own = context.state_at_start(context.servicer.name);
