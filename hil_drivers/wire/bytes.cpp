@@ -1,10 +1,10 @@
-#include "hil_drivers/grand/wire/bytes.h"
+#include "hil_drivers/wire/bytes.h"
 
 #include <cmath>
 
 #include <fmt/format.h>
 
-namespace vbar::grand::wire {
+namespace vbar::wire {
 
 void ByteWriter::put(const fsw::Vector3& vector) {
   for (const double component : vector) put(component);
@@ -54,4 +54,4 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
-}  // namespace vbar::grand::wire
+}  // namespace vbar::wire

@@ -6,9 +6,9 @@
 #include <span>
 #include <string>
 
-#include "hil_drivers/grand/wire/bytes.h"
+#include "hil_drivers/wire/bytes.h"
 
-namespace vbar::grand::wire {
+namespace vbar::wire {
 
 class LineBuffer {
  public:
@@ -21,4 +21,4 @@ class LineBuffer {
   std::string buffer_;
 };
 
-}  // namespace vbar::grand::wire
+}  // namespace vbar::wire

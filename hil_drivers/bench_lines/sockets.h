@@ -15,9 +15,9 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ip/udp.hpp>
 
-#include "hil_drivers/grand/wire/bytes.h"
+#include "hil_drivers/wire/bytes.h"
 
-namespace vbar::grand::bench {
+namespace vbar::bench_lines {
 
 /// One TCP connection that a client has opened.
 class Connection : public std::enable_shared_from_this<Connection> {
@@ -95,4 +95,4 @@ class DatagramPort : public std::enable_shared_from_this<DatagramPort> {
 std::pair<std::shared_ptr<Listener>, std::shared_ptr<DatagramPort>> bind_both(boost::asio::io_context& context,
                                                                               std::uint16_t port);
 
-}  // namespace vbar::grand::bench
+}  // namespace vbar::bench_lines

@@ -1,4 +1,4 @@
-#include "hil_drivers/grand/bench/generator/host_line.h"
+#include "hil_drivers/bench_lines/host_line.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-namespace vbar::grand::bench {
+namespace vbar::bench_lines {
 namespace {
 
 namespace asio = boost::asio;
@@ -148,4 +148,4 @@ bool HostLine::set_host_baud(unsigned baud) {
   return ::tcsetattr(pty_->slave.get(), TCSANOW, &settings) == 0;
 }
 
-}  // namespace vbar::grand::bench
+}  // namespace vbar::bench_lines

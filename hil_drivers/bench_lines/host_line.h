@@ -16,7 +16,7 @@
 
 #include "host_sim/io/byte_channels.h"
 
-namespace vbar::grand::bench {
+namespace vbar::bench_lines {
 
 class HostLine {
  public:
@@ -70,4 +70,4 @@ class HostLine {
   std::uint64_t bytes_lost_ = 0;
 };
 
-}  // namespace vbar::grand::bench
+}  // namespace vbar::bench_lines

@@ -1,8 +1,8 @@
-#include "hil_drivers/grand/wire/line_buffer.h"
+#include "hil_drivers/wire/line_buffer.h"
 
 #include <fmt/format.h>
 
-namespace vbar::grand::wire {
+namespace vbar::wire {
 
 std::optional<std::string> LineBuffer::next() {
   constexpr std::string_view kEnds = "\r\n";
@@ -20,4 +20,4 @@ std::optional<std::string> LineBuffer::next() {
   return line;
 }
 
-}  // namespace vbar::grand::wire
+}  // namespace vbar::wire

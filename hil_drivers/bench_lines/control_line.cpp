@@ -1,4 +1,4 @@
-#include "hil_drivers/grand/bench/generator/fault_line.h"
+#include "hil_drivers/bench_lines/control_line.h"
 
 #include <stdexcept>
 #include <utility>
@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-namespace vbar::grand::bench {
+namespace vbar::bench_lines {
 namespace {
 
 namespace asio = boost::asio;
@@ -26,13 +26,11 @@ std::string error_line(const std::string& reason) {
 
 }  // namespace
 
-struct FaultLine::State {
-  State(asio::io_context& context, FaultInjector& fault_injector, std::vector<std::string> names)
-      : acceptor(context), injector(fault_injector), vehicles(std::move(names)) {}
+struct ControlLine::State {
+  State(asio::io_context& context, Handler line_handler) : acceptor(context), handler(std::move(line_handler)) {}
 
   stream_protocol::acceptor acceptor;
-  FaultInjector& injector;
-  std::vector<std::string> vehicles;
+  Handler handler;
 };
 
 namespace {
@@ -40,8 +38,8 @@ namespace {
 /// One client; it lives as long as something is under way on it.
 class Client : public std::enable_shared_from_this<Client> {
  public:
-  Client(stream_protocol::socket socket, FaultInjector& injector, const std::vector<std::string>& vehicles)
-      : socket_(std::move(socket)), injector_(injector), vehicles_(vehicles) {}
+  Client(stream_protocol::socket socket, ControlLine::Handler handler)
+      : socket_(std::move(socket)), handler_(std::move(handler)) {}
 
   void read() {
     asio::async_read_until(socket_, asio::dynamic_buffer(received_, kMaxLine), '\n',
@@ -58,11 +56,9 @@ class Client : public std::enable_shared_from_this<Client> {
  private:
   void handle(const std::string& line) {
     try {
-      const Fault fault = fault_from_json(line, vehicles_);
-      injector_.add(fault, [weak = weak_from_this()](const std::string& injected) {
-        if (const auto client = weak.lock()) client->answer("{\"injected\":" + injected + "}");
+      handler_(line, [weak = weak_from_this()](const std::string& text) {
+        if (const auto client = weak.lock()) client->answer(text);
       });
-      injector_.advance();
     } catch (const std::exception& error) {
       answer(error_line(error.what()));
     }
@@ -75,8 +71,7 @@ class Client : public std::enable_shared_from_this<Client> {
   }
 
   stream_protocol::socket socket_;
-  FaultInjector& injector_;
-  std::vector<std::string> vehicles_;
+  ControlLine::Handler handler_;
   std::string received_;
 };
 
@@ -84,33 +79,31 @@ template <class State>
 void accept_next(const std::shared_ptr<State>& state) {
   state->acceptor.async_accept([state](const error_code& error, stream_protocol::socket socket) {
     if (error) return;
-    std::make_shared<Client>(std::move(socket), state->injector, state->vehicles)->read();
+    std::make_shared<Client>(std::move(socket), state->handler)->read();
     accept_next(state);
   });
 }
 
 }  // namespace
 
-FaultLine::FaultLine(asio::io_context& context, FaultInjector& injector, std::vector<std::string> vehicles,
-                     const std::filesystem::path& path)
-    : state_(std::make_shared<State>(context, injector, std::move(vehicles))) {
+ControlLine::ControlLine(asio::io_context& context, const std::filesystem::path& path, Handler handler)
+    : state_(std::make_shared<State>(context, std::move(handler))) {
   try {
     std::filesystem::remove(path);
     state_->acceptor.open();
     state_->acceptor.bind(stream_protocol::endpoint(path.string()));
     state_->acceptor.listen();
   } catch (const std::exception& error) {
-    throw std::runtime_error(
-        fmt::format("{}: the control line of the faults cannot be made: {}", path.string(), error.what()));
+    throw std::runtime_error(fmt::format("{}: the control line cannot be made: {}", path.string(), error.what()));
   }
   accept_next(state_);
 }
 
-FaultLine::~FaultLine() {
+ControlLine::~ControlLine() {
   error_code ignored;
   const auto endpoint = state_->acceptor.local_endpoint(ignored);
   state_->acceptor.close(ignored);
   ::unlink(endpoint.path().c_str());
 }
 
-}  // namespace vbar::grand::bench
+}  // namespace vbar::bench_lines

@@ -1,4 +1,4 @@
-#include "hil_drivers/grand/bench/control/sockets.h"
+#include "hil_drivers/bench_lines/sockets.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -6,7 +6,7 @@
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
-namespace vbar::grand::bench {
+namespace vbar::bench_lines {
 namespace {
 
 namespace asio = boost::asio;
@@ -179,4 +179,4 @@ std::pair<std::shared_ptr<Listener>, std::shared_ptr<DatagramPort>> bind_both(as
   }
 }
 
-}  // namespace vbar::grand::bench
+}  // namespace vbar::bench_lines
