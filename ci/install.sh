@@ -21,6 +21,7 @@ test=(
   clang clang-format clang-tidy libclang-rt-14-dev
   g++-arm-linux-gnueabihf qemu-user
   libsdl2-dev libxrandr-dev xvfb x11-apps  # the display of the Optical Stimulator, and a server for its tests
+  libceres-dev  # calibration of the Optical Stimulator
 )
 peers=(chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr libopencv-dev tshark)
 train=("${fly[@]}" python3 python3-numpy python3-torch)
