@@ -9,7 +9,7 @@
 
 #include "fuzz_target.h"
 #include "hil_drivers/grand/bench/control/skydel_commands.h"
-#include "hil_drivers/grand/wire/line_buffer.h"
+#include "hil_drivers/wire/line_buffer.h"
 #include "hil_drivers/grand/wire/simgen.h"
 #include "hil_drivers/grand/wire/template_format.h"
 
