@@ -20,6 +20,8 @@ test=(
   ccache git ca-certificates libgtest-dev libgmock-dev libbenchmark-dev python3 iproute2
   clang clang-format clang-tidy libclang-rt-14-dev
   g++-arm-linux-gnueabihf qemu-user
+  # The display of the emulated Optical Stimulator, and a client of it.
+  xvfb libx11-dev
 )
 peers=(chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr libopencv-dev tshark)
 train=("${fly[@]}" python3 python3-numpy python3-torch)
