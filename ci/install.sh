@@ -18,12 +18,13 @@ fly=(
 test=(
   "${fly[@]}"
   ccache git ca-certificates libgtest-dev libgmock-dev libbenchmark-dev python3 iproute2
+  libaravis-dev libusb-1.0-0-dev
   clang clang-format clang-tidy libclang-rt-14-dev
   g++-arm-linux-gnueabihf qemu-user
   # The display of the emulated Optical Stimulator, and a client of it.
   xvfb libx11-dev
 )
-peers=(chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr libopencv-dev tshark)
+peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr libopencv-dev tshark)
 train=("${fly[@]}" python3 python3-numpy python3-torch)
 
 # The wire formats' peer is an npm package. Only if no other npm is installed: a vendor's node conflicts with
