@@ -19,6 +19,11 @@ DisplayMapParameters nominal_map(const Bench& bench, const ProcedureSettings& se
   return map;
 }
 
+/// Cameras set exposures in these.
+double whole_microseconds(double span_s) {
+  return 1e-6 * std::round(1e6 * span_s);
+}
+
 double nth_greatest(const std::vector<float>& values, std::size_t n) {
   std::vector<float> greatest(n);
   std::partial_sort_copy(values.begin(), values.end(), greatest.begin(), greatest.end(), std::greater<>());
@@ -53,6 +58,7 @@ Picture Session::picture(double exposure_s, int frames) {
 Picture Session::well_exposed(double& exposure_s, int frames) {
   constexpr std::size_t kHighest = 5;
   constexpr double kLow = 0.3, kHigh = 0.75, kWanted = 0.5;
+  exposure_s = whole_microseconds(exposure_s);
   const double black = result.camera.offset_dn.value, span = range_dn() - black;
   for (int attempt = 0; attempt < 12; ++attempt) {
     Picture taken = picture(exposure_s, 1);
@@ -61,7 +67,8 @@ Picture Session::well_exposed(double& exposure_s, int frames) {
     if ((share >= kLow && share <= kHigh) || at_limit) return frames > 1 ? picture(exposure_s, frames) : taken;
     // Of a saturated picture nothing is known but that it is too bright.
     const double factor = share > 0.95 ? 0.15 : kWanted / std::max(share, 0.02);
-    exposure_s = std::clamp(exposure_s * factor, settings.exposure_min_s, settings.exposure_max_s);
+    exposure_s = whole_microseconds(exposure_s * factor);
+    exposure_s = std::clamp(exposure_s, settings.exposure_min_s, settings.exposure_max_s);
   }
   throw std::runtime_error("no exposure suits the dots: their light changes from frame to frame");
 }
