@@ -47,7 +47,7 @@ std::optional<DotMeasurement> coarse_dot(const Session& session, const Picture& 
 /// Mean squared width of the dots at a place of the display's axis, px^2.
 double squared_width(Session& session, double display_mm, double& exposure_s, double window_sigma_px) {
   session.bench.rails.move_to(session.settings.lens_mm, display_mm);
-  const Picture picture = session.well_exposed(exposure_s, 2);
+  const Picture picture = session.well_exposed(exposure_s, 1);
   DotWindow window;
   window.sigma_px = window_sigma_px;
   window.half_width_px = static_cast<int>(std::ceil(4.0 * window_sigma_px)) + 4;
