@@ -21,7 +21,8 @@ test=(
   libaravis-dev libusb-1.0-0-dev
   clang clang-format clang-tidy libclang-rt-14-dev
   g++-arm-linux-gnueabihf qemu-user
-  libsdl2-dev libxrandr-dev libx11-dev xvfb x11-apps  # the display of the Optical Stimulator, a server for its tests and a client of it
+  # The display of the Optical Stimulator, its server on an emulated bench, and another client of it.
+  libsdl2-dev libx11-dev libxrandr-dev xvfb x11-apps
   libceres-dev  # calibration of the Optical Stimulator
 )
 peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr libopencv-dev tshark)
