@@ -18,10 +18,14 @@ fly=(
 test=(
   "${fly[@]}"
   ccache git ca-certificates libgtest-dev libgmock-dev libbenchmark-dev python3 iproute2
+  libaravis-dev libusb-1.0-0-dev
   clang clang-format clang-tidy libclang-rt-14-dev
   g++-arm-linux-gnueabihf qemu-user
+  # The display of the Optical Stimulator, its server on an emulated bench, and another client of it.
+  libsdl2-dev libx11-dev libxrandr-dev xvfb x11-apps
+  libceres-dev  # calibration of the Optical Stimulator
 )
-peers=(chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr libopencv-dev tshark)
+peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr libopencv-dev tshark)
 train=("${fly[@]}" python3 python3-numpy python3-torch)
 
 # The wire formats' peer is an npm package. Only if no other npm is installed: a vendor's node conflicts with

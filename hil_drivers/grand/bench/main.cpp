@@ -11,13 +11,10 @@
 
 #include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "hil_drivers/bench_lines/parent_watch.h"
 #include "hil_drivers/grand/bench/generator/bench.h"
 #include "hil_drivers/grand/bench/generator/oem628_end.h"
 #include "hil_drivers/grand/bench/samples/gnss_sdr/gnss_sdr_receivers.h"
@@ -30,29 +27,6 @@ namespace asio = boost::asio;
 namespace bench = vbar::grand::bench;
 
 enum ExitCode { kDone = 0, kFailed = 1, kRefused = 2, kFaultExit = 3 };
-
-/// Ends the event loop when a pipe on standard input is closed by its other end: whoever started the program is gone.
-class ParentWatch {
- public:
-  explicit ParentWatch(asio::io_context& context) : context_(context), input_(context) {
-    struct stat status {};
-    if (::fstat(STDIN_FILENO, &status) != 0 || !S_ISFIFO(status.st_mode)) return;
-    input_.assign(::dup(STDIN_FILENO));
-    read();
-  }
-
- private:
-  void read() {
-    input_.async_read_some(asio::buffer(&byte_, 1), [this](const boost::system::error_code& error, std::size_t) {
-      if (error) return context_.stop();
-      read();
-    });
-  }
-
-  asio::io_context& context_;
-  asio::posix::stream_descriptor input_;
-  char byte_ = 0;
-};
 
 enum class ReceiverKind { kOem628, kGnssSdr };
 
@@ -67,8 +41,7 @@ int run(const bench::Scenario& scenario, const std::filesystem::path& directory,
   asio::signal_set signals(context, SIGINT, SIGTERM, SIGHUP);
   signals.async_wait([&](const boost::system::error_code&, int) { context.stop(); });
   std::signal(SIGPIPE, SIG_IGN);
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  const ParentWatch watch(context);
+  const vbar::bench_lines::ParentWatch watch(context);
   bench::Bench emulator(context, scenario, vbar::mission::data_directory(), directory,
                         receivers(receiver, scenario, directory));
   emulator.faults().on_exit = [] { std::_Exit(kFaultExit); };

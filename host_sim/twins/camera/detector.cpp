@@ -27,14 +27,19 @@ std::span<float, kChunk> chunk_of(std::vector<float>& values, std::size_t chunk)
 }  // namespace
 
 Detector::Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name)
+    : Detector(settings, seed, camera_name, draw_hot_pixels(settings.detector, settings.region, seed, camera_name)) {}
+
+Detector::Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name,
+                   std::span<const HotPixel> hot_pixels)
     : settings_(settings),
       pixels_(static_cast<std::size_t>(settings.region.width) * static_cast<std::size_t>(settings.region.height)),
       noise_key_(stream_of(seed, camera_name, "pixel_noise").bits()),
+      hot_pixels_(hot_pixels.begin(), hot_pixels.end()),
       response_(up_to_whole_chunks(pixels_)),
       dark_electrons_(up_to_whole_chunks(pixels_)),
       charge_(up_to_whole_chunks(pixels_)) {
   draw_fixed_pattern(seed, camera_name);
-  draw_hot_pixels(seed, camera_name);
+  add_hot_pixels();
 }
 
 /// By the position of the pixel on the detector, so that another region shows the same pattern.
@@ -56,18 +61,29 @@ void Detector::draw_fixed_pattern(std::uint64_t seed, std::string_view camera_na
   }
 }
 
-void Detector::draw_hot_pixels(std::uint64_t seed, std::string_view camera_name) {
-  const DetectorSettings& detector = settings_.detector;
-  const Region& region = settings_.region;
+std::vector<HotPixel> draw_hot_pixels(const DetectorSettings& detector, const Region& region, std::uint64_t seed,
+                                      std::string_view camera_name) {
+  std::vector<HotPixel> hot_pixels;
   engine::RandomStream stream = stream_of(seed, camera_name, "hot_pixels");
   for (int k = 0; k < detector.hot_pixels; ++k) {  // two may fall on one pixel: then it is the hotter
     const int column = std::min(static_cast<int>(stream.uniform(0.0, region.width)), region.width - 1);
     const int row = std::min(static_cast<int>(stream.uniform(0.0, region.height)), region.height - 1);
     const double electrons_per_s = detector.hot_pixel_electrons_per_s * stream.exponential();
-    hot_pixels_.push_back({region.x + column, region.y + row, electrons_per_s});
-    const auto pixel =
-        static_cast<std::size_t>(row) * static_cast<std::size_t>(region.width) + static_cast<std::size_t>(column);
-    dark_electrons_[pixel] += static_cast<float>(electrons_per_s * settings_.exposure_s);
+    hot_pixels.push_back({region.x + column, region.y + row, electrons_per_s});
+  }
+  return hot_pixels;
+}
+
+void Detector::add_hot_pixels() {
+  const Region& region = settings_.region;
+  std::erase_if(hot_pixels_, [&](const HotPixel& hot) {
+    return hot.x < region.x || hot.y < region.y || hot.x >= region.x + region.width ||
+           hot.y >= region.y + region.height;
+  });
+  for (const HotPixel& hot : hot_pixels_) {
+    const auto pixel = static_cast<std::size_t>(hot.y - region.y) * static_cast<std::size_t>(region.width) +
+                       static_cast<std::size_t>(hot.x - region.x);
+    dark_electrons_[pixel] += static_cast<float>(hot.electrons_per_s * settings_.exposure_s);
   }
 }
 

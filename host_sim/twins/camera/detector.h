@@ -25,10 +25,19 @@ struct HotPixel {
   double electrons_per_s = 0.0;
 };
 
+/// Places and sizes of the hot pixels of a region, from the seed.
+[[nodiscard]] std::vector<HotPixel> draw_hot_pixels(const DetectorSettings& detector, const Region& region,
+                                                    std::uint64_t seed, std::string_view camera_name);
+
 class Detector {
  public:
   /// The region of `settings` must not be empty. `camera_name` names the detector's random numbers.
   Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name);
+
+  /// A detector whose hot pixels are known, so that every region of it has the same ones: those of `hot_pixels` that
+  /// are in the region.
+  Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name,
+           std::span<const HotPixel> hot_pixels);
 
   /// Exposes and reads the region: `dn` gets its pixels, rows from the top. Throws std::invalid_argument for an image
   /// of another region. Negative and NaN expected electrons count as zero.
@@ -40,7 +49,7 @@ class Detector {
 
  private:
   void draw_fixed_pattern(std::uint64_t seed, std::string_view camera_name);
-  void draw_hot_pixels(std::uint64_t seed, std::string_view camera_name);
+  void add_hot_pixels();
   void collect(const PhotonImage& image, std::uint64_t exposure);
   void read_out(std::uint64_t exposure, std::vector<std::uint16_t>& dn) const;
 

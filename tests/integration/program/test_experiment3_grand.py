@@ -119,7 +119,7 @@ class Experiment3Grand(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
     def test_nothing_remains_of_the_bench(self):
-        remains = [path for path in pathlib.Path(tempfile.gettempdir()).glob("vbar_grand.*") if path.stat().st_uid == os.getuid()]
+        remains = [path for path in pathlib.Path(tempfile.gettempdir()).glob("vbar_bench.*") if path.stat().st_uid == os.getuid()]
         self.assertEqual([path for path in remains if not is_used(path)], [])
 
 

@@ -9,7 +9,7 @@ namespace vbar::grand::bench {
 LineServer::LineServer(boost::asio::io_context& context, Engine& engine, const ControlSettings& settings,
                        std::size_t udp_ports)
     : engine_(engine), last_samples_(engine.vehicles()) {
-  auto [listener, port] = bind_both(context, port_at(settings.control_ports, 0));
+  auto [listener, port] = bench_lines::bind_both(context, port_at(settings.control_ports, 0));
   listener_ = std::move(listener);
   ports_.push_back(std::move(port));
   for (std::size_t k = 1; k < udp_ports; ++k)

@@ -8,11 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "hil_drivers/bench_lines/sockets.h"
 #include "hil_drivers/grand/bench/control/control_common.h"
-#include "hil_drivers/grand/bench/control/sockets.h"
-#include "hil_drivers/grand/wire/line_buffer.h"
+#include "hil_drivers/wire/line_buffer.h"
 
 namespace vbar::grand::bench {
+
+using bench_lines::Connection;
+using bench_lines::DatagramPort;
+using bench_lines::Listener;
 
 class LineServer : public ControlServers {
  public:

@@ -3,14 +3,18 @@
 #include <cmath>
 #include <optional>
 
+#include "hil_drivers/bench_lines/sockets.h"
 #include "hil_drivers/grand/bench/control/control_common.h"
 #include "hil_drivers/grand/bench/control/skydel_commands.h"
-#include "hil_drivers/grand/bench/control/sockets.h"
 #include "hil_drivers/grand/trajectory/antenna_attitude.h"
 #include "hil_drivers/grand/wire/skydel_hil.h"
 
 namespace vbar::grand::bench {
 namespace {
+
+using bench_lines::Connection;
+using bench_lines::DatagramPort;
+using bench_lines::Listener;
 
 class SkydelServer final : public ControlServers {
  public:

@@ -7,9 +7,10 @@
 
 #include <boost/asio/io_context.hpp>
 
+#include "hil_drivers/bench_lines/bench_directory.h"
+#include "hil_drivers/bench_lines/control_line.h"
 #include "hil_drivers/grand/bench/generator/bench_engine.h"
 #include "hil_drivers/grand/bench/generator/fault_injector.h"
-#include "hil_drivers/grand/bench/generator/fault_line.h"
 
 namespace vbar::grand::bench {
 
@@ -31,12 +32,12 @@ class Bench {
  private:
   void write_addresses(const Scenario& scenario) const;
 
-  std::filesystem::path directory_;
+  bench_lines::BenchDirectory directory_;
   std::unique_ptr<EdgeBroadcaster> edges_;
   std::unique_ptr<BenchEngine> engine_;
   std::unique_ptr<ControlServers> control_;
   std::unique_ptr<FaultInjector> faults_;
-  std::unique_ptr<FaultLine> fault_line_;
+  std::unique_ptr<bench_lines::ControlLine> fault_line_;
 };
 
 }  // namespace vbar::grand::bench

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
+#include "hil_drivers/bench_lines/json_table.h"
 #include "hil_drivers/grand/bench/receiver/baud_rates.h"
-#include "host_sim/mission/mission_error.h"
 
 namespace vbar::grand::bench {
 namespace {
@@ -53,20 +51,8 @@ Fault read_fault(const TableReader& section, const std::vector<std::string>& veh
 }
 
 Fault fault_from_json(const std::string& line, const std::vector<std::string>& vehicles) {
-  const nlohmann::json object = nlohmann::json::parse(line, nullptr, false);
-  constexpr const char* kAccepted = R"(one JSON object in a line, such as {"kind": "rf_outage", "vehicle": "target"})";
-  if (!object.is_object()) throw mission::MissionError(kControlLine, "", "something else", kAccepted);
-  toml::table table;
-  for (const auto& [key, value] : object.items()) {
-    if (value.is_string())
-      table.insert(key, value.get<std::string>());
-    else if (value.is_number_integer())
-      table.insert(key, value.get<std::int64_t>());
-    else if (value.is_number())
-      table.insert(key, value.get<double>());
-    else
-      throw mission::MissionError(kControlLine, key, value.dump().substr(0, 80), "a number or a text");
-  }
+  const toml::table table =
+      bench_lines::table_of_json(line, kControlLine, R"({"kind": "rf_outage", "vehicle": "target"})");
   return read_fault(TableReader(table, kControlLine), vehicles);
 }
 

@@ -17,7 +17,7 @@ Vehicle::Vehicle(boost::asio::io_context& context, const std::filesystem::path& 
   for (std::size_t port = 0; port < com_ports; ++port) {
     const std::string line_name = name_ + ".com" + std::to_string(port + 1);
     auto listener = [this, port](auto bytes, unsigned host_baud) { listen(port, bytes, host_baud); };
-    ports_.push_back({std::make_unique<HostLine>(context, directory / line_name, std::move(listener)),
+    ports_.push_back({std::make_unique<bench_lines::HostLine>(context, directory / line_name, std::move(listener)),
                       LineImpairment(seed, line_name)});
     ports_.back().line->set_host_baud(receiver_->baud(port));  // until the host sets its own
   }
@@ -74,7 +74,7 @@ void Vehicle::poll_lines() {
 
 void Vehicle::speak() {
   for (std::size_t port = 0; port < ports_.size(); ++port) {
-    HostLine& line = *ports_[port].line;
+    bench_lines::HostLine& line = *ports_[port].line;
     const std::vector<std::uint8_t> bytes = ports_[port].impairment.to_host(receiver_->speak(port, line.host_baud()));
     if (!bytes.empty()) line.write(bytes);
   }

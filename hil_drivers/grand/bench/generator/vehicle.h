@@ -10,7 +10,7 @@
 
 #include <boost/asio/io_context.hpp>
 
-#include "hil_drivers/grand/bench/generator/host_line.h"
+#include "hil_drivers/bench_lines/host_line.h"
 #include "hil_drivers/grand/bench/generator/line_impairment.h"
 #include "hil_drivers/grand/bench/generator/receiver_end.h"
 #include "hil_drivers/grand/bench/generator/sky.h"
@@ -30,7 +30,7 @@ class Vehicle {
   [[nodiscard]] ReceiverEnd& receiver() { return *receiver_; }
 
   struct Port {
-    std::unique_ptr<HostLine> line;
+    std::unique_ptr<bench_lines::HostLine> line;
     LineImpairment impairment;
   };
   [[nodiscard]] std::vector<Port>& ports() { return ports_; }

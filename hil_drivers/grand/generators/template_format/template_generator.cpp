@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "hil_drivers/grand/generators/control_connection.h"
-#include "hil_drivers/grand/wire/line_buffer.h"
+#include "hil_drivers/wire/line_buffer.h"
 #include "hil_drivers/grand/wire/template_format.h"
 #include "hil_drivers/grand/wire/template_settings.h"
 #include "host_sim/io/udp_socket.h"

@@ -1,6 +1,6 @@
 // A serial line of the bench as the host sees it: a terminal of Linux.
 
-#include "hil_drivers/grand/bench/generator/host_line.h"
+#include "hil_drivers/bench_lines/host_line.h"
 
 #include <chrono>
 #include <fstream>
@@ -18,6 +18,7 @@ namespace vbar::grand::bench {
 namespace {
 
 using namespace std::chrono_literals;
+using bench_lines::HostLine;
 using test::BenchDirectory;
 using test::read_available;
 

@@ -1,0 +1,436 @@
+#include "hil_drivers/gige/camera/camera.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "hil_drivers/gige/camera/aravis_features.h"
+#include "hil_drivers/gige/camera/pixel_padding.h"
+#include "hil_drivers/gige/wire/gvcp.h"
+#include "hil_drivers/gige/wire/gvsp.h"
+
+namespace vbar::gige {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using twins::camera::Region;
+
+constexpr int kBuffers = 3;
+constexpr guint64 kSliceUs = 20'000;
+constexpr std::uint32_t kManufacturerInfoAddress = 0xA8, kManufacturerInfoBytes = 48;
+constexpr double kExposureTolerance = 0.01;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// The address of this computer that routes to `address`; nothing is sent.
+std::string routing_address(const std::string& address) {
+  sockaddr_in peer{};
+  peer.sin_family = AF_INET;
+  peer.sin_port = htons(wire::kGvcpPort);
+  if (::inet_pton(AF_INET, address.c_str(), &peer.sin_addr) != 1)
+    throw CameraError(fmt::format("camera \"{}\": this is not an IPv4 address", address));
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in own{};
+  socklen_t size = sizeof own;
+  void* const peer_bytes = &peer;
+  void* const own_bytes = &own;
+  const bool is_found = fd >= 0 && ::connect(fd, static_cast<const sockaddr*>(peer_bytes), sizeof peer) == 0 &&
+                        ::getsockname(fd, static_cast<sockaddr*>(own_bytes), &size) == 0;
+  if (fd >= 0) ::close(fd);
+  if (!is_found) throw CameraError(fmt::format("camera {}: no network interface routes to it", address));
+  std::array<char, INET_ADDRSTRLEN> text{};
+  ::inet_ntop(AF_INET, &own.sin_addr, text.data(), text.size());
+  return text.data();
+}
+
+const char* name_of(ArvBufferStatus status) {
+  switch (status) {
+    case ARV_BUFFER_STATUS_SUCCESS:
+      return "success";
+    case ARV_BUFFER_STATUS_CLEARED:
+      return "cleared";
+    case ARV_BUFFER_STATUS_TIMEOUT:
+      return "its last packets did not come";
+    case ARV_BUFFER_STATUS_MISSING_PACKETS:
+      return "packets are missing";
+    case ARV_BUFFER_STATUS_WRONG_PACKET_ID:
+      return "a wrong packet number";
+    case ARV_BUFFER_STATUS_SIZE_MISMATCH:
+      return "another size than announced";
+    case ARV_BUFFER_STATUS_FILLING:
+      return "not complete";
+    case ARV_BUFFER_STATUS_ABORTED:
+      return "aborted";
+    case ARV_BUFFER_STATUS_UNKNOWN:
+      break;
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+struct Camera::Stop {
+  std::atomic<bool> requested{false};
+};
+
+/// The device and its stream while the camera is open.
+class Camera::Connection {
+ public:
+  explicit Connection(const Settings& settings) : settings_(settings), padding_(settings.converter_bits) { connect(); }
+
+  ~Connection() {
+    stream_.reset();
+    if (!device_) return;
+    // A camera that does not answer any more is not asked again for seconds.
+    if (is_started_ && !is_lost_) {
+      GlibError ignored;
+      arv_device_execute_command(device_.get(), "AcquisitionStop", ignored.out());
+    }
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  Identity identify() {
+    Identity identity;
+    identity.vendor = features().text("DeviceVendorName");
+    identity.model = features().text("DeviceModelName");
+    identity.version = features().text("DeviceVersion");
+    const auto serial_name =
+        arv_device_get_feature(device_.get(), "DeviceSerialNumber") != nullptr ? "DeviceSerialNumber" : "DeviceID";
+    identity.serial = features().text(serial_name);
+    std::array<char, kManufacturerInfoBytes + 1> text{};
+    GlibError error;
+    arv_device_read_memory(device_.get(), kManufacturerInfoAddress, kManufacturerInfoBytes, text.data(), error.out());
+    if (error) throw FeatureError(fmt::format("the manufacturer's information cannot be read: {}", error.text()));
+    identity.manufacturer_info = text.data();
+    check(identity);
+    return identity;
+  }
+
+  void configure() {
+    // What an earlier owner left running refuses settings.
+    features().execute("AcquisitionStop");
+    set_trigger();
+    set_image_functions();
+    set_region();
+    set_exposure(settings_.exposure_s);
+    set_transport();
+  }
+
+  void start() {
+    GlibError error;
+    stream_.reset(arv_device_create_stream(device_.get(), nullptr, nullptr, error.out()));
+    if (!stream_) throw FeatureError(fmt::format("the stream channel is not opened: {}", error.text()));
+    g_object_set(stream_.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
+                 static_cast<gint>(buffer_.requested_bytes), "packet-resend", ARV_GV_STREAM_PACKET_RESEND_ALWAYS,
+                 "packet-request-ratio", 1.0, "packet-timeout", guint{20'000}, "frame-retention", guint{500'000},
+                 nullptr);
+    payload_ = static_cast<std::size_t>(features().integer("PayloadSize"));
+    for (int k = 0; k < kBuffers; ++k) arv_stream_push_buffer(stream_.get(), arv_buffer_new(payload_, nullptr));
+    features().execute("AcquisitionStart");
+    is_started_ = true;
+  }
+
+  void set_exposure(double exposure_s) {
+    const double exposure_us = 1e6 * exposure_s;
+    features().set_number({"ExposureTime", "ExposureTimeAbs"}, exposure_us, kExposureTolerance * exposure_us,
+                          Need::kRequired);
+    settings_.exposure_s = exposure_s;
+  }
+
+  std::variant<Frame, NoFrame> take(const std::atomic<bool>& stop) {
+    discard_late_images();
+    guint64 resent_before = 0, missing = 0;
+    arv_gv_stream_get_statistics(ARV_GV_STREAM(stream_.get()), &resent_before, &missing);
+    const Clock::time_point begin = Clock::now();
+    if (auto failure = trigger()) return *failure;
+    const double limit_s = settings_.exposure_s + transfer_s() + settings_.timeout_s;
+    for (;;) {
+      if (stop) return failure(NoFrame::Reason::kStopped, "stopped");
+      if (ArvBuffer* const buffer = arv_stream_timeout_pop_buffer(stream_.get(), kSliceUs)) {
+        auto result = read(buffer);
+        arv_stream_push_buffer(stream_.get(), buffer);
+        if (auto* frame = std::get_if<Frame>(&result)) {
+          guint64 resent = 0;
+          arv_gv_stream_get_statistics(ARV_GV_STREAM(stream_.get()), &resent, &missing);
+          frame->packets_resent = static_cast<std::int64_t>(resent - resent_before);
+          frame->receive_s = seconds_since(begin);
+        }
+        return result;
+      }
+      if (seconds_since(begin) > limit_s)
+        return failure(NoFrame::Reason::kTimeout, fmt::format("no image within {:.1f} s of the trigger", limit_s));
+    }
+  }
+
+  [[nodiscard]] std::string transport() const {
+    return description(buffer_, delay_ns_, static_cast<std::size_t>(settings_.packet_size));
+  }
+
+ private:
+  [[nodiscard]] Features features() const { return Features(device_.get()); }
+
+  [[nodiscard]] NoFrame failure(NoFrame::Reason reason, const std::string& text) const {
+    return {reason, fmt::format("camera {}: {}", settings_.address, text)};
+  }
+
+  void connect() {
+    const std::string interface =
+        settings_.interface_address.empty() ? routing_address(settings_.address) : settings_.interface_address;
+    const ObjectPtr<GInetAddress> own(g_inet_address_new_from_string(interface.c_str()));
+    const ObjectPtr<GInetAddress> peer(g_inet_address_new_from_string(settings_.address.c_str()));
+    if (!own)
+      throw CameraError(
+          fmt::format("camera {}: interface \"{}\" is not an IPv4 address", settings_.address, interface));
+    if (!peer) throw CameraError(fmt::format("camera \"{}\": this is not an IPv4 address", settings_.address));
+    GlibError error;
+    device_.reset(arv_gv_device_new(own.get(), peer.get(), error.out()));
+    if (!device_) throw FeatureError(error.text());
+    if (!arv_gv_device_is_controller(ARV_GV_DEVICE(device_.get())))
+      throw FeatureError("it is owned by another program");
+    arv_device_set_register_cache_policy(device_.get(), ARV_REGISTER_CACHE_POLICY_DISABLE);
+    arv_gv_device_set_packet_size_adjustment(ARV_GV_DEVICE(device_.get()), ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
+    arv_gv_device_set_stream_options(ARV_GV_DEVICE(device_.get()), ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
+  }
+
+  void check(const Identity& identity) const {
+    if (identity.model.find(settings_.model) == std::string::npos)
+      throw FeatureError(
+          fmt::format("it is a \"{}\" of \"{}\"; expected \"{}\"", identity.model, identity.vendor, settings_.model));
+    if (!settings_.serial.empty() && identity.serial != settings_.serial)
+      throw FeatureError(
+          fmt::format("its serial number is \"{}\"; expected \"{}\"", identity.serial, settings_.serial));
+    const auto width = features().integer_if_available("SensorWidth");
+    const auto height = features().integer_if_available("SensorHeight");
+    const auto differs = [](std::optional<gint64> found, int wanted) {
+      return wanted != 0 && found && *found != wanted;
+    };
+    if (differs(width, settings_.sensor_width) || differs(height, settings_.sensor_height))
+      throw FeatureError(fmt::format("its sensor has {} x {} pixels; expected {} x {}", width.value_or(0),
+                                     height.value_or(0), settings_.sensor_width, settings_.sensor_height));
+  }
+
+  void set_trigger() const {
+    const Features set = features();
+    set.set_text({"AcquisitionMode"}, "Continuous", Need::kRequired);
+    set.set_text({"TriggerSelector"}, "FrameStart", Need::kIfAvailable);
+    set.set_text({"TriggerMode"}, "Off", Need::kRequired);
+    set.set_text({"TriggerSource"}, "Software", Need::kRequired);
+    set.set_text({"TriggerMode"}, "On", Need::kRequired);
+  }
+
+  void set_image_functions() const {
+    const Features set = features();
+    // A frame rate would limit how often the camera accepts triggers.
+    set.set_text({"AcquisitionFrameRateAuto"}, "Off", Need::kIfAvailable);
+    set.set_flag({"AcquisitionFrameRateEnabled", "AcquisitionFrameRateEnable"}, false, Need::kIfAvailable);
+    set.set_text({"ExposureMode"}, "Timed", Need::kIfAvailable);
+    set.set_text({"ExposureAuto"}, "Off", Need::kIfAvailable);
+    set.set_text({"GainAuto"}, "Off", Need::kIfAvailable);
+    set.set_flag({"GammaEnabled", "GammaEnable"}, false, Need::kIfAvailable);
+    set.set_flag({"SharpnessEnabled", "SharpnessEnable"}, false, Need::kIfAvailable);
+    set.set_number({"Gain"}, settings_.gain_db, 0.05, Need::kIfAvailable);
+    if (settings_.black_level_percent)
+      set.set_number({"BlackLevel"}, *settings_.black_level_percent, 0.03, Need::kRequired);
+    set.set_text({"PixelFormat"}, wire::name_of(settings_.pixel_format), Need::kRequired);
+  }
+
+  void set_region() const {
+    const Features set = features();
+    const Region& region = settings_.region;
+    // At the corner every size is allowed.
+    for (const char* offset : {"OffsetX", "OffsetY"}) set.set_integer({offset}, 0, Need::kIfAvailable);
+    set.set_integer({"Width"}, region.width, Need::kRequired);
+    set.set_integer({"Height"}, region.height, Need::kRequired);
+    const auto need = [](int offset) { return offset == 0 ? Need::kIfAvailable : Need::kRequired; };
+    set.set_integer({"OffsetX"}, region.x, need(region.x));
+    set.set_integer({"OffsetY"}, region.y, need(region.y));
+  }
+
+  void set_transport() {
+    const Features set = features();
+    set.set_integer({"GevSCPSPacketSize"}, settings_.packet_size, Need::kRequired);
+    const auto packet_size = static_cast<std::size_t>(settings_.packet_size);
+    const std::size_t image = image_bytes();
+    const std::size_t packets = image / (packet_size - wire::kPacketOverheadBytes) + 3;
+    // The kernel doubles what is requested.
+    buffer_ = granted_socket_buffer(packets * bytes_in_buffer(packet_size) / 2);
+    delay_ns_ =
+        settings_.packet_delay_us ? 1e3 * *settings_.packet_delay_us : packet_delay_ns(buffer_, image, packet_size);
+    GlibError error;
+    const guint64 frequency = arv_gv_device_get_timestamp_tick_frequency(ARV_GV_DEVICE(device_.get()), error.out());
+    if (error || frequency == 0) throw FeatureError("its tick frequency cannot be read");
+    const double ticks = std::ceil(1e-9 * delay_ns_ * static_cast<double>(frequency));
+    set.set_integer({"GevSCPD"}, static_cast<gint64>(ticks), ticks > 0.0 ? Need::kRequired : Need::kIfAvailable);
+  }
+
+  [[nodiscard]] std::size_t pixels() const {
+    return static_cast<std::size_t>(settings_.region.width) * static_cast<std::size_t>(settings_.region.height);
+  }
+  [[nodiscard]] std::size_t image_bytes() const { return wire::image_bytes(settings_.pixel_format, pixels()); }
+
+  /// Of one image over the wire, at least that of a link with 100 MB/s.
+  [[nodiscard]] double transfer_s() const {
+    const auto data = static_cast<double>(static_cast<std::size_t>(settings_.packet_size) - wire::kPacketOverheadBytes);
+    const auto bytes = static_cast<double>(image_bytes());
+    return bytes / 100e6 + bytes / data * 1e-9 * delay_ns_;
+  }
+
+  void discard_late_images() {
+    while (ArvBuffer* const buffer = arv_stream_try_pop_buffer(stream_.get()))
+      arv_stream_push_buffer(stream_.get(), buffer);
+  }
+
+  std::optional<NoFrame> trigger() {
+    GlibError error;
+    arv_device_execute_command(device_.get(), "TriggerSoftware", error.out());
+    if (!error) return std::nullopt;
+    if (!arv_gv_device_is_controller(ARV_GV_DEVICE(device_.get())))
+      return failure(NoFrame::Reason::kNotOwner, "control of it is lost");
+    is_lost_ = true;
+    return failure(NoFrame::Reason::kNoAnswer, fmt::format("it does not take the trigger: {}", error.text()));
+  }
+
+  std::variant<Frame, NoFrame> read(ArvBuffer* buffer) {
+    const ArvBufferStatus status = arv_buffer_get_status(buffer);
+    if (status != ARV_BUFFER_STATUS_SUCCESS)
+      return failure(NoFrame::Reason::kIncomplete, fmt::format("an image is not whole: {}", name_of(status)));
+    // The pixels, whatever the label of the buffer: some cameras call images chunk data.
+    size_t size = 0;
+    const void* const data = arv_buffer_get_data(buffer, &size);
+    // With Aravis 0.8.26 the size is 0 for a buffer that it allocated; complete means that `payload_` bytes came.
+    size = size == 0 ? payload_ : std::min(size, payload_);
+    if (data == nullptr || size < image_bytes())
+      return failure(NoFrame::Reason::kInvalid, fmt::format("an image of {} bytes; expected {}", size, image_bytes()));
+    if (arv_buffer_get_payload_type(buffer) == ARV_BUFFER_PAYLOAD_TYPE_IMAGE) {
+      gint x = 0, y = 0, width = 0, height = 0;
+      arv_buffer_get_image_region(buffer, &x, &y, &width, &height);
+      const Region& wanted = settings_.region;
+      if (width != wanted.width || height != wanted.height || x != wanted.x || y != wanted.y)
+        return failure(NoFrame::Reason::kInvalid,
+                       fmt::format("an image of region [{}, {}, {}, {}]; expected [{}, {}, {}, {}]", x, y, width,
+                                   height, wanted.x, wanted.y, wanted.width, wanted.height));
+      const ArvPixelFormat format = arv_buffer_get_image_pixel_format(buffer);
+      if (format != static_cast<std::uint32_t>(settings_.pixel_format))
+        return failure(NoFrame::Reason::kInvalid, fmt::format("an image of pixel format {:08X}h; expected {}", format,
+                                                              wire::name_of(settings_.pixel_format)));
+    }
+    return unpack({static_cast<const std::uint8_t*>(data), size});
+  }
+
+  Frame unpack(wire::ByteSpan bytes) {
+    Frame frame;
+    frame.width = settings_.region.width;
+    frame.height = settings_.region.height;
+    frame.dn = wire::unpack_pixels(settings_.pixel_format, pixels(), bytes);
+    switch (settings_.pixel_format) {
+      case wire::PixelFormat::kMono8:
+        frame.bits = 8;
+        break;
+      case wire::PixelFormat::kMono12Packed:
+        frame.bits = 12;
+        break;
+      case wire::PixelFormat::kMono16:
+        padding_.observe(frame.dn);
+        frame.bits = padding_.bits();
+        for (std::uint16_t& value : frame.dn) value = static_cast<std::uint16_t>(value >> padding_.shift());
+        break;
+    }
+    return frame;
+  }
+
+  Settings settings_;
+  ObjectPtr<ArvDevice> device_;
+  ObjectPtr<ArvStream> stream_;
+  SocketBuffer buffer_;
+  double delay_ns_ = 0.0;
+  std::size_t payload_ = 0;
+  PixelPadding padding_;
+  bool is_started_ = false;
+  bool is_lost_ = false;
+};
+
+bool Camera::Identity::is_emulated() const {
+  return manufacturer_info.find("emulat") != std::string::npos;
+}
+
+Camera::Camera(Settings settings) : settings_(std::move(settings)), stop_(std::make_unique<Stop>()) {}
+
+Camera::~Camera() {
+  close();
+}
+
+void Camera::open() {
+  close();
+  try {
+    auto connection = std::make_unique<Connection>(settings_);
+    identity_ = connection->identify();
+    connection->configure();
+    connection->start();
+    connection_ = std::move(connection);
+  } catch (const FeatureError& error) {
+    throw CameraError(fmt::format("camera {}: {}", settings_.address, error.what()));
+  }
+}
+
+std::variant<Frame, NoFrame> Camera::take() {
+  if (!connection_) throw CameraError(fmt::format("camera {}: it is not open", settings_.address));
+  if (stop_->requested) return NoFrame{NoFrame::Reason::kStopped, fmt::format("camera {}: stopped", settings_.address)};
+  return connection_->take(stop_->requested);
+}
+
+void Camera::set_exposure(double exposure_s) {
+  if (!connection_) throw CameraError(fmt::format("camera {}: it is not open", settings_.address));
+  try {
+    connection_->set_exposure(exposure_s);
+    settings_.exposure_s = exposure_s;
+  } catch (const FeatureError& error) {
+    throw CameraError(fmt::format("camera {}: {}", settings_.address, error.what()));
+  }
+}
+
+void Camera::set_region(const Region& region) {
+  settings_.region = region;
+  open();
+}
+
+void Camera::reconnect() {
+  open();
+}
+
+void Camera::close() noexcept {
+  connection_.reset();
+}
+
+void Camera::stop() noexcept {
+  stop_->requested = true;
+}
+
+bool Camera::is_open() const {
+  return connection_ != nullptr;
+}
+
+const Camera::Identity& Camera::identity() const {
+  return identity_;
+}
+
+const Camera::Settings& Camera::settings() const {
+  return settings_;
+}
+
+std::string Camera::transport() const {
+  if (!connection_) return "the camera is not open";
+  return connection_->transport();
+}
+
+}  // namespace vbar::gige

@@ -1,0 +1,69 @@
+#pragma once
+// An emulated GigE Vision camera: answers GVCP on UDP port 3956 of its address, exposes when it is triggered, and
+// streams. It has one owner at a time, whose silence for the heartbeat's time releases it. Everything happens on the
+// thread of the io_context, calls of this interface included.
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include <boost/asio/io_context.hpp>
+
+#include "hil_drivers/gige/device/acquisition.h"
+#include "hil_drivers/gige/device/description.h"
+#include "hil_drivers/gige/device/stream_sender.h"
+#include "hil_drivers/gige/wire/gvcp.h"
+
+namespace vbar::gige {
+
+class Device {
+ public:
+  struct Settings {
+    std::string address = "127.0.0.1";     ///< IPv4
+    std::uint16_t port = wire::kGvcpPort;  ///< clients accept no other; 0 for tests: any free one
+    Description description;
+    Pace pace = Pace::kFast;
+    double readout_s = 6.1e-3;  ///< of the whole sensor; of a region in proportion to its rows
+    std::uint64_t seed = 1;     ///< of the packet faults
+  };
+
+  struct Statistics {
+    std::int64_t commands = 0;
+    std::int64_t commands_refused = 0;
+    std::int64_t foreign_datagrams = 0;
+    std::int64_t owners_expired = 0;  ///< by the heartbeat
+    AcquisitionStatistics acquisition;
+    StreamStatistics stream;
+  };
+
+  /// Throws std::runtime_error if the address is not available, std::invalid_argument for an invalid description.
+  Device(boost::asio::io_context& context, const Settings& settings, Expose expose);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  // Faults, from now on.
+  void set_packet_faults(const PacketFaults& faults);
+  void set_answer_delay(std::chrono::milliseconds delay);
+  /// Neither hears nor speaks, as with its cable pulled.
+  void set_away(bool away);
+  /// Owned by another program.
+  void set_busy(bool busy);
+  void damage_xml(bool damaged);
+  void set_exposure_factor(double factor);
+  void refuse_region(bool refused);
+  void ignore_triggers(int count);
+  /// What blocks call themselves; pixels do not change.
+  void set_payload_type(wire::PayloadType type);
+
+  [[nodiscard]] Statistics statistics() const;
+  [[nodiscard]] std::uint16_t port() const;
+  [[nodiscard]] bool is_owned() const;
+
+ private:
+  class Control;
+  std::unique_ptr<Control> control_;
+};
+
+}  // namespace vbar::gige

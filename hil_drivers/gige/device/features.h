@@ -1,0 +1,71 @@
+#pragma once
+// The features of the emulated camera, once: from this table come registers, limits and the GenICam description.
+
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hil_drivers/gige/device/description.h"
+
+namespace vbar::gige {
+
+/// In the order of the table.
+enum class FeatureId : std::size_t {
+  kSensorWidth,
+  kSensorHeight,
+  kWidthMax,
+  kHeightMax,
+  kOffsetXMax,
+  kOffsetYMax,
+  kWidth,
+  kHeight,
+  kOffsetX,
+  kOffsetY,
+  kPixelFormat,
+  kPayloadSize,
+  kAcquisitionMode,
+  kAcquisitionStart,
+  kAcquisitionStop,
+  kFrameRateAuto,
+  kFrameRateEnabled,
+  kFrameRate,
+  kTriggerSelector,
+  kTriggerMode,
+  kTriggerSource,
+  kTriggerSoftware,
+  kExposureMode,
+  kExposureAuto,
+  kExposureTime,
+  kGainAuto,
+  kGain,
+  kBlackLevel,
+  kGammaEnabled,
+  kGamma,
+  kSharpnessEnabled,
+};
+
+enum class FeatureKind { kInteger, kFloat, kEnumeration, kBoolean, kCommand };
+enum class FeatureAccess { kReadOnly, kReadWrite, kWriteOnly };
+
+struct Feature {
+  FeatureId id;
+  std::string_view name, category;
+  FeatureKind kind;
+  FeatureAccess access;
+  double initial = 0.0;
+  // Integers and floats.
+  double min = 0.0, max = 0.0, increment = 1.0;
+  std::string_view max_feature = "";  ///< has the limit in the place of `max`
+  std::string_view unit = "";
+  std::vector<std::pair<std::string_view, std::uint32_t>> entries = {};  ///< of an enumeration
+  bool locked_in_acquisition = false;
+
+  [[nodiscard]] std::uint32_t address() const { return 0x10000U + 8U * static_cast<std::uint32_t>(id); }
+  /// A float is IEEE 754 double.
+  [[nodiscard]] std::uint32_t size() const { return kind == FeatureKind::kFloat ? 8 : 4; }
+};
+
+[[nodiscard]] std::vector<Feature> features_of(const Description& description);
+
+}  // namespace vbar::gige

@@ -1,0 +1,71 @@
+#pragma once
+// GVSP, the stream protocol of GigE Vision 1.2: an image is a block of packets, one UDP datagram each: leader (number
+// 0), data (1 to N, all of one size but the last), trailer (N + 1).
+//
+//   header   u16 status, u16 block (never 0), u8 kind, u24 packet
+//   leader   u16 0, u16 payload type, u64 time, u32 pixel format, u32 width, height, x, y, u16 padding x 2
+//   trailer  u16 0, u16 payload type, u32 height
+
+#include <cstdint>
+#include <variant>
+
+#include "hil_drivers/gige/wire/big_endian.h"
+#include "hil_drivers/gige/wire/gvcp.h"
+#include "hil_drivers/gige/wire/pixels.h"
+
+namespace vbar::gige::wire {
+
+inline constexpr std::size_t kGvspHeaderBytes = 8;
+/// The packet size of a device counts the headers of IP, UDP and GVSP.
+inline constexpr std::size_t kPacketOverheadBytes = 20 + 8 + kGvspHeaderBytes;
+
+enum class PacketKind : std::uint8_t { kLeader = 1, kTrailer = 2, kData = 3 };
+
+/// What the leader states of the payload; cameras that label images as chunk data exist (Aravis, issue 753).
+enum class PayloadType : std::uint16_t { kImage = 0x0001, kChunkData = 0x0004, kExtendedImage = 0x4001 };
+
+struct StreamHeader {
+  Status status = Status::kSuccess;
+  std::uint16_t block = 1;
+  PacketKind kind = PacketKind::kData;
+  std::uint32_t packet = 0;
+  friend bool operator==(const StreamHeader&, const StreamHeader&) = default;
+};
+
+struct Leader {
+  PayloadType payload_type = PayloadType::kImage;
+  std::uint64_t timestamp_ticks = 0;
+  PixelFormat format = PixelFormat::kMono16;
+  std::uint32_t width = 0, height = 0, x = 0, y = 0;
+  friend bool operator==(const Leader&, const Leader&) = default;
+};
+
+struct Trailer {
+  PayloadType payload_type = PayloadType::kImage;
+  std::uint32_t height = 0;
+  friend bool operator==(const Trailer&, const Trailer&) = default;
+};
+
+/// Views the datagram.
+struct Data {
+  ByteSpan bytes;
+};
+
+/// A packet that carries its status only: the device cannot send it again.
+struct NoPayload {};
+
+struct StreamPacket {
+  StreamHeader header;
+  std::variant<NoPayload, Leader, Trailer, Data> body;
+};
+
+// Each replaces the content of `datagram`, whose memory is so kept from packet to packet.
+void encode_leader(Status status, std::uint16_t block, const Leader& leader, Bytes& datagram);
+void encode_trailer(Status status, std::uint16_t block, std::uint32_t packet, const Trailer& trailer, Bytes& datagram);
+void encode_data(Status status, std::uint16_t block, std::uint32_t packet, ByteSpan bytes, Bytes& datagram);
+void encode_unavailable(std::uint16_t block, std::uint32_t packet, Bytes& datagram);
+
+/// Bytes from the network. Throws std::invalid_argument with the position of the error.
+[[nodiscard]] StreamPacket decode_stream_packet(ByteSpan datagram);
+
+}  // namespace vbar::gige::wire

@@ -1,0 +1,60 @@
+#pragma once
+// The whole emulated bench: X server, optics, camera, rails and faults in one directory and one event loop.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "hil_drivers/bench_lines/bench_directory.h"
+#include "hil_drivers/bench_lines/control_line.h"
+#include "hil_drivers/optical_stimulator/bench/bench_settings.h"
+#include "hil_drivers/optical_stimulator/bench/camera/camera_link.h"
+#include "hil_drivers/optical_stimulator/bench/faults/fault_list.h"
+#include "hil_drivers/optical_stimulator/bench/optical_path.h"
+#include "hil_drivers/optical_stimulator/bench/screen/screen_watch.h"
+#include "hil_drivers/optical_stimulator/bench/screen/virtual_screen.h"
+#include "hil_drivers/zaber/device/device_server.h"
+
+namespace vbar::optical_stimulator::bench {
+
+class Bench {
+ public:
+  /// Makes everything and, when it listens, writes DIR/addresses.json. To be made by the thread that runs `context`.
+  /// Throws std::runtime_error, mission::MissionError; each one sentence.
+  Bench(boost::asio::io_context& context, const BenchSettings& settings, const std::filesystem::path& data_directory,
+        const std::filesystem::path& directory, std::function<void()> exit);
+  ~Bench();
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+ private:
+  /// One exposure of what is on the screen.
+  std::vector<std::uint16_t> expose(const ExposureRequest& request);
+  [[nodiscard]] double now_s() const;
+  [[nodiscard]] RailPlaces rail_places();
+  [[nodiscard]] FaultActions fault_actions(std::function<void()> exit);
+  void look_around();
+  void write_addresses() const;
+
+  BenchSettings settings_;
+  bench_lines::BenchDirectory directory_;
+  OpticalPath path_;
+  VirtualScreen screen_;
+  ScreenWatch watch_;
+  Panel panel_;
+  zaber::Device rails_;
+  double lens_zero_mm_, display_zero_mm_;
+  zaber::DeviceServer rail_server_;
+  std::unique_ptr<CameraLink> camera_;
+  FaultList faults_;
+  bench_lines::ControlLine control_;
+  boost::asio::steady_timer timer_;
+  std::uint64_t frames_ = 0;  ///< delivered so far
+};
+
+}  // namespace vbar::optical_stimulator::bench

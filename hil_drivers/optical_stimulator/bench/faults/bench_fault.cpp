@@ -1,0 +1,48 @@
+#include "hil_drivers/optical_stimulator/bench/faults/bench_fault.h"
+
+#include <vector>
+
+#include "hil_drivers/bench_lines/json_table.h"
+
+namespace vbar::optical_stimulator::bench {
+namespace {
+
+using mission::from_to;
+using mission::TableReader;
+
+constexpr const char* kControlLine = "fault control line";
+constexpr std::int64_t kAxes = 2;
+
+const FaultRule& read_kind(const TableReader& section) {
+  std::vector<std::string_view> names;
+  for (const FaultRule& rule : kFaultRules) names.push_back(rule.name);
+  const std::string name = section.text("kind");
+  for (const FaultRule& rule : kFaultRules)
+    if (rule.name == name) return rule;
+  section.refuse_value("kind", mission::listing_of(names));
+}
+
+}  // namespace
+
+Fault read_fault(const TableReader& section) {
+  constexpr std::int64_t kMaxFrames = 1'000'000'000;
+  const FaultRule& rule = read_kind(section);
+  Fault fault;
+  fault.kind = rule.kind;
+  if (section.has("frame")) fault.frame = static_cast<std::uint64_t>(section.integer("frame", 0, kMaxFrames));
+  if (rule.span == FaultSpan::kFrames)
+    fault.frames = static_cast<std::uint64_t>(section.integer("frames", 0, kMaxFrames, 0));
+  if (rule.span == FaultSpan::kSeconds) fault.duration_s = section.number("duration_s", from_to(0.0, 1e6), 0.0);
+  if (rule.has_axis) fault.axis = static_cast<std::size_t>(section.integer("axis", 1, kAxes) - 1);
+  if (!rule.value_key.empty()) fault.value = section.number(rule.value_key, rule.value_range);
+  if (!rule.second_key.empty()) fault.second = section.number(rule.second_key, rule.value_range, 0.0);
+  section.finish();
+  return fault;
+}
+
+Fault fault_from_json(const std::string& line) {
+  const toml::table table = bench_lines::table_of_json(line, kControlLine, R"({"kind": "late_frame", "frames": 1})");
+  return read_fault(TableReader(table, kControlLine));
+}
+
+}  // namespace vbar::optical_stimulator::bench

@@ -1,0 +1,71 @@
+// The emulated bench's cost for one image: light of the region with a strip, stars and a target; of a frame that is lit
+// all over; and the detector with it.
+
+#include <memory>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "hil_drivers/optical_stimulator/bench/optical_path.h"
+#include "host_sim/mission/data_directory.h"
+
+namespace {
+
+namespace os = vbar::optical_stimulator::bench;
+
+constexpr vbar::twins::camera::Region kRegion{710, 152, 500, 848}, kWhole{0, 0, 1920, 1200};
+
+std::vector<std::uint8_t> frame_of(bool is_lit_all_over) {
+  std::vector<std::uint8_t> counts(1920 * 1200, is_lit_all_over ? 60 : 0);
+  if (is_lit_all_over) return counts;
+  const auto patch = [&](int u, int v, int side, std::uint8_t count) {
+    for (int y = v; y < v + side; ++y)
+      for (int x = u; x < u + side; ++x) counts[static_cast<std::size_t>(1920 * y + x)] = count;
+  };
+  for (int cell = 0; cell < 24; cell += 2) patch(712 + 20 * cell, 160, 20, 200);
+  for (int star = 0; star < 150; ++star) patch(720 + star * 7919 % 470, 210 + star * 104729 % 780, 5, 90);
+  patch(950, 590, 30, 255);
+  return counts;
+}
+
+os::BenchSettings settings() {
+  return os::read_bench(vbar::mission::data_directory() / "benches/optical_stimulator.toml", {});
+}
+
+void light(benchmark::State& state, bool is_lit_all_over, const vbar::twins::camera::Region& region) {
+  const os::BenchSettings bench = settings();
+  const auto camera = os::camera_of(bench, vbar::mission::data_directory());
+  const os::ErrorField field(bench.field, 1, 1920, 1200);
+  const os::BenchOptics optics(bench.lenses, bench.pose, bench.optics, field, camera, 1920, 1200);
+  os::LightPath path({1920, 1200, bench.light, camera, 1}, optics);
+  const std::vector<std::uint8_t> counts = frame_of(is_lit_all_over);
+  const os::ShownFrame frame{counts, 1.0};
+  vbar::twins::camera::PhotonImage image{region, {}};
+  path.expose({&frame, 1}, 0.2, 1.0, image);
+  for (auto _ : state) {
+    path.expose({&frame, 1}, 0.2, 1.0, image);
+    benchmark::DoNotOptimize(image.electrons.data());
+  }
+}
+BENCHMARK_CAPTURE(light, stars, false, kRegion)->Name("os_bench/light/500x848_stars")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(light, all, true, kRegion)
+    ->Name("os_bench/light/500x848_lit_all_over")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(light, whole, true, kWhole)
+    ->Name("os_bench/light/1920x1200_lit_all_over")
+    ->Unit(benchmark::kMillisecond);
+
+void expose(benchmark::State& state) {
+  const os::BenchSettings bench = settings();
+  os::OpticalPath path(bench, os::camera_of(bench, vbar::mission::data_directory()));
+  const os::Pictures pictures{{std::make_shared<const std::vector<std::uint8_t>>(frame_of(false)), 1.0}};
+  std::vector<std::uint16_t> dn;
+  std::uint64_t number = 0;
+  for (auto _ : state) {
+    path.expose(pictures, {kRegion, {0.2, 0.0, 64.0}}, {40.0, 34.29}, {}, number++, dn);
+    benchmark::DoNotOptimize(dn.data());
+  }
+}
+BENCHMARK(expose)->Name("os_bench/expose/500x848_stars")->Unit(benchmark::kMillisecond);
+
+}  // namespace
