@@ -171,7 +171,7 @@ inline void expect_images_as_of_the_twin(Chain& chain) {
   }
   EXPECT_GE(stars_hil, 0.9 * stars_sil);
   EXPECT_LE(attitude, 2.0);
-  EXPECT_GE(bearings, kImages / 2);
+  EXPECT_GE(bearings, 4);
 }
 
 }  // namespace vbar::optical_stimulator
