@@ -9,13 +9,13 @@
 
 #include "fuzz_target.h"
 #include "hil_drivers/grand/bench/control/skydel_commands.h"
-#include "hil_drivers/wire/line_buffer.h"
 #include "hil_drivers/grand/wire/simgen.h"
 #include "hil_drivers/grand/wire/template_format.h"
+#include "hil_drivers/wire/line_buffer.h"
 
 namespace {
 
-using namespace vbar;
+namespace fsw = vbar::fsw;
 using namespace vbar::grand;
 
 class IdleEngine final : public bench::Engine {

@@ -35,13 +35,10 @@ double drawn_zero(const BenchSettings& settings, double zero_mm, const char* axi
 
 }  // namespace
 
-struct Bench::Camera {};
-
 Bench::Bench(boost::asio::io_context& context, const BenchSettings& settings,
              const std::filesystem::path& data_directory, const std::filesystem::path& directory,
              std::function<void()> exit)
-    : context_(context),
-      settings_(settings),
+    : settings_(settings),
       directory_(directory),
       path_(settings, camera_of(settings, data_directory)),
       screen_(settings.display.width, settings.display.height, directory_.path()),
@@ -51,7 +48,8 @@ Bench::Bench(boost::asio::io_context& context, const BenchSettings& settings,
       lens_zero_mm_(drawn_zero(settings, settings.rails.lens_zero_mm, "lens")),
       display_zero_mm_(drawn_zero(settings, settings.rails.display_zero_mm, "display")),
       rail_server_(context, rails_, directory_.path() / kTerminal),
-      camera_(std::make_unique<Camera>()),
+      camera_(std::make_unique<CameraLink>(context, settings, path_.camera().settings(),
+                                           [this](const ExposureRequest& request) { return expose(request); })),
       faults_(fault_actions(std::move(exit)), directory_.path() / kFaultFile),
       control_(context, directory_.path() / kControlSocket,
                [this](const std::string& line, const bench_lines::Answer& answer) {
@@ -88,9 +86,7 @@ std::vector<std::uint16_t> Bench::expose(const ExposureRequest& request) {
 
 FaultActions Bench::fault_actions(std::function<void()> exit) {
   FaultActions actions;
-  actions.camera_away = [](bool) {};
-  actions.camera_busy = [](bool) {};
-  actions.packet_loss = [](double) {};
+  actions.camera = [this](const Fault& fault, bool is_on) { camera_->set_fault(fault, is_on); };
   actions.bump = [this](double x_um, double y_um) { path_.bump(x_um, y_um); };
   actions.stall_rail = [this](std::size_t axis) { rails_.axis(axis).block(); };
   actions.move_rail = [this](std::size_t axis, double um) { rails_.axis(axis).displace(um); };
@@ -112,6 +108,7 @@ void Bench::look_around() {
 void Bench::write_addresses() const {
   nlohmann::ordered_json addresses;
   addresses["display"] = screen_.display();
+  addresses["camera"] = camera_->address();
   addresses["rails"]["pty"] = (directory_.path() / kTerminal).string();
   addresses["rails"]["tcp"] = fmt::format("127.0.0.1:{}", rail_server_.tcp_port());
   addresses["control"] = (directory_.path() / kControlSocket).string();

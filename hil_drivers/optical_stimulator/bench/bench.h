@@ -13,6 +13,7 @@
 #include "hil_drivers/bench_lines/bench_directory.h"
 #include "hil_drivers/bench_lines/control_line.h"
 #include "hil_drivers/optical_stimulator/bench/bench_settings.h"
+#include "hil_drivers/optical_stimulator/bench/camera/camera_link.h"
 #include "hil_drivers/optical_stimulator/bench/faults/fault_list.h"
 #include "hil_drivers/optical_stimulator/bench/optical_path.h"
 #include "hil_drivers/optical_stimulator/bench/screen/screen_watch.h"
@@ -31,21 +32,15 @@ class Bench {
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
+ private:
   /// One exposure of what is on the screen.
   std::vector<std::uint16_t> expose(const ExposureRequest& request);
-
-  [[nodiscard]] VirtualScreen& screen() { return screen_; }
-
- private:
-  struct Camera;
-
   [[nodiscard]] double now_s() const;
   [[nodiscard]] RailPlaces rail_places();
   [[nodiscard]] FaultActions fault_actions(std::function<void()> exit);
   void look_around();
   void write_addresses() const;
 
-  boost::asio::io_context& context_;
   BenchSettings settings_;
   bench_lines::BenchDirectory directory_;
   OpticalPath path_;
@@ -55,7 +50,7 @@ class Bench {
   zaber::Device rails_;
   double lens_zero_mm_, display_zero_mm_;
   zaber::DeviceServer rail_server_;
-  std::unique_ptr<Camera> camera_;
+  std::unique_ptr<CameraLink> camera_;
   FaultList faults_;
   bench_lines::ControlLine control_;
   boost::asio::steady_timer timer_;

@@ -13,9 +13,15 @@
 namespace vbar::optical_stimulator::bench {
 
 enum class FaultKind {
-  kCameraAway,       ///< the camera does not answer and sends nothing
-  kCameraBusy,       ///< another program has control of the camera
-  kPacketLoss,       ///< packets of images are lost at random
+  kCameraAway,      ///< the camera does not answer and sends nothing
+  kCameraBusy,      ///< another program has control of the camera
+  kPacketLoss,      ///< packets of images are lost at random
+  kPacketsDoubled,  ///< ... arrive twice
+  kPacketsReordered,
+  kAnswersLate,      ///< the camera's answers to commands
+  kXmlDamaged,       ///< the camera's description of itself
+  kRegionRefused,    ///< the camera rejects every region
+  kTriggersIgnored,  ///< acknowledged and without effect
   kLateFrame,        ///< the display shows what the screen held at the exposure before
   kFrozenDisplay,    ///< the display keeps what it shows
   kCoveredDisplay,   ///< a window of another program lies over its middle
@@ -43,13 +49,20 @@ struct FaultRule {
   std::string_view second_key = {};  ///< of a second number with the same range
 };
 
+inline constexpr mission::Range kFraction{0.0, 1.0};
 inline constexpr mission::Range kFactor{0.0, 10.0};
 inline constexpr mission::Range kMicrometres{-1e5, 1e5};
 
-inline constexpr std::array<FaultRule, 15> kFaultRules{{
+inline constexpr std::array<FaultRule, 21> kFaultRules{{
     {"camera_away", FaultKind::kCameraAway, FaultSpan::kSeconds},
     {"camera_busy", FaultKind::kCameraBusy, FaultSpan::kSeconds},
-    {"packet_loss", FaultKind::kPacketLoss, FaultSpan::kSeconds, false, "fraction", {0.0, 1.0}},
+    {"packet_loss", FaultKind::kPacketLoss, FaultSpan::kSeconds, false, "fraction", kFraction},
+    {"packets_doubled", FaultKind::kPacketsDoubled, FaultSpan::kSeconds, false, "fraction", kFraction},
+    {"packets_reordered", FaultKind::kPacketsReordered, FaultSpan::kSeconds, false, "fraction", kFraction},
+    {"answers_late", FaultKind::kAnswersLate, FaultSpan::kSeconds, false, "by_ms", {0.0, 60000.0}},
+    {"xml_damaged", FaultKind::kXmlDamaged, FaultSpan::kSeconds},
+    {"region_refused", FaultKind::kRegionRefused, FaultSpan::kSeconds},
+    {"triggers_ignored", FaultKind::kTriggersIgnored, FaultSpan::kOnce, false, "count", {1.0, 1e6}},
     {"late_frame", FaultKind::kLateFrame, FaultSpan::kFrames},
     {"frozen_display", FaultKind::kFrozenDisplay, FaultSpan::kFrames},
     {"covered_display", FaultKind::kCoveredDisplay, FaultSpan::kFrames},

@@ -42,6 +42,12 @@ void apply(const Fault& fault, ExposureFaults& faults) {
     case FaultKind::kCameraAway:
     case FaultKind::kCameraBusy:
     case FaultKind::kPacketLoss:
+    case FaultKind::kPacketsDoubled:
+    case FaultKind::kPacketsReordered:
+    case FaultKind::kAnswersLate:
+    case FaultKind::kXmlDamaged:
+    case FaultKind::kRegionRefused:
+    case FaultKind::kTriggersIgnored:
     case FaultKind::kBumped:
     case FaultKind::kRailStalled:
     case FaultKind::kRailMoved:
@@ -78,13 +84,15 @@ void FaultList::begin(Active& active, std::uint64_t frame, double now_s) {
 void FaultList::act(const Fault& fault, bool is_on) {
   switch (fault.kind) {
     case FaultKind::kCameraAway:
-      actions_.camera_away(is_on);
-      break;
     case FaultKind::kCameraBusy:
-      actions_.camera_busy(is_on);
-      break;
     case FaultKind::kPacketLoss:
-      actions_.packet_loss(is_on ? fault.value : 0.0);
+    case FaultKind::kPacketsDoubled:
+    case FaultKind::kPacketsReordered:
+    case FaultKind::kAnswersLate:
+    case FaultKind::kXmlDamaged:
+    case FaultKind::kRegionRefused:
+    case FaultKind::kTriggersIgnored:
+      actions_.camera(fault, is_on);
       break;
     case FaultKind::kBumped:
       actions_.bump(fault.value, fault.second);

@@ -22,8 +22,8 @@ struct ExposureFaults {
 
 /// The parts of the bench that faults other than those of an exposure act on.
 struct FaultActions {
-  std::function<void(bool is_on)> camera_away, camera_busy;
-  std::function<void(double fraction)> packet_loss;
+  /// Faults of the camera's link: on with their value, off.
+  std::function<void(const Fault& fault, bool is_on)> camera;
   std::function<void(double x_um, double y_um)> bump;
   std::function<void(std::size_t axis)> stall_rail;
   std::function<void(std::size_t axis, double um)> move_rail;

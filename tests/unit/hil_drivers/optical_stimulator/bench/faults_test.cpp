@@ -22,9 +22,9 @@ class FaultListTest : public ::testing::Test {
  protected:
   FaultListTest() {
     FaultActions actions;
-    actions.camera_away = [this](bool on) { events.push_back(on ? "away" : "back"); };
-    actions.camera_busy = [this](bool on) { events.push_back(on ? "busy" : "free"); };
-    actions.packet_loss = [this](double fraction) { events.push_back("loss " + std::to_string(fraction)); };
+    actions.camera = [this](const Fault& fault, bool on) {
+      events.push_back(std::string(rule_of(fault.kind).name) + (on ? " on" : " off"));
+    };
     actions.bump = [this](double x, double) { events.push_back("bump " + std::to_string(x)); };
     actions.stall_rail = [this](std::size_t axis) { events.push_back("stall " + std::to_string(axis)); };
     actions.move_rail = [this](std::size_t axis, double) { events.push_back("move " + std::to_string(axis)); };
@@ -77,10 +77,10 @@ TEST_F(FaultListTest, WithoutANumberFromTheNextExposureToTheEnd) {
 TEST_F(FaultListTest, TheCameraReturnsAfterItsTime) {
   add(R"({"kind": "camera_away", "duration_s": 2.0})", 10.0);
   list->advance(11.9);
-  EXPECT_THAT(events, ElementsAre("away"));
+  EXPECT_THAT(events, ElementsAre("camera_away on"));
   list->advance(12.0);
   list->advance(13.0);
-  EXPECT_THAT(events, ElementsAre("away", "back"));
+  EXPECT_THAT(events, ElementsAre("camera_away on", "camera_away off"));
 }
 
 TEST_F(FaultListTest, AStalledRailIsAcknowledgedWhenAMoveHasStalled) {

@@ -101,8 +101,8 @@ TEST(BenchOptics, SolidAngleIsTheAreaBetweenTheDirectionsOfNeighbours) {
   const test::Light bench(settings);
   for (const double u : {100.0, 959.5, 1800.0}) {
     const double v = 300.0, h = 0.5;
-    const auto dx = bench.optics.detector_pixel(u + h, v) - bench.optics.detector_pixel(u - h, v);
-    const auto dy = bench.optics.detector_pixel(u, v + h) - bench.optics.detector_pixel(u, v - h);
+    const fsw::Vector2 dx = bench.optics.detector_pixel(u + h, v) - bench.optics.detector_pixel(u - h, v);
+    const fsw::Vector2 dy = bench.optics.detector_pixel(u, v + h) - bench.optics.detector_pixel(u, v - h);
     const double area = std::abs(dx.x() * dy.y() - dx.y() * dy.x()) / std::pow(bench.camera.focal_length_px(), 2);
     // The tilt's share of the area is in the difference only: 6 mrad times 0.16.
     EXPECT_NEAR(bench.optics.seen(u, v).solid_angle / area, 1.0, 2e-3);

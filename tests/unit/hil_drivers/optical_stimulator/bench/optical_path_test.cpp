@@ -49,7 +49,7 @@ TEST(OpticalPath, FaultsOfAnExposureChangeItsLight) {
   bench.light.contrast = 1e12;
   OpticalPath path(bench, camera_of(bench, mission::data_directory()));
   test::Frame frame(bench);
-  frame.at(960, 600) = 80;  // 180,000 e, spread over 2.1 px: below the full well
+  frame.at(960, 600) = 50;  // 58,000 e, a fifth of them in one pixel: below the full well
   const Pictures pictures{{std::make_shared<const std::vector<std::uint8_t>>(frame.counts), 1.0}};
   const auto light = [&](const ExposureFaults& faults) {
     std::vector<std::uint16_t> dn;
@@ -61,7 +61,8 @@ TEST(OpticalPath, FaultsOfAnExposureChangeItsLight) {
   const double normal = light({});
   ExposureFaults longer, brighter, louder;
   longer.exposure_factor = brighter.brightness_factor = louder.gain_factor = 1.1;
-  for (const ExposureFaults& faults : {longer, brighter, louder}) EXPECT_NEAR(light(faults) / normal, 1.1, 5e-3);
+  for (const ExposureFaults& faults : {longer, brighter, louder})
+    EXPECT_NEAR(light(faults) / normal, 1.1, 0.02);  // the halo is less than half a number a pixel
 }
 
 TEST(OpticalPath, ABumpDisplacesTheImage) {
@@ -72,7 +73,7 @@ TEST(OpticalPath, ABumpDisplacesTheImage) {
   const auto before = path.optics().detector_pixel(960.0, 600.0);
   path.bump(20.0, -10.0);
   path.expose(stars(bench), kRegion, kInFocus, {}, 1, dn);
-  const auto moved = path.optics().detector_pixel(960.0, 600.0) - before;
+  const fsw::Vector2 moved = path.optics().detector_pixel(960.0, 600.0) - before;
   const double px_per_um = 5972.7 / (400.0 / 7.0 * 1e3);
   EXPECT_NEAR(moved.x(), 20.0 * px_per_um, 1e-3);
   EXPECT_NEAR(moved.y(), -10.0 * px_per_um, 1e-3);
