@@ -26,7 +26,8 @@ MeanVariance mean_variance(const FramePair& pair, int width, int height) {
   std::vector<double> differences, means;
   for (int y = height / 4; y < 3 * height / 4; ++y)
     for (int x = width / 4; x < 3 * width / 4; ++x) {
-      const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      const std::size_t at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
       const double first = pair.first[at], second = pair.second[at];
       differences.push_back(first - second);
       means.push_back(0.5 * (first + second));
@@ -64,7 +65,8 @@ GainFit fit_gain(const MeanVariance& black, const std::vector<MeanVariance>& gre
           {noise, noise * std::hypot(0.5 * black.variance_sigma_dn2 / black.variance_dn2, gain_sigma / gain)}};
 }
 
-BlackFit fit_black(const Picture& short_exposure, double short_s, const Picture& long_exposure, double long_s, double noise_dn) {
+BlackFit fit_black(const Picture& short_exposure, double short_s, const Picture& long_exposure, double long_s,
+                   double noise_dn) {
   const double span_s = long_s - short_s;
   std::vector<double> rates(short_exposure.dn.size()), values(short_exposure.dn.begin(), short_exposure.dn.end());
   for (std::size_t k = 0; k < rates.size(); ++k)
@@ -76,7 +78,8 @@ BlackFit fit_black(const Picture& short_exposure, double short_s, const Picture&
   const double limit = 8.0 * noise_dn / span_s;
   for (std::size_t k = 0; k < rates.size(); ++k)
     if (rates[k] - rate.value > limit)
-      fit.hot_pixels.push_back({static_cast<int>(k) % short_exposure.width, static_cast<int>(k) / short_exposure.width, rates[k]});
+      fit.hot_pixels.push_back(
+          {static_cast<int>(k) % short_exposure.width, static_cast<int>(k) / short_exposure.width, rates[k]});
   return fit;
 }
 

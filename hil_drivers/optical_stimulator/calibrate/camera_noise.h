@@ -36,8 +36,8 @@ struct BlackFit {
   Figure offset_dn, background_dn_per_s;
   std::vector<HotPixel> hot_pixels;  ///< electrons_per_s holds DN/s here
 };
-[[nodiscard]] BlackFit fit_black(const Picture& short_exposure, double short_s, const Picture& long_exposure, double long_s,
-                                 double noise_dn);
+[[nodiscard]] BlackFit fit_black(const Picture& short_exposure, double short_s, const Picture& long_exposure,
+                                 double long_s, double noise_dn);
 
 /// Replaces the hot pixels by the mean of their neighbours in the row.
 void repair(Picture& picture, const std::vector<HotPixel>& hot_pixels);

@@ -75,14 +75,16 @@ ResponseFit fit_response(const std::vector<SquareLight>& squares, int places) {
   std::set<double> levels;
   for (const SquareLight& square : squares)
     if (square.electrons_per_s > 10.0 * square.sigma) used.push_back(square), levels.insert(square.count);
-  if (levels.size() < 4) throw std::runtime_error("counts to light: fewer than four levels of the display were measured");
+  if (levels.size() < 4)
+    throw std::runtime_error("counts to light: fewer than four levels of the display were measured");
   const auto chi2_at = [&](double first_count) { return solve_linear(used, places, first_count).chi2; };
   const double first_count = golden_section(-20.0, *levels.begin() - 1e-3, chi2_at);
   const LinearPart part = solve_linear(used, places, first_count);
   const double freedoms = std::max(1.0, static_cast<double>(used.size()) - places - 2.0);
   const double scale = std::sqrt(std::max(1.0, part.chi2 / freedoms));
   constexpr double kStep = 0.02;
-  const double curvature = (chi2_at(first_count + kStep) - 2.0 * part.chi2 + chi2_at(first_count - kStep)) / (kStep * kStep);
+  const double curvature =
+      (chi2_at(first_count + kStep) - 2.0 * part.chi2 + chi2_at(first_count - kStep)) / (kStep * kStep);
   ResponseFit fit;
   fit.first_count = {first_count, curvature > 0.0 ? scale * std::sqrt(2.0 / curvature) : 1.0};
   // gamma moves with the first count: the part along that valley is added.
@@ -105,7 +107,8 @@ UniformityFit fit_uniformity(const std::vector<PlaceLight>& places, int width_px
   basis.degree = degree;
   basis.high_px = {width_px - 1.0, height_px - 1.0};
   const auto terms = static_cast<Eigen::Index>(ChebyshevField::term_count(degree));
-  if (static_cast<Eigen::Index>(places.size()) < 2 * terms) throw std::runtime_error("uniformity: too few dots were found");
+  if (static_cast<Eigen::Index>(places.size()) < 2 * terms)
+    throw std::runtime_error("uniformity: too few dots were found");
   Eigen::MatrixXd design(static_cast<Eigen::Index>(places.size()), terms);
   Eigen::VectorXd light(design.rows());
   for (Eigen::Index k = 0; k < design.rows(); ++k) {
@@ -125,12 +128,14 @@ UniformityFit fit_uniformity(const std::vector<PlaceLight>& places, int width_px
       const ChebyshevTerms values = chebyshev_terms(basis, {fit.grid.step_px.x() * column, fit.grid.step_px.y() * row});
       fit.grid.values.push_back(Eigen::Map<const Eigen::VectorXd>(values.value.data(), terms).dot(solution));
     }
-  const double mean = std::accumulate(fit.grid.values.begin(), fit.grid.values.end(), 0.0) / static_cast<double>(fit.grid.values.size());
+  const double mean = std::accumulate(fit.grid.values.begin(), fit.grid.values.end(), 0.0) /
+                      static_cast<double>(fit.grid.values.size());
   for (double& value : fit.grid.values) value = std::max(0.01, value / mean);
   fit.mean_electrons_per_s = mean;
   const double freedoms = static_cast<double>(design.rows() - terms);
-  fit.grid.sigma = std::sqrt((design * solution - light).squaredNorm() / freedoms *
-                             static_cast<double>(terms) / static_cast<double>(design.rows())) / mean;
+  fit.grid.sigma = std::sqrt((design * solution - light).squaredNorm() / freedoms * static_cast<double>(terms) /
+                             static_cast<double>(design.rows())) /
+                   mean;
   return fit;
 }
 

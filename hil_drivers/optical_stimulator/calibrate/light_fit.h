@@ -10,7 +10,7 @@ namespace vbar::optical_stimulator::calibrate {
 
 /// Light of one square: rate per display pixel of the square, without the black level.
 struct SquareLight {
-  int place = 0;    ///< squares of one place have the same pixels
+  int place = 0;  ///< squares of one place have the same pixels
   double count = 0.0;
   double electrons_per_s = 0.0;
   double sigma = 0.0;  ///< of it
@@ -39,6 +39,7 @@ struct UniformityFit {
 };
 
 /// A polynomial of degree `degree` in both axes through the places: pixels differ at random, the field is smooth.
-[[nodiscard]] UniformityFit fit_uniformity(const std::vector<PlaceLight>& places, int width_px, int height_px, int degree);
+[[nodiscard]] UniformityFit fit_uniformity(const std::vector<PlaceLight>& places, int width_px, int height_px,
+                                           int degree);
 
 }  // namespace vbar::optical_stimulator::calibrate
