@@ -27,8 +27,6 @@ class Wired {
     const BenchAddresses addresses = read_addresses(process_.addresses_file());
     BenchCalibration calibration =
         true_calibration(settings_, bench::camera_of(settings_, tests::source_path("data")), {});
-    calibration.validity.rail_lens_mm = settings_.lenses.separation_mm - settings_.rails.lens_zero_mm;
-    calibration.validity.rail_display_mm = settings_.lenses.infinity_mm() - settings_.rails.display_zero_mm;
     DevicePlan plan;
     plan.camera_address = addresses.camera;
     plan.rails = addresses.rails;
