@@ -114,7 +114,7 @@ const SensorKind kCamera{{"camera", "", read_camera, read_camera_shared, check},
                          add_sources,
                          add_facts,
                          evaluate_camera,
-                         {tables, summarise_images, sections, kMessagesInTables},
+                         {tables, summarise_images, sections, kMessagesInTables, camera_paper_columns},
                          make_camera_tile_source};
 
 const CameraSensor* navigation_camera(const Spacecraft& carrier) {
