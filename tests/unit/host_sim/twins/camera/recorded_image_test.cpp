@@ -131,7 +131,7 @@ TEST(RecordedImage, DamagedDataAreAnErrorOrPixels) {
     try {
       const std::vector<std::uint16_t> dn = pixels_of_recorded_image(bytes);
       EXPECT_EQ(dn.size(), 2400U);
-      EXPECT_LT(*std::ranges::max_element(dn), 4096);
+      EXPECT_TRUE(std::ranges::all_of(dn, [](std::uint16_t value) { return value < 4096; }));
     } catch (const std::runtime_error&) {
       ++errors;
     }
