@@ -73,6 +73,12 @@ void check_frame(const charls::jpegls_decoder& decoder, const ImageHeader& heade
   if (decoder.near_lossless(0) != 0) fail("their coding is not lossless");
 }
 
+/// CharLS 2.4.1 searches data that are cut for seconds before it rejects them.
+void check_end(const std::vector<std::uint8_t>& data) {
+  const bool has_end = data.size() >= 2 && data[data.size() - 2] == 0xFF && data.back() == 0xD9;
+  if (!has_end) fail("they do not end with the marker of the end of an image");
+}
+
 /// The message without its data; empty if the bytes are not exactly one.
 std::optional<vbar_host::recorded_image> message_of(std::span<const std::uint8_t> bytes) {
   // The generated decoder allocates the claimed size before it checks that the bytes exist.
@@ -132,6 +138,7 @@ std::vector<std::uint16_t> pixels_of_recorded_image(std::span<const std::uint8_t
   const auto message = message_of(recorded_image);
   const auto header = message ? header_of(*message) : std::nullopt;
   if (!header) throw std::runtime_error("is a damaged record");
+  check_end(message->data);
   std::vector<std::uint16_t> dn;
   try {
     const charls::jpegls_decoder decoder(message->data, true);
