@@ -10,7 +10,7 @@ set -euo pipefail
 fly=(
   g++ cmake ninja-build python3-minimal
   libeigen3-dev liblcm-dev liblcm-bin libboost-dev liberfa-dev libgeographiclib-dev librandom123-dev libtomlplusplus-dev
-  libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev libosmesa6-dev libassimp-dev libpng-dev pps-tools
+  libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev libosmesa6-dev libassimp-dev libpng-dev libcharls-dev pps-tools
   # The emulated Zynq, whose images link no C++ run-time library (its headers are enough; the library is 313 MB), and the
   # sources of the mathematics library that flight code has on every target.
   gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-dev newlib-source qemu-system-arm
@@ -25,7 +25,8 @@ test=(
   libsdl2-dev libx11-dev libxrandr-dev xvfb x11-apps
   libceres-dev  # calibration of the Optical Stimulator
 )
-peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr libopencv-dev tshark)
+peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr
+  libopencv-dev tshark ffmpeg)
 train=("${fly[@]}" python3 python3-numpy python3-torch)
 
 # The wire formats' peer is an npm package. Only if no other npm is installed: a vendor's node conflicts with

@@ -200,11 +200,12 @@ void summarise_run(const RunFacts& facts, std::span<const Source> sources, repor
 
 }  // namespace
 
-AssembledMission::AssembledMission(const mission::Mission& mission, const std::filesystem::path& data_directory)
+AssembledMission::AssembledMission(const mission::Mission& mission, const std::filesystem::path& data_directory,
+                                   const sensors::MakeSources& make_sources)
     : mission_(mission),
       servicer_(complete_servicer(mission)),
       truth_(mission, servicer_, data_directory),
-      made_(sensors::make_sources(mission, servicer_, data_directory, &truth_)),
+      made_(make_sources(mission, servicer_, data_directory, &truth_)),
       thruster_(make_thruster(mission, servicer_)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
       timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())) {}

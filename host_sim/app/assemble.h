@@ -32,7 +32,8 @@ class AssembledMission {
 
   /// `mission` must outlive it. Throws what truth, orbits, attitudes, twins and their data throw, and
   /// std::runtime_error for a mission that cannot be flown.
-  AssembledMission(const mission::Mission& mission, const std::filesystem::path& data_directory);
+  AssembledMission(const mission::Mission& mission, const std::filesystem::path& data_directory,
+                   const sensors::MakeSources& make_sources = sensors::make_sources);
   AssembledMission(const AssembledMission&) = delete;
   AssembledMission& operator=(const AssembledMission&) = delete;
 

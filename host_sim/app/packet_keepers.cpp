@@ -3,7 +3,7 @@
 #include "host_sim/report/lcm_mirror.h"
 #include "host_sim/report/output_hash.h"
 #include "host_sim/report/run_folder.h"
-#include "host_sim/twins/camera/recipe_log.h"
+#include "host_sim/twins/image_log.h"
 
 namespace vbar::app {
 namespace {
@@ -20,20 +20,22 @@ void for_each_record(std::uint32_t step, fsw::GpsTime time, std::span<const pil:
 
 class PacketKeepers::Log final : public RunObserver {
  public:
-  Log(const std::filesystem::path& file, mission::ImagesInLog images) : writer_(file), images_(images) {}
+  Log(const std::filesystem::path& file, mission::ImagesInLog images)
+      : writer_(file, images == mission::ImagesInLog::kTiles ? Tiles::kWhole : Tiles::kAsRuns) {}
   void on_step(std::uint32_t step, fsw::GpsTime time, std::span<const pil::Packet> inputs,
                std::span<const pil::Packet> outputs) override {
     for_each_record(step, time, inputs, outputs, [this](const twins::PacketRecord& record) { writer_.write(record); });
     writer_.end_step();
   }
-  void on_recipe(fsw::GpsTime time, std::span<const std::uint8_t> recipe) override {
-    if (images_ == mission::ImagesInLog::kRecipes) writer_.write_recipe(time, recipe);
+  void on_recipe(fsw::GpsTime time, const twins::LoggedImage& recipe) override { writer_.write_recipe(time, recipe); }
+  void on_recording(fsw::GpsTime time, const twins::LoggedImage& recording) override {
+    writer_.write_recording(time, recording);
   }
   void finish() { writer_.finish(); }
 
  private:
-  twins::camera::RecipeLogWriter writer_;
-  mission::ImagesInLog images_;
+  using Tiles = twins::ImageLogWriter::Tiles;
+  twins::ImageLogWriter writer_;
 };
 
 class PacketKeepers::Hash final : public RunObserver {

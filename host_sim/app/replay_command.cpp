@@ -19,9 +19,7 @@
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/summary_json.h"
-#include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/sensor_kinds.h"
-#include "host_sim/twins/camera/recipe_log.h"
 #include "host_sim/twins/lcm_log_reader.h"
 
 namespace vbar::app {
@@ -92,24 +90,14 @@ report::Summary read_summary(const std::filesystem::path& folder) {
   }
 }
 
-/// What makes the images of the log again; none if it has no recipes.
-std::optional<twins::camera::TileRestorer> make_restorer(const mission::Mission& mission, const twins::PacketLog& log) {
-  if (log.recipes.empty()) return std::nullopt;
-  return twins::camera::TileRestorer(
-      log.recipes, sensors::make_image_maker(mission, flying_spacecraft(mission), mission::data_directory()));
-}
-
-/// The packets that went to the flight software, with the image tiles made again that the log has none of.
-std::vector<pil::Packet> packets_of(const std::vector<twins::PacketRecord>& records,
-                                    std::optional<twins::camera::TileRestorer>& restorer) {
+/// The packets that went to the flight software, with the image tiles restored that the log holds in another form.
+std::vector<pil::Packet> packets_of(const std::vector<twins::PacketRecord>& records, twins::TileSource& tiles) {
   std::vector<pil::Packet> packets;
   for (const twins::PacketRecord& record : records) {
     if (!record.tiles) {
       packets.push_back(record.packet);
-    } else if (restorer) {
-      for (pil::Packet& tile : restorer->packets_of(*record.tiles)) packets.push_back(std::move(tile));
     } else {
-      throw std::runtime_error("the log lacks image tiles and has no recipe to make them from");
+      for (pil::Packet& tile : tiles.packets_of(*record.tiles)) packets.push_back(std::move(tile));
     }
   }
   return packets;
@@ -141,14 +129,14 @@ struct Compared {
 };
 
 /// Feeds the steps to the flight computer and compares its answers. `may_be_cut`: the last step may not be whole.
-Verdict compare(const RecordedSteps& steps, bool may_be_cut, std::optional<twins::camera::TileRestorer> restorer,
+Verdict compare(const RecordedSteps& steps, bool may_be_cut, twins::TileSource& tiles,
                 pil::FlightComputer& flight_computer) {
   Compared compared;
   for (const auto& [number, step] : steps) {
     if (stop_requested()) return {kInterrupted, "interrupted after " + compared.text()};
     const bool cut = may_be_cut && number == steps.rbegin()->first;
     if (cut && step.outputs.empty()) continue;  // the log ends before the answer
-    const pil::StepResult answer = flight_computer.step(number, packets_of(step.inputs, restorer));
+    const pil::StepResult answer = flight_computer.step(number, packets_of(step.inputs, tiles));
     if (const auto what = difference(step.outputs, answer.packets, cut))
       return {kDifferent, fmt::format("differs at step {}: {}; identical before: {}", number, *what, compared.text())};
     compared.add(step.outputs);
@@ -158,11 +146,12 @@ Verdict compare(const RecordedSteps& steps, bool may_be_cut, std::optional<twins
 }
 
 /// The verdict on a log that passed, fed to the flight computer.
-Verdict fly_again(const mission::Mission& mission, const report::Summary& summary, const twins::PacketLog& log,
+Verdict fly_again(const mission::Mission& mission, const report::Summary& summary, twins::ImagesOfLog&& images,
                   const RecordedSteps& steps) {
-  auto restorer = make_restorer(mission, log);
+  const auto tiles =
+      sensors::make_tile_source({mission, flying_spacecraft(mission), mission::data_directory()}, std::move(images));
   const auto flight_computer = connect_flight_computer(flying_spacecraft(mission));
-  Verdict verdict = compare(steps, !has_ended(summary), std::move(restorer), *flight_computer);
+  Verdict verdict = compare(steps, !has_ended(summary), *tiles, *flight_computer);
   if (verdict.code != kDone) return verdict;
   if (has_ended(summary)) {
     verdict.sentence += fmt::format("; all steps of the run, SHA-256 as in its summary (commands {}, telemetry {})",
@@ -199,7 +188,11 @@ int replay_command(const ReplayOptions& options) {
                                                    flight_software_file(flying_spacecraft(mission))))
       fmt::print("note: {}\n", change);
   }
-  return say(fly_again(mission, summary, log, steps), options.quiet);
+  try {
+    return say(fly_again(mission, summary, std::move(log), steps), options.quiet);
+  } catch (const twins::DamagedLog& error) {
+    return say({kDamagedLog, error.what()}, options.quiet);
+  }
 }
 
 }  // namespace vbar::app

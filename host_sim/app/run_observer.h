@@ -24,7 +24,10 @@ class RunObserver {
   /// The truth of a measurement of a source that is evaluated (PacketSource::truth_is_compared).
   virtual void on_measured(std::string_view /*source*/, const twins::TruthSnapshot& /*truth*/) {}
   /// From what packets that are yet to come can be made again (twins::Measurement::recipe).
-  virtual void on_recipe(fsw::GpsTime /*time*/, std::span<const std::uint8_t> /*recipe*/) {}
+  virtual void on_recipe(fsw::GpsTime /*time*/, const twins::LoggedImage& /*recipe*/) {}
+  /// An image that cannot be made again (twins::Measurement::recording), before its packets are passed on. An exception
+  /// ends the run.
+  virtual void on_recording(fsw::GpsTime /*time*/, const twins::LoggedImage& /*recording*/) {}
   /// A source or an actuator said something about a measurement or a burn.
   virtual void on_note(fsw::GpsTime /*time*/, std::string_view /*source*/, const twins::Note& /*note*/) {}
   /// A source failed an epoch, in one sentence.

@@ -135,8 +135,9 @@ void Simulation::handle(const TakeMeasurement& taken) {
     throw std::logic_error(fmt::format("source {}: packets delivered at {:.9f} s of the run, measured at {:.9f} s",
                                        source.name, mission_seconds(measurement.available), mission_seconds(now)));
   } else {
-    if (!measurement.recipe.empty())
-      for (RunObserver* observer : world_.observers) observer->on_recipe(now, measurement.recipe);
+    if (measurement.recipe)
+      for (RunObserver* observer : world_.observers) observer->on_recipe(now, *measurement.recipe);
+    record(now, measurement.recording);
     pass_on(std::move(measurement.packets), measurement.available, measurement.bypasses_link);
     if (measurement.pending.valid()) {
       auto completion = std::make_shared<std::future<twins::Completion>>(std::move(measurement.pending));
@@ -158,6 +159,7 @@ void Simulation::handle(const CollectPending& collected) {
   }
   note(collected.epoch, name, completion.notes);
   if (!completion.failure.empty()) fail(collected.source, collected.epoch, completion.failure);
+  record(events_.now(), completion.recording);
   pass_on(std::move(completion.packets), events_.now(), collected.bypasses_link);
 }
 
@@ -176,6 +178,12 @@ bool Simulation::wait_for(const CollectPending& pending) {
                       source.name, std::chrono::duration<double>(limit).count(), mission_seconds(pending.epoch)));
   }
   return true;
+}
+
+/// Before its packets are passed on: an observer that cannot keep the image ends the run.
+void Simulation::record(GpsTime time, const std::optional<twins::LoggedImage>& recording) {
+  if (!recording) return;
+  for (RunObserver* observer : world_.observers) observer->on_recording(time, *recording);
 }
 
 void Simulation::pass_on(std::vector<twins::Packet> packets, GpsTime available, bool bypasses_link) {

@@ -143,6 +143,7 @@ class Simulation {
   void fly();
   [[nodiscard]] bool stop_requested() const { return world_.stop_requested && world_.stop_requested(); }
   [[nodiscard]] bool wait_for(const CollectPending& pending);
+  void record(fsw::GpsTime time, const std::optional<twins::LoggedImage>& recording);
   void pass_on(std::vector<twins::Packet> packets, fsw::GpsTime available, bool bypasses_link);
   void send_to_flight(twins::Packet packet, fsw::GpsTime sent);
   void note(fsw::GpsTime time, std::string_view source, std::span<const twins::Note> notes);

@@ -137,6 +137,14 @@ void append_setting(std::vector<ComparisonRow>& rows, Runs runs) {
   }));
 }
 
+/// Nothing if it is known of no run.
+void append_consistency(std::vector<ComparisonRow>& rows, Runs runs) {
+  const auto nees = [](const RunRecord& r) { return r.summary.navigation_nees; };
+  if (std::ranges::none_of(runs, [&](const ComparedRun& run) { return nees(run.record).has_value(); })) return;
+  rows.push_back(row_of("  mean NEES of the relative state (6 if consistent)", runs,
+                        [&](const RunRecord& r) { return fixed(nees(r), 2); }));
+}
+
 void append_totals(std::vector<ComparisonRow>& rows, Runs runs, const Papers& papers) {
   const Unit unit = navigation_unit(runs);
   rows.push_back({"whole run", {}});
@@ -160,12 +168,55 @@ void append_totals(std::vector<ComparisonRow>& rows, Runs runs, const Papers& pa
         [&](const PaperColumn& p) {
           return plus_minus(p.navigation_velocity_error_mps, kVelocityDecimals, unit.scale);
         }));
+  append_consistency(rows, runs);
   rows.push_back(row_of("  longest flight step", runs, [](const RunRecord& r) { return cost(r.summary.flight_step); }));
   rows.push_back(row_of("  most stack, bytes", runs, [](const RunRecord& r) {
     const auto bytes = r.summary.flight_step.stack_bytes_max;
     return bytes == 0 ? std::string(kNone) : grouped(bytes);
   }));
   rows.push_back(row_of("  wall-clock time", runs, [](const RunRecord& r) { return duration_text(r.summary.wall_s); }));
+}
+
+/// A figure of the summary that navigation by images alone has.
+struct ImageFigure {
+  const char* name;
+  std::function<std::optional<std::string>(const Summary&)> text;
+};
+
+const std::vector<ImageFigure> kImageFigures{
+    {"  bias of the bearings, arcsec",
+     [](const Summary& s) {
+       return s.bearing_error_arcsec ? std::optional(fixed(s.bearing_error_arcsec->bias, 2)) : std::nullopt;
+     }},
+    {"  noise of the bearings per axis, arcsec",
+     [](const Summary& s) {
+       return s.bearing_error_arcsec ? std::optional(fixed(s.bearing_error_arcsec->std, 2)) : std::nullopt;
+     }},
+    {"  boresight error of the star attitude, arcsec (mean ± std)", [](const Summary& s) {
+       return s.star_attitude_error_arcsec ? std::optional(plus_minus(s.star_attitude_error_arcsec, 2)) : std::nullopt;
+     }}};
+
+/// "81.2 % of 2159"; nothing without images.
+std::optional<std::string> share_of_images(const Summary& summary, const char* figure) {
+  const auto images = summary.sensor_figures.find("images");
+  if (images == summary.sensor_figures.end()) return std::nullopt;
+  const auto all = images->second.find("images"), some = images->second.find(figure);
+  if (all == images->second.end() || some == images->second.end() || !(all->second > 0.0)) return std::nullopt;
+  return fmt::format("{:.1f} % of {:.0f}", 100.0 * some->second / all->second, all->second);
+}
+
+/// Nothing if no run navigates by the bearings of images.
+void append_images(std::vector<ComparisonRow>& rows, Runs runs) {
+  std::vector<ImageFigure> figures{
+      {"  images with a bearing", [](const Summary& s) { return share_of_images(s, "with_bearing"); }},
+      {"  images with stars identified", [](const Summary& s) { return share_of_images(s, "with_stars"); }}};
+  figures.insert(figures.end(), kImageFigures.begin(), kImageFigures.end());
+  const auto has_images = [&](const ComparedRun& run) { return figures.front().text(run.record.summary).has_value(); };
+  if (std::ranges::none_of(runs, has_images)) return;
+  rows.push_back({"images", {}});
+  for (const ImageFigure& figure : figures)
+    rows.push_back(
+        row_of(figure.name, runs, [&](const RunRecord& r) { return figure.text(r.summary).value_or(kNone); }));
 }
 
 /// The figures of each sensor that at least one run has.
@@ -288,6 +339,7 @@ std::vector<ComparisonRow> comparison_rows(Runs runs) {
       {fmt::format("cumulative delta-v, {}/s", unit.name), [](const WaypointRow& w) { return w.cumulative_dv_mps; },
        nullptr, unit.scale, unit.scale == 1.0 ? 6 : 3});
   append_totals(rows, runs, papers);
+  append_images(rows, runs);
   append_sensor_figures(rows, runs);
   if (runs.size() > 1) append_differences(rows, runs);
   // What the paper does not say.

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
 #include "host_sim/report/html_page.h"
 #include "host_sim/report/image_png.h"
+#include "host_sim/report/loop_name.h"
 #include "host_sim/report/number_text.h"
 
 namespace vbar::report {
@@ -19,8 +21,9 @@ std::string mark(const MarkAt& at, double size, const std::string& shape, std::s
                      escaped(at.tooltip));
 }
 
-std::string picture(const GalleryImage& image, const std::string& caption, const std::string& marks) {
-  const std::string uri = png_data_uri(image.png);
+std::string picture(const GalleryImage& image, std::span<const std::uint8_t> png, const std::string& caption,
+                    const std::string& marks) {
+  const std::string uri = png_data_uri(png);
   if (image.width_px <= 0 || image.height_px <= 0) {
     return fmt::format(R"(<img class="picture" alt="{}" src="{}"/>)", escaped(caption), uri);
   }
@@ -29,6 +32,10 @@ std::string picture(const GalleryImage& image, const std::string& caption, const
   return fmt::format(R"(<svg class="picture" viewBox="0 0 {0} {1}" role="img"><title>{2}</title>)"
                      R"(<image width="{0}" height="{1}" href="{3}"/>{4}</svg>)",
                      width, height, escaped(caption), uri, marks);
+}
+
+std::string with_caption(const std::string& picture, const std::string& caption) {
+  return picture + fmt::format("<figcaption>{}</figcaption>", escaped(caption));
 }
 
 }  // namespace
@@ -79,10 +86,16 @@ std::string gallery_html(const RunRecord& record, int columns, const std::string
   if (record.gallery.empty()) return {};
   std::vector<std::string> pictures;
   for (const GalleryImage& image : record.gallery) {
+    const std::string name = fmt::format("image {} at {} h", image.image, fixed(image.time_s / 3600.0, 2));
+    const bool has_twin = !image.difference.empty();
     const std::string caption =
-        fmt::format("image {} at {} h: {}", image.image, fixed(image.time_s / 3600.0, 2), image.caption);
-    pictures.push_back(picture(image, caption, marks(image)) +
-                       fmt::format("<figcaption>{}</figcaption>", escaped(caption)));
+        name + (has_twin ? ", " + loop_name(record.summary) : std::string()) + ": " + image.caption;
+    pictures.push_back(with_caption(picture(image, image.png, caption, marks(image)), caption));
+    if (!has_twin) continue;
+    const std::string twin = name + ", SIL: the digital twin's image of the same exposure";
+    pictures.push_back(with_caption(picture(image, image.twin_png, twin, ""), twin));
+    const std::string difference = name + ", HIL less SIL: " + image.difference;
+    pictures.push_back(with_caption(picture(image, image.difference_png, difference, ""), difference));
   }
   return "<h3>Images</h3>\n<p class=\"note\">" + note + "</p>\n" + figures(columns, pictures);
 }

@@ -28,7 +28,8 @@ struct MarkAt {
 
 /// All pictures with their captions, `columns` a row, below a heading and a note; empty without pictures. `marks` gives
 /// the marks of a picture; those of folders without a region are shown as they are, since their marks are in the
-/// pixels.
+/// pixels. An image of a testbed is followed by the image of the digital twin and their difference, so that with three
+/// columns a row is one exposure.
 [[nodiscard]] std::string gallery_html(const RunRecord& record, int columns, const std::string& note,
                                        const std::function<std::string(const GalleryImage&)>& marks);
 

@@ -25,8 +25,12 @@ inline constexpr std::array<PaperWaypoint<Loops>, 7> kWaypoints{{
     {7, {0.0, -100.0, 0.0, 3.0, 0.0, 3.0}, {{3.89, 8.77}, {3.06, 4.47}}},
 }};
 
-// Of the whole experiment.
-inline constexpr const char* kDeltaVSoftware = "4.69 in 61 maneuvers";
-inline constexpr const char* kDeltaVHardware = "4.75 in 90 maneuvers";
+/// Of the whole experiment.
+struct Totals {
+  double dv_mps;
+  int maneuvers;
+};
+inline constexpr Totals kSoftware{4.69, 61};
+inline constexpr Totals kHardware{4.75, 90};
 
 }  // namespace vbar::report::paper1

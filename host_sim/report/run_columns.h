@@ -160,6 +160,7 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"target_radius_px"}, row.target_radius_px);
   visit(ColumnName{"crop_left"}, row.crop_left);
   visit(ColumnName{"crop_side"}, row.crop_side);
+  visit(ColumnName{"difference"}, row.difference);
 }
 
 template <columns::RowOf<ManeuverRow> Row, class Visitor>

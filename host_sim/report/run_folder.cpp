@@ -42,20 +42,36 @@ void check_may_be_used(const fs::path& folder, RunFolder::Existing existing) {
   refuse(folder, "holds something other than a run; remove it or name another folder with --out");
 }
 
-fs::path picture_file(const fs::path& folder, const GalleryImage& image) {
-  return folder / kPictures / fmt::format("{:05}.png", image.image);
+/// `kind`: "" of the image itself, "_twin", "_difference".
+fs::path picture_file(const fs::path& folder, const GalleryImage& image, std::string_view kind = "") {
+  return folder / kPictures / fmt::format("{:05}{}.png", image.image, kind);
+}
+
+void write_picture(const fs::path& file, const std::vector<std::uint8_t>& png) {
+  replace_text_file(file, std::string(png.begin(), png.end()));
+}
+
+std::vector<std::uint8_t> read_picture(const fs::path& file) {
+  const std::string bytes = read_text_file(file);
+  return {bytes.begin(), bytes.end()};
 }
 
 void write_pictures(const fs::path& folder, const std::vector<GalleryImage>& gallery) {
   if (!gallery.empty()) fs::create_directories(folder / kPictures);
-  for (const GalleryImage& image : gallery)
-    replace_text_file(picture_file(folder, image), std::string(image.png.begin(), image.png.end()));
+  for (const GalleryImage& image : gallery) {
+    write_picture(picture_file(folder, image), image.png);
+    if (image.difference.empty()) continue;
+    write_picture(picture_file(folder, image, "_twin"), image.twin_png);
+    write_picture(picture_file(folder, image, "_difference"), image.difference_png);
+  }
 }
 
 void read_pictures(const fs::path& folder, std::vector<GalleryImage>& gallery) {
   for (GalleryImage& image : gallery) {
-    const std::string bytes = read_text_file(picture_file(folder, image));
-    image.png.assign(bytes.begin(), bytes.end());
+    image.png = read_picture(picture_file(folder, image));
+    if (image.difference.empty()) continue;
+    image.twin_png = read_picture(picture_file(folder, image, "_twin"));
+    image.difference_png = read_picture(picture_file(folder, image, "_difference"));
   }
 }
 

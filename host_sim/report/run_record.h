@@ -76,6 +76,10 @@ struct GalleryImage {
   double target_radius_px = 0.0;                                      ///< of a circle about the target
   int crop_left = 0, crop_side = 0;  ///< in the picture: where the crop of the pose network is; side 0: no crop
   std::vector<std::uint8_t> png;     ///< the file's bytes
+  /// Of an image of a testbed: the image that the digital twin makes of the same exposure (gallery/<image>_twin.png),
+  /// the testbed's image less that one (gallery/<image>_difference.png), and how they differ; empty of other images.
+  std::string difference = {};
+  std::vector<std::uint8_t> twin_png = {}, difference_png = {};
 };
 
 /// A maneuver from command to execution (maneuvers.csv).

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/report/loop_name.h"
 #include "host_sim/report/mission_views.h"
 #include "host_sim/report/number_text.h"
 
@@ -18,7 +19,10 @@ std::optional<double> millimetres(const std::optional<double>& metres) {
 
 std::string waypoint_table(const RunRecord& record) {
   constexpr auto kHead = "{:>8} {:>9} {:>14} {:>17} {:>17} {:>12} {:>12} {:>10}\n";
-  std::string text =
+  std::string text;
+  for (const std::string& testbed : emulated_testbeds(record.summary))
+    text += fmt::format("figures of an emulated bench: the testbed {} was emulated\n", testbed);
+  text +=
       fmt::format(kHead, "", "time", "control error", "navigation error", "velocity error", "leg dv", "total dv", "");
   text += fmt::format(kHead, "waypoint", "h", "m", "m", "mm/s", "m/s", "m/s", "maneuvers");
   for (const WaypointRow& row : record.waypoints) {

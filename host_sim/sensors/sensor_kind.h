@@ -19,6 +19,7 @@
 #include "host_sim/sensors/evaluation.h"
 #include "host_sim/truth/earth/earth_orientation.h"
 #include "host_sim/twins/packet_source.h"
+#include "host_sim/twins/tile_source.h"
 
 namespace vbar::sensors {
 
@@ -82,6 +83,13 @@ struct MakeContext {
   twins::TruthOutlook* outlook;  ///< null: no testbed can be used
 };
 
+/// What the packets of a log are restored for.
+struct RestoreContext {
+  const mission::Mission& mission;
+  const mission::Spacecraft& servicer;  ///< carries the sensors and the flight software; outlives what is made
+  std::filesystem::path data_directory;
+};
+
 struct SensorKind : mission::SensorReader {
   /// Adds what the flight software is told about the sensor before its first step. Null: nothing.
   void (*add_telecommands)(const mission::Sensor& sensor, const TelecommandContext& context,
@@ -96,6 +104,10 @@ struct SensorKind : mission::SensorReader {
   std::unique_ptr<Evaluation> (*evaluate)(const mission::Sensor& sensor, const EvaluationContext& context) = nullptr;
   /// Tables, summary figures and report section, for all sensors of the kind together.
   report::Extension report{};
+  /// Restores the packets of all sensors of the kind that a log holds in another form. Null: logs hold the packets.
+  /// Throws twins::DamagedLog.
+  std::unique_ptr<twins::TileSource> (*make_tile_source)(const RestoreContext& context,
+                                                         twins::ImagesOfLog&& images) = nullptr;
 };
 
 /// "servicer/gnss"

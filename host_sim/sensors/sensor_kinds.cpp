@@ -60,6 +60,13 @@ MadeSources make_sources(const mission::Mission& mission, const mission::Spacecr
   return made;
 }
 
+std::unique_ptr<twins::TileSource> make_tile_source(const RestoreContext& context, twins::ImagesOfLog&& images) {
+  const auto* const found =
+      std::ranges::find_if(kSensorKinds, [](const SensorKind* kind) { return kind->make_tile_source != nullptr; });
+  if (found == std::end(kSensorKinds)) throw std::logic_error("no kind of sensor restores the tiles of images");
+  return (*found)->make_tile_source(context, std::move(images));
+}
+
 std::vector<NamedEvaluation> make_evaluations(const mission::Mission& mission, const mission::Spacecraft& servicer,
                                               report::RunRecord& record) {
   std::vector<NamedEvaluation> evaluations;

@@ -2,6 +2,7 @@
 // The kinds of sensors of this program, and missions read with them.
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -36,6 +37,16 @@ struct MadeSources {
 [[nodiscard]] MadeSources make_sources(const mission::Mission& mission, const mission::Spacecraft& servicer,
                                        const std::filesystem::path& data_directory,
                                        twins::TruthOutlook* outlook = nullptr);
+
+/// make_sources, or what a test has in its place.
+using MakeSources =
+    std::function<MadeSources(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                              const std::filesystem::path& data_directory, twins::TruthOutlook* outlook)>;
+
+/// What restores the packets that a log holds in another form: that of the first kind with such packets. Throws
+/// twins::DamagedLog. `mission` and `servicer` must outlive it.
+[[nodiscard]] std::unique_ptr<twins::TileSource> make_tile_source(const RestoreContext& context,
+                                                                  twins::ImagesOfLog&& images);
 
 /// The evaluations of the sensors of `servicer`, whose kinds have one.
 [[nodiscard]] std::vector<NamedEvaluation> make_evaluations(const mission::Mission& mission,

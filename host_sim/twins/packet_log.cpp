@@ -116,6 +116,7 @@ PacketRecord record_of(const LoggedEvent& event, const std::filesystem::path& fi
 void take(LoggedEvent& event, const std::filesystem::path& file, PacketLog& log) {
   if (event.channel == kPacketChannel) log.records.push_back(record_of(event, file));
   if (event.channel == kTilesChannel) log.records.push_back(tiles_of(event, file));
+  if (event.channel == kRecordingChannel) log.recordings.push_back({event.offset, std::move(event.data)});
   if (event.channel == kRecipeChannel) log.recipes.push_back(std::move(event.data));
   if (event.channel != kEndChannel) {
     ++log.events;
@@ -167,6 +168,12 @@ void PacketLogWriter::write_recipe(fsw::GpsTime time, std::vector<std::uint8_t> 
   write_event(time, {kRecipeChannel, std::move(recipe)});
 }
 
+// The flight software is to receive no image that is not in the file, on a full disk for instance.
+void PacketLogWriter::write_recording(fsw::GpsTime time, std::vector<std::uint8_t> recording) {
+  write_event(time, {kRecordingChannel, std::move(recording)});
+  flush();
+}
+
 void PacketLogWriter::write_event(fsw::GpsTime time, LcmEvent event) {
   lcm_eventlog_event_t raw{};
   raw.timestamp = lcm_timestamp(time);
@@ -184,6 +191,10 @@ void PacketLogWriter::finish() {
   std::vector<std::uint8_t> count(sizeof events_);
   fsw::packets::write_big_endian(events_, std::span(count), 0);
   write_event(last_, {kEndChannel, std::move(count)});
+  flush();
+}
+
+void PacketLogWriter::flush() {
   errno = 0;
   if (std::fflush(log_->handle->f) != 0) throw files::write_error(log_->file);
 }
@@ -191,6 +202,7 @@ void PacketLogWriter::finish() {
 PacketLog read_packet_log(const std::filesystem::path& file) {
   LcmLogReader reader(file);
   PacketLog log;
+  log.file = file;
   std::int64_t before = -1;
   while (auto event = reader.next()) {
     if (event->number != before + 1 && !log.gap) log.gap = {event->offset, before, event->number};

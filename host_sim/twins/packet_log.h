@@ -4,9 +4,10 @@
 //   VBAR_PACKET                               a vbar_host.packet_record: the whole space packet, its step and direction
 //   vbar/<message>/<spacecraft>/<unit>        the LCM message inside it, for lcm-spy and other LCM programs that only
 //   listen
-// Images of a digital camera may be replaced by
-//   VBAR_IMAGE_RECIPE                         a vbar_host.image_recipe: from which an image can be regenerated
-//   VBAR_IMAGE_TILES                          a vbar_host.tile_run: in place of some of its tiles
+// Images of a camera may be replaced by
+//   VBAR_IMAGE_RECIPE                         a vbar_host.image_recipe: from which a digital image can be regenerated
+//   VBAR_IMAGE                                a vbar_host.recorded_image: the pixels of an image of a testbed
+//   VBAR_IMAGE_TILES                          a vbar_host.tile_run: in place of some of the tiles of either
 // The last event of a run that ended is
 //   VBAR_END                                  the number of events before it, 8 bytes big-endian
 // Only the channels in capitals are read back. Event times are the simulated GPS time, so that the same run writes the
@@ -28,6 +29,7 @@ namespace vbar::twins {
 
 inline constexpr const char* kPacketChannel = "VBAR_PACKET";
 inline constexpr const char* kRecipeChannel = "VBAR_IMAGE_RECIPE";
+inline constexpr const char* kRecordingChannel = "VBAR_IMAGE";
 inline constexpr const char* kTilesChannel = "VBAR_IMAGE_TILES";
 inline constexpr const char* kEndChannel = "VBAR_END";
 
@@ -62,6 +64,8 @@ class PacketLogWriter {
   void write(const PacketRecord& record);
   /// The same of a recipe (Measurement::recipe) of this time.
   void write_recipe(fsw::GpsTime time, std::vector<std::uint8_t> recipe);
+  /// The same of a recording (Measurement::recording); it is in the file when the function returns.
+  void write_recording(fsw::GpsTime time, std::vector<std::uint8_t> recording);
 
   /// Marks the end of the run; everything written is in the file then. Throws as write.
   void finish();
@@ -69,6 +73,7 @@ class PacketLogWriter {
  private:
   struct Log;
   void write_event(fsw::GpsTime time, LcmEvent event);
+  void flush();
 
   std::unique_ptr<Log> log_;
   std::uint64_t events_ = 0;
@@ -82,14 +87,24 @@ struct EventGap {
   std::int64_t before = 0, after = 0;
 };
 
-struct PacketLog {
-  std::vector<PacketRecord> records;               ///< in the order of the file
-  std::vector<std::vector<std::uint8_t>> recipes;  ///< as encoded
-  std::uint64_t bytes = 0;                         ///< size of the file
-  bool cut_short = false;                          ///< the file ends within an event, as that of a killed run may
-  std::optional<EventGap> gap;                     ///< the first one
-  std::uint64_t events = 0;                        ///< of all channels, the end excepted
-  std::optional<std::uint64_t> events_at_end;      ///< as VBAR_END states; none if the log has no end
+/// What a log holds in place of image tiles, in the order of the file and as encoded.
+struct ImagesOfLog {
+  struct Recording {
+    std::uint64_t offset = 0;  ///< of the event in the file
+    std::vector<std::uint8_t> bytes;
+  };
+  std::filesystem::path file;
+  std::vector<std::vector<std::uint8_t>> recipes;
+  std::vector<Recording> recordings;
+};
+
+struct PacketLog : ImagesOfLog {
+  std::vector<PacketRecord> records;           ///< in the order of the file
+  std::uint64_t bytes = 0;                     ///< size of the file
+  bool cut_short = false;                      ///< the file ends within an event, as that of a killed run may
+  std::optional<EventGap> gap;                 ///< the first one
+  std::uint64_t events = 0;                    ///< of all channels, the end excepted
+  std::optional<std::uint64_t> events_at_end;  ///< as VBAR_END states; none if the log has no end
 };
 
 /// Reads all packets of a log; events of other channels are ignored. Throws std::runtime_error that names a file

@@ -21,6 +21,21 @@ namespace vbar::twins {
 /// One space packet, whole.
 using Packet = std::vector<std::uint8_t>;
 
+/// Identifies an image as its tiles do.
+struct ImageKey {
+  std::uint8_t spacecraft = 0;  ///< as in the headers of the packets
+  std::uint8_t unit = 0;
+  std::int32_t image = 0;
+  friend auto operator<=>(const ImageKey&, const ImageKey&) = default;
+};
+
+/// An image in a form in which a log keeps it.
+struct LoggedImage {
+  ImageKey key;
+  std::vector<std::uint8_t> bytes;  ///< an LCM message
+  friend bool operator==(const LoggedImage&, const LoggedImage&) = default;
+};
+
 /// The truth about one spacecraft.
 struct SpacecraftTruth {
   std::string name;
@@ -81,6 +96,8 @@ struct Completion {
   std::vector<Packet> packets;
   std::vector<Note> notes;
   std::string failure = {};  ///< if there are no packets: the reason, one sentence
+  /// As Measurement::recording, of an image that was taken after measure().
+  std::optional<LoggedImage> recording = std::nullopt;
 };
 
 struct Measurement {
@@ -90,9 +107,12 @@ struct Measurement {
   /// up to the source's time limit. They must not depend on when they are collected: a pure function of what measure()
   /// was given, or recorded.
   std::future<Completion> pending;
-  /// Input from which the pending packets can be regenerated (for images, an encoded vbar_host.image_recipe): a log may
-  /// keep it in their place. Empty: not possible.
-  std::vector<std::uint8_t> recipe;
+  /// The exposure of the pending image (vbar_host.image_recipe), from which a digital camera can render it: a log may
+  /// keep it in place of the packets if there is no recording.
+  std::optional<LoggedImage> recipe;
+  /// The pixels of an image that cannot be rendered again (vbar_host.recorded_image): a log keeps them in place of the
+  /// packets, before the flight software receives these.
+  std::optional<LoggedImage> recording;
   fsw::GpsTime available;  ///< when the packets leave the sensor: the epoch or later
   bool bypasses_link =
       false;  ///< at the flight computer by then already (recorded delivery, wired to the board): no link is simulated

@@ -16,8 +16,8 @@ RecordedLog::RecordedLog(const std::filesystem::path& file, const Selection& sel
   std::ranges::stable_sort(deliveries_, {}, &Delivery::time);
   if (std::ranges::any_of(deliveries_, [](const Delivery& delivery) { return delivery.tiles.has_value(); })) {
     if (!make_tiles) throw std::runtime_error(file.string() + ": lacks image tiles, and nothing can make them again");
-    tiles_ = make_tiles(log.recipes);
-    for (const auto& [time, recipe] : tiles_.recipes) epochs_.insert(time);
+    tiles_ = make_tiles(std::move(log));
+    for (const fsw::GpsTime exposure : tiles_->exposures()) epochs_.insert(exposure);
   }
 }
 
@@ -57,13 +57,15 @@ Measurement RecordedLog::measure(const TruthSnapshot& truth) {
   measurement.status = MeasurementStatus::kReady;
   measurement.available = truth.time;
   measurement.bypasses_link = true;
-  if (const auto recipe = tiles_.recipes.find(truth.time); recipe != tiles_.recipes.end())
-    measurement.recipe = recipe->second;
+  if (tiles_) {
+    measurement.recipe = tiles_->recipe_at(truth.time);
+    measurement.recording = tiles_->recording_at(truth.time);
+  }
   for (auto it = first_at_or_after(truth.time); it != deliveries_.end() && it->time == truth.time; ++it) {
     if (!it->tiles) {
       measurement.packets.push_back(it->packet);
     } else {
-      for (Packet& tile : tiles_.packets_of(*it->tiles)) measurement.packets.push_back(std::move(tile));
+      for (Packet& tile : tiles_->packets_of(*it->tiles)) measurement.packets.push_back(std::move(tile));
     }
   }
   return measurement;

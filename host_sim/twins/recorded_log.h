@@ -2,26 +2,17 @@
 // A recorded run as a sensor: the packets of a log, at the steps of their delivery.
 
 #include <filesystem>
-#include <functional>
-#include <map>
+#include <memory>
 #include <optional>
 #include <set>
-#include <span>
 #include <vector>
 
 #include "fsw/packets/packet.h"
 #include "host_sim/twins/packet_log.h"
 #include "host_sim/twins/packet_source.h"
+#include "host_sim/twins/tile_source.h"
 
 namespace vbar::twins {
-
-/// Restores image tiles that a log holds as recipes only (camera/recipe_log.h).
-struct TileSource {
-  std::function<std::vector<Packet>(const TileRun&)> packets_of;
-  std::map<fsw::GpsTime, std::vector<std::uint8_t>> recipes;  ///< as encoded, by the time of the exposure
-};
-/// Makes it from the recipes of the log.
-using MakeTileSource = std::function<TileSource(std::span<const std::vector<std::uint8_t>> recipes)>;
 
 class RecordedLog final : public PacketSource {
  public:
@@ -39,8 +30,8 @@ class RecordedLog final : public PacketSource {
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
   /// The packets delivered at the epoch, byte for byte and in the recorded order, past any simulated link. kReady with
-  /// none if none were. At an exposure also its recipe, for the log of this run. Throws std::runtime_error for tiles
-  /// that cannot be regenerated.
+  /// none if none were. At an exposure also its recipe and its recording, for the log of this run. Throws as
+  /// TileSource.
   Measurement measure(const TruthSnapshot& truth) override;
 
   /// Of a camera.
@@ -55,9 +46,9 @@ class RecordedLog final : public PacketSource {
   void add(PacketRecord&& record, const Selection& selection);
   [[nodiscard]] std::vector<Delivery>::const_iterator first_at_or_after(fsw::GpsTime time) const;
 
-  std::vector<Delivery> deliveries_;  ///< in order of time
-  std::set<fsw::GpsTime> epochs_;     ///< of deliveries and exposures
-  TileSource tiles_;
+  std::vector<Delivery> deliveries_;   ///< in order of time
+  std::set<fsw::GpsTime> epochs_;      ///< of deliveries and exposures
+  std::unique_ptr<TileSource> tiles_;  ///< null: the log holds all tiles
   bool plays_images_ = false;
 };
 

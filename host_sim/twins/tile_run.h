@@ -17,6 +17,7 @@ struct TileRun {
   std::int16_t first_tile = 0;
   std::int16_t tiles = 0;
   std::uint64_t checksum = 0;  ///< FNV-1a, 64 bits, of the packets' own CRCs, one after another
+  [[nodiscard]] ImageKey key() const { return {spacecraft, unit, image}; }
   friend bool operator==(const TileRun&, const TileRun&) = default;
 };
 

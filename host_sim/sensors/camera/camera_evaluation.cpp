@@ -44,7 +44,7 @@ class CameraEvaluation final : public Evaluation {
   CameraEvaluation(const CameraSensor& camera, const EvaluationContext& context)
       : context_(context),
         record_(context.record),
-        gallery_(context.mission, context.servicer),
+        gallery_(context.mission, context.servicer, twin_of_testbed_camera(context.mission, context.servicer)),
         pose_gallery_(context.mission, context.servicer) {
     if (camera.use == CameraNavigation::kPose)
       known_target_ = pose_configuration_of(context.mission, camera, mission::data_directory());
@@ -79,7 +79,7 @@ class CameraEvaluation final : public Evaluation {
     if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
     if (objects != nullptr) append_objects(row.time_s, *objects, record_.tables.rows<ObjectRow>());
     record_.tables.rows<ImageRow>().push_back(row);
-    gallery_.on_image({told.exposure, row, objects}, record_.gallery);
+    gallery_.on_image({told.exposure, row, objects, truth ? &*truth : nullptr}, record_.gallery);
   }
 
   void on_pose(double step_time_s, const ImageTelemetry& told) {

@@ -1,16 +1,12 @@
 #include "host_sim/sensors/camera/camera_kind.h"
 
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "fsw/math/math.h"
-#include "host_sim/mission/body_file.h"
 #include "host_sim/sensors/camera/camera_report.h"
-#include "host_sim/twins/camera/camera_sensor.h"
-#include "host_sim/twins/camera/model/cad_objects.h"
-#include "host_sim/twins/camera/scene.h"
+#include "host_sim/sensors/camera/make_camera.h"
 #include "host_sim/twins/recorded_log.h"
 
 namespace vbar::sensors {
@@ -56,51 +52,6 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
                    "a GNSS receiver without a partner: the target does not cooperate");
 }
 
-/// The unit in packet headers. The flight software takes the images of unit 0: those of the camera that navigation
-/// uses.
-std::uint8_t camera_unit(const Sensor& sensor, const Spacecraft& carrier) {
-  std::uint8_t unit = navigation_camera(carrier) != nullptr ? 1 : 0;
-  if (sensor.settings->navigation >= 0) return 0;
-  for (const Sensor& other : carrier.sensors) {
-    if (other.name == sensor.name) break;
-    if (other.kind == sensor.kind && other.settings->navigation < 0) ++unit;
-  }
-  return unit;
-}
-
-twins::camera::ImageMaker::Settings image_settings(const Mission& mission, const Spacecraft& spacecraft,
-                                                   const Sensor& sensor) {
-  twins::camera::ImageMaker::Settings settings;
-  settings.camera = settings_of<CameraSensor>(sensor).settings;
-  settings.name = spacecraft.name + "/" + sensor.name;
-  settings.seed = mission.seed;
-  settings.spacecraft = spacecraft.number;
-  settings.unit = camera_unit(sensor, spacecraft);
-  return settings;
-}
-
-/// Null projection: the lens of the camera.
-std::unique_ptr<twins::camera::SceneRenderer> make_scene(
-    const Mission& mission, const Spacecraft& spacecraft, const twins::camera::CameraSettings& camera,
-    const std::filesystem::path& data_directory,
-    std::shared_ptr<const twins::camera::Projection> projection = nullptr) {
-  std::vector<std::string> models;
-  for (const Spacecraft& other : mission.spacecraft)
-    if (!other.model.empty() && &other != &spacecraft) models.push_back(other.model);
-  return std::make_unique<twins::camera::SceneRenderer>(
-      camera, data_directory, twins::camera::cad_objects(data_directory, models),
-      twins::camera::cad_covers(data_directory, models), std::move(projection));
-}
-
-twins::camera::Renderer make_scene_renderer(const Mission& mission, const Spacecraft& spacecraft,
-                                            const twins::camera::CameraSettings& camera,
-                                            const std::filesystem::path& data_directory) {
-  const std::shared_ptr<twins::camera::SceneRenderer> scene = make_scene(mission, spacecraft, camera, data_directory);
-  return [scene](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {
-    scene->render(exposure, image);
-  };
-}
-
 std::unique_ptr<twins::camera::ImageTaker> make_of_testbed(const testbeds::TestbedKind& testbed, const Sensor& own,
                                                            const MakeContext& context) {
   if (context.outlook == nullptr) throw std::logic_error("a testbed requires the truth of the run");
@@ -119,80 +70,9 @@ std::unique_ptr<twins::camera::ImageTaker> make_of_testbed(const testbeds::Testb
 }
 
 std::unique_ptr<twins::camera::ImageTaker> make_image_taker(const Sensor& own, const MakeContext& context) {
-  const auto& camera = settings_of<CameraSensor>(own);
-  if (const testbeds::TestbedKind* const testbed = testbeds::find_testbed(camera.source))
+  if (const testbeds::TestbedKind* const testbed = testbeds::find_testbed(own.settings->source))
     return make_of_testbed(*testbed, own, context);
-  return std::make_unique<twins::camera::ImageMaker>(
-      image_settings(context.mission, context.servicer, own),
-      make_scene_renderer(context.mission, context.servicer, camera.settings, context.data_directory));
-}
-
-std::unique_ptr<twins::PacketSource> make_camera(const Sensor& own, const MakeContext& context) {
-  const Mission& mission = context.mission;
-  const Spacecraft& servicer = context.servicer;
-  const auto& camera = settings_of<CameraSensor>(own);
-  twins::camera::CameraSensor::Settings sensor;
-  sensor.image = image_settings(mission, servicer, own);
-  sensor.mount.spacecraft = servicer.name;
-  sensor.mount.q_camera_body = camera.q_camera_body;
-  sensor.mount.position_body = camera.position_body_m;
-  for (const Spacecraft& other : mission.spacecraft) {
-    if (other.model.empty() || &other == &servicer) continue;
-    fsw::Vector3 centre_of_mass = fsw::Vector3::Zero();
-    if (const auto* tumble = other.attitude ? std::get_if<mission::Tumble>(&*other.attitude) : nullptr)
-      centre_of_mass =
-          mission::load_body(context.data_directory / "bodies" / (tumble->body + ".toml")).centre_of_mass_m;
-    sensor.mount.models.push_back({other.name, other.model, centre_of_mass});
-  }
-  // The first image is taken one period after the first step, which tells the platform where to look.
-  sensor.start = mission.start_time() + camera.period;
-  sensor.period = camera.period;
-  sensor.readout = camera.readout;
-  return std::make_unique<twins::camera::CameraSensor>(sensor, make_image_taker(own, context));
-}
-
-/// Images that are recorded but not sent to the flight software.
-class RecordedOnly final : public twins::PacketSource {
- public:
-  explicit RecordedOnly(std::unique_ptr<twins::PacketSource> camera) : camera_(std::move(camera)) {}
-
-  [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override {
-    return camera_->next_epoch(from);
-  }
-
-  void start(fsw::GpsTime first_epoch) override { camera_->start(first_epoch); }
-  void stop(twins::StopReason reason) override { camera_->stop(reason); }
-  [[nodiscard]] std::vector<twins::Note> statistics() const override { return camera_->statistics(); }
-
-  twins::Measurement measure(const twins::TruthSnapshot& truth) override {
-    twins::Measurement measurement = camera_->measure(truth);
-    measurement.packets.clear();
-    measurement.pending = {};
-    return measurement;
-  }
-
- private:
-  std::unique_ptr<twins::PacketSource> camera_;
-};
-
-twins::camera::TileRestorer::MakeImage image_maker_of(const Mission& mission, const Spacecraft& servicer,
-                                                      const Sensor& sensor,
-                                                      const std::filesystem::path& data_directory) {
-  const auto maker = std::make_shared<twins::camera::ImageMaker>(
-      image_settings(mission, servicer, sensor),
-      make_scene_renderer(mission, servicer, settings_of<CameraSensor>(sensor).settings, data_directory));
-  return [maker](const twins::camera::ImageRecipe& recipe) { return maker->packets_of(recipe.exposure); };
-}
-
-/// Renders the images of a log that keeps their recipes only.
-twins::TileSource tile_source(std::span<const std::vector<std::uint8_t>> recipes,
-                              twins::camera::TileRestorer::MakeImage make_image) {
-  const auto restorer = std::make_shared<twins::camera::TileRestorer>(recipes, std::move(make_image));
-  twins::TileSource source;
-  source.packets_of = [restorer](const twins::TileRun& run) { return restorer->packets_of(run); };
-  for (const std::vector<std::uint8_t>& recipe : recipes)
-    if (const auto image = twins::camera::recipe_of(recipe)) source.recipes[image->exposure.time] = recipe;
-  return source;
+  return make_digital_camera(context.mission, context.servicer, own, context.data_directory);
 }
 
 void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<twins::NamedSource>& sources) {
@@ -200,15 +80,19 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
   const std::string name = source_name(context.servicer, sensor);
   if (camera.source == "recorded") {
     const twins::RecordedLog::Selection selection{context.servicer.number, {fsw::packets::Apid::kImageTile}};
-    const auto make_tiles = [&](std::span<const std::vector<std::uint8_t>> recipes) {
-      return tile_source(recipes, image_maker_of(context.mission, context.servicer, sensor, context.data_directory));
+    const auto make_tiles = [&](twins::ImagesOfLog&& images) {
+      return make_recorded_tile_source(
+          [&mission = context.mission, &servicer = context.servicer, &sensor, data = context.data_directory] {
+            return make_digital_camera(mission, servicer, sensor, data);
+          },
+          std::move(images));
     };
     sources.push_back({name, camera.source, std::make_unique<twins::RecordedLog>(camera.log, selection, make_tiles)});
     return;
   }
-  auto images = make_camera(sensor, context);
-  if (camera.use == CameraNavigation::kNone) images = std::make_unique<RecordedOnly>(std::move(images));
-  sources.push_back({name, camera.source, std::move(images)});
+  sources.push_back({name, camera.source,
+                     make_camera(context.mission, context.servicer, sensor, context.data_directory,
+                                 make_image_taker(sensor, context))});
 }
 
 void add_facts(const Sensor& sensor, const Mission& /*mission*/, const Spacecraft& /*servicer*/,
@@ -253,7 +137,8 @@ const SensorKind kCamera{{"camera", "", read_camera, read_camera_shared, check},
                          add_sources,
                          add_facts,
                          evaluate_camera,
-                         {tables, summarise_images, sections, kMessagesInTables}};
+                         {tables, summarise_images, sections, kMessagesInTables, camera_paper_columns},
+                         make_camera_tile_source};
 
 const CameraSensor* navigation_camera(const Spacecraft& carrier) {
   for (const Sensor& sensor : carrier.sensors)
@@ -261,23 +146,6 @@ const CameraSensor* navigation_camera(const Spacecraft& carrier) {
         camera != nullptr && camera->use != CameraNavigation::kNone)
       return camera;
   return nullptr;
-}
-
-twins::camera::TileRestorer::MakeImage make_image_maker(const Mission& mission, const Spacecraft& servicer,
-                                                        const std::filesystem::path& data_directory) {
-  // By unit; made when the first image of its camera is, since a renderer is large.
-  const auto makers = std::make_shared<std::map<std::uint8_t, twins::camera::TileRestorer::MakeImage>>();
-  return [makers, &mission, &servicer, data_directory](const twins::camera::ImageRecipe& recipe) {
-    for (const Sensor& sensor : servicer.sensors) {
-      const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
-      if (camera == nullptr || camera->source != "digital" || camera_unit(sensor, servicer) != recipe.unit) continue;
-      auto& maker = (*makers)[recipe.unit];
-      if (!maker) maker = image_maker_of(mission, servicer, sensor, data_directory);
-      return maker(recipe);
-    }
-    throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no digital camera of unit " +
-                             std::to_string(recipe.unit) + " that could render the images of the log again");
-  };
 }
 
 }  // namespace vbar::sensors

@@ -9,7 +9,6 @@
 #include "fsw/packets/messages.h"
 #include "host_sim/sensors/sensor_kind.h"
 #include "host_sim/twins/camera/camera_settings.h"
-#include "host_sim/twins/camera/recipe_log.h"
 
 namespace vbar::sensors {
 
@@ -70,11 +69,5 @@ void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandCon
                                                      const mission::Spacecraft& servicer,
                                                      const fsw::orbit::CartesianState& servicer_state,
                                                      const fsw::orbit::CartesianState& target_state);
-
-/// Makes the images of the digital cameras of `servicer` again, for a replay. Mission and servicer must outlive it. It
-/// throws std::runtime_error for an image of a camera that there is not.
-[[nodiscard]] twins::camera::TileRestorer::MakeImage make_image_maker(const mission::Mission& mission,
-                                                                      const mission::Spacecraft& servicer,
-                                                                      const std::filesystem::path& data_directory);
 
 }  // namespace vbar::sensors

@@ -2,8 +2,11 @@
 // Summary figures and report sections of navigation by camera.
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "host_sim/report/html_page.h"
+#include "host_sim/report/paper_column.h"
 #include "host_sim/report/run_record.h"
 #include "host_sim/sensors/camera/camera_rows.h"
 
@@ -13,6 +16,7 @@ namespace vbar::sensors {
 struct ImageCounts {
   int images = 0;
   int with_bearing = 0;
+  int with_stars = 0;     ///< whose stars were identified
   int wrong_targets = 0;  ///< images whose choice is not the target; those without truth are not evaluated
   int without_truth = 0;
 };
@@ -38,6 +42,12 @@ struct PoseFigures {
 /// Of images and of poses, where the run has any (summarise_images.cpp): sensor_figures "images" and "pose", and the
 /// summary's own figures of attitude and bearing.
 void summarise_images(const report::RunRecord& record, report::Summary& summary);
+
+// In angles_only_performance.cpp.
+/// Published figures of experiment 1; none for a run that does not navigate by angles only to its waypoints.
+[[nodiscard]] std::vector<report::PaperColumn> camera_paper_columns(const report::RunRecord& record);
+/// Errors at the waypoints and delta-v as HTML; the paper's figures below those of a run that meets its waypoints.
+[[nodiscard]] std::string angles_only_performance(const report::RunRecord& record);
 
 /// Angles-only navigation: beside the paper, bearings, star attitude, range, pictures (section_angles_only.cpp).
 [[nodiscard]] report::Section angles_only_section(const report::RunRecord& record);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -39,7 +41,9 @@ std::string caption(const ImageRow& row) {
 
 }  // namespace
 
-GalleryKeeper::GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer) {
+GalleryKeeper::GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                             TakeTwinImage take_twin)
+    : take_twin_(std::move(take_twin)) {
   const auto* const camera = navigation_camera(servicer);
   if (camera == nullptr || camera->use != CameraNavigation::kAnglesOnly) return;
   assembly_ = std::make_unique<fsw::imaging::ImageAssembly>();
@@ -98,21 +102,43 @@ void GalleryKeeper::finish(std::vector<report::GalleryImage>& gallery) {
 
 GalleryKeeper::Candidate GalleryKeeper::candidate(const ImageFindings& found, GpsTime moment) const {
   const fsw::imaging::ImageView view = assembly_->view();
-  return {moment, found.row, view.frame, {view.pixels.begin(), view.pixels.end()}};
+  Candidate candidate{moment, found.row, view.frame, {view.pixels.begin(), view.pixels.end()}, {}, {}};
+  if (!take_twin_) return candidate;
+  if (found.objects != nullptr) candidate.objects = *found.objects;
+  if (found.truth != nullptr) candidate.truth = *found.truth;
+  return candidate;
 }
 
 report::GalleryImage GalleryKeeper::picture(const Candidate& candidate) const {
   const report::CameraPicture picture{candidate.frame.width, candidate.frame.height, candidate.dn};
   const double size_px = candidate.row.range_m ? kSpacecraftRadius_m * focal_length_px_ / *candidate.row.range_m : 0.0;
-  return {.time_s = candidate.row.time_s,
-          .image = candidate.row.image,
-          .caption = caption(candidate.row),
-          .origin_x_px = candidate.frame.origin_x,
-          .origin_y_px = candidate.frame.origin_y,
-          .width_px = candidate.frame.width,
-          .height_px = candidate.frame.height,
-          .target_radius_px = std::max(kTargetRadius, size_px),
-          .png = report::png_of(picture, report::stretch_for(picture))};
+  const report::Stretch stretch = report::stretch_for(picture);
+  report::GalleryImage image{.time_s = candidate.row.time_s,
+                             .image = candidate.row.image,
+                             .caption = caption(candidate.row),
+                             .origin_x_px = candidate.frame.origin_x,
+                             .origin_y_px = candidate.frame.origin_y,
+                             .width_px = candidate.frame.width,
+                             .height_px = candidate.frame.height,
+                             .target_radius_px = std::max(kTargetRadius, size_px),
+                             .png = report::png_of(picture, stretch)};
+  if (take_twin_ && candidate.truth) add_twin(candidate, stretch, image);
+  return image;
+}
+
+/// A picture that cannot be made does not end the run.
+void GalleryKeeper::add_twin(const Candidate& candidate, const report::Stretch& stretch,
+                             report::GalleryImage& image) const try {
+  const std::vector<std::uint16_t> twin = take_twin_(*candidate.truth, candidate.row.image);
+  const fsw::imaging::ImageFrame& frame = candidate.frame;
+  if (twin.size() != candidate.dn.size()) throw std::runtime_error("it is not of the same region");
+  const ImagePair pair{frame.width, frame.height, frame.origin_x, frame.origin_y, candidate.dn, twin};
+  image.twin_png = report::png_of({frame.width, frame.height, twin}, stretch);
+  image.difference_png = difference_png(pair);
+  image.difference =
+      difference_text(pair, candidate.row, candidate.objects ? &*candidate.objects : nullptr, focal_length_px_);
+} catch (const std::exception& error) {
+  image.caption += fmt::format(" (no image of the digital twin: {})", error.what());
 }
 
 }  // namespace vbar::sensors

@@ -17,6 +17,7 @@
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/image_png.h"
 #include "host_sim/sensors/camera/camera_rows.h"
+#include "host_sim/sensors/camera/twin_image.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::sensors {
@@ -25,7 +26,8 @@ namespace vbar::sensors {
 struct ImageFindings {
   fsw::GpsTime exposure;
   ImageRow row;
-  const telemetry_objects* objects = nullptr;  ///< null if it said nothing of them
+  const telemetry_objects* objects = nullptr;   ///< null if it said nothing of them
+  const twins::TruthSnapshot* truth = nullptr;  ///< at the exposure, if it is known
 };
 
 class GalleryKeeper {
@@ -33,7 +35,8 @@ class GalleryKeeper {
   static constexpr int kExposuresBefore = 20;  ///< that are looked at before a waypoint
 
   /// Keeps nothing unless `servicer` has a camera that navigates by angles only.
-  GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer);
+  /// `take_twin`: for images of a testbed, whose images the gallery shows beside those of the digital twin.
+  GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer, TakeTwinImage take_twin = {});
 
   /// The packets that the flight software got with the step at `now`: tiles among them are assembled if they may be
   /// wanted. One image is kept, as in the flight software.
@@ -52,6 +55,8 @@ class GalleryKeeper {
     ImageRow row;
     fsw::imaging::ImageFrame frame;
     std::vector<std::uint16_t> dn;
+    std::optional<telemetry_objects> objects;
+    std::optional<twins::TruthSnapshot> truth;
   };
 
   [[nodiscard]] bool may_be_wanted(fsw::GpsTime now) const;
@@ -59,11 +64,13 @@ class GalleryKeeper {
   [[nodiscard]] std::optional<fsw::GpsTime> moment_of(fsw::GpsTime exposure) const;
   [[nodiscard]] Candidate candidate(const ImageFindings& found, fsw::GpsTime moment) const;
   [[nodiscard]] report::GalleryImage picture(const Candidate& candidate) const;
+  void add_twin(const Candidate& candidate, const report::Stretch& stretch, report::GalleryImage& image) const;
 
   std::unique_ptr<fsw::imaging::ImageAssembly> assembly_;  ///< null without a camera; large
   std::vector<fsw::GpsTime> moments_;                      ///< in order
   fsw::Duration before_;
   double focal_length_px_ = 0.0;
+  TakeTwinImage take_twin_;
   bool has_bearing_ = false;
   std::optional<Candidate> best_;
 };

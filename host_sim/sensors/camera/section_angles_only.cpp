@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <utility>
 
@@ -14,7 +13,6 @@
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/navigation_errors.h"
 #include "host_sim/report/number_text.h"
-#include "host_sim/report/paper_experiment1.h"
 #include "host_sim/report/section_parts.h"
 #include "host_sim/sensors/camera/camera_report.h"
 
@@ -24,53 +22,6 @@ namespace {
 using namespace report;  // NOLINT(google-build-using-namespace): a section is made of its parts
 
 using fsw::math::kArcsecond;
-
-// ------------------------------------------------------------------------------------------------- table of the paper
-
-struct Metric {
-  const char* name;
-  std::function<std::optional<double>(const WaypointRow&)> value;
-  double paper1::Loop::*papers_value;
-};
-
-const std::vector<Metric> kMetrics{
-    {"navigation error, m", [](const WaypointRow& row) { return row.navigation_error_m; },
-     &paper1::Loop::navigation_error_m},
-    {"control error, m", [](const WaypointRow& row) { return row.control_error_m; }, &paper1::Loop::control_error_m}};
-
-std::vector<std::string> papers_row(const std::vector<WaypointRow>& waypoints, const char* loop, const Metric& metric,
-                                    paper1::Loop paper1::Loops::*which) {
-  std::vector<std::string> cells{"", loop};
-  for (const WaypointRow& row : waypoints) {
-    const paper1::Loops* const same = at_waypoint(paper1::kWaypoints, row);
-    cells.push_back(fixed(same != nullptr ? std::optional((same->*which).*metric.papers_value) : std::nullopt, 2));
-  }
-  return cells;
-}
-
-/// The paper's figures stand below those of a run that meets its waypoints.
-std::string performance_table(const RunRecord& record) {
-  const std::vector<WaypointRow> waypoints = reached_waypoints(record);
-  std::vector<Column> columns{{"", false}, {"", false}};
-  for (const WaypointRow& row : waypoints) columns.push_back({fmt::format("waypoint {}", row.index)});
-  const bool has_paper = meets_paper(paper1::kWaypoints, waypoints);
-  std::vector<std::vector<std::string>> rows;
-  for (const Metric& metric : kMetrics) {
-    std::vector<std::string>& cells = rows.emplace_back(std::vector<std::string>{metric.name, kThisRun});
-    for (const WaypointRow& row : waypoints) cells.push_back(fixed(metric.value(row), 2));
-    if (!has_paper) continue;
-    rows.push_back(papers_row(waypoints, kPaperSoftware, metric, &paper1::Loops::software));
-    rows.push_back(papers_row(waypoints, kPaperHardware, metric, &paper1::Loops::hardware));
-  }
-  std::string out = waypoints.empty() ? "" : table(columns, rows);
-  const Summary& s = record.summary;
-  out += fmt::format("<p>Delta-v: {} m/s in {} maneuvers", fixed(s.dv_mps, 3), s.maneuvers);
-  if (has_paper) {
-    out += fmt::format("; paper: {} (software in the loop) and {} (hardware in the loop)", paper1::kDeltaVSoftware,
-                       paper1::kDeltaVHardware);
-  }
-  return out + ".</p>\n";
-}
 
 // ----------------------------------------------------------------------------------------------------------- in words
 
@@ -296,6 +247,20 @@ std::string marks(const RunRecord& record, const GalleryImage& image) {
   return all + target;
 }
 
+std::string gallery_note(const RunRecord& record) {
+  std::string note =
+      "As received by the flight software, with its findings: red boxes are identified stars, the green circle is the "
+      "selected target, blue triangles are unmatched objects. Dark violet pixels did not arrive.";
+  const auto has_twin = [](const GalleryImage& image) { return !image.difference.empty(); };
+  if (std::ranges::any_of(record.gallery, has_twin))
+    note +=
+        " Beside an image of the testbed: the image that the digital twin makes of the same exposure, and their "
+        "difference, red where the testbed's image is brighter, blue where the twin's is, black within five standard "
+        "deviations of the noise. The bearing error in the twin's image follows from the centroids of target and stars "
+        "in both images.";
+  return note;
+}
+
 }  // namespace
 
 report::Section angles_only_section(const report::RunRecord& record) {
@@ -306,7 +271,7 @@ report::Section angles_only_section(const report::RunRecord& record) {
   if (!record.gallery.empty()) files.emplace_back("gallery.csv");
   if (!record.residuals.empty()) files.emplace_back("residuals.csv");
   return {"Angles-only navigation",
-          performance_table(record) + facts(record) + kBandNote +
+          angles_only_performance(record) + facts(record) + kBandNote +
               "<p class=\"note\">Residuals of the bearings that the filter used. Normalised: over |prefit| / √NIS, the "
               "standard deviation of the innovation along the residual vector. Errors of bearings are against the "
               "target's centre of mass; its centre of brightness lies up to some decimetres beside it, which shows at "
@@ -314,10 +279,7 @@ report::Section angles_only_section(const report::RunRecord& record) {
               kPlotNote + plot_rows(2, residual_plots(record, view)) + plot_rows(2, normalised_plots(record, view)) +
               plot_rows(2, {bearing_error_plot(record, view), attitude_error_plot(record, view)}) +
               plot_rows(2, {range_plot(record, view), objects_plot(record, view)}) +
-              gallery_html(record, 3,
-                           "As received by the flight software, with its findings: red boxes are identified stars, the "
-                           "green circle is the selected target, blue triangles are unmatched objects. Dark violet "
-                           "pixels did not arrive.",
+              gallery_html(record, 3, gallery_note(record),
                            [&](const GalleryImage& image) { return marks(record, image); }),
           files};
 }

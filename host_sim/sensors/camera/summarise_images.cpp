@@ -30,6 +30,7 @@ void summarise_angles_only(const RunRecord& record, Summary& summary) {
   if (!counts) return;
   summary.sensor_figures["images"] = {{"images", counts->images},
                                       {"with_bearing", counts->with_bearing},
+                                      {"with_stars", counts->with_stars},
                                       {"wrong_targets", counts->wrong_targets},
                                       {"without_truth", counts->without_truth}};
   if (summary.target.empty()) return;
@@ -105,6 +106,7 @@ std::optional<ImageCounts> image_counts(const RunRecord& record) {
   counts.images = static_cast<int>(images.size());
   for (const ImageRow& row : images) {
     if (row.status == telemetry_image::kStatusBearing) ++counts.with_bearing;
+    if (row.star_method != telemetry_image::kStarMethodNone) ++counts.with_stars;
     if (!row.range_m) ++counts.without_truth;
     if (!row.chosen.empty() && !target.empty() && row.chosen != target) ++counts.wrong_targets;
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "host_sim/twins/camera/image_recipe.h"
+#include "host_sim/twins/camera/recorded_image.h"
 
 namespace vbar::twins::camera {
 namespace {
@@ -37,9 +38,11 @@ Measurement CameraSensor::measure(const TruthSnapshot& truth) {
   try {
     const std::int64_t number = (truth.time - settings_.start).ns / settings_.period.ns;
     const Exposure exposure = exposure_of_truth(settings_.mount, truth, number);
-    if (taker_->is_reproducible())
-      measurement.recipe = bytes_of({settings_.image.spacecraft, settings_.image.unit, exposure});
-    measurement.pending = worker_.run([this, exposure] { return take(exposure); });
+    const ImageMaker::Settings& image = settings_.image;
+    measurement.recipe = LoggedImage{{image.spacecraft, image.unit, image_number_on_link(number)},
+                                     bytes_of({image.spacecraft, image.unit, exposure})};
+    if (settings_.sends_packets || !taker_->is_reproducible())
+      measurement.pending = worker_.run([this, exposure] { return take(exposure); });
     measurement.status = MeasurementStatus::kReady;
   } catch (const std::invalid_argument& error) {
     measurement.status = MeasurementStatus::kFailed;
@@ -52,16 +55,33 @@ Completion CameraSensor::take(const Exposure& exposure) {
   TakenImage image = taker_->take(exposure);
   Completion completion{{}, std::move(image.notes), std::move(image.failure)};
   if (!completion.failure.empty()) return completion;
-  const Stopwatch watch(packing_s_);
-  completion.packets = packets_of(settings_.image, exposure, image.dn);
+  {
+    const Stopwatch watch(packing_s_);
+    completion.packets = packets_of(settings_.image, exposure, image.dn);
+  }
+  if (!taker_->is_reproducible()) completion.recording = record(exposure, image.dn);
+  if (!settings_.sends_packets) completion.packets.clear();
   ++images_;
   return completion;
+}
+
+LoggedImage CameraSensor::record(const Exposure& exposure, std::span<const std::uint16_t> dn) {
+  const Stopwatch watch(recording_s_);
+  const ImageMaker::Settings& image = settings_.image;
+  const ImageHeader header{
+      {exposure.time, exposure.number, image.spacecraft, image.unit}, image.camera.region, image.camera.detector.bits};
+  LoggedImage recording{header.key(), recorded_image_of(header, dn)};
+  recorded_bytes_ += static_cast<std::int64_t>(recording.bytes.size());
+  return recording;
 }
 
 std::vector<Note> CameraSensor::statistics() const {
   std::vector<Note> statistics = taker_->statistics();
   statistics.push_back({"images", static_cast<double>(images_)});
   statistics.push_back({"packing_s", packing_s_});
+  if (taker_->is_reproducible()) return statistics;
+  statistics.push_back({"recording_s", recording_s_});
+  statistics.push_back({"recorded_bytes", static_cast<double>(recorded_bytes_)});
   return statistics;
 }
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
@@ -21,9 +22,10 @@ class CameraSensor final : public PacketSource {
   struct Settings {
     ImageMaker::Settings image;
     CameraMount mount;
-    fsw::GpsTime start;     ///< middle of the first exposure
-    fsw::Duration period;   ///< > 0, between exposures
-    fsw::Duration readout;  ///< >= 0: from the middle of an exposure until its packets leave
+    fsw::GpsTime start;         ///< middle of the first exposure
+    fsw::Duration period;       ///< > 0, between exposures
+    fsw::Duration readout;      ///< >= 0: from the middle of an exposure until its packets leave
+    bool sends_packets = true;  ///< false: the images are in the log only
     std::chrono::milliseconds timeout = std::chrono::minutes(5);  ///< on the wall, for one image
   };
 
@@ -38,23 +40,27 @@ class CameraSensor final : public PacketSource {
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// Begins the image, whose packets are `pending`; `recipe` regenerates them, if that is possible. kFailed
-  /// if the truth lacks the spacecraft or its attitude.
+  /// Begins the image, whose packets are `pending`. If the taker is reproducible, `recipe` regenerates them; otherwise
+  /// they come with a recording, and `recipe` is the exposure of which the digital twin makes an image too. kFailed if
+  /// the truth lacks the spacecraft or its attitude.
   Measurement measure(const TruthSnapshot& truth) override;
 
-  [[nodiscard]] bool truth_is_compared() const override { return true; }
+  [[nodiscard]] bool truth_is_compared() const override { return settings_.sends_packets; }
   [[nodiscard]] std::chrono::milliseconds wait_limit() const override { return settings_.timeout; }
 
-  /// "images" taken, "packing_s" of the wall clock spent on their packets, and the figures of the taker.
+  /// "images" taken, "packing_s" of the wall clock spent on their packets, and the figures of the taker. Of one that is
+  /// not reproducible also "recording_s" spent on recordings, and "recorded_bytes".
   [[nodiscard]] std::vector<Note> statistics() const override;
 
  private:
   Completion take(const Exposure& exposure);
+  LoggedImage record(const Exposure& exposure, std::span<const std::uint16_t> dn);
 
   Settings settings_;
   std::unique_ptr<ImageTaker> taker_;
   std::atomic<double> packing_s_{0.0};
-  std::atomic<std::int64_t> images_{0};
+  std::atomic<double> recording_s_{0.0};
+  std::atomic<std::int64_t> images_{0}, recorded_bytes_{0};
   Worker worker_;  // last: its thread uses all the others
 };
 

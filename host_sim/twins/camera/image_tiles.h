@@ -2,6 +2,7 @@
 // An image as packets of the flight software.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,10 +25,14 @@ struct ImageLabel {
   std::uint8_t unit = 0;        ///< number of the camera
 };
 
+/// How many tiles an image makes; empty for bits other than 8 and 12, for a region without pixels or outside what the
+/// message can state, and for one that makes more tiles than their numbers can count.
+[[nodiscard]] std::optional<int> number_of_tiles(const Region& region, int bits);
+
 /// `dn`: the pixels of `region`, rows from the top, of `bits` (8 or 12) each. One packet a tile, in order; sequence
 /// counts are those of a camera that has sent all its earlier images whole. Throws std::invalid_argument for other
-/// bits, for pixels that are not those of the region and for a region that makes more tiles than their numbers can
-/// count.
+/// bits, for pixels that are not those of the region and for a region without a
+/// number_of_tiles().
 std::vector<Packet> image_tiles(const ImageLabel& label, const Region& region, int bits,
                                 std::span<const std::uint16_t> dn);
 

@@ -39,7 +39,7 @@ TEST_P(ImagesInTheLog, AreWhatTheMissionAsksFor) {
   {
     const PacketKeepers keepers(mission, folder_);
     for (RunObserver* observer : keepers.observers()) {
-      observer->on_recipe({0}, twins::camera::bytes_of(recipe));
+      observer->on_recipe({0}, twins::LoggedImage{{1, 0, 0}, twins::camera::bytes_of(recipe)});
       observer->on_step(0, {0}, tiles, {});
     }
   }

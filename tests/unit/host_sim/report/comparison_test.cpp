@@ -112,6 +112,61 @@ TEST(LoopName, IsMadeOfSourcesAndFlightComputer) {
   EXPECT_THAT(emulated_testbeds(summary), ElementsAre("grand"));
 }
 
+// The paper's table "Performance metrics for Experiment #1", waypoints 1 and 7, and its text on delta-v.
+TEST(Comparison, Experiment1StandsBesideBothLoopsOfThePaper) {
+  std::vector<ComparedRun> runs{{"sil", synthetic_run()}, {"hil", synthetic_run()}};
+  for (ComparedRun& run : runs) {
+    run.record.summary.navigation = "angles_only";
+    run.record.summary.first_fix_s.reset();
+  }
+  runs[1].record.summary.camera = "optical_stimulator";
+  runs[1].record.summary.testbeds["optical_stimulator"]["bench"] = std::string("emulated");
+  ASSERT_THAT(column_names(runs),
+              ElementsAre("sil", "hil", "paper, software in the loop", "paper, hardware in the loop"));
+  const std::vector<ComparisonRow> rows = comparison_rows(runs);
+  EXPECT_THAT(cells_of(rows, "in the loop").at(1), testing::HasSubstr("emulated bench"));
+  const auto navigation = std::ranges::find(rows, "navigation error, m", &ComparisonRow::name);
+  ASSERT_NE(navigation, rows.end());
+  EXPECT_EQ((navigation + 1)->cells.at(2), "80.0400");
+  EXPECT_EQ((navigation + 1)->cells.at(3), "75.2700");
+  const auto control = std::ranges::find(rows, "control error, m", &ComparisonRow::name);
+  EXPECT_EQ((control + 7)->cells.at(2), "8.7700");
+  EXPECT_EQ((control + 7)->cells.at(3), "4.4700");
+  const auto total = std::ranges::find(rows, "  delta-v, m/s", &ComparisonRow::name);
+  ASSERT_NE(total, rows.end());
+  EXPECT_EQ(total->cells.at(2), "4.690");
+  EXPECT_EQ(total->cells.at(3), "4.750");
+  EXPECT_EQ(cells_of(rows, "  maneuvers").at(3), "90");
+}
+
+TEST(Comparison, NavigationByImagesHasRowsOfItsOwn) {
+  std::vector<ComparedRun> runs{{"sil", synthetic_run()}, {"other", synthetic_run()}};
+  Summary& s = runs[0].record.summary;
+  s.sensor_figures["images"] = {{"images", 200}, {"with_bearing", 162}, {"with_stars", 199}};
+  s.bearing_error_arcsec = BearingError{3.0, 2.31, 1.24};
+  s.star_attitude_error_arcsec = MeanAndDeviation{0.41, 0.2};
+  s.navigation_nees = 6.44;
+  Summary& other = runs[1].record.summary;
+  other.sensor_figures.clear();
+  other.bearing_error_arcsec.reset();
+  other.star_attitude_error_arcsec.reset();
+  other.navigation_nees.reset();
+  const std::vector<ComparisonRow> rows = comparison_rows(runs);
+  const auto first_two = [&](const char* name) {
+    std::vector<std::string> cells = cells_of(rows, name);
+    cells.resize(2);
+    return cells;
+  };
+  EXPECT_THAT(first_two("images with a bearing"), ElementsAre("81.0 % of 200", "–"));
+  EXPECT_THAT(first_two("images with stars identified"), ElementsAre("99.5 % of 200", "–"));
+  EXPECT_THAT(first_two("bias of the bearings"), ElementsAre("1.24", "–"));
+  EXPECT_THAT(first_two("noise of the bearings"), ElementsAre("2.31", "–"));
+  EXPECT_THAT(first_two("boresight error of the star attitude"), ElementsAre("0.41 ± 0.20", "–"));
+  EXPECT_THAT(first_two("mean NEES"), ElementsAre("6.44", "–"));
+  runs[0].record.summary = runs[1].record.summary;
+  EXPECT_EQ(cells_of(comparison_rows(runs), "bias of the bearings"), std::vector<std::string>{"no such row"});
+}
+
 /// The paper's figures, and a run with carrier phases.
 std::vector<PaperColumn> one_paper(const RunRecord& record) {
   if (record.waypoints.empty()) return {};

@@ -173,6 +173,24 @@ TEST_F(HtmlReport, CopesWithASingleStep) {
   EXPECT_EQ(complaints(html_report(record)), "");
 }
 
+TEST_F(HtmlReport, ImageOfAnEmulatedBenchStandsBesideThatOfTheTwin) {
+  RunRecord record = synthetic_run();
+  EXPECT_THAT(html_report(record), Not(HasSubstr("emulated bench")));
+  record.summary.gnss = "digital";
+  record.summary.camera = "optical_stimulator";
+  record.summary.flight_computer = "in_process";
+  record.summary.testbeds["optical_stimulator"]["bench"] = std::string("emulated");
+  GalleryImage& image = record.gallery.back();
+  image.difference = "median 0.0 DN, noise 4.0 DN";
+  image.twin_png = image.difference_png = image.png;
+  const std::string html = html_report(record);
+  EXPECT_THAT(html, HasSubstr("this run, emulated bench"));
+  EXPECT_THAT(html, HasSubstr(" h, HIL, emulated bench: target &amp; &lt;decoy&gt;"));
+  EXPECT_THAT(html, HasSubstr(" h, SIL: the digital twin's image of the same exposure"));
+  EXPECT_THAT(html, HasSubstr(" h, HIL less SIL: median 0.0 DN, noise 4.0 DN"));
+  EXPECT_THAT(html, HasSubstr("their difference, red where the testbed's image is brighter"));
+}
+
 TEST_F(HtmlReport, NamesThePaperOnlyBesideItsWaypoints) {
   RunRecord record = synthetic_run();
   for (WaypointRow& waypoint : record.waypoints) waypoint.a_roe_desired_m[1] -= 1.0;

@@ -2,14 +2,17 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "host_sim/report/summary_json.h"
+#include "host_sim/report/text_file.h"
 #include "host_sim/sensors/camera/camera_rows.h"
 #include "host_sim/sensors/gnss/gnss_row.h"
 #include "host_sim/sensors/sensor_kinds.h"
@@ -181,7 +184,8 @@ TEST_F(RunFolderTest, ColumnsOfImagesAreAsAgreed) {
                 "attitude_error_across_arcsec,attitude_error_roll_arcsec,nees");
   EXPECT_EQ(first_line(run() / "objects.csv"), "time_s,image,object,kind,star,x_px,y_px");
   EXPECT_EQ(first_line(run() / "gallery.csv"),
-            "time_s,image,caption,origin_x_px,origin_y_px,width_px,height_px,target_radius_px,crop_left,crop_side");
+            "time_s,image,caption,origin_x_px,origin_y_px,width_px,height_px,target_radius_px,crop_left,crop_side,"
+            "difference");
 }
 
 TEST_F(RunFolderTest, ImagesAreFilesOnlyWhereACameraNavigates) {
@@ -195,6 +199,34 @@ TEST_F(RunFolderTest, ImagesAreFilesOnlyWhereACameraNavigates) {
   for (const char* name : {"images.csv", "objects.csv", "gallery.csv", "gallery"})
     EXPECT_FALSE(fs::exists(run() / name)) << name;
   EXPECT_EQ(everything(read_run(run(), sensors::extensions())), everything(record));
+}
+
+TEST_F(RunFolderTest, ImageOfATestbedHasThePicturesOfTheTwinBesideIt) {
+  RunRecord record = synthetic_run();
+  GalleryImage& image = record.gallery.back();
+  image.difference = "median 0.0 DN, noise 4.0 DN";
+  image.twin_png = {1, 2, 3};
+  image.difference_png = {4, 5};
+  RunFolder(run(), record.summary, RunFolder::Existing::kReplace, sensors::extensions()).finish(record);
+  const RunRecord read = read_run(run(), sensors::extensions());
+  EXPECT_EQ(read.gallery.back().difference, image.difference);
+  EXPECT_EQ(read.gallery.back().twin_png, image.twin_png);
+  EXPECT_EQ(read.gallery.back().difference_png, image.difference_png);
+  EXPECT_TRUE(read.gallery.front().twin_png.empty());
+  const std::string name = fmt::format("gallery/{:05}_twin.png", image.image);
+  fs::remove(run() / name);
+  EXPECT_THAT(error_of_reading(), HasSubstr(name + ": no such file"));
+}
+
+// Folders of earlier versions have neither column nor pictures.
+TEST_F(RunFolderTest, GalleryWithoutTheColumnOfDifferencesIsRead) {
+  leave_a_run();
+  const std::string text = read_text_file(run() / "gallery.csv");
+  std::string older;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) older += line.substr(0, line.rfind(',')) + "\n";
+  replace_text_file(run() / "gallery.csv", older);
+  EXPECT_EQ(read_run(run(), sensors::extensions()).gallery.size(), synthetic_run().gallery.size());
 }
 
 TEST_F(RunFolderTest, APictureThatIsGoneIsNamed) {

@@ -32,6 +32,14 @@ TEST(WaypointTable, HasALineAWaypointAndOneForAll) {
   EXPECT_THAT(words_of(lines.back()), ElementsAre("all", "41.250", "3.834500", "39"));
 }
 
+TEST(WaypointTable, NamesAnEmulatedBench) {
+  RunRecord record = synthetic_run();
+  record.summary.camera = "optical_stimulator";
+  record.summary.testbeds["optical_stimulator"]["bench"] = std::string("emulated");
+  EXPECT_EQ(lines_of(waypoint_table(record)).front(),
+            "figures of an emulated bench: the testbed optical_stimulator was emulated");
+}
+
 TEST(WaypointTable, SaysWhenTheRunWasStopped) {
   RunRecord record = synthetic_run();
   record.summary.complete = false;

@@ -149,6 +149,53 @@ TEST_F(Gallery, PixelsOfALostTileAreMissing) {
   EXPECT_THAT(pictures_[0].caption, HasSubstr("1 tiles missing"));
 }
 
+// The image of the twin is asked for at the truth and with the number of the exposure, of kept images only.
+TEST_F(Gallery, ImageOfATestbedStandsBesideThatOfTheTwin) {
+  std::vector<std::int64_t> asked;
+  GalleryKeeper keeper(mission_, mission_.spacecraft[0], [&](const twins::TruthSnapshot& truth, std::int64_t number) {
+    EXPECT_EQ(truth.time, mission_.start_time() + fsw::Duration{(number + 1) * kMinute.ns});
+    asked.push_back(number);
+    return pattern(static_cast<int>(number) + 1);
+  });
+  const auto fly = [&](int minute, bool has_truth) {
+    const fsw::GpsTime exposure{mission_.start_time().ns + minute * kMinute.ns};
+    keeper.on_inputs(exposure + kMinute,
+                     twins::camera::image_tiles({exposure, minute - 1, 1, 0}, kRegion, 12, pattern(minute - 1)));
+    ImageRow row;
+    row.image = minute - 1;
+    row.status = kBearing;
+    const twins::TruthSnapshot truth{exposure, {}};
+    keeper.on_image({exposure, row, nullptr, has_truth ? &truth : nullptr}, pictures_);
+  };
+  fly(1, true);
+  for (int minute = 50; minute < 59; ++minute) fly(minute, true);
+  fly(59, false);
+  keeper.finish(pictures_);
+  ASSERT_EQ(pictures_.size(), 2U);
+  EXPECT_EQ(asked, std::vector<std::int64_t>{0});
+  const report::CameraPicture own{kRegion.width, kRegion.height, pattern(0)};
+  const std::vector<std::uint16_t> twin = pattern(1);
+  EXPECT_EQ(pictures_[0].twin_png, report::png_of({kRegion.width, kRegion.height, twin}, report::stretch_for(own)))
+      << "stretched as the testbed's";
+  EXPECT_FALSE(pictures_[0].difference.empty());
+  EXPECT_FALSE(pictures_[0].difference_png.empty());
+  EXPECT_TRUE(pictures_[1].difference.empty()) << "without a truth there is no exposure";
+}
+
+TEST_F(Gallery, TwinThatFailsDoesNotEndTheRun) {
+  GalleryKeeper keeper(mission_, mission_.spacecraft[0],
+                       [](const twins::TruthSnapshot&, std::int64_t) -> std::vector<std::uint16_t> {
+                         throw std::runtime_error("no context");
+                       });
+  const fsw::GpsTime exposure{mission_.start_time().ns + kMinute.ns};
+  keeper.on_inputs(exposure, twins::camera::image_tiles({exposure, 0, 1, 0}, kRegion, 12, pattern(0)));
+  const twins::TruthSnapshot truth{exposure, {}};
+  keeper.on_image({exposure, {}, nullptr, &truth}, pictures_);
+  ASSERT_EQ(pictures_.size(), 1U);
+  EXPECT_THAT(pictures_[0].caption, HasSubstr("no image of the digital twin: no context"));
+  EXPECT_TRUE(pictures_[0].difference.empty());
+}
+
 TEST_F(Gallery, NeedsACamera) {
   mission::Mission blind = mission_;
   std::erase_if(blind.spacecraft[0].sensors, [](const mission::Sensor& sensor) { return sensor.kind == "camera"; });

@@ -84,29 +84,47 @@ TEST_F(RecordedLogFile, ExposuresOfImagesAreEpochs) {
   EXPECT_EQ(source.measure({at(60), {}}).packets, std::vector<Packet>{tile});
 }
 
-TEST_F(RecordedLogFile, TilesThatTheLogLacksAreMadeAgain) {
-  const TileRun run{1, 0, 7, 0, 2, 99};
+/// Restores the same tiles for every run.
+class FixedTiles final : public TileSource {
+ public:
+  explicit FixedTiles(ImagesOfLog&& images) : images_(std::move(images)) {}
+  std::vector<Packet> packets_of(const TileRun& run) override {
+    EXPECT_EQ(run, kRun);
+    return tiles();
+  }
+  std::vector<GpsTime> exposures() const override { return {at(58)}; }
+  std::optional<LoggedImage> recipe_at(GpsTime exposure) const override {
+    return exposure == at(58) ? std::optional(LoggedImage{kRun.key(), images_.recipes.at(0)}) : std::nullopt;
+  }
+  std::optional<LoggedImage> recording_at(GpsTime exposure) const override {
+    return exposure == at(58) ? std::optional(LoggedImage{kRun.key(), images_.recordings.at(0).bytes}) : std::nullopt;
+  }
+
+  static constexpr TileRun kRun{1, 0, 7, 0, 2, 99};
+  static std::vector<Packet> tiles() { return {tile_packet(58, 1, 0), tile_packet(58, 1, 1)}; }
+
+ private:
+  ImagesOfLog images_;
+};
+
+TEST_F(RecordedLogFile, TilesThatTheLogLacksAreRestored) {
   {
     PacketLogWriter writer(file_);
     writer.write_recipe(at(58), {1, 2, 3});
-    writer.write({1, at(60), true, {}, run});
+    writer.write_recording(at(59), {4, 5});
+    writer.write({1, at(60), true, {}, FixedTiles::kRun});
     writer.write({1, at(60), true, {}, TileRun{2, 0, 7, 0, 2, 99}});  // another spacecraft's
   }
-  const std::vector<Packet> tiles{tile_packet(58, 1, 0), tile_packet(58, 1, 1)};
-  const MakeTileSource make = [&](std::span<const std::vector<std::uint8_t>> recipes) {
-    EXPECT_EQ(recipes.size(), 1U);
-    TileSource source;
-    source.recipes[at(58)] = recipes[0];
-    source.packets_of = [&](const TileRun& asked) {
-      EXPECT_EQ(asked, run);
-      return tiles;
-    };
-    return source;
+  const MakeTileSource make = [&](ImagesOfLog&& images) {
+    EXPECT_EQ(images.file, file_);
+    return std::make_unique<FixedTiles>(std::move(images));
   };
   RecordedLog source(file_, {1, {fsw::packets::Apid::kImageTile}}, make);
   EXPECT_EQ(source.next_epoch(at(0)), at(58));
-  EXPECT_EQ(source.measure({at(58), {}}).recipe, (std::vector<std::uint8_t>{1, 2, 3}));
-  EXPECT_EQ(source.measure({at(60), {}}).packets, tiles);
+  const Measurement at_exposure = source.measure({at(58), {}});
+  EXPECT_EQ(at_exposure.recipe, (LoggedImage{{1, 0, 7}, {1, 2, 3}}));
+  EXPECT_EQ(at_exposure.recording, (LoggedImage{{1, 0, 7}, {4, 5}}));
+  EXPECT_EQ(source.measure({at(60), {}}).packets, FixedTiles::tiles());
   EXPECT_THROW(RecordedLog(file_, {1, {fsw::packets::Apid::kImageTile}}), std::runtime_error);
 }
 

@@ -12,6 +12,7 @@
 #include "fsw/packets/messages.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/twins/camera/image_recipe.h"
+#include "host_sim/twins/camera/recorded_image.h"
 
 namespace vbar::twins::camera {
 namespace {
@@ -221,12 +222,17 @@ TEST(CameraSensor, BenchTakesTheImagesInTheRenderersPlace) {
   CameraSensor sensor(small_camera(), std::move(owned));
   sensor.start(kStart);
   Measurement first = sensor.measure(snapshot(kStart));
-  EXPECT_TRUE(first.recipe.empty()) << "it cannot be made again: the log keeps its pixels";
+  ASSERT_TRUE(first.recipe) << "the digital twin can make an image of the same exposure";
+  EXPECT_FALSE(first.recording) << "it is not yet taken";
   const Completion image = first.pending.get();
   EXPECT_EQ(image.packets.size(), 2U);
+  ASSERT_TRUE(image.recording) << "it cannot be made again: the log keeps its pixels";
+  EXPECT_EQ(image.recording->key, (ImageKey{1, 2, 0}));
+  EXPECT_EQ(pixels_of_recorded_image(image.recording->bytes), std::vector<std::uint16_t>(1200, 7));
   EXPECT_EQ(image.notes.at(0).name, "pose_error_m");
   const Completion lost = sensor.measure(snapshot(kStart + kPeriod)).pending.get();
   EXPECT_TRUE(lost.packets.empty());
+  EXPECT_FALSE(lost.recording);
   EXPECT_EQ(lost.failure, "the frame was lost");
   EXPECT_EQ(lost.notes.at(0).value, 3.0);
   sensor.stop(StopReason::kCompleted);
@@ -258,13 +264,31 @@ TEST(CameraSensor, MoreModelsThanARecipeHoldsAreRefused) {
 TEST(CameraSensor, RecipeMakesTheSamePackets) {
   CameraSensor sensor(small_camera(), one_pixel);
   Measurement measurement = sensor.measure(snapshot(kStart + kPeriod));
-  const auto recipe = recipe_of(measurement.recipe);
+  ASSERT_TRUE(measurement.recipe);
+  EXPECT_EQ(measurement.recipe->key, (ImageKey{1, 2, 1}));
+  const auto recipe = recipe_of(measurement.recipe->bytes);
   ASSERT_TRUE(recipe);
   EXPECT_EQ(recipe->spacecraft, 1);
   EXPECT_EQ(recipe->unit, 2);
   ImageMaker maker(small_camera().image, one_pixel);
   static_cast<void>(maker.packets_of({}));  // another image before it changes nothing
-  EXPECT_EQ(maker.packets_of(recipe->exposure), measurement.pending.get().packets);
+  const Completion image = measurement.pending.get();
+  EXPECT_EQ(maker.packets_of(recipe->exposure), image.packets);
+  EXPECT_FALSE(image.recording) << "the recipe is enough";
+}
+
+TEST(CameraSensor, ImagesThatAreNotSentAreRecordedOnly) {
+  CameraSensor::Settings settings = small_camera();
+  settings.sends_packets = false;
+  CameraSensor digital(settings, one_pixel);
+  const Measurement recipe_only = digital.measure(snapshot(kStart));
+  EXPECT_TRUE(recipe_only.recipe);
+  EXPECT_FALSE(recipe_only.pending.valid()) << "nobody needs its pixels";
+  EXPECT_FALSE(digital.truth_is_compared());
+  CameraSensor bench(settings, std::make_unique<Bench>());
+  const Completion image = bench.measure(snapshot(kStart)).pending.get();
+  EXPECT_TRUE(image.packets.empty());
+  EXPECT_TRUE(image.recording);
 }
 
 }  // namespace

@@ -1,0 +1,141 @@
+#include "host_sim/sensors/camera/make_camera.h"
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host_sim/mission/body_file.h"
+#include "host_sim/twins/camera/model/cad_objects.h"
+#include "host_sim/twins/camera/scene.h"
+#include "host_sim/twins/camera/tile_restorer.h"
+
+namespace vbar::sensors {
+namespace {
+
+using mission::Mission;
+using mission::Sensor;
+using mission::Spacecraft;
+
+/// The unit in packet headers. The flight software takes the images of unit 0: those of the camera that navigation
+/// uses.
+std::uint8_t camera_unit(const Sensor& sensor, const Spacecraft& carrier) {
+  std::uint8_t unit = navigation_camera(carrier) != nullptr ? 1 : 0;
+  if (sensor.settings->navigation >= 0) return 0;
+  for (const Sensor& other : carrier.sensors) {
+    if (other.name == sensor.name) break;
+    if (other.kind == sensor.kind && other.settings->navigation < 0) ++unit;
+  }
+  return unit;
+}
+
+twins::camera::ImageMaker::Settings image_settings(const Mission& mission, const Spacecraft& spacecraft,
+                                                   const Sensor& sensor) {
+  twins::camera::ImageMaker::Settings settings;
+  settings.camera = settings_of<CameraSensor>(sensor).settings;
+  settings.name = spacecraft.name + "/" + sensor.name;
+  settings.seed = mission.seed;
+  settings.spacecraft = spacecraft.number;
+  settings.unit = camera_unit(sensor, spacecraft);
+  return settings;
+}
+
+twins::camera::Renderer make_scene_renderer(const Mission& mission, const Spacecraft& spacecraft,
+                                            const twins::camera::CameraSettings& camera,
+                                            const std::filesystem::path& data_directory) {
+  const std::shared_ptr<twins::camera::SceneRenderer> scene = make_scene(mission, spacecraft, camera, data_directory);
+  return [scene](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {
+    scene->render(exposure, image);
+  };
+}
+
+/// The camera that could have made an image of a log by rendering.
+const Sensor& digital_camera(const Spacecraft& servicer, std::uint8_t unit) {
+  for (const Sensor& sensor : servicer.sensors) {
+    const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
+    if (camera == nullptr || camera_unit(sensor, servicer) != unit) continue;
+    if (camera->source == "digital" || camera->source == "recorded") return sensor;
+  }
+  throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no digital camera of unit " +
+                           std::to_string(unit) + " that could render the images of the log again");
+}
+
+}  // namespace
+
+std::unique_ptr<twins::camera::SceneRenderer> make_scene(const Mission& mission, const Spacecraft& spacecraft,
+                                                         const twins::camera::CameraSettings& camera,
+                                                         const std::filesystem::path& data_directory,
+                                                         std::shared_ptr<const twins::camera::Projection> projection) {
+  std::vector<std::string> models;
+  for (const Spacecraft& other : mission.spacecraft)
+    if (!other.model.empty() && &other != &spacecraft) models.push_back(other.model);
+  return std::make_unique<twins::camera::SceneRenderer>(
+      camera, data_directory, twins::camera::cad_objects(data_directory, models),
+      twins::camera::cad_covers(data_directory, models), std::move(projection));
+}
+
+std::unique_ptr<twins::camera::ImageMaker> make_digital_camera(const Mission& mission, const Spacecraft& servicer,
+                                                               const Sensor& sensor,
+                                                               const std::filesystem::path& data_directory) {
+  const auto& camera = settings_of<CameraSensor>(sensor);
+  return std::make_unique<twins::camera::ImageMaker>(
+      image_settings(mission, servicer, sensor),
+      make_scene_renderer(mission, servicer, camera.settings, data_directory));
+}
+
+twins::camera::CameraMount mount_of(const Mission& mission, const Spacecraft& servicer, const CameraSensor& camera,
+                                    const std::filesystem::path& data_directory) {
+  twins::camera::CameraMount mount;
+  mount.spacecraft = servicer.name;
+  mount.q_camera_body = camera.q_camera_body;
+  mount.position_body = camera.position_body_m;
+  for (const Spacecraft& other : mission.spacecraft) {
+    if (other.model.empty() || &other == &servicer) continue;
+    fsw::Vector3 centre_of_mass = fsw::Vector3::Zero();
+    if (const auto* tumble = other.attitude ? std::get_if<mission::Tumble>(&*other.attitude) : nullptr)
+      centre_of_mass = mission::load_body(data_directory / "bodies" / (tumble->body + ".toml")).centre_of_mass_m;
+    mount.models.push_back({other.name, other.model, centre_of_mass});
+  }
+  return mount;
+}
+
+std::unique_ptr<twins::PacketSource> make_camera(const Mission& mission, const Spacecraft& servicer,
+                                                 const Sensor& sensor, const std::filesystem::path& data_directory,
+                                                 std::unique_ptr<twins::camera::ImageTaker> taker) {
+  const auto& camera = settings_of<CameraSensor>(sensor);
+  twins::camera::CameraSensor::Settings settings;
+  settings.image = image_settings(mission, servicer, sensor);
+  settings.mount = mount_of(mission, servicer, camera, data_directory);
+  // The first image is taken one period after the first step, which tells the platform where to look.
+  settings.start = mission.start_time() + camera.period;
+  settings.period = camera.period;
+  settings.readout = camera.readout;
+  settings.sends_packets = camera.use != CameraNavigation::kNone;
+  return std::make_unique<twins::camera::CameraSensor>(settings, std::move(taker));
+}
+
+std::unique_ptr<twins::TileSource> make_recorded_tile_source(
+    const std::function<std::unique_ptr<twins::camera::ImageMaker>()>& make_digital, twins::ImagesOfLog&& images) {
+  const auto maker = std::make_shared<std::unique_ptr<twins::camera::ImageMaker>>();
+  const auto make_image = [maker, make_digital](const twins::camera::ImageRecipe& recipe) {
+    if (!*maker) *maker = make_digital();
+    return (*maker)->packets_of(recipe.exposure);
+  };
+  return std::make_unique<twins::camera::TileRestorer>(std::move(images), make_image);
+}
+
+std::unique_ptr<twins::TileSource> make_camera_tile_source(const RestoreContext& context, twins::ImagesOfLog&& images) {
+  // By unit; made when the first image of its camera is.
+  const auto makers = std::make_shared<std::map<std::uint8_t, std::unique_ptr<twins::camera::ImageMaker>>>();
+  const auto make_image = [makers, context](const twins::camera::ImageRecipe& recipe) {
+    auto& maker = (*makers)[recipe.unit];
+    if (!maker)
+      maker = make_digital_camera(context.mission, context.servicer, digital_camera(context.servicer, recipe.unit),
+                                  context.data_directory);
+    return maker->packets_of(recipe.exposure);
+  };
+  return std::make_unique<twins::camera::TileRestorer>(std::move(images), make_image);
+}
+
+}  // namespace vbar::sensors

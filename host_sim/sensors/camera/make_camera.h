@@ -1,0 +1,48 @@
+#pragma once
+// Cameras of a mission as packet sources, and the tiles of their images out of a log.
+
+#include <functional>
+#include <memory>
+
+#include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/twins/camera/camera_sensor.h"
+#include "host_sim/twins/camera/image_maker.h"
+#include "host_sim/twins/camera/projection.h"
+#include "host_sim/twins/camera/scene.h"
+#include "host_sim/twins/tile_source.h"
+
+namespace vbar::sensors {
+
+/// All that the spacecraft's camera can see. Null projection: through the lens of `camera`. Throws what data files
+/// throw.
+[[nodiscard]] std::unique_ptr<twins::camera::SceneRenderer> make_scene(
+    const mission::Mission& mission, const mission::Spacecraft& spacecraft, const twins::camera::CameraSettings& camera,
+    const std::filesystem::path& data_directory, std::shared_ptr<const twins::camera::Projection> projection = nullptr);
+
+/// The digital twin of the camera of `servicer`, whatever the source of its images. Throws what data files throw.
+[[nodiscard]] std::unique_ptr<twins::camera::ImageMaker> make_digital_camera(
+    const mission::Mission& mission, const mission::Spacecraft& servicer, const mission::Sensor& sensor,
+    const std::filesystem::path& data_directory);
+
+/// Where the camera is on its spacecraft, and what it can see. Throws what data files throw.
+[[nodiscard]] twins::camera::CameraMount mount_of(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                                                  const CameraSensor& camera,
+                                                  const std::filesystem::path& data_directory);
+
+/// The source of the camera's packets, with images by `taker`. Images that navigation does not use are in the log only.
+[[nodiscard]] std::unique_ptr<twins::PacketSource> make_camera(const mission::Mission& mission,
+                                                               const mission::Spacecraft& servicer,
+                                                               const mission::Sensor& sensor,
+                                                               const std::filesystem::path& data_directory,
+                                                               std::unique_ptr<twins::camera::ImageTaker> taker);
+
+/// The tiles of a log of this camera. `make_digital` is called when the first image is to be rendered, since a renderer
+/// is large.
+[[nodiscard]] std::unique_ptr<twins::TileSource> make_recorded_tile_source(
+    const std::function<std::unique_ptr<twins::camera::ImageMaker>()>& make_digital, twins::ImagesOfLog&& images);
+
+/// Those of all cameras of a servicer, for a replay.
+[[nodiscard]] std::unique_ptr<twins::TileSource> make_camera_tile_source(const RestoreContext& context,
+                                                                         twins::ImagesOfLog&& images);
+
+}  // namespace vbar::sensors

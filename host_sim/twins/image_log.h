@@ -1,0 +1,49 @@
+#pragma once
+// The log of a run without the tiles of its images: it holds what they can be made from, and runs of tiles in place of
+// the tiles that went to the flight software. The tiles of an image are 600 kB, its recipe and its runs 2 kB, its
+// recording some 120 kB.
+
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "host_sim/twins/packet_log.h"
+
+namespace vbar::twins {
+
+/// Writes such a log. Tiles of images of which it was given neither recipe nor recording stay whole.
+class ImageLogWriter {
+ public:
+  /// What a tile is replaced by.
+  enum class Tiles {
+    kAsRuns,
+    kWhole,  ///< nothing: recipes are not kept; recordings are, so that an image is in the log before it is used
+  };
+
+  /// As PacketLogWriter.
+  ImageLogWriter(const std::filesystem::path& file, Tiles tiles) : writer_(file), tiles_(tiles) {}
+
+  /// Before the tiles of its image.
+  void write_recipe(fsw::GpsTime time, const LoggedImage& recipe);
+  /// Before the tiles of its image. It is in the file when the function returns.
+  void write_recording(fsw::GpsTime time, const LoggedImage& recording);
+
+  /// Packets in order. A tile may be held back until it is known how far its run goes.
+  void write(const PacketRecord& record);
+
+  /// Writes what was held back: at the end of every step, because a run does not reach beyond one.
+  void end_step();
+
+  /// As PacketLogWriter.
+  void finish() { writer_.finish(); }
+
+ private:
+  bool joins_run(const PacketRecord& record);
+
+  PacketLogWriter writer_;
+  Tiles tiles_;
+  std::set<ImageKey> known_;
+  std::optional<PacketRecord> run_;
+};
+
+}  // namespace vbar::twins

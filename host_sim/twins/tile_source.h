@@ -1,0 +1,35 @@
+#pragma once
+// Image tiles that a log holds in another form.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "host_sim/twins/packet_log.h"
+
+namespace vbar::twins {
+
+/// Restores them. A camera provides it (camera/tile_restorer.h).
+class TileSource {
+ public:
+  TileSource() = default;
+  TileSource(const TileSource&) = delete;
+  TileSource& operator=(const TileSource&) = delete;
+  virtual ~TileSource() = default;
+
+  /// The packets of a run. Throws DamagedLog for a damaged recording and std::runtime_error for a run that cannot be
+  /// restored; the message names file and image.
+  virtual std::vector<Packet> packets_of(const TileRun& run) = 0;
+
+  /// Times of all exposures of which the log holds recipe or recording.
+  [[nodiscard]] virtual std::vector<fsw::GpsTime> exposures() const = 0;
+  /// What the log holds of the exposure.
+  [[nodiscard]] virtual std::optional<LoggedImage> recipe_at(fsw::GpsTime exposure) const = 0;
+  [[nodiscard]] virtual std::optional<LoggedImage> recording_at(fsw::GpsTime exposure) const = 0;
+};
+
+/// Makes it from the images of a log. Throws DamagedLog.
+using MakeTileSource = std::function<std::unique_ptr<TileSource>(ImagesOfLog&&)>;
+
+}  // namespace vbar::twins
