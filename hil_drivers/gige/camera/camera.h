@@ -63,7 +63,7 @@ class Camera {
     std::optional<double> packet_delay_us;  ///< empty: what the socket's buffer stands
     /// Requested of the kernel; empty: what holds an image.
     std::optional<std::size_t> socket_buffer_bytes;
-    double timeout_s = 1.0;                 ///< for an image, beyond exposure and transfer
+    double timeout_s = 1.0;  ///< for an image, beyond exposure and transfer
   };
 
   struct Identity {
