@@ -93,7 +93,7 @@ std::vector<std::uint16_t> unpack_pixels(PixelFormat format, std::size_t pixels,
   if (format == PixelFormat::kMono12Packed) return unpack_12(pixels, bytes);
   if (format == PixelFormat::kMono8) return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(pixels)};
   std::vector<std::uint16_t> dn(pixels);
-  std::memcpy(dn.data(), bytes.data(), needed);
+  if (needed > 0) std::memcpy(dn.data(), bytes.data(), needed);
   if constexpr (std::endian::native == std::endian::big)
     for (std::uint16_t& value : dn) value = boost::endian::endian_reverse(value);
   return dn;
