@@ -137,6 +137,29 @@ TEST_F(BenchCameraTest, TheSameSeedGivesTheSameImages) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(images[0][k].dn, images[1][k].dn);
 }
 
+TEST_F(BenchCameraTest, InRealPaceTheDisplayFollowsTheScreen) {
+  start_in_focus({"--pace", "real"});
+  draw_dot(900, 500);
+  // A refresh later, or more of them on a loaded machine.
+  const auto until = std::chrono::steady_clock::now() + kLong;
+  Centroid first = centroid_of(take());
+  while (!(first.sum > 0.0) && std::chrono::steady_clock::now() < until) first = centroid_of(take());
+  draw_dot(1000, 700);
+  Centroid seen = first;
+  while (seen.x < first.x + 95.0 && std::chrono::steady_clock::now() < until) seen = centroid_of(take());
+  EXPECT_NEAR(seen.x - first.x, 100.0, 5.0);
+  EXPECT_NEAR(seen.y - first.y, 200.0, 5.0);
+}
+
+TEST_F(BenchCameraTest, TwoExposuresInRealPaceTakeTheirTime) {
+  start_in_focus({"--pace", "real"});
+  draw_dot(900, 500);
+  const auto begin = std::chrono::steady_clock::now();
+  (void)take();
+  (void)take();
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(400));
+}
+
 TEST_F(BenchCameraTest, APacketInAHundredLostIsSentAgain) {
   start_in_focus();
   command(R"({"kind": "packet_loss", "fraction": 0.01})");
