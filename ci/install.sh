@@ -21,8 +21,9 @@ test=(
   libaravis-dev libusb-1.0-0-dev
   clang clang-format clang-tidy libclang-rt-14-dev
   g++-arm-linux-gnueabihf qemu-user
-  # The display of the emulated Optical Stimulator, and a client of it.
-  xvfb libx11-dev
+  # The display of the Optical Stimulator, its server on an emulated bench, and another client of it.
+  libsdl2-dev libx11-dev libxrandr-dev xvfb x11-apps
+  libceres-dev  # calibration of the Optical Stimulator
 )
 peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr libopencv-dev tshark)
 train=("${fly[@]}" python3 python3-numpy python3-torch)

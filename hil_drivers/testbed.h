@@ -3,13 +3,18 @@
 // is a folder beside this file, and one line in testbeds.cpp.
 
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "host_sim/engine/wall_clock.h"
 #include "host_sim/mission/sensor_reader.h"
 #include "host_sim/report/extension.h"
 #include "host_sim/report/run_record.h"
+#include "host_sim/twins/camera/camera_settings.h"
+#include "host_sim/twins/camera/image_taker.h"
+#include "host_sim/twins/camera/scene.h"
 #include "host_sim/twins/gnss/gnss_settings.h"
 #include "host_sim/twins/gnss/receiver_bytes.h"
 #include "host_sim/twins/packet_source.h"
@@ -38,6 +43,23 @@ struct ReceiverPlan {
   ReceiverLine line;
 };
 
+/// The camera of one sensor.
+struct CameraPlan {
+  std::string name;                        ///< of the sensor, "servicer/camera": in messages, and of its random numbers
+  twins::camera::CameraSettings settings;  ///< as the mission has it
+  /// Renders what the camera sees through another projection, onto the region of `settings`, with the models of the
+  /// mission. Throws std::runtime_error for data files that cannot be read.
+  std::function<std::unique_ptr<twins::camera::SceneRenderer>(
+      const twins::camera::CameraSettings& settings, std::shared_ptr<const twins::camera::Projection> projection)>
+      make_scene;
+};
+
+/// What the flight software is configured with for a camera of the testbed.
+struct CalibratedCamera {
+  twins::camera::CameraSettings settings;
+  std::optional<double> centroid_floor_px;  ///< what calibration leaves of the error of a centroid, each axis
+};
+
 struct RunContext {
   const mission::Mission& mission;
   std::filesystem::path data_directory;
@@ -56,7 +78,16 @@ class TestbedRun {
 
   /// Null: it has no GNSS receivers. Throws std::runtime_error if the plan cannot be met. The receiver keeps this run
   /// alive.
-  [[nodiscard]] virtual std::unique_ptr<twins::gnss::ReceiverBytes> make_receiver(const ReceiverPlan& plan) = 0;
+  [[nodiscard]] virtual std::unique_ptr<twins::gnss::ReceiverBytes> make_receiver(const ReceiverPlan& plan) {
+    static_cast<void>(plan);
+    return nullptr;
+  }
+
+  /// Null: it has no camera. As above.
+  [[nodiscard]] virtual std::unique_ptr<twins::camera::ImageTaker> make_camera(const CameraPlan& plan) {
+    static_cast<void>(plan);
+    return nullptr;
+  }
 
   /// The run is recorded in `record` and, unless the path is empty, in `folder`, from now on; the testbed's time
   /// starts. Throws std::runtime_error, one sentence. `record` outlives the run.
@@ -73,6 +104,11 @@ struct TestbedKind : mission::TestbedReader {
   std::shared_ptr<TestbedRun> (*open)(const mission::TestbedSettings& settings, const RunContext& context);
   /// Tables, figures of the summary and report section.
   report::Extension report{};
+  /// The camera of the mission as the testbed has calibrated it. Null: as the mission has it. Throws MissionError for a
+  /// calibration that cannot be read.
+  CalibratedCamera (*calibrated_camera)(const mission::TestbedSettings& settings, const mission::Mission& mission,
+                                        const std::filesystem::path& data_directory,
+                                        const twins::camera::CameraSettings& of_mission) = nullptr;
 };
 
 }  // namespace vbar::testbeds

@@ -5,11 +5,27 @@
 #include <stdexcept>
 
 #include "hil_drivers/grand/grand_kind.h"
+#ifdef VBAR_OPTICAL_STIMULATOR
+#include "hil_drivers/optical_stimulator/stimulator_kind.h"
+#endif
 
 namespace vbar::testbeds {
 namespace {
 
-constexpr const TestbedKind* kTestbedKinds[] = {&grand::kGrand};
+#ifdef VBAR_OPTICAL_STIMULATOR
+using optical_stimulator::kOpticalStimulator;
+#else
+/// In the place of a driver whose libraries were not there when this program was built.
+const TestbedKind kOpticalStimulator{
+    {"optical_stimulator",
+     [](const mission::TableReader& section) -> std::shared_ptr<const mission::TestbedSettings> {
+       section.refuse("", "a testbed whose driver this program was built without",
+                      "a program built with libsdl2-dev, libaravis-dev and libusb-1.0-0-dev (ci/install.sh test)");
+     }},
+    nullptr};
+#endif
+
+constexpr const TestbedKind* kTestbedKinds[] = {&grand::kGrand, &kOpticalStimulator};
 
 }  // namespace
 

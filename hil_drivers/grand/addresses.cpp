@@ -28,15 +28,4 @@ BenchAddresses read_addresses(const std::filesystem::path& file) {
   return addresses;
 }
 
-std::map<std::string, int> count_faults(const std::filesystem::path& file) {
-  std::map<std::string, int> counts;
-  std::ifstream stream(file);
-  for (std::string line; std::getline(stream, line);) {
-    const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
-    const bool is_fault = json.is_object() && json.contains("kind") && json.at("kind").is_string();
-    ++counts[is_fault ? json.at("kind").get<std::string>() : std::string("unknown")];
-  }
-  return counts;
-}
-
 }  // namespace vbar::grand

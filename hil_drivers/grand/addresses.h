@@ -16,15 +16,7 @@ struct BenchAddresses {
   std::map<std::string, std::string> receivers, board_lines;
 };
 
-inline constexpr const char* kAddressesFile = "addresses.json";
-
 /// Throws std::runtime_error that names the file.
 [[nodiscard]] BenchAddresses read_addresses(const std::filesystem::path& file);
-
-/// What the bench acknowledges of its faults, a line each.
-inline constexpr const char* kFaultsFile = "faults.jsonl";
-
-/// Faults that have taken effect, by their kind; lines of another form count as "unknown". None without the file.
-[[nodiscard]] std::map<std::string, int> count_faults(const std::filesystem::path& file);
 
 }  // namespace vbar::grand

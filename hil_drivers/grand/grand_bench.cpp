@@ -48,7 +48,10 @@ void GrandBench::start(GpsTime first_epoch) {
   try {
     if (start_.ns % fsw::kNanosecondsPerSecond != 0)
       throw std::runtime_error("the run does not start on a whole second of GPS time, as a generator does");
-    if (!settings_.bench.empty()) process_.emplace(settings_.bench, context_.mission.seed, context_.data_directory);
+    if (!settings_.bench.empty()) {
+      process_.emplace(settings_.bench, context_.mission.seed, context_.data_directory);
+      addresses_ = read_addresses(process_->addresses_file());
+    }
     start_vehicles(first_epoch);
     start_generator();
     for (Vehicle& vehicle : vehicles_) vehicle.link->open();
@@ -75,7 +78,7 @@ Duration GrandBench::log_offset(const testbeds::ReceiverPlan& plan) const {
 std::string GrandBench::device_of(const testbeds::ReceiverPlan& plan) const {
   if (!plan.line.port.empty()) return plan.line.port;
   if (process_) {
-    const auto& receivers = process_->addresses().receivers;
+    const auto& receivers = addresses_.receivers;
     const auto found = receivers.find(plan.spacecraft);
     if (found != receivers.end()) return found->second;
   }
@@ -116,7 +119,7 @@ void GrandBench::start_vehicles(GpsTime first_epoch) {
 }
 
 std::vector<std::uint16_t> GrandBench::control_ports() const {
-  if (settings_.control_port == 0) return process_->addresses().control_ports;
+  if (settings_.control_port == 0) return addresses_.control_ports;
   std::vector<std::uint16_t> ports;
   const std::size_t count = settings_.generator->has_instance_per_vehicle ? vehicles_.size() : 1;
   for (std::size_t k = 0; k < count; ++k) ports.push_back(static_cast<std::uint16_t>(settings_.control_port + k));
@@ -156,7 +159,7 @@ void GrandBench::begin(report::RunRecord& record, const std::filesystem::path& f
 }
 
 std::string GrandBench::edge_source() const {
-  return settings_.pps == kEdgesOfBench ? "socket:" + process_->addresses().pps : settings_.pps;
+  return settings_.pps == kEdgesOfBench ? "socket:" + addresses_.pps : settings_.pps;
 }
 
 engine::WallClock* GrandBench::clock() {
@@ -170,7 +173,7 @@ std::optional<io::WiredReceiver> GrandBench::wired_receiver(std::size_t index) c
   io::WiredReceiver receiver;
   receiver.baud = static_cast<unsigned>(vehicle.plan.line.baud);
   if (process_) {
-    const auto& lines = process_->addresses().board_lines;
+    const auto& lines = addresses_.board_lines;
     if (const auto found = lines.find(vehicle.plan.spacecraft); found != lines.end()) receiver.device = found->second;
   }
   receiver.in_lock_step = settings_.pace == Pace::kLockStep;

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "hil_drivers/grand/bench_process.h"
+#include "hil_drivers/bench_process/bench_process.h"
+#include "hil_drivers/grand/addresses.h"
 #include "hil_drivers/grand/sample_times.h"
 #include "hil_drivers/grand/settings.h"
 #include "hil_drivers/grand/time_base.h"
@@ -54,7 +55,8 @@ class GrandBench final : public testbeds::TestbedRun, public std::enable_shared_
   testbeds::RunContext context_;
   fsw::GpsTime start_;
   bool is_started_ = false, is_stopped_ = false;
-  std::optional<BenchProcess> process_;
+  std::optional<bench_process::BenchProcess> process_;
+  BenchAddresses addresses_;  ///< of the process, if there is one
   std::vector<Vehicle> vehicles_;
   std::unique_ptr<Generator> generator_;
   std::optional<TimeBase> time_base_;  ///< real time only

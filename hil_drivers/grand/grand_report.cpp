@@ -5,8 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/report/number_text.h"
+#include "hil_drivers/testbed_facts.h"
 #include "host_sim/report/section_parts.h"
+#include "host_sim/report/statistics.h"
 
 namespace vbar::grand {
 namespace {
@@ -19,17 +20,11 @@ using report::Unit;
 
 constexpr const char* kName = "grand";
 
-/// Of sorted values, of which there is at least one.
-double quantile(const std::vector<double>& sorted, double share) {
-  const auto place = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
-  return sorted[std::clamp<std::size_t>(place, 1, sorted.size()) - 1];
-}
-
 void add_latency(std::vector<double> latencies_s, TestbedFigures& figures) {
   if (latencies_s.empty()) return;
   std::ranges::sort(latencies_s);
-  figures["latency_median_s"] = quantile(latencies_s, 0.5);
-  figures["latency_95_percent_s"] = quantile(latencies_s, 0.95);
+  figures["latency_median_s"] = report::quantile(latencies_s, 0.5);
+  figures["latency_95_percent_s"] = report::quantile(latencies_s, 0.95);
   figures["latency_worst_s"] = latencies_s.back();
 }
 
@@ -59,15 +54,8 @@ void add_edges(const EdgeStatistics& edges, TestbedFigures& figures) {
   for (const double s : edges.host_minus_edge_s) apart_s.push_back(std::abs(s));
   if (apart_s.empty()) return;
   std::ranges::sort(apart_s);
-  figures["host_minus_edge_95_percent_ms"] = 1e3 * quantile(apart_s, 0.95);
+  figures["host_minus_edge_95_percent_ms"] = 1e3 * report::quantile(apart_s, 0.95);
   figures["host_minus_edge_worst_ms"] = 1e3 * apart_s.back();
-}
-
-std::string text_of(const TestbedFigures& figures, const std::string& name) {
-  const auto found = figures.find(name);
-  if (found == figures.end()) return "";
-  const auto* const text = std::get_if<std::string>(&found->second);
-  return text != nullptr ? *text : report::significant(std::get<double>(found->second), 6);
 }
 
 Plot plot_of(const RunRecord& record, const report::View& view, const char* title, const char* quantity,
@@ -163,20 +151,14 @@ std::vector<report::Section> sections(const RunRecord& record) {
   const auto found = record.summary.testbeds.find(kName);
   if (found == record.summary.testbeds.end()) return {};
   const TestbedFigures& figures = found->second;
-  const bool is_emulated = text_of(figures, "bench") == "emulated";
+  const bool is_emulated = testbeds::text_of(figures, "bench") == "emulated";
   std::string content = fmt::format(
       "<p class=\"note\">{}</p>\n",
       is_emulated ? "The receivers and the RF generator of this run were an emulated bench: another process that uses "
                     "the wire protocols of the hardware. No hardware was used."
                   : "No bench process was started by this run: generator and receivers are those at the addresses of "
                     "the mission.");
-  std::vector<report::Fact> facts;
-  for (const auto& [name, value] : figures) {
-    std::string words = name;
-    std::ranges::replace(words, '_', ' ');
-    facts.push_back({words, text_of(figures, name)});
-  }
-  content += report::fact_list(facts);
+  content += report::fact_list(testbeds::facts_of(figures));
   if (!record.tables.rows<GrandRow>().empty()) {
     const report::View view = report::whole_run(record);
     content += report::plot_rows(

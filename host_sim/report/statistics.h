@@ -1,7 +1,9 @@
 #pragma once
-// Mean and standard deviation of what a run counted.
+// Mean, standard deviation and quantiles of what a run counted.
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -25,6 +27,12 @@ namespace vbar::report {
 
 [[nodiscard]] inline std::optional<MeanAndDeviation> statistics_of(const std::vector<double>& values) {
   return values.empty() ? std::nullopt : std::optional(statistics(values));
+}
+
+/// Of sorted values, of which there is at least one: the least that is not below that share of them.
+[[nodiscard]] inline double quantile(const std::vector<double>& sorted, double share) {
+  const auto place = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  return sorted[std::clamp<std::size_t>(place, 1, sorted.size()) - 1];
 }
 
 }  // namespace vbar::report

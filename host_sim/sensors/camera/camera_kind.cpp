@@ -79,21 +79,55 @@ twins::camera::ImageMaker::Settings image_settings(const Mission& mission, const
   return settings;
 }
 
-twins::camera::Renderer make_scene_renderer(const Mission& mission, const Spacecraft& spacecraft,
-                                            const twins::camera::CameraSettings& camera,
-                                            const std::filesystem::path& data_directory) {
+/// Null projection: the lens of the camera.
+std::unique_ptr<twins::camera::SceneRenderer> make_scene(
+    const Mission& mission, const Spacecraft& spacecraft, const twins::camera::CameraSettings& camera,
+    const std::filesystem::path& data_directory,
+    std::shared_ptr<const twins::camera::Projection> projection = nullptr) {
   std::vector<std::string> models;
   for (const Spacecraft& other : mission.spacecraft)
     if (!other.model.empty() && &other != &spacecraft) models.push_back(other.model);
-  const auto scene = std::make_shared<twins::camera::SceneRenderer>(camera, data_directory,
-                                                                    twins::camera::cad_objects(data_directory, models),
-                                                                    twins::camera::cad_covers(data_directory, models));
+  return std::make_unique<twins::camera::SceneRenderer>(
+      camera, data_directory, twins::camera::cad_objects(data_directory, models),
+      twins::camera::cad_covers(data_directory, models), std::move(projection));
+}
+
+twins::camera::Renderer make_scene_renderer(const Mission& mission, const Spacecraft& spacecraft,
+                                            const twins::camera::CameraSettings& camera,
+                                            const std::filesystem::path& data_directory) {
+  const std::shared_ptr<twins::camera::SceneRenderer> scene = make_scene(mission, spacecraft, camera, data_directory);
   return [scene](const twins::camera::Exposure& exposure, twins::camera::PhotonImage& image) {
     scene->render(exposure, image);
   };
 }
 
-std::unique_ptr<twins::PacketSource> make_twin(const Sensor& own, const MakeContext& context) {
+std::unique_ptr<twins::camera::ImageTaker> make_of_testbed(const testbeds::TestbedKind& testbed, const Sensor& own,
+                                                           const MakeContext& context) {
+  if (context.outlook == nullptr) throw std::logic_error("a testbed requires the truth of the run");
+  const auto run = context.testbeds.run_of(testbed, {context.mission, context.data_directory, *context.outlook});
+  testbeds::CameraPlan plan;
+  plan.name = source_name(context.servicer, own);
+  plan.settings = settings_of<CameraSensor>(own).settings;
+  plan.make_scene = [&mission = context.mission, &servicer = context.servicer, data = context.data_directory](
+                        const twins::camera::CameraSettings& settings,
+                        std::shared_ptr<const twins::camera::Projection> projection) {
+    return make_scene(mission, servicer, settings, data, std::move(projection));
+  };
+  auto camera = run->make_camera(plan);
+  if (!camera) throw std::runtime_error("testbed \"" + std::string(testbed.name) + "\" has no camera");
+  return camera;
+}
+
+std::unique_ptr<twins::camera::ImageTaker> make_image_taker(const Sensor& own, const MakeContext& context) {
+  const auto& camera = settings_of<CameraSensor>(own);
+  if (const testbeds::TestbedKind* const testbed = testbeds::find_testbed(camera.source))
+    return make_of_testbed(*testbed, own, context);
+  return std::make_unique<twins::camera::ImageMaker>(
+      image_settings(context.mission, context.servicer, own),
+      make_scene_renderer(context.mission, context.servicer, camera.settings, context.data_directory));
+}
+
+std::unique_ptr<twins::PacketSource> make_camera(const Sensor& own, const MakeContext& context) {
   const Mission& mission = context.mission;
   const Spacecraft& servicer = context.servicer;
   const auto& camera = settings_of<CameraSensor>(own);
@@ -114,8 +148,7 @@ std::unique_ptr<twins::PacketSource> make_twin(const Sensor& own, const MakeCont
   sensor.start = mission.start_time() + camera.period;
   sensor.period = camera.period;
   sensor.readout = camera.readout;
-  return std::make_unique<twins::camera::CameraSensor>(
-      sensor, make_scene_renderer(mission, servicer, camera.settings, context.data_directory));
+  return std::make_unique<twins::camera::CameraSensor>(sensor, make_image_taker(own, context));
 }
 
 /// Images that are recorded but not sent to the flight software.
@@ -173,9 +206,9 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
     sources.push_back({name, camera.source, std::make_unique<twins::RecordedLog>(camera.log, selection, make_tiles)});
     return;
   }
-  auto twin = make_twin(sensor, context);
-  if (camera.use == CameraNavigation::kNone) twin = std::make_unique<RecordedOnly>(std::move(twin));
-  sources.push_back({name, camera.source, std::move(twin)});
+  auto images = make_camera(sensor, context);
+  if (camera.use == CameraNavigation::kNone) images = std::make_unique<RecordedOnly>(std::move(images));
+  sources.push_back({name, camera.source, std::move(images)});
 }
 
 void add_facts(const Sensor& sensor, const Mission& /*mission*/, const Spacecraft& /*servicer*/,

@@ -50,6 +50,27 @@ void add_apriori(const Mission& mission, const Spacecraft& servicer, const fsw::
   std::ranges::copy(sigma_m, configuration.apriori_sigma_a_roe_m);
 }
 
+/// A camera as the flight software is configured for it.
+struct KnownCamera {
+  CameraSensor sensor;
+  std::optional<double> centroid_floor_px;
+};
+
+/// As the mission has it or, of a testbed that calibrates its camera, as calibrated.
+KnownCamera known_camera(const CameraSensor& camera, const TelecommandContext& context) {
+  const Mission& mission = context.mission;
+  KnownCamera known{camera, std::nullopt};
+  const testbeds::TestbedKind* const testbed = testbeds::find_testbed(camera.source);
+  if (testbed == nullptr || testbed->calibrated_camera == nullptr) return known;
+  const auto of_mission = std::ranges::find(mission.testbeds, testbed->name, &mission::Testbed::name);
+  if (of_mission == mission.testbeds.end())
+    throw std::logic_error("the mission has no [testbed." + std::string(testbed->name) + "]");
+  const auto calibrated = testbed->calibrated_camera(*of_mission->settings, mission, context.data_directory, camera.settings);
+  known.sensor.settings = calibrated.settings;
+  known.centroid_floor_px = calibrated.centroid_floor_px;
+  return known;
+}
+
 }  // namespace
 
 vbar::camera_configuration camera_configuration_of(const CameraSensor& camera) {
@@ -124,8 +145,9 @@ vbar::target_apriori target_apriori_of(const Mission& mission, const Spacecraft&
 
 void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandContext& context,
                              Telecommands& telecommands) {
-  const auto& camera = settings_of<CameraSensor>(sensor);
-  if (camera.use == CameraNavigation::kNone) return;
+  if (settings_of<CameraSensor>(sensor).use == CameraNavigation::kNone) return;
+  const KnownCamera known = known_camera(settings_of<CameraSensor>(sensor), context);
+  const CameraSensor& camera = known.sensor;
   telecommands.add(camera_configuration_of(camera));
   const fsw::orbit::CartesianState own = context.state_at_start(context.servicer.name);
   const fsw::orbit::CartesianState target = context.state_at_start(camera.observed);
@@ -134,7 +156,10 @@ void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandCon
     add_apriori(context.mission, context.servicer, own, target, configuration);
     telecommands.add(configuration);
   } else {
-    telecommands.add(mission::shared_settings<CameraShared>(context.mission).angles_only);
+    auto configuration = mission::shared_settings<CameraShared>(context.mission).angles_only;
+    if (known.centroid_floor_px)
+      configuration.centroid_floor_px = std::max(configuration.centroid_floor_px, *known.centroid_floor_px);
+    telecommands.add(configuration);
     telecommands.add(target_apriori_of(context.mission, context.servicer, own, target));
   }
 }

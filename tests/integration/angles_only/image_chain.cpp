@@ -115,12 +115,27 @@ ImageChain::ImageChain(std::uint64_t seed)
   tracking_->configure(calibrated(camera_));
 }
 
-const fsw::angles_only::Sighting& ImageChain::look(const Scene& scene, const Spoil& spoil) {
+std::vector<image_tile> ImageChain::tiles_of(const Scene& scene, std::span<const std::uint16_t> dn) const {
   std::vector<image_tile> tiles;
-  for (const twins::Packet& bytes : maker_.packets_of(scene.exposure)) {
+  for (const twins::Packet& bytes : twins::camera::packets_of(maker_.settings(), scene.exposure, dn)) {
     const auto packet = fsw::packets::parse_packet(bytes);
     tiles.push_back(fsw::packets::decode<image_tile>(packet.value()).value());
   }
+  return tiles;
+}
+
+void ImageChain::configure(const twins::camera::CameraSettings& camera, double centroid_floor_px) {
+  auto settings = calibrated(camera);
+  settings.centroid_floor_px = centroid_floor_px;
+  tracking_->configure(settings);
+}
+
+const fsw::angles_only::Sighting& ImageChain::look_at(const Scene& scene, std::span<const std::uint16_t> dn) {
+  return process(scene, tiles_of(scene, dn));
+}
+
+const fsw::angles_only::Sighting& ImageChain::look(const Scene& scene, const Spoil& spoil) {
+  std::vector<image_tile> tiles = tiles_of(scene, image_of(scene));
   if (spoil) spoil(tiles);
   return process(scene, tiles);
 }

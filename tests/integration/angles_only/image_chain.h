@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "fsw/angles_only/angles_only_tracking.h"
@@ -66,10 +67,18 @@ class ImageChain {
   /// The same of an image of the same value in all pixels.
   const fsw::angles_only::Sighting& look_at_uniform(const Scene& scene, int dn);
 
+  /// The same of pixels that another camera has taken.
+  const fsw::angles_only::Sighting& look_at(const Scene& scene, std::span<const std::uint16_t> dn);
+  /// The flight software is configured for that camera from now on; its centroids err by `centroid_floor_px`.
+  void configure(const twins::camera::CameraSettings& camera, double centroid_floor_px);
+  /// The pixels of the digital camera.
+  std::vector<std::uint16_t> image_of(const Scene& scene) { return maker_.take(scene.exposure).dn; }
+
   [[nodiscard]] std::span<const fsw::imaging::DetectedObject> objects() const { return tracking_->objects(); }
   [[nodiscard]] const twins::camera::CameraSettings& camera() const { return camera_; }
 
  private:
+  [[nodiscard]] std::vector<image_tile> tiles_of(const Scene& scene, std::span<const std::uint16_t> dn) const;
   const fsw::angles_only::Sighting& process(const Scene& scene, const std::vector<image_tile>& tiles);
 
   twins::camera::CameraSettings camera_;

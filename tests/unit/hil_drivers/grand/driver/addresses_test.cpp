@@ -1,4 +1,4 @@
-// addresses.json of a bench, and its command line.
+// addresses.json of a bench.
 
 #include "hil_drivers/grand/addresses.h"
 
@@ -6,8 +6,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "hil_drivers/grand/bench_process.h"
 
 namespace vbar::grand {
 namespace {
@@ -40,38 +38,6 @@ TEST(Addresses, OfAnotherFormAreRefusedByName) {
     } catch (const std::runtime_error& error) {
       EXPECT_THAT(error.what(), HasSubstr("addresses.json")) << text;
     }
-  }
-}
-
-TEST(Addresses, FaultsAreCountedByKind) {
-  const auto counts = count_faults(file_with(
-      "{\"kind\":\"rf_outage\",\"time_s\":1.0}\n{\"kind\":\"rf_outage\"}\n{\"kind\":\"bench_exit\"}\nbroken\n"));
-  EXPECT_EQ(counts, (std::map<std::string, int>{{"rf_outage", 2}, {"bench_exit", 1}, {"unknown", 1}}));
-  EXPECT_TRUE(count_faults("/no/such/file").empty());
-}
-
-TEST(BenchArguments, HaveTheirPlaceholdersReplaced) {
-  EXPECT_THAT(
-      bench_arguments("/bin/bench {data}/a.toml --directory {directory}  --seed {seed}", "/tmp/with space", 7, "/data"),
-      ElementsAre("/bin/bench", "/data/a.toml", "--directory", "/tmp/with space", "--seed", "7"));
-  EXPECT_THROW(static_cast<void>(bench_arguments("  ", "/tmp", 1, "/data")), std::runtime_error);
-}
-
-TEST(BenchProcess, NamesTheProgramThatDoesNotStart) {
-  try {
-    BenchProcess bench("no_such_bench_program {directory}", 1, "/tmp");
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("no_such_bench_program"));
-  }
-}
-
-TEST(BenchProcess, ReportsTheEndOfTheProgramAndItsLastLine) {
-  try {
-    BenchProcess bench("/bin/cat /no/such/file", 1, "/tmp");
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("/bin/cat has ended: exit status 1"), HasSubstr("No such file")));
   }
 }
 

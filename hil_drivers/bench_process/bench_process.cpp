@@ -1,15 +1,17 @@
-#include "hil_drivers/grand/bench_process.h"
+#include "hil_drivers/bench_process/bench_process.h"
 
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-namespace vbar::grand {
+namespace vbar::bench_process {
 namespace {
 
 namespace fs = std::filesystem;
@@ -19,7 +21,7 @@ constexpr std::chrono::milliseconds kPoll{5};
 constexpr std::chrono::milliseconds kEndPatience{3000};
 
 fs::path make_directory() {
-  std::string name = (fs::temp_directory_path() / "vbar_grand.XXXXXX").string();
+  std::string name = (fs::temp_directory_path() / "vbar_bench.XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr)
     throw std::runtime_error(name + ": cannot be made: " + std::generic_category().message(errno));
   return name;
@@ -40,6 +42,17 @@ void replace_all(std::string& text, const std::string& what, const std::string& 
 
 }  // namespace
 
+std::map<std::string, int> count_faults(const std::filesystem::path& file) {
+  std::map<std::string, int> counts;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
+    const bool is_fault = json.is_object() && json.contains("kind") && json.at("kind").is_string();
+    ++counts[is_fault ? json.at("kind").get<std::string>() : std::string("unknown")];
+  }
+  return counts;
+}
+
 std::vector<std::string> bench_arguments(const std::string& command_line, const fs::path& directory, std::uint64_t seed,
                                          const fs::path& data_directory) {
   std::vector<std::string> arguments;
@@ -50,7 +63,7 @@ std::vector<std::string> bench_arguments(const std::string& command_line, const 
     replace_all(word, "{data}", data_directory.string());
     arguments.push_back(word);
   }
-  if (arguments.empty()) throw std::runtime_error("testbed.grand.bench names no program");
+  if (arguments.empty()) throw std::runtime_error("the command line of the bench names no program");
   arguments.front() = program_path(arguments.front());
   return arguments;
 }
@@ -79,7 +92,7 @@ BenchProcess::~BenchProcess() {
 }
 
 void BenchProcess::wait_for_addresses() {
-  const fs::path file = directory_ / kAddressesFile;
+  const fs::path file = addresses_file();
   const auto until = std::chrono::steady_clock::now() + kStartLimit;
   while (!fs::exists(file)) {
     if (const auto end = end_report()) throw std::runtime_error(*end);
@@ -88,7 +101,6 @@ void BenchProcess::wait_for_addresses() {
                                            kStartLimit.count(), last_words()));
     std::this_thread::sleep_for(kPoll);
   }
-  addresses_ = read_addresses(file);
 }
 
 std::optional<std::string> BenchProcess::end_report(std::chrono::milliseconds patience) {
@@ -118,4 +130,4 @@ void BenchProcess::stop() noexcept {
   directory_.clear();
 }
 
-}  // namespace vbar::grand
+}  // namespace vbar::bench_process

@@ -1,5 +1,6 @@
 #pragma once
-// The emulated bench as a child process of the run, in a directory of its own that is removed with it.
+// The emulated bench of a testbed as a child process of the run, in a directory of its own that is removed with it.
+// Once the bench listens it writes where to addresses.json, whose form is the testbed's.
 
 #include <chrono>
 #include <cstdint>
@@ -9,11 +10,18 @@
 #include <string>
 #include <vector>
 
-#include "hil_drivers/grand/addresses.h"
 #include "host_sim/io/child_process.h"
 #include "host_sim/report/provenance.h"
 
-namespace vbar::grand {
+namespace vbar::bench_process {
+
+inline constexpr const char* kAddressesFile = "addresses.json";
+
+/// What the bench acknowledges of its faults, a line each.
+inline constexpr const char* kFaultsFile = "faults.jsonl";
+
+/// Faults that have taken effect, by their kind; lines of another form count as "unknown". None without the file.
+[[nodiscard]] std::map<std::string, int> count_faults(const std::filesystem::path& file);
 
 /// The words of a command line, separated by spaces; {directory}, {seed} and {data} are replaced in each.
 [[nodiscard]] std::vector<std::string> bench_arguments(const std::string& command_line,
@@ -29,7 +37,9 @@ class BenchProcess {
   BenchProcess(const BenchProcess&) = delete;
   BenchProcess& operator=(const BenchProcess&) = delete;
 
-  [[nodiscard]] const BenchAddresses& addresses() const { return addresses_; }
+  /// Until stop().
+  [[nodiscard]] std::filesystem::path addresses_file() const { return directory_ / kAddressesFile; }
+  [[nodiscard]] const std::filesystem::path& directory() const { return directory_; }
   /// The program and every file named by its arguments.
   [[nodiscard]] const std::vector<report::FileDigest>& files() const { return files_; }
 
@@ -50,8 +60,7 @@ class BenchProcess {
   std::vector<std::string> arguments_;
   std::vector<report::FileDigest> files_;
   std::optional<io::ChildProcess> process_;
-  BenchAddresses addresses_;
   std::map<std::string, int> faults_;
 };
 
-}  // namespace vbar::grand
+}  // namespace vbar::bench_process

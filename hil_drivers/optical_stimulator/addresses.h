@@ -1,0 +1,18 @@
+#pragma once
+// Where a bench listens: addresses.json of the emulated one.
+
+#include <filesystem>
+#include <string>
+
+namespace vbar::optical_stimulator {
+
+struct BenchAddresses {
+  std::string display;  ///< of its X server
+  std::string camera;   ///< IP address
+  std::string rails;    ///< a tty
+};
+
+/// Throws std::runtime_error that names the file.
+[[nodiscard]] BenchAddresses read_addresses(const std::filesystem::path& file);
+
+}  // namespace vbar::optical_stimulator

@@ -1,0 +1,50 @@
+#pragma once
+// An image of the testbed (bench.csv).
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "host_sim/report/run_columns.h"
+
+namespace vbar::optical_stimulator {
+
+struct BenchRow {
+  double time_s = 0.0;     ///< of the middle of the exposure, since the mission's epoch
+  std::int64_t image = 0;  ///< number of the exposure
+  std::int64_t frame = 0;  ///< of the picture, in the frame strip
+  std::int64_t tries = 1;  ///< images taken for it
+  std::int64_t stale = 0;  ///< of these, those that showed another picture
+  std::int64_t packets_resent = 0, reconnects = 0;
+  // Wall clock.
+  double render_s = 0.0;          ///< scene to expected electrons to counts
+  double show_s = 0.0;            ///< until the picture is on the screen, and its settling
+  double receive_s = 0.0;         ///< from the trigger until the image is whole: exposure, readout, transfer
+  double strip_brightness = 0.0;  ///< relative to the calibration
+  std::optional<double> rail_lens_mm, rail_display_mm;  ///< of an image after which the rails were asked
+  std::int64_t points = 0;                              ///< drawn with matched counts
+  double wanted_electrons = 0.0, clipped_electrons = 0.0;
+};
+
+template <report::columns::RowOf<BenchRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  using report::ColumnName;
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"image"}, row.image);
+  visit(ColumnName{"frame"}, row.frame);
+  visit(ColumnName{"tries"}, row.tries);
+  visit(ColumnName{"stale"}, row.stale);
+  visit(ColumnName{"packets_resent"}, row.packets_resent);
+  visit(ColumnName{"reconnects"}, row.reconnects);
+  visit(ColumnName{"render_s"}, row.render_s);
+  visit(ColumnName{"show_s"}, row.show_s);
+  visit(ColumnName{"receive_s"}, row.receive_s);
+  visit(ColumnName{"strip_brightness"}, row.strip_brightness);
+  visit(ColumnName{"rail_lens_mm"}, row.rail_lens_mm);
+  visit(ColumnName{"rail_display_mm"}, row.rail_display_mm);
+  visit(ColumnName{"points"}, row.points);
+  visit(ColumnName{"wanted_electrons"}, row.wanted_electrons);
+  visit(ColumnName{"clipped_electrons"}, row.clipped_electrons);
+}
+
+}  // namespace vbar::optical_stimulator

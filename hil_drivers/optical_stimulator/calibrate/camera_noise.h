@@ -1,0 +1,45 @@
+#pragma once
+// Offset, gain, read noise and hot pixels of the camera, from frames without dots.
+
+#include <cstdint>
+#include <vector>
+
+#include "hil_drivers/optical_stimulator/calibrate/dot_measurement.h"
+#include "hil_drivers/optical_stimulator/calibration_file/bench_calibration.h"
+
+namespace vbar::optical_stimulator::calibrate {
+
+/// Two frames of the same scene.
+struct FramePair {
+  std::vector<std::uint16_t> first, second;
+};
+
+/// Mean, and variance of one frame by half the variance of the difference: the scene and fixed patterns cancel.
+struct MeanVariance {
+  double mean_dn = 0.0, variance_dn2 = 0.0;
+  double variance_sigma_dn2 = 0.0;
+  double mean_sigma_dn = 0.0;
+};
+
+/// Of the middle half of the detector in each axis; the 1 % of pixels that differ most are left out (hot pixels).
+[[nodiscard]] MeanVariance mean_variance(const FramePair& pair, int width, int height);
+
+/// The line variance = read variance + gain (mean - offset), by weighted least squares; `black` is the pair without
+/// light. Throws std::runtime_error if the gain is not positive.
+struct GainFit {
+  Figure gain_dn_per_electron, read_noise_electrons;
+};
+[[nodiscard]] GainFit fit_gain(const MeanVariance& black, const std::vector<MeanVariance>& grey);
+
+/// Mean black pictures at two exposures: offset at none, background rate, and pixels whose rate is far above it.
+struct BlackFit {
+  Figure offset_dn, background_dn_per_s;
+  std::vector<HotPixel> hot_pixels;  ///< electrons_per_s holds DN/s here
+};
+[[nodiscard]] BlackFit fit_black(const Picture& short_exposure, double short_s, const Picture& long_exposure,
+                                 double long_s, double noise_dn);
+
+/// Replaces the hot pixels by the mean of their neighbours in the row.
+void repair(Picture& picture, const std::vector<HotPixel>& hot_pixels);
+
+}  // namespace vbar::optical_stimulator::calibrate

@@ -1,0 +1,41 @@
+#pragma once
+// Position, light and width of a dot in a picture of the camera.
+
+#include <optional>
+#include <vector>
+
+#include "fsw/core/types.h"
+
+namespace vbar::optical_stimulator::calibrate {
+
+/// Pixels of the whole detector, DN, row by row; a mean over frames.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<float> dn;
+
+  [[nodiscard]] double at(int x, int y) const {
+    return static_cast<double>(
+        dn[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]);
+  }
+};
+
+struct DotWindow {
+  double search_px = 8.0;     ///< the dot is the brightest 3 x 3 pixels within this distance of the expected place
+  double sigma_px = 1.6;      ///< of the Gaussian window of centroid and width
+  int half_width_px = 14;     ///< of the square whose sum is the dot's light; its border is the background
+  double peak_min_dn = 20.0;  ///< above the background
+};
+
+struct DotMeasurement {
+  fsw::Vector2 centre_px;  ///< an integer is the centre of a pixel
+  double light_dn = 0.0;   ///< sum over the square above the background
+  double sigma_px = 0.0;   ///< of the Gaussian whose windowed second moment this is, as sampled by the pixels
+  double peak_dn = 0.0;    ///< highest pixel, background included
+};
+
+/// Iterated Gaussian-weighted centroid (SExtractor's windowed positions, docs of SExtractor 2.19, section 10.7.1).
+/// Empty if there is no light, if the square reaches beyond the picture, or if the iteration leaves the search area.
+[[nodiscard]] std::optional<DotMeasurement> measure_dot(const Picture& picture, const fsw::Vector2& expected_px,
+                                                        const DotWindow& window);
+
+}  // namespace vbar::optical_stimulator::calibrate

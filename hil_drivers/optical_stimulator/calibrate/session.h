@@ -1,0 +1,82 @@
+#pragma once
+// State and common operations of a calibration in progress.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hil_drivers/optical_stimulator/calibrate/bench_access.h"
+#include "hil_drivers/optical_stimulator/calibrate/dot_measurement.h"
+#include "hil_drivers/optical_stimulator/calibrate/geometry_fit.h"
+#include "hil_drivers/optical_stimulator/calibration_file/bench_calibration.h"
+#include "hil_drivers/optical_stimulator/display_map/display_map.h"
+#include "host_sim/twins/camera/camera_settings.h"
+#include "host_sim/twins/camera/optics.h"
+
+namespace vbar::optical_stimulator::calibrate {
+
+struct GridSize {
+  int columns = 0, rows = 0;
+};
+
+struct ProcedureSettings {
+  twins::camera::CameraSettings camera;  ///< the camera's file: optics, region and exposure of the flight's images
+  double lens_mm = 25.0;                 ///< position of the axis of lens 2
+  double display_mm = 14.29;             ///< position of the axis of the display where the search for the focus begins
+  double focus_range_mm = 0.5;           ///< on both sides of it
+  GridSize geometry_grid{40, 25}, held_out_grid{27, 17}, uniformity_grid{16, 10};
+  int frames = 4;  ///< of each picture of the geometry
+  double exposure_min_s = 5e-5, exposure_max_s = 0.4;
+  std::uint64_t seed = 1;  ///< of the places of the dots held out
+};
+
+struct Bench {
+  Screen& screen;
+  Eye& eye;
+  Rails& rails;
+};
+
+class Session {
+ public:
+  using Progress = std::function<void(const std::string&)>;
+  Session(const Bench& bench, const ProcedureSettings& settings, Progress progress);
+
+  /// Mean of frames, with hot pixels replaced once they are known.
+  [[nodiscard]] Picture picture(double exposure_s, int frames);
+  /// The same at an exposure that brings the highest pixels near half of the range; starts at `exposure_s` and returns
+  /// the exposure in it. Exposures end at the limits of the settings.
+  [[nodiscard]] Picture well_exposed(double& exposure_s, int frames);
+  [[nodiscard]] bool is_saturated(double peak_dn) const { return peak_dn > 0.9 * range_dn(); }
+  [[nodiscard]] double range_dn() const { return static_cast<double>((1 << bench.eye.bits()) - 1); }
+
+  /// Camera pixel of a display pixel, as far as the geometry is known.
+  [[nodiscard]] fsw::Vector2 expected_px(const fsw::Vector2& display_px) const;
+  /// Whether a window of `margin_px` about a camera pixel lies on the detector.
+  [[nodiscard]] bool is_on_detector(const fsw::Vector2& camera_px, double margin_px) const;
+  void set_map(const DisplayMapParameters& parameters);
+  [[nodiscard]] const DisplayMap& map() const { return map_; }
+  [[nodiscard]] Dot dot_of(const fsw::Vector2& display_px, const fsw::Vector2& camera_px) const;
+  void report(const std::string& line) const { progress_(line); }
+
+  Bench bench;
+  ProcedureSettings settings;
+  BenchCalibration result;  ///< filled step by step
+  Response response;        ///< of the display, as far as known
+  double camera_noise_dn = 1.0;
+  std::vector<Residual> residuals;  ///< of the dots held out
+
+ private:
+  twins::camera::Optics optics_;
+  DisplayMap map_;
+  Progress progress_;
+};
+
+/// Steps in their order; each needs those before it. They throw std::runtime_error with one sentence.
+void measure_noise(Session& session);  ///< offset, background, hot pixels; gain needs step focus
+void find_display(Session& session);   ///< a coarse map, and whether the display is mirrored or rotated
+void focus(Session& session);
+void measure_gain(Session& session);
+void measure_light(Session& session);     ///< gamma, first count, uniformity, full pixel
+void measure_geometry(Session& session);  ///< map, residuals of dots held out, point spread
+
+}  // namespace vbar::optical_stimulator::calibrate

@@ -1,0 +1,64 @@
+#pragma once
+// The light of a display's pixels, as calibrated:
+//   L(D) = L_full ((D - D0) / (255 - D0))^gamma for D > D0, 0 below, + L_full / contrast,
+// with an L_full of each pixel, which contains the evenness of the display and the vignetting of the optics.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "hil_drivers/optical_stimulator/counts/picture.h"
+
+namespace vbar::optical_stimulator {
+
+struct DisplayResponse {
+  double gamma = 2.2;
+  double first_count = 0.0;  ///< D0: above it a pixel emits light
+  double contrast = 1e5;     ///< of full to black
+};
+
+class DisplayLight {
+ public:
+  static constexpr int kFull = 255;
+
+  /// `full_electrons`: photo-electrons that a full pixel causes in the camera in one exposure, for each pixel, rows
+  /// from the top. Throws std::invalid_argument unless all numbers are finite and positive (first_count: 0 to 254) and
+  /// the pixels are width x height.
+  DisplayLight(const DisplayResponse& response, int width, int height, std::vector<float> full_electrons);
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+
+  /// Of a full pixel, less the black level.
+  [[nodiscard]] double full_electrons(int x, int y) const {
+    return full_electrons_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                           static_cast<std::size_t>(x)];
+  }
+
+  /// Light of a count relative to a full pixel, 0 to 1, less the black level.
+  [[nodiscard]] double fraction(int count) const { return fractions_[static_cast<std::size_t>(count)]; }
+
+  /// The count whose light is nearest to that fraction, which need not lie between 0 and 1.
+  [[nodiscard]] std::uint8_t nearest_count(double fraction) const;
+
+  // The counts of different light next to one; a count itself if there is none.
+  [[nodiscard]] int above(int count) const {
+    return count < first_lit_ ? first_lit_ : count < kFull ? count + 1 : count;
+  }
+  [[nodiscard]] int below(int count) const { return count > first_lit_ ? count - 1 : 0; }
+
+  /// The least light above black, as a fraction.
+  [[nodiscard]] double least_fraction() const { return fraction(first_lit_); }
+
+  /// Electrons of a pixel at black.
+  [[nodiscard]] double black_electrons(int x, int y) const { return full_electrons(x, y) / contrast_; }
+
+ private:
+  int width_, height_;
+  double contrast_;
+  int first_lit_;
+  std::array<double, kFull + 1> fractions_{};
+  std::vector<float> full_electrons_;
+};
+
+}  // namespace vbar::optical_stimulator

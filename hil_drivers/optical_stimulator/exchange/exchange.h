@@ -1,0 +1,67 @@
+#pragma once
+// A picture for an image: shows the picture, takes an image and accepts it only if the frame strip in it says that it
+// shows this picture at the calibrated brightness. Else it takes another one, a number of times.
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hil_drivers/optical_stimulator/exchange/devices.h"
+#include "hil_drivers/optical_stimulator/strip/frame_strip.h"
+#include "hil_drivers/optical_stimulator/strip/strip_reader.h"
+
+namespace vbar::optical_stimulator {
+
+struct ExchangeSettings {
+  int width = 500;                           ///< of the camera's region
+  std::chrono::nanoseconds settle{};         ///< from the picture on the screen to the trigger
+  std::chrono::nanoseconds display_frame{};  ///< further wait before another try
+  double gain_dn_per_electron = 0.125;
+  double white_electrons = 12000.0;  ///< of the strip, as calibrated
+  double brightness_tolerance = 0.05;
+  int retries = 3;
+  std::chrono::milliseconds absence{5000};  ///< of the camera, after which the run ends
+};
+
+struct ExchangedImage {
+  std::vector<std::uint16_t> dn;  ///< of the camera's region below the strip
+  std::uint16_t frame = 0;        ///< number of the picture
+  int tries = 1;                  ///< images taken for it
+  int stale = 0;                  ///< of these, those that showed another picture
+  int packets_resent = 0;
+  int reconnects = 0;
+  double brightness = 0.0;               ///< of the strip, relative to the calibration
+  double show_s = 0.0, receive_s = 0.0;  ///< wall clock, of all tries
+};
+
+class Exchange {
+ public:
+  Exchange(const ExchangeSettings& settings, const FrameStrip& strip, Screen& screen, FrameCamera& camera)
+      : settings_(settings), strip_(strip), screen_(screen), camera_(camera) {}
+
+  /// Draws the next number into the strip of the picture and returns the image that shows it. Throws
+  /// std::runtime_error, one sentence, when all tries have failed or after cancel().
+  ExchangedImage take(Picture& picture);
+
+  /// From another thread: take() does not wait any longer.
+  void cancel() { is_cancelled_ = true; }
+
+ private:
+  struct Trouble;  // of one picture so far
+
+  CameraFrame take_frame(ExchangedImage& image);
+  void reconnect(const std::string& reason, ExchangedImage& image);
+  [[nodiscard]] bool is_accepted(const CameraFrame& frame, ExchangedImage& image, Trouble& trouble) const;
+  void wait(std::chrono::nanoseconds span) const;
+
+  ExchangeSettings settings_;
+  const FrameStrip& strip_;
+  Screen& screen_;
+  FrameCamera& camera_;
+  std::uint16_t next_ = 1;
+  std::atomic<bool> is_cancelled_{false};
+};
+
+}  // namespace vbar::optical_stimulator

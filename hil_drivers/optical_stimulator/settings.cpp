@@ -1,0 +1,57 @@
+#include "hil_drivers/optical_stimulator/settings.h"
+
+#include <cmath>
+
+namespace vbar::optical_stimulator {
+namespace {
+
+using mission::from_to;
+using mission::TableReader;
+
+std::chrono::nanoseconds milliseconds(const TableReader& section, std::string_view key, double high, double otherwise) {
+  return std::chrono::nanoseconds(std::llround(1e6 * section.number(key, from_to(0.0, high), otherwise)));
+}
+
+/// Without a bench that names it, the address of a device is required.
+std::string address(const TableReader& section, std::string_view key, bool is_required) {
+  return is_required ? section.text(key) : section.text(key, "");
+}
+
+void replace_all(std::string& text, std::string_view what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+}
+
+}  // namespace
+
+std::shared_ptr<const mission::TestbedSettings> read_optical_stimulator(const TableReader& section) {
+  auto settings = std::make_shared<OpticalStimulatorSettings>();
+  settings->bench = section.text("bench", "");
+  const bool is_required = settings->bench.empty();
+  settings->calibration = section.text("calibration");
+  settings->camera_address = address(section, "camera", is_required);
+  settings->x_display = address(section, "display", is_required);
+  settings->output = section.text("output", "");
+  settings->rails = section.text("rails", "");
+  settings->packet_size = static_cast<int>(section.integer("packet_size", 576, 9000, settings->packet_size));
+  if (section.has("packet_delay_us"))
+    settings->packet_delay_us = static_cast<int>(section.integer("packet_delay_us", 0, 100'000));
+  settings->settle = milliseconds(section, "settle_ms", 10'000.0, 35.0);
+  settings->timeout =
+      std::chrono::duration_cast<std::chrono::milliseconds>(milliseconds(section, "timeout_ms", 60'000.0, 3000.0));
+  settings->retries = static_cast<int>(section.integer("retries", 0, 20, settings->retries));
+  settings->any_exposure = section.flag("any_exposure", false);
+  settings->white_electrons = section.number("strip_electrons", from_to(1000.0, 1e6), settings->white_electrons);
+  section.finish();
+  return settings;
+}
+
+std::filesystem::path calibration_file(const OpticalStimulatorSettings& settings,
+                                       const std::filesystem::path& data_directory, std::uint64_t seed) {
+  std::string path = settings.calibration;
+  replace_all(path, "{data}", data_directory.string());
+  replace_all(path, "{seed}", std::to_string(seed));
+  return path;
+}
+
+}  // namespace vbar::optical_stimulator

@@ -1,0 +1,201 @@
+#include "hil_drivers/optical_stimulator/stimulator_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "hil_drivers/optical_stimulator/stimulator_camera.h"
+#include "hil_drivers/optical_stimulator/stimulator_report.h"
+
+namespace vbar::optical_stimulator {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::int64_t kBetweenRailChecks = 10;  // images
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// A display of that rate shows whole frames: the light of an exposure that cuts one depends on when it begins.
+void check_exposure(double exposure_s, double rate_hz) {
+  const double frames = exposure_s * rate_hz;
+  constexpr double kTolerance = 0.02;  // of a frame: 2 parts in 1000 of the light of 0.2 s at 60 Hz
+  if (std::abs(frames - std::round(frames)) > kTolerance)
+    throw std::runtime_error(fmt::format(
+        "an exposure of {} s is {:.2f} frames of a display of {} Hz, not a whole number of them; any_exposure = true "
+        "allows it",
+        exposure_s, frames, rate_hz));
+}
+
+}  // namespace
+
+StimulatorRun::StimulatorRun(const OpticalStimulatorSettings& settings, const testbeds::RunContext& context)
+    : settings_(settings),
+      context_(context),
+      calibration_file_(calibration_file(settings, context.data_directory, context.mission.seed)) {}
+
+StimulatorRun::~StimulatorRun() {
+  close();
+}
+
+std::unique_ptr<twins::camera::ImageTaker> StimulatorRun::make_camera(const testbeds::CameraPlan& plan) {
+  if (plan_)
+    throw std::runtime_error("testbed optical_stimulator: it has one camera, and " + plan.name + " is a second");
+  calibration_ = load_calibration(calibration_file_);
+  if (plan.settings.exposure_s != calibration_->validity.exposure_s)
+    throw std::runtime_error(fmt::format("{}: it holds for exposures of {} s, and those of {} take {} s",
+                                         calibration_file_.string(), calibration_->validity.exposure_s, plan.name,
+                                         plan.settings.exposure_s));
+  if (!settings_.any_exposure) check_exposure(plan.settings.exposure_s, calibration_->validity.display_rate_hz);
+  plan_ = plan;
+  camera_ = calibrated_camera(*calibration_, plan.settings);
+  return std::make_unique<StimulatorCamera>(shared_from_this());
+}
+
+void StimulatorRun::begin(report::RunRecord& record, const std::filesystem::path& /*folder*/) {
+  record_ = &record;
+}
+
+void StimulatorRun::start() {
+  try {
+    if (!settings_.bench.empty()) process_.emplace(settings_.bench, context_.mission.seed, context_.data_directory);
+    open_devices();
+    check_bench();
+  } catch (const std::runtime_error& error) {
+    // The end of its process is the cause of all other failures.
+    const auto end = process_ ? process_->end_report() : std::nullopt;
+    const std::string reason = end ? *end : error.what();
+    close();
+    throw std::runtime_error("testbed optical_stimulator: " + reason);
+  }
+}
+
+void StimulatorRun::open_devices() {
+  BenchAddresses addresses;
+  if (process_) addresses = read_addresses(process_->addresses_file());
+  DevicePlan plan;
+  plan.camera_address = settings_.camera_address.empty() ? addresses.camera : settings_.camera_address;
+  plan.rails = settings_.rails.empty() ? addresses.rails : settings_.rails;
+  plan.display.x_display = settings_.x_display.empty() ? addresses.display : settings_.x_display;
+  plan.display.output = settings_.output;
+  plan.region = region_with_strip(camera_.region);
+  plan.exposure_s = camera_.exposure_s;
+  plan.packet_size = settings_.packet_size;
+  plan.packet_delay_us = settings_.packet_delay_us;
+  plan.timeout = settings_.timeout;
+  plan.retries = settings_.retries;
+  devices_.emplace(plan, *calibration_);
+}
+
+/// The calibrated map, moved by the correction, and the frame strip by it.
+void StimulatorRun::place_display(const DayCorrection& correction) {
+  map_ = std::make_shared<const DisplayMap>(calibration_->geometry, correction);
+  const auto region = region_with_strip(camera_.region);
+  const twins::camera::Region strip{region.x, region.y, region.width, kStripRows};
+  constexpr int kMargin_px = 2;
+  strip_.emplace(region, *light_, camera_pixels(map_, camera_),
+                 display_region(strip, camera_, *map_, light_->width(), light_->height(), kMargin_px),
+                 settings_.white_electrons);
+  ExchangeSettings exchange;
+  exchange.width = region.width;
+  exchange.settle = settings_.settle;
+  exchange.display_frame = std::chrono::nanoseconds(std::llround(1e9 / calibration_->validity.display_rate_hz));
+  exchange.gain_dn_per_electron = camera_.detector.gain_dn_per_electron;
+  exchange.white_electrons = strip_->white_electrons();
+  exchange.retries = settings_.retries;
+  exchange_.emplace(exchange, *strip_, devices_->screen(), devices_->camera());
+}
+
+void StimulatorRun::check_bench() {
+  light_.emplace(display_light(*calibration_, camera_.exposure_s));
+  place_display({});
+  self_check_ = SelfCheck(*calibration_, camera_, *map_, *light_).run(*exchange_);
+  if (const std::string complaint = complaint_of(*self_check_); !complaint.empty())
+    throw std::runtime_error("self check: " + complaint);
+  place_display(self_check_->correction);
+  pictures_.emplace(*calibration_, map_, *light_, plan_->settings, plan_->make_scene);
+  picture_ = Picture(light_->width(), light_->height());
+}
+
+twins::camera::TakenImage StimulatorRun::take(const twins::camera::Exposure& exposure) {
+  BenchRow row;
+  row.time_s = fsw::seconds(exposure.time - context_.mission.epoch);
+  row.image = exposure.number;
+  const auto rendering = Clock::now();
+  const PictureFigures figures = pictures_->draw(exposure, picture_);
+  row.render_s = seconds_since(rendering);
+  row.points = figures.points;
+  row.wanted_electrons = figures.wanted_electrons;
+  row.clipped_electrons = figures.clipped_electrons;
+  try {
+    ExchangedImage image = exchange_->take(picture_);
+    row.frame = image.frame;
+    row.tries = image.tries;
+    row.stale = image.stale;
+    row.packets_resent = image.packets_resent;
+    row.reconnects = image.reconnects;
+    row.show_s = image.show_s;
+    row.receive_s = image.receive_s;
+    row.strip_brightness = image.brightness;
+    if (exposure.number % kBetweenRailChecks == 0) {
+      if (const auto rails = devices_->check_rails()) {
+        row.rail_lens_mm = rails->lens_mm;
+        row.rail_display_mm = rails->display_mm;
+      }
+    }
+    const std::scoped_lock lock(mutex_);
+    rows_.push_back(row);
+    return {std::move(image.dn)};
+  } catch (const std::runtime_error& error) {
+    constexpr std::chrono::milliseconds kEnd{300};  // its connections are closed before its end is known
+    const auto end = process_ ? process_->end_report(kEnd) : std::nullopt;
+    throw std::runtime_error("testbed optical_stimulator: " + (end ? *end : error.what()));
+  }
+}
+
+std::vector<twins::Note> StimulatorRun::statistics() const {
+  const std::scoped_lock lock(mutex_);
+  double render_s = 0.0;
+  for (const BenchRow& row : rows_) render_s += row.render_s;
+  return {{"render_s", render_s}};
+}
+
+void StimulatorRun::stop() noexcept {
+  if (exchange_) exchange_->cancel();
+  if (devices_) devices_->stop();
+}
+
+void StimulatorRun::close() noexcept {
+  devices_.reset();  // the display shows black, the camera is released
+  if (process_) process_->stop();
+}
+
+void StimulatorRun::finish() noexcept {
+  if (record_ == nullptr) return;
+  try {
+    RunFigures figures;
+    figures.calibration_file = calibration_file_;
+    figures.calibration = &*calibration_;
+    if (self_check_) figures.self_check = *self_check_;
+    if (devices_) figures.devices = devices_->identity();
+    close();
+    if (process_) {
+      figures.bench_files = process_->files();
+      figures.faults = process_->faults();
+    }
+    const std::scoped_lock lock(mutex_);
+    record_->tables.rows<BenchRow>() = rows_;
+    add_figures(figures, *record_);
+  } catch (...) {
+    // Without memory for its figures the run still ends in order.
+  }
+  record_ = nullptr;
+}
+
+}  // namespace vbar::optical_stimulator

@@ -1,0 +1,44 @@
+#pragma once
+// The bench of a calibration over its wires: X display, GigE Vision camera, Zaber rails.
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "hil_drivers/optical_stimulator/calibrate/procedure.h"
+#include "hil_drivers/optical_stimulator/display/display.h"
+
+namespace vbar::optical_stimulator::calibrate {
+
+struct WiredBenchSettings {
+  DisplaySettings display;
+  std::string camera_address;
+  std::string rails;  ///< a tty, or host:port
+  int packet_size = 1400;
+  std::chrono::milliseconds settle{50};  ///< from a picture on the screen to its light
+  std::chrono::milliseconds timeout{3000};
+  int retries = 5;                             ///< of an image
+  int width = 1920, height = 1200, bits = 12;  ///< of the camera
+};
+
+class WiredBench {
+ public:
+  /// Throws std::runtime_error, one sentence, if a device does not answer.
+  explicit WiredBench(const WiredBenchSettings& settings);
+  ~WiredBench();
+  WiredBench(const WiredBench&) = delete;
+  WiredBench& operator=(const WiredBench&) = delete;
+
+  [[nodiscard]] Bench bench();
+  /// Camera and emulation.
+  void identify(Validity& validity) const;
+  [[nodiscard]] std::string transport() const;
+  [[nodiscard]] int frames() const;
+  [[nodiscard]] int repeated_frames() const;  ///< that did not arrive whole
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace vbar::optical_stimulator::calibrate

@@ -1,0 +1,124 @@
+#pragma once
+// A small bench in memory, behind the interfaces of the calibration: a display of 480 x 300 pixels whose every lit
+// pixel is drawn as a Gaussian where an independent model of the optics places it, on a camera of as many pixels.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "hil_drivers/optical_stimulator/calibrate/bench_access.h"
+#include "host_sim/twins/camera/camera_settings.h"
+#include "host_sim/twins/camera/optics.h"
+#include "tests/support/optical_bench_model.h"
+
+namespace vbar::optical_stimulator {
+
+struct FakeBenchTruth {
+  double gamma = 2.2, first_count = 3.0, full_electrons_per_s = 1.2e7, contrast = 1e5, pixel_unevenness = 0.02;
+  double offset_dn = 66.0, gain_dn_per_electron = 0.12875, read_noise_electrons = 7.7, dark_electrons_per_s = 5.0;
+  double point_spread_px = 0.85, focus_mm = 14.4;
+  int hot_pixels = 6;
+  bool is_mirrored = false;
+  BenchModelSettings optics{.width_px = 480.0, .height_px = 300.0};
+};
+
+class FakeOpticalBench final : public calibrate::Screen, public calibrate::Eye, public calibrate::Rails {
+ public:
+  explicit FakeOpticalBench(const FakeBenchTruth& truth)
+      : truth_(truth), model_(truth.optics), camera_(settings()), counts_(calibrate::Counts::black(480, 300)) {
+    for (std::size_t k = 0; k < kPixels; ++k) {
+      const auto x = static_cast<double>(k % 480), y = static_cast<double>(k / 480);
+      places_.push_back(camera_.project(model_.direction_of({truth.is_mirrored ? 479.0 - x : x, y})).value());
+      evenness_.push_back(std::max(0.5, 1.0 + truth.pixel_unevenness * normal_(random_)));
+    }
+    for (int k = 0; k < truth.hot_pixels; ++k) hot_.push_back(static_cast<std::size_t>(random_() % kPixels));
+  }
+
+  static twins::camera::CameraSettings settings() {
+    twins::camera::CameraSettings camera;
+    camera.detector.width = 480;
+    camera.detector.height = 300;
+    camera.optics.principal_point_px = {239.5, 149.5};
+    camera.region = {140, 50, 200, 200};
+    return camera;
+  }
+
+  [[nodiscard]] int width() const override { return 480; }
+  [[nodiscard]] int height() const override { return 300; }
+  [[nodiscard]] int bits() const override { return 12; }
+  void show(const calibrate::Counts& counts) override { counts_ = counts; }
+  void home() override { is_homed_ = true; }
+  void move_to(double, double display_mm) override { display_mm_ = display_mm; }
+
+  std::vector<std::uint16_t> take(double exposure_s) override {
+    const std::vector<double> electrons = light(exposure_s);
+    std::vector<std::uint16_t> dn(kPixels);
+    for (std::size_t k = 0; k < kPixels; ++k) {
+      const double charge = std::min(32000.0, electrons[k] + std::sqrt(electrons[k]) * normal_(random_));
+      const double read = charge + truth_.read_noise_electrons * normal_(random_);
+      dn[k] = static_cast<std::uint16_t>(
+          std::clamp(std::round(truth_.offset_dn + truth_.gain_dn_per_electron * read), 0.0, 4095.0));
+    }
+    return dn;
+  }
+
+  [[nodiscard]] bool is_homed() const { return is_homed_; }
+  [[nodiscard]] double display_mm() const { return display_mm_; }
+  [[nodiscard]] BenchModel& model() { return model_; }
+
+ private:
+  static constexpr std::size_t kPixels = 480 * 300;
+
+  [[nodiscard]] std::vector<double> light(double exposure_s) const {
+    const double full = truth_.full_electrons_per_s * exposure_s;
+    std::vector<double> electrons(kPixels, full / truth_.contrast + truth_.dark_electrons_per_s * exposure_s);
+    for (const std::size_t k : hot_) electrons[k] += 20000.0 * exposure_s;
+    const bool is_even = std::all_of(counts_.values.begin(), counts_.values.end(),
+                                     [&](auto count) { return count == counts_.values[0]; });
+    for (std::size_t k = 0; k < kPixels; ++k) {
+      const double signal = counts_.values[k] - truth_.first_count;
+      if (!(signal > 0.0)) continue;
+      const double lit = full * evenness_[k] * std::pow(signal / (255.0 - truth_.first_count), truth_.gamma);
+      if (is_even)
+        electrons[k] += lit;
+      else
+        splat(electrons, places_[k], lit);
+    }
+    return electrons;
+  }
+
+  void splat(std::vector<double>& electrons, const fsw::Vector2& at, double light) const {
+    const double blur_px =
+        33.4 * (display_mm_ - truth_.focus_mm) / 4.0;  // 18.4 mm of aperture over 57.1 mm squared, disc to sigma
+    const double sigma = std::hypot(truth_.point_spread_px, blur_px), scale = std::sqrt(0.5) / sigma;
+    const int reach = static_cast<int>(std::ceil(5.0 * sigma));
+    const int cx = static_cast<int>(std::lround(at.x())), cy = static_cast<int>(std::lround(at.y()));
+    std::vector<double> columns;
+    for (int x = cx - reach; x <= cx + reach; ++x) columns.push_back(share(x - at.x(), scale));
+    for (int y = std::max(0, cy - reach); y <= std::min(299, cy + reach); ++y) {
+      const double row = light * share(y - at.y(), scale);
+      for (int x = std::max(0, cx - reach); x <= std::min(479, cx + reach); ++x)
+        electrons[static_cast<std::size_t>(y) * 480 + static_cast<std::size_t>(x)] +=
+            row * columns[static_cast<std::size_t>(x - cx + reach)];
+    }
+  }
+  static double share(double from_centre, double scale) {
+    return 0.5 * (std::erf((from_centre + 0.5) * scale) - std::erf((from_centre - 0.5) * scale));
+  }
+
+  FakeBenchTruth truth_;
+  BenchModel model_;
+  twins::camera::Optics camera_;
+  calibrate::Counts counts_;
+  std::vector<fsw::Vector2> places_;
+  std::vector<double> evenness_;
+  std::vector<std::size_t> hot_;
+  std::mt19937 random_{7};
+  std::normal_distribution<double> normal_;
+  double display_mm_ = 0.0;
+  bool is_homed_ = false;
+};
+
+}  // namespace vbar::optical_stimulator
