@@ -41,7 +41,8 @@ Centroid centroid_of(const gige::Frame& frame) {
 class BenchCameraTest : public test::BenchProcessTest {
  protected:
   void start_in_focus(std::vector<std::string> more = {}) {
-    more.insert(more.end(), {"--seed", "4", "--set", "rails.zero_error_mm=0", "--set", "camera.hot_pixels=0"});
+    more.insert(more.end(), {"--seed", "4", "--set", "rails.zero_error_mm=0", "--set", "camera.hot_pixels=0", "--set",
+                             "rails.speed_mm_s=1000"});
     ASSERT_NO_FATAL_FAILURE(start(more));
     zaber::ClientSettings rails;
     rails.line = addresses["rails"]["tcp"].get<std::string>();
