@@ -54,7 +54,7 @@ void Axis::advance(double now_s) {
     return arrive(done);
   }
   const double share = (now_s - move_->begin_s) / (move_->end_s - move_->begin_s);
-  const double way = static_cast<double>(move_->target - move_->begin_count);
+  const auto way = static_cast<double>(move_->target - move_->begin_count);
   if (move_->stalls && share > 0.5) {
     const Move done = *move_;
     move_.reset();
