@@ -14,7 +14,9 @@ std::chrono::nanoseconds milliseconds(const TableReader& section, std::string_vi
 
 /// Without a bench that names it, the address of a device is required.
 std::string address(const TableReader& section, std::string_view key, bool is_required) {
-  return is_required ? section.text(key) : section.text(key, "");
+  const std::string value = section.text(key, "");
+  if (is_required && value.empty()) section.refuse(key, "nothing", "an address, as no bench names one");
+  return value;
 }
 
 void replace_all(std::string& text, std::string_view what, const std::string& by) {
@@ -34,8 +36,8 @@ std::shared_ptr<const mission::TestbedSettings> read_optical_stimulator(const Ta
   settings->output = section.text("output", "");
   settings->rails = section.text("rails", "");
   settings->packet_size = static_cast<int>(section.integer("packet_size", 576, 9000, settings->packet_size));
-  if (section.has("packet_delay_us"))
-    settings->packet_delay_us = static_cast<int>(section.integer("packet_delay_us", 0, 100'000));
+  if (const auto delay_us = section.integer("packet_delay_us", 0, 100'000, 0); delay_us > 0)
+    settings->packet_delay_us = static_cast<int>(delay_us);
   settings->settle = milliseconds(section, "settle_ms", 10'000.0, 35.0);
   settings->timeout =
       std::chrono::duration_cast<std::chrono::milliseconds>(milliseconds(section, "timeout_ms", 60'000.0, 3000.0));

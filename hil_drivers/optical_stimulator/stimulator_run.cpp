@@ -109,6 +109,8 @@ void StimulatorRun::place_display(const DayCorrection& correction) {
   exchange.gain_dn_per_electron = camera_.detector.gain_dn_per_electron;
   exchange.white_electrons = strip_->white_electrons();
   exchange.retries = settings_.retries;
+  // Numbers go on: an image that still shows a picture of the self check must not pass.
+  if (exchange_) exchange.first_frame = exchange_->next_frame();
   exchange_.emplace(exchange, *strip_, devices_->screen(), devices_->camera());
 }
 

@@ -66,8 +66,17 @@ int output_named(const std::string& name) {
 
 }  // namespace
 
+namespace {
+
+/// SDL keeps a connection whose server is gone, and cannot be closed without it.
+bool has_lost_connection = false;
+
+}  // namespace
+
 struct Display::Window {
   explicit Window(const DisplaySettings& settings) {
+    if (has_lost_connection)
+      throw std::runtime_error("this program has lost an X server before, and cannot open another one");
     const EnvironmentDisplay environment(settings.x_display);
     SDL_SetMainReady();
     SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11");
@@ -106,10 +115,16 @@ struct Display::Window {
     if (SDL_GetWindowWMInfo(window, &info) != SDL_TRUE || info.subsystem != SDL_SYSWM_X11)
       throw std::runtime_error("it is not of an X server");
     connection = info.info.x11.display;
+    survive_loss(connection, is_lost);
     surface();
   }
 
   void close() {
+    // SDL would wait for answers of a server that is gone.
+    if (is_lost) {
+      has_lost_connection = true;
+      return;
+    }
     if (window != nullptr) SDL_DestroyWindow(window);
     window = nullptr;
     SDL_QuitSubSystem(SDL_INIT_VIDEO);
@@ -127,6 +142,7 @@ struct Display::Window {
   SDL_Window* window = nullptr;
   _XDisplay* connection = nullptr;
   int left = 0, top = 0;
+  bool is_lost = false;
 };
 
 Display::Display(const DisplaySettings& settings) : settings_(settings) {
@@ -177,6 +193,8 @@ void Display::check_pixels() {
 void Display::show(const Picture& picture) {
   if (picture.width != settings_.width || picture.height != settings_.height)
     throw std::runtime_error("a picture is not of the display's size");
+  if (window_->is_lost)
+    throw std::runtime_error(fmt::format("display {}: its X server has closed the connection", settings_.x_display));
   SDL_Surface* const surface = window_->surface();
   if (surface->w != picture.width || surface->h != picture.height)
     throw std::runtime_error(
@@ -192,8 +210,11 @@ void Display::show(const Picture& picture) {
     auto* const to = static_cast<std::uint32_t*>(static_cast<void*>(row));
     for (int x = 0; x < picture.width; ++x) to[x] = greys[from[x]];
   }
-  if (SDL_UpdateWindowSurface(window_->window) != 0) fail_by_sdl("the window cannot be drawn");
-  wait_for_server(window_->connection);
+  const int status = SDL_UpdateWindowSurface(window_->window);
+  if (!window_->is_lost) wait_for_server(window_->connection);
+  if (window_->is_lost)
+    throw std::runtime_error(fmt::format("display {}: its X server has closed the connection", settings_.x_display));
+  if (status != 0) fail_by_sdl("the window cannot be drawn");
 }
 
 Picture Display::read_back() const {

@@ -31,6 +31,12 @@ bool is_identity(const unsigned short* ramp, int size) {
 
 }  // namespace
 
+void survive_loss(_XDisplay* connection, bool& is_lost) {
+  XSetIOErrorHandler([](_XDisplay*) { return 0; });  // the default one writes to the terminal
+  XSetIOErrorExitHandler(
+      connection, [](_XDisplay*, void* flag) { *static_cast<bool*>(flag) = true; }, &is_lost);
+}
+
 void wait_for_server(_XDisplay* connection) {
   XSync(connection, False);
 }

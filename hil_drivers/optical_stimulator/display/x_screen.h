@@ -9,6 +9,9 @@ struct _XDisplay;  // Xlib's Display, whose header defines common words as macro
 
 namespace vbar::optical_stimulator {
 
+/// Without it Xlib ends the program when the server goes away. `is_lost` is set then; it outlives the connection.
+void survive_loss(_XDisplay* connection, bool& is_lost);
+
 /// Returns when the server has executed all requests of the connection.
 void wait_for_server(_XDisplay* connection);
 

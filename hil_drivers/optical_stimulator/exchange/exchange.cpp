@@ -109,7 +109,9 @@ bool Exchange::is_accepted(const CameraFrame& frame, ExchangedImage& image, Trou
     case StripStatus::kMirrored:
       throw std::runtime_error("the image is mirrored: its frame strip reads backwards");
     case StripStatus::kDamaged:
-      trouble.last = "the display does not follow: the frame strip cannot be read";
+      trouble.last =
+          "the display does not follow: the frame strip cannot be read, so the display is covered, mirrored or "
+          "displaced";
       return false;
     case StripStatus::kRead:
       break;

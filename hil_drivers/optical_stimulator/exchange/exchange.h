@@ -22,6 +22,7 @@ struct ExchangeSettings {
   double white_electrons = 12000.0;  ///< of the strip, as calibrated
   double brightness_tolerance = 0.05;
   int retries = 3;
+  std::uint16_t first_frame = 1;            ///< number of the first picture
   std::chrono::milliseconds absence{5000};  ///< of the camera, after which the run ends
 };
 
@@ -39,11 +40,14 @@ struct ExchangedImage {
 class Exchange {
  public:
   Exchange(const ExchangeSettings& settings, const FrameStrip& strip, Screen& screen, FrameCamera& camera)
-      : settings_(settings), strip_(strip), screen_(screen), camera_(camera) {}
+      : settings_(settings), strip_(strip), screen_(screen), camera_(camera), next_(settings.first_frame) {}
 
   /// Draws the next number into the strip of the picture and returns the image that shows it. Throws
   /// std::runtime_error, one sentence, when all tries have failed or after cancel().
   ExchangedImage take(Picture& picture);
+
+  /// Number of the picture to come.
+  [[nodiscard]] std::uint16_t next_frame() const { return next_; }
 
   /// From another thread: take() does not wait any longer.
   void cancel() { is_cancelled_ = true; }
@@ -60,7 +64,7 @@ class Exchange {
   const FrameStrip& strip_;
   Screen& screen_;
   FrameCamera& camera_;
-  std::uint16_t next_ = 1;
+  std::uint16_t next_;
   std::atomic<bool> is_cancelled_{false};
 };
 

@@ -69,6 +69,12 @@ class Chain {
     return std::move(image.dn);
   }
 
+  /// A picture with nothing but the frame strip.
+  ExchangedImage exchange_black() {
+    Picture black(light_.width(), light_.height());
+    return exchange_->take(black);
+  }
+
   [[nodiscard]] const CameraSettings& known() const { return known_; }
 
   PictureFigures figures;

@@ -77,6 +77,14 @@ TEST(Display, AnotherSizeOrOutputIsRefusedByName) {
   EXPECT_THAT(refusal({server.name(), "OLED-1", kWidth, kHeight}), HasSubstr("no output \"OLED-1\""));
 }
 
+TEST(Display, AServerThatGoesAwayIsAnErrorAndNotTheEndOfTheProgram) {
+  std::optional<Xvfb> server(std::in_place, kWidth, kHeight);
+  Display display({server->name(), "", kWidth, kHeight});
+  server.reset();
+  EXPECT_THROW(display.show(Picture(kWidth, kHeight)), std::runtime_error);
+  EXPECT_THROW(display.show(Picture(kWidth, kHeight)), std::runtime_error);
+}
+
 TEST(Display, AServerThatIsAbsentIsNamed) {
   EXPECT_THAT(refusal({":4711", "", kWidth, kHeight}), HasSubstr("display :4711"));
 }
