@@ -5,16 +5,13 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <thread>
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include "hil_drivers/gige/camera/aravis_features.h"
+#include "hil_drivers/gige/camera/camera_presence.h"
 #include "hil_drivers/gige/camera/pixel_padding.h"
-#include "hil_drivers/gige/wire/gvcp.h"
 #include "hil_drivers/gige/wire/gvsp.h"
 
 namespace vbar::gige {
@@ -30,27 +27,6 @@ constexpr double kExposureTolerance = 0.01;
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-/// The address of this computer that routes to `address`; nothing is sent.
-std::string routing_address(const std::string& address) {
-  sockaddr_in peer{};
-  peer.sin_family = AF_INET;
-  peer.sin_port = htons(wire::kGvcpPort);
-  if (::inet_pton(AF_INET, address.c_str(), &peer.sin_addr) != 1)
-    throw CameraError(fmt::format("camera \"{}\": this is not an IPv4 address", address));
-  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in own{};
-  socklen_t size = sizeof own;
-  void* const peer_bytes = &peer;
-  void* const own_bytes = &own;
-  const bool is_found = fd >= 0 && ::connect(fd, static_cast<const sockaddr*>(peer_bytes), sizeof peer) == 0 &&
-                        ::getsockname(fd, static_cast<sockaddr*>(own_bytes), &size) == 0;
-  if (fd >= 0) ::close(fd);
-  if (!is_found) throw CameraError(fmt::format("camera {}: no network interface routes to it", address));
-  std::array<char, INET_ADDRSTRLEN> text{};
-  ::inet_ntop(AF_INET, &own.sin_addr, text.data(), text.size());
-  return text.data();
 }
 
 const char* name_of(ArvBufferStatus status) {
@@ -89,13 +65,15 @@ class Camera::Connection {
   explicit Connection(const Settings& settings) : settings_(settings), padding_(settings.converter_bits) { connect(); }
 
   ~Connection() {
-    stream_.reset();
     if (!device_) return;
-    // A camera that does not answer any more is not asked again for seconds.
-    if (is_started_ && !is_lost_) {
-      GlibError ignored;
-      arv_device_execute_command(device_.get(), "AcquisitionStop", ignored.out());
+    if (camera_answers(settings_.address, 2, std::chrono::milliseconds(250))) {
+      release(device_, stream_, is_started_);
+      return;
     }
+    // Aravis asks a silent camera for ten seconds to release it; nobody waits for that.
+    std::thread([device = std::move(device_), stream = std::move(stream_), started = is_started_]() mutable {
+      release(device, stream, started);
+    }).detach();
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -178,6 +156,15 @@ class Camera::Connection {
   }
 
  private:
+  static void release(ObjectPtr<ArvDevice>& device, ObjectPtr<ArvStream>& stream, bool is_started) {
+    stream.reset();
+    if (is_started) {
+      GlibError ignored;
+      arv_device_execute_command(device.get(), "AcquisitionStop", ignored.out());
+    }
+    device.reset();
+  }
+
   [[nodiscard]] Features features() const { return Features(device_.get()); }
 
   [[nodiscard]] NoFrame failure(NoFrame::Reason reason, const std::string& text) const {
@@ -185,14 +172,12 @@ class Camera::Connection {
   }
 
   void connect() {
-    const std::string interface =
+    const std::string own_address =
         settings_.interface_address.empty() ? routing_address(settings_.address) : settings_.interface_address;
-    const ObjectPtr<GInetAddress> own(g_inet_address_new_from_string(interface.c_str()));
+    if (!camera_answers(settings_.address, 3, std::chrono::milliseconds(500))) throw FeatureError("it does not answer");
+    const ObjectPtr<GInetAddress> own(g_inet_address_new_from_string(own_address.c_str()));
     const ObjectPtr<GInetAddress> peer(g_inet_address_new_from_string(settings_.address.c_str()));
-    if (!own)
-      throw CameraError(
-          fmt::format("camera {}: interface \"{}\" is not an IPv4 address", settings_.address, interface));
-    if (!peer) throw CameraError(fmt::format("camera \"{}\": this is not an IPv4 address", settings_.address));
+    if (!own) throw FeatureError(fmt::format("interface \"{}\" is not an IPv4 address", own_address));
     GlibError error;
     device_.reset(arv_gv_device_new(own.get(), peer.get(), error.out()));
     if (!device_) throw FeatureError(error.text());
@@ -297,7 +282,6 @@ class Camera::Connection {
     if (!error) return std::nullopt;
     if (!arv_gv_device_is_controller(ARV_GV_DEVICE(device_.get())))
       return failure(NoFrame::Reason::kNotOwner, "control of it is lost");
-    is_lost_ = true;
     return failure(NoFrame::Reason::kNoAnswer, fmt::format("it does not take the trigger: {}", error.text()));
   }
 
@@ -357,7 +341,6 @@ class Camera::Connection {
   std::size_t payload_ = 0;
   PixelPadding padding_;
   bool is_started_ = false;
-  bool is_lost_ = false;
 };
 
 bool Camera::Identity::is_emulated() const {
@@ -378,7 +361,7 @@ void Camera::open() {
     connection->configure();
     connection->start();
     connection_ = std::move(connection);
-  } catch (const FeatureError& error) {
+  } catch (const std::exception& error) {
     throw CameraError(fmt::format("camera {}: {}", settings_.address, error.what()));
   }
 }

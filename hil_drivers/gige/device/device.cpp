@@ -201,8 +201,8 @@ class Device::Control {
   }
 
   void execute(const wire::PacketResend& command, const udp::endpoint& sender, wire::Acknowledge& /*acknowledge*/) {
-    // By the owner only, so that nobody else directs packets to its stream.
-    if (owner_ == sender && command.channel == 0) sender_.resend(command);
+    // By the owner's host only: the request comes from the socket of the stream.
+    if (owner_ && owner_->address() == sender.address() && command.channel == 0) sender_.resend(command);
   }
 
   Status write(std::uint32_t address, ByteSpan bytes, const udp::endpoint& sender) {

@@ -69,11 +69,13 @@ class BenchCameraTest : public test::BenchProcessTest {
     canvas->finish();
   }
   gige::Frame take() {
+    std::string reason;
     for (int tries = 0; tries < 5; ++tries) {  // a loaded machine may lose packets
       auto result = camera->take();
       if (auto* frame = std::get_if<gige::Frame>(&result)) return std::move(*frame);
+      reason = std::get<gige::NoFrame>(result).text;
     }
-    throw std::runtime_error("no image in five tries");
+    throw std::runtime_error("no image in five tries: " + reason);
   }
   std::string command(const std::string& line) {
     const auto deadline = io::Clock::now() + kLong;
@@ -125,7 +127,7 @@ TEST_F(BenchCameraTest, TheSameSeedGivesTheSameImages) {
     for (int k = 0; k < 3; ++k) {
       draw_dot(860 + 50 * k, 600);
       auto result = camera->take();
-      if (!std::holds_alternative<gige::Frame>(result)) GTEST_SKIP() << "this machine lost packets of an image";
+      if (!std::holds_alternative<gige::Frame>(result)) GTEST_SKIP() << std::get<gige::NoFrame>(result).text;
       run.push_back(std::get<gige::Frame>(std::move(result)));
     }
     TearDown();
