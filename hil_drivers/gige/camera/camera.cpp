@@ -109,10 +109,12 @@ class Camera::Connection {
     GlibError error;
     stream_.reset(arv_device_create_stream(device_.get(), nullptr, nullptr, error.out()));
     if (!stream_) throw FeatureError(fmt::format("the stream channel is not opened: {}", error.text()));
+    // On one cable nothing overtakes: a gap is asked for at once. What was asked for gets the time of a device that is not
+    // run for a while before it is asked for again: earlier repetitions fill the buffer of a busy computer.
     g_object_set(stream_.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
                  static_cast<gint>(buffer_.requested_bytes), "packet-resend", ARV_GV_STREAM_PACKET_RESEND_ALWAYS,
-                 "packet-request-ratio", 1.0, "packet-timeout", guint{20'000}, "frame-retention", guint{500'000},
-                 nullptr);
+                 "packet-request-ratio", 1.0, "initial-packet-timeout", guint{0}, "packet-timeout", guint{20'000},
+                 "frame-retention", guint{500'000}, nullptr);
     payload_ = static_cast<std::size_t>(features().integer("PayloadSize"));
     for (int k = 0; k < kBuffers; ++k) arv_stream_push_buffer(stream_.get(), arv_buffer_new(payload_, nullptr));
     features().execute("AcquisitionStart");
