@@ -2,6 +2,7 @@
 // An image of the testbed (bench.csv).
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "host_sim/report/run_columns.h"
@@ -20,7 +21,8 @@ struct BenchRow {
   double show_s = 0.0;            ///< until the picture is on the screen, and its settling
   double receive_s = 0.0;         ///< from the trigger until the image is whole: exposure, readout, transfer
   double strip_brightness = 0.0;  ///< relative to the calibration
-  std::int64_t points = 0;        ///< drawn with matched counts
+  std::optional<double> rail_lens_mm, rail_display_mm;  ///< of an image after which the rails were asked
+  std::int64_t points = 0;                              ///< drawn with matched counts
   double wanted_electrons = 0.0, clipped_electrons = 0.0;
 };
 
@@ -38,6 +40,8 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"show_s"}, row.show_s);
   visit(ColumnName{"receive_s"}, row.receive_s);
   visit(ColumnName{"strip_brightness"}, row.strip_brightness);
+  visit(ColumnName{"rail_lens_mm"}, row.rail_lens_mm);
+  visit(ColumnName{"rail_display_mm"}, row.rail_display_mm);
   visit(ColumnName{"points"}, row.points);
   visit(ColumnName{"wanted_electrons"}, row.wanted_electrons);
   visit(ColumnName{"clipped_electrons"}, row.clipped_electrons);

@@ -94,7 +94,7 @@ void add_figures(const RunFigures& run, RunRecord& record) {
     figures["self_check_brightness"] = check.brightness;
     figures["self_check_noise"] = check.noise;
     figures["self_check_offset"] = check.offset;
-    figures["self_check_new_hot_pixels"] = check.new_hot_pixels;
+    figures["self_check_new_hot_pixels"] = static_cast<double>(check.new_hot_pixels);
     figures["day_shift_x_px"] = check.correction.shift_px.x();
     figures["day_shift_y_px"] = check.correction.shift_px.y();
     figures["day_rotation_mrad"] = 1e3 * check.correction.rotation_rad;

@@ -16,6 +16,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::int64_t kBetweenRailChecks = 10;  // images
+
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -141,6 +143,12 @@ twins::camera::TakenImage StimulatorRun::take(const twins::camera::Exposure& exp
     row.show_s = image.show_s;
     row.receive_s = image.receive_s;
     row.strip_brightness = image.brightness;
+    if (exposure.number % kBetweenRailChecks == 0) {
+      if (const auto rails = devices_->check_rails()) {
+        row.rail_lens_mm = rails->lens_mm;
+        row.rail_display_mm = rails->display_mm;
+      }
+    }
     const std::scoped_lock lock(mutex_);
     rows_.push_back(row);
     return {std::move(image.dn)};

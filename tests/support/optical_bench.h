@@ -49,7 +49,8 @@ class PathBench final : public Screen, public FrameCamera {
   std::uint64_t frames_ = 0;
 };
 
-/// `camera`: of the bench (camera_of); `of_mission`: whose geometry the flight software has.
+/// The zeros of the rails are taken as exact. `camera`: of the bench (camera_of); `of_mission`: whose geometry the
+/// flight software has.
 inline BenchCalibration true_calibration(const bench::BenchSettings& settings,
                                          const twins::camera::CameraSettings& camera,
                                          const twins::camera::CameraSettings& of_mission) {
@@ -68,6 +69,8 @@ inline BenchCalibration true_calibration(const bench::BenchSettings& settings,
   validity.emulated = true;
   validity.camera_vendor = settings.identity.vendor;
   validity.camera_model = settings.identity.model;
+  validity.rail_lens_mm = settings.lenses.separation_mm - settings.rails.lens_zero_mm;
+  validity.rail_display_mm = settings.lenses.infinity_mm() - settings.rails.display_zero_mm;
   validity.display_width_px = width;
   validity.display_height_px = height;
   validity.display_rate_hz = settings.display.refresh_hz;

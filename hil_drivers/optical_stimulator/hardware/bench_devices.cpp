@@ -1,5 +1,7 @@
 #include "hil_drivers/optical_stimulator/hardware/bench_devices.h"
 
+#include <array>
+#include <cstddef>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -7,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "hil_drivers/gige/camera/camera.h"
+#include "hil_drivers/zaber/client/client.h"
 
 namespace vbar::optical_stimulator {
 namespace {
@@ -63,14 +66,45 @@ gige::Camera::Settings camera_settings(const DevicePlan& plan, const BenchCalibr
   return settings;
 }
 
+/// Axis 1 carries lens 2, axis 2 the display.
+class Rails {
+ public:
+  Rails(const std::string& line, const Validity& validity)
+      : client_(settings_of(line)), places_um_{1e3 * validity.rail_lens_mm, 1e3 * validity.rail_display_mm} {
+    for (int axis = 1; axis <= kAxes; ++axis) client_.home_if_needed(axis);
+    for (int axis = 1; axis <= kAxes; ++axis) client_.move_to_um(axis, places_um_[static_cast<std::size_t>(axis - 1)]);
+  }
+
+  RailPositions check() {
+    for (int axis = 1; axis <= kAxes; ++axis)
+      client_.check_held_at_um(axis, places_um_[static_cast<std::size_t>(axis - 1)]);
+    return {1e-3 * client_.position_um(1), 1e-3 * client_.position_um(2)};
+  }
+
+ private:
+  static constexpr int kAxes = 2;
+
+  static zaber::ClientSettings settings_of(const std::string& line) {
+    zaber::ClientSettings settings;
+    settings.line = line;
+    return settings;
+  }
+
+  zaber::Client client_;
+  std::array<double, kAxes> places_um_;
+};
+
 }  // namespace
 
 struct BenchDevices::Parts {
   Parts(const DevicePlan& plan, const BenchCalibration& calibration)
-      : screen(plan.display), camera(camera_settings(plan, calibration), 1 + plan.retries) {}
+      : screen(plan.display), camera(camera_settings(plan, calibration), 1 + plan.retries) {
+    if (!plan.rails.empty()) rails.emplace(plan.rails, calibration.validity);
+  }
 
   DisplayScreen screen;
   GigeFrameCamera camera;
+  std::optional<Rails> rails;
   CameraIdentity identity;
 };
 
@@ -90,6 +124,10 @@ FrameCamera& BenchDevices::camera() {
 }
 const CameraIdentity& BenchDevices::identity() const {
   return parts_->identity;
+}
+std::optional<RailPositions> BenchDevices::check_rails() {
+  if (!parts_->rails) return std::nullopt;
+  return parts_->rails->check();
 }
 void BenchDevices::stop() noexcept {
   parts_->camera.stop();

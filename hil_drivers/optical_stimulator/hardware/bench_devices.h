@@ -30,9 +30,15 @@ struct CameraIdentity {
   bool is_emulated = false;
 };
 
+/// Places of the axes, as the rails report them.
+struct RailPositions {
+  double lens_mm = 0.0, display_mm = 0.0;
+};
+
 class BenchDevices {
  public:
-  /// Throws std::runtime_error, one sentence, if a device does not answer or is not that of the calibration.
+  /// Homes the axes if they need it and moves them to the places of the calibration. Throws std::runtime_error, one
+  /// sentence, if a device does not answer or is not that of the calibration.
   BenchDevices(const DevicePlan& plan, const BenchCalibration& calibration);
   /// Shows black and releases the camera.
   ~BenchDevices();
@@ -42,6 +48,8 @@ class BenchDevices {
   [[nodiscard]] Screen& screen();
   [[nodiscard]] FrameCamera& camera();
   [[nodiscard]] const CameraIdentity& identity() const;
+  /// Empty without rails. Throws std::runtime_error if an axis is not held where the calibration was made.
+  [[nodiscard]] std::optional<RailPositions> check_rails();
   /// From another thread: the camera does not wait for an image any longer.
   void stop() noexcept;
 
