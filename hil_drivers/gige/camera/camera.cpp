@@ -109,8 +109,8 @@ class Camera::Connection {
     GlibError error;
     stream_.reset(arv_device_create_stream(device_.get(), nullptr, nullptr, error.out()));
     if (!stream_) throw FeatureError(fmt::format("the stream channel is not opened: {}", error.text()));
-    // On one cable nothing overtakes: a gap is asked for at once. What was asked for gets the time of a device that is not
-    // run for a while before it is asked for again: earlier repetitions fill the buffer of a busy computer.
+    // On one cable nothing overtakes: a gap is asked for at once. What was asked for gets the time of a device that is
+    // not run for a while before it is asked for again: earlier repetitions fill the buffer of a busy computer.
     g_object_set(stream_.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
                  static_cast<gint>(buffer_.requested_bytes), "packet-resend", ARV_GV_STREAM_PACKET_RESEND_ALWAYS,
                  "packet-request-ratio", 1.0, "initial-packet-timeout", guint{0}, "packet-timeout", guint{20'000},
@@ -251,7 +251,7 @@ class Camera::Connection {
     const std::size_t image = image_bytes();
     const std::size_t packets = image / (packet_size - wire::kPacketOverheadBytes) + 3;
     // The kernel doubles what is requested.
-    buffer_ = granted_socket_buffer(packets * bytes_in_buffer(packet_size) / 2);
+    buffer_ = granted_socket_buffer(settings_.socket_buffer_bytes.value_or(packets * bytes_in_buffer(packet_size) / 2));
     delay_ns_ =
         settings_.packet_delay_us ? 1e3 * *settings_.packet_delay_us : packet_delay_ns(buffer_, image, packet_size);
     GlibError error;

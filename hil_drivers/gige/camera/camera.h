@@ -61,6 +61,8 @@ class Camera {
     int converter_bits = 12;                ///< expected; the data decide
     int packet_size = 1400;                 ///< with the headers of IP, UDP and GVSP
     std::optional<double> packet_delay_us;  ///< empty: what the socket's buffer stands
+    /// Requested of the kernel; empty: what holds an image.
+    std::optional<std::size_t> socket_buffer_bytes;
     double timeout_s = 1.0;                 ///< for an image, beyond exposure and transfer
   };
 

@@ -45,6 +45,12 @@ def main():
     expect(total(lines, "resent") > 0, "nothing was sent again")
     print(f"1 in 100: {lines[-1]}, {dropped()} packets dropped, {total(lines, 'resent')} sent again, "
           f"{total(lines, 'retries')} retries")
+    with device(tool):
+        subprocess.run(["nft", "flush", "ruleset"], check=True)
+        code, lines, errors = take(tool, IMAGES, 500, 848, "Mono16", "compare", "buffer=212992")
+    expect(code == 0, f"Debian's default socket buffer: {errors}")
+    print(f"no loss, Debian's default socket buffer: {lines[0]}; {lines[-1]}, {total(lines, 'resent')} sent again, "
+          f"{total(lines, 'retries')} retries")
     code, lines, errors = run(tool, 10)
     # Completes, or ends with one sentence.
     expect(code == 0 or (code == 1 and errors.strip().splitlines()[-1].startswith("camera 127.0.0.1: ")),

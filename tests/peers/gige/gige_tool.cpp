@@ -1,9 +1,10 @@
 // The emulated camera and the client as programs, for tests with other programs at the other end.
 //   gige_tool device ADDRESS                        until standard input ends
-//   gige_tool take ADDRESS COUNT WIDTH HEIGHT FORMAT [compare]
+//   gige_tool take ADDRESS COUNT WIDTH HEIGHT FORMAT [compare] [buffer=BYTES]
 // The second prints a line "image K retries R resent P" for each image, and with "compare" ends with an error unless
 // every pixel is that of the emulated camera's picture of its number.
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -55,8 +56,12 @@ Frame take_one(Camera& camera, int& retries) {
   }
 }
 
-int take(const std::string& address, int count, int width, int height, const std::string& format, bool is_compared) {
+int take(const std::string& address, int count, int width, int height, const std::string& format,
+         const std::vector<std::string>& options) {
+  const bool is_compared = std::ranges::find(options, "compare") != options.end();
   Camera::Settings settings;
+  for (const std::string& option : options)
+    if (option.starts_with("buffer=")) settings.socket_buffer_bytes = std::stoul(option.substr(7));
   settings.address = address;
   settings.exposure_s = 0.005;
   settings.region = {0, 0, width, height};
@@ -88,9 +93,10 @@ int main(int argc, char** argv) {
     if (words.size() == 2 && words[0] == "device") return run_device(words[1]);
     if (words.size() >= 6 && words[0] == "take")
       return take(words[1], std::stoi(words[2]), std::stoi(words[3]), std::stoi(words[4]), words[5],
-                  words.size() > 6 && words[6] == "compare");
+                  {words.begin() + 6, words.end()});
     fmt::print(stderr,
-               "usage: gige_tool device ADDRESS | gige_tool take ADDRESS COUNT WIDTH HEIGHT FORMAT [compare]\n");
+               "usage: gige_tool device ADDRESS | gige_tool take ADDRESS COUNT WIDTH HEIGHT FORMAT [compare] "
+               "[buffer=BYTES]\n");
     return 2;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
