@@ -22,8 +22,5 @@ cmake --preset asan --log-level=WARNING
 cmake --build --preset asan --target flight_code vbar unit_tests
 ctest --preset asan --parallel 2 --label-regex '^unit$'
 say "fuzzing: every decoder and loader for a few seconds"
-ci/fuzz.sh 5
-# Reports only: the names of the field (R_eci_body) are not yet all in the rules of .clang-tidy.
-say "clang-tidy of the changed files"
-ci/tidy.sh --changed || echo "clang-tidy: findings above"
+ci/fuzz.sh 3
 say "all passed"

@@ -10,7 +10,7 @@ analyzer=(-checks=-clang-analyzer-\*)
 sources=("$@")
 if [[ ${1:-} == --all ]]; then
   analyzer=()
-  sources=(fsw boards pil_bridge host_sim tests)
+  sources=(fsw boards hil_drivers pil_bridge host_sim tests)
 elif [[ ${1:-} == --changed ]]; then
   base=$(git merge-base HEAD origin/main 2>/dev/null || true)
   if [[ -z $base || $base == "$(git rev-parse HEAD)" ]]; then base=$(git rev-parse --verify --quiet HEAD~1 || true); fi

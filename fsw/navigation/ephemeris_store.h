@@ -20,7 +20,7 @@ class EphemerisStore {
 
   /// GPS sets are valid for two hours about their reference time, Galileo's and BeiDou's for one or more; an hour of
   /// margin, since an older set has errors of metres, which cancel in differences between two receivers.
-  static constexpr Duration kLongestAge = duration_of_seconds(3 * 3600);
+  static constexpr Duration kLongestAge = duration_of_seconds(std::int64_t{3} * 3600);
   static constexpr std::size_t kSatellites = 32 + 36 + 63;
 
  private:

@@ -50,7 +50,7 @@ int code_bias_index(gnss::Signal signal) {
   return signal == gnss::Signal::kGpsL1 ? -1 : kCodeBias + static_cast<int>(signal) - 1;
 }
 
-/// Phase residuals in order of size.
+/// Residuals in order of size.
 struct Residual {
   std::size_t observation = 0;
   double value = 0.0;
@@ -156,6 +156,7 @@ RelativeUpdate RelativeFilter::take(const DifferentialEpoch& epoch, const Receiv
     reset();
     return update;
   }
+  find_outlying_codes(epoch);
   use_codes(epoch, update);
   follow_channels(epoch, update);
   find_slips_by_median(epoch, update);
@@ -231,28 +232,59 @@ RelativeFilter::Estimate::Vector RelativeFilter::phase_jacobian(const Row& row, 
   return jacobian;
 }
 
-RelativeFilter::Estimate::Vector RelativeFilter::full_jacobian(const Row& row) const {
+RelativeFilter::Estimate::Vector RelativeFilter::full_jacobian(const Row& row) {
   Estimate::Vector jacobian = Estimate::Vector::Zero();
   jacobian.head<kGeometry>() = row.jacobian;
   return jacobian;
 }
 
-void RelativeFilter::use_codes(const DifferentialEpoch& epoch, RelativeUpdate& update) {
+double RelativeFilter::code_residual(const Row& row, const DifferentialObservation& observation) const {
+  const int bias = code_bias_index(observation.signal);
+  return residual(row, observation.code_m) - (bias >= 0 ? estimate_.mean(bias) : 0.0);
+}
+
+RelativeFilter::Estimate::Vector RelativeFilter::code_jacobian(const Row& row, gnss::Signal signal) const {
+  Estimate::Vector jacobian = full_jacobian(row);
+  if (const int bias = code_bias_index(signal); bias >= 0) jacobian(bias) = 1.0;
+  return jacobian;
+}
+
+/// The clock is unknown until the first code, which determines it whatever the error of that code (multipath of a
+/// satellite that has just risen). Codes that contradict the median are therefore processed last: the gate then refuses
+/// them, and not the others and all phases.
+void RelativeFilter::find_outlying_codes(const DifferentialEpoch& epoch) {
+  Residuals residuals;
+  for (std::size_t n = 0; n < epoch.count; ++n) residuals.add({n, code_residual(rows_[n], epoch.observations[n])});
+  if (residuals.count < kMinForMedian) return;
+  const std::size_t middle = residuals.median().observation;
+  const DifferentialObservation& median = epoch.observations[middle];
   for (std::size_t n = 0; n < epoch.count; ++n) {
+    if (n == middle) continue;
     const DifferentialObservation& observation = epoch.observations[n];
-    Estimate::Vector jacobian = full_jacobian(rows_[n]);
-    double measured_less_predicted = residual(rows_[n], observation.code_m);
-    if (const int bias = code_bias_index(observation.signal); bias >= 0) {
-      jacobian(bias) = 1.0;
-      measured_less_predicted -= estimate_.mean(bias);
-    }
-    const double variance = observation.code_sigma_m * observation.code_sigma_m + rows_[n].extra_variance;
-    const estimation::Innovation innovation = estimate_.update(jacobian, measured_less_predicted, variance, kGate);
-    if (innovation.accepted) {
-      ++update.codes_used;
-      update.code_nis += innovation.nis();
-    } else {
-      ++update.codes_refused;
+    const Estimate::Vector jacobian =
+        code_jacobian(rows_[n], observation.signal) - code_jacobian(rows_[middle], median.signal);
+    const double apart_m = code_residual(rows_[n], observation) - residuals.median().value;
+    // The variance of a median is about that of a mean.
+    const double variance = observation.code_sigma_m * observation.code_sigma_m +
+                            median.code_sigma_m * median.code_sigma_m / static_cast<double>(residuals.count);
+    rows_[n].has_outlying_code = !(estimate_.predict(jacobian, apart_m, variance).nis() < kGate);
+  }
+}
+
+void RelativeFilter::use_codes(const DifferentialEpoch& epoch, RelativeUpdate& update) {
+  for (const bool outlying : {false, true}) {
+    for (std::size_t n = 0; n < epoch.count; ++n) {
+      if (rows_[n].has_outlying_code != outlying) continue;
+      const DifferentialObservation& observation = epoch.observations[n];
+      const double variance = observation.code_sigma_m * observation.code_sigma_m + rows_[n].extra_variance;
+      const estimation::Innovation innovation = estimate_.update(code_jacobian(rows_[n], observation.signal),
+                                                                 code_residual(rows_[n], observation), variance, kGate);
+      if (innovation.accepted) {
+        ++update.codes_used;
+        update.code_nis += innovation.nis();
+      } else {
+        ++update.codes_refused;
+      }
     }
   }
 }

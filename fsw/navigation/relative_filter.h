@@ -151,11 +151,13 @@ class RelativeFilter {
     Geometry jacobian = Geometry::Zero();  ///< of the range difference, clock included, code bias not
     double predicted = 0.0;
     double extra_variance = 0.0;  ///< of the nonlinearity
+    bool has_outlying_code = false;
     std::optional<std::size_t> channel;
   };
 
   Status linearise(const DifferentialEpoch& epoch, const ReceiverPlatform& servicer, const ReceiverPlatform& target);
   void renew_epoch_states(const ReceiverPlatform& servicer, const ReceiverPlatform& target);
+  void find_outlying_codes(const DifferentialEpoch& epoch);
   void use_codes(const DifferentialEpoch& epoch, RelativeUpdate& update);
   void follow_channels(const DifferentialEpoch& epoch, RelativeUpdate& update);
   void find_slips_by_median(const DifferentialEpoch& epoch, RelativeUpdate& update);
@@ -166,8 +168,10 @@ class RelativeFilter {
   void lose(std::size_t place);
   void contradict(std::size_t place, RelativeUpdate& update);
   [[nodiscard]] double residual(const Row& row, double measured) const;
+  [[nodiscard]] double code_residual(const Row& row, const DifferentialObservation& observation) const;
+  [[nodiscard]] Estimate::Vector code_jacobian(const Row& row, gnss::Signal signal) const;
   [[nodiscard]] double phase_residual(const Row& row, std::size_t place, double measured) const;
-  [[nodiscard]] Estimate::Vector full_jacobian(const Row& row) const;
+  [[nodiscard]] static Estimate::Vector full_jacobian(const Row& row);
   [[nodiscard]] Estimate::Vector phase_jacobian(const Row& row, std::size_t place) const;
 
   RelativeFilterSettings settings_;

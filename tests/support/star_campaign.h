@@ -60,15 +60,6 @@ inline void count(Tally& tally, const Scene& scene, const fsw::stars::AttitudeFi
   }
 }
 
-/// How many of `all` cases a test runs: a sanitizer takes twenty times as long, and looks at code, not at statistics.
-constexpr int share_under_sanitizers(int all) {
-#if defined(__SANITIZE_ADDRESS__)
-  return all / 10;
-#else
-  return all;
-#endif
-}
-
 struct Campaign {
   SceneSettings scene;
   int attitudes = 1000;

@@ -79,8 +79,9 @@ function(vbar_host_library name)
   target_link_libraries(${name} PUBLIC vbar_options ${ARG_DEPENDS})
 endfunction()
 
-# vbar_test(name SOURCES ... DEPENDS ... [LABELS ...]): a googletest program, one ctest entry a test case. Without LABELS it
-# is a unit test. Its module (tests/unit/fsw/gnss: fsw/gnss) is a label as well: ctest -L '^fsw/gnss$'.
+# vbar_test(name SOURCES ... DEPENDS ... [LABELS ...]): a googletest program, one ctest entry a test case (with a
+# sanitizer: one for the program). Without LABELS it is a unit test. Its module (tests/unit/fsw/gnss: fsw/gnss) is a label
+# as well: ctest -L '^fsw/gnss$'.
 function(vbar_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -95,6 +96,12 @@ function(vbar_test name)
     set_property(GLOBAL APPEND PROPERTY VBAR_UNIT_TEST_MODULES "${module} ${name}")
   endif()
   list(APPEND ARG_LABELS ${module})
+  if(VBAR_SANITIZE)
+    # A sanitized program takes longer to start than most test cases to run: one entry for all of them.
+    add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
+    set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 1800)
+    return()
+  endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
   # A property of a discovered test cannot be a list, so ctest sets the labels when it reads the tests.
   set(labels_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)

@@ -58,6 +58,7 @@ Bench::Bench(boost::asio::io_context& context, const BenchSettings& settings,
                }),
       timer_(context) {
   rail_server_.on_command = [this] { faults_.advance(now_s()); };
+  for (const Fault& fault : settings.faults) faults_.add(fault, now_s());
   look_around();
   write_addresses();
 }

@@ -115,6 +115,7 @@ BenchSettings read_bench(const std::filesystem::path& file, const std::vector<st
   read_camera(document.table("camera"), bench);
   read_rails(document.table("rails"), bench);
   read_drift(document.table("drift"), bench.drift);
+  for (const TableReader& section : document.tables("fault")) bench.faults.push_back(read_fault(section));
   document.finish();
   return bench;
 }

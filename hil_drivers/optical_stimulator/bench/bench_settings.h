@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hil_drivers/optical_stimulator/bench/faults/bench_fault.h"
 #include "hil_drivers/optical_stimulator/bench/light/bench_optics.h"
 #include "hil_drivers/optical_stimulator/bench/light/display_light.h"
 #include "hil_drivers/optical_stimulator/bench/light/error_field.h"
@@ -74,6 +75,7 @@ struct BenchSettings {
   CameraIdentity identity;
   RailSettings rails;
   DriftSettings drift;
+  std::vector<Fault> faults;
 };
 
 /// The bench file with `assignments` (key=value) in place of its values. Throws mission::MissionError.

@@ -100,7 +100,7 @@ std::string encode(const Message& message) {
   if (message.kind == MessageKind::kReply) line += message.is_rejected ? " RJ" : " OK";
   if (message.kind != MessageKind::kInformation)
     line += fmt::format(" {} {}", message.is_busy ? "BUSY" : "IDLE", message.warning);
-  if (!message.data.empty() && message.kind != MessageKind::kAlert) line += " " + message.data;
+  if (!message.data.empty()) line += " " + message.data;
   return with_checksum(std::move(line), message.has_checksum);
 }
 

@@ -2,10 +2,13 @@
 """Experiment 3 through the GNSS testbed (emulated bench): the same bytes whatever the load, faults of receivers, generator and
 bench, replay, real time."""
 import csv
+import math
 import os
 import pathlib
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 from vbar_program import BINARY, SOURCE, children_of, fly, hashes, is_running, main, overrides, scratch, start, summary_of, vbar
@@ -30,6 +33,21 @@ def rows_of(folder):
         return list(csv.DictReader(file))
 
 
+def rows_by_time(folder, table):
+    with (folder / table).open() as file:
+        return {row["time_s"]: row for row in csv.DictReader(file)}
+
+
+def errors_with_integers_m(folder):
+    """Error of the relative position of each step whose last epoch held integers."""
+    truth, estimates = rows_by_time(folder, "truth.csv"), rows_by_time(folder, "estimate.csv")
+    names = [f"relative_position_rtn_{axis}_m" for axis in "rtn"]
+    return {float(time): math.dist([float(truth[time][name]) for name in names],
+                                   [float(estimates[time][name]) for name in names])
+            for time, row in rows_by_time(folder, "gnss.csv").items()
+            if int(row["fixed"]) > 0 and time in truth and int(estimates[time]["navigation_valid"])}
+
+
 class Scenario:
     """The bench of the mission with faults and settings of a test."""
 
@@ -46,8 +64,9 @@ class Scenario:
     def toml(value):
         return f'"{value}"' if isinstance(value, str) else str(value)
 
-    def bench(self):
-        return f'testbed.grand.bench="vbar_grand_bench {self.file} --directory {{directory}} --seed {{seed}}"'
+    def bench(self, options=""):
+        command = f"vbar_grand_bench {self.file} --directory {{directory}} --seed {{seed}} {options}"
+        return f'testbed.grand.bench="{command.strip()}"'
 
 
 class Experiment3Grand(unittest.TestCase):
@@ -196,6 +215,34 @@ class Experiment3GrandFaults(unittest.TestCase):
                   for k, kind in enumerate(("samples_lost", "samples_doubled", "samples_swapped"))]
         self.assertTrue(self.fly_with(Scenario(self.folder, *faults), minutes(1))["complete"])
 
+    def check_that_integers_are_found_again(self, fault):
+        """A wrong integer displaces the solution by decimetres."""
+        summary = self.fly_with(Scenario(self.folder, fault), minutes(7))
+        self.assertTrue(summary["complete"])
+        self.assertEqual(summary["grand"][f"faults_{fault['kind']}"], 1)
+        errors = errors_with_integers_m(self.run_folder)
+        self.assertLess(max(errors.values()), 0.05)
+        start_s = summary["waypoints"][0]["time_s"]
+        ended_s = fault["time_s"] + fault["duration_s"]
+        self.assertTrue(any(time - start_s > ended_s + 60.0 for time in errors), "no integers after the fault")
+        return summary
+
+    def test_outage_of_a_vehicles_signals(self):
+        self.check_that_integers_are_found_again(
+            {"kind": "rf_outage", "time_s": 180.0, "vehicle": "servicer", "duration_s": 30.0})
+        tracked = [int(row["servicer_tracked_signals"]) for row in rows_of(self.run_folder)]
+        self.assertEqual(min(tracked[195:210]), 0)
+
+    def test_signals_weaker_by_15_db(self):
+        self.check_that_integers_are_found_again(
+            {"kind": "cn0_drop", "time_s": 180.0, "vehicle": "target", "duration_s": 60.0, "db": 15.0})
+
+    def test_generator_dies_and_returns(self):
+        fault = {"kind": "generator_dies", "time_s": 60.0, "duration_s": 5.0}
+        sentence = self.refused(Scenario(self.folder, fault), minutes(2))
+        self.assertIn("generator", sentence.lower())
+        self.assertEqual(vbar("replay", self.run_folder).returncode, 0)
+
     def test_interrupted_run_ends_the_bench(self):
         process = start("run", GRAND, "--force", "--out", self.run_folder, *overrides(Scenario(self.folder).bench()))
         children = []
@@ -226,6 +273,33 @@ class Experiment3GrandLive(unittest.TestCase):
             self.assertGreaterEqual(grand["servicer_epochs"], 2)
             self.assertEqual(grand["samples_missing"], 0)
             self.assertGreater(summary["wall_s"], 29.0)
+
+    def test_edges_missing_doubled_and_jumping(self):
+        faults = [{"kind": "pps_missing", "time_s": 3.0, "count": 3}, {"kind": "pps_doubled", "time_s": 8.0, "count": 2},
+                  {"kind": "pps_jump", "time_s": 12.0, "by_s": 0.3}]
+        with scratch() as folder:
+            summary = fly(folder / "run", minutes(0.3), Scenario(folder, *faults).bench("--pace real_time"), mission=LIVE)
+            grand = summary["grand"]
+            self.assertTrue(summary["complete"])
+            self.assertGreaterEqual(grand["edges_missing"], 3)
+            self.assertGreaterEqual(grand["edges_doubled"], 2)
+
+    def test_host_paused_for_two_seconds(self):
+        with scratch() as folder:
+            process = start("run", LIVE, "--force", "--out", folder / "run", *overrides(minutes(0.3)))
+            while process.poll() is None and not (folder / "run" / "packets.lcmlog").exists():
+                time.sleep(0.1)
+            time.sleep(6.0)
+            process.send_signal(signal.SIGSTOP)
+            time.sleep(2.0)
+            process.send_signal(signal.SIGCONT)
+            _, errors = process.communicate(timeout=120)
+            self.assertEqual(process.returncode, 0, errors)
+            summary = summary_of(folder / "run")
+            self.assertTrue(summary["complete"])
+            self.assertGreater(summary["grand"]["samples_late"] + summary["grand"]["seconds_extrapolated"], 0)
+            # The schedule stays: the run is not longer by the pause.
+            self.assertEqual(len(rows_of(folder / "run")), 19)
 
 
 if __name__ == "__main__":

@@ -6,13 +6,14 @@
 
 #include "tests/support/accuracy.h"
 #include "tests/support/paths.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/star_campaign.h"
 
 namespace vbar {
 namespace {
 
 constexpr double kArcsecond = 4.84813681109536e-6;
-constexpr int kAttitudes = sky::share_under_sanitizers(10'000);
+constexpr int kAttitudes = vbar::test::share_under_sanitizers(10'000);
 
 const std::vector<sky::TrueStar>& the_sky() {
   static const auto stars = sky::read_sky(vbar::tests::source_path("data/stars/hipparcos_v8.csv"), 2011.55);

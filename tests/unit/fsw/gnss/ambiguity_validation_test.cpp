@@ -17,6 +17,7 @@
 #include "fsw/gnss/ratio_threshold.h"
 #include "tests/support/accuracy.h"
 #include "tests/support/allocation_counter.h"
+#include "tests/support/sanitizers.h"
 #include "tests/unit/fsw/gnss/ambiguity_problems.h"
 
 namespace vbar::fsw::gnss {
@@ -187,7 +188,7 @@ template <class Decide>
 Statistics gather(std::uint64_t seed, const Decide& decide) {
   Random random(seed);
   Statistics statistics;
-  for (int model = 0; model < 400; ++model) {
+  for (int model = 0; model < vbar::test::share_under_sanitizers(400); ++model) {
     const Eigen::Index n = std::uniform_int_distribution<Eigen::Index>(4, 24)(random);
     // One draw a line: in what order operands are worked out is each compiler's own.
     const Matrix session = problems::random_session_covariance(n, random);

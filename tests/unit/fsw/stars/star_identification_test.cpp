@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/paths.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/star_campaign.h"
 
 namespace vbar::fsw::stars {
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double kArcsecond = 4.84813681109536e-6;
 constexpr double kSigma = 0.1 / 5972.7;
-constexpr int kThousand = sky::share_under_sanitizers(1000);
+constexpr int kThousand = vbar::test::share_under_sanitizers(1000);
 
 const std::vector<sky::TrueStar>& the_sky() {
   static const auto stars = sky::read_sky(vbar::tests::source_path("data/stars/hipparcos_v8.csv"), 2011.55);
@@ -71,7 +72,7 @@ std::vector<ObservedStar> draw_false_field(const sky::Camera& camera, sky::Rando
 TEST(StarIdentification, AcceptsNothingWhereThereAreNoStars) {
   sky::Random random(31);
   auto identifier = std::make_unique<StarIdentifier>();
-  for (int k = 0; k < sky::share_under_sanitizers(30); ++k) {
+  for (int k = 0; k < vbar::test::share_under_sanitizers(30); ++k) {
     const auto objects = draw_false_field(sky::kRegion, random);
     EXPECT_EQ(identifier->lost_in_space(objects, field_of(sky::kRegion), kStill), Status::kDidNotConverge);
   }

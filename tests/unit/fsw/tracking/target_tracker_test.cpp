@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/sanitizers.h"
 #include "tests/unit/fsw/tracking/scene.h"
 
 namespace {
@@ -98,7 +99,7 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
 
 class Scenes : public ::testing::TestWithParam<Case> {};
 
-constexpr std::uint64_t kSeeds = 20;
+constexpr std::uint64_t kSeeds = vbar::test::share_under_sanitizers(20);
 constexpr int kImages = 180;  // 3 h
 
 RunResult run_seed(SceneSettings settings, std::uint64_t seed) {

@@ -41,7 +41,8 @@ Centroid centroid_of(const gige::Frame& frame) {
 class BenchCameraTest : public test::BenchProcessTest {
  protected:
   void start_in_focus(std::vector<std::string> more = {}) {
-    more.insert(more.end(), {"--seed", "4", "--set", "rails.zero_error_mm=0", "--set", "camera.hot_pixels=0"});
+    more.insert(more.end(), {"--seed", "4", "--set", "rails.zero_error_mm=0", "--set", "camera.hot_pixels=0", "--set",
+                             "rails.speed_mm_s=1000"});
     ASSERT_NO_FATAL_FAILURE(start(more));
     zaber::ClientSettings rails;
     rails.line = addresses["rails"]["tcp"].get<std::string>();
@@ -135,6 +136,29 @@ TEST_F(BenchCameraTest, TheSameSeedGivesTheSameImages) {
     ASSERT_TRUE(process->has_ended());
   }
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(images[0][k].dn, images[1][k].dn);
+}
+
+TEST_F(BenchCameraTest, InRealPaceTheDisplayFollowsTheScreen) {
+  start_in_focus({"--pace", "real"});
+  draw_dot(900, 500);
+  // A refresh later, or more of them on a loaded machine.
+  const auto until = std::chrono::steady_clock::now() + kLong;
+  Centroid first = centroid_of(take());
+  while (!(first.sum > 0.0) && std::chrono::steady_clock::now() < until) first = centroid_of(take());
+  draw_dot(1000, 700);
+  Centroid seen = first;
+  while (seen.x < first.x + 95.0 && std::chrono::steady_clock::now() < until) seen = centroid_of(take());
+  EXPECT_NEAR(seen.x - first.x, 100.0, 5.0);
+  EXPECT_NEAR(seen.y - first.y, 200.0, 5.0);
+}
+
+TEST_F(BenchCameraTest, TwoExposuresInRealPaceTakeTheirTime) {
+  start_in_focus({"--pace", "real"});
+  draw_dot(900, 500);
+  const auto begin = std::chrono::steady_clock::now();
+  (void)take();
+  (void)take();
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(400));
 }
 
 TEST_F(BenchCameraTest, APacketInAHundredLostIsSentAgain) {

@@ -46,7 +46,7 @@ TEST(BenchSettings, EveryValueThatTheFileShowsIsTheDefault) {
   std::ifstream in(bench_file());
   std::stringstream text;
   for (std::string line; std::getline(in, line);)
-    text << std::regex_replace(line, std::regex("^# ([a-z0-9_]+ = )"), "$1") << "\n";
+    text << std::regex_replace(line, std::regex("^# ([a-z0-9_]+ = |\\[\\[)"), "$1") << "\n";
   const std::string shown = text.str();
   ASSERT_THAT(shown, HasSubstr("\npitch_um = 9.6"));
   const std::string path = testing::TempDir() + "vbar_shown_bench.toml";
@@ -102,6 +102,9 @@ TEST(BenchSettings, EveryValueThatTheFileShowsIsTheDefault) {
                                static_cast<double>(s.drift.run_frames)};
   };
   EXPECT_EQ(numbers(a), numbers(b));
+  ASSERT_EQ(a.faults.size(), 1U);
+  EXPECT_EQ(a.faults[0].kind, FaultKind::kLateFrame);
+  EXPECT_EQ(a.faults[0].frame, 100U);
   EXPECT_EQ(a.camera.file, b.camera.file);
   EXPECT_EQ(a.identity.model, b.identity.model);
 }
