@@ -27,7 +27,7 @@ struct FakeBenchTruth {
 class FakeOpticalBench final : public calibrate::Screen, public calibrate::Eye, public calibrate::Rails {
  public:
   explicit FakeOpticalBench(const FakeBenchTruth& truth)
-      : truth_(truth), model_(truth.optics), camera_(settings()), counts_(calibrate::Counts::black(480, 300)) {
+      : truth_(truth), model_(truth.optics), camera_(settings()), counts_(Picture(480, 300)) {
     for (std::size_t k = 0; k < kPixels; ++k) {
       const auto x = static_cast<double>(k % 480), y = static_cast<double>(k / 480);
       places_.push_back(camera_.project(model_.direction_of({truth.is_mirrored ? 479.0 - x : x, y})).value());
@@ -48,7 +48,7 @@ class FakeOpticalBench final : public calibrate::Screen, public calibrate::Eye, 
   [[nodiscard]] int width() const override { return 480; }
   [[nodiscard]] int height() const override { return 300; }
   [[nodiscard]] int bits() const override { return 12; }
-  void show(const calibrate::Counts& counts) override { counts_ = counts; }
+  void show(const Picture& counts) override { counts_ = counts; }
   void home() override { is_homed_ = true; }
   void move_to(double, double display_mm) override { display_mm_ = display_mm; }
 
@@ -75,10 +75,10 @@ class FakeOpticalBench final : public calibrate::Screen, public calibrate::Eye, 
     const double full = truth_.full_electrons_per_s * exposure_s;
     std::vector<double> electrons(kPixels, full / truth_.contrast + truth_.dark_electrons_per_s * exposure_s);
     for (const std::size_t k : hot_) electrons[k] += 20000.0 * exposure_s;
-    const bool is_even = std::all_of(counts_.values.begin(), counts_.values.end(),
-                                     [&](auto count) { return count == counts_.values[0]; });
+    const bool is_even = std::all_of(counts_.counts.begin(), counts_.counts.end(),
+                                     [&](auto count) { return count == counts_.counts[0]; });
     for (std::size_t k = 0; k < kPixels; ++k) {
-      const double signal = counts_.values[k] - truth_.first_count;
+      const double signal = counts_.counts[k] - truth_.first_count;
       if (!(signal > 0.0)) continue;
       const double lit = full * evenness_[k] * std::pow(signal / (255.0 - truth_.first_count), truth_.gamma);
       if (is_even)
@@ -111,7 +111,7 @@ class FakeOpticalBench final : public calibrate::Screen, public calibrate::Eye, 
   FakeBenchTruth truth_;
   BenchModel model_;
   twins::camera::Optics camera_;
-  calibrate::Counts counts_;
+  Picture counts_;
   std::vector<fsw::Vector2> places_;
   std::vector<double> evenness_;
   std::vector<std::size_t> hot_;

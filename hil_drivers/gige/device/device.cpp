@@ -245,6 +245,9 @@ class Device::Control {
     heartbeat_.expires_after(std::chrono::milliseconds(registers_.word(bootstrap::kHeartbeatMs)));
     heartbeat_.async_wait([this, alive = std::weak_ptr<int>(alive_)](const error_code& error) {
       if (error || alive.expired()) return;
+      // A long exposure keeps this thread from reading: what the owner sent meanwhile waits in the socket.
+      error_code ignored;
+      if (socket_.available(ignored) > 0) return restart_heartbeat();
       ++statistics_.owners_expired;
       release();
     });

@@ -14,7 +14,7 @@ class Screen {
   [[nodiscard]] virtual int width() const = 0;
   [[nodiscard]] virtual int height() const = 0;
   /// Returns when the light of these counts has settled.
-  virtual void show(const Counts& counts) = 0;
+  virtual void show(const Picture& counts) = 0;
 };
 
 class Eye {

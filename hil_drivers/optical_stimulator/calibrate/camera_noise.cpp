@@ -24,8 +24,9 @@ Figure clipped_mean(std::vector<double> values) {
 
 MeanVariance mean_variance(const FramePair& pair, int width, int height) {
   std::vector<double> differences, means;
-  for (int y = height / 4; y < 3 * height / 4; ++y)
-    for (int x = width / 4; x < 3 * width / 4; ++x) {
+  constexpr double kLow = 0.5 * (1.0 - kNoiseShare), kHigh = 0.5 * (1.0 + kNoiseShare);
+  for (int y = static_cast<int>(kLow * height); y < static_cast<int>(kHigh * height); ++y)
+    for (int x = static_cast<int>(kLow * width); x < static_cast<int>(kHigh * width); ++x) {
       const std::size_t at =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
       const double first = pair.first[at], second = pair.second[at];
@@ -65,8 +66,8 @@ GainFit fit_gain(const MeanVariance& black, const std::vector<MeanVariance>& gre
           {noise, noise * std::hypot(0.5 * black.variance_sigma_dn2 / black.variance_dn2, gain_sigma / gain)}};
 }
 
-BlackFit fit_black(const Picture& short_exposure, double short_s, const Picture& long_exposure, double long_s,
-                   double noise_dn) {
+BlackFit fit_black(const CameraPicture& short_exposure, double short_s, const CameraPicture& long_exposure,
+                   double long_s, double noise_dn) {
   const double span_s = long_s - short_s;
   std::vector<double> rates(short_exposure.dn.size()), values(short_exposure.dn.begin(), short_exposure.dn.end());
   for (std::size_t k = 0; k < rates.size(); ++k)
@@ -83,7 +84,7 @@ BlackFit fit_black(const Picture& short_exposure, double short_s, const Picture&
   return fit;
 }
 
-void repair(Picture& picture, const std::vector<HotPixel>& hot_pixels) {
+void repair(CameraPicture& picture, const std::vector<HotPixel>& hot_pixels) {
   for (const HotPixel& hot : hot_pixels) {
     float* const row = picture.dn.data() + static_cast<std::ptrdiff_t>(hot.y) * picture.width;
     const int left = hot.x > 0 ? hot.x - 1 : hot.x + 1, right = hot.x + 1 < picture.width ? hot.x + 1 : hot.x - 1;

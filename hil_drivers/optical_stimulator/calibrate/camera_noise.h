@@ -21,7 +21,10 @@ struct MeanVariance {
   double mean_sigma_dn = 0.0;
 };
 
-/// Of the middle half of the detector in each axis; the 1 % of pixels that differ most are left out (hot pixels).
+/// Width and height of the part of the detector whose noise is measured, about its middle.
+inline constexpr double kNoiseShare = 0.3;
+
+/// Of that part of the detector; pixels that differ by more than six standard deviations are left out.
 [[nodiscard]] MeanVariance mean_variance(const FramePair& pair, int width, int height);
 
 /// The line variance = read variance + gain (mean - offset), by weighted least squares; `black` is the pair without
@@ -36,10 +39,10 @@ struct BlackFit {
   Figure offset_dn, background_dn_per_s;
   std::vector<HotPixel> hot_pixels;  ///< electrons_per_s holds DN/s here
 };
-[[nodiscard]] BlackFit fit_black(const Picture& short_exposure, double short_s, const Picture& long_exposure,
-                                 double long_s, double noise_dn);
+[[nodiscard]] BlackFit fit_black(const CameraPicture& short_exposure, double short_s,
+                                 const CameraPicture& long_exposure, double long_s, double noise_dn);
 
 /// Replaces the hot pixels by the mean of their neighbours in the row.
-void repair(Picture& picture, const std::vector<HotPixel>& hot_pixels);
+void repair(CameraPicture& picture, const std::vector<HotPixel>& hot_pixels);
 
 }  // namespace vbar::optical_stimulator::calibrate

@@ -13,7 +13,7 @@ struct Place {
 };
 
 /// Middle of the brightest 3 x 3 pixels; the search does not leave the part where the square fits.
-Place brightest(const Picture& picture, const Vector2& expected_px, const DotWindow& window) {
+Place brightest(const CameraPicture& picture, const Vector2& expected_px, const DotWindow& window) {
   const int margin = window.half_width_px;
   const auto low = [&](double at) { return std::max(margin, static_cast<int>(std::ceil(at - window.search_px))); };
   const auto high = [&](double at, int size) {
@@ -32,7 +32,7 @@ Place brightest(const Picture& picture, const Vector2& expected_px, const DotWin
 }
 
 /// Median of the square's border, two pixels wide.
-double border_median(const Picture& picture, const Place& middle, int half) {
+double border_median(const CameraPicture& picture, const Place& middle, int half) {
   std::vector<double> border;
   for (int dy = -half; dy <= half; ++dy)
     for (int dx = -half; dx <= half; ++dx)
@@ -47,7 +47,8 @@ struct Moments {
   double second = 0.0;  ///< mean of both axes
 };
 
-Moments windowed(const Picture& picture, const Vector2& centre, double background, const DotWindow& window, int reach) {
+Moments windowed(const CameraPicture& picture, const Vector2& centre, double background, const DotWindow& window,
+                 int reach) {
   const double falloff = 0.5 / (window.sigma_px * window.sigma_px);
   const int cx = static_cast<int>(std::lround(centre.x())), cy = static_cast<int>(std::lround(centre.y()));
   Moments moments;
@@ -62,7 +63,7 @@ Moments windowed(const Picture& picture, const Vector2& centre, double backgroun
   return moments;
 }
 
-void add_light(DotMeasurement& dot, const Picture& picture, const Place& middle, double background, int half) {
+void add_light(DotMeasurement& dot, const CameraPicture& picture, const Place& middle, double background, int half) {
   for (int dy = -half; dy <= half; ++dy)
     for (int dx = -half; dx <= half; ++dx) {
       const double dn = picture.at(middle.x + dx, middle.y + dy);
@@ -73,7 +74,8 @@ void add_light(DotMeasurement& dot, const Picture& picture, const Place& middle,
 
 }  // namespace
 
-std::optional<DotMeasurement> measure_dot(const Picture& picture, const Vector2& expected_px, const DotWindow& window) {
+std::optional<DotMeasurement> measure_dot(const CameraPicture& picture, const Vector2& expected_px,
+                                          const DotWindow& window) {
   const Place start = brightest(picture, expected_px, window);
   if (start.x < 0) return std::nullopt;
   const double background = border_median(picture, start, window.half_width_px);

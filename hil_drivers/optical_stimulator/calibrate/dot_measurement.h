@@ -9,7 +9,7 @@
 namespace vbar::optical_stimulator::calibrate {
 
 /// Pixels of the whole detector, DN, row by row; a mean over frames.
-struct Picture {
+struct CameraPicture {
   int width = 0, height = 0;
   std::vector<float> dn;
 
@@ -35,7 +35,7 @@ struct DotMeasurement {
 
 /// Iterated Gaussian-weighted centroid (SExtractor's windowed positions, docs of SExtractor 2.19, section 10.7.1).
 /// Empty if there is no light, if the square reaches beyond the picture, or if the iteration leaves the search area.
-[[nodiscard]] std::optional<DotMeasurement> measure_dot(const Picture& picture, const fsw::Vector2& expected_px,
+[[nodiscard]] std::optional<DotMeasurement> measure_dot(const CameraPicture& picture, const fsw::Vector2& expected_px,
                                                         const DotWindow& window);
 
 }  // namespace vbar::optical_stimulator::calibrate

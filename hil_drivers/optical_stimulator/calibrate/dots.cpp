@@ -20,7 +20,7 @@ std::uint8_t Response::nearest_count(double luminance_wanted) const {
   return static_cast<std::uint8_t>(is_lower ? below : below + 1.0);
 }
 
-std::optional<DrawnDot> draw_dot(Counts& counts, const Vector2& centre_px, double sigma_px, double full_pixels,
+std::optional<DrawnDot> draw_dot(Picture& counts, const Vector2& centre_px, double sigma_px, double full_pixels,
                                  const Response& response) {
   constexpr int kHalf = 3;
   const int cx = static_cast<int>(std::lround(centre_px.x())), cy = static_cast<int>(std::lround(centre_px.y()));
@@ -48,7 +48,7 @@ std::optional<DrawnDot> draw_dot(Counts& counts, const Vector2& centre_px, doubl
   return drawn;
 }
 
-DrawnDot draw_square(Counts& counts, int x, int y, int half_width, std::uint8_t count, const Response& response) {
+DrawnDot draw_square(Picture& counts, int x, int y, int half_width, std::uint8_t count, const Response& response) {
   for (int row = std::max(0, y - half_width); row <= std::min(counts.height - 1, y + half_width); ++row)
     for (int column = std::max(0, x - half_width); column <= std::min(counts.width - 1, x + half_width); ++column)
       counts.at(column, row) = count;

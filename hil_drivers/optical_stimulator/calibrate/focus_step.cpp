@@ -16,7 +16,7 @@ namespace {
 using fsw::Vector2;
 
 constexpr int kColumns = 6, kRows = 4;
-constexpr int kMissing = 1;  // place without a dot: no mirroring or rotation of the grid has it there
+constexpr int kMissing = 7;  // place without a dot: no mirroring or rotation of the grid has it there
 
 /// Places of the coarse grid on the display.
 std::vector<Vector2> coarse_places(const Session& session) {
@@ -30,7 +30,7 @@ std::vector<Vector2> coarse_places(const Session& session) {
 }
 
 void show_coarse(Session& session, int half_width) {
-  Counts counts = Counts::black(session.bench.screen.width(), session.bench.screen.height());
+  Picture counts = Picture(session.bench.screen.width(), session.bench.screen.height());
   const auto places = coarse_places(session);
   for (std::size_t k = 0; k < places.size(); ++k)
     if (k != kMissing)
@@ -39,7 +39,7 @@ void show_coarse(Session& session, int half_width) {
   session.bench.screen.show(counts);
 }
 
-std::optional<DotMeasurement> coarse_dot(const Session& session, const Picture& picture, const Vector2& place,
+std::optional<DotMeasurement> coarse_dot(const Session& session, const CameraPicture& picture, const Vector2& place,
                                          const DotWindow& window) {
   return measure_dot(picture, session.expected_px(place), window);
 }
@@ -47,7 +47,7 @@ std::optional<DotMeasurement> coarse_dot(const Session& session, const Picture& 
 /// Mean squared width of the dots at a place of the display's axis, px^2.
 double squared_width(Session& session, double display_mm, double& exposure_s, double window_sigma_px) {
   session.bench.rails.move_to(session.settings.lens_mm, display_mm);
-  const Picture picture = session.well_exposed(exposure_s, 1);
+  const CameraPicture picture = session.well_exposed(exposure_s, 1);
   DotWindow window;
   window.sigma_px = window_sigma_px;
   window.half_width_px = static_cast<int>(std::ceil(4.0 * window_sigma_px)) + 4;
@@ -83,10 +83,10 @@ double vertex_mm(const std::vector<std::pair<double, double>>& widths, double mi
 
 /// The best of evenly spaced places.
 double best_of_sweep(Session& session, double middle_mm, double range_mm, double& exposure_s) {
-  constexpr int kSteps = 11;
+  const int steps = session.settings.focus_steps;
   double best_mm = middle_mm, best = 1e300;
-  for (int step = 0; step < kSteps; ++step) {
-    const double at_mm = middle_mm - range_mm + 2.0 * range_mm * step / (kSteps - 1);
+  for (int step = 0; step < steps; ++step) {
+    const double at_mm = middle_mm - range_mm + 2.0 * range_mm * step / (steps - 1);
     const double square = squared_width(session, at_mm, exposure_s, 5.0);
     if (square < best) best = square, best_mm = at_mm;
   }
@@ -100,10 +100,10 @@ double best_of_sweep(Session& session, double middle_mm, double range_mm, double
 void find_display(Session& session) {
   show_coarse(session, 2);
   double exposure_s = 0.005;
-  const Picture picture = session.well_exposed(exposure_s, 2);
+  const CameraPicture picture = session.well_exposed(exposure_s, 2);
   DotWindow window;
   window.sigma_px = 4.0;
-  window.half_width_px = 18;
+  window.half_width_px = std::clamp(session.bench.eye.height() / 30, 10, 18);
   window.search_px = 0.4 * 0.88 * session.bench.eye.width() / (kColumns - 1);
   const auto places = coarse_places(session);
   std::vector<Dot> dots;
@@ -134,8 +134,9 @@ void focus(Session& session) {
   show_coarse(session, 0);
   exposure_s = 0.005;
   std::vector<std::pair<double, double>> widths;
-  for (int step = -4; step <= 4; ++step) {
-    const double at_mm = coarse_mm + 0.03 * step;
+  const int steps = session.settings.fine_focus_steps;
+  for (int step = 0; step < steps; ++step) {
+    const double at_mm = coarse_mm + 0.12 * (2.0 * step / (steps - 1) - 1.0);
     widths.emplace_back(at_mm, squared_width(session, at_mm, exposure_s, 2.5));
   }
   const double focus_mm = vertex_mm(widths, coarse_mm);

@@ -37,13 +37,13 @@ double dot_full_pixels(const Session& session, const Vector2& display_px) {
 
 /// Shows dots at the places and measures those that the detector sees.
 void measure(Session& session, const std::vector<Vector2>& places, double search_px, MeasuredDots& measured) {
-  Counts counts = Counts::black(session.bench.screen.width(), session.bench.screen.height());
+  Picture counts = Picture(session.bench.screen.width(), session.bench.screen.height());
   std::vector<DrawnDot> drawn;
   for (const Vector2& place : places)
     if (const auto dot = draw_dot(counts, place, kDotSigma_px, dot_full_pixels(session, place), session.response))
       drawn.push_back(*dot);
   session.bench.screen.show(counts);
-  const Picture picture = session.picture(session.settings.camera.exposure_s, session.settings.frames);
+  const CameraPicture picture = session.picture(session.settings.camera.exposure_s, session.settings.frames);
   DotWindow window;
   window.search_px = search_px;
   int visible = 0, found = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Counts to light, and the evenness of the field, from the light of squares of equal counts.
+// Picture to light, and the evenness of the field, from the light of squares of equal counts.
 
 #include <vector>
 

@@ -36,16 +36,26 @@ double light_sigma(const Session& session, double electrons, double exposure_s, 
   return std::sqrt((pixels * noise + std::max(electrons, 0.0)) / frames);
 }
 
+/// Grey where the noise is measured, and around it as far as the display may be displaced.
+Picture grey_middle(int width, int height, std::uint8_t count) {
+  constexpr double kShare = kNoiseShare + 0.1;
+  Picture picture(width, height);
+  for (int y = static_cast<int>(0.5 * (1.0 - kShare) * height); y < 0.5 * (1.0 + kShare) * height; ++y)
+    for (int x = static_cast<int>(0.5 * (1.0 - kShare) * width); x < 0.5 * (1.0 + kShare) * width; ++x)
+      picture.at(x, y) = count;
+  return picture;
+}
+
 /// Squares of the places at one level, and their light. `exposure_s` starts near and returns the one used.
 void measure_level(Session& session, const std::vector<Vector2>& places, int level, double& exposure_s,
                    std::vector<SquareLight>& squares) {
-  Counts counts = Counts::black(session.bench.screen.width(), session.bench.screen.height());
+  Picture counts = Picture(session.bench.screen.width(), session.bench.screen.height());
   for (const Vector2& place : places)
     draw_square(counts, static_cast<int>(place.x()), static_cast<int>(place.y()), kSquareHalf,
                 static_cast<std::uint8_t>(level), session.response);
   session.bench.screen.show(counts);
   const int frames = level < 30 ? 4 : 2;
-  const Picture picture = session.well_exposed(exposure_s, frames);
+  const CameraPicture picture = session.well_exposed(exposure_s, frames);
   DotWindow window;
   window.search_px = 5.0;
   window.sigma_px = 2.5;
@@ -69,7 +79,8 @@ void measure_response(Session& session) {
   std::vector<SquareLight> squares;
   double exposure_s = 0.002;
   int last = kLevels.front();
-  for (const int level : kLevels) {
+  for (std::size_t k = 0; k < kLevels.size(); k += static_cast<std::size_t>(session.settings.count_level_step)) {
+    const int level = kLevels[k];
     exposure_s *= session.response.luminance(last) / std::max(1e-6, session.response.luminance(level));
     exposure_s = std::clamp(exposure_s, session.settings.exposure_min_s, session.settings.exposure_max_s);
     measure_level(session, places, level, exposure_s, squares);
@@ -89,7 +100,7 @@ void measure_response(Session& session) {
 void add_uniformity_places(Session& session, double offset, std::vector<PlaceLight>& places) {
   const GridSize grid = session.settings.uniformity_grid;
   const double width = session.bench.screen.width(), height = session.bench.screen.height();
-  Counts counts = Counts::black(session.bench.screen.width(), session.bench.screen.height());
+  Picture counts = Picture(session.bench.screen.width(), session.bench.screen.height());
   std::vector<DrawnDot> drawn;
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
@@ -99,7 +110,7 @@ void add_uniformity_places(Session& session, double offset, std::vector<PlaceLig
     }
   session.bench.screen.show(counts);
   double exposure_s = 0.005;
-  const Picture picture = session.well_exposed(exposure_s, 2);
+  const CameraPicture picture = session.well_exposed(exposure_s, 2);
   DotWindow window;
   window.search_px = 5.0;
   window.sigma_px = 2.5;
@@ -136,11 +147,12 @@ void estimate_black_pixel(Session& session) {
 
 void measure_noise(Session& session) {
   constexpr int kFrames = 4;
-  session.bench.screen.show(Counts::black(session.bench.screen.width(), session.bench.screen.height()));
+  session.bench.screen.show(Picture(session.bench.screen.width(), session.bench.screen.height()));
   const double long_s = session.settings.camera.exposure_s, short_s = 0.05 * long_s;
   const MeanVariance noise = mean_variance_of(session, short_s);
   session.camera_noise_dn = std::sqrt(std::max(noise.variance_dn2, 1e-6));
-  const Picture short_exposure = session.picture(short_s, kFrames), long_exposure = session.picture(long_s, kFrames);
+  const CameraPicture short_exposure = session.picture(short_s, kFrames),
+                      long_exposure = session.picture(long_s, kFrames);
   const BlackFit fit =
       fit_black(short_exposure, short_s, long_exposure, long_s, session.camera_noise_dn * std::sqrt(2.0 / kFrames));
   CameraFigures& camera = session.result.camera;
@@ -152,16 +164,15 @@ void measure_noise(Session& session) {
 }
 
 void measure_gain(Session& session) {
-  constexpr int kLevelCount = 8;
   const int width = session.bench.screen.width(), height = session.bench.screen.height();
-  session.bench.screen.show(Counts::black(width, height));
+  session.bench.screen.show(Picture(width, height));
   const MeanVariance black = mean_variance_of(session, 0.05 * session.settings.camera.exposure_s);
-  session.bench.screen.show(Counts::grey(width, height, 30));
+  session.bench.screen.show(grey_middle(width, height, 30));
   double exposure_s = 0.02;
   static_cast<void>(session.well_exposed(exposure_s, 1));
   std::vector<MeanVariance> grey;
-  for (int level = 1; level <= kLevelCount; ++level)
-    grey.push_back(mean_variance_of(session, exposure_s * level / kLevelCount));
+  const int levels = session.settings.grey_levels;
+  for (int level = 1; level <= levels; ++level) grey.push_back(mean_variance_of(session, exposure_s * level / levels));
   const GainFit fit = fit_gain(black, grey);
   CameraFigures& camera = session.result.camera;
   camera.gain_dn_per_electron = fit.gain_dn_per_electron;

@@ -20,7 +20,7 @@ ProcedureResult calibrate(const Bench& bench, const ProcedureSettings& settings,
   measure_gain(session);
   measure_light(session);
   measure_geometry(session);
-  bench.screen.show(Counts::black(bench.screen.width(), bench.screen.height()));
+  bench.screen.show(Picture(bench.screen.width(), bench.screen.height()));
   return {session.result, session.residuals};
 }
 

@@ -32,6 +32,17 @@ double nth_greatest(const std::vector<float>& values, std::size_t n) {
 
 }  // namespace
 
+ProcedureSettings quick(ProcedureSettings settings) {
+  settings.geometry_grid = {24, 15};
+  settings.held_out_grid = {18, 12};
+  settings.focus_steps = 7;
+  settings.fine_focus_steps = 5;
+  settings.grey_levels = 3;
+  settings.count_level_step = 2;
+  settings.frames = 2;
+  return settings;
+}
+
 Session::Session(const Bench& bench_in, const ProcedureSettings& settings_in, Progress progress)
     : bench(bench_in),
       settings(settings_in),
@@ -43,8 +54,8 @@ Session::Session(const Bench& bench_in, const ProcedureSettings& settings_in, Pr
     throw std::runtime_error("the camera's frames do not have the size of the detector in its file");
 }
 
-Picture Session::picture(double exposure_s, int frames) {
-  Picture mean{bench.eye.width(), bench.eye.height(), {}};
+CameraPicture Session::picture(double exposure_s, int frames) {
+  CameraPicture mean{bench.eye.width(), bench.eye.height(), {}};
   for (int frame = 0; frame < frames; ++frame) {
     const std::vector<std::uint16_t> dn = bench.eye.take(exposure_s);
     if (frame == 0) mean.dn.assign(dn.size(), 0.0F);
@@ -55,13 +66,13 @@ Picture Session::picture(double exposure_s, int frames) {
   return mean;
 }
 
-Picture Session::well_exposed(double& exposure_s, int frames) {
+CameraPicture Session::well_exposed(double& exposure_s, int frames) {
   constexpr std::size_t kHighest = 5;
   constexpr double kLow = 0.3, kHigh = 0.75, kWanted = 0.5;
   exposure_s = whole_microseconds(exposure_s);
   const double black = result.camera.offset_dn.value, span = range_dn() - black;
   for (int attempt = 0; attempt < 12; ++attempt) {
-    Picture taken = picture(exposure_s, 1);
+    CameraPicture taken = picture(exposure_s, 1);
     const double share = (nth_greatest(taken.dn, kHighest) - black) / span;
     const bool at_limit = share < kLow ? exposure_s >= settings.exposure_max_s : exposure_s <= settings.exposure_min_s;
     if ((share >= kLow && share <= kHigh) || at_limit) return frames > 1 ? picture(exposure_s, frames) : taken;

@@ -25,10 +25,16 @@ struct ProcedureSettings {
   double display_mm = 14.29;             ///< position of the axis of the display where the search for the focus begins
   double focus_range_mm = 0.5;           ///< on both sides of it
   GridSize geometry_grid{40, 25}, held_out_grid{27, 17}, uniformity_grid{16, 10};
-  int frames = 4;  ///< of each picture of the geometry
+  int focus_steps = 11, fine_focus_steps = 9;
+  int grey_levels = 8;
+  int count_level_step = 1;  ///< 2: every second of the 24 levels
+  int frames = 4;            ///< of each picture of the geometry
   double exposure_min_s = 5e-5, exposure_max_s = 0.4;
   std::uint64_t seed = 1;  ///< of the places of the dots held out
 };
+
+/// A third of the pictures, for a test of the whole path: its figures are two to three times less precise.
+[[nodiscard]] ProcedureSettings quick(ProcedureSettings settings);
 
 struct Bench {
   Screen& screen;
@@ -42,10 +48,10 @@ class Session {
   Session(const Bench& bench, const ProcedureSettings& settings, Progress progress);
 
   /// Mean of frames, with hot pixels replaced once they are known.
-  [[nodiscard]] Picture picture(double exposure_s, int frames);
+  [[nodiscard]] CameraPicture picture(double exposure_s, int frames);
   /// The same at an exposure that brings the highest pixels near half of the range; starts at `exposure_s` and returns
   /// the exposure in it. Exposures end at the limits of the settings.
-  [[nodiscard]] Picture well_exposed(double& exposure_s, int frames);
+  [[nodiscard]] CameraPicture well_exposed(double& exposure_s, int frames);
   [[nodiscard]] bool is_saturated(double peak_dn) const { return peak_dn > 0.9 * range_dn(); }
   [[nodiscard]] double range_dn() const { return static_cast<double>((1 << bench.eye.bits()) - 1); }
 

@@ -89,6 +89,19 @@ ChebyshevField read_field(const TableReader& section) {
   return field;
 }
 
+/// Terms that fold the display, as those of a damaged file may, have no inverse.
+void check_inverse(const TableReader& geometry, const DisplayMapParameters& parameters) {
+  const DisplayMap map(parameters);
+  for (const double x : {0.0, 0.25, 0.5, 0.75, 1.0})
+    for (const double y : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const Vector2 pixel(x * (parameters.width_px - 1), y * (parameters.height_px - 1));
+      const auto back = map.project(map.direction_of(pixel));
+      if (!back || !((*back - pixel).norm() < 1e-6))
+        geometry.refuse("lens", "terms that do not map directions onto the whole display one to one",
+                        "the terms of a calibration");
+    }
+}
+
 CountsToLight read_light(const TableReader& section) {
   CountsToLight light;
   light.full_pixel_electrons_per_s = read_figure(section, "full_pixel_electrons_per_s", above_to(0.0, 1e15));
@@ -153,6 +166,7 @@ BenchCalibration read_calibration(const TableReader& document) {
   const TableReader field = geometry.table("field");
   calibration.geometry.field = read_field(field);
   calibration.field_sigma_px = field.number("sigma_px", kSigma);
+  check_inverse(geometry, calibration.geometry);
   calibration.light = read_light(document.table("light"));
   calibration.uniformity = read_uniformity(document.table("uniformity"));
   calibration.camera = read_camera(document.table("camera"));

@@ -35,6 +35,7 @@ struct Options {
   std::string camera, x_display, output, rails;
   std::filesystem::path out, camera_file;
   int settle_ms = 50;
+  bool is_quick = false;
   calibrate::ProcedureSettings procedure;
 };
 
@@ -127,11 +128,10 @@ int main(int argc, char** argv) {
   program.add_option("--display-mm", options.procedure.display_mm,
                      "place of the display on its axis where the focus is searched");
   program.add_option("--focus-range-mm", options.procedure.focus_range_mm, "on both sides of it");
-  program.add_option("--columns", options.procedure.geometry_grid.columns, "of the grid of dots");
-  program.add_option("--rows", options.procedure.geometry_grid.rows, "of the grid of dots");
-  program.add_option("--frames", options.procedure.frames, "of each picture of the geometry");
+  program.add_flag("--quick", options.is_quick, "fewer pictures, for a test of the whole path");
   CLI11_PARSE(program, argc, argv);
   options.procedure.seed = options.seed;
+  if (options.is_quick) options.procedure = calibrate::quick(options.procedure);
   try {
     return run(options);
   } catch (const std::exception& error) {

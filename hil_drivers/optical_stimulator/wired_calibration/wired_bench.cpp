@@ -20,10 +20,8 @@ class WiredScreen final : public Screen {
 
   [[nodiscard]] int width() const override { return settings_.width; }
   [[nodiscard]] int height() const override { return settings_.height; }
-  void show(const Counts& counts) override {
-    optical_stimulator::Picture picture(counts.width, counts.height);
-    picture.counts = counts.values;
-    display_.show(picture);
+  void show(const Picture& counts) override {
+    display_.show(counts);
     std::this_thread::sleep_for(settle_);
   }
 

@@ -16,7 +16,7 @@ struct WiredBenchSettings {
   std::string rails;  ///< a tty, or host:port
   int packet_size = 1400;
   std::chrono::milliseconds settle{50};  ///< from a picture on the screen to its light
-  std::chrono::milliseconds timeout{3000};
+  std::chrono::milliseconds timeout{10000};
   int retries = 5;                             ///< of an image
   int width = 1920, height = 1200, bits = 12;  ///< of the camera
 };

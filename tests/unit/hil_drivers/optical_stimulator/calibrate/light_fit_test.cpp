@@ -97,7 +97,7 @@ TEST(GainFit, IsMeanAndVarianceOfPoissonFrames) {
 
 TEST(DrawnDot, CentroidAndLightAreThoseOfItsCounts) {
   const Response response{2.2, 3.0};
-  Counts counts = Counts::black(64, 48);
+  Picture counts = Picture(64, 48);
   const auto dot = draw_dot(counts, {30.3, 20.8}, 0.7, 0.05, response);
   ASSERT_TRUE(dot);
   double light = 0.0;

@@ -75,12 +75,12 @@ TEST(Procedure, MapAndLightPredictDotsOfFourMagnitudes) {
   const BenchCalibration c = calibrated(bench).calibration;
   const Response response{c.light.gamma.value, c.light.first_count.value};
   for (const double full_pixels : {0.5, 0.08, 0.0125, 0.002}) {
-    Counts counts = Counts::black(480, 300);
+    Picture counts = Picture(480, 300);
     const auto drawn = draw_dot(counts, {300.3, 140.6}, 0.5, full_pixels, response);
     ASSERT_TRUE(drawn);
     bench.show(counts);
     const double exposure_s = std::min(0.2, 0.004 / full_pixels);
-    Picture mean{480, 300, std::vector<float>(480 * 300, 0.0F)};
+    CameraPicture mean{480, 300, std::vector<float>(480 * 300, 0.0F)};
     for (int frame = 0; frame < 16; ++frame) {
       const auto dn = bench.take(exposure_s);
       for (std::size_t k = 0; k < dn.size(); ++k) mean.dn[k] += static_cast<float>(dn[k]) / 16.0F;

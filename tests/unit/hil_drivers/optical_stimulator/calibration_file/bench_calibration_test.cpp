@@ -64,6 +64,7 @@ TEST(BenchCalibration, DamagedFilesAreRefusedWithTheirKey) {
   EXPECT_NE(refusal_of(with("columns = 3", "columns = 4")).find("uniformity.values"), std::string::npos);
   EXPECT_NE(refusal_of(with("emulated = true\n", "")).find("validity.emulated"), std::string::npos);
   EXPECT_NE(refusal_of(with("scale_px = 5952.4", "scale_px = 0")).find("geometry.lens.scale_px"), std::string::npos);
+  EXPECT_NE(refusal_of(with("distortion = [0.9, ", "distortion = [-40, ")).find("geometry.lens"), std::string::npos);
   EXPECT_NE(refusal_of(with("[camera]", "[camera]\nlens = 3")).find("camera.lens"), std::string::npos);
   EXPECT_NE(refusal_of(with("display_px = [1920, 1200]", "display_px = [1920.5, 1200]")).find("validity.display_px"),
             std::string::npos);

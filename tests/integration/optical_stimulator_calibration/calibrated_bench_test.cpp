@@ -40,7 +40,7 @@ class PathBench final : public Screen, public Eye, public Rails {
   [[nodiscard]] int width() const override { return 1920; }
   [[nodiscard]] int height() const override { return 1200; }
   [[nodiscard]] int bits() const override { return 12; }
-  void show(const Counts& counts) override { shown_ = std::make_shared<std::vector<std::uint8_t>>(counts.values); }
+  void show(const Picture& counts) override { shown_ = std::make_shared<std::vector<std::uint8_t>>(counts.counts); }
   void home() override {}
   // The zeros of the axes are 15 and 20 mm, here with an error of 0.07 and -0.05 mm.
   void move_to(double lens_mm, double display_mm) override { places_ = {15.07 + lens_mm, 19.95 + display_mm}; }
@@ -81,12 +81,12 @@ std::vector<double> light_ratios(PathBench& bench, const BenchCalibration& c) {
   constexpr double kFullPixelMagnitude = -0.86;  // of a full pixel of 200 cd/m2, design brief
   std::vector<DrawnDot> drawn;
   for (double magnitude = -0.5; magnitude <= 7.5; magnitude += 0.5) {
-    Counts counts = Counts::black(1920, 1200);
+    Picture counts = Picture(1920, 1200);
     const double full_pixels = std::pow(10.0, -0.4 * (magnitude - kFullPixelMagnitude));
     const auto dot = draw_dot(counts, {800.0 + 20.3 * magnitude, 500.0 + 33.7 * magnitude}, 0.5, full_pixels, response);
     bench.show(counts);
     const double exposure_s = std::min(0.2, 0.006 / full_pixels);  // below saturation
-    Picture mean{1920, 1200, std::vector<float>(1920 * 1200, 0.0F)};
+    CameraPicture mean{1920, 1200, std::vector<float>(1920 * 1200, 0.0F)};
     for (int frame = 0; frame < 16; ++frame) {
       const auto dn = bench.take(exposure_s);
       for (std::size_t k = 0; k < dn.size(); ++k) mean.dn[k] += static_cast<float>(dn[k]) / 16.0F;
