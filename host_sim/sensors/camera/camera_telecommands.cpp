@@ -65,7 +65,8 @@ KnownCamera known_camera(const CameraSensor& camera, const TelecommandContext& c
   const auto of_mission = std::ranges::find(mission.testbeds, testbed->name, &mission::Testbed::name);
   if (of_mission == mission.testbeds.end())
     throw std::logic_error("the mission has no [testbed." + std::string(testbed->name) + "]");
-  const auto calibrated = testbed->calibrated_camera(*of_mission->settings, mission, context.data_directory, camera.settings);
+  const auto calibrated =
+      testbed->calibrated_camera(*of_mission->settings, mission, context.data_directory, camera.settings);
   known.sensor.settings = calibrated.settings;
   known.centroid_floor_px = calibrated.centroid_floor_px;
   return known;

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "hil_drivers/grand/generators/control_connection.h"
-#include "hil_drivers/wire/line_buffer.h"
 #include "hil_drivers/grand/wire/template_format.h"
 #include "hil_drivers/grand/wire/template_settings.h"
+#include "hil_drivers/wire/line_buffer.h"
 #include "host_sim/io/udp_socket.h"
 
 namespace vbar::grand {

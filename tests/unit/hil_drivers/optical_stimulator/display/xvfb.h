@@ -26,8 +26,9 @@ class Xvfb {
     std::vector<io::FileDescriptor> inherited;
     inherited.emplace_back(ends[1]);
     const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24";
-    process_.emplace(std::vector<std::string>{"Xvfb", "-displayfd", "3", "-screen", "0", screen, "-nolisten", "tcp", "-noreset"},
-                     std::move(inherited));
+    process_.emplace(
+        std::vector<std::string>{"Xvfb", "-displayfd", "3", "-screen", "0", screen, "-nolisten", "tcp", "-noreset"},
+        std::move(inherited));
     std::string number;
     constexpr int kPatience_ms = 60'000;
     pollfd readable{reading.get(), POLLIN, 0};

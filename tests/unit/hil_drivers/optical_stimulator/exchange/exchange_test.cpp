@@ -48,7 +48,8 @@ class Bench final : public Screen, public FrameCamera {
   }
 
   DisplayLight light{{2.2, 3.0, 1e5}, kWidth, kHeight, std::vector<float>(kWidth* kHeight, static_cast<float>(kFull))};
-  FrameStrip strip{Region{0, 0, kWidth, kHeight}, light, [](const Vector2& pixel) { return pixel; }, Region{0, 0, kWidth, kHeight}, 12000.0};
+  FrameStrip strip{Region{0, 0, kWidth, kHeight}, light, [](const Vector2& pixel) { return pixel; },
+                   Region{0, 0, kWidth, kHeight}, 12000.0};
   std::deque<Action> actions;
   Picture shown{kWidth, kHeight};
   double brightness = 1.0;

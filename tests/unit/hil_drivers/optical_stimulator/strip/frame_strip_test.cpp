@@ -26,7 +26,8 @@ class Strip {
   Strip() : light_({2.2, 3.0, 1e5}, kWidth, kHeight, std::vector<float>(kWidth * kHeight, static_cast<float>(kFull))) {
     strip_.emplace(
         region_with_strip({710, 200, 500, 20}), light_,
-        [](const Vector2& pixel) { return Vector2(pixel.x() + 690.0, pixel.y() + 140.0); }, Region{0, 0, kWidth, kHeight}, kWhite);
+        [](const Vector2& pixel) { return Vector2(pixel.x() + 690.0, pixel.y() + 140.0); },
+        Region{0, 0, kWidth, kHeight}, kWhite);
   }
 
   [[nodiscard]] std::vector<std::uint16_t> image(std::uint16_t frame, double brightness = 1.0) const {
@@ -101,10 +102,11 @@ TEST(FrameStrip, NeedsRowsAndColumns) {
   EXPECT_THROW(static_cast<void>(region_with_strip({710, 47, 500, 800})), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(region_with_strip({710, 200, 479, 800})), std::invalid_argument);
   const DisplayLight light({2.2, 3.0, 1e5}, 100, 80, std::vector<float>(8000, 1e6F));
-  EXPECT_THROW(FrameStrip(
-                   Region{710, 152, 500, 848}, light,
-                   [](const Vector2& pixel) { return Vector2(pixel + Vector2(690.0, 140.0)); }, Region{0, 0, 100, 80}, kWhite),
-               std::runtime_error);
+  EXPECT_THROW(
+      FrameStrip(
+          Region{710, 152, 500, 848}, light,
+          [](const Vector2& pixel) { return Vector2(pixel + Vector2(690.0, 140.0)); }, Region{0, 0, 100, 80}, kWhite),
+      std::runtime_error);
 }
 
 }  // namespace
