@@ -184,8 +184,9 @@ BenchCalibration parse_calibration(std::string_view text, const std::string& fil
 }
 
 BenchCalibration load_calibration(const std::filesystem::path& file) {
-  return parse_calibration(mission::read_data_text(file, "a calibration of the Optical Stimulator (TOML)"),
-                           file.string());
+  return parse_calibration(
+      mission::read_data_text(file, "a calibration of the Optical Stimulator (TOML), as vbar_os_calibrate writes it"),
+      file.string());
 }
 
 }  // namespace vbar::optical_stimulator

@@ -83,4 +83,4 @@ def main():
     result = unittest.main(exit=False, verbosity=2).result
     if not result.wasSuccessful():
         sys.exit(1)
-    sys.exit(SKIP if result.skipped and len(result.skipped) == result.testsRun else 0)
+    sys.exit(SKIP if result.skipped and len(result.skipped) >= result.testsRun else 0)

@@ -28,7 +28,11 @@ TEST(DisplayLight, NearestCountIsThatOfALinearSearch) {
   for (int k = 0; k <= 4000; ++k) {
     const double wanted = std::pow(10.0, -7.0 + 7.5 * k / 4000.0);
     double least = std::numeric_limits<double>::infinity();
-    for (int count = 0; count <= 255; ++count) least = std::min(least, std::abs(light.fraction(count) - wanted));
+    for (int count = 0; count <= 255; ++count) {
+      const double apart = std::abs(light.fraction(count) - wanted);
+      ASSERT_TRUE(std::isfinite(apart));
+      if (apart < least) least = apart;
+    }
     EXPECT_EQ(std::abs(light.fraction(light.nearest_count(wanted)) - wanted), least) << wanted;
   }
   EXPECT_EQ(light.nearest_count(0.0), 0);
