@@ -37,17 +37,18 @@ def start(*arguments, **keywords):
                             **keywords)
 
 
-def vbar(*arguments, timeout=300):
-    return subprocess.run([str(VBAR), *map(str, arguments)], capture_output=True, text=True, timeout=timeout)
+def vbar(*arguments, timeout=300, **environment):
+    return subprocess.run([str(VBAR), *map(str, arguments)], capture_output=True, text=True, timeout=timeout,
+                          env=os.environ | {name: str(value) for name, value in environment.items()})
 
 
 def overrides(*settings):
     return [part for setting in settings for part in ("--set", setting)]
 
 
-def fly(folder, *settings, mission=MISSION, timeout=300):
+def fly(folder, *settings, mission=MISSION, timeout=300, **environment):
     """Flies a mission that has to succeed; its summary."""
-    result = vbar("run", mission, "--force", "--out", folder, *overrides(*settings), timeout=timeout)
+    result = vbar("run", mission, "--force", "--out", folder, *overrides(*settings), timeout=timeout, **environment)
     if result.returncode != 0:
         raise AssertionError(f"vbar run failed: {result.stderr}")
     return summary_of(folder)
