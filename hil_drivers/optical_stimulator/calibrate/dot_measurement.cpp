@@ -80,6 +80,7 @@ std::optional<DotMeasurement> measure_dot(const CameraPicture& picture, const Ve
   if (start.x < 0) return std::nullopt;
   const double background = border_median(picture, start, window.half_width_px);
   DotMeasurement dot{Vector2(start.x, start.y)};
+  dot.background_dn = background;
   add_light(dot, picture, start, background, window.half_width_px);
   if (!(dot.peak_dn - background >= window.peak_min_dn)) return std::nullopt;
   const int reach = std::min(window.half_width_px - 3, static_cast<int>(std::ceil(4.0 * window.sigma_px)));

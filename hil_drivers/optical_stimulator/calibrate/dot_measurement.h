@@ -31,6 +31,7 @@ struct DotMeasurement {
   double light_dn = 0.0;   ///< sum over the square above the background
   double sigma_px = 0.0;   ///< of the Gaussian whose windowed second moment this is, as sampled by the pixels
   double peak_dn = 0.0;    ///< highest pixel, background included
+  double background_dn = 0.0;
 };
 
 /// Iterated Gaussian-weighted centroid (SExtractor's windowed positions, docs of SExtractor 2.19, section 10.7.1).

@@ -74,10 +74,22 @@ BenchCalibration calibrated(PathBench& bench) {
   return result.calibration;
 }
 
-/// Light of dots of magnitudes -0.5 to 7.5 over what the calibration predicts, 16 frames each.
+/// Of 7 x 7 pixels.
+double narrow_light_dn(const CameraPicture& picture, const DotMeasurement& dot) {
+  const int x = static_cast<int>(std::lround(dot.centre_px.x())), y = static_cast<int>(std::lround(dot.centre_px.y()));
+  double light = 0.0;
+  for (int dy = -3; dy <= 3; ++dy)
+    for (int dx = -3; dx <= 3; ++dx) light += picture.at(x + dx, y + dy) - dot.background_dn;
+  return light;
+}
+
+/// Light of dots of magnitudes -0.5 to 7.5 over what the calibration predicts, 16 frames each. A faint dot is measured
+/// in a narrow window, whose noise is small, with the share of the light beside it from the bright dots.
 std::vector<double> light_ratios(PathBench& bench, const BenchCalibration& c) {
   const Response response{c.light.gamma.value, c.light.first_count.value};
   std::vector<double> ratios;
+  double wide_over_narrow = 0.0;
+  int bright_dots = 0;
   constexpr double kFullPixelMagnitude = -0.86;  // of a full pixel of 200 cd/m2, design brief
   std::vector<DrawnDot> drawn;
   for (double magnitude = -0.5; magnitude <= 7.5; magnitude += 0.5) {
@@ -95,8 +107,16 @@ std::vector<double> light_ratios(PathBench& bench, const BenchCalibration& c) {
     const twins::camera::Optics camera(sensors::load_camera(data() / "cameras" / "optical_stimulator.toml").settings());
     const Vector2 expected = camera.project(map.direction_of(dot->centre_px)).value();
     const auto seen = measure_dot(mean, expected, {.search_px = 3.0, .half_width_px = 12, .peak_min_dn = 3.0});
+    if (!seen) return {std::nan("")};
+    const double narrow_dn = narrow_light_dn(mean, *seen);
     const double electrons = dot->full_pixels * c.full_pixel_electrons_per_s(dot->centre_px) * exposure_s;
-    ratios.push_back(seen ? seen->light_dn / c.camera.gain_dn_per_electron.value / electrons : std::nan(""));
+    const bool is_bright = electrons > 40'000.0;
+    if (is_bright) {
+      wide_over_narrow = (wide_over_narrow * bright_dots + seen->light_dn / narrow_dn) / (bright_dots + 1);
+      ++bright_dots;
+    }
+    const double light_dn = is_bright ? seen->light_dn : narrow_dn * wide_over_narrow;
+    ratios.push_back(light_dn / c.camera.gain_dn_per_electron.value / electrons);
     std::printf("magnitude %4.1f: %9.0f electrons, measured %.4f of it\n", magnitude, electrons, ratios.back());
   }
   return ratios;

@@ -8,7 +8,8 @@ import subprocess
 import time
 import unittest
 
-from vbar_program import BINARY, SOURCE, children_of, fly, is_running, main, overrides, scratch, start, summary_of, vbar
+from vbar_program import (BINARY, SOURCE, ZYNQ_IMAGE, children_of, fly, is_running, main, missing, overrides, scratch, start,
+                          summary_of, vbar)
 
 MISSION = SOURCE / "missions" / "experiment1_hil.toml"
 BENCH = "vbar_os_bench {data}/benches/optical_stimulator.toml --directory {directory} --seed {seed}"
@@ -57,8 +58,13 @@ class Experiment1Hil(unittest.TestCase):
         self.assertLess(bench["self_check_arcsec"], 3.0)
 
     def test_replay_gives_the_same_bits(self):
-        result = vbar("replay", self.run_folder)
-        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        computers = [(), ("flight_computer.target=host_process",)]
+        if not missing(ZYNQ_IMAGE):
+            computers.append(("flight_computer.target=zynq_qemu", "flight_computer.link=udp"))
+        for computer in computers:
+            with self.subTest(computer=computer):
+                result = vbar("replay", self.run_folder, *overrides(*computer))
+                self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
     def test_report_says_what_was_in_the_loop(self):
         page = (self.run_folder / "report.html").read_text()

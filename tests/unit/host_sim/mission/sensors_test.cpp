@@ -133,8 +133,10 @@ TEST(Testbeds, BadKeysEndWithFileAndLine) {
             "m.toml:4: testbed.bench.prot: found an unknown key (did you mean port?); accepted: port");
   EXPECT_EQ(message_with_bench(with_table("[testbed.other]\nport = 1")),
             "m.toml:2: testbed.other: found a testbed without a driver in this program; accepted: bench");
-  EXPECT_EQ(message_of(with_table("[testbed.bench]\nport = 1")),
-            "m.toml:2: testbed.bench: found a testbed without a driver in this program; accepted: grand");
+  // The list depends on the libraries that the program was built with.
+  EXPECT_THAT(message_of(with_table("[testbed.bench]\nport = 1")),
+              ::testing::StartsWith(
+                  "m.toml:2: testbed.bench: found a testbed without a driver in this program; accepted: grand"));
 }
 
 // -------------------------------------------------------------------------------------------------------- clock source

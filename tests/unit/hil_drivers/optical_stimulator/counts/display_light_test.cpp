@@ -3,9 +3,10 @@
 #include "hil_drivers/optical_stimulator/counts/display_light.h"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/figures.h"
 
 namespace vbar::optical_stimulator {
 namespace {
@@ -27,13 +28,9 @@ TEST(DisplayLight, NearestCountIsThatOfALinearSearch) {
   const DisplayLight light = light_of({2.2, 3.3, 1e5});
   for (int k = 0; k <= 4000; ++k) {
     const double wanted = std::pow(10.0, -7.0 + 7.5 * k / 4000.0);
-    double least = std::numeric_limits<double>::infinity();
-    for (int count = 0; count <= 255; ++count) {
-      const double apart = std::abs(light.fraction(count) - wanted);
-      ASSERT_TRUE(std::isfinite(apart));
-      if (apart < least) least = apart;
-    }
-    EXPECT_EQ(std::abs(light.fraction(light.nearest_count(wanted)) - wanted), least) << wanted;
+    accuracy::Smallest least;
+    for (int count = 0; count <= 255; ++count) least.add(std::abs(light.fraction(count) - wanted));
+    EXPECT_EQ(std::abs(light.fraction(light.nearest_count(wanted)) - wanted), least.value) << wanted;
   }
   EXPECT_EQ(light.nearest_count(0.0), 0);
   EXPECT_EQ(light.nearest_count(-1.0), 0);
