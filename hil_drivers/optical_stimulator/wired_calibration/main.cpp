@@ -83,6 +83,8 @@ int run(Options& options) {
   const std::filesystem::path data = vbar::mission::data_directory();
   if (options.camera_file.empty()) options.camera_file = data / "cameras" / "optical_stimulator.toml";
   options.procedure.camera = vbar::sensors::load_camera(options.camera_file).settings();
+  // Before the measurement of a minute, which a folder that cannot be made would lose.
+  if (options.out.has_parent_path()) std::filesystem::create_directories(options.out.parent_path());
   std::optional<vbar::bench_process::BenchProcess> process;
   if (!options.bench.empty()) process.emplace(options.bench, options.seed, data);
   calibrate::WiredBench wired(wires_of(options, process));
