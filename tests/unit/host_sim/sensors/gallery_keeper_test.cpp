@@ -173,8 +173,8 @@ TEST_F(Gallery, ImageOfATestbedStandsBesideThatOfTheTwin) {
   keeper.finish(pictures_);
   ASSERT_EQ(pictures_.size(), 2U);
   EXPECT_EQ(asked, std::vector<std::int64_t>{0});
-  const report::CameraPicture own{kRegion.width, kRegion.height, pattern(0)};
-  const std::vector<std::uint16_t> twin = pattern(1);
+  const std::vector<std::uint16_t> testbed = pattern(0), twin = pattern(1);
+  const report::CameraPicture own{kRegion.width, kRegion.height, testbed};
   EXPECT_EQ(pictures_[0].twin_png, report::png_of({kRegion.width, kRegion.height, twin}, report::stretch_for(own)))
       << "stretched as the testbed's";
   EXPECT_FALSE(pictures_[0].difference.empty());
