@@ -162,7 +162,7 @@ void append_totals(std::vector<ComparisonRow>& rows, Runs runs, const Papers& pa
   rows.push_back(row_of(
       fmt::format("  delta-v, {}/s", unit.name), runs, papers,
       [&](const RunRecord& r) { return fixed(unit.scale * r.summary.dv_mps, unit.scale == 1.0 ? 6 : 3); },
-      [&](const PaperColumn& p) { return fixed(unit.scale * p.dv_mps, 3); }));
+      [&](const PaperColumn& p) { return significant(unit.scale * p.dv_mps, 5); }));
   rows.push_back(row_of(
       "  maneuvers", runs, papers, [](const RunRecord& r) { return std::to_string(r.summary.maneuvers); },
       [](const PaperColumn& p) { return std::to_string(p.maneuvers); }));
