@@ -162,8 +162,14 @@ StageFigures read_stage(const TableReader& section) {
   stage.stage = section.text("stage");
   stage.poses = static_cast<int>(section.integer("poses", 0, 1'000'000));
   stage.board = read_errors(section, "board");
-  if (section.has("truth_translation_mm")) stage.truth = read_errors(section, "truth");
+  if (required_flag(section, "is_truth_known")) stage.truth = read_errors(section, "truth");
   return stage;
+}
+
+void check_count(const TableReader& document, std::string_view key, std::string_view tables, std::size_t count) {
+  const auto stated = static_cast<std::size_t>(document.integer(key, 0, 1000));
+  if (stated != count)
+    document.refuse(tables, fmt::format("{} tables", count), fmt::format("{}, as {} states", stated, key));
 }
 
 Calibration read_calibration(const TableReader& document) {
@@ -180,6 +186,8 @@ Calibration read_calibration(const TableReader& document) {
   calibration.camera = read_camera(document.table("camera"));
   for (const TableReader& light : document.tables("light")) calibration.lights.push_back(read_light(light));
   for (const TableReader& stage : document.tables("figures")) calibration.figures.push_back(read_stage(stage));
+  check_count(document, "light_tables", "light", calibration.lights.size());
+  check_count(document, "stages", "figures", calibration.figures.size());
   document.finish();
   return calibration;
 }

@@ -12,8 +12,15 @@
 namespace vbar::tron {
 namespace {
 
+/// TOML reads the shortest form of -0.0 as the integer 0.
+template <typename Number>
+Number without_negative_zero(Number number) {
+  return number == Number{} ? Number{} : number;
+}
+
 template <typename Numbers>
-std::string array_of(const Numbers& numbers) {
+std::string array_of(Numbers numbers) {
+  for (auto& number : numbers) number = without_negative_zero(number);
   return fmt::format("[{}]", fmt::join(numbers, ", "));
 }
 
@@ -30,9 +37,12 @@ class Document {
  public:
   void section(std::string_view name) { text_ += fmt::format("\n[{}]\n", name); }
   void element(std::string_view name) { text_ += fmt::format("\n[[{}]]\n", name); }
-  template <typename Number>
-  void key(std::string_view name, const Number& value) {
+  template <typename Value>
+  void key(std::string_view name, const Value& value) {
     text_ += fmt::format("{} = {}\n", name, value);
+  }
+  void key(std::string_view name, double value) {
+    text_ += fmt::format("{} = {}\n", name, without_negative_zero(value));
   }
   void pose(std::string_view name, const PoseFigures& pose) {
     text_ += fmt::format("{} = {{ rotation_rad = {}, translation_m = {} }}\n", name, array_of(pose.rotation_rad),
@@ -42,7 +52,7 @@ class Document {
     text_ += fmt::format("{} = [\n", name);
     for (int row = 0; row < 6; ++row) {
       std::array<double, 6> numbers{};
-      for (std::size_t k = 0; k < 6; ++k) numbers[k] = matrix(row, static_cast<Eigen::Index>(k));
+      for (std::size_t k = 0; k < 6; ++k) numbers[k] = without_negative_zero(matrix(row, static_cast<Eigen::Index>(k)));
       text_ += fmt::format("  {},\n", fmt::join(numbers, ", "));
     }
     text_ += "]\n";
@@ -125,6 +135,7 @@ void write(Document& out, const Calibration& calibration) {
     out.element("figures");
     out.key("stage", toml_string(stage.stage));
     out.key("poses", stage.poses);
+    out.key("is_truth_known", stage.truth.has_value());
     write(out, stage.board, "board");
     if (stage.truth) write(out, *stage.truth, "truth");
   }
@@ -134,6 +145,9 @@ void write(Document& out, const Calibration& calibration) {
 
 std::string toml_of(const Calibration& calibration) {
   Document out;
+  // Counts first: a file that was cut off between two tables is seen.
+  out.key("light_tables", calibration.lights.size());
+  out.key("stages", calibration.figures.size());
   write(out, calibration.validity);
   write(out, calibration.lens);
   write(out, "camera_arm", calibration.camera_arm);
