@@ -3,7 +3,9 @@
 // and a command is answered only if it is within the limits of speed, acceleration and range. One thread; no wall clock
 // but the time-out of a datagram that never comes.
 //
-//   client.listen... receive() -> first state, zero of the corrections -> answer() -> receive() -> ...
+//   receive() -> first state: zero of the corrections -> answer() -> receive() -> answer() -> ...
+//
+// A caller that does not move answers with last_command().
 
 #include <chrono>
 #include <cstdint>
@@ -12,37 +14,21 @@
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Core>
-
 #include "hil_drivers/tron/bench_file/bench_file.h"
+#include "hil_drivers/tron/rsi/client/axis_positions.h"
+#include "hil_drivers/tron/rsi/client/command_check.h"
 #include "hil_drivers/tron/rsi/wire/context_xml.h"
 #include "hil_drivers/tron/rsi/wire/ethernet_xml.h"
 
 namespace vbar::tron::rsi {
 
-using AxisVector = Eigen::Matrix<double, 6, 1>;
-
-/// Axes of one robot: A1 to A6 in rad, and E1, the carriage from its home, in m (0 for a robot without a track).
-struct AxisPositions {
-  AxisVector axes_rad = AxisVector::Zero();
-  double track_m = 0.0;
-};
-
 struct State {
   AxisPositions measured;       ///< AIPos, EIPos
-  std::uint64_t cycle = 0;      ///< number of states received since restart(), from 0
+  std::uint64_t cycle = 0;      ///< number of states before this one since restart()
   std::uint64_t delay = 0;      ///< as counted by the controller since RSI_ON
   int delayed_in_row = 0;       ///< successive states in which that count has grown
-  std::uint64_t skipped = 0;    ///< older states that had arrived as well and were not answered
-  bool ipoc_not_newer = false;  ///< its time stamp is not later than that of the state before
-};
-
-/// Limits of one axis of a command.
-struct CommandLimits {
-  double lower = 0.0, upper = 0.0;  ///< rad (m from home)
-  double speed = 0.0;               ///< rad/s (m/s)
-  double acceleration = 0.0;        ///< rad/s2 (m/s2)
-  CorrectionRange correction;       ///< deg (mm), of the context
+  std::uint64_t skipped = 0;    ///< older states that had arrived as well and were not answered, since restart()
+  bool ipoc_not_newer = false;  ///< its time stamp is not later than that of the state before: it has jumped back
 };
 
 struct ClientSettings {
@@ -54,9 +40,10 @@ struct ClientSettings {
   std::optional<CommandLimits> track;  ///< of the robot on the track
 };
 
-/// Limits and addresses of a robot of the bench. `track`: of the robot that rides on it, otherwise nullptr.
+/// Address, port and limits of a robot of the bench (full speed and acceleration of its design, not the override).
+/// `track`: of the robot that rides on it, otherwise nullptr.
 [[nodiscard]] ClientSettings client_settings(const std::string& name, const Robot& robot, const Track* track,
-                                             const EthernetXml& ethernet, const ContextXml& context);
+                                             const RobotFiles& files);
 
 /// A command that would exceed a limit: a defect of the caller. One sentence with device, axis, value and limit.
 class CommandRefused : public std::runtime_error {
@@ -64,7 +51,7 @@ class CommandRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The socket cannot be used.
+/// The socket cannot be used, or a call out of order.
 class RsiError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -82,14 +69,14 @@ class Client {
   /// `patience` of wall clock. Foreign and unreadable datagrams are counted and ignored. Throws RsiError.
   [[nodiscard]] std::optional<State> receive(std::chrono::milliseconds patience);
 
-  /// Answers the last state received, once: `command` is where the axes shall be, absolute. It begins where the robot
-  /// stood at the first state; speed and acceleration are checked against the commands before, one cycle each. Throws
-  /// CommandRefused, and nothing is sent.
+  /// Answers the last state received, once: `command` is where the axes shall be, absolute. Speed and acceleration are
+  /// checked against the commands before, one cycle each. Throws CommandRefused, and nothing is sent; RsiError if there
+  /// is no state to answer.
   void answer(const AxisPositions& command);
-  /// Answers with the last command and the stop signal, which ends the motion at the controller.
+  /// Answers with the last command and the stop signal, which ends the motion at the controller. Throws RsiError.
   void answer_stop();
 
-  /// After RSI was stopped, before it is started: discards what has arrived, and the next state is a first one.
+  /// After RSI was stopped and before it is started: discards what has arrived; the next state is a first one.
   void restart();
 
   /// Where the robot stood at the first state since restart(); corrections count from there.
@@ -98,6 +85,8 @@ class Client {
   [[nodiscard]] const AxisPositions& last_command() const;
 
   [[nodiscard]] std::uint16_t port() const;
+  /// "camera robot at RSI port 59152".
+  [[nodiscard]] const std::string& description() const;
   [[nodiscard]] std::uint64_t foreign_datagrams() const;
   [[nodiscard]] std::uint64_t unreadable_datagrams() const;
   /// Why the last unreadable datagram was ignored; empty: there was none.

@@ -33,7 +33,7 @@ struct EthernetXml {
   ReceivedValue stop;
 };
 
-/// Throws std::runtime_error: one sentence with file and line.
+/// Throws mission::MissionError: one sentence with file and line.
 [[nodiscard]] EthernetXml read_ethernet_xml(const std::filesystem::path& file);
 
 }  // namespace vbar::tron::rsi
