@@ -8,6 +8,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "hil_drivers/tron/rsi/client/axis_positions.h"
+#include "host_sim/mission/data_directory.h"
 #include "host_sim/mission/mission_error.h"
 
 namespace vbar::tron::rsi {
@@ -40,6 +43,21 @@ TEST(RobotFiles, BothRobotsAreAsTheDesignSays) {
   EXPECT_EQ(7000.0, camera.context.track_monitor_mm);
   EXPECT_EQ("", target.ethernet.track_element);
   EXPECT_FALSE(target.context.track);
+}
+
+TEST(RobotFiles, CorrectionsReachFromOneEndOfEveryAxisToTheOther) {
+  const BenchFile bench = read_bench_file(mission::data_directory() / "benches" / "tron.toml");
+  for (const auto& [robot, name] :
+       {std::pair{&bench.camera_robot, kCameraRobot}, {&bench.target_robot, kTargetRobot}}) {
+    const RobotFiles files = robot_files(name);
+    EXPECT_EQ(robot->line.rsi_port, files.ethernet.port);
+    for (std::size_t k = 0; k < kWireAxes; ++k) {
+      const AxisLimits& axis = robot->design.axes[k];
+      EXPECT_LE((axis.upper - axis.lower) * kDegreesPerRadian, files.context.axes[k].upper) << name << k;
+    }
+  }
+  const double travel_mm = (bench.track.axis.upper - bench.track.axis.lower) * kMillimetresPerMetre;
+  EXPECT_LE(travel_mm, robot_files(kCameraRobot).context.track.value_or(CorrectionRange{}).upper);
 }
 
 class RefusedFiles : public testing::Test {
