@@ -1,0 +1,144 @@
+#pragma once
+// The result of a calibration of TRON: what `vbar_tron calibrate` writes and the driver reads.
+//
+// Frames as in bench_file.h. C camera, T target, V frame of motion capture, OC and OT its objects on camera and target.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "fsw/core/types.h"
+#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "hil_drivers/tron/calibration_file/calibrated_chain.h"
+#include "hil_drivers/tron/kinematics/posture.h"
+
+namespace vbar::tron {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// A pose as the file has it.
+struct PoseFigures {
+  std::array<double, 3> rotation_rad{};  ///< rotation vector
+  std::array<double, 3> translation_m{};
+  [[nodiscard]] Eigen::Isometry3d isometry() const;
+  static PoseFigures of(const Eigen::Isometry3d& pose);
+};
+
+/// Where and with what the calibration was made.
+struct CalibrationValidity {
+  std::string date_utc;  ///< ISO 8601
+  std::string bench;     ///< name of the bench file
+  bool emulated = false;
+  std::uint64_t seed = 0;  ///< of the choice of poses and, if emulated, of the bench
+  std::string camera_model, camera_serial;
+  std::string data_sha256;  ///< of the file of raw data
+};
+
+struct LensCalibration {
+  int width_px = 1920, height_px = 1200;
+  double fx_px = 0.0, fy_px = 0.0, cx_px = 0.0, cy_px = 0.0;  ///< an integer is the centre of a pixel
+  std::array<double, 5> distortion{};  ///< Brown-Conrady k1, k2, p1, p2, k3, as OpenCV orders them
+
+  /// Pixel of a point in C, m.
+  [[nodiscard]] fsw::Vector2 project(const fsw::Vector3& point_C) const;
+};
+
+struct ArmCalibration {
+  ArmLengths lengths;                                     ///< as designed
+  PoseFigures base;                                       ///< T_L_base; of the arm on the track, T_carriage_base
+  std::array<double, kJoints> offset_rad{};               ///< added to the joints that the controller states
+  std::array<std::array<double, 6>, kLinkErrors> link{};  ///< after A1..A5: rotation vector, rad; translation, m
+  std::array<double, kFlexes> flex_rad_m{};               ///< of A2 and A3, per metre of horizontal lever
+  PoseFigures mount;                                      ///< X_C = T_flange_C, X_T = T_flange_T
+};
+
+struct TrackCalibration {
+  TrackGrid grid;
+  double scale = 0.0;
+  std::vector<std::array<double, kTrackErrors>> knots;  ///< roll, pitch, yaw, rad; sideways, height, m
+};
+
+struct ViconCalibration {
+  std::string rotation = "xyz";  ///< order of the matrices, found by the calibration
+  PoseFigures T_C_object;        ///< OC in C
+  PoseFigures T_object_T;        ///< T in OT
+  PoseFigures T_V_L;             ///< of the laboratory in the frame of motion capture
+};
+
+/// Covariance of an error of T_C_T in the camera's axes: rotation vector, rad (R_true = exp(error) R), and translation
+/// divided by the range.
+struct SourceCovariances {
+  Matrix6 arms = Matrix6::Zero(), vicon = Matrix6::Zero();
+};
+
+/// Light of a source at levels of its DMX value (share of 65535), relative to that at full power.
+struct LightTable {
+  std::string source;  ///< "lamp", "box 1" .. "box 10"
+  std::vector<double> level, light;
+};
+
+struct CameraCalibration {
+  int bits = 12;
+  double offset_dn = 0.0;
+  double read_noise_dn = 0.0;
+  /// Of the lamp at full power on a white patch that faces it, per second of exposure, DN above the offset.
+  double lamp_dn_per_s = 0.0;
+};
+
+/// Errors of a source over the poses that were not fitted.
+struct ErrorFigures {
+  double translation_mean_mm = 0.0, translation_sigma_mm = 0.0, translation_median_mm = 0.0;
+  double rotation_mean_deg = 0.0, rotation_sigma_deg = 0.0, rotation_median_deg = 0.0;
+  double pixel_mean_px = 0.0, pixel_sigma_px = 0.0, pixel_median_px = 0.0;
+};
+
+struct StageFigures {
+  std::string stage;  ///< "mounts", "offsets and mounts", ... "fused"
+  int poses = 0;
+  ErrorFigures board;                 ///< against the pose of the board by the image
+  std::optional<ErrorFigures> truth;  ///< of an emulated bench
+};
+
+struct Calibration {
+  CalibrationValidity validity;
+  LensCalibration lens;
+  ArmCalibration camera_arm, target_arm;
+  TrackCalibration track;
+  ViconCalibration vicon;
+  SourceCovariances covariance;
+  std::vector<LightTable> lights;
+  CameraCalibration camera;
+  std::vector<StageFigures> figures;
+};
+
+/// As designed, without any error: what a fit begins with.
+[[nodiscard]] Calibration calibration_as_designed(const BenchFile& bench);
+
+/// Laboratory poses by the calibrated chain.
+[[nodiscard]] Eigen::Isometry3d T_L_C_of_arm(const Calibration& calibration, const Posture& posture);
+[[nodiscard]] Eigen::Isometry3d T_L_T_of_arm(const Calibration& calibration, const Posture& posture);
+/// Relative pose by the arms.
+[[nodiscard]] Eigen::Isometry3d T_C_T_of_arms(const Calibration& calibration, const Posture& posture);
+/// Relative pose by motion capture, from the poses of its two objects in its frame.
+[[nodiscard]] Eigen::Isometry3d T_C_T_of_vicon(const Calibration& calibration, const Eigen::Isometry3d& T_V_camera,
+                                               const Eigen::Isometry3d& T_V_target);
+
+/// Covariance of SourceCovariances at the pose T_C_T, as fusion takes it: of the vector [rotation, rad; translation, m]
+/// in the axes of T with T_true = T_C_T exp(vector).
+[[nodiscard]] Matrix6 covariance_at(const Matrix6& covariance_camera, const Eigen::Isometry3d& T_C_T);
+
+/// Throws a MissionError that names the file and the key if the file is missing, damaged or not a calibration.
+[[nodiscard]] Calibration load_calibration(const std::filesystem::path& file);
+[[nodiscard]] Calibration parse_calibration(std::string_view text, const std::string& file);
+
+/// TOML; the shortest decimal numbers that read back as the same bits.
+[[nodiscard]] std::string toml_of(const Calibration& calibration);
+/// Replaces the file as a whole.
+void save_calibration(const Calibration& calibration, const std::filesystem::path& file);
+
+}  // namespace vbar::tron
