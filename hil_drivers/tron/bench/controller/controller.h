@@ -36,6 +36,8 @@ struct ControllerSettings {
   rsi::ContextXml context;
   std::uint64_t first_ipoc = 1;  ///< time stamp of the first cycle; + 4 each
   std::uint16_t eki_port = 0;    ///< on robot.line.address; 0: any free one
+  /// Forward kinematics as the controller has them; required.
+  std::function<CartesianPose(const AxisPositions&)> flange_pose = {};
 };
 
 struct ControllerStatistics {
@@ -67,7 +69,7 @@ class Controller {
   /// position() with the errors of the last standstill: where the axes really are.
   [[nodiscard]] AxisPositions true_position() const;
   /// Called when the axes have come to a standstill; returns the repeatability errors that hold until the next one.
-  std::function<AxisPositions()> on_standstill;
+  void on_standstill(std::function<AxisPositions()> errors);
   [[nodiscard]] bool stands() const;
 
   // ---- faults

@@ -49,6 +49,8 @@ class CycleClock {
   void stop();
 
   [[nodiscard]] std::uint64_t cycle() const;
+  /// Real clock: cycles that began more than 4 ms late; bench time is behind the wall clock since then.
+  [[nodiscard]] std::uint64_t overruns() const;
   /// 4 ms times cycle().
   [[nodiscard]] double time_s() const;
 
