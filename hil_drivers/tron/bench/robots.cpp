@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hil_drivers/tron/rsi/wire/context_xml.h"
+#include "hil_drivers/tron/robot/robot_files.h"
 #include "host_sim/engine/random_stream.h"
 
 namespace vbar::tron::bench {
@@ -74,15 +74,15 @@ nlohmann::ordered_json summary_of(const Controller& controller) {
 }  // namespace
 
 Robots::Robots(boost::asio::io_context& context, const BenchSettings& settings, const World& world,
-               const std::filesystem::path& files, const DriverPorts& ports)
+               const DriverPorts& ports)
     : track_home_m_(settings.laboratory.track.home_m) {
   const BenchFile& laboratory = settings.laboratory;
   camera_ = std::make_unique<Controller>(
       context, controller_settings("camera robot", laboratory.camera_robot, &laboratory.track,
-                                   rsi::read_robot_files(files, "camera_robot"), ports.camera_rsi, settings.seed));
+                                   robot_files(kCameraRobot), ports.camera_rsi, settings.seed));
   target_ = std::make_unique<Controller>(
-      context, controller_settings("target robot", laboratory.target_robot, nullptr,
-                                   rsi::read_robot_files(files, "target_robot"), ports.target_rsi, settings.seed));
+      context, controller_settings("target robot", laboratory.target_robot, nullptr, robot_files(kTargetRobot),
+                                   ports.target_rsi, settings.seed));
   camera_->on_standstill([this, &world] {
     const std::uint64_t number = camera_standstills_++;
     return AxisPositions{world.camera_arm_deviation_rad(number), world.carriage_deviation_m(number)};
@@ -100,6 +100,36 @@ Posture Robots::true_posture() const {
 Posture Robots::measured_posture() const {
   const AxisPositions camera = camera_->position(), target = target_->position();
   return {camera.axes_rad, target.axes_rad, track_home_m_ + camera.track_m};
+}
+
+bool Robots::set_fault(const Fault& fault, bool is_on) {
+  Controller& robot = fault.is_of_target ? *target_ : *camera_;
+  const auto count = static_cast<std::uint64_t>(fault.value);
+  switch (fault.kind) {
+    case FaultKind::kEmergencyStop:
+      robot.set_emergency_stop(is_on);
+      return true;
+    case FaultKind::kDrivesOff:
+      robot.switch_drives_off("drives off");
+      return true;
+    case FaultKind::kAxesFrozen:
+      robot.set_frozen(is_on);
+      return true;
+    case FaultKind::kRsiSilent:
+      robot.be_silent(count);
+      return true;
+    case FaultKind::kAnswersLost:
+      robot.lose_answers(count);
+      return true;
+    case FaultKind::kIpocBack:
+      robot.set_ipoc_back(count);
+      return true;
+    case FaultKind::kRsiDropped:
+      robot.drop_rsi();
+      return true;
+    default:
+      return false;
+  }
 }
 
 nlohmann::ordered_json Robots::summary() const {

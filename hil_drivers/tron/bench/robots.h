@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -25,18 +24,20 @@ struct DriverPorts {
 
 class Robots {
  public:
-  /// `files`: folder of the Ethernet configurations and contexts. Throws std::runtime_error, mission::MissionError.
-  Robots(boost::asio::io_context& context, const BenchSettings& settings, const World& world,
-         const std::filesystem::path& files, const DriverPorts& ports);
+  /// Throws std::runtime_error, mission::MissionError.
+  Robots(boost::asio::io_context& context, const BenchSettings& settings, const World& world, const DriverPorts& ports);
 
   /// Where the axes really are.
   [[nodiscard]] Posture true_posture() const;
   /// As the motors measure it.
   [[nodiscard]] Posture measured_posture() const;
 
-  [[nodiscard]] Controller& of_camera() { return *camera_; }
-  [[nodiscard]] Controller& of_target() { return *target_; }
+  [[nodiscard]] const Controller& of_camera() const { return *camera_; }
+  [[nodiscard]] const Controller& of_target() const { return *target_; }
   [[nodiscard]] std::vector<Controller*> both() { return {camera_.get(), target_.get()}; }
+
+  /// False for a fault that is not one of a robot.
+  bool set_fault(const Fault& fault, bool is_on);
 
   /// What each has counted.
   [[nodiscard]] nlohmann::ordered_json summary() const;
