@@ -69,6 +69,12 @@ void Controller::drop_rsi() {
   core_->announce();
 }
 
+eki::Reply Controller::execute(const eki::Command& command) {
+  eki::Reply reply = core_->handle(command);
+  core_->announce();
+  return reply;
+}
+
 bool Controller::rsi_is_on() const {
   return core_->rsi_on;
 }

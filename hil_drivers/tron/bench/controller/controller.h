@@ -85,6 +85,9 @@ class Controller {
   /// Breaks RSI off.
   void drop_rsi();
 
+  /// A command as from Ethernet KRL, of the operator at the controller.
+  eki::Reply execute(const eki::Command& command);
+
   // ---- state
   [[nodiscard]] bool rsi_is_on() const;
   [[nodiscard]] eki::State state() const;

@@ -43,7 +43,11 @@ Controller::Core::Core(boost::asio::io_context& context, ControllerSettings give
              if (on_datagram) on_datagram();
            }),
       server(context, settings.robot.line.address, settings.eki_port,
-             [this](const eki::Command& command) { return handle(command); }),
+             [this](const eki::Command& command) {
+               eki::Reply reply = handle(command);
+               announced = state();  // the reply says it
+               return reply;
+             }),
       ipoc(settings.first_ipoc) {
   if (!settings.flange_pose) throw std::logic_error(settings.name + ": no forward kinematics");
   if (settings.track && !settings.context.track)
@@ -176,8 +180,7 @@ eki::Reply Controller::Core::handle(const eki::Command& command) {
   if (command.action == eki::Action::kReset) problem = reset();
   if (command.action == eki::Action::kStop) end_rsi();
   if (command.action == eki::Action::kStart && problem.empty()) start_rsi();
-  announced = state();
-  eki::State reply = announced;
+  eki::State reply = state();
   reply.seq = command.seq;
   if (!problem.empty()) reply.message = problem;
   return reply;
