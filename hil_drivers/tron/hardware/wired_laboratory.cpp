@@ -24,12 +24,8 @@ RobotPairSettings robot_settings(const DeviceSettings& settings) {
   RobotPairSettings pair;
   const BenchFile& bench = settings.bench;
   const auto rsi_of = [&](const char* name, const char* file, const Robot& robot, const Track* track) {
-    const rsi::RobotFiles files = robot_files(file);
-    auto rsi = rsi::client_settings(name, robot, track, files.ethernet, files.context);
-    if (settings.is_emulated) {
-      rsi.port = 0;
-      rsi.robot_address.clear();
-    }
+    auto rsi = rsi::client_settings(name, robot, track, robot_files(file));
+    if (settings.is_emulated) rsi.port = 0;
     return rsi;
   };
   pair.camera_rsi = rsi_of("camera robot", kCameraRobot, bench.camera_robot, &bench.track);

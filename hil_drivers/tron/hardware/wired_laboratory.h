@@ -10,6 +10,7 @@
 #include "hil_drivers/tron/bench_file/bench_file.h"
 #include "hil_drivers/tron/exchange/devices.h"
 #include "hil_drivers/tron/hardware/addresses.h"
+#include "host_sim/twins/camera/camera_settings.h"
 
 namespace vbar::tron {
 
