@@ -35,21 +35,29 @@ Cut cut_in_pieces(std::string_view stream, std::size_t piece) {
   return cut;
 }
 
+void check_command(const std::string& document) {
+  const Command command = decode_command(document);
+  VBAR_FUZZ_EXPECT(decode_command(encode(command)) == command);
+}
+
+void check_reply(const std::string& document) {
+  const Reply reply = decode_reply(document);
+  if (const auto* state = std::get_if<State>(&reply)) {
+    VBAR_FUZZ_EXPECT(decode_reply(encode(*state)) == reply);
+    return;
+  }
+  // The values have four decimals after the first encoding.
+  const std::string text = encode(std::get<RobotState>(reply));
+  VBAR_FUZZ_EXPECT(encode(std::get<RobotState>(decode_reply(text))) == text);
+}
+
 void check_document(const std::string& document) {
   try {
-    const Command command = decode_command(document);
-    VBAR_FUZZ_EXPECT(decode_command(encode(command)) == command);
-  } catch (const WireError&) {
-  }
-  try {
-    const Reply reply = decode_reply(document);
-    if (const auto* state = std::get_if<State>(&reply)) {
-      VBAR_FUZZ_EXPECT(decode_reply(encode(*state)) == reply);
-      return;
-    }
-    // The values have four decimals after the first encoding.
-    const std::string text = encode(std::get<RobotState>(reply));
-    VBAR_FUZZ_EXPECT(encode(std::get<RobotState>(decode_reply(text))) == text);
+    // The other decoder would refuse its root element.
+    if (document.starts_with("<C"))
+      check_command(document);
+    else
+      check_reply(document);
   } catch (const WireError&) {
   }
 }
@@ -60,7 +68,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view stream(reinterpret_cast<const char*>(data), size);
   if (stream.empty()) return 0;
   const Cut whole = cut_in_pieces(stream, stream.size());
-  const Cut pieces = cut_in_pieces(stream, 1 + static_cast<std::size_t>(stream.front()) % 7);
+  const Cut pieces = cut_in_pieces(stream, 1 + stream.size() / (1 + stream.size() % 5));
   VBAR_FUZZ_EXPECT(whole.documents == pieces.documents && whole.has_failed == pieces.has_failed);
   for (const std::string& document : whole.documents) check_document(document);
   return 0;
