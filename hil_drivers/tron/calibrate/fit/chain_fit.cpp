@@ -383,7 +383,7 @@ class Fit {
     const FitPriors& p = settings_.priors;
     std::array<double, kLens> lens_sigma{p.focal_ratio * values_.lens[0], p.focal_ratio * values_.lens[1], p.centre_px,
                                          p.centre_px};
-    const std::array<double, 5> least{0.01, 0.03, 2e-4, 2e-4, 0.05};
+    const std::array<double, 5> least{0.01, 0.03, 5e-5, 5e-5, 0.05};
     for (std::size_t k = 0; k < 5; ++k)
       lens_sigma[4 + k] = std::max(least[k], p.distortion_ratio * std::abs(values_.lens[4 + k]));
     add_prior<kLens>(values_.lens.data(), values_.lens, lens_sigma);
@@ -434,13 +434,14 @@ class Fit {
     problem_.SetParameterBlockConstant(&values_.scale);
   }
 
-  /// Of camera arm, target arm, scale and knots, by the inverse of the normal matrix of all parameters.
+  /// Of camera arm, target arm, scale, knots, and both objects of motion capture, by the inverse of the normal matrix
+  /// of all parameters.
   Eigen::MatrixXd chain_covariance() {
     std::vector<double*> blocks{values_.camera.data(), values_.target.data(), &values_.scale};
     for (auto& knot : values_.knots) blocks.push_back(knot.data());
-    const auto chain_size =
-        static_cast<Eigen::Index>(kCameraArm + kTargetArm + 1 + kTrackErrors * values_.knots.size());
-    for (double* block : {values_.lens.data(), values_.V_L.data(), values_.C_object.data(), values_.object_T.data()})
+    auto chain_size = static_cast<Eigen::Index>(kCameraArm + kTargetArm + 1 + kTrackErrors * values_.knots.size());
+    if (settings_.is_vicon_used) chain_size += 2 * kPose;
+    for (double* block : {values_.C_object.data(), values_.object_T.data(), values_.lens.data(), values_.V_L.data()})
       if (problem_.HasParameterBlock(block) && !problem_.IsParameterBlockConstant(block)) blocks.push_back(block);
     Eigen::Index global_size = 0;
     for (const double* block : blocks) global_size += problem_.ParameterBlockSize(block);
@@ -495,14 +496,7 @@ class Fit {
   ceres::Problem problem_;
 };
 
-}  // namespace
-
-FitResult fit_chain(const BoardDesign& board, const Isometry3d& T_target_board, const std::vector<FitImage>& images,
-                    const Calibration& start, const FitSettings& settings) {
-  return Fit(board, T_target_board, images, start, settings).run();
-}
-
-Matrix6 posterior_of_arms(const FitResult& fit, const Posture& posture) {
+Eigen::MatrixXd jacobian_of_arms(const FitResult& fit, const Posture& posture) {
   const Start start = start_of(fit.calibration);
   const CameraChain camera(start, posture);
   const TargetChain target{&start, posture.target_rad};
@@ -540,6 +534,39 @@ Matrix6 posterior_of_arms(const FitResult& fit, const Posture& posture) {
   for (int k = 0; k < kSpline; ++k)
     jacobian.middleCols<kTrackErrors>(kCameraArm + kTargetArm + 1 + kTrackErrors * (camera.first_knot + k)) =
         by_knot[static_cast<std::size_t>(k)];
+  return jacobian;
+}
+
+/// Of T_C_T by motion capture, if its objects are seen where the arms say: by its two frames.
+Eigen::MatrixXd jacobian_of_vicon(const FitResult& fit, const Posture& posture) {
+  constexpr double kStep = 1e-6;
+  const Isometry3d T_C_T = T_C_T_of_arms(fit.calibration, posture);
+  const Isometry3d C_object = fit.calibration.vicon.T_C_object.isometry();
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(6, fit.covariance.cols());
+  const Eigen::Index first = fit.covariance.cols() - 2 * kPose;
+  for (int k = 0; k < kPose; ++k) {
+    const Vector6<double> step = kStep * Vector6<double>::Unit(k);
+    const Isometry3d moved = rigid_of(step.data());
+    jacobian.col(first + k) = pose_difference(T_C_T, C_object * moved * C_object.inverse() * T_C_T) / kStep;
+    jacobian.col(first + kPose + k) = pose_difference(T_C_T, T_C_T * moved) / kStep;
+  }
+  return jacobian;
+}
+
+}  // namespace
+
+FitResult fit_chain(const BoardDesign& board, const Isometry3d& T_target_board, const std::vector<FitImage>& images,
+                    const Calibration& start, const FitSettings& settings) {
+  return Fit(board, T_target_board, images, start, settings).run();
+}
+
+Matrix6 posterior_of_arms(const FitResult& fit, const Posture& posture) {
+  const Eigen::MatrixXd jacobian = jacobian_of_arms(fit, posture);
+  return jacobian * fit.covariance * jacobian.transpose();
+}
+
+Matrix6 posterior_of_difference(const FitResult& fit, const Posture& posture) {
+  const Eigen::MatrixXd jacobian = jacobian_of_arms(fit, posture) - jacobian_of_vicon(fit, posture);
   return jacobian * fit.covariance * jacobian.transpose();
 }
 

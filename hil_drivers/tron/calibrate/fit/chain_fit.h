@@ -45,7 +45,7 @@ struct FitSettings {
 struct FitResult {
   Calibration calibration;
   std::vector<Eigen::Isometry3d> T_C_T;  ///< of the images, by all sources together
-  Eigen::MatrixXd covariance;            ///< of the parameters of the whole chain, after kWholeChain only
+  Eigen::MatrixXd covariance;  ///< of the parameters of the whole chain and motion capture, after kWholeChain only
   bool is_usable = false;
   double cost = 0.0;
   int iterations = 0;
@@ -59,5 +59,10 @@ struct FitResult {
 /// Covariance of the arms' T_C_T at a posture by that of the parameters: of [rotation, rad; translation, m] in camera
 /// axes.
 [[nodiscard]] Matrix6 posterior_of_arms(const FitResult& fit, const Posture& posture);
+
+/// The same of the difference of arms and motion capture: without what is common to both, such as the turn of the
+/// camera that a shift of the lens' centre looks like. Fusion weighs the sources by what they do not share. After a fit
+/// with motion capture only.
+[[nodiscard]] Matrix6 posterior_of_difference(const FitResult& fit, const Posture& posture);
 
 }  // namespace vbar::tron::calibrate

@@ -19,6 +19,11 @@ Matrix3d cross_matrix(const Vector3& v) {
   return cross;
 }
 
+/// Below these no arm and no motion capture is: repeatability.
+double least_of(double Scatter::*member) {
+  return member == &Scatter::place_m ? 5e-5 : 3e-5;
+}
+
 double minus_log_likelihood(const std::vector<ScatterSample>& samples, const Scatter& scatter) {
   double sum = 0.0;
   for (const ScatterSample& sample : samples) {
@@ -66,7 +71,7 @@ Scatter estimate_scatter(const std::vector<ScatterSample>& samples, const Scatte
       for (int k = 0; k < 20; ++k) {
         Scatter trial = best;
         trial.*member *= factor;
-        if (trial.*member < 1e-7 || trial.*member > 0.1) break;
+        if (trial.*member < least_of(member) || trial.*member > 0.1) break;
         const double next = minus_log_likelihood(samples, trial);
         if (!(next < cost)) break;
         best = trial;

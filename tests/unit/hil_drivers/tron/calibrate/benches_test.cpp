@@ -1,6 +1,9 @@
 // Calibration of five benches of numbers, against the goals of the design brief (section 5).
 
+#include <algorithm>
 #include <cstdio>
+#include <stdexcept>
+#include <string>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -48,11 +51,52 @@ BenchFit calibrated(std::uint64_t seed, int fitted, int judged) {
                    [](const std::string& line) { std::printf("%s\n", line.c_str()); });
 }
 
+const StageFigures& stage(const BenchFit& fit, const std::string& name) {
+  for (const StageFigures& figures : fit.calibration.figures)
+    if (figures.stage == name) return figures;
+  throw std::runtime_error("no stage " + name);
+}
+
+/// Share of the judged postures at which fusion used both sources.
+double share_of_both(const BenchFit& fit) {
+  double both = 0.0;
+  for (const EvaluatedPose& pose : fit.fused) both += pose.sources == FusionSources::kBoth ? 1.0 : 0.0;
+  return both / static_cast<double>(fit.fused.size());
+}
+
 class Benches : public testing::TestWithParam<int> {};
 
+// Goals (design brief, sections 5 and 9): medians of the fused pose against the board's pose by the image 2.9 mm, 0.35
+// deg, 2.0 px, the paper's; against truth 2.0 mm, 0.15 deg; fusion never more than 5 % worse than the better source.
+// Without the whole chain, what the paper has: arms 3 to 7 mm (its 3.97; the brief's prototype 3.7 to 6.3), motion
+// capture 5 to 10 mm (6.66).
 TEST_P(Benches, ReachTheirGoals) {
   const BenchFit fit = calibrated(static_cast<std::uint64_t>(GetParam()), 208, 110);
-  for (const StageFigures& stage : fit.calibration.figures) print(stage);
+  for (const StageFigures& figures : fit.calibration.figures) print(figures);
+  const StageFigures& fused = stage(fit, "fused");
+  ASSERT_TRUE(fused.truth.has_value());
+  EXPECT_GE(fused.poses, 105);
+  EXPECT_LE(fused.board.translation_median_mm, 2.9);
+  EXPECT_LE(fused.board.rotation_median_deg, 0.35);
+  EXPECT_LE(fused.board.pixel_median_px, 2.0);
+  EXPECT_LE(fused.truth->translation_median_mm, 2.0);
+  EXPECT_LE(fused.truth->rotation_median_deg, 0.15);
+  const StageFigures &arms = stage(fit, "arms, whole chain"), &vicon = stage(fit, "motion capture, whole problem");
+  EXPECT_LE(fused.truth->translation_median_mm,
+            1.05 * std::min(arms.truth->translation_median_mm, vicon.truth->translation_median_mm));
+  EXPECT_LE(fused.truth->rotation_median_deg,
+            1.05 * std::min(arms.truth->rotation_median_deg, vicon.truth->rotation_median_deg));
+  EXPECT_LE(fused.board.translation_mean_mm,
+            1.05 * std::min(arms.board.translation_mean_mm, vicon.board.translation_mean_mm));
+  // The gate is at 95 % of a chi-square of six degrees of freedom; 110 draws of it scatter by 2 %.
+  EXPECT_GE(share_of_both(fit), 0.88);
+  const double offsets_mm = stage(fit, "arms, mounts and joint offsets").truth->translation_mean_mm;
+  EXPECT_GE(offsets_mm, 3.0);
+  EXPECT_LE(offsets_mm, 7.0);
+  const double vicon_mm = stage(fit, "motion capture alone").truth->translation_mean_mm;
+  EXPECT_GE(vicon_mm, 5.0);
+  EXPECT_LE(vicon_mm, 10.0);
+  EXPECT_GE(stage(fit, "arms, mounts").truth->translation_mean_mm, 1.2 * offsets_mm);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Benches, testing::Values(1, 2, 3, 4, 5));
