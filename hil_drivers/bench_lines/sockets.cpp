@@ -18,9 +18,10 @@ using boost::system::error_code;
 constexpr std::size_t kMaxOutgoingBytes = std::size_t{1} << 20;
 constexpr int kReceiveBufferBytes = 512 * 1024;
 
-void require(const error_code& error, std::string_view kind, std::uint16_t port) {
+void require(const error_code& error, std::string_view kind, const asio::ip::address_v4& address, std::uint16_t port) {
   if (error)
-    throw std::runtime_error(fmt::format("{} port {} of 127.0.0.1 is not available: {}", kind, port, error.message()));
+    throw std::runtime_error(
+        fmt::format("{} port {} of {} is not available: {}", kind, port, address.to_string(), error.message()));
 }
 
 }  // namespace
@@ -64,13 +65,14 @@ void Connection::close() {
   socket_.close(ignored);
 }
 
-Listener::Listener(asio::io_context& context, std::uint16_t port) : acceptor_(context) {
+Listener::Listener(asio::io_context& context, std::uint16_t port, const asio::ip::address_v4& address)
+    : acceptor_(context) {
   error_code error;
   acceptor_.open(tcp::v4(), error);
   if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
-  if (!error) acceptor_.bind(tcp::endpoint(asio::ip::address_v4::loopback(), port), error);
+  if (!error) acceptor_.bind(tcp::endpoint(address, port), error);
   if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
-  require(error, "TCP", port);
+  require(error, "TCP", address, port);
 }
 
 void Listener::start(Accept accept) {
@@ -117,7 +119,7 @@ DatagramPort::DatagramPort(asio::io_context& context, std::uint16_t port) : sock
   socket_.open(udp::v4(), error);
   if (!error) socket_.bind(udp::endpoint(asio::ip::address_v4::loopback(), port), error);
   if (!error) socket_.non_blocking(true, error);
-  require(error, "UDP", port);
+  require(error, "UDP", asio::ip::address_v4::loopback(), port);
   error_code ignored;  // the system's default is a working size, too
   socket_.set_option(asio::socket_base::receive_buffer_size(kReceiveBufferBytes), ignored);
 }

@@ -51,7 +51,8 @@ class Listener : public std::enable_shared_from_this<Listener> {
   using Accept = std::function<Connection::Receive()>;
 
   /// Throws std::runtime_error if the port is not available.
-  Listener(boost::asio::io_context& context, std::uint16_t port);
+  Listener(boost::asio::io_context& context, std::uint16_t port,
+           const boost::asio::ip::address_v4& address = boost::asio::ip::address_v4::loopback());
 
   void start(Accept accept);
   void close_connections();

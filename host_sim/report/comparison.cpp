@@ -145,13 +145,24 @@ void append_consistency(std::vector<ComparisonRow>& rows, Runs runs) {
                         [&](const RunRecord& r) { return fixed(nees(r), 2); }));
 }
 
+/// Nothing if no run estimates the target's attitude.
+void append_attitude(std::vector<ComparisonRow>& rows, Runs runs, const Papers& papers) {
+  const auto has_attitude = [](const ComparedRun& run) { return run.record.summary.attitude_error_deg.has_value(); };
+  if (std::ranges::none_of(runs, has_attitude)) return;
+  const auto text = [](const std::optional<MeanAndDeviation>& error_deg) { return plus_minus(error_deg, 2); };
+  rows.push_back(row_of(
+      "  attitude error of the target, deg (mean ± std)", runs, papers,
+      [&](const RunRecord& r) { return text(r.summary.attitude_error_deg); },
+      [&](const PaperColumn& p) { return text(p.attitude_error_deg); }));
+}
+
 void append_totals(std::vector<ComparisonRow>& rows, Runs runs, const Papers& papers) {
   const Unit unit = navigation_unit(runs);
   rows.push_back({"whole run", {}});
   rows.push_back(row_of(
       fmt::format("  delta-v, {}/s", unit.name), runs, papers,
       [&](const RunRecord& r) { return fixed(unit.scale * r.summary.dv_mps, unit.scale == 1.0 ? 6 : 3); },
-      [&](const PaperColumn& p) { return fixed(unit.scale * p.dv_mps, 3); }));
+      [&](const PaperColumn& p) { return significant(unit.scale * p.dv_mps, 5); }));
   rows.push_back(row_of(
       "  maneuvers", runs, papers, [](const RunRecord& r) { return std::to_string(r.summary.maneuvers); },
       [](const PaperColumn& p) { return std::to_string(p.maneuvers); }));
@@ -168,6 +179,7 @@ void append_totals(std::vector<ComparisonRow>& rows, Runs runs, const Papers& pa
         [&](const PaperColumn& p) {
           return plus_minus(p.navigation_velocity_error_mps, kVelocityDecimals, unit.scale);
         }));
+  append_attitude(rows, runs, papers);
   append_consistency(rows, runs);
   rows.push_back(row_of("  longest flight step", runs, [](const RunRecord& r) { return cost(r.summary.flight_step); }));
   rows.push_back(row_of("  most stack, bytes", runs, [](const RunRecord& r) {

@@ -31,8 +31,8 @@ struct AxisLimits {
 /// An arm of six axes with a spherical wrist, of KUKA's kind. At zero angles it is stretched along base x, and the
 /// frames of all links are parallel to the base's. A1 turns about -z at height d1; A2 about +y, a1 before A1; A3 about
 /// +y, a2 along the upper arm; A4 about -x, a3 above A3; A5 about +y and A6 about -x at the wrist, d4 along the
-/// forearm; the flange is d6 from the wrist. Flange frame: z away from the wrist, x up at zero angles (R_base_flange =
-/// [0 0 1; 0 1 0; -1 0 0], rotation of 90 deg about y).
+/// forearm; the flange is d6 from the wrist. Flange frame: z away from the wrist, x down at zero angles (R_base_flange
+/// = [0 0 1; 0 1 0; -1 0 0], rotation of 90 deg about y).
 struct ArmDesign {
   std::string type;  ///< of the manufacturer
   double d1_m = 0.0, a1_m = 0.0, a2_m = 0.0, a3_m = 0.0, d4_m = 0.0, d6_m = 0.0;

@@ -42,30 +42,7 @@ std::string text_of(const paper1::Totals& totals) {
   return fmt::format("{:.2f} in {} maneuvers", totals.dv_mps, totals.maneuvers);
 }
 
-PaperColumn paper_column(const char* name, paper1::Loop paper1::Loops::*loop, const paper1::Totals& totals) {
-  PaperColumn column;
-  column.name = name;
-  column.at = [loop](const WaypointRow& row) {
-    PaperColumn::AtWaypoint at;
-    if (const paper1::Loops* const same = at_waypoint(paper1::kWaypoints, row)) {
-      at.control_error_m = (same->*loop).control_error_m;
-      at.navigation_error_m = (same->*loop).navigation_error_m;
-    }
-    return at;
-  };
-  column.dv_mps = totals.dv_mps;
-  column.maneuvers = totals.maneuvers;
-  return column;
-}
-
 }  // namespace
-
-std::vector<PaperColumn> camera_paper_columns(const RunRecord& record) {
-  if (record.summary.navigation != "angles_only" || !meets_paper(paper1::kWaypoints, reached_waypoints(record)))
-    return {};
-  return {paper_column(kPaperSoftware, &paper1::Loops::software, paper1::kSoftware),
-          paper_column(kPaperHardware, &paper1::Loops::hardware, paper1::kHardware)};
-}
 
 std::string angles_only_performance(const RunRecord& record) {
   const std::vector<WaypointRow> waypoints = reached_waypoints(record);

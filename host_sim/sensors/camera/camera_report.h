@@ -43,9 +43,11 @@ struct PoseFigures {
 /// summary's own figures of attitude and bearing.
 void summarise_images(const report::RunRecord& record, report::Summary& summary);
 
-// In angles_only_performance.cpp.
-/// Published figures of experiment 1; none for a run that does not navigate by angles only to its waypoints.
+/// Published figures of experiments 1 and 2; none for a run that does not navigate by the same measurements to the same
+/// waypoints (camera_paper_columns.cpp).
 [[nodiscard]] std::vector<report::PaperColumn> camera_paper_columns(const report::RunRecord& record);
+
+// In angles_only_performance.cpp.
 /// Errors at the waypoints and delta-v as HTML; the paper's figures below those of a run that meets its waypoints.
 [[nodiscard]] std::string angles_only_performance(const report::RunRecord& record);
 

@@ -178,6 +178,7 @@ std::vector<PaperColumn> one_paper(const RunRecord& record) {
   paper.navigation_error_m = MeanAndDeviation{8.367e-3, 2.679e-3};
   paper.dv_mps = 15.596e-3;
   paper.maneuvers = 11;
+  paper.attitude_error_deg = MeanAndDeviation{4.1302, 2.1608};
   return {paper};
 }
 
@@ -190,6 +191,8 @@ TEST(Comparison, ThePaperHasColumnsBesideTheRuns) {
     run.record.summary.first_fix_s = 80.0;  // carrier phases: millimetres
     run.record.summary.sensor_figures["gnss"]["time_to_20_mm_s"] = 80.0;
   }
+  runs[0].record.summary.attitude_error_deg = MeanAndDeviation{1.39, 0.5};
+  runs[1].record.summary.attitude_error_deg.reset();
   runs[1].record.summary.sensor_figures.clear();
   EXPECT_THAT(column_names(runs), ElementsAre("sil", "pil", "paper"));
   const std::vector<ComparisonRow> rows = comparison_rows(runs);
@@ -198,6 +201,7 @@ TEST(Comparison, ThePaperHasColumnsBesideTheRuns) {
   EXPECT_EQ(cells_of(rows, "navigation error, mm (mean").at(2), "8.367 ± 2.679");
   EXPECT_EQ(cells_of(rows, "  delta-v, mm/s").at(2), "15.596");
   EXPECT_EQ(cells_of(rows, "  maneuvers").at(2), "11");
+  EXPECT_THAT(cells_of(rows, "attitude error"), ElementsAre("1.39 ± 0.50", "–", "4.13 ± 2.16"));
   EXPECT_THAT(cells_of(rows, "time_to_20_mm_s"), ElementsAre("80", "–", "–"));
   EXPECT_EQ(cells_of(rows, "telemetry").at(2), "–") << "the paper has no bits to compare";
 }

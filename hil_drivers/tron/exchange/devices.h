@@ -1,0 +1,101 @@
+#pragma once
+// What the exchange of a scene for an image needs of the bench and of its planning.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "hil_drivers/tron/hardware/robot_pair.h"
+#include "hil_drivers/tron/placement/scene.h"
+
+namespace vbar::tron {
+
+/// Where both arms, the carriage and the lamp shall be.
+struct Place {
+  Posture posture;
+  double lamp_azimuth_rad = 0.0;
+  double sun_error_rad = 0.0;  ///< of the direction to the lamp
+  int hidden = 0;              ///< keypoints and centre that the arm hides
+};
+
+/// Why there is none, one sentence.
+struct NoPlace {
+  std::string reason;
+};
+
+class MotionPlanner {
+ public:
+  MotionPlanner() = default;
+  MotionPlanner(const MotionPlanner&) = delete;
+  MotionPlanner& operator=(const MotionPlanner&) = delete;
+  virtual ~MotionPlanner() = default;
+
+  [[nodiscard]] virtual std::variant<Place, NoPlace> place(const Scene& scene, const Posture& from,
+                                                           std::int64_t image) = 0;
+  /// Free of collisions; nothing to move: a motion of no cycles.
+  [[nodiscard]] virtual std::variant<Motion, NoPlace> path(const Posture& from, const Posture& to) = 0;
+  /// The posture near `from` whose relative pose by the calibrated arms is `T_C_T`.
+  [[nodiscard]] virtual std::optional<Posture> corrected(const Posture& from, const Eigen::Isometry3d& T_C_T) = 0;
+};
+
+/// Powers from 0 to 1, of light, not of the DMX value.
+struct LightLevels {
+  double lamp_power = 0.0;
+  double lamp_azimuth_rad = 0.0;
+  std::array<double, kBoxes> box_power{};
+  std::optional<double> earth_misfit;  ///< rms over the normals, relative to the largest irradiance of the Earth
+};
+
+class LightPlanner {
+ public:
+  LightPlanner() = default;
+  LightPlanner(const LightPlanner&) = delete;
+  LightPlanner& operator=(const LightPlanner&) = delete;
+  virtual ~LightPlanner() = default;
+
+  [[nodiscard]] virtual LightLevels levels(const Scene& scene, const Place& place) = 0;
+};
+
+/// Poses of the objects of motion capture in its frame, averaged at rest.
+struct CapturedPoses {
+  Eigen::Isometry3d T_V_camera = Eigen::Isometry3d::Identity(), T_V_target = Eigen::Isometry3d::Identity();
+};
+
+struct MeasuredPlace {
+  Posture posture;                       ///< at rest, through Ethernet KRL
+  std::optional<CapturedPoses> capture;  ///< none: hidden, frozen, silent
+};
+
+struct BenchFrame {
+  std::vector<std::uint16_t> dn;  ///< of the region, rows from the top
+  std::int64_t packets_resent = 0;
+  int tries = 1;
+};
+
+/// The devices of a bench. All functions throw std::runtime_error, one sentence that names the device, if the bench
+/// cannot go on.
+class Laboratory {
+ public:
+  Laboratory() = default;
+  Laboratory(const Laboratory&) = delete;
+  Laboratory& operator=(const Laboratory&) = delete;
+  virtual ~Laboratory() = default;
+
+  [[nodiscard]] virtual Posture posture() = 0;
+  virtual MotionEnd follow(const Motion& motion) = 0;
+  virtual MotionEnd hold(double bench_s) = 0;
+  /// After kInterrupted.
+  virtual void recover() = 0;
+  /// Arms and motion capture, at rest.
+  virtual std::variant<MeasuredPlace, MotionEnd> measure() = 0;
+  /// Sends; hold() until they are there.
+  virtual void light(const LightLevels& levels) = 0;
+  virtual BenchFrame take(double exposure_s) = 0;
+  [[nodiscard]] virtual double time_s() const = 0;  ///< bench time
+};
+
+}  // namespace vbar::tron

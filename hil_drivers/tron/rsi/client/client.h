@@ -1,0 +1,101 @@
+#pragma once
+// The computer's end of RSI for one robot: receives the state of a cycle and answers it. It never generates an IPOC,
+// and a command is answered only if it is within the limits of speed, acceleration and range. One thread; no wall clock
+// but the time-out of a datagram that never comes.
+//
+//   receive() -> first state: zero of the corrections -> answer() -> receive() -> answer() -> ...
+//
+// A caller that does not move answers with last_command().
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "hil_drivers/tron/rsi/client/axis_positions.h"
+#include "hil_drivers/tron/rsi/client/command_check.h"
+#include "hil_drivers/tron/rsi/wire/context_xml.h"
+#include "hil_drivers/tron/rsi/wire/ethernet_xml.h"
+
+namespace vbar::tron::rsi {
+
+struct State {
+  AxisPositions measured;       ///< AIPos, EIPos
+  std::uint64_t cycle = 0;      ///< number of states before this one since restart()
+  std::uint64_t delay = 0;      ///< as counted by the controller since RSI_ON
+  int delayed_in_row = 0;       ///< successive states in which that count has grown
+  std::uint64_t skipped = 0;    ///< older states that had arrived as well and were not answered, since restart()
+  bool ipoc_not_newer = false;  ///< its time stamp is not later than that of the state before: it has jumped back
+};
+
+struct ClientSettings {
+  std::string name;           ///< of the device in messages: "camera robot"
+  std::string robot_address;  ///< datagrams from other addresses are foreign
+  std::uint16_t port = 0;     ///< of this computer; 0: any free one
+  EthernetXml ethernet;
+  std::array<CommandLimits, kWireAxes> axes{};
+  std::optional<CommandLimits> track;  ///< of the robot on the track
+};
+
+/// Address, port and limits of a robot of the bench (full speed and acceleration of its design, not the override).
+/// `track`: of the robot that rides on it, otherwise nullptr.
+[[nodiscard]] ClientSettings client_settings(const std::string& name, const Robot& robot, const Track* track,
+                                             const RobotFiles& files);
+
+/// A command that would exceed a limit: a defect of the caller. One sentence with device, axis, value and limit.
+class CommandRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The socket cannot be used, or a call out of order.
+class RsiError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Client {
+ public:
+  /// Listens. Throws RsiError.
+  explicit Client(const ClientSettings& settings);
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  /// Waits for the next state of the robot; the newest if several have arrived. Nothing: the robot was silent for
+  /// `patience` of wall clock. Foreign and unreadable datagrams are counted and ignored. Throws RsiError.
+  [[nodiscard]] std::optional<State> receive(std::chrono::milliseconds patience);
+
+  /// Answers the last state received, once: `command` is where the axes shall be, absolute. Speed and acceleration are
+  /// checked against the commands before, one cycle each. Throws CommandRefused, and nothing is sent; RsiError if there
+  /// is no state to answer.
+  void answer(const AxisPositions& command);
+  /// Answers with the last command and the stop signal, which ends the motion at the controller. Throws RsiError.
+  void answer_stop();
+
+  /// After RSI was stopped and before it is started: discards what has arrived; the next state is a first one.
+  void restart();
+
+  /// Where the robot stood at the first state since restart(); corrections count from there.
+  [[nodiscard]] const AxisPositions& zero() const;
+  /// The command that was answered last; zero() before the first answer.
+  [[nodiscard]] const AxisPositions& last_command() const;
+
+  [[nodiscard]] std::uint16_t port() const;
+  /// "camera robot at RSI port 59152".
+  [[nodiscard]] const std::string& description() const;
+  [[nodiscard]] std::uint64_t foreign_datagrams() const;
+  [[nodiscard]] std::uint64_t unreadable_datagrams() const;
+  /// Why the last unreadable datagram was ignored; empty: there was none.
+  [[nodiscard]] const std::string& last_problem() const;
+  [[nodiscard]] const ClientSettings& settings() const;
+
+ private:
+  struct Line;
+  std::unique_ptr<Line> line_;
+};
+
+}  // namespace vbar::tron::rsi

@@ -1,0 +1,36 @@
+#pragma once
+// What the testbed adds to record, summary and report: tron.csv, the object "tron" of summary.json, a section.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "hil_drivers/tron/tron_row.h"
+#include "host_sim/report/extension.h"
+#include "host_sim/report/provenance.h"
+
+namespace vbar::tron {
+
+/// What is known at the end of a run, beside the rows.
+struct RunFigures {
+  bool is_emulated = false;
+  std::string clock;                         ///< of the bench: "virtual", "real"
+  std::string camera;                        ///< vendor, model, serial number
+  std::vector<std::filesystem::path> files;  ///< bench file and calibration
+  /// Of the devices, by name: late answers, stops, restarts, frames lost, ...
+  std::map<std::string, double> devices;
+  std::map<std::string, double> calibration;    ///< its figures
+  std::vector<report::FileDigest> bench_files;  ///< of an emulated bench: its program and files
+  std::map<std::string, int> faults;            ///< likewise, that have taken effect
+};
+
+/// Into record.summary.testbeds["tron"] and, for the files, its provenance.
+void add_figures(const RunFigures& figures, report::RunRecord& record);
+
+// The extension.
+[[nodiscard]] std::vector<report::TableKind> tables();
+void summarise(const report::RunRecord& record, report::Summary& summary);
+[[nodiscard]] std::vector<report::Section> sections(const report::RunRecord& record);
+
+}  // namespace vbar::tron

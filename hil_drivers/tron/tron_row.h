@@ -1,0 +1,60 @@
+#pragma once
+// An image of the testbed (tron.csv).
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "host_sim/report/run_columns.h"
+
+namespace vbar::tron {
+
+struct TronRow {
+  double time_s = 0.0;      ///< of the middle of the exposure, since the mission's epoch
+  std::int64_t image = 0;   ///< number of the exposure
+  std::string failure;      ///< why it was not taken; empty: it was
+  std::string pose_source;  ///< "fused", "arms"; empty: the target was not lit, and the arms did not move
+  std::int64_t hidden = 0;  ///< keypoints and centre that the target's arm hides
+  std::int64_t moves = 0;
+  double bench_s = 0.0, move_s = 0.0;  ///< bench time: of the image, of its moves
+  // Measured pose less the commanded one, laboratory lengths; of the first move, and after the correction.
+  std::optional<double> first_error_mm, first_error_deg, pose_error_mm, pose_error_deg;
+  std::optional<double> disagreement;  ///< of arms and motion capture, chi-square of six degrees of freedom
+  std::optional<double> lamp_azimuth_deg, sun_error_deg;
+  double lamp_power = 0.0;
+  std::optional<double> earth_light_misfit;  ///< rms over the normals, relative to the largest irradiance of the Earth
+  std::optional<double> light_level;         ///< light of the target relative to the prediction
+  std::int64_t tries = 0, packets_resent = 0;
+  double plan_wall_s = 0.0, move_wall_s = 0.0, expose_wall_s = 0.0, mask_wall_s = 0.0;
+};
+
+template <report::columns::RowOf<TronRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  using report::ColumnName;
+  visit(ColumnName{"time_s"}, row.time_s);
+  visit(ColumnName{"image"}, row.image);
+  visit(ColumnName{"failure"}, row.failure);
+  visit(ColumnName{"pose_source"}, row.pose_source);
+  visit(ColumnName{"hidden"}, row.hidden);
+  visit(ColumnName{"moves"}, row.moves);
+  visit(ColumnName{"bench_s"}, row.bench_s);
+  visit(ColumnName{"move_s"}, row.move_s);
+  visit(ColumnName{"first_error_mm"}, row.first_error_mm);
+  visit(ColumnName{"first_error_deg"}, row.first_error_deg);
+  visit(ColumnName{"pose_error_mm"}, row.pose_error_mm);
+  visit(ColumnName{"pose_error_deg"}, row.pose_error_deg);
+  visit(ColumnName{"disagreement"}, row.disagreement);
+  visit(ColumnName{"lamp_azimuth_deg"}, row.lamp_azimuth_deg);
+  visit(ColumnName{"sun_error_deg"}, row.sun_error_deg);
+  visit(ColumnName{"lamp_power"}, row.lamp_power);
+  visit(ColumnName{"earth_light_misfit"}, row.earth_light_misfit);
+  visit(ColumnName{"light_level"}, row.light_level);
+  visit(ColumnName{"tries"}, row.tries);
+  visit(ColumnName{"packets_resent"}, row.packets_resent);
+  visit(ColumnName{"plan_wall_s"}, row.plan_wall_s);
+  visit(ColumnName{"move_wall_s"}, row.move_wall_s);
+  visit(ColumnName{"expose_wall_s"}, row.expose_wall_s);
+  visit(ColumnName{"mask_wall_s"}, row.mask_wall_s);
+}
+
+}  // namespace vbar::tron
