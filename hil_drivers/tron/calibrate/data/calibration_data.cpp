@@ -32,8 +32,8 @@ json array_of(const Vector& vector) {
 /// Quaternion w, x, y, z, then the place.
 json pose_of(const Eigen::Isometry3d& pose) {
   const Eigen::Quaterniond q(pose.linear());
-  return array_of(std::array{q.w(), q.x(), q.y(), q.z(), pose.translation().x(), pose.translation().y(),
-                             pose.translation().z()});
+  return array_of(
+      std::array{q.w(), q.x(), q.y(), q.z(), pose.translation().x(), pose.translation().y(), pose.translation().z()});
 }
 
 json json_of(const Measurement& measurement) {
@@ -61,8 +61,8 @@ class Reader {
   }
 
   [[noreturn]] void refuse(const std::string& key, const std::string& expected) const {
-    throw std::runtime_error(fmt::format("{}: {}{}{}: expected {}", file_, place_,
-                                         place_.empty() || key.empty() ? "" : ".", key, expected));
+    throw std::runtime_error(
+        fmt::format("{}: {}{}{}: expected {}", file_, place_, place_.empty() || key.empty() ? "" : ".", key, expected));
   }
   [[nodiscard]] bool has(const char* key) const { return value_.contains(key); }
   [[nodiscard]] const json& at(const char* key, const std::string& expected) const {
@@ -139,8 +139,7 @@ Measurement measurement_of(const Reader& reader) {
 std::vector<Measurement> measurements_of(const Reader& document, const char* key, const std::string& file) {
   std::vector<Measurement> measurements;
   for (const json& element : document.array(key))
-    measurements.push_back(
-        measurement_of(Reader(element, file, fmt::format("{}[{}]", key, measurements.size()))));
+    measurements.push_back(measurement_of(Reader(element, file, fmt::format("{}[{}]", key, measurements.size()))));
   return measurements;
 }
 
@@ -166,8 +165,8 @@ CalibrationData data_of(const json& value, const std::string& file) {
   data.dark.read_noise_dn = document.number("read_noise_dn", 0.0, 65535.0);
   for (const json& element : document.array("lights")) {
     const Reader light(element, file, fmt::format("lights[{}]", data.lights.size()));
-    data.lights.push_back({light.text("source"), light.number("level", 0.0, 1.0),
-                           light.number("dn_per_s", -1e12, 1e12), light.number("design_irradiance", 0.0, 1e6)});
+    data.lights.push_back({light.text("source"), light.number("level", 0.0, 1.0), light.number("dn_per_s", -1e12, 1e12),
+                           light.number("design_irradiance", 0.0, 1e6)});
   }
   data.fitted = measurements_of(document, "fitted", file);
   data.judged = measurements_of(document, "judged", file);
@@ -176,7 +175,8 @@ CalibrationData data_of(const json& value, const std::string& file) {
 
 void append(std::string& text, const char* key, const std::vector<Measurement>& measurements) {
   text += fmt::format("\"{}\": [", key);
-  for (std::size_t k = 0; k < measurements.size(); ++k) text += (k == 0 ? "\n" : ",\n") + json_of(measurements[k]).dump();
+  for (std::size_t k = 0; k < measurements.size(); ++k)
+    text += (k == 0 ? "\n" : ",\n") + json_of(measurements[k]).dump();
   text += "\n]";
 }
 

@@ -58,7 +58,8 @@ class TruthRows {
     double value = 0.0;
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-      throw std::runtime_error(fmt::format("{}:{}: column {}: \"{}\" is not a finite number", file_, line_, column, cell));
+      throw std::runtime_error(
+          fmt::format("{}:{}: column {}: \"{}\" is not a finite number", file_, line_, column, cell));
     return value;
   }
 

@@ -31,4 +31,7 @@ using PostureFilter = std::function<bool(const Posture&)>;
                                                    const BoardDesign& board, int count, std::uint64_t seed,
                                                    const PoseGoals& goals = {}, const PostureFilter& filter = {});
 
+/// A frame with that z (unit), as R_L_frame; its x is level.
+[[nodiscard]] fsw::Matrix3 looking_along(const fsw::Vector3& z);
+
 }  // namespace vbar::tron::calibrate

@@ -150,7 +150,7 @@ std::vector<Isometry3d> poses_at(double range_m) {
 
 TEST(BoardCorners, AreFoundWithoutBiasNearBy) {
   const Bias bias = bias_of(poses_at(2.5), {});
-  EXPECT_GE(bias.count, 4 * 52);  // a marker may be missed in the noise, and with it its corners
+  EXPECT_GE(bias.count, 4 * 52);                     // a marker may be missed in the noise, and with it its corners
   EXPECT_LT(bias.mean.cwiseAbs().maxCoeff(), 0.03);  // the brief's goal
   EXPECT_LT(bias.rms.maxCoeff(), 0.1);
 }
