@@ -1,0 +1,25 @@
+#pragma once
+// What the shaders of surfaces take: materials, and the Earth's light as a table.
+
+#include <array>
+#include <vector>
+
+#include "host_sim/twins/camera/model/cad_model.h"
+
+namespace vbar::twins::camera {
+
+/// Albedo, reflectivity, the same at grazing incidence, roughness. A reflectivity below 4 %, glass with a coating or
+/// plain paint, rises less at grazing incidence; zero stays zero. Roughness from the exponent: Walter et al. (2007),
+/// section 5.2.
+std::array<float, 4> shader_material(const Material& material);
+
+/// Irradiance by the Earth of an area whose normal makes an angle of this cosine with the nadir, in units of that of an
+/// area which faces it. A sphere of even radiance, horizon included: Snyder (1996), "Area light sources for real-time
+/// graphics", in the form of Lagarde and de Rousiers (2014), "Moving Frostbite to physically based rendering",
+/// listing 7.
+double earth_factor(double cosine, double sine_earth);
+
+/// The same at even steps of the cosine from -1 to 1.
+std::vector<float> earth_table(double sine_earth);
+
+}  // namespace vbar::twins::camera
