@@ -90,10 +90,14 @@ RobotState Client::pose() {
 }
 
 void Client::poll() {
-  read(io::Clock::now());
   // An answer that nobody waits for any more is not used.
-  while (take()) {
-  }
+  const auto take_all = [this] {
+    while (take()) {
+    }
+  };
+  take_all();  // what arrived with the last answer, before a line that is closed is an error
+  read(io::Clock::now());
+  take_all();
 }
 
 }  // namespace vbar::tron::eki

@@ -160,6 +160,34 @@ TEST(CycleClock, FunctionsOfACycleRunBeforeAndAfterTheMotion) {
   EXPECT_EQ("after " + next + ": moved", order[1]);
 }
 
+TEST(EthernetXml, DriverAndEmulatorUseTheNamesOfTheFile) {
+  ControllerSettings settings = camera_robot(0);
+  settings.ethernet.sen_type = "ImFree";
+  settings.ethernet.axis_element = "AKorr";
+  settings.ethernet.track_element = "EKorr";
+  settings.ethernet.stop_element = "Halt";
+  const BenchFile bench_file = nominal_bench();
+  rsi::RobotFiles files{settings.ethernet, settings.context};
+  rsi::ClientSettings client_settings =
+      rsi::client_settings("camera robot", bench_file.camera_robot, &bench_file.track, files);
+  client_settings.port = 0;
+  rsi::Client client(client_settings);
+  OneRobot bench(settings, client.port());
+  (void)bench.command(eki::Action::kStart);
+  for (int k = 0; k < 20; ++k) {
+    ASSERT_TRUE(client.receive(kPatience));
+    rsi::AxisPositions command = client.last_command();
+    command.axes_rad[3] += 1e-4;
+    command.track_m += 1e-6;
+    client.answer(command);
+    bench.finish_cycle();
+  }
+  EXPECT_EQ(20U, bench.controller.statistics().answers);
+  EXPECT_EQ("", bench.controller.statistics().last_bad_answer);
+  EXPECT_GT(bench.controller.position().axes_rad[3], 1e-3);
+  EXPECT_GT(bench.controller.position().track_m, 1e-5);
+}
+
 TEST(CycleClock, UnsolicitedStatesReachTheClient) {
   TwoRobots bench(ClockKind::kVirtual);
   eki::Client client(TwoRobots::eki_of(*bench.camera));
