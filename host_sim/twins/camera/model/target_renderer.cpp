@@ -11,6 +11,7 @@
 
 #include <Eigen/Geometry>
 
+#include "host_sim/twins/camera/earth_light.h"
 #include "host_sim/twins/camera/model/gl_context.h"
 #include "host_sim/twins/camera/model/gl_objects.h"
 #include "host_sim/twins/camera/model/target_shaders.h"
@@ -79,25 +80,12 @@ std::array<float, 4> shader_material(const Material& m) {
           static_cast<float>(std::min(1.0, 25.0 * specular)), static_cast<float>(roughness)};
 }
 
-// Irradiance by the Earth of an area whose normal makes an angle of this cosine with the nadir, in units of that of an
-// area which faces it. A sphere of even radiance, horizon included: Snyder (1996), "Area light sources for real-time
-// graphics", in the form of Lagarde and de Rousiers (2014), "Moving Frostbite to physically based rendering",
-// listing 7.
-double earth_factor(double cosine, double sine_earth) {
-  if (cosine >= sine_earth) return cosine;
-  if (cosine <= -sine_earth) return 0.0;
-  const double sin2 = sine_earth * sine_earth, sine = std::sqrt(1.0 - cosine * cosine);
-  const double x = std::sqrt(std::max(0.0, 1.0 / sin2 - 1.0)), y = std::clamp(-x * cosine / sine, -1.0, 1.0);
-  const double s = sine * std::sqrt(1.0 - y * y);
-  return std::max(0.0, ((cosine * std::acos(y) - x * s) * sin2 + std::atan2(s, x)) / (kPi * sin2));
-}
-
-// The same at even steps of the cosine from -1 to 1.
+// earth_light_factor() at even steps of the cosine from -1 to 1.
 std::vector<float> earth_table(double sine_earth) {
   std::vector<float> table(kEarthSteps);
   for (int i = 0; i < kEarthSteps; ++i)
     table[static_cast<std::size_t>(i)] =
-        static_cast<float>(earth_factor(2.0 * i / (kEarthSteps - 1) - 1.0, sine_earth));
+        static_cast<float>(earth_light_factor(2.0 * i / (kEarthSteps - 1) - 1.0, sine_earth));
   return table;
 }
 
