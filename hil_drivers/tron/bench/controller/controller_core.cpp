@@ -24,10 +24,13 @@ AxisArray home_of(const ControllerSettings& settings) {
   return home;
 }
 
+/// Assumed, of the size of the manufacturer's figures: an arm at full speed stands after 0.3 s.
+constexpr double kStoppingTime_s = 0.3;
+
 AxisArray decelerations_of(const ControllerSettings& settings) {
   AxisArray decelerations{};
   const auto limits = limits_of(settings);
-  for (std::size_t k = 0; k < kServoAxes; ++k) decelerations[k] = limits[k].acceleration;
+  for (std::size_t k = 0; k < kServoAxes; ++k) decelerations[k] = limits[k].speed / kStoppingTime_s;
   return decelerations;
 }
 

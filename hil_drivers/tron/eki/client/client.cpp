@@ -95,7 +95,10 @@ void Client::poll() {
     while (take()) {
     }
   };
-  take_all();  // what arrived with the last answer, before a line that is closed is an error
+  // States that came with the last answer are taken before a line that is closed is an error.
+  const std::uint64_t before = unsolicited_;
+  take_all();
+  if (unsolicited_ != before) return;
   read(io::Clock::now());
   take_all();
 }

@@ -39,7 +39,7 @@ TEST(Servo, ReachesAStepWithoutOvershoot) {
   EXPECT_TRUE(servo.stands());
 }
 
-TEST(Servo, BrakesEachAxisAtItsAcceleration) {
+TEST(Servo, BrakesEachAxisAtItsDeceleration) {
   AxisArray deceleration = filled(2.0);
   deceleration[1] = 0.5;
   Servo servo(filled(0.0), deceleration, kCycle_s);
