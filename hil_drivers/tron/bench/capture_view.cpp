@@ -14,7 +14,7 @@ constexpr double kCameraFrame_m = 0.12;
 void add_arm(const Eigen::Isometry3d& T_L_base, const ArmPoints& points, std::vector<Capsule>& capsules) {
   capsules.push_back({T_L_base.translation(), T_L_base * points.shoulder, kColumn_m});
   capsules.push_back({T_L_base * points.shoulder, T_L_base * points.elbow, kUpperArm_m});
-  capsules.push_back({T_L_base * points.forearm, T_L_base * points.wrist, kForearm_m});
+  capsules.push_back({T_L_base * points.elbow, T_L_base * points.wrist, kForearm_m});
 }
 
 }  // namespace
@@ -35,8 +35,8 @@ Eigen::Isometry3d CaptureView::T_L_body(CaptureObject object, const Posture& pos
 
 std::vector<Capsule> CaptureView::arms(const Posture& posture) const {
   std::vector<Capsule> capsules;
-  add_arm(world_.T_L_camera_base(posture), arm_points(laboratory_.camera_robot.design, posture.camera_rad), capsules);
-  add_arm(world_.T_L_target_base(), arm_points(laboratory_.target_robot.design, posture.target_rad), capsules);
+  add_arm(world_.T_L_camera_base(posture), Arm(laboratory_.camera_robot.design).points(posture.camera_rad), capsules);
+  add_arm(world_.T_L_target_base(), Arm(laboratory_.target_robot.design).points(posture.target_rad), capsules);
   return capsules;
 }
 
