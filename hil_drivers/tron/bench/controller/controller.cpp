@@ -55,6 +55,10 @@ void Controller::be_silent(std::uint64_t cycles) {
   core_->silent_cycles = cycles;
 }
 
+void Controller::lose_answers(std::uint64_t cycles) {
+  core_->lost_answers = cycles;
+}
+
 void Controller::set_ipoc_back(std::uint64_t milliseconds) {
   core_->ipoc -= std::min(core_->ipoc, milliseconds);
 }

@@ -79,6 +79,8 @@ class Controller {
   void set_frozen(bool is_frozen);
   /// Sends nothing for this number of cycles.
   void be_silent(std::uint64_t cycles);
+  /// The answers to this number of cycles do not arrive.
+  void lose_answers(std::uint64_t cycles);
   void set_ipoc_back(std::uint64_t milliseconds);
   /// Breaks RSI off.
   void drop_rsi();

@@ -75,6 +75,10 @@ void Controller::Core::move() {
 void Controller::Core::take_answer() {
   ++statistics.cycles;
   const rsi::Sen* answer = link.end_cycle();
+  if (lost_answers > 0) {
+    --lost_answers;
+    answer = nullptr;
+  }
   correction.take(answer);
   count_answer(answer != nullptr);
   if (missing_in_row >= settings.context.timeout_cycles) {
