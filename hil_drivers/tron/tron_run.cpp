@@ -11,12 +11,10 @@
 
 #include "hil_drivers/tron/fusion/fuse.h"
 #include "hil_drivers/tron/lights/light_values.h"
-#include "hil_drivers/tron/plan/plan.h"
 #include "hil_drivers/tron/scene/scene_of_exposure.h"
 #include "hil_drivers/tron/tron_camera.h"
 #include "hil_drivers/tron/tron_report.h"
 #include "host_sim/engine/random_stream.h"
-#include "host_sim/mission/body_file.h"
 #include "host_sim/twins/camera/photometry.h"
 
 namespace vbar::tron {
@@ -25,7 +23,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kDegree = 0.017453292519943295;
-constexpr std::size_t kKeypoints = 11;
 constexpr int kBinning = 2;
 /// Chi-square of six degrees of freedom between arms and motion capture at the start: beyond it the calibration is of
 /// another bench, or a mount has moved. One in 10^8 of the right ones.
@@ -147,8 +144,7 @@ void TronRun::open_devices() {
   placement.trials = settings_.trials;
   placement.max_hidden = settings_.max_hidden;
   placement.seed = context_.mission.seed;
-  planner_.emplace(bench_, calibration_, placement,
-                   mission::load_keypoints(model_file(data, bench_, "_keypoints.toml"), kKeypoints));
+  planner_.emplace(bench_, calibration_, placement, data);
   ExchangeSettings exchange;
   exchange.correct_above_m = 1e-3 * settings_.correct_above_mm;
   exchange.correct_above_rad = settings_.correct_above_deg * kDegree;

@@ -16,10 +16,15 @@
 #include "hil_drivers/bench_lines/control_line.h"
 #include "hil_drivers/tron/bench/bench_settings.h"
 #include "hil_drivers/tron/bench/camera/camera_link.h"
+#include "hil_drivers/tron/bench/capture_view.h"
 #include "hil_drivers/tron/bench/controller/cycle_clock.h"
 #include "hil_drivers/tron/bench/faults/fault_list.h"
+#include "hil_drivers/tron/bench/lights/light_receiver.h"
+#include "hil_drivers/tron/bench/lights/light_rig.h"
 #include "hil_drivers/tron/bench/robots.h"
 #include "hil_drivers/tron/bench/truth_log.h"
+#include "hil_drivers/tron/bench/vicon/capture_errors.h"
+#include "hil_drivers/tron/bench/vicon/object_stream_sender.h"
 #include "hil_drivers/tron/bench/world/world.h"
 
 namespace vbar::tron::bench {
@@ -45,7 +50,10 @@ class Bench {
 
  private:
   void begin_cycle(std::uint64_t cycle);
+  void end_motion();
   gige::Image expose(const gige::Request& request);
+  /// False for a fault that is not one of motion capture or lights.
+  bool set_light_or_capture(const Fault& fault, bool is_on);
   void act(const Fault& fault, bool is_on);
   void control(const std::string& line, const bench_lines::Answer& answer);
   [[nodiscard]] nlohmann::ordered_json summary() const;
@@ -54,9 +62,15 @@ class Bench {
   void write_addresses() const;
 
   BenchSettings settings_;
+  std::uint16_t vicon_port_;  ///< of the driver
   bench_lines::BenchDirectory directory_;
   World world_;
   Robots robots_;
+  CaptureErrors capture_errors_;
+  CaptureView capture_view_;
+  ObjectStreamSender vicon_;
+  LightRig rig_;
+  LightReceiver lights_;
   CycleClock clock_;
   CameraLink camera_;
   TruthLog truth_;

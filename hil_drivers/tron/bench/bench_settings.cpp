@@ -1,9 +1,11 @@
 #include "hil_drivers/tron/bench/bench_settings.h"
 
+#include <algorithm>
 #include <chrono>
 #include <string_view>
 
 #include "hil_drivers/tron/bench/world/world.h"
+#include "hil_drivers/tron/vicon/wire/object_stream.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/overrides.h"
 #include "host_sim/mission/read_number.h"
@@ -51,6 +53,22 @@ void read_errors(const TableReader& section, ErrorSizes& errors) {
   section.finish();
 }
 
+void read_vicon(const TableReader& section, BenchSettings& bench) {
+  for (const CaptureErrorKey& key : kCaptureErrorKeys)
+    read(section, key.key, from_to(key.smallest, key.largest), bench.capture.*key.size);
+  const auto bytes = section.integer("block_bytes", 0, 1024, static_cast<std::int64_t>(bench.vicon_block_bytes));
+  bench.vicon_block_bytes = static_cast<std::size_t>(bytes);
+  if (std::ranges::find(vicon::kBlockBytes, bench.vicon_block_bytes) == vicon::kBlockBytes.end())
+    section.refuse_value("block_bytes", "0, 256, 512 or 1024");
+  section.finish();
+}
+
+void read_lights(const TableReader& section, LightErrorSizes& lights) {
+  for (const LightErrorKey& key : kLightErrorKeys)
+    read(section, key.key, from_to(key.smallest, key.largest), lights.*key.size);
+  section.finish();
+}
+
 void read_camera(const TableReader& section, BenchSettings& bench) {
   CameraIdentity& identity = bench.identity;
   identity.vendor = section.text("vendor", identity.vendor);
@@ -79,6 +97,8 @@ BenchSettings read_bench(const std::filesystem::path& file, const std::vector<st
   read_clock(document.table("clock"), bench.clock);
   read_errors(document.table("errors"), bench.errors);
   read_camera(document.table("camera"), bench);
+  read_vicon(document.table("vicon"), bench);
+  read_lights(document.table("lights"), bench.lights);
   for (const TableReader& section : document.tables("fault")) bench.faults.push_back(read_fault(section));
   document.finish();
   return bench;

@@ -9,6 +9,8 @@
 
 #include "hil_drivers/tron/bench/controller/cycle_clock.h"
 #include "hil_drivers/tron/bench/faults/bench_fault.h"
+#include "hil_drivers/tron/bench/lights/light_rig.h"
+#include "hil_drivers/tron/bench/vicon/capture_errors.h"
 #include "hil_drivers/tron/bench/world/error_sizes.h"
 #include "hil_drivers/tron/bench_file/bench_file.h"
 #include "host_sim/twins/camera/camera_settings.h"
@@ -37,6 +39,9 @@ struct BenchSettings {
   ErrorSizes errors;
   CameraIdentity identity;
   SensorSettings sensor;
+  CaptureErrorSizes capture;
+  std::size_t vicon_block_bytes = 1024;  ///< of a datagram; 0: as long as its objects
+  LightErrorSizes lights;
   std::vector<Fault> faults;
 };
 

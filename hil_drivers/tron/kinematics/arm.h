@@ -1,12 +1,8 @@
 #pragma once
-// Forward and inverse kinematics of an arm of six axes with a spherical wrist, as designed (ArmDesign, bench_file.h).
-//
-// The axes of A4, A5 and A6 meet in a point, so position and orientation separate (Pieper 1968): two solutions of the
-// shoulder, two of the elbow, two of the wrist.
+// Kinematics of an arm of six axes with a spherical wrist, as designed (ArmDesign, bench_file.h).
 
 #include <array>
-#include <optional>
-#include <span>
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -16,29 +12,57 @@
 
 namespace vbar::tron {
 
-/// Points of an arm in its base frame.
+inline constexpr std::size_t kBranches = 8;
+
+/// Points of an arm in its base frame, m.
 struct ArmPoints {
-  fsw::Vector3 shoulder, elbow, wrist, flange;  ///< on the axes of A2 and A3; where those of A4 to A6 meet; flange
-  fsw::Vector3 forearm;                         ///< beside the elbow, where the forearm begins
+  fsw::Vector3 base = fsw::Vector3::Zero(), shoulder, elbow, wrist, flange;
 };
 
-[[nodiscard]] Eigen::Isometry3d T_base_flange(const ArmDesign& arm, const Joints& joints_rad);
-[[nodiscard]] ArmPoints arm_points(const ArmDesign& arm, const Joints& joints_rad);
-
-/// A branch of the inverse, each angle in (-pi, pi], whatever the limits.
-struct Branch {
-  Joints joints_rad;
-  bool wrist_is_singular = false;  ///< A4 and A6 turn about one axis: A4 is then 0
+/// All postures of an arm for one pose of its flange: two each of shoulder, elbow and wrist.
+struct Branches {
+  std::array<Joints, kBranches> joints;  ///< rad; each angle is the one within limits with the smallest magnitude, or
+                                         ///< between -pi and pi if none is
+  std::array<bool, kBranches> is_within_limits{};
+  std::size_t count = 0;  ///< 0, 4 or 8; 0: the wrist is out of reach, or the pose is not finite
+  // Singularities. The joints are then one choice of infinitely many.
+  bool is_shoulder_singular = false;  ///< wrist on the axis of A1: A1 is that of `near`
+  bool is_elbow_singular = false;     ///< stretched or folded: both elbow branches coincide
+  bool is_wrist_singular = false;     ///< A5 = 0: A4 is that of `near`
 };
 
-/// Up to eight; none where the wrist is out of reach, the shoulder's two are one where it is on the axis of A1.
-[[nodiscard]] std::vector<Branch> inverse(const ArmDesign& arm, const Eigen::Isometry3d& T_base_flange);
+class Arm {
+ public:
+  explicit Arm(const ArmDesign& design);
 
-/// The angles with whole turns added so that all are within their limits and each as near to `near` as possible;
-/// nothing if an axis cannot.
-[[nodiscard]] std::optional<Joints> within_limits(const ArmDesign& arm, const Joints& joints_rad, const Joints& near);
+  [[nodiscard]] const ArmDesign& design() const { return design_; }
 
-/// Horizontal distance of the wrist from the axis of A1, m: the shoulder is singular at 0.
-[[nodiscard]] double wrist_radius(const ArmDesign& arm, const Joints& joints_rad);
+  /// T_base_flange.
+  [[nodiscard]] Eigen::Isometry3d forward(const Joints& joints_rad) const;
+  [[nodiscard]] ArmPoints points(const Joints& joints_rad) const;
+
+  /// Derivative of the flange's pose, base frame: rows 0 to 2 translation of its origin, 3 to 5 rotation.
+  [[nodiscard]] Eigen::Matrix<double, 6, 6> jacobian(const Joints& joints_rad) const;
+
+  /// Closed form. `near` matters at singularities only.
+  [[nodiscard]] Branches inverse(const Eigen::Isometry3d& T_base_flange, const Joints& near = Joints::Zero()) const;
+
+  /// The same posture with every combination of full turns of the axes within limits; empty if there is none.
+  [[nodiscard]] std::vector<Joints> turns(const Joints& joints_rad) const;
+  /// That of `turns` whose axes are nearest to `near`, each by itself. `joints_rad` must be within limits.
+  [[nodiscard]] Joints nearest_turn(const Joints& joints_rad, const Joints& near) const;
+
+  [[nodiscard]] bool is_within_limits(const Joints& joints_rad) const;
+
+  /// Distance of the wrist from the axis of A1, m.
+  [[nodiscard]] double wrist_from_a1_m(const Joints& joints_rad) const;
+
+ private:
+  void add_wrist(const Eigen::Isometry3d& T, const fsw::Vector3& arm_angles, const Joints& near, Branches& found) const;
+
+  ArmDesign design_;
+  double forearm_m_;          ///< from the elbow to the wrist
+  double forearm_angle_rad_;  ///< of that line above the forearm's x
+};
 
 }  // namespace vbar::tron

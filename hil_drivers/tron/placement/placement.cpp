@@ -1,12 +1,14 @@
 #include "hil_drivers/tron/placement/placement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
 
-#include "hil_drivers/tron/motion/joint_path.h"
+#include "hil_drivers/tron/placement/candidates.h"
 #include "host_sim/engine/random_stream.h"
 
 namespace vbar::tron {
@@ -16,254 +18,281 @@ using fsw::Matrix3;
 using fsw::Vector3;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kParallel_rad = 5.0 * kDegree;  // of Sun and line of sight: the turn about it is then free
-constexpr double kMostSunError_rad = 0.5 * kDegree;
+constexpr double kBeamMiddle_m = 0.25;  ///< the target stays this near to the middle of the beam
+constexpr double kYaw_rad = 40.0 * kDegree, kPitch_rad = 25.0 * kDegree;
+constexpr double kCarriage_m = 0.8;
+/// Spread of trials near the last placement.
+constexpr double kNear_m = 0.08, kNear_rad = 4.0 * kDegree, kNearCarriage_m = 0.15;
+/// Of those near the best one so far, relative to that.
+constexpr double kRefinement = 0.4;
+/// Camera to target and Sun closer to parallel than this: the turn about the line of sight is free.
+constexpr double kFreeTurn_rad = 5.0 * kDegree;
+/// Candidates whose paths are checked.
+constexpr std::size_t kKept = 6;
+/// Per trial, of the search.
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Ranges of the free parameters, and the spread of trials near the last placement.
-constexpr double kFromBeam_m = 0.25, kYaw_rad = 40.0 * kDegree, kPitch_rad = 25.0 * kDegree, kCarriage_m = 0.8;
-constexpr double kNear_m = 0.08, kNear_rad = 4.0 * kDegree;
+/// The right-handed triad of z and the part of `x_ref` square to it.
+Matrix3 frame(const Vector3& z, const Vector3& x_ref) {
+  Matrix3 R;
+  R.col(2) = z.normalized();
+  R.col(0) = (x_ref - R.col(2).dot(x_ref) * R.col(2)).normalized();
+  R.col(1) = R.col(2).cross(R.col(0));
+  return R;
+}
 
 double angle_between(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Right-handed triad of z and of the part of x_reference square to it.
-Matrix3 triad(const Vector3& z, const Vector3& x_reference) {
-  Matrix3 R;
-  R.col(2) = z.normalized();
-  R.col(0) = (x_reference - x_reference.dot(R.col(2)) * R.col(2)).normalized();
-  R.col(1) = R.col(2).cross(R.col(0));
-  return R;
+bool is_usable(const Scene& scene, const Posture& from) {
+  return scene.T_C_T.matrix().allFinite() && scene.sun_C.allFinite() && scene.T_C_T.translation().norm() > 0.0 &&
+         std::abs(scene.sun_C.norm() - 1.0) < 1e-6 && from.camera_rad.allFinite() && from.target_rad.allFinite() &&
+         std::isfinite(from.carriage_m) && std::isfinite(scene.sunlit);
 }
 
-/// Largest yaw and pitch at which the camera is still in the room, half of whose width and height it can use.
-struct Turns {
-  double yaw_rad, pitch_rad;
-};
-Turns largest_turns(const BenchFile& bench, double range_m) {
-  const auto turn = [range_m](double half_m, double most_rad) {
-    return half_m < range_m ? std::min(most_rad, std::asin(half_m / range_m)) : most_rad;
-  };
-  return {turn(0.5 * (bench.room_high_m.y() - bench.room_low_m.y()), kYaw_rad),
-          turn(0.5 * (bench.room_high_m.z() - bench.room_low_m.z()), kPitch_rad)};
-}
-
-FreePlace anywhere(engine::RandomStream& random, const Vector3& beam_L, const Turns& most) {
-  FreePlace free;
-  for (Eigen::Index k = 0; k < 3; ++k) free.target_L(k) = beam_L(k) + random.uniform(-kFromBeam_m, kFromBeam_m);
-  free.yaw_rad = random.uniform(-most.yaw_rad, most.yaw_rad);
-  free.pitch_rad = random.uniform(-most.pitch_rad, most.pitch_rad);
-  free.carriage_offset_m = random.uniform(-kCarriage_m, kCarriage_m);
-  return free;
-}
-
-FreePlace near(const FreePlace& last, engine::RandomStream& random, const Vector3& beam_L) {
-  FreePlace free;
-  const auto about = [&random](double value, double sigma, double middle, double reach) {
-    return std::clamp(value + sigma * random.normal(), middle - reach, middle + reach);
-  };
-  for (Eigen::Index k = 0; k < 3; ++k) free.target_L(k) = about(last.target_L(k), kNear_m, beam_L(k), kFromBeam_m);
-  free.yaw_rad = about(last.yaw_rad, kNear_rad, 0.0, kYaw_rad);
-  free.pitch_rad = about(last.pitch_rad, kNear_rad, 0.0, kPitch_rad);
-  free.carriage_offset_m = about(last.carriage_offset_m, kNear_m, 0.0, kCarriage_m);
-  return free;
-}
-
-struct LampPlace {
-  double azimuth_rad = 0.0;
-  double error_rad = 0.0;
-};
-
-/// cos(pitch) cos(b - yaw) = cos(phase angle), on the arc; the nearer of two solutions to `last_rad`.
-std::optional<LampPlace> lamp_place(const Lamp& lamp, double yaw_rad, double pitch_rad, double phase_rad) {
-  const double cosine = std::cos(phase_rad) / std::cos(pitch_rad);
-  const double half = std::acos(std::clamp(cosine, -1.0, 1.0));
-  std::optional<LampPlace> best;
-  for (const double azimuth : {yaw_rad + half, yaw_rad - half}) {
-    const double on_arc = std::clamp(azimuth, lamp.azimuth_low_rad, lamp.azimuth_high_rad);
-    const double reached = std::acos(std::clamp(std::cos(pitch_rad) * std::cos(on_arc - yaw_rad), -1.0, 1.0));
-    const double error = std::abs(reached - phase_rad);
-    if (error <= kMostSunError_rad && (!best || error < best->error_rad)) best = {on_arc, error};
-  }
-  return best;
+/// Unit vector from the target to the camera.
+Vector3 towards_camera(double yaw, double pitch) {
+  return {-std::cos(pitch) * std::cos(yaw), -std::cos(pitch) * std::sin(yaw), std::sin(pitch)};
 }
 
 }  // namespace
 
-std::string NoPlacement::reason() const {
-  return fmt::format(
-      "no placement of arms and lamp: refused for the lamp {}, reach {}, collisions {}, hidden points {}", lamp, reach,
-      collision, hidden);
-}
+/// The six that are free.
+struct PlacementSearch::Trial {
+  Vector3 target_L = Vector3::Zero();
+  double yaw = 0.0, pitch = 0.0;
+  double carriage_ahead_m = 0.0;  ///< of the camera, along x
+};
 
-PlacementSearch::PlacementSearch(const Geometry& geometry, const PlacementSettings& settings,
-                                 std::vector<Vector3> points_T)
-    : geometry_(geometry),
+struct PlacementSearch::Search {
+  const Scene& scene;
+  const Posture& from;
+  std::optional<double> lamp_rad;
+  Matrix3 R_L_C_last;
+  double phase_rad;   ///< between the directions from the target to the camera and to the Sun
+  bool is_turn_free;  ///< about the line of sight
+  bool is_sun_free;   ///< no sunlight: its direction does not matter
+  std::vector<std::pair<Placement, Trial>> best{};  ///< by cost
+  NoPlacement counts{};
+
+  [[nodiscard]] double bound() const { return best.size() < kKept ? kInfinity : best.back().first.cost_s; }
+  void keep(const Placement& placement, const Trial& trial) {
+    const auto at =
+        std::ranges::upper_bound(best, placement.cost_s, {}, [](const auto& one) { return one.first.cost_s; });
+    best.insert(at, {placement, trial});
+    if (best.size() > kKept) best.pop_back();
+  }
+};
+
+PlacementSearch::PlacementSearch(const BenchFile& bench, const BenchBodies& bodies, const PathPlanner& paths,
+                                 std::vector<Vector3> points_body, const PlacementSettings& settings,
+                                 EarthLightCost earth)
+    : bench_(bench),
+      bodies_(bodies),
+      paths_(paths),
+      points_body_(std::move(points_body)),
       settings_(settings),
-      points_T_(std::move(points_T)),
-      collisions_(geometry),
-      limits_(motion_limits(geometry.bench())) {}
+      earth_(std::move(earth)) {}
 
-std::optional<Placement> PlacementSearch::at(const FreePlace& free, const Scene& scene, const Posture& from,
-                                             NoPlacement& refused) const {
-  const BenchFile& bench = geometry_.bench();
-  const Vector3 middle_T = points_T_.back();
-  const Vector3 middle_C = scene.T_C_T * middle_T;
-  const Vector3 to_camera_L(-std::cos(free.pitch_rad) * std::cos(free.yaw_rad),
-                            -std::cos(free.pitch_rad) * std::sin(free.yaw_rad), std::sin(free.pitch_rad));
-  const double phase_rad = angle_between(-middle_C, scene.sun_C);
-  Placement found;
-  found.free = free;
-  const bool is_free = phase_rad < kParallel_rad || phase_rad > std::numbers::pi - kParallel_rad;
-  Vector3 x_C = scene.sun_C, x_L;
-  if (scene.sunlit > 0.0) {
-    const auto lamp = lamp_place(bench.lamp, free.yaw_rad, free.pitch_rad, phase_rad);
-    if (!lamp) {
-      ++refused.lamp;
-      return std::nullopt;
-    }
-    found.lamp_azimuth_rad = lamp->azimuth_rad;
-    found.sun_error_rad = lamp->error_rad;
-    x_L = Lamp::direction(lamp->azimuth_rad);
-  } else {
-    found.lamp_azimuth_rad = 0.5 * (bench.lamp.azimuth_low_rad + bench.lamp.azimuth_high_rad);
+void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_L_C, const Eigen::Isometry3d& T_L_T,
+                                 double lamp_rad, double sun_error_rad, Search& search) const {
+  const double carriage_m = T_L_C.translation().x() + trial.carriage_ahead_m;
+  if (carriage_m < bench_.track.axis.lower || carriage_m > bench_.track.axis.upper) {
+    ++search.counts.beyond_reach;
+    return;
   }
-  if (is_free || scene.sunlit <= 0.0) {
-    // The camera stays as it is turned.
-    x_C = Vector3::UnitX();
-    x_L = geometry_.T_L_C(from).linear() * x_C;
+  const ArmPair& arms = bodies_.arms();
+  const CandidateRules camera_rules{bench_.motion.limit_margin_rad, bench_.motion.cable_turn_rad};
+  const CandidateRules target_rules{bench_.motion.limit_margin_rad, std::nullopt};
+  const Candidates of_camera =
+      candidates(arms.camera_arm(), arms.camera_flange(T_L_C, carriage_m), search.from.camera_rad, camera_rules);
+  if (of_camera.count == 0) {
+    ++search.counts.beyond_reach;
+    return;
   }
-  Eigen::Isometry3d T_L_C = Eigen::Isometry3d::Identity();
-  T_L_C.linear() = triad(-to_camera_L, x_L) * triad(middle_C, x_C).transpose();
-  T_L_C.translation() = free.target_L - T_L_C.linear() * middle_C;
-  const double carriage_m =
-      std::clamp(T_L_C.translation().x() + free.carriage_offset_m, bench.track.axis.lower, bench.track.axis.upper);
-
-  // Each arm on the branch that costs least.
-  const auto best_joints = [&](const ArmDesign& arm, const Eigen::Isometry3d& flange, const Joints& near,
-                               bool is_camera) {
-    std::optional<Joints> best;
-    double least_s = 0.0;
-    for (const Branch& branch : inverse(arm, flange)) {
-      const auto joints = within_limits(arm, branch.joints_rad, near);
-      if (!joints) continue;
-      Posture posture = from;
-      (is_camera ? posture.camera_rad : posture.target_rad) = *joints;
-      if (is_camera && !cable_allows(posture)) continue;
-      const double cost_s = move_time_s(limits_, from, posture) + penalty_s(posture);
-      if (!best || cost_s < least_s) {
-        best = joints;
-        least_s = cost_s;
-      }
-    }
-    return best;
-  };
-  const auto target =
-      best_joints(bench.target_robot.design, geometry_.target_flange(T_L_C * scene.T_C_T), from.target_rad, false);
-  const auto camera =
-      target ? best_joints(bench.camera_robot.design, geometry_.camera_flange(T_L_C, carriage_m), from.camera_rad, true)
-             : std::nullopt;
-  if (!camera) {
-    ++refused.reach;
-    return std::nullopt;
+  const Candidates of_target =
+      candidates(arms.target_arm(), arms.target_flange(T_L_T), search.from.target_rad, target_rules);
+  if (of_target.count == 0) {
+    ++search.counts.beyond_reach;
+    return;
   }
-  found.posture = {*camera, *target, carriage_m};
-  found.move_s = move_time_s(limits_, from, found.posture);
-  found.cost_s = found.move_s + penalty_s(found.posture);
-  return found;
-}
-
-/// Postures near a limit or a singularity cost time: the correction after the move could need more than they have.
-double PlacementSearch::penalty_s(const Posture& posture) const {
-  constexpr double kWrist_rad = 6.0 * kDegree, kShoulder_m = 0.05, kNear_s = 1.0, kSingular_s = 4.0;
-  const BenchFile& bench = geometry_.bench();
-  double sum = 0.0;
-  const auto add = [&](const ArmDesign& arm, const Joints& joints) {
-    for (std::size_t k = 0; k < kJoints; ++k) {
-      const double angle = joints(static_cast<Eigen::Index>(k));
-      const double left = std::min(angle - arm.axes[k].lower, arm.axes[k].upper - angle);
-      if (left < bench.motion.limit_margin_rad) sum += kNear_s * (1.0 - left / bench.motion.limit_margin_rad);
-    }
-    if (std::abs(joints(4)) < kWrist_rad) sum += kSingular_s * (1.0 - std::abs(joints(4)) / kWrist_rad);
-    if (const double radius_m = wrist_radius(arm, joints); radius_m < kShoulder_m)
-      sum += kSingular_s * (1.0 - radius_m / kShoulder_m);
-  };
-  add(bench.camera_robot.design, posture.camera_rad);
-  add(bench.target_robot.design, posture.target_rad);
-  return sum;
-}
-
-bool PlacementSearch::cable_allows(const Posture& posture) const {
-  const Robot& robot = geometry_.bench().camera_robot;
-  const double turned = posture.camera_rad(3) + posture.camera_rad(5) - robot.home_rad[3] - robot.home_rad[5];
-  return std::abs(turned) <= geometry_.bench().motion.cable_turn_rad;
-}
-
-/// The best of the candidates, in the order of their cost, that is free and hides little, unless `best` is better.
-void PlacementSearch::choose(std::vector<Placement>& candidates, const Posture& from, std::optional<Placement>& best,
-                             NoPlacement& refused) const {
-  std::ranges::stable_sort(candidates, {}, &Placement::cost_s);
-  for (Placement& candidate : candidates) {
-    // Nothing that follows can be better.
-    if (best && candidate.cost_s >= best->cost_s) return;
-    if (!collisions_.conflict(candidate.posture).empty()) {
-      ++refused.collision;
-      continue;
-    }
-    candidate.hidden = hidden_points(geometry_, candidate.posture, points_T_);
-    if (candidate.hidden > settings_.max_hidden) {
-      ++refused.hidden;
-      continue;
-    }
-    candidate.cost_s += settings_.hidden_cost_s * candidate.hidden;
-    if (best && candidate.cost_s >= best->cost_s) continue;
-    candidate.way = collisions_.free_way(from, candidate.posture);
-    if (candidate.way.empty()) {
-      ++refused.collision;
-      continue;
-    }
-    if (candidate.way.size() > 2) {
-      const double straight_s = candidate.move_s;
-      candidate.move_s = 0.0;
-      for (std::size_t k = 1; k < candidate.way.size(); ++k)
-        candidate.move_s += move_time_s(limits_, candidate.way[k - 1], candidate.way[k]);
-      candidate.cost_s += candidate.move_s - straight_s;
-      if (best && candidate.cost_s >= best->cost_s) continue;
-    }
-    best = candidate;
-  }
-}
-
-std::variant<Placement, NoPlacement> PlacementSearch::find(const Scene& scene, const Posture& from,
-                                                           std::int64_t number) {
-  const Vector3& beam_L = geometry_.bench().lamp.centre_m;
-  engine::RandomStream random(settings_.seed, fmt::format("tron/placement/{}", number));
-  NoPlacement refused;
+  const AxisLimitsOfBench& limits = paths_.limits();
+  const ProgressLimits carriage = limits.of_carriage(search.from.carriage_m, carriage_m);
+  const double lamp_s = search.lamp_rad ? std::abs(lamp_rad - *search.lamp_rad) / bench_.lamp.speed_rad_s : 0.0;
+  const double earth_s = earth_ ? earth_(search.scene, T_L_C, T_L_T) : 0.0;
+  // The best of this trial only: its neighbours differ little.
+  double bound = search.bound();
   std::optional<Placement> best;
-  std::vector<Placement> candidates;
-  const Turns most = largest_turns(geometry_.bench(), scene.T_C_T.translation().norm());
-  for (int round = 0; round < settings_.rounds && (!best || best->hidden > 0); ++round) {
-    candidates.clear();
-    for (int k = 0; k < settings_.trials; ++k) {
-      // Where the neighbourhood of the last placement has nothing clear, it is of no use.
-      const bool is_near = last_.has_value() && round == 0 && k % 3 != 0;
-      const FreePlace free = k == 1 && is_near ? *last_
-                             : is_near         ? near(*last_, random, beam_L)
-                                               : anywhere(random, beam_L, most);
-      if (const auto found = at(free, scene, from, refused)) candidates.push_back(*found);
+  bool collides = false, hides = false;
+  for (std::size_t c = 0; c < of_camera.count; ++c) {
+    const Candidate& camera = of_camera.all[c];
+    const ProgressLimits one =
+        AxisLimitsOfBench::slower_of(carriage, limits.of_camera_arm(search.from.camera_rad, camera.joints_rad));
+    for (std::size_t t = 0; t < of_target.count; ++t) {
+      const Candidate& target = of_target.all[t];
+      const ProgressLimits both =
+          AxisLimitsOfBench::slower_of(one, limits.of_target_arm(search.from.target_rad, target.joints_rad));
+      const double arms_s = std::isfinite(both.speed) ? rest_to_rest_s(1.0, both) : 0.0;
+      Placement placement{{camera.joints_rad, target.joints_rad, carriage_m},
+                          lamp_rad,
+                          sun_error_rad,
+                          0,
+                          std::max(arms_s, lamp_s),
+                          0.0};
+      placement.cost_s = placement.move_s + camera.penalty_s + target.penalty_s + earth_s;
+      if (!(placement.cost_s < bound)) continue;
+      const Bodies bodies = bodies_.at(placement.posture);
+      if (!bodies_.is_free(bodies)) {
+        collides = true;
+        continue;
+      }
+      placement.hidden = bodies_.hidden(bodies, points_body_);
+      placement.cost_s += settings_.hidden_cost_s * placement.hidden;
+      if (placement.hidden > settings_.max_hidden) {
+        hides = true;
+        continue;
+      }
+      if (!(placement.cost_s < bound)) continue;
+      bound = placement.cost_s;
+      best = placement;
     }
-    choose(candidates, from, best, refused);
   }
-  if (!best) return refused;
-  last_ = best->free;
-  return *best;
+  if (best) {
+    search.keep(*best, trial);
+  } else if (hides) {
+    ++search.counts.too_hidden;
+  } else if (collides) {
+    ++search.counts.colliding;
+  }
 }
 
-std::vector<Vector3> points_of_target(const BenchFile& bench, const std::vector<Vector3>& keypoints_m) {
-  std::vector<Vector3> points_T;
-  for (const Vector3& keypoint : keypoints_m) points_T.push_back(bench.scale * keypoint);
-  points_T.push_back(bench.scale * 0.5 * (bench.target.body_low_m + bench.target.body_high_m));
-  return points_T;
+void PlacementSearch::judge(const Trial& trial, Search& search) const {
+  const Scene& scene = search.scene;
+  const Vector3 u = towards_camera(trial.yaw, trial.pitch);
+  const Vector3 p_C = scene.T_C_T.translation();
+  const double lower = bench_.lamp.azimuth_low_rad, upper = bench_.lamp.azimuth_high_rad;
+  const auto pose = [&](const Matrix3& R_L_C, double lamp_rad) {
+    Eigen::Isometry3d T_L_C = Eigen::Isometry3d::Identity();
+    T_L_C.linear() = R_L_C;
+    T_L_C.translation() = trial.target_L - R_L_C * p_C;
+    const double error = search.is_sun_free ? 0.0 : angle_between(R_L_C * scene.sun_C, Lamp::direction(lamp_rad));
+    judge_pose(trial, T_L_C, T_L_C * scene.T_C_T, lamp_rad, error, search);
+  };
+  if (search.is_sun_free || search.is_turn_free) {
+    // The camera keeps its roll, as far as the line of sight permits.
+    const Vector3 x_C = Vector3::UnitX();
+    const Matrix3 R_L_C = frame(-u, search.R_L_C_last * x_C) * frame(p_C, x_C).transpose();
+    const Vector3 sun_L = R_L_C * scene.sun_C;
+    const double wanted = std::atan2(-sun_L.y(), -sun_L.x());
+    const double lamp_rad = search.is_sun_free ? search.lamp_rad.value_or(lower) : std::clamp(wanted, lower, upper);
+    pose(R_L_C, lamp_rad);
+    return;
+  }
+  const double cosine = std::cos(search.phase_rad) / std::cos(trial.pitch);
+  bool is_lit = false;
+  if (std::abs(cosine) <= 1.0) {
+    const double aside = std::acos(cosine);
+    for (const double lamp_rad : {trial.yaw + aside, trial.yaw - aside}) {
+      if (lamp_rad < lower || lamp_rad > upper) continue;
+      is_lit = true;
+      pose(frame(-u, Lamp::direction(lamp_rad)) * frame(p_C, scene.sun_C).transpose(), lamp_rad);
+    }
+  }
+  if (!is_lit) ++search.counts.beyond_lamp;
+}
+
+std::variant<Placement, NoPlacement> PlacementSearch::chosen(Search& search) const {
+  for (const auto& [placement, trial] : search.best)
+    if (paths_.is_straight_free(search.from, placement.posture)) return placement;
+  // Otherwise over a retracted posture.
+  std::optional<Placement> found;
+  double found_cost_s = kInfinity;
+  for (const auto& [placement, trial] : search.best) {
+    const auto path = paths_.plan(search.from, placement.posture);
+    if (const Path* free = std::get_if<Path>(&path)) {
+      const double move_s = free->cycles() * bench_.motion.cycle_s;
+      const double cost_s = placement.cost_s - placement.move_s + move_s;
+      if (cost_s >= found_cost_s) continue;
+      found_cost_s = cost_s;
+      found = placement;
+      found->move_s = move_s;
+      found->cost_s = cost_s;
+    } else {
+      ++search.counts.blocked;
+    }
+  }
+  if (found) return *found;
+  NoPlacement none = search.counts;
+  const std::array<std::pair<int, const char*>, 5> reasons{
+      {{none.blocked, "every path to a placement is blocked"},
+       {none.too_hidden, "an arm hides more points of the target than are accepted"},
+       {none.colliding, "both arms, the target or the room would touch"},
+       {none.beyond_reach, "the arms do not reach it within their limits"},
+       {none.beyond_lamp, "the lamp cannot stand where the Sun is"}}};
+  none.reason = fmt::format("no placement in {} trials", settings_.trials);
+  // What got furthest.
+  for (const auto& [count, reason] : reasons) {
+    if (count == 0) continue;
+    none.reason += fmt::format(": {}", reason);
+    break;
+  }
+  return none;
+}
+
+std::variant<Placement, NoPlacement> PlacementSearch::find(const Scene& scene, const Posture& from, std::int64_t number,
+                                                           std::optional<double> lamp_rad) const {
+  if (!is_usable(scene, from)) return NoPlacement{"the scene or the posture is not valid"};
+  const Vector3 p_C = scene.T_C_T.translation();
+  const double phase_rad = angle_between(-p_C, scene.sun_C);
+  const Eigen::Isometry3d T_L_C = bodies_.arms().camera_pose(from), T_L_T = bodies_.arms().target_pose(from);
+  Search search{.scene = scene,
+                .from = from,
+                .lamp_rad = lamp_rad,
+                .R_L_C_last = T_L_C.linear(),
+                .phase_rad = phase_rad,
+                .is_turn_free = std::min(phase_rad, std::numbers::pi - phase_rad) < kFreeTurn_rad,
+                .is_sun_free = scene.sunlit <= 0.0};
+  const Vector3 centre = bench_.lamp.centre_m;
+  const auto limited = [&](Trial trial) {
+    trial.target_L = centre + (trial.target_L - centre).cwiseMax(-kBeamMiddle_m).cwiseMin(kBeamMiddle_m);
+    trial.yaw = std::clamp(trial.yaw, -kYaw_rad, kYaw_rad);
+    trial.pitch = std::clamp(trial.pitch, -kPitch_rad, kPitch_rad);
+    trial.carriage_ahead_m = std::clamp(trial.carriage_ahead_m, -kCarriage_m, kCarriage_m);
+    return trial;
+  };
+  const Vector3 u = (T_L_C.translation() - T_L_T.translation()).normalized();
+  const Trial last = limited({T_L_T.translation(), std::atan2(-u.y(), -u.x()), std::asin(std::clamp(u.z(), -1.0, 1.0)),
+                              from.carriage_m - T_L_C.translation().x()});
+  engine::RandomStream random(settings_.seed, fmt::format("tron/placement/{}", number));
+  const auto anywhere = [&] {
+    Trial trial;
+    for (int k = 0; k < 3; ++k) trial.target_L[k] = centre[k] + random.uniform(-kBeamMiddle_m, kBeamMiddle_m);
+    trial.yaw = random.uniform(-kYaw_rad, kYaw_rad);
+    trial.pitch = random.uniform(-kPitch_rad, kPitch_rad);
+    trial.carriage_ahead_m = random.uniform(-kCarriage_m, kCarriage_m);
+    return trial;
+  };
+  const auto near = [&](const Trial& middle, double spread) {
+    Trial trial = middle;
+    for (int k = 0; k < 3; ++k) trial.target_L[k] += spread * kNear_m * random.normal();
+    trial.yaw += spread * kNear_rad * random.normal();
+    trial.pitch += spread * kNear_rad * random.normal();
+    trial.carriage_ahead_m += spread * kNearCarriage_m * random.normal();
+    return limited(trial);
+  };
+  judge(last, search);
+  for (int k = 1; k < settings_.trials; ++k) {
+    const int kind = k % 3;
+    if (kind == 0) {
+      judge(near(last, 1.0), search);
+    } else if (kind == 1 || search.best.empty()) {
+      judge(anywhere(), search);
+    } else {
+      judge(near(search.best.front().second, kRefinement), search);
+    }
+  }
+  return chosen(search);
 }
 
 }  // namespace vbar::tron

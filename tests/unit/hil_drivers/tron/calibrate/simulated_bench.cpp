@@ -99,9 +99,11 @@ Isometry3d SimulatedBench::T_L_C(const Posture& posture) const {
   std::array<double, 5> error{};
   for (std::size_t e = 0; e < error.size(); ++e)
     for (const Wave& wave : track_[e]) error[e] += wave.at(x);
-  const Isometry3d carriage = Translation3d(x + track_scale_ * (x - bench_.track.home_m), error[3], error[4]) *
+  // The carriage turns about the plate by which the arm hangs.
+  const Translation3d plate(0.0, 0.0, bench_.camera_robot.base.position_m.z());
+  const Isometry3d carriage = Translation3d(x + track_scale_ * (x - bench_.track.home_m), error[3], error[4]) * plate *
                               turn(error[2], Vector3d::UnitZ()) * turn(error[1], Vector3d::UnitY()) *
-                              turn(error[0], Vector3d::UnitX());
+                              turn(error[0], Vector3d::UnitX()) * plate.inverse();
   return carriage * bench_.camera_robot.base.T_L_base() * flange(camera_, posture.camera_rad) * camera_.mount;
 }
 
