@@ -265,11 +265,18 @@ std::variant<Placement, NoPlacement> PlacementSearch::find(const Scene& scene, c
   const Trial last = limited({T_L_T.translation(), std::atan2(-u.y(), -u.x()), std::asin(std::clamp(u.z(), -1.0, 1.0)),
                               from.carriage_m - T_L_C.translation().x()});
   engine::RandomStream random(settings_.seed, fmt::format("tron/placement/{}", number));
+  const double range_m = p_C.norm();
   const auto anywhere = [&] {
     Trial trial;
     for (int k = 0; k < 3; ++k) trial.target_L[k] = centre[k] + random.uniform(-kBeamMiddle_m, kBeamMiddle_m);
-    trial.yaw = random.uniform(-kYaw_rad, kYaw_rad);
-    trial.pitch = random.uniform(-kPitch_rad, kPitch_rad);
+    // Yaw and pitch that leave the camera within the room: at long range a small part of all.
+    const Vector3 low = (bench_.room_low_m - trial.target_L) / range_m;
+    const Vector3 high = (bench_.room_high_m - trial.target_L) / range_m;
+    const double up =
+        random.uniform(std::max(low.z(), -std::sin(kPitch_rad)), std::min(high.z(), std::sin(kPitch_rad)));
+    const double aside = random.uniform(std::max(low.y(), -std::sin(kYaw_rad)), std::min(high.y(), std::sin(kYaw_rad)));
+    trial.pitch = std::asin(up);
+    trial.yaw = std::asin(std::clamp(-aside / std::cos(trial.pitch), -1.0, 1.0));
     trial.carriage_ahead_m = random.uniform(-kCarriage_m, kCarriage_m);
     return trial;
   };
@@ -282,8 +289,12 @@ std::variant<Placement, NoPlacement> PlacementSearch::find(const Scene& scene, c
     return limited(trial);
   };
   judge(last, search);
-  for (int k = 1; k < settings_.trials; ++k) {
-    const int kind = k % 3;
+  const int most = settings_.trials * settings_.extension;
+  for (int k = 1; k < most; ++k) {
+    // A scene that is hard to place gets more trials, which are not near a posture that does not suit it.
+    const bool is_extended = k >= settings_.trials;
+    if (is_extended && !search.best.empty() && search.best.front().first.hidden == 0) break;
+    const int kind = is_extended ? 1 + k % 2 : k % 3;
     if (kind == 0) {
       judge(near(last, 1.0), search);
     } else if (kind == 1 || search.best.empty()) {
