@@ -24,7 +24,8 @@ test=(
   g++-arm-linux-gnueabihf qemu-user
   # The display of the Optical Stimulator, its server on an emulated bench, and another client of it.
   libsdl2-dev libx11-dev libxrandr-dev xvfb x11-apps
-  libceres-dev  # calibration of the Optical Stimulator
+  libceres-dev         # calibration of the Optical Stimulator and of TRON
+  libopencv-contrib-dev  # calibration of TRON: its board in images
 )
 peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr
   libopencv-dev liborocos-kdl-dev tshark ffmpeg)

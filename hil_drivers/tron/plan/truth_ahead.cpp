@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "hil_drivers/tron/scene/scene_of_exposure.h"
 #include "host_sim/app/assemble.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/mission/mission_error.h"
@@ -21,7 +22,7 @@ class SceneTap final : public twins::PacketSource {
  public:
   struct Settings {
     twins::camera::CameraMount mount;
-    std::string observed;
+    std::string model;  ///< of the target
     fsw::GpsTime epoch, start;
     fsw::Duration period;
     double exposure_s = 0.0, scale = 1.0;
@@ -34,10 +35,8 @@ class SceneTap final : public twins::PacketSource {
   twins::Measurement measure(const twins::TruthSnapshot& truth) override {
     const auto exposure =
         twins::camera::exposure_of_truth(settings_.mount, truth, static_cast<std::int64_t>(scenes_.size()));
-    const auto object = std::ranges::find(exposure.objects, settings_.observed, &twins::camera::ObjectInView::name);
-    if (object != exposure.objects.end())
-      scenes_.push_back({fsw::seconds(truth.time - settings_.epoch), settings_.exposure_s,
-                         scene_of(*object, exposure, settings_.scale)});
+    if (const auto scene = scene_of(exposure, settings_.model, settings_.scale))
+      scenes_.push_back({fsw::seconds(truth.time - settings_.epoch), settings_.exposure_s, *scene});
     twins::Measurement measurement;
     measurement.status = twins::MeasurementStatus::kReady;
     measurement.available = truth.time;
@@ -78,16 +77,6 @@ mission::Mission with_true_states(mission::Mission mission, const std::string& s
 
 }  // namespace
 
-Scene scene_of(const twins::camera::ObjectInView& object, const twins::camera::Exposure& exposure, double scale) {
-  const Eigen::Quaterniond& q_C_eci = exposure.q_camera_eci;
-  Scene scene;
-  scene.T_C_T.linear() = (q_C_eci * object.q_body_eci.conjugate()).normalized().toRotationMatrix();
-  scene.T_C_T.translation() = scale * (q_C_eci * object.position_eci);
-  scene.sun_C = q_C_eci * (exposure.sun_eci - exposure.camera_position_eci).normalized();
-  scene.sunlit = object.sunlit;
-  return scene;
-}
-
 std::vector<SceneAhead> fly_ahead(const mission::Mission& mission, const std::filesystem::path& data_directory,
                                   double scale, const std::function<void(fsw::Duration)>& progress,
                                   const std::function<bool()>& stop_requested) {
@@ -99,7 +88,7 @@ std::vector<SceneAhead> fly_ahead(const mission::Mission& mission, const std::fi
                                 const std::filesystem::path& data, twins::TruthOutlook* outlook) {
     sensors::MadeSources made = sensors::make_sources(flown, carrier, data, outlook);
     SceneTap::Settings settings{sensors::mount_of(mission, servicer, camera, data),
-                                camera.observed,
+                                mission.find_spacecraft(camera.observed)->model,
                                 mission.epoch,
                                 mission.start_time() + camera.period,
                                 camera.period,

@@ -6,7 +6,6 @@
 
 #include "hil_drivers/tron/placement/scene.h"
 #include "host_sim/mission/mission.h"
-#include "host_sim/twins/camera/exposure.h"
 
 namespace vbar::tron {
 
@@ -14,7 +13,7 @@ namespace vbar::tron {
 struct SceneAhead {
   double time_s = 0.0;  ///< since the mission's epoch
   double exposure_s = 0.0;
-  Scene scene;  ///< pose, Sun and sunlight; without the Earth's light
+  Scene scene;
 };
 
 /// Flies the mission ahead of time in this program: true states take the place of its sensors, so that its maneuvers
@@ -25,9 +24,5 @@ struct SceneAhead {
                                                 const std::filesystem::path& data_directory, double scale,
                                                 const std::function<void(fsw::Duration)>& progress,
                                                 const std::function<bool()>& stop_requested);
-
-/// Of the first object of an exposure.
-[[nodiscard]] Scene scene_of(const twins::camera::ObjectInView& object, const twins::camera::Exposure& exposure,
-                             double scale);
 
 }  // namespace vbar::tron

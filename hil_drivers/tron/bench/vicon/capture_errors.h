@@ -1,0 +1,80 @@
+#pragma once
+// What motion capture of the emulated bench states of an object whose true pose is known: its frame V, the object's own
+// axes, bias and noise. All are functions of the seed, the pose and the frame number; neither driver nor calibration
+// reads any of it.
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include <Eigen/Geometry>
+
+#include "hil_drivers/tron/bench/vicon/bias_field.h"
+#include "hil_drivers/tron/bench_file/bench_file.h"
+
+namespace vbar::tron::bench {
+
+enum class CaptureObject : std::size_t { kCamera = 0, kTarget = 1 };
+inline constexpr std::size_t kCaptureObjects = 2;
+
+/// One standard deviation of each error; defaults are those of data/benches/tron_emulated.toml.
+struct CaptureErrorSizes {
+  double frame_rotation_deg = 2.0;  ///< of V from the laboratory's frame, each axis
+  double frame_translation_mm = 50.0;
+  double object_translation_mm = 50.0;  ///< origin of an object from that of the camera, of the target; axes: any
+  double bias_mm = 0.3;                 ///< each axis, at any place
+  double bias_length_m = 1.0;           ///< over which it varies
+  double view_rotation_deg = 0.09;      ///< each axis; of an object at a place in an attitude
+  double view_length_m = 0.3;           ///< over which that varies
+  double view_length_deg = 20.0;        ///< ... of attitude
+  double noise_mm = 0.05;               ///< of a frame, each axis
+  double noise_deg = 0.02;
+
+  /// Frame and axes of the objects as well are those of the laboratory, of camera and target.
+  [[nodiscard]] static CaptureErrorSizes none();
+};
+
+/// A key of the table [vicon] of the emulated bench.
+struct CaptureErrorKey {
+  std::string_view key;
+  double CaptureErrorSizes::*size;
+  double smallest, largest;
+};
+
+inline constexpr std::array<CaptureErrorKey, 10> kCaptureErrorKeys{{
+    {"frame_rotation_deg", &CaptureErrorSizes::frame_rotation_deg, 0.0, 90.0},
+    {"frame_translation_mm", &CaptureErrorSizes::frame_translation_mm, 0.0, 5000.0},
+    {"object_translation_mm", &CaptureErrorSizes::object_translation_mm, 0.0, 500.0},
+    {"bias_mm", &CaptureErrorSizes::bias_mm, 0.0, 100.0},
+    {"bias_length_m", &CaptureErrorSizes::bias_length_m, 0.01, 100.0},
+    {"view_rotation_deg", &CaptureErrorSizes::view_rotation_deg, 0.0, 10.0},
+    {"view_length_m", &CaptureErrorSizes::view_length_m, 0.01, 100.0},
+    {"view_length_deg", &CaptureErrorSizes::view_length_deg, 1.0, 1000.0},
+    {"noise_mm", &CaptureErrorSizes::noise_mm, 0.0, 100.0},
+    {"noise_deg", &CaptureErrorSizes::noise_deg, 0.0, 10.0},
+}};
+
+class CaptureErrors {
+ public:
+  CaptureErrors(const CaptureErrorSizes& sizes, std::uint64_t seed);
+
+  /// Pose of the object in V as frame number `frame` states it; `T_L_body`: true pose of the camera or the target.
+  [[nodiscard]] Eigen::Isometry3d stated(CaptureObject object, const Eigen::Isometry3d& T_L_body,
+                                         std::uint64_t frame) const;
+
+  // For evaluations of the bench.
+  [[nodiscard]] const Eigen::Isometry3d& T_V_L() const { return T_V_L_; }
+  [[nodiscard]] const Eigen::Isometry3d& T_body_object(CaptureObject object) const {
+    return T_body_object_[static_cast<std::size_t>(object)];
+  }
+
+ private:
+  CaptureErrorSizes sizes_;
+  std::uint64_t seed_;
+  Eigen::Isometry3d T_V_L_;
+  std::array<Eigen::Isometry3d, kCaptureObjects> T_body_object_;
+  BiasField place_bias_m_;
+  std::array<BiasField, kCaptureObjects> view_bias_rad_;
+};
+
+}  // namespace vbar::tron::bench

@@ -1,0 +1,57 @@
+#pragma once
+// Powers of the light boxes for which they shine on the target as the Earth does.
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "hil_drivers/tron/bench_file/bench_file.h"
+
+namespace vbar::tron {
+
+/// Light of the Earth at the target in laboratory axes.
+struct EarthLight {
+  fsw::Vector3 direction_L = fsw::Vector3::UnitZ();  ///< to its middle, unit
+  double half_angle = 1.1;                           ///< of the disc, rad
+  double ratio = 0.0;  ///< irradiance of an area that faces it, to that of one that faces the Sun
+};
+
+/// Irradiances on a sphere about the target: each of its 162 normals belongs to a point of it.
+using NormalIrradiances = Eigen::VectorXd;
+
+struct BoxPowers {
+  std::array<double, kBoxes> power{};  ///< of light, 0 to 1
+  double misfit = 0.0;                 ///< rms over the normals, relative to the largest irradiance of the Earth
+};
+
+class BoxLight {
+ public:
+  /// `full_light`: of each box, relative to full power as designed.
+  explicit BoxLight(const BenchFile& bench, const std::array<double, kBoxes>& full_light = all_full());
+
+  /// Irradiances by box i at full power as designed, column i, to that of the lamp at full power. `centre_L`: of the
+  /// target, m.
+  [[nodiscard]] Eigen::MatrixXd irradiances(const fsw::Vector3& centre_L) const;
+  /// The same of the Earth, to that of the Sun: the digital twin's light of the Earth.
+  [[nodiscard]] NormalIrradiances irradiances(const EarthLight& earth) const;
+
+  /// Throws std::invalid_argument for a number that is not finite.
+  [[nodiscard]] BoxPowers powers(const fsw::Vector3& centre_L, const EarthLight& earth) const;
+
+  /// Of the sphere: the mean half width of the target, m.
+  [[nodiscard]] double radius_m() const { return radius_m_; }
+
+ private:
+  static constexpr std::array<double, kBoxes> all_full() {
+    std::array<double, kBoxes> full{};
+    full.fill(1.0);
+    return full;
+  }
+
+  std::array<std::array<fsw::Vector3, 4>, kBoxes> corners_L_;
+  std::array<double, kBoxes> full_light_;
+  double exitance_ratio_;
+  double radius_m_;
+};
+
+}  // namespace vbar::tron

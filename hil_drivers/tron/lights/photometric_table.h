@@ -1,0 +1,53 @@
+#pragma once
+// Which value a source of light gets for a power of light, from levels at which its light was measured. Between two
+// levels light is a power of the level, light = a level^g, as it is below the lowest: a source that follows one power
+// law is met exactly by any two levels.
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "hil_drivers/tron/calibration_file/calibration.h"
+
+namespace vbar::tron {
+
+inline constexpr std::size_t kLightSources = 1 + kBoxes;
+/// Of LightTable: "lamp", "box 1" to "box 10".
+[[nodiscard]] std::string light_source_name(std::size_t source);
+
+class LightResponse {
+ public:
+  /// Light proportional to the level.
+  LightResponse() = default;
+  /// Levels of the value (share of 65535) and the light there, relative to full power as designed. Levels of zero are
+  /// left out. Throws std::invalid_argument, which names the source, unless at least two levels and their light rise
+  /// strictly and are in (0, 1] and positive.
+  explicit LightResponse(const LightTable& table);
+
+  [[nodiscard]] double light(double level) const;
+  /// The inverse; at most 1.
+  [[nodiscard]] double level(double light) const;
+  /// The largest power that the source can give.
+  [[nodiscard]] double full_light() const { return light(1.0); }
+
+ private:
+  std::vector<double> log_level_{-1.0, 0.0}, log_light_{-1.0, 0.0};
+};
+
+/// Of lamp and boxes. As default light is proportional to the level.
+class PhotometricTable {
+ public:
+  PhotometricTable() = default;
+  /// Throws std::invalid_argument if a source is missing, unknown or given twice.
+  explicit PhotometricTable(const std::vector<LightTable>& tables);
+
+  [[nodiscard]] const LightResponse& lamp() const { return responses_[0]; }
+  [[nodiscard]] const LightResponse& box(std::size_t box) const { return responses_.at(1 + box); }
+
+ private:
+  std::array<LightResponse, kLightSources> responses_;
+};
+
+}  // namespace vbar::tron

@@ -1,0 +1,61 @@
+#pragma once
+// The UDP object stream of Vicon Tracker. A datagram is a block, little-endian and packed:
+//
+//   u32 frame number, u8 items in the block, then for each item
+//   u8 kind (0: object), u16 bytes that follow (72), char[24] name padded with NUL, f64 x 3 translation, mm,
+//   f64 x 3 rotation, rad
+//
+// Blocks are padded to 256, 512 or 1024 bytes or not at all. Objects that do not fit into one block follow in further
+// blocks of the same frame number. All numbers of an object that is occluded are zero. There is no time stamp.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vbar::tron::vicon {
+
+using Bytes = std::vector<std::uint8_t>;
+using ByteSpan = std::span<const std::uint8_t>;
+
+inline constexpr std::size_t kHeaderBytes = 5;
+inline constexpr std::size_t kItemHeaderBytes = 3;
+inline constexpr std::size_t kNameBytes = 24;
+inline constexpr std::size_t kObjectBytes = kNameBytes + 6 * sizeof(double);
+inline constexpr std::size_t kItemBytes = kItemHeaderBytes + kObjectBytes;
+inline constexpr std::uint8_t kObjectKind = 0;
+inline constexpr std::size_t kMaxItems = 255;
+inline constexpr std::array<std::size_t, 4> kBlockBytes{0, 256, 512, 1024};  ///< 0: as long as its items
+inline constexpr std::size_t kMaxDatagramBytes = 65507;                      ///< of UDP over IPv4
+
+struct TrackedObject {
+  std::string name;
+  std::array<double, 3> translation_mm{};
+  std::array<double, 3> rotation_rad{};  ///< RotX, RotY, RotZ
+
+  [[nodiscard]] bool is_occluded() const;  ///< all six numbers are zero
+  /// Compares the bits of the numbers.
+  [[nodiscard]] bool has_same_numbers(const TrackedObject& other) const;
+};
+
+struct ObjectBlock {
+  std::uint32_t frame = 0;
+  std::vector<TrackedObject> objects;
+
+  /// Nothing if the block has no object of that name.
+  [[nodiscard]] const TrackedObject* find(std::string_view name) const;
+};
+
+/// The blocks of a frame. Throws std::invalid_argument for a name that is empty, longer than 24 bytes or contains NUL,
+/// for a size of blocks that is not in kBlockBytes, and for objects that do not fit into one unpadded block.
+[[nodiscard]] std::vector<Bytes> encode_frame(const ObjectBlock& frame, std::size_t block_bytes);
+
+/// Bytes from the network. Items of other kinds are skipped; bytes after the last item are padding and are not read.
+/// Throws std::invalid_argument with the position of the error: a block shorter than its items, an object of another
+/// size, a name that is empty, not printable ASCII or given twice, a number that is not finite.
+[[nodiscard]] ObjectBlock decode_block(ByteSpan datagram);
+
+}  // namespace vbar::tron::vicon
