@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hil_drivers/tron/kinematics/geometry.h"
+#include "hil_drivers/tron/kinematics/arm_pair.h"
 #include "host_sim/engine/random_stream.h"
 #include "host_sim/mission/data_directory.h"
 
@@ -106,7 +106,7 @@ TEST(World, WithoutErrorsItIsTheLaboratoryAsDesigned) {
 
 TEST(World, WithoutErrorsItAgreesWithTheGeometryOfTheDriver) {
   const World world = world_of(ErrorSizes::none());
-  const Geometry geometry(laboratory());
+  const ArmPair geometry(laboratory());
   engine::RandomStream random(1, "world_test/postures");
   for (int trial = 0; trial < 1000; ++trial) {
     Posture at;
@@ -115,8 +115,8 @@ TEST(World, WithoutErrorsItAgreesWithTheGeometryOfTheDriver) {
       at.target_rad[k] = random.uniform(-3.0, 3.0);
     }
     at.carriage_m = random.uniform(0.5, 7.5);
-    EXPECT_TRUE(world.T_L_C(at).isApprox(geometry.T_L_C(at), 1e-12));
-    EXPECT_TRUE(world.T_L_mounted(at, Mounted::kTarget).isApprox(geometry.T_L_T(at), 1e-12));
+    EXPECT_TRUE(world.T_L_C(at).isApprox(geometry.camera_pose(at), 1e-12));
+    EXPECT_TRUE(world.T_L_mounted(at, Mounted::kTarget).isApprox(geometry.target_pose(at), 1e-12));
   }
 }
 
