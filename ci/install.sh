@@ -27,7 +27,7 @@ test=(
   libceres-dev  # calibration of the Optical Stimulator
 )
 peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr
-  libopencv-dev tshark ffmpeg)
+  libopencv-dev tshark ffmpeg ola)
 train=("${fly[@]}" python3 python3-numpy python3-torch)
 
 # The wire formats' peer is an npm package. Only if no other npm is installed: a vendor's node conflicts with
