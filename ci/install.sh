@@ -24,10 +24,11 @@ test=(
   g++-arm-linux-gnueabihf qemu-user
   # The display of the Optical Stimulator, its server on an emulated bench, and another client of it.
   libsdl2-dev libx11-dev libxrandr-dev xvfb x11-apps
-  libceres-dev  # calibration of the Optical Stimulator
+  libceres-dev         # calibration of the Optical Stimulator and of TRON
+  libopencv-contrib-dev  # calibration of TRON: its board in images
 )
 peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr
-  libopencv-dev tshark ffmpeg ola)
+  libopencv-dev liborocos-kdl-dev tshark ffmpeg ola)
 train=("${fly[@]}" python3 python3-numpy python3-torch)
 
 # The wire formats' peer is an npm package. Only if no other npm is installed: a vendor's node conflicts with

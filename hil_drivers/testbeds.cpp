@@ -8,6 +8,9 @@
 #ifdef VBAR_OPTICAL_STIMULATOR
 #include "hil_drivers/optical_stimulator/stimulator_kind.h"
 #endif
+#ifdef VBAR_TRON
+#include "hil_drivers/tron/tron_kind.h"
+#endif
 
 namespace vbar::testbeds {
 namespace {
@@ -25,7 +28,19 @@ const TestbedKind kOpticalStimulator{
     nullptr};
 #endif
 
-constexpr const TestbedKind* kTestbedKinds[] = {&grand::kGrand, &kOpticalStimulator};
+#ifdef VBAR_TRON
+using tron::kTron;
+#else
+const TestbedKind kTron{{"tron",
+                         [](const mission::TableReader& section) -> std::shared_ptr<const mission::TestbedSettings> {
+                           section.refuse(
+                               "", "a testbed whose driver this program was built without",
+                               "a program built with libaravis-dev and libusb-1.0-0-dev (ci/install.sh test)");
+                         }},
+                        nullptr};
+#endif
+
+constexpr const TestbedKind* kTestbedKinds[] = {&grand::kGrand, &kOpticalStimulator, &kTron};
 
 }  // namespace
 

@@ -139,8 +139,12 @@ class Camera::Connection {
       if (stop) return failure(NoFrame::Reason::kStopped, "stopped");
       if (ArvBuffer* const buffer = arv_stream_timeout_pop_buffer(stream_.get(), kSliceUs)) {
         auto result = read(buffer);
+        const std::uint64_t timestamp_ns = arv_buffer_get_timestamp(buffer);
         arv_stream_push_buffer(stream_.get(), buffer);
         if (auto* frame = std::get_if<Frame>(&result)) {
+          if (timestamp_ns != 0 && timestamp_ns <= last_timestamp_ns_)
+            return failure(NoFrame::Reason::kStale, "an image of an exposure before the trigger");
+          frame->timestamp_ns = last_timestamp_ns_ = timestamp_ns;
           guint64 resent = 0;
           arv_gv_stream_get_statistics(ARV_GV_STREAM(stream_.get()), &resent, &missing);
           frame->packets_resent = static_cast<std::int64_t>(resent - resent_before);
@@ -342,6 +346,7 @@ class Camera::Connection {
   double delay_ns_ = 0.0;
   std::size_t payload_ = 0;
   PixelPadding padding_;
+  std::uint64_t last_timestamp_ns_ = 0;  ///< of the last whole image
   bool is_started_ = false;
 };
 

@@ -28,7 +28,8 @@ struct Frame {
   std::vector<std::uint16_t> dn;  ///< right-aligned, rows of width
   int bits = 0;                   ///< of the converter
   std::int64_t packets_resent = 0;
-  double receive_s = 0.0;  ///< wall clock, from the trigger
+  double receive_s = 0.0;          ///< wall clock, from the trigger
+  std::uint64_t timestamp_ns = 0;  ///< of the camera; 0: it states none
 };
 
 /// Why there is no image; to be tried again or not, as the caller decides.
@@ -39,6 +40,7 @@ struct NoFrame {
     kNoAnswer,    ///< to the trigger: the camera is gone
     kNotOwner,    ///< another program has taken the camera, or its heartbeat was missed: reconnect()
     kInvalid,     ///< an image of another size or format
+    kStale,       ///< an image whose time stamp is not later than that of the image before
     kStopped,     ///< stop() was called
   };
   Reason reason = Reason::kTimeout;

@@ -101,13 +101,27 @@ void Acquisition::expose() {
 void Acquisition::end_exposure(Frame frame) {
   is_exposing_ = false;
   const double readout_s = readout_s_ * frame.leader.height / camera_.sensor_height;
-  after(readout_s, [this, shared = std::make_shared<Frame>(std::move(frame))] { read_out(*shared); });
+  after(readout_s, [this, shared = std::make_shared<Frame>(std::move(frame))] { read_out(shared); });
 }
 
-void Acquisition::read_out(const Frame& frame) {
+void Acquisition::read_out(std::shared_ptr<const Frame> frame) {
+  if (lost_frames_ > 0) {
+    --lost_frames_;
+    ++statistics_.frames_lost;
+  } else if (repeated_frames_ > 0 && last_frame_) {
+    --repeated_frames_;
+    ++statistics_.frames_repeated;
+    send(*last_frame_);
+  } else {
+    send(*frame);
+    last_frame_ = std::move(frame);
+  }
+  if (registers_.integer(FeatureId::kAcquisitionMode) != 0) stop();  // a single frame
+}
+
+void Acquisition::send(const Frame& frame) {
   if (!sender_.send(frame.leader, wire::pack_pixels(frame.leader.format, camera_.converter_bits, frame.image.dn)))
     ++statistics_.frames_dropped;
-  if (registers_.integer(FeatureId::kAcquisitionMode) != 0) stop();  // a single frame
 }
 
 void Acquisition::after(double delay_s, std::function<void()> next) {

@@ -42,6 +42,7 @@ struct AcquisitionStatistics {
   std::int64_t triggers_dropped = 0;  ///< during an exposure
   std::int64_t exposures = 0;
   std::int64_t frames_dropped = 0;  ///< with the stream channel full
+  std::int64_t frames_lost = 0, frames_repeated = 0;
 };
 
 class Acquisition {
@@ -57,6 +58,10 @@ class Acquisition {
   void set_exposure_factor(double factor) { exposure_factor_ = factor; }
   /// The next `count` triggers are acknowledged and have no effect.
   void ignore_triggers(int count) { ignored_triggers_ = count; }
+  /// The next `count` frames are exposed and not sent.
+  void lose_frames(int count) { lost_frames_ = count; }
+  /// In the place of the next `count` frames the one before is sent, with its time stamp.
+  void repeat_frames(int count) { repeated_frames_ = count; }
   void set_payload_type(wire::PayloadType type) { payload_type_ = type; }
 
   [[nodiscard]] const AcquisitionStatistics& statistics() const { return statistics_; }
@@ -70,7 +75,9 @@ class Acquisition {
   void begin_exposure();
   void expose();
   void end_exposure(Frame frame);
-  void read_out(const Frame& frame);
+  void read_out(std::shared_ptr<const Frame> frame);
+  /// Without the faults of frames.
+  void send(const Frame& frame);
   /// Calls `next` after `delay_s` at real pace, otherwise at the next turn of the context; not after stop().
   void after(double delay_s, std::function<void()> next);
   void run_freely();
@@ -89,7 +96,8 @@ class Acquisition {
   std::shared_ptr<int> run_ =
       std::make_shared<int>(0);  ///< replaced by start and stop, so that what was begun before is dropped
   double exposure_factor_ = 1.0;
-  int ignored_triggers_ = 0;
+  int ignored_triggers_ = 0, lost_frames_ = 0, repeated_frames_ = 0;
+  std::shared_ptr<const Frame> last_frame_;  ///< that was sent
   wire::PayloadType payload_type_ = wire::PayloadType::kImage;
   AcquisitionStatistics statistics_;
 };

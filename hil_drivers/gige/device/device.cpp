@@ -334,6 +334,12 @@ void Device::refuse_region(bool refused) {
 void Device::ignore_triggers(int count) {
   control_->acquisition().ignore_triggers(count);
 }
+void Device::lose_frames(int count) {
+  control_->acquisition().lose_frames(count);
+}
+void Device::repeat_frames(int count) {
+  control_->acquisition().repeat_frames(count);
+}
 void Device::set_payload_type(wire::PayloadType type) {
   control_->acquisition().set_payload_type(type);
 }

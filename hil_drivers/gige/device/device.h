@@ -54,6 +54,9 @@ class Device {
   void set_exposure_factor(double factor);
   void refuse_region(bool refused);
   void ignore_triggers(int count);
+  /// The next frames are exposed and not sent; the one before is sent in their place, with its time stamp.
+  void lose_frames(int count);
+  void repeat_frames(int count);
   /// What blocks call themselves; pixels do not change.
   void set_payload_type(wire::PayloadType type);
 

@@ -1,5 +1,6 @@
 #include "hil_drivers/tron/bench_file/bench_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string_view>
@@ -65,6 +66,9 @@ ArmDesign read_arm(const TableReader& section) {
   read_column(section, "speed_deg_s", above_to(0.0, 3600.0), kDegree, &AxisLimits::speed, arm);
   read_column(section, "acceleration_rad_s2", above_to(0.0, 1e4), 1.0, &AxisLimits::acceleration, arm);
   read_column(section, "jerk_rad_s3", above_to(0.0, 1e6), 1.0, &AxisLimits::jerk, arm);
+  const auto radii =
+      section.numbers("body_radius_m", arm.body_radius_m.size(), arm.body_radius_m.size(), from_to(0.0, 1.0));
+  std::ranges::copy(radii, arm.body_radius_m.begin());
   for (std::size_t k = 0; k < kJoints; ++k)
     if (arm.axes[k].lower >= arm.axes[k].upper) section.refuse_value("upper_deg", "upper limits above the lower ones");
   section.finish();

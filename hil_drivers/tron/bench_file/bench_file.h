@@ -37,6 +37,8 @@ struct ArmDesign {
   std::string type;  ///< of the manufacturer
   double d1_m = 0.0, a1_m = 0.0, a2_m = 0.0, a3_m = 0.0, d4_m = 0.0, d6_m = 0.0;
   std::array<AxisLimits, kJoints> axes{};
+  /// Of the capsules that stand for its bodies in collision checks: column (base to A2), upper arm, forearm, wrist.
+  std::array<double, 4> body_radius_m{};
 };
 
 /// How an arm stands.

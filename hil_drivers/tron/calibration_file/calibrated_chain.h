@@ -117,6 +117,7 @@ struct TrackGrid {
   double first_m = 0.0;  ///< carriage place of the first control point
   double step_m = 1.0;
   double middle_m = 4.0;  ///< where the scale error is zero
+  double plate_m = 0.0;   ///< height of the plate by which the arm hangs: the errors of rotation turn about it
 };
 
 /// T_L_carriage: translation along x by the carriage, its scale error and the five errors of the track: roll, pitch,
@@ -136,7 +137,10 @@ Rigid<T> T_L_carriage(const TrackGrid& grid, double carriage_m, const T* knots, 
   }
   const T six[6] = {errors[0], errors[1], errors[2], T(carriage_m) + scale * T(carriage_m - grid.middle_m),
                     errors[3], errors[4]};
-  return rigid_of(six);
+  Rigid<T> carriage = rigid_of(six);
+  const Eigen::Matrix<T, 3, 1> plate(T(0.0), T(0.0), T(grid.plate_m));
+  carriage.translation() += plate - carriage.linear() * plate;
+  return carriage;
 }
 
 }  // namespace vbar::tron

@@ -64,6 +64,7 @@ Calibration calibration_as_designed(const BenchFile& bench) {
   grid.step_m = kTrackStep_m;
   grid.first_m = axis.lower - kTrackStep_m;
   grid.middle_m = bench.track.home_m;
+  grid.plate_m = bench.camera_robot.base.position_m.z();
   const double cells = std::max(1.0, std::ceil((axis.upper - axis.lower) / kTrackStep_m - 1e-9));
   calibration.track.knots.resize(static_cast<std::size_t>(cells) + 3);
   calibration.vicon.rotation = bench.vicon.rotation;

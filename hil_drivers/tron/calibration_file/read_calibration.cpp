@@ -99,6 +99,7 @@ TrackCalibration read_track(const TableReader& section) {
   track.grid.first_m = section.number("first_m", kLength_m);
   track.grid.step_m = section.number("step_m", from_to(1e-3, 100.0));
   track.grid.middle_m = section.number("middle_m", kLength_m);
+  track.grid.plate_m = section.number("plate_m", kLength_m);
   track.scale = section.number("scale", from_to(-0.1, 0.1));
   const std::array<std::string_view, kTrackErrors> names{"roll_rad", "pitch_rad", "yaw_rad", "sideways_m", "height_m"};
   for (std::size_t e = 0; e < names.size(); ++e) {

@@ -98,6 +98,7 @@ void write(Document& out, const TrackCalibration& track) {
   out.key("first_m", track.grid.first_m);
   out.key("step_m", track.grid.step_m);
   out.key("middle_m", track.grid.middle_m);
+  out.key("plate_m", track.grid.plate_m);
   out.key("scale", track.scale);
   const std::array<std::string_view, kTrackErrors> names{"roll_rad", "pitch_rad", "yaw_rad", "sideways_m", "height_m"};
   for (std::size_t e = 0; e < names.size(); ++e) {

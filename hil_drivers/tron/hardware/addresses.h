@@ -16,8 +16,8 @@ struct TcpAddress {
 };
 
 struct BenchAddresses {
-  bool is_virtual = false;  ///< the clock of an emulated bench
-  std::string camera;       ///< IP address
+  bool is_virtual = false;                ///< the clock of an emulated bench
+  std::string camera;                     ///< IP address
   TcpAddress camera_robot, target_robot;  ///< Ethernet KRL
   TcpAddress lights;                      ///< sACN, UDP
   std::filesystem::path control;          ///< socket of an emulated bench; empty: none

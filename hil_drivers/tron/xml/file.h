@@ -13,6 +13,7 @@ class File {
  public:
   /// Throws mission::MissionError; `root` is the name that its root element must have.
   File(const std::filesystem::path& file, std::string_view root);
+  ~File() = default;
   File(const File&) = delete;
   File& operator=(const File&) = delete;
 

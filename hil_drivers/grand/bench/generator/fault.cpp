@@ -14,15 +14,6 @@ using mission::TableReader;
 constexpr const char* kControlLine = "fault control line";
 constexpr std::int64_t kPorts = 2;
 
-const FaultRule& read_kind(const TableReader& section) {
-  std::vector<std::string_view> names;
-  for (const FaultRule& rule : kFaultRules) names.push_back(rule.name);
-  const std::string name = section.text("kind");
-  for (const FaultRule& rule : kFaultRules)
-    if (rule.name == name) return rule;
-  section.refuse_value("kind", mission::listing_of(names));
-}
-
 std::size_t read_vehicle(const TableReader& section, const std::vector<std::string>& vehicles) {
   const std::string name = section.text("vehicle");
   const auto found = std::ranges::find(vehicles, name);
@@ -33,7 +24,7 @@ std::size_t read_vehicle(const TableReader& section, const std::vector<std::stri
 }  // namespace
 
 Fault read_fault(const TableReader& section, const std::vector<std::string>& vehicles) {
-  const FaultRule& rule = read_kind(section);
+  const FaultRule& rule = bench_lines::read_fault_rule(section, kFaultRules);
   Fault fault;
   fault.kind = rule.kind;
   if (section.has("time_s")) fault.time = section.span("time_s", 1.0, from_to(0.0, 1e7));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fsw/core/gps_time.h"
+#include "hil_drivers/bench_lines/fault_rules.h"
 #include "host_sim/mission/table_reader.h"
 
 namespace vbar::grand::bench {
@@ -78,9 +79,7 @@ inline constexpr std::array<FaultRule, 23> kFaultRules{{
 }};
 
 constexpr const FaultRule& rule_of(FaultKind kind) {
-  for (const FaultRule& rule : kFaultRules)
-    if (rule.kind == kind) return rule;
-  return kFaultRules.front();
+  return bench_lines::fault_rule_of(kFaultRules, kind);
 }
 
 struct Fault {

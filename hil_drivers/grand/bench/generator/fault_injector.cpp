@@ -1,6 +1,5 @@
 #include "hil_drivers/grand/bench/generator/fault_injector.h"
 
-#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -45,9 +44,7 @@ std::string serial_config(std::size_t port, unsigned baud) {
 
 FaultInjector::FaultInjector(BenchEngine& engine, ControlServers& control, EdgeBroadcaster& edges,
                              const std::filesystem::path& file)
-    : engine_(&engine), control_(&control), edges_(&edges), file_(file) {
-  if (!file_) throw std::runtime_error(fmt::format("{}: the file of the faults cannot be written", file.string()));
-}
+    : engine_(&engine), control_(&control), edges_(&edges), log_(file) {}
 
 void FaultInjector::add(const Fault& fault, Acknowledge acknowledge) {
   active_.push_back({fault, std::move(acknowledge)});
@@ -235,9 +232,7 @@ void FaultInjector::acknowledge(Active& active) {
   if (rule.has_duration) line["duration_s"] = fsw::seconds(fault.duration);
   if (!rule.value_key.empty()) line[std::string(rule.value_key)] = fault.value;
   if (!rule.text_key.empty()) line[std::string(rule.text_key)] = fault.text;
-  const std::string text = line.dump();
-  file_ << text << std::endl;  // at once: the program may be killed
-  if (active.acknowledge) active.acknowledge(text);
+  log_.write(line.dump(), active.acknowledge);
   if (fault.kind == FaultKind::kBenchExit && on_exit) on_exit();
 }
 

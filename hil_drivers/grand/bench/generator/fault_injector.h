@@ -4,12 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "hil_drivers/bench_lines/fault_log.h"
 #include "hil_drivers/grand/bench/control/control_servers.h"
 #include "hil_drivers/grand/bench/generator/bench_engine.h"
 #include "hil_drivers/grand/bench/generator/fault.h"
@@ -25,7 +25,7 @@ class FaultInjector {
                 const std::filesystem::path& file);
 
   /// Called with the line of the file (without its end) when the fault has taken effect.
-  using Acknowledge = std::function<void(const std::string& line)>;
+  using Acknowledge = bench_lines::Acknowledge;
   void add(const Fault& fault, Acknowledge acknowledge = {});
 
   /// Begins faults that are due, looks for their effects, ends those whose duration has passed. Called after every
@@ -58,7 +58,7 @@ class FaultInjector {
   BenchEngine* engine_;
   ControlServers* control_;
   EdgeBroadcaster* edges_;
-  std::ofstream file_;
+  bench_lines::FaultLog log_;
   std::vector<Active> active_;
 };
 

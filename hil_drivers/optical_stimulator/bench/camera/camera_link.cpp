@@ -1,22 +1,18 @@
 #include "hil_drivers/optical_stimulator/bench/camera/camera_link.h"
 
 #include <chrono>
-#include <stdexcept>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "host_sim/engine/random_stream.h"
+#include "hil_drivers/gige/device/free_address.h"
 
 namespace vbar::optical_stimulator::bench {
 namespace {
 
-constexpr int kFirstHost = 1, kLastHost = 254;
+constexpr const char* kNetwork = "127.0.13";
 
 std::string serial_of(const BenchSettings& settings) {
   if (!settings.identity.serial.empty()) return settings.identity.serial;
-  engine::RandomStream stream(settings.seed, "bench/camera/serial");
-  return fmt::format("{:08}", 10'000'000 + stream.bits() % 90'000'000);
+  return gige::drawn_serial(settings.seed, "bench/camera/serial");
 }
 
 gige::Device::Settings device_settings(const BenchSettings& settings, const twins::camera::CameraSettings& camera) {
@@ -39,16 +35,9 @@ CameraLink::CameraLink(boost::asio::io_context& context, const BenchSettings& se
   const gige::Expose on_trigger = [expose = std::move(expose)](const gige::Request& request) {
     return gige::Image{expose({request.region, {request.exposure_s, request.gain_db, request.black_level_dn}})};
   };
-  gige::Device::Settings device = device_settings(settings, camera);
-  for (int host = kFirstHost; !device_; ++host) {
-    device.address = fmt::format("127.0.13.{}", host);
-    try {
-      device_ = std::make_unique<gige::Device>(context, device, on_trigger);
-    } catch (const std::runtime_error&) {
-      if (host == kLastHost) throw;
-    }
-  }
-  address_ = device.address;
+  auto placed = gige::device_on_free_address(context, device_settings(settings, camera), kNetwork, on_trigger);
+  address_ = placed.address;
+  device_ = std::move(placed.device);
 }
 
 void CameraLink::set_fault(const Fault& fault, bool is_on) {

@@ -1,7 +1,5 @@
 #include "hil_drivers/optical_stimulator/bench/faults/bench_fault.h"
 
-#include <vector>
-
 #include "hil_drivers/bench_lines/json_table.h"
 
 namespace vbar::optical_stimulator::bench {
@@ -13,20 +11,11 @@ using mission::TableReader;
 constexpr const char* kControlLine = "fault control line";
 constexpr std::int64_t kAxes = 2;
 
-const FaultRule& read_kind(const TableReader& section) {
-  std::vector<std::string_view> names;
-  for (const FaultRule& rule : kFaultRules) names.push_back(rule.name);
-  const std::string name = section.text("kind");
-  for (const FaultRule& rule : kFaultRules)
-    if (rule.name == name) return rule;
-  section.refuse_value("kind", mission::listing_of(names));
-}
-
 }  // namespace
 
 Fault read_fault(const TableReader& section) {
   constexpr std::int64_t kMaxFrames = 1'000'000'000;
-  const FaultRule& rule = read_kind(section);
+  const FaultRule& rule = bench_lines::read_fault_rule(section, kFaultRules);
   Fault fault;
   fault.kind = rule.kind;
   if (section.has("frame")) fault.frame = static_cast<std::uint64_t>(section.integer("frame", 0, kMaxFrames));

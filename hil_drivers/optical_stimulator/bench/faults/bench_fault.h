@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "hil_drivers/bench_lines/fault_rules.h"
 #include "host_sim/mission/table_reader.h"
 
 namespace vbar::optical_stimulator::bench {
@@ -78,9 +79,7 @@ inline constexpr std::array<FaultRule, 21> kFaultRules{{
 }};
 
 constexpr const FaultRule& rule_of(FaultKind kind) {
-  for (const FaultRule& rule : kFaultRules)
-    if (rule.kind == kind) return rule;
-  return kFaultRules.front();
+  return bench_lines::fault_rule_of(kFaultRules, kind);
 }
 
 struct Fault {

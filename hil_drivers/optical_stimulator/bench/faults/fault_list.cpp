@@ -1,9 +1,7 @@
 #include "hil_drivers/optical_stimulator/bench/faults/fault_list.h"
 
-#include <stdexcept>
 #include <utility>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace vbar::optical_stimulator::bench {
@@ -59,9 +57,7 @@ void apply(const Fault& fault, ExposureFaults& faults) {
 }  // namespace
 
 FaultList::FaultList(FaultActions actions, const std::filesystem::path& file)
-    : actions_(std::move(actions)), file_(file) {
-  if (!file_) throw std::runtime_error(fmt::format("{}: cannot be made", file.string()));
-}
+    : actions_(std::move(actions)), log_(file) {}
 
 void FaultList::add(const Fault& fault, double now_s, Acknowledge acknowledge) {
   active_.push_back({fault, std::move(acknowledge)});
@@ -162,9 +158,7 @@ void FaultList::acknowledge(Active& active, std::uint64_t frame) {
   if (rule.has_axis) line["axis"] = active.fault.axis + 1;
   if (!rule.value_key.empty()) line[std::string(rule.value_key)] = active.fault.value;
   if (!rule.second_key.empty()) line[std::string(rule.second_key)] = active.fault.second;
-  const std::string text = line.dump();
-  file_ << text << std::endl;
-  if (active.acknowledge) active.acknowledge(text);
+  log_.write(line.dump(), active.acknowledge);
 }
 
 }  // namespace vbar::optical_stimulator::bench

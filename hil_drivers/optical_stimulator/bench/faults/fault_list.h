@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "hil_drivers/bench_lines/fault_log.h"
 #include "hil_drivers/optical_stimulator/bench/faults/bench_fault.h"
 #include "hil_drivers/optical_stimulator/bench/screen/panel.h"
 
@@ -33,7 +33,7 @@ struct FaultActions {
 
 class FaultList {
  public:
-  using Acknowledge = std::function<void(const std::string& line)>;
+  using Acknowledge = bench_lines::Acknowledge;
 
   /// `file` gets a line for each fault that took effect. Throws std::runtime_error if it cannot be made.
   FaultList(FaultActions actions, const std::filesystem::path& file);
@@ -64,7 +64,7 @@ class FaultList {
   void acknowledge(Active& active, std::uint64_t frame);
 
   FaultActions actions_;
-  std::ofstream file_;
+  bench_lines::FaultLog log_;
   std::vector<Active> active_;
   std::uint64_t next_frame_ = 0;
 };

@@ -55,6 +55,10 @@ void Controller::be_silent(std::uint64_t cycles) {
   core_->silent_cycles = cycles;
 }
 
+void Controller::lose_answers(std::uint64_t cycles) {
+  core_->lost_answers = cycles;
+}
+
 void Controller::set_ipoc_back(std::uint64_t milliseconds) {
   core_->ipoc -= std::min(core_->ipoc, milliseconds);
 }
@@ -63,6 +67,12 @@ void Controller::drop_rsi() {
   if (!core_->rsi_on) return;
   core_->stop_with("RSIBad: the connection is interrupted");
   core_->announce();
+}
+
+eki::Reply Controller::execute(const eki::Command& command) {
+  eki::Reply reply = core_->handle(command);
+  core_->announce();
+  return reply;
 }
 
 bool Controller::rsi_is_on() const {

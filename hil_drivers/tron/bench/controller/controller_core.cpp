@@ -24,10 +24,13 @@ AxisArray home_of(const ControllerSettings& settings) {
   return home;
 }
 
+/// Assumed, of the size of the manufacturer's figures: an arm at full speed stands after 0.3 s.
+constexpr double kStoppingTime_s = 0.3;
+
 AxisArray decelerations_of(const ControllerSettings& settings) {
   AxisArray decelerations{};
   const auto limits = limits_of(settings);
-  for (std::size_t k = 0; k < kServoAxes; ++k) decelerations[k] = limits[k].acceleration;
+  for (std::size_t k = 0; k < kServoAxes; ++k) decelerations[k] = limits[k].speed / kStoppingTime_s;
   return decelerations;
 }
 
@@ -43,7 +46,11 @@ Controller::Core::Core(boost::asio::io_context& context, ControllerSettings give
              if (on_datagram) on_datagram();
            }),
       server(context, settings.robot.line.address, settings.eki_port,
-             [this](const eki::Command& command) { return handle(command); }),
+             [this](const eki::Command& command) {
+               eki::Reply reply = handle(command);
+               announced = state();  // the reply says it
+               return reply;
+             }),
       ipoc(settings.first_ipoc) {
   if (!settings.flange_pose) throw std::logic_error(settings.name + ": no forward kinematics");
   if (settings.track && !settings.context.track)
@@ -68,6 +75,10 @@ void Controller::Core::move() {
 void Controller::Core::take_answer() {
   ++statistics.cycles;
   const rsi::Sen* answer = link.end_cycle();
+  if (lost_answers > 0) {
+    --lost_answers;
+    answer = nullptr;
+  }
   correction.take(answer);
   count_answer(answer != nullptr);
   if (missing_in_row >= settings.context.timeout_cycles) {
@@ -172,8 +183,7 @@ eki::Reply Controller::Core::handle(const eki::Command& command) {
   if (command.action == eki::Action::kReset) problem = reset();
   if (command.action == eki::Action::kStop) end_rsi();
   if (command.action == eki::Action::kStart && problem.empty()) start_rsi();
-  announced = state();
-  eki::State reply = announced;
+  eki::State reply = state();
   reply.seq = command.seq;
   if (!problem.empty()) reply.message = problem;
   return reply;
@@ -193,7 +203,7 @@ void Controller::Core::start_rsi() {
   message.clear();
   correction.begin(servo.command());
   monitor.begin(servo.command());
-  delay = 0;
+  delay = silent_cycles = lost_answers = 0;
   missing_in_row = 0;
   cycles_since_answer = 1;
   ++statistics.rsi_starts;

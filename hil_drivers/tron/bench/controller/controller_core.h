@@ -51,7 +51,7 @@ struct Controller::Core {
 
   std::uint64_t cycles = 0;  ///< since the program began
   std::uint64_t ipoc;
-  std::uint64_t silent_cycles = 0, delay = 0;
+  std::uint64_t silent_cycles = 0, lost_answers = 0, delay = 0;
   int cycles_since_answer = 1, missing_in_row = 0;
   bool rsi_on = false, drives_on = true, emergency_stop = false, stopped = false, stood = true;
   bool sent_in_cycle = false;

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 namespace vbar::tron::bench {
@@ -12,6 +13,13 @@ boost::asio::ip::address_v4 parse(const std::string& address) {
   const auto parsed = boost::asio::ip::make_address_v4(address, error);
   if (error) throw std::runtime_error("'" + address + "' is not an IPv4 address of a controller");
   return parsed;
+}
+
+/// The stream of a controller is cut anywhere; a client that expects whole documents fails here as well.
+void send_in_pieces(bench_lines::Connection& connection, std::string_view document) {
+  const std::size_t middle = document.size() / 2;
+  connection.send(document.substr(0, middle));
+  connection.send(document.substr(middle));
 }
 
 }  // namespace
@@ -40,7 +48,7 @@ void EkiServer::receive(bench_lines::Connection& connection, eki::DocumentBuffer
   try {
     while (const auto document = documents.next()) {
       const eki::Reply reply = handler_(eki::decode_command(*document));
-      connection.send(std::visit([](const auto& answer) { return eki::encode(answer); }, reply));
+      send_in_pieces(connection, std::visit([](const auto& answer) { return eki::encode(answer); }, reply));
     }
   } catch (const eki::WireError&) {
     connection.close();  // as a controller does whose parser has failed
@@ -48,7 +56,7 @@ void EkiServer::receive(bench_lines::Connection& connection, eki::DocumentBuffer
 }
 
 void EkiServer::send(const eki::State& state) {
-  if (const auto client = client_.lock()) client->send(eki::encode(state));
+  if (const auto client = client_.lock()) send_in_pieces(*client, eki::encode(state));
 }
 
 }  // namespace vbar::tron::bench

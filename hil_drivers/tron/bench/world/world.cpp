@@ -39,6 +39,10 @@ World::World(const BenchFile& laboratory, const std::array<Eigen::Isometry3d, kM
                            drawn_pose(seed, kPlateStreams[k], sizes.plate_rotation_deg, sizes.plate_translation_mm);
 }
 
+void World::slip(double x_m) {
+  for (Eigen::Isometry3d& T : T_flange_mounted_) T = T * Eigen::Translation3d(x_m * fsw::Vector3::UnitX());
+}
+
 Eigen::Isometry3d World::T_L_camera_base(const Posture& posture) const {
   return track_.T_L_base(posture.carriage_m);
 }

@@ -44,6 +44,9 @@ class World {
   [[nodiscard]] Eigen::Isometry3d T_L_mounted(const Posture& posture, Mounted mounted) const;
   [[nodiscard]] Eigen::Isometry3d T_C_mounted(const Posture& posture, Mounted mounted) const;
 
+  /// What hangs on the plate has slipped along its x.
+  void slip(double x_m);
+
  private:
   TrueArm camera_arm_, target_arm_;
   TrueTrack track_;

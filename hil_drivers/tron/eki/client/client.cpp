@@ -90,10 +90,17 @@ RobotState Client::pose() {
 }
 
 void Client::poll() {
-  read(io::Clock::now());
   // An answer that nobody waits for any more is not used.
-  while (take()) {
-  }
+  const auto take_all = [this] {
+    while (take()) {
+    }
+  };
+  // States that came with the last answer are taken before a line that is closed is an error.
+  const std::uint64_t before = unsolicited_;
+  take_all();
+  if (unsolicited_ != before) return;
+  read(io::Clock::now());
+  take_all();
 }
 
 }  // namespace vbar::tron::eki

@@ -81,6 +81,8 @@ State decode_state(const Reader& reader) {
               reader.flag("RsiOn"), reader.flag("Stopped"), reader.attribute("Message")};
   if (state.message.size() > kMaxMessageCharacters)
     reader.fail(fmt::format("Message of more than {} characters", kMaxMessageCharacters));
+  for (const char c : state.message)
+    if (c < 0x20) reader.fail("Message has control characters");
   return state;
 }
 

@@ -86,7 +86,7 @@ class Reader {
       file_.refuse(element, fmt::format("INDX {} again", value.index), "an index that is not used");
     indices_.push_back(value.index);
     if (!is_name(tag.element)) file_.refuse(element, "TAG \"" + text + "\"", "a name, or name.attribute");
-    const auto axis = std::find(xml::kAxisNames.begin(), xml::kAxisNames.end(), tag.attribute);
+    const auto* const axis = std::find(xml::kAxisNames.begin(), xml::kAxisNames.end(), tag.attribute);
     if (type == "DOUBLE" && axis != xml::kAxisNames.end() && is_element(config_.axis_element, tag.element)) {
       config_.axis_element = tag.element;
       place(element, config_.axes[static_cast<std::size_t>(axis - xml::kAxisNames.begin())], value);

@@ -11,9 +11,9 @@
 
 #include <Eigen/Geometry>
 
-#include "host_sim/twins/camera/earth_light.h"
 #include "host_sim/twins/camera/model/gl_context.h"
 #include "host_sim/twins/camera/model/gl_objects.h"
+#include "host_sim/twins/camera/model/shader_inputs.h"
 #include "host_sim/twins/camera/model/target_shaders.h"
 
 namespace vbar::twins::camera {
@@ -25,10 +25,8 @@ using Matrix3f = Eigen::Matrix<float, 3, 3>;
 using Matrix4f = Eigen::Matrix<float, 4, 4>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kEarthSteps = 512;
-constexpr int kFinePicture = 256;       // texels on a side; finer ones have texels enough without several samples each
-constexpr int kFinestShadow = 2048;     // texels on a side of the shadow map
-constexpr double kMinRoughness = 0.02;  // a mirror image of the Sun, half a degree wide, is no narrower
+constexpr int kFinePicture = 256;    // texels on a side; finer ones have texels enough without several samples each
+constexpr int kFinestShadow = 2048;  // texels on a side of the shadow map
 
 // The picture's axes: z to the middle of the sphere, x and y near the camera's.
 Matrix3 axes_towards(const Vector3& direction) {
@@ -70,25 +68,6 @@ std::vector<float> surface_of(const CadModel& model) {
   return floats;
 }
 
-// Inputs of the shader: albedo, reflectivity, the same at grazing incidence, roughness. A reflectivity below 4 %,
-// glass with a coating or plain paint, rises less at grazing incidence; zero stays zero. Roughness from the exponent:
-// Walter et al. (2007), section 5.2.
-std::array<float, 4> shader_material(const Material& m) {
-  const double specular = m.grey_specular();
-  const double roughness = std::clamp(std::sqrt(2.0 / (m.exponent + 2.0)), kMinRoughness, 1.0);
-  return {static_cast<float>(m.grey_diffuse()), static_cast<float>(specular),
-          static_cast<float>(std::min(1.0, 25.0 * specular)), static_cast<float>(roughness)};
-}
-
-// earth_light_factor() at even steps of the cosine from -1 to 1.
-std::vector<float> earth_table(double sine_earth) {
-  std::vector<float> table(kEarthSteps);
-  for (int i = 0; i < kEarthSteps; ++i)
-    table[static_cast<std::size_t>(i)] =
-        static_cast<float>(earth_light_factor(2.0 * i / (kEarthSteps - 1) - 1.0, sine_earth));
-  return table;
-}
-
 void check(const TargetView& view) {
   const double sum = view.position_camera.sum() + view.R_camera_body.sum() + view.sun_camera.sum() +
                      view.nadir_camera.sum() + view.sun_photons_per_m2_s + view.sunlit + view.earth_photons_per_m2_s +
@@ -102,7 +81,9 @@ struct TargetRenderer::Drawing {
   explicit Drawing(const CadModel& model) : centre(model.centre), radius_m(model.radius_m) {
     const GlContext::Current current(context);
     shadow_program.emplace(kShadowVertexShader, kShadowFragmentShader);
-    surface_program.emplace(kSurfaceVertexShader, kSurfaceFragmentShader);
+    surface_program.emplace(
+        kSurfaceVertexShader,
+        std::string(kSurfaceFragmentInputs).append(kReflectionFunctions).append(kSurfaceFragmentMain));
     triangles.emplace(surface_of(model), std::array{3, 3, 4});
     earth_light.emplace();
   }

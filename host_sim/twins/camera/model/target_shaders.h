@@ -39,34 +39,11 @@ void main() {
 }
 )glsl";
 
-// Light reflected towards the camera, 1/sr times irradiance.
-//
 // Reflection: Lambert plus Cook and Torrance (1982), "A reflectance model for computer graphics", with the distribution
 // and masking of Walter, Marschner, Li, Torrance (2007), "Microfacet models for refraction through rough surfaces"
 // (GGX, eqs. 33 and 34) and Schlick's (1994) Fresnel term. Light that the surface reflects specularly at grazing angles
 // is not scattered: the Lambert part falls as the Fresnel term rises, in both directions, so that reciprocity holds.
-//
-// The Earth is a disc of even radiance: its light scattered by the Lambert part, horizon included, and its mirror
-// image, as much of the lobe about the mirrored view as falls on the disc.
-inline constexpr std::string_view kSurfaceFragmentShader = R"glsl(#version 330 core
-centroid in vec3 p;
-centroid in vec3 smooth_normal;
-flat in vec3 plane_normal;
-flat in vec4 material;
-flat in vec2 mirror_edge;
-out float radiance;
-
-uniform vec3 camera;           // where it is
-uniform vec3 sun;              // unit, towards it
-uniform float sun_irradiance;
-uniform vec3 nadir;            // unit, towards the Earth's centre
-uniform float earth_radiance;  // of its disc, per irradiance
-uniform sampler1D earth_light; // irradiance by it over the cosine of a normal to the nadir, from -1 to 1
-uniform float earth_irradiance;  // on an area that faces the nadir
-uniform mat3 R_sun_body;
-uniform int shadow_reach;      // of the mean, in texels: 0 for 2 x 2 of them, 1 for 4 x 4
-uniform sampler2D shadow_map;  // depths, 0 to 1 through the sphere
-
+inline constexpr std::string_view kReflectionFunctions = R"glsl(
 const float kPi = 3.14159265358979;
 
 float grazing(float cosine) {
@@ -94,7 +71,34 @@ float reflected(vec3 n, vec3 l, vec3 v, vec4 m) {
   float glossy = fresnel * distribution * masking(nl, alpha2) * masking(nv, alpha2) / (4.0 * nl * nv);
   return (lambert + glossy) * nl;
 }
+)glsl";
 
+// Light reflected towards the camera, 1/sr times irradiance. Followed by kReflectionFunctions and
+// kSurfaceFragmentMain.
+//
+// The Earth is a disc of even radiance: its light scattered by the Lambert part, horizon included, and its mirror
+// image, as much of the lobe about the mirrored view as falls on the disc.
+inline constexpr std::string_view kSurfaceFragmentInputs = R"glsl(#version 330 core
+centroid in vec3 p;
+centroid in vec3 smooth_normal;
+flat in vec3 plane_normal;
+flat in vec4 material;
+flat in vec2 mirror_edge;
+out float radiance;
+
+uniform vec3 camera;           // where it is
+uniform vec3 sun;              // unit, towards it
+uniform float sun_irradiance;
+uniform vec3 nadir;            // unit, towards the Earth's centre
+uniform float earth_radiance;  // of its disc, per irradiance
+uniform sampler1D earth_light; // irradiance by it over the cosine of a normal to the nadir, from -1 to 1
+uniform float earth_irradiance;  // on an area that faces the nadir
+uniform mat3 R_sun_body;
+uniform int shadow_reach;      // of the mean, in texels: 0 for 2 x 2 of them, 1 for 4 x 4
+uniform sampler2D shadow_map;  // depths, 0 to 1 through the sphere
+)glsl";
+
+inline constexpr std::string_view kSurfaceFragmentMain = R"glsl(
 // Sunlit fraction at p: a mean over the texels of the shadow map around it, their weights moving with p. Each
 // texel is compared with the depth that the plane of the face has at the texel's middle: no face shades itself, and
 // shadows begin where bodies touch. Where the Sun only grazes a face the slope is limited, and so is the light.

@@ -75,6 +75,32 @@ TEST(GigeCameraFaults, TriggerThatIsIgnoredTimesOut) {
   EXPECT_THAT(std::get<NoFrame>(result).text, StartsWith("camera " + device.address() + ": no image within 0.3 s"));
 }
 
+TEST(GigeCameraFaults, FrameThatIsLostTimesOutAndTheNextOneComes) {
+  RunningDevice device;
+  Camera::Settings settings = settings_for(device);
+  settings.timeout_s = 0.3;
+  Camera camera(settings);
+  camera.open();
+  device.with([](Device& one) { one.lose_frames(1); });
+  EXPECT_EQ(reason_of(camera.take()), NoFrame::Reason::kTimeout);
+  EXPECT_EQ(taken(camera).dn, picture_of(camera, 1).dn);
+  EXPECT_EQ(device.statistics().acquisition.frames_lost, 1);
+}
+
+TEST(GigeCameraFaults, FrameOlderThanTheTriggerIsNotAnImage) {
+  RunningDevice device;
+  Camera camera(settings_for(device));
+  camera.open();
+  const Frame first = taken(camera);
+  device.with([](Device& one) { one.repeat_frames(1); });
+  const auto result = camera.take();
+  EXPECT_EQ(reason_of(result), NoFrame::Reason::kStale);
+  EXPECT_THAT(std::get<NoFrame>(result).text, HasSubstr("before the trigger"));
+  const Frame third = taken(camera);
+  EXPECT_EQ(third.dn, picture_of(camera, 2).dn);
+  EXPECT_GT(third.timestamp_ns, first.timestamp_ns);
+}
+
 TEST(GigeCameraFaults, FrameWithHolesIsNotAnImage) {
   RunningDevice device;
   Camera::Settings settings = settings_for(device);

@@ -155,6 +155,17 @@ TEST(TronCalibratedChain, TrackErrorsFollowTheirKnots) {
   }
 }
 
+// The arm hangs by a plate at 2.75 m; pitch, roll and yaw of the carriage leave the plate's place.
+TEST(TronCalibratedChain, TrackErrorsTurnAboutThePlateOfTheArm) {
+  Calibration calibration = calibration_as_designed(bench());
+  for (auto& knot : calibration.track.knots) knot = {1e-3, 2e-3, 3e-3, 0.0, 0.0};
+  const TrackCalibration& track = calibration.track;
+  const auto T =
+      T_L_carriage<double>(track.grid, 3.0, track.knots.front().data(), static_cast<int>(track.knots.size()), 0.0);
+  EXPECT_LT((T * Eigen::Vector3d(0.0, 0.0, 2.75) - Eigen::Vector3d(3.0, 0.0, 2.75)).norm(), 1e-12);
+  EXPECT_GT(Eigen::AngleAxisd(T.linear()).angle(), 3e-3);
+}
+
 TEST(TronCalibratedChain, MotionCaptureGivesTheRelativePose) {
   const Calibration c = tron_calibration_example();
   Posture posture;

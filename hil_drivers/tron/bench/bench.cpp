@@ -1,0 +1,232 @@
+#include "hil_drivers/tron/bench/bench.h"
+
+#include <fstream>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "hil_drivers/bench_lines/json_table.h"
+#include "hil_drivers/tron/calibrate/board/board_design.h"
+#include "host_sim/mission/names.h"
+#include "host_sim/mission/table_reader.h"
+
+namespace vbar::tron::bench {
+namespace {
+
+constexpr const char* kControlSocket = "control.sock";
+constexpr const char* kFaultFile = "faults.jsonl";
+constexpr const char* kTruthFile = "truth.csv";
+constexpr const char* kSummaryFile = "summary.json";
+constexpr const char* kControlLine = "control line";
+constexpr std::chrono::milliseconds kLookAround{50};
+
+constexpr mission::Names<Mounted, kMountedThings> kMounted{
+    {{"target", Mounted::kTarget}, {"board", Mounted::kBoard}, {"patch", Mounted::kPatch}}};
+
+std::array<Eigen::Isometry3d, kMountedThings> mounts_of(const BenchFile& laboratory) {
+  // The white patch is a part of the board.
+  const Eigen::Isometry3d board = calibrate::T_flange_board(laboratory);
+  return {laboratory.target.T_flange_target(laboratory.scale), board, board};
+}
+
+nlohmann::ordered_json lights_summary(const SourceCounts& counts) {
+  nlohmann::ordered_json summary;
+  summary["accepted"] = counts.accepted;
+  summary["unreadable"] = counts.unreadable;
+  summary["out_of_sequence"] = counts.out_of_sequence;
+  summary["refused_sources"] = counts.refused_sources;
+  summary["terminations"] = counts.terminations;
+  summary["losses"] = counts.losses;
+  return summary;
+}
+
+nlohmann::ordered_json camera_summary(const gige::Device::Statistics& counts) {
+  nlohmann::ordered_json summary;
+  summary["triggers"] = counts.acquisition.triggers;
+  summary["triggers_dropped"] = counts.acquisition.triggers_dropped;
+  summary["exposures"] = counts.acquisition.exposures;
+  summary["frames_dropped"] = counts.acquisition.frames_dropped;
+  summary["packets"] = counts.stream.packets;
+  summary["packets_resent"] = counts.stream.packets_resent;
+  return summary;
+}
+
+ObjectStreamSettings stream_settings(const BenchSettings& settings, const DriverPorts& ports) {
+  ObjectStreamSettings stream;
+  stream.vicon = settings.laboratory.vicon;
+  if (ports.vicon != 0) stream.vicon.port = ports.vicon;
+  stream.block_bytes = settings.vicon_block_bytes;
+  return stream;
+}
+
+}  // namespace
+
+Bench::Bench(boost::asio::io_context& context, const BenchSettings& settings, const BenchPlace& place,
+             std::function<void()> exit)
+    : settings_(settings),
+      vicon_port_(stream_settings(settings, place.ports).vicon.port),
+      directory_(place.directory),
+      world_(settings.laboratory, mounts_of(settings.laboratory), settings.errors, settings.seed),
+      robots_(context, settings, world_, place.ports),
+      capture_errors_(settings.capture, settings.seed),
+      capture_view_(settings_.laboratory, world_),
+      vicon_(context, stream_settings(settings, place.ports), capture_errors_,
+             [this](CaptureObject object) { return capture_view_.tracked(object, robots_.true_posture()); }),
+      rig_(settings.laboratory.lamp, settings.lights, settings.seed),
+      lights_(context, settings.laboratory.sacn, 0, rig_),
+      clock_(context, settings.clock, robots_.both()),
+      camera_(context, settings, true_camera(settings, place.data),
+              [this](const gige::Request& request) { return expose(request); }),
+      truth_(place.truth.empty() ? directory_.path() / kTruthFile : place.truth),
+      exit_(std::move(exit)),
+      faults_([this](const Fault& fault, bool is_on) { act(fault, is_on); }, directory_.path() / kFaultFile),
+      control_(context, directory_.path() / kControlSocket,
+               [this](const std::string& line, const bench_lines::Answer& answer) { control(line, answer); }),
+      timer_(context) {
+  clock_.before_cycle([this](std::uint64_t cycle) { begin_cycle(cycle); });
+  clock_.after_motion([this](std::uint64_t) { end_motion(); });
+  for (const Fault& fault : settings.faults) faults_.add(fault, wall_s());
+  look_around();
+  clock_.start();
+  write_addresses();
+}
+
+Bench::~Bench() {
+  std::ofstream(directory_.path() / kSummaryFile) << summary().dump(2) << "\n";
+}
+
+double Bench::wall_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void Bench::begin_cycle(std::uint64_t cycle) {
+  faults_.begin_cycle(cycle, wall_s());
+  lights_.begin_cycle(clock_.time_s());
+}
+
+void Bench::end_motion() {
+  if (vicon_.tick(clock_.time_s()) > 0) faults_.vicon_frame_sent();
+}
+
+gige::Image Bench::expose(const gige::Request& request) {
+  TrueExposure exposure;
+  exposure.image = images_;
+  exposure.cycle = clock_.cycle();
+  exposure.bench_s = clock_.time_s();
+  exposure.exposure_s = request.exposure_s;
+  exposure.mounted = mounted_;
+  exposure.posture = robots_.true_posture();
+  exposure.T_C_mounted = world_.T_C_mounted(exposure.posture, mounted_);
+  const TrueLights lights = rig_.lights();
+  exposure.lamp_power = lights.lamp_power;
+  exposure.lamp_azimuth_rad = lights.lamp_azimuth_rad;
+  exposure.box_power = lights.box_power;
+  const auto located = capture_view_.located(exposure.posture);
+  exposure.markers_of_camera = located[0];
+  exposure.markers_of_target = located[1];
+  truth_.write(exposure);
+  faults_.end_exposure(images_++, wall_s());
+  return {};
+}
+
+bool Bench::set_light_or_capture(const Fault& fault, bool is_on) {
+  const CaptureObject object = fault.is_of_target ? CaptureObject::kTarget : CaptureObject::kCamera;
+  switch (fault.kind) {
+    case FaultKind::kViconHidden:
+      vicon_.set_hidden(object, is_on);
+      return true;
+    case FaultKind::kViconZeros:
+      vicon_.set_zeros(object, is_on);
+      return true;
+    case FaultKind::kViconFrozen:
+      vicon_.set_frozen(object, is_on);
+      return true;
+    case FaultKind::kViconOffset:
+      vicon_.set_offset(object, is_on ? 1e-3 * fault.value : 0.0);
+      return true;
+    case FaultKind::kLampOut:
+      rig_.set_lamp_out(is_on);
+      return true;
+    case FaultKind::kBoxOut:
+      rig_.set_box_out(fault.box, is_on);
+      return true;
+    default:
+      return false;
+  }
+}
+
+void Bench::act(const Fault& fault, bool is_on) {
+  if (set_light_or_capture(fault, is_on)) return;
+  if (camera_.set_fault(fault, is_on) || robots_.set_fault(fault, is_on)) return;
+  if (fault.kind == FaultKind::kMountSlipped) world_.slip(1e-3 * fault.value);
+  if (fault.kind == FaultKind::kBenchExit) exit_();
+}
+
+/// A fault, or {"do": "mount", "what": "board"}, {"do": "summary"}.
+void Bench::control(const std::string& line, const bench_lines::Answer& answer) {
+  const toml::table table =
+      bench_lines::table_of_json(line, kControlLine, R"({"do": "mount", "what": "board"} or {"kind": "lamp_out"})");
+  const mission::TableReader command(table, kControlLine);
+  if (!command.has("do")) {
+    faults_.add(fault_from_json(line), wall_s(),
+                [answer](const std::string& injected) { answer("{\"injected\":" + injected + "}"); });
+    return;
+  }
+  enum class Do { kMount, kSummary };
+  constexpr mission::Names<Do, 2> kCommands{{{"mount", Do::kMount}, {"summary", Do::kSummary}}};
+  switch (command.choice<Do>("do", kCommands)) {
+    case Do::kMount:
+      mounted_ = command.choice<Mounted>("what", kMounted);
+      command.finish();
+      return answer(fmt::format(R"({{"mounted":"{}"}})", mission::name_in(kMounted, mounted_)));
+    case Do::kSummary:
+      command.finish();
+      return answer(summary().dump());
+  }
+}
+
+nlohmann::ordered_json Bench::summary() const {
+  nlohmann::ordered_json summary;
+  summary["seed"] = settings_.seed;
+  summary["cycles"] = clock_.cycle();
+  summary["bench_s"] = clock_.time_s();
+  summary["clock_overruns"] = clock_.overruns();
+  summary["images"] = images_;
+  summary["vicon_frames"] = vicon_.frames();
+  summary["sacn"] = lights_summary(lights_.counts());
+  summary["camera"] = camera_summary(camera_.statistics());
+  summary.update(robots_.summary());
+  return summary;
+}
+
+/// In between: faults whose time has passed.
+void Bench::look_around() {
+  faults_.advance(wall_s());
+  timer_.expires_after(kLookAround);
+  timer_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) look_around();
+  });
+}
+
+void Bench::write_addresses() const {
+  const auto robot = [](const Controller& controller) {
+    const ControllerSettings& settings = controller.settings();
+    nlohmann::ordered_json json;
+    json["rsi_port"] = settings.ethernet.port;
+    json["eki"] = fmt::format("{}:{}", settings.robot.line.address, controller.eki_port());
+    return json;
+  };
+  nlohmann::ordered_json addresses;
+  addresses["clock"] = settings_.clock.kind == ClockKind::kReal ? "real" : "virtual";
+  addresses["camera"] = camera_.address();
+  addresses["camera_robot"] = robot(robots_.of_camera());
+  addresses["target_robot"] = robot(robots_.of_target());
+  addresses["vicon_port"] = vicon_port_;
+  addresses["sacn"] = lights_.address();
+  addresses["control"] = (directory_.path() / kControlSocket).string();
+  addresses["faults"] = (directory_.path() / kFaultFile).string();
+  directory_.write_addresses(addresses.dump(2));
+}
+
+}  // namespace vbar::tron::bench

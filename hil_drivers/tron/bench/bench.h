@@ -1,0 +1,85 @@
+#pragma once
+// The whole emulated bench: robots, motion capture, lights and camera on one clock, in one directory and one event
+// loop.
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <nlohmann/json_fwd.hpp>
+
+#include "hil_drivers/bench_lines/bench_directory.h"
+#include "hil_drivers/bench_lines/control_line.h"
+#include "hil_drivers/tron/bench/bench_settings.h"
+#include "hil_drivers/tron/bench/camera/camera_link.h"
+#include "hil_drivers/tron/bench/capture_view.h"
+#include "hil_drivers/tron/bench/controller/cycle_clock.h"
+#include "hil_drivers/tron/bench/faults/fault_list.h"
+#include "hil_drivers/tron/bench/lights/light_receiver.h"
+#include "hil_drivers/tron/bench/lights/light_rig.h"
+#include "hil_drivers/tron/bench/robots.h"
+#include "hil_drivers/tron/bench/truth_log.h"
+#include "hil_drivers/tron/bench/vicon/capture_errors.h"
+#include "hil_drivers/tron/bench/vicon/object_stream_sender.h"
+#include "hil_drivers/tron/bench/world/world.h"
+
+namespace vbar::tron::bench {
+
+/// Where the bench is made and whom it serves.
+struct BenchPlace {
+  std::filesystem::path data;       ///< folder of the project's data
+  std::filesystem::path directory;  ///< for sockets, addresses.json, faults.jsonl, truth.csv, summary.json
+  std::filesystem::path truth;      ///< of truth.csv; empty: in `directory`
+  DriverPorts ports;
+};
+
+class Bench {
+ public:
+  /// Makes everything and, when it listens, writes DIR/addresses.json. To be made by the thread that runs `context`.
+  /// Throws std::runtime_error, mission::MissionError; each one sentence.
+  Bench(boost::asio::io_context& context, const BenchSettings& settings, const BenchPlace& place,
+        std::function<void()> exit);
+  /// Writes DIR/summary.json.
+  ~Bench();
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+ private:
+  void begin_cycle(std::uint64_t cycle);
+  void end_motion();
+  gige::Image expose(const gige::Request& request);
+  /// False for a fault that is not one of motion capture or lights.
+  bool set_light_or_capture(const Fault& fault, bool is_on);
+  void act(const Fault& fault, bool is_on);
+  void control(const std::string& line, const bench_lines::Answer& answer);
+  [[nodiscard]] nlohmann::ordered_json summary() const;
+  [[nodiscard]] double wall_s() const;
+  void look_around();
+  void write_addresses() const;
+
+  BenchSettings settings_;
+  std::uint16_t vicon_port_;  ///< of the driver
+  bench_lines::BenchDirectory directory_;
+  World world_;
+  Robots robots_;
+  CaptureErrors capture_errors_;
+  CaptureView capture_view_;
+  ObjectStreamSender vicon_;
+  LightRig rig_;
+  LightReceiver lights_;
+  CycleClock clock_;
+  CameraLink camera_;
+  TruthLog truth_;
+  std::function<void()> exit_;
+  FaultList faults_;
+  bench_lines::ControlLine control_;
+  boost::asio::steady_timer timer_;
+  Mounted mounted_ = Mounted::kTarget;
+  std::uint64_t images_ = 0;  ///< exposed so far
+};
+
+}  // namespace vbar::tron::bench

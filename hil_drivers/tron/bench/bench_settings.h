@@ -1,0 +1,57 @@
+#pragma once
+// The file of an emulated bench (data/benches/tron_emulated.toml): the laboratory, hidden errors, clock, camera.
+// Neither driver nor calibration reads it.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hil_drivers/tron/bench/controller/cycle_clock.h"
+#include "hil_drivers/tron/bench/faults/bench_fault.h"
+#include "hil_drivers/tron/bench/lights/light_rig.h"
+#include "hil_drivers/tron/bench/vicon/capture_errors.h"
+#include "hil_drivers/tron/bench/world/error_sizes.h"
+#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "host_sim/twins/camera/camera_settings.h"
+
+namespace vbar::tron::bench {
+
+struct CameraIdentity {
+  std::string vendor = "Point Grey Research";
+  std::string model = "Grasshopper3 GS3-PGE-23S6M";
+  std::string serial;  ///< empty: drawn from the seed
+};
+
+/// The sensor of the camera in front of the bench.
+struct SensorSettings {
+  bool noise = true;  ///< false: expected electrons, rounded
+  double gain_dn_per_electron = 0.125;
+  double read_noise_electrons = 7.0;
+  double photo_response_nonuniformity = 0.01;
+  int hot_pixels = 20;
+};
+
+struct BenchSettings {
+  BenchFile laboratory;
+  std::uint64_t seed = 1;
+  ClockSettings clock;
+  ErrorSizes errors;
+  CameraIdentity identity;
+  SensorSettings sensor;
+  CaptureErrorSizes capture;
+  std::size_t vicon_block_bytes = 1024;  ///< of a datagram; 0: as long as its objects
+  LightErrorSizes lights;
+  std::vector<Fault> faults;
+};
+
+/// The file with `assignments` (key=value) in place of its values; "laboratory.<key>=value" is one of the laboratory.
+/// Throws mission::MissionError.
+[[nodiscard]] BenchSettings read_bench(const std::filesystem::path& file, const std::vector<std::string>& assignments);
+
+/// Lens and detector as they really are: those of the camera's file with the errors of the bench. The region is the
+/// whole detector.
+[[nodiscard]] twins::camera::CameraSettings true_camera(const BenchSettings& settings,
+                                                        const std::filesystem::path& data_directory);
+
+}  // namespace vbar::tron::bench

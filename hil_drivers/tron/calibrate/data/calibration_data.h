@@ -1,0 +1,49 @@
+#pragma once
+// The raw data of a calibration, from which a fit can be repeated.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hil_drivers/tron/calibrate/data/measurement.h"
+#include "hil_drivers/tron/calibration_file/calibration.h"
+
+namespace vbar::tron::calibrate {
+
+/// Of the white patch with one source on.
+struct LightSample {
+  std::string source;              ///< of LightTable
+  double level = 0.0;              ///< share of the largest value
+  double dn_per_s = 0.0;           ///< mean over the patch above that with all off, per second of exposure
+  double design_irradiance = 0.0;  ///< of the patch at full power as designed, to that of the lamp on an area facing it
+};
+
+struct DarkFigures {
+  double offset_dn = 0.0, read_noise_dn = 0.0;
+};
+
+struct CalibrationData {
+  CalibrationValidity validity;  ///< without the digest
+  int width_px = 1600, height_px = 1000, bits = 12;
+  std::vector<Measurement> fitted, judged;
+  std::vector<LightSample> lights;
+  DarkFigures dark;
+};
+
+/// JSON, one measurement a line; numbers read back as the same bits.
+[[nodiscard]] std::string text_of(const CalibrationData& data);
+void save_data(const CalibrationData& data, const std::filesystem::path& file);
+
+/// Throws std::runtime_error, which names the file and the place in it, for anything else than what text_of writes.
+[[nodiscard]] CalibrationData parse_data(std::string_view text, const std::string& file);
+[[nodiscard]] CalibrationData load_data(const std::filesystem::path& file);
+
+/// Gives the measurements the true poses of an emulated bench, from the table of its exposures (truth.csv): those of
+/// the board, found by their postures. Throws std::runtime_error, which names the file, if it is damaged; returns how
+/// many measurements were found in it.
+int add_truth(std::vector<Measurement>& measurements, const std::filesystem::path& truth,
+              const Eigen::Isometry3d& T_target_board);
+
+}  // namespace vbar::tron::calibrate

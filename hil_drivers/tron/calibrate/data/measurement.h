@@ -1,0 +1,39 @@
+#pragma once
+// What calibration measures at a posture of the bench.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "fsw/core/types.h"
+#include "hil_drivers/tron/kinematics/posture.h"
+
+namespace vbar::tron::calibrate {
+
+/// A corner of the board in an image.
+struct Corner {
+  int id = 0;  ///< BoardDesign::corner()
+  fsw::Vector2 px = fsw::Vector2::Zero();
+};
+
+/// Objects of motion capture, averaged at rest; rotations by the order of the bench file.
+struct ViconObjects {
+  Eigen::Isometry3d T_V_camera = Eigen::Isometry3d::Identity(), T_V_target = Eigen::Isometry3d::Identity();
+};
+
+struct Measurement {
+  Posture posture;  ///< as the controllers state it, at rest
+  std::vector<Corner> corners;
+  std::optional<ViconObjects> vicon;
+  /// Of an emulated bench: the true relative pose of the target's frame. Never used by a fit.
+  std::optional<Eigen::Isometry3d> true_T_C_T;
+};
+
+/// The same pose if its three angles, which were taken as rotations in the order `from`, are in the order `to` ("xyz":
+/// Rx Ry Rz).
+[[nodiscard]] Eigen::Isometry3d reordered(const Eigen::Isometry3d& pose, const std::string& from,
+                                          const std::string& to);
+
+}  // namespace vbar::tron::calibrate

@@ -1,0 +1,34 @@
+#pragma once
+// How a source's poses scatter about its model: rotations of what carries camera and target, and their places.
+
+#include <vector>
+
+#include "hil_drivers/tron/calibration_file/calibration.h"
+
+namespace vbar::tron::calibrate {
+
+/// Standard deviations an axis. A rotation of the camera moves the target at the side of the image, one of the target
+/// does not: so depth, sides and rotations have covariances of their own.
+struct Scatter {
+  double camera_rad = 0.0, target_rad = 0.0;
+  double place_m = 0.0;  ///< of each of both
+};
+
+/// Of the error [rotation, rad; translation, m] of T_C_T in camera axes.
+[[nodiscard]] Matrix6 scatter_covariance(const Scatter& scatter, const Eigen::Isometry3d& T_C_T);
+
+/// [rotation; translation] in camera axes that leads from `from` to `to`: R_to = exp(rotation) R_from.
+[[nodiscard]] Eigen::Matrix<double, 6, 1> pose_difference(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
+
+/// A difference of two poses at T_C_T, and the covariance of all of it that is not the scatter sought.
+struct ScatterSample {
+  Eigen::Isometry3d T_C_T;
+  Eigen::Matrix<double, 6, 1> difference;
+  Matrix6 known_covariance;
+};
+
+/// Scatter of the largest likelihood of Student's t distribution with five degrees of freedom, which an outlier moves
+/// little.
+[[nodiscard]] Scatter estimate_scatter(const std::vector<ScatterSample>& samples, const Scatter& start);
+
+}  // namespace vbar::tron::calibrate

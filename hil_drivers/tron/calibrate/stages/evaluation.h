@@ -1,0 +1,44 @@
+#pragma once
+// Errors of calibrated poses at postures that were not fitted.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hil_drivers/tron/calibrate/board/board_design.h"
+#include "hil_drivers/tron/calibrate/data/measurement.h"
+#include "hil_drivers/tron/calibration_file/calibration.h"
+#include "hil_drivers/tron/fusion/fuse.h"
+
+namespace vbar::tron::calibrate {
+
+enum class Source { kArms, kVicon, kFused };
+
+struct PoseError {
+  double translation_mm = 0.0, rotation_deg = 0.0;
+  double pixel_px = 0.0;  ///< mean over the corners of the board
+};
+
+/// Errors of one source at one posture.
+struct EvaluatedPose {
+  std::size_t measurement = 0;     ///< its index
+  PoseError board;                 ///< against the pose by the image
+  std::optional<PoseError> truth;  ///< of an emulated bench
+  double range_m = 0.0;
+  FusionSources sources = FusionSources::kBoth;
+  double chi_square = 0.0;  ///< of kFused
+};
+
+/// T_C_T of a source with a calibration; null without motion capture where it needs it. `fused`: what fusion said.
+[[nodiscard]] std::optional<Eigen::Isometry3d> pose_of_source(const Calibration& calibration, Source source,
+                                                              const Measurement& measurement,
+                                                              FusedPose* fused = nullptr);
+
+/// At all measurements with a pose by the image.
+[[nodiscard]] std::vector<EvaluatedPose> evaluate(const Calibration& calibration, Source source,
+                                                  const BoardDesign& board, const Eigen::Isometry3d& T_target_board,
+                                                  const std::vector<Measurement>& measurements);
+
+[[nodiscard]] StageFigures figures_of(const std::string& stage, const std::vector<EvaluatedPose>& poses);
+
+}  // namespace vbar::tron::calibrate

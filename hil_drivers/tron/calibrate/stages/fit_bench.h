@@ -1,0 +1,30 @@
+#pragma once
+// From measurements to a calibration, in stages.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hil_drivers/tron/calibrate/data/measurement.h"
+#include "hil_drivers/tron/calibrate/stages/evaluation.h"
+#include "hil_drivers/tron/calibration_file/calibration.h"
+
+namespace vbar::tron::calibrate {
+
+/// A line of progress.
+using Progress = std::function<void(const std::string&)>;
+
+struct BenchMeasurements {
+  std::vector<Measurement> fitted, judged;  ///< figures are of the second alone
+};
+
+struct BenchFit {
+  Calibration calibration;  ///< with covariances and figures; validity, camera and lights are the caller's
+  std::vector<EvaluatedPose> fused, arms, vicon;  ///< of the judged measurements
+};
+
+/// `lens`: as designed. Throws std::runtime_error where the measurements do not determine the bench.
+[[nodiscard]] BenchFit fit_bench(const BenchFile& bench, const LensCalibration& lens,
+                                 const BenchMeasurements& measurements, const Progress& progress = {});
+
+}  // namespace vbar::tron::calibrate

@@ -1,0 +1,246 @@
+#include "hil_drivers/tron/collision/bench_bodies.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "fsw/network/sizes.h"
+#include "host_sim/mission/body_file.h"
+
+namespace vbar::tron {
+namespace {
+
+using fsw::Vector3;
+
+constexpr std::array<const char*, kArmBodies> kCameraNames{"the carriage",
+                                                           "the column of the camera's arm",
+                                                           "the upper arm of the camera's arm",
+                                                           "the forearm of the camera's arm",
+                                                           "the wrist of the camera's arm",
+                                                           "the camera"};
+constexpr std::array<const char*, kArmBodies> kTargetNames{"the pedestal",
+                                                           "the column of the target's arm",
+                                                           "the upper arm of the target's arm",
+                                                           "the forearm of the target's arm",
+                                                           "the wrist of the target's arm",
+                                                           "the rod of the target"};
+constexpr const char* kTarget = "the target";
+constexpr const char* kRoom = "the room";
+constexpr const char* kNowhere = "a posture that is not finite";
+
+ArmCapsules arm_bodies(const Arm& arm, const Eigen::Isometry3d& T_L_base, const Joints& joints, double tool_m,
+                       double tool_radius_m, const BenchFile& bench) {
+  const ArmPoints at = arm.points(joints);
+  const auto& radius_m = arm.design().body_radius_m;
+  const Vector3 base = T_L_base.translation(), shoulder = T_L_base * at.shoulder, elbow = T_L_base * at.elbow;
+  const Vector3 wrist = T_L_base * at.wrist, flange = T_L_base * at.flange;
+  const bool stands = T_L_base.linear()(2, 2) > 0.0;
+  const Vector3 foot(base.x(), base.y(), stands ? bench.room_low_m.z() : bench.room_high_m.z());
+  const Vector3 ahead = (flange - wrist).normalized();
+  return {{{foot, base, radius_m[0]},
+           {base, shoulder, radius_m[0]},
+           {shoulder, elbow, radius_m[1]},
+           {elbow, wrist, radius_m[2]},
+           {wrist, flange, radius_m[3]},
+           {flange, flange + tool_m * ahead, tool_radius_m}}};
+}
+
+bool are_near(const Capsule& one, const Capsule& other, double clearance_m) {
+  // Written so that a NaN is near.
+  return !(segment_distance(one.from, one.to, other.from, other.to) >= one.radius_m + other.radius_m + clearance_m);
+}
+
+bool are_near(const Capsule& capsule, const OrientedBox& box, double clearance_m) {
+  const double apart = capsule.radius_m + clearance_m;
+  const Vector3 middle = box.T_L_box.translation();
+  if (segment_distance(capsule.from, capsule.to, middle, middle) >= apart + box.half_m.norm()) return false;
+  return !(box_distance(capsule.from, capsule.to, box) >= apart);
+}
+
+/// Bodies of one arm that are not neighbours and can meet.
+constexpr std::array<std::pair<ArmBody, ArmBody>, 8> kOwnPairs{{{kColumn, kForearm},
+                                                                {kColumn, kWrist},
+                                                                {kColumn, kTool},
+                                                                {kStand, kForearm},
+                                                                {kStand, kWrist},
+                                                                {kStand, kTool},
+                                                                {kUpperArm, kWrist},
+                                                                {kUpperArm, kTool}}};
+constexpr ArmBody kFirstMoving = kUpperArm;
+
+/// Distance from each axis to the farthest point that it turns, at most.
+std::array<double, kJoints> reach_of(const ArmDesign& arm, double tool_m) {
+  const double hand = arm.d6_m + tool_m, fore = std::hypot(arm.d4_m, arm.a3_m) + hand, all = arm.a2_m + fore;
+  return {arm.a1_m + all, all, fore, hand, hand, hand};
+}
+
+double travel_of(const Joints& from, const Joints& to, const std::array<double, kJoints>& reach_m) {
+  double travel = 0.0;
+  for (std::size_t k = 0; k < kJoints; ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    travel += std::abs(to[at] - from[at]) * reach_m[k];
+  }
+  return travel;
+}
+
+std::uint32_t hidden_by(std::span<const Capsule> bodies, const Vector3& eye, std::span<const Vector3> points) {
+  std::uint32_t mask = 0;
+  for (std::size_t k = 0; k < points.size() && k < 32; ++k) {
+    const auto hides = [&](const Capsule& body) {
+      return segment_distance(eye, points[k], body.from, body.to) < body.radius_m;
+    };
+    if (std::ranges::any_of(bodies, hides)) mask |= std::uint32_t{1} << k;
+  }
+  return mask;
+}
+
+}  // namespace
+
+BenchBodies::BenchBodies(const BenchFile& bench) : bench_(bench), arms_(bench) {
+  camera_reach_m_ = reach_of(bench.camera_robot.design, bench.camera.ahead_m + bench.camera.body_radius_m);
+  const double hull_m = (bench.target.body_high_m - bench.target.body_low_m).norm() * bench.scale;
+  target_reach_m_ = reach_of(bench.target_robot.design, bench.target.stand_off_m + hull_m);
+}
+
+ArmCapsules BenchBodies::camera_arm_at(const Joints& joints_rad, double carriage_m) const {
+  return arm_bodies(arms_.camera_arm(), arms_.T_L_camera_base(carriage_m), joints_rad, bench_.camera.ahead_m,
+                    bench_.camera.body_radius_m, bench_);
+}
+
+ArmCapsules BenchBodies::target_arm_at(const Joints& joints_rad) const {
+  return arm_bodies(arms_.target_arm(), arms_.T_L_target_base(), joints_rad, bench_.target.stand_off_m,
+                    bench_.target.rod_radius_m, bench_);
+}
+
+OrientedBox BenchBodies::hull_at(const Eigen::Isometry3d& T_L_T) const {
+  OrientedBox hull;
+  hull.T_L_box = T_L_T;
+  hull.T_L_box.translation() =
+      T_L_T * Vector3(0.5 * bench_.scale * (bench_.target.body_low_m + bench_.target.body_high_m));
+  hull.half_m = 0.5 * bench_.scale * (bench_.target.body_high_m - bench_.target.body_low_m);
+  return hull;
+}
+
+Bodies BenchBodies::at(const Posture& posture) const {
+  Bodies bodies;
+  bodies.camera_arm = camera_arm_at(posture.camera_rad, posture.carriage_m);
+  bodies.target_arm = target_arm_at(posture.target_rad);
+  bodies.T_L_C = arms_.camera_pose(posture);
+  bodies.T_L_T = arms_.target_pose(posture);
+  bodies.target = hull_at(bodies.T_L_T);
+  return bodies;
+}
+
+bool BenchBodies::is_in_room(const Vector3& point, double radius_m) const {
+  const double margin = radius_m + bench_.motion.clearance_m;
+  return ((point - bench_.room_low_m).array() >= margin).all() &&
+         ((bench_.room_high_m - point).array() >= margin).all();
+}
+
+BenchBodies::Pair BenchBodies::touching_of_arm(const ArmCapsules& arm,
+                                               const std::array<const char*, kArmBodies>& names) const {
+  // The end of each body; its beginning is the end of the one before.
+  for (std::size_t k = kFirstMoving; k < kArmBodies; ++k)
+    if (!is_in_room(arm[k].to, arm[k].radius_m)) return {names[k], kRoom};
+  for (const auto& [one, other] : kOwnPairs)
+    if (are_near(arm[one], arm[other], bench_.motion.clearance_m)) return {names[one], names[other]};
+  return {};
+}
+
+BenchBodies::Pair BenchBodies::touching_of_target(const ArmCapsules& arm, const OrientedBox& hull) const {
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3 signs((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0, (corner & 4) != 0 ? 1.0 : -1.0);
+    if (!is_in_room(hull.T_L_box * Vector3(signs.cwiseProduct(hull.half_m)), 0.0)) return {kTarget, kRoom};
+  }
+  // The rod ends at the target, and the wrist before it points there.
+  for (std::size_t k = kStand; k <= kForearm; ++k)
+    if (are_near(arm[k], hull, bench_.motion.clearance_m)) return {kTargetNames[k], kTarget};
+  return {};
+}
+
+BenchBodies::Pair BenchBodies::touching_across(const ArmCapsules& camera_arm, const ArmCapsules& target_arm,
+                                               const OrientedBox& hull) const {
+  const double clearance_m = bench_.motion.clearance_m;
+  for (std::size_t k = 0; k < kArmBodies; ++k) {
+    if (are_near(camera_arm[k], hull, clearance_m)) return {kCameraNames[k], kTarget};
+    for (std::size_t n = 0; n < kArmBodies; ++n)
+      if ((k >= kFirstMoving || n >= kFirstMoving) && are_near(camera_arm[k], target_arm[n], clearance_m))
+        return {kCameraNames[k], kTargetNames[n]};
+  }
+  return {};
+}
+
+bool BenchBodies::is_camera_arm_free(const ArmCapsules& arm) const {
+  return touching_of_arm(arm, kCameraNames).one == nullptr;
+}
+
+bool BenchBodies::is_target_arm_free(const ArmCapsules& arm, const OrientedBox& hull) const {
+  return touching_of_arm(arm, kTargetNames).one == nullptr && touching_of_target(arm, hull).one == nullptr;
+}
+
+bool BenchBodies::are_apart(const ArmCapsules& camera_arm, const ArmCapsules& target_arm,
+                            const OrientedBox& hull) const {
+  return touching_across(camera_arm, target_arm, hull).one == nullptr;
+}
+
+std::string BenchBodies::collision(const Bodies& bodies) const {
+  if (!bodies.T_L_C.matrix().allFinite() || !bodies.T_L_T.matrix().allFinite())
+    return fmt::format("{} and {}", kNowhere, kRoom);
+  Pair found = touching_of_arm(bodies.camera_arm, kCameraNames);
+  if (found.one == nullptr) found = touching_of_arm(bodies.target_arm, kTargetNames);
+  if (found.one == nullptr) found = touching_of_target(bodies.target_arm, bodies.target);
+  if (found.one == nullptr) found = touching_across(bodies.camera_arm, bodies.target_arm, bodies.target);
+  return found.one == nullptr ? std::string() : fmt::format("{} and {}", found.one, found.other);
+}
+
+std::string BenchBodies::collision_between(const Posture& from, const Posture& to, double step_m) const {
+  const double travel_m =
+      std::max(travel_of(from.camera_rad, to.camera_rad, camera_reach_m_) + std::abs(to.carriage_m - from.carriage_m),
+               travel_of(from.target_rad, to.target_rad, target_reach_m_));
+  if (!std::isfinite(travel_m)) return fmt::format("{} and {}", kNowhere, kRoom);
+  const int samples = std::max(1, static_cast<int>(std::ceil(travel_m / step_m)));
+  for (int k = samples; k >= 0; --k) {
+    const double share = static_cast<double>(k) / samples;
+    const Posture posture{from.camera_rad + share * (to.camera_rad - from.camera_rad),
+                          from.target_rad + share * (to.target_rad - from.target_rad),
+                          from.carriage_m + share * (to.carriage_m - from.carriage_m)};
+    if (const std::string found = collision(at(posture)); !found.empty()) return found;
+  }
+  return {};
+}
+
+std::uint32_t BenchBodies::hidden_by_camera_arm(const ArmCapsules& arm, const Vector3& eye,
+                                                std::span<const Vector3> points_L) {
+  return hidden_by({arm.data(), kWrist}, eye, points_L);
+}
+
+std::uint32_t BenchBodies::hidden_by_target_arm(const ArmCapsules& arm, const Vector3& eye,
+                                                std::span<const Vector3> points_L) {
+  return hidden_by(arm, eye, points_L);
+}
+
+std::vector<Vector3> BenchBodies::points_at(const Eigen::Isometry3d& T_L_T,
+                                            std::span<const Vector3> points_body) const {
+  std::vector<Vector3> points;
+  points.reserve(points_body.size());
+  for (const Vector3& point : points_body) points.push_back(T_L_T * Vector3(bench_.scale * point));
+  return points;
+}
+
+int BenchBodies::hidden(const Bodies& bodies, std::span<const Vector3> points_body) const {
+  const Vector3 eye = bodies.T_L_C.translation();
+  const std::vector<Vector3> points = points_at(bodies.T_L_T, points_body);
+  return std::popcount(hidden_by_camera_arm(bodies.camera_arm, eye, points) |
+                       hidden_by_target_arm(bodies.target_arm, eye, points));
+}
+
+std::vector<Vector3> BenchBodies::points_to_see(const std::filesystem::path& data_directory) const {
+  std::vector<Vector3> points = mission::load_keypoints(
+      data_directory / "models" / (bench_.target.model + "_keypoints.toml"), fsw::network::kKeypoints);
+  points.emplace_back(0.5 * (bench_.target.body_low_m + bench_.target.body_high_m));
+  return points;
+}
+
+}  // namespace vbar::tron

@@ -1,0 +1,42 @@
+#pragma once
+// Paths free of collisions: straight in joint space, or over a retracted posture.
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "hil_drivers/tron/collision/bench_bodies.h"
+#include "hil_drivers/tron/motion/path.h"
+
+namespace vbar::tron {
+
+/// Why there is no path, one sentence.
+struct NoPath {
+  std::string reason;
+};
+
+class PathPlanner {
+ public:
+  /// `bodies` must outlive it.
+  PathPlanner(const BenchFile& bench, const BenchBodies& bodies);
+
+  [[nodiscard]] const AxisLimitsOfBench& limits() const { return limits_; }
+
+  /// Straight if that is free, else the fastest free detour: one arm or both go to their home posture first. Postures
+  /// beyond limits, in collision or not finite have no path.
+  [[nodiscard]] std::variant<Path, NoPath> plan(const Posture& from, const Posture& to) const;
+  /// Only if it is straight.
+  [[nodiscard]] bool is_straight_free(const Posture& from, const Posture& to) const;
+
+ private:
+  [[nodiscard]] std::string refusal_of(const Posture& posture) const;
+  [[nodiscard]] Path through(const Posture& from, const std::vector<Posture>& postures) const;
+
+  const BenchBodies& bodies_;
+  AxisLimitsOfBench limits_;
+  AxisLimits track_;
+  Joints camera_home_, target_home_;
+  double cable_turn_rad_, cycle_s_;
+};
+
+}  // namespace vbar::tron

@@ -1,0 +1,75 @@
+#pragma once
+// From a relative pose and the Sun's direction to the joints of both arms, the carriage and the lamp.
+//
+// Only the relative pose and the light matter, so the common position and rotation of the scene in the laboratory are
+// free: target position (3), yaw and pitch of the line of sight, place of the carriage. A trial of these six gives the
+// lamp's azimuth and both poses in closed form; the search takes the best of many.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "hil_drivers/tron/collision/bench_bodies.h"
+#include "hil_drivers/tron/motion/path_planner.h"
+#include "hil_drivers/tron/placement/scene.h"
+
+namespace vbar::tron {
+
+struct Placement {
+  Posture posture;
+  double lamp_azimuth_rad = 0.0;
+  double sun_error_rad = 0.0;  ///< between the Sun of the scene and the lamp
+  int hidden = 0;              ///< points that an arm or the rod hides
+  double move_s = 0.0;         ///< of the straight path, the lamp's travel included
+  double cost_s = 0.0;
+};
+
+/// Why there is none, one sentence, and how many trials ended where.
+struct NoPlacement {
+  std::string reason;
+  int beyond_reach = 0, beyond_lamp = 0, colliding = 0, too_hidden = 0, blocked = 0;
+};
+
+struct PlacementSettings {
+  int trials = 400;
+  int extension = 10;          ///< times as many trials while nothing, or nothing without hidden points, was found
+  int max_hidden = 3;          ///< points that may be hidden
+  std::uint64_t seed = 1;      ///< of the trials
+  double hidden_cost_s = 2.0;  ///< of each hidden point
+};
+
+/// Cost, s, of the Earth's light that the boxes cannot make at a pose of camera and target in L.
+using EarthLightCost =
+    std::function<double(const Scene&, const Eigen::Isometry3d& T_L_C, const Eigen::Isometry3d& T_L_T)>;
+
+class PlacementSearch {
+ public:
+  /// `bodies` and `paths` must outlive it. `points_body`: to be seen, full-scale body frame.
+  PlacementSearch(const BenchFile& bench, const BenchBodies& bodies, const PathPlanner& paths,
+                  std::vector<fsw::Vector3> points_body, const PlacementSettings& settings, EarthLightCost earth = {});
+
+  /// Free of collisions, with a free path from `from`. The same scene, posture, lamp and number give the same result.
+  /// `lamp_rad`: where the lamp is; none: its travel costs nothing.
+  [[nodiscard]] std::variant<Placement, NoPlacement> find(const Scene& scene, const Posture& from, std::int64_t number,
+                                                          std::optional<double> lamp_rad = std::nullopt) const;
+
+ private:
+  struct Trial;
+  struct Search;
+  void judge(const Trial& trial, Search& search) const;
+  void judge_pose(const Trial& trial, const Eigen::Isometry3d& T_L_C, const Eigen::Isometry3d& T_L_T, double lamp_rad,
+                  double sun_error_rad, Search& search) const;
+  [[nodiscard]] std::variant<Placement, NoPlacement> chosen(Search& search) const;
+
+  BenchFile bench_;
+  const BenchBodies& bodies_;
+  const PathPlanner& paths_;
+  std::vector<fsw::Vector3> points_body_;
+  PlacementSettings settings_;
+  EarthLightCost earth_;
+};
+
+}  // namespace vbar::tron

@@ -1,0 +1,51 @@
+#pragma once
+// What share of a mission's images a bench can show if it holds the target by one of its faces.
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "hil_drivers/tron/placement/placement.h"
+#include "hil_drivers/tron/plan/truth_ahead.h"
+
+namespace vbar::tron {
+
+struct FacePlan {
+  MountFace face = MountFace::kBottom;
+  int images = 0;  ///< sunlit
+  int clear = 0;   ///< nothing hidden
+  int taken = 0;   ///< at most the accepted number of points hidden
+  double sun_error_max_rad = 0.0;
+  std::vector<double> move_s, bench_s;                        ///< of those taken
+  std::vector<double> wall_s;                                 ///< of the search, of all
+  int detours = 0;                                            ///< paths over a retracted posture
+  std::vector<std::pair<std::size_t, std::string>> failures;  ///< index of the image, reason
+
+  [[nodiscard]] double share(int count) const { return images > 0 ? static_cast<double>(count) / images : 0.0; }
+};
+
+/// Bench time of an image beside its move and its exposure.
+struct ImageTimes {
+  double settling_s = 0.5;
+  double correction_s = 0.0;  ///< of one correction, see correction_s_of
+};
+
+/// Duration of a correction by 0.2 deg of every axis and 2 mm of the carriage, s: of arms as mastered, calibrated.
+[[nodiscard]] double correction_s_of(const BenchFile& bench);
+
+/// `share`: 0 to 1, done; true ends it early.
+using PlanProgress = std::function<bool(double share)>;
+
+/// Places the sunlit scenes one after the other, each from where the arms stand, from the home posture on. A jump in
+/// `blocks` (begin of each; empty: one) begins at a posture that fits, at no cost.
+[[nodiscard]] FacePlan plan_face(const BenchFile& bench, MountFace face, std::span<const SceneAhead> scenes,
+                                 const std::vector<std::size_t>& blocks, const PlacementSettings& settings,
+                                 const std::filesystem::path& data_directory, const PlanProgress& progress = {});
+
+/// Of a sample, linear between its values; NaN if it is empty.
+[[nodiscard]] double quantile(std::vector<double> sample, double share);
+
+}  // namespace vbar::tron

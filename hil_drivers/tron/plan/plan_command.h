@@ -1,0 +1,13 @@
+#pragma once
+// vbar tron plan: which of a mission's images a bench can show, for each face by which it may hold the target.
+
+namespace CLI {
+class App;
+}
+
+namespace vbar::tron {
+
+/// Adds the command to the program; it sets `exit_code` when it has run.
+void add_plan_command(CLI::App& program, int& exit_code);
+
+}  // namespace vbar::tron

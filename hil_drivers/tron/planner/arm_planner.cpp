@@ -1,0 +1,54 @@
+#include "hil_drivers/tron/planner/arm_planner.h"
+
+#include <memory>
+
+namespace vbar::tron {
+
+Motion motion_along(const Path& path) {
+  const auto shared = std::make_shared<const Path>(path);
+  Motion motion;
+  motion.cycles = path.cycles();
+  motion.at = [shared](int cycle) { return shared->at(cycle); };
+  motion.stop_after = [shared](int cycle) { return motion_along(shared->stop_after(cycle)); };
+  return motion;
+}
+
+ArmPlanner::ArmPlanner(const BenchFile& bench, const Calibration& calibration, const PlacementSettings& settings,
+                       const std::filesystem::path& data_directory)
+    : calibration_(calibration),
+      bodies_(bench),
+      paths_(bench, bodies_),
+      search_(bench, bodies_, paths_, bodies_.points_to_see(data_directory), settings) {}
+
+std::variant<Place, NoPlace> ArmPlanner::place(const Scene& scene, const Posture& from, std::int64_t image) {
+  const auto found = search_.find(scene, from, image, lamp_rad_);
+  if (const auto* const none = std::get_if<NoPlacement>(&found)) return NoPlace{none->reason};
+  const auto& placement = std::get<Placement>(found);
+  lamp_rad_ = placement.lamp_azimuth_rad;
+  return Place{placement.posture, placement.lamp_azimuth_rad, placement.sun_error_rad, placement.hidden};
+}
+
+std::variant<Motion, NoPlace> ArmPlanner::path(const Posture& from, const Posture& to) {
+  const auto found = paths_.plan(from, to);
+  if (const auto* const none = std::get_if<NoPath>(&found)) return NoPlace{none->reason};
+  return motion_along(std::get<Path>(found));
+}
+
+std::optional<Posture> ArmPlanner::corrected(const Posture& from, const Eigen::Isometry3d& T_C_T) {
+  // The calibrated arms differ from the designed ones by a pose that changes little with the posture: each iteration
+  // takes it as constant.
+  constexpr int kIterations = 8;
+  constexpr double kReached_m = 1e-6, kReached_rad = 1e-6;
+  Posture at = from;
+  for (int k = 0; k < kIterations; ++k) {
+    const Eigen::Isometry3d reached = T_C_T_of_arms(calibration_, at);
+    const Eigen::Isometry3d left = reached.inverse() * T_C_T;
+    if (left.translation().norm() < kReached_m && Eigen::AngleAxisd(left.linear()).angle() < kReached_rad) return at;
+    const auto next = bodies_.arms().correct(at, reached, T_C_T);
+    if (!next) return std::nullopt;
+    at = *next;
+  }
+  return at;
+}
+
+}  // namespace vbar::tron

@@ -1,0 +1,50 @@
+// vbar_tron, also called as "vbar tron": what a robotic bench needs besides the runs of vbar.
+
+#include <cstdio>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
+#include "hil_drivers/tron/laboratory_calibration/calibrate_command.h"
+#include "hil_drivers/tron/plan/plan_command.h"
+#include "host_sim/app/exit_codes.h"
+#include "host_sim/mission/mission_error.h"
+
+namespace {
+
+/// One line for each command.
+void add_commands(CLI::App& program, int& exit_code) {
+  vbar::tron::add_plan_command(program, exit_code);
+#ifdef VBAR_TRON_CALIBRATION
+  vbar::tron::add_calibrate_commands(program, exit_code);
+#endif
+}
+
+int complain(const char* what, int exit_code) {
+  std::fflush(stdout);
+  fmt::print(stderr, "vbar tron: {}\n", what);
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program{"Planning and calibration of a robotic testbed (TRON)", "vbar tron"};
+  program.require_subcommand(1);
+  int exit_code = vbar::app::kDone;
+  add_commands(program, exit_code);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? vbar::app::kDone : vbar::app::kRefused;
+  } catch (const vbar::mission::MissionError& error) {
+    return complain(error.what(), vbar::app::kRefused);
+  } catch (const vbar::app::Refused& error) {
+    return complain(error.what(), vbar::app::kRefused);
+  } catch (const std::exception& error) {
+    return complain(error.what(), vbar::app::kFailed);
+  }
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+  return complain("standard output cannot be written", vbar::app::kFailed);
+}

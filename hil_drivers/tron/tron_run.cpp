@@ -1,0 +1,282 @@
+#include "hil_drivers/tron/tron_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "hil_drivers/tron/fusion/fuse.h"
+#include "hil_drivers/tron/lights/light_values.h"
+#include "hil_drivers/tron/scene/scene_of_exposure.h"
+#include "hil_drivers/tron/tron_camera.h"
+#include "hil_drivers/tron/tron_report.h"
+#include "host_sim/engine/random_stream.h"
+#include "host_sim/twins/camera/photometry.h"
+
+namespace vbar::tron {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kDegree = 0.017453292519943295;
+constexpr int kBinning = 2;
+/// Chi-square of six degrees of freedom between arms and motion capture at the start: beyond it the calibration is of
+/// another bench, or a mount has moved. One in 10^8 of the right ones.
+constexpr double kForeignCalibration = 50.0;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::filesystem::path model_file(const std::filesystem::path& data, const BenchFile& bench, const char* ending) {
+  return data / "models" / (bench.target.model + ending);
+}
+
+twins::camera::Region single_pixels(const twins::camera::Region& region) {
+  return {kBinning * region.x, kBinning * region.y, kBinning * region.width, kBinning * region.height};
+}
+
+/// The same pose at full scale.
+Eigen::Isometry3d in_orbit(const Eigen::Isometry3d& T_C_T, double scale) {
+  Eigen::Isometry3d T = T_C_T;
+  T.translation() /= scale;
+  return T;
+}
+
+}  // namespace
+
+twins::camera::CameraSettings calibrated_camera(const Calibration& calibration,
+                                                const twins::camera::CameraSettings& of_mission) {
+  const LensCalibration& lens = calibration.lens;
+  twins::camera::CameraSettings camera = of_mission;
+  const double focal_px = 0.5 * (lens.fx_px + lens.fy_px) / kBinning;
+  camera.optics.focal_length_mm = focal_px * camera.detector.pixel_pitch_um * 1e-3;
+  // An integer is the centre of a pixel: two of them have theirs at 0.5.
+  camera.optics.principal_point_px = {(lens.cx_px - 0.5) / kBinning, (lens.cy_px - 0.5) / kBinning};
+  camera.optics.distortion = lens.distortion;
+  if (calibration.camera.offset_dn > 0.0) camera.detector.offset_dn = calibration.camera.offset_dn;
+  return camera;
+}
+
+TronRun::TronRun(const TronSettings& settings, const testbeds::RunContext& context)
+    : settings_(settings),
+      context_(context),
+      laboratory_file_(replaced(settings.laboratory, context.data_directory, context.mission.seed)),
+      calibration_file_(replaced(settings.calibration, context.data_directory, context.mission.seed)) {}
+
+TronRun::~TronRun() {
+  close();
+}
+
+std::unique_ptr<twins::camera::ImageTaker> TronRun::make_camera(const testbeds::CameraPlan& plan) {
+  if (plan_) throw std::runtime_error("testbed tron: it has one camera, and " + plan.name + " is a second");
+  bench_ = read_bench_file(laboratory_file_);
+  calibration_ = load_calibration(calibration_file_);
+  if (calibration_.validity.bench != bench_.name)
+    throw std::runtime_error(fmt::format("testbed tron: {} is a calibration of the bench \"{}\", not of \"{}\"",
+                                         calibration_file_.string(), calibration_.validity.bench, bench_.name));
+  if (kBinning * plan.settings.detector.width != calibration_.lens.width_px)
+    throw std::runtime_error(
+        fmt::format("testbed tron: {} has {} pixels a row; the driver bins the {} of the bench by {}", plan.name,
+                    plan.settings.detector.width, calibration_.lens.width_px, kBinning));
+  plan_ = plan;
+  camera_ = calibrated_camera(calibration_, plan.settings);
+  exposure_s_ = plan.settings.exposure_s * exposure_factor(bench_.lamp);
+  return std::make_unique<TronCamera>(shared_from_this());
+}
+
+void TronRun::begin(report::RunRecord& record, const std::filesystem::path& folder) {
+  record_ = &record;
+  folder_ = folder;
+}
+
+void TronRun::start() {
+  try {
+    open_devices();
+    check_calibration();
+  } catch (const std::runtime_error& error) {
+    // The end of its process is the cause of all other failures.
+    const auto end = process_ ? process_->end_report() : std::nullopt;
+    const std::string reason = end ? *end : error.what();
+    close();
+    throw std::runtime_error("testbed tron: " + reason);
+  }
+}
+
+void TronRun::open_devices() {
+  const std::filesystem::path& data = context_.data_directory;
+  DeviceSettings devices;
+  devices.bench = bench_;
+  devices.vicon_rotation = calibration_.vicon.rotation;
+  devices.is_emulated = !settings_.bench.empty();
+  devices.region = single_pixels(camera_.region);
+  devices.exposure_s = exposure_s_;
+  devices.converter_bits = calibration_.camera.bits;
+  devices.packet_size = settings_.packet_size;
+  devices.retries = settings_.retries;
+  devices.timeout = settings_.timeout;
+  devices.settle_limit_s = settings_.settle_limit_s;
+  devices.operator_timeout_s = static_cast<double>(settings_.operator_timeout.count());
+  devices.report = [](const std::string& text) { std::cerr << "testbed tron: " << text << '\n'; };
+  laboratory_ = std::make_unique<WiredLaboratory>(devices);
+
+  BenchAddresses addresses = addresses_of(bench_);
+  if (!settings_.bench.empty()) {
+    process_.emplace(settings_.bench + laboratory_->port_options(), context_.mission.seed, data);
+    addresses = read_addresses(process_->addresses_file());
+  }
+  if (!settings_.camera_address.empty()) addresses.camera = settings_.camera_address;
+  if (!settings_.camera_robot_address.empty()) addresses.camera_robot.host = settings_.camera_robot_address;
+  if (!settings_.target_robot_address.empty()) addresses.target_robot.host = settings_.target_robot_address;
+  if (!settings_.lights_address.empty()) addresses.lights = parse_address(settings_.lights_address);
+  laboratory_->open(addresses);
+
+  const PhotometricTable table =
+      calibration_.lights.empty() ? PhotometricTable() : PhotometricTable(calibration_.lights);
+  laboratory_->set_light_values(
+      [table, lamp = bench_.lamp](const LightLevels& levels) { return light_values(levels, lamp, table); });
+  lights_.emplace(bench_, calibration_, table);
+  PlacementSettings placement;
+  placement.trials = settings_.trials;
+  placement.max_hidden = settings_.max_hidden;
+  placement.seed = context_.mission.seed;
+  planner_.emplace(bench_, calibration_, placement, data);
+  ExchangeSettings exchange;
+  exchange.correct_above_m = 1e-3 * settings_.correct_above_mm;
+  exchange.correct_above_rad = settings_.correct_above_deg * kDegree;
+  exchange.fail_above_m = 1e-3 * settings_.fail_above_mm;
+  exchange.fail_above_rad = settings_.fail_above_deg * kDegree;
+  exchange.lamp_speed_rad_s = bench_.lamp.speed_rad_s;
+  exchange_.emplace(exchange, calibration_, *planner_, *lights_, *laboratory_);
+  const auto model = twins::camera::load_cad_model(model_file(data, bench_, ".obj"));
+  finish_.emplace(camera_, model, exchange_->take_dark(exposure_s_).dn,
+                  context_.mission.seed ^ engine::fnv1a_64(plan_->name + "/background"));
+}
+
+/// Arms and motion capture agree on where the target is, or the calibration is not of this bench.
+void TronRun::check_calibration() {
+  if (calibration_.validity.emulated != laboratory_->camera_is_emulated())
+    throw std::runtime_error(fmt::format("{} is of {} bench, and the camera is of {} one", calibration_file_.string(),
+                                         calibration_.validity.emulated ? "an emulated" : "a real",
+                                         laboratory_->camera_is_emulated() ? "an emulated" : "a real"));
+  const auto measured = laboratory_->measure();
+  const auto* const place = std::get_if<MeasuredPlace>(&measured);
+  if (place == nullptr) throw std::runtime_error("the robots were stopped at the start");
+  if (!place->capture) return;
+  PoseEstimate arms{T_C_T_of_arms(calibration_, place->posture)};
+  PoseEstimate vicon{T_C_T_of_vicon(calibration_, place->capture->T_V_camera, place->capture->T_V_target)};
+  arms.covariance = covariance_at(calibration_.covariance.arms, arms.T);
+  vicon.covariance = covariance_at(calibration_.covariance.vicon, vicon.T);
+  const double chi_square = fuse(arms, vicon).chi_square;
+  if (!(chi_square <= kForeignCalibration))
+    throw std::runtime_error(fmt::format(
+        "{} is not of this bench, or a mount has moved: arms and motion capture disagree by a chi-square of {:.0f}, "
+        "accepted is {:.0f}; make one with vbar_tron calibrate",
+        calibration_file_.string(), chi_square, kForeignCalibration));
+}
+
+twins::camera::TakenImage TronRun::take(const twins::camera::Exposure& exposure) {
+  TronRow row;
+  row.time_s = fsw::seconds(exposure.time - context_.mission.epoch);
+  row.image = exposure.number;
+  try {
+    twins::camera::TakenImage image = taken(exposure, row);
+    if (row.pose_error_mm) image.notes.push_back({"pose_error_mm", *row.pose_error_mm});
+    if (row.pose_error_deg) image.notes.push_back({"pose_error_deg", *row.pose_error_deg});
+    image.failure = row.failure;
+    const std::scoped_lock lock(mutex_);
+    rows_.push_back(row);
+    return image;
+  } catch (const std::runtime_error& error) {
+    constexpr std::chrono::milliseconds kEnd{300};  // its connections are closed before its end is known
+    const auto end = process_ ? process_->end_report(kEnd) : std::nullopt;
+    throw std::runtime_error("testbed tron: " + (end ? *end : error.what()));
+  }
+}
+
+/// An image whose failure the row states has no pixels.
+twins::camera::TakenImage TronRun::taken(const twins::camera::Exposure& exposure, TronRow& row) {
+  const auto scene = scene_of(exposure, bench_.target.model, bench_.scale);
+  if (!scene) {
+    row.failure = "the target has no attitude or is not in the scene";
+    return {};
+  }
+  const auto exchanging = Clock::now();
+  SceneImage taken = exchange_->take(*scene, exposure.number, exposure_s_, row);
+  row.expose_wall_s = seconds_since(exchanging) - row.plan_wall_s - row.move_wall_s;
+  if (!row.failure.empty()) return {};
+
+  const auto finishing = Clock::now();
+  std::optional<TargetLight> light;
+  if (taken.is_lit) {
+    light.emplace();
+    const double sun = twins::camera::sun_photons(camera_.zero_magnitude_photons,
+                                                  (exposure.sun_eci - exposure.camera_position_eci).norm());
+    light->sun_C = scene->sun_C;
+    light->sun_photons_per_m2_s = scene->sunlit * sun;
+    light->earth_C = scene->earth_C;
+    light->earth_photons_per_m2_s = scene->earth_to_sun * sun;
+    light->earth_half_angle = scene->earth_half_angle;
+  }
+  FinishedImage finished = finish_->finish(taken.dn, exposure.number, in_orbit(taken.T_C_T, bench_.scale), light);
+  row.light_level = finished.light_level;
+  row.mask_wall_s = seconds_since(finishing);
+  // A lamp that is off: boxes alone give a tenth of the light.
+  constexpr double kLampOff = 0.3;
+  if (row.light_level && scene->sunlit > 0.5 && !(*row.light_level > kLampOff)) {
+    row.failure = "the lamp is dark";
+    return {};
+  }
+  return {std::move(finished.dn)};
+}
+
+std::vector<twins::Note> TronRun::statistics() const {
+  const std::scoped_lock lock(mutex_);
+  double bench_s = 0.0;
+  for (const TronRow& row : rows_) bench_s += row.bench_s;
+  return {{"bench_s", bench_s}};
+}
+
+void TronRun::stop() noexcept {
+  if (laboratory_) laboratory_->stop();
+}
+
+void TronRun::close() noexcept {
+  if (laboratory_) laboratory_->close();
+  if (process_) process_->stop();
+}
+
+void TronRun::finish() noexcept {
+  if (record_ == nullptr) return;
+  try {
+    RunFigures figures;
+    figures.files = {laboratory_file_, calibration_file_};
+    if (laboratory_) {
+      figures.is_emulated = laboratory_->camera_is_emulated();
+      figures.camera = laboratory_->camera();
+      figures.devices = laboratory_->counts();
+    }
+    if (process_) {
+      std::error_code ignored;
+      if (!folder_.empty())
+        std::filesystem::copy_file(process_->directory() / "truth.csv", folder_ / "bench_truth.csv", ignored);
+    }
+    close();
+    if (process_) {
+      figures.bench_files = process_->files();
+      figures.faults = process_->faults();
+    }
+    const std::scoped_lock lock(mutex_);
+    record_->tables.rows<TronRow>() = rows_;
+    add_figures(figures, *record_);
+  } catch (...) {
+    // Without memory for its figures the run still ends in order.
+  }
+  record_ = nullptr;
+}
+
+}  // namespace vbar::tron

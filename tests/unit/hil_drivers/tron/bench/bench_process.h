@@ -1,0 +1,162 @@
+#pragma once
+// vbar_tron_bench as a process, and a driver of its robots.
+
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "hil_drivers/tron/eki/client/client.h"
+#include "hil_drivers/tron/robot/robot_files.h"
+#include "hil_drivers/tron/rsi/client/client.h"
+#include "host_sim/io/child_process.h"
+#include "host_sim/mission/data_directory.h"
+#include "tests/support/paths.h"
+
+namespace vbar::tron::bench::test {
+
+namespace fs = std::filesystem;
+
+inline constexpr std::chrono::seconds kPatience{120};
+
+class TestDirectory {
+ public:
+  TestDirectory() : path_(fs::path(testing::TempDir()) / ("vbar_tron_bench_" + std::to_string(::getpid()))) {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~TestDirectory() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TestDirectory(const TestDirectory&) = delete;
+  TestDirectory& operator=(const TestDirectory&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Both robots of a bench, answered in step.
+class TwoRobots {
+ public:
+  TwoRobots()
+      : laboratory_(read_bench_file(mission::data_directory() / "benches" / "tron.toml")),
+        camera_(settings_of("camera robot", kCameraRobot, laboratory_.camera_robot, &laboratory_.track)),
+        target_(settings_of("target robot", kTargetRobot, laboratory_.target_robot, nullptr)) {}
+
+  [[nodiscard]] rsi::Client& camera() { return camera_; }
+  [[nodiscard]] rsi::Client& target() { return target_; }
+  [[nodiscard]] eki::Client& camera_eki() { return *camera_eki_; }
+  [[nodiscard]] eki::Client& target_eki() { return *target_eki_; }
+
+  void open(const nlohmann::json& addresses) {
+    camera_eki_.emplace(eki_settings("camera robot", addresses.at("camera_robot").at("eki")));
+    target_eki_.emplace(eki_settings("target robot", addresses.at("target_robot").at("eki")));
+    ASSERT_TRUE(camera_eki_->start().rsi_on);
+    ASSERT_TRUE(target_eki_->start().rsi_on);
+    ASSERT_NO_FATAL_FAILURE(receive());
+  }
+
+  /// Waits for the states of a cycle.
+  void receive() {
+    const auto camera = camera_.receive(kPatience), target = target_.receive(kPatience);
+    ASSERT_TRUE(camera && target);
+    camera_state = *camera;
+    target_state = *target;
+  }
+
+  /// `cycles` cycles with each robot's commands moved by a smooth step of one axis (A1 to A6: 0 to 5; the track: 6).
+  void move(int cycles, std::size_t camera_axis, double camera_by, std::size_t target_axis, double target_by) {
+    const rsi::AxisPositions camera_begin = command_of(camera_), target_begin = command_of(target_);
+    for (int cycle = 1; cycle <= cycles; ++cycle) {
+      const double x = static_cast<double>(cycle) / cycles;
+      const double step = x * x * x * (10.0 + x * (6.0 * x - 15.0));  // rest to rest
+      answer(moved(camera_begin, camera_axis, step * camera_by), moved(target_begin, target_axis, step * target_by));
+      ASSERT_NO_FATAL_FAILURE(receive());
+    }
+  }
+  void hold(int cycles) { move(cycles, 0, 0.0, 0, 0.0); }
+  void answer(const rsi::AxisPositions& camera, const rsi::AxisPositions& target) {
+    camera_.answer(camera);
+    target_.answer(target);
+  }
+
+  rsi::State camera_state, target_state;
+
+ private:
+  static rsi::ClientSettings settings_of(const std::string& name, const char* files, const Robot& robot,
+                                         const Track* track) {
+    rsi::ClientSettings settings = rsi::client_settings(name, robot, track, robot_files(files));
+    settings.port = 0;
+    return settings;
+  }
+  static eki::ClientSettings eki_settings(const std::string& name, const std::string& address) {
+    eki::ClientSettings settings;
+    settings.name = name;
+    settings.host = address.substr(0, address.find(':'));
+    settings.port = static_cast<std::uint16_t>(std::stoi(address.substr(address.find(':') + 1)));
+    settings.connect_limit = settings.answer_limit = kPatience;
+    return settings;
+  }
+  static rsi::AxisPositions command_of(const rsi::Client& client) { return client.last_command(); }
+  static rsi::AxisPositions moved(rsi::AxisPositions from, std::size_t axis, double by) {
+    if (axis < kJoints)
+      from.axes_rad[static_cast<int>(axis)] += by;
+    else
+      from.track_m += by;
+    return from;
+  }
+
+  BenchFile laboratory_;
+  rsi::Client camera_, target_;
+  std::optional<eki::Client> camera_eki_, target_eki_;
+};
+
+class BenchProcessTest : public ::testing::Test {
+ protected:
+  /// With the driver's ports and `more` arguments.
+  void start(TwoRobots& robots, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{tests::build_path("vbar_tron_bench"),
+                                       (mission::data_directory() / "benches/tron_emulated.toml").string(),
+                                       "--directory",
+                                       directory.path().string(),
+                                       "--camera-rsi-port",
+                                       std::to_string(robots.camera().port()),
+                                       "--target-rsi-port",
+                                       std::to_string(robots.target().port())};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    process.emplace(arguments, std::vector<io::FileDescriptor>{});
+    const auto until = std::chrono::steady_clock::now() + kPatience;
+    const fs::path file = directory.path() / "addresses.json";
+    while (!fs::exists(file)) {
+      ASSERT_TRUE(std::chrono::steady_clock::now() < until && !process->has_ended()) << process->output_tail();
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    addresses = nlohmann::json::parse(std::ifstream(file));
+  }
+  void end() {
+    process->terminate(kPatience);
+    process.reset();
+  }
+  [[nodiscard]] std::string text_of(const char* name) const {
+    std::ifstream in(directory.path() / name);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  }
+
+  TestDirectory directory;
+  std::optional<io::ChildProcess> process;
+  nlohmann::json addresses;
+};
+
+}  // namespace vbar::tron::bench::test

@@ -1,0 +1,105 @@
+// Calibration of five benches of numbers, against the goals of the design brief (section 5).
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "hil_drivers/tron/calibrate/poses/pose_choice.h"
+#include "hil_drivers/tron/calibrate/stages/fit_bench.h"
+#include "simulated_bench.h"
+#include "tests/support/paths.h"
+
+namespace vbar::tron::calibrate {
+namespace {
+
+LensCalibration lens_as_designed() {
+  // data/cameras/tron.toml, read as 1600 x 1000 at [160, 100].
+  return {1600,
+          1000,
+          17.0 / 5.86e-3,
+          17.0 / 5.86e-3,
+          799.5,
+          499.5,
+          {-0.22383, 0.514098, -0.000664997, -0.000214048, -0.131243}};
+}
+
+void print(const StageFigures& f) {
+  std::printf("%-32s %3d  board %5.2f +- %5.2f (%5.2f) mm  %.3f +- %.3f (%.3f) deg  %.2f +- %.2f (%.2f) px",
+              f.stage.c_str(), f.poses, f.board.translation_mean_mm, f.board.translation_sigma_mm,
+              f.board.translation_median_mm, f.board.rotation_mean_deg, f.board.rotation_sigma_deg,
+              f.board.rotation_median_deg, f.board.pixel_mean_px, f.board.pixel_sigma_px, f.board.pixel_median_px);
+  if (f.truth)
+    std::printf("  truth %5.2f (%5.2f) mm %.3f (%.3f) deg", f.truth->translation_mean_mm,
+                f.truth->translation_median_mm, f.truth->rotation_mean_deg, f.truth->rotation_median_deg);
+  std::printf("\n");
+}
+
+BenchFit calibrated(std::uint64_t seed, int fitted, int judged) {
+  const BenchFile file = read_bench_file(tests::source_path("data/benches/tron.toml"));
+  const BoardDesign board;
+  SimulatedBench bench(file, lens_as_designed(), seed);
+  BenchMeasurements measurements;
+  for (const Posture& posture : choose_postures(file, lens_as_designed(), board, fitted, 100 + seed))
+    measurements.fitted.push_back(bench.measure(posture));
+  for (const Posture& posture : choose_postures(file, lens_as_designed(), board, judged, 200 + seed))
+    measurements.judged.push_back(bench.measure(posture));
+  return fit_bench(file, lens_as_designed(), measurements,
+                   [](const std::string& line) { std::printf("%s\n", line.c_str()); });
+}
+
+const StageFigures& stage(const BenchFit& fit, const std::string& name) {
+  for (const StageFigures& figures : fit.calibration.figures)
+    if (figures.stage == name) return figures;
+  throw std::runtime_error("no stage " + name);
+}
+
+/// Share of the judged postures at which fusion used both sources.
+double share_of_both(const BenchFit& fit) {
+  double both = 0.0;
+  for (const EvaluatedPose& pose : fit.fused) both += pose.sources == FusionSources::kBoth ? 1.0 : 0.0;
+  return both / static_cast<double>(fit.fused.size());
+}
+
+class Benches : public testing::TestWithParam<int> {};
+
+// Goals (design brief, sections 5 and 9): medians of the fused pose against the board's pose by the image 2.9 mm, 0.35
+// deg, 2.0 px, the paper's; against truth 2.0 mm, 0.15 deg; fusion never more than 5 % worse than the better source.
+// Without the whole chain, what the paper has: arms 3 to 7 mm (its 3.97; the brief's prototype 3.7 to 6.3), motion
+// capture 5 to 10 mm (6.66).
+TEST_P(Benches, ReachTheirGoals) {
+  const BenchFit fit = calibrated(static_cast<std::uint64_t>(GetParam()), 208, 110);
+  for (const StageFigures& figures : fit.calibration.figures) print(figures);
+  const StageFigures& fused = stage(fit, "fused");
+  ASSERT_TRUE(fused.truth.has_value());
+  EXPECT_GE(fused.poses, 105);
+  EXPECT_LE(fused.board.translation_median_mm, 2.9);
+  EXPECT_LE(fused.board.rotation_median_deg, 0.35);
+  EXPECT_LE(fused.board.pixel_median_px, 2.0);
+  EXPECT_LE(fused.truth->translation_median_mm, 2.0);
+  EXPECT_LE(fused.truth->rotation_median_deg, 0.15);
+  const StageFigures &arms = stage(fit, "arms, whole chain"), &vicon = stage(fit, "motion capture, whole problem");
+  EXPECT_LE(fused.truth->translation_median_mm,
+            1.05 * std::min(arms.truth->translation_median_mm, vicon.truth->translation_median_mm));
+  EXPECT_LE(fused.truth->rotation_median_deg,
+            1.05 * std::min(arms.truth->rotation_median_deg, vicon.truth->rotation_median_deg));
+  EXPECT_LE(fused.board.translation_mean_mm,
+            1.05 * std::min(arms.board.translation_mean_mm, vicon.board.translation_mean_mm));
+  // The gate is at 95 % of a chi-square of six degrees of freedom; 110 draws of it scatter by 2 %.
+  EXPECT_GE(share_of_both(fit), 0.88);
+  const double offsets_mm = stage(fit, "arms, mounts and joint offsets").truth->translation_mean_mm;
+  EXPECT_GE(offsets_mm, 3.0);
+  EXPECT_LE(offsets_mm, 7.0);
+  const double vicon_mm = stage(fit, "motion capture alone").truth->translation_mean_mm;
+  EXPECT_GE(vicon_mm, 5.0);
+  EXPECT_LE(vicon_mm, 10.0);
+  EXPECT_GE(stage(fit, "arms, mounts").truth->translation_mean_mm, 1.2 * offsets_mm);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Benches, testing::Values(1, 2, 3, 4, 5));
+
+}  // namespace
+}  // namespace vbar::tron::calibrate
