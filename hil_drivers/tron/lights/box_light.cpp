@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include <Eigen/Geometry>
 
@@ -59,10 +60,12 @@ NormalIrradiances BoxLight::irradiances(const EarthLight& earth) const {
 }
 
 BoxPowers BoxLight::powers(const Vector3& centre_L, const EarthLight& earth) const {
+  if (!centre_L.allFinite() || !earth.direction_L.allFinite() || !std::isfinite(earth.half_angle + earth.ratio))
+    throw std::invalid_argument("light boxes: a number of the target's place or of the Earth is not finite");
   const NormalIrradiances wanted = irradiances(earth);
   BoxPowers powers;
   const double largest = wanted.maxCoeff();
-  if (wanted.allFinite() && largest <= 0.0) return powers;
+  if (largest <= 0.0) return powers;
   Eigen::MatrixXd full = irradiances(centre_L);
   for (std::size_t k = 0; k < kBoxes; ++k) full.col(static_cast<Eigen::Index>(k)) *= full_light_[k];
   const BoundedSolution solution = bounded_least_squares(full, wanted);
