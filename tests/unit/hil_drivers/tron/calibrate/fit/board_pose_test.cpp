@@ -62,7 +62,7 @@ TEST(BoardPose, CovarianceIsConsistent) {
   std::mt19937_64 random(3);
   const Isometry3d truth = pose(3.5, 0.4, 1.0);
   double sum = 0.0;
-  constexpr int kDraws = 400;
+  constexpr int kDraws = 200;
   for (int k = 0; k < kDraws; ++k) {
     const auto found = board_pose(BoardDesign{}, lens(), corners(truth, 0.6, random), truth);
     ASSERT_TRUE(found);
