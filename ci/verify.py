@@ -2,7 +2,7 @@
 """Flies the missions at full length on every flight computer and writes the results to docs/verification.md.
 
 usage: ci/verify.py [--build build/host] [--experiment1 | --experiment2 | --experiment3 | --grand |
-                     --experiment1_hil]     (ci/verify.sh builds first)
+                     --experiment1_hil | --experiment2_hil]     (ci/verify.sh builds first)
 
 --experiment1, 2 and 3 fly that experiment only and replace its section.
 """
@@ -16,6 +16,7 @@ import time
 
 import verify_experiment1
 import verify_experiment1_hil
+import verify_experiment2_hil
 import verify_experiment2
 import verify_experiment3
 import verify_grand
@@ -90,7 +91,8 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/host")
     experiments = {"experiment1": verify_experiment1, "experiment2": verify_experiment2, "experiment3": verify_experiment3,
-                   "grand": verify_grand, "experiment1_hil": verify_experiment1_hil}
+                   "grand": verify_grand, "experiment1_hil": verify_experiment1_hil,
+                   "experiment2_hil": verify_experiment2_hil}
     for name in experiments:
         parser.add_argument(f"--{name}", action="store_true")
     options = parser.parse_args()

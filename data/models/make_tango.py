@@ -78,7 +78,7 @@ class Mesh:
             normals = [n] * len(corners)
         self.parts[-1][1].append((material, corners, normals))
 
-    def write(self, path):
+    def write(self, path, title="Tango, body frame, metres. Written by make_tango.py.", materials="tango.mtl"):
         places, directions, lines = {}, {}, []
         for name, faces in self.parts:
             lines.append(f"o {name}")
@@ -95,7 +95,7 @@ class Mesh:
                                              directions.setdefault(n.replace("-0.0000", "0.0000"), len(directions) + 1)))
                 lines.append("f " + " ".join(words))
         with open(path, "w", encoding="ascii") as file:
-            file.write("# Tango, body frame, metres. Written by make_tango.py.\nmtllib tango.mtl\n")
+            file.write(f"# {title}\nmtllib {materials}\n")
             file.writelines(f"v {v}\n" for v in places)
             file.writelines(f"vn {n}\n" for n in directions)
             file.write("\n".join(lines) + "\n")

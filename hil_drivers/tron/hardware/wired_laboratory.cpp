@@ -228,6 +228,14 @@ std::string WiredLaboratory::camera() const {
   return fmt::format("{} {}, serial number {}", camera.vendor, camera.model, camera.serial);
 }
 
+std::string WiredLaboratory::camera_model() const {
+  return parts_->camera ? parts_->camera->identity().model : "";
+}
+
+std::string WiredLaboratory::camera_serial() const {
+  return parts_->camera ? parts_->camera->identity().serial : "";
+}
+
 bool WiredLaboratory::camera_is_emulated() const {
   return parts_->camera && parts_->camera->identity().is_emulated();
 }

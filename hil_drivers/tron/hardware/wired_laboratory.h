@@ -60,6 +60,8 @@ class WiredLaboratory final : public Laboratory {
 
   /// Vendor, model, serial number.
   [[nodiscard]] std::string camera() const;
+  [[nodiscard]] std::string camera_model() const;
+  [[nodiscard]] std::string camera_serial() const;
   [[nodiscard]] bool camera_is_emulated() const;
   /// Counters of the devices, by name.
   [[nodiscard]] std::map<std::string, double> counts() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -121,6 +122,34 @@ void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_
   const ProgressLimits carriage = limits.of_carriage(search.from.carriage_m, carriage_m);
   const double lamp_s = search.lamp_rad ? std::abs(lamp_rad - *search.lamp_rad) / bench_.lamp.speed_rad_s : 0.0;
   const double earth_s = earth_ ? earth_(search.scene, T_L_C, T_L_T) : 0.0;
+  // Of each arm by itself, when it is asked for first.
+  struct Judged {
+    ArmCapsules bodies;
+    std::uint32_t hidden = 0;
+    bool is_known = false, is_free = false;
+  };
+  std::array<Judged, kBranches> camera_judged, target_judged;
+  const OrientedBox hull = bodies_.hull_at(T_L_T);
+  const Vector3 eye = T_L_C.translation();
+  const std::vector<Vector3> points = bodies_.points_at(T_L_T, points_body_);
+  const auto of_camera_arm = [&](std::size_t k) -> const Judged& {
+    Judged& judged = camera_judged[k];
+    if (judged.is_known) return judged;
+    judged.is_known = true;
+    judged.bodies = bodies_.camera_arm_at(of_camera.all[k].joints_rad, carriage_m);
+    judged.is_free = bodies_.is_camera_arm_free(judged.bodies);
+    if (judged.is_free) judged.hidden = BenchBodies::hidden_by_camera_arm(judged.bodies, eye, points);
+    return judged;
+  };
+  const auto of_target_arm = [&](std::size_t k) -> const Judged& {
+    Judged& judged = target_judged[k];
+    if (judged.is_known) return judged;
+    judged.is_known = true;
+    judged.bodies = bodies_.target_arm_at(of_target.all[k].joints_rad);
+    judged.is_free = bodies_.is_target_arm_free(judged.bodies, hull);
+    if (judged.is_free) judged.hidden = BenchBodies::hidden_by_target_arm(judged.bodies, eye, points);
+    return judged;
+  };
   // The best of this trial only: its neighbours differ little.
   double bound = search.bound();
   std::optional<Placement> best;
@@ -142,18 +171,22 @@ void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_
                           0.0};
       placement.cost_s = placement.move_s + camera.penalty_s + target.penalty_s + earth_s;
       if (!(placement.cost_s < bound)) continue;
-      const Bodies bodies = bodies_.at(placement.posture);
-      if (!bodies_.is_free(bodies)) {
+      const Judged &camera_arm = of_camera_arm(c), &target_arm = of_target_arm(t);
+      if (!camera_arm.is_free || !target_arm.is_free) {
         collides = true;
         continue;
       }
-      placement.hidden = bodies_.hidden(bodies, points_body_);
+      placement.hidden = std::popcount(camera_arm.hidden | target_arm.hidden);
       placement.cost_s += settings_.hidden_cost_s * placement.hidden;
       if (placement.hidden > settings_.max_hidden) {
         hides = true;
         continue;
       }
       if (!(placement.cost_s < bound)) continue;
+      if (!bodies_.are_apart(camera_arm.bodies, target_arm.bodies, hull)) {
+        collides = true;
+        continue;
+      }
       bound = placement.cost_s;
       best = placement;
     }
@@ -265,11 +298,18 @@ std::variant<Placement, NoPlacement> PlacementSearch::find(const Scene& scene, c
   const Trial last = limited({T_L_T.translation(), std::atan2(-u.y(), -u.x()), std::asin(std::clamp(u.z(), -1.0, 1.0)),
                               from.carriage_m - T_L_C.translation().x()});
   engine::RandomStream random(settings_.seed, fmt::format("tron/placement/{}", number));
+  const double range_m = p_C.norm();
   const auto anywhere = [&] {
     Trial trial;
     for (int k = 0; k < 3; ++k) trial.target_L[k] = centre[k] + random.uniform(-kBeamMiddle_m, kBeamMiddle_m);
-    trial.yaw = random.uniform(-kYaw_rad, kYaw_rad);
-    trial.pitch = random.uniform(-kPitch_rad, kPitch_rad);
+    // Yaw and pitch that leave the camera within the room: at long range a small part of all.
+    const Vector3 low = (bench_.room_low_m - trial.target_L) / range_m;
+    const Vector3 high = (bench_.room_high_m - trial.target_L) / range_m;
+    const double up =
+        random.uniform(std::max(low.z(), -std::sin(kPitch_rad)), std::min(high.z(), std::sin(kPitch_rad)));
+    const double aside = random.uniform(std::max(low.y(), -std::sin(kYaw_rad)), std::min(high.y(), std::sin(kYaw_rad)));
+    trial.pitch = std::asin(up);
+    trial.yaw = std::asin(std::clamp(-aside / std::cos(trial.pitch), -1.0, 1.0));
     trial.carriage_ahead_m = random.uniform(-kCarriage_m, kCarriage_m);
     return trial;
   };
@@ -282,8 +322,12 @@ std::variant<Placement, NoPlacement> PlacementSearch::find(const Scene& scene, c
     return limited(trial);
   };
   judge(last, search);
-  for (int k = 1; k < settings_.trials; ++k) {
-    const int kind = k % 3;
+  const int most = settings_.trials * settings_.extension;
+  for (int k = 1; k < most; ++k) {
+    // A scene that is hard to place gets more trials, which are not near a posture that does not suit it.
+    const bool is_extended = k >= settings_.trials;
+    if (is_extended && !search.best.empty() && search.best.front().first.hidden == 0) break;
+    const int kind = is_extended ? 1 + k % 2 : k % 3;
     if (kind == 0) {
       judge(near(last, 1.0), search);
     } else if (kind == 1 || search.best.empty()) {

@@ -35,6 +35,7 @@ struct NoPlacement {
 
 struct PlacementSettings {
   int trials = 400;
+  int extension = 10;          ///< times as many trials while nothing, or nothing without hidden points, was found
   int max_hidden = 3;          ///< points that may be hidden
   std::uint64_t seed = 1;      ///< of the trials
   double hidden_cost_s = 2.0;  ///< of each hidden point

@@ -77,9 +77,9 @@ class Controller {
   void switch_drives_off(const std::string& message);
   /// AIPos and EIPos keep their values while the arm moves.
   void set_frozen(bool is_frozen);
-  /// Sends nothing for this number of cycles.
+  /// Sends nothing for this number of cycles, or until RSI is started again.
   void be_silent(std::uint64_t cycles);
-  /// The answers to this number of cycles do not arrive.
+  /// The answers to this number of cycles do not arrive, or until RSI is started again.
   void lose_answers(std::uint64_t cycles);
   void set_ipoc_back(std::uint64_t milliseconds);
   /// Breaks RSI off.

@@ -203,7 +203,7 @@ void Controller::Core::start_rsi() {
   message.clear();
   correction.begin(servo.command());
   monitor.begin(servo.command());
-  delay = 0;
+  delay = silent_cycles = lost_answers = 0;
   missing_in_row = 0;
   cycles_since_answer = 1;
   ++statistics.rsi_starts;

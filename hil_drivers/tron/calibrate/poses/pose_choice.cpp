@@ -124,7 +124,7 @@ PostureFilter free_postures(const BenchFile& bench) {
   const double cable_rad = bench.motion.cable_turn_rad;
   return [bodies, home_rad, cable_rad](const Posture& posture) {
     return std::abs(posture.camera_rad[3] + posture.camera_rad[5] - home_rad) < cable_rad &&
-           bodies->is_free(bodies->at(posture));
+           bodies->collision(bodies->at(posture)).empty();
   };
 }
 

@@ -25,8 +25,8 @@ using Matrix3f = Eigen::Matrix<float, 3, 3>;
 using Matrix4f = Eigen::Matrix<float, 4, 4>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kFinePicture = 256;       // texels on a side; finer ones have texels enough without several samples each
-constexpr int kFinestShadow = 2048;     // texels on a side of the shadow map
+constexpr int kFinePicture = 256;    // texels on a side; finer ones have texels enough without several samples each
+constexpr int kFinestShadow = 2048;  // texels on a side of the shadow map
 
 // The picture's axes: z to the middle of the sphere, x and y near the camera's.
 Matrix3 axes_towards(const Vector3& direction) {
@@ -81,9 +81,9 @@ struct TargetRenderer::Drawing {
   explicit Drawing(const CadModel& model) : centre(model.centre), radius_m(model.radius_m) {
     const GlContext::Current current(context);
     shadow_program.emplace(kShadowVertexShader, kShadowFragmentShader);
-    surface_program.emplace(kSurfaceVertexShader, std::string(kSurfaceFragmentInputs)
-                                                      .append(kReflectionFunctions)
-                                                      .append(kSurfaceFragmentMain));
+    surface_program.emplace(
+        kSurfaceVertexShader,
+        std::string(kSurfaceFragmentInputs).append(kReflectionFunctions).append(kSurfaceFragmentMain));
     triangles.emplace(surface_of(model), std::array{3, 3, 4});
     earth_light.emplace();
   }
