@@ -1,5 +1,6 @@
 #include "hil_drivers/tron/bench/bench.h"
 
+#include <cmath>
 #include <fstream>
 #include <utility>
 
@@ -76,11 +77,14 @@ Bench::Bench(boost::asio::io_context& context, const BenchSettings& settings, co
       rig_(settings.laboratory.lamp, settings.lights, settings.seed),
       lights_(context, settings.laboratory.sacn, 0, rig_),
       clock_(context, settings.clock, robots_.both()),
-      camera_(context, settings, true_camera(settings, place.data),
-              [this](const gige::Request& request) { return expose(request); }),
+      sensor_(true_camera(settings, place.data)),
+      renderer_(settings_.laboratory, settings.gap, settings.seed, place.data),
       truth_(place.truth.empty() ? directory_.path() / kTruthFile : place.truth),
       exit_(std::move(exit)),
       faults_([this](const Fault& fault, bool is_on) { act(fault, is_on); }, directory_.path() / kFaultFile),
+      camera_(context, settings, sensor_,
+              {[this](const gige::Request& request) { return look(request); },
+               [this](const LabView& view) { return render(view); }, [this] { end_exposure(); }}),
       control_(context, directory_.path() / kControlSocket,
                [this](const std::string& line, const bench_lines::Answer& answer) { control(line, answer); }),
       timer_(context) {
@@ -109,25 +113,42 @@ void Bench::end_motion() {
   if (vicon_.tick(clock_.time_s()) > 0) faults_.vicon_frame_sent();
 }
 
-gige::Image Bench::expose(const gige::Request& request) {
-  TrueExposure exposure;
-  exposure.image = images_;
-  exposure.cycle = clock_.cycle();
-  exposure.bench_s = clock_.time_s();
-  exposure.exposure_s = request.exposure_s;
-  exposure.mounted = mounted_;
-  exposure.posture = robots_.true_posture();
-  exposure.T_C_mounted = world_.T_C_mounted(exposure.posture, mounted_);
+LabView Bench::look(const gige::Request& request) {
+  const Posture posture = robots_.true_posture();
   const TrueLights lights = rig_.lights();
-  exposure.lamp_power = lights.lamp_power;
-  exposure.lamp_azimuth_rad = lights.lamp_azimuth_rad;
-  exposure.box_power = lights.box_power;
-  const auto located = capture_view_.located(exposure.posture);
-  exposure.markers_of_camera = located[0];
-  exposure.markers_of_target = located[1];
-  truth_.write(exposure);
+  const auto located = capture_view_.located(posture);
+  truth_.write({images_, clock_.cycle(), clock_.time_s(), request.exposure_s, mounted_,
+                world_.T_C_mounted(posture, mounted_), posture, lights.lamp_power, lights.lamp_azimuth_rad,
+                lights.box_power, located[0], located[1]});
+  LabView view;
+  view.T_L_C = world_.T_L_C(posture);
+  view.T_L_T = world_.T_L_mounted(posture, Mounted::kTarget);
+  if (mounted_ != Mounted::kTarget) view.T_L_board = world_.T_L_mounted(posture, mounted_);
+  for (const Capsule& link : capture_view_.arms(posture)) view.arms.push_back({link.from, link.to, link.radius_m});
+  view.lamp = {lights.lamp_azimuth_rad, lights.lamp_power};
+  view.box_powers = lights.box_power;
+  view.camera = sensor_;
+  view.camera.region = request.region;
+  view.camera.exposure_s = exposure_factor_ * request.exposure_s;
+  view.camera.detector.gain_dn_per_electron *= gain_factor_ * std::pow(10.0, request.gain_db / 20.0);
+  view.camera.detector.offset_dn = request.black_level_dn;
+  view.frame = static_cast<std::int64_t>(images_);
+  return view;
+}
+
+std::vector<std::uint16_t> Bench::render(const LabView& view) {
+  try {
+    return renderer_.expose(view);
+  } catch (const std::exception& error) {
+    // The driver gets an image without light.
+    ++views_refused_;
+    fmt::print(stderr, "vbar_tron_bench: image {}: {}\n", view.frame, error.what());
+    return {};
+  }
+}
+
+void Bench::end_exposure() {
   faults_.end_exposure(images_++, wall_s());
-  return {};
 }
 
 bool Bench::set_light_or_capture(const Fault& fault, bool is_on) {
@@ -159,6 +180,8 @@ bool Bench::set_light_or_capture(const Fault& fault, bool is_on) {
 void Bench::act(const Fault& fault, bool is_on) {
   if (set_light_or_capture(fault, is_on)) return;
   if (camera_.set_fault(fault, is_on) || robots_.set_fault(fault, is_on)) return;
+  if (fault.kind == FaultKind::kExposure) exposure_factor_ = is_on ? fault.value : 1.0;
+  if (fault.kind == FaultKind::kGain) gain_factor_ = is_on ? fault.value : 1.0;
   if (fault.kind == FaultKind::kMountSlipped) world_.slip(1e-3 * fault.value);
   if (fault.kind == FaultKind::kBenchExit) exit_();
 }
@@ -193,6 +216,7 @@ nlohmann::ordered_json Bench::summary() const {
   summary["bench_s"] = clock_.time_s();
   summary["clock_overruns"] = clock_.overruns();
   summary["images"] = images_;
+  summary["views_refused"] = views_refused_.load();
   summary["vicon_frames"] = vicon_.frames();
   summary["sacn"] = lights_summary(lights_.counts());
   summary["camera"] = camera_summary(camera_.statistics());

@@ -2,6 +2,7 @@
 // The whole emulated bench: robots, motion capture, lights and camera on one clock, in one directory and one event
 // loop.
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -22,6 +23,7 @@
 #include "hil_drivers/tron/bench/lights/light_receiver.h"
 #include "hil_drivers/tron/bench/lights/light_rig.h"
 #include "hil_drivers/tron/bench/robots.h"
+#include "hil_drivers/tron/bench/scene/lab_renderer.h"
 #include "hil_drivers/tron/bench/truth_log.h"
 #include "hil_drivers/tron/bench/vicon/capture_errors.h"
 #include "hil_drivers/tron/bench/vicon/object_stream_sender.h"
@@ -51,7 +53,11 @@ class Bench {
  private:
   void begin_cycle(std::uint64_t cycle);
   void end_motion();
-  gige::Image expose(const gige::Request& request);
+  /// What an exposure that begins now sees; it is written to the log of truth.
+  LabView look(const gige::Request& request);
+  /// On the camera's thread.
+  std::vector<std::uint16_t> render(const LabView& view);
+  void end_exposure();
   /// False for a fault that is not one of motion capture or lights.
   bool set_light_or_capture(const Fault& fault, bool is_on);
   void act(const Fault& fault, bool is_on);
@@ -72,10 +78,14 @@ class Bench {
   LightRig rig_;
   LightReceiver lights_;
   CycleClock clock_;
-  CameraLink camera_;
+  twins::camera::CameraSettings sensor_;
+  double exposure_factor_ = 1.0, gain_factor_ = 1.0;  ///< faults
+  LabRenderer renderer_;
+  std::atomic<std::uint64_t> views_refused_ = 0;
   TruthLog truth_;
   std::function<void()> exit_;
   FaultList faults_;
+  CameraLink camera_;
   bench_lines::ControlLine control_;
   boost::asio::steady_timer timer_;
   Mounted mounted_ = Mounted::kTarget;

@@ -24,6 +24,18 @@ using mission::TableReader;
 constexpr mission::Names<ClockKind, 2> kClocks{{{"virtual", ClockKind::kVirtual}, {"real", ClockKind::kReal}}};
 constexpr std::string_view kLaboratory = "laboratory.";
 
+struct GapKey {
+  std::string_view key;
+  bool GapSettings::*part;
+};
+constexpr std::array<GapKey, 7> kGapKeys{{{"surfaces", &GapSettings::surfaces},
+                                          {"shape", &GapSettings::shape},
+                                          {"lamp", &GapSettings::lamp},
+                                          {"earth_light", &GapSettings::earth_light},
+                                          {"room", &GapSettings::room},
+                                          {"focus", &GapSettings::focus},
+                                          {"detector", &GapSettings::detector}}};
+
 /// Keys of the laboratory, and all others.
 struct Assignments {
   std::vector<std::string> laboratory, bench;
@@ -69,13 +81,17 @@ void read_lights(const TableReader& section, LightErrorSizes& lights) {
   section.finish();
 }
 
+void read_gap(const TableReader& section, GapSettings& gap) {
+  for (const GapKey& key : kGapKeys) gap.*key.part = section.flag(key.key, gap.*key.part);
+  section.finish();
+}
+
 void read_camera(const TableReader& section, BenchSettings& bench) {
   CameraIdentity& identity = bench.identity;
   identity.vendor = section.text("vendor", identity.vendor);
   identity.model = section.text("model", identity.model);
   identity.serial = section.text("serial", identity.serial);
   SensorSettings& sensor = bench.sensor;
-  sensor.noise = section.flag("noise", sensor.noise);
   read(section, "gain_dn_per_electron", above_to(0.0, 10.0), sensor.gain_dn_per_electron);
   read(section, "read_noise_electrons", from_to(0.0, 1000.0), sensor.read_noise_electrons);
   read(section, "photo_response_nonuniformity", from_to(0.0, 0.5), sensor.photo_response_nonuniformity);
@@ -99,6 +115,7 @@ BenchSettings read_bench(const std::filesystem::path& file, const std::vector<st
   read_camera(document.table("camera"), bench);
   read_vicon(document.table("vicon"), bench);
   read_lights(document.table("lights"), bench.lights);
+  read_gap(document.table("gap"), bench.gap);
   for (const TableReader& section : document.tables("fault")) bench.faults.push_back(read_fault(section));
   document.finish();
   return bench;

@@ -10,6 +10,7 @@
 #include "hil_drivers/tron/bench/controller/cycle_clock.h"
 #include "hil_drivers/tron/bench/faults/bench_fault.h"
 #include "hil_drivers/tron/bench/lights/light_rig.h"
+#include "hil_drivers/tron/bench/scene/lab_view.h"
 #include "hil_drivers/tron/bench/vicon/capture_errors.h"
 #include "hil_drivers/tron/bench/world/error_sizes.h"
 #include "hil_drivers/tron/bench_file/bench_file.h"
@@ -25,7 +26,6 @@ struct CameraIdentity {
 
 /// The sensor of the camera in front of the bench.
 struct SensorSettings {
-  bool noise = true;  ///< false: expected electrons, rounded
   double gain_dn_per_electron = 0.125;
   double read_noise_electrons = 7.0;
   double photo_response_nonuniformity = 0.01;
@@ -42,6 +42,7 @@ struct BenchSettings {
   CaptureErrorSizes capture;
   std::size_t vicon_block_bytes = 1024;  ///< of a datagram; 0: as long as its objects
   LightErrorSizes lights;
+  GapSettings gap;
   std::vector<Fault> faults;
 };
 

@@ -7,7 +7,7 @@ namespace {
 
 using fsw::Vector3;
 
-constexpr double kColumn_m = 0.12, kUpperArm_m = 0.09, kForearm_m = 0.07;
+constexpr double kColumn_m = 0.12, kUpperArm_m = 0.09, kForearm_m = 0.07, kHand_m = 0.045;
 /// Markers of the camera stand on a frame around its body.
 constexpr double kCameraFrame_m = 0.12;
 
@@ -15,6 +15,7 @@ void add_arm(const Eigen::Isometry3d& T_L_base, const ArmPoints& points, std::ve
   capsules.push_back({T_L_base.translation(), T_L_base * points.shoulder, kColumn_m});
   capsules.push_back({T_L_base * points.shoulder, T_L_base * points.elbow, kUpperArm_m});
   capsules.push_back({T_L_base * points.elbow, T_L_base * points.wrist, kForearm_m});
+  capsules.push_back({T_L_base * points.wrist, T_L_base * points.flange, kHand_m});
 }
 
 }  // namespace

@@ -22,6 +22,8 @@ class CaptureView {
 
   /// Markers located, of camera and target.
   [[nodiscard]] std::array<std::size_t, kCaptureObjects> located(const Posture& posture) const;
+  /// Links of both, where they really are.
+  [[nodiscard]] std::vector<Capsule> arms(const Posture& posture) const;
   /// True pose of the camera, or of the plate's mock-up whatever hangs there; nothing if it is not tracked.
   [[nodiscard]] std::optional<Eigen::Isometry3d> tracked(CaptureObject object, const Posture& posture) const;
 
@@ -31,7 +33,6 @@ class CaptureView {
     fsw::Vector3 low_m, high_m;  ///< of the body that hides
   };
   [[nodiscard]] Eigen::Isometry3d T_L_body(CaptureObject object, const Posture& posture) const;
-  [[nodiscard]] std::vector<Capsule> arms(const Posture& posture) const;
   [[nodiscard]] std::size_t located(CaptureObject object, const Posture& posture) const;
 
   const BenchFile& laboratory_;

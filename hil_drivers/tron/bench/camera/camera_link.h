@@ -1,33 +1,66 @@
 #pragma once
-// The emulated camera on the network: a GigE Vision device on a loopback address of its own.
+// The emulated camera on the network: a GigE Vision device on a loopback address of its own. With the virtual clock it
+// exposes on the thread of the bench, between two robot cycles; with the real one on a thread of its own, so that the
+// robots do not wait for an image.
 
+#include <atomic>
+#include <functional>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <thread>
+#include <vector>
 
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 
 #include "hil_drivers/gige/device/device.h"
 #include "hil_drivers/tron/bench/bench_settings.h"
 #include "hil_drivers/tron/bench/faults/bench_fault.h"
+#include "hil_drivers/tron/bench/scene/lab_view.h"
 #include "host_sim/twins/camera/camera_settings.h"
 
 namespace vbar::tron::bench {
+
+/// The steps of an exposure.
+struct ExposureSteps {
+  std::function<LabView(const gige::Request& request)> look;              ///< on the bench's thread
+  std::function<std::vector<std::uint16_t>(const LabView& view)> render;  ///< on the camera's
+  std::function<void()> done;                                             ///< on the bench's thread
+};
 
 class CameraLink {
  public:
   /// On the first address from 127.0.21.1 that has no camera. Throws std::runtime_error if there is none.
   CameraLink(boost::asio::io_context& context, const BenchSettings& settings,
-             const twins::camera::CameraSettings& camera, const gige::Expose& expose);
+             const twins::camera::CameraSettings& camera, ExposureSteps steps);
+  ~CameraLink();
+  CameraLink(const CameraLink&) = delete;
+  CameraLink& operator=(const CameraLink&) = delete;
 
   [[nodiscard]] const std::string& address() const { return address_; }
-  [[nodiscard]] gige::Device::Statistics statistics() const { return device_->statistics(); }
+  /// At the beginning of the last exposure.
+  [[nodiscard]] gige::Device::Statistics statistics() const;
   /// False for a fault that is not one of the link.
   bool set_fault(const Fault& fault, bool is_on);
 
  private:
+  using WorkGuard = boost::asio::executor_work_guard<boost::asio::io_context::executor_type>;
+  gige::Image expose(const gige::Request& request);
+  void apply(gige::Device& device, const Fault& fault, bool is_on);
+
+  boost::asio::io_context& context_;
+  ExposureSteps steps_;
+  std::unique_ptr<boost::asio::io_context> own_context_;  ///< with the real clock
+  std::optional<WorkGuard> guard_;
   std::string address_;
   std::unique_ptr<gige::Device> device_;
   gige::PacketFaults packet_faults_;
+  mutable std::mutex mutex_;
+  gige::Device::Statistics statistics_;
+  std::atomic<bool> ends_ = false;
+  std::thread thread_;
 };
 
 }  // namespace vbar::tron::bench

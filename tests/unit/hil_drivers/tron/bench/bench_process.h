@@ -13,6 +13,8 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "hil_drivers/tron/bench_file/bench_file.h"
@@ -148,6 +150,21 @@ class BenchProcessTest : public ::testing::Test {
   void end() {
     process->terminate(kPatience);
     process.reset();
+  }
+  /// One line to the control socket, one line back.
+  std::string control(const std::string& line) {
+    const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::string path = addresses.at("control").get<std::string>();
+    path.copy(address.sun_path, sizeof(address.sun_path) - 1);
+    EXPECT_EQ(::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+    const std::string text = line + "\n";
+    EXPECT_EQ(::write(socket, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+    std::string answer;
+    for (char c = 0; ::read(socket, &c, 1) == 1 && c != '\n';) answer += c;
+    ::close(socket);
+    return answer;
   }
   [[nodiscard]] std::string text_of(const char* name) const {
     std::ifstream in(directory.path() / name);

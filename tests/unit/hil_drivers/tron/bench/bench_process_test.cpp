@@ -3,10 +3,6 @@
 #include "tests/unit/hil_drivers/tron/bench/bench_process.h"
 
 #include <gmock/gmock.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-
-#include "host_sim/io/byte_channels.h"
 
 namespace vbar::tron::bench {
 namespace {
@@ -18,24 +14,7 @@ using ::testing::IsSupersetOf;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-class TronBench : public test::BenchProcessTest {
- protected:
-  /// One line to the control socket, one line back.
-  std::string control(const std::string& line) {
-    const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    const std::string path = addresses.at("control").get<std::string>();
-    path.copy(address.sun_path, sizeof(address.sun_path) - 1);
-    EXPECT_EQ(::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
-    const std::string text = line + "\n";
-    EXPECT_EQ(::write(socket, text.data(), text.size()), static_cast<ssize_t>(text.size()));
-    std::string answer;
-    for (char c = 0; ::read(socket, &c, 1) == 1 && c != '\n';) answer += c;
-    ::close(socket);
-    return answer;
-  }
-};
+using TronBench = test::BenchProcessTest;
 
 TEST_F(TronBench, ListsItsAddressesAndRemovesThemAtTheEnd) {
   TwoRobots robots;

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "hil_drivers/tron/kinematics/geometry.h"
+#include "host_sim/engine/random_stream.h"
 #include "host_sim/mission/data_directory.h"
 
 namespace vbar::tron::bench {
@@ -100,6 +102,30 @@ TEST(World, WithoutErrorsItIsTheLaboratoryAsDesigned) {
   EXPECT_EQ(world.carriage_deviation_m(3), 0.0);
   EXPECT_EQ(world.camera_arm_deviation_rad(3), Joints::Zero());
   EXPECT_EQ(world.target_arm_deviation_rad(3), Joints::Zero());
+}
+
+TEST(World, WithoutErrorsItAgreesWithTheGeometryOfTheDriver) {
+  const World world = world_of(ErrorSizes::none());
+  const Geometry geometry(laboratory());
+  engine::RandomStream random(1, "world_test/postures");
+  for (int trial = 0; trial < 1000; ++trial) {
+    Posture at;
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      at.camera_rad[k] = random.uniform(-3.0, 3.0);
+      at.target_rad[k] = random.uniform(-3.0, 3.0);
+    }
+    at.carriage_m = random.uniform(0.5, 7.5);
+    EXPECT_TRUE(world.T_L_C(at).isApprox(geometry.T_L_C(at), 1e-12));
+    EXPECT_TRUE(world.T_L_mounted(at, Mounted::kTarget).isApprox(geometry.T_L_T(at), 1e-12));
+  }
+}
+
+TEST(World, ASlippedMountIsDisplacedAlongItsX) {
+  World world = world_of({});
+  const Eigen::Isometry3d before = world.T_L_mounted(posture(3.0), Mounted::kTarget);
+  world.slip(0.02);
+  const Eigen::Isometry3d moved = before.inverse() * world.T_L_mounted(posture(3.0), Mounted::kTarget);
+  EXPECT_LT((moved.translation() - fsw::Vector3(0.02, 0.0, 0.0)).norm(), 1e-12);
 }
 
 TEST(World, IsAFunctionOfItsSeed) {
