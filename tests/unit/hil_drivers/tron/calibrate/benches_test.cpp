@@ -43,9 +43,11 @@ BenchFit calibrated(std::uint64_t seed, int fitted, int judged) {
   const BoardDesign board;
   SimulatedBench bench(file, lens_as_designed(), seed);
   BenchMeasurements measurements;
-  for (const Posture& posture : choose_postures(file, lens_as_designed(), board, fitted, 100 + seed))
+  for (const Posture& posture :
+       choose_postures(file, lens_as_designed(), board, fitted, 100 + seed, {}, free_postures(file)))
     measurements.fitted.push_back(bench.measure(posture));
-  for (const Posture& posture : choose_postures(file, lens_as_designed(), board, judged, 200 + seed))
+  for (const Posture& posture :
+       choose_postures(file, lens_as_designed(), board, judged, 200 + seed, {}, free_postures(file)))
     measurements.judged.push_back(bench.measure(posture));
   return fit_bench(file, lens_as_designed(), measurements,
                    [](const std::string& line) { std::printf("%s\n", line.c_str()); });

@@ -75,18 +75,16 @@ TEST(CalibrationPoses, AreThoseOfTheSeed) {
 }
 
 TEST(CalibrationPoses, OfABenchTooSmallAreRefused) {
-  BenchFile file = bench();
-  file.track.axis.upper = file.track.axis.lower + 0.1;
-  EXPECT_THROW(static_cast<void>(choose_postures(file, lens(), BoardDesign{}, 5, 7, {.range_low_m = 5.0})),
-               std::runtime_error);
+  PoseGoals goals;
+  goals.range_low_m = 20.0;
+  goals.range_high_m = 21.0;
+  EXPECT_THROW(static_cast<void>(choose_postures(bench(), lens(), BoardDesign{}, 5, 7, goals)), std::runtime_error);
 }
 
 TEST(PatchPoses, ShowThePatchInTheLightOfEverySource) {
   const BenchFile file = bench();
   const double azimuth = M_PI / 2.0;
-  const auto postures = choose_patch_postures(file, lens(), BoardDesign{}, azimuth, 7, [&](const Posture& posture) {
-    return collision.conflict(posture).empty();
-  });
+  const auto postures = choose_patch_postures(file, lens(), BoardDesign{}, azimuth, 7, free_postures(file));
   std::set<std::size_t> sources;
   const Calibration design = calibration_as_designed(file);
   for (const PatchPosture& posture : postures) {
