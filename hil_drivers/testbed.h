@@ -32,8 +32,9 @@ struct ReceiverLine {
   std::string port;  ///< tty of the receiver's command port; empty: as the testbed says
   int baud = 115200;
   Wiring wired = Wiring::kHost;
-  double log_offset_s = 9.0;  ///< of the receiver's epochs after a flight step, modulo their period
-  bool clock_adjust = true;   ///< the receiver steers its clock to GPS time
+  double log_offset_s = 9.0;    ///< of the receiver's epochs after a flight step, modulo their period
+  bool clock_adjust = true;     ///< the receiver steers its clock to GPS time
+  double max_latency_s = 0.95;  ///< of its first epoch: from the time of the tag to its last byte
 };
 
 /// The receiver of one spacecraft.

@@ -100,6 +100,7 @@ LinkPlan GrandBench::link_plan(const testbeds::ReceiverPlan& plan, const BodyTru
   configuration.log_offset_s = fsw::seconds(log_offset(plan));
   link.period = fsw::nearest_duration(plan.settings.output.period_s);
   link.give_up = settings_.give_up;
+  link.max_latency = fsw::nearest_duration(plan.line.max_latency_s);
   link.week_shift = settings_.week_shift;
   link.pace = settings_.pace;
   if (plan.line.wired == testbeds::Wiring::kBoard) {

@@ -30,7 +30,7 @@ ReceiverLink::ReceiverLink(LinkPlan plan)
       port_(
           plan_.spacecraft, plan_.device, plan_.configuration,
           [this](std::span<const std::uint8_t> bytes) { raw_.add(bytes); }, plan_.start_patience),
-      tag_check_(name(), plan_.week_shift) {}
+      tag_check_(name(), plan_.week_shift, plan_.max_latency) {}
 
 ReceiverLink::~ReceiverLink() {
   close();

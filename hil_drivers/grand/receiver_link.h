@@ -17,6 +17,7 @@
 #include "hil_drivers/grand/receiver_port/receiver_port.h"
 #include "hil_drivers/grand/tag_check.h"
 #include "hil_drivers/grand/turns.h"
+#include "hil_drivers/testbed.h"
 #include "host_sim/twins/gnss/receiver_bytes.h"
 
 namespace vbar::grand {
@@ -27,6 +28,7 @@ struct LinkPlan {
   ReceiverConfiguration configuration;
   fsw::Duration period;   ///< of its epochs
   fsw::Duration give_up;  ///< after being lost for this long the run ends
+  fsw::Duration max_latency = fsw::nearest_duration(testbeds::ReceiverLine{}.max_latency_s);
   bool week_shift = false;
   bool bytes_bypass_host = false;
   Pace pace = Pace::kLockStep;

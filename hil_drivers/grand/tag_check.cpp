@@ -12,14 +12,8 @@ namespace vbar::grand {
 namespace {
 
 constexpr std::int64_t kCycle_ns = 1024 * fsw::gnss::kNanosecondsPerWeek;
-// An epoch cannot arrive before it was measured. The bytes of sixty signals at 115,200 baud take 0.24 s, so that a
-// scenario that is off by a second shows in either direction.
+// An epoch cannot arrive before it was measured.
 constexpr fsw::Duration kEarliest{-50'000'000};
-constexpr fsw::Duration kLatest{950'000'000};
-
-bool is_plausible(fsw::Duration latency) {
-  return latency >= kEarliest && latency <= kLatest;
-}
 
 }  // namespace
 
@@ -34,9 +28,11 @@ void TagCheck::check(fsw::GpsTime tag, fsw::GpsTime arrival) {
   };
   // After the first tag a late epoch is one of a slow line: the flight software goes by its tag.
   if (weeks_ && weeks == *weeks_) return;
-  if (!is_plausible(latency))
-    fail(fmt::format("{:.3f} s apart; check the start time of the scenario and the leap seconds",
-                     fsw::seconds(latency)));
+  if (latency < kEarliest || latency > max_latency_)
+    fail(
+        fmt::format("{:.3f} s apart, where -0.05 to {:g} s are allowed; check the start time of the scenario, the leap "
+                    "seconds and sensors.gnss.max_latency_s",
+                    fsw::seconds(latency), fsw::seconds(max_latency_)));
   if (weeks != 0 && !accepts_week_shift_)
     fail(fmt::format("{} weeks apart, a rollover of its week number; testbed.grand.week_shift = true accepts it",
                      weeks));

@@ -11,9 +11,10 @@ namespace vbar::grand {
 
 class TagCheck {
  public:
-  /// `receiver` begins the messages: "receiver of servicer on /dev/ttyUSB0".
-  TagCheck(std::string receiver, bool accepts_week_shift)
-      : receiver_(std::move(receiver)), accepts_week_shift_(accepts_week_shift) {}
+  /// `receiver` begins the messages: "receiver of servicer on /dev/ttyUSB0". `max_latency`: of the first epoch; below
+  /// a second it shows a scenario that is off by one second in either direction.
+  TagCheck(std::string receiver, bool accepts_week_shift, fsw::Duration max_latency)
+      : receiver_(std::move(receiver)), accepts_week_shift_(accepts_week_shift), max_latency_(max_latency) {}
 
   /// Of an epoch whose status is FINE or better, and whose last byte arrived at `arrival`. Throws std::runtime_error,
   /// one sentence, if it is another time than the run's.
@@ -26,6 +27,7 @@ class TagCheck {
  private:
   std::string receiver_;
   bool accepts_week_shift_;
+  fsw::Duration max_latency_;
   std::optional<int> weeks_;
 };
 

@@ -253,9 +253,7 @@ class Camera::Connection {
     set.set_integer({"GevSCPSPacketSize"}, settings_.packet_size, Need::kRequired);
     const auto packet_size = static_cast<std::size_t>(settings_.packet_size);
     const std::size_t image = image_bytes();
-    const std::size_t packets = image / (packet_size - wire::kPacketOverheadBytes) + 3;
-    // The kernel doubles what is requested.
-    buffer_ = granted_socket_buffer(settings_.socket_buffer_bytes.value_or(packets * bytes_in_buffer(packet_size) / 2));
+    buffer_ = granted_socket_buffer(settings_.socket_buffer_bytes.value_or(wanted_socket_buffer(image, packet_size)));
     delay_ns_ =
         settings_.packet_delay_us ? 1e3 * *settings_.packet_delay_us : packet_delay_ns(buffer_, image, packet_size);
     GlibError error;

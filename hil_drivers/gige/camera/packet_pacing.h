@@ -18,8 +18,13 @@ struct SocketBuffer {
 /// Of a packet in the buffer, as the kernel counts: data and headers in a power of two, and the descriptor.
 [[nodiscard]] std::size_t bytes_in_buffer(std::size_t packet_size);
 
-/// Nanoseconds between packets of `packet_size`: none if the buffer holds the whole image, otherwise such that it holds
-/// what arrives while the receiver does not run for 10 ms.
+[[nodiscard]] std::size_t packets_of_image(std::size_t image_bytes, std::size_t packet_size);
+
+/// What the kernel, which doubles it, is to be asked for so that images need no pauses.
+[[nodiscard]] std::size_t wanted_socket_buffer(std::size_t image_bytes, std::size_t packet_size);
+
+/// Nanoseconds between packets of `packet_size`: none if the buffer holds the whole image although the receiver has
+/// just read another, otherwise such that it holds what arrives while the receiver does not run for 10 ms.
 [[nodiscard]] double packet_delay_ns(const SocketBuffer& buffer, std::size_t image_bytes, std::size_t packet_size);
 
 /// One sentence for the log.

@@ -143,6 +143,7 @@ struct Display::Window {
   _XDisplay* connection = nullptr;
   int left = 0, top = 0;
   bool is_lost = false;
+  bool is_silent = false;  ///< lost because the server did not answer
 };
 
 Display::Display(const DisplaySettings& settings) : settings_(settings) {
@@ -193,8 +194,27 @@ void Display::check_pixels() {
 void Display::show(const Picture& picture) {
   if (picture.width != settings_.width || picture.height != settings_.height)
     throw std::runtime_error("a picture is not of the display's size");
-  if (window_->is_lost)
-    throw std::runtime_error(fmt::format("display {}: its X server has closed the connection", settings_.x_display));
+  check_connection();
+  int status = 0;
+  {
+    const AnswerLimit limit(window_->connection, settings_.answer_limit, window_->is_silent);
+    status = draw(picture);
+    if (!window_->is_lost) wait_for_server(window_->connection);
+  }
+  check_connection();
+  if (status != 0) fail_by_sdl("the window cannot be drawn");
+}
+
+void Display::check_connection() const {
+  if (!window_->is_lost) return;
+  if (window_->is_silent)
+    throw std::runtime_error(fmt::format("display {}: its X server has not answered for {:g} s", settings_.x_display,
+                                         std::chrono::duration<double>(settings_.answer_limit).count()));
+  throw std::runtime_error(fmt::format("display {}: its X server has closed the connection", settings_.x_display));
+}
+
+/// The status of SDL.
+int Display::draw(const Picture& picture) {
   SDL_Surface* const surface = window_->surface();
   if (surface->w != picture.width || surface->h != picture.height)
     throw std::runtime_error(
@@ -210,14 +230,12 @@ void Display::show(const Picture& picture) {
     auto* const to = static_cast<std::uint32_t*>(static_cast<void*>(row));
     for (int x = 0; x < picture.width; ++x) to[x] = greys[from[x]];
   }
-  const int status = SDL_UpdateWindowSurface(window_->window);
-  if (!window_->is_lost) wait_for_server(window_->connection);
-  if (window_->is_lost)
-    throw std::runtime_error(fmt::format("display {}: its X server has closed the connection", settings_.x_display));
-  if (status != 0) fail_by_sdl("the window cannot be drawn");
+  return SDL_UpdateWindowSurface(window_->window);
 }
 
 Picture Display::read_back() const {
+  check_connection();
+  const AnswerLimit limit(window_->connection, settings_.answer_limit, window_->is_silent);
   return read_screen(window_->connection, window_->left, window_->top, settings_.width, settings_.height);
 }
 

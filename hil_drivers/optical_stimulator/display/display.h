@@ -2,6 +2,7 @@
 // A window that covers one output of an X display and shows grey pictures pixel by pixel: no scaling, no colour
 // management, no pointer, no screen saver.
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -13,6 +14,7 @@ struct DisplaySettings {
   std::string x_display;  ///< ":7"; empty: that of the environment
   std::string output;     ///< its name ("HDMI-1"); empty: the only one
   int width = 1920, height = 1200;
+  std::chrono::milliseconds answer_limit{5000};  ///< of the X server, for a picture; then it counts as lost
 };
 
 class Display {
@@ -27,7 +29,7 @@ class Display {
   Display& operator=(const Display&) = delete;
 
   /// Returns when the pixels of the picture, which must have the display's size, are on the screen. Not from two
-  /// threads at a time. Throws std::runtime_error if the window has been lost.
+  /// threads at a time. Throws std::runtime_error if the window has been lost or the X server does not answer.
   void show(const Picture& picture);
 
   /// What the X server says the screen shows there now.
@@ -37,6 +39,8 @@ class Display {
   struct Window;
 
   void check_pixels();
+  [[nodiscard]] int draw(const Picture& picture);
+  void check_connection() const;
 
   DisplaySettings settings_;
   std::unique_ptr<Window> window_;

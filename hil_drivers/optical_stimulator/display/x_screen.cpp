@@ -9,6 +9,7 @@
 #include <X11/Xutil.h>
 #include <X11/extensions/Xrandr.h>
 #include <fmt/format.h>
+#include <sys/socket.h>
 
 namespace vbar::optical_stimulator {
 namespace {
@@ -35,6 +36,23 @@ void survive_loss(_XDisplay* connection, bool& is_lost) {
   XSetIOErrorHandler([](_XDisplay*) { return 0; });  // the default one writes to the terminal
   XSetIOErrorExitHandler(
       connection, [](_XDisplay*, void* flag) { *static_cast<bool*>(flag) = true; }, &is_lost);
+}
+
+AnswerLimit::AnswerLimit(_XDisplay* connection, std::chrono::milliseconds limit, bool& is_expired)
+    : thread_([this, socket = XConnectionNumber(connection), limit, &is_expired] {
+        std::unique_lock lock(mutex_);
+        if (over_.wait_for(lock, limit, [this] { return is_over_; })) return;
+        is_expired = true;
+        ::shutdown(socket, SHUT_RDWR);
+      }) {}
+
+AnswerLimit::~AnswerLimit() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+  over_.notify_all();
+  thread_.join();
 }
 
 void wait_for_server(_XDisplay* connection) {

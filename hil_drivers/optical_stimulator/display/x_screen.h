@@ -1,7 +1,11 @@
 #pragma once
 // Questions to an X server that SDL does not ask.
 
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <string>
+#include <thread>
 
 #include "hil_drivers/optical_stimulator/counts/picture.h"
 
@@ -11,6 +15,23 @@ namespace vbar::optical_stimulator {
 
 /// Without it Xlib ends the program when the server goes away. `is_lost` is set then; it outlives the connection.
 void survive_loss(_XDisplay* connection, bool& is_lost);
+
+/// While it lives, requests to the server have a time limit: beyond it the connection is shut down, which ends them as
+/// the loss of a server does (survive_loss). A server that is stopped would block them forever.
+class AnswerLimit {
+ public:
+  /// Sets `is_expired` when the limit is exceeded.
+  AnswerLimit(_XDisplay* connection, std::chrono::milliseconds limit, bool& is_expired);
+  ~AnswerLimit();
+  AnswerLimit(const AnswerLimit&) = delete;
+  AnswerLimit& operator=(const AnswerLimit&) = delete;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable over_;
+  bool is_over_ = false;
+  std::thread thread_;  // last: it uses all the others
+};
 
 /// Returns when the server has executed all requests of the connection.
 void wait_for_server(_XDisplay* connection);

@@ -1,6 +1,7 @@
 // vbar_os_calibrate: calibrates an Optical Stimulator over its wires.
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <exception>
@@ -134,6 +135,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(program, argc, argv);
   options.procedure.seed = options.seed;
   if (options.is_quick) options.procedure = calibrate::quick(options.procedure);
+  std::signal(SIGPIPE, SIG_IGN);  // an X server that goes away is an error with a sentence
   try {
     return run(options);
   } catch (const std::exception& error) {

@@ -8,6 +8,7 @@
 #include "host_sim/engine/random_stream.h"
 #include "host_sim/mission/body_file.h"
 #include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/camera/known_camera.h"
 
 namespace vbar::sensors {
 namespace {
@@ -48,28 +49,6 @@ void add_apriori(const Mission& mission, const Spacecraft& servicer, const fsw::
   configuration.apriori_epoch_ns = mission.start_time().ns;
   std::ranges::copy(a_roe_m, configuration.apriori_a_roe_m);
   std::ranges::copy(sigma_m, configuration.apriori_sigma_a_roe_m);
-}
-
-/// A camera as the flight software is configured for it.
-struct KnownCamera {
-  CameraSensor sensor;
-  std::optional<double> centroid_floor_px;
-};
-
-/// As the mission has it or, of a testbed that calibrates its camera, as calibrated.
-KnownCamera known_camera(const CameraSensor& camera, const TelecommandContext& context) {
-  const Mission& mission = context.mission;
-  KnownCamera known{camera, std::nullopt};
-  const testbeds::TestbedKind* const testbed = testbeds::find_testbed(camera.source);
-  if (testbed == nullptr || testbed->calibrated_camera == nullptr) return known;
-  const auto of_mission = std::ranges::find(mission.testbeds, testbed->name, &mission::Testbed::name);
-  if (of_mission == mission.testbeds.end())
-    throw std::logic_error("the mission has no [testbed." + std::string(testbed->name) + "]");
-  const auto calibrated =
-      testbed->calibrated_camera(*of_mission->settings, mission, context.data_directory, camera.settings);
-  known.sensor.settings = calibrated.settings;
-  known.centroid_floor_px = calibrated.centroid_floor_px;
-  return known;
 }
 
 }  // namespace
@@ -147,7 +126,7 @@ vbar::target_apriori target_apriori_of(const Mission& mission, const Spacecraft&
 void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandContext& context,
                              Telecommands& telecommands) {
   if (settings_of<CameraSensor>(sensor).use == CameraNavigation::kNone) return;
-  const KnownCamera known = known_camera(settings_of<CameraSensor>(sensor), context);
+  const KnownCamera known = known_camera(settings_of<CameraSensor>(sensor), context.mission, context.data_directory);
   const CameraSensor& camera = known.sensor;
   telecommands.add(camera_configuration_of(camera));
   const fsw::orbit::CartesianState own = context.state_at_start(context.servicer.name);

@@ -12,6 +12,7 @@
 #include "hil_drivers/testbeds.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/report/colour_picture.h"
+#include "host_sim/sensors/camera/known_camera.h"
 #include "host_sim/sensors/camera/make_camera.h"
 #include "host_sim/twins/camera/exposure_of_truth.h"
 
@@ -92,8 +93,11 @@ TakeTwinImage twin_of_testbed_camera(const mission::Mission& mission, const miss
                                                                                 std::int64_t number) {
     if (!twin->camera) {
       const auto data = mission::data_directory();
-      twin->mount = mount_of(mission, servicer, settings_of<CameraSensor>(sensor), data);
-      twin->camera = make_digital_camera(mission, servicer, sensor, data);
+      const CameraSensor known = known_camera(settings_of<CameraSensor>(sensor), mission, data).sensor;
+      twin->mount = mount_of(mission, servicer, known, data);
+      mission::Sensor calibrated = sensor;
+      calibrated.settings = std::make_shared<const CameraSensor>(known);
+      twin->camera = make_digital_camera(mission, servicer, calibrated, data);
     }
     return twin->camera->take(twins::camera::exposure_of_truth(twin->mount, truth, number)).dn;
   };

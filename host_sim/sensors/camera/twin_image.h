@@ -18,8 +18,8 @@ namespace vbar::sensors {
 /// The pixels that the digital camera takes at this truth: the region, rows from the top.
 using TakeTwinImage = std::function<std::vector<std::uint16_t>(const twins::TruthSnapshot& truth, std::int64_t number)>;
 
-/// Of the camera whose images navigation uses; empty unless a testbed provides its images. The renderer is made with
-/// the first image. `mission` and `servicer` must outlive it.
+/// Of the camera whose images navigation uses, as the testbed that provides them has calibrated it; empty if none does.
+/// The renderer is made with the first image. `mission` and `servicer` must outlive it.
 [[nodiscard]] TakeTwinImage twin_of_testbed_camera(const mission::Mission& mission,
                                                    const mission::Spacecraft& servicer);
 

@@ -80,6 +80,7 @@ void read_line(const TableReader& section, double period_s, testbeds::ReceiverLi
   const double latest_s = std::max(0.0, period_s - 0.1);
   line.log_offset_s = section.number("log_offset_s", from_to(0.0, latest_s), std::min(line.log_offset_s, latest_s));
   line.clock_adjust = section.flag("clock_adjust", line.clock_adjust);
+  read(section, "max_latency_s", above_to(0.0, 60.0), line.max_latency_s);
 }
 
 }  // namespace

@@ -36,7 +36,11 @@ class CameraSensor final : public PacketSource {
       : CameraSensor(settings, std::make_unique<ImageMaker>(settings.image, std::move(renderer))) {}
 
   void start(fsw::GpsTime first_epoch) override { taker_->start(first_epoch); }
-  void stop(StopReason reason) override { taker_->stop(reason); }
+  /// Returns when no image is being taken: a testbed may then close its devices.
+  void stop(StopReason reason) override {
+    taker_->stop(reason);
+    worker_.stop();
+  }
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 

@@ -5,18 +5,23 @@ namespace vbar::twins::camera {
 Worker::Worker() : thread_([this] { work(); }) {}
 
 Worker::~Worker() {
+  stop();
+}
+
+void Worker::stop() {
   {
     const std::lock_guard lock(mutex_);
     stop_ = true;
     jobs_.clear();
   }
   something_to_do_.notify_all();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void Worker::enqueue(std::function<void()> job) {
   {
     const std::lock_guard lock(mutex_);
+    if (stop_) return;
     jobs_.push_back(std::move(job));
   }
   something_to_do_.notify_one();

@@ -16,10 +16,13 @@ namespace vbar::twins::camera {
 class Worker {
  public:
   Worker();
-  /// Finishes the job at hand; the futures of jobs not started are broken (std::future_error).
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
+
+  /// Returns when the job at hand is finished; the futures of jobs not started are broken (std::future_error), as are
+  /// those of jobs to come.
+  void stop();
 
   /// `job` on the worker's thread, after all jobs before it; what it throws comes out of the future.
   template <class Job>

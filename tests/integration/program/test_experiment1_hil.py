@@ -93,6 +93,27 @@ class Experiment1Hil(unittest.TestCase):
         self.assertFalse(summary["complete"])
         self.assertEqual(vbar("replay", folder).returncode, 0)  # what was flown
 
+    def test_bench_that_is_stopped_ends_the_run(self):
+        self.stop_in_a_run("vbar_os_bench", "camera 127.0.13.")
+
+    def test_x_server_that_is_stopped_ends_the_run(self):
+        self.stop_in_a_run("Xvfb", "its X server has not answered|camera 127.0.13.")
+
+    def stop_in_a_run(self, program, cause):
+        """SIGSTOP: the process neither answers nor ends."""
+        folder = self.folder / ("stopped_" + program)
+        process = start("run", MISSION, "--force", "--out", folder, *overrides("mission.duration_h=6", *self.settings))
+        self.wait_for_images(process, folder)
+        children = children_of(process.pid)
+        os.kill(next(pid for pid in children if program in command_of(pid).split("\0")[0]), signal.SIGSTOP)
+        _, errors = process.communicate(timeout=120)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertEqual(errors.count("run incomplete"), 1, errors)
+        self.assertRegex(errors, cause)
+        self.assertFalse(summary_of(folder)["complete"])
+        self.assertEqual(vbar("replay", folder).returncode, 0)
+        self.expect_ended(children)
+
     def test_interrupted_run_leaves_no_process(self):
         folder = self.folder / "interrupted"
         process = start("run", MISSION, "--force", "--out", folder, *overrides("mission.duration_h=3", *self.settings))
@@ -101,6 +122,10 @@ class Experiment1Hil(unittest.TestCase):
         self.assertTrue(any("Xvfb" in command_of(pid) for pid in children))
         process.terminate()
         process.communicate(timeout=60)
+        self.assertGreater(process.returncode, 0)  # not ended by a signal
+        self.expect_ended(children)
+
+    def expect_ended(self, children):
         deadline = time.monotonic() + 20.0
         while any(is_running(pid) for pid in children) and time.monotonic() < deadline:
             time.sleep(0.1)

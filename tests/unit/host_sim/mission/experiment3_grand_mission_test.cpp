@@ -65,6 +65,7 @@ TEST(Experiment3GrandMission, ShowsTheDefaults) {
   EXPECT_EQ(line.wired, other.wired);
   EXPECT_EQ(line.log_offset_s, other.log_offset_s);
   EXPECT_EQ(line.clock_adjust, other.clock_adjust);
+  EXPECT_EQ(line.max_latency_s, other.max_latency_s);
 }
 
 TEST(Experiment3GrandMission, LiveFollowsTheWallClock) {
@@ -81,7 +82,11 @@ TEST(Experiment3GrandMission, GnssSdrReceivesForTenMinutesInRealTime) {
   EXPECT_EQ(mission.clock.mode, engine::ClockMode::kRealTime);
   EXPECT_EQ(mission.duration, fsw::duration_of_seconds(600));
   EXPECT_THAT(grand_of(mission).bench, HasSubstr("--pace real_time --receiver gnss_sdr"));
-  EXPECT_EQ(sensor_of<sensors::GnssSensor>(mission).line.log_offset_s, 8.0);
+  for (const char* const spacecraft : {"servicer", "target"}) {
+    const auto& line = sensor_of<sensors::GnssSensor>(mission, spacecraft).line;
+    EXPECT_EQ(line.log_offset_s, 8.0);
+    EXPECT_EQ(line.max_latency_s, 1.95);
+  }
 }
 
 TEST(Experiment3GrandMission, ContradictionsAreRefused) {
@@ -93,6 +98,7 @@ TEST(Experiment3GrandMission, ContradictionsAreRefused) {
   EXPECT_THAT(refusal({"testbed.grand.pps=\"kernel\""}, kLive), HasSubstr("kernel:DEVICE"));
   EXPECT_THAT(refusal({"testbed.grand.rate_hz=3"}), HasSubstr("1, 2, 4, 5, 10, 20, 25 or 50"));
   EXPECT_THAT(refusal({"testbed.grand.generator=\"ifen\""}), AllOf(HasSubstr("skydel"), HasSubstr("template")));
+  EXPECT_THAT(refusal({"spacecraft.servicer.sensors.gnss.max_latency_s=0.0"}), HasSubstr("max_latency_s"));
   EXPECT_THAT(refusal({"testbed.grand.bench=\"\""}), HasSubstr("control_port"));
   EXPECT_THAT(refusal({"spacecraft.target.sensors.gnss.source=\"digital\""}),
               AllOf(HasSubstr("source"), HasSubstr("target"), HasSubstr("sky")));

@@ -11,14 +11,24 @@ TEST(PacketPacing, PacketInTheBuffer) {
 }
 
 TEST(PacketPacing, BufferThatHoldsTheImageNeedsNoPause) {
-  constexpr std::size_t kImage = 500 * 848 * 2;  // 622 packets of 1364 bytes, leader and trailer
-  EXPECT_EQ(packet_delay_ns({0, 624 * 2304}, kImage, 1400), 0.0);
-  EXPECT_GT(packet_delay_ns({0, 623 * 2304}, kImage, 1400), 0.0);
+  constexpr std::size_t kImage = 500 * 848 * 2;                    // 622 packets of 1364 bytes, leader and trailer
+  EXPECT_EQ(packet_delay_ns({0, 832 * 2304}, kImage, 1400), 0.0);  // 624 = 0.75 * 832
+  EXPECT_GT(packet_delay_ns({0, 831 * 2304}, kImage, 1400), 0.0);
 }
 
 TEST(PacketPacing, PauseOfTheReceiverFitsTheBuffer) {
-  // Debian's limit of 212992 bytes, doubled by the kernel, holds 184 packets: 10 ms at 54 us a packet.
-  EXPECT_NEAR(packet_delay_ns({0, 2 * 212992}, 848'000, 1400), 10e6 / 184.0, 1e-6);
+  // Debian's limit of 212992 bytes, doubled by the kernel, holds 184.9 packets, of which three quarters are usable.
+  EXPECT_NEAR(packet_delay_ns({0, 2 * 212992}, 848'000, 1400), 10e6 / (0.75 * 2 * 212992 / 2304), 1e-6);
+}
+
+TEST(PacketPacing, BufferAsWantedNeedsNoPause) {
+  for (const std::size_t image : {std::size_t{500 * 848 * 2}, std::size_t{1920 * 1200 * 2}})
+    EXPECT_EQ(packet_delay_ns({0, 2 * wanted_socket_buffer(image, 1400)}, image, 1400), 0.0);
+}
+
+TEST(PacketPacing, WholeSensorIsPacedWithFourMebibytes) {
+  // 1920 x 1200 pixels of 16 bits are 3381 packets; 8 MiB hold 3640, but only 2730 while packets are read.
+  EXPECT_NEAR(packet_delay_ns({4 << 20, 8 << 20}, 1920 * 1200 * 2, 1400), 10e6 / 2730.67, 0.01);
 }
 
 TEST(PacketPacing, KernelGrantsWhatIsRequestedUpToItsLimit) {

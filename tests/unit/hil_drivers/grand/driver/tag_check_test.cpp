@@ -15,9 +15,11 @@ using ::testing::HasSubstr;
 constexpr std::int64_t kWeek_s = 604'800;
 constexpr fsw::GpsTime kEpoch{fsw::duration_of_seconds(1658 * kWeek_s + 345'679).ns};
 constexpr fsw::Duration kLatency{300'000'000};
+constexpr fsw::Duration kMaxLatency{950'000'000};
 
-std::string refusal(fsw::GpsTime tag, bool accepts_week_shift = false, fsw::Duration latency = kLatency) {
-  TagCheck check("receiver of servicer on /dev/ttyUSB0", accepts_week_shift);
+std::string refusal(fsw::GpsTime tag, bool accepts_week_shift = false, fsw::Duration latency = kLatency,
+                    fsw::Duration max_latency = kMaxLatency) {
+  TagCheck check("receiver of servicer on /dev/ttyUSB0", accepts_week_shift, max_latency);
   try {
     check.check(tag, kEpoch + latency);
   } catch (const std::runtime_error& error) {
@@ -32,12 +34,21 @@ TEST(TagCheck, AcceptsTheTimeOfTheRun) {
   EXPECT_EQ(refusal(kEpoch, false, fsw::Duration{900'000'000}), "");
 }
 
+TEST(TagCheck, ASlowReceiverMayHaveALargerLatency) {
+  constexpr fsw::Duration kSlow{1'950'000'000};
+  EXPECT_THAT(refusal(kEpoch, false, fsw::Duration{1'000'000'000}), HasSubstr("sensors.gnss.max_latency_s"));
+  EXPECT_EQ(refusal(kEpoch, false, fsw::Duration{1'000'000'000}, kSlow), "");
+  EXPECT_EQ(refusal(kEpoch, false, kSlow, kSlow), "");
+  EXPECT_THAT(refusal(kEpoch, false, fsw::Duration{1'951'000'000}, kSlow), HasSubstr("-0.05 to 1.95 s"));
+  EXPECT_THAT(refusal(kEpoch + fsw::duration_of_seconds(1), false, kLatency, kSlow), HasSubstr("start time"));
+}
+
 TEST(TagCheck, RefusesARolloverUnlessItMayBeShifted) {
   for (const int cycles : {-1, 1, 2}) {
     const fsw::GpsTime tag = kEpoch + fsw::duration_of_seconds(cycles * 1024 * kWeek_s);
     EXPECT_THAT(refusal(tag), AllOf(HasSubstr("receiver of servicer on /dev/ttyUSB0"), HasSubstr("week_shift"),
                                     HasSubstr(std::to_string(-1024 * cycles) + " weeks")));
-    TagCheck check("receiver", true);
+    TagCheck check("receiver", true, kMaxLatency);
     check.check(tag, kEpoch + kLatency);
     EXPECT_EQ(check.weeks(), -1024 * cycles);
   }
@@ -51,7 +62,7 @@ TEST(TagCheck, RefusesAScenarioOffByASecond) {
 }
 
 TEST(TagCheck, LaterAcceptsASlowLineButNoOtherWeek) {
-  TagCheck check("receiver", true);
+  TagCheck check("receiver", true, kMaxLatency);
   check.check(kEpoch, kEpoch + kLatency);
   check.check(kEpoch, kEpoch + fsw::duration_of_seconds(3));
   EXPECT_EQ(check.weeks(), 0);

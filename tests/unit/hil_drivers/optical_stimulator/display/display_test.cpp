@@ -2,11 +2,17 @@
 
 #include "hil_drivers/optical_stimulator/display/display.h"
 
+#include <algorithm>
 #include <array>
+#include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -75,6 +81,49 @@ TEST(Display, AnotherSizeOrOutputIsRefusedByName) {
   EXPECT_THAT(refusal({server.name(), "", 1920, 1200}),
               AllOf(HasSubstr("display " + server.name()), HasSubstr("640 x 400"), HasSubstr("1920 x 1200")));
   EXPECT_THAT(refusal({server.name(), "OLED-1", kWidth, kHeight}), HasSubstr("no output \"OLED-1\""));
+}
+
+TEST(Display, AServerThatIsStoppedForLessIsWaitedFor) {
+  const Xvfb server(kWidth, kHeight);
+  Display display({server.name(), "", kWidth, kHeight, std::chrono::minutes(5)});
+  ASSERT_EQ(::kill(server.pid(), SIGSTOP), 0);
+  std::jthread later([pid = server.pid()] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    ::kill(pid, SIGCONT);
+  });
+  Picture picture(kWidth, kHeight);
+  std::fill(picture.counts.begin(), picture.counts.end(), std::uint8_t{77});
+  display.show(picture);
+  EXPECT_EQ(display.read_back().counts, picture.counts);
+}
+
+/// What show() says of a server that is stopped, on the standard error. The process cannot open a display again.
+void show_on_a_stopped_server() {
+  std::signal(SIGPIPE, SIG_IGN);  // as the programs do
+  const Xvfb server(kWidth, kHeight);
+  Display display({server.name(), "", kWidth, kHeight});
+  ::kill(server.pid(), SIGSTOP);
+  int errors = 0;
+  for (int k = 0; k < 3; ++k) {
+    try {
+      display.show(Picture(kWidth, kHeight));
+    } catch (const std::runtime_error& error) {
+      ++errors;
+      std::fprintf(stderr, "%s\n", error.what());
+    }
+  }
+  try {
+    static_cast<void>(display.read_back());
+  } catch (const std::runtime_error&) {
+    ++errors;
+  }
+  std::_Exit(errors);
+}
+
+TEST(DisplayDeathTest, AServerThatIsStoppedIsAnErrorAfterItsLimit) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(show_on_a_stopped_server(), testing::ExitedWithCode(4),
+              "display :[0-9]+: its X server has not answered for 5 s");
 }
 
 TEST(Display, AServerThatGoesAwayIsAnErrorAndNotTheEndOfTheProgram) {

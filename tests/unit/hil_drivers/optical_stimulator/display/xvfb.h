@@ -46,6 +46,7 @@ class Xvfb {
   Xvfb& operator=(const Xvfb&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] pid_t pid() const { return process_->pid(); }
 
  private:
   std::optional<io::ChildProcess> process_;

@@ -4,7 +4,10 @@
 #include "host_sim/twins/camera/camera_sensor.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -239,6 +242,34 @@ TEST(CameraSensor, BenchTakesTheImagesInTheRenderersPlace) {
   EXPECT_EQ(bench.started, 1);
   EXPECT_EQ(bench.stopped, 1);
   EXPECT_EQ(sensor.statistics().at(0).name, "moves");
+}
+
+/// A bench that uses its devices for a while after it has been stopped.
+class SlowBench final : public ImageTaker {
+ public:
+  void stop(StopReason) override { is_stopped = true; }
+  TakenImage take(const Exposure&) override {
+    uses_devices = true;
+    while (!is_stopped) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    uses_devices = false;
+    return {std::vector<std::uint16_t>(1200, 7)};
+  }
+  std::atomic<bool> is_stopped{false}, uses_devices{false};
+};
+
+TEST(CameraSensor, StoppedItLeavesTheDevicesOfABenchToOthers) {
+  auto owned = std::make_unique<SlowBench>();
+  SlowBench& bench = *owned;
+  CameraSensor sensor(small_camera(), std::move(owned));
+  Measurement taken = sensor.measure(snapshot(kStart));
+  Measurement waiting = sensor.measure(snapshot(kStart + kPeriod));
+  while (!bench.uses_devices) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  sensor.stop(StopReason::kInterrupted);
+  EXPECT_FALSE(bench.uses_devices);
+  EXPECT_EQ(taken.pending.get().packets.size(), 2U);
+  EXPECT_THROW(waiting.pending.get(), std::future_error) << "it had not been begun";
+  EXPECT_THROW(sensor.measure(snapshot(kStart + kPeriod + kPeriod)).pending.get(), std::future_error);
 }
 
 TEST(CameraSensor, TruthThatLacksTheSpacecraftFails) {
