@@ -113,6 +113,19 @@ struct WiredLaboratory::Parts {
     lights->send(light_values);
   }
 
+  /// A camera may be silent for some seconds: its cable was moved, or the computer of an emulated one is busy.
+  void reconnect_camera() {
+    constexpr std::chrono::seconds kAbsence{10};
+    const auto begin = std::chrono::steady_clock::now();
+    for (;;) {
+      try {
+        return camera->reconnect();
+      } catch (const gige::CameraError&) {
+        if (std::chrono::steady_clock::now() - begin > kAbsence) throw;
+      }
+    }
+  }
+
   void end_lights() {
     const std::scoped_lock lock(lights_mutex);
     lights.reset();  // three packets end the source: dark
@@ -233,7 +246,7 @@ BenchFrame WiredLaboratory::take(double exposure_s) {
     ++parts.retries;
     using enum gige::NoFrame::Reason;
     if (last.reason == kStopped) break;
-    if (last.reason == kNoAnswer || last.reason == kNotOwner) parts.camera->reconnect();
+    if (last.reason == kNoAnswer || last.reason == kNotOwner) parts.reconnect_camera();
   }
   throw std::runtime_error(last.text);
 }
