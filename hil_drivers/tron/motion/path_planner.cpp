@@ -81,6 +81,15 @@ std::variant<Path, NoPath> PathPlanner::plan(const Posture& from, const Posture&
       {{from.camera_rad, target_home_, from.carriage_m}, {to.camera_rad, target_home_, to.carriage_m}, to},
       {{camera_home_, from.target_rad, from.carriage_m}, {camera_home_, to.target_rad, to.carriage_m}, to},
       {{camera_home_, target_home_, from.carriage_m}, {camera_home_, target_home_, to.carriage_m}, to},
+      // One arm after the other.
+      {{camera_home_, from.target_rad, from.carriage_m},
+       {camera_home_, target_home_, to.carriage_m},
+       {camera_home_, to.target_rad, to.carriage_m},
+       to},
+      {{from.camera_rad, target_home_, from.carriage_m},
+       {camera_home_, target_home_, to.carriage_m},
+       {to.camera_rad, target_home_, to.carriage_m},
+       to},
   };
   std::variant<Path, NoPath> best = NoPath{
       fmt::format("the path is blocked: {} would be closer than the clearance, also over retracted postures", blocked)};
