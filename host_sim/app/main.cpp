@@ -1,14 +1,18 @@
 // vbar: flies missions, replays their packets, reports on runs.
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include "host_sim/app/build_info.h"
 #include "host_sim/app/commands.h"
@@ -31,13 +35,31 @@ void add_set(CLI::App* command, std::vector<std::string>& overrides) {
   command->add_option("--set", overrides, kSetHelp)->allow_extra_args(false);
 }
 
-/// A message for a first word that is not a command; empty if it is one, or an option.
+constexpr const char* kOtherProgramsHelp =
+    "vbar NAME runs the program vbar_NAME beside it with the arguments after NAME, e.g. vbar tron plan.";
+
+/// The program vbar_NAME beside this one; empty if there is none.
+std::filesystem::path program_beside(std::string_view name) {
+  const bool is_name = std::ranges::all_of(name, [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
+  if (!is_name) return {};
+  std::error_code error;
+  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
+  std::filesystem::path other = own.parent_path() / fmt::format("vbar_{}", name);
+  return !error && access(other.c_str(), X_OK) == 0 ? other : std::filesystem::path();
+}
+
+/// For a first word that is not a command: runs the program of that name, which replaces this one. Otherwise a message;
+/// empty if the word is a command, or an option.
 std::string unknown_command(const CLI::App& program, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
   std::vector<std::string_view> names;
   for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
     if (command->get_name() == argv[1]) return {};
     names.push_back(command->get_name());
+  }
+  if (const std::filesystem::path other = program_beside(argv[1]); !other.empty()) {
+    execv(other.c_str(), argv + 1);
+    return fmt::format("{} cannot be run: {}", other.string(), std::generic_category().message(errno));
   }
   const auto nearest = vbar::mission::nearest_name(argv[1], names);
   return fmt::format("there is no command \"{}\"{}; vbar --help lists them", argv[1],
@@ -75,7 +97,7 @@ int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code
 int main(int argc, char** argv) {
   CLI::App program{"Flight-software harness for spacecraft rendezvous and formation flying"};
   program.require_subcommand(1);
-  program.footer(kExitCodeHelp);
+  program.footer(fmt::format("{}\n\n{}", kOtherProgramsHelp, kExitCodeHelp));
   program.set_version_flag("--version", fmt::format("vbar {}, commit {}, {}, {}", build_version(), kBuildCommit,
                                                     build_compiler(), build_type()));
   int exit_code = kDone;

@@ -133,36 +133,35 @@ Bodies BenchBodies::at(const Posture& posture) const {
   return bodies;
 }
 
-bool BenchBodies::is_in_room(const Vector3& point, double radius_m) const {
-  const double margin = radius_m + bench_.motion.clearance_m;
-  return ((point - bench_.room_low_m).array() >= margin).all() &&
-         ((bench_.room_high_m - point).array() >= margin).all();
+bool BenchBodies::is_in_room(const Vector3& point, double margin_m) const {
+  return ((point - bench_.room_low_m).array() >= margin_m).all() &&
+         ((bench_.room_high_m - point).array() >= margin_m).all();
 }
 
-BenchBodies::Pair BenchBodies::touching_of_arm(const ArmCapsules& arm,
-                                               const std::array<const char*, kArmBodies>& names) const {
+BenchBodies::Pair BenchBodies::touching_of_arm(const ArmCapsules& arm, const std::array<const char*, kArmBodies>& names,
+                                               double clearance_m) const {
   // The end of each body; its beginning is the end of the one before.
   for (std::size_t k = kFirstMoving; k < kArmBodies; ++k)
-    if (!is_in_room(arm[k].to, arm[k].radius_m)) return {names[k], kRoom};
+    if (!is_in_room(arm[k].to, arm[k].radius_m + clearance_m)) return {names[k], kRoom};
   for (const auto& [one, other] : kOwnPairs)
-    if (are_near(arm[one], arm[other], bench_.motion.clearance_m)) return {names[one], names[other]};
+    if (are_near(arm[one], arm[other], clearance_m)) return {names[one], names[other]};
   return {};
 }
 
-BenchBodies::Pair BenchBodies::touching_of_target(const ArmCapsules& arm, const OrientedBox& hull) const {
+BenchBodies::Pair BenchBodies::touching_of_target(const ArmCapsules& arm, const OrientedBox& hull,
+                                                  double clearance_m) const {
   for (int corner = 0; corner < 8; ++corner) {
     const Vector3 signs((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0, (corner & 4) != 0 ? 1.0 : -1.0);
-    if (!is_in_room(hull.T_L_box * Vector3(signs.cwiseProduct(hull.half_m)), 0.0)) return {kTarget, kRoom};
+    if (!is_in_room(hull.T_L_box * Vector3(signs.cwiseProduct(hull.half_m)), clearance_m)) return {kTarget, kRoom};
   }
   // The rod ends at the target, and the wrist before it points there.
   for (std::size_t k = kStand; k <= kForearm; ++k)
-    if (are_near(arm[k], hull, bench_.motion.clearance_m)) return {kTargetNames[k], kTarget};
+    if (are_near(arm[k], hull, clearance_m)) return {kTargetNames[k], kTarget};
   return {};
 }
 
 BenchBodies::Pair BenchBodies::touching_across(const ArmCapsules& camera_arm, const ArmCapsules& target_arm,
-                                               const OrientedBox& hull) const {
-  const double clearance_m = bench_.motion.clearance_m;
+                                               const OrientedBox& hull, double clearance_m) const {
   for (std::size_t k = 0; k < kArmBodies; ++k) {
     if (are_near(camera_arm[k], hull, clearance_m)) return {kCameraNames[k], kTarget};
     for (std::size_t n = 0; n < kArmBodies; ++n)
@@ -173,29 +172,31 @@ BenchBodies::Pair BenchBodies::touching_across(const ArmCapsules& camera_arm, co
 }
 
 bool BenchBodies::is_camera_arm_free(const ArmCapsules& arm) const {
-  return touching_of_arm(arm, kCameraNames).one == nullptr;
+  return touching_of_arm(arm, kCameraNames, clearance_m()).one == nullptr;
 }
 
 bool BenchBodies::is_target_arm_free(const ArmCapsules& arm, const OrientedBox& hull) const {
-  return touching_of_arm(arm, kTargetNames).one == nullptr && touching_of_target(arm, hull).one == nullptr;
+  return touching_of_arm(arm, kTargetNames, clearance_m()).one == nullptr &&
+         touching_of_target(arm, hull, clearance_m()).one == nullptr;
 }
 
 bool BenchBodies::are_apart(const ArmCapsules& camera_arm, const ArmCapsules& target_arm,
                             const OrientedBox& hull) const {
-  return touching_across(camera_arm, target_arm, hull).one == nullptr;
+  return touching_across(camera_arm, target_arm, hull, clearance_m()).one == nullptr;
 }
 
-std::string BenchBodies::collision(const Bodies& bodies) const {
+std::string BenchBodies::collision(const Bodies& bodies, double clearance_m) const {
   if (!bodies.T_L_C.matrix().allFinite() || !bodies.T_L_T.matrix().allFinite())
     return fmt::format("{} and {}", kNowhere, kRoom);
-  Pair found = touching_of_arm(bodies.camera_arm, kCameraNames);
-  if (found.one == nullptr) found = touching_of_arm(bodies.target_arm, kTargetNames);
-  if (found.one == nullptr) found = touching_of_target(bodies.target_arm, bodies.target);
-  if (found.one == nullptr) found = touching_across(bodies.camera_arm, bodies.target_arm, bodies.target);
+  Pair found = touching_of_arm(bodies.camera_arm, kCameraNames, clearance_m);
+  if (found.one == nullptr) found = touching_of_arm(bodies.target_arm, kTargetNames, clearance_m);
+  if (found.one == nullptr) found = touching_of_target(bodies.target_arm, bodies.target, clearance_m);
+  if (found.one == nullptr) found = touching_across(bodies.camera_arm, bodies.target_arm, bodies.target, clearance_m);
   return found.one == nullptr ? std::string() : fmt::format("{} and {}", found.one, found.other);
 }
 
-std::string BenchBodies::collision_between(const Posture& from, const Posture& to, double step_m) const {
+std::string BenchBodies::collision_between(const Posture& from, const Posture& to, double clearance_m,
+                                           double step_m) const {
   const double travel_m =
       std::max(travel_of(from.camera_rad, to.camera_rad, camera_reach_m_) + std::abs(to.carriage_m - from.carriage_m),
                travel_of(from.target_rad, to.target_rad, target_reach_m_));
@@ -206,7 +207,7 @@ std::string BenchBodies::collision_between(const Posture& from, const Posture& t
     const Posture posture{from.camera_rad + share * (to.camera_rad - from.camera_rad),
                           from.target_rad + share * (to.target_rad - from.target_rad),
                           from.carriage_m + share * (to.carriage_m - from.carriage_m)};
-    if (const std::string found = collision(at(posture)); !found.empty()) return found;
+    if (const std::string found = collision(at(posture), clearance_m); !found.empty()) return found;
   }
   return {};
 }

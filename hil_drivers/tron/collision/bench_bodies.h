@@ -43,8 +43,11 @@ class BenchBodies {
 
   /// Which two are closer than the clearance, "target and forearm of the target's arm"; empty: none. The room counts,
   /// and so do bodies of one arm that are not neighbours. A posture that is not finite is a collision.
-  [[nodiscard]] std::string collision(const Bodies& bodies) const;
+  [[nodiscard]] std::string collision(const Bodies& bodies) const { return collision(bodies, clearance_m()); }
+  [[nodiscard]] std::string collision(const Bodies& bodies, double clearance_m) const;
+  [[nodiscard]] double clearance_m() const { return bench_.motion.clearance_m; }
 
+  [[nodiscard]] bool is_free(const Bodies& bodies) const { return collision(bodies).empty(); }
   // The same in parts, for a search: each arm by itself, the target as held, and both together.
   [[nodiscard]] ArmCapsules camera_arm_at(const Joints& joints_rad, double carriage_m) const;
   [[nodiscard]] ArmCapsules target_arm_at(const Joints& joints_rad) const;
@@ -56,7 +59,8 @@ class BenchBodies {
 
   /// Which two are closer than the clearance anywhere on the straight path in joint space, sampled so that no body
   /// moves by more than `step_m` between two samples; empty: none.
-  [[nodiscard]] std::string collision_between(const Posture& from, const Posture& to, double step_m = 0.01) const;
+  [[nodiscard]] std::string collision_between(const Posture& from, const Posture& to, double clearance_m,
+                                              double step_m = 0.01) const;
 
   /// How many of the points, full-scale body frame, an arm or the rod hides from the camera.
   [[nodiscard]] int hidden(const Bodies& bodies, std::span<const fsw::Vector3> points_body) const;
@@ -77,11 +81,12 @@ class BenchBodies {
   struct Pair {
     const char *one = nullptr, *other = nullptr;
   };
-  [[nodiscard]] bool is_in_room(const fsw::Vector3& point, double radius_m) const;
-  [[nodiscard]] Pair touching_of_arm(const ArmCapsules& arm, const std::array<const char*, kArmBodies>& names) const;
-  [[nodiscard]] Pair touching_of_target(const ArmCapsules& arm, const OrientedBox& hull) const;
+  [[nodiscard]] bool is_in_room(const fsw::Vector3& point, double margin_m) const;
+  [[nodiscard]] Pair touching_of_arm(const ArmCapsules& arm, const std::array<const char*, kArmBodies>& names,
+                                     double clearance_m) const;
+  [[nodiscard]] Pair touching_of_target(const ArmCapsules& arm, const OrientedBox& hull, double clearance_m) const;
   [[nodiscard]] Pair touching_across(const ArmCapsules& camera_arm, const ArmCapsules& target_arm,
-                                     const OrientedBox& hull) const;
+                                     const OrientedBox& hull, double clearance_m) const;
 
   BenchFile bench_;
   ArmPair arms_;

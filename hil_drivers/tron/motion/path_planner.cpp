@@ -7,8 +7,11 @@
 namespace vbar::tron {
 namespace {
 
-/// A posture read from a controller may be this much beyond a limit by rounding.
+/// A posture may be this much beyond a limit by rounding, and the cable turned this much farther by a correction.
 constexpr double kLimitRounding = 1e-6;
+constexpr double kCableCorrection_rad = 0.035;
+/// Of the clearance, kept at a corrected posture.
+constexpr double kCorrectedClearance = 0.5;
 
 bool is_finite(const Posture& posture) {
   return posture.camera_rad.allFinite() && posture.target_rad.allFinite() && std::isfinite(posture.carriage_m);
@@ -41,14 +44,18 @@ std::string PathPlanner::refusal_of(const Posture& posture) const {
   if (posture.carriage_m < track_.lower - kLimitRounding || posture.carriage_m > track_.upper + kLimitRounding)
     return "is beyond the track";
   const double turned = std::abs(posture.camera_rad[3] + posture.camera_rad[5]);
-  if (turned > cable_turn_rad_ + kLimitRounding) return "twists the cable of the camera too far";
-  if (const std::string found = bodies_.collision(bodies_.at(posture)); !found.empty())
-    return fmt::format("brings {} closer than the clearance", found);
+  if (turned > cable_turn_rad_ + kCableCorrection_rad) return "twists the cable of the camera too far";
   return {};
 }
 
+double PathPlanner::clearance_for(const Posture& from, const Posture& to) const {
+  const double clearance_m = bodies_.clearance_m();
+  const bool is_kept = bodies_.is_free(bodies_.at(from)) && bodies_.is_free(bodies_.at(to));
+  return is_kept ? clearance_m : kCorrectedClearance * clearance_m;
+}
+
 bool PathPlanner::is_straight_free(const Posture& from, const Posture& to) const {
-  return bodies_.collision_between(from, to).empty();
+  return bodies_.collision_between(from, to, clearance_for(from, to)).empty();
 }
 
 Path PathPlanner::through(const Posture& from, const std::vector<Posture>& postures) const {
@@ -58,11 +65,15 @@ Path PathPlanner::through(const Posture& from, const std::vector<Posture>& postu
 }
 
 std::variant<Path, NoPath> PathPlanner::plan(const Posture& from, const Posture& to) const {
-  if (const std::string refusal = refusal_of(from); !refusal.empty())
-    return NoPath{fmt::format("the posture at the start of a path {}", refusal)};
+  // Where the arms stand is a fact, also if it is a little beyond a limit.
+  if (!is_finite(from)) return NoPath{"the posture at the start of a path is not finite"};
   if (const std::string refusal = refusal_of(to); !refusal.empty())
     return NoPath{fmt::format("the posture at the end of a path {}", refusal)};
-  const std::string blocked = bodies_.collision_between(from, to);
+  const double clearance_m = clearance_for(from, to);
+  for (const auto& [posture, name] : {std::pair(&from, "start"), std::pair(&to, "end")})
+    if (const std::string found = bodies_.collision(bodies_.at(*posture), clearance_m); !found.empty())
+      return NoPath{fmt::format("at the {} of a path {} are closer than {:.0f} mm", name, found, 1e3 * clearance_m)};
+  const std::string blocked = bodies_.collision_between(from, to, clearance_m);
   // |A4 + A6| is at most the larger of its ends on a straight line, so the cable needs no samples.
   if (blocked.empty()) return through(from, {to});
 
@@ -70,6 +81,15 @@ std::variant<Path, NoPath> PathPlanner::plan(const Posture& from, const Posture&
       {{from.camera_rad, target_home_, from.carriage_m}, {to.camera_rad, target_home_, to.carriage_m}, to},
       {{camera_home_, from.target_rad, from.carriage_m}, {camera_home_, to.target_rad, to.carriage_m}, to},
       {{camera_home_, target_home_, from.carriage_m}, {camera_home_, target_home_, to.carriage_m}, to},
+      // One arm after the other.
+      {{camera_home_, from.target_rad, from.carriage_m},
+       {camera_home_, target_home_, to.carriage_m},
+       {camera_home_, to.target_rad, to.carriage_m},
+       to},
+      {{from.camera_rad, target_home_, from.carriage_m},
+       {camera_home_, target_home_, to.carriage_m},
+       {to.camera_rad, target_home_, to.carriage_m},
+       to},
   };
   std::variant<Path, NoPath> best = NoPath{
       fmt::format("the path is blocked: {} would be closer than the clearance, also over retracted postures", blocked)};
@@ -79,7 +99,7 @@ std::variant<Path, NoPath> PathPlanner::plan(const Posture& from, const Posture&
     bool is_free = true;
     const Posture* last = &from;
     for (const Posture& posture : detour) {
-      is_free = is_free && is_straight_free(*last, posture);
+      is_free = is_free && bodies_.collision_between(*last, posture, clearance_m).empty();
       last = &posture;
     }
     if (is_free) best = std::move(path);

@@ -22,14 +22,16 @@ class PathPlanner {
 
   [[nodiscard]] const AxisLimitsOfBench& limits() const { return limits_; }
 
-  /// Straight if that is free, else the fastest free detour: one arm or both go to their home posture first. Postures
-  /// beyond limits, in collision or not finite have no path.
+  /// Straight if that is free, else the fastest free detour: one arm or both go to their home posture first. An end
+  /// beyond limits, in collision or not finite has no path. A corrected posture may be closer than the clearance: from
+  /// and to one, half the clearance is kept.
   [[nodiscard]] std::variant<Path, NoPath> plan(const Posture& from, const Posture& to) const;
   /// Only if it is straight.
   [[nodiscard]] bool is_straight_free(const Posture& from, const Posture& to) const;
 
  private:
   [[nodiscard]] std::string refusal_of(const Posture& posture) const;
+  [[nodiscard]] double clearance_for(const Posture& from, const Posture& to) const;
   [[nodiscard]] Path through(const Posture& from, const std::vector<Posture>& postures) const;
 
   const BenchBodies& bodies_;

@@ -20,7 +20,7 @@ using fsw::Vector3;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kBeamMiddle_m = 0.25;  ///< the target stays this near to the middle of the beam
-constexpr double kYaw_rad = 40.0 * kDegree, kPitch_rad = 25.0 * kDegree;
+constexpr double kYaw_rad = 55.0 * kDegree, kPitch_rad = 38.0 * kDegree;
 constexpr double kCarriage_m = 0.8;
 /// Spread of trials near the last placement.
 constexpr double kNear_m = 0.08, kNear_rad = 4.0 * kDegree, kNearCarriage_m = 0.15;
@@ -202,7 +202,6 @@ void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_
 
 void PlacementSearch::judge(const Trial& trial, Search& search) const {
   const Scene& scene = search.scene;
-  const Vector3 u = towards_camera(trial.yaw, trial.pitch);
   const Vector3 p_C = scene.T_C_T.translation();
   const double lower = bench_.lamp.azimuth_low_rad, upper = bench_.lamp.azimuth_high_rad;
   const auto pose = [&](const Matrix3& R_L_C, double lamp_rad) {
@@ -214,7 +213,7 @@ void PlacementSearch::judge(const Trial& trial, Search& search) const {
   };
   if (search.is_sun_free || search.is_turn_free) {
     // The camera keeps its roll, as far as the line of sight permits.
-    const Vector3 x_C = Vector3::UnitX();
+    const Vector3 x_C = Vector3::UnitX(), u = towards_camera(trial.yaw, trial.pitch);
     const Matrix3 R_L_C = frame(-u, search.R_L_C_last * x_C) * frame(p_C, x_C).transpose();
     const Vector3 sun_L = R_L_C * scene.sun_C;
     const double wanted = std::atan2(-sun_L.y(), -sun_L.x());
@@ -226,9 +225,12 @@ void PlacementSearch::judge(const Trial& trial, Search& search) const {
   bool is_lit = false;
   if (std::abs(cosine) <= 1.0) {
     const double aside = std::acos(cosine);
-    for (const double lamp_rad : {trial.yaw + aside, trial.yaw - aside}) {
-      if (lamp_rad < lower || lamp_rad > upper) continue;
+    for (const double side : {aside, -aside}) {
+      // A lamp at the end of its arc determines the yaw.
+      const double lamp_rad = std::clamp(trial.yaw + side, lower, upper), yaw = lamp_rad - side;
+      if (std::abs(yaw) > kYaw_rad) continue;
       is_lit = true;
+      const Vector3 u = towards_camera(yaw, trial.pitch);
       pose(frame(-u, Lamp::direction(lamp_rad)) * frame(p_C, scene.sun_C).transpose(), lamp_rad);
     }
   }
@@ -322,11 +324,11 @@ std::variant<Placement, NoPlacement> PlacementSearch::find(const Scene& scene, c
     return limited(trial);
   };
   judge(last, search);
-  const int most = settings_.trials * settings_.extension;
-  for (int k = 1; k < most; ++k) {
-    // A scene that is hard to place gets more trials, which are not near a posture that does not suit it.
+  // A scene that is hard to place gets more trials, which are not near a posture that does not suit it.
+  const int longer = settings_.trials * settings_.extension, longest = settings_.trials * settings_.last_extension;
+  for (int k = 1; k < longest; ++k) {
     const bool is_extended = k >= settings_.trials;
-    if (is_extended && !search.best.empty() && search.best.front().first.hidden == 0) break;
+    if (is_extended && !search.best.empty() && (k >= longer || search.best.front().first.hidden == 0)) break;
     const int kind = is_extended ? 1 + k % 2 : k % 3;
     if (kind == 0) {
       judge(near(last, 1.0), search);

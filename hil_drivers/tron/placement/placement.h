@@ -35,10 +35,11 @@ struct NoPlacement {
 
 struct PlacementSettings {
   int trials = 400;
-  int extension = 10;          ///< times as many trials while nothing, or nothing without hidden points, was found
+  int extension = 10;          ///< times as many trials while nothing without hidden points was found,
+  int last_extension = 40;     ///< and while nothing was found at all
   int max_hidden = 3;          ///< points that may be hidden
   std::uint64_t seed = 1;      ///< of the trials
-  double hidden_cost_s = 2.0;  ///< of each hidden point
+  double hidden_cost_s = 4.0;  ///< of each hidden point
 };
 
 /// Cost, s, of the Earth's light that the boxes cannot make at a pose of camera and target in L.

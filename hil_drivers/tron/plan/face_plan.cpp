@@ -69,7 +69,7 @@ FacePlan plan_face(const BenchFile& designed, MountFace face, std::span<const Sc
       continue;
     }
     const auto& placement = std::get<Placement>(found);
-    plan.detours += bodies.collision_between(at, placement.posture).empty() ? 0 : 1;
+    plan.detours += paths.is_straight_free(at, placement.posture) ? 0 : 1;
     ++plan.taken;
     plan.clear += placement.hidden == 0 ? 1 : 0;
     plan.sun_error_max_rad = std::max(plan.sun_error_max_rad, placement.sun_error_rad);

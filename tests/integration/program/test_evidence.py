@@ -330,7 +330,16 @@ class CommandLine(Evidence):
 
     def test_version_and_help(self):
         self.expect(vbar("--version"), DONE, "vbar 0.1.0", "commit")
-        self.expect(vbar("--help"), DONE, "75 interrupted", "log cut")
+        self.expect(vbar("--help"), DONE, "75 interrupted", "log cut", "vbar_NAME")
+
+    def test_another_word_runs_the_program_of_that_name(self):
+        """As git does: with its arguments, and with its exit code."""
+        self.expect(vbar("tron", "--help"), DONE, "plan")
+        self.expect(vbar("tron", "plan", "no_such_mission", "bench.toml"), REFUSED, "vbar tron", "no_such_mission")
+        self.expect(vbar("../vbar_tron", "--help"), REFUSED, "there is no command")
+        with scratch() as here:
+            self.expect(vbar("tron", "plan", MISSION, here / "none.toml"), REFUSED, "none.toml")
+            self.expect(vbar("tron", "plan", MISSION, SOURCE / "data/benches/tron.toml"), REFUSED, "no camera that navigates")
 
     def test_check_flies_nothing(self):
         with scratch() as here:
