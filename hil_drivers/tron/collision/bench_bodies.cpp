@@ -1,6 +1,7 @@
 #include "hil_drivers/tron/collision/bench_bodies.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -29,8 +30,8 @@ constexpr const char* kTarget = "the target";
 constexpr const char* kRoom = "the room";
 constexpr const char* kNowhere = "a posture that is not finite";
 
-std::array<Capsule, kArmBodies> arm_bodies(const Arm& arm, const Eigen::Isometry3d& T_L_base, const Joints& joints,
-                                           double tool_m, double tool_radius_m, const BenchFile& bench) {
+ArmCapsules arm_bodies(const Arm& arm, const Eigen::Isometry3d& T_L_base, const Joints& joints, double tool_m,
+                       double tool_radius_m, const BenchFile& bench) {
   const ArmPoints at = arm.points(joints);
   const auto& radius_m = arm.design().body_radius_m;
   const Vector3 base = T_L_base.translation(), shoulder = T_L_base * at.shoulder, elbow = T_L_base * at.elbow;
@@ -84,6 +85,17 @@ double travel_of(const Joints& from, const Joints& to, const std::array<double, 
   return travel;
 }
 
+std::uint32_t hidden_by(std::span<const Capsule> bodies, const Vector3& eye, std::span<const Vector3> points) {
+  std::uint32_t mask = 0;
+  for (std::size_t k = 0; k < points.size() && k < 32; ++k) {
+    const auto hides = [&](const Capsule& body) {
+      return segment_distance(eye, points[k], body.from, body.to) < body.radius_m;
+    };
+    if (std::ranges::any_of(bodies, hides)) mask |= std::uint32_t{1} << k;
+  }
+  return mask;
+}
+
 }  // namespace
 
 BenchBodies::BenchBodies(const BenchFile& bench) : bench_(bench), arms_(bench) {
@@ -92,68 +104,95 @@ BenchBodies::BenchBodies(const BenchFile& bench) : bench_(bench), arms_(bench) {
   target_reach_m_ = reach_of(bench.target_robot.design, bench.target.stand_off_m + hull_m);
 }
 
+ArmCapsules BenchBodies::camera_arm_at(const Joints& joints_rad, double carriage_m) const {
+  return arm_bodies(arms_.camera_arm(), arms_.T_L_camera_base(carriage_m), joints_rad, bench_.camera.ahead_m,
+                    bench_.camera.body_radius_m, bench_);
+}
+
+ArmCapsules BenchBodies::target_arm_at(const Joints& joints_rad) const {
+  return arm_bodies(arms_.target_arm(), arms_.T_L_target_base(), joints_rad, bench_.target.stand_off_m,
+                    bench_.target.rod_radius_m, bench_);
+}
+
+OrientedBox BenchBodies::hull_at(const Eigen::Isometry3d& T_L_T) const {
+  OrientedBox hull;
+  hull.T_L_box = T_L_T;
+  hull.T_L_box.translation() =
+      T_L_T * Vector3(0.5 * bench_.scale * (bench_.target.body_low_m + bench_.target.body_high_m));
+  hull.half_m = 0.5 * bench_.scale * (bench_.target.body_high_m - bench_.target.body_low_m);
+  return hull;
+}
+
 Bodies BenchBodies::at(const Posture& posture) const {
   Bodies bodies;
-  bodies.camera_arm = arm_bodies(arms_.camera_arm(), arms_.T_L_camera_base(posture.carriage_m), posture.camera_rad,
-                                 bench_.camera.ahead_m, bench_.camera.body_radius_m, bench_);
-  bodies.target_arm = arm_bodies(arms_.target_arm(), arms_.T_L_target_base(), posture.target_rad,
-                                 bench_.target.stand_off_m, bench_.target.rod_radius_m, bench_);
+  bodies.camera_arm = camera_arm_at(posture.camera_rad, posture.carriage_m);
+  bodies.target_arm = target_arm_at(posture.target_rad);
   bodies.T_L_C = arms_.camera_pose(posture);
   bodies.T_L_T = arms_.target_pose(posture);
-  bodies.target.T_L_box = bodies.T_L_T;
-  bodies.target.T_L_box.translation() =
-      bodies.T_L_T * Vector3(0.5 * bench_.scale * (bench_.target.body_low_m + bench_.target.body_high_m));
-  bodies.target.half_m = 0.5 * bench_.scale * (bench_.target.body_high_m - bench_.target.body_low_m);
+  bodies.target = hull_at(bodies.T_L_T);
   return bodies;
 }
 
-const char* BenchBodies::outside_room(const Bodies& bodies) const {
-  const auto is_inside = [&](const Vector3& point, double radius_m) {
-    const double margin = radius_m + bench_.motion.clearance_m;
-    return ((point - bench_.room_low_m).array() >= margin).all() &&
-           ((bench_.room_high_m - point).array() >= margin).all();
-  };
-  for (std::size_t k = kFirstMoving; k < kArmBodies; ++k) {
-    // The end of each; its beginning is the end of the one before.
-    if (!is_inside(bodies.camera_arm[k].to, bodies.camera_arm[k].radius_m)) return kCameraNames[k];
-    if (!is_inside(bodies.target_arm[k].to, bodies.target_arm[k].radius_m)) return kTargetNames[k];
-  }
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vector3 signs(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
-    if (!is_inside(bodies.target.T_L_box * Vector3(signs.cwiseProduct(bodies.target.half_m)), 0.0)) return kTarget;
-  }
-  return nullptr;
+bool BenchBodies::is_in_room(const Vector3& point, double radius_m) const {
+  const double margin = radius_m + bench_.motion.clearance_m;
+  return ((point - bench_.room_low_m).array() >= margin).all() &&
+         ((bench_.room_high_m - point).array() >= margin).all();
 }
 
-BenchBodies::Pair BenchBodies::touching(const Bodies& bodies) const {
-  const double clearance_m = bench_.motion.clearance_m;
-  if (!bodies.T_L_C.matrix().allFinite() || !bodies.T_L_T.matrix().allFinite()) return {kNowhere, kRoom};
-  if (const char* outside = outside_room(bodies)) return {outside, kRoom};
-  for (const auto& [one, other] : kOwnPairs) {
-    if (are_near(bodies.camera_arm[one], bodies.camera_arm[other], clearance_m))
-      return {kCameraNames[one], kCameraNames[other]};
-    if (are_near(bodies.target_arm[one], bodies.target_arm[other], clearance_m))
-      return {kTargetNames[one], kTargetNames[other]};
+BenchBodies::Pair BenchBodies::touching_of_arm(const ArmCapsules& arm,
+                                               const std::array<const char*, kArmBodies>& names) const {
+  // The end of each body; its beginning is the end of the one before.
+  for (std::size_t k = kFirstMoving; k < kArmBodies; ++k)
+    if (!is_in_room(arm[k].to, arm[k].radius_m)) return {names[k], kRoom};
+  for (const auto& [one, other] : kOwnPairs)
+    if (are_near(arm[one], arm[other], bench_.motion.clearance_m)) return {names[one], names[other]};
+  return {};
+}
+
+BenchBodies::Pair BenchBodies::touching_of_target(const ArmCapsules& arm, const OrientedBox& hull) const {
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3 signs((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0, (corner & 4) != 0 ? 1.0 : -1.0);
+    if (!is_in_room(hull.T_L_box * Vector3(signs.cwiseProduct(hull.half_m)), 0.0)) return {kTarget, kRoom};
   }
   // The rod ends at the target, and the wrist before it points there.
   for (std::size_t k = kStand; k <= kForearm; ++k)
-    if (are_near(bodies.target_arm[k], bodies.target, clearance_m)) return {kTargetNames[k], kTarget};
+    if (are_near(arm[k], hull, bench_.motion.clearance_m)) return {kTargetNames[k], kTarget};
+  return {};
+}
+
+BenchBodies::Pair BenchBodies::touching_across(const ArmCapsules& camera_arm, const ArmCapsules& target_arm,
+                                               const OrientedBox& hull) const {
+  const double clearance_m = bench_.motion.clearance_m;
   for (std::size_t k = 0; k < kArmBodies; ++k) {
-    if (are_near(bodies.camera_arm[k], bodies.target, clearance_m)) return {kCameraNames[k], kTarget};
+    if (are_near(camera_arm[k], hull, clearance_m)) return {kCameraNames[k], kTarget};
     for (std::size_t n = 0; n < kArmBodies; ++n)
-      if ((k >= kFirstMoving || n >= kFirstMoving) && are_near(bodies.camera_arm[k], bodies.target_arm[n], clearance_m))
+      if ((k >= kFirstMoving || n >= kFirstMoving) && are_near(camera_arm[k], target_arm[n], clearance_m))
         return {kCameraNames[k], kTargetNames[n]};
   }
   return {};
 }
 
-std::string BenchBodies::collision(const Bodies& bodies) const {
-  const Pair found = touching(bodies);
-  return found.one == nullptr ? std::string() : fmt::format("{} and {}", found.one, found.other);
+bool BenchBodies::is_camera_arm_free(const ArmCapsules& arm) const {
+  return touching_of_arm(arm, kCameraNames).one == nullptr;
 }
 
-bool BenchBodies::is_free(const Bodies& bodies) const {
-  return touching(bodies).one == nullptr;
+bool BenchBodies::is_target_arm_free(const ArmCapsules& arm, const OrientedBox& hull) const {
+  return touching_of_arm(arm, kTargetNames).one == nullptr && touching_of_target(arm, hull).one == nullptr;
+}
+
+bool BenchBodies::are_apart(const ArmCapsules& camera_arm, const ArmCapsules& target_arm,
+                            const OrientedBox& hull) const {
+  return touching_across(camera_arm, target_arm, hull).one == nullptr;
+}
+
+std::string BenchBodies::collision(const Bodies& bodies) const {
+  if (!bodies.T_L_C.matrix().allFinite() || !bodies.T_L_T.matrix().allFinite())
+    return fmt::format("{} and {}", kNowhere, kRoom);
+  Pair found = touching_of_arm(bodies.camera_arm, kCameraNames);
+  if (found.one == nullptr) found = touching_of_arm(bodies.target_arm, kTargetNames);
+  if (found.one == nullptr) found = touching_of_target(bodies.target_arm, bodies.target);
+  if (found.one == nullptr) found = touching_across(bodies.camera_arm, bodies.target_arm, bodies.target);
+  return found.one == nullptr ? std::string() : fmt::format("{} and {}", found.one, found.other);
 }
 
 std::string BenchBodies::collision_between(const Posture& from, const Posture& to, double step_m) const {
@@ -172,20 +211,29 @@ std::string BenchBodies::collision_between(const Posture& from, const Posture& t
   return {};
 }
 
+std::uint32_t BenchBodies::hidden_by_camera_arm(const ArmCapsules& arm, const Vector3& eye,
+                                                std::span<const Vector3> points_L) {
+  return hidden_by({arm.data(), kWrist}, eye, points_L);
+}
+
+std::uint32_t BenchBodies::hidden_by_target_arm(const ArmCapsules& arm, const Vector3& eye,
+                                                std::span<const Vector3> points_L) {
+  return hidden_by(arm, eye, points_L);
+}
+
+std::vector<Vector3> BenchBodies::points_at(const Eigen::Isometry3d& T_L_T,
+                                            std::span<const Vector3> points_body) const {
+  std::vector<Vector3> points;
+  points.reserve(points_body.size());
+  for (const Vector3& point : points_body) points.push_back(T_L_T * Vector3(bench_.scale * point));
+  return points;
+}
+
 int BenchBodies::hidden(const Bodies& bodies, std::span<const Vector3> points_body) const {
   const Vector3 eye = bodies.T_L_C.translation();
-  int count = 0;
-  for (const Vector3& point : points_body) {
-    const Vector3 seen = bodies.T_L_T * Vector3(bench_.scale * point);
-    const auto hides = [&](const Capsule& body) {
-      return segment_distance(eye, seen, body.from, body.to) < body.radius_m;
-    };
-    // The camera looks ahead of its own wrist and body.
-    const bool is_hidden = std::ranges::any_of(bodies.target_arm, hides) ||
-                           std::any_of(bodies.camera_arm.begin(), bodies.camera_arm.begin() + kWrist, hides);
-    count += is_hidden ? 1 : 0;
-  }
-  return count;
+  const std::vector<Vector3> points = points_at(bodies.T_L_T, points_body);
+  return std::popcount(hidden_by_camera_arm(bodies.camera_arm, eye, points) |
+                       hidden_by_target_arm(bodies.target_arm, eye, points));
 }
 
 std::vector<Vector3> BenchBodies::points_to_see(const std::filesystem::path& data_directory) const {

@@ -2,6 +2,8 @@
 // Bodies of a bench at a posture: whether they are apart, and what they hide from the camera.
 
 #include <array>
+#include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,9 +25,11 @@ enum ArmBody : std::size_t {
   kArmBodies
 };
 
+using ArmCapsules = std::array<Capsule, kArmBodies>;  ///< L
+
 struct Bodies {
-  std::array<Capsule, kArmBodies> camera_arm{}, target_arm{};  ///< L
-  OrientedBox target;                                          ///< hull
+  ArmCapsules camera_arm{}, target_arm{};
+  OrientedBox target;  ///< hull
   Eigen::Isometry3d T_L_C, T_L_T;
 };
 
@@ -40,7 +44,15 @@ class BenchBodies {
   /// Which two are closer than the clearance, "target and forearm of the target's arm"; empty: none. The room counts,
   /// and so do bodies of one arm that are not neighbours. A posture that is not finite is a collision.
   [[nodiscard]] std::string collision(const Bodies& bodies) const;
-  [[nodiscard]] bool is_free(const Bodies& bodies) const;
+
+  // The same in parts, for a search: each arm by itself, the target as held, and both together.
+  [[nodiscard]] ArmCapsules camera_arm_at(const Joints& joints_rad, double carriage_m) const;
+  [[nodiscard]] ArmCapsules target_arm_at(const Joints& joints_rad) const;
+  [[nodiscard]] OrientedBox hull_at(const Eigen::Isometry3d& T_L_T) const;
+  [[nodiscard]] bool is_camera_arm_free(const ArmCapsules& arm) const;
+  [[nodiscard]] bool is_target_arm_free(const ArmCapsules& arm, const OrientedBox& hull) const;
+  [[nodiscard]] bool are_apart(const ArmCapsules& camera_arm, const ArmCapsules& target_arm,
+                               const OrientedBox& hull) const;
 
   /// Which two are closer than the clearance anywhere on the straight path in joint space, sampled so that no body
   /// moves by more than `step_m` between two samples; empty: none.
@@ -49,6 +61,15 @@ class BenchBodies {
   /// How many of the points, full-scale body frame, an arm or the rod hides from the camera.
   [[nodiscard]] int hidden(const Bodies& bodies, std::span<const fsw::Vector3> points_body) const;
 
+  /// One bit a point, L: hidden by the camera's arm (which looks ahead of its own wrist), by the target's arm.
+  [[nodiscard]] static std::uint32_t hidden_by_camera_arm(const ArmCapsules& arm, const fsw::Vector3& eye,
+                                                          std::span<const fsw::Vector3> points_L);
+  [[nodiscard]] static std::uint32_t hidden_by_target_arm(const ArmCapsules& arm, const fsw::Vector3& eye,
+                                                          std::span<const fsw::Vector3> points_L);
+  /// From the full-scale body frame; at most 32.
+  [[nodiscard]] std::vector<fsw::Vector3> points_at(const Eigen::Isometry3d& T_L_T,
+                                                    std::span<const fsw::Vector3> points_body) const;
+
   /// Keypoints of the target's model and the middle of its hull, full-scale body frame.
   [[nodiscard]] std::vector<fsw::Vector3> points_to_see(const std::filesystem::path& data_directory) const;
 
@@ -56,8 +77,11 @@ class BenchBodies {
   struct Pair {
     const char *one = nullptr, *other = nullptr;
   };
-  [[nodiscard]] Pair touching(const Bodies& bodies) const;
-  [[nodiscard]] const char* outside_room(const Bodies& bodies) const;
+  [[nodiscard]] bool is_in_room(const fsw::Vector3& point, double radius_m) const;
+  [[nodiscard]] Pair touching_of_arm(const ArmCapsules& arm, const std::array<const char*, kArmBodies>& names) const;
+  [[nodiscard]] Pair touching_of_target(const ArmCapsules& arm, const OrientedBox& hull) const;
+  [[nodiscard]] Pair touching_across(const ArmCapsules& camera_arm, const ArmCapsules& target_arm,
+                                     const OrientedBox& hull) const;
 
   BenchFile bench_;
   ArmPair arms_;

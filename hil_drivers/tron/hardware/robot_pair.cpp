@@ -67,9 +67,14 @@ struct RobotPair::Parts {
     answer(camera, {command.camera_rad, command.carriage_m - settings.track_home_m});
     answer(target, {command.target_rad, 0.0});
     const bool both = receive(camera) & receive(target);
-    if (both) ++counts.cycles;
+    if (both) count_cycle();
     if (both && counts.cycles % kLookEvery == 0) return look();
     return both;
+  }
+
+  void count_cycle() {
+    ++counts.cycles;
+    if (settings.on_cycle) settings.on_cycle(counts.cycles);
   }
 
   static void answer(OneRobot& robot, const rsi::AxisPositions& command) {
@@ -132,7 +137,7 @@ struct RobotPair::Parts {
     answer(target, {command.target_rad, 0.0});
     if (has_camera) static_cast<void>(receive(camera));
     if (has_target) static_cast<void>(receive(target));
-    ++counts.cycles;
+    count_cycle();
   }
 
   MotionEnd settle() {

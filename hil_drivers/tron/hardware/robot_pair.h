@@ -37,6 +37,8 @@ struct RobotPairSettings {
   std::chrono::milliseconds silence_patience{500};  ///< of a robot in a cycle; with the virtual clock 20 times as much
   double settle_limit_s = 5.0;                      ///< bench time
   double operator_timeout_s = 600.0;                ///< bench time
+  /// Called after each cycle with their number, also by the thread that holds the arms.
+  std::function<void(std::uint64_t cycles)> on_cycle = {};
 };
 
 struct RobotPairCounts {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -20,8 +21,9 @@ constexpr int kFrames = 20;     // of motion capture, averaged
 constexpr int kMoreCycles = 3;  // until the last of them has certainly been sent
 constexpr double kMoved_rad = 1e-6, kMoved_m = 1e-6;
 
-RobotPairSettings robot_settings(const DeviceSettings& settings) {
+RobotPairSettings robot_settings(const DeviceSettings& settings, std::function<void(std::uint64_t)> on_cycle) {
   RobotPairSettings pair;
+  pair.on_cycle = std::move(on_cycle);
   const BenchFile& bench = settings.bench;
   const auto rsi_of = [&](const char* name, const char* file, const Robot& robot, const Track* track) {
     auto rsi = rsi::client_settings(name, robot, track, robot_files(file));
@@ -83,7 +85,7 @@ std::array<std::uint16_t, 2 + kBoxes> proportional(const LightLevels& levels, co
 struct WiredLaboratory::Parts {
   explicit Parts(const DeviceSettings& of)
       : settings(of),
-        robots(robot_settings(of)),
+        robots(robot_settings(of, [this](std::uint64_t cycles) { keep_lights(cycles); })),
         capture(vicon_settings(of), of.vicon_rotation),
         values([lamp = of.bench.lamp](const LightLevels& levels) { return proportional(levels, lamp); }) {}
 
@@ -98,16 +100,34 @@ struct WiredLaboratory::Parts {
     return result;
   }
 
+  /// A receiver forgets a source that it has not heard for 2.5 s.
+  void keep_lights(std::uint64_t cycles) {
+    constexpr auto kEvery = static_cast<std::uint64_t>(sacn::Sender::kKeepAliveSeconds / rsi::kCycle_s);
+    if (cycles % kEvery != 0) return;
+    const std::scoped_lock lock(lights_mutex);
+    if (lights) lights->keep_alive();
+  }
+
+  void send(const std::array<std::uint16_t, 2 + kBoxes>& light_values) {
+    const std::scoped_lock lock(lights_mutex);
+    lights->send(light_values);
+  }
+
+  void end_lights() {
+    const std::scoped_lock lock(lights_mutex);
+    lights.reset();  // three packets end the source: dark
+  }
+
   DeviceSettings settings;
+  std::mutex lights_mutex;  // the thread that holds the arms keeps the lights
+  std::optional<sacn::Sender> lights;
   RobotPair robots;
   vicon::Receiver capture;
-  std::optional<sacn::Sender> lights;
   std::optional<gige::Camera> camera;
   std::function<std::array<std::uint16_t, 2 + kBoxes>(const LightLevels&)> values;
   std::optional<Posture> measured_last;
   double exposure_s = 0.0;
   bool is_virtual = false;
-  double lights_sent_s = 0.0;
   std::int64_t frames = 0, retries = 0;
 };
 
@@ -139,7 +159,7 @@ void WiredLaboratory::open(const BenchAddresses& addresses) {
 
 void WiredLaboratory::close() noexcept {
   Parts& parts = *parts_;
-  parts.lights.reset();  // three packets end the source: dark
+  parts.end_lights();
   parts.robots.close();
   if (parts.camera) parts.camera->close();
 }
@@ -188,7 +208,7 @@ void WiredLaboratory::light(const LightLevels& levels) {
 }
 
 void WiredLaboratory::light_values(const std::array<std::uint16_t, 2 + kBoxes>& values) {
-  parts_->lights->send(values);
+  parts_->send(values);
 }
 
 void WiredLaboratory::set_light_values(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -121,6 +122,34 @@ void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_
   const ProgressLimits carriage = limits.of_carriage(search.from.carriage_m, carriage_m);
   const double lamp_s = search.lamp_rad ? std::abs(lamp_rad - *search.lamp_rad) / bench_.lamp.speed_rad_s : 0.0;
   const double earth_s = earth_ ? earth_(search.scene, T_L_C, T_L_T) : 0.0;
+  // Of each arm by itself, when it is asked for first.
+  struct Judged {
+    ArmCapsules bodies;
+    std::uint32_t hidden = 0;
+    bool is_known = false, is_free = false;
+  };
+  std::array<Judged, kBranches> camera_judged, target_judged;
+  const OrientedBox hull = bodies_.hull_at(T_L_T);
+  const Vector3 eye = T_L_C.translation();
+  const std::vector<Vector3> points = bodies_.points_at(T_L_T, points_body_);
+  const auto of_camera_arm = [&](std::size_t k) -> const Judged& {
+    Judged& judged = camera_judged[k];
+    if (judged.is_known) return judged;
+    judged.is_known = true;
+    judged.bodies = bodies_.camera_arm_at(of_camera.all[k].joints_rad, carriage_m);
+    judged.is_free = bodies_.is_camera_arm_free(judged.bodies);
+    if (judged.is_free) judged.hidden = BenchBodies::hidden_by_camera_arm(judged.bodies, eye, points);
+    return judged;
+  };
+  const auto of_target_arm = [&](std::size_t k) -> const Judged& {
+    Judged& judged = target_judged[k];
+    if (judged.is_known) return judged;
+    judged.is_known = true;
+    judged.bodies = bodies_.target_arm_at(of_target.all[k].joints_rad);
+    judged.is_free = bodies_.is_target_arm_free(judged.bodies, hull);
+    if (judged.is_free) judged.hidden = BenchBodies::hidden_by_target_arm(judged.bodies, eye, points);
+    return judged;
+  };
   // The best of this trial only: its neighbours differ little.
   double bound = search.bound();
   std::optional<Placement> best;
@@ -142,18 +171,22 @@ void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_
                           0.0};
       placement.cost_s = placement.move_s + camera.penalty_s + target.penalty_s + earth_s;
       if (!(placement.cost_s < bound)) continue;
-      const Bodies bodies = bodies_.at(placement.posture);
-      if (!bodies_.is_free(bodies)) {
+      const Judged &camera_arm = of_camera_arm(c), &target_arm = of_target_arm(t);
+      if (!camera_arm.is_free || !target_arm.is_free) {
         collides = true;
         continue;
       }
-      placement.hidden = bodies_.hidden(bodies, points_body_);
+      placement.hidden = std::popcount(camera_arm.hidden | target_arm.hidden);
       placement.cost_s += settings_.hidden_cost_s * placement.hidden;
       if (placement.hidden > settings_.max_hidden) {
         hides = true;
         continue;
       }
       if (!(placement.cost_s < bound)) continue;
+      if (!bodies_.are_apart(camera_arm.bodies, target_arm.bodies, hull)) {
+        collides = true;
+        continue;
+      }
       bound = placement.cost_s;
       best = placement;
     }

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "hil_drivers/tron/laboratory_calibration/calibrate_command.h"
 #include "hil_drivers/tron/plan/plan_command.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/mission/mission_error.h"
@@ -15,6 +16,9 @@ namespace {
 /// One line for each command.
 void add_commands(CLI::App& program, int& exit_code) {
   vbar::tron::add_plan_command(program, exit_code);
+#ifdef VBAR_TRON_CALIBRATION
+  vbar::tron::add_calibrate_commands(program, exit_code);
+#endif
 }
 
 int complain(const char* what, int exit_code) {

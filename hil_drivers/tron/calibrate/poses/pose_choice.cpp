@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "hil_drivers/tron/calibrate/poses/reach.h"
+#include "hil_drivers/tron/collision/bench_bodies.h"
 
 namespace vbar::tron::calibrate {
 namespace {
@@ -114,6 +116,16 @@ Matrix3d looking_along(const Vector3& z) {
   Matrix3d frame;
   frame << x, z.cross(x), z;
   return frame;
+}
+
+PostureFilter free_postures(const BenchFile& bench) {
+  const auto bodies = std::make_shared<const BenchBodies>(bench);
+  const double home_rad = bench.camera_robot.home_rad[3] + bench.camera_robot.home_rad[5];
+  const double cable_rad = bench.motion.cable_turn_rad;
+  return [bodies, home_rad, cable_rad](const Posture& posture) {
+    return std::abs(posture.camera_rad[3] + posture.camera_rad[5] - home_rad) < cable_rad &&
+           bodies->collision(bodies->at(posture)).empty();
+  };
 }
 
 std::vector<Posture> choose_postures(const BenchFile& bench, const LensCalibration& lens, const BoardDesign& board,

@@ -31,6 +31,9 @@ using PostureFilter = std::function<bool(const Posture&)>;
                                                    const BoardDesign& board, int count, std::uint64_t seed,
                                                    const PoseGoals& goals = {}, const PostureFilter& filter = {});
 
+/// Free of collisions, the camera's cable within its limit.
+[[nodiscard]] PostureFilter free_postures(const BenchFile& bench);
+
 /// A frame with that z (unit), as R_L_frame; its x is level.
 [[nodiscard]] fsw::Matrix3 looking_along(const fsw::Vector3& z);
 

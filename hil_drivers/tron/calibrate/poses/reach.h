@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "hil_drivers/tron/calibrate/board/board_design.h"
-#include "hil_drivers/tron/kinematics/geometry.h"
+#include "hil_drivers/tron/kinematics/arm_pair.h"
 #include "host_sim/engine/random_stream.h"
 
 namespace vbar::tron::calibrate {
@@ -19,10 +19,11 @@ class Reach {
                                                double carriage_m, engine::RandomStream& random) const;
 
  private:
-  [[nodiscard]] std::optional<Joints> joints(const ArmDesign& arm, const Eigen::Isometry3d& T_base_flange,
+  [[nodiscard]] std::optional<Joints> joints(const Arm& arm, const Eigen::Isometry3d& T_base_flange,
                                              engine::RandomStream& random) const;
 
-  Geometry geometry_;
+  ArmPair arms_;
+  AxisLimits track_;
   double limit_margin_rad_;
   Eigen::Isometry3d T_B_T_;
 };

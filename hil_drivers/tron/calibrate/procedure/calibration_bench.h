@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hil_drivers/tron/bench_file/bench_file.h"
 #include "hil_drivers/tron/calibrate/data/measurement.h"
 
 namespace vbar::tron::calibrate {

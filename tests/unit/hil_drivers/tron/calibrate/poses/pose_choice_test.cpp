@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "hil_drivers/tron/calibrate/poses/patch_choice.h"
-#include "hil_drivers/tron/placement/collision.h"
+#include "hil_drivers/tron/collision/bench_bodies.h"
 #include "tests/support/paths.h"
 
 namespace vbar::tron::calibrate {
@@ -27,17 +27,15 @@ LensCalibration lens() {
 // The brief (section 5): range 1.2 to 5.6 m, board tilted to 45 deg, any roll, whole track.
 TEST(CalibrationPoses, AreDiverseAndSeeTheBoard) {
   const BenchFile file = bench();
-  const Geometry geometry(file);
-  const CollisionCheck collision(geometry);
-  const auto postures = choose_postures(file, lens(), BoardDesign{}, 60, 7, {},
-                                        [&](const Posture& posture) { return collision.conflict(posture).empty(); });
+  const auto postures = choose_postures(file, lens(), BoardDesign{}, 60, 7, {}, free_postures(file));
   ASSERT_EQ(postures.size(), 60U);
   const Eigen::Isometry3d T_T_B = T_target_board(file);
   const Calibration design = calibration_as_designed(file);
+  const BenchBodies bodies(file);
   double nearest = 1e9, farthest = 0.0, tilt_high = 0.0, low = 1e9, high = 0.0;
   std::set<int> rolls;
   for (const Posture& posture : postures) {
-    EXPECT_TRUE(collision.conflict(posture).empty());
+    EXPECT_EQ(bodies.collision(bodies.at(posture)), "");
     const Eigen::Isometry3d T_C_B = T_C_T_of_arms(design, posture) * T_T_B;
     int seen = 0;
     for (int id = 0; id < BoardDesign{}.corner_count(); ++id) {
@@ -85,8 +83,6 @@ TEST(CalibrationPoses, OfABenchTooSmallAreRefused) {
 
 TEST(PatchPoses, ShowThePatchInTheLightOfEverySource) {
   const BenchFile file = bench();
-  const Geometry geometry(file);
-  const CollisionCheck collision(geometry);
   const double azimuth = M_PI / 2.0;
   const auto postures = choose_patch_postures(file, lens(), BoardDesign{}, azimuth, 7, [&](const Posture& posture) {
     return collision.conflict(posture).empty();

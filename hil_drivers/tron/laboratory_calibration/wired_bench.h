@@ -1,49 +1,51 @@
 #pragma once
-// A bench to calibrate, over its wires: the devices that the driver flies with.
+// A bench to calibrate, over its wires.
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 
-#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "hil_drivers/bench_process/bench_process.h"
 #include "hil_drivers/tron/calibrate/procedure/calibration_bench.h"
+#include "hil_drivers/tron/hardware/wired_laboratory.h"
+#include "hil_drivers/tron/planner/arm_planner.h"
 
 namespace vbar::tron::calibrate {
 
 struct WiredBenchSettings {
   BenchFile bench;
-  std::string command;  ///< of an emulated bench; empty: hardware at the addresses of the bench file
+  std::string bench_command;  ///< command line of an emulated bench; empty: the laboratory of the bench file
   std::uint64_t seed = 1;
   std::filesystem::path data_directory;
+  twins::camera::Region region{160, 100, 1600, 1000};
+  int bits = 12;
   std::function<void(const std::string&)> report;  ///< sentences for the operator
-  std::function<void(const std::string&)> ask;     ///< of a laboratory: returns when the operator has done it
 };
 
 class WiredBench final : public CalibrationBench {
  public:
-  /// Starts an emulated bench and opens its devices. Throws std::runtime_error.
+  /// Starts an emulated bench and opens all devices. Throws std::runtime_error.
   explicit WiredBench(const WiredBenchSettings& settings);
-  ~WiredBench() override;
 
   [[nodiscard]] BenchIdentity identity() override;
   void mount(Mounted what) override;
   [[nodiscard]] bool move(const Posture& posture) override;
   [[nodiscard]] BenchPlace measure() override;
   void light(const LightShares& shares) override;
-  /// The whole sensor.
   [[nodiscard]] BenchImage take(double exposure_s) override;
 
-  /// The table of true poses that an emulated bench writes; empty: there is none.
-  [[nodiscard]] std::filesystem::path truth_file() const;
-  /// From another thread or a signal: what waits throws.
-  void stop() noexcept;
+  /// Of an emulated bench: its table of true poses, until this object ends; empty for a laboratory.
+  [[nodiscard]] std::filesystem::path truth() const;
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  WiredBenchSettings settings_;
+  WiredLaboratory laboratory_;
+  std::optional<bench_process::BenchProcess> process_;
+  std::filesystem::path control_;
+  BenchBodies bodies_;
+  PathPlanner paths_;
+  double lamp_azimuth_rad_;
 };
 
 }  // namespace vbar::tron::calibrate
