@@ -48,6 +48,8 @@ class CameraLink {
  private:
   using WorkGuard = boost::asio::executor_work_guard<boost::asio::io_context::executor_type>;
   gige::Image expose(const gige::Request& request);
+  /// On another thread, while this one goes on with `context`.
+  gige::Image render(const LabView& view, boost::asio::io_context& context);
   void apply(gige::Device& device, const Fault& fault, bool is_on);
 
   boost::asio::io_context& context_;

@@ -78,13 +78,18 @@ class TwoRobots {
     target_state = *target;
   }
 
-  /// `cycles` cycles with each robot's commands moved by a smooth step of one axis (A1 to A6: 0 to 5; the track: 6).
+  /// A smooth step of one axis of each robot (A1 to A6: 0 to 5; the track: 6).
   void move(int cycles, std::size_t camera_axis, double camera_by, std::size_t target_axis, double target_by) {
-    const rsi::AxisPositions camera_begin = command_of(camera_), target_begin = command_of(target_);
+    move_to(cycles, moved(camera_.last_command(), camera_axis, camera_by),
+            moved(target_.last_command(), target_axis, target_by));
+  }
+  /// All axes, from rest to rest.
+  void move_to(int cycles, const rsi::AxisPositions& camera, const rsi::AxisPositions& target) {
+    const rsi::AxisPositions camera_begin = camera_.last_command(), target_begin = target_.last_command();
     for (int cycle = 1; cycle <= cycles; ++cycle) {
       const double x = static_cast<double>(cycle) / cycles;
-      const double step = x * x * x * (10.0 + x * (6.0 * x - 15.0));  // rest to rest
-      answer(moved(camera_begin, camera_axis, step * camera_by), moved(target_begin, target_axis, step * target_by));
+      const double step = x * x * x * (10.0 + x * (6.0 * x - 15.0));
+      answer(between(camera_begin, camera, step), between(target_begin, target, step));
       ASSERT_NO_FATAL_FAILURE(receive());
     }
   }
@@ -111,7 +116,9 @@ class TwoRobots {
     settings.connect_limit = settings.answer_limit = kPatience;
     return settings;
   }
-  static rsi::AxisPositions command_of(const rsi::Client& client) { return client.last_command(); }
+  static rsi::AxisPositions between(const rsi::AxisPositions& from, const rsi::AxisPositions& to, double share) {
+    return {from.axes_rad + share * (to.axes_rad - from.axes_rad), from.track_m + share * (to.track_m - from.track_m)};
+  }
   static rsi::AxisPositions moved(rsi::AxisPositions from, std::size_t axis, double by) {
     if (axis < kJoints)
       from.axes_rad[static_cast<int>(axis)] += by;

@@ -87,8 +87,10 @@ TEST(TrueArm, GravityLowersTheHandOfAnArmThatStandsAndOfOneThatHangs) {
 }
 
 TEST(World, WithoutErrorsItIsTheLaboratoryAsDesigned) {
-  const World world = world_of(ErrorSizes::none());
-  const BenchFile bench = laboratory();
+  const BenchFile bench = read_bench_file(
+      mission::data_directory() / "benches" / "tron.toml",
+      {"target_robot.base_m=[7.0, 0.0, 0.45]", "target_robot.base_rpy_deg=[0.0, 0.0, 180.0]", "target.face=bottom"});
+  const World world(bench, mounts_of(bench), ErrorSizes::none(), 1);
   Posture stretched;
   stretched.carriage_m = 2.0;
   // The arm hangs at 2.75 m upside down and looks along +x, the camera 0.15 m before the flange.
