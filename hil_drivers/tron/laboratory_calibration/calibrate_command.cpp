@@ -121,8 +121,9 @@ int calibrate_command(const Options& options) {
     const int known = add_truth(data.judged, truth_file, T_target_board(file));
     clock.print(fmt::format("true poses of {} of {} judged postures, for the figures only", known, data.judged.size()));
   }
-  const BenchFit fit = calibrate::calibrate(data, file, designed_lens(file), files::sha256_of_file(data_file).value_or(""),
-                                            [&](const std::string& line) { clock.print(line); });
+  const BenchFit fit =
+      calibrate::calibrate(data, file, designed_lens(file), files::sha256_of_file(data_file).value_or(""),
+                           [&](const std::string& line) { clock.print(line); });
   save_calibration(fit.calibration, options.out / "calibration.toml");
   write_text(calibration_page(fit, data), options.out / "calibration.html");
   for (const StageFigures& stage : fit.calibration.figures) print_figures(stage);

@@ -26,6 +26,8 @@ DeviceSettings device_settings(const WiredBenchSettings& settings) {
   devices.region = settings.region;
   devices.converter_bits = settings.bits;
   devices.report = settings.report;
+  // An emulated camera draws its images meanwhile, on a computer that may be busy.
+  if (devices.is_emulated) devices.timeout = std::chrono::seconds(60);
   return devices;
 }
 

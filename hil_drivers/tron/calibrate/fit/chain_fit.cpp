@@ -383,7 +383,7 @@ class Fit {
     const FitPriors& p = settings_.priors;
     std::array<double, kLens> lens_sigma{p.focal_ratio * values_.lens[0], p.focal_ratio * values_.lens[1], p.centre_px,
                                          p.centre_px};
-    const std::array<double, 5> least{0.01, 0.03, 5e-5, 5e-5, 0.05};
+    const std::array<double, 5> least{0.01, 0.03, 2e-5, 2e-5, 0.02};
     for (std::size_t k = 0; k < 5; ++k)
       lens_sigma[4 + k] = std::max(least[k], p.distortion_ratio * std::abs(values_.lens[4 + k]));
     add_prior<kLens>(values_.lens.data(), values_.lens, lens_sigma);

@@ -23,7 +23,7 @@ struct FitImage {
 
 /// Standard deviations of what is known before.
 struct FitPriors {
-  double focal_ratio = 5e-3, pixel_aspect = 1e-4, centre_px = 10.0, distortion_ratio = 0.1;
+  double focal_ratio = 5e-3, pixel_aspect = 1e-4, centre_px = 8.0, distortion_ratio = 0.05;
   double offset_rad = 8.7e-3;                 // 0.5 deg
   double link_rad = 8.7e-4, link_m = 5e-4;    // 0.05 deg
   double flex_rad_m = 1.7e-3;                 // 0.1 deg/m

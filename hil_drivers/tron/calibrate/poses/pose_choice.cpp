@@ -79,10 +79,12 @@ class Chooser {
 
   double signed_uniform() { return random_.uniform(-1.0, 1.0); }
 
-  /// Turns the boresight so that the board is anywhere in the image.
+  /// Turns the boresight so that the board is anywhere in the image, more often near its edges: there the lens' centre
+  /// and a turn of the camera differ most.
   Matrix3d off_centre() {
-    const double x = 0.40 * lens_.width_px / lens_.fx_px * signed_uniform();
-    const double y = 0.40 * lens_.height_px / lens_.fy_px * signed_uniform();
+    const auto to_the_edge = [](double uniform) { return std::copysign(std::sqrt(std::abs(uniform)), uniform); };
+    const double x = 0.43 * lens_.width_px / lens_.fx_px * to_the_edge(signed_uniform());
+    const double y = 0.43 * lens_.height_px / lens_.fy_px * to_the_edge(signed_uniform());
     return Eigen::Quaterniond::FromTwoVectors(Vector3(x, y, 1.0), Vector3::UnitZ()).toRotationMatrix();
   }
 
