@@ -29,7 +29,7 @@ constexpr double kRefinement = 0.4;
 /// Camera to target and Sun closer to parallel than this: the turn about the line of sight is free.
 constexpr double kFreeTurn_rad = 5.0 * kDegree;
 /// Candidates whose paths are checked.
-constexpr std::size_t kKept = 6;
+constexpr std::size_t kKept = 40;
 /// Per trial, of the search.
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
