@@ -1,5 +1,5 @@
-// A calibration file of TRON with arbitrary contents. Promise: a calibration that its writer gives again and whose chain
-// gives finite poses, or one MissionError.
+// A calibration file of TRON with arbitrary contents. Promise: a calibration that its writer gives again and whose
+// chain gives finite poses, or one MissionError.
 
 #include <string_view>
 

@@ -75,7 +75,7 @@ Eigen::Isometry3d to_eigen(const KDL::Frame& frame) {
 }
 
 double difference(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff();
+  return accuracy::largest_entry(a.matrix() - b.matrix());
 }
 
 TEST(TronKinematicsPeer, ForwardIsKdls) {
@@ -103,7 +103,7 @@ TEST(TronKinematicsPeer, JacobianIsKdls) {
     const Joints q = postures.next();
     KDL::Jacobian jacobian(kJoints);
     ASSERT_GE(solver.JntToJac(to_kdl(q), jacobian), 0);
-    ASSERT_LT((arm.jacobian(q) - jacobian.data).cwiseAbs().maxCoeff(), 1e-12) << n;  // as above
+    ASSERT_LT(accuracy::largest_entry(arm.jacobian(q) - jacobian.data), 1e-12) << n;  // as above
   }
 }
 
@@ -120,14 +120,13 @@ TEST(TronKinematicsPeer, EveryBranchLeadsBackAndThePosturesOwnIsAmongThem) {
     ASSERT_GE(solver.JntToCart(to_kdl(q), pose), 0);
     const Eigen::Isometry3d T = to_eigen(pose);
     const Branches branches = arm.inverse(T);
-    double own = 1e9;
+    accuracy::Smallest own;
     for (std::size_t k = 0; k < branches.count; ++k) {
       KDL::Frame reached;
       ASSERT_GE(solver.JntToCart(to_kdl(branches.joints[k]), reached), 0);
       back.add(difference(T, to_eigen(reached)));
       if (!branches.is_within_limits[k]) continue;
-      for (const Joints& turned : arm.turns(branches.joints[k]))
-        own = std::min(own, (turned - q).lpNorm<Eigen::Infinity>());
+      for (const Joints& turned : arm.turns(branches.joints[k])) own.add(accuracy::largest_entry(turned - q));
     }
     // Near a singularity rounding of the pose, 1e-16, is some 1e-8 of an angle.
     if (!(own < 1e-6)) ++not_found;

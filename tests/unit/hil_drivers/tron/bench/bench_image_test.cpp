@@ -12,6 +12,7 @@
 #include "hil_drivers/tron/kinematics/arm_pair.h"
 #include "hil_drivers/tron/sacn/sender.h"
 #include "hil_drivers/tron/vicon/receiver.h"
+#include "tests/support/figures.h"
 #include "tests/unit/hil_drivers/tron/bench/bench_process.h"
 
 namespace vbar::tron::bench {
@@ -124,10 +125,8 @@ class TronBenchImage : public test::BenchProcessTest {
   }
 
   /// The number that one pixel in a thousand exceeds.
-  static double brightest(std::vector<std::uint16_t> dn) {
-    const auto at = dn.begin() + static_cast<std::ptrdiff_t>(dn.size() - dn.size() / 1000);
-    std::nth_element(dn.begin(), at, dn.end());
-    return *at;
+  static double brightest(const std::vector<std::uint16_t>& dn) {
+    return accuracy::quantile({dn.begin(), dn.end()}, 0.999);
   }
 
   BenchFile laboratory;

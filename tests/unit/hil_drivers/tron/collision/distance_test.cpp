@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
+
 namespace vbar::tron {
 namespace {
 
@@ -22,10 +24,9 @@ TEST(TronDistance, OfSegmentsIsTheLeastOfSamples) {
   constexpr int kSamples = 100;
   for (int n = 0; n < 200; ++n) {
     const Vector3 a = drawn(random), b = drawn(random), c = drawn(random), d = drawn(random);
-    double least = 1e9;
+    accuracy::Smallest least;
     for (int i = 0; i <= kSamples; ++i)
-      for (int k = 0; k <= kSamples; ++k)
-        least = std::min(least, (a + (b - a) * i / kSamples - c - (d - c) * k / kSamples).norm());
+      for (int k = 0; k <= kSamples; ++k) least.add((a + (b - a) * i / kSamples - c - (d - c) * k / kSamples).norm());
     const double found = segment_distance(a, b, c, d);
     // The nearest sample is at most half a step, 0.017 m, away on each.
     EXPECT_LE(found, least + 1e-12);
@@ -50,11 +51,11 @@ TEST(TronDistance, OfABoxIsTheLeastOfSamples) {
     box.T_L_box = Eigen::Translation3d(drawn(random)) * Eigen::Quaterniond::UnitRandom();
     box.half_m = 0.1 * Vector3::Ones() + 0.3 * drawn(random).cwiseAbs();
     const Vector3 a = 2.0 * drawn(random), b = 2.0 * drawn(random);
-    double least = 1e9;
+    accuracy::Smallest least;
     constexpr int kSamples = 1000;
     for (int k = 0; k <= kSamples; ++k) {
       const Vector3 point = box.T_L_box.inverse() * Vector3(a + (b - a) * k / kSamples);
-      least = std::min(least, (point.cwiseAbs() - box.half_m).cwiseMax(0.0).norm());
+      least.add((point.cwiseAbs() - box.half_m).cwiseMax(0.0).norm());
     }
     const double found = box_distance(a, b, box);
     EXPECT_NEAR(found, least, 0.004);  // half a step of the samples

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
 #include "tests/support/paths.h"
 
 namespace vbar::tron {
@@ -41,14 +42,11 @@ TEST(TronArmPair, StretchedArmsAreWhereTheDrawingHasThem) {
 TEST(TronArmPair, FlangePosesAndInverseReturnTheJoints) {
   const ArmPair arms(bench());
   const Posture at = posture();
-  EXPECT_LT((arms.camera_flange(arms.camera_pose(at), at.carriage_m).matrix() -
-             arms.camera_arm().forward(at.camera_rad).matrix())
-                .cwiseAbs()
-                .maxCoeff(),
+  EXPECT_LT(accuracy::largest_entry(arms.camera_flange(arms.camera_pose(at), at.carriage_m).matrix() -
+                                    arms.camera_arm().forward(at.camera_rad).matrix()),
             1e-12);
-  EXPECT_LT((arms.target_flange(arms.target_pose(at)).matrix() - arms.target_arm().forward(at.target_rad).matrix())
-                .cwiseAbs()
-                .maxCoeff(),
+  EXPECT_LT(accuracy::largest_entry(arms.target_flange(arms.target_pose(at)).matrix() -
+                                    arms.target_arm().forward(at.target_rad).matrix()),
             1e-12);
 }
 

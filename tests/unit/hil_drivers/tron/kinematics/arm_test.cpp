@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
 #include "tests/support/paths.h"
 
 namespace vbar::tron {
@@ -22,7 +23,7 @@ Arm kuka() {
 }
 
 double difference(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff();
+  return accuracy::largest_entry(a.matrix() - b.matrix());
 }
 
 TEST(TronArm, IsStretchedAlongXAtZeroAngles) {
@@ -100,10 +101,10 @@ TEST(TronArm, SingularPosturesAreReportedAndLeadBack) {
   const Branches at_elbow = arm.inverse(arm.forward(stretched), stretched);
   ASSERT_GT(at_elbow.count, 0U);
   for (const auto& [branches, posture] : {std::pair(at_wrist, wrist), std::pair(at_elbow, stretched)}) {
-    double own = 1.0;
+    accuracy::Smallest own;
     for (std::size_t k = 0; k < branches.count; ++k) {
       EXPECT_LT(difference(arm.forward(branches.joints[k]), arm.forward(posture)), 1e-9);
-      own = std::min(own, (branches.joints[k] - posture).lpNorm<Eigen::Infinity>());
+      own.add(accuracy::largest_entry(branches.joints[k] - posture));
     }
     EXPECT_LT(own, 1e-6);  // at a singularity rounding of 1e-16 is 1e-8 of an angle
   }

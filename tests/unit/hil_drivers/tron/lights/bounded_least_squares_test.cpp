@@ -10,6 +10,8 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
+
 namespace vbar::tron {
 namespace {
 
@@ -36,14 +38,14 @@ Problem random_problem(std::mt19937& random, Index rows, Index columns) {
 /// Largest violation of the conditions of a minimum, relative.
 double violation(const Problem& problem, const VectorXd& x) {
   const VectorXd descent = problem.A.transpose() * (problem.b - problem.A * x);
-  double worst = 0.0;
+  accuracy::Largest worst;
   for (Index k = 0; k < x.size(); ++k) {
     if (!(x[k] >= 0.0 && x[k] <= 1.0)) return std::numeric_limits<double>::infinity();
     const double scale = problem.A.col(k).norm() * (problem.b.norm() + problem.A.norm());
     double excess = std::abs(descent[k]);
     if (x[k] == 0.0) excess = std::max(0.0, descent[k]);
     if (x[k] == 1.0) excess = std::max(0.0, -descent[k]);
-    if (scale > 0.0) worst = std::max(worst, excess / scale);
+    if (scale > 0.0) worst.add(excess / scale);
   }
   return worst;
 }
@@ -62,7 +64,7 @@ TEST(BoundedLeastSquares, MeetsTheConditionsOfAMinimum) {
 /// The smallest residual over all 3^n choices of which variable is at which bound or free.
 double best_of_all_sets(const Problem& problem) {
   const Index n = problem.A.cols();
-  double best = std::numeric_limits<double>::infinity();
+  accuracy::Smallest best;
   for (int code = 0; code < static_cast<int>(std::lround(std::pow(3, n))); ++code) {
     VectorXd x = VectorXd::Zero(n);
     std::vector<Index> free;
@@ -74,8 +76,8 @@ double best_of_all_sets(const Problem& problem) {
       const VectorXd part = problem.A(Eigen::all, free).colPivHouseholderQr().solve(problem.b - problem.A * x);
       x(free) = part;
     }
-    if (x.minCoeff() < 0.0 || x.maxCoeff() > 1.0) continue;
-    best = std::min(best, (problem.A * x - problem.b).norm());
+    if (!((x.array() >= 0.0).all() && (x.array() <= 1.0).all())) continue;
+    best.add((problem.A * x - problem.b).norm());
   }
   return best;
 }

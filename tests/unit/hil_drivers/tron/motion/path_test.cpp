@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
 #include "tests/support/paths.h"
 
 namespace vbar::tron {
@@ -87,10 +88,10 @@ TEST(TronPath, TheSlowestAxisIsAtALimit) {
   const Axes way = axes_of(away()) - axes_of(start());
   const Axes acceleration = limits_of(&AxisLimits::acceleration), jerk = limits_of(&AxisLimits::jerk);
   // A longer motion would be allowed only if no axis had to be faster than this: T = sqrt((a/j)^2 + 4 d / a) + a / j.
-  double longest = 0.0;
+  accuracy::Largest longest;
   for (int k = 0; k < 13; ++k) {
     const double d = std::abs(way[k]), a = acceleration[k], j = jerk[k];
-    longest = std::max(longest, std::sqrt(a * a / (j * j) + 4.0 * d / a) + a / j);
+    longest.add(std::sqrt(a * a / (j * j) + 4.0 * d / a) + a / j);
   }
   EXPECT_NEAR(path.cycles() * kCycle_s, longest, 0.05 * longest);
 }

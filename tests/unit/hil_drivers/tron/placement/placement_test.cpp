@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
 #include "tests/support/paths.h"
 
 namespace vbar::tron {
@@ -57,7 +58,7 @@ TEST(TronPlacement, ShowsTheSceneWithinAllLimits) {
     ++found_count;
     const auto& placement = std::get<Placement>(found);
     const ArmPair& arms = bench.bodies.arms();
-    EXPECT_LT((arms.T_C_T(placement.posture).matrix() - wanted.T_C_T.matrix()).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_LT(accuracy::largest_entry(arms.T_C_T(placement.posture).matrix() - wanted.T_C_T.matrix()), 1e-9);
     const fsw::Vector3 sun_L = arms.camera_pose(placement.posture).linear() * wanted.sun_C;
     EXPECT_LT(angle_between(sun_L, Lamp::direction(placement.lamp_azimuth_rad)), 1e-9);
     EXPECT_GE(placement.lamp_azimuth_rad, bench.file.lamp.azimuth_low_rad);
@@ -100,7 +101,7 @@ TEST(TronPlacement, TheTurnIsFreeWithTheSunBehindTheCamera) {
   const auto found = search.find(wanted, bench.home(), 1);
   ASSERT_TRUE(std::holds_alternative<Placement>(found)) << std::get<NoPlacement>(found).reason;
   const auto& placement = std::get<Placement>(found);
-  EXPECT_LT((bench.bodies.arms().T_C_T(placement.posture).matrix() - wanted.T_C_T.matrix()).cwiseAbs().maxCoeff(),
+  EXPECT_LT(accuracy::largest_entry(bench.bodies.arms().T_C_T(placement.posture).matrix() - wanted.T_C_T.matrix()),
             1e-9);
   const fsw::Vector3 sun_L = bench.bodies.arms().camera_pose(placement.posture).linear() * wanted.sun_C;
   EXPECT_NEAR(angle_between(sun_L, Lamp::direction(placement.lamp_azimuth_rad)), placement.sun_error_rad, 1e-9);

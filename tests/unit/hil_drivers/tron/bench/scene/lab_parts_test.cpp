@@ -11,6 +11,7 @@
 #include "hil_drivers/tron/bench/scene/lens_blur.h"
 #include "hil_drivers/tron/bench/scene/mounts.h"
 #include "hil_drivers/tron/bench/scene/room.h"
+#include "tests/support/figures.h"
 #include "tests/unit/hil_drivers/tron/bench/scene/lab_scenes.h"
 
 namespace vbar::tron::bench::tests {
@@ -44,14 +45,15 @@ TEST(LabLight, BeamIsUnevenByATenthAndEndsAtItsWidth) {
     const LampBeam beam = lamp_beam(bench, {}, seed, view, 1.0);
     EXPECT_NEAR(beam.irradiance, 0.1, 0.1 * 4.01 * kFlicker);
     EXPECT_NEAR(beam.irradiance_at(bench.lamp.centre_m), beam.irradiance, 1e-12);
-    double low = 1.0, high = 1.0;
+    accuracy::Smallest low;
+    accuracy::Largest high;
     for (int k = 0; k < 720; ++k) {
       const double turn = 2.0 * M_PI * (k % 36) / 36.0, radius = 0.53 * (k / 36) / 19.0;
       const Vector3 place = bench.lamp.centre_m + radius * (std::cos(turn) * beam.across + std::sin(turn) * beam.up);
       const Vector3 way = beam.direction - beam.inverse_distance * (place - bench.lamp.centre_m);
       const double relative = beam.irradiance_at(place) / beam.irradiance * way.squaredNorm();
-      low = std::min(low, relative);
-      high = std::max(high, relative);
+      low.add(relative);
+      high.add(relative);
     }
     EXPECT_GE(low, 1.0 - kBeamUnevenness - 1e-9);
     EXPECT_LE(high, 1.0 + kBeamUnevenness + 1e-9);
@@ -158,7 +160,8 @@ TEST(LabSurfaces, NoiseHasUnitVarianceAndIsTheSameEverywhere) {
 TEST(LabSurfaces, CornersOfTheMockUpAreHalfAMillimetreOff) {
   const camera::CadModel model = camera::load_cad_model(vbar::tests::source_path("data/models/tango_mockup.obj"));
   const std::vector<Facet> designed = scaled_facets(model, 0.5);
-  double squares = 0.0, count = 0.0, largest = 0.0;
+  double squares = 0.0, count = 0.0;
+  accuracy::Largest largest;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     std::vector<Facet> made = designed;
     move_corners(made, seed);
@@ -167,7 +170,7 @@ TEST(LabSurfaces, CornersOfTheMockUpAreHalfAMillimetreOff) {
         const double off = (made[f].corners[k] - designed[f].corners[k]).norm();
         squares += off * off;
         count += 1.0;
-        largest = std::max(largest, off);
+        largest.add(off);
       }
   }
   EXPECT_NEAR(std::sqrt(squares / count), kCornerErrorM, 0.1e-3);

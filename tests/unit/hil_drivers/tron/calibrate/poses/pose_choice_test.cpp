@@ -11,6 +11,7 @@
 
 #include "hil_drivers/tron/calibrate/poses/patch_choice.h"
 #include "hil_drivers/tron/collision/bench_bodies.h"
+#include "tests/support/figures.h"
 #include "tests/support/paths.h"
 
 namespace vbar::tron::calibrate {
@@ -32,7 +33,8 @@ TEST(CalibrationPoses, AreDiverseAndSeeTheBoard) {
   const Eigen::Isometry3d T_T_B = T_target_board(file);
   const Calibration design = calibration_as_designed(file);
   const BenchBodies bodies(file);
-  double nearest = 1e9, farthest = 0.0, tilt_high = 0.0, low = 1e9, high = 0.0;
+  accuracy::Smallest nearest, low;
+  accuracy::Largest farthest, tilt_high, high;
   std::set<int> rolls;
   for (const Posture& posture : postures) {
     EXPECT_EQ(bodies.collision(bodies.at(posture)), "");
@@ -46,11 +48,11 @@ TEST(CalibrationPoses, AreDiverseAndSeeTheBoard) {
     const fsw::Vector3 sight = T_C_B.translation().normalized();
     const double tilt = std::acos(sight.dot(T_C_B.linear().col(2)));
     EXPECT_LE(tilt, M_PI / 4.0 + 1e-6);
-    tilt_high = std::max(tilt_high, tilt);
-    nearest = std::min(nearest, T_C_B.translation().norm());
-    farthest = std::max(farthest, T_C_B.translation().norm());
-    low = std::min(low, posture.carriage_m);
-    high = std::max(high, posture.carriage_m);
+    tilt_high.add(tilt);
+    nearest.add(T_C_B.translation().norm());
+    farthest.add(T_C_B.translation().norm());
+    low.add(posture.carriage_m);
+    high.add(posture.carriage_m);
     rolls.insert(static_cast<int>(std::floor(std::atan2(T_C_B.linear()(1, 0), T_C_B.linear()(0, 0)) / (M_PI / 4.0))));
     for (Eigen::Index k = 0; k < 6; ++k) {
       const AxisLimits& axis = file.camera_robot.design.axes[static_cast<std::size_t>(k)];
