@@ -118,7 +118,9 @@ void TronRun::open_devices() {
   devices.converter_bits = calibration_.camera.bits;
   devices.packet_size = settings_.packet_size;
   devices.retries = settings_.retries;
-  devices.timeout = settings_.timeout;
+  // An emulated camera draws its image on the computer of all others.
+  constexpr int kEmulatedPatience = 20;
+  devices.timeout = settings_.timeout * (devices.is_emulated ? kEmulatedPatience : 1);
   devices.settle_limit_s = settings_.settle_limit_s;
   devices.operator_timeout_s = static_cast<double>(settings_.operator_timeout.count());
   devices.report = [](const std::string& text) { std::cerr << "testbed tron: " << text << '\n'; };
