@@ -55,8 +55,11 @@ twins::camera::CameraSettings calibrated_camera(const Calibration& calibration,
   twins::camera::CameraSettings camera = of_mission;
   const double focal_px = 0.5 * (lens.fx_px + lens.fy_px) / kBinning;
   camera.optics.focal_length_mm = focal_px * camera.detector.pixel_pitch_um * 1e-3;
-  // An integer is the centre of a pixel: two of them have theirs at 0.5.
-  camera.optics.principal_point_px = {(lens.cx_px - 0.5) / kBinning, (lens.cy_px - 0.5) / kBinning};
+  // The calibration's pixels are those of its images, the region that the camera reads. An integer is the centre of a
+  // pixel: two of them have theirs at 0.5.
+  const twins::camera::Region region = single_pixels(of_mission.region);
+  camera.optics.principal_point_px = {(region.x + lens.cx_px - 0.5) / kBinning,
+                                      (region.y + lens.cy_px - 0.5) / kBinning};
   camera.optics.distortion = lens.distortion;
   if (calibration.camera.offset_dn > 0.0) camera.detector.offset_dn = calibration.camera.offset_dn;
   return camera;
@@ -79,10 +82,12 @@ std::unique_ptr<twins::camera::ImageTaker> TronRun::make_camera(const testbeds::
   if (calibration_.validity.bench != bench_.name)
     throw std::runtime_error(fmt::format("testbed tron: {} is a calibration of the bench \"{}\", not of \"{}\"",
                                          calibration_file_.string(), calibration_.validity.bench, bench_.name));
-  if (kBinning * plan.settings.detector.width != calibration_.lens.width_px)
-    throw std::runtime_error(
-        fmt::format("testbed tron: {} has {} pixels a row; the driver bins the {} of the bench by {}", plan.name,
-                    plan.settings.detector.width, calibration_.lens.width_px, kBinning));
+  const LensCalibration& lens = calibration_.lens;
+  if (const auto region = single_pixels(plan.settings.region);
+      region.width != lens.width_px || region.height != lens.height_px)
+    throw std::runtime_error(fmt::format(
+        "testbed tron: {} reads {} x {} single pixels, binned by {}; {} holds for images of {} x {}", plan.name,
+        region.width, region.height, kBinning, calibration_file_.string(), lens.width_px, lens.height_px));
   plan_ = plan;
   camera_ = calibrated_camera(calibration_, plan.settings);
   exposure_s_ = plan.settings.exposure_s * exposure_factor(bench_.lamp);

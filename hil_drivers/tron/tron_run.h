@@ -22,7 +22,7 @@
 
 namespace vbar::tron {
 
-/// The camera of the mission with the lens as calibrated. `bench_px`: of the mission's binned pixels, single ones.
+/// The camera of the mission with the lens as calibrated, for the pixels of the mission, which are binned.
 [[nodiscard]] twins::camera::CameraSettings calibrated_camera(const Calibration& calibration,
                                                               const twins::camera::CameraSettings& of_mission);
 
