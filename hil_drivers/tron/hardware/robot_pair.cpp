@@ -66,7 +66,8 @@ struct RobotPair::Parts {
   bool cycle(const Posture& command) {
     answer(camera, {command.camera_rad, command.carriage_m - settings.track_home_m});
     answer(target, {command.target_rad, 0.0});
-    const bool both = receive(camera) & receive(target);
+    const bool has_camera = receive(camera), has_target = receive(target);
+    const bool both = has_camera && has_target;
     if (both) count_cycle();
     if (both && counts.cycles % kLookEvery == 0) return look();
     return both;

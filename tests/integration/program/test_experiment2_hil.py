@@ -1,20 +1,21 @@
 #!/usr/bin/env python3
-"""Experiment 2 through TRON (emulated bench): calibration over the wires, flight, record, replay, faults."""
+"""Experiment 2 through TRON (emulated bench): flight, record, replay, faults."""
 import csv
 import os
 import pathlib
 import signal
-import subprocess
 import time
 import unittest
 
-from vbar_program import (BINARY, SOURCE, ZYNQ_IMAGE, children_of, fly, is_running, main, missing, overrides, scratch, start,
+from vbar_program import (BINARY, SOURCE, children_of, fly, is_running, main, overrides, scratch, start,
                           summary_of, vbar)
 
 MISSION = SOURCE / "missions" / "experiment2_hil.toml"
 BENCH = "vbar_tron_bench {data}/benches/tron_emulated.toml --directory {directory} --seed {seed}"
-TRON = BINARY / "vbar_tron"
-IMAGES = 120  # of ten minutes
+# Of the emulated bench with seed 1, by vbar_tron calibrate over its wires in 14 minutes: after a change of the hidden errors it has
+# to be made again.
+CALIBRATION = SOURCE / "tests" / "data" / "tron" / "calibration_1.toml"
+IMAGES = 71  # of six minutes
 
 
 def command_of(pid):
@@ -25,22 +26,16 @@ def command_of(pid):
 
 
 class Experiment2Hil(unittest.TestCase):
-    """One calibrated bench, and the first ten minutes of the mission."""
+    """One calibrated bench, and the first six minutes of the mission."""
 
     @classmethod
     def setUpClass(cls):
-        if not TRON.exists() or not (BINARY / "vbar_tron_bench").exists():
+        if not (BINARY / "vbar_tron_bench").exists():
             raise unittest.SkipTest("built without Aravis")
         cls.folder = cls.enterClassContext(scratch())
-        made = subprocess.run([TRON, "calibrate", SOURCE / "data" / "benches" / "tron.toml", "--quick", "--seed", "1", "--bench",
-                               BENCH, "--out", cls.folder / "calibration"], capture_output=True, text=True, timeout=500, check=False)
-        if "needs" in made.stderr and made.returncode == 2:
-            raise unittest.SkipTest(made.stderr.strip())
-        if made.returncode not in (0, 3):
-            raise AssertionError(f"vbar_tron calibrate failed: {made.stdout}{made.stderr}")
-        cls.settings = (f'testbed.tron.calibration="{cls.folder / "calibration" / "calibration.toml"}"',)
+        cls.settings = (f'testbed.tron.calibration="{CALIBRATION}"',)
         cls.run_folder = cls.folder / "run"
-        cls.summary = fly(cls.run_folder, "mission.duration_h=0.168", *cls.settings, mission=MISSION, timeout=500)
+        cls.summary = fly(cls.run_folder, "mission.duration_h=0.1", *cls.settings, mission=MISSION, timeout=500)
 
     def rows(self):
         with (self.run_folder / "tron.csv").open() as file:
@@ -68,14 +63,13 @@ class Experiment2Hil(unittest.TestCase):
         self.assertGreaterEqual(self.summary["sensor_figures"]["pose"]["with_pose"], 0.9 * IMAGES)
 
     def test_same_mission_gives_the_same_bits(self):
-        again = fly(self.folder / "again", "mission.duration_h=0.05", *self.settings, mission=MISSION, timeout=500)
-        third = fly(self.folder / "third", "mission.duration_h=0.05", *self.settings, mission=MISSION, timeout=500)
+        again = fly(self.folder / "again", "mission.duration_h=0.02", *self.settings, mission=MISSION, timeout=500)
+        third = fly(self.folder / "third", "mission.duration_h=0.02", *self.settings, mission=MISSION, timeout=500)
         for key in ("commands_sha256", "telemetry_sha256"):
             self.assertEqual(again[key], third[key])
 
     def test_replay_gives_the_same_bits(self):
-        computers = [(), ("flight_computer.target=host_process",)]
-        for computer in computers:
+        for computer in ((), ("flight_computer.target=host_process",)):
             with self.subTest(computer=computer):
                 result = vbar("replay", self.run_folder, *overrides(*computer))
                 self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
