@@ -28,6 +28,8 @@ class ArmPlanner final : public MotionPlanner {
   [[nodiscard]] std::optional<Posture> corrected(const Posture& from, const Eigen::Isometry3d& T_C_T) override;
 
  private:
+  [[nodiscard]] Scene on_designed_mounts(const Scene& scene) const;
+
   const Calibration& calibration_;
   BenchBodies bodies_;
   PathPlanner paths_;
