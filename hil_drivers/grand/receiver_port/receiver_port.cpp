@@ -63,13 +63,16 @@ void ReceiverPort::find_rate() {
                      fastest));
 }
 
-// At a wrong rate the receiver has collected remains of a line, which the first answer may be about.
+// At a wrong rate the receiver has collected remains of a line, which the first answer may be about. The answer to the
+// question is then still to come; it must not be taken for that to the next command.
 bool ReceiverPort::answers_at(unsigned baud) {
   line_->set_baud(baud);
   inbox_.clear();
   write("\r");
   const auto answer = ask(kQuestion, patience_.probe);
-  return answer && (answer->is_accepted || ask(kQuestion, patience_.probe));
+  if (!answer || answer->is_accepted) return answer.has_value();
+  wait_until_quiet();
+  return ask(kQuestion, patience_.probe).has_value();
 }
 
 // The receiver prompts when it has restarted; the rate is the one that it has saved.
@@ -88,14 +91,20 @@ void ReceiverPort::restart() {
   refuse(fmt::format("no answer within {:g} s of the command \"RESET\"", seconds(patience_.restart)));
 }
 
-// The answer may come at either rate, so the question at the new one decides.
+// The answer may come at either rate, so the question at the new one decides. A receiver that still answers at the old
+// one has not received the command.
 void ReceiverPort::set_rate() {
-  if (line_->baud() == configuration_.baud) return;
+  const unsigned found = line_->baud();
+  if (found == configuration_.baud) return;
   const std::string text = rate_command(configuration_.baud);
-  const auto answer = ask(text, milliseconds(300));
-  if (answer && !answer->is_accepted) refuse(fmt::format("command \"{}\" was refused: \"{}\"", text, answer->text));
-  for (int attempt = 0; attempt < patience_.attempts; ++attempt)
+  for (int attempt = 0; attempt < patience_.attempts; ++attempt) {
+    if (attempt == 0 || answers_at(found)) {
+      const auto answer = ask(text, milliseconds(300));
+      if (answer && !answer->is_accepted)
+        refuse(fmt::format("command \"{}\" was refused: \"{}\"", text, answer->text));
+    }
     if (answers_at(configuration_.baud)) return;
+  }
   refuse(fmt::format("no answer at {} baud after the command \"{}\"", configuration_.baud, text));
 }
 
