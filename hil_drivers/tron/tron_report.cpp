@@ -121,7 +121,7 @@ void summarise(const RunRecord& record, report::Summary& summary) {
   const auto& rows = record.tables.rows<TronRow>();
   if (rows.empty()) return;
   TestbedFigures& figures = summary.testbeds[kName];
-  double failed = 0.0, lit = 0.0, hidden = 0.0, corrected = 0.0, arms_alone = 0.0, retried = 0.0, resent = 0.0;
+  double failed = 0.0, lit = 0.0, hidden = 0.0, shaded = 0.0, corrected = 0.0, arms_alone = 0.0, retried = 0.0, resent = 0.0;
   std::vector<double> bench_s;
   for (const TronRow& row : rows) {
     failed += is_taken(row) ? 0.0 : 1.0;
@@ -130,6 +130,7 @@ void summarise(const RunRecord& record, report::Summary& summary) {
     if (!is_lit(row)) continue;
     lit += 1.0;
     hidden += row.hidden > 0 ? 1.0 : 0.0;
+    shaded += row.shaded > 0 ? 1.0 : 0.0;
     corrected += row.moves > 1 ? 1.0 : 0.0;
     arms_alone += row.pose_source == "arms" ? 1.0 : 0.0;
     bench_s.push_back(row.bench_s);
@@ -138,6 +139,7 @@ void summarise(const RunRecord& record, report::Summary& summary) {
   figures["images_not_taken"] = failed;
   figures["images_lit"] = lit;
   figures["images_with_hidden_points"] = hidden;
+  figures["images_with_shadow_of_an_arm"] = shaded;
   figures["poses_corrected"] = corrected;
   figures["poses_by_arms_alone"] = arms_alone;
   figures["images_retried"] = retried;

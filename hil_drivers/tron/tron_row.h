@@ -15,6 +15,7 @@ struct TronRow {
   std::string failure;      ///< why it was not taken; empty: it was
   std::string pose_source;  ///< "fused", "arms"; empty: the target was not lit, and the arms did not move
   std::int64_t hidden = 0;  ///< keypoints and centre that the target's arm hides
+  std::int64_t shaded = 0;  ///< lit points of the target's hull, four a face, in the shadow of an arm
   std::int64_t moves = 0;
   double bench_s = 0.0, move_s = 0.0;  ///< bench time: of the image, of its moves
   // Measured pose less the commanded one, laboratory lengths; of the first move, and after the correction.
@@ -36,6 +37,7 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"failure"}, row.failure);
   visit(ColumnName{"pose_source"}, row.pose_source);
   visit(ColumnName{"hidden"}, row.hidden);
+  visit(ColumnName{"shaded"}, row.shaded);
   visit(ColumnName{"moves"}, row.moves);
   visit(ColumnName{"bench_s"}, row.bench_s);
   visit(ColumnName{"move_s"}, row.move_s);

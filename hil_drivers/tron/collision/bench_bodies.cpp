@@ -222,6 +222,38 @@ std::uint32_t BenchBodies::hidden_by_target_arm(const ArmCapsules& arm, const Ve
   return hidden_by(arm, eye, points_L);
 }
 
+std::uint32_t BenchBodies::shaded_by(const ArmCapsules& arm, const Vector3& towards_lamp,
+                                     std::span<const Vector3> points_L) const {
+  std::uint32_t mask = 0;
+  for (std::size_t k = 0; k < points_L.size() && k < 32; ++k)
+    mask |= hidden_by(arm, points_L[k] + bench_.lamp.radius_m * towards_lamp, points_L.subspan(k, 1)) << k;
+  return mask;
+}
+
+std::vector<Vector3> BenchBodies::lit_points(const OrientedBox& hull, const Vector3& towards_lamp) {
+  constexpr double kTowardsCorner = 0.7;
+  constexpr double kGrazing = 0.05;  // of such a face the shadow does not matter
+  const Vector3 lamp_box = hull.T_L_box.linear().transpose() * towards_lamp;
+  std::vector<Vector3> points;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(lamp_box[axis]) < kGrazing) continue;
+    for (const auto& [u, v] : {std::pair(-1.0, -1.0), {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}) {
+      Vector3 signs;
+      signs[axis] = lamp_box[axis] > 0.0 ? 1.0 : -1.0;
+      signs[(axis + 1) % 3] = kTowardsCorner * u;
+      signs[(axis + 2) % 3] = kTowardsCorner * v;
+      points.push_back(hull.T_L_box * Vector3(signs.cwiseProduct(hull.half_m)));
+    }
+  }
+  return points;
+}
+
+int BenchBodies::shaded(const Bodies& bodies, const Vector3& towards_lamp) const {
+  const std::vector<Vector3> points = lit_points(bodies.target, towards_lamp);
+  return std::popcount(shaded_by(bodies.camera_arm, towards_lamp, points) |
+                       shaded_by(bodies.target_arm, towards_lamp, points));
+}
+
 std::vector<Vector3> BenchBodies::points_at(const Eigen::Isometry3d& T_L_T,
                                             std::span<const Vector3> points_body) const {
   std::vector<Vector3> points;

@@ -70,9 +70,17 @@ class BenchBodies {
                                                           std::span<const fsw::Vector3> points_L);
   [[nodiscard]] static std::uint32_t hidden_by_target_arm(const ArmCapsules& arm, const fsw::Vector3& eye,
                                                           std::span<const fsw::Vector3> points_L);
+  /// One bit a point, L: whether an arm's shadow falls on it. Its light comes from the lamp in direction `towards_lamp`.
+  [[nodiscard]] std::uint32_t shaded_by(const ArmCapsules& arm, const fsw::Vector3& towards_lamp,
+                                        std::span<const fsw::Vector3> points_L) const;
+  /// Four points of each face of the hull that the lamp lights, L.
+  [[nodiscard]] static std::vector<fsw::Vector3> lit_points(const OrientedBox& hull, const fsw::Vector3& towards_lamp);
   /// From the full-scale body frame; at most 32.
   [[nodiscard]] std::vector<fsw::Vector3> points_at(const Eigen::Isometry3d& T_L_T,
                                                     std::span<const fsw::Vector3> points_body) const;
+
+  /// How many of the lit points of the hull are in the shadow of an arm.
+  [[nodiscard]] int shaded(const Bodies& bodies, const fsw::Vector3& towards_lamp) const;
 
   /// Keypoints of the target's model and the middle of its hull, full-scale body frame.
   [[nodiscard]] std::vector<fsw::Vector3> points_to_see(const std::filesystem::path& data_directory) const;

@@ -20,6 +20,7 @@ struct Place {
   double lamp_azimuth_rad = 0.0;
   double sun_error_rad = 0.0;  ///< of the direction to the lamp
   int hidden = 0;              ///< keypoints and centre that the arm hides
+  int shaded = 0;              ///< lit points of the hull, four a face, in the shadow of an arm
 };
 
 /// Why there is none, one sentence.

@@ -1,6 +1,7 @@
 #include "hil_drivers/tron/exchange/image_exchange.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -21,6 +22,19 @@ double angle_of(const fsw::Matrix3& rotation) {
   return std::abs(Eigen::AngleAxisd(rotation).angle());
 }
 
+/// Adds its life to a sum, s.
+class WallTime {
+ public:
+  explicit WallTime(double& sum_s) : sum_s_(sum_s) {}
+  ~WallTime() { sum_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+  WallTime(const WallTime&) = delete;
+  WallTime& operator=(const WallTime&) = delete;
+
+ private:
+  double& sum_s_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
 }  // namespace
 
 void ImageExchange::set_lights(const LightLevels& levels) {
@@ -38,11 +52,15 @@ bool ImageExchange::wait_for_lamp() {
 
 /// False: interrupted, or without a path, which the row states.
 bool ImageExchange::go_to(const Posture& posture, TronRow& row) {
-  const auto path = motion_.path(laboratory_.posture(), posture);
+  const auto path = [&] {
+    const WallTime planning(row.plan_wall_s);
+    return motion_.path(laboratory_.posture(), posture);
+  }();
   if (const auto* const none = std::get_if<NoPlace>(&path)) {
     row.failure = none->reason;
     return false;
   }
+  const WallTime moving(row.move_wall_s);
   const double begin_s = laboratory_.time_s();
   ++row.moves;
   const MotionEnd end = laboratory_.follow(std::get<Motion>(path));
@@ -52,6 +70,7 @@ bool ImageExchange::go_to(const Posture& posture, TronRow& row) {
 
 /// Nothing: interrupted.
 std::optional<ImageExchange::Reached> ImageExchange::measure(const Scene& scene, TronRow& row) {
+  const WallTime measuring(row.move_wall_s);
   const auto measured = laboratory_.measure();
   const auto* const found = std::get_if<MeasuredPlace>(&measured);
   if (found == nullptr) return std::nullopt;
@@ -81,13 +100,17 @@ std::optional<ImageExchange::Reached> ImageExchange::measure(const Scene& scene,
 /// The arms at the scene, measured and corrected. Nothing: interrupted, or the row states why.
 std::optional<ImageExchange::Reached> ImageExchange::reach(const Scene& scene, std::int64_t number, TronRow& row,
                                                            Place& place) {
-  const auto placed = motion_.place(scene, laboratory_.posture(), number);
+  const auto placed = [&] {
+    const WallTime planning(row.plan_wall_s);
+    return motion_.place(scene, laboratory_.posture(), number);
+  }();
   if (const auto* const none = std::get_if<NoPlace>(&placed)) {
     row.failure = none->reason;
     return std::nullopt;
   }
   place = std::get<Place>(placed);
   row.hidden = place.hidden;
+  row.shaded = place.shaded;
   row.lamp_azimuth_deg = place.lamp_azimuth_rad / kDegree;
   row.sun_error_deg = place.sun_error_rad / kDegree;
   const LightLevels levels = lights_.levels(scene, place);

@@ -7,6 +7,33 @@
 #include "host_sim/twins/camera/pixel_noise.h"
 
 namespace vbar::tron {
+namespace {
+
+/// Less is rounding.
+constexpr float kCovered = 0.01F;
+
+std::size_t index(int x, int y, int width) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
+
+/// By the binomial filter of three by three, whose standard deviation is 0.71 px.
+std::vector<float> blurred(std::span<const float> values, int width) {
+  const int height = static_cast<int>(values.size()) / width;
+  const auto pass = [&](std::span<const float> from, int dx, int dy) {
+    std::vector<float> to(from.size());
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const auto at = [&](int sign) {
+          return from[index(std::clamp(x + sign * dx, 0, width - 1), std::clamp(y + sign * dy, 0, height - 1), width)];
+        };
+        to[index(x, y, width)] = 0.25F * at(-1) + 0.5F * at(0) + 0.25F * at(1);
+      }
+    return to;
+  };
+  return pass(pass(values, 1, 0), 0, 1);
+}
+
+}  // namespace
 
 DarkLevel dark_level(std::span<const std::uint16_t> dn) {
   if (dn.size() < 100) throw std::invalid_argument("a dark image of fewer than 100 pixels");
@@ -26,14 +53,12 @@ DarkLevel dark_level(std::span<const std::uint16_t> dn) {
   return {mean, std::sqrt(std::max(0.0, deviation * deviation - 1.0 / 12.0))};
 }
 
-std::vector<std::uint8_t> grown(std::span<const float> covered, int width, int radius_px, float least) {
+std::vector<std::uint8_t> grown(std::span<const float> covered, int width, int radius_px) {
   const int height = static_cast<int>(covered.size()) / width;
-  const auto at = [width](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-  };
+  const auto at = [width](int x, int y) { return index(x, y, width); };
   std::vector<std::uint8_t> mask(covered.size(), 0);
   const auto is_covered = [&](int x, int y) {
-    return x >= 0 && y >= 0 && x < width && y < height && covered[at(x, y)] >= least;
+    return x >= 0 && y >= 0 && x < width && y < height && covered[at(x, y)] >= kCovered;
   };
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -52,10 +77,36 @@ std::vector<std::uint8_t> grown(std::span<const float> covered, int width, int r
   return mask;
 }
 
-std::vector<std::uint8_t> TargetMask::draw(const twins::camera::Projection& lens, const Eigen::Isometry3d& T_C_B,
-                                           const twins::camera::Region& region) {
-  silhouette_.draw(lens, T_C_B.translation(), T_C_B.linear(), region, covered_);
-  return grown(covered_, region.width, kMargin_px);
+Outline outline_of(twins::camera::Silhouette& silhouette, const twins::camera::Projection& lens,
+                   const Eigen::Isometry3d& T_C_B, const twins::camera::Region& region) {
+  std::vector<float> sharp;
+  silhouette.draw(lens, T_C_B.translation(), T_C_B.linear(), region, sharp);
+  return {region.width, blurred(sharp, region.width), grown(sharp, region.width, Outline::kMargin_px)};
+}
+
+void subtract_background(const Outline& outline, const DarkLevel& dark, std::span<std::uint16_t> dn) {
+  if (outline.mask.size() != dn.size()) throw std::invalid_argument("an outline of another size than the image");
+  // Beyond what the lens scatters of the target, and near enough to be the same wall.
+  constexpr int kNearest_px = 4, kFarthest_px = 9;
+  const int width = outline.width, height = static_cast<int>(dn.size()) / width;
+  const std::vector<std::uint8_t> near = grown(outline.covered, width, kNearest_px);
+  const std::vector<std::uint16_t> taken(dn.begin(), dn.end());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const std::size_t at = index(x, y, width);
+      const float open = 1.0F - outline.covered[at];
+      if (outline.mask[at] == 0 || open < 0.01F) continue;
+      double sum = 0.0, count = 0.0;
+      for (int v = std::max(0, y - kFarthest_px); v <= std::min(height - 1, y + kFarthest_px); ++v)
+        for (int u = std::max(0, x - kFarthest_px); u <= std::min(width - 1, x + kFarthest_px); ++u)
+          if (near[index(u, v, width)] == 0) {
+            sum += taken[index(u, v, width)];
+            count += 1.0;
+          }
+      if (count == 0.0) continue;  // in a corner between two parts of the target, which hide the wall
+      const double wall_dn = std::max(0.0, sum / count - dark.offset_dn);
+      dn[at] = static_cast<std::uint16_t>(std::max(0L, std::lround(taken[at] - static_cast<double>(open) * wall_dn)));
+    }
 }
 
 void replace_background(std::span<const std::uint8_t> mask, const DarkLevel& dark, std::uint64_t key,

@@ -35,7 +35,7 @@ class ImageFinish {
 
   twins::camera::CameraSettings camera_;
   twins::camera::Optics lens_;
-  TargetMask mask_;
+  twins::camera::Silhouette silhouette_;
   ExpectedLight expected_;
   DarkLevel dark_;
   std::uint64_t key_;

@@ -125,20 +125,25 @@ void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_
   // Of each arm by itself, when it is asked for first.
   struct Judged {
     ArmCapsules bodies;
-    std::uint32_t hidden = 0;
+    std::uint32_t hidden = 0, shaded = 0;
     bool is_known = false, is_free = false;
   };
   std::array<Judged, kBranches> camera_judged, target_judged;
   const OrientedBox hull = bodies_.hull_at(T_L_T);
   const Vector3 eye = T_L_C.translation();
   const std::vector<Vector3> points = bodies_.points_at(T_L_T, points_body_);
+  const Vector3 towards_lamp = Lamp::direction(lamp_rad);
+  const std::vector<Vector3> lit =
+      search.is_sun_free ? std::vector<Vector3>() : BenchBodies::lit_points(hull, towards_lamp);
   const auto of_camera_arm = [&](std::size_t k) -> const Judged& {
     Judged& judged = camera_judged[k];
     if (judged.is_known) return judged;
     judged.is_known = true;
     judged.bodies = bodies_.camera_arm_at(of_camera.all[k].joints_rad, carriage_m);
     judged.is_free = bodies_.is_camera_arm_free(judged.bodies);
-    if (judged.is_free) judged.hidden = BenchBodies::hidden_by_camera_arm(judged.bodies, eye, points);
+    if (!judged.is_free) return judged;
+    judged.hidden = BenchBodies::hidden_by_camera_arm(judged.bodies, eye, points);
+    judged.shaded = bodies_.shaded_by(judged.bodies, towards_lamp, lit);
     return judged;
   };
   const auto of_target_arm = [&](std::size_t k) -> const Judged& {
@@ -147,7 +152,9 @@ void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_
     judged.is_known = true;
     judged.bodies = bodies_.target_arm_at(of_target.all[k].joints_rad);
     judged.is_free = bodies_.is_target_arm_free(judged.bodies, hull);
-    if (judged.is_free) judged.hidden = BenchBodies::hidden_by_target_arm(judged.bodies, eye, points);
+    if (!judged.is_free) return judged;
+    judged.hidden = BenchBodies::hidden_by_target_arm(judged.bodies, eye, points);
+    judged.shaded = bodies_.shaded_by(judged.bodies, towards_lamp, lit);
     return judged;
   };
   // The best of this trial only: its neighbours differ little.
@@ -167,6 +174,7 @@ void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_
                           lamp_rad,
                           sun_error_rad,
                           0,
+                          0,
                           std::max(arms_s, lamp_s),
                           0.0};
       placement.cost_s = placement.move_s + camera.penalty_s + target.penalty_s + earth_s;
@@ -177,7 +185,8 @@ void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_
         continue;
       }
       placement.hidden = std::popcount(camera_arm.hidden | target_arm.hidden);
-      placement.cost_s += settings_.hidden_cost_s * placement.hidden;
+      placement.shaded = std::popcount(camera_arm.shaded | target_arm.shaded);
+      placement.cost_s += settings_.hidden_cost_s * placement.hidden + settings_.shaded_cost_s * placement.shaded;
       if (placement.hidden > settings_.max_hidden) {
         hides = true;
         continue;

@@ -38,7 +38,8 @@ std::variant<Place, NoPlace> ArmPlanner::place(const Scene& scene, const Posture
   if (const auto* const none = std::get_if<NoPlacement>(&found)) return NoPlace{none->reason};
   const auto& placement = std::get<Placement>(found);
   lamp_rad_ = placement.lamp_azimuth_rad;
-  return Place{placement.posture, placement.lamp_azimuth_rad, placement.sun_error_rad, placement.hidden};
+  return Place{placement.posture, placement.lamp_azimuth_rad, placement.sun_error_rad, placement.hidden,
+               placement.shaded};
 }
 
 std::variant<Motion, NoPlace> ArmPlanner::path(const Posture& from, const Posture& to) {

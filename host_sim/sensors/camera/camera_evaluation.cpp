@@ -9,6 +9,7 @@
 #include "host_sim/sensors/camera/image_rows.h"
 #include "host_sim/sensors/camera/image_truth.h"
 #include "host_sim/sensors/camera/kept_truth.h"
+#include "host_sim/sensors/camera/known_camera.h"
 #include "host_sim/sensors/camera/pose_gallery.h"
 #include "host_sim/sensors/camera/pose_truth.h"
 
@@ -44,6 +45,7 @@ class CameraEvaluation final : public Evaluation {
   CameraEvaluation(const CameraSensor& camera, const EvaluationContext& context)
       : context_(context),
         record_(context.record),
+        known_camera_(known_camera(camera, context.mission, mission::data_directory()).sensor),
         gallery_(context.mission, context.servicer, twin_of_testbed_camera(context.mission, context.servicer)),
         pose_gallery_(context.mission, context.servicer) {
     if (camera.use == CameraNavigation::kPose)
@@ -75,7 +77,7 @@ class CameraEvaluation final : public Evaluation {
     const telemetry_objects* const objects =
         told.objects && told.objects->image == told.image->image ? &*told.objects : nullptr;
     const auto truth = kept_truth_.take(told.exposure);
-    if (truth) add_truth(row, *told.image, objects, context_.mission, context_.servicer, *truth);
+    if (truth) add_truth(row, *told.image, objects, known_camera_, context_.mission, context_.servicer, *truth);
     if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
     if (objects != nullptr) append_objects(row.time_s, *objects, record_.tables.rows<ObjectRow>());
     record_.tables.rows<ImageRow>().push_back(row);
@@ -89,14 +91,15 @@ class CameraEvaluation final : public Evaluation {
     append_keypoints(row.time_s, *told.pose, record_.tables.rows<KeypointRow>());
     const auto truth = kept_truth_.take(told.exposure);
     if (truth && known_target_)
-      add_truth(row, record_.tables.rows<KeypointRow>(), *told.pose, known_target_->keypoints_body_m, context_.mission,
-                context_.servicer, *truth);
+      add_truth(row, record_.tables.rows<KeypointRow>(), *told.pose, known_target_->keypoints_body_m, known_camera_,
+                context_.mission, context_.servicer, *truth);
     record_.tables.rows<PoseRow>().push_back(row);
     pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
   }
 
   EvaluationContext context_;
   report::RunRecord& record_;
+  CameraSensor known_camera_;
   KeptTruth kept_truth_;
   std::optional<pose_configuration> known_target_;  ///< as telecommanded, with navigation by the pose network
   GalleryKeeper gallery_;

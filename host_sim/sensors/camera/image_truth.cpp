@@ -80,25 +80,24 @@ void add_attitude_error(ImageRow& row, const Quaterniond& q_eci_camera, const Qu
 }  // namespace
 
 void add_truth(ImageRow& row, const telemetry_image& image, const telemetry_objects* objects,
-               const mission::Mission& mission, const mission::Spacecraft& servicer,
+               const CameraSensor& known, const mission::Mission& mission, const mission::Spacecraft& servicer,
                const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);
   const twins::SpacecraftTruth* const target = truth.find(servicer.observes());
-  const auto* const sensor = navigation_camera(servicer);
-  if (sensor == nullptr || own == nullptr || target == nullptr || !own->attitude) return;
-  const TrueCamera camera = true_camera(*sensor, *own);
+  if (own == nullptr || target == nullptr || !own->attitude) return;
+  const TrueCamera camera = true_camera(known, *own);
   const Vector3 los_eci = camera.towards(*target);
   row.range_m = los_eci.norm();
   const Vector3 bearing_eci = vector(image.bearing_eci);
   if (image.status == telemetry_image::kStatusBearing && bearing_eci.norm() > 0.5) {
     add_bearing_error(row, bearing_eci, los_eci, camera.q_camera_eci);
-    row.chosen = spacecraft_at(bearing_eci, camera, servicer.name, sensor->settings, truth);
+    row.chosen = spacecraft_at(bearing_eci, camera, servicer.name, known.settings, truth);
   }
   if (image.star_method != telemetry_image::kStarMethodNone) {
     const double(&q)[4] = image.q_eci_camera;
     add_attitude_error(row, {q[0], q[1], q[2], q[3]}, camera.q_camera_eci);
   }
-  const twins::camera::CameraSettings& settings = sensor->settings;
+  const twins::camera::CameraSettings& settings = known.settings;
   const auto target_px = pixel_of(settings, camera.q_camera_eci * los_eci);
   if (objects != nullptr && target_px) {
     const double tolerance_px = settings.focal_length_px() * same_object(settings, *row.range_m);

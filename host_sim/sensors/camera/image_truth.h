@@ -6,15 +6,18 @@
 
 #include "fsw/packets/messages.h"
 #include "host_sim/mission/mission.h"
+#include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/camera/camera_rows.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::sensors {
 
 /// Fills the true part of `row` (range, errors, which object and which spacecraft the choice really is, NEES) from the
-/// truth at the exposure. `servicer` must have a camera, and it and what it observes must be in the truth; without
-/// that, or without an attitude, `row` stays as it is. `objects`: of the same image, null if they were not told.
+/// truth at the exposure. `servicer` and what it observes must be in the truth; without that, or without an attitude,
+/// `row` stays as it is. `known`: the camera as the ground knows it; that of a testbed is another than the mission's.
+/// `objects`: of the same image, null if they were not told.
 void add_truth(ImageRow& row, const telemetry_image& image, const telemetry_objects* objects,
-               const mission::Mission& mission, const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
+               const CameraSensor& known, const mission::Mission& mission, const mission::Spacecraft& servicer,
+               const twins::TruthSnapshot& truth);
 
 }  // namespace vbar::sensors

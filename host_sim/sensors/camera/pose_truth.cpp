@@ -73,13 +73,12 @@ void append_keypoints(double exposure_s, const telemetry_pose& m, std::vector<Ke
 }
 
 void add_truth(PoseRow& row, std::vector<KeypointRow>& keypoints, const telemetry_pose& pose,
-               const double (&keypoints_body_m)[33], const mission::Mission& mission,
+               const double (&keypoints_body_m)[33], const CameraSensor& known, const mission::Mission& mission,
                const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);
   const twins::SpacecraftTruth* const target = truth.find(servicer.observes());
-  const auto* const settings = navigation_camera(servicer);
-  if (settings == nullptr || own == nullptr || target == nullptr || !own->attitude || !target->attitude) return;
-  const TrueCamera camera = true_camera(*settings, *own);
+  if (own == nullptr || target == nullptr || !own->attitude || !target->attitude) return;
+  const TrueCamera camera = true_camera(known, *own);
   const Vector3 position_camera = camera.q_camera_eci * camera.towards(*target);
   const Quaterniond q_camera_body = camera.q_camera_eci * target->attitude->q_body_eci.conjugate();
   row.range_m = position_camera.norm();
@@ -94,7 +93,7 @@ void add_truth(PoseRow& row, std::vector<KeypointRow>& keypoints, const telemetr
   for (int k = 0; k < kKeypoints; ++k) {
     KeypointRow& keypoint = keypoints[keypoints.size() - kKeypoints + static_cast<std::size_t>(k)];
     const Vector3 at_body = Eigen::Map<const Vector3>(keypoints_body_m + 3 * k);
-    const auto pixel = pixel_of(settings->settings, position_camera + q_camera_body * at_body);
+    const auto pixel = pixel_of(known.settings, position_camera + q_camera_body * at_body);
     if (keypoint.fate == telemetry_pose::kKeypointUnusable || !pixel) continue;
     keypoint.error_x_px = static_cast<double>(keypoint.x_px) - pixel->x();
     keypoint.error_y_px = static_cast<double>(keypoint.y_px) - pixel->y();

@@ -58,7 +58,8 @@ class ImageTruth : public testing::Test {
 
   [[nodiscard]] ImageRow row(const telemetry_objects* objects = nullptr) const {
     auto row = report::row_of<ImageRow>(image_);
-    add_truth(row, image_, objects, mission_, mission_.spacecraft[0], truth_);
+    add_truth(row, image_, objects, *navigation_camera(mission_.spacecraft[0]), mission_, mission_.spacecraft[0],
+              truth_);
     return row;
   }
 

@@ -73,7 +73,8 @@ class PoseTruth : public testing::Test {
     auto row = report::row_of<PoseRow>(pose_);
     keypoints_.clear();
     append_keypoints(100.0, pose_, keypoints_);
-    add_truth(row, keypoints_, pose_, keypoints_body_m_, mission_, mission_.spacecraft[0], truth_);
+    add_truth(row, keypoints_, pose_, keypoints_body_m_, known_, mission_, mission_.spacecraft[0],
+              truth_);
     return row;
   }
 
@@ -89,6 +90,7 @@ class PoseTruth : public testing::Test {
   const Vector3 kRate{0.01, -0.02, 0.005};
   const Quaterniond kQ{AngleAxisd(0.7, Vector3(0.6, 0.0, -0.8))};  // camera from body
   mission::Mission mission_ = sensors::parse_mission(kMission, "m.toml");
+  CameraSensor known_ = *navigation_camera(mission_.spacecraft[0]);
   twins::TruthSnapshot truth_;
   telemetry_pose pose_{};
   double keypoints_body_m_[33] = {};
@@ -167,6 +169,17 @@ TEST_F(PoseTruth, KeypointErrorsArePixelsOfTheLens) {
     EXPECT_NEAR(keypoints_[k].error_x_px.value(), k == 3 ? -0.5 : 2.0, 2e-4) << k;
     EXPECT_NEAR(keypoints_[k].error_y_px.value(), k == 3 ? 0.0 : -3.0, 2e-4) << k;
   }
+}
+
+TEST_F(PoseTruth, KeypointErrorsOfATestbedAreThoseThroughItsCalibratedLens) {
+  pose_.keypoint_fate[0] = 2;
+  static_cast<void>(row());
+  const double x = keypoints_[0].error_x_px.value(), y = keypoints_[0].error_y_px.value();
+  known_.settings.optics.principal_point_px[0] += 3.0;
+  known_.settings.optics.principal_point_px[1] -= 2.0;
+  static_cast<void>(row());
+  EXPECT_NEAR(keypoints_[0].error_x_px.value(), x - 3.0, 1e-9);
+  EXPECT_NEAR(keypoints_[0].error_y_px.value(), y + 2.0, 1e-9);
 }
 
 TEST_F(PoseTruth, AKeypointBehindTheCameraHasNoError) {

@@ -2,7 +2,9 @@
 
 #include "hil_drivers/tron/collision/bench_bodies.h"
 
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -52,6 +54,33 @@ TEST(TronBodies, TheRodHidesTheMiddleFromBehindOnly) {
   EXPECT_EQ(bodies.hidden(at, middle), 0);
   at.T_L_C.translation() = at.T_L_T.translation() - 2.0 * ahead;
   EXPECT_EQ(bodies.hidden(at, middle), 1);
+}
+
+TEST(TronBodies, LitPointsAreOfTheFacesTowardsTheLamp) {
+  OrientedBox hull;
+  hull.T_L_box.translation() = fsw::Vector3(1.0, 2.0, 3.0);
+  hull.half_m = fsw::Vector3(0.1, 0.2, 0.3);
+  const auto one = BenchBodies::lit_points(hull, -fsw::Vector3::UnitY());
+  ASSERT_EQ(one.size(), 4U);
+  for (const fsw::Vector3& point : one) {
+    EXPECT_NEAR(point.y(), 1.8, 1e-12);
+    EXPECT_NEAR(std::abs(point.x() - 1.0), 0.07, 1e-12);
+    EXPECT_NEAR(std::abs(point.z() - 3.0), 0.21, 1e-12);
+  }
+  EXPECT_EQ(BenchBodies::lit_points(hull, fsw::Vector3(0.6, 0.0, -0.8)).size(), 8U);
+  EXPECT_EQ(BenchBodies::lit_points(hull, fsw::Vector3(1.0, 1.0, 1.0).normalized()).size(), 12U);
+}
+
+// Light along the rod: from behind, wrist and forearm stand before the face that the rod holds.
+TEST(TronBodies, AnArmShadesWhatItStandsBefore) {
+  const BenchBodies bodies(bench());
+  const Bodies at = bodies.at(home());
+  const fsw::Vector3 ahead = at.T_L_T.linear().col(2);
+  EXPECT_EQ(bodies.shaded(at, ahead), 0);
+  const fsw::Vector3 point = at.T_L_T * fsw::Vector3(0.0, 0.03, 0.0), aside = at.T_L_T * fsw::Vector3(0.0, 0.12, 0.0);
+  EXPECT_EQ(bodies.shaded_by(at.target_arm, -ahead, std::vector{point, aside, point}), 0b101U);
+  EXPECT_EQ(bodies.shaded_by(at.target_arm, ahead, std::vector{point}), 0U);
+  EXPECT_EQ(bodies.shaded_by(at.camera_arm, -ahead, std::vector{point}), 0U);
 }
 
 TEST(TronBodies, ThePointsAreElevenKeypointsAndTheMiddle) {

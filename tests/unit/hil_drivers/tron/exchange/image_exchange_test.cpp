@@ -33,6 +33,7 @@ struct FakeBench final : MotionPlanner, LightPlanner, Laboratory {
     found.posture.carriage_m = 4.0;
     found.lamp_azimuth_rad = lamp_azimuth_rad;
     found.hidden = 2;
+    found.shaded = 1;
     return found;
   }
   std::variant<Motion, NoPlace> path(const Posture& /*from*/, const Posture& to) override {
@@ -137,6 +138,7 @@ TEST_F(TronExchange, TakesAnImageAtTheCommandedPose) {
   EXPECT_EQ(row_.pose_source, "fused");
   EXPECT_EQ(row_.moves, 1);
   EXPECT_EQ(row_.hidden, 2);
+  EXPECT_EQ(row_.shaded, 1);
   EXPECT_EQ(row_.tries, 2);
   EXPECT_EQ(row_.packets_resent, 3);
   EXPECT_NEAR(row_.pose_error_mm.value(), 0.0, 1e-6);

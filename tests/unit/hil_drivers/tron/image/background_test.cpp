@@ -61,25 +61,66 @@ TEST(TronBackground, NoiseIsThatOfTheDarkImage) {
   EXPECT_THROW(replace_background(mask, {64.0, 3.0}, 7, 5, 4095, dn), std::invalid_argument);
 }
 
-/// A square of 1 m at 10 m, and a lens of 100 px a radian: 10 px, and 4 more on each side.
-TEST(TronBackground, MaskOfASquare) {
-  twins::camera::CameraSettings camera;
-  camera.optics.focal_length_mm = 10.0;
-  camera.optics.principal_point_px = {49.5, 49.5};
-  camera.detector = {.width = 100, .height = 100, .pixel_pitch_um = 100.0};
-  camera.region = {0, 0, 100, 100};
-  const fsw::Vector3 a(-0.5, -0.5, 0.0), b(0.5, -0.5, 0.0), c(0.5, 0.5, 0.0), d(-0.5, 0.5, 0.0);
-  const std::array<fsw::Vector3, 3> flat{fsw::Vector3::Zero(), fsw::Vector3::Zero(), fsw::Vector3::Zero()};
-  const auto model =
-      twins::camera::make_cad_model("square", {{{a, b, c}, flat, 0}, {{a, c, d}, flat, 0}}, {{.name = "white"}});
-  TargetMask mask(model);
-  Eigen::Isometry3d T_C_B = Eigen::Isometry3d::Identity();
-  T_C_B.translation().z() = 10.0;
-  const auto drawn = mask.draw(twins::camera::Optics(camera), T_C_B, camera.region);
+/// A square of 1 m at 10 m, and a lens of 100 px a radian: 10 px from 44.5 to 54.5, and one more on each side.
+class TronOutline : public testing::Test {
+ protected:
+  TronOutline() {
+    camera_.optics.focal_length_mm = 10.0;
+    camera_.optics.principal_point_px = {49.5, 49.5};
+    camera_.detector = {.width = 100, .height = 100, .pixel_pitch_um = 100.0};
+    camera_.region = {0, 0, 100, 100};
+    const fsw::Vector3 a(-0.5, -0.5, 0.0), b(0.5, -0.5, 0.0), c(0.5, 0.5, 0.0), d(-0.5, 0.5, 0.0);
+    const std::array<fsw::Vector3, 3> flat{fsw::Vector3::Zero(), fsw::Vector3::Zero(), fsw::Vector3::Zero()};
+    twins::camera::Silhouette square(
+        twins::camera::make_cad_model("square", {{{a, b, c}, flat, 0}, {{a, c, d}, flat, 0}}, {{.name = "white"}}));
+    Eigen::Isometry3d T_C_B = Eigen::Isometry3d::Identity();
+    T_C_B.translation().z() = 10.0;
+    outline_ = outline_of(square, twins::camera::Optics(camera_), T_C_B, camera_.region);
+  }
+
+  [[nodiscard]] static std::size_t at(int x, int y) { return static_cast<std::size_t>(100 * y + x); }
+
+  twins::camera::CameraSettings camera_;
+  Outline outline_;
+};
+
+TEST_F(TronOutline, MaskOfASquare) {
   int row = 0;
-  for (std::size_t x = 0; x < 100; ++x) row += drawn[50 * 100 + x];
-  EXPECT_EQ(row, 18);
-  EXPECT_EQ(drawn[10 * 100 + 50], 0);
+  for (int x = 0; x < 100; ++x) row += outline_.mask[at(x, 50)];
+  EXPECT_EQ(row, 12);
+  EXPECT_EQ(outline_.mask[at(50, 10)], 0);
+  EXPECT_NEAR(outline_.covered[at(50, 50)], 1.0, 1e-6);
+  EXPECT_NEAR(outline_.covered[at(45, 50)], 0.75, 1e-6);  // the edge of the square is that of this pixel
+  EXPECT_NEAR(outline_.covered[at(44, 50)], 0.25, 1e-6);
+  EXPECT_EQ(outline_.covered[at(42, 50)], 0.0F);
+}
+
+// Each pixel is the mixture of target and wall that the lens makes of it; the wall is brighter to the right.
+TEST_F(TronOutline, TheWallIsSubtractedFromTheMargin) {
+  const DarkLevel dark{64.0, 2.0};
+  std::vector<std::uint16_t> dn(outline_.covered.size());
+  const auto wall = [](int x) { return 40.0 + 2.0 * x; };
+  for (int y = 0; y < 100; ++y)
+    for (int x = 0; x < 100; ++x) {
+      const double share = outline_.covered[at(x, y)];
+      dn[at(x, y)] = static_cast<std::uint16_t>(std::lround(64.0 + share * 1000.0 + (1.0 - share) * wall(x)));
+    }
+  const std::vector<std::uint16_t> before = dn;
+  subtract_background(outline_, dark, dn);
+  for (int y = 0; y < 100; ++y)
+    for (int x = 0; x < 100; ++x)
+      if (outline_.mask[at(x, y)] != 0)
+        EXPECT_NEAR(dn[at(x, y)], 64.0 + outline_.covered[at(x, y)] * 1000.0, 10.0) << x << ' ' << y;
+      else
+        EXPECT_EQ(dn[at(x, y)], before[at(x, y)]);
+  dn.pop_back();
+  EXPECT_THROW(subtract_background(outline_, dark, dn), std::invalid_argument);
+}
+
+TEST_F(TronOutline, ABackgroundDarkerThanADarkImageIsNotAdded) {
+  std::vector<std::uint16_t> dn(outline_.covered.size(), 60);
+  subtract_background(outline_, {64.0, 2.0}, dn);
+  EXPECT_EQ(dn, std::vector<std::uint16_t>(dn.size(), 60));
 }
 
 }  // namespace

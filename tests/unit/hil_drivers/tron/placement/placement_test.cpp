@@ -50,7 +50,7 @@ TEST(TronPlacement, ShowsTheSceneWithinAllLimits) {
   const Bench bench;
   const PlacementSearch search = bench.search();
   Posture at = bench.home();
-  int found_count = 0;
+  int found_count = 0, shaded_count = 0;
   for (int n = 0; n < 20; ++n) {
     const Scene wanted = scene((60.0 + 3.0 * n) * kDegree, 0.08 * n);
     const auto found = search.find(wanted, at, n);
@@ -73,12 +73,15 @@ TEST(TronPlacement, ShowsTheSceneWithinAllLimits) {
     EXPECT_EQ(bench.bodies.collision(bodies), "");
     EXPECT_EQ(placement.hidden, bench.bodies.hidden(bodies, bench.bodies.points_to_see(tests::source_path("data"))));
     EXPECT_LE(placement.hidden, 3);
+    EXPECT_EQ(placement.shaded, bench.bodies.shaded(bodies, Lamp::direction(placement.lamp_azimuth_rad)));
+    shaded_count += placement.shaded;
     const auto path = bench.paths.plan(at, placement.posture);
     ASSERT_TRUE(std::holds_alternative<Path>(path)) << std::get<NoPath>(path).reason;
     EXPECT_NEAR(std::get<Path>(path).cycles() * bench.file.motion.cycle_s, placement.move_s, 0.0081);
     at = placement.posture;
   }
   EXPECT_GE(found_count, 18);
+  EXPECT_LE(shaded_count, found_count) << "of twelve points an image: a shadow costs as much as a second";
 }
 
 TEST(TronPlacement, IsTheSameForTheSameInput) {
