@@ -1,5 +1,6 @@
 #include "hil_drivers/tron/image/image_finish.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "hil_drivers/tron/image/binning.h"
@@ -16,18 +17,23 @@ std::vector<std::uint16_t> ImageFinish::binned(const std::vector<std::uint16_t>&
 
 FinishedImage ImageFinish::finish(const std::vector<std::uint16_t>& frame, std::int64_t image,
                                   const Eigen::Isometry3d& T_C_B, const std::optional<TargetLight>& light) {
-  FinishedImage finished{binned(frame), std::nullopt};
+  FinishedImage finished;
+  finished.dn = binned(frame);
   std::vector<std::uint8_t> mask(finished.dn.size(), 0);
   if (light) {
     Outline outline = outline_of(silhouette_, lens_, T_C_B, camera_.region);
     subtract_background(outline, dark_, finished.dn);
     mask = std::move(outline.mask);
-    const double predicted = expected_.electrons(T_C_B, *light, camera_);
+    TargetLight sunlight = *light, earth_light = *light;
+    sunlight.earth_photons_per_m2_s = earth_light.sun_photons_per_m2_s = 0.0;
+    const double of_sun = expected_.electrons(T_C_B, sunlight, camera_);
+    const double of_earth = expected_.electrons(T_C_B, earth_light, camera_);
+    const double measured =
+        measured_electrons(finished.dn, mask, dark_.offset_dn, camera_.detector.gain_dn_per_electron);
     // Of fewer electrons the noise of the mask's pixels decides.
     constexpr double kLeast = 1e5;
-    if (predicted > kLeast)
-      finished.light_level =
-          measured_electrons(finished.dn, mask, dark_.offset_dn, camera_.detector.gain_dn_per_electron) / predicted;
+    if (of_sun + of_earth > kLeast) finished.light_level = measured / (of_sun + of_earth);
+    if (of_sun > std::max(kLeast, of_earth)) finished.sunlight_level = (measured - of_earth) / of_sun;
   }
   const auto full_scale = static_cast<std::uint16_t>((1U << static_cast<unsigned>(camera_.detector.bits)) - 1U);
   replace_background(mask, dark_, key_, image, full_scale, finished.dn);

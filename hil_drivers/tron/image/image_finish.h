@@ -15,6 +15,9 @@ namespace vbar::tron {
 struct FinishedImage {
   std::vector<std::uint16_t> dn;
   std::optional<double> light_level;  ///< of the target, relative to the prediction; none of an unlit one
+  /// What is left without the light predicted of the Earth, relative to the prediction of sunlight; none where that is
+  /// faint.
+  std::optional<double> sunlight_level;
 };
 
 class ImageFinish {

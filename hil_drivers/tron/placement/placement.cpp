@@ -246,9 +246,11 @@ void PlacementSearch::judge(const Trial& trial, Search& search) const {
   if (!is_lit) ++search.counts.beyond_lamp;
 }
 
-std::variant<Placement, NoPlacement> PlacementSearch::chosen(Search& search) const {
+std::variant<Placement, NoPlacement> PlacementSearch::chosen(Search& search,
+                                                                 const PlacementFilter& is_taken) const {
+  const auto is_good = [&](const Placement& placement) { return !is_taken || is_taken(placement.posture); };
   for (const auto& [placement, trial] : search.best)
-    if (paths_.is_straight_free(search.from, placement.posture)) return placement;
+    if (paths_.is_straight_free(search.from, placement.posture) && is_good(placement)) return placement;
   // Otherwise over a retracted posture.
   std::optional<Placement> found;
   double found_cost_s = kInfinity;
@@ -257,7 +259,7 @@ std::variant<Placement, NoPlacement> PlacementSearch::chosen(Search& search) con
     if (const Path* free = std::get_if<Path>(&path)) {
       const double move_s = free->cycles() * bench_.motion.cycle_s;
       const double cost_s = placement.cost_s - placement.move_s + move_s;
-      if (cost_s >= found_cost_s) continue;
+      if (cost_s >= found_cost_s || !is_good(placement)) continue;
       found_cost_s = cost_s;
       found = placement;
       found->move_s = move_s;
@@ -285,7 +287,8 @@ std::variant<Placement, NoPlacement> PlacementSearch::chosen(Search& search) con
 }
 
 std::variant<Placement, NoPlacement> PlacementSearch::find(const Scene& scene, const Posture& from, std::int64_t number,
-                                                           std::optional<double> lamp_rad) const {
+                                                           std::optional<double> lamp_rad,
+                                                           const PlacementFilter& is_taken) const {
   if (!is_usable(scene, from)) return NoPlacement{"the scene or the posture is not valid"};
   const Vector3 p_C = scene.T_C_T.translation();
   const double phase_rad = angle_between(-p_C, scene.sun_C);
@@ -347,7 +350,7 @@ std::variant<Placement, NoPlacement> PlacementSearch::find(const Scene& scene, c
       judge(near(search.best.front().second, kRefinement), search);
     }
   }
-  return chosen(search);
+  return chosen(search, is_taken);
 }
 
 }  // namespace vbar::tron

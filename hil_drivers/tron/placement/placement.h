@@ -48,6 +48,9 @@ struct PlacementSettings {
 using EarthLightCost =
     std::function<double(const Scene&, const Eigen::Isometry3d& T_L_C, const Eigen::Isometry3d& T_L_T)>;
 
+/// Whether a placement is taken; for instance whether the arms as calibrated reach it.
+using PlacementFilter = std::function<bool(const Posture&)>;
+
 class PlacementSearch {
  public:
   /// `bodies` and `paths` must outlive it. `points_body`: to be seen, full-scale body frame.
@@ -55,9 +58,10 @@ class PlacementSearch {
                   std::vector<fsw::Vector3> points_body, const PlacementSettings& settings, EarthLightCost earth = {});
 
   /// Free of collisions, with a free path from `from`. The same scene, posture, lamp and number give the same result.
-  /// `lamp_rad`: where the lamp is; none: its travel costs nothing.
+  /// `lamp_rad`: where the lamp is; none: its travel costs nothing. `is_taken`: asked last, of few.
   [[nodiscard]] std::variant<Placement, NoPlacement> find(const Scene& scene, const Posture& from, std::int64_t number,
-                                                          std::optional<double> lamp_rad = std::nullopt) const;
+                                                          std::optional<double> lamp_rad = std::nullopt,
+                                                          const PlacementFilter& is_taken = {}) const;
 
  private:
   struct Trial;
@@ -65,7 +69,7 @@ class PlacementSearch {
   void judge(const Trial& trial, Search& search) const;
   void judge_pose(const Trial& trial, const Eigen::Isometry3d& T_L_C, const Eigen::Isometry3d& T_L_T, double lamp_rad,
                   double sun_error_rad, Search& search) const;
-  [[nodiscard]] std::variant<Placement, NoPlacement> chosen(Search& search) const;
+  [[nodiscard]] std::variant<Placement, NoPlacement> chosen(Search& search, const PlacementFilter& is_taken) const;
 
   BenchFile bench_;
   const BenchBodies& bodies_;

@@ -34,7 +34,12 @@ Scene ArmPlanner::on_designed_mounts(const Scene& scene) const {
 }
 
 std::variant<Place, NoPlace> ArmPlanner::place(const Scene& scene, const Posture& from, std::int64_t image) {
-  const auto found = search_.find(on_designed_mounts(scene), from, image, lamp_rad_);
+  // Some millimetres from a free posture the calibrated one may be too near a wall.
+  const auto is_reached = [&](const Posture& posture) {
+    const auto calibrated = corrected(posture, scene.T_C_T);
+    return calibrated && std::holds_alternative<Path>(paths_.plan(from, *calibrated));
+  };
+  const auto found = search_.find(on_designed_mounts(scene), from, image, lamp_rad_, is_reached);
   if (const auto* const none = std::get_if<NoPlacement>(&found)) return NoPlace{none->reason};
   const auto& placement = std::get<Placement>(found);
   lamp_rad_ = placement.lamp_azimuth_rad;

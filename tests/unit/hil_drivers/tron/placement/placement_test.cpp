@@ -84,6 +84,21 @@ TEST(TronPlacement, ShowsTheSceneWithinAllLimits) {
   EXPECT_LE(shaded_count, found_count) << "of twelve points an image: a shadow costs as much as a second";
 }
 
+TEST(TronPlacement, TheNextBestIsTakenWhereTheBestIsRefused) {
+  const Bench bench;
+  const PlacementSearch search = bench.search();
+  const auto best = search.find(scene(1.5, 0.3), bench.home(), 7);
+  ASSERT_TRUE(std::holds_alternative<Placement>(best));
+  const Joints refused = std::get<Placement>(best).posture.camera_rad;
+  const auto next = search.find(scene(1.5, 0.3), bench.home(), 7, std::nullopt,
+                                [&](const Posture& posture) { return posture.camera_rad != refused; });
+  ASSERT_TRUE(std::holds_alternative<Placement>(next));
+  EXPECT_NE(std::get<Placement>(next).posture.camera_rad, refused);
+  EXPECT_GE(std::get<Placement>(next).cost_s, std::get<Placement>(best).cost_s);
+  const auto none = search.find(scene(1.5, 0.3), bench.home(), 7, std::nullopt, [](const Posture&) { return false; });
+  EXPECT_TRUE(std::holds_alternative<NoPlacement>(none));
+}
+
 TEST(TronPlacement, IsTheSameForTheSameInput) {
   const Bench bench;
   const PlacementSearch search = bench.search();
