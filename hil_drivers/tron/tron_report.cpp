@@ -121,7 +121,8 @@ void summarise(const RunRecord& record, report::Summary& summary) {
   const auto& rows = record.tables.rows<TronRow>();
   if (rows.empty()) return;
   TestbedFigures& figures = summary.testbeds[kName];
-  double failed = 0.0, lit = 0.0, hidden = 0.0, shaded = 0.0, corrected = 0.0, arms_alone = 0.0, retried = 0.0, resent = 0.0;
+  double failed = 0.0, lit = 0.0, hidden = 0.0, shaded = 0.0, corrected = 0.0, arms_alone = 0.0, retried = 0.0,
+         resent = 0.0;
   std::vector<double> bench_s;
   for (const TronRow& row : rows) {
     failed += is_taken(row) ? 0.0 : 1.0;

@@ -100,8 +100,7 @@ void ReceiverPort::set_rate() {
   for (int attempt = 0; attempt < patience_.attempts; ++attempt) {
     if (attempt == 0 || answers_at(found)) {
       const auto answer = ask(text, milliseconds(300));
-      if (answer && !answer->is_accepted)
-        refuse(fmt::format("command \"{}\" was refused: \"{}\"", text, answer->text));
+      if (answer && !answer->is_accepted) refuse(fmt::format("command \"{}\" was refused: \"{}\"", text, answer->text));
     }
     if (answers_at(configuration_.baud)) return;
   }

@@ -70,7 +70,8 @@ class BenchBodies {
                                                           std::span<const fsw::Vector3> points_L);
   [[nodiscard]] static std::uint32_t hidden_by_target_arm(const ArmCapsules& arm, const fsw::Vector3& eye,
                                                           std::span<const fsw::Vector3> points_L);
-  /// One bit a point, L: whether an arm's shadow falls on it. Its light comes from the lamp in direction `towards_lamp`.
+  /// One bit a point, L: whether an arm's shadow falls on it. Its light comes from the lamp in direction
+  /// `towards_lamp`.
   [[nodiscard]] std::uint32_t shaded_by(const ArmCapsules& arm, const fsw::Vector3& towards_lamp,
                                         std::span<const fsw::Vector3> points_L) const;
   /// Four points of each face of the hull that the lamp lights, L.

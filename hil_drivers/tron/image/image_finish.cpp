@@ -9,7 +9,12 @@ namespace vbar::tron {
 
 ImageFinish::ImageFinish(const twins::camera::CameraSettings& camera, const twins::camera::CadModel& model,
                          const std::vector<std::uint16_t>& dark, std::uint64_t key)
-    : camera_(camera), lens_(camera), silhouette_(model), expected_(model), dark_(dark_level(binned(dark))), key_(key) {}
+    : camera_(camera),
+      lens_(camera),
+      silhouette_(model),
+      expected_(model),
+      dark_(dark_level(binned(dark))),
+      key_(key) {}
 
 std::vector<std::uint16_t> ImageFinish::binned(const std::vector<std::uint16_t>& frame) const {
   return binned_by_two(frame, 2 * camera_.region.width, 2 * camera_.region.height);

@@ -246,8 +246,7 @@ void PlacementSearch::judge(const Trial& trial, Search& search) const {
   if (!is_lit) ++search.counts.beyond_lamp;
 }
 
-std::variant<Placement, NoPlacement> PlacementSearch::chosen(Search& search,
-                                                                 const PlacementFilter& is_taken) const {
+std::variant<Placement, NoPlacement> PlacementSearch::chosen(Search& search, const PlacementFilter& is_taken) const {
   const auto is_good = [&](const Placement& placement) { return !is_taken || is_taken(placement.posture); };
   for (const auto& [placement, trial] : search.best)
     if (paths_.is_straight_free(search.from, placement.posture) && is_good(placement)) return placement;

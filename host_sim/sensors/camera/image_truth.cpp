@@ -79,8 +79,8 @@ void add_attitude_error(ImageRow& row, const Quaterniond& q_eci_camera, const Qu
 
 }  // namespace
 
-void add_truth(ImageRow& row, const telemetry_image& image, const telemetry_objects* objects,
-               const CameraSensor& known, const mission::Mission& mission, const mission::Spacecraft& servicer,
+void add_truth(ImageRow& row, const telemetry_image& image, const telemetry_objects* objects, const CameraSensor& known,
+               const mission::Mission& mission, const mission::Spacecraft& servicer,
                const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);
   const twins::SpacecraftTruth* const target = truth.find(servicer.observes());

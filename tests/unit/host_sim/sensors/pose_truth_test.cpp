@@ -73,8 +73,7 @@ class PoseTruth : public testing::Test {
     auto row = report::row_of<PoseRow>(pose_);
     keypoints_.clear();
     append_keypoints(100.0, pose_, keypoints_);
-    add_truth(row, keypoints_, pose_, keypoints_body_m_, known_, mission_, mission_.spacecraft[0],
-              truth_);
+    add_truth(row, keypoints_, pose_, keypoints_body_m_, known_, mission_, mission_.spacecraft[0], truth_);
     return row;
   }
 
