@@ -136,6 +136,7 @@ void TronRun::open_devices() {
     process_.emplace(settings_.bench + laboratory_->port_options(), context_.mission.seed, data);
     addresses = read_addresses(process_->addresses_file());
   }
+  clock_ = addresses.is_virtual ? "virtual" : "real";
   if (!settings_.camera_address.empty()) addresses.camera = settings_.camera_address;
   if (!settings_.camera_robot_address.empty()) addresses.camera_robot.host = settings_.camera_robot_address;
   if (!settings_.target_robot_address.empty()) addresses.target_robot.host = settings_.target_robot_address;
@@ -261,6 +262,7 @@ void TronRun::finish() noexcept {
   if (record_ == nullptr) return;
   try {
     RunFigures figures;
+    figures.clock = clock_;
     figures.files = {laboratory_file_, calibration_file_};
     if (laboratory_) {
       figures.is_emulated = laboratory_->camera_is_emulated();

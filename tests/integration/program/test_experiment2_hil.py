@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Experiment 2 through TRON (emulated bench): flight, record, replay, faults."""
 import csv
+import json
 import os
 import pathlib
 import signal
+import subprocess
 import time
 import unittest
 
@@ -44,6 +46,7 @@ class Experiment2Hil(unittest.TestCase):
     def test_every_image_is_one_of_the_bench(self):
         bench = self.summary["tron"]
         self.assertEqual(bench["bench"], "emulated")
+        self.assertEqual(bench["clock"], "virtual")
         self.assertGreaterEqual(bench["images"], IMAGES)
         self.assertEqual(len(self.rows()), bench["images"])
         self.assertEqual(bench["images_not_taken"], 0)
@@ -91,6 +94,43 @@ class Experiment2Hil(unittest.TestCase):
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("none.toml", result.stderr)
         self.assertFalse((self.folder / "none").exists())
+
+    def test_faults_are_survived_and_counted(self):
+        """An emergency stop and an end of RSI during moves, a hidden object, a dark lamp, a frame that is an older one."""
+        faults = self.folder / "faults.jsonl"
+        faults.write_text("\n".join(json.dumps(fault) for fault in (
+            {"kind": "emergency_stop", "robot": "camera", "at_image": 2, "after_cycles": 40, "duration_s": 0.5},
+            {"kind": "vicon_hidden", "object": "target", "at_image": 5, "images": 2},
+            {"kind": "lamp_out", "at_image": 8, "images": 1},
+            {"kind": "frames_stale", "at_image": 10, "count": 1},
+            {"kind": "rsi_dropped", "robot": "target", "at_image": 11, "after_cycles": 40})) + "\n")
+        folder = self.folder / "faults"
+        summary = fly(folder, "mission.duration_h=0.024", f'testbed.tron.bench="{BENCH} --faults {faults}"', *self.settings,
+                      mission=MISSION, timeout=500)
+        bench = summary["tron"]
+        self.assertTrue(summary["complete"])
+        self.assertEqual(bench["robot_interruptions"], 2)
+        self.assertEqual(bench["rsi_restarts"], 2)
+        self.assertEqual(bench["poses_by_arms_alone"], 2)
+        self.assertEqual(bench["images_not_taken"], 1)
+        self.assertEqual(bench["images_retried"], 1)
+        with (folder / "tron.csv").open() as file:
+            failures = {row["image"]: row["failure"] for row in csv.DictReader(file) if row["failure"]}
+        self.assertEqual(failures, {"7": "the lamp is dark"})
+        self.assertLess(bench["pose_error_95_mm"], 3.0)
+
+    def test_calibration_is_checked_over_the_wires(self):
+        def check(seed):
+            return subprocess.run([BINARY / "vbar_tron", "check", SOURCE / "data" / "benches" / "tron.toml", "--seed", str(seed),
+                                   "--poses", "5", "--bench", BENCH, "--calibration", CALIBRATION], capture_output=True, text=True,
+                                  timeout=300, check=False)
+
+        result = check(1)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertIn("the calibration is valid", result.stdout)
+        other = check(2)
+        self.assertEqual(other.returncode, 3, other.stdout + other.stderr)
+        self.assertIn("not valid any more", other.stderr)
 
     def test_bench_that_dies_ends_the_run(self):
         folder = self.folder / "dies"
