@@ -58,7 +58,7 @@ class TronRun final : public testbeds::TestbedRun, public std::enable_shared_fro
   std::optional<testbeds::CameraPlan> plan_;
   twins::camera::CameraSettings camera_;  ///< as calibrated
   double exposure_s_ = 0.0;               ///< in the laboratory
-  std::string clock_;  ///< of the bench
+  std::string clock_;                     ///< of the bench
 
   std::optional<bench_process::BenchProcess> process_;
   std::unique_ptr<WiredLaboratory> laboratory_;

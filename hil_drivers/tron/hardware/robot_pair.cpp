@@ -21,6 +21,8 @@ constexpr int kVirtualPatience = 20;
 /// Cycles between two looks at the states of Ethernet KRL: the notice of a stop takes so long at most.
 constexpr std::uint64_t kLookEvery = 5;
 constexpr auto kPollInterval = std::chrono::milliseconds(20);
+/// Of RSI, while an arm comes to rest: a second.
+constexpr int kStartTries = 50;
 
 Posture posture_of(const rsi::AxisPositions& camera, const rsi::AxisPositions& target, double track_home_m) {
   return {camera.axes_rad, target.axes_rad, track_home_m + camera.track_m};
@@ -172,6 +174,11 @@ struct RobotPair::Parts {
     if (state.rsi_on) state = robot.eki->stop();
     if (is_stopped(state) && (state.stopped || !state.drives_powered)) state = robot.eki->reset();
     state = robot.eki->start();
+    // Refused while the axes still move, to the end of a stop.
+    for (int k = 0; k < kStartTries && !state.rsi_on; ++k) {
+      let_time_pass();
+      state = robot.eki->start();
+    }
     const std::string& name = robot.rsi.settings().name;
     if (!state.rsi_on) throw std::runtime_error(words(name, state) + "; RSI does not start");
     const auto first = robot.rsi.receive(settings.start_patience);
