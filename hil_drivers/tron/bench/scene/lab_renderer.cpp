@@ -1,5 +1,6 @@
 #include "hil_drivers/tron/bench/scene/lab_renderer.h"
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -22,6 +23,11 @@ constexpr int kMarginPx = 16;  // light from beside the region that reaches into
 camera::Region grown(const camera::Region& region) {
   const auto whole = [](int length) { return (length + 2 * kMarginPx + kCoarseStep - 1) / kCoarseStep * kCoarseStep; };
   return {region.x - kMarginPx, region.y - kMarginPx, whole(region.width), whole(region.height)};
+}
+
+/// A fifth of a mission: nothing has to be drawn.
+bool is_dark(const LabView& view) {
+  return view.lamp.power == 0.0 && std::ranges::all_of(view.box_powers, [](double power) { return power == 0.0; });
 }
 
 camera::DetectorSettings sensor_of(const camera::DetectorSettings& design, bool has_gap) {
@@ -90,6 +96,11 @@ const camera::PhotonImage& LabRenderer::expected(const LabView& view) {
   check_view(view);
   Stage& s = *stage_;
   const camera::Region& region = view.camera.region;
+  if (is_dark(view)) {
+    s.image.region = region;
+    s.image.electrons.assign(static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height), 0.0F);
+    return s.image;
+  }
   const camera::Region area = grown(region);
   const double distance_m = s.drawing.draw(view, area, s.plane);
   s.electrons_of(view, area, distance_m);

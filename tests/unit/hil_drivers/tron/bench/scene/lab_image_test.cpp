@@ -295,6 +295,22 @@ TEST(LabImage, SameBitsForTheSameView) {
   EXPECT_NE(complete().expose(view), first);  // other noise
 }
 
+// A view without light is not drawn. It is the limit of faint light, and has the same offset and noise.
+TEST(LabImage, WithoutLightThereIsNothing) {
+  LabView view = view_of(2.5, some_attitude());
+  view.box_powers.fill(0.0);
+  view.lamp.power = 1e-9;
+  const double faint = sum_of(complete().expected(view));
+  EXPECT_GT(faint, 0.0);
+  EXPECT_LT(faint, 10.0);
+  const std::vector<std::uint16_t> almost = complete().expose(view);
+  view.lamp.power = 0.0;
+  EXPECT_EQ(sum_of(complete().expected(view)), 0.0);
+  EXPECT_EQ(complete().expose(view), almost);
+  view.box_powers[3] = 1e-3;
+  EXPECT_GT(sum_of(complete().expected(view)), 0.0);
+}
+
 // Each switch alone changes the image of the target, or of the sensor.
 TEST(LabImage, EverySwitchHasItsShare) {
   const LabView view = view_of(2.5, some_attitude());
