@@ -26,14 +26,15 @@ constexpr std::array kWanted{0.6, 0.35, 0.15};
 class PatchChooser {
  public:
   PatchChooser(const BenchFile& bench, const LensCalibration& lens, const BoardDesign& board, double lamp_azimuth_rad,
-               std::uint64_t seed, const PostureFilter& filter)
+               std::uint64_t seed, const PostureFilter& filter, const SourceFlags& measured)
       : bench_(bench),
         lens_(lens),
         board_(board),
         lamp_(Lamp::direction(lamp_azimuth_rad)),
         filter_(filter),
         random_(seed, "tron/calibrate/patch"),
-        reach_(bench, kLimitMargin_rad) {
+        reach_(bench, kLimitMargin_rad),
+        covered_(measured) {
     for (const Vector3& corner : board.patch()) patch_B_ += 0.25 * corner;
   }
 
@@ -140,15 +141,15 @@ class PatchChooser {
   engine::RandomStream random_;
   Reach reach_;
   Vector3 patch_B_ = Vector3::Zero();
-  std::array<bool, kLightSources> covered_{};
+  SourceFlags covered_;
 };
 
 }  // namespace
 
 std::vector<PatchPosture> choose_patch_postures(const BenchFile& bench, const LensCalibration& lens,
                                                 const BoardDesign& board, double lamp_azimuth_rad, std::uint64_t seed,
-                                                const PostureFilter& filter) {
-  return PatchChooser(bench, lens, board, lamp_azimuth_rad, seed, filter).choose();
+                                                const PostureFilter& filter, const SourceFlags& measured) {
+  return PatchChooser(bench, lens, board, lamp_azimuth_rad, seed, filter, measured).choose();
 }
 
 }  // namespace vbar::tron::calibrate

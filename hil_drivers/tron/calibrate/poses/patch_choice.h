@@ -21,10 +21,14 @@ struct PatchPosture {
   std::vector<Light> lights;
 };
 
-/// `lamp_azimuth_rad`: where the lamp stands meanwhile. All sources are covered; throws std::runtime_error that names
-/// those for which no posture was found.
+/// One flag a source.
+using SourceFlags = std::array<bool, kLightSources>;
+
+/// `lamp_azimuth_rad`: where the lamp stands meanwhile. All sources are covered but those of `measured`; throws
+/// std::runtime_error that names those for which no posture was found.
 [[nodiscard]] std::vector<PatchPosture> choose_patch_postures(const BenchFile& bench, const LensCalibration& lens,
                                                               const BoardDesign& board, double lamp_azimuth_rad,
-                                                              std::uint64_t seed, const PostureFilter& filter = {});
+                                                              std::uint64_t seed, const PostureFilter& filter = {},
+                                                              const SourceFlags& measured = {});
 
 }  // namespace vbar::tron::calibrate

@@ -123,7 +123,7 @@ std::vector<LightSample> measure_lights(CalibrationBench& bench, const LensCalib
                                         double lamp_azimuth_rad, int levels) {
   std::vector<LightSample> samples;
   for (const PatchPosture& place : postures) {
-    if (!bench.move(place.posture)) throw std::runtime_error("no way without a collision to the white patch");
+    if (!bench.move(place.posture)) continue;
     for (const PatchPosture::Light& light : place.lights) {
       bench.light(only(light.source, 1.0, lamp_azimuth_rad));
       PatchPixels patch;
@@ -140,6 +140,13 @@ std::vector<LightSample> measure_lights(CalibrationBench& bench, const LensCalib
   }
   bench.light({});
   return samples;
+}
+
+SourceFlags measured_sources(const std::vector<LightSample>& samples) {
+  SourceFlags flags{};
+  for (std::size_t source = 0; source < kLightSources; ++source)
+    flags.at(source) = std::ranges::find(samples, light_source_name(source), &LightSample::source) != samples.end();
+  return flags;
 }
 
 double lamp_dn_per_s(const std::vector<LightSample>& samples) {

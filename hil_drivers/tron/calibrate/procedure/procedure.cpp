@@ -67,6 +67,30 @@ std::vector<Measurement> measure_all(CalibrationBench& bench, const BoardDesign&
   return measurements;
 }
 
+/// From where the last one was measured there may be no way to a posture: its sources get others.
+std::vector<LightSample> measure_all_lights(CalibrationBench& bench, const BenchFile& file, const LensCalibration& lens,
+                                            const ProcedureSettings& settings, std::vector<PatchPosture> patches,
+                                            const PostureFilter& filter, const Progress& progress) {
+  constexpr std::uint64_t kRounds = 8;
+  const BoardDesign board;
+  std::vector<LightSample> samples;
+  for (std::uint64_t round = 1;; ++round) {
+    const auto found =
+        measure_lights(bench, lens, file, board, patches, settings.lamp_azimuth_rad, settings.light_levels);
+    samples.insert(samples.end(), found.begin(), found.end());
+    const SourceFlags measured = measured_sources(samples);
+    const auto missing = std::ranges::find(measured, false);
+    if (missing == measured.end()) return samples;
+    const std::string name = light_source_name(static_cast<std::size_t>(missing - measured.begin()));
+    if (round == kRounds)
+      throw std::runtime_error(
+          fmt::format("no way without a collision to the white patch in the light of {}, in {} rounds", name, kRounds));
+    if (progress) progress(fmt::format("no way to the white patch in the light of {}: other postures are tried", name));
+    patches =
+        choose_patch_postures(file, lens, board, settings.lamp_azimuth_rad, settings.seed + round, filter, measured);
+  }
+}
+
 }  // namespace
 
 ProcedureSettings quick(ProcedureSettings settings) {
@@ -146,7 +170,7 @@ CalibrationData measure_bench(CalibrationBench& bench, const BenchFile& file, co
   data.fitted = measure_all(bench, board, fitted, "to be fitted", exposure_s, progress);
   data.judged = measure_all(bench, board, judged, "to be judged", exposure_s, progress);
   if (settings.light_levels > 0) {
-    data.lights = measure_lights(bench, lens, file, board, patches, settings.lamp_azimuth_rad, settings.light_levels);
+    data.lights = measure_all_lights(bench, file, lens, settings, patches, filter, progress);
     data.dark = measure_dark(bench, 1e-3);
     if (progress)
       progress(fmt::format("{} levels of light; camera: offset {:.2f} DN, noise {:.2f} DN", data.lights.size(),

@@ -2,6 +2,7 @@
 
 #include "hil_drivers/tron/calibrate/procedure/photometry.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -50,7 +51,7 @@ class WhiteBench final : public CalibrationBench {
  public:
   BenchIdentity identity() override { return {"model", "serial", true}; }
   void mount(Mounted) override {}
-  bool move(const Posture&) override { return true; }
+  bool move(const Posture&) override { return ++moves_ > blocked; }
   BenchPlace measure() override { return {}; }
   void light(const LightShares& shares) override { shares_ = shares; }
   BenchImage take(double exposure_s) override {
@@ -62,7 +63,10 @@ class WhiteBench final : public CalibrationBench {
     return image;
   }
 
+  int blocked = 0;  ///< of the first moves
+
  private:
+  int moves_ = 0;
   LightShares shares_;
 };
 
@@ -84,6 +88,30 @@ TEST(Photometry, MeasuresTheCurvesOfTheSources) {
     // Rounding to whole DN at some 2,000.
     EXPECT_NEAR(sample.dn_per_s, expected, (is_lamp ? 1e6 : 1e5) * 1e-3) << sample.source << sample.level;
   }
+}
+
+TEST(Photometry, SourcesThatWereNotReachedGetOtherPostures) {
+  WhiteBench bench;
+  bench.blocked = 1;
+  const BenchFile file = read_bench_file(tests::source_path("data/benches/tron.toml"));
+  const LensCalibration lens{1600, 1000, 2901.0, 2901.0, 799.5, 499.5, {}};
+  auto postures = choose_patch_postures(file, lens, BoardDesign{}, 1.5, 3);
+  for (PatchPosture& posture : postures)
+    std::erase_if(posture.lights, [](const auto& light) { return light.source != 0 && light.source != 5; });
+  std::erase_if(postures, [](const PatchPosture& posture) { return posture.lights.empty(); });
+  ASSERT_GE(postures.size(), 2U);
+  const std::size_t blocked = postures.front().lights.front().source;
+  const auto measured = measured_sources(measure_lights(bench, lens, file, BoardDesign{}, postures, 1.5, 2));
+  EXPECT_FALSE(measured.at(blocked));
+  EXPECT_EQ(std::ranges::count(measured, true), 1);
+  const auto others = choose_patch_postures(file, lens, BoardDesign{}, 1.5, 4, {}, measured);
+  int of_blocked = 0;
+  for (const PatchPosture& posture : others)
+    for (const auto& light : posture.lights) {
+      of_blocked += light.source == blocked ? 1 : 0;
+      EXPECT_FALSE(measured.at(light.source)) << "measured twice";
+    }
+  EXPECT_EQ(of_blocked, 1);
 }
 
 TEST(Photometry, MeasuresTheCameraWithoutLight) {
