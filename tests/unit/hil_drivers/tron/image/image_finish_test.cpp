@@ -9,11 +9,12 @@
 namespace vbar::tron {
 namespace {
 
-twins::camera::CadModel grey_square() {
+twins::camera::CadModel grey_square(double specular = 0.0) {
   const fsw::Vector3 a(-0.5, -0.5, 0.0), b(0.5, -0.5, 0.0), c(0.5, 0.5, 0.0), d(-0.5, 0.5, 0.0);
   const std::array<fsw::Vector3, 3> flat{fsw::Vector3::Zero(), fsw::Vector3::Zero(), fsw::Vector3::Zero()};
-  return twins::camera::make_cad_model("square", {{{a, c, b}, flat, 0}, {{a, d, c}, flat, 0}},
-                                       {{.name = "grey", .diffuse = {0.5, 0.5, 0.5}}});
+  return twins::camera::make_cad_model(
+      "square", {{{a, c, b}, flat, 0}, {{a, d, c}, flat, 0}},
+      {{.name = "grey", .diffuse = {0.5, 0.5, 0.5}, .specular = {specular, specular, specular}, .exponent = 200.0}});
 }
 
 /// The square at 10 m is 20 px wide, lit by Sun and Earth from behind the camera.
@@ -46,10 +47,13 @@ class TronImageFinish : public testing::Test {
     for (int y = 80; y < 120; ++y)
       for (int x = 80; x < 120; ++x)
         frame[static_cast<std::size_t>(200 * y + x)] = static_cast<std::uint16_t>(std::lround(kDark + dn));
-    return ImageFinish(camera_, grey_square(), dark, 1).finish(frame, 0, T_C_B_, light_);
+    return ImageFinish(camera_, square(), dark, 1).finish(frame, 0, T_C_B_, light_);
   }
 
+  [[nodiscard]] twins::camera::CadModel square() const { return grey_square(specular_); }
+
   static constexpr std::uint16_t kDark = 64;
+  double specular_ = 0.0;
   twins::camera::CameraSettings camera_;
   Eigen::Isometry3d T_C_B_ = Eigen::Isometry3d::Identity();
   TargetLight light_;
@@ -68,6 +72,17 @@ TEST_F(TronImageFinish, WithoutTheLampNothingIsLeftOfSunlight) {
   const FinishedImage image = of_electrons(earth_);
   EXPECT_NEAR(image.light_level.value(), earth_ / all_, 0.02);
   EXPECT_NEAR(image.sunlight_level.value(), 0.0, 0.03);
+}
+
+// The model's glint may be brighter than all its matt faces; a mock-up that is less glossy is lit all the same.
+TEST_F(TronImageFinish, AGlintThatIsMissingIsNotADarkLamp) {
+  specular_ = 0.3;
+  TargetLight sun_only = light_;
+  sun_only.earth_photons_per_m2_s = 0.0;
+  ASSERT_GT(ExpectedLight(square()).electrons(T_C_B_, sun_only, camera_), 5.0 * (all_ - earth_));
+  const FinishedImage image = of_electrons(all_);
+  EXPECT_LT(image.light_level.value(), 0.3);
+  EXPECT_NEAR(image.sunlight_level.value(), 1.0, 0.3);
 }
 
 TEST_F(TronImageFinish, NothingIsSaidOfSunlightWhereTheEarthsIsStronger) {
