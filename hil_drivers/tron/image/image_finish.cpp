@@ -8,7 +8,7 @@
 namespace vbar::tron {
 namespace {
 
-twins::camera::CadModel matt(twins::camera::CadModel model) {
+twins::camera::CadModel diffuse_only(twins::camera::CadModel model) {
   for (twins::camera::Material& material : model.materials) material.specular = {};
   return model;
 }
@@ -21,7 +21,7 @@ ImageFinish::ImageFinish(const twins::camera::CameraSettings& camera, const twin
       lens_(camera),
       silhouette_(model),
       expected_(model),
-      expected_matt_(matt(model)),
+      expected_diffuse_(diffuse_only(model)),
       dark_(dark_level(binned(dark))),
       key_(key) {}
 
@@ -47,8 +47,8 @@ FinishedImage ImageFinish::finish(const std::vector<std::uint16_t>& frame, std::
     // Of fewer electrons the noise of the mask's pixels decides.
     constexpr double kLeast = 1e5;
     if (of_sun + of_earth > kLeast) finished.light_level = measured / (of_sun + of_earth);
-    const double of_sun_matt = expected_matt_.electrons(T_C_B, sunlight, camera_);
-    if (of_sun_matt > std::max(kLeast, of_earth)) finished.sunlight_level = (measured - of_earth) / of_sun_matt;
+    const double of_sun_diffuse = expected_diffuse_.electrons(T_C_B, sunlight, camera_);
+    if (of_sun_diffuse > std::max(kLeast, of_earth)) finished.sunlight_level = (measured - of_earth) / of_sun_diffuse;
   }
   const auto full_scale = static_cast<std::uint16_t>((1U << static_cast<unsigned>(camera_.detector.bits)) - 1U);
   replace_background(mask, dark_, key_, image, full_scale, finished.dn);

@@ -15,8 +15,8 @@ namespace vbar::tron {
 struct FinishedImage {
   std::vector<std::uint16_t> dn;
   std::optional<double> light_level;  ///< of the target, relative to the prediction; none of an unlit one
-  /// What is left without the light predicted of the Earth, relative to the prediction of sunlight by the matt part of
-  /// the surfaces: a glint depends on the gloss of the mock-up, a face that is not black does not. None where that
+  /// What is left without the light predicted of the Earth, relative to the prediction of sunlight by the diffuse part
+  /// of the surfaces: a glint depends on the gloss of the mock-up, a face that is not black does not. None where that
   /// prediction is faint.
   std::optional<double> sunlight_level;
 };
@@ -40,7 +40,7 @@ class ImageFinish {
   twins::camera::CameraSettings camera_;
   twins::camera::Optics lens_;
   twins::camera::Silhouette silhouette_;
-  ExpectedLight expected_, expected_matt_;
+  ExpectedLight expected_, expected_diffuse_;
   DarkLevel dark_;
   std::uint64_t key_;
 };

@@ -74,7 +74,8 @@ TEST_F(TronImageFinish, WithoutTheLampNothingIsLeftOfSunlight) {
   EXPECT_NEAR(image.sunlight_level.value(), 0.0, 0.03);
 }
 
-// The model's glint may be brighter than all its matt faces; a mock-up that is less glossy is lit all the same.
+// The model's glint may be brighter than the diffuse light of all its faces; a mock-up that is less glossy is lit all
+// the same.
 TEST_F(TronImageFinish, AGlintThatIsMissingIsNotADarkLamp) {
   specular_ = 0.3;
   TargetLight sun_only = light_;
