@@ -5,7 +5,7 @@ usage: ci/accuracy.py [--build build/host] [--bench FILE.json]    run the tests 
        ci/accuracy.py [--build build/host] --check                run nothing: does the page name what the tests record?
 
 Tests record rows and tables by tests/support/accuracy.h. --bench adds tables of cost from a run of vbar_bench with
---benchmark_format=json. (ci/accuracy.sh builds first.)
+--benchmark_format=json; without it the page keeps its tables of cost. (ci/accuracy.sh builds first.)
 """
 import argparse
 import json
@@ -173,6 +173,13 @@ def cost_tables(file):
     return text
 
 
+def kept_cost():
+    """The section of cost that the page has: a page written without a new run of vbar_bench keeps it."""
+    text = PAGE.read_text() if PAGE.exists() else ""
+    start = text.find("## Cost\n")
+    return [text[start:].rstrip("\n"), ""] if start >= 0 else []
+
+
 def page(rows, tables, bench):
     text = ["# Accuracy", "",
             f"Written by `ci/accuracy.sh` on {time.strftime('%Y-%m-%d')}, {platform.machine()}."
@@ -188,7 +195,7 @@ def page(rows, tables, bench):
             text += [f"### {title}", "", f"From [`{entry['test']}`](../{entry['source']}).", "",
                      table(head.split("\t"), [line.split("\t") for line in lines]), ""]
     text += ["## Effects not modelled", "", table(["effect", "size", "source"], LEFT_OUT), ""]
-    return "\n".join(text + (cost_tables(bench) if bench else []))
+    return "\n".join(text + (cost_tables(bench) if bench else kept_cost()))
 
 
 def check(build, sources):

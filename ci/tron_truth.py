@@ -3,8 +3,6 @@ import csv
 import math
 import tomllib
 
-SCALE = 0.5
-
 
 def rows_of(file):
     with open(file, newline="", encoding="utf-8") as text:
@@ -49,8 +47,8 @@ def true_poses(folder, camera_position_m, body_file):
     return poses
 
 
-def pose_errors(folder, camera_position_m, body_file):
-    """Of each image of a lit target: shown less commanded pose, mm in the laboratory, deg. An image whose frame is missing in
+def pose_errors(folder, camera_position_m, body_file, scale):
+    """Of each image of a lit target: shown less commanded pose, mm in the laboratory of this scale, deg. An image whose frame is missing in
     bench_truth.csv is an error."""
     shown = {int(row["image"]): row for row in rows_of(folder / "bench_truth.csv")}
     wanted = true_poses(folder, camera_position_m, body_file)
@@ -64,7 +62,7 @@ def pose_errors(folder, camera_position_m, body_file):
         place_shown = numbers(shown[frame], [f"C_{k}_m" for k in "xyz"])
         q_shown = numbers(shown[frame], [f"q_C_T_{k}" for k in "wxyz"])
         cosine = abs(sum(a * b for a, b in zip(q, q_shown)))
-        errors.append((1e3 * math.dist(place_shown, [SCALE * k for k in place]), math.degrees(2.0 * math.acos(min(1.0, cosine)))))
+        errors.append((1e3 * math.dist(place_shown, [scale * k for k in place]), math.degrees(2.0 * math.acos(min(1.0, cosine)))))
     if not errors:
         raise SystemExit(f"{folder}: no image of a lit target")
     return errors

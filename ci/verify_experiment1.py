@@ -95,9 +95,9 @@ def section(build, root, runs, table):
         "",
         f"{100 * statistics.median(images):.0f} % of the images yielded a bearing; the target is in eclipse in 15 %.",
         "",
-        "The filter is configured with the errors expected of the hardware, centroids of 0.05 px and maneuvers of 0.1 %; those of"
-        " the digital twin are smaller, but the filter has no model of harmonics beyond degree 20. With errors of the configured"
-        " size, the test AnglesOnly verifies that the NEES is within its bounds.",
+        "The filter is configured with a centroid floor of 0.02 px and a centroid noise of 0.08 m, a bearing bias of 0.5 arcsec and"
+        " maneuvers of 0.03 %; it has no model of harmonics beyond degree 20. With errors of the configured size, the test"
+        " AnglesOnly verifies that the NEES is within its bounds.",
         "",
         "A bearing is counted as one to another spacecraft if the true direction of another spacecraft is closer to it than that of"
         " the target. When a decoy passes within two pixels of the target, the detector merges the two into one object. The choice"

@@ -74,7 +74,10 @@ def pose_rows(root, folders):
     """What the bench really showed: shown less commanded pose, all images of lit targets, worst seed."""
     with open(root / SIL, "rb") as text:
         camera = tomllib.load(text)["spacecraft"][0]["sensors"]["camera"]
-    errors = [pose_errors(folder, camera["position_body_m"], root / "data" / "bodies" / "tango.toml") for folder in folders]
+    with open(root / "data" / "benches" / "tron.toml", "rb") as text:
+        scale = tomllib.load(text)["scale"]
+    body = root / "data" / "bodies" / "tango.toml"
+    errors = [pose_errors(folder, camera["position_body_m"], body, scale) for folder in folders]
     rows = []
     for what, of, share, limit, unit in (("position", 0, 0.5, 1.5, "mm"), ("attitude", 1, 0.5, 0.1, "deg"),
                                          ("position", 0, 0.95, 3.0, "mm"), ("attitude", 1, 0.95, 0.25, "deg")):

@@ -37,6 +37,19 @@ stars::Field field_of(const CameraSettings& settings) {
 
 constexpr int kKnownHotPixel = tracking::HotPixelSettings{}.sightings;
 
+SightingStatus without_target(tracking::TrackerState state) {
+  switch (state) {
+    case tracking::TrackerState::kSearching:
+      return SightingStatus::kSearching;
+    case tracking::TrackerState::kAmbiguous:
+      return SightingStatus::kAmbiguous;
+    case tracking::TrackerState::kTracking:
+    case tracking::TrackerState::kCoasting:
+      break;
+  }
+  return SightingStatus::kNoTarget;
+}
+
 /// The broadening of a point's image by the point-spread function is not an apparent size.
 double apparent_radius_px(const imaging::DetectedObject& object, double point_spread_sigma_px) {
   const double excess = object.radius_px * object.radius_px - point_spread_sigma_px * point_spread_sigma_px;
@@ -174,7 +187,7 @@ SightingStatus AnglesOnlyTracking::find_target(const TakenImage& image, const Im
     if (tracker_.hot_pixels().sightings_of(objects[object]) >= kKnownHotPixel)
       sighting_.kind[object] = ObjectKind::kHotPixel;
   }
-  if (tracked.value().candidate < 0) return SightingStatus::kNoTarget;
+  if (tracked.value().candidate < 0) return without_target(tracked.value().state);
   const std::size_t object = object_of_candidate_[static_cast<std::size_t>(tracked.value().candidate)];
   sighting_.target = static_cast<int>(object);
   sighting_.kind[object] = ObjectKind::kTarget;

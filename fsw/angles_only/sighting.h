@@ -18,9 +18,11 @@ enum class SightingStatus : std::int8_t {
   kBlank = 2,         ///< no light, or saturated
   kTooLittle = 3,     ///< most of it never arrived
   kNoStars = 4,       ///< the stars in it could not be identified: no attitude
-  kNoTarget = 5,      ///< no object can be the target
+  kNoTarget = 5,      ///< the track of the target has no certain object in it
   kNotConfirmed = 6,  ///< a target candidate, not yet confirmed
   kNoOrbit = 7,       ///< no orbit of servicer or target is known yet
+  kSearching = 8,     ///< no track is identified as the target
+  kAmbiguous = 9,     ///< two or more tracks may be the target
 };
 
 enum class StarMethod : std::int8_t { kNone = 0, kLostInSpace = 1, kPredicted = 2 };

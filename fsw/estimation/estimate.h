@@ -53,6 +53,12 @@ class Estimate {
     while (extent_ > 0 && is_idle(extent_ - 1)) --extent_;
   }
 
+  /// Sets the covariance of two active components, as known from a batch solution.
+  void correlate(int i, int j, double covariance) {
+    matrix()(i, j) = covariance;
+    matrix()(j, i) = covariance;
+  }
+
   /// Shifts the mean: a known change, such as a maneuver.
   void shift(int i, double by) { mean_(i) += by; }
 
@@ -114,6 +120,15 @@ class Estimate {
     return innovation;
   }
 
+  /// P h. A measurement depends on few of the components; the columns of the others are skipped.
+  [[nodiscard]] Vector covariance_times(const Vector& h) const {
+    Vector product = Vector::Zero();
+    for (int c = 0; c < extent_; ++c) {
+      if (h(c) != 0.0) product.head(extent_) += h(c) * matrix().col(c).head(extent_);
+    }
+    return product;
+  }
+
   /// Whether every value is finite and no variance negative; otherwise the filter must be restarted.
   [[nodiscard]] bool is_sound() const {
     double sum = 0.0;
@@ -131,15 +146,6 @@ class Estimate {
   [[nodiscard]] Eigen::Map<const Matrix> matrix() const { return Eigen::Map<const Matrix>(elements_.data()); }
 
   void extend_to(int i) { extent_ = extent_ > i ? extent_ : i + 1; }
-
-  /// P h. A measurement depends on few of the components; the columns of the others are skipped.
-  [[nodiscard]] Vector covariance_times(const Vector& h) const {
-    Vector product = Vector::Zero();
-    for (int c = 0; c < extent_; ++c) {
-      if (h(c) != 0.0) product.head(extent_) += h(c) * matrix().col(c).head(extent_);
-    }
-    return product;
-  }
 
   void symmetrise() {
     Eigen::Map<Matrix> p = matrix();

@@ -31,7 +31,8 @@ class UnscentedTransform {
   using Matrix = Eigen::Matrix<double, M, M>;
   static constexpr std::size_t kPoints = 2 * M + 1;
 
-  /// kSingular if the covariance is not positive definite.
+  /// Components of variance zero are inactive: all points have their mean, and their column of the Jacobian is zero.
+  /// kSingular if the covariance of the others is not positive definite.
   Status start(const Vector& mean, const Matrix& covariance, const UnscentedParameters& parameters = {}) {
     const double spread2 = parameters.alpha * parameters.alpha * (M + parameters.kappa);
     gamma_ = math::sqrt(spread2);
@@ -40,6 +41,11 @@ class UnscentedTransform {
     side_weight_ = 0.5 / spread2;
     mean_ = mean;
     return factorise(covariance);
+  }
+
+  /// Whether point k is the mean because its component is inactive: the value of point 0 may be copied.
+  [[nodiscard]] bool is_mean(std::size_t k) const {
+    return k > 0 && lower_((static_cast<int>(k) - 1) % M, (static_cast<int>(k) - 1) % M) == 0.0;
   }
 
   /// Point 0 is the mean; 1 to M lie on one side of it, M + 1 to 2 M on the other.
@@ -80,7 +86,12 @@ class UnscentedTransform {
     for (int m = M - 1; m >= 0; --m) {
       Eigen::Matrix<double, K, 1> column = along.col(m);
       for (int j = m + 1; j < M; ++j) column -= lower_(j, m) * result.jacobian.col(j);
-      result.jacobian.col(m) = column / lower_(m, m);
+      if (lower_(m, m) == 0.0) {
+        column.setZero();
+      } else {
+        column /= lower_(m, m);
+      }
+      result.jacobian.col(m) = column;
     }
     return result;
   }
@@ -92,6 +103,10 @@ class UnscentedTransform {
   Status factorise(const Matrix& covariance) {
     lower_.setZero();
     for (int c = 0; c < M; ++c) {
+      if (covariance(c, c) == 0.0) {
+        if (!covariance.row(c).isZero(0.0) || !covariance.col(c).isZero(0.0)) return Status::kSingular;
+        continue;
+      }
       double pivot = covariance(c, c);
       for (int k = 0; k < c; ++k) pivot -= lower_(c, k) * lower_(c, k);
       if (!(pivot > 0.0) || !math::is_finite(pivot)) return Status::kSingular;

@@ -83,21 +83,23 @@ Result<angles_only::CameraSettings> camera_settings(const camera_configuration& 
   return settings;
 }
 
-Result<navigation::AnglesOnlySettings> angles_only_settings(const angles_only_configuration& a,
-                                                            const orbit::EarthOrientation& earth) {
+Result<BearingNavigationSettings> bearing_settings(const angles_only_configuration& a) {
   const bool is_usable = is_above(a.acceleration_psd, 1.0) && is_above(a.acceleration_psd_least, a.acceleration_psd) &&
                          is_between(a.acceleration_psd_most, a.acceleration_psd, 1.0) &&
-                         is_between(a.brightness_offset_m, 0.0, 100.0) && is_between(a.maneuver_sigma, 0.0, 1.0) &&
+                         is_between(a.brightness_offset_m, 0.0, 100.0) && is_between(a.centroid_noise_m, 0.0, 100.0) &&
+                         is_above(a.bearing_bias, 0.1) && is_between(a.maneuver_sigma, 0.0, 1.0) &&
                          is_between(a.maneuver_sigma_relative, 0.0, 1.0) && a.batch_images >= 10 &&
                          a.batch_images <= static_cast<std::int32_t>(navigation::BearingBatch::kCapacity);
   if (!is_usable) return Status::kOutOfRange;
-  navigation::AnglesOnlySettings settings;
-  settings.filter.acceleration = {a.acceleration_psd, a.acceleration_psd_least, a.acceleration_psd_most};
-  settings.filter.brightness_offset_sigma_m = a.brightness_offset_m;
-  settings.filter.maneuver_sigma = a.maneuver_sigma;
-  settings.filter.maneuver_sigma_relative = a.maneuver_sigma_relative;
-  settings.batch.bearings = a.batch_images;
-  settings.earth = earth;
+  BearingNavigationSettings settings;
+  settings.blocks.burn_sigma = a.maneuver_sigma;
+  settings.blocks.burn_sigma_relative = a.maneuver_sigma_relative;
+  settings.blocks.relative_orbit.acceleration = {a.acceleration_psd, a.acceleration_psd_least, a.acceleration_psd_most};
+  settings.blocks.brightness_offset.sigma = a.brightness_offset_m;
+  settings.bearings.batch.bearings = a.batch_images;
+  settings.blocks.boresight_a.sigma = a.bearing_bias;
+  settings.bearings.batch.bias_sigma = a.bearing_bias;
+  settings.bearings.model.centroid_noise_m = a.centroid_noise_m;
   return settings;
 }
 

@@ -3,11 +3,11 @@
 
 #include "fsw/angles_only/angles_only_tracking.h"
 #include "fsw/core/result.h"
-#include "fsw/navigation/angles_only_navigation.h"
 #include "fsw/navigation/pose_navigation.h"
 #include "fsw/orbit/earth_rotation.h"
 #include "fsw/packets/messages.h"
 #include "fsw/pose/spacecraft_pose_network.h"
+#include "fsw/sources/bearings/bearing_aiding.h"
 
 namespace vbar::fsw::gnc {
 
@@ -23,8 +23,12 @@ Result<CalibratedCamera> calibrated_camera(const camera_configuration& camera);
 
 Result<angles_only::CameraSettings> camera_settings(const camera_configuration& camera,
                                                     const angles_only_configuration& angles_only);
-Result<navigation::AnglesOnlySettings> angles_only_settings(const angles_only_configuration& configuration,
-                                                            const orbit::EarthOrientation& earth);
+/// Navigation by bearings: the source, and the blocks of the trunk that it tunes.
+struct BearingNavigationSettings {
+  sources::BearingSettings bearings;
+  trunk::TrunkSettings blocks;
+};
+Result<BearingNavigationSettings> bearing_settings(const angles_only_configuration& configuration);
 
 Result<pose::PoseCameraSettings> pose_camera_settings(const camera_configuration& camera,
                                                       const pose_configuration& configuration);

@@ -1,7 +1,5 @@
 #include "fsw/gnc/camera_pointing.h"
 
-#include <Eigen/Geometry>
-
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/rtn.h"
 
@@ -22,30 +20,6 @@ Result<orbit::CartesianState> flown(orbit::CartesianState state, GpsTime epoch, 
 }
 
 }  // namespace
-
-Result<Pointing> pointing_at(GpsTime time, const orbit::CartesianState& servicer, const orbit::CartesianState& target) {
-  const orbit::RelativeState relative = orbit::relative_state_rtn(servicer, target);
-  const double range = relative.position_rtn.norm();
-  if (!(range > 1e-3)) return Status::kOutOfRange;
-  Pointing pointing;
-  pointing.time = time;
-  pointing.boresight_rtn = relative.position_rtn / range;
-  const Vector3 rate = relative.velocity_rtn / range;
-  pointing.boresight_rate_rtn = rate - pointing.boresight_rtn.dot(rate) * pointing.boresight_rtn;
-  return pointing;
-}
-
-Matrix3 R_body_eci_of(const Pointing& pointing, GpsTime time, const orbit::CartesianState& servicer) {
-  const Matrix3 R_rtn_eci = orbit::R_rtn_eci(servicer);
-  const Vector3 z = R_rtn_eci.transpose() * pointing.boresight_rtn_at(time);
-  const Vector3 zenith = servicer.position_eci.normalized();
-  const Vector3 x = z.cross(zenith).normalized();  // -y to the zenith: x = y cross z
-  Matrix3 R_body_eci;
-  R_body_eci.row(0) = x.transpose();
-  R_body_eci.row(1) = z.cross(x).transpose();
-  R_body_eci.row(2) = z.transpose();
-  return R_body_eci;
-}
 
 std::optional<orbit::CartesianState> servicer_at(GpsTime time, const navigation::GnssNavigation& own_orbit,
                                                  std::span<const navigation::Burn> burns) {

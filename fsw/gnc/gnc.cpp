@@ -15,6 +15,7 @@ Status Gnc::step(GpsTime now) {
     return is_later ? Status::kOutOfRange : Status::kBadSequence;
   }
   now_ = now;
+  if (!stepped_) started_ = now;
   stepped_ = true;
 
   manage();
@@ -38,6 +39,8 @@ void Gnc::navigate() {
   const NavigationState& state = navigation_.state();
   const double timeout = management_.configuration().navigation_timeout_s;
   if (state.valid && seconds(now_ - state.last_measurement) > timeout) faults_ |= kFaultNavigationTimeout;
+  has_navigated_ = has_navigated_ || state.valid;
+  if (!has_navigated_ && seconds(now_ - started_) > timeout) faults_ |= kFaultNeverNavigated;
 }
 
 void Gnc::assess() {
@@ -64,12 +67,8 @@ void Gnc::report() {
     outbox_.send(commanded.burn.time, message);
   }
   report_navigation();
-  if (navigation_.uses_gnss()) report_gnss();
   if (navigation_.uses_camera()) point_camera();
-  if (navigation_.uses_bearings() && navigation_.camera().has_image()) {
-    report_image();
-    report_objects();
-  }
+  if (navigation_.uses_trunk()) navigation_.trunk().report(outbox_, step_, now_, inbox_);
   if (navigation_.uses_pose() && navigation_.pose().has_image()) report_pose();
   report_control();
   report_health();

@@ -21,6 +21,7 @@ enum Fault : std::int32_t {
   kFaultHold = 1 << 1,               ///< no solver produced a plan that is safe to fly
   kFaultInboxFull = 1 << 2,          ///< a packet was dropped because its queue was full
   kFaultClock = 1 << 3,  ///< a step was requested at or before the last step's time, or outside the clock's range
+  kFaultNeverNavigated = 1 << 4,  ///< no state was valid within navigation_timeout_s of the first step
 };
 
 class Gnc {
@@ -44,11 +45,8 @@ class Gnc {
   void report();
 
   void report_navigation();
-  void report_gnss();
   void point_camera();
   [[nodiscard]] std::optional<Pointing> pointing_to_target() const;
-  void report_image();
-  void report_objects();
   void report_pose();
   void report_control();
   void report_health();
@@ -59,9 +57,11 @@ class Gnc {
   Navigation navigation_;
   Guidance guidance_;
   GpsTime now_;
+  GpsTime started_;  ///< first step
   std::int64_t step_ = 0;
   std::int32_t faults_ = 0;
   bool stepped_ = false;
+  bool has_navigated_ = false;  ///< since the first step
 };
 
 }  // namespace vbar::fsw::gnc

@@ -21,12 +21,8 @@ constexpr bool is_reported_as(Enumerator enumerator, int constant) {
 
 // The last of each list stands for all: the lists of vbar.lcm are those of the code.
 static_assert(is_reported_as(Status::kNotReady, telemetry_control::kStatusNotReady));
-static_assert(is_reported_as(kFaultClock, telemetry_health::kFaultClock));
+static_assert(is_reported_as(kFaultNeverNavigated, telemetry_health::kFaultNeverNavigated));
 static_assert(is_reported_as(NavigationSource::kPose, telemetry_navigation::kSourcePose));
-static_assert(is_reported_as(gnss::RejectionReason::kSearch, telemetry_gnss::kObstacleSearch));
-static_assert(is_reported_as(angles_only::SightingStatus::kNoOrbit, telemetry_image::kStatusOwnOrbitUnknown));
-static_assert(is_reported_as(angles_only::StarMethod::kPredicted, telemetry_image::kStarMethodPrediction));
-static_assert(is_reported_as(angles_only::ObjectKind::kHotPixel, telemetry_objects::kKindHotPixel));
 static_assert(is_reported_as(pose::SightingStatus::kInvalid, telemetry_pose::kStatusInvalid));
 
 }  // namespace
@@ -50,41 +46,6 @@ void Gnc::report_navigation() {
   outbox_.send(now_, message);
 }
 
-void Gnc::report_gnss() {
-  const navigation::GnssNavigation& gnss = navigation_.gnss();
-  const navigation::GnssNavigationCounters& counters = gnss.counters();
-  const navigation::AmbiguityReport& ambiguities = gnss.ambiguities().report();
-  const navigation::RelativeUpdate& last = gnss.last_update();
-  telemetry_gnss message{};
-  message.step = step_;
-  message.epoch_gps_ns = gnss.epoch().ns;
-  message.pairs = counters.pairs;
-  message.alone = counters.alone;
-  message.too_late = counters.too_late;
-  message.no_solution = counters.no_solution;
-  message.codes_refused = counters.codes_refused;
-  message.phases_refused = counters.phases_refused;
-  message.slips = counters.slips;
-  message.restarts = counters.restarts;
-  message.tracked = ambiguities.tracked;
-  message.fixed = ambiguities.fixed;
-  message.fixes = ambiguities.fixes;
-  message.releases = ambiguities.releases;
-  message.obstacle = static_cast<std::int8_t>(ambiguities.rejection_reason);
-  message.success_rate = ambiguities.success_rate;
-  message.ratio = ambiguities.ratio;
-  message.codes_used = last.codes_used;
-  message.phases_used = last.phases_used;
-  message.code_nis = last.code_nis;
-  message.phase_nis = last.phase_nis;
-  if (gnss.valid()) {
-    copy_lower_triangle(gnss.covariance_rtn(), message.covariance_rtn);
-  }
-  message.messages = navigation_.receivers().messages();
-  message.messages_refused = navigation_.receivers().refused();
-  outbox_.send(now_, message);
-}
-
 std::optional<Pointing> Gnc::pointing_to_target() const {
   const NavigationState& state = navigation_.state();
   if (state.has_target) {
@@ -105,70 +66,6 @@ void Gnc::point_camera() {
   copy(pointing->boresight_rtn, message.boresight_rtn);
   copy(pointing->boresight_rate_rtn, message.boresight_rate_rtn);
   outbox_.send(now_, message);
-}
-
-void Gnc::report_image() {
-  const CameraNavigation& camera = navigation_.camera();
-  const angles_only::Sighting& sighting = camera.tracking().sighting();
-  const navigation::AnglesOnlyNavigation& filter = camera.filter();
-  telemetry_image message{};
-  message.step = step_;
-  message.image = sighting.image;
-  message.status = static_cast<std::int8_t>(sighting.status);
-  message.star_method = static_cast<std::int8_t>(sighting.star_method);
-  message.tiles_missing = static_cast<std::int16_t>(sighting.tiles_missing);
-  message.objects = static_cast<std::int16_t>(sighting.objects);
-  message.stars = static_cast<std::int16_t>(sighting.stars);
-  message.hypotheses = static_cast<std::int16_t>(sighting.hypotheses);
-  message.target_object = static_cast<std::int16_t>(sighting.target);
-  message.background_dn = sighting.background_dn;
-  message.noise_dn = sighting.noise_dn;
-  copy_rotation(sighting.R_camera_eci.transpose(), message.q_eci_camera);
-  message.attitude_sigma = sighting.attitude_sigma;
-  copy(sighting.bearing.direction_eci, message.bearing_eci);
-  message.bearing_sigma = sighting.bearing.sigma;
-  const bool is_filtered = camera.edit_status() == navigation::BearingEditStatus::kFilter ||
-                           camera.edit_status() == navigation::BearingEditStatus::kRefused;
-  if (is_filtered) {
-    const navigation::BearingUpdate& update = filter.last_update();
-    for (int axis = 0; axis < 2; ++axis) {
-      message.prefit[axis] = update.prefit(axis);
-      message.postfit[axis] = update.postfit(axis);
-    }
-    message.nis = update.nis;
-  }
-  message.fate = static_cast<std::int8_t>(camera.edit_status());
-  message.filter_runs = filter.valid() ? 1 : 0;
-  if (filter.has_target()) {
-    copy(filter.a_roe_m(), message.a_roe_osculating_m);
-    copy_lower_triangle(filter.a_roe_covariance_m2(), message.covariance_a_roe);
-  }
-  message.bearings_used = filter.counters().bearings_used;
-  message.bearings_refused = filter.counters().bearings_refused;
-  message.images_without_stars = camera.images_without_stars();
-  message.tiles_refused = inbox_.image().counts().tiles_refused;
-  outbox_.send(sighting.time, message);
-}
-
-void Gnc::report_objects() {
-  const angles_only::AnglesOnlyTracking& tracking = navigation_.camera().tracking();
-  const angles_only::Sighting& sighting = tracking.sighting();
-  const auto objects = tracking.objects();
-  telemetry_objects message{};
-  message.step = step_;
-  message.image = sighting.image;
-  constexpr std::size_t kMaxReported = sizeof message.kind / sizeof message.kind[0];
-  const std::size_t count = static_cast<std::size_t>(sighting.objects) < kMaxReported
-                                ? static_cast<std::size_t>(sighting.objects)
-                                : kMaxReported;
-  message.count = static_cast<std::int16_t>(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    message.kind[k] = static_cast<std::int8_t>(sighting.kind[k]);
-    message.star[k] = sighting.hipparcos[k];
-    message.x_px[k] = static_cast<float>(objects[k].centroid_px.x());
-    message.y_px[k] = static_cast<float>(objects[k].centroid_px.y());
-  }
-  outbox_.send(sighting.time, message);
 }
 
 void Gnc::report_pose() {

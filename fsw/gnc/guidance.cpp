@@ -92,7 +92,7 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   discard_past_burns(now);
   orbits_ = {now, servicer.value(), target.value()};
   report_.roe = orbit::roe_from_qns(orbits_.servicer, orbits_.target);
-  const Vector6 sigma_a_roe_m = navigation.sigma_a_roe_m(orbits_.servicer);
+  const Vector6 sigma_a_roe_m = navigation.sigma_a_roe_m();
   sigma_roe_ = sigma_a_roe_m / orbits_.servicer.a;
   position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m(0), orbits_.servicer);
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};

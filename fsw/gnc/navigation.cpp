@@ -17,6 +17,10 @@ namespace {
 // 75 km down to 7 m.)
 constexpr double kUnmodelledGradient = 1e-10;  // 1/s^2, 1 sigma, constant over a coast
 
+// The state ends to be valid when the target may be anywhere about its distance: by covariance, not by elapsed time.
+constexpr double kMaxRelativeSigma = 0.25;  // of the separation
+constexpr double kAlwaysAccurate_m = 0.5;
+
 // Largest delay of a report or measurement with respect to its time tag.
 constexpr Duration kLongestDelay = duration_of_seconds(600);
 
@@ -32,19 +36,10 @@ bool is_orbit(const orbit::CartesianState& state) {
 void Navigation::update(GpsTime now, Inbox& inbox) {
   take_configurations(now, inbox);
   take_maneuvers(now, inbox);
-  switch (sensors_) {
-    case Sensors::kIdeal:
-      take_measurements(now, inbox);
-      break;
-    case Sensors::kGnss:
-      take_gnss(now, inbox);
-      break;
-    case Sensors::kBearings:
-      take_bearings(now, inbox);
-      break;
-    case Sensors::kPose:
-      take_pose(now, inbox);
-      break;
+  if (uses_pose()) {
+    take_pose(now, inbox);
+  } else {
+    take_trunk(now, inbox);
   }
   if (!has_reference_) return;
   if (now - reference_.epoch > kLongestDelay + kLongestDelay) move_reference(now - kLongestDelay);
@@ -54,7 +49,7 @@ void Navigation::update(GpsTime now, Inbox& inbox) {
     drop_state();  // gap too long, or invalid orbit: restart from the next measurement
     return;
   }
-  state_.valid = sensors_ != Sensors::kBearings || camera_.filter().valid();
+  state_.valid = !uses_trunk() || trunk_.valid();
   state_.has_target = true;
   state_.epoch = now;
   state_.servicer = present.value().servicer;
@@ -68,47 +63,63 @@ void Navigation::drop_state() {
   state_.has_target = false;
 }
 
-/// Growth since the last measurement; ideal navigation has no initial covariance.
 void Navigation::set_uncertainty(GpsTime now) {
   const double age = seconds(now - state_.last_measurement);
   const bool is_fresh = age <= kFreshGnss_s;
   switch (sensors_) {
     case Sensors::kIdeal:
       state_.source = state_.last_measurement == now ? NavigationSource::kIdeal : NavigationSource::kPropagated;
-      set_uncertainty(Matrix6::Zero(), state_.last_measurement, now);
+      set_trunk_uncertainty(now);
       break;
     case Sensors::kGnss:
-      state_.source = !is_fresh                        ? NavigationSource::kPropagated
-                      : gnss_.ambiguities().is_fixed() ? NavigationSource::kGnssFixed
-                                                       : NavigationSource::kGnssFloat;
-      // The covariance is that at the epoch of the filters, which advances with the servicer's receiver alone.
-      set_uncertainty(gnss_.covariance_rtn(), gnss_.epoch(), now);
+      state_.source = !is_fresh                                            ? NavigationSource::kPropagated
+                      : trunk_.source<sources::CarrierSource>().is_fixed() ? NavigationSource::kGnssFixed
+                                                                           : NavigationSource::kGnssFloat;
+      set_trunk_uncertainty(now);
       break;
     case Sensors::kPose:
       state_.source = pose_.filter().last_measurement() == pose_.filter().epoch() ? NavigationSource::kPose
                                                                                   : NavigationSource::kPropagated;
-      set_uncertainty(pose_.filter().covariance_rtn(), pose_.filter().epoch(), now);
+      set_uncertainty(pose_.filter().covariance_rtn(), 0.0, pose_.filter().epoch(), now);
       break;
     case Sensors::kBearings:
-      state_.source = camera_.filter().last_bearing() == camera_.filter().epoch() ? NavigationSource::kAnglesOnly
-                                                                                  : NavigationSource::kPropagated;
-      set_uncertainty(camera_.filter().covariance_rtn(), camera_.filter().epoch(), now);
+      state_.source = trunk_.source<sources::BearingSource>().has_aided() ? NavigationSource::kAnglesOnly
+                                                                          : NavigationSource::kPropagated;
+      set_trunk_uncertainty(now);
       break;
   }
 }
 
-/// Propagates the covariance of position and velocity from `epoch`, including the unmodelled acceleration.
-void Navigation::set_uncertainty(const Matrix6& covariance_rtn, GpsTime epoch, GpsTime now) {
+/// 1 sigma of the differential acceleration of the target, m/s^2, of all axes.
+double Navigation::differential_acceleration_sigma() const {
+  const trunk::Estimate& estimate = trunk_.trunk().estimate();
+  double variance = 0.0;
+  for (int k = trunk::kAt<trunk::DifferentialAccelerations>; k < trunk::kOrbitSize; ++k) {
+    variance += estimate.covariance(k, k);
+  }
+  return math::sqrt(variance);
+}
+
+void Navigation::set_trunk_uncertainty(GpsTime now) {
+  const trunk::Trunk& trunk = trunk_.trunk();
+  set_uncertainty(trunk::covariance_rtn(trunk.estimate(), trunk.servicer()), differential_acceleration_sigma(),
+                  trunk.epoch(), now);
+}
+
+/// Propagates the covariance of position and velocity from `epoch`, including the unmodelled acceleration and the
+/// differential one, known to `acceleration_sigma`.
+void Navigation::set_uncertainty(const Matrix6& covariance_rtn, double acceleration_sigma, GpsTime epoch, GpsTime now) {
   const double coast_s = seconds(now - epoch);
   const double separation = (state_.target.position_eci - state_.servicer.position_eci).norm();
-  const double unmodelled_acceleration = kUnmodelledGradient * separation;
+  const double acceleration = math::hypot(kUnmodelledGradient * separation, acceleration_sigma);
   for (int axis = 0; axis < 3; ++axis) {
     const double position = math::sqrt(covariance_rtn(axis, axis));
     const double velocity = math::sqrt(covariance_rtn(3 + axis, 3 + axis));
-    state_.sigma_rtn(axis) =
-        math::hypot(position + velocity * coast_s, 0.5 * unmodelled_acceleration * coast_s * coast_s);
-    state_.sigma_rtn(3 + axis) = math::hypot(velocity, unmodelled_acceleration * coast_s);
+    state_.sigma_rtn(axis) = math::hypot(position + velocity * coast_s, 0.5 * acceleration * coast_s * coast_s);
+    state_.sigma_rtn(3 + axis) = math::hypot(velocity, acceleration * coast_s);
   }
+  const double largest = state_.sigma_rtn.head<3>().maxCoeff();
+  if (!(largest < kMaxRelativeSigma * separation + kAlwaysAccurate_m)) state_.valid = false;
 }
 
 void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
@@ -134,11 +145,10 @@ void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
   if (camera_changes) {
     if (sensors_ == Sensors::kPose) {
       pose_.configure(now, inbox, earth_);
-    } else {
-      camera_.configure(now, inbox, earth_);
     }
     if (uses_camera()) drop_state();
   }
+  trunk_.configure(now, inbox);
 }
 
 std::span<const navigation::Burn> Navigation::own_burns() {
@@ -155,24 +165,14 @@ void Navigation::set_reference(const Pair& estimated) {
   discard_before(estimated.epoch);
 }
 
-/// The state of the filters at the last epoch processed becomes the reference; later burns follow as for other sources.
-void Navigation::take_gnss(GpsTime now, Inbox& inbox) {
-  receivers_.feed(now, inbox, gnss_);
-  gnss_.update(now, own_burns());
-  if (!gnss_.valid()) {
-    drop_state();
-    return;
-  }
-  state_.last_measurement = gnss_.last_pair();
-  set_reference({gnss_.epoch(), gnss_.servicer(), gnss_.target()});
-}
-
-/// The image is older than the step: the servicer's orbit is advanced to its time, the image processed, then to now.
-void Navigation::take_bearings(GpsTime now, Inbox& inbox) {
-  receivers_.feed(now, inbox, gnss_);
-  camera_.update(now, inbox, gnss_, own_burns());
-  gnss_.update(now, own_burns());
-  set_reference_to_estimate(camera_.filter(), camera_.filter().last_bearing());
+/// Records of the receivers and the camera, each at its own time.
+void Navigation::take_trunk(GpsTime now, Inbox& inbox) {
+  trunk_.update(now, inbox, own_burns());
+  const trunk::Trunk& trunk = trunk_.trunk();
+  const Result<orbit::CartesianState> target = trunk.target();
+  if (!target.ok()) return drop_state();
+  state_.last_measurement = trunk_.last_measurement();
+  set_reference({trunk.epoch(), trunk.servicer(), target.value()});
 }
 
 void Navigation::take_pose(GpsTime now, Inbox& inbox) {
@@ -191,31 +191,6 @@ void Navigation::set_reference_to_estimate(const Filter& filter, GpsTime last_me
   }
   state_.last_measurement = last_measurement;
   set_reference({filter.epoch(), filter.servicer(), target.value()});
-}
-
-/// The measurements of ideal navigation are complete states, so that the latest one becomes the reference state.
-void Navigation::take_measurements(GpsTime now, Inbox& inbox) {
-  const auto& measurements = inbox.ideal_navigation_states();
-  for (std::size_t k = 0; k < measurements.size(); ++k) {
-    const GpsTime time = measurements[k].tag.time;
-    if (time > now || (has_reference_ && time < reference_.epoch)) {
-      inbox.count_unusable_time();
-      continue;
-    }
-    const ideal_navigation& measurement = measurements[k].value;
-    const Pair measured{time,
-                        {vector(measurement.servicer_position_eci), vector(measurement.servicer_velocity_eci)},
-                        {vector(measurement.target_position_eci), vector(measurement.target_velocity_eci)}};
-    // A state outside the domain of the orbit models is invalid: wait for the next one.
-    if (!is_orbit(measured.servicer) || !is_orbit(measured.target)) {
-      inbox.count_bad_content();
-      continue;
-    }
-    reference_ = measured;
-    has_reference_ = true;
-    state_.last_measurement = time;
-    discard_before(time);
-  }
 }
 
 void Navigation::take_maneuvers(GpsTime now, Inbox& inbox) {
@@ -302,22 +277,19 @@ void Navigation::discard_before(GpsTime time) {
   maneuver_count_ = kept;
 }
 
-Vector6 Navigation::sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const {
+/// That of the estimator's epoch, with the drift of the mean longitude and the differential acceleration until the
+/// state (a velocity v changes the elements by at most 2 v / n).
+Vector6 Navigation::sigma_a_roe_m() const {
+  const Matrix6 covariance = uses_pose() ? pose_.filter().a_roe_covariance_m2() : trunk_.trunk().a_roe_covariance_m2();
   Vector6 sigma;
-  if (uses_camera()) {
-    const Matrix6 covariance =
-        uses_pose() ? pose_.filter().a_roe_covariance_m2() : camera_.filter().a_roe_covariance_m2();
-    for (int k = 0; k < 6; ++k) sigma(k) = math::sqrt(covariance(k, k));
-    return sigma;
-  }
-  Vector6 variance = Vector6::Zero();
-  for (int k = 0; k < 6; ++k) {
-    Vector6 one_sigma = Vector6::Zero();
-    one_sigma(k) = state_.sigma_rtn(k);
-    const Vector6 a_roe = servicer_mean.a * orbit::roe_from_rtn_linear(servicer_mean, one_sigma);
-    variance += a_roe.cwiseProduct(a_roe);
-  }
-  for (int k = 0; k < 6; ++k) sigma(k) = math::sqrt(variance(k));
+  for (int k = 0; k < 6; ++k) sigma(k) = math::sqrt(covariance(k, k));
+  const auto servicer = orbit::qns_from_cartesian(state_.servicer);
+  if (uses_pose() || !servicer.ok()) return sigma;
+  const double n = orbit::mean_motion(servicer.value().a);
+  const double coast_s = seconds(state_.epoch - trunk_.trunk().epoch());
+  const double changed = 2.0 / n * differential_acceleration_sigma() * coast_s;
+  sigma(1) += 1.5 * n * coast_s * sigma(0);
+  for (int k = 0; k < 6; ++k) sigma(k) = math::hypot(sigma(k), changed);
   return sigma;
 }
 

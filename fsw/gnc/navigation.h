@@ -13,10 +13,10 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
-#include "fsw/gnc/camera_navigation.h"
 #include "fsw/gnc/gnss_receivers.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/pose_camera_navigation.h"
+#include "fsw/gnc/trunk_navigation.h"
 #include "fsw/navigation/gnss_navigation.h"
 #include "fsw/orbit/elements.h"
 
@@ -55,14 +55,10 @@ class Navigation {
 
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
-  /// Whether GNSS of both spacecraft is the source, and its navigation filter.
-  [[nodiscard]] bool uses_gnss() const { return sensors_ == Sensors::kGnss; }
-  [[nodiscard]] const navigation::GnssNavigation& gnss() const { return gnss_; }
-  [[nodiscard]] const GnssReceivers& receivers() const { return receivers_; }
-
-  /// Whether bearings of a camera are the source, and its navigation.
+  /// Whether the sources of the trunk are used: all but the pose network.
+  [[nodiscard]] bool uses_trunk() const { return !uses_pose(); }
   [[nodiscard]] bool uses_bearings() const { return sensors_ == Sensors::kBearings; }
-  [[nodiscard]] const CameraNavigation& camera() const { return camera_; }
+  [[nodiscard]] const TrunkNavigation& trunk() const { return trunk_; }
 
   /// Whether the pose network is the source, and its navigation.
   [[nodiscard]] bool uses_pose() const { return sensors_ == Sensors::kPose; }
@@ -72,13 +68,12 @@ class Navigation {
 
   /// Commanded pointing of the camera, after the last update.
   void expect_pointing(const Pointing& pointing) {
-    camera_.set_pointing(pointing);
+    trunk_.set_pointing(pointing);
     pose_.set_pointing(pointing);
   }
 
-  /// 1 sigma of a * ROE (m, six components): that of a filter on ROE; for other filters `sigma_rtn` transformed by
-  /// the linear near-circular map, `servicer_mean` at epoch.
-  [[nodiscard]] Vector6 sigma_a_roe_m(const orbit::QnsElements& servicer_mean) const;
+  /// 1 sigma of a * ROE (m, six components).
+  [[nodiscard]] Vector6 sigma_a_roe_m() const;
 
  private:
   /// Both spacecraft at one instant, before any impulse of that instant.
@@ -94,9 +89,9 @@ class Navigation {
   };
 
   void take_configurations(GpsTime now, Inbox& inbox);
-  void take_measurements(GpsTime now, Inbox& inbox);
-  void take_gnss(GpsTime now, Inbox& inbox);
-  void take_bearings(GpsTime now, Inbox& inbox);
+  void take_trunk(GpsTime now, Inbox& inbox);
+  [[nodiscard]] double differential_acceleration_sigma() const;
+  void set_trunk_uncertainty(GpsTime now);
   void take_pose(GpsTime now, Inbox& inbox);
   template <class Filter>
   void set_reference_to_estimate(const Filter& filter, GpsTime last_measurement);
@@ -104,7 +99,7 @@ class Navigation {
   void drop_state();
   [[nodiscard]] std::span<const navigation::Burn> own_burns();
   void set_uncertainty(GpsTime now);
-  void set_uncertainty(const Matrix6& covariance_rtn, GpsTime epoch, GpsTime now);
+  void set_uncertainty(const Matrix6& covariance_rtn, double acceleration_sigma, GpsTime epoch, GpsTime now);
   void take_maneuvers(GpsTime now, Inbox& inbox);
   void move_reference(GpsTime time);
   [[nodiscard]] Result<Pair> flown_to(GpsTime time) const;
@@ -125,7 +120,7 @@ class Navigation {
   Sensors sensors_ = Sensors::kIdeal;
   GnssReceivers receivers_;
   navigation::GnssNavigation gnss_;
-  CameraNavigation camera_;
+  TrunkNavigation trunk_;
   PoseCameraNavigation pose_;
   orbit::EarthOrientation earth_;  ///< as telecommanded
   std::array<navigation::Burn, kMaxManeuvers> burns_{};

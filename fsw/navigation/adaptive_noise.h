@@ -16,6 +16,8 @@ struct AdaptiveNoiseSettings {
   double psd = 1e-14;  ///< m^2/s^3, initial value
   double psd_min = 1e-15;
   double psd_max = 1e-11;
+
+  bool operator==(const AdaptiveNoiseSettings&) const = default;
 };
 
 class AdaptiveNoise {

@@ -2,7 +2,6 @@
 
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
-#include "fsw/navigation/roe_filter.h"
 #include "fsw/orbit/roe.h"
 
 namespace vbar::fsw::navigation {

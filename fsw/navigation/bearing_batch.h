@@ -20,6 +20,8 @@ struct BearingBatchSettings {
   double bias_sigma = 1.5e-5;   ///< rad, common bias of all bearings, per axis
   double min_share_used = 0.6;  ///< of the bearings, otherwise there is no solution
   double max_chi_square = 2.0;  ///< per degree of freedom, of the bearings used
+
+  bool operator==(const BearingBatchSettings&) const = default;
 };
 
 /// ROE of the target with respect to the servicer at the last bearing of the batch (dimensionless), and the common

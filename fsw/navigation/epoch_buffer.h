@@ -32,6 +32,9 @@ class EpochBuffer {
   }
 
   [[nodiscard]] const gnss::ObservationEpoch* oldest() const { return count_ == 0 ? nullptr : &at(0); }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  /// In order of tags.
+  [[nodiscard]] const gnss::ObservationEpoch& operator[](std::size_t k) const { return at(k); }
   [[nodiscard]] const gnss::ObservationEpoch* find(GpsTime tag) const {
     for (std::size_t k = 0; k < count_; ++k) {
       if (at(k).receiver_time == tag) return &at(k);

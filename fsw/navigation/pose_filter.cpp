@@ -4,7 +4,6 @@
 #include "fsw/math/math.h"
 #include "fsw/navigation/dynamics.h"
 #include "fsw/navigation/propagation.h"
-#include "fsw/navigation/roe_filter.h"
 #include "fsw/navigation/roe_impulse.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
@@ -190,7 +189,7 @@ void PoseFilter::advance_orbit(const orbit::CartesianState& servicer, const Vect
     }
   }
 
-  // White accelerations in RTN by three-point Gauss quadrature, as in roe_filter.cpp.
+  // White accelerations in RTN by three-point Gauss quadrature, as in fsw/trunk/relative_orbit.cpp.
   constexpr std::array<double, 3> kAt = {0.1127016653792583, 0.5, 0.8872983346207417};
   constexpr std::array<double, 3> kWeight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   const double n = orbit::mean_motion(before.value().a);

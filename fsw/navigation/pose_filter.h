@@ -4,11 +4,11 @@
 //
 // State: osculating ROE of the target with respect to the servicer; its attitude as a small rotation (generalised
 // Rodrigues parameters, body axes) from a reference quaternion (USQUE, Crassidis and Markley 2003); its rate; the
-// differential accelerations, as in roe_filter.h; and the correlated errors of the keypoints. A network has the
-// same errors for the same view, so that a filter that assumed white errors would soon underestimate its covariance
-// by a factor of ten. A share of each keypoint's own error, and a shift and stretch of all, are therefore Gauss-Markov
-// states that decay as the target rotates: by 1/e in 11 to 14 deg, measured over ten tumbles of 0.3 to 1.5 deg/s. A
-// part of the stretch is constant: it is equivalent to another range, and only known burns separate the two.
+// differential accelerations, as in fsw/trunk/relative_orbit.h; and the correlated errors of the keypoints. A network
+// has the same errors for the same view, so that a filter that assumed white errors would soon underestimate its
+// covariance by a factor of ten. A share of each keypoint's own error, and a shift and stretch of all, are therefore
+// Gauss-Markov states that decay as the target rotates: by 1/e in 11 to 14 deg, measured over ten tumbles of 0.3 to 1.5
+// deg/s. A part of the stretch is constant: it is equivalent to another range, and only known burns separate the two.
 //
 // Orbit and attitude are decoupled between images, so that each is sampled alone; a measurement depends on ROE
 // and attitude only, so that the other states are not sampled. Since the transform is a regression, the result is that

@@ -6,7 +6,7 @@
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
 #include "fsw/navigation/pose_filter.h"
-#include "fsw/navigation/roe_filter.h"
+#include "fsw/orbit/roe.h"
 
 namespace vbar::fsw::navigation {
 namespace {

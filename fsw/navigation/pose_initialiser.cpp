@@ -2,7 +2,6 @@
 
 #include "fsw/math/cholesky6.h"
 #include "fsw/math/math.h"
-#include "fsw/navigation/roe_filter.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 

@@ -31,7 +31,8 @@ Vector3 Propagation::acceleration(const orbit::CartesianState& s, double after,
                               start_itrf.z());
   const Vector3 g = orbit::gravity_itrf(position_itrf);
   Vector3 a = R_itrf_gcrf_.transpose() * Vector3(c * g.x() - sn * g.y(), c * g.y() + sn * g.x(), g.z());
-  if (differential.along_track != 0.0) a += differential.along_track * orbit::R_rtn_eci(s).row(1).transpose();
+  const Vector3 in_rtn = differential.empirical_rtn + Vector3(0.0, differential.along_track, 0.0);
+  if (!in_rtn.isZero(0.0)) a += orbit::R_rtn_eci(s).transpose() * in_rtn;
   if (differential.from_sun != 0.0 && is_sunlit(s.position_eci, sun_eci_)) a -= differential.from_sun * sun_eci_;
   return a;
 }

@@ -10,8 +10,9 @@ namespace vbar::fsw::navigation {
 
 /// Acceleration of a spacecraft relative to that of the other, m/s^2.
 struct DifferentialAcceleration {
-  double along_track = 0.0;  ///< in T of its own RTN: drag
-  double from_sun = 0.0;     ///< away from the Sun, while in sunlight: radiation pressure
+  double along_track = 0.0;                 ///< in T of its own RTN: drag
+  double from_sun = 0.0;                    ///< away from the Sun, while in sunlight: radiation pressure
+  Vector3 empirical_rtn = Vector3::Zero();  ///< in its own RTN
 };
 
 /// Propagations from one instant: the Earth's orientation is computed once for all spacecraft and sigma points.

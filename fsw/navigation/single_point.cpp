@@ -76,7 +76,7 @@ double residual_of(const Range& range, const Unknowns& x) {
 
 struct Fit {
   Unknowns x = Unknowns::Zero();
-  double position_variance = 0.0;
+  Matrix3 covariance = Matrix3::Zero();  ///< of the position
   Status status = Status::kDidNotConverge;
 };
 
@@ -111,7 +111,7 @@ Fit fit(const Ranges& ranges, Unknowns x) {
       result.status = Status::kOk;
       result.x = x;
       for (int axis = 0; axis < 3; ++axis) {
-        result.position_variance += factor.solve(Vector6::Unit(axis))(axis) / 3.0;
+        result.covariance.col(axis) = factor.solve(Vector6::Unit(axis)).head<3>();
       }
       return result;
     }
@@ -171,7 +171,8 @@ Result<SinglePoint> single_point(const gnss::ObservationEpoch& epoch, const Ephe
     if (radius < kMinRadius || radius > kGreatestRadius) return Status::kDidNotConverge;
     return SinglePoint{.position_eci = x.head<3>(),
                        .clock_m = x(3),
-                       .sigma_m = math::sqrt(fitted.position_variance),
+                       .sigma_m = math::sqrt(fitted.covariance.trace() / 3.0),
+                       .covariance_m2 = fitted.covariance,
                        .used = used_count(ranges)};
   }
   return Status::kDidNotConverge;

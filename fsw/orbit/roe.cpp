@@ -144,4 +144,16 @@ Vector6 roe_from_rtn_linear(const QnsElements& chief, const Vector6& rtn) {
   return roe;
 }
 
+Result<CartesianState> target_from_roe(const QnsElements& chief, const Vector6& roe) {
+  return cartesian_from_qns(qns_from_roe(chief, roe));
+}
+
+Result<Vector6> roe_of_target(const CartesianState& chief, const CartesianState& deputy) {
+  const auto chief_elements = qns_from_cartesian(chief);
+  const auto deputy_elements = qns_from_cartesian(deputy);
+  if (!chief_elements.ok()) return chief_elements.status();
+  if (!deputy_elements.ok()) return deputy_elements.status();
+  return roe_from_qns(chief_elements.value(), deputy_elements.value());
+}
+
 }  // namespace vbar::fsw::orbit

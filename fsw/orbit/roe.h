@@ -14,6 +14,11 @@ Vector6 roe_from_qns(const QnsElements& chief, const QnsElements& deputy);
 /// Exact inverse: the deputy's elements.
 QnsElements qns_from_roe(const QnsElements& chief, const Vector6& roe);
 
+/// The deputy's state from its osculating ROE with respect to the chief, and back. Errors of the conversions of
+/// elements.
+Result<CartesianState> target_from_roe(const QnsElements& chief, const Vector6& roe);
+Result<Vector6> roe_of_target(const CartesianState& chief, const CartesianState& deputy);
+
 /// 6x6 state-transition matrix of mean ROE over tau seconds under J2 (Koenig, Guffanti, D'Amico 2017, eq. A6);
 /// `chief_mean` at the start of the interval.
 Matrix6 roe_transition_j2(const QnsElements& chief_mean, double tau);

@@ -20,17 +20,19 @@ inline constexpr std::int16_t kUnborn = -2;
 
 struct Hypothesis {
   RelativeMotion motion;
-  std::uint32_t track = 0;  ///< hypotheses of one track began with the same object
-  double score = 0.0;       ///< log-likelihood ratio against all of it being false detections (Sittler 1964)
-  double misfit = 1.0;      ///< running mean of the normalised innovation squared, a degree of freedom
-  double log_flux = 0.0;    ///< running mean
-  double identity = 0.0;    ///< worst recent distance from the prediction (chi-square, 4 degrees of freedom)
-  double identity_now = 0.0;
+  std::uint32_t track = 0;            ///< hypotheses of one track began with the same object
+  double score = 0.0;                 ///< log-likelihood ratio against all of it being false detections (Sittler 1964)
+  double misfit = 1.0;                ///< running mean of the normalised innovation squared, a degree of freedom
+  double log_flux = 0.0;              ///< running mean
+  double sigma = 0.0;                 ///< rad, of its last object
+  double distance = 0.0;              ///< from the prediction (chi-square, 5 degrees of freedom)
+  double identity = 0.0;              ///< log-likelihood ratio of being the target against being another satellite
   std::int32_t hits = 0;              ///< in all
   std::int32_t hits_since_gap = 0;    ///< since its last long gap
   std::int32_t images_since_hit = 0;  ///< in which it was expected
-  std::uint32_t recent = 0;           ///< one bit per image in which it was expected or seen, newest lowest: 1 seen
-  bool established = false;           ///< was seen in M of N images with residuals as expected
+  std::uint32_t recent = 0;  ///< one bit per image in which it was expected or seen, newest lowest: 1 seen, and the
+                             ///< object was not that of a better track
+  bool established = false;  ///< was seen in M of N images with residuals as expected
   std::array<std::int16_t, kHistory> history{};  ///< candidates by image, newest first
 };
 

@@ -35,14 +35,16 @@ Result<Prediction> prediction_of(const orbit::RelativeState& target, const Matri
   const double z_rate = (velocity.z() - z * velocity.y()) * inverse;
 
   Prediction prediction;
-  prediction.slopes = Vector4(y, z, y_rate, z_rate);
-  Eigen::Matrix<double, 4, 6> jacobian = Eigen::Matrix<double, 4, 6>::Zero();
+  const double stretch_rate = velocity.y() * inverse;
+  prediction.slopes << y, z, y_rate, z_rate, stretch_rate;
+  Eigen::Matrix<double, 5, 6> jacobian = Eigen::Matrix<double, 5, 6>::Zero();
   jacobian.row(0) << inverse, -y * inverse, 0.0, 0.0, 0.0, 0.0;
   jacobian.row(1) << 0.0, -z * inverse, inverse, 0.0, 0.0, 0.0;
-  const double stretch = velocity.y() * inverse * inverse;
+  const double stretch = stretch_rate * inverse;
   jacobian.row(2) << -stretch, (y * velocity.y() * inverse - y_rate) * inverse, 0.0, inverse, -y * inverse, 0.0;
   jacobian.row(3) << 0.0, (z * velocity.y() * inverse - z_rate) * inverse, -stretch, 0.0, -z * inverse, inverse;
-  const Eigen::Matrix<double, 4, 6> spread = jacobian * covariance;
+  jacobian.row(4) << 0.0, -stretch, 0.0, 0.0, inverse, 0.0;
+  const Eigen::Matrix<double, 5, 6> spread = jacobian * covariance;
   prediction.covariance = spread * jacobian.transpose();
   prediction.along_track_m = position.y();
   prediction.along_track_rate = velocity.y();
@@ -59,8 +61,7 @@ Result<Prediction> prediction_of(const Vector3& direction_rtn, const Matrix2& co
   // An angle is less than its slope by cos^2; the smaller terms are negligible for a gate.
   const double stretch = 1.0 + slopes.value().squaredNorm();
   prediction.covariance.topLeftCorner<2, 2>() = stretch * stretch * covariance;
-  prediction.covariance(2, 2) = kUnknownRate * kUnknownRate;
-  prediction.covariance(3, 3) = kUnknownRate * kUnknownRate;
+  for (int k = 2; k < 5; ++k) prediction.covariance(k, k) = kUnknownRate * kUnknownRate;
   prediction.along_track_m = along_track_m;
   prediction.along_track_sigma_fraction = kUnknownFraction;
   return prediction;

@@ -7,13 +7,14 @@
 
 namespace vbar::fsw::tracking {
 
-using Vector4 = Eigen::Matrix<double, 4, 1>;
-using Matrix4 = Eigen::Matrix<double, 4, 4>;
+using Vector5 = Eigen::Matrix<double, 5, 1>;
+using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
-/// Slopes (fsw/tracking/servicer_view.h) and their rates, at an image's time.
+/// Slopes (fsw/tracking/servicer_view.h), their rates and that of the distance, at an image's time: all of a relative
+/// orbit that bearings determine, its scale excepted.
 struct Prediction {
-  Vector4 slopes = Vector4::Zero();         ///< y, z, their rates (1/s)
-  Matrix4 covariance = Matrix4::Zero();     ///< of these
+  Vector5 slopes = Vector5::Zero();         ///< y, z, their rates, rate of the T component over itself (1/s)
+  Matrix5 covariance = Matrix5::Zero();     ///< of these
   double along_track_m = 0.0;               ///< T component of the target's position, negative behind; 0: unknown
   double along_track_rate = 0.0;            ///< m/s
   double along_track_sigma_fraction = 1.0;  ///< 1 sigma of along_track_m as a part of it

@@ -63,8 +63,8 @@ RelativeMotion unknown_motion(const MotionSettings& settings) {
   return motion;
 }
 
-bool propagate(RelativeMotion& motion, double mean_motion, double dt, const MotionSettings& settings) {
-  const double rate = 1.5 * mean_motion * dt;
+bool propagate(RelativeMotion& motion, const ServicerView& view, double dt, const MotionSettings& settings) {
+  const double rate = view.drift_rate * dt;
   const double stretch = 1.0 - rate * motion.shape[0];  // of dlambda
   if (!(stretch > kMinStretch && stretch < kMaxStretch)) return false;
   const double inverse = 1.0 / stretch;
@@ -74,7 +74,7 @@ bool propagate(RelativeMotion& motion, double mean_motion, double dt, const Moti
   motion.covariance = Matrix5(transition * motion.covariance) * transition.transpose();
   const double size = settings.drift_fraction * settings.drift_fraction * motion.shape.squaredNorm();
   const double variance =
-      (settings.drift_sigma * settings.drift_sigma + size) * math::abs(dt) * mean_motion / math::kTwoPi;
+      (settings.drift_sigma * settings.drift_sigma + size) * math::abs(dt) * view.mean_motion / math::kTwoPi;
   motion.covariance.diagonal().array() += variance;
   symmetrise(motion.covariance);
   return true;
@@ -145,7 +145,7 @@ void update(RelativeMotion& motion, const Innovation& innovation) {
 SlopeState slope_state(const RelativeMotion& motion, const ServicerView& view, double bend, double bend_rate) {
   const Regressors rows = regressors(view.latitude);
   const Vector5& shape = motion.shape;
-  const double drift = 1.5 * view.mean_motion;  // of s: ds/dt = drift s0 s
+  const double drift = view.drift_rate;  // of s: ds/dt = drift s0 s
   const double inverse = 1.0 / limited(1.0 + rows.along.dot(shape));
   const double along = rows.along.dot(shape);
   const double along_rate = view.latitude_rate * rows.along_du.dot(shape) + drift * shape[0] * along;
@@ -153,7 +153,7 @@ SlopeState slope_state(const RelativeMotion& motion, const ServicerView& view, d
   along_rate_row[0] += drift * along;
 
   SlopeState state;
-  Eigen::Matrix<double, 4, 5> jacobian;
+  Matrix5& jacobian = state.jacobian;
   const auto fill = [&](int k, const Row5& row, const Row5& row_du) {
     const double numerator = row.dot(shape);
     const double slope = numerator * inverse;
@@ -169,28 +169,34 @@ SlopeState slope_state(const RelativeMotion& motion, const ServicerView& view, d
   };
   fill(0, rows.radial, rows.radial_du);
   fill(1, rows.normal, rows.normal_du);
+  state.slopes[4] = along_rate * inverse - drift * shape[0];
+  jacobian.row(4) = (along_rate_row - along_rate * inverse * rows.along) * inverse;
+  jacobian(4, 0) -= drift;
   state.slopes[0] += view.path_slope + bend;
   state.slopes[2] += view.path_slope_rate + bend_rate;
   state.slopes[3] += view.plane_rotation_rate;
-  const Eigen::Matrix<double, 4, 5> spread = jacobian * motion.covariance;
+  state.slopes[4] += view.path_stretch_rate;
+  const Matrix5 spread = jacobian * motion.covariance;
   state.covariance = spread * jacobian.transpose();
   return state;
 }
 
-double distance_between(const Vector4& a, const Matrix4& a_covariance, const Vector4& b, const Matrix4& b_covariance,
-                        double slope_floor, double rate_floor) {
+SlopeDistance slope_distance(const Vector5& difference, const Matrix5& covariance, const SlopeFloors& floors) {
   constexpr double kVeryFar = 1e9;
-  // Rates in units of 1e-3 1/s, so that the matrix is well conditioned; then Cholesky, L w = a - b.
-  const Vector4 unit(1.0, 1.0, 1e3, 1e3);
-  const Vector4 difference = (a - b).cwiseProduct(unit);
-  Matrix4 sum = unit.asDiagonal() * Matrix4(a_covariance + b_covariance) * unit.asDiagonal();
-  const double rate_scaled = rate_floor * 1e3;
-  for (int k = 0; k < 4; ++k) sum(k, k) += k < 2 ? slope_floor * slope_floor : rate_scaled * rate_scaled;
-  Matrix4 lower = Matrix4::Zero();
-  double distance = 0.0;
-  Vector4 w = Vector4::Zero();
-  for (int r = 0; r < 4; ++r) {
-    double rest = difference[r];
+  // Rates in units of 1e-3 1/s, so that the matrix is well conditioned; then Cholesky, L w = difference.
+  constexpr double kRateUnit = 1e3;
+  const Vector5 unit(1.0, 1.0, kRateUnit, kRateUnit, kRateUnit);
+  const Vector5 scaled = difference.cwiseProduct(unit);
+  Matrix5 sum = unit.asDiagonal() * covariance * unit.asDiagonal();
+  for (int k = 0; k < 5; ++k) {
+    const double floor = k < 2 ? floors.slope : kRateUnit * floors.rate;
+    sum(k, k) += floor * floor;
+  }
+  Matrix5 lower = Matrix5::Zero();
+  Vector5 w = Vector5::Zero();
+  SlopeDistance distance;
+  for (int r = 0; r < 5; ++r) {
+    double rest = scaled[r];
     for (int c = 0; c < r; ++c) {
       double entry = sum(r, c);
       for (int k = 0; k < c; ++k) entry -= lower(r, k) * lower(c, k);
@@ -199,12 +205,13 @@ double distance_between(const Vector4& a, const Matrix4& a_covariance, const Vec
     }
     double pivot = sum(r, r);
     for (int k = 0; k < r; ++k) pivot -= lower(r, k) * lower(r, k);
-    if (!(pivot > 0.0)) return kVeryFar;
+    if (!(pivot > 0.0)) return {kVeryFar, kVeryFar};
     lower(r, r) = math::sqrt(pivot);
     w[r] = rest / lower(r, r);
-    distance += w[r] * w[r];
+    distance.square += w[r] * w[r];
+    distance.log_determinant += math::log(pivot);
   }
-  return math::is_finite(distance) ? distance : kVeryFar;
+  return math::is_finite(distance.square) ? distance : SlopeDistance{kVeryFar, kVeryFar};
 }
 
 }  // namespace vbar::fsw::tracking

@@ -16,8 +16,6 @@
 
 namespace vbar::fsw::tracking {
 
-using Vector5 = Eigen::Matrix<double, 5, 1>;
-using Matrix5 = Eigen::Matrix<double, 5, 5>;
 using Matrix25 = Eigen::Matrix<double, 2, 5>;
 
 struct MotionSettings {
@@ -54,7 +52,7 @@ Result<SlopeMeasurement> slope_measurement(const Vector3& direction_rtn, double 
 RelativeMotion unknown_motion(const MotionSettings& settings);
 
 /// Propagation by `dt` seconds. False if the target would pass the servicer: the state is then invalid.
-bool propagate(RelativeMotion& motion, double mean_motion, double dt, const MotionSettings& settings);
+bool propagate(RelativeMotion& motion, const ServicerView& view, double dt, const MotionSettings& settings);
 
 /// An own burn at argument of latitude `latitude` (rad). Without `along_track_m` (0) the elements are almost reset.
 void apply_burn(RelativeMotion& motion, const OwnBurn& burn, double latitude, const ServicerView& view,
@@ -68,15 +66,25 @@ Innovation innovation_of(const RelativeMotion& motion, const ServicerView& view,
 void update(RelativeMotion& motion, const Innovation& innovation);
 
 /// Predicted slopes and rates with covariance, as in a prediction (in axes that rotate about N only). `bend_rate`:
-/// of `bend`, 1/s.
+/// of `bend`, 1/s. They represent all five elements of s, so that they discriminate between orbits at any time.
 struct SlopeState {
-  Vector4 slopes = Vector4::Zero();
-  Matrix4 covariance = Matrix4::Zero();
+  Vector5 slopes = Vector5::Zero();
+  Matrix5 covariance = Matrix5::Zero();
+  Matrix5 jacobian = Matrix5::Zero();  ///< with respect to s
 };
 SlopeState slope_state(const RelativeMotion& motion, const ServicerView& view, double bend, double bend_rate);
 
-/// (a - b)' (A + B + floor)^-1 (a - b) with 1-sigma floors of slopes and of rates (1/s); very large if not regular.
-double distance_between(const Vector4& a, const Matrix4& a_covariance, const Vector4& b, const Matrix4& b_covariance,
-                        double slope_floor, double rate_floor);
+/// 1-sigma floors of slopes and of rates (1/s): errors common to all images.
+struct SlopeFloors {
+  double slope = 0.0;
+  double rate = 0.0;
+};
+
+/// Normal distribution of a difference of slopes and rates. Very large if its covariance is not regular.
+struct SlopeDistance {
+  double square = 0.0;           ///< difference' (covariance + floors)^-1 difference
+  double log_determinant = 0.0;  ///< of covariance + floors, except for a constant
+};
+SlopeDistance slope_distance(const Vector5& difference, const Matrix5& covariance, const SlopeFloors& floors);
 
 }  // namespace vbar::fsw::tracking

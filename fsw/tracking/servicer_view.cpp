@@ -1,7 +1,9 @@
 #include "fsw/tracking/servicer_view.h"
 
 #include "fsw/math/math.h"
+#include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/propagate.h"
+#include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 
 namespace vbar::fsw::tracking {
@@ -9,6 +11,8 @@ namespace vbar::fsw::tracking {
 Result<ServicerView> servicer_view(const orbit::CartesianState& servicer) {
   const Result<orbit::QnsElements> elements = orbit::qns_from_cartesian(servicer);
   if (!elements.ok()) return elements.status();
+  const Result<orbit::QnsElements> mean = orbit::mean_from_osculating(elements.value());
+  if (!mean.ok()) return mean.status();
 
   const Matrix3 rtn_eci = orbit::R_rtn_eci(servicer);
   const Vector3 velocity_rtn = rtn_eci * servicer.velocity_eci;
@@ -24,9 +28,11 @@ Result<ServicerView> servicer_view(const orbit::CartesianState& servicer) {
   view.latitude = orbit::true_argument_of_latitude(elements.value());
   view.latitude_rate = transverse_speed / radius;
   view.mean_motion = orbit::mean_motion(elements.value().a);
+  view.drift_rate = -orbit::roe_transition_j2(mean.value(), 1.0)(1, 0);
   view.semi_major_axis = elements.value().a;
   view.path_slope = radial_speed / transverse_speed;
   view.path_slope_rate = (radial_rate - view.path_slope * transverse_rate) / transverse_speed;
+  view.path_stretch_rate = transverse_rate / transverse_speed;
   view.plane_rotation_rate = acceleration_rtn.z() / transverse_speed;
   return view;
 }

@@ -9,21 +9,26 @@ namespace vbar::fsw::tracking {
 /// Directions near the -T or +T axis are represented by two slopes, those of their R and N component against their T
 /// component: y = d_R / d_T, z = d_N / d_T. Their sign does not depend on whether the target is ahead or behind.
 struct ServicerView {
-  double latitude = 0.0;         ///< true argument of latitude, rad
-  double latitude_rate = 0.0;    ///< rad/s
-  double mean_motion = 0.0;      ///< rad/s, of the osculating orbit
+  double latitude = 0.0;       ///< true argument of latitude, rad
+  double latitude_rate = 0.0;  ///< rad/s
+  double mean_motion = 0.0;    ///< rad/s, of the osculating orbit
+  /// Of a relative semi-major axis, with J2: d(dlambda)/dt = -drift_rate da, 1/s. The osculating mean motion and a
+  /// drift without J2 differ from it by 0.2 % and 0.3 %.
+  double drift_rate = 0.0;
   double semi_major_axis = 0.0;  ///< m, osculating
   /// Slope of the servicer's own path, v_R / v_T: the direction of a target that follows or leads on the same orbit.
   /// Eccentricity and the short-period terms of J2 move this direction by hundreds of arc seconds an orbit, whatever
   /// the range.
   double path_slope = 0.0;
   double path_slope_rate = 0.0;  ///< 1/s
+  /// Relative rate of the distance to a target on the same orbit, d(v_T)/dt / v_T, 1/s.
+  double path_stretch_rate = 0.0;
   /// Rate at which J2 rotates RTN about R, rad/s. Relative velocities of fsw/orbit/rtn.h exclude this rotation.
   double plane_rotation_rate = 0.0;
 };
 
 /// Of the servicer's osculating ECI state. Accelerations are those of point mass and J2. Errors of
-/// orbit::qns_from_cartesian (unbound, equatorial, not finite).
+/// orbit::qns_from_cartesian (unbound, equatorial, not finite) and orbit::mean_from_osculating.
 Result<ServicerView> servicer_view(const orbit::CartesianState& servicer);
 
 /// Slopes y, z of a direction in RTN, not necessarily of unit length. kOutOfRange if it is more than 60 degrees from

@@ -12,35 +12,80 @@ constexpr double kAlone = 99.0;
 constexpr int kRivalHits = 3;
 constexpr int kOwnObjects = 2;
 constexpr int kDeposeAfter = 3;
+constexpr SlopeFloors kRegular{1e-6, 1e-8};  // of a covariance
 
 }  // namespace
 
-void TargetTracker::compare_with_prediction(double dt) {
-  const double decay = math::exp(-dt / settings_.identity_memory_s);
+// A detection that a better track shares is not one of this track: the bit of this image is cleared. Better: the
+// target's, else an established one, else the one of higher score.
+void TargetTracker::share_objects() {
+  std::array<const Hypothesis*, kMaxHypotheses> best{};
+  std::size_t tracks = 0;
   for (std::size_t k = 0; k < count_; ++k) {
-    Hypothesis& hypothesis = hypotheses_[k];
-    if (!work_.has_prediction) continue;
-    const SlopeState state = slope_state(hypothesis.motion, work_.view, work_.bend, work_.bend_rate);
-    hypothesis.identity_now =
-        distance_between(state.slopes, state.covariance, work_.prediction.slopes, work_.prediction.covariance,
-                         settings_.slope_floor, settings_.rate_floor);
-    hypothesis.identity = std::max(hypothesis.identity * decay, hypothesis.identity_now);
+    if (is_best_of_its_track(k)) best[tracks++] = &hypotheses_[k];
+  }
+  const auto is_better = [this](const Hypothesis& a, const Hypothesis& b) {
+    if (a.track == target_track_ || b.track == target_track_) return a.track == target_track_;
+    if (a.established != b.established) return a.established;
+    return a.score != b.score ? a.score > b.score : a.track < b.track;
+  };
+  work_.shared.fill(false);
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (h.history[0] < 0) continue;
+    std::size_t own = 0;
+    while (own + 1 < tracks && best[own]->track != h.track) ++own;
+    for (std::size_t t = 0; t < tracks; ++t) {
+      const Hypothesis& other = *best[t];
+      if (other.track != h.track && other.history[0] == h.history[0] && is_better(other, *best[own]))
+        work_.shared[k] = true;
+    }
+  }
+  for (std::size_t k = 0; k < count_; ++k) {
+    Hypothesis& h = hypotheses_[k];
+    if (work_.shared[k]) h.recent &= ~1U;
+    if (h.history[0] >= 0 && hits_of(h.recent, settings_.confirm_images) >= settings_.confirm_hits &&
+        h.misfit < kMaxMisfit) {
+      h.established = true;
+    }
   }
 }
 
+// The relative orbit of the target is distributed about the prediction, that of another satellite about zero with the
+// covariance of an unknown motion, which is so wide that only its determinant matters.
+void TargetTracker::compare_with_prediction() {
+  if (!work_.has_prediction) return;
+  for (std::size_t k = 0; k < count_; ++k) {
+    Hypothesis& hypothesis = hypotheses_[k];
+    const SlopeState state = slope_state(hypothesis.motion, work_.view, work_.bend, work_.bend_rate);
+    // Errors common to all images are changes of the relative orbit; as slopes and rates of one image, independent of
+    // each other, they would conceal a difference in the drift. The centre of brightness of a resolved body moves with
+    // the Sun, at the orbital rate, like an eccentricity or inclination.
+    const double floor = math::hypot(settings_.shape_floor, hypothesis.sigma);
+    const double unknown = settings_.motion.shape_sigma;
+    const Matrix5 unit = state.jacobian * state.jacobian.transpose();
+    const SlopeDistance as_target =
+        slope_distance(state.slopes - work_.prediction.slopes,
+                       state.covariance + work_.prediction.covariance + floor * floor * unit, kRegular);
+    const SlopeDistance as_other =
+        slope_distance(Vector5::Zero(), state.covariance + unknown * unknown * unit, kRegular);
+    hypothesis.distance = as_target.square;
+    hypothesis.identity = 0.5 * (as_other.log_determinant - as_target.log_determinant - as_target.square);
+  }
+}
+
+// A short track is another satellite's if it includes objects that the target's does not.
+bool TargetTracker::is_rival(const Hypothesis& h, const Hypothesis& target) const {
+  return h.track != target.track && (h.established || objects_of_its_own(h, target) >= kOwnObjects);
+}
+
 void TargetTracker::choose_target() {
-  // The track closest to the prediction, and the closest of the others.
+  // The track most likely to be the target, and the most likely of the others.
   const Hypothesis* best = nullptr;
-  const Hypothesis* second = nullptr;
   for (std::size_t k = 0; k < count_; ++k) {
     const Hypothesis& h = hypotheses_[k];
     if (h.hits < kRivalHits || !is_best_of_its_track(k)) continue;
-    if (best == nullptr || h.identity < best->identity) {
-      second = best;
-      best = &h;
-    } else if (second == nullptr || h.identity < second->identity) {
-      second = &h;
-    }
+    if (best == nullptr || h.identity > best->identity) best = &h;
   }
   score_margin_ = 0.0;
   ambiguous_ = false;
@@ -48,23 +93,31 @@ void TargetTracker::choose_target() {
     target_track_ = 0;
     return;
   }
-  score_margin_ = second == nullptr ? kAlone : std::min(0.5 * (second->identity - best->identity), kAlone);
+  score_margin_ = kAlone;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (h.hits < kRivalHits || !is_best_of_its_track(k) || !is_rival(h, *best)) continue;
+    score_margin_ = std::min(score_margin_, best->identity - h.identity);
+  }
 
   const Hypothesis* target = target_track_ == 0 ? nullptr : best_of(target_track_);
   if (target == nullptr) {
     target_track_ = 0;
     deposing_images_ = 0;
-    ambiguous_ = second != nullptr && score_margin_ < settings_.identity_margin;
-    if (best->established && !ambiguous_ && best->identity < settings_.identity_gate &&
-        images_watched_ >= settings_.confirm_images) {
+    const bool is_possible = best->distance < settings_.identity_gate;
+    ambiguous_ = is_possible && score_margin_ < settings_.identity_margin;
+    if (best->established && is_possible && !ambiguous_ && images_watched_ >= settings_.confirm_images) {
       target_track_ = best->track;
     }
     return;
   }
-  // The target track is kept unless the prediction contradicts it for some time.
-  const bool misplaced = target->history[0] >= 0 && target->identity_now > settings_.identity_gate;
+  // The target track is kept unless the prediction contradicts it for some time. Only objects in the gate about the
+  // prediction continue it. In a narrow gate they are the target's: the motion of a track, which once an orbit errs by
+  // 1e-3 of the distance, contradicts no more.
+  const bool misplaced =
+      target->history[0] >= 0 && target->distance > settings_.identity_gate && !work_.is_prediction_narrow;
   const bool beaten = best->track != target_track_ && best->established &&
-                      0.5 * (target->identity_now - best->identity) > settings_.identity_margin;
+                      best->identity - target->identity > settings_.identity_margin;
   deposing_images_ = misplaced || beaten ? deposing_images_ + 1 : 0;
   if (deposing_images_ >= kDeposeAfter) {
     target_track_ = 0;
@@ -87,15 +140,13 @@ double TargetTracker::claim(std::uint32_t track, std::int16_t candidate) const {
   return without == nullptr ? kAlone : with->score - without->score;
 }
 
-// The strongest association of another satellite's track with the target's candidate. A short track is another
-// satellite's if it includes objects that the target's does not.
+// The strongest association of another satellite's track with the target's candidate.
 double TargetTracker::rival_claim(const Hypothesis& target) const {
   const std::int16_t candidate = target.history[0];
   double strongest = -kAlone;
   for (std::size_t k = 0; k < count_; ++k) {
     const Hypothesis& h = hypotheses_[k];
-    if (h.track == target_track_ || h.history[0] != candidate) continue;
-    if (!h.established && objects_of_its_own(h, target) < kOwnObjects) continue;
+    if (h.history[0] != candidate || !is_rival(h, target)) continue;
     strongest = std::max(strongest, claim(h.track, candidate));
   }
   return strongest;

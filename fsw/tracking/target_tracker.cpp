@@ -13,11 +13,15 @@ constexpr double kMaxProbability = 0.99;
 constexpr double kExpected = 0.5;
 // A new track's score before its first object: a false detection is more likely.
 constexpr double kBirthScore = -2.0;
-constexpr double kNarrowGate = 0.02;  // false detections in it
+constexpr double kNarrowGate = 0.02;  // other objects in it
 constexpr double kFluxGain = 0.2;
 // Limit of the brightness term: the target may show a glint or a penumbra.
 constexpr double kMaxDislike = 4.5;
 constexpr double kMisfitGain = 0.15;
+
+double determinant_of(const Matrix2& m) {
+  return m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0);
+}
 
 bool is_direction(const Vector3& d) {
   const double norm = d.squaredNorm();
@@ -41,14 +45,14 @@ Result<TrackerOutput> TargetTracker::step(const TrackerInput& input) {
   const double probability = std::clamp(input.detection_probability, kMinProbability, kMaxProbability);
   work_.detection_probability = probability;
   work_.log_miss = math::log(1.0 - probability);
-  const double dt = has_image_ ? seconds(input.time - time_) : 0.0;
 
   select_eligible(input);
   propagate_all(input);
   make_branches();
   grow();
-  compare_with_prediction(dt);
   prune();
+  share_objects();
+  compare_with_prediction();
   if (probability > kExpected) ++images_watched_;
   choose_target();
   has_image_ = true;
@@ -105,7 +109,7 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
       Matrix2 s = work_.prediction.covariance.topLeftCorner<2, 2>();
       s.diagonal() += measurement.value().variance;
       s.diagonal().array() += settings_.slope_floor * settings_.slope_floor;
-      const double determinant = s(0, 0) * s(1, 1) - s(0, 1) * s(1, 0);
+      const double determinant = determinant_of(s);
       const double square = s(1, 1) * offset.x() * offset.x() - 2.0 * s(0, 1) * offset.x() * offset.y() +
                             s(0, 0) * offset.y() * offset.y();
       is_in_gate = square <= settings_.prediction_gate * determinant;
@@ -113,6 +117,7 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
     }
     Eligible& eligible = work_.eligible[work_.eligible_count++];
     eligible.measurement = measurement.value();
+    eligible.sigma = candidate.sigma;
     eligible.is_in_gate = is_in_gate;
     eligible.log_flux = math::log(candidate.object.flux_dn > 1.0 ? candidate.object.flux_dn : 1.0);
     eligible.handicap =
@@ -121,6 +126,15 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
   }
   const double count = static_cast<double>(std::max<std::size_t>(input.candidates.size() - hot, 1));
   work_.log_density = math::log(count / settings_.field_sr);
+  Matrix2 about_prediction = work_.prediction.covariance.topLeftCorner<2, 2>();
+  about_prediction.diagonal().array() += settings_.slope_floor * settings_.slope_floor;
+  work_.is_prediction_narrow =
+      work_.has_prediction && is_narrow(settings_.prediction_gate, determinant_of(about_prediction));
+}
+
+/// Whether few other objects are to be expected in a gate with this determinant of the covariance.
+bool TargetTracker::is_narrow(double gate, double determinant) const {
+  return math::kPi * gate * math::sqrt(determinant) * math::exp(work_.log_density) < kNarrowGate;
 }
 
 void TargetTracker::propagate_all(const TrackerInput& input) {
@@ -130,12 +144,12 @@ void TargetTracker::propagate_all(const TrackerInput& input) {
     GpsTime now = time_;
     bool alive = true;
     for (const OwnBurn& burn : input.burns) {
-      alive = alive && propagate(motion, view.mean_motion, seconds(burn.time - now), settings_.motion);
+      alive = alive && propagate(motion, view, seconds(burn.time - now), settings_.motion);
       const double latitude = view.latitude - view.latitude_rate * seconds(input.time - burn.time);
       apply_burn(motion, burn, latitude, view, work_.prediction, settings_.motion);
       now = burn.time;
     }
-    alive = alive && propagate(motion, view.mean_motion, seconds(input.time - now), settings_.motion);
+    alive = alive && propagate(motion, view, seconds(input.time - now), settings_.motion);
     work_.erased[k] = !alive;
   }
   erase_marked();
@@ -205,19 +219,16 @@ Hypothesis TargetTracker::child_of(const Branch& branch) {
   const Eligible& candidate = work_.eligible[static_cast<std::size_t>(branch.candidate)];
   const Innovation innovation = innovation_of(child.motion, work_.view, work_.bend, candidate.measurement);
   // After a gap a narrow gate, in which false detections are unlikely, is sufficient.
-  const double gate_sr = math::kPi * settings_.association_gate * math::sqrt(innovation.determinant);
-  const bool is_narrow = gate_sr * math::exp(work_.log_density) < kNarrowGate;
+  const bool is_in_narrow_gate = is_narrow(settings_.association_gate, innovation.determinant);
   update(child.motion, innovation);
   child.history[0] = candidate.index;
   child.misfit += kMisfitGain * (0.5 * innovation.distance - child.misfit);
   child.log_flux += (is_birth ? 1.0 : kFluxGain) * (candidate.log_flux - child.log_flux);
+  child.sigma = candidate.sigma;
   child.images_since_hit = 0;
   ++child.hits;
-  child.hits_since_gap =
-      is_narrow && child.established && child.hits_since_gap == 0 ? settings_.hits_after_gap : child.hits_since_gap + 1;
-  if (hits_of(child.recent, settings_.confirm_images) >= settings_.confirm_hits && child.misfit < kMaxMisfit) {
-    child.established = true;
-  }
+  child.hits_since_gap = is_in_narrow_gate && child.established && child.hits_since_gap == 0 ? settings_.hits_after_gap
+                                                                                             : child.hits_since_gap + 1;
   return child;
 }
 

@@ -5,7 +5,9 @@
 //
 // Kinematics form tracks, navigation selects one of them. The two are separated because the noise of two satellites'
 // bearings contains no information on which of them is the target: tracks are scored without the prediction (beyond its
-// gate), and compared by their distance from it in bearing and bearing rate, the worst of the last hour or two.
+// gate), and compared by the likelihood ratio of their relative orbits: an orbit as predicted against any.
+//
+// An object belongs to one satellite. Detections that a better track shares do not establish a track.
 
 #include <array>
 #include <optional>
@@ -22,23 +24,22 @@ namespace vbar::fsw::tracking {
 struct TrackerSettings {
   MotionSettings motion;
   HotPixelSettings hot_pixels;
-  double field_sr = 0.0113;           ///< solid angle of the search for candidates: 4.8 by 7.7 degrees
-  double surroundings = 0.03;         ///< rad about the predicted bearing in which other satellites are tracked as well
-  double association_gate = 13.8;     ///< chi-square, 2 degrees of freedom: 99.9 %
-  double prediction_gate = 18.4;      ///< likewise about the predicted bearing: 99.99 %
-  double identity_gate = 23.5;        ///< chi-square, 4 degrees of freedom: 99.99 %
-  double identity_memory_s = 6000.0;  ///< s: decay time of the worst distance
-  double identity_margin = 6.0;       ///< log-likelihood by which the target must exceed all others
-  double slope_floor = 1.5e-4;        ///< 1-sigma floor of the errors of predicted bearings, 30 arcsec
-  double rate_floor = 3e-7;           ///< 1/s
-  double certainty = 0.99;            ///< of the association in an image
-  double magnitude_sigma = 1.5;       ///< of a tumbling target from image to image
-  double sharp_object_loss = 2.3;     ///< log-likelihood: the target's light falls on more than one pixel
-  int confirm_hits = 5;               ///< M
-  int confirm_images = 7;             ///< of N
-  int gap_images = 5;                 ///< a gap: number of images without detection
-  int hits_after_gap = 3;             ///< detections needed again after a gap
-  int give_up_images = 15;            ///< images without detection, though expected, until given up
+  double field_sr = 0.0113;        ///< solid angle of the search for candidates: 4.8 by 7.7 degrees
+  double surroundings = 0.03;      ///< rad about the predicted bearing in which other satellites are tracked as well
+  double association_gate = 13.8;  ///< chi-square, 2 degrees of freedom: 99.9 %
+  double prediction_gate = 18.4;   ///< likewise about the predicted bearing: 99.99 %
+  double identity_gate = 25.7;     ///< chi-square, 5 degrees of freedom: 99.99 %
+  double identity_margin = 6.0;    ///< log-likelihood by which the target must exceed all others
+  double slope_floor = 1.5e-4;     ///< 1-sigma floor of the errors of predicted bearings, 30 arcsec
+  double shape_floor = 1.5e-4;     ///< likewise of each element of a relative orbit (relative_motion.h)
+  double certainty = 0.99;         ///< of the association in an image
+  double magnitude_sigma = 1.5;    ///< of a tumbling target from image to image
+  double sharp_object_loss = 2.3;  ///< log-likelihood: the target's light falls on more than one pixel
+  int confirm_hits = 5;            ///< M
+  int confirm_images = 7;          ///< of N
+  int gap_images = 5;              ///< a gap: number of images without detection
+  int hits_after_gap = 3;          ///< detections needed again after a gap
+  int give_up_images = 15;         ///< images without detection, though expected, until given up
 };
 
 struct TrackerInput {
@@ -64,7 +65,7 @@ struct TrackerOutput {
   int hypotheses = 0;
   int tracks = 0;
   int hot_pixels = 0;            ///< known
-  double score_margin = 0.0;     ///< log-likelihood of the best track's identity over the next one's; large if alone
+  double score_margin = 0.0;     ///< by which the best track's identity exceeds the next one's; large if alone
   double residual_sigmas = 0.0;  ///< root mean square of the target's recent residuals over their standard deviation
 };
 
@@ -88,7 +89,8 @@ class TargetTracker {
   void propagate_all(const TrackerInput& input);
   void make_branches();
   void grow();
-  void compare_with_prediction(double dt);
+  void share_objects();
+  void compare_with_prediction();
   void prune();
   void merge_accounts();
   void merge_tracks();
@@ -98,6 +100,7 @@ class TargetTracker {
   struct Eligible {
     SlopeMeasurement measurement;
     double log_flux = 0.0;
+    double sigma = 0.0;     ///< rad
     double handicap = 0.0;  ///< log-likelihood
     std::int16_t index = 0;
     bool is_in_gate = true;  ///< may be the target
@@ -105,7 +108,9 @@ class TargetTracker {
 
   [[nodiscard]] double gain_of(const Hypothesis& parent, const Innovation& innovation, const Eligible& candidate) const;
   [[nodiscard]] Hypothesis child_of(const Branch& branch);
+  [[nodiscard]] bool is_narrow(double gate, double determinant) const;
   void erase_marked();
+  [[nodiscard]] bool is_rival(const Hypothesis& h, const Hypothesis& target) const;
   [[nodiscard]] bool moves_as(const Hypothesis& a, const Hypothesis& b) const;
   [[nodiscard]] const Hypothesis* best_of(std::uint32_t track) const;
   [[nodiscard]] bool is_best_of_its_track(std::size_t k) const;
@@ -133,6 +138,7 @@ class TargetTracker {
     ServicerView view;
     Prediction prediction;
     bool has_prediction = false;
+    bool is_prediction_narrow = false;  ///< few other objects are to be expected in its gate
     double bend = 0.0;
     double bend_rate = 0.0;
     double detection_probability = 0.0;
@@ -144,6 +150,7 @@ class TargetTracker {
     std::array<Branch, kMaxBranches> branches{};
     std::size_t kept = 0;
     std::array<bool, kMaxHypotheses> erased{};
+    std::array<bool, kMaxHypotheses> shared{};
     std::array<Hypothesis, kMaxHypotheses> children{};
   } work_;
 };

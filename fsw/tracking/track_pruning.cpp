@@ -11,7 +11,7 @@ constexpr double kDropScore = -7.0;
 constexpr int kPatience = 3;
 constexpr std::size_t kScan = 5;        // images after which only one hypothesis of a track remains
 constexpr std::size_t kSame = 3;        // images that two hypotheses must share to be one
-constexpr double kSameDistance = 25.0;  // chi-square, 4 degrees of freedom: 5e-5
+constexpr double kSameDistance = 25.0;  // chi-square, 5 degrees of freedom: 1e-4
 
 }  // namespace
 
@@ -110,7 +110,8 @@ bool TargetTracker::moves_as(const Hypothesis& a, const Hypothesis& b) const {
   const SlopeState left = slope_state(a.motion, work_.view, work_.bend, work_.bend_rate);
   const SlopeState right = slope_state(b.motion, work_.view, work_.bend, work_.bend_rate);
   // The floors only keep the sum regular.
-  return distance_between(left.slopes, left.covariance, right.slopes, right.covariance, 1e-6, 1e-8) < kSameDistance;
+  return slope_distance(left.slopes - right.slopes, left.covariance + right.covariance, {1e-6, 1e-8}).square <
+         kSameDistance;
 }
 
 }  // namespace vbar::fsw::tracking

@@ -148,6 +148,10 @@ int run_command(const RunOptions& options) {
   } catch (const std::exception&) {
     if (!trouble) throw;  // the record is complete, its report is not
   }
+  if (!trouble && record.summary.never_navigated) {
+    fmt::print(stderr, "vbar: {}: never navigated: no estimate was valid\n", folder.path().string());
+    return kNeverNavigated;
+  }
   if (!trouble) return kDone;
   fmt::print(stderr, "vbar: {}: run incomplete: {}\n", folder.path().string(), *trouble);
   return *trouble == kInterruption ? kInterrupted : kFailed;

@@ -11,6 +11,7 @@ namespace vbar::report {
 namespace {
 
 std::string status(const Summary& s) {
+  if (s.complete && s.never_navigated) return R"(<p><span class="status bad">never navigated</span></p>)";
   if (s.complete) return R"(<p><span class="status good">complete</span></p>)";
   return fmt::format(R"(<p><span class="status bad">incomplete</span> <span class="bad">{}</span></p>)",
                      escaped(s.incomplete_reason));

@@ -38,6 +38,12 @@ void summarise_maneuvers(const RunRecord& record, Summary& summary) {
   }
 }
 
+/// A run too short to tell, or one that navigated late, did not fail.
+bool never_navigated(const RunRecord& record, const Summary& summary) {
+  return summary.health && (summary.health->faults & telemetry_health::kFaultNeverNavigated) != 0 &&
+         std::ranges::none_of(record.estimates, [](const EstimateRow& row) { return row.navigation_valid != 0; });
+}
+
 /// What the flight computer's steps cost; in which unit is a fact.
 void summarise_flight_steps(const RunRecord& record, Summary& summary) {
   Summary::FlightStep total;
@@ -67,6 +73,7 @@ Summary summarise(const RunRecord& record) {
   for (const Extension* extension : record.extensions)
     if (extension->summarise != nullptr) extension->summarise(record, summary);
   if (!record.of<telemetry_health>().empty()) summary.health = record.of<telemetry_health>().back().message;
+  summary.never_navigated = never_navigated(record, summary);
   return summary;
 }
 

@@ -86,6 +86,8 @@ struct Summary : RunFacts {
   std::optional<MeanAndDeviation> star_attitude_error_arcsec;  ///< of the boresight
   /// Of modules: numbers by name, for each subject ("pose") or sensor.
   std::map<std::string, std::map<std::string, double>> sensor_figures;
+  /// The flight software reported that it never navigated, and no estimate was valid: a fault of the run.
+  bool never_navigated = false;
   double dv_mps = 0.0;
   int maneuvers = 0;
   struct FlightStep {

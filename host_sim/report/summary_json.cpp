@@ -127,6 +127,7 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit("seed", s.seed);
   visit("complete", s.complete);
   visit("incomplete_reason", s.incomplete_reason);
+  visit("never_navigated", s.never_navigated);
   visit("flight_computer", s.flight_computer);
   visit("flight_software", s.flight_software);
   visit("camera", s.camera);

@@ -11,7 +11,7 @@ import sys
 FOLDERS = ["fsw", "boards/common", "boards/zynq7000"]
 
 HEADERS = set("""
-    algorithm array bit compare concepts cstddef cstdint cstring limits new optional span type_traits utility
+    algorithm array bit compare concepts cstddef cstdint cstring limits new optional span tuple type_traits utility
     stddef.h stdint.h Eigen/Core Eigen/Geometry Eigen/LU
 """.split())
 # Beside these, by folder: ARM's vector instructions; interrupt handlers share words with the main loop; libm's names are renamed where they are declared;
@@ -26,7 +26,7 @@ GENERATED_HEADER = re.compile(r"vbar/(\w+\.hpp|fields\.h)|lcm/lcm_coretypes\.h")
 
 STD_NAMES = set("""
     size_t ptrdiff_t byte int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t uintptr_t
-    array span dynamic_extent optional nullopt numeric_limits bit_cast to_integer as_bytes
+    array span tuple tuple_size_v get apply dynamic_extent optional nullopt numeric_limits bit_cast to_integer as_bytes
     min max clamp swap copy copy_n fill fill_n equal all_of any_of none_of sort lower_bound upper_bound
     memcpy memset memmove memcmp strlen strcmp strchr strrchr
     move forward exchange is_same_v is_array_v is_class_v is_floating_point_v is_trivially_copyable_v is_standard_layout_v integral unsigned_integral same_as

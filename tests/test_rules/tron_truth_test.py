@@ -48,7 +48,7 @@ class Run(unittest.TestCase):
                  for n in range(rows)]
         write(self.folder / "bench_truth.csv", shown)
         write(self.folder / "tron.csv", [{"time_s": 5, "failure": failure, "pose_source": "fused", "tries": tries}])
-        return pose_errors(self.folder, (0.0, 0.0, 0.5), BODY)
+        return pose_errors(self.folder, (0.0, 0.0, 0.5), BODY, 0.5)
 
     def test_an_exact_pose_has_no_error(self):
         (error,) = self.errors(self.exact, self.q)

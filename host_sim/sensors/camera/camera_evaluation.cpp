@@ -77,7 +77,7 @@ class CameraEvaluation final : public Evaluation {
     const telemetry_objects* const objects =
         told.objects && told.objects->image == told.image->image ? &*told.objects : nullptr;
     const auto truth = kept_truth_.take(told.exposure);
-    if (truth) add_truth(row, *told.image, objects, known_camera_, context_.mission, context_.servicer, *truth);
+    if (truth) add_truth(row, *told.image, objects, known_camera_, context_.servicer, *truth);
     if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
     if (objects != nullptr) append_objects(row.time_s, *objects, record_.tables.rows<ObjectRow>());
     record_.tables.rows<ImageRow>().push_back(row);
@@ -92,7 +92,7 @@ class CameraEvaluation final : public Evaluation {
     const auto truth = kept_truth_.take(told.exposure);
     if (truth && known_target_)
       add_truth(row, record_.tables.rows<KeypointRow>(), *told.pose, known_target_->keypoints_body_m, known_camera_,
-                context_.mission, context_.servicer, *truth);
+                context_.servicer, *truth);
     record_.tables.rows<PoseRow>().push_back(row);
     pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
   }

@@ -19,6 +19,8 @@ struct ImageCounts {
   int with_stars = 0;     ///< whose stars were identified
   int wrong_targets = 0;  ///< images whose choice is not the target; those without truth are not evaluated
   int without_truth = 0;
+  int lit_among_objects = 0;  ///< a detected object is the target, which is in sunlight at least in part
+  int lit_not_found = 0;      ///< of them, without a bearing
 };
 
 /// Of navigation by the pose network.

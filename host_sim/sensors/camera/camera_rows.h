@@ -20,7 +20,7 @@ struct ImageRow : telemetry_image {
   // The truth. Errors are estimated less true; absent where the flight software gave nothing.
   int true_object = -1;  ///< the object that is really the target; -1: none is, or nobody can tell
   std::string chosen;    ///< the spacecraft that the choice really is, "nothing" if none; empty without a choice
-  std::optional<double> range_m;
+  std::optional<double> range_m, sunlit;
   std::optional<double> bearing_error_x_arcsec, bearing_error_y_arcsec;            ///< against the centre of mass
   std::optional<double> attitude_error_across_arcsec, attitude_error_roll_arcsec;  ///< of the boresight, and about it
   std::optional<double> nees;  ///< of the osculating ROE, six degrees of freedom; of images that the filter used
@@ -71,6 +71,7 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(report::ColumnName{"true_object"}, row.true_object);
   visit(report::ColumnName{"chosen"}, row.chosen);
   visit(report::ColumnName{"range_m"}, row.range_m);
+  visit(report::ColumnName{"sunlit"}, row.sunlit);
   visit(report::ColumnName{"bearing_error_x_arcsec"}, row.bearing_error_x_arcsec);
   visit(report::ColumnName{"bearing_error_y_arcsec"}, row.bearing_error_y_arcsec);
   visit(report::ColumnName{"attitude_error_across_arcsec"}, row.attitude_error_across_arcsec);

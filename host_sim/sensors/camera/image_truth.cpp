@@ -7,7 +7,9 @@
 #include <Eigen/Geometry>
 
 #include "fsw/math/math.h"
+#include "fsw/orbit/sun.h"
 #include "host_sim/sensors/camera/true_camera.h"
+#include "host_sim/twins/camera/exposure_of_truth.h"
 
 namespace vbar::sensors {
 namespace {
@@ -80,14 +82,14 @@ void add_attitude_error(ImageRow& row, const Quaterniond& q_eci_camera, const Qu
 }  // namespace
 
 void add_truth(ImageRow& row, const telemetry_image& image, const telemetry_objects* objects, const CameraSensor& known,
-               const mission::Mission& mission, const mission::Spacecraft& servicer,
-               const twins::TruthSnapshot& truth) {
+               const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);
   const twins::SpacecraftTruth* const target = truth.find(servicer.observes());
   if (own == nullptr || target == nullptr || !own->attitude) return;
   const TrueCamera camera = true_camera(known, *own);
   const Vector3 los_eci = camera.towards(*target);
   row.range_m = los_eci.norm();
+  row.sunlit = twins::camera::sunlit_fraction(target->orbit.position_eci, fsw::orbit::sun_position_gcrf(truth.time));
   const Vector3 bearing_eci = vector(image.bearing_eci);
   if (image.status == telemetry_image::kStatusBearing && bearing_eci.norm() > 0.5) {
     add_bearing_error(row, bearing_eci, los_eci, camera.q_camera_eci);
@@ -104,8 +106,7 @@ void add_truth(ImageRow& row, const telemetry_image& image, const telemetry_obje
     row.true_object = true_object(*objects, *target_px, tolerance_px);
   }
   if (image.fate == telemetry_image::kEditFilter)
-    row.nees = nees_of_roe(image.a_roe_osculating_m, image.covariance_a_roe, own->orbit, target->orbit,
-                           mission.guidance.reference_semi_major_axis_m);
+    row.nees = nees_of_roe(image.a_roe_osculating_m, image.covariance_a_roe, own->orbit, target->orbit);
 }
 
 }  // namespace vbar::sensors

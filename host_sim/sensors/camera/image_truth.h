@@ -17,6 +17,6 @@ namespace vbar::sensors {
 /// `row` stays as it is. `known`: the camera as the ground knows it; that of a testbed is another than the mission's.
 /// `objects`: of the same image, null if they were not told.
 void add_truth(ImageRow& row, const telemetry_image& image, const telemetry_objects* objects, const CameraSensor& known,
-               const mission::Mission& mission, const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
+               const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
 
 }  // namespace vbar::sensors

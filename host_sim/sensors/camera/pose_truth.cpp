@@ -73,8 +73,8 @@ void append_keypoints(double exposure_s, const telemetry_pose& m, std::vector<Ke
 }
 
 void add_truth(PoseRow& row, std::vector<KeypointRow>& keypoints, const telemetry_pose& pose,
-               const double (&keypoints_body_m)[33], const CameraSensor& known, const mission::Mission& mission,
-               const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth) {
+               const double (&keypoints_body_m)[33], const CameraSensor& known, const mission::Spacecraft& servicer,
+               const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const own = truth.find(servicer.name);
   const twins::SpacecraftTruth* const target = truth.find(servicer.observes());
   if (own == nullptr || target == nullptr || !own->attitude || !target->attitude) return;
@@ -87,8 +87,7 @@ void add_truth(PoseRow& row, std::vector<KeypointRow>& keypoints, const telemetr
   if (pose.filter_runs != 0 && row.images_used > 0) {
     if (pose.has_attitude != 0) add_attitude_error(row, pose, q_camera_body, target->attitude->rate_body);
     if (pose.fate == telemetry_pose::kEditKeypoints)
-      row.nees = nees_of_roe(pose.a_roe_osculating_m, pose.covariance_a_roe, own->orbit, target->orbit,
-                             mission.guidance.reference_semi_major_axis_m);
+      row.nees = nees_of_roe(pose.a_roe_osculating_m, pose.covariance_a_roe, own->orbit, target->orbit);
   }
   for (int k = 0; k < kKeypoints; ++k) {
     KeypointRow& keypoint = keypoints[keypoints.size() - kKeypoints + static_cast<std::size_t>(k)];

@@ -19,7 +19,7 @@ void append_keypoints(double exposure_s, const telemetry_pose& pose, std::vector
 /// keypoints were seen; that of a testbed's camera is another than the mission's. Nothing where the truth lacks an
 /// attitude.
 void add_truth(PoseRow& row, std::vector<KeypointRow>& keypoints, const telemetry_pose& pose,
-               const double (&keypoints_body_m)[33], const CameraSensor& known, const mission::Mission& mission,
-               const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
+               const double (&keypoints_body_m)[33], const CameraSensor& known, const mission::Spacecraft& servicer,
+               const twins::TruthSnapshot& truth);
 
 }  // namespace vbar::sensors

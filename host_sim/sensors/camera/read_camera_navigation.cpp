@@ -60,6 +60,8 @@ void read_angles_only(const TableReader& section, CameraShared& shared) {
       kArcsecond * section.number("pointing_tolerance_arcsec", above_to(0.0, 36000.0), 600.0);
   read_process_noise(section, 1e-14, 1e-15, navigation);
   navigation.brightness_offset_m = section.number("brightness_offset_m", from_to(0.0, 100.0), 0.15);
+  navigation.centroid_noise_m = section.number("centroid_noise_m", from_to(0.0, 100.0), 0.08);
+  navigation.bearing_bias = kArcsecond * section.number("bearing_bias_arcsec", above_to(0.0, 3600.0), 3.0);
   navigation.batch_images = static_cast<std::int32_t>(section.integer("batch_images", 3, 1000, 30));
   shared.angles_only_apriori_sigma_a_roe_m = read_roe_sigmas(section.table("apriori"), "", kTwoLineElements);
   section.finish();

@@ -62,6 +62,8 @@ std::string facts(const RunRecord& record) {
                                                  counts.with_bearing, last.images_without_stars)},
                           {"wrong target selected", fmt::format("{} of {} images with truth", counts.wrong_targets,
                                                                 counts.images - counts.without_truth)},
+                          {"lit target among the objects, without a bearing",
+                           fmt::format("{} of {} images", counts.lit_not_found, counts.lit_among_objects)},
                           {"bearings", fmt::format("{} used, {} rejected", last.bearings_used, last.bearings_refused)},
                           {"stars per image", stars_text(record)},
                           nis_fact(record),

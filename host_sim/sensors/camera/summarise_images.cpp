@@ -32,7 +32,9 @@ void summarise_angles_only(const RunRecord& record, Summary& summary) {
                                       {"with_bearing", counts->with_bearing},
                                       {"with_stars", counts->with_stars},
                                       {"wrong_targets", counts->wrong_targets},
-                                      {"without_truth", counts->without_truth}};
+                                      {"without_truth", counts->without_truth},
+                                      {"lit_among_objects", counts->lit_among_objects},
+                                      {"lit_not_found", counts->lit_not_found}};
   if (summary.target.empty()) return;
   std::vector<double> x, y, size, across, all_nees;
   for (const ImageRow& row : record.tables.rows<ImageRow>()) {
@@ -109,6 +111,9 @@ std::optional<ImageCounts> image_counts(const RunRecord& record) {
     if (row.star_method != telemetry_image::kStarMethodNone) ++counts.with_stars;
     if (!row.range_m) ++counts.without_truth;
     if (!row.chosen.empty() && !target.empty() && row.chosen != target) ++counts.wrong_targets;
+    if (row.true_object < 0 || !(row.sunlit.value_or(0.0) > 0.0)) continue;
+    ++counts.lit_among_objects;
+    if (row.status != telemetry_image::kStatusBearing) ++counts.lit_not_found;
   }
   return counts;
 }

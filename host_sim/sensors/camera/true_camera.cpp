@@ -38,12 +38,12 @@ std::optional<double> normalised_square(const fsw::Vector6& error, const fsw::Ma
 }
 
 std::optional<double> nees_of_roe(const double (&a_roe_m)[6], const double (&covariance_m2)[21],
-                                  const fsw::orbit::CartesianState& servicer, const fsw::orbit::CartesianState& target,
-                                  double a) {
+                                  const fsw::orbit::CartesianState& servicer,
+                                  const fsw::orbit::CartesianState& target) {
   const auto chief = fsw::orbit::qns_from_cartesian(servicer), deputy = fsw::orbit::qns_from_cartesian(target);
   if (!chief.ok() || !deputy.ok()) return std::nullopt;
-  const fsw::Vector6 error =
-      Eigen::Map<const fsw::Vector6>(a_roe_m) - a * fsw::orbit::roe_from_qns(chief.value(), deputy.value());
+  const fsw::Vector6 error = Eigen::Map<const fsw::Vector6>(a_roe_m) -
+                             chief.value().a * fsw::orbit::roe_from_qns(chief.value(), deputy.value());
   return normalised_square(error, symmetric(covariance_m2));
 }
 

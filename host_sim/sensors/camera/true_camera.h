@@ -40,9 +40,11 @@ struct TrueCamera {
 /// Error' covariance^-1 error; none for a covariance that is not positive definite.
 [[nodiscard]] std::optional<double> normalised_square(const fsw::Vector6& error, const fsw::Matrix6& covariance);
 
-/// Normalised estimation error squared of osculating ROE (m, times `a`), six degrees of freedom.
+/// Normalised estimation error squared of osculating ROE times the servicer's osculating semi-major axis (m), six
+/// degrees of freedom. (Another semi-major axis, such as the mission's mean one, differs by up to 10 km: an error of a
+/// thousandth of the elements, which exceeds the standard deviations of navigation.)
 [[nodiscard]] std::optional<double> nees_of_roe(const double (&a_roe_m)[6], const double (&covariance_m2)[21],
                                                 const fsw::orbit::CartesianState& servicer,
-                                                const fsw::orbit::CartesianState& target, double a);
+                                                const fsw::orbit::CartesianState& target);
 
 }  // namespace vbar::sensors

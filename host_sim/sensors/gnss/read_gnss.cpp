@@ -143,7 +143,7 @@ void read_carrier_phase(const TableReader& section, vbar::navigation_configurati
     section.refuse_value("phase_wander_time_s", "a number above 0 where phase_wander_sigma_mm is above 0");
   navigation.code_bias_sigma_m = section.number("code_bias_sigma_m", above_to(0.0, 100.0), 2.0);
   navigation.start_velocity_sigma = section.number("initial_velocity_sigma_mps", above_to(0.0, 100.0), 0.2);
-  navigation.acceleration_sigma = 1e-9 * section.number("acceleration_sigma_nmps2", above_to(0.0, 1e6), 10.0);
+  navigation.acceleration_sigma = 1e-9 * section.number("acceleration_sigma_nmps2", above_to(0.0, 1e6), 1.0);
   navigation.acceleration_time_s = section.number("acceleration_correlation_time_s", above_to(0.0, 1e6), 1500.0);
   navigation.maneuver_sigma = 1e-3 * section.number("maneuver_sigma_mmps", above_to(0.0, 1e3), 0.002);
   navigation.maneuver_sigma_relative = 1e-2 * section.number("maneuver_sigma_percent", from_to(0.0, 100.0), 0.2);

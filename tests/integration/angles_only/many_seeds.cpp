@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
 
 #include "tests/integration/angles_only/observability_bound.h"
 #include "tests/integration/angles_only/true_flight.h"
@@ -11,7 +10,6 @@
 
 int main(int argc, char** argv) {
   using namespace vbar;
-  namespace nav = fsw::navigation;
   const unsigned seeds = argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 10;
   const auto option = [&](const char* name, double otherwise) {
     const char* text = std::getenv(name);
@@ -36,42 +34,45 @@ int main(int argc, char** argv) {
     sensor_errors.outlier_share = option("OUTLIERS", 0.0);
     sensor_errors.gnss_white_m = option("GNSS_WHITE", sensor_errors.gnss_white_m);
     test::SimulatedSensors sensors(flight, sensor_errors, seed);
-    nav::AnglesOnlySettings settings;
-    settings.earth = flight.earth;
-    settings.filter.brightness_offset_m = 0.1;
-    settings.filter.acceleration.psd = option("PSD", settings.filter.acceleration.psd);
-    settings.filter.bearing_bias_sigma = option("BIAS_SIGMA", 3.0) / 206264.8;
-    settings.filter.maneuver_sigma_relative = option("MAN", settings.filter.maneuver_sigma_relative);
-    settings.filter.resolved_share = option("RESOLVED", settings.filter.resolved_share);
-    settings.own_orbit.position_sigma_m = option("OWN_SIGMA", settings.own_orbit.position_sigma_m);
-    settings.own_orbit.acceleration_psd = option("OWN_PSD", settings.own_orbit.acceleration_psd);
-    auto navigation = std::make_unique<nav::AnglesOnlyNavigation>(settings);
-    navigation->set_apriori(sensors.apriori());
+    fsw::trunk::TrunkSettings blocks;
+    blocks.earth = flight.earth;
+    blocks.relative_orbit.acceleration.psd = option("PSD", blocks.relative_orbit.acceleration.psd);
+    blocks.boresight_a.sigma = option("BIAS_SIGMA", 3.0) / 206264.8;
+    blocks.burn_sigma_relative = option("MAN", blocks.burn_sigma_relative);
+    blocks.centroid_wander = {.sigma = option("WANDER", 0.035), .time_s = option("WANDER_TIME", 300.0)};
+    blocks.own_orbit.slow_error_sigma_m = option("OWN_SIGMA", blocks.own_orbit.slow_error_sigma_m);
+    blocks.own_orbit.acceleration_psd = option("OWN_PSD", blocks.own_orbit.acceleration_psd);
+    fsw::sources::BearingSettings bearings;
+    bearings.model.centroid_noise_m = option("CENTROID", 0.0);
+    test::AnglesOnlyFlight navigation(blocks, bearings, sensors.apriori());
     std::size_t waypoint = 0;
     double nis = 0.0;
+    double own = 0.0;
     int updates = 0;
     std::printf("%3u", seed);
     for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
-      navigation->update(sensors.measure(k), sensors.known_burns());
-      if (navigation->last_update().accepted) {
-        nis += navigation->last_update().nis;
+      if (navigation.update(sensors.measure(k), sensors.known_burns()) == fsw::sources::BearingEditStatus::kFilter) {
+        nis += navigation.bearings().last_update().nis;
         ++updates;
       }
+      if (k % 10 == 0 && k > 60) own += test::own_orbit_nees(flight.epochs[k], navigation.trunk()) / 210.0;
       if (waypoint < 7 && k == test::TrueFlight::at_hours(kHours[waypoint])) {
         const fsw::Vector3 error =
-            test::estimated_position_rtn(*navigation) - test::true_position_rtn(flight.epochs[k]);
-        const fsw::Matrix6 covariance = navigation->covariance_rtn();
+            test::estimated_position_rtn(navigation.trunk()) - test::true_position_rtn(flight.epochs[k]);
+        const fsw::Matrix6 covariance =
+            fsw::trunk::covariance_rtn(navigation.trunk().estimate(), navigation.trunk().servicer());
         const double sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-        std::printf(" | %8.2f (%7.2f) %4.1f", error.norm(), sigma, test::roe_nees(flight.epochs[k], *navigation));
-        nees[waypoint] += test::roe_nees(flight.epochs[k], *navigation) / seeds;
+        std::printf(" | %8.2f (%7.2f) %4.1f", error.norm(), sigma,
+                    test::roe_nees(flight.epochs[k], navigation.trunk()));
+        nees[waypoint] += test::roe_nees(flight.epochs[k], navigation.trunk()) / seeds;
         errors[waypoint].push_back(error.norm());
         ++waypoint;
       }
     }
-    const auto& counters = navigation->counters();
-    std::printf(" | psd %.0e nis %.3f used %d refused %d failed %d doubts %d restarts %d\n",
-                navigation->filter().acceleration_psd(), nis / updates, counters.bearings_used,
-                counters.bearings_refused, counters.batches_failed, counters.inflations, counters.restarts);
+    const auto& counters = navigation.bearings().counters();
+    std::printf(" | psd %.0e nis %.3f own orbit %.2f used %d refused %d failed %d inflated %d restarts %d\n",
+                navigation.trunk().relative_orbit().noise().psd(), nis / updates, own, counters.used, counters.refused,
+                counters.batches_failed, counters.inflations, counters.restarts);
   }
   std::printf("med");
   for (const auto& of : errors) std::printf(" | %8.2f          ", vbar::accuracy::median(of));

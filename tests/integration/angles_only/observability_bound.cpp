@@ -15,7 +15,6 @@ namespace orbit = fsw::orbit;
 using Information = Eigen::Matrix<double, 8, 8>;
 
 constexpr double kDifferenceStep_m = 10.0;
-constexpr double kTargetRadius_m = 0.35;
 
 /// Target orbits beside the true one: element k a little more and less.
 std::array<orbit::CartesianState, 12> neighbours(const TrueEpoch& start, double& a) {

@@ -7,6 +7,7 @@
 
 #include "fsw/math/cholesky6.h"
 #include "fsw/math/math.h"
+#include "fsw/navigation/propagation.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
@@ -29,7 +30,7 @@ constexpr double kDegree = fsw::math::kDegree;
 constexpr double kArcsec = kDegree / 3600.0;
 constexpr double kImagePeriod_s = 60.0;
 constexpr double kGnssPeriod_s = 10.0;
-constexpr double kTargetRadius_m = 0.35;
+constexpr double kGnssSlow_s = 1800.0;
 
 template <class T>
 T must(const fsw::Result<T>& result) {
@@ -162,30 +163,20 @@ SimulatedSensors::SimulatedSensors(const TrueFlight& flight, const SensorErrors&
   }
 }
 
-/// The receiver's filter knows the burns, as flight software tells it.
-void SimulatedSensors::take_burns(fsw::GpsTime time) {
-  for (; next_burn_ < known_burns_.size() && known_burns_[next_burn_].time < time; ++next_burn_) {
-    const nav::Burn& burn = known_burns_[next_burn_];
-    gnss_orbit_.advance_to(burn.time);
-    gnss_orbit_.add_impulse(orbit::R_rtn_eci(gnss_orbit_.state()).transpose() * burn.dv_rtn);
-  }
-}
-
-nav::AnglesOnlyEpoch SimulatedSensors::measure(std::size_t index) {
+MeasuredEpoch SimulatedSensors::measure(std::size_t index) {
   const TrueEpoch& truth = flight_.epochs[index];
-  nav::AnglesOnlyEpoch epoch;
+  MeasuredEpoch epoch;
   epoch.time = truth.time;
   epoch.sun_eci = truth.sun_eci;
 
   for (const auto& [time, position_eci] : truth.receiver) {
     if (time < flight_.epochs.front().time) continue;
-    take_burns(time);
-    const double keep = std::exp(-kGnssPeriod_s / 600.0);
+    const double keep = std::exp(-kGnssPeriod_s / kGnssSlow_s);
     gnss_slow_ = keep * gnss_slow_ + std::sqrt(1.0 - keep * keep) * normal3();
     const Vector3 error = errors_.gnss_slow_m * gnss_slow_ + errors_.gnss_white_m * normal3();
-    gnss_orbit_.take_position(time, 0.0, position_eci + error, errors_.gnss_white_m + 0.5 * errors_.gnss_slow_m);
+    epoch.positions.push_back(
+        {time, {position_eci + error, errors_.gnss_white_m * errors_.gnss_white_m * fsw::Matrix3::Identity(), 0.0}});
   }
-  if (gnss_orbit_.started()) epoch.servicer_gnss = gnss_orbit_.state();
 
   const double keep = std::exp(-kImagePeriod_s / errors_.shape_time_s);
   shape_ = keep * shape_ + std::sqrt(1.0 - keep * keep) * Vector2(normal(), normal());
@@ -210,15 +201,15 @@ nav::AnglesOnlyEpoch SimulatedSensors::measure(std::size_t index) {
   return epoch;
 }
 
-nav::TargetApriori SimulatedSensors::apriori() {
+fsw::trunk::TargetApriori SimulatedSensors::apriori() {
   const TrueEpoch& truth = flight_.epochs.front();
   const orbit::QnsElements servicer = must(orbit::qns_from_cartesian(truth.servicer));
-  Vector6 roe = must(nav::roe_of_target(truth.servicer, truth.target));
-  nav::TargetApriori apriori;
+  Vector6 roe = must(orbit::roe_of_target(truth.servicer, truth.target));
+  fsw::trunk::TargetApriori apriori;
   apriori.time = truth.time;
   apriori.sigma_a_roe_m << 30.0, 1000.0, 200.0, 200.0, 200.0, 200.0;
   for (int k = 0; k < 6; ++k) roe(k) += apriori.sigma_a_roe_m(k) / servicer.a * normal();
-  apriori.target = must(nav::target_from_roe(servicer, roe));
+  apriori.target = must(orbit::target_from_roe(servicer, roe));
   return apriori;
 }
 
@@ -226,15 +217,41 @@ Vector3 true_position_rtn(const TrueEpoch& epoch) {
   return orbit::relative_state_rtn(epoch.servicer, epoch.target).position_rtn;
 }
 
-double roe_nees(const TrueEpoch& epoch, const nav::AnglesOnlyNavigation& navigation) {
-  const Vector6 true_roe = must(nav::roe_of_target(epoch.servicer, epoch.target));
-  const double a = must(orbit::qns_from_cartesian(epoch.servicer)).a;
-  const Vector6 error = navigation.a_roe_m() - a * true_roe;
-  return error.dot(fsw::math::Cholesky6(navigation.a_roe_covariance_m2()).solve(error));
+AnglesOnlyFlight::AnglesOnlyFlight(const fsw::trunk::TrunkSettings& blocks,
+                                   const fsw::sources::BearingSettings& bearings,
+                                   const fsw::trunk::TargetApriori& apriori)
+    : trunk_(std::make_unique<fsw::trunk::Trunk>()) {
+  trunk_->configure(blocks);
+  trunk_->set_apriori(apriori);
+  bearings_.configure(bearings);
 }
 
-Vector3 estimated_position_rtn(const nav::AnglesOnlyNavigation& navigation) {
-  return orbit::relative_state_rtn(navigation.servicer(), must(navigation.target())).position_rtn;
+fsw::sources::BearingEditStatus AnglesOnlyFlight::update(const MeasuredEpoch& epoch,
+                                                         const std::vector<nav::Burn>& burns) {
+  for (const auto& [time, position] : epoch.positions) {
+    trunk_->advance_to(time, burns);
+    trunk_->take_own_position(position);
+  }
+  trunk_->advance_to(epoch.time, burns);
+  return bearings_.process(epoch.time, epoch.bearing, epoch.sun_eci, *trunk_);
+}
+
+double roe_nees(const TrueEpoch& epoch, const fsw::trunk::Trunk& trunk) {
+  const Vector6 true_roe = must(orbit::roe_of_target(epoch.servicer, epoch.target));
+  const double a = must(orbit::qns_from_cartesian(epoch.servicer)).a;
+  const Vector6 error = trunk.a_roe_m() - a * true_roe;
+  return error.dot(fsw::math::Cholesky6(trunk.a_roe_covariance_m2()).solve(error));
+}
+
+double own_orbit_nees(const TrueEpoch& epoch, const fsw::trunk::Trunk& trunk) {
+  Vector6 error;
+  error << trunk.servicer().position_eci - epoch.servicer.position_eci,
+      trunk.servicer().velocity_eci - epoch.servicer.velocity_eci;
+  return error.dot(fsw::math::Cholesky6(trunk.own_orbit().covariance()).solve(error));
+}
+
+Vector3 estimated_position_rtn(const fsw::trunk::Trunk& trunk) {
+  return orbit::relative_state_rtn(trunk.servicer(), must(trunk.target())).position_rtn;
 }
 
 }  // namespace vbar::test

@@ -4,15 +4,19 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
 
-#include "fsw/navigation/angles_only_navigation.h"
-#include "fsw/navigation/orbit_filter.h"
+#include "fsw/navigation/burn.h"
 #include "fsw/orbit/earth_rotation.h"
+#include "fsw/sources/bearings/bearing_aiding.h"
 
 namespace vbar::test {
+
+inline constexpr double kTargetRadius_m = 0.35;
 
 /// The truth at an image's time.
 struct TrueEpoch {
@@ -45,24 +49,31 @@ struct SensorErrors {
   double shape_time_s = 300.0;
   double brightness_offset_m = 0.1;  ///< mean and half of it 1 sigma over seeds
   double gnss_white_m = 1.5;         ///< each axis, at 10 s
-  double gnss_slow_m = 1.0;          ///< the same, correlated over ten minutes
+  double gnss_slow_m = 1.5;          ///< the same, correlated over half an hour
   double burn_relative = 0.0;        ///< of a burn's size, each axis: what is known of it against what was flown
   double outlier_share = 0.0;        ///< of bearings, to somewhere within a degree
 };
 
-/// A measured epoch for AnglesOnlyNavigation, in order of time.
+/// What receiver and camera measured since the last image.
+struct MeasuredEpoch {
+  fsw::GpsTime time;  ///< of the image
+  fsw::Vector3 sun_eci = fsw::Vector3::Zero();
+  std::vector<std::pair<fsw::GpsTime, fsw::trunk::OwnPosition>> positions;
+  std::optional<fsw::navigation::BearingMeasurement> bearing;
+};
+
+/// Measured epochs in order of time.
 class SimulatedSensors {
  public:
   SimulatedSensors(const TrueFlight& flight, const SensorErrors& errors, unsigned seed);
 
-  fsw::navigation::AnglesOnlyEpoch measure(std::size_t index);
+  MeasuredEpoch measure(std::size_t index);
   /// Two-line-element quality: 1 sigma a * (da, dl, de, di) of 30, 1000, 200, 200 m.
-  fsw::navigation::TargetApriori apriori();
+  fsw::trunk::TargetApriori apriori();
   /// As flight software knows them.
   const std::vector<fsw::navigation::Burn>& known_burns() const { return known_burns_; }
 
  private:
-  void take_burns(fsw::GpsTime time);
   double normal() { return standard_(random_); }
   fsw::Vector3 normal3() { return {normal(), normal(), normal()}; }
 
@@ -74,15 +85,30 @@ class SimulatedSensors {
   double brightness_offset_m_;
   fsw::Vector2 shape_ = fsw::Vector2::Zero();
   fsw::Vector3 gnss_slow_ = fsw::Vector3::Zero();
-  fsw::navigation::OrbitFilter gnss_orbit_;
-  std::size_t next_burn_ = 0;
   std::vector<fsw::navigation::Burn> known_burns_;
 };
 
 /// The target's position in the servicer's RTN, m: true, and as navigation has it.
 fsw::Vector3 true_position_rtn(const TrueEpoch& epoch);
+/// Trunk, own receiver and bearings, as the flight software composes them.
+class AnglesOnlyFlight {
+ public:
+  AnglesOnlyFlight(const fsw::trunk::TrunkSettings& blocks, const fsw::sources::BearingSettings& bearings,
+                   const fsw::trunk::TargetApriori& apriori);
+  fsw::sources::BearingEditStatus update(const MeasuredEpoch& epoch, const std::vector<fsw::navigation::Burn>& burns);
+  [[nodiscard]] bool valid() const { return trunk_->knowledge() == fsw::trunk::RelativeKnowledge::kEstimated; }
+  [[nodiscard]] const fsw::trunk::Trunk& trunk() const { return *trunk_; }
+  [[nodiscard]] const fsw::sources::BearingAiding& bearings() const { return bearings_; }
+
+ private:
+  std::unique_ptr<fsw::trunk::Trunk> trunk_;
+  fsw::sources::BearingAiding bearings_;
+};
+
 /// Normalised error squared of the estimated ROE: six on average if the filter is honest.
-double roe_nees(const TrueEpoch& epoch, const fsw::navigation::AnglesOnlyNavigation& navigation);
-fsw::Vector3 estimated_position_rtn(const fsw::navigation::AnglesOnlyNavigation& navigation);
+double roe_nees(const TrueEpoch& epoch, const fsw::trunk::Trunk& trunk);
+/// Of the servicer's own orbit, position and velocity: likewise.
+double own_orbit_nees(const TrueEpoch& epoch, const fsw::trunk::Trunk& trunk);
+fsw::Vector3 estimated_position_rtn(const fsw::trunk::Trunk& trunk);
 
 }  // namespace vbar::test

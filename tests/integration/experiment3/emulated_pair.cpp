@@ -20,9 +20,9 @@ namespace vbar::test {
 namespace {
 
 using fsw::GpsTime;
-using fsw::navigation::kPhaseChannels;
-using fsw::navigation::PhaseChannel;
-using fsw::navigation::RelativeFilter;
+using fsw::sources::CarrierFilter;
+using fsw::sources::kPhaseChannels;
+using fsw::sources::PhaseChannel;
 
 const std::string kRoot = vbar::tests::source_path();
 constexpr std::uint8_t kServicerNumber = 1;
@@ -113,7 +113,7 @@ double EmulatedPair::elapsed_s() const {
 }
 
 const twins::TruthSnapshot& EmulatedPair::truth_of_filter() const {
-  const auto is_then = [&](const twins::TruthSnapshot& truth) { return truth.time == gnss().epoch(); };
+  const auto is_then = [&](const twins::TruthSnapshot& truth) { return truth.time == trunk().epoch(); };
   const auto found = std::find_if(coast_.epochs().begin(), coast_.epochs().end(), is_then);
   if (found == coast_.epochs().end()) throw std::logic_error("the filter stands at an epoch that never was");
   return *found;
@@ -122,7 +122,7 @@ const twins::TruthSnapshot& EmulatedPair::truth_of_filter() const {
 fsw::Vector6 EmulatedPair::error() const {
   const twins::TruthSnapshot& then = truth_of_filter();
   const auto truth = fsw::orbit::relative_state_rtn(then.find("servicer")->orbit, then.find("target")->orbit);
-  const auto estimate = fsw::orbit::relative_state_rtn(gnss().servicer(), gnss().target());
+  const auto estimate = fsw::orbit::relative_state_rtn(trunk().servicer(), trunk().target().value());
   fsw::Vector6 error;
   error << estimate.position_rtn - truth.position_rtn, estimate.velocity_rtn - truth.velocity_rtn;
   return error;
@@ -130,12 +130,13 @@ fsw::Vector6 EmulatedPair::error() const {
 
 double EmulatedPair::nees() const {
   const fsw::Vector6 e = error();
-  return e.dot(gnss().covariance_rtn().inverse() * e);
+  return e.dot(fsw::trunk::covariance_rtn(trunk().estimate(), trunk().servicer()).inverse() * e);
 }
 
 int EmulatedPair::wrong_integers() const {
-  const Integers& integers = integers_.at(gnss().epoch());
-  const RelativeFilter& filter = gnss().relative();
+  if (!carrier().last_pair()) return 0;
+  const Integers& integers = integers_.at(carrier().last_pair().value());
+  const auto& channels = carrier().filter().channels();
   const auto true_cycles = [&](const PhaseChannel& channel) {
     return static_cast<double>(integers.at({static_cast<int>(channel.signal), channel.satellite.prn}));
   };
@@ -143,50 +144,52 @@ int EmulatedPair::wrong_integers() const {
   std::map<int, std::size_t> first;
   int wrong = 0;
   for (std::size_t k = 0; k < kPhaseChannels; ++k) {
-    const PhaseChannel& channel = filter.channels()[k];
-    const bool is_seen_now = channel.in_use && channel.last_seen == gnss().epoch();
+    const PhaseChannel& channel = channels[k];
+    const bool is_seen_now = channel.in_use && channel.last_seen == carrier().last_pair();
     if (!channel.fixed || !is_seen_now) continue;
     const auto [place, is_first] = first.try_emplace(static_cast<int>(channel.signal), k);
     if (is_first) continue;
-    const double held = (filter.estimate().mean(RelativeFilter::ambiguity_index(k)) -
-                         filter.estimate().mean(RelativeFilter::ambiguity_index(place->second))) /
+    const double held = (trunk().estimate().mean(CarrierFilter::ambiguity_index(k)) -
+                         trunk().estimate().mean(CarrierFilter::ambiguity_index(place->second))) /
                         fsw::gnss::wavelength(channel.signal);
-    const double truth = true_cycles(channel) - true_cycles(filter.channels()[place->second]);
+    const double truth = true_cycles(channel) - true_cycles(channels[place->second]);
     wrong += std::abs(held - truth) > 0.1 ? 1 : 0;
   }
   return wrong;
 }
 
-RelativeFilter& EmulatedPair::filter() {
+void EmulatedPair::hold(std::size_t place, std::size_t reference, double cycles) {
   // The navigation is this object's own and not const: reaching into it is what the mistakes consist of.
-  return const_cast<RelativeFilter&>(gnss().relative());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  auto& filter = const_cast<CarrierFilter&>(carrier().filter());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  auto& estimator = const_cast<fsw::trunk::Trunk&>(trunk());      // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  filter.hold(estimator, place, reference, cycles);
 }
 
 std::optional<EmulatedPair::Offer> EmulatedPair::offer() const {
-  const RelativeFilter& filter = gnss().relative();
+  const auto& channels = carrier().filter().channels();
   Offer offer;
   std::map<int, std::size_t> reference;
   for (std::size_t k = 0; k < kPhaseChannels && offer.pairs.size() < fsw::gnss::kMaxAmbiguities; ++k) {
-    const PhaseChannel& channel = filter.channels()[k];
+    const PhaseChannel& channel = channels[k];
     if (!channel.in_use || channel.epochs == 0) continue;
     const auto [place, is_first] = reference.try_emplace(static_cast<int>(channel.signal), k);
     if (!is_first) offer.pairs.emplace_back(k, place->second);
   }
   const auto count = static_cast<Eigen::Index>(offer.pairs.size());
-  if (count < fsw::navigation::AmbiguityResolution::kMinHeld) return std::nullopt;
-  constexpr Eigen::Index kSize = RelativeFilter::State::kSize;
+  if (count < fsw::sources::AmbiguityResolution::kMinHeld) return std::nullopt;
+  constexpr Eigen::Index kSize = fsw::trunk::State::kSize;
   Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(count, kSize);
   for (Eigen::Index row = 0; row < count; ++row) {
     const auto& [place, base] = offer.pairs[static_cast<std::size_t>(row)];
-    const double wavelength = fsw::gnss::wavelength(filter.channels()[place].signal);
-    difference(row, RelativeFilter::ambiguity_index(place)) = 1.0 / wavelength;
-    difference(row, RelativeFilter::ambiguity_index(base)) = -1.0 / wavelength;
+    const double wavelength = fsw::gnss::wavelength(channels[place].signal);
+    difference(row, CarrierFilter::ambiguity_index(place)) = 1.0 / wavelength;
+    difference(row, CarrierFilter::ambiguity_index(base)) = -1.0 / wavelength;
   }
   Eigen::MatrixXd covariance(kSize, kSize);
   for (int c = 0; c < kSize; ++c) {
-    for (int r = 0; r < kSize; ++r) covariance(r, c) = filter.estimate().covariance(r, c);
+    for (int r = 0; r < kSize; ++r) covariance(r, c) = trunk().estimate().covariance(r, c);
   }
-  const Eigen::VectorXd floats = difference * filter.estimate().mean();
+  const Eigen::VectorXd floats = difference * trunk().estimate().mean();
   const Eigen::MatrixXd spread = difference * covariance * difference.transpose();
   const std::size_t n = offer.pairs.size();
   const auto solution = fsw::gnss::resolve_ambiguities({floats.data(), n}, {spread.data(), n * n});
@@ -199,7 +202,7 @@ bool EmulatedPair::hold_second_best() {
   const std::optional<Offer> offered = offer();
   if (!offered) return false;
   for (std::size_t k = 0; k < offered->pairs.size(); ++k) {
-    filter().hold(offered->pairs[k].first, offered->pairs[k].second, offered->integers.second[k]);
+    hold(offered->pairs[k].first, offered->pairs[k].second, offered->integers.second[k]);
   }
   return true;
 }
@@ -209,8 +212,8 @@ bool EmulatedPair::hold_shifted(double cycles) {
   if (!offered) return false;
   for (std::size_t k = 0; k < offered->pairs.size(); ++k) {
     const auto& [place, base] = offered->pairs[k];
-    const bool is_shifted = gnss().relative().channels()[place].satellite.prn % 2 == 1;
-    filter().hold(place, base, offered->integers.best[k] + (is_shifted ? cycles : 0.0));
+    const bool is_shifted = carrier().filter().channels()[place].satellite.prn % 2 == 1;
+    hold(place, base, offered->integers.best[k] + (is_shifted ? cycles : 0.0));
   }
   return true;
 }

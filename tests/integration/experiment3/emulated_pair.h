@@ -55,8 +55,13 @@ class EmulatedPair {
   [[nodiscard]] bool done() const { return next_ >= coast_.epochs().size(); }
 
   [[nodiscard]] const fsw::gnc::Navigation& navigation() const { return *navigation_; }
-  [[nodiscard]] const fsw::navigation::GnssNavigation& gnss() const { return navigation_->gnss(); }
-  [[nodiscard]] bool is_fixed() const { return gnss().valid() && gnss().ambiguities().is_fixed(); }
+  [[nodiscard]] const fsw::trunk::Trunk& trunk() const { return navigation_->trunk().trunk(); }
+  [[nodiscard]] const fsw::sources::CarrierAiding& carrier() const {
+    return navigation_->trunk().source<fsw::sources::CarrierSource>().aiding();
+  }
+  /// Whether there is a relative orbit from measurements.
+  [[nodiscard]] bool valid() const { return navigation_->trunk().valid(); }
+  [[nodiscard]] bool is_fixed() const { return valid() && carrier().is_fixed(); }
   [[nodiscard]] double elapsed_s() const;
 
   /// Estimated minus true relative state in the servicer's RTN at the filter's epoch, m and m/s.
@@ -85,8 +90,8 @@ class EmulatedPair {
     fsw::gnss::IntegerSolution integers;
   };
   [[nodiscard]] std::optional<Offer> offer() const;
-  /// The flight code's filter, to be tampered with.
-  [[nodiscard]] fsw::navigation::RelativeFilter& filter();
+  /// The flight code's filter and trunk, to be tampered with.
+  void hold(std::size_t place, std::size_t reference, double cycles);
 
   void measure(const twins::TruthSnapshot& truth);
   void remember_integers(fsw::GpsTime time);

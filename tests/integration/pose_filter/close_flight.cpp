@@ -8,7 +8,6 @@
 
 #include "fsw/math/cholesky6.h"
 #include "fsw/math/math.h"
-#include "fsw/navigation/roe_filter.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
@@ -237,7 +236,7 @@ PoseError pose_error(const CloseEpoch& epoch, const nav::AttitudeState& attitude
   error.attitude_nees =
       attitude_error.dot(fsw::math::Cholesky6(navigation.attitude_covariance()).solve(attitude_error));
   const Vector6 roe_error = navigation.a_roe_m() - must(orbit::qns_from_cartesian(epoch.servicer)).a *
-                                                       must(nav::roe_of_target(epoch.servicer, epoch.target));
+                                                       must(orbit::roe_of_target(epoch.servicer, epoch.target));
   error.roe_nees = roe_error.dot(fsw::math::Cholesky6(navigation.a_roe_covariance_m2()).solve(roe_error));
   return error;
 }

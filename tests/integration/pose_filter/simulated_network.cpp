@@ -17,7 +17,6 @@ namespace pose = fsw::pose;
 
 constexpr double kDegree = fsw::math::kDegree;
 constexpr double kArcsec = kDegree / 3600.0;
-constexpr int kKeypoints = fsw::network::kKeypoints;
 
 Matrix3 turn(const Vector3& by) {
   const double angle = by.norm();

@@ -17,7 +17,8 @@ from vbar_program import BINARY, MISSION, SOURCE, VBAR, fly, main, missing, over
 SHORT = "mission.duration_h=1"
 PACED = ("clock.mode=real_time", "clock.speed_factor=1000")
 
-DONE, FAILED, REFUSED, DIFFERENT, KILLED, EMPTY, CUT, THINNED, FOREIGN, DAMAGED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 75
+DONE, FAILED, REFUSED, DIFFERENT, KILLED, EMPTY, CUT, THINNED, FOREIGN, DAMAGED = range(10)
+NEVER_NAVIGATED, INTERRUPTED = 10, 75
 
 
 def events_of(log):
@@ -352,6 +353,17 @@ class CommandLine(Evidence):
         self.assertEqual((result.returncode, result.stdout, result.stderr), (DONE, "", ""))
         result = vbar("replay", self.folder / "quiet", "--quiet")
         self.assertEqual((result.returncode, result.stdout, result.stderr), (DONE, "", ""))
+
+    def test_a_run_that_never_navigated(self):
+        """Angles-only navigation needs more images than there are in 0.2 h; the flight software reports it after 300 s."""
+        out = self.folder / "lost"
+        short = ("mission.duration_h=0.2", "guidance.navigation_timeout_s=300")
+        result = vbar("run", SOURCE / "missions/experiment1.toml", "--quiet", "--out", out, *overrides(*short))
+        self.expect(result, NEVER_NAVIGATED, "never navigated")
+        summary = summary_of(out)
+        self.assertTrue(summary["complete"] and summary["never_navigated"])
+        self.assertIn("never_navigated", summary["health"]["faults"])
+        self.assertFalse(self.summary["never_navigated"])
 
     def test_reports_that_differ(self):
         other = self.folder / "seed2"

@@ -100,10 +100,12 @@ TEST(IdealNavigation, NavigationReportsTheIdealState) {
   }
 }
 
-// Ten minutes between measurements: what the coast says of its own error against what it is, in 60x60 gravity, from 75
-// km to 7 m.
+// Ten minutes between measurements: what the coast says of its own error against what it is, in 60x60 gravity with drag
+// and radiation pressure, from 75 km to 7 m.
 TEST(IdealNavigation, ACoastKnowsItsUncertainty) {
-  const report::RunRecord record = fly(kMission, {"spacecraft.servicer.sensors.navigation.period_s=600.0"}).record;
+  const report::RunRecord record = fly(kMission, {"spacecraft.servicer.sensors.navigation.period_s=600.0",
+                                                  "truth.radiation_pressure=true", "truth.drag=true"})
+                                       .record;
   ASSERT_EQ(record.estimates.size(), record.truth.size());
   int coasting = 0, beyond_three_sigma = 0;
   std::array<double, 2> ratio_sum{};  // of error to 1 sigma, far and near
@@ -124,8 +126,11 @@ TEST(IdealNavigation, ACoastKnowsItsUncertainty) {
   ASSERT_GT(coasting, 2000);
   // For a normal distribution the mean of the norm is 1.6 sigma and 3 % of it lies beyond 3; what gravity leaves out is
   // neither normal nor alike in all directions, so a factor of two is what can be asked.
+  // Near, the differential radiation pressure prevails: 22 nm/s^2 of this pair, and none in eclipse, against a sigma
+  // of 30.
+  constexpr std::array<double, 2> kLeastRatio = {0.8, 0.6};
   for (std::size_t k = 0; k < 2; ++k) {
-    EXPECT_GT(ratio_sum[k] / count[k], 0.8) << (k == 0 ? "far" : "near");
+    EXPECT_GT(ratio_sum[k] / count[k], kLeastRatio[k]) << (k == 0 ? "far" : "near");
     EXPECT_LT(ratio_sum[k] / count[k], 3.2) << (k == 0 ? "far" : "near");
   }
   EXPECT_LT(beyond_three_sigma, coasting / 10);

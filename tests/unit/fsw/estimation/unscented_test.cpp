@@ -111,7 +111,10 @@ TEST(Unscented, RefusesWhatIsNoCovariance) {
   EXPECT_EQ(transform.start(Vector2::Zero(), bad), Status::kSingular);
   bad << 1.0, NAN, NAN, 1.0;
   EXPECT_EQ(transform.start(Vector2::Zero(), bad), Status::kSingular);
-  EXPECT_EQ(transform.start(Vector2::Zero(), Matrix2::Zero()), Status::kSingular);
+  bad << 0.0, 0.1, 0.1, 1.0;  // correlated without a variance
+  EXPECT_EQ(transform.start(Vector2::Zero(), bad), Status::kSingular);
+  bad << 1.0, 0.1, 0.1, 0.0;
+  EXPECT_EQ(transform.start(Vector2::Zero(), bad), Status::kSingular);
 }
 
 }  // namespace

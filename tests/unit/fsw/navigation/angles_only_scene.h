@@ -6,8 +6,8 @@
 
 #include "fsw/navigation/bearing.h"
 #include "fsw/navigation/propagation.h"
-#include "fsw/navigation/roe_filter.h"
 #include "fsw/orbit/earth_rotation.h"
+#include "fsw/orbit/roe.h"
 
 namespace vbar::fsw::navigation::test {
 

@@ -3,6 +3,7 @@
 // what a filter must get right before it meets an emulator.
 
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <random>
 #include <vector>
@@ -56,8 +57,11 @@ struct SyntheticReceiver {
   std::vector<double> lock_start_s = std::vector<double>(80, 0.0);
   std::vector<double> wander_m = std::vector<double>(80, 0.0);
   std::optional<GpsTime> wander_time;
+  /// Motion from `start` over a time in seconds; without it, that of point mass and J2.
+  std::function<orbit::CartesianState(const orbit::CartesianState&, double)> motion;
 
   orbit::CartesianState state_at(GpsTime time) const {
+    if (motion) return motion(start, seconds(time - start_time()));
     return propagate_accelerated(start, Vector3::Zero(), seconds(time - start_time()));
   }
 

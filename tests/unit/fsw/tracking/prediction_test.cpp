@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "fsw/math/math.h"
+#include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/tracking/servicer_view.h"
 #include "tests/support/figures.h"
@@ -27,10 +28,14 @@ Vector2 slopes_at(const orbit::RelativeState& state, double t) {
   return Vector2(p.x() / p.y(), p.z() / p.y());
 }
 
-Vector4 slopes_and_rates(const orbit::RelativeState& state) {
+Vector5 slopes_and_rates(const orbit::RelativeState& state) {
   constexpr double kStep = 1.0;  // s: third-order error 1e-12
-  Vector4 all;
-  all << slopes_at(state, 0.0), (slopes_at(state, kStep) - slopes_at(state, -kStep)) / (2.0 * kStep);
+  const auto log_distance = [&state](double t) {
+    return math::log(math::abs(state.position_rtn.y() + t * state.velocity_rtn.y()));
+  };
+  Vector5 all;
+  all << slopes_at(state, 0.0), (slopes_at(state, kStep) - slopes_at(state, -kStep)) / (2.0 * kStep),
+      (log_distance(kStep) - log_distance(-kStep)) / (2.0 * kStep);
   return all;
 }
 
@@ -48,7 +53,7 @@ TEST(Prediction, HasTheCovarianceOfNumericalDerivatives) {
     for (int c = 0; c <= k; ++c) root(k, c) = (k == c ? 1.0 : 0.3 / (1 + k + c)) * (k < 3 ? 10.0 : 0.01);
   }
   const Matrix6 covariance = root * root.transpose();
-  Eigen::Matrix<double, 4, 6> jacobian;
+  Eigen::Matrix<double, 5, 6> jacobian;
   for (int k = 0; k < 6; ++k) {
     orbit::RelativeState plus = some_state();
     orbit::RelativeState minus = some_state();
@@ -57,11 +62,11 @@ TEST(Prediction, HasTheCovarianceOfNumericalDerivatives) {
     (k < 3 ? minus.position_rtn[k] : minus.velocity_rtn[k - 3]) -= step;
     jacobian.col(k) = (slopes_and_rates(plus) - slopes_and_rates(minus)) / (2.0 * step);
   }
-  const Matrix4 expected = jacobian * covariance * jacobian.transpose();
-  const Matrix4 got = prediction_of(some_state(), covariance).value().covariance;
-  for (int r = 0; r < 4; ++r) {
+  const Matrix5 expected = jacobian * covariance * jacobian.transpose();
+  const Matrix5 got = prediction_of(some_state(), covariance).value().covariance;
+  for (int r = 0; r < 5; ++r) {
     // Differences of differences: seven digits remain.
-    for (int c = 0; c < 4; ++c) {
+    for (int c = 0; c < 5; ++c) {
       EXPECT_NEAR(got(r, c), expected(r, c), 1e-6 * math::sqrt(expected(r, r) * expected(c, c))) << r << c;
     }
   }
@@ -104,6 +109,34 @@ TEST(ServicerView, ThePathIsWhereATargetOnTheSameOrbitIsSeen) {
     // The bend is 7e-5, and its radius of curvature is the semi-major axis to twice the eccentricity, 0.3 %.
     EXPECT_NEAR(target.x() / target.y(), view.path_slope + bend, 3e-7) << k;
     EXPECT_NEAR(target.z() / target.y(), 0.0, 3e-7) << k;
+  }
+}
+
+// The distance to a follower on the same orbit changes as the speed does along the orbit.
+TEST(ServicerView, ThePathStretchesTheDistanceOfATargetOnTheSameOrbit) {
+  for (int k = 0; k < 24; ++k) {
+    orbit::QnsElements elements = mission::kServicerOsculating;
+    elements.u += k * math::kPi / 12.0;
+    const orbit::CartesianState servicer = orbit::cartesian_from_qns(elements).value();
+    const orbit::RelativeState target =
+        orbit::relative_state_rtn(servicer, orbit::propagate_j2(servicer, -1000.0 / 7500.0).value());
+    // The rate is up to 2e-6 1/s; over half a kilometre it changes by the part 1e-4 of it.
+    EXPECT_NEAR(target.velocity_rtn.y() / target.position_rtn.y(), servicer_view(servicer).value().path_stretch_rate,
+                1e-9)
+        << k;
+  }
+}
+
+// The mean orbit of the mission drifts by 1.58571e-3 m/s per metre (docs of the algorithms, two orbits propagated with
+// their secular rates), at any place of the orbit.
+TEST(ServicerView, TheDriftIsThatOfTheMeanOrbit) {
+  const orbit::QnsElements mean = orbit::mean_from_osculating(mission::kServicerOsculating).value();
+  for (int k = 0; k < 12; ++k) {
+    orbit::QnsElements elements = mean;
+    elements.u += k * math::kPi / 6.0;
+    const orbit::CartesianState servicer =
+        orbit::cartesian_from_qns(orbit::osculating_from_mean(elements).value()).value();
+    EXPECT_NEAR(servicer_view(servicer).value().drift_rate, 1.58571e-3, 1e-8) << k;
   }
 }
 

@@ -161,6 +161,8 @@ TEST(CameraKeys, AnglesOnlyDefaultsAndUnits) {
   EXPECT_EQ(navigation.acceleration_psd_least, 1e-15);
   EXPECT_EQ(navigation.acceleration_psd_most, 1e-11);
   EXPECT_EQ(navigation.brightness_offset_m, 0.15);
+  EXPECT_EQ(navigation.centroid_noise_m, 0.08);
+  EXPECT_DOUBLE_EQ(navigation.bearing_bias, 3.0 / 3600.0 * kDegree);
   EXPECT_DOUBLE_EQ(navigation.maneuver_sigma, 2e-6);
   EXPECT_DOUBLE_EQ(navigation.maneuver_sigma_relative, 2e-3);
   EXPECT_EQ(navigation.batch_images, 30);

@@ -175,8 +175,13 @@ TEST(Experiment1Mission, ShowsTheDefaults) {
   const Mission mission = load_mission(kFile), bare = small_mission();
   const auto& defaults = shared_settings<CameraShared>(bare);
   vbar::angles_only_configuration shown = shared_settings<CameraShared>(mission).angles_only;
-  EXPECT_EQ(shown.maneuver_sigma_relative, 1e-3);  // the file says that this one is not
+  // Those that the file says are not the defaults.
+  EXPECT_DOUBLE_EQ(shown.maneuver_sigma_relative, 3e-4);
+  EXPECT_EQ(shown.centroid_floor_px, 0.02);
+  EXPECT_LT(shown.bearing_bias, defaults.angles_only.bearing_bias);
   shown.maneuver_sigma_relative = defaults.angles_only.maneuver_sigma_relative;
+  shown.centroid_floor_px = defaults.angles_only.centroid_floor_px;
+  shown.bearing_bias = defaults.angles_only.bearing_bias;
   EXPECT_EQ(packet_of(shown), packet_of(defaults.angles_only));
   EXPECT_EQ(shared_settings<CameraShared>(mission).angles_only_apriori_sigma_a_roe_m,
             defaults.angles_only_apriori_sigma_a_roe_m);

@@ -180,7 +180,7 @@ TEST_F(RunFolderTest, ColumnsOfImagesAreAsAgreed) {
                 covariance +
                 "a_roe_osculating_da_m,a_roe_osculating_dlambda_m,a_roe_osculating_dex_m,a_roe_osculating_dey_m,"
                 "a_roe_osculating_dix_m,a_roe_osculating_diy_m,bearings_used,bearings_refused,images_without_stars,"
-                "tiles_refused,true_object,chosen,range_m,bearing_error_x_arcsec,bearing_error_y_arcsec,"
+                "tiles_refused,true_object,chosen,range_m,sunlit,bearing_error_x_arcsec,bearing_error_y_arcsec,"
                 "attitude_error_across_arcsec,attitude_error_roll_arcsec,nees");
   EXPECT_EQ(first_line(run() / "objects.csv"), "time_s,image,object,kind,star,x_px,y_px");
   EXPECT_EQ(first_line(run() / "gallery.csv"),
@@ -260,8 +260,8 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
   const Json json = Json::parse(content(run() / "summary.json"));
   EXPECT_THAT(
       keys(json),
-      ElementsAre("schema", "mission", "seed", "complete", "incomplete_reason", "flight_computer", "flight_software",
-                  "camera", "gnss", "navigation", "target", "simulated_s", "wall_s", "speed_factor",
+      ElementsAre("schema", "mission", "seed", "complete", "incomplete_reason", "never_navigated", "flight_computer",
+                  "flight_software", "camera", "gnss", "navigation", "target", "simulated_s", "wall_s", "speed_factor",
                   "navigation_error_m", "navigation_velocity_error_mps", "attitude_error_deg", "first_fix_s",
                   "static_floor_m", "navigation_nees", "bearing_error_arcsec", "star_attitude_error_arcsec",
                   "sensor_figures", "dv_mps", "maneuvers", "commands_sha256", "telemetry_sha256", "health",

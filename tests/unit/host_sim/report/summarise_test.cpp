@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "host_sim/report/html_report.h"
 #include "host_sim/report/summary_json.h"
 #include "tests/unit/host_sim/report/synthetic_run.h"
 
@@ -45,6 +46,25 @@ TEST(Summarise, IsAFunctionOfTheTables) {
   const std::string once = summary_json(record.summary, record.waypoints);
   evaluate(record);
   EXPECT_EQ(summary_json(record.summary, record.waypoints), once);
+}
+
+// The fault of the flight software and no valid estimate: either alone is not the verdict.
+TEST(Summarise, NeverNavigatedIsAVerdict) {
+  RunRecord record = synthetic_run();
+  evaluate(record);
+  EXPECT_FALSE(record.summary.never_navigated);
+  for (EstimateRow& row : record.estimates) row.navigation_valid = 0;
+  evaluate(record);
+  EXPECT_FALSE(record.summary.never_navigated) << "a run too short to tell";
+  auto& health = std::get<std::vector<TelemetryRow<telemetry_health>>>(record.telemetry).back().message;
+  health.faults |= telemetry_health::kFaultNeverNavigated;
+  evaluate(record);
+  EXPECT_TRUE(record.summary.never_navigated);
+  EXPECT_NE(summary_json(record.summary, record.waypoints).find("\"never_navigated\": true"), std::string::npos);
+  EXPECT_NE(html_report(record).find("never navigated"), std::string::npos);
+  record.estimates.back().navigation_valid = 1;
+  evaluate(record);
+  EXPECT_FALSE(record.summary.never_navigated) << "late, but it navigated";
 }
 
 TEST(Summarise, ANaNInATableIsSeen) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "fsw/orbit/roe.h"
+#include "fsw/orbit/sun.h"
 #include "host_sim/report/summarise.h"
 #include "host_sim/sensors/camera/image_rows.h"
 #include "host_sim/sensors/sensor_kinds.h"
@@ -58,8 +59,7 @@ class ImageTruth : public testing::Test {
 
   [[nodiscard]] ImageRow row(const telemetry_objects* objects = nullptr) const {
     auto row = report::row_of<ImageRow>(image_);
-    add_truth(row, image_, objects, *navigation_camera(mission_.spacecraft[0]), mission_, mission_.spacecraft[0],
-              truth_);
+    add_truth(row, image_, objects, *navigation_camera(mission_.spacecraft[0]), mission_.spacecraft[0], truth_);
     return row;
   }
 
@@ -164,7 +164,7 @@ TEST_F(ImageTruth, NeesOfOneSigmaEachIsSix) {
   };
   truth_.spacecraft[1].orbit.position_eci = kPlace + Vector3(10.0, 20.0, 1e4);
   const fsw::Vector6 roe =
-      mission_.guidance.reference_semi_major_axis_m *
+      elements(truth_.spacecraft[0].orbit).a *
       fsw::orbit::roe_from_qns(elements(truth_.spacecraft[0].orbit), elements(truth_.spacecraft[1].orbit));
   std::size_t place = 0;
   for (int k = 0; k < 6; ++k) {
@@ -178,6 +178,40 @@ TEST_F(ImageTruth, NeesOfOneSigmaEachIsSix) {
   EXPECT_NEAR(row().nees.value(), 6.0, 1e-9);
   image_.covariance_a_roe[0] = -1.0;
   EXPECT_FALSE(row().nees.has_value());
+}
+
+// Towards the Sun and away from it, at an altitude of 600 km.
+TEST_F(ImageTruth, SunlightIsThatOfTheTarget) {
+  const Vector3 sun = fsw::orbit::sun_position_gcrf(truth_.time).normalized();
+  truth_.spacecraft[1].orbit.position_eci = 7e6 * sun;
+  EXPECT_EQ(row().sunlit.value(), 1.0);
+  truth_.spacecraft[1].orbit.position_eci = -7e6 * sun;
+  EXPECT_EQ(row().sunlit.value(), 0.0);
+  truth_.spacecraft[0].attitude.reset();
+  EXPECT_FALSE(row().sunlit.has_value());
+}
+
+TEST_F(ImageTruth, SummaryCountsLitTargetsThatWereNotFound) {
+  struct Case {
+    int true_object;
+    std::optional<double> sunlit;
+    std::int8_t status;
+  };
+  report::RunRecord record;
+  record.extensions = extensions();
+  record.summary.target = "target";
+  for (const Case& c : {Case{3, 1.0, telemetry_image::kStatusBearing}, Case{3, 1.0, telemetry_image::kStatusNoTarget},
+                        Case{0, 0.2, telemetry_image::kStatusSearching}, Case{3, 0.0, telemetry_image::kStatusNoTarget},
+                        Case{-1, 1.0, telemetry_image::kStatusNoTarget}, Case{3, {}, telemetry_image::kStatusNoTarget},
+                        Case{3, std::nan(""), telemetry_image::kStatusNoTarget}}) {
+    ImageRow& seen = record.tables.rows<ImageRow>().emplace_back();
+    seen.true_object = c.true_object;
+    seen.sunlit = c.sunlit;
+    seen.status = c.status;
+  }
+  const report::Summary summary = report::summarise(record);
+  EXPECT_EQ(summary.sensor_figures.at("images").at("lit_among_objects"), 3);
+  EXPECT_EQ(summary.sensor_figures.at("images").at("lit_not_found"), 2);
 }
 
 TEST_F(ImageTruth, WithoutTheTruthThereAreNoErrors) {

@@ -73,7 +73,7 @@ class PoseTruth : public testing::Test {
     auto row = report::row_of<PoseRow>(pose_);
     keypoints_.clear();
     append_keypoints(100.0, pose_, keypoints_);
-    add_truth(row, keypoints_, pose_, keypoints_body_m_, known_, mission_, mission_.spacecraft[0], truth_);
+    add_truth(row, keypoints_, pose_, keypoints_body_m_, known_, mission_.spacecraft[0], truth_);
     return row;
   }
 
@@ -193,7 +193,7 @@ TEST_F(PoseTruth, NeesIsOfImagesThatTheFilterUsed) {
     return fsw::orbit::qns_from_cartesian(state).value();
   };
   const fsw::Vector6 roe =
-      mission_.guidance.reference_semi_major_axis_m *
+      elements(truth_.spacecraft[0].orbit).a *
       fsw::orbit::roe_from_qns(elements(truth_.spacecraft[0].orbit), elements(truth_.spacecraft[1].orbit));
   for (int k = 0, place = 0; k < 6; place += ++k + 1) {
     const double sigma = 1.0 + k;

@@ -115,9 +115,24 @@ TEST(TrueCamera, NeesOfRoeIsThatOfTheTruth) {
   double covariance[21] = {};
   for (int k = 0, place = 0; k < 6; place += ++k + 1) covariance[place] = 4.0;
   const double estimate[6] = {0.0, ahead_m + 4.0, 0.0, 2.0, 0.0, -2.0};  // off by two sigmas, one and one
-  const auto nees =
-      nees_of_roe(estimate, covariance, on_polar_orbit(0.3), on_polar_orbit(0.3 + ahead_m / 7.0e6), 7.0e6);
+  const auto nees = nees_of_roe(estimate, covariance, on_polar_orbit(0.3), on_polar_orbit(0.3 + ahead_m / 7.0e6));
   EXPECT_NEAR(nees.value(), 6.0, 1e-6);  // elements of 7000 km are rounded to 1e-9 m, a few times over
+}
+
+/// Elements are made dimensionless, and metres again, by the osculating semi-major axis of the same instant: with that
+/// of another orbit, ten kilometres higher, the correct estimate of a target 7 km ahead would be in error by 10 m.
+TEST(TrueCamera, NeesOfRoeOfTheTruthIsZeroOnAnyOrbit) {
+  double covariance[21] = {};
+  for (int k = 0, place = 0; k < 6; place += ++k + 1) covariance[place] = 1.0;
+  const double raised = 1.0 + 10e3 / 7.0e6;
+  const auto raise = [raised](fsw::orbit::CartesianState state) {
+    state.position_eci *= raised;
+    state.velocity_eci /= std::sqrt(raised);
+    return state;
+  };
+  const double estimate[6] = {0.0, raised * 7000.0, 0.0, 0.0, 0.0, 0.0};
+  const auto nees = nees_of_roe(estimate, covariance, raise(on_polar_orbit(0.3)), raise(on_polar_orbit(0.301)));
+  EXPECT_NEAR(nees.value(), 0.0, 1e-10);
 }
 
 TEST(TrueCamera, NeesOfRoeNeedsOrbits) {
@@ -126,10 +141,10 @@ TEST(TrueCamera, NeesOfRoeNeedsOrbits) {
   const double estimate[6] = {};
   fsw::orbit::CartesianState escaping = on_polar_orbit(0.0);
   escaping.velocity_eci *= 2.0;
-  EXPECT_FALSE(nees_of_roe(estimate, covariance, on_polar_orbit(0.0), escaping, 7.0e6).has_value());
+  EXPECT_FALSE(nees_of_roe(estimate, covariance, on_polar_orbit(0.0), escaping).has_value());
   fsw::orbit::CartesianState unknown = on_polar_orbit(0.0);
   unknown.position_eci.y() = kNan;
-  EXPECT_FALSE(nees_of_roe(estimate, covariance, unknown, on_polar_orbit(0.0), 7.0e6).has_value());
+  EXPECT_FALSE(nees_of_roe(estimate, covariance, unknown, on_polar_orbit(0.0)).has_value());
 }
 
 TEST(TrueCamera, ASpacecraftsRadiusHoldsTangoWithItsAntennas) {

@@ -1,0 +1,86 @@
+#pragma once
+// Bearings of a camera as an aid of the trunk: the initial relative orbit from a batch with the a-priori orbit, then
+// rows at each image.
+
+#include <cstdint>
+#include <optional>
+
+#include "fsw/navigation/bearing_batch.h"
+#include "fsw/sources/aid.h"
+#include "fsw/sources/bearings/bearing_rows.h"
+
+namespace vbar::fsw::sources {
+
+struct BearingSettings {
+  BearingModel model;
+  navigation::BearingBatchSettings batch;
+  double gate = 13.8;  ///< of the normalised innovation squared: 99.9 % of two degrees of freedom
+
+  bool operator==(const BearingSettings&) const = default;
+};
+
+/// Edit status of a bearing; numbers of telemetry_image, edit status.
+enum class BearingEditStatus : std::uint8_t { kNone, kRefused, kFilter, kBatch };
+
+/// Result of one bearing. Residuals in rad, in the rows of bearing_axes().
+struct BearingUpdate {
+  Vector2 prefit = Vector2::Zero();
+  Vector2 postfit = Vector2::Zero();
+  double nis = 0.0;
+};
+
+struct BearingCounters {
+  std::int32_t used = 0;
+  std::int32_t refused = 0;
+  std::int32_t batches_failed = 0;
+  std::int32_t inflations = 0;  ///< of the covariance, after consecutive refusals
+  std::int32_t restarts = 0;    ///< of the batch, after the orbit had been initialised
+};
+
+class BearingAiding {
+ public:
+  /// Replaces the settings; a batch being collected stays unless its settings change.
+  void configure(const BearingSettings& settings);
+
+  /// Processes the bearing of an image; the trunk stands at its time. Must be called for images without a bearing too,
+  /// so that the burns since the last image enter the batch.
+  BearingEditStatus process(GpsTime time, const std::optional<navigation::BearingMeasurement>& bearing,
+                            const Vector3& sun_eci, trunk::Trunk& trunk);
+
+  /// Nothing was measured until `now`: the state follows the age of the last accepted bearing.
+  void check_age(GpsTime now);
+
+  /// Deactivates the own blocks; the orbit stays.
+  void stop(GpsTime now, trunk::Trunk& trunk);
+
+  [[nodiscard]] const Aid& aid() const { return aid_; }
+  [[nodiscard]] Aid& aid() { return aid_; }
+  [[nodiscard]] const BearingUpdate& last_update() const { return last_update_; }
+  [[nodiscard]] GpsTime last_accepted() const { return last_accepted_; }
+  [[nodiscard]] const BearingCounters& counters() const { return counters_; }
+
+ private:
+  void follow_burns(const trunk::Trunk& trunk);
+  void activate_blocks(trunk::Trunk& trunk) const;
+  void rest_blocks(trunk::Trunk& trunk) const;
+  BearingEditStatus collect(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci, trunk::Trunk& trunk);
+  BearingEditStatus fold(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci, trunk::Trunk& trunk);
+  void adapt_noise(const navigation::BearingMeasurement& bearing, trunk::Trunk& trunk);
+  void count_refusal(GpsTime time, trunk::Trunk& trunk);
+
+  BearingSettings settings_;
+  Aid aid_;
+  navigation::BearingBatch batch_;
+  GpsTime burns_until_;  ///< impulses of the trunk before this are in the batch
+  GpsTime last_accepted_;
+  GpsTime last_folded_;
+  int refused_in_a_row_ = 0;
+  bool is_contradicting_ = false;  ///< an orbit that other sources confirm
+  int refused_in_excess_ = 0;      ///< of accepted ones, while others confirm the orbit
+  int agreeing_in_a_row_ = 0;      ///< while contradicting
+  std::size_t inflations_in_a_row_ = 0;
+  BearingUpdate last_update_;
+  BearingCounters counters_;
+};
+
+}  // namespace vbar::fsw::sources

@@ -1,0 +1,163 @@
+#include "fsw/sources/bearings/bearing_source.h"
+
+#include "fsw/gnc/camera_configuration.h"
+#include "fsw/gnc/message_fields.h"
+#include "fsw/math/math.h"
+#include "fsw/orbit/rtn.h"
+#include "fsw/orbit/sun.h"
+
+namespace vbar::fsw::sources {
+namespace {
+
+using gnc::copy;
+
+// The last of each list stands for all: the lists of vbar.lcm are those of the code.
+static_assert(static_cast<int>(angles_only::SightingStatus::kAmbiguous) == telemetry_image::kStatusAmbiguous);
+static_assert(static_cast<int>(angles_only::StarMethod::kPredicted) == telemetry_image::kStarMethodPrediction);
+static_assert(static_cast<int>(angles_only::ObjectKind::kHotPixel) == telemetry_objects::kKindHotPixel);
+static_assert(static_cast<int>(BearingEditStatus::kBatch) == telemetry_image::kEditBatch);
+
+constexpr double kSpeedOfLight = 299792458.0;  // m/s
+
+// The target is visible when it is illuminated. Near an edge of the shadow it may or may not be.
+constexpr double kLitProbability = 0.95;
+constexpr double kEdgeProbability = 0.5;
+// The penumbra extends 14 km to either side of the shadow of a sphere where the orbit crosses it; the Earth's polar
+// radius is 21 km smaller.
+constexpr double kEdge_m = 35e3;
+
+double detection_probability(const orbit::CartesianState& target, const Vector3& sun_eci) {
+  const Vector3 edge = kEdge_m * target.position_eci.normalized();
+  if (navigation::is_sunlit(target.position_eci - edge, sun_eci)) return kLitProbability;
+  return navigation::is_sunlit(target.position_eci + edge, sun_eci) ? kEdgeProbability : 0.0;
+}
+
+}  // namespace
+
+void BearingSource::collect(Context& context, RecordFiler records) {
+  has_image_ = false;
+  edit_status_ = BearingEditStatus::kNone;
+  const imaging::ImageAssembly& image = context.inbox.image();
+  if (!aid().is_on() || !image.has_image()) return;
+  const bool is_timely = image.image_time() <= context.now && context.now - image.image_time() <= kLongestDelay &&
+                         (!last_image_ || image.image_time() > *last_image_);
+  if (!is_timely || records.file(image.image_time(), static_cast<std::uint32_t>(image.image_number())) != Status::kOk) {
+    context.inbox.count_unusable_time();
+  }
+}
+
+std::optional<GpsTime> BearingSource::owes(GpsTime /*now*/) const {
+  return std::nullopt;
+}
+
+void BearingSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
+  const imaging::ImageAssembly& image = context.inbox.image();
+  if (!image.has_image() || image.image_time() != record.time) return context.inbox.count_unusable_time();
+  has_image_ = true;
+  const Vector3 sun_eci = orbit::sun_position_gcrf(record.time).normalized();
+  const angles_only::Sighting& sighting = tracking_.process(
+      {record.time, image.image_number(), image.tiles_missing(), image.view()}, priors_of(context, sun_eci, trunk));
+  if (sighting.status == angles_only::SightingStatus::kNoStars) ++images_without_stars_;
+  std::optional<navigation::BearingMeasurement> bearing;
+  if (sighting.status == angles_only::SightingStatus::kBearing) bearing = sighting.bearing;
+  edit_status_ = aiding_.process(record.time, bearing, sun_eci, trunk);
+  a_roe_m_ = trunk.a_roe_m();
+  a_roe_covariance_m2_ = trunk.a_roe_covariance_m2();
+  last_image_ = record.time;
+}
+
+angles_only::ImagePriors BearingSource::priors_of(const Context& context, const Vector3& sun_eci,
+                                                  const trunk::Trunk& trunk) {
+  const GpsTime time = trunk.epoch();
+  angles_only::ImagePriors priors;
+  priors.is_orbit_known = trunk.has_relative();
+  if (!priors.is_orbit_known) return priors;
+  priors.servicer = trunk.servicer();
+  priors.velocity_over_c_eci = orbit::earth_velocity_over_c_gcrf(time) + priors.servicer.velocity_eci / kSpeedOfLight;
+  Matrix3 R_body_eci = Matrix3::Identity();
+  const auto& pointing = context.platform.pointing;
+  if (pointing) {
+    R_body_eci = R_body_eci_of(*pointing, time, priors.servicer);
+    priors.R_camera_eci = tracking_.settings().R_camera_body * R_body_eci;
+  }
+  if (const Result<orbit::CartesianState> target = trunk.target(); target.ok()) {
+    orbit::RelativeState relative = orbit::relative_state_rtn(priors.servicer, target.value());
+    if (pointing) {
+      const Vector3 camera_eci = R_body_eci.transpose() * tracking_.settings().position_body_m;
+      relative.position_rtn -= orbit::R_rtn_eci(priors.servicer) * camera_eci;
+    }
+    const auto prediction = tracking::prediction_of(relative, trunk::covariance_rtn(trunk.estimate(), priors.servicer));
+    if (prediction.ok()) priors.target = prediction.value();
+    priors.detection_probability = detection_probability(target.value(), sun_eci);
+  }
+  std::size_t count = 0;
+  for (const trunk::Impulse& impulse : trunk.impulses()) {
+    if (!last_image_ || impulse.time < *last_image_ || impulse.time >= time) continue;
+    burns_since_image_[count++] = {impulse.time, impulse.dv_rtn, trunk.settings().burn_sigma};
+  }
+  priors.burns = std::span(burns_since_image_).first(count);
+  return priors;
+}
+
+void BearingSource::report(const Telemetry& telemetry) const {
+  if (!has_image_) return;
+  report_image(telemetry);
+  report_objects(telemetry);
+}
+
+void BearingSource::report_image(const Telemetry& telemetry) const {
+  const angles_only::Sighting& sighting = tracking_.sighting();
+  telemetry_image message{};
+  message.step = telemetry.step;
+  message.image = sighting.image;
+  message.status = static_cast<std::int8_t>(sighting.status);
+  message.star_method = static_cast<std::int8_t>(sighting.star_method);
+  message.tiles_missing = static_cast<std::int16_t>(sighting.tiles_missing);
+  message.objects = static_cast<std::int16_t>(sighting.objects);
+  message.stars = static_cast<std::int16_t>(sighting.stars);
+  message.hypotheses = static_cast<std::int16_t>(sighting.hypotheses);
+  message.target_object = static_cast<std::int16_t>(sighting.target);
+  message.background_dn = sighting.background_dn;
+  message.noise_dn = sighting.noise_dn;
+  gnc::copy_rotation(sighting.R_camera_eci.transpose(), message.q_eci_camera);
+  message.attitude_sigma = sighting.attitude_sigma;
+  copy(sighting.bearing.direction_eci, message.bearing_eci);
+  message.bearing_sigma = sighting.bearing.sigma;
+  const BearingUpdate& update = aiding_.last_update();
+  for (int axis = 0; axis < 2; ++axis) {
+    message.prefit[axis] = update.prefit(axis);
+    message.postfit[axis] = update.postfit(axis);
+  }
+  message.nis = update.nis;
+  message.fate = static_cast<std::int8_t>(edit_status_);
+  message.filter_runs = telemetry.trunk.knowledge() == trunk::RelativeKnowledge::kEstimated ? 1 : 0;
+  copy(a_roe_m_, message.a_roe_osculating_m);
+  gnc::copy_lower_triangle(a_roe_covariance_m2_, message.covariance_a_roe);
+  message.bearings_used = aiding_.counters().used;
+  message.bearings_refused = aiding_.counters().refused;
+  message.images_without_stars = images_without_stars_;
+  message.tiles_refused = telemetry.inbox.image().counts().tiles_refused;
+  telemetry.outbox.send(sighting.time, message);
+}
+
+void BearingSource::report_objects(const Telemetry& telemetry) const {
+  const angles_only::Sighting& sighting = tracking_.sighting();
+  const auto objects = tracking_.objects();
+  telemetry_objects message{};
+  message.step = telemetry.step;
+  message.image = sighting.image;
+  constexpr std::size_t kMaxReported = sizeof message.kind / sizeof message.kind[0];
+  const std::size_t count = static_cast<std::size_t>(sighting.objects) < kMaxReported
+                                ? static_cast<std::size_t>(sighting.objects)
+                                : kMaxReported;
+  message.count = static_cast<std::int16_t>(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    message.kind[k] = static_cast<std::int8_t>(sighting.kind[k]);
+    message.star[k] = sighting.hipparcos[k];
+    message.x_px[k] = static_cast<float>(objects[k].centroid_px.x());
+    message.y_px[k] = static_cast<float>(objects[k].centroid_px.y());
+  }
+  telemetry.outbox.send(sighting.time, message);
+}
+
+}  // namespace vbar::fsw::sources

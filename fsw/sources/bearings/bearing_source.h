@@ -1,0 +1,50 @@
+#pragma once
+// Source: bearings of a camera to an unresolved target among stars.
+
+#include <array>
+#include <optional>
+
+#include "fsw/angles_only/angles_only_tracking.h"
+#include "fsw/sources/bearings/bearing_aiding.h"
+#include "fsw/sources/source.h"
+
+namespace vbar::fsw::sources {
+
+class BearingSource {
+ public:
+  /// Settings from the telecommands kept; a change re-initialises the front end, not the trunk.
+  void configure(const angles_only::CameraSettings& camera, const BearingSettings& settings) {
+    tracking_.configure(camera);
+    aiding_.configure(settings);
+  }
+  [[nodiscard]] Aid& aid() { return aiding_.aid(); }
+  void collect(Context& context, RecordFiler records);
+  void fold(const Record& record, Context& context, trunk::Trunk& trunk);
+  [[nodiscard]] std::optional<GpsTime> owes(GpsTime now) const;
+  [[nodiscard]] const Aid& aid() const { return aiding_.aid(); }
+  [[nodiscard]] GpsTime last_measurement() const { return aiding_.last_accepted(); }
+  /// Whether the bearing of the last image was processed.
+  [[nodiscard]] bool has_aided() const { return last_image_ && *last_image_ == aiding_.last_accepted(); }
+  void watch(GpsTime now, trunk::Trunk& /*trunk*/) { aiding_.check_age(now); }
+  void stop(GpsTime now, trunk::Trunk& trunk) { aiding_.stop(now, trunk); }
+  /// Telemetry of the image of the step, if there was one.
+  void report(const Telemetry& telemetry) const;
+
+ private:
+  [[nodiscard]] angles_only::ImagePriors priors_of(const Context& context, const Vector3& sun_eci,
+                                                   const trunk::Trunk& trunk);
+  void report_image(const Telemetry& telemetry) const;
+  void report_objects(const Telemetry& telemetry) const;
+
+  angles_only::AnglesOnlyTracking tracking_;
+  BearingAiding aiding_;
+  std::array<tracking::OwnBurn, trunk::Trunk::kMaxImpulses> burns_since_image_{};
+  std::optional<GpsTime> last_image_;
+  bool has_image_ = false;
+  BearingEditStatus edit_status_ = BearingEditStatus::kNone;
+  std::int32_t images_without_stars_ = 0;
+  Vector6 a_roe_m_ = Vector6::Zero();  ///< of the trunk at the image, after its update, for telemetry
+  Matrix6 a_roe_covariance_m2_ = Matrix6::Zero();
+};
+
+}  // namespace vbar::fsw::sources

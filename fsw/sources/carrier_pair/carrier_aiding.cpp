@@ -1,0 +1,227 @@
+#include "fsw/sources/carrier_pair/carrier_aiding.h"
+
+#include <Eigen/Geometry>
+
+#include "fsw/math/cholesky.h"
+#include "fsw/math/math.h"
+#include "fsw/orbit/constants.h"
+#include "fsw/orbit/roe.h"
+
+namespace vbar::fsw::sources {
+namespace {
+
+// Of a baseline's normalised innovation squared: 5 sigma of three degrees of freedom.
+constexpr double kBaselineGate = 25.0;
+
+constexpr double square(double x) {
+  return x * x;
+}
+
+bool has_burn_since(GpsTime time, const trunk::Trunk& trunk) {
+  for (const trunk::Impulse& impulse : trunk.impulses()) {
+    if (impulse.time >= time) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void CarrierAiding::configure(const CarrierSettings& settings) {
+  has_changed_ = has_changed_ || !(settings.filter == settings_.filter) ||
+                 settings.servicer_antenna_body_m != settings_.servicer_antenna_body_m ||
+                 settings.target_antenna_body_m != settings_.target_antenna_body_m;
+  settings_ = settings;
+  filter_.configure(settings.filter);
+}
+
+bool CarrierAiding::process(const PairEpoch& pair, trunk::Trunk& trunk) {
+  const GpsTime tag = pair.ours.receiver_time;
+  last_update_ = CarrierUpdate{};
+  if (!trunk.own_orbit().started() || tag != trunk.epoch() || pair.theirs.receiver_time != tag) {
+    ++counters_.not_admitted;
+    return false;
+  }
+  if (!aid_.is_on()) aid_.go_to(AidState::kWaiting, tag);
+  if (trunk.is_confirmed_by_others()) share_orbit();
+  watch(tag, trunk);
+  const auto their_point = navigation::single_point(pair.theirs, pair.ephemerides, pair.frame);
+  if (!their_point.ok() || !pair.R_eci_servicer || !pair.R_eci_target) {
+    ++counters_.no_solution;
+    return false;
+  }
+  if (!admit(pair, their_point.value(), trunk)) {
+    ++counters_.not_admitted;
+    return false;
+  }
+  filter_.begin_blocks(trunk);
+  const AntennaPlatform servicer{.R_eci_body = *pair.R_eci_servicer,
+                                 .antenna_body_m = settings_.servicer_antenna_body_m,
+                                 .clock_m = pair.servicer_clock_m};
+  const AntennaPlatform target{.R_eci_body = *pair.R_eci_target,
+                               .antenna_body_m = settings_.target_antenna_body_m,
+                               .clock_m = their_point.value().clock_m};
+  navigation::form_differences(pair.ours, pair.theirs, pair.ephemerides, pair.frame, differences_);
+  last_update_ = filter_.take(differences_, servicer, target, trunk);
+  last_pair_ = tag;
+  ++counters_.pairs;
+  counters_.codes_refused += last_update_.codes_refused;
+  counters_.phases_refused += last_update_.phases_refused;
+  counters_.slips += last_update_.slips;
+  judge(tag, trunk);
+  return true;
+}
+
+/// After an update: whether the codes contradict the orbit; otherwise the integers.
+void CarrierAiding::judge(GpsTime time, trunk::Trunk& trunk) {
+  const bool is_contradicted = last_update_.codes_refused > last_update_.codes_used;
+  contradicted_in_a_row_ = is_contradicted ? contradicted_in_a_row_ + 1 : 0;
+  if (contradicted_in_a_row_ >= kMaxContradicted || !trunk.has_relative()) {
+    give_up(time, trunk);
+    return;
+  }
+  if (last_update_.codes_used > 0) trunk.confirm_relative();
+  aid_.go_to(AidState::kAiding, time);
+  ambiguities_.update(filter_, trunk, last_update_, settings_.ambiguities);
+}
+
+void CarrierAiding::watch(GpsTime now, trunk::Trunk& trunk) {
+  if (has_changed_) {
+    discard(trunk);
+    has_changed_ = false;
+    if (aid_.is_on()) aid_.go_to(AidState::kWaiting, now);
+  }
+  if (aid_.state() == AidState::kFailed && now - aid_.since() > kFailedPause) aid_.go_to(AidState::kWaiting, now);
+  if (!last_pair_) return;
+  const Duration silent = now - *last_pair_;
+  if (aid_.state() == AidState::kAiding && silent > kSilence) {
+    CarrierFilter::rest_epoch_states(trunk);
+    aid_.go_to(AidState::kSuspended, now);
+  }
+  if (aid_.state() != AidState::kSuspended) return;
+  if (silent > kKept) {
+    filter_.rest_channels(trunk);
+    ambiguities_.reset();
+  }
+  if (silent > kEmpiricalKept) trunk::rest_block<trunk::EmpiricalAcceleration>(trunk.estimate());
+}
+
+/// Whether the pair may update the relative orbit; begins the orbit if there is none.
+bool CarrierAiding::admit(const PairEpoch& pair, const navigation::SinglePoint& their_point, trunk::Trunk& trunk) {
+  const GpsTime tag = pair.ours.receiver_time;
+  const bool has_blocks = trunk::is_active<trunk::ServicerAntenna>(trunk.estimate());
+  if ((aid_.state() == AidState::kAiding || aid_.state() == AidState::kSuspended) && !has_blocks) {
+    // The trunk has discarded its estimate.
+    discard(trunk);
+    aid_.go_to(AidState::kWaiting, tag);
+  }
+  if (trunk.knowledge() <= trunk::RelativeKnowledge::kApriori || (must_begin_ && owns_orbit_)) {
+    aid_.go_to(AidState::kStarting, tag);
+    return begin_orbit(pair, their_point, trunk);
+  }
+  switch (aid_.state()) {
+    case AidState::kAiding:
+    case AidState::kSuspended:
+      return true;
+    case AidState::kFailed:
+      return false;
+    case AidState::kOff:
+    case AidState::kWaiting:
+    case AidState::kStarting:
+      break;
+  }
+  aid_.go_to(AidState::kStarting, tag);
+  agreeing_in_a_row_ = agrees(pair, their_point, trunk) ? agreeing_in_a_row_ + 1 : 0;
+  return agreeing_in_a_row_ >= kMinAgreeing;
+}
+
+/// Differences of single-point solutions cancel errors of orbits and clocks.
+std::optional<CarrierAiding::CodeBaseline> CarrierAiding::code_baseline(const PairEpoch& pair,
+                                                                        const navigation::SinglePoint& their_point,
+                                                                        const trunk::Trunk& trunk) const {
+  const auto our_point = navigation::single_point(pair.ours, pair.ephemerides, pair.frame);
+  if (!our_point.ok()) return std::nullopt;
+  const double apart_s = (their_point.clock_m - our_point.value().clock_m) / gnss::kSpeedOfLight;
+  CodeBaseline baseline;
+  baseline.relative_eci = their_point.position_eci - *pair.R_eci_target * settings_.target_antenna_body_m -
+                          our_point.value().position_eci + *pair.R_eci_servicer * settings_.servicer_antenna_body_m +
+                          apart_s * trunk.servicer().velocity_eci;
+  baseline.noise_m = math::hypot(our_point.value().sigma_m, their_point.sigma_m);
+  baseline.sigma_m = math::hypot(settings_.start_sigma_m, baseline.noise_m);
+  return baseline;
+}
+
+/// From two baselines: the difference of codes cancels in the velocity what both have in common, and a velocity assumed
+/// from the separation alone would leave elements so uncertain that their curvature exceeds the codes.
+bool CarrierAiding::begin_orbit(const PairEpoch& pair, const navigation::SinglePoint& their_point,
+                                trunk::Trunk& trunk) {
+  const GpsTime tag = pair.ours.receiver_time;
+  const auto baseline = code_baseline(pair, their_point, trunk);
+  if (!baseline) return false;
+  const bool is_first =
+      !first_baseline_ || tag - first_baseline_->time > kBaselinesApart || has_burn_since(first_baseline_->time, trunk);
+  if (is_first) {
+    first_baseline_ = FirstBaseline{tag, *baseline};
+    return false;
+  }
+  const orbit::CartesianState servicer = trunk.servicer();
+  const double dt = seconds(tag - first_baseline_->time);
+  const Vector3& relative = baseline->relative_eci;
+  // Gravity gradient of a point mass over the interval.
+  const double distance = math::sqrt(servicer.position_eci.squaredNorm());
+  const Vector3 up = servicer.position_eci / distance;
+  const Vector3 acceleration = orbit::kMu / (distance * distance * distance) * (3.0 * up.dot(relative) * up - relative);
+  const Vector3 velocity = (relative - first_baseline_->baseline.relative_eci) / dt + 0.5 * dt * acceleration;
+  const double noise_m = math::hypot(baseline->noise_m, first_baseline_->baseline.noise_m);
+  const orbit::CartesianState target{.position_eci = servicer.position_eci + relative,
+                                     .velocity_eci = servicer.velocity_eci + velocity};
+  const auto roe = orbit::roe_of_target(servicer, target);
+  const auto jacobian = roe_from_target_jacobian(servicer, target);
+  if (!roe.ok() || !jacobian.ok()) return false;
+  Matrix6 scaled = jacobian.value();
+  scaled.leftCols<3>() *= baseline->sigma_m;
+  const double velocity_sigma = 2.0 * noise_m / dt;
+  scaled.rightCols<3>() *=
+      velocity_sigma < settings_.start_velocity_sigma ? velocity_sigma : settings_.start_velocity_sigma;
+  discard(trunk);
+  trunk.begin_relative(roe.value(), scaled.lazyProduct(scaled.transpose()), trunk::RelativeKnowledge::kEstimated);
+  if (counters_.starts++ > 0) ++counters_.restarts;
+  owns_orbit_ = true;
+  must_begin_ = false;
+  return true;
+}
+
+/// Whether a code baseline agrees with the relative orbit of the trunk.
+bool CarrierAiding::agrees(const PairEpoch& pair, const navigation::SinglePoint& their_point,
+                           const trunk::Trunk& trunk) const {
+  const auto baseline = code_baseline(pair, their_point, trunk);
+  const auto target = trunk.target();
+  if (!baseline || !target.ok()) return false;
+  const Vector3 apart = baseline->relative_eci - (target.value().position_eci - trunk.servicer().position_eci);
+  const math::Cholesky<3> factor(trunk.position_covariance_eci() + square(baseline->sigma_m) * Matrix3::Identity());
+  return factor.ok() && factor.solve_lower(apart).squaredNorm() <= kBaselineGate;
+}
+
+void CarrierAiding::discard(trunk::Trunk& trunk) {
+  filter_.rest_blocks(trunk);
+  ambiguities_.reset();
+  agreeing_in_a_row_ = 0;
+  contradicted_in_a_row_ = 0;
+  first_baseline_.reset();
+}
+
+void CarrierAiding::stop(GpsTime now, trunk::Trunk& trunk) {
+  if (aid_.is_on()) discard(trunk);
+  aid_.go_to(AidState::kOff, now);
+}
+
+/// The own blocks are discarded. An orbit that this source has initialised is initialised again at the next pair; that
+/// of another source stays.
+void CarrierAiding::give_up(GpsTime time, trunk::Trunk& trunk) {
+  ++counters_.failures;
+  discard(trunk);
+  if (owns_orbit_) trunk.distrust_relative();
+  must_begin_ = owns_orbit_;
+  aid_.go_to(AidState::kFailed, time);
+}
+
+}  // namespace vbar::fsw::sources

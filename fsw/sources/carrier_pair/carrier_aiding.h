@@ -1,0 +1,133 @@
+#pragma once
+// Differences of two receivers' code and phase as an aid of the trunk: when they start, rest and fail.
+//
+//   waiting -> starting (code baselines compared with the trunk) -> aiding <-> suspended (silent) | failed
+//   (contradicted)
+//
+// The coarse baseline of codes initialises the relative orbit only if the trunk has none but an a-priori one. An orbit
+// of other sensors is never re-initialised: phases join it once three consecutive baselines agree with it.
+
+#include <cstdint>
+#include <optional>
+
+#include "fsw/gnss/observation.h"
+#include "fsw/navigation/ephemeris_store.h"
+#include "fsw/navigation/single_point.h"
+#include "fsw/sources/aid.h"
+#include "fsw/sources/carrier_pair/ambiguity_resolution.h"
+#include "fsw/sources/carrier_pair/carrier_filter.h"
+
+namespace vbar::fsw::sources {
+
+struct CarrierSettings {
+  CarrierFilterSettings filter;
+  AmbiguitySettings ambiguities;
+  Vector3 servicer_antenna_body_m = Vector3::Zero();  ///< nominal phase centres, from the centres of mass
+  Vector3 target_antenna_body_m = Vector3::Zero();
+  double start_sigma_m = 5.0;         ///< of a code baseline, per axis, in addition to that of its geometry
+  double start_velocity_sigma = 0.2;  ///< m/s, per axis, at most: two code baselines are usually better
+};
+
+/// Observations of both receivers with one tag, at which the trunk stands.
+struct PairEpoch {
+  const gnss::ObservationEpoch& ours;
+  const gnss::ObservationEpoch& theirs;
+  double servicer_clock_m = 0.0;  ///< by the servicer's single-point solution
+  std::optional<Matrix3> R_eci_servicer;
+  std::optional<Matrix3> R_eci_target;
+  const navigation::EphemerisStore& ephemerides;
+  const navigation::EarthFrame& frame;
+};
+
+struct CarrierCounters {
+  std::int32_t pairs = 0;         ///< epochs of both receivers processed
+  std::int32_t no_solution = 0;   ///< pairs without a single-point solution of the target, or without attitude
+  std::int32_t not_admitted = 0;  ///< pairs while starting or failed, or of another time than the trunk's
+  std::int32_t codes_refused = 0;
+  std::int32_t phases_refused = 0;
+  std::int32_t slips = 0;
+  std::int32_t starts = 0;    ///< of the relative orbit, by a code baseline
+  std::int32_t restarts = 0;  ///< of them, after the first
+  std::int32_t failures = 0;  ///< the own blocks were discarded
+};
+
+class CarrierAiding {
+ public:
+  /// Replaces the settings. If those of the blocks have changed, the blocks are discarded at the next epoch.
+  void configure(const CarrierSettings& settings);
+
+  /// Processes a pair; false if it was not used.
+  bool process(const PairEpoch& pair, trunk::Trunk& trunk);
+
+  /// At each step: suspends after kSilence without a pair, and releases the ambiguities after kKept.
+  void watch(GpsTime now, trunk::Trunk& trunk);
+
+  /// Deactivates the own blocks; the orbit stays.
+  void stop(GpsTime now, trunk::Trunk& trunk);
+
+  /// An epoch of both receivers could not be used because the servicer's had no solution.
+  void count_no_solution() { ++counters_.no_solution; }
+
+  /// Another source has estimated the relative orbit since: it is not re-initialised by this one any more.
+  void share_orbit() { owns_orbit_ = false; }
+  [[nodiscard]] bool owns_orbit() const { return owns_orbit_; }
+
+  [[nodiscard]] const CarrierUpdate& last_update() const { return last_update_; }
+  [[nodiscard]] std::optional<GpsTime> last_pair() const { return last_pair_; }
+  [[nodiscard]] const AmbiguityReport& report() const { return ambiguities_.report(); }
+  [[nodiscard]] bool is_fixed() const { return aid_.state() == AidState::kAiding && ambiguities_.is_fixed(); }
+  [[nodiscard]] const CarrierCounters& counters() const { return counters_; }
+  [[nodiscard]] const CarrierFilter& filter() const { return filter_; }
+  [[nodiscard]] Aid& aid() { return aid_; }
+  [[nodiscard]] const Aid& aid() const { return aid_; }
+
+  static constexpr Duration kSilence = duration_of_seconds(30);
+  static constexpr Duration kKept = PhaseChannels::kKeptUnseen;
+  /// An empirical acceleration that has decayed to its stationary distribution is deactivated.
+  static constexpr Duration kEmpiricalKept = duration_of_seconds(7200);
+  static constexpr Duration kFailedPause = duration_of_seconds(600);
+  /// Of the two baselines that initialise the orbit.
+  static constexpr Duration kBaselinesApart = duration_of_seconds(60);
+  static constexpr int kMinAgreeing = 3;
+  /// The orbit is contradicted by most codes in this number of consecutive epochs.
+  static constexpr int kMaxContradicted = 5;
+
+ private:
+  struct CodeBaseline {
+    Vector3 relative_eci = Vector3::Zero();  ///< of the centres of mass at the tag, m
+    double sigma_m = 0.0;                    ///< per axis
+    double noise_m = 0.0;                    ///< of it, what differs from epoch to epoch
+  };
+  struct FirstBaseline {
+    GpsTime time;
+    CodeBaseline baseline;
+  };
+
+  [[nodiscard]] std::optional<CodeBaseline> code_baseline(const PairEpoch& pair,
+                                                          const navigation::SinglePoint& their_point,
+                                                          const trunk::Trunk& trunk) const;
+  bool admit(const PairEpoch& pair, const navigation::SinglePoint& their_point, trunk::Trunk& trunk);
+  bool begin_orbit(const PairEpoch& pair, const navigation::SinglePoint& their_point, trunk::Trunk& trunk);
+  [[nodiscard]] bool agrees(const PairEpoch& pair, const navigation::SinglePoint& their_point,
+                            const trunk::Trunk& trunk) const;
+  void discard(trunk::Trunk& trunk);
+  void give_up(GpsTime time, trunk::Trunk& trunk);
+  void judge(GpsTime time, trunk::Trunk& trunk);
+
+  CarrierSettings settings_;
+  bool has_changed_ = false;
+  Aid aid_;
+  CarrierFilter filter_;
+  AmbiguityResolution ambiguities_;
+  navigation::DifferentialEpoch differences_;
+  std::optional<GpsTime> last_pair_;
+  std::optional<FirstBaseline> first_baseline_;  ///< while the relative orbit is initialised
+  bool owns_orbit_ = false;
+  bool must_begin_ = false;  ///< the own orbit was given up
+  int agreeing_in_a_row_ = 0;
+  int contradicted_in_a_row_ = 0;  ///< epochs whose codes were mostly refused
+  CarrierCounters counters_;
+  CarrierUpdate last_update_;
+};
+
+}  // namespace vbar::fsw::sources

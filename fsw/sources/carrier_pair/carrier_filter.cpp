@@ -1,0 +1,308 @@
+#include "fsw/sources/carrier_pair/carrier_filter.h"
+
+#include "fsw/math/math.h"
+#include "fsw/orbit/roe.h"
+
+namespace vbar::fsw::sources {
+namespace {
+
+using navigation::DifferentialEpoch;
+using navigation::DifferentialObservation;
+using trunk::kAt;
+
+constexpr double kGate = 25.0;  // 5 sigma, one degree of freedom
+constexpr double kNoGate = estimation::kNoGate;
+
+// The clock difference of single-point solutions is wrong by some metres; this sigma gives it negligible weight.
+constexpr double kClockSigma_m = 100.0;
+// Likewise for an ambiguity that is initialised from its own first measurement.
+constexpr double kAmbiguitySigma_m = 30.0;
+
+// A phase that differs by this from the others of the epoch, in addition to the uncertainty of the filter, has slipped.
+constexpr double kSlip_m = 0.03;
+constexpr double kSlipSigmas = 5.0;
+constexpr std::size_t kMinForMedian = 5;
+
+// Phases wait until the elements are so narrow that their curvature moves the target by less than this: codes attain it
+// in a few epochs. Phases of a wider orbit would update it along a wrong tangent, with the weight of a millimetre.
+constexpr double kMaxNonlinearity_m = 0.3e-3;
+
+// Steps of the Jacobian of the ROE.
+constexpr double kStep_m = 1.0;
+constexpr double kStep_mps = 1e-3;
+
+constexpr double square(double x) {
+  return x * x;
+}
+
+/// Residuals in order of size.
+struct Residual {
+  std::size_t observation = 0;
+  double value = 0.0;
+};
+struct Residuals {
+  std::array<Residual, gnss::kMaxObservations> sorted{};
+  std::size_t count = 0;
+
+  void add(const Residual& residual) {
+    std::size_t place = count++;
+    for (; place > 0 && sorted[place - 1].value > residual.value; --place) sorted[place] = sorted[place - 1];
+    sorted[place] = residual;
+  }
+  [[nodiscard]] const Residual& median() const { return sorted[count / 2]; }
+};
+
+}  // namespace
+
+void CarrierFilter::begin_blocks(trunk::Trunk& trunk) const {
+  trunk::Estimate& estimate = trunk.estimate();
+  const trunk::GaussMarkov offset{.sigma = settings_.antenna_offset_sigma_m};
+  if (!trunk::is_active<trunk::ServicerAntenna>(estimate)) trunk::begin_block<trunk::ServicerAntenna>(estimate, offset);
+  if (!trunk::is_active<trunk::TargetAntenna>(estimate)) trunk::begin_block<trunk::TargetAntenna>(estimate, offset);
+  if (!trunk::is_active<trunk::CodeBiases>(estimate)) {
+    trunk::begin_block<trunk::CodeBiases>(estimate, {.sigma = settings_.code_bias_sigma_m});
+  }
+  trunk.relative_orbit().begin_empirical(estimate);
+}
+
+void CarrierFilter::rest_blocks(trunk::Trunk& trunk) {
+  rest_channels(trunk);
+  rest_epoch_states(trunk);
+  trunk::Estimate& estimate = trunk.estimate();
+  trunk::rest_block<trunk::CodeBiases>(estimate);
+  trunk::rest_block<trunk::TargetAntenna>(estimate);
+  trunk::rest_block<trunk::ServicerAntenna>(estimate);
+  trunk::rest_block<trunk::EmpiricalAcceleration>(estimate);
+}
+
+void CarrierFilter::rest_epoch_states(trunk::Trunk& trunk) {
+  trunk::rest_block<trunk::ClockDifference>(trunk.estimate());
+  trunk::rest_block<trunk::PhaseCentreJitter>(trunk.estimate());
+}
+
+void CarrierFilter::rest_channels(trunk::Trunk& trunk) {
+  channels_.clear();
+  trunk::rest_block<trunk::PhaseWander>(trunk.estimate());
+  trunk::rest_block<trunk::Ambiguities>(trunk.estimate());
+}
+
+CarrierUpdate CarrierFilter::take(const DifferentialEpoch& epoch, const AntennaPlatform& servicer,
+                                  const AntennaPlatform& target, trunk::Trunk& trunk) {
+  CarrierUpdate update;
+  if (!trunk.has_relative() || epoch.count == 0) return update;
+  trunk::Estimate& estimate = trunk.estimate();
+  channels_.give_back_unseen(epoch.time, [&estimate](std::size_t place) { deactivate(place, estimate); });
+  renew_epoch_states(servicer, target, estimate);
+  edits_.fill(Edit{});
+  if (rows_.form(epoch, servicer, target, trunk) != Status::kOk) return update;
+  find_outlying_codes(epoch, estimate);
+  use_codes(epoch, estimate, update);
+  if (rows_.nonlinearity_m() < kMaxNonlinearity_m || channels_.is_any_tracked()) {
+    follow_channels(epoch, estimate, update);
+    find_slips_by_median(epoch, estimate, update);
+    use_phases(epoch, trunk, update);
+  }
+  trunk.finish_update();
+  return update;
+}
+
+/// Clocks and jitter are independent of the previous epoch.
+void CarrierFilter::renew_epoch_states(const AntennaPlatform& servicer, const AntennaPlatform& target,
+                                       trunk::Estimate& estimate) {
+  estimate.reset(kAt<trunk::ClockDifference>, target.clock_m - servicer.clock_m, square(kClockSigma_m));
+  const double jitter_variance = 2.0 * square(settings_.phase_centre_jitter_m);
+  for (int axis = 0; axis < 3; ++axis) estimate.reset(kAt<trunk::PhaseCentreJitter> + axis, 0.0, jitter_variance);
+}
+
+/// The clock is unknown until the first code, which determines it whatever the error of that code (multipath of a
+/// satellite that has just risen). Codes that contradict the median are therefore processed last: the gate then refuses
+/// them, and not the others and all phases.
+void CarrierFilter::find_outlying_codes(const DifferentialEpoch& epoch, const trunk::Estimate& estimate) {
+  Residuals residuals;
+  for (std::size_t n = 0; n < epoch.count; ++n) {
+    residuals.add({n, rows_.code_residual(n, epoch.observations[n], estimate)});
+  }
+  if (residuals.count < kMinForMedian) return;
+  const std::size_t middle = residuals.median().observation;
+  const DifferentialObservation& median = epoch.observations[middle];
+  for (std::size_t n = 0; n < epoch.count; ++n) {
+    if (n == middle) continue;
+    const DifferentialObservation& observation = epoch.observations[n];
+    const trunk::Estimate::Vector h =
+        rows_.code_sensitivity(n, observation.signal) - rows_.code_sensitivity(middle, median.signal);
+    const double apart_m = rows_.code_residual(n, observation, estimate) - residuals.median().value;
+    // The variance of a median is about that of a mean.
+    const double variance =
+        square(observation.code_sigma_m) + square(median.code_sigma_m) / static_cast<double>(residuals.count);
+    edits_[n].has_outlying_code = !(estimate.predict(h, apart_m, variance).nis() < kGate);
+  }
+}
+
+void CarrierFilter::use_codes(const DifferentialEpoch& epoch, trunk::Estimate& estimate, CarrierUpdate& update) {
+  for (const bool outlying : {false, true}) {
+    for (std::size_t n = 0; n < epoch.count; ++n) {
+      if (edits_[n].has_outlying_code != outlying) continue;
+      const DifferentialObservation& observation = epoch.observations[n];
+      const double variance = square(observation.code_sigma_m) + rows_.extra_variance(n);
+      const estimation::Innovation innovation =
+          estimate.update(rows_.code_sensitivity(n, observation.signal), rows_.code_residual(n, observation, estimate),
+                          variance, kGate);
+      if (innovation.accepted) {
+        ++update.codes_used;
+        update.code_nis += innovation.nis();
+      } else {
+        ++update.codes_refused;
+      }
+    }
+  }
+}
+
+/// Assigns a channel to each usable phase, and finds the slips reported by the receivers.
+void CarrierFilter::follow_channels(const DifferentialEpoch& epoch, trunk::Estimate& estimate, CarrierUpdate& update) {
+  for (std::size_t n = 0; n < epoch.count; ++n) {
+    const DifferentialObservation& observation = epoch.observations[n];
+    if (!observation.phase_usable) continue;
+    std::optional<std::size_t> place = channels_.find(observation.satellite, observation.signal);
+    if (!place) place = channels_.take(observation.satellite, observation.signal);
+    if (!place) continue;
+    if (channels_.lost_lock(*place, observation, epoch.time)) {
+      ++update.slips;
+      lose(*place, estimate);
+    }
+    edits_[n].channel = place;
+  }
+}
+
+/// The clock shifts all phases alike, and the code determines it to decimetres only. Each phase is therefore compared
+/// with the median: clock and common offset cancel.
+void CarrierFilter::find_slips_by_median(const DifferentialEpoch& epoch, trunk::Estimate& estimate,
+                                         CarrierUpdate& update) {
+  Residuals residuals;
+  for (std::size_t n = 0; n < epoch.count; ++n) {
+    const std::optional<std::size_t>& place = edits_[n].channel;
+    if (!place || channels_[*place].epochs == 0) continue;
+    residuals.add({n, rows_.phase_residual(n, *place, epoch.observations[n].phase_m, estimate)});
+  }
+  if (residuals.count < kMinForMedian) return;
+  const std::size_t middle = residuals.median().observation;
+  for (std::size_t k = 0; k < residuals.count; ++k) {
+    const std::size_t n = residuals.sorted[k].observation;
+    if (n == middle) continue;
+    const std::size_t place = *edits_[n].channel;
+    const trunk::Estimate::Vector h =
+        rows_.phase_sensitivity(n, place) - rows_.phase_sensitivity(middle, *edits_[middle].channel);
+    const double variance =
+        square(epoch.observations[n].phase_sigma_m) + square(epoch.observations[middle].phase_sigma_m);
+    const estimation::Innovation apart =
+        estimate.predict(h, residuals.sorted[k].value - residuals.median().value, variance);
+    if (math::abs(apart.value) > kSlip_m + kSlipSigmas * math::sqrt(apart.variance)) {
+      ++update.slips;
+      contradict(place, estimate, update);
+    }
+  }
+}
+
+void CarrierFilter::use_phases(const DifferentialEpoch& epoch, trunk::Trunk& trunk, CarrierUpdate& update) {
+  trunk::Estimate& estimate = trunk.estimate();
+  // Known ambiguities first: they determine the clock with which new ones are initialised.
+  for (const bool known : {true, false}) {
+    for (std::size_t n = 0; n < epoch.count; ++n) {
+      const std::optional<std::size_t>& place = edits_[n].channel;
+      if (!place || (channels_[*place].epochs > 0) != known) continue;
+      const DifferentialObservation& observation = epoch.observations[n];
+      if (!known) {
+        // The wander starts with its stationary variance: a restarted channel may have assigned a slip to it.
+        estimate.reset(ambiguity_index(*place), rows_.residual(n, observation.phase_m, estimate),
+                       square(kAmbiguitySigma_m));
+        trunk::begin_process(estimate, wander_index(*place), trunk.settings().phase_wander);
+      }
+      const double variance = square(observation.phase_sigma_m) + rows_.extra_variance(n);
+      const estimation::Innovation innovation = estimate.update(
+          rows_.phase_sensitivity(n, *place), rows_.phase_residual(n, *place, observation.phase_m, estimate), variance,
+          known ? kGate : kNoGate);
+      if (!innovation.accepted) {
+        ++update.phases_refused;
+        contradict(*place, estimate, update);
+        continue;
+      }
+      channels_.see(*place, observation, epoch.time);
+      if (known) {
+        ++update.phases_used;
+        update.phase_nis += innovation.nis();
+      }
+      edits_[n].channel.reset();  // processed, so that the second round does not treat it as a new one
+    }
+  }
+}
+
+void CarrierFilter::deactivate(std::size_t place, trunk::Estimate& estimate) {
+  estimate.reset(ambiguity_index(place), 0.0, 0.0);
+  estimate.reset(wander_index(place), 0.0, 0.0);
+}
+
+void CarrierFilter::lose(std::size_t place, trunk::Estimate& estimate) {
+  channels_.restart(place);
+  deactivate(place, estimate);
+}
+
+void CarrierFilter::contradict(std::size_t place, trunk::Estimate& estimate, CarrierUpdate& update) {
+  if (channels_[place].fixed) ++update.contradictions;
+  lose(place, estimate);
+}
+
+void CarrierFilter::hold(trunk::Trunk& trunk, std::size_t place, std::size_t reference, double cycles) {
+  // A tenth of a millimetre: far below the phase noise, far above rounding.
+  constexpr double kHoldVariance = 1e-8;
+  trunk::Estimate& estimate = trunk.estimate();
+  trunk::Estimate::Vector h = trunk::Estimate::Vector::Zero();
+  h(ambiguity_index(place)) = 1.0;
+  h(ambiguity_index(reference)) = -1.0;
+  const double difference = estimate.mean(ambiguity_index(place)) - estimate.mean(ambiguity_index(reference));
+  const double wavelength = gnss::wavelength(channels_[place].signal);
+  estimate.update(h, wavelength * cycles - difference, kHoldVariance, kNoGate);
+  channels_.set_fixed(place, true);
+  channels_.set_fixed(reference, true);
+  trunk.finish_update();
+}
+
+void CarrierFilter::release(trunk::Trunk& trunk, double position_sigma_m) {
+  trunk::Estimate& estimate = trunk.estimate();
+  for (std::size_t place = 0; place < kPhaseChannels; ++place) {
+    if (channels_[place].in_use) lose(place, estimate);
+  }
+  const auto target = trunk.target();
+  if (!target.ok()) return;
+  const auto jacobian = roe_from_target_jacobian(trunk.servicer(), target.value());
+  if (!jacobian.ok()) return;
+  // The time scale of the orbit converts the displacement into a velocity: 1/n is about 1000 s.
+  const double velocity_sigma = 1e-3 * position_sigma_m;
+  Matrix6 scaled = jacobian.value();
+  scaled.leftCols<3>() *= position_sigma_m;
+  scaled.rightCols<3>() *= velocity_sigma;
+  estimate.transform_head<6>(trunk.roe(), Matrix6::Identity(), scaled.lazyProduct(scaled.transpose()));
+  trunk.finish_update();
+}
+
+Result<Matrix6> roe_from_target_jacobian(const orbit::CartesianState& servicer, const orbit::CartesianState& target) {
+  Matrix6 jacobian;
+  for (int k = 0; k < 6; ++k) {
+    orbit::CartesianState plus = target;
+    orbit::CartesianState minus = target;
+    const double step = k < 3 ? kStep_m : kStep_mps;
+    if (k < 3) {
+      plus.position_eci(k) += step;
+      minus.position_eci(k) -= step;
+    } else {
+      plus.velocity_eci(k - 3) += step;
+      minus.velocity_eci(k - 3) -= step;
+    }
+    const auto a = orbit::roe_of_target(servicer, plus);
+    const auto b = orbit::roe_of_target(servicer, minus);
+    if (!a.ok()) return a.status();
+    if (!b.ok()) return b.status();
+    jacobian.col(k) = (a.value() - b.value()) / (2.0 * step);
+  }
+  return jacobian;
+}
+
+}  // namespace vbar::fsw::sources

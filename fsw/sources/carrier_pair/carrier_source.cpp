@@ -1,0 +1,86 @@
+#include "fsw/sources/carrier_pair/carrier_source.h"
+
+#include "fsw/gnc/message_fields.h"
+
+namespace vbar::fsw::sources {
+
+static_assert(static_cast<int>(gnss::RejectionReason::kSearch) == telemetry_gnss::kObstacleSearch);
+
+void CarrierSource::collect(Context& context, RecordFiler records) {
+  owed_.reset();
+  const navigation::EpochBuffer& ours = context.gnss.waiting(Receiver::kServicer);
+  const navigation::EpochBuffer& theirs = context.gnss.waiting(Receiver::kTarget);
+  for (std::size_t k = 0; k < ours.size(); ++k) {
+    const GpsTime tag = ours[k].receiver_time;
+    if (tag <= decided_until_ || tag > context.now) continue;
+    if (theirs.find(tag) != nullptr) {
+      // A pair behind an epoch that still waits may be in the queue already.
+      const Status filed = records.file(tag, 0);
+      if (filed != Status::kOk && filed != Status::kBadSequence) return;
+    } else if (context.now - tag < pair_wait_) {
+      if (!owed_) owed_ = tag;
+    } else {
+      ++alone_;
+    }
+    if (!owed_) decided_until_ = tag;
+  }
+}
+
+void CarrierSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
+  const gnss::ObservationEpoch* ours = context.gnss.waiting(Receiver::kServicer).find(record.time);
+  const gnss::ObservationEpoch* theirs = context.gnss.waiting(Receiver::kTarget).find(record.time);
+  if (ours == nullptr || theirs == nullptr) return;
+  const auto servicer_clock_m = context.gnss.servicer_clock_m(record.time);
+  if (!servicer_clock_m) return aiding_.count_no_solution();
+  const auto frame = navigation::EarthFrame::at(record.time, trunk.settings().earth);
+  const PairEpoch pair{.ours = *ours,
+                       .theirs = *theirs,
+                       .servicer_clock_m = *servicer_clock_m,
+                       .R_eci_servicer = context.platform.servicer_attitude.R_eci_body_at(record.time),
+                       .R_eci_target = context.platform.target_attitude.R_eci_body_at(record.time),
+                       .ephemerides = context.gnss.ephemerides(),
+                       .frame = frame};
+  aiding_.process(pair, trunk);
+}
+
+void CarrierSource::stop(GpsTime now, trunk::Trunk& trunk) {
+  aiding_.stop(now, trunk);
+  owed_.reset();
+}
+
+void CarrierSource::report(const Telemetry& telemetry) const {
+  const CarrierCounters& counters = aiding_.counters();
+  const AmbiguityReport& ambiguities = aiding_.report();
+  const CarrierUpdate& last = aiding_.last_update();
+  telemetry_gnss message{};
+  message.step = telemetry.step;
+  message.epoch_gps_ns = telemetry.trunk.epoch().ns;
+  message.pairs = counters.pairs;
+  message.alone = alone_;
+  message.too_late = telemetry.gnss.too_late();
+  message.no_solution = counters.no_solution;
+  message.codes_refused = counters.codes_refused;
+  message.phases_refused = counters.phases_refused;
+  message.slips = counters.slips;
+  message.restarts = counters.restarts;
+  message.tracked = ambiguities.tracked;
+  message.fixed = ambiguities.fixed;
+  message.fixes = ambiguities.fixes;
+  message.releases = ambiguities.releases;
+  message.obstacle = static_cast<std::int8_t>(ambiguities.rejection_reason);
+  message.success_rate = ambiguities.success_rate;
+  message.ratio = ambiguities.ratio;
+  message.codes_used = last.codes_used;
+  message.phases_used = last.phases_used;
+  message.code_nis = last.code_nis;
+  message.phase_nis = last.phase_nis;
+  if (telemetry.trunk.has_relative()) {
+    gnc::copy_lower_triangle(trunk::covariance_rtn(telemetry.trunk.estimate(), telemetry.trunk.servicer()),
+                             message.covariance_rtn);
+  }
+  message.messages = telemetry.gnss.messages();
+  message.messages_refused = telemetry.gnss.messages_refused();
+  telemetry.outbox.send(telemetry.now, message);
+}
+
+}  // namespace vbar::fsw::sources

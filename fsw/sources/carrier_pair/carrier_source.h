@@ -1,0 +1,48 @@
+#pragma once
+// Source: differences of code and carrier phase between the receivers of servicer and target.
+
+#include <cstdint>
+#include <optional>
+
+#include "fsw/sources/carrier_pair/carrier_aiding.h"
+#include "fsw/sources/source.h"
+
+namespace vbar::fsw::sources {
+
+class CarrierSource {
+ public:
+  /// `pair_wait`: how long an epoch of the servicer waits for that of the target.
+  void configure(const CarrierSettings& settings, Duration pair_wait) {
+    aiding_.configure(settings);
+    pair_wait_ = pair_wait;
+  }
+  /// Files the epochs of both receivers with one tag, in order.
+  void collect(Context& context, RecordFiler records);
+  void fold(const Record& record, Context& context, trunk::Trunk& trunk);
+  /// The oldest epoch of the servicer whose counterpart may still arrive.
+  [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return owed_; }
+  void watch(GpsTime now, trunk::Trunk& trunk) { aiding_.watch(now, trunk); }
+  void stop(GpsTime now, trunk::Trunk& trunk);
+  [[nodiscard]] Aid& aid() { return aiding_.aid(); }
+  [[nodiscard]] const Aid& aid() const { return aiding_.aid(); }
+
+  /// Time of the latest pair processed.
+  [[nodiscard]] GpsTime last_measurement() const { return aiding_.last_pair().value_or(GpsTime{}); }
+  [[nodiscard]] bool is_fixed() const { return aiding_.is_fixed(); }
+  [[nodiscard]] const CarrierAiding& aiding() const { return aiding_; }
+  /// Epochs of the servicer without a counterpart in time.
+  [[nodiscard]] std::int32_t alone() const { return alone_; }
+  /// Another source has updated the relative orbit.
+  void share_orbit() { aiding_.share_orbit(); }
+
+  void report(const Telemetry& telemetry) const;
+
+ private:
+  CarrierAiding aiding_;
+  Duration pair_wait_ = duration_of_seconds(12);
+  GpsTime decided_until_{-1};  ///< tags up to this are filed, or were alone
+  std::optional<GpsTime> owed_;
+  std::int32_t alone_ = 0;
+};
+
+}  // namespace vbar::fsw::sources

@@ -1,0 +1,91 @@
+#pragma once
+// Measurement model of single differences of code and phase, target minus servicer:
+//
+//   range difference + clock difference + antennas and their jitter (+ code bias | + ambiguity + wander)
+//
+// The position of the target at reception depends on the ROE alone; its 3x6 Jacobian and its nonlinearity are computed
+// once an epoch, and each observation then costs one product with its line of sight. All other states enter linearly.
+// The Jacobian is that of central differences of 7 m: a regression by sigma points of a millimetre would lose its
+// digits in positions of seven thousand kilometres (1e-9 m of 1e-3 m). Where the orbit is uncertain by more than some
+// 35 m, curvature exceeds a tenth of the phase noise, and the regression by sigma points replaces the differences.
+
+#include <array>
+#include <cstddef>
+
+#include "fsw/core/result.h"
+#include "fsw/navigation/differential.h"
+#include "fsw/trunk/trunk.h"
+
+namespace vbar::fsw::sources {
+
+/// A-priori knowledge of one receiver at an epoch.
+struct AntennaPlatform {
+  Matrix3 R_eci_body = Matrix3::Identity();
+  Vector3 antenna_body_m = Vector3::Zero();  ///< nominal phase centre, from the centre of mass
+  double clock_m = 0.0;                      ///< c times the receiver clock's advance
+};
+
+/// Position of the centre of mass when signals arrived: the tag is that of the receiver's own clock.
+[[nodiscard]] Vector3 position_at_reception(const orbit::CartesianState& at_tag, double clock_m);
+
+/// The target's position at reception as a function of the ROE.
+struct ReceptionMap {
+  Vector3 position_eci = Vector3::Zero();  ///< m, mean
+  Eigen::Matrix<double, 3, 6> jacobian;    ///< m, of the dimensionless ROE
+  Matrix3 nonlinearity = Matrix3::Zero();  ///< m^2
+  Matrix3 covariance = Matrix3::Zero();    ///< m^2, by the Jacobian
+};
+
+/// kSingular or kOutOfRange if an orbit or the covariance is invalid.
+[[nodiscard]] Result<ReceptionMap> reception_map(const orbit::CartesianState& servicer, const Vector6& roe,
+                                                 const Matrix6& covariance, double target_clock_m);
+
+class DifferenceRows {
+ public:
+  using Sensitivity = trunk::Estimate::Vector;
+
+  /// Forms the model of all observations about the present mean of the estimate; the trunk stands at the tag.
+  Status form(const navigation::DifferentialEpoch& epoch, const AntennaPlatform& servicer,
+              const AntennaPlatform& target, const trunk::Trunk& trunk);
+
+  /// Measured minus predicted by the estimate, m; of a code with its bias, of a phase without ambiguity or with
+  /// ambiguity and wander of `channel`.
+  [[nodiscard]] double code_residual(std::size_t n, const navigation::DifferentialObservation& observation,
+                                     const trunk::Estimate& estimate) const;
+  [[nodiscard]] double residual(std::size_t n, double measured_m, const trunk::Estimate& estimate) const;
+  [[nodiscard]] double phase_residual(std::size_t n, std::size_t channel, double measured_m,
+                                      const trunk::Estimate& estimate) const;
+
+  [[nodiscard]] Sensitivity code_sensitivity(std::size_t n, gnss::Signal signal) const;
+  [[nodiscard]] Sensitivity phase_sensitivity(std::size_t n, std::size_t channel) const;
+  /// Variance due to the nonlinearity, m^2.
+  [[nodiscard]] double extra_variance(std::size_t n) const { return rows_[n].extra_variance; }
+  /// 1 sigma of the target's position due to the nonlinearity of its elements, m; zero of a narrow orbit.
+  [[nodiscard]] double nonlinearity_m() const { return nonlinearity_m_; }
+
+ private:
+  struct Row {
+    Vector6 roe = Vector6::Zero();
+    Vector3 servicer_antenna = Vector3::Zero();
+    Vector3 target_antenna = Vector3::Zero();
+    Vector3 jitter = Vector3::Zero();
+    double predicted = 0.0;
+    double extra_variance = 0.0;
+  };
+  /// The linearisation point.
+  struct Reference {
+    Vector6 roe = Vector6::Zero();
+    Vector3 servicer_antenna = Vector3::Zero();
+    Vector3 target_antenna = Vector3::Zero();
+    Vector3 jitter = Vector3::Zero();
+    double clock = 0.0;
+  };
+
+  [[nodiscard]] Sensitivity range_sensitivity(std::size_t n) const;
+
+  std::array<Row, gnss::kMaxObservations> rows_{};
+  Reference reference_;
+  double nonlinearity_m_ = 0.0;
+};
+
+}  // namespace vbar::fsw::sources

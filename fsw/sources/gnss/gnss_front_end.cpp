@@ -1,0 +1,15 @@
+#include "fsw/sources/gnss/gnss_front_end.h"
+
+namespace vbar::fsw::sources {
+
+void GnssFrontEnd::decode(gnc::Inbox& inbox, GpsTime oldest) {
+  const auto file = [&](Receiver receiver, const gnss::ObservationEpoch& epoch) {
+    navigation::EpochBuffer& buffer = waiting_[static_cast<std::size_t>(receiver)];
+    if (epoch.receiver_time < oldest || buffer.file(epoch) != Status::kOk) ++too_late_;
+  };
+  // A refused set of ephemerides is invalid or unsupported: no information is lost.
+  const auto keep = [&](const gnss::Ephemeris& ephemeris) { static_cast<void>(ephemerides_.put(ephemeris)); };
+  decoders_.decode(inbox, file, keep);
+}
+
+}  // namespace vbar::fsw::sources

@@ -1,0 +1,36 @@
+#pragma once
+// Source: ideal navigation, the true states of both spacecraft in a packet.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "fsw/sources/source.h"
+
+namespace vbar::fsw::sources {
+
+class IdealSource {
+ public:
+  void collect(Context& context, RecordFiler records);
+  void fold(const Record& record, Context& context, trunk::Trunk& trunk);
+  [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
+  void watch(GpsTime /*now*/, trunk::Trunk& /*trunk*/) {}
+  void stop(GpsTime now, trunk::Trunk& /*trunk*/) { aid_.go_to(AidState::kOff, now); }
+  void report(const Telemetry& /*telemetry*/) const {}
+  [[nodiscard]] Aid& aid() { return aid_; }
+  [[nodiscard]] const Aid& aid() const { return aid_; }
+  [[nodiscard]] GpsTime last_measurement() const { return last_measurement_; }
+
+ private:
+  struct States {
+    orbit::CartesianState servicer;
+    orbit::CartesianState target;
+  };
+
+  Aid aid_;
+  std::array<States, gnc::Inbox::kMeasurements> waiting_{};  ///< of the records filed last
+  std::uint32_t filed_ = 0;
+  GpsTime last_measurement_;
+};
+
+}  // namespace vbar::fsw::sources

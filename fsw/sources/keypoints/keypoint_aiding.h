@@ -1,0 +1,130 @@
+#pragma once
+// Keypoints of a camera as an aid of the trunk.
+//
+// The attitude is initialised by a consensus of single-image poses, and only where the target is lit and the range is
+// known: a pose under a wrong range may be wrong by tens of degrees. Until then such poses contribute their position
+// alone. A lost attitude deactivates the attitude, the rate and the errors of keypoints; the orbit is never discarded,
+// contradicting images inflate its covariance.
+
+#include <cstdint>
+#include <optional>
+
+#include "fsw/navigation/pose_initialiser.h"
+#include "fsw/pose/pnp.h"
+#include "fsw/sources/aid.h"
+#include "fsw/sources/keypoints/keypoint_editing.h"
+#include "fsw/sources/keypoints/seen_views.h"
+
+namespace vbar::fsw::sources {
+
+struct KeypointAidingSettings {
+  KeypointModel model;
+  KeypointEditingSettings editing;
+  NoveltySettings novelty;
+  navigation::PoseInitialiserSettings start;
+  navigation::Inertia inertia;                         ///< that of the trunk's attitude
+  Vector3 camera_position_camera_m = Vector3::Zero();  ///< from the servicer's centre of mass, camera axes
+  /// In addition to `start`: poses of fewer keypoints are used there only if their attitude is this accurate, rad.
+  int start_inliers = 8;
+  double start_attitude_sigma = 0.05;
+  double start_range_share = 0.007;   ///< an attitude is initialised where the range is known to this share, 1 sigma
+  double pose_range_share = 0.1;      ///< 1 sigma of the range of a single-image pose, as for a wrong attitude,
+  double agreed_range_share = 0.035;  ///< and of one whose attitude agrees with those of the images before
+  double max_phase = 1.92;            ///< rad, 110 deg: a target lit from behind shows its dark side
+  /// 1 sigma, rad: an attitude less certain than this is deactivated until it can be initialised again.
+  double widest_attitude = 0.35;
+  double position_gate = 25.0;  ///< of the normalised squared distance of a single-image position
+};
+
+/// A processed image, or one without a target.
+struct KeypointImage {
+  GpsTime time;
+  Vector3 sun_eci = Vector3::UnitX();          ///< unit vector
+  std::optional<Matrix3> R_camera_eci;         ///< at the image
+  const pose::Keypoints* keypoints = nullptr;  ///< null: no target detected
+  std::optional<pose::PnpSolution> pnp;        ///< of the same keypoints
+};
+
+/// Edit status of the image; numbers of telemetry_pose, edit status.
+enum class KeypointEditStatus : std::uint8_t {
+  kNone,      ///< no usable input
+  kRefused,   ///< rejected by the gate
+  kFilter,    ///< keypoints processed
+  kPosition,  ///< only its position: the attitude is not confirmed
+  kStart,     ///< kept for initialisation
+};
+
+struct KeypointCounters {
+  std::int32_t images_used = 0;  ///< their keypoints
+  std::int32_t images_refused = 0;
+  std::int32_t keypoints_used = 0;
+  std::int32_t keypoints_refused = 0;
+  std::int32_t positions_used = 0;   ///< of single images, while the attitude was not confirmed
+  std::int32_t attitudes_reset = 0;  ///< initialised from single images, from the second time on
+  std::int32_t inflations = 0;       ///< of the covariance of the orbit, after contradictions
+  std::int32_t restarts = 0;         ///< of the relative orbit, from single images after persistent contradictions
+};
+
+class KeypointAiding {
+ public:
+  /// Replaces the settings; the poses collected for initialisation are discarded.
+  void configure(const KeypointAidingSettings& settings);
+
+  /// Processes an image; the trunk stands at its time. Must be called for images without a target too.
+  KeypointEditStatus process(const KeypointImage& image, trunk::Trunk& trunk);
+
+  /// Nothing was measured until `now`: the state follows the age of the last accepted image.
+  void check_age(GpsTime now);
+
+  [[nodiscard]] const Aid& aid() const { return aid_; }
+  [[nodiscard]] Aid& aid() { return aid_; }
+  /// Of the last image; empty if its keypoints were not processed.
+  [[nodiscard]] const KeypointsUpdate& last_update() const { return editing_.last_update(); }
+  [[nodiscard]] GpsTime last_accepted() const { return last_accepted_; }
+  [[nodiscard]] const KeypointCounters& counters() const { return counters_; }
+
+ private:
+  /// Illumination of the target as the camera sees it.
+  struct Light {
+    bool is_lit = false;     ///< surely outside the shadow, and not from behind
+    bool may_start = false;  ///< and for two minutes to come
+  };
+
+  [[nodiscard]] Light light_of(const KeypointImage& image, const trunk::Trunk& trunk) const;
+  [[nodiscard]] bool is_fit_for_start(const KeypointImage& image) const;
+  [[nodiscard]] navigation::PoseSample sample_of(const KeypointImage& image, const CameraPose& camera,
+                                                 const trunk::Trunk& trunk) const;
+  void follow_burns(const trunk::Trunk& trunk);
+  KeypointEditStatus edit(const KeypointImage& image, trunk::Trunk& trunk);
+  KeypointEditStatus begin_orbit(trunk::Trunk& trunk);
+  [[nodiscard]] bool agrees_with_image(const navigation::AttitudeState& attitude) const;
+  bool begin_attitude(trunk::Trunk& trunk);
+  KeypointEditStatus take_position(const KeypointImage& image, const CameraPose& camera, trunk::Trunk& trunk);
+  KeypointEditStatus take_keypoints(const KeypointImage& image, const CameraPose& camera, trunk::Trunk& trunk);
+  [[nodiscard]] Matrix3 position_covariance(const navigation::PoseSample& sample, double range_share) const;
+  [[nodiscard]] bool is_far(const navigation::PoseSample& sample, const trunk::Trunk& trunk) const;
+  void count_refusal(GpsTime time, bool is_position_far, trunk::Trunk& trunk);
+  void count_missing(trunk::Trunk& trunk);
+  void contradict_orbit(GpsTime time, trunk::Trunk& trunk);
+  void reset_refusals();
+  void follow_state(GpsTime time, KeypointEditStatus status);
+
+  KeypointAidingSettings settings_;
+  Aid aid_;
+  KeypointEditing editing_;
+  SeenViews seen_;
+  navigation::PoseInitialiser start_;
+  Light light_;                                                            ///< of the current image
+  bool has_sample_ = false;                                                ///< of the current image, for initialisation
+  Eigen::Quaterniond q_eci_body_sample_ = Eigen::Quaterniond::Identity();  ///< its attitude
+  bool has_begun_ = false;                                                 ///< an attitude was initialised before
+  GpsTime burns_until_;  ///< impulses of the trunk before this are known to `start_`
+  GpsTime last_accepted_;
+  int refused_in_a_row_ = 0;
+  int far_in_a_row_ = 0;
+  int missing_in_a_row_ = 0;
+  std::size_t inflations_in_a_row_ = 0;
+  KeypointCounters counters_;
+};
+
+}  // namespace vbar::fsw::sources

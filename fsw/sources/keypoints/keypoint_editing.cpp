@@ -1,0 +1,149 @@
+#include "fsw/sources/keypoints/keypoint_editing.h"
+
+#include <algorithm>
+
+#include "fsw/math/cholesky.h"
+#include "fsw/math/math.h"
+
+namespace vbar::fsw::sources {
+namespace {
+
+using trunk::kAt;
+
+constexpr int kCount = network::kKeypoints;
+
+// Innovations of images further apart than this are not neighbours.
+constexpr Duration kNeighbours = duration_of_seconds(20);
+
+constexpr std::size_t at(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+/// 99 % of chi-square with k degrees of freedom (Wilson, Hilferty 1931), good to a percent from two on.
+double max_expected(int k) {
+  const double spread = 2.0 / (9.0 * k);
+  const double root = 1.0 - spread + 2.3263 * math::sqrt(spread);
+  return k * root * root * root;
+}
+
+}  // namespace
+
+const KeypointsUpdate& KeypointEditing::take(trunk::Trunk& trunk, GpsTime time, const pose::Keypoints& keypoints,
+                                             const CameraPose& camera, const KeypointModel& model,
+                                             double novelty_scale) {
+  update_ = {};
+  scaled_ = keypoints;
+  for (pose::Keypoint& keypoint : scaled_) keypoint.covariance_px2 *= adapted_scale() * novelty_scale;
+  if (keypoint_rows(trunk, scaled_, camera, model) != Status::kOk) return update_;
+  trunk::Rows& rows = trunk.rows();
+  estimation::predict_innovations(trunk.estimate(), rows);
+  gate_keypoints(rows);
+  const double nis = estimation::joint_nis(rows);
+  const bool is_refused = update_.used < settings_.min_keypoints ||
+                          update_.is_mostly_rejected(settings_.max_refused_share) || !(nis < estimation::kNoGate);
+  if (is_refused) {
+    trunk.attitude().noise().interrupt();
+    trunk.relative_orbit().noise().interrupt();
+    return update_;
+  }
+  update_.nis = nis;
+  const int degrees = 2 * update_.used;
+  const double misfit = nis > max_expected(degrees) ? std::min(nis / degrees, settings_.max_noise_scale) : 1.0;
+  update_.noise_scale = misfit * adapted_scale() * novelty_scale;
+  adapt_noise(trunk, time, camera);
+  weight_keypoints(rows, misfit);
+  if (!trunk.fold()) return update_;
+  for (int k = 0; k < kCount; ++k) update_.keypoints[at(k)].postfit = rows.residual.segment<2>(2 * k);
+  adapt_scale();
+  update_.accepted = true;
+  return update_;
+}
+
+void KeypointEditing::gate_keypoints(trunk::Rows& rows) {
+  for (int k = 0; k < kCount; ++k) {
+    const int row = 2 * k;
+    KeypointUpdate& keypoint = update_.keypoints[at(k)];
+    keypoint.is_usable = rows.is_used[at(row)];
+    if (!keypoint.is_usable) continue;
+    ++update_.usable;
+    keypoint.prefit = rows.residual.segment<2>(row);
+    keypoint.postfit = keypoint.prefit;
+    keypoint.nis = estimation::group_nis(rows, row, 2);
+    keypoint.accepted = keypoint.nis <= settings_.gate;
+    if (keypoint.accepted) ++update_.used;
+    rows.is_used[at(row)] = rows.is_used[at(row + 1)] = keypoint.accepted;
+  }
+}
+
+/// The covariance of each keypoint is multiplied by the misfit of the image and by the inverse weight of its own
+/// innovation under the Student distribution, (nu + d^2) / (nu + 2), not below one.
+void KeypointEditing::weight_keypoints(trunk::Rows& rows, double misfit) const {
+  for (int k = 0; k < kCount; ++k) {
+    const KeypointUpdate& keypoint = update_.keypoints[at(k)];
+    if (!keypoint.accepted) continue;
+    const double tail = (settings_.tail_degrees + keypoint.nis) / (settings_.tail_degrees + 2.0);
+    const double scale = misfit * (tail > 1.0 ? tail : 1.0);
+    rows.noise.block<2, 2>(2 * k, 2 * k) += (scale - 1.0) * scaled_[at(k)].covariance_px2;
+  }
+}
+
+/// The covariances of a network are often too small. They are adapted slowly, by a tenth of a misfit in ten images, so
+/// that no single image dominates; never below those given. Gated samples have 0.95 of the expected value.
+void KeypointEditing::adapt_scale() {
+  constexpr double kShare = 0.02;
+  constexpr double kBehindTheGate = 0.953;
+  constexpr double kMinScale = 0.8;  // lower bound of the memory; the factor applied is never less than one
+  const double ratio = std::clamp(update_.nis / (kBehindTheGate * 2.0 * update_.used), 0.25, 4.0);
+  adapted_scale_ = std::clamp(adapted_scale_ * (1.0 + kShare * (ratio - 1.0)), kMinScale, settings_.max_noise_scale);
+}
+
+/// By least squares the innovations are a common shift (a lag of the orbit) and a rotation (a lag of the attitude),
+/// each normalised by its standard deviation. Two axes of the camera are used for the rotation: across and along it.
+void KeypointEditing::adapt_noise(trunk::Trunk& trunk, GpsTime time, const CameraPose& camera) {
+  constexpr int kFitted = 5;
+  constexpr int kMinKeypoints = 5;
+  navigation::AdaptiveNoise& acceleration = trunk.relative_orbit().noise();
+  navigation::AdaptiveNoise& angular = trunk.attitude().noise();
+  if (update_.used < kMinKeypoints || time - last_folded_ > kNeighbours) {
+    acceleration.interrupt();
+    angular.interrupt();
+  }
+  last_folded_ = time;
+  if (update_.used < kMinKeypoints) return;
+  const trunk::Rows& rows = trunk.rows();
+  const Matrix3 R_body_camera =
+      (camera.R_camera_eci * trunk.attitude().state().q_eci_body.toRotationMatrix()).transpose();
+  Eigen::Matrix<double, trunk::kMaxRows, kFitted> jacobian = Eigen::Matrix<double, trunk::kMaxRows, kFitted>::Zero();
+  for (int row = 0; row < rows.count(); ++row) {
+    if (!rows.is_used[at(row)]) continue;
+    jacobian(row, row % 2) = 1.0;
+    // A rotation of 0.01 rad is of the order of a pixel.
+    for (int axis = 0; axis < 3; ++axis) {
+      jacobian(row, 2 + axis) =
+          0.01 * rows.sensitivity.col(row).segment<3>(kAt<trunk::Turn>).dot(R_body_camera.col(axis));
+    }
+  }
+  Eigen::Matrix<double, kFitted, kFitted> normal;
+  Eigen::Matrix<double, kFitted, 1> right;
+  for (int i = 0; i < kFitted; ++i) {
+    right(i) = jacobian.col(i).dot(rows.residual);
+    for (int j = 0; j < kFitted; ++j) normal(i, j) = jacobian.col(i).dot(jacobian.col(j));
+  }
+  const math::Cholesky<kFitted> factor(normal);
+  if (!factor.ok()) return;
+  const Eigen::Matrix<double, kFitted, 1> fitted = factor.solve(right);
+  Eigen::Matrix<double, kFitted, 1> normalised;
+  for (int i = 0; i < kFitted; ++i) {
+    const Eigen::Matrix<double, kFitted, 1> weights = factor.solve(Eigen::Matrix<double, kFitted, 1>::Unit(i));
+    trunk::Rows::Vector combination = trunk::Rows::Vector::Zero();
+    for (int j = 0; j < kFitted; ++j) combination += weights(j) * jacobian.col(j);
+    double variance = 0.0;
+    for (int c = 0; c < rows.count(); ++c) variance += combination(c) * combination.dot(rows.innovation.col(c));
+    if (!(variance > 0.0)) return;
+    normalised(i) = fitted(i) / math::sqrt(variance);
+  }
+  acceleration.take(normalised.head<2>());
+  angular.take({normalised(2), normalised(4)});
+}
+
+}  // namespace vbar::fsw::sources

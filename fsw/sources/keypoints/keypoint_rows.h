@@ -1,0 +1,42 @@
+#pragma once
+// Measurement models of a camera that resolves the target: rows of the trunk for its keypoints, or for its position
+// alone.
+
+#include "fsw/imaging/camera_model.h"
+#include "fsw/pose/keypoint.h"
+#include "fsw/trunk/trunk.h"
+
+namespace vbar::fsw::sources {
+
+/// Position and attitude of the camera at an image.
+struct CameraPose {
+  Matrix3 R_camera_eci = Matrix3::Identity();
+  Vector3 origin_eci = Vector3::Zero();  ///< from the servicer's centre of mass, m
+};
+
+struct KeypointModel {
+  int camera = 0;  ///< 0 or 1: which boresight bias applies
+  imaging::CameraModel optics;
+  pose::KeypointShape shape{};  ///< body axes from the centre of mass of the model, m
+};
+
+/// Whether the network considers it usable and its covariance is one.
+[[nodiscard]] bool is_usable(const pose::Keypoint& keypoint);
+
+/// Writes two components of each keypoint, measured minus predicted (px), to trunk.rows(): those of keypoint k are rows
+/// 2k and 2k + 1. Keypoints that are not usable, or behind the camera for one of the sigma points, are not in use. The
+/// trunk stands at the time of the image and has an attitude. Any status of the orbit conversions, or kSingular for
+/// an invalid covariance.
+///
+/// Model: pixel of R_camera_eci (rho - o) + R_camera_body (p_k + origin), shifted by the boresight bias, plus the
+/// errors that all keypoints or successive images have in common (fsw/trunk/keypoint_errors.h). ROE and rotation are
+/// sampled, all others enter linearly. The correlated share of a keypoint's covariance is a state in units of its root;
+/// the rest is noise.
+Status keypoint_rows(trunk::Trunk& trunk, const pose::Keypoints& keypoints, const CameraPose& camera,
+                     const KeypointModel& model);
+
+/// Writes a position of the target from the servicer's centre of mass, m, ECI axes, as from the pose of one image, to
+/// trunk.rows(). Status as above.
+Status position_rows(trunk::Trunk& trunk, const Vector3& relative_eci, const Matrix3& covariance_m2);
+
+}  // namespace vbar::fsw::sources

@@ -1,0 +1,23 @@
+#include "fsw/sources/own_gnss/own_gnss_source.h"
+
+namespace vbar::fsw::sources {
+
+void OwnGnssSource::collect(Context& context, RecordFiler records) {
+  const navigation::EpochBuffer& epochs = context.gnss.waiting(Receiver::kServicer);
+  for (std::size_t k = 0; k < epochs.size(); ++k) {
+    const GpsTime tag = epochs[k].receiver_time;
+    if (tag <= filed_until_ || tag > context.now) continue;
+    if (records.file(tag, 0) == Status::kOk) filed_until_ = tag;
+  }
+}
+
+void OwnGnssSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
+  const gnss::ObservationEpoch* epoch = context.gnss.waiting(Receiver::kServicer).find(record.time);
+  if (epoch == nullptr) return;
+  const auto frame = navigation::EarthFrame::at(record.time, trunk.settings().earth);
+  const auto R_eci_body = context.platform.servicer_attitude.R_eci_body_at(record.time);
+  const auto point = aiding_.process(*epoch, R_eci_body, context.gnss.ephemerides(), frame, trunk);
+  if (point.ok()) context.gnss.keep_servicer_clock(record.time, point.value().clock_m);
+}
+
+}  // namespace vbar::fsw::sources

@@ -1,0 +1,110 @@
+#pragma once
+// What every source of measurements has in common: its records wait in one queue, in order of their time tags, until
+// the trunk reaches them.
+//
+// A source is a folder with a class that offers
+//
+//   void collect(Context&, RecordFiler)                   packets of the step -> records
+//   void fold(const Record&, Context&, trunk::Trunk&)     rows of a record; the trunk stands at its time
+//   void watch(GpsTime now, trunk::Trunk&)                after the records of the step: silence
+//   void stop(GpsTime now, trunk::Trunk&)                 not selected any more: its own blocks rest
+//   std::optional<GpsTime> owes(GpsTime now) const        the oldest time of which a record may still come
+//   Aid& aid()                                            its state
+//   void report(const Telemetry&) const                   its telemetry
+//
+// and a place in the list of sources of fsw/gnc/trunk_navigation.h.
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/result.h"
+#include "fsw/gnc/inbox.h"
+#include "fsw/gnc/outbox.h"
+#include "fsw/navigation/attitude_history.h"
+#include "fsw/sources/aid.h"
+#include "fsw/sources/gnss/gnss_front_end.h"
+#include "fsw/sources/pointing.h"
+#include "fsw/trunk/trunk.h"
+
+namespace vbar::fsw::sources {
+
+/// A measurement that waits to be folded; its content is with its source, under `number`.
+struct Record {
+  GpsTime time;
+  std::uint8_t source = 0;
+  std::uint32_t number = 0;
+  constexpr auto operator<=>(const Record&) const = default;
+};
+
+/// Records in order of time, then of source and number: the order of arrival has no effect.
+class RecordQueue {
+ public:
+  static constexpr std::size_t kCapacity = 128;
+
+  /// kFull; kBadSequence if the record is there already.
+  Status file(const Record& record) {
+    std::size_t place = count_;
+    while (place > 0 && record < records_[place - 1]) --place;
+    if (place > 0 && records_[place - 1] == record) return Status::kBadSequence;
+    if (count_ == kCapacity) return Status::kFull;
+    for (std::size_t k = count_; k > place; --k) records_[k] = records_[k - 1];
+    records_[place] = record;
+    ++count_;
+    return Status::kOk;
+  }
+  [[nodiscard]] const Record* front() const { return count_ == 0 ? nullptr : records_.data(); }
+  void pop() {
+    for (std::size_t k = 1; k < count_; ++k) records_[k - 1] = records_[k];
+    --count_;
+  }
+  [[nodiscard]] std::size_t size() const { return count_; }
+
+ private:
+  std::array<Record, kCapacity> records_{};
+  std::size_t count_ = 0;
+};
+
+/// Files the records of one source.
+class RecordFiler {
+ public:
+  RecordFiler(RecordQueue& queue, std::uint8_t source) : queue_(queue), source_(source) {}
+  Status file(GpsTime time, std::uint32_t number) { return queue_.file({time, source_, number}); }
+
+ private:
+  RecordQueue& queue_;
+  std::uint8_t source_;
+};
+
+/// Pointing and attitudes, as all sources need them.
+struct Platform {
+  std::optional<Pointing> pointing;  ///< of the servicer's camera: commanded, valid until the next command
+  navigation::AttitudeHistory servicer_attitude;
+  navigation::AttitudeHistory target_attitude;  ///< by the crosslink
+};
+
+/// A step, as seen by a source.
+struct Context {
+  GpsTime now;
+  gnc::Inbox& inbox;
+  Platform& platform;
+  GnssFrontEnd& gnss;
+};
+
+/// Where a source writes its telemetry at the end of a step, and what it needs for that.
+struct Telemetry {
+  gnc::Outbox& outbox;
+  std::int64_t step = 0;
+  GpsTime now;
+  const gnc::Inbox& inbox;
+  const GnssFrontEnd& gnss;
+  const trunk::Trunk& trunk;
+};
+
+/// Largest delay of a record with respect to its time tag.
+inline constexpr Duration kLongestDelay = duration_of_seconds(600);
+
+}  // namespace vbar::fsw::sources

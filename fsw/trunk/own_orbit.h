@@ -1,0 +1,77 @@
+#pragma once
+// The servicer's own orbit, from the single-point positions of its receiver.
+//
+// State [r(3), v(3), g(3)]: inertial position and velocity; g, the slowly varying error of single-point positions
+// (broadcast orbits and clocks, ionosphere), a first-order Gauss-Markov process, m, ECI. An orbit that took these
+// errors for white noise would underestimate its covariance, and the a-priori orbit of the target would be referred to
+// a wrong one. It is re-initialised by its own failure only, never by a change of sensors.
+
+#include "fsw/core/gps_time.h"
+#include "fsw/estimation/estimate.h"
+#include "fsw/navigation/propagation.h"
+#include "fsw/orbit/elements.h"
+
+namespace vbar::fsw::trunk {
+
+struct OwnOrbitSettings {
+  double slow_error_sigma_m = 1.5;    ///< of single-point positions, per axis
+  double slow_error_time_s = 1800.0;  ///< its correlation time
+  double acceleration_psd = 1e-9;     ///< m^2/s^3: Sun, Moon and tides, 1.5e-6 m/s^2 that vary with the orbit
+  double start_velocity_sigma = 5.0;  ///< m/s, of the velocity from the first two positions
+  double gate = 25.0;                 ///< of a position's normalised innovation squared: 5 sigma of three degrees
+};
+
+/// A single-point position of the servicer's centre of mass.
+struct OwnPosition {
+  Vector3 position_eci = Vector3::Zero();       ///< m, at reception
+  Matrix3 covariance_m2 = Matrix3::Identity();  ///< of its noise; the slow error is a state
+  double early_s = 0.0;                         ///< the position is this much before the tag: the receiver clock
+};
+
+class OwnOrbit {
+ public:
+  using Estimate = estimation::Estimate<9>;
+
+  void configure(const OwnOrbitSettings& settings) { settings_ = settings; }
+
+  [[nodiscard]] bool started() const { return started_; }
+  [[nodiscard]] orbit::CartesianState state() const {
+    return {.position_eci = estimate_.mean().head<3>(), .velocity_eci = estimate_.mean().segment<3>(3)};
+  }
+  /// Of position and velocity, ECI, m and m/s.
+  [[nodiscard]] Matrix6 covariance() const { return estimate_.head_covariance<6>(); }
+  [[nodiscard]] const Estimate& estimate() const { return estimate_; }
+  [[nodiscard]] int restarts() const { return restarts_; }
+
+  /// Initialises with a known state; `sigma_m` and `sigma_mps` per axis.
+  void begin(const orbit::CartesianState& state, double sigma_m, double sigma_mps);
+
+  /// Processes a position at the epoch. The second one within two minutes initialises the orbit; one beyond the gate is
+  /// refused (false), and after kMaxRefused consecutive refusals the orbit is re-initialised.
+  bool take(GpsTime time, const OwnPosition& measured);
+
+  void advance(const navigation::Propagation& propagation, double dt);
+  /// A burn (m/s, ECI), known to `sigma` per axis.
+  void add_impulse(const Vector3& dv_eci, double sigma);
+
+  static constexpr int kMaxRefused = 6;
+
+ private:
+  struct First {
+    bool is_known = false;
+    GpsTime time;
+    OwnPosition position;
+  };
+
+  void begin_from_two(GpsTime time, const OwnPosition& measured);
+  void fail();
+
+  OwnOrbitSettings settings_;
+  bool started_ = false;
+  First first_;
+  int refused_in_a_row_ = 0;
+  int restarts_ = 0;
+  Estimate estimate_;
+};
+
+}  // namespace vbar::fsw::trunk

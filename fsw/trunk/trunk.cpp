@@ -1,0 +1,234 @@
+#include "fsw/trunk/trunk.h"
+
+#include "fsw/orbit/rtn.h"
+#include "fsw/orbit/sun.h"
+
+namespace vbar::fsw::trunk {
+namespace {
+
+// Propagation interval of one Earth orientation and Sun direction; shorter with the attitude, whose gravity gradient is
+// constant over it.
+constexpr Duration kSegment = duration_of_seconds(600);
+constexpr Duration kAttitudeSegment = duration_of_seconds(20);
+constexpr int kMaxSegments = 10000;
+
+// Of states taken from ideal navigation: far below any sensor.
+constexpr double kKnownSigma_m = 1e-5;
+constexpr double kKnownSigma_mps = 1e-8;
+
+// 1 sigma of the velocity of a converged own orbit is below this.
+constexpr double kConvergedVelocity = 0.02;  // m/s
+
+constexpr double square(double x) {
+  return x * x;
+}
+
+}  // namespace
+
+void Trunk::configure(const TrunkSettings& settings) {
+  settings_ = settings;
+  own_orbit_.configure(settings.own_orbit);
+  relative_orbit_.configure(settings.relative_orbit);
+  attitude_.configure(settings.attitude);
+}
+
+void Trunk::set_apriori(const TargetApriori& apriori) {
+  apriori_ = Apriori(apriori);
+  if (knowledge_ <= RelativeKnowledge::kApriori) refer_to_apriori();
+}
+
+void Trunk::advance_to(GpsTime time, std::span<const navigation::Burn> burns) {
+  if (!own_orbit_.started()) {
+    epoch_ = time;
+    return;
+  }
+  for (const navigation::Burn& burn : burns) {
+    if (burn.time < epoch_) continue;
+    if (burn.time >= time) break;
+    coast_to(burn.time);
+    add_impulse(burn.dv_rtn);
+  }
+  coast_to(time);
+}
+
+void Trunk::coast_to(GpsTime time) {
+  const Duration longest = has_attitude() ? kAttitudeSegment : kSegment;
+  for (int segment = 0; segment < kMaxSegments && epoch_ < time; ++segment) {
+    const GpsTime next = time - epoch_ > longest ? epoch_ + longest : time;
+    const navigation::Propagation propagation(epoch_, settings_.earth, orbit::sun_position_gcrf(epoch_).normalized());
+    const OrbitStep step{.propagation = propagation, .servicer = servicer(), .dt = seconds(next - epoch_)};
+    if (knowledge_ != RelativeKnowledge::kNone) advance_relative(step);
+    own_orbit_.advance(propagation, step.dt);
+    epoch_ = next;
+    if (!own_orbit_.started()) {
+      epoch_ = time;
+      return;
+    }
+  }
+}
+
+void Trunk::advance_relative(const OrbitStep& step) {
+  motion_.mean = estimate_.mean().head<kHeadSize>();
+  motion_.jacobian.setIdentity();
+  motion_.noise.setZero();
+  if (!relative_orbit_.advance(estimate_, step, motion_)) return fail_relative();
+  if (!attitude_.advance(estimate_, step, motion_)) rest_attitude();
+  estimate_.transform_head<kHeadSize>(motion_.mean, motion_.jacobian, motion_.noise);
+  const double rate = math::sqrt(estimate_.mean().segment<3>(kAt<Rate>).squaredNorm());
+  advance_block<KeypointOrigin>(estimate_, settings_.keypoint_origin, step.dt);
+  advance_block<BoresightA>(estimate_, settings_.boresight_a, step.dt);
+  advance_block<BoresightB>(estimate_, settings_.boresight_b, step.dt);
+  advance_block<BrightnessOffset>(estimate_, settings_.brightness_offset, step.dt);
+  advance_block<CentroidWander>(estimate_, settings_.centroid_wander, step.dt);
+  advance_keypoint_errors(estimate_, settings_.keypoint_errors, rate, step.dt);
+  for (int k = 0; k < PhaseWander::kSize; ++k) {
+    const int i = kAt<PhaseWander> + k;
+    if (!estimate_.is_idle(i)) {
+      advance_process(estimate_, i, settings_.phase_wander, settings_.phase_wander.decay(step.dt));
+    }
+  }
+  finish_update();
+}
+
+void Trunk::add_impulse(const Vector3& dv_rtn) {
+  const orbit::CartesianState before = servicer();
+  const Vector3 dv_eci = orbit::R_rtn_eci(before).transpose() * dv_rtn;
+  const double sigma = settings_.burn_sigma + settings_.burn_sigma_relative * math::sqrt(dv_eci.squaredNorm());
+  if (knowledge_ != RelativeKnowledge::kNone && !relative_orbit_.impulse(estimate_, before, dv_eci, sigma)) {
+    fail_relative();
+  }
+  own_orbit_.add_impulse(dv_eci, sigma);
+  if (impulse_count_ == kMaxImpulses) {
+    --impulse_count_;
+    for (std::size_t k = 0; k < impulse_count_; ++k) impulses_[k] = impulses_[k + 1];
+  }
+  impulses_[impulse_count_++] = {epoch_, dv_eci, dv_rtn};
+}
+
+bool Trunk::take_own_position(const OwnPosition& position) {
+  const orbit::CartesianState before = servicer();
+  const Result<orbit::CartesianState> target_before = target();
+  const double velocity_variance = own_orbit_.covariance().diagonal().tail<3>().sum();
+  const bool is_accepted = own_orbit_.take(epoch_, position);
+  if (knowledge_ <= RelativeKnowledge::kApriori) {
+    refer_to_apriori();
+  } else if (is_accepted && target_before.ok() && velocity_variance > square(kConvergedVelocity)) {
+    keep_relative_state(before, target_before.value());
+  }
+  return is_accepted;
+}
+
+/// While the own orbit converges, its corrections move the target by as much in inertial axes, in which the sensors
+/// measure: constant elements would turn the relative position with the direction of the servicer's velocity, by ten
+/// centimetres at a kilometre. Afterwards the elements stay: they hold the drift of many orbits, and two orbits that
+/// are moved alike 70 km apart drift apart by metres.
+void Trunk::keep_relative_state(const orbit::CartesianState& servicer_before,
+                                const orbit::CartesianState& target_before) {
+  const orbit::CartesianState now = servicer();
+  const orbit::CartesianState moved{
+      .position_eci = now.position_eci + (target_before.position_eci - servicer_before.position_eci),
+      .velocity_eci = now.velocity_eci + (target_before.velocity_eci - servicer_before.velocity_eci)};
+  const auto roe_now = roe_of_target(now, moved);
+  if (!roe_now.ok()) return;
+  for (int k = 0; k < Roe::kSize; ++k) estimate_.shift(k, roe_now.value()(k) - estimate_.mean(k));
+}
+
+void Trunk::set_states(const orbit::CartesianState& servicer, const orbit::CartesianState& target) {
+  const auto chief = orbit::qns_from_cartesian(servicer);
+  const auto roe = roe_of_target(servicer, target);
+  if (!chief.ok() || !roe.ok()) return;
+  own_orbit_.begin(servicer, kKnownSigma_m, kKnownSigma_mps);
+  const double velocity_scale = kKnownSigma_mps / orbit::mean_motion(chief.value().a);
+  const double sigma = (kKnownSigma_m + velocity_scale) / chief.value().a;
+  begin_relative(roe.value(), square(sigma) * Matrix6::Identity(), RelativeKnowledge::kEstimated);
+}
+
+/// An absolute a-priori orbit is referred to the servicer again with each of its positions, as long as nothing else is
+/// known: the servicer's own orbit is not accurate at first.
+void Trunk::refer_to_apriori() {
+  if (!apriori_ || !own_orbit_.started()) return;
+  const auto known = apriori_->at(epoch_, own_orbit_, settings_.earth);
+  if (!known.ok()) return;
+  const bool is_handed_over = apriori_->known().kind == TargetApriori::Kind::kMeanRoe;
+  begin_relative(known.value().roe, known.value().covariance,
+                 is_handed_over ? RelativeKnowledge::kEstimated : RelativeKnowledge::kApriori);
+}
+
+void Trunk::begin_relative(const Vector6& roe, const Matrix6& covariance, RelativeKnowledge knowledge) {
+  relative_orbit_.begin(estimate_, roe, covariance);
+  knowledge_ = knowledge;
+  finish_update();
+}
+
+Result<orbit::CartesianState> Trunk::target() const {
+  if (!has_relative()) return Status::kNotReady;
+  const auto chief = orbit::qns_from_cartesian(servicer());
+  if (!chief.ok()) return chief.status();
+  return target_from_roe(chief.value(), roe());
+}
+
+Vector6 Trunk::a_roe_m() const {
+  const auto chief = orbit::qns_from_cartesian(servicer());
+  return chief.ok() && has_relative() ? Vector6(chief.value().a * roe()) : Vector6(Vector6::Zero());
+}
+
+Matrix6 Trunk::a_roe_covariance_m2() const {
+  const auto chief = orbit::qns_from_cartesian(servicer());
+  return chief.ok() && has_relative() ? Matrix6(square(chief.value().a) * roe_covariance()) : Matrix6(Matrix6::Zero());
+}
+
+Matrix3 Trunk::position_covariance_eci() const {
+  if (!has_relative()) return Matrix3::Zero();
+  const Matrix3 R_rtn_eci = orbit::R_rtn_eci(servicer());
+  const Matrix3 rtn = covariance_rtn(estimate_, servicer()).topLeftCorner<3, 3>();
+  return R_rtn_eci.transpose() * rtn * R_rtn_eci;
+}
+
+void Trunk::begin_attitude(const navigation::AttitudeState& attitude, const Matrix6& covariance) {
+  attitude_.begin(estimate_, attitude, covariance);
+  begin_keypoint_errors(estimate_, settings_.keypoint_errors);
+  finish_update();
+}
+
+void Trunk::rest_attitude() {
+  rest_keypoint_errors(estimate_);
+  rest_block<KeypointOrigin>(estimate_);
+  attitude_.rest(estimate_);
+}
+
+bool Trunk::fold() {
+  const bool is_folded = estimation::fold_in(estimate_, rows_);
+  if (is_folded) finish_update();
+  return is_folded;
+}
+
+void Trunk::finish_update() {
+  attitude_.reset_attitude_error(estimate_);
+  if (!estimate_.is_sound()) fail_relative();
+}
+
+bool Trunk::is_confirmed_by_others() const {
+  for (std::size_t source = 0; source < kMaxSources; ++source) {
+    const auto& confirmed = confirmed_[source];
+    if (source != source_ && confirmed && epoch_ - *confirmed <= kConfirmation) return true;
+  }
+  return false;
+}
+
+void Trunk::inflate_relative(double velocity_sigma, double along_track_sigma_m) {
+  const auto chief = orbit::qns_from_cartesian(servicer());
+  if (!chief.ok() || !has_relative()) return;
+  relative_orbit_.inflate(estimate_, servicer(), velocity_sigma, along_track_sigma_m / chief.value().a);
+}
+
+void Trunk::inflate_own_orbit(double velocity_sigma) {
+  own_orbit_.add_impulse(Vector3::Zero(), velocity_sigma);
+}
+
+void Trunk::fail_relative() {
+  ++failures_;
+  knowledge_ = RelativeKnowledge::kNone;
+  for (int k = State::kSize; k-- > 0;) estimate_.reset(k, 0.0, 0.0);
+}
+
+}  // namespace vbar::fsw::trunk

@@ -1,0 +1,167 @@
+#pragma once
+// The navigation trunk: the servicer's own orbit and one relative estimate for all sensors, at one epoch.
+//
+// Sources (fsw/sources) turn records of their sensors into rows; the trunk propagates, is updated by rows, and does not
+// depend on which sensor they came from. Activating or idling a block changes no other block; no source re-initialises
+// the own orbit.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/navigation/burn.h"
+#include "fsw/orbit/earth_rotation.h"
+#include "fsw/trunk/apriori.h"
+#include "fsw/trunk/keypoint_errors.h"
+#include "fsw/trunk/own_orbit.h"
+#include "fsw/trunk/relative_orbit.h"
+#include "fsw/trunk/target_attitude.h"
+
+namespace vbar::fsw::trunk {
+
+/// 1-sigma values of the initial states and of unmodelled effects.
+struct TrunkSettings {
+  orbit::EarthOrientation earth;
+  double burn_sigma = 2e-6;           ///< m/s, per axis of a burn
+  double burn_sigma_relative = 1e-3;  ///< of its size
+  OwnOrbitSettings own_orbit;
+  RelativeOrbitSettings relative_orbit;
+  TargetAttitudeSettings attitude;
+  KeypointErrorSettings keypoint_errors;
+  GaussMarkov keypoint_origin{.sigma = 0.01};                       ///< m
+  GaussMarkov boresight_a{.sigma = 1.5e-5, .time_s = 43200.0};      ///< rad; camera with stars: 3 arcsec
+  GaussMarkov boresight_b{.sigma = 2.9e-4, .time_s = 43200.0};      ///< rad; against the star tracker: 60 arcsec
+  GaussMarkov brightness_offset{.sigma = 0.15, .time_s = 20000.0};  ///< m
+  GaussMarkov centroid_wander{.sigma = 0.05, .time_s = 2000.0};     ///< m
+  GaussMarkov phase_wander{.sigma = 0.0, .time_s = 1.0};            ///< m, of a single difference
+};
+
+/// How the relative orbit is known.
+enum class RelativeKnowledge : std::uint8_t {
+  kNone,
+  kApriori,       ///< from the a-priori orbit alone: sufficient to point a camera, not to plan
+  kContradicted,  ///< estimated, but contradicted by measurements: a source has to initialise it again
+  kEstimated,     ///< from measurements, or a-priori ROE of preceding navigation
+};
+
+/// A burn of the servicer as applied.
+struct Impulse {
+  GpsTime time;
+  Vector3 dv_eci = Vector3::Zero();  ///< m/s
+  Vector3 dv_rtn = Vector3::Zero();  ///< the same, in the servicer's RTN before it
+};
+
+class Trunk {
+ public:
+  /// Replaces the settings. Estimates stay; a block that is active keeps its present value and variance.
+  void configure(const TrunkSettings& settings);
+  [[nodiscard]] const TrunkSettings& settings() const { return settings_; }
+
+  /// A new a-priori orbit of the target. It is used while nothing better is known.
+  void set_apriori(const TargetApriori& apriori);
+
+  /// Propagates both estimates to `time`, not before the epoch, including the burns of the servicer (in order of time)
+  /// from the epoch until then: a measurement at the time of a burn precedes it.
+  void advance_to(GpsTime time, std::span<const navigation::Burn> burns);
+  [[nodiscard]] GpsTime epoch() const { return epoch_; }
+  /// The last propagation of the relative estimate, of at most one segment: for its verification.
+  [[nodiscard]] const HeadMotion& last_motion() const { return motion_; }
+  /// The latest burns until the epoch, in order of time, at most kMaxImpulses.
+  [[nodiscard]] std::span<const Impulse> impulses() const { return std::span(impulses_).first(impulse_count_); }
+  static constexpr std::size_t kMaxImpulses = 32;
+
+  /// A single-point position at the epoch; false if it was refused.
+  bool take_own_position(const OwnPosition& position);
+  [[nodiscard]] const OwnOrbit& own_orbit() const { return own_orbit_; }
+  [[nodiscard]] orbit::CartesianState servicer() const { return own_orbit_.state(); }
+  /// Both states at the epoch are known (ideal navigation): initialises both estimates with negligible covariance.
+  void set_states(const orbit::CartesianState& servicer, const orbit::CartesianState& target);
+
+  /// Initialises the relative orbit (dimensionless ROE); all blocks but the attitude's keep their state.
+  void begin_relative(const Vector6& roe, const Matrix6& covariance, RelativeKnowledge knowledge);
+  /// Contradicting measurements: the present estimate no longer suffices to plan.
+  void distrust_relative() {
+    if (knowledge_ == RelativeKnowledge::kEstimated) knowledge_ = RelativeKnowledge::kContradicted;
+  }
+  [[nodiscard]] RelativeKnowledge knowledge() const {
+    return own_orbit_.started() ? knowledge_ : RelativeKnowledge::kNone;
+  }
+  [[nodiscard]] bool has_relative() const { return knowledge() != RelativeKnowledge::kNone; }
+  /// kNotReady without a relative orbit.
+  [[nodiscard]] Result<orbit::CartesianState> target() const;
+
+  [[nodiscard]] Vector6 roe() const { return estimate_.mean().head<6>(); }
+  [[nodiscard]] Matrix6 roe_covariance() const { return estimate_.head_covariance<6>(); }
+  /// Osculating a * ROE, m, and its covariance, m^2; a: the servicer's. Zero without a relative orbit.
+  [[nodiscard]] Vector6 a_roe_m() const;
+  [[nodiscard]] Matrix6 a_roe_covariance_m2() const;
+  /// Covariance of the target's position from the servicer, ECI axes, m^2; zero if there is none.
+  [[nodiscard]] Matrix3 position_covariance_eci() const;
+
+  /// Attitude and rate of the target (TargetAttitude::begin); the errors of keypoints are re-initialised.
+  void begin_attitude(const navigation::AttitudeState& attitude, const Matrix6& covariance);
+  /// Deactivates the attitude, the errors of keypoints and the origin of the keypoints; the orbit stays.
+  void rest_attitude();
+  [[nodiscard]] bool has_attitude() const { return TargetAttitude::is_known(estimate_); }
+  [[nodiscard]] TargetAttitude& attitude() { return attitude_; }
+  [[nodiscard]] const TargetAttitude& attitude() const { return attitude_; }
+
+  [[nodiscard]] RelativeOrbit& relative_orbit() { return relative_orbit_; }
+  [[nodiscard]] const RelativeOrbit& relative_orbit() const { return relative_orbit_; }
+  [[nodiscard]] Estimate& estimate() { return estimate_; }
+  [[nodiscard]] const Estimate& estimate() const { return estimate_; }
+
+  /// The rows of the measurement being processed: one workspace for all sources.
+  [[nodiscard]] Rows& rows() { return rows_; }
+  /// Updates the relative estimate by the rows in use (estimation::fold_in). Every other update of estimate() must be
+  /// followed by finish_update(), which moves the attitude error into its reference and checks the estimate.
+  bool fold();
+  void finish_update();
+
+  /// Number of the source whose record is being processed, below kMaxSources.
+  void set_source(std::size_t source) { source_ = source; }
+  /// The present source has updated the relative orbit at the epoch.
+  void confirm_relative() { confirmed_[source_] = epoch_; }
+  /// Whether a source other than the present one has updated the relative orbit within kConfirmation of the epoch.
+  /// Then the orbit is not changed because measurements of the present one contradict it.
+  [[nodiscard]] bool is_confirmed_by_others() const;
+  static constexpr std::size_t kMaxSources = 8;
+  static constexpr Duration kConfirmation = duration_of_seconds(900);
+
+  /// After contradicting measurements: as after an unknown burn of `velocity_sigma`, m/s, with a sigma of the distance
+  /// along track, m.
+  void inflate_relative(double velocity_sigma, double along_track_sigma_m);
+  /// The same of the servicer's own orbit.
+  void inflate_own_orbit(double velocity_sigma);
+
+  /// Times that the relative estimate had to be discarded because it was not a covariance any more.
+  [[nodiscard]] int failures() const { return failures_; }
+
+ private:
+  void coast_to(GpsTime time);
+  void advance_relative(const OrbitStep& step);
+  void add_impulse(const Vector3& dv_rtn);
+  void refer_to_apriori();
+  void keep_relative_state(const orbit::CartesianState& servicer_before, const orbit::CartesianState& target_before);
+  void fail_relative();
+
+  TrunkSettings settings_;
+  GpsTime epoch_;
+  OwnOrbit own_orbit_;
+  std::optional<Apriori> apriori_;
+  RelativeKnowledge knowledge_ = RelativeKnowledge::kNone;
+  RelativeOrbit relative_orbit_;
+  TargetAttitude attitude_;
+  Estimate estimate_;
+  int failures_ = 0;
+  std::array<Impulse, kMaxImpulses> impulses_{};
+  std::size_t impulse_count_ = 0;
+  std::size_t source_ = 0;
+  std::array<std::optional<GpsTime>, kMaxSources> confirmed_{};
+  HeadMotion motion_;
+  Rows rows_;
+};
+
+}  // namespace vbar::fsw::trunk

@@ -1,0 +1,340 @@
+#include "fsw/sources/carrier_pair/carrier_aiding.h"
+
+#include <array>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "fsw/orbit/roe.h"
+#include "tests/support/sanitizers.h"
+#include "tests/unit/fsw/sources/carrier_pair/trunk_pair.h"
+
+namespace vbar::fsw::sources {
+namespace {
+
+using test::kEarth;
+using test::TrunkPair;
+
+TEST(CarrierAiding, FixesWithinTwoMinutesAndFindsTheBaseline) {
+  TrunkPair pair(3);
+  pair.fly_trunk(12);
+  ASSERT_EQ(pair.carrier->aid().state(), AidState::kAiding);
+  EXPECT_TRUE(pair.carrier->is_fixed());
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+  // Phases of 0.7 mm, differenced, fourteen satellites: half a millimetre an axis; five of those.
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+  pair.fly_trunk(60);
+  EXPECT_LT(pair.trunk_error().tail<3>().norm(), 2e-5);  // a millimetre over the minutes that velocity is averaged
+  EXPECT_EQ(pair.carrier->counters().restarts, 0);
+  EXPECT_EQ(pair.carrier->counters().phases_refused, 0);
+  EXPECT_EQ(pair.estimator->failures(), 0);
+}
+
+TEST(CarrierAiding, EveryHeldIntegerIsTheTrueOneOverFiftySeeds) {
+  int fixed = 0;
+  constexpr int kSeeds = vbar::test::share_under_sanitizers(50);
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    TrunkPair pair(seed, 5e-3, 1e-3);
+    pair.servicer.code_sigma_m = pair.target.code_sigma_m = 0.8;
+    pair.fly_trunk(20);
+    EXPECT_TRUE(pair.trunk_integers_are_true()) << seed;
+    fixed += pair.carrier->is_fixed() ? 1 : 0;
+  }
+  EXPECT_EQ(fixed, kSeeds);
+}
+
+// Normalised error squared of the six relative states, over seeds, against chi-square with 6 degrees of freedom a seed.
+TEST(CarrierAiding, IsConsistentWithItsErrors) {
+  double nees = 0.0;
+  double nis = 0.0;
+  double nis_count = 0.0;
+  constexpr int kSeeds = vbar::test::share_under_sanitizers(40);
+  for (unsigned seed = 101; seed < 101 + kSeeds; ++seed) {
+    // A vector of fixed length and random direction has length / sqrt(3) an axis, as the filter is configured.
+    TrunkPair pair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3);
+    pair.expect_no_acceleration();
+    for (int k = 0; k < 40; ++k) {
+      pair.fly_trunk(1);
+      if (k < 20) continue;
+      nis += pair.carrier->last_update().phase_nis;
+      nis_count += pair.carrier->last_update().phases_used;
+    }
+    // The trunk stands at the last tag.
+    const Vector6 error = pair.trunk_error();
+    nees += error.dot(pair.trunk_covariance().inverse() * error);
+  }
+  // 95 % of its mean: 6 +- 1.96 sqrt(12 / seeds).
+  EXPECT_NEAR(nees / kSeeds, 6.0, 1.96 * std::sqrt(12.0 / kSeeds));
+  EXPECT_NEAR(nis / nis_count, 1.0, 0.05 * std::sqrt(40.0 / kSeeds));
+}
+
+// The trunk is the sum of its parts: the filters that preceded it, given the same observations. Elements whose velocity
+// is uncertain by 0.2 m/s are hundreds of metres wide, and phases wait until codes have narrowed them: float solutions
+// agree once the first epochs have lost their share, here after 20 minutes. Integers restore what was lost.
+TEST(CarrierAiding, AgreesWithThePrecedingFilter) {
+  double trunk_square = 0.0, preceding_square = 0.0;
+  constexpr int kSeeds = vbar::test::share_under_sanitizers(10);
+  for (unsigned seed = 301; seed < 301 + kSeeds; ++seed) {
+    for (const bool has_integers : {false, true}) {
+      TrunkPair pair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3);
+      pair.with_preceding = true;
+      pair.settings.ambiguities.enabled = pair.carrier_settings.ambiguities.enabled = has_integers;
+      pair.begin();
+      pair.begin_trunk();
+      pair.fly_trunk(has_integers ? 30 : 120);
+      EXPECT_EQ(pair.carrier->is_fixed(), has_integers);
+      EXPECT_EQ(pair.navigation->ambiguities().is_fixed(), has_integers);
+      const Matrix6 preceding = pair.navigation->covariance_rtn();
+      const Matrix6 estimated = pair.trunk_covariance();
+      for (int i = 0; i < 6; ++i) EXPECT_NEAR(std::sqrt(estimated(i, i) / preceding(i, i)), 1.0, 0.05) << i;
+      const Vector6 error = pair.trunk_error();
+      const Vector6 preceding_error =
+          pair.error_of(pair.navigation->servicer(), pair.navigation->target(), pair.navigation->epoch());
+      // Two unbiased estimates whose variances differ by 0.6 % differ by 0.08 sigma; three of those.
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(error(i), preceding_error(i), 0.25 * std::sqrt(preceding(i, i))) << i;
+      trunk_square += error.head<3>().squaredNorm();
+      preceding_square += preceding_error.head<3>().squaredNorm();
+    }
+  }
+  EXPECT_LT(trunk_square, 1.05 * preceding_square);
+}
+
+TEST(CarrierAiding, ASlipReportedByTheReceiversIsCorrectedAtOnce) {
+  TrunkPair pair(5);
+  pair.fly_trunk(15);
+  for (std::size_t k = 0; k < 60; k += 7) {
+    pair.target.cycles[k] += 3.0;
+    pair.target.lock_start_s[k] = 1000.0 + seconds(pair.tag - test::start_time()) - 1.0;
+  }
+  pair.fly_trunk(1);
+  EXPECT_GT(pair.carrier->counters().slips, 0);
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+  pair.fly_trunk(10);
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+}
+
+TEST(CarrierAiding, ASlipThatIsNotReportedIsFound) {
+  for (const double cycles : {1.0, -1.0, 5.0, 1000.0}) {
+    TrunkPair pair(6);
+    pair.fly_trunk(15);
+    const std::size_t place = 2U * (pair.carrier->filter().channels()[0].satellite.prn - 1U);
+    pair.target.cycles[place] += cycles;
+    pair.fly_trunk(1);
+    EXPECT_EQ(pair.carrier->counters().slips, 1) << cycles;
+    EXPECT_LT(pair.trunk_position_error(), 3e-3) << cycles;
+    pair.fly_trunk(10);
+    EXPECT_TRUE(pair.trunk_integers_are_true()) << cycles;
+  }
+}
+
+// At 5 ms the orbit has moved on by 37 m between the tag and the reception.
+TEST(CarrierAiding, ClocksMayStandMillisecondsApart) {
+  TrunkPair pair(13);
+  pair.servicer.clock_s = 5e-3;
+  pair.target.clock_s = -5e-3;
+  pair.fly_trunk(20);
+  EXPECT_TRUE(pair.carrier->is_fixed());
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+  EXPECT_EQ(pair.carrier->counters().restarts, 0);
+}
+
+/// The target is suddenly elsewhere, and its phases are acquired again.
+void displace_target(TrunkPair& pair) {
+  pair.target.start.position_eci += orbit::R_rtn_eci(pair.target.start).transpose() * Vector3(0.0, 300.0, 0.0);
+  for (double& lock : pair.target.lock_start_s) lock = 1000.0 + seconds(pair.tag - test::start_time()) - 1.0;
+}
+
+TEST(CarrierAiding, AnOwnOrbitThatTheCodesContradictIsInitialisedAgain) {
+  TrunkPair pair(14);
+  pair.fly_trunk(20);
+  displace_target(pair);
+  pair.fly_trunk(20);
+  EXPECT_EQ(pair.carrier->counters().restarts, 1);
+  EXPECT_EQ(pair.carrier->counters().failures, 1);
+  EXPECT_TRUE(pair.carrier->is_fixed());
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+}
+
+TEST(CarrierAiding, AnOrbitOfAnotherSourceIsNeverInitialisedAgain) {
+  TrunkPair pair(14);
+  pair.fly_trunk(20);
+  pair.carrier->share_orbit();
+  const Vector6 error = pair.trunk_error();
+  displace_target(pair);
+  const double displaced = 300.0;
+  pair.fly_trunk(20);
+  EXPECT_EQ(pair.carrier->counters().restarts, 0);
+  EXPECT_EQ(pair.carrier->counters().failures, 1);
+  EXPECT_EQ(pair.carrier->aid().state(), AidState::kFailed);
+  EXPECT_EQ(pair.estimator->knowledge(), trunk::RelativeKnowledge::kEstimated);
+  EXPECT_NEAR(pair.trunk_position_error(), displaced, 30.0) << error.transpose();
+  // Its own blocks are inactive, and no others.
+  EXPECT_FALSE(trunk::is_active<trunk::ServicerAntenna>(pair.estimator->estimate()));
+  EXPECT_FALSE(trunk::is_active<trunk::CodeBiases>(pair.estimator->estimate()));
+  EXPECT_FALSE(trunk::is_active<trunk::EmpiricalAcceleration>(pair.estimator->estimate()));
+  EXPECT_FALSE(trunk::is_active<trunk::ClockDifference>(pair.estimator->estimate()));
+  for (std::size_t k = 0; k < kPhaseChannels; ++k) {
+    EXPECT_TRUE(pair.estimator->estimate().is_idle(CarrierFilter::ambiguity_index(k)));
+  }
+  EXPECT_TRUE(trunk::is_active<trunk::Roe>(pair.estimator->estimate()));
+  EXPECT_TRUE(trunk::is_active<trunk::DifferentialAccelerations>(pair.estimator->estimate()));
+}
+
+/// A relative orbit as of another source: the true one, displaced along track, with sigmas of 10 m and 10 mm/s.
+void begin_as_another_source(TrunkPair& pair, double displaced_m) {
+  const orbit::CartesianState servicer = pair.estimator->servicer();
+  const orbit::CartesianState true_servicer = pair.servicer.state_at(pair.estimator->epoch());
+  orbit::CartesianState target = pair.target.state_at(pair.estimator->epoch());
+  target.position_eci +=
+      servicer.position_eci - true_servicer.position_eci + displaced_m * orbit::R_rtn_eci(servicer).row(1).transpose();
+  target.velocity_eci += servicer.velocity_eci - true_servicer.velocity_eci;
+  const auto roe = orbit::roe_of_target(servicer, target);
+  const auto jacobian = roe_from_target_jacobian(servicer, target);
+  ASSERT_TRUE(roe.ok() && jacobian.ok());
+  Vector6 variance;
+  variance << Vector3::Constant(100.0), Vector3::Constant(1e-4);
+  pair.estimator->begin_relative(roe.value(), jacobian.value() * variance.asDiagonal() * jacobian.value().transpose(),
+                                 trunk::RelativeKnowledge::kEstimated);
+}
+
+TEST(CarrierAiding, JoinsAnOrbitThatAgreesAfterThreeEpochs) {
+  TrunkPair pair(15);
+  pair.fly_alone(20);
+  begin_as_another_source(pair, 5.0);
+  pair.fly_trunk(2);
+  EXPECT_EQ(pair.carrier->aid().state(), AidState::kStarting);
+  pair.fly_trunk(15);
+  EXPECT_EQ(pair.carrier->counters().starts, 0);
+  EXPECT_FALSE(pair.carrier->owns_orbit());
+  EXPECT_TRUE(pair.carrier->is_fixed());
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+}
+
+TEST(CarrierAiding, DoesNotJoinAnOrbitThatDisagrees) {
+  TrunkPair pair(15);
+  pair.fly_alone(20);
+  begin_as_another_source(pair, 300.0);
+  pair.fly_trunk(10);
+  EXPECT_EQ(pair.carrier->aid().state(), AidState::kStarting);
+  EXPECT_EQ(pair.carrier->counters().pairs, 0);
+  EXPECT_FALSE(trunk::is_active<trunk::ServicerAntenna>(pair.estimator->estimate()));
+}
+
+TEST(CarrierAiding, BurnsAreFollowed) {
+  TrunkPair pair(7);
+  pair.fly_trunk(20);
+  // A burn 4 s after the last epoch, as large as they come at close range.
+  const GpsTime burn_time = pair.estimator->epoch() + duration_of_seconds(4);
+  const Vector3 dv_rtn(0.002, -0.003, 0.001);
+  const orbit::CartesianState after = orbit::apply_impulse_rtn(pair.servicer.state_at(burn_time), dv_rtn);
+  // Back to the start in the same field, with the Earth's orientation at the burn.
+  const navigation::Propagation back(burn_time, kEarth, Vector3::UnitX());
+  pair.servicer.start = back.coast(after, -seconds(burn_time - test::start_time()));
+  const std::array<navigation::Burn, 1> burns{{{burn_time, dv_rtn}}};
+  pair.step(burns);
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+  EXPECT_LT(pair.trunk_error().tail<3>().norm(), 5e-5);
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+}
+
+TEST(CarrierAiding, SilenceIsCoastedAndFixedAgain) {
+  TrunkPair pair(9);
+  pair.fly_trunk(30);
+  const GpsTime last = *pair.carrier->last_pair();
+  pair.fly_alone(4);
+  EXPECT_EQ(pair.carrier->aid().state(), AidState::kSuspended);
+  EXPECT_FALSE(pair.estimator->estimate().is_idle(CarrierFilter::ambiguity_index(0)));
+  pair.fly_alone(56);
+  EXPECT_EQ(*pair.carrier->last_pair(), last);
+  EXPECT_TRUE(pair.estimator->estimate().is_idle(CarrierFilter::ambiguity_index(0)));
+  const double variance = pair.trunk_covariance().topLeftCorner<3, 3>().trace();
+  EXPECT_GT(variance, 1e-6);
+  EXPECT_LT(pair.trunk_position_error(), 5.0 * std::sqrt(variance));
+  pair.fly_trunk(20);
+  EXPECT_EQ(pair.carrier->counters().starts, 1);
+  EXPECT_TRUE(pair.carrier->is_fixed());
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+}
+
+TEST(CarrierAiding, AShortSilenceKeepsTheIntegers) {
+  TrunkPair pair(9);
+  pair.fly_trunk(30);
+  const std::int32_t fixes = pair.carrier->report().fixes;
+  pair.fly_alone(8);
+  EXPECT_EQ(pair.carrier->aid().state(), AidState::kSuspended);
+  pair.fly_trunk(1);
+  EXPECT_EQ(pair.carrier->aid().state(), AidState::kAiding);
+  EXPECT_TRUE(pair.carrier->is_fixed());
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+  EXPECT_EQ(pair.carrier->report().fixes, fixes);
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+}
+
+TEST(CarrierAiding, ASkyThatChangesAtOnce) {
+  TrunkPair pair(10);
+  pair.fly_trunk(20);
+  // All carriers are acquired again, with other integers.
+  for (double& cycles : pair.target.cycles) cycles += 17.0 + static_cast<double>(&cycles - pair.target.cycles.data());
+  for (double& lock : pair.target.lock_start_s) lock = 1000.0 + seconds(pair.tag - test::start_time()) - 1.0;
+  pair.fly_trunk(1);
+  EXPECT_LT(pair.trunk_position_error(), 5e-3);  // carried by the dynamics
+  pair.fly_trunk(20);
+  EXPECT_TRUE(pair.carrier->is_fixed());
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+}
+
+TEST(CarrierAiding, HostileEpochsMoveNothing) {
+  TrunkPair pair(11);
+  pair.fly_trunk(20);
+  gnss::ObservationEpoch bad = pair.target.observe(pair.tag, pair.satellites, kEarth);
+  for (std::size_t k = 0; k < bad.count; k += 3) bad.observations[k].pseudorange_m = NAN;
+  for (std::size_t k = 1; k < bad.count; k += 3) bad.observations[k].carrier_phase_cycles = 1e300;
+  for (std::size_t k = 2; k < bad.count; k += 3) bad.observations[k].pseudorange_m += 1e5;
+  pair.step(pair.servicer.observe(pair.tag, pair.satellites, kEarth), &bad);
+  EXPECT_LT(pair.trunk_position_error(), 5e-3);
+  EXPECT_EQ(pair.carrier->counters().restarts, 0);
+  pair.tag = pair.tag + duration_of_seconds(10);
+  pair.fly_trunk(20);
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+}
+
+// The code that is processed first determines the clock of the epoch; a wrong one would cause all phases to be refused.
+TEST(CarrierAiding, AGrossErrorOfTheFirstCodeCostsThatCodeOnly) {
+  TrunkPair pair(14);
+  pair.fly_trunk(20);
+  ASSERT_TRUE(pair.carrier->is_fixed());
+  gnss::ObservationEpoch multipath = pair.target.observe(pair.tag, pair.satellites, kEarth);
+  multipath.observations[0].pseudorange_m += 20.0;
+  pair.step(pair.servicer.observe(pair.tag, pair.satellites, kEarth), &multipath);
+  const CarrierUpdate& update = pair.carrier->last_update();
+  EXPECT_EQ(update.codes_refused, 1);
+  EXPECT_EQ(update.phases_refused, 0);
+  EXPECT_GT(update.phases_used, 5);
+  EXPECT_TRUE(pair.carrier->is_fixed());
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+}
+
+TEST(CarrierAiding, FewerThanFourSatellitesCoast) {
+  TrunkPair pair(12);
+  pair.fly_trunk(20);
+  const std::int32_t pairs = pair.carrier->counters().pairs;
+  const std::vector<gnss::Ephemeris> all = pair.satellites;
+  pair.satellites.resize(6);  // of six, three or fewer are in view
+  pair.fly_trunk(10);
+  EXPECT_EQ(pair.carrier->counters().pairs, pairs);
+  EXPECT_GT(pair.own->counters().no_solution, 0);
+  pair.satellites = all;
+  pair.fly_trunk(20);
+  EXPECT_TRUE(pair.trunk_integers_are_true());
+  EXPECT_LT(pair.trunk_position_error(), 3e-3);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::sources

@@ -1,0 +1,171 @@
+// Sensitivities of the rows against differences of the geometry; hostile keypoints; the weight of seen views.
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "fsw/navigation/bearing.h"
+#include "tests/unit/fsw/navigation/angles_only_scene.h"
+#include "tests/unit/fsw/sources/keypoints/keypoint_flight.h"
+
+namespace vbar::fsw::sources {
+namespace {
+
+using namespace navigation::test;
+using trunk::kAt;
+
+class KeypointRows : public testing::Test {
+ protected:
+  KeypointRows() {
+    trunk::TrunkSettings blocks;
+    blocks.earth = scene_earth();
+    trunk->configure(blocks);
+    trunk->advance_to(scene_start(), {});
+    trunk->set_states(scene_servicer(), scene_target(scene_servicer(), roe));
+    trunk->begin_relative(roe, 1e-20 * Matrix6::Identity(), trunk::RelativeKnowledge::kEstimated);
+    navigation::AttitudeState attitude;
+    attitude.q_eci_body = Eigen::Quaterniond(0.5, -0.1, 0.7, 0.4).normalized();
+    trunk->begin_attitude(attitude, 1e-10 * Matrix6::Identity());
+    trunk::begin_block<trunk::KeypointOrigin>(trunk->estimate(), {.sigma = 0.01});
+    trunk::begin_block<trunk::BoresightB>(trunk->estimate(), {.sigma = 1e-4});
+    q_eci_body = attitude.q_eci_body;
+
+    const Vector3 z = (scene_target(scene_servicer(), roe).position_eci - scene_servicer().position_eci).normalized();
+    const Vector3 x = z.cross(scene_servicer().position_eci).normalized();
+    camera.R_camera_eci << x.transpose(), z.cross(x).transpose(), z.transpose();
+    camera.origin_eci = {0.2, -0.1, 0.3};
+    model.camera = 1;
+    model.optics = {{1450.0, 1440.0}, {480.0, 300.0}, {-0.2, 0.5, -7e-4, -2e-4, -0.1}};
+    for (std::size_t k = 0; k < model.shape.size(); ++k) {
+      const double angle = 0.7 * static_cast<double>(k);
+      model.shape[k] = {0.5 * std::cos(angle), 0.4 * std::sin(angle), 0.3 * std::cos(2.0 * angle)};
+      keypoints[k].is_usable = true;
+      keypoints[k].covariance_px2 << 4.0, 1.0, 1.0, 2.0;
+      keypoints[k].pixel = seen(k, Vector6::Zero(), Vector3::Zero(), Vector3::Zero(), Vector2::Zero());
+    }
+  }
+
+  /// The pixel of keypoint k from geometry alone; the boresight bias rotates its direction.
+  Vector2 seen(std::size_t k, const Vector6& roe_change, const Vector3& turn, const Vector3& origin,
+               const Vector2& boresight) const {
+    const orbit::CartesianState servicer = scene_servicer();
+    const Vector3 sight =
+        scene_target(servicer, roe + roe_change).position_eci - servicer.position_eci - camera.origin_eci;
+    const double angle = turn.norm();
+    const Matrix3 by = angle > 0.0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3::Identity();
+    const Vector3 point_eci = sight + q_eci_body.toRotationMatrix() * by * (model.shape[k] + origin);
+    const Vector3 direction =
+        point_eci.normalized() +
+        navigation::bearing_axes(sight.normalized(), servicer).topRows<2>().transpose() * boresight;
+    return imaging::pixel_of(model.optics, camera.R_camera_eci * direction).value();
+  }
+
+  const Vector6 roe = roe_of_metres(0.0, -8.5, 1.0, 0.0, 1.0, 0.5);
+  std::unique_ptr<trunk::Trunk> trunk = std::make_unique<trunk::Trunk>();
+  Eigen::Quaterniond q_eci_body;
+  CameraPose camera;
+  KeypointModel model;
+  pose::Keypoints keypoints{};
+};
+
+TEST_F(KeypointRows, SensitivitiesAreThoseOfTheGeometry) {
+  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kOk);
+  const trunk::Rows& rows = trunk->rows();
+  ASSERT_EQ(rows.used(), 22);
+  // The mean of the sigma points differs from the central one by the curvature over 1e-5 rad: far below 1e-4 px.
+  EXPECT_LT(rows.residual.norm(), 1e-4);
+  const auto expect_column = [&](int index, double step, const auto& pixel_at) {
+    for (std::size_t k = 0; k < keypoints.size(); ++k) {
+      const Vector2 slope = (pixel_at(k, step) - pixel_at(k, -step)) / (2.0 * step);
+      for (int axis = 0; axis < 2; ++axis) {
+        const double sensitivity = rows.sensitivity(index, 2 * static_cast<int>(k) + axis);
+        EXPECT_NEAR(sensitivity, slope(axis), 1e-3 * slope.norm() + 1e-6) << index << ' ' << k;
+      }
+    }
+  };
+  const Vector3 none = Vector3::Zero();
+  const Vector2 flat = Vector2::Zero();
+  for (int i = 0; i < 6; ++i) {
+    expect_column(i, 1e-9, [&](std::size_t k, double d) { return seen(k, d * Vector6::Unit(i), none, none, flat); });
+  }
+  for (int i = 0; i < 3; ++i) {
+    expect_column(kAt<trunk::Turn> + i, 1e-4,
+                  [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), d * Vector3::Unit(i), none, flat); });
+    expect_column(kAt<trunk::KeypointOrigin> + i, 1e-4,
+                  [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), none, d * Vector3::Unit(i), flat); });
+  }
+  for (int i = 0; i < 2; ++i) {
+    expect_column(kAt<trunk::BoresightB> + i, 1e-5,
+                  [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), none, none, d * Vector2::Unit(i)); });
+  }
+}
+
+/// The noise and the variance of the error states add up to the covariance of the network.
+TEST_F(KeypointRows, CorrelatedAndWhiteErrorsAddUpToTheCovariance) {
+  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kOk);
+  const trunk::Rows& rows = trunk->rows();
+  for (int k = 0; k < network::kKeypoints; ++k) {
+    Matrix2 root;
+    for (int axis = 0; axis < 2; ++axis) {
+      root.row(axis) = rows.sensitivity.col(2 * k + axis).segment<2>(kAt<trunk::KeypointErrors> + 2 * k).transpose();
+    }
+    const Matrix2 sum = root * root.transpose() + rows.noise.block<2, 2>(2 * k, 2 * k);
+    EXPECT_LT((sum - keypoints[static_cast<std::size_t>(k)].covariance_px2).norm(), 1e-6) << k;
+  }
+}
+
+TEST_F(KeypointRows, InvalidKeypointsAreNotInUse) {
+  keypoints[0].pixel.x() = std::numeric_limits<double>::quiet_NaN();
+  keypoints[1].covariance_px2.setZero();
+  keypoints[2].covariance_px2 << 1.0, 2.0, 2.0, 1.0;
+  keypoints[3].is_usable = false;
+  keypoints[4].covariance_px2.setConstant(std::numeric_limits<double>::infinity());
+  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kOk);
+  EXPECT_EQ(trunk->rows().used(), 12);
+  camera.R_camera_eci = -camera.R_camera_eci;  // all behind the camera
+  const Status status = keypoint_rows(*trunk, keypoints, camera, model);
+  EXPECT_TRUE(status != Status::kOk || trunk->rows().used() == 0);
+  trunk->rest_attitude();
+  EXPECT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kNotReady);
+}
+
+View view_of(double angle, double range_m = 10.0) {
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector3::UnitX())), std::log(range_m)};
+}
+
+GpsTime after(int seconds) {
+  return scene_start() + duration_of_seconds(seconds);
+}
+
+/// m = 1 + gain sum_j c_j exp(-d_j / angle), counts decaying with 2000 s.
+TEST(SeenViews, TheWeightIsThatOfTheFormula) {
+  SeenViews seen;
+  seen.configure({});
+  seen.add(view_of(0.0), after(0));
+  seen.add(view_of(0.05), after(5));  // merged
+  seen.add(view_of(1.0), after(10));
+  EXPECT_EQ(seen.scale(view_of(0.0), after(20)), 1.0);  // of the last minute
+  seen.add(view_of(2.0), after(500));
+  const double both = std::exp(-500.0 / 2000.0) + std::exp(-495.0 / 2000.0);
+  const double third = std::exp(-490.0 / 2000.0) * std::exp(-0.8 / 0.25);
+  EXPECT_NEAR(seen.scale(view_of(0.2), after(500)), 1.0 + 0.8 * (both * std::exp(-0.2 / 0.25) + third), 1e-6);
+  // A factor of e^0.25 in range counts as 0.25 rad.
+  EXPECT_NEAR(seen.scale(view_of(0.0, 10.0 * std::exp(0.25)), after(500)),
+              1.0 + 0.8 * (both * std::exp(-1.0) + std::exp(-490.0 / 2000.0) * std::exp(-std::hypot(1.0, 0.25) / 0.25)),
+              1e-6);
+}
+
+TEST(SeenViews, ItsMemoryIsBounded) {
+  SeenViews seen;
+  seen.configure({});
+  for (int k = 0; k < 5000; ++k) seen.add(view_of(0.37 * k, 5.0 + k % 50), after(5 * k));
+  const double scale = seen.scale(view_of(0.0), after(25000));
+  EXPECT_GT(scale, 1.0);
+  EXPECT_LT(scale, 1.0 + 0.8 * 2000.0 / 5.0);  // of all images of the memory
+  seen.add({Eigen::Quaterniond(NAN, 0.0, 0.0, 0.0), 1.0}, after(25001));
+  EXPECT_LT(seen.scale(view_of(0.0), after(25002)), 1.0 + 0.8 * 2000.0 / 5.0);
+  EXPECT_EQ(seen.scale({Eigen::Quaterniond(NAN, 0.0, 0.0, 0.0), 1.0}, after(25002)), 1.0);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::sources
