@@ -14,12 +14,18 @@ bool is_above(double x, double maximum) {
   return x > 0.0 && x <= maximum;
 }
 
-/// An inertia tensor is positive definite, and no principal moment exceeds the sum of the other two.
-bool is_inertia(const Matrix3& inertia) {
+/// kOutOfRange unless positive definite and no principal moment exceeds the sum of the other two.
+Result<navigation::Inertia> inertia_of(const pose_configuration& p) {
+  Matrix3 inertia;
+  inertia << p.inertia_kgm2[0], p.inertia_kgm2[3], p.inertia_kgm2[4],  //
+      p.inertia_kgm2[3], p.inertia_kgm2[1], p.inertia_kgm2[5],         //
+      p.inertia_kgm2[4], p.inertia_kgm2[5], p.inertia_kgm2[2];
   const auto eigen = math::symmetric_eigen(inertia);
-  if (!eigen.ok()) return false;
+  if (!eigen.ok()) return Status::kOutOfRange;
   const Vector3& moments = eigen.value().values;  // increasing
-  return moments(0) > 1e-6 && moments(2) < 1e7 && moments(2) <= 1.0001 * (moments(0) + moments(1));
+  const bool is_body = moments(0) > 1e-6 && moments(2) < 1e7 && moments(2) <= 1.0001 * (moments(0) + moments(1));
+  if (!is_body) return Status::kOutOfRange;
+  return navigation::inertia_of(inertia);
 }
 
 /// kOutOfRange if the points are nearly coincident or collinear, or too far from the origin for any target.
@@ -119,21 +125,17 @@ Result<pose::PoseCameraSettings> pose_camera_settings(const camera_configuration
   return settings;
 }
 
-Result<navigation::PoseSettings> pose_settings(const camera_configuration& c, const pose_configuration& p,
-                                               const orbit::EarthOrientation& earth) {
+Result<KeypointNavigationSettings> keypoint_settings(const camera_configuration& c, const pose_configuration& p) {
   const Result<CalibratedCamera> camera = calibrated_camera(c);
-  const Result<pose::KeypointShape> shape = keypoint_shape(p);
-  Matrix3 inertia;
-  inertia << p.inertia_kgm2[0], p.inertia_kgm2[3], p.inertia_kgm2[4],  //
-      p.inertia_kgm2[3], p.inertia_kgm2[1], p.inertia_kgm2[5],         //
-      p.inertia_kgm2[4], p.inertia_kgm2[5], p.inertia_kgm2[2];
+  const Result<pose::PoseCameraSettings> network = pose_camera_settings(c, p);
+  const Result<navigation::Inertia> inertia = inertia_of(p);
   const Vector6 start_sigma_a_roe_m = vector(p.start_sigma_a_roe_m);
   const Vector6 apriori_sigma_a_roe_m = vector(p.apriori_sigma_a_roe_m);
   const bool has_apriori = !apriori_sigma_a_roe_m.isZero(0.0);
   const bool apriori_is_usable = (apriori_sigma_a_roe_m.array() > 0.0).all() &&
                                  (apriori_sigma_a_roe_m.array() < 1e6).all() &&
                                  (vector(p.apriori_a_roe_m).array().abs() < 1e6).all();
-  const bool is_usable = camera.ok() && shape.ok() && is_inertia(inertia) && (!has_apriori || apriori_is_usable) &&
+  const bool is_usable = camera.ok() && network.ok() && inertia.ok() && (!has_apriori || apriori_is_usable) &&
                          is_above(p.keypoint_sigma_scale, 100.0) && is_between(p.keypoint_floor_px, 0.0, 100.0) &&
                          is_above(p.acceleration_psd, 1.0) && is_above(p.acceleration_psd_least, p.acceleration_psd) &&
                          is_between(p.acceleration_psd_most, p.acceleration_psd, 1.0) &&
@@ -142,23 +144,30 @@ Result<navigation::PoseSettings> pose_settings(const camera_configuration& c, co
                          p.start_images <= static_cast<std::int32_t>(navigation::PoseInitialiser::kMaxSamples) &&
                          (start_sigma_a_roe_m.array() > 0.0).all() && (start_sigma_a_roe_m.array() < 1e6).all();
   if (!is_usable) return Status::kOutOfRange;
-  navigation::PoseSettings settings;
-  settings.earth = earth;
-  settings.camera_position_camera_m = camera.value().R_camera_body * camera.value().position_body_m;
+  KeypointNavigationSettings settings;
+  sources::KeypointSettings& keypoints = settings.keypoints;
+  keypoints.camera = network.value();
+  keypoints.R_camera_body = camera.value().R_camera_body;
+  keypoints.sigma_scale = p.keypoint_sigma_scale;
+  keypoints.sigma_floor_px = p.keypoint_floor_px;
+  // Its boresight is known against the star tracker alone.
+  keypoints.aiding.model = {.camera = 1, .optics = camera.value().model, .shape = network.value().shape};
+  keypoints.aiding.start.min_images = p.start_images;
+  keypoints.aiding.start.sigma_a_roe_m = start_sigma_a_roe_m;
+  keypoints.aiding.inertia = inertia.value();
+  keypoints.aiding.camera_position_camera_m = camera.value().R_camera_body * camera.value().position_body_m;
+  settings.blocks.burn_sigma = p.maneuver_sigma;
+  settings.blocks.burn_sigma_relative = p.maneuver_sigma_relative;
+  settings.blocks.relative_orbit.acceleration = {p.acceleration_psd, p.acceleration_psd_least, p.acceleration_psd_most};
+  settings.blocks.attitude.inertia = inertia.value();
+  settings.blocks.attitude.angular_acceleration.psd = p.angular_acceleration_psd;
   if (has_apriori) {
-    settings.apriori = navigation::PoseApriori{.time = GpsTime{p.apriori_epoch_ns},
-                                               .a_roe_m = vector(p.apriori_a_roe_m),
-                                               .sigma_a_roe_m = apriori_sigma_a_roe_m};
+    trunk::TargetApriori& apriori = settings.apriori.emplace();
+    apriori.kind = trunk::TargetApriori::Kind::kMeanRoe;
+    apriori.time = GpsTime{p.apriori_epoch_ns};
+    apriori.mean_a_roe_m = vector(p.apriori_a_roe_m);
+    apriori.sigma_a_roe_m = apriori_sigma_a_roe_m;
   }
-  settings.start.min_images = p.start_images;
-  settings.start.sigma_a_roe_m = start_sigma_a_roe_m;
-  settings.filter.camera = camera.value().model;
-  settings.filter.shape = shape.value();
-  settings.filter.inertia = inertia;
-  settings.filter.acceleration = {p.acceleration_psd, p.acceleration_psd_least, p.acceleration_psd_most};
-  settings.filter.angular_acceleration.psd = p.angular_acceleration_psd;
-  settings.filter.maneuver_sigma = p.maneuver_sigma;
-  settings.filter.maneuver_sigma_relative = p.maneuver_sigma_relative;
   return settings;
 }
 

@@ -1,13 +1,14 @@
 #pragma once
 // Validated telecommands of cameras and of camera-based navigation. kOutOfRange for a value outside its valid range.
 
+#include <optional>
+
 #include "fsw/angles_only/angles_only_tracking.h"
 #include "fsw/core/result.h"
-#include "fsw/navigation/pose_navigation.h"
-#include "fsw/orbit/earth_rotation.h"
 #include "fsw/packets/messages.h"
 #include "fsw/pose/spacecraft_pose_network.h"
 #include "fsw/sources/bearings/bearing_aiding.h"
+#include "fsw/sources/keypoints/keypoint_source.h"
 
 namespace vbar::fsw::gnc {
 
@@ -32,8 +33,13 @@ Result<BearingNavigationSettings> bearing_settings(const angles_only_configurati
 
 Result<pose::PoseCameraSettings> pose_camera_settings(const camera_configuration& camera,
                                                       const pose_configuration& configuration);
-Result<navigation::PoseSettings> pose_settings(const camera_configuration& camera,
-                                               const pose_configuration& configuration,
-                                               const orbit::EarthOrientation& earth);
+/// Navigation by keypoints: the source, the blocks of the trunk that it tunes, and the orbit from preceding navigation.
+struct KeypointNavigationSettings {
+  sources::KeypointSettings keypoints;
+  trunk::TrunkSettings blocks;
+  std::optional<trunk::TargetApriori> apriori;  ///< empty: initialisation from images alone
+};
+Result<KeypointNavigationSettings> keypoint_settings(const camera_configuration& camera,
+                                                     const pose_configuration& configuration);
 
 }  // namespace vbar::fsw::gnc

@@ -68,8 +68,7 @@ void Gnc::report() {
   }
   report_navigation();
   if (navigation_.uses_camera()) point_camera();
-  if (navigation_.uses_trunk()) navigation_.trunk().report(outbox_, step_, now_, inbox_);
-  if (navigation_.uses_pose() && navigation_.pose().has_image()) report_pose();
+  navigation_.trunk().report(outbox_, step_, now_, inbox_);
   report_control();
   report_health();
 }

@@ -46,8 +46,7 @@ class Gnc {
 
   void report_navigation();
   void point_camera();
-  [[nodiscard]] std::optional<Pointing> pointing_to_target() const;
-  void report_pose();
+  [[nodiscard]] std::optional<sources::Pointing> pointing_to_target() const;
   void report_control();
   void report_health();
 

@@ -57,28 +57,4 @@ Result<CarrierNavigationSettings> carrier_settings(const navigation_configuratio
   return settings;
 }
 
-Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_configuration& c) {
-  if (!has_usable_values(c)) return Status::kOutOfRange;
-  navigation::GnssNavigationSettings settings;
-  settings.relative = {.start_velocity_sigma = c.start_velocity_sigma,
-                       .acceleration_sigma = c.acceleration_sigma,
-                       .acceleration_time_s = c.acceleration_time_s,
-                       .antenna_offset_sigma_m = c.antenna_offset_sigma_m,
-                       .phase_centre_jitter_m = c.phase_centre_jitter_m,
-                       .phase_wander_sigma_m = c.phase_wander_sigma_m,
-                       .phase_wander_time_s = c.phase_wander_time_s,
-                       .code_bias_sigma_m = c.code_bias_sigma_m,
-                       .maneuver_sigma = c.maneuver_sigma,
-                       .maneuver_sigma_relative = c.maneuver_sigma_relative};
-  settings.ambiguities.enabled = c.resolve_ambiguities != 0;
-  settings.ambiguities.min_success_rate = c.min_success_rate;
-  settings.ambiguities.min_ratio = c.min_ratio;
-  settings.earth = earth_orientation(c);
-  settings.servicer_antenna_body_m = vector(c.servicer_antenna_body_m);
-  settings.target_antenna_body_m = vector(c.target_antenna_body_m);
-  // Without a partner there is no second epoch to wait for.
-  settings.pair_wait = c.source == 1 ? Duration{c.pair_wait_ns} : Duration{-1};
-  return settings;
-}
-
 }  // namespace vbar::fsw::gnc

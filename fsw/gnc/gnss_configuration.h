@@ -2,22 +2,19 @@
 // The telecommand of GNSS navigation, validated and converted to settings.
 
 #include "fsw/core/result.h"
-#include "fsw/navigation/gnss_navigation.h"
 #include "fsw/packets/messages.h"
 #include "fsw/sources/carrier_pair/carrier_aiding.h"
 #include "fsw/trunk/trunk.h"
 
 namespace vbar::fsw::gnc {
 
-/// Navigation by the receivers of both spacecraft: the source, and the blocks of the trunk that it tunes.
+/// Navigation by the receivers of both spacecraft: the source, and the blocks of the trunk that it tunes. kOutOfRange
+/// for values with which no filter can operate.
 struct CarrierNavigationSettings {
   sources::CarrierSettings carrier;
   Duration pair_wait;
   trunk::TrunkSettings blocks;
 };
 Result<CarrierNavigationSettings> carrier_settings(const navigation_configuration& configuration);
-
-/// Settings of a telecommand; kOutOfRange for values with which no filter can operate.
-Result<navigation::GnssNavigationSettings> gnss_settings(const navigation_configuration& configuration);
 
 }  // namespace vbar::fsw::gnc

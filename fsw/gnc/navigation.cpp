@@ -36,11 +36,7 @@ bool is_orbit(const orbit::CartesianState& state) {
 void Navigation::update(GpsTime now, Inbox& inbox) {
   take_configurations(now, inbox);
   take_maneuvers(now, inbox);
-  if (uses_pose()) {
-    take_pose(now, inbox);
-  } else {
-    take_trunk(now, inbox);
-  }
+  take_trunk(now, inbox);
   if (!has_reference_) return;
   if (now - reference_.epoch > kLongestDelay + kLongestDelay) move_reference(now - kLongestDelay);
 
@@ -49,11 +45,12 @@ void Navigation::update(GpsTime now, Inbox& inbox) {
     drop_state();  // gap too long, or invalid orbit: restart from the next measurement
     return;
   }
-  state_.valid = !uses_trunk() || trunk_.valid();
+  state_.valid = trunk_.valid();
   state_.has_target = true;
   state_.epoch = now;
   state_.servicer = present.value().servicer;
   state_.target = present.value().target;
+  state_.source = source_of(now);
   set_uncertainty(now);
 }
 
@@ -63,31 +60,23 @@ void Navigation::drop_state() {
   state_.has_target = false;
 }
 
-void Navigation::set_uncertainty(GpsTime now) {
-  const double age = seconds(now - state_.last_measurement);
-  const bool is_fresh = age <= kFreshGnss_s;
+NavigationSource Navigation::source_of(GpsTime now) const {
+  const auto if_fresh = [](bool is_fresh, NavigationSource source) {
+    return is_fresh ? source : NavigationSource::kPropagated;
+  };
   switch (sensors_) {
     case Sensors::kIdeal:
-      state_.source = state_.last_measurement == now ? NavigationSource::kIdeal : NavigationSource::kPropagated;
-      set_trunk_uncertainty(now);
-      break;
+      return if_fresh(state_.last_measurement == now, NavigationSource::kIdeal);
     case Sensors::kGnss:
-      state_.source = !is_fresh                                            ? NavigationSource::kPropagated
-                      : trunk_.source<sources::CarrierSource>().is_fixed() ? NavigationSource::kGnssFixed
-                                                                           : NavigationSource::kGnssFloat;
-      set_trunk_uncertainty(now);
-      break;
-    case Sensors::kPose:
-      state_.source = pose_.filter().last_measurement() == pose_.filter().epoch() ? NavigationSource::kPose
-                                                                                  : NavigationSource::kPropagated;
-      set_uncertainty(pose_.filter().covariance_rtn(), 0.0, pose_.filter().epoch(), now);
-      break;
+      return if_fresh(seconds(now - state_.last_measurement) <= kFreshGnss_s,
+                      trunk_.source<sources::CarrierSource>().is_fixed() ? NavigationSource::kGnssFixed
+                                                                         : NavigationSource::kGnssFloat);
     case Sensors::kBearings:
-      state_.source = trunk_.source<sources::BearingSource>().has_aided() ? NavigationSource::kAnglesOnly
-                                                                          : NavigationSource::kPropagated;
-      set_trunk_uncertainty(now);
-      break;
+      return if_fresh(trunk_.source<sources::BearingSource>().has_aided(), NavigationSource::kAnglesOnly);
+    case Sensors::kPose:
+      return if_fresh(trunk_.source<sources::KeypointSource>().has_aided(), NavigationSource::kPose);
   }
+  return NavigationSource::kNone;
 }
 
 /// 1 sigma of the differential acceleration of the target, m/s^2, of all axes.
@@ -100,18 +89,14 @@ double Navigation::differential_acceleration_sigma() const {
   return math::sqrt(variance);
 }
 
-void Navigation::set_trunk_uncertainty(GpsTime now) {
+/// Propagates the covariance of position and velocity from the estimator's epoch, including the unmodelled acceleration
+/// and the differential one, known to its sigma.
+void Navigation::set_uncertainty(GpsTime now) {
   const trunk::Trunk& trunk = trunk_.trunk();
-  set_uncertainty(trunk::covariance_rtn(trunk.estimate(), trunk.servicer()), differential_acceleration_sigma(),
-                  trunk.epoch(), now);
-}
-
-/// Propagates the covariance of position and velocity from `epoch`, including the unmodelled acceleration and the
-/// differential one, known to `acceleration_sigma`.
-void Navigation::set_uncertainty(const Matrix6& covariance_rtn, double acceleration_sigma, GpsTime epoch, GpsTime now) {
-  const double coast_s = seconds(now - epoch);
+  const Matrix6 covariance_rtn = trunk::covariance_rtn(trunk.estimate(), trunk.servicer());
+  const double coast_s = seconds(now - trunk.epoch());
   const double separation = (state_.target.position_eci - state_.servicer.position_eci).norm();
-  const double acceleration = math::hypot(kUnmodelledGradient * separation, acceleration_sigma);
+  const double acceleration = math::hypot(kUnmodelledGradient * separation, differential_acceleration_sigma());
   for (int axis = 0; axis < 3; ++axis) {
     const double position = math::sqrt(covariance_rtn(axis, axis));
     const double velocity = math::sqrt(covariance_rtn(3 + axis, 3 + axis));
@@ -129,25 +114,17 @@ void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
       inbox.count_unusable_time();
       continue;
     }
-    const Result<navigation::GnssNavigationSettings> settings = gnss_settings(configurations[k].value);
-    if (!settings.ok()) {
+    if (!carrier_settings(configurations[k].value).ok()) {
       inbox.count_bad_content();
       continue;
     }
     sensors_ = static_cast<Sensors>(configurations[k].value.source);  // validated with the settings
-    gnss_.configure(settings.value());
-    earth_ = settings.value().earth;
     drop_state();
   }
   const bool camera_changes = inbox.camera_configurations().size() > 0 ||
                               inbox.angles_only_configurations().size() > 0 || inbox.target_aprioris().size() > 0 ||
                               inbox.pose_configurations().size() > 0;
-  if (camera_changes) {
-    if (sensors_ == Sensors::kPose) {
-      pose_.configure(now, inbox, earth_);
-    }
-    if (uses_camera()) drop_state();
-  }
+  if (camera_changes && uses_camera()) drop_state();
   trunk_.configure(now, inbox);
 }
 
@@ -173,24 +150,6 @@ void Navigation::take_trunk(GpsTime now, Inbox& inbox) {
   if (!target.ok()) return drop_state();
   state_.last_measurement = trunk_.last_measurement();
   set_reference({trunk.epoch(), trunk.servicer(), target.value()});
-}
-
-void Navigation::take_pose(GpsTime now, Inbox& inbox) {
-  receivers_.feed(now, inbox, gnss_);
-  pose_.update(now, inbox, gnss_, own_burns());
-  gnss_.update(now, own_burns());
-  set_reference_to_estimate(pose_.filter(), pose_.filter().last_measurement());
-}
-
-template <class Filter>
-void Navigation::set_reference_to_estimate(const Filter& filter, GpsTime last_measurement) {
-  const Result<orbit::CartesianState> target = filter.target();
-  if (!target.ok()) {
-    drop_state();
-    return;
-  }
-  state_.last_measurement = last_measurement;
-  set_reference({filter.epoch(), filter.servicer(), target.value()});
 }
 
 void Navigation::take_maneuvers(GpsTime now, Inbox& inbox) {
@@ -280,11 +239,11 @@ void Navigation::discard_before(GpsTime time) {
 /// That of the estimator's epoch, with the drift of the mean longitude and the differential acceleration until the
 /// state (a velocity v changes the elements by at most 2 v / n).
 Vector6 Navigation::sigma_a_roe_m() const {
-  const Matrix6 covariance = uses_pose() ? pose_.filter().a_roe_covariance_m2() : trunk_.trunk().a_roe_covariance_m2();
+  const Matrix6 covariance = trunk_.trunk().a_roe_covariance_m2();
   Vector6 sigma;
   for (int k = 0; k < 6; ++k) sigma(k) = math::sqrt(covariance(k, k));
   const auto servicer = orbit::qns_from_cartesian(state_.servicer);
-  if (uses_pose() || !servicer.ok()) return sigma;
+  if (!servicer.ok()) return sigma;
   const double n = orbit::mean_motion(servicer.value().a);
   const double coast_s = seconds(state_.epoch - trunk_.trunk().epoch());
   const double changed = 2.0 / n * differential_acceleration_sigma() * coast_s;

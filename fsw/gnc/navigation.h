@@ -1,8 +1,8 @@
 #pragma once
 // navigate: the state of servicer and target at the time of the step, from measurements at their own times and own
-// maneuvers. A telecommand chooses the source: ideal navigation (true states in a packet), the GNSS receivers of both
-// spacecraft, or the servicer's own receiver and a camera, for bearings or for poses; between measurements the state
-// is propagated under J2.
+// maneuvers. A telecommand chooses the sources of the trunk (trunk_navigation.h): ideal navigation (true states in a
+// packet), the GNSS receivers of both spacecraft, or the servicer's own receiver and a camera, for bearings or for
+// keypoints; between measurements the state is propagated under J2.
 //
 // Late inputs are used: the state is rebuilt at each step from a reference state, that of the last measurement, and the
 // own maneuvers since. A commanded maneuver is assumed executed as commanded until the actuator reports otherwise, so
@@ -13,11 +13,8 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
-#include "fsw/gnc/gnss_receivers.h"
 #include "fsw/gnc/inbox.h"
-#include "fsw/gnc/pose_camera_navigation.h"
 #include "fsw/gnc/trunk_navigation.h"
-#include "fsw/navigation/gnss_navigation.h"
 #include "fsw/orbit/elements.h"
 
 namespace vbar::fsw::gnc {
@@ -55,22 +52,11 @@ class Navigation {
 
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
-  /// Whether the sources of the trunk are used: all but the pose network.
-  [[nodiscard]] bool uses_trunk() const { return !uses_pose(); }
-  [[nodiscard]] bool uses_bearings() const { return sensors_ == Sensors::kBearings; }
   [[nodiscard]] const TrunkNavigation& trunk() const { return trunk_; }
-
-  /// Whether the pose network is the source, and its navigation.
-  [[nodiscard]] bool uses_pose() const { return sensors_ == Sensors::kPose; }
-  [[nodiscard]] const PoseCameraNavigation& pose() const { return pose_; }
-
-  [[nodiscard]] bool uses_camera() const { return uses_bearings() || uses_pose(); }
+  [[nodiscard]] bool uses_camera() const { return sensors_ == Sensors::kBearings || sensors_ == Sensors::kPose; }
 
   /// Commanded pointing of the camera, after the last update.
-  void expect_pointing(const Pointing& pointing) {
-    trunk_.set_pointing(pointing);
-    pose_.set_pointing(pointing);
-  }
+  void expect_pointing(const sources::Pointing& pointing) { trunk_.set_pointing(pointing); }
 
   /// 1 sigma of a * ROE (m, six components).
   [[nodiscard]] Vector6 sigma_a_roe_m() const;
@@ -91,15 +77,11 @@ class Navigation {
   void take_configurations(GpsTime now, Inbox& inbox);
   void take_trunk(GpsTime now, Inbox& inbox);
   [[nodiscard]] double differential_acceleration_sigma() const;
-  void set_trunk_uncertainty(GpsTime now);
-  void take_pose(GpsTime now, Inbox& inbox);
-  template <class Filter>
-  void set_reference_to_estimate(const Filter& filter, GpsTime last_measurement);
   void set_reference(const Pair& estimated);
   void drop_state();
   [[nodiscard]] std::span<const navigation::Burn> own_burns();
+  [[nodiscard]] NavigationSource source_of(GpsTime now) const;
   void set_uncertainty(GpsTime now);
-  void set_uncertainty(const Matrix6& covariance_rtn, double acceleration_sigma, GpsTime epoch, GpsTime now);
   void take_maneuvers(GpsTime now, Inbox& inbox);
   void move_reference(GpsTime time);
   [[nodiscard]] Result<Pair> flown_to(GpsTime time) const;
@@ -118,11 +100,7 @@ class Navigation {
   /// As navigation_configuration.source.
   enum class Sensors : std::int8_t { kIdeal = 0, kGnss = 1, kBearings = 2, kPose = 3 };
   Sensors sensors_ = Sensors::kIdeal;
-  GnssReceivers receivers_;
-  navigation::GnssNavigation gnss_;
   TrunkNavigation trunk_;
-  PoseCameraNavigation pose_;
-  orbit::EarthOrientation earth_;  ///< as telecommanded
   std::array<navigation::Burn, kMaxManeuvers> burns_{};
 };
 

@@ -49,11 +49,12 @@ void put_attitudes(GpsTime now, const Queue& packets, Inbox& inbox, navigation::
 void TrunkNavigation::configure(GpsTime now, Inbox& inbox) {
   take_apriori(now, inbox);
   const bool has_any = !inbox.navigation_configurations().empty() || !inbox.camera_configurations().empty() ||
-                       !inbox.angles_only_configurations().empty();
+                       !inbox.angles_only_configurations().empty() || !inbox.pose_configurations().empty();
   if (!has_any) return;
   inbox.keep_newest(inbox.navigation_configurations(), now, navigation_);
   inbox.keep_newest(inbox.camera_configurations(), now, camera_);
   inbox.keep_newest(inbox.angles_only_configurations(), now, angles_only_);
+  inbox.keep_newest(inbox.pose_configurations(), now, pose_);
   configure_sources(now, inbox);
 }
 
@@ -68,25 +69,50 @@ void TrunkNavigation::configure_sources(GpsTime now, Inbox& inbox) {
   trunk::TrunkSettings blocks = carrier.value().blocks;
   std::get<sources::OwnGnssSource>(sources_).configure(carrier.value().carrier.servicer_antenna_body_m);
   std::get<sources::CarrierSource>(sources_).configure(carrier.value().carrier, carrier.value().pair_wait);
-  if (camera_ && angles_only_) {
-    const auto camera = camera_settings(*camera_, *angles_only_);
-    const auto bearings = bearing_settings(*angles_only_);
-    if (!camera.ok() || !bearings.ok()) {
-      inbox.count_bad_content();
-      camera_.reset();
-      angles_only_.reset();
-      return;
-    }
-    const trunk::TrunkSettings& tuned = bearings.value().blocks;
-    blocks.burn_sigma = tuned.burn_sigma;
-    blocks.burn_sigma_relative = tuned.burn_sigma_relative;
-    blocks.relative_orbit.acceleration = tuned.relative_orbit.acceleration;
-    blocks.brightness_offset = tuned.brightness_offset;
-    blocks.boresight_a = tuned.boresight_a;
-    std::get<sources::BearingSource>(sources_).configure(camera.value(), bearings.value().bearings);
+  if (!configure_bearings(blocks) || !configure_keypoints(blocks)) {
+    inbox.count_bad_content();
+    return;
   }
   trunk_.configure(blocks);
   select_sources(now);
+}
+
+/// False if the telecommands are invalid; they are discarded.
+bool TrunkNavigation::configure_bearings(trunk::TrunkSettings& blocks) {
+  if (!camera_ || !angles_only_) return true;
+  const auto camera = camera_settings(*camera_, *angles_only_);
+  const auto bearings = bearing_settings(*angles_only_);
+  if (!camera.ok() || !bearings.ok()) {
+    camera_.reset();
+    angles_only_.reset();
+    return false;
+  }
+  const trunk::TrunkSettings& tuned = bearings.value().blocks;
+  blocks.burn_sigma = tuned.burn_sigma;
+  blocks.burn_sigma_relative = tuned.burn_sigma_relative;
+  blocks.relative_orbit.acceleration = tuned.relative_orbit.acceleration;
+  blocks.brightness_offset = tuned.brightness_offset;
+  blocks.boresight_a = tuned.boresight_a;
+  std::get<sources::BearingSource>(sources_).configure(camera.value(), bearings.value().bearings);
+  return true;
+}
+
+bool TrunkNavigation::configure_keypoints(trunk::TrunkSettings& blocks) {
+  if (!camera_ || !pose_) return true;
+  const auto keypoints = keypoint_settings(*camera_, *pose_);
+  if (!keypoints.ok()) {
+    camera_.reset();
+    pose_.reset();
+    return false;
+  }
+  const trunk::TrunkSettings& tuned = keypoints.value().blocks;
+  blocks.burn_sigma = tuned.burn_sigma;
+  blocks.burn_sigma_relative = tuned.burn_sigma_relative;
+  blocks.relative_orbit.acceleration = tuned.relative_orbit.acceleration;
+  blocks.attitude = tuned.attitude;
+  std::get<sources::KeypointSource>(sources_).configure(keypoints.value().keypoints);
+  if (keypoints.value().apriori) trunk_.set_apriori(*keypoints.value().apriori);
+  return true;
 }
 
 /// As navigation_configuration.source; a camera that is not configured is not a source.
@@ -101,6 +127,8 @@ void TrunkNavigation::select_sources(GpsTime now) {
   select(std::get<sources::CarrierSource>(sources_), source == navigation_configuration::kSourceGnss);
   select(std::get<sources::BearingSource>(sources_),
          source == navigation_configuration::kSourceAnglesOnly && camera_ && angles_only_);
+  select(std::get<sources::KeypointSource>(sources_),
+         source == navigation_configuration::kSourcePose && camera_ && pose_);
 }
 
 void TrunkNavigation::take_apriori(GpsTime now, Inbox& inbox) {
@@ -176,6 +204,7 @@ GpsTime TrunkNavigation::last_measurement() const {
   const auto compare = [&](GpsTime measured) { last = measured > last ? measured : last; };
   compare(source<sources::CarrierSource>().last_measurement());
   compare(source<sources::BearingSource>().last_measurement());
+  compare(source<sources::KeypointSource>().last_measurement());
   return last;
 }
 

@@ -16,6 +16,7 @@
 #include "fsw/sources/bearings/bearing_source.h"
 #include "fsw/sources/carrier_pair/carrier_source.h"
 #include "fsw/sources/ideal/ideal_source.h"
+#include "fsw/sources/keypoints/keypoint_source.h"
 #include "fsw/sources/own_gnss/own_gnss_source.h"
 #include "fsw/sources/source.h"
 #include "fsw/trunk/trunk.h"
@@ -53,13 +54,15 @@ class TrunkNavigation {
 
  private:
   /// Records of one time are processed in this order: the servicer's own position first.
-  using Sources =
-      std::tuple<sources::IdealSource, sources::OwnGnssSource, sources::CarrierSource, sources::BearingSource>;
+  using Sources = std::tuple<sources::IdealSource, sources::OwnGnssSource, sources::CarrierSource,
+                             sources::BearingSource, sources::KeypointSource>;
 
   static_assert(std::tuple_size_v<Sources> <= trunk::Trunk::kMaxSources);
 
   void select_sources(GpsTime now);
   void configure_sources(GpsTime now, Inbox& inbox);
+  bool configure_bearings(trunk::TrunkSettings& blocks);
+  bool configure_keypoints(trunk::TrunkSettings& blocks);
   void take_attitudes(GpsTime now, Inbox& inbox);
   void take_apriori(GpsTime now, Inbox& inbox);
   [[nodiscard]] GpsTime owed_until(GpsTime now) const;
@@ -73,6 +76,7 @@ class TrunkNavigation {
   std::optional<navigation_configuration> navigation_;
   std::optional<camera_configuration> camera_;
   std::optional<angles_only_configuration> angles_only_;
+  std::optional<pose_configuration> pose_;
 };
 
 }  // namespace vbar::fsw::gnc

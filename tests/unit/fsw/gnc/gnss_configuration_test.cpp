@@ -36,22 +36,23 @@ navigation_configuration good() {
 }
 
 TEST(GnssConfiguration, ReachesTheFilter) {
-  const auto settings = gnss_settings(good());
+  const auto settings = carrier_settings(good());
   ASSERT_TRUE(settings.ok());
-  const navigation::RelativeFilterSettings& relative = settings.value().relative;
-  EXPECT_EQ(relative.antenna_offset_sigma_m, 3.2e-3);
-  EXPECT_EQ(relative.phase_centre_jitter_m, 1e-3);
-  EXPECT_EQ(relative.phase_wander_sigma_m, 0.5e-3);
-  EXPECT_EQ(relative.phase_wander_time_s, 60.0);
-  EXPECT_EQ(relative.acceleration_time_s, 1500.0);
-  EXPECT_EQ(settings.value().ambiguities.min_ratio, 3.0);
+  const sources::CarrierSettings& carrier = settings.value().carrier;
+  EXPECT_EQ(carrier.filter.antenna_offset_sigma_m, 3.2e-3);
+  EXPECT_EQ(carrier.filter.phase_centre_jitter_m, 1e-3);
+  EXPECT_EQ(carrier.ambiguities.min_ratio, 3.0);
+  const trunk::TrunkSettings& blocks = settings.value().blocks;
+  EXPECT_DOUBLE_EQ(blocks.phase_wander.sigma, std::sqrt(2.0) * 0.5e-3);  // of a difference of two channels
+  EXPECT_EQ(blocks.phase_wander.time_s, 60.0);
+  EXPECT_EQ(blocks.relative_orbit.empirical.time_s, 1500.0);
   EXPECT_EQ(settings.value().pair_wait.ns, 12'000'000'000);
 }
 
 TEST(GnssConfiguration, WithoutWanderItsTimeMayBeZero) {
   navigation_configuration c = good();
   c.phase_wander_sigma_m = c.phase_wander_time_s = 0.0;
-  EXPECT_TRUE(gnss_settings(c).ok());
+  EXPECT_TRUE(carrier_settings(c).ok());
 }
 
 TEST(GnssConfiguration, InvalidFieldsAreRefused) {
@@ -78,7 +79,7 @@ TEST(GnssConfiguration, InvalidFieldsAreRefused) {
   for (const auto& [what, spoil] : spoils) {
     navigation_configuration c = good();
     spoil(c);
-    EXPECT_EQ(gnss_settings(c).status(), Status::kOutOfRange) << what;
+    EXPECT_EQ(carrier_settings(c).status(), Status::kOutOfRange) << what;
   }
 }
 

@@ -64,19 +64,22 @@ TEST(PoseConfiguration, SettingsAreTheMessages) {
   ASSERT_TRUE(camera.ok());
   EXPECT_EQ(camera.value().dark_level_dn, 64.0);
   EXPECT_EQ(camera.value().shape[10], test::tango_shape()[10]);
-  const auto settings = pose_settings(good_camera(), p, {});
+  const auto settings = keypoint_settings(good_camera(), p);
   ASSERT_TRUE(settings.ok());
-  EXPECT_EQ(settings.value().filter.acceleration.psd_max, 1e-11);
-  EXPECT_EQ(settings.value().filter.inertia(1, 1), 2.5);
-  EXPECT_EQ(settings.value().start.min_images, 3);
+  EXPECT_EQ(settings.value().blocks.relative_orbit.acceleration.psd_max, 1e-11);
+  EXPECT_EQ(settings.value().blocks.attitude.inertia.tensor(1, 1), 2.5);
+  EXPECT_EQ(settings.value().keypoints.aiding.inertia.tensor(2, 2), 3.1);
+  EXPECT_EQ(settings.value().keypoints.aiding.start.min_images, 3);
+  EXPECT_EQ(settings.value().keypoints.sigma_floor_px, 0.2);
   ASSERT_TRUE(settings.value().apriori.has_value());
+  EXPECT_EQ(settings.value().apriori->kind, trunk::TargetApriori::Kind::kMeanRoe);
   EXPECT_EQ(settings.value().apriori->time.ns, 7);
-  EXPECT_EQ(settings.value().apriori->a_roe_m(5), 3.0);
+  EXPECT_EQ(settings.value().apriori->mean_a_roe_m(5), 3.0);
   EXPECT_EQ(settings.value().apriori->sigma_a_roe_m(0), 0.1);
 }
 
 TEST(PoseConfiguration, NothingHandedOver) {
-  const auto settings = pose_settings(good_camera(), good_pose(), {});
+  const auto settings = keypoint_settings(good_camera(), good_pose());
   ASSERT_TRUE(settings.ok());
   EXPECT_FALSE(settings.value().apriori.has_value());
 }
@@ -110,11 +113,11 @@ TEST(PoseConfiguration, WhatMakesNoSenseIsRefused) {
   for (const auto& [what, spoil] : spoils) {
     pose_configuration p = good_pose();
     spoil(p);
-    EXPECT_EQ(pose_settings(good_camera(), p, {}).status(), Status::kOutOfRange) << what;
+    EXPECT_EQ(keypoint_settings(good_camera(), p).status(), Status::kOutOfRange) << what;
   }
   camera_configuration bent = good_camera();
   bent.focal_length_px[0] = 0.0;
-  EXPECT_EQ(pose_settings(bent, good_pose(), {}).status(), Status::kOutOfRange);
+  EXPECT_EQ(keypoint_settings(bent, good_pose()).status(), Status::kOutOfRange);
   EXPECT_EQ(pose_camera_settings(bent, good_pose()).status(), Status::kOutOfRange);
 }
 

@@ -1,0 +1,86 @@
+// Telemetry of an image of the pose network.
+
+#include "fsw/gnc/message_fields.h"
+#include "fsw/sources/keypoints/keypoint_source.h"
+
+namespace vbar::fsw::sources {
+namespace {
+
+using gnc::copy;
+
+// The last of each list stands for all: the lists of vbar.lcm are those of the code.
+static_assert(static_cast<int>(pose::SightingStatus::kInvalid) == telemetry_pose::kStatusInvalid);
+static_assert(static_cast<int>(KeypointEditStatus::kStart) == telemetry_pose::kEditStart);
+
+/// Values of telemetry_pose.keypoint_fate.
+std::int8_t keypoint_fate(const pose::Keypoint& seen, const KeypointUpdate& update) {
+  if (update.accepted) return telemetry_pose::kKeypointUsed;
+  if (update.is_usable) return telemetry_pose::kKeypointRejected;
+  return seen.is_usable ? telemetry_pose::kKeypointWithoutFilter : telemetry_pose::kKeypointUnusable;
+}
+
+void copy_sighting(const pose::PoseSighting& sighting, telemetry_pose& message) {
+  message.image = sighting.image;
+  message.status = static_cast<std::int8_t>(sighting.status);
+  message.region_is_predicted = sighting.region_is_predicted ? 1 : 0;
+  message.region_px[0] = sighting.region.centre_px.x();
+  message.region_px[1] = sighting.region.centre_px.y();
+  message.region_px[2] = sighting.region.side_px;
+  for (std::size_t k = 0; k < sighting.keypoints.size(); ++k) {
+    const pose::Keypoint& keypoint = sighting.keypoints[k];
+    message.x_px[k] = static_cast<float>(keypoint.pixel.x());
+    message.y_px[k] = static_cast<float>(keypoint.pixel.y());
+    message.covariance_px2[3 * k] = static_cast<float>(keypoint.covariance_px2(0, 0));
+    message.covariance_px2[3 * k + 1] = static_cast<float>(keypoint.covariance_px2(1, 0));
+    message.covariance_px2[3 * k + 2] = static_cast<float>(keypoint.covariance_px2(1, 1));
+    message.peak[k] = static_cast<float>(keypoint.peak);
+  }
+  if (!sighting.pnp) return;
+  message.pnp_inliers = static_cast<std::int8_t>(sighting.pnp->inliers);
+  gnc::copy_rotation(sighting.pnp->pose.R_camera_body, message.pnp_q_camera_body);
+  copy(sighting.pnp->pose.position_camera_m, message.pnp_position_camera_m);
+  message.pnp_mean_square = sighting.pnp->mean_square;
+}
+
+void copy_counters(const KeypointCounters& counters, telemetry_pose& message) {
+  message.images_used = counters.images_used;
+  message.images_refused = counters.images_refused;
+  message.keypoints_used = counters.keypoints_used;
+  message.keypoints_refused = counters.keypoints_refused;
+  message.attitude_restarts = counters.attitudes_reset;
+  message.restarts = counters.restarts;
+}
+
+}  // namespace
+
+void KeypointSource::report(const Telemetry& telemetry) const {
+  if (!has_image_) return;
+  const pose::PoseSighting& sighting = network_.sighting();
+  const KeypointsUpdate& update = aiding_.last_update();
+  telemetry_pose message{};
+  message.step = telemetry.step;
+  copy_sighting(sighting, message);
+  for (std::size_t k = 0; k < sighting.keypoints.size(); ++k) {
+    message.keypoint_fate[k] = keypoint_fate(sighting.keypoints[k], update.keypoints[k]);
+  }
+  message.fate = static_cast<std::int8_t>(edit_status_);
+  message.filter_runs = telemetry.trunk.knowledge() == trunk::RelativeKnowledge::kEstimated ? 1 : 0;
+  message.tiles_missing = static_cast<std::int16_t>(tiles_missing_);
+  if (estimated_) {
+    message.has_attitude = estimated_->has_attitude ? 1 : 0;
+    gnc::copy_rotation(estimated_->pose.R_camera_body, message.q_camera_body);
+    copy(estimated_->pose.position_camera_m, message.position_camera_m);
+    copy(estimated_->rate_body, message.rate_body);
+    gnc::copy_lower_triangle(estimated_->attitude_covariance, message.covariance_attitude);
+    gnc::copy_lower_triangle(estimated_->a_roe_covariance_m2, message.covariance_a_roe);
+    copy(estimated_->a_roe_m, message.a_roe_osculating_m);
+  }
+  message.nis = update.nis;
+  message.nis_degrees = 2 * update.used;
+  message.acceleration_psd = telemetry.trunk.relative_orbit().noise().psd();
+  copy_counters(aiding_.counters(), message);
+  message.tiles_refused = telemetry.inbox.image().counts().tiles_refused;
+  telemetry.outbox.send(sighting.time, message);
+}
+
+}  // namespace vbar::fsw::sources
