@@ -6,11 +6,10 @@
 
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnss/receiver_decoder.h"
-#include "fsw/navigation/gnss_navigation.h"
 
 namespace vbar::fsw::sources {
 
-using navigation::Receiver;
+enum class Receiver : std::uint8_t { kServicer = 0, kTarget = 1 };
 
 class ReceiverDecoders {
  public:

@@ -69,37 +69,6 @@ TEST(CarrierAiding, IsConsistentWithItsErrors) {
   EXPECT_NEAR(nis / nis_count, 1.0, 0.05 * std::sqrt(40.0 / kSeeds));
 }
 
-// The trunk is the sum of its parts: the filters that preceded it, given the same observations. Elements whose velocity
-// is uncertain by 0.2 m/s are hundreds of metres wide, and phases wait until codes have narrowed them: float solutions
-// agree once the first epochs have lost their share, here after 20 minutes. Integers restore what was lost.
-TEST(CarrierAiding, AgreesWithThePrecedingFilter) {
-  double trunk_square = 0.0, preceding_square = 0.0;
-  constexpr int kSeeds = vbar::test::share_under_sanitizers(10);
-  for (unsigned seed = 301; seed < 301 + kSeeds; ++seed) {
-    for (const bool has_integers : {false, true}) {
-      TrunkPair pair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3);
-      pair.with_preceding = true;
-      pair.settings.ambiguities.enabled = pair.carrier_settings.ambiguities.enabled = has_integers;
-      pair.begin();
-      pair.begin_trunk();
-      pair.fly_trunk(has_integers ? 30 : 120);
-      EXPECT_EQ(pair.carrier->is_fixed(), has_integers);
-      EXPECT_EQ(pair.navigation->ambiguities().is_fixed(), has_integers);
-      const Matrix6 preceding = pair.navigation->covariance_rtn();
-      const Matrix6 estimated = pair.trunk_covariance();
-      for (int i = 0; i < 6; ++i) EXPECT_NEAR(std::sqrt(estimated(i, i) / preceding(i, i)), 1.0, 0.05) << i;
-      const Vector6 error = pair.trunk_error();
-      const Vector6 preceding_error =
-          pair.error_of(pair.navigation->servicer(), pair.navigation->target(), pair.navigation->epoch());
-      // Two unbiased estimates whose variances differ by 0.6 % differ by 0.08 sigma; three of those.
-      for (int i = 0; i < 3; ++i) EXPECT_NEAR(error(i), preceding_error(i), 0.25 * std::sqrt(preceding(i, i))) << i;
-      trunk_square += error.head<3>().squaredNorm();
-      preceding_square += preceding_error.head<3>().squaredNorm();
-    }
-  }
-  EXPECT_LT(trunk_square, 1.05 * preceding_square);
-}
-
 TEST(CarrierAiding, ASlipReportedByTheReceiversIsCorrectedAtOnce) {
   TrunkPair pair(5);
   pair.fly_trunk(15);

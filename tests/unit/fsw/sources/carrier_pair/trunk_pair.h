@@ -1,10 +1,10 @@
 #pragma once
-// The cooperating pair of tests/unit/fsw/navigation, whose observations the trunk receives through its aids; the filter
-// that preceded it receives the same observations.
+// The cooperating pair of tests/unit/fsw/navigation, whose observations the trunk receives through its aids.
 
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <stdexcept>
 
 #include "fsw/sources/carrier_pair/carrier_aiding.h"
 #include "fsw/sources/own_gnss/own_gnss_aiding.h"
@@ -27,22 +27,22 @@ struct TrunkPair : navigation::test::CooperatingPair {
       : CooperatingPair(seed, offset_m, jitter_m) {
     servicer.motion = target.motion = fly_in_full_gravity;
     trunk_settings.earth = kEarth;
-    // The acceleration of the preceding filter, and nothing else, drives the pair apart.
+    // The empirical acceleration, and nothing else, drives the pair apart.
     trunk_settings.relative_orbit.acceleration = {.psd = 1e-18, .psd_min = 1e-18, .psd_max = 1e-18};
     trunk_settings.relative_orbit.along_track.sigma = 1e-12;
     trunk_settings.relative_orbit.from_sun.sigma = 1e-12;
     trunk_settings.burn_sigma_relative = 2e-3;
     carrier_settings.servicer_antenna_body_m = carrier_settings.target_antenna_body_m = nominal_antenna_m;
-    for (const gnss::Ephemeris& ephemeris : satellites) EXPECT_EQ(store.put(ephemeris), Status::kOk);
+    for (const gnss::Ephemeris& ephemeris : satellites) {
+      if (store.put(ephemeris) != Status::kOk) throw std::logic_error("an ephemeris of the test is not stored");
+    }
     begin_trunk();
   }
 
   /// The truth is the filter's own model.
   void expect_no_acceleration() {
     trunk_settings.relative_orbit.empirical.sigma = 1e-10;
-    settings.relative.acceleration_sigma = 1e-10;
     begin_trunk();
-    begin();
   }
 
   void begin_trunk() {
@@ -57,7 +57,6 @@ struct TrunkPair : navigation::test::CooperatingPair {
   /// An epoch of both receivers at `tag`, or of the servicer alone.
   void step(const gnss::ObservationEpoch& ours, const gnss::ObservationEpoch* theirs,
             std::span<const navigation::Burn> burns = {}) {
-    using navigation::Receiver;
     estimator->advance_to(tag, burns);
     const auto frame = navigation::EarthFrame::at(tag, kEarth);
     const Matrix3 R_eci_servicer = servicer.R_eci_body_at(tag);
@@ -74,12 +73,6 @@ struct TrunkPair : navigation::test::CooperatingPair {
                         .frame = frame},
                        *estimator);
     }
-    if (!with_preceding) return;
-    navigation->take(Receiver::kServicer, navigation::AttitudeSample{.time = tag, .R_eci_body = R_eci_servicer});
-    navigation->take(Receiver::kTarget, navigation::AttitudeSample{.time = tag, .R_eci_body = R_eci_target});
-    navigation->take(Receiver::kServicer, ours);
-    if (theirs != nullptr) navigation->take(Receiver::kTarget, *theirs);
-    navigation->update(tag, burns);
   }
   void step(std::span<const navigation::Burn> burns = {}) {
     const gnss::ObservationEpoch ours = servicer.observe(tag, satellites, kEarth);
@@ -135,7 +128,6 @@ struct TrunkPair : navigation::test::CooperatingPair {
     return target.cycles[place] - servicer.cycles[place];
   }
 
-  bool with_preceding = false;  ///< the filter that preceded the trunk receives the observations too
   trunk::TrunkSettings trunk_settings;
   CarrierSettings carrier_settings;
   navigation::EphemerisStore store;

@@ -13,27 +13,26 @@
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/sources/keypoints/keypoint_aiding.h"
-#include "tests/integration/pose_filter/close_flight.h"
+#include "tests/unit/fsw/sources/keypoints/close_flight.h"
 
 namespace vbar::fsw::sources {
 
 inline constexpr double kDegree = M_PI / 180.0;
 
 inline trunk::TrunkSettings flight_blocks(const vbar::test::CloseFlight& flight) {
-  const navigation::PoseSettings pose = vbar::test::pose_settings(flight);
   trunk::TrunkSettings blocks;
   blocks.earth = flight.earth;
   blocks.relative_orbit.acceleration = {.psd = 1e-13, .psd_min = 1e-14, .psd_max = 1e-11};
-  blocks.attitude.inertia = navigation::inertia_of(pose.filter.inertia).value();
+  blocks.attitude.inertia = vbar::test::close_flight_camera().inertia;
   return blocks;
 }
 
-inline KeypointAidingSettings flight_settings(const vbar::test::CloseFlight& flight) {
-  const navigation::PoseSettings pose = vbar::test::pose_settings(flight);
+inline KeypointAidingSettings flight_settings() {
+  const vbar::test::CloseFlightCamera camera = vbar::test::close_flight_camera();
   KeypointAidingSettings settings;
-  settings.model = {.camera = 1, .optics = pose.filter.camera, .shape = pose.filter.shape};
-  settings.inertia = navigation::inertia_of(pose.filter.inertia).value();
-  settings.camera_position_camera_m = pose.camera_position_camera_m;
+  settings.model = {.camera = 1, .optics = camera.optics, .shape = camera.shape};
+  settings.inertia = camera.inertia;
+  settings.camera_position_camera_m = camera.position_camera_m;
   return settings;
 }
 
@@ -68,10 +67,10 @@ class KeypointFlight {
   }
 
   KeypointEditStatus step(bool has_image = true, const Eigen::Quaterniond& turned = Eigen::Quaterniond::Identity()) {
-    const navigation::PoseEpoch& measured = network.measure(next, turned);
+    const vbar::test::MeasuredEpoch& measured = network.measure(next, turned);
     trunk->advance_to(measured.time, burns);
     trunk::OwnPosition position;
-    position.position_eci = measured.servicer_gnss->position_eci;
+    position.position_eci = measured.servicer_position_eci;
     trunk->take_own_position(position);
     KeypointImage image;
     image.time = measured.time;
@@ -89,10 +88,10 @@ class KeypointFlight {
 
   /// No image at all.
   void coast() {
-    const navigation::PoseEpoch& measured = network.measure(next);
+    const vbar::test::MeasuredEpoch& measured = network.measure(next);
     trunk->advance_to(measured.time, burns);
     trunk::OwnPosition position;
-    position.position_eci = measured.servicer_gnss->position_eci;
+    position.position_eci = measured.servicer_position_eci;
     trunk->take_own_position(position);
     aiding->check_age(measured.time);
     error = error_of(Eigen::Quaterniond::Identity());

@@ -82,7 +82,7 @@ TEST(KeypointFlight, IsConsistentInWhiteNoise) {
                             .stretch_sigma = 1e-6,
                             .lasting_stretch = {.sigma = 1e-6, .time_s = 3600.0}};
   blocks.keypoint_origin.sigma = 1e-6;
-  KeypointAidingSettings settings = flight_settings(whole_flight());
+  KeypointAidingSettings settings = flight_settings();
   settings.model.camera = 0;  // a boresight bias of 3 arcsec
   settings.novelty.gain = 0.0;
   settings.editing.tail_degrees = 1e9;  // Gaussian
@@ -101,7 +101,7 @@ TEST(KeypointFlight, IsConsistentWithANetworkThatErrsAlikeInNeighbouringImages) 
   errors.lasting_share = 0.9;
   errors.outlier_share = 0.03;
   errors.flip_share = 0.05;
-  const Outcome mean = mean_of_seeds(flight_blocks(whole_flight()), flight_settings(whole_flight()), errors, kSeeds);
+  const Outcome mean = mean_of_seeds(flight_blocks(whole_flight()), flight_settings(), errors, kSeeds);
   accuracy::expect_below("keypoints as an aid of the trunk, mean error of the position at 5 to 10 m",
                          "truth, all forces, simulated keypoints of 2 px, 8 seeds", mean.position_m, 0.023, "m");
   accuracy::expect_below("keypoints as an aid of the trunk, mean error of the target's attitude",
@@ -119,7 +119,7 @@ TEST(KeypointFlight, AdaptsToANetworkWithTooSmallCovariances) {
   errors.told_px = 1.0;
   errors.lasting_share = 0.7;
   errors.lasting_time_s = 30.0;
-  const Outcome mean = mean_of_seeds(flight_blocks(whole_flight()), flight_settings(whole_flight()), errors, 4);
+  const Outcome mean = mean_of_seeds(flight_blocks(whole_flight()), flight_settings(), errors, 4);
   // Chi-square of 24 degrees of freedom: 99.9 % below 51.2.
   EXPECT_LT(mean.roe_nees, 51.2 / 4.0);
   EXPECT_LT(mean.attitude_nees, 51.2 / 4.0);
@@ -142,7 +142,7 @@ class KeypointFaults : public testing::Test {
     return errors;
   }
   static KeypointAidingSettings settings_in_sunlight() {
-    KeypointAidingSettings settings = flight_settings(whole_flight());
+    KeypointAidingSettings settings = flight_settings();
     settings.max_phase = M_PI;
     return settings;
   }
@@ -249,7 +249,7 @@ TEST_F(KeypointFaults, ValuesThatAreNotFiniteChangeNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Vector6 roe = flown.trunk->roe();
   const Matrix6 covariance = flown.trunk->roe_covariance();
-  const navigation::PoseEpoch& measured = flown.network.measure(29);
+  const vbar::test::MeasuredEpoch& measured = flown.network.measure(29);
   pose::Keypoints keypoints = *measured.keypoints;
   for (auto& keypoint : keypoints) keypoint.pixel.x() = nan;
   KeypointImage image;
@@ -276,7 +276,7 @@ TEST_F(KeypointFaults, ValuesThatAreNotFiniteChangeNothing) {
 /// Outside the shadow, but the camera looks into the dark side: positions alone, no attitude, and no persistence of
 /// refusals.
 TEST_F(KeypointFaults, ABacklitTargetStartsNoAttitude) {
-  flown.aiding->configure(flight_settings(whole_flight()));
+  flown.aiding->configure(flight_settings());
   hand_over();
   const vbar::test::CloseEpoch& start = whole_flight().epochs[0];
   const Vector3 to_target = (start.target.position_eci - start.servicer.position_eci).normalized();

@@ -4,11 +4,17 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <random>
 #include <vector>
 
-#include "fsw/navigation/pose_navigation.h"
+#include "fsw/imaging/camera_model.h"
+#include "fsw/navigation/burn.h"
+#include "fsw/navigation/pose_attitude.h"
 #include "fsw/orbit/earth_rotation.h"
+#include "fsw/orbit/elements.h"
+#include "fsw/pose/keypoint.h"
+#include "fsw/pose/pnp.h"
 
 namespace vbar::test {
 
@@ -53,7 +59,24 @@ struct KeypointErrors {
   double burn_relative = 1e-3;    ///< of a burn's size, each axis: what is known of it against what was flown
 };
 
-fsw::navigation::PoseSettings pose_settings(const CloseFlight& flight);
+/// The camera and the target as both the sensor and navigation know them.
+struct CloseFlightCamera {
+  fsw::imaging::CameraModel optics;
+  fsw::Vector3 position_camera_m = fsw::Vector3::Zero();  ///< from the servicer's centre of mass, camera axes
+  fsw::pose::KeypointShape shape{};                       ///< body axes from the target's centre of mass, m
+  fsw::navigation::Inertia inertia;
+};
+CloseFlightCamera close_flight_camera();
+
+/// What the sensors measure at an image's time.
+struct MeasuredEpoch {
+  fsw::GpsTime time;
+  fsw::Vector3 servicer_position_eci = fsw::Vector3::Zero();  ///< by GNSS
+  fsw::Vector3 sun_eci = fsw::Vector3::Zero();                ///< unit vector
+  fsw::Matrix3 R_camera_eci = fsw::Matrix3::Identity();
+  const fsw::pose::Keypoints* keypoints = nullptr;  ///< null: no target detected
+  std::optional<fsw::pose::PnpSolution> pnp;        ///< of the same keypoints
+};
 
 /// Mean ROE of the target times the servicer's mean a.
 fsw::Vector6 mean_a_roe_m(const fsw::orbit::CartesianState& servicer, const fsw::orbit::CartesianState& target);
@@ -65,8 +88,7 @@ class SimulatedNetwork {
                    const KeypointErrors& errors, unsigned seed);
 
   /// `turned`: the target is turned by this besides, in body axes.
-  const fsw::navigation::PoseEpoch& measure(std::size_t index,
-                                            const Eigen::Quaterniond& turned = Eigen::Quaterniond::Identity());
+  const MeasuredEpoch& measure(std::size_t index, const Eigen::Quaterniond& turned = Eigen::Quaterniond::Identity());
   const std::vector<fsw::navigation::Burn>& known_burns() const { return known_burns_; }
 
  private:
@@ -83,7 +105,7 @@ class SimulatedNetwork {
   const CloseFlight& flight_;
   const std::vector<fsw::navigation::AttitudeState>& attitudes_;
   KeypointErrors errors_;
-  fsw::navigation::PoseSettings settings_;
+  CloseFlightCamera camera_ = close_flight_camera();
   std::mt19937 random_;
   std::normal_distribution<double> standard_;
   fsw::Vector3 attitude_bias_;
@@ -92,20 +114,7 @@ class SimulatedNetwork {
   std::array<bool, fsw::network::kKeypoints> is_stray_{};
   std::vector<fsw::navigation::Burn> known_burns_;
   fsw::pose::Keypoints keypoints_;
-  fsw::navigation::PoseEpoch epoch_;
+  MeasuredEpoch epoch_;
 };
-
-/// Estimate against truth.
-struct PoseError {
-  double position_m = 0.0;
-  fsw::Vector3 position_rtn = fsw::Vector3::Zero();
-  double attitude = 0.0;       ///< rad
-  double rate = 0.0;           ///< rad/s
-  double roe_nees = 0.0;       ///< 6 on average if honest
-  double attitude_nees = 0.0;  ///< turn and rate: 6 on average if honest
-};
-
-PoseError pose_error(const CloseEpoch& epoch, const fsw::navigation::AttitudeState& attitude,
-                     const fsw::navigation::PoseNavigation& navigation);
 
 }  // namespace vbar::test

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 
 #include "fsw/math/math.h"
-#include "tests/integration/pose_filter/close_flight.h"
+#include "tests/unit/fsw/sources/keypoints/close_flight.h"
 
 namespace vbar::test {
 namespace {
@@ -36,7 +36,7 @@ Matrix3 camera_to(const fsw::orbit::CartesianState& servicer, const fsw::orbit::
 
 SimulatedNetwork::SimulatedNetwork(const CloseFlight& flight, const std::vector<nav::AttitudeState>& attitudes,
                                    const KeypointErrors& errors, unsigned seed)
-    : flight_(flight), attitudes_(attitudes), errors_(errors), settings_(pose_settings(flight)), random_(seed) {
+    : flight_(flight), attitudes_(attitudes), errors_(errors), random_(seed) {
   attitude_bias_ = 0.7 * errors.attitude_arcsec * kArcsec * normal3();
   gnss_slow_ = normal3();
   for (Vector2& lasting : lasting_) lasting = normal3().head<2>();
@@ -46,16 +46,14 @@ SimulatedNetwork::SimulatedNetwork(const CloseFlight& flight, const std::vector<
   }
 }
 
-const nav::PoseEpoch& SimulatedNetwork::measure(std::size_t index, const Eigen::Quaterniond& turned) {
+const MeasuredEpoch& SimulatedNetwork::measure(std::size_t index, const Eigen::Quaterniond& turned) {
   const CloseEpoch& truth = flight_.epochs[index];
   epoch_ = {};
   epoch_.time = truth.time;
   epoch_.sun_eci = truth.sun_eci;
   const double keep = std::exp(-kImagePeriod_s / 600.0);
   gnss_slow_ = keep * gnss_slow_ + std::sqrt(1.0 - keep * keep) * normal3();
-  epoch_.servicer_gnss = truth.servicer;
-  epoch_.servicer_gnss->position_eci += gnss_slow_ + 0.5 * normal3();
-  epoch_.servicer_gnss->velocity_eci += 0.01 * normal3();
+  epoch_.servicer_position_eci = truth.servicer.position_eci + gnss_slow_ + 0.5 * normal3();
 
   const Matrix3 R_camera_eci =
       turn(errors_.pointing_deg * kDegree * normal3()) * camera_to(truth.servicer, truth.target);
@@ -63,7 +61,7 @@ const nav::PoseEpoch& SimulatedNetwork::measure(std::size_t index, const Eigen::
   pose::TargetPose seen;
   seen.R_camera_body = R_camera_eci * (attitudes_[index].q_eci_body * turned).toRotationMatrix();
   seen.position_camera_m =
-      R_camera_eci * (truth.target.position_eci - truth.servicer.position_eci) - settings_.camera_position_camera_m;
+      R_camera_eci * (truth.target.position_eci - truth.servicer.position_eci) - camera_.position_camera_m;
   see_keypoints(seen);
   if (errors_.has_dark && !truth.is_target_lit) return epoch_;
   epoch_.keypoints = &keypoints_;
@@ -75,7 +73,7 @@ void SimulatedNetwork::see_keypoints(const pose::TargetPose& seen) {
   const double keep = std::exp(-kImagePeriod_s / errors_.lasting_time_s);
   const double lasting_sigma = errors_.sigma_px * std::sqrt(errors_.lasting_share);
   const double white_sigma = errors_.sigma_px * std::sqrt(1.0 - errors_.lasting_share);
-  const auto& camera = settings_.filter.camera;
+  const auto& camera = camera_.optics;
   const auto centre = fsw::imaging::pixel_of(camera, seen.position_camera_m);
   for (std::size_t k = 0; k < keypoints_.size(); ++k) {
     const Vector2 renewed = normal3().head<2>();
@@ -83,8 +81,7 @@ void SimulatedNetwork::see_keypoints(const pose::TargetPose& seen) {
     const Vector2 stray(uniform() - 0.5, uniform() - 0.5);
     const double chance = uniform();
     lasting_[k] = keep * lasting_[k] + std::sqrt(1.0 - keep * keep) * renewed;
-    const auto pixel =
-        fsw::imaging::pixel_of(camera, seen.position_camera_m + seen.R_camera_body * settings_.filter.shape[k]);
+    const auto pixel = fsw::imaging::pixel_of(camera, seen.position_camera_m + seen.R_camera_body * camera_.shape[k]);
     pose::Keypoint& keypoint = keypoints_[k];
     keypoint.is_usable = pixel.ok() && centre.ok() && chance > errors_.unseen_share;
     if (!keypoint.is_usable) continue;
@@ -101,7 +98,7 @@ void SimulatedNetwork::see_keypoints(const pose::TargetPose& seen) {
 /// truth on; at times turned half about.
 void SimulatedNetwork::solve_pose(const pose::TargetPose& truth) {
   constexpr double kStep = 1e-6;
-  const auto& camera = settings_.filter.camera;
+  const auto& camera = camera_.optics;
   pose::TargetPose pose = truth;
   pose::PnpSolution solution;
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
@@ -114,8 +111,8 @@ void SimulatedNetwork::solve_pose(const pose::TargetPose& truth) {
       if (!solution.is_inlier[k]) continue;
       ++solution.inliers;
       const auto predicted = [&](const Vector6& change) -> Vector2 {
-        const Vector3 point = turn(change.head<3>()) * pose.R_camera_body * settings_.filter.shape[k] +
-                              pose.position_camera_m + change.tail<3>();
+        const Vector3 point =
+            turn(change.head<3>()) * pose.R_camera_body * camera_.shape[k] + pose.position_camera_m + change.tail<3>();
         return fsw::imaging::pixel_of(camera, point).value();
       };
       Eigen::Matrix<double, 2, 6> slope;

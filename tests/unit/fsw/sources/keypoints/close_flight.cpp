@@ -1,4 +1,4 @@
-#include "tests/integration/pose_filter/close_flight.h"
+#include "tests/unit/fsw/sources/keypoints/close_flight.h"
 
 #include <cmath>
 #include <memory>
@@ -8,6 +8,7 @@
 
 #include "fsw/math/cholesky6.h"
 #include "fsw/math/math.h"
+#include "fsw/navigation/propagation.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
@@ -19,6 +20,7 @@
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/truth_model.h"
 #include "tests/support/paths.h"
+#include "tests/support/tango_view.h"
 
 namespace vbar::test {
 namespace {
@@ -194,23 +196,15 @@ std::vector<nav::AttitudeState> tumble(const CloseFlight& flight, double rate_de
   return attitudes;
 }
 
-nav::PoseSettings pose_settings(const CloseFlight& flight) {
-  nav::PoseSettings settings;
-  settings.earth = flight.earth;
-  settings.filter.camera.focal_length_px = {1450.5, 1450.5};
-  settings.filter.camera.principal_point_px = {479.5, 299.5};
-  settings.filter.camera.distortion = {-0.22383, 0.514098, -0.000664997, -0.000214048, -0.131243};
-  settings.filter.inertia = tango_inertia();
-  settings.camera_position_camera_m = {0.1, -0.05, 0.35};
-  const double published[11][3] = {{-.37, -.385, .3215},  {-.37, .385, .3215}, {.37, .385, .3215},
-                                   {.37, -.385, .3215},   {-.37, -.264, 0},    {-.37, .304, 0},
-                                   {.37, .304, 0},        {.37, -.264, 0},     {-.5427, .4877, .2535},
-                                   {.5427, .4877, .2591}, {.305, -.579, .2515}};
-  const Vector3 centre_of_mass(0.0, 0.018823529411764704, 0.160794117647059);
-  for (std::size_t k = 0; k < settings.filter.shape.size(); ++k) {
-    settings.filter.shape[k] = Vector3(published[k][0], published[k][1], published[k][2]) - centre_of_mass;
-  }
-  return settings;
+CloseFlightCamera close_flight_camera() {
+  CloseFlightCamera camera;
+  camera.optics.focal_length_px = {1450.5, 1450.5};
+  camera.optics.principal_point_px = {479.5, 299.5};
+  camera.optics.distortion = {-0.22383, 0.514098, -0.000664997, -0.000214048, -0.131243};
+  camera.position_camera_m = {0.1, -0.05, 0.35};
+  camera.inertia = must(nav::inertia_of(tango_inertia()));
+  camera.shape = tango_shape();
+  return camera;
 }
 
 Vector6 mean_a_roe_m(const orbit::CartesianState& servicer, const orbit::CartesianState& target) {
@@ -219,26 +213,6 @@ Vector6 mean_a_roe_m(const orbit::CartesianState& servicer, const orbit::Cartesi
   };
   const orbit::QnsElements chief = mean_of(servicer);
   return chief.a * orbit::roe_from_qns(chief, mean_of(target));
-}
-
-PoseError pose_error(const CloseEpoch& epoch, const nav::AttitudeState& attitude,
-                     const nav::PoseNavigation& navigation) {
-  PoseError error;
-  const auto estimated = orbit::relative_state_rtn(navigation.servicer(), must(navigation.target()));
-  error.position_rtn = estimated.position_rtn - orbit::relative_state_rtn(epoch.servicer, epoch.target).position_rtn;
-  error.position_m = error.position_rtn.norm();
-  const Eigen::Quaterniond estimate(navigation.R_eci_body());
-  const Eigen::AngleAxisd turn(estimate.conjugate() * attitude.q_eci_body);
-  error.attitude = turn.angle();
-  Vector6 attitude_error;
-  attitude_error << turn.angle() * turn.axis(), attitude.rate_body - navigation.rate_body();
-  error.rate = attitude_error.tail<3>().norm();
-  error.attitude_nees =
-      attitude_error.dot(fsw::math::Cholesky6(navigation.attitude_covariance()).solve(attitude_error));
-  const Vector6 roe_error = navigation.a_roe_m() - must(orbit::qns_from_cartesian(epoch.servicer)).a *
-                                                       must(orbit::roe_of_target(epoch.servicer, epoch.target));
-  error.roe_nees = roe_error.dot(fsw::math::Cholesky6(navigation.a_roe_covariance_m2()).solve(roe_error));
-  return error;
 }
 
 }  // namespace vbar::test
