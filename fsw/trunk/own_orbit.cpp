@@ -1,5 +1,7 @@
 #include "fsw/trunk/own_orbit.h"
 
+#include <algorithm>
+
 #include "fsw/math/cholesky.h"
 #include "fsw/navigation/dynamics.h"
 #include "fsw/orbit/constants.h"
@@ -69,11 +71,9 @@ bool OwnOrbit::take(GpsTime time, const OwnPosition& measured) {
   const math::Cholesky<3> noise(measured.covariance_m2);
   if (!noise.ok()) return false;
   if (!joint.ok() || !(joint.solve_lower(residual).squaredNorm() <= settings_.gate)) {
-    if (++refused_in_a_row_ >= kMaxRefused) {
-      fail();
-      begin_from_two(time, measured);
-    }
-    return false;
+    if (++refused_in_a_row_ < kMaxRefused) return false;
+    widen(residual.norm());
+    return take(time, measured);
   }
   refused_in_a_row_ = 0;
   // Whitened, then one axis after the other.
@@ -91,11 +91,21 @@ bool OwnOrbit::take(GpsTime time, const OwnPosition& measured) {
   return true;
 }
 
+/// Persistent contradiction: the orbit stays, as after an unknown burn, so that what refers to it is propagated with it.
+void OwnOrbit::widen(double residual_m) {
+  const double velocity_sigma = std::max(settings_.start_velocity_sigma, residual_m / kMaxBaseline_s);
+  for (int axis = 0; axis < 3; ++axis) {
+    estimate_.add_noise(axis, square(residual_m));
+    estimate_.add_noise(3 + axis, square(velocity_sigma));
+  }
+  refused_in_a_row_ = 0;
+  ++inflations_;
+}
+
 void OwnOrbit::fail() {
   started_ = false;
   first_.is_known = false;
   refused_in_a_row_ = 0;
-  ++restarts_;
 }
 
 /// The covariance is propagated by the Jacobian of point mass and J2, from differences of 100 m and 0.1 m/s.

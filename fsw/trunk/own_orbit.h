@@ -41,13 +41,14 @@ class OwnOrbit {
   /// Of position and velocity, ECI, m and m/s.
   [[nodiscard]] Matrix6 covariance() const { return estimate_.head_covariance<6>(); }
   [[nodiscard]] const Estimate& estimate() const { return estimate_; }
-  [[nodiscard]] int restarts() const { return restarts_; }
+  /// Times that consecutive positions contradicted it.
+  [[nodiscard]] int inflations() const { return inflations_; }
 
   /// Initialises with a known state; `sigma_m` and `sigma_mps` per axis.
   void begin(const orbit::CartesianState& state, double sigma_m, double sigma_mps);
 
   /// Processes a position at the epoch. The second one within two minutes initialises the orbit; one beyond the gate is
-  /// refused (false), and after kMaxRefused consecutive refusals the orbit is re-initialised.
+  /// refused (false), and the last of kMaxRefused consecutive refusals inflates the covariance in order to be used.
   bool take(GpsTime time, const OwnPosition& measured);
 
   void advance(const navigation::Propagation& propagation, double dt);
@@ -64,13 +65,14 @@ class OwnOrbit {
   };
 
   void begin_from_two(GpsTime time, const OwnPosition& measured);
+  void widen(double residual_m);
   void fail();
 
   OwnOrbitSettings settings_;
   bool started_ = false;
   First first_;
   int refused_in_a_row_ = 0;
-  int restarts_ = 0;
+  int inflations_ = 0;
   Estimate estimate_;
 };
 

@@ -10,7 +10,9 @@ namespace vbar::fsw::trunk {
 
 struct TargetAttitudeSettings {
   navigation::Inertia inertia;  ///< only its ratios matter
-  navigation::AdaptiveNoiseSettings angular_acceleration{.psd = 1e-11, .psd_min = 1e-13, .psd_max = 1e-10};
+  /// rad^2/s^3. The least is that of a torque of 3e-7 N m on 3 kg m^2 (the Earth's magnetic field on a dipole of
+  /// 0.01 A m^2) whose direction in body axes changes within a minute.
+  navigation::AdaptiveNoiseSettings angular_acceleration{.psd = 1e-11, .psd_min = 1e-12, .psd_max = 1e-10};
   double inertia_ratio_sigma = 0.02;  ///< of the logarithms of the ratios, once they are activated
 };
 
@@ -42,7 +44,7 @@ class TargetAttitude {
   [[nodiscard]] navigation::Inertia inertia_with(const Vector2& log_ratios) const;
 
   TargetAttitudeSettings settings_;
-  navigation::AdaptiveNoise noise_;
+  navigation::AdaptiveNoise noise_{TargetAttitudeSettings{}.angular_acceleration};
   navigation::AttitudeState attitude_;  ///< the reference, and the estimated rate
 };
 

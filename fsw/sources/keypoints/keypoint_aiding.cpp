@@ -111,8 +111,9 @@ KeypointEditStatus KeypointAiding::edit(const KeypointImage& image, trunk::Trunk
   }
   missing_in_a_row_ = 0;
   if (trunk.knowledge() != RelativeKnowledge::kEstimated) return begin_orbit(trunk);
-  // Against a contradicted orbit, keypoints would correct the attitude in place of the position.
-  if (inflations_in_a_row_ > 0 && image.pnp) return take_position(image, camera, trunk);
+  // Against a contradicted or uncertain orbit, keypoints would correct the attitude in place of the position.
+  const bool is_orbit_certain = inflations_in_a_row_ == 0 && range_uncertainty(trunk) <= settings_.keypoint_range_share;
+  if (!is_orbit_certain) return take_position(image, camera, trunk);
   if (!trunk.has_attitude() && !begin_attitude(trunk)) return take_position(image, camera, trunk);
   return take_keypoints(image, camera, trunk);
 }

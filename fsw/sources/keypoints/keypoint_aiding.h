@@ -27,10 +27,11 @@ struct KeypointAidingSettings {
   /// In addition to `start`: poses of fewer keypoints are used there only if their attitude is this accurate, rad.
   int start_inliers = 8;
   double start_attitude_sigma = 0.05;
-  double start_range_share = 0.007;   ///< an attitude is initialised where the range is known to this share, 1 sigma
-  double pose_range_share = 0.1;      ///< 1 sigma of the range of a single-image pose, as for a wrong attitude,
-  double agreed_range_share = 0.035;  ///< and of one whose attitude agrees with those of the images before
-  double max_phase = 1.92;            ///< rad, 110 deg: a target lit from behind shows its dark side
+  double start_range_share = 0.007;    ///< an attitude is initialised where the range is known to this share, 1 sigma
+  double keypoint_range_share = 0.03;  ///< beyond it, 1 sigma, only positions are used: keypoints are not linear in it
+  double pose_range_share = 0.1;       ///< 1 sigma of the range of a single-image pose, as for a wrong attitude,
+  double agreed_range_share = 0.035;   ///< and of one whose attitude agrees with those of the images before
+  double max_phase = 1.92;             ///< rad, 110 deg: a target lit from behind shows its dark side
   /// 1 sigma, rad: an attitude less certain than this is deactivated until it can be initialised again.
   double widest_attitude = 0.35;
   double position_gate = 25.0;  ///< of the normalised squared distance of a single-image position

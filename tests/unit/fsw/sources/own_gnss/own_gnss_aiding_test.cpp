@@ -76,6 +76,27 @@ TEST(OwnGnssAiding, CountsWhatItCannotUse) {
   EXPECT_EQ(pair.own->counters().refused, 3);
 }
 
+/// A burn that nobody reported: positions contradict the orbit, which is inflated and never discarded; the relative
+/// orbit is propagated with it all the time.
+TEST(OwnGnssAiding, AnUnknownBurnInflatesTheOrbitAndKeepsTheRelativeOne) {
+  TrunkPair pair(34);
+  pair.fly_trunk(60);
+  const double before = pair.estimator->roe()(1);
+  pair.servicer.start.position_eci += 300.0 * pair.servicer.start.velocity_eci.normalized();
+  for (int k = 0; k < 40; ++k) {
+    pair.fly_alone(1);
+    EXPECT_TRUE(pair.estimator->own_orbit().started()) << k;
+    EXPECT_TRUE(pair.estimator->has_relative()) << k;
+  }
+  EXPECT_EQ(pair.own->counters().refused, trunk::OwnOrbit::kMaxRefused - 1);
+  EXPECT_EQ(pair.estimator->own_orbit().inflations(), 1);
+  EXPECT_EQ(pair.own->aid().state(), AidState::kAiding);
+  const GpsTime time = pair.estimator->epoch();
+  const double miss = (pair.estimator->servicer().position_eci - pair.servicer.state_at(time).position_eci).norm();
+  EXPECT_LT(miss, 10.0);
+  EXPECT_NEAR(7.1e6 * (pair.estimator->roe()(1) - before), 0.0, 1.0);  // of a separation of 9 m
+}
+
 // Normalised error squared of position and velocity of the own orbit. Truth: gravity of degree 60, Sun, Moon, tides,
 // relativity, and 24 orbits of different nodes and phases; positions with a Gauss-Markov error of 1.5 m over 1800 s and
 // white noise of 2 m.
