@@ -1,5 +1,5 @@
-// Two sources at one trunk, a kilometre apart: their information adds up, one that errs is suspended and leaves the
-// orbit to the other, and a change of sources changes no covariance.
+// Several sources at one trunk: their information adds up, one that errs is suspended and leaves the orbit to the
+// other, and a change of sources changes no covariance.
 
 #include <memory>
 
@@ -10,7 +10,9 @@
 #include "fsw/orbit/roe.h"
 #include "fsw/sources/bearings/bearing_aiding.h"
 #include "fsw/sources/bearings/bearing_rows.h"
+#include "fsw/sources/keypoints/keypoint_aiding.h"
 #include "tests/support/accuracy.h"
+#include "tests/support/tango_view.h"
 #include "tests/unit/fsw/navigation/angles_only_scene.h"
 #include "tests/unit/fsw/sources/carrier_pair/trunk_pair.h"
 
@@ -30,9 +32,10 @@ Vector3 sun() {
 
 /// The cooperating pair at a kilometre on a passively safe orbit, with a camera beside the receivers.
 struct CombinedPair : test::TrunkPair {
-  explicit CombinedPair(unsigned seed) : TrunkPair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3), noise(seed) {
+  explicit CombinedPair(unsigned seed, double distance_m = 1000.0)
+      : TrunkPair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3), noise(seed) {
     const auto chief = orbit::qns_from_cartesian(servicer.start).value();
-    const Vector6 a_roe_m = (Vector6() << 0.0, -1000.0, 0.0, 60.0, 0.0, 60.0).finished();
+    const Vector6 a_roe_m = distance_m * (Vector6() << 0.0, -1.0, 0.0, 0.06, 0.0, 0.06).finished();
     target.start = orbit::target_from_roe(chief, a_roe_m / chief.a).value();
     trunk_settings.relative_orbit.from_sun.sigma = 1e-10;
     trunk_settings.relative_orbit.along_track.sigma = 1e-10;
@@ -41,15 +44,22 @@ struct CombinedPair : test::TrunkPair {
     trunk_settings.brightness_offset.sigma = 1e-4;
     trunk_settings.boresight_a.sigma = 1e-7;
     begin_trunk();
-    BearingSettings bearing_settings;
-    bearing_settings.model.centroid_noise_m = 0.0;
-    camera.configure(bearing_settings);
+    set_centroid_noise(0.0);
+  }
+
+  void set_centroid_noise(double sigma_m) {
+    centroid_noise_m = sigma_m;
+    BearingSettings settings;
+    settings.model.centroid_noise_m = sigma_m;
+    camera.configure(settings);
   }
 
   /// `bias`: rad, of both components.
   navigation::BearingMeasurement bearing(double bias = 0.0) {
-    const Vector2 error = kBearingSigma * noise.normal2() + Vector2::Constant(bias);
-    return bearing_of(tag, servicer.state_at(tag), target.state_at(tag), kBearingSigma, error);
+    const auto own_state = servicer.state_at(tag), target_state = target.state_at(tag);
+    const double distance = (target_state.position_eci - own_state.position_eci).norm();
+    const double sigma = std::hypot(kBearingSigma, centroid_noise_m / distance);
+    return bearing_of(tag, own_state, target_state, kBearingSigma, sigma * noise.normal2() + Vector2::Constant(bias));
   }
 
   /// Epochs of both receivers, and a bearing after each.
@@ -73,6 +83,7 @@ struct CombinedPair : test::TrunkPair {
   }
 
   Noise noise;
+  double centroid_noise_m = 0.0;
   BearingAiding camera;
   BearingEditStatus status = BearingEditStatus::kNone;
   accuracy::Largest largest_error;  ///< of position, in sigmas
@@ -178,6 +189,119 @@ TEST(CombinedSources, AChangeOfSourcesLeavesTheOrbit) {
     pair.fly(60, false, true);
     EXPECT_EQ(pair.camera.aid().state(), AidState::kAiding);
     EXPECT_LT(pair.largest_error, 3.0) << seed;
+  }
+}
+
+/// The pair 12 m apart, with a camera whose images show keypoints besides: lit from abeam of the orbit.
+struct ClosePair : CombinedPair {
+  explicit ClosePair(unsigned seed) : CombinedPair(seed, 12.0) {
+    trunk_settings.centroid_wander.sigma = 0.02;
+    trunk_settings.brightness_offset.sigma = 1e-3;
+    trunk_settings.attitude.inertia = navigation::inertia_of(3.0 * Matrix3::Identity()).value();
+    begin_trunk();
+    set_centroid_noise(0.05);  // of a resolved target
+    KeypointAidingSettings settings;
+    settings.model = {.camera = 1, .optics = optics, .shape = shape};
+    settings.inertia = trunk_settings.attitude.inertia;
+    keypoints.configure(settings);
+  }
+
+  /// Navigation before: `sigma_m` of each of a * ROE.
+  void hand_over(double sigma_m) {
+    step(servicer.observe(tag, satellites, kEarth), nullptr);
+    tag = tag + duration_of_seconds(10);
+    step(servicer.observe(tag, satellites, kEarth), nullptr);
+    const auto chief = orbit::qns_from_cartesian(servicer.state_at(tag)).value();
+    Vector6 error;
+    error << 0.0, noise.normal2(), noise.normal2(), 0.0;
+    const double sigma = sigma_m / chief.a;
+    const Vector6 roe = orbit::roe_of_target(estimator->servicer(), target_beside_estimate()).value() + sigma * error;
+    estimator->begin_relative(roe, sigma * sigma * Matrix6::Identity(), trunk::RelativeKnowledge::kEstimated);
+    tag = tag + duration_of_seconds(10);
+  }
+
+  void fly_keypoints(int images) {
+    for (int k = 0; k < images; ++k, tag = tag + duration_of_seconds(10)) {
+      step(servicer.observe(tag, satellites, kEarth), nullptr);
+      keypoint_status = keypoints.process(image(), *estimator);
+      largest_error.add(error_in_sigmas());
+    }
+  }
+
+  imaging::CameraModel optics = vbar::test::close_camera();
+  pose::KeypointShape shape = vbar::test::tango_shape();
+  KeypointAiding keypoints;
+  KeypointEditStatus keypoint_status = KeypointEditStatus::kNone;
+
+ private:
+  /// The target with respect to the estimate of the servicer as truly with respect to the servicer.
+  [[nodiscard]] orbit::CartesianState target_beside_estimate() const {
+    const orbit::CartesianState ours = servicer.state_at(tag), theirs = target.state_at(tag);
+    const orbit::CartesianState estimated = estimator->servicer();
+    return {.position_eci = estimated.position_eci + theirs.position_eci - ours.position_eci,
+            .velocity_eci = estimated.velocity_eci + theirs.velocity_eci - ours.velocity_eci};
+  }
+
+  KeypointImage image() {
+    const orbit::CartesianState ours = servicer.state_at(tag);
+    const Vector3 apart = target.state_at(tag).position_eci - ours.position_eci;
+    KeypointImage made;
+    made.time = tag;
+    made.sun_eci = ours.position_eci.cross(ours.velocity_eci).normalized();
+    Matrix3 R_camera_eci;
+    R_camera_eci.row(2) = apart.normalized().transpose();
+    R_camera_eci.row(0) = apart.cross(ours.position_eci).normalized().transpose();
+    R_camera_eci.row(1) = R_camera_eci.row(2).cross(R_camera_eci.row(0));
+    made.R_camera_eci = R_camera_eci;
+    pose::PnpSolution pnp;
+    pnp.pose.R_camera_body = R_camera_eci * target.R_eci_body_at(tag);
+    pnp.pose.position_camera_m = R_camera_eci * apart;
+    pnp.inliers = static_cast<int>(shape.size());
+    pnp.covariance = 1e-4 * Matrix6::Identity();
+    for (std::size_t k = 0; k < shape.size(); ++k) {
+      const Vector3 point = pnp.pose.position_camera_m + pnp.pose.R_camera_body * shape[k];
+      seen[k].pixel = imaging::pixel_of(optics, point).value() + kPixelSigma * noise.normal2();
+      seen[k].covariance_px2 = kPixelSigma * kPixelSigma * Matrix2::Identity();
+      seen[k].is_usable = true;
+      seen[k].peak = 0.5;
+    }
+    made.keypoints = &seen;
+    made.pnp = pnp;
+    return made;
+  }
+
+  static constexpr double kPixelSigma = 1.0;
+  pose::Keypoints seen{};
+};
+
+// bearings -> keypoints -> carrier phase -> bearings, each stopped where the next one starts: no change touches the
+// orbit or its covariance, and the error never exceeds three sigmas.
+TEST(CombinedSources, FourSourcesInTurnLeaveOneOrbit) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    ClosePair pair(seed);
+    pair.hand_over(0.2);
+    const auto change = [&](auto&& stop) {
+      const Matrix6 covariance = pair.estimator->roe_covariance();
+      const Vector6 roe = pair.estimator->roe();
+      stop();
+      EXPECT_EQ(pair.estimator->roe_covariance(), covariance);
+      EXPECT_EQ(pair.estimator->roe(), roe);
+    };
+    pair.fly(30, false, true);
+    EXPECT_EQ(pair.camera.aid().state(), AidState::kAiding) << seed;
+    change([&] { pair.camera.stop(pair.tag, *pair.estimator); });
+    pair.fly_keypoints(60);
+    EXPECT_EQ(pair.keypoint_status, KeypointEditStatus::kFilter) << seed;
+    EXPECT_TRUE(pair.estimator->has_attitude()) << seed;
+    change([&] { pair.estimator->rest_attitude(); });
+    pair.fly(60, true, false);
+    EXPECT_TRUE(pair.carrier->is_fixed()) << seed;
+    change([&] { pair.carrier->stop(pair.tag, *pair.estimator); });
+    pair.fly(30, false, true);
+    EXPECT_EQ(pair.camera.aid().state(), AidState::kAiding) << seed;
+    EXPECT_LT(pair.largest_error, 3.0) << seed;
+    EXPECT_EQ(pair.estimator->failures(), 0);
+    EXPECT_EQ(pair.keypoints.counters().restarts + pair.carrier->counters().restarts, 0);
   }
 }
 
