@@ -1,20 +1,9 @@
 #include "fsw/gnc/inbox.h"
 
 namespace vbar::fsw::gnc {
-namespace {
 
-using packets::Apid;
 using packets::PacketView;
-
-template <class Message, std::size_t kCapacity>
-Status decode_and_file(const PacketView& packet, TimeOrderedQueue<Message, kCapacity>& queue) {
-  const Result<Message> message = packets::decode<Message>(packet);
-  if (!message.ok()) return message.status();
-  const packets::PacketHeader& header = packet.header;
-  return queue.file({header.time, header.unit, header.sequence_count}, message.value());
-}
-
-}  // namespace
+using packets::RouteKind;
 
 Status Inbox::receive(std::span<const std::uint8_t> bytes) {
   const Result<PacketView> packet = packets::parse_packet(bytes);
@@ -26,64 +15,43 @@ Status Inbox::receive(std::span<const std::uint8_t> bytes) {
 Status Inbox::file(const PacketView& packet) {
   if (packet.header.spacecraft != spacecraft_) return Status::kInvalidArgument;
   if (!is_usable(packet.header.time)) return Status::kOutOfRange;
-  switch (packet.header.apid) {
-    case Apid::kTick: {
-      const Result<tick> message = packets::decode<tick>(packet);
-      if (!message.ok()) return message.status();
-      const Duration period{message.value().period_ns};
-      if (!is_usable(period)) return Status::kOutOfRange;
-      step_period_ = period;
+  Status status = Status::kWrongType;  // of an unknown APID
+  packets::for_each_message([&]<class Message>() {
+    if (packet.header.apid == packets::MessageTraits<Message>::kApid) status = take<Message>(packet);
+  });
+  return status;
+}
+
+template <class Message>
+Status Inbox::take(const PacketView& packet) {
+  constexpr RouteKind kKind = packets::MessageTraits<Message>::kRoute.kind;
+  if constexpr (kKind == RouteKind::kFromFlight || kKind == RouteKind::kBoard) {
+    return Status::kWrongType;
+  } else {
+    const Result<Message> message = packets::decode<Message>(packet);
+    if (!message.ok()) return message.status();
+    const packets::PacketHeader& header = packet.header;
+    if constexpr (kKind == RouteKind::kQueue) {
+      const FilingTag tag{header.time, header.unit, header.sequence_count};
+      return std::get<Queue<Message>>(queues_).file(tag, message.value());
+    } else if constexpr (kKind == RouteKind::kSpecial) {
+      return take_special(header, message.value());
+    } else {
+      static_assert(kKind == RouteKind::kIgnored);
       return Status::kOk;
     }
-    case Apid::kIdealNavigation:
-      return decode_and_file(packet, ideal_navigation_);
-    case Apid::kGnssBytes:
-      return decode_and_file(packet, gnss_bytes_);
-    case Apid::kCrosslinkGnssBytes:
-      return decode_and_file(packet, crosslink_gnss_bytes_);
-    case Apid::kAttitude:
-      return decode_and_file(packet, attitudes_);
-    case Apid::kCrosslinkAttitude:
-      return decode_and_file(packet, crosslink_attitudes_);
-    case Apid::kExecutedManeuver:
-      return decode_and_file(packet, executed_maneuvers_);
-    case Apid::kWaypointTable:
-      return decode_and_file(packet, waypoint_tables_);
-    case Apid::kGncConfiguration:
-      return decode_and_file(packet, configurations_);
-    case Apid::kModeCommand:
-      return decode_and_file(packet, mode_commands_);
-    case Apid::kNavigationConfiguration:
-      return decode_and_file(packet, navigation_configurations_);
-    case Apid::kCameraConfiguration:
-      return decode_and_file(packet, camera_configurations_);
-    case Apid::kAnglesOnlyConfiguration:
-      return decode_and_file(packet, angles_only_configurations_);
-    case Apid::kTargetApriori:
-      return decode_and_file(packet, target_aprioris_);
-    case Apid::kPoseConfiguration:
-      return decode_and_file(packet, pose_configurations_);
-    case Apid::kImageTile: {
-      const Result<image_tile> message = packets::decode<image_tile>(packet);
-      if (!message.ok()) return message.status();
-      return image_.take(packet.header.time, packet.header.unit, message.value());
-    }
-    case Apid::kRangeMeasurement:  // navigation does not use it: accepted if it is valid, then ignored
-      return packets::decode<range_measurement>(packet).status();
-    case Apid::kManeuverCommand:
-    case Apid::kPointingCommand:
-    case Apid::kTelemetryNavigation:
-    case Apid::kTelemetryControl:
-    case Apid::kTelemetryHealth:
-    case Apid::kTelemetryGnss:
-    case Apid::kTelemetryImage:
-    case Apid::kTelemetryObjects:
-    case Apid::kTelemetryPose:
-    case Apid::kStepReport:
-    case Apid::kWiredBytes:
-      break;
   }
-  return Status::kWrongType;
+}
+
+Status Inbox::take_special(const packets::PacketHeader& /*header*/, const tick& message) {
+  const Duration period{message.period_ns};
+  if (!is_usable(period)) return Status::kOutOfRange;
+  step_period_ = period;
+  return Status::kOk;
+}
+
+Status Inbox::take_special(const packets::PacketHeader& header, const image_tile& message) {
+  return image_.take(header.time, header.unit, message);
 }
 
 void Inbox::count(Status status) {
@@ -122,20 +90,7 @@ void Inbox::count(Status status) {
 void Inbox::clear(GpsTime next_step) {
   if (image_.has_image()) image_.clear();
   image_.accept_until(next_step);
-  ideal_navigation_.clear();
-  executed_maneuvers_.clear();
-  waypoint_tables_.clear();
-  configurations_.clear();
-  mode_commands_.clear();
-  navigation_configurations_.clear();
-  camera_configurations_.clear();
-  angles_only_configurations_.clear();
-  target_aprioris_.clear();
-  pose_configurations_.clear();
-  gnss_bytes_.clear();
-  crosslink_gnss_bytes_.clear();
-  attitudes_.clear();
-  crosslink_attitudes_.clear();
+  std::apply([](auto&... queue) { (queue.clear(), ...); }, queues_);
 }
 
 }  // namespace vbar::fsw::gnc

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <tuple>
 
 #include "fsw/core/result.h"
 #include "fsw/core/time_ordered_queue.h"
@@ -34,13 +35,15 @@ struct PacketCounters {
   std::int32_t dropped_full = 0;      ///< queue full: the newest is dropped
 };
 
-/// Packets of the coming step. A queue that is full refuses the newest packet.
+/// Packets of the coming step: a queue of each message that message_list.h routes into one. A queue that is full
+/// refuses the newest packet.
 class Inbox {
  public:
-  static constexpr std::size_t kMeasurements = 64;
-  static constexpr std::size_t kManeuvers = 32;
-  static constexpr std::size_t kTelecommands = 4;
-  static constexpr std::size_t kGnssPackets = 64;  ///< of each receiver, 82 kB: twenty epochs of eighty signals
+  /// Packets of one message that may arrive in a step.
+  template <class Message>
+  static constexpr std::size_t kCapacity = packets::MessageTraits<Message>::kRoute.capacity;
+  template <class Message>
+  using Queue = TimeOrderedQueue<Message, kCapacity<Message>>;
 
   explicit Inbox(std::uint8_t spacecraft) : spacecraft_(spacecraft) { image_.accept_until(GpsTime{-1}); }
 
@@ -71,41 +74,10 @@ class Inbox {
   void clear(GpsTime next_step);
 
   [[nodiscard]] const PacketCounters& counters() const { return counters_; }
-  [[nodiscard]] const TimeOrderedQueue<ideal_navigation, kMeasurements>& ideal_navigation_states() const {
-    return ideal_navigation_;
-  }
-  [[nodiscard]] const TimeOrderedQueue<executed_maneuver, kManeuvers>& executed_maneuvers() const {
-    return executed_maneuvers_;
-  }
-  [[nodiscard]] const TimeOrderedQueue<waypoint_table, kTelecommands>& waypoint_tables() const {
-    return waypoint_tables_;
-  }
-  [[nodiscard]] const TimeOrderedQueue<gnc_configuration, kTelecommands>& configurations() const {
-    return configurations_;
-  }
-  [[nodiscard]] const TimeOrderedQueue<mode_command, kTelecommands>& mode_commands() const { return mode_commands_; }
-  [[nodiscard]] const TimeOrderedQueue<navigation_configuration, kTelecommands>& navigation_configurations() const {
-    return navigation_configurations_;
-  }
-  [[nodiscard]] const TimeOrderedQueue<camera_configuration, kTelecommands>& camera_configurations() const {
-    return camera_configurations_;
-  }
-  [[nodiscard]] const TimeOrderedQueue<angles_only_configuration, kTelecommands>& angles_only_configurations() const {
-    return angles_only_configurations_;
-  }
-  [[nodiscard]] const TimeOrderedQueue<target_apriori, kTelecommands>& target_aprioris() const {
-    return target_aprioris_;
-  }
-  [[nodiscard]] const TimeOrderedQueue<pose_configuration, kTelecommands>& pose_configurations() const {
-    return pose_configurations_;
-  }
-  [[nodiscard]] const TimeOrderedQueue<gnss_bytes, kGnssPackets>& gnss_bytes_packets() const { return gnss_bytes_; }
-  [[nodiscard]] const TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets>& crosslink_gnss_bytes_packets() const {
-    return crosslink_gnss_bytes_;
-  }
-  [[nodiscard]] const TimeOrderedQueue<attitude, kMeasurements>& attitudes() const { return attitudes_; }
-  [[nodiscard]] const TimeOrderedQueue<crosslink_attitude, kMeasurements>& crosslink_attitudes() const {
-    return crosslink_attitudes_;
+  /// The packets of one message, in order of their time tags.
+  template <class Message>
+  [[nodiscard]] const Queue<Message>& queue() const {
+    return std::get<Queue<Message>>(queues_);
   }
   /// The image whose tiles arrived, complete or not.
   [[nodiscard]] const imaging::ImageAssembly& image() const { return image_; }
@@ -114,25 +86,16 @@ class Inbox {
 
  private:
   Status file(const packets::PacketView& packet);
+  template <class Message>
+  Status take(const packets::PacketView& packet);
+  Status take_special(const packets::PacketHeader& header, const tick& message);
+  Status take_special(const packets::PacketHeader& header, const image_tile& message);
   void count(Status status);
 
   std::uint8_t spacecraft_;
   PacketCounters counters_;
   Duration step_period_;
-  TimeOrderedQueue<ideal_navigation, kMeasurements> ideal_navigation_;
-  TimeOrderedQueue<executed_maneuver, kManeuvers> executed_maneuvers_;
-  TimeOrderedQueue<waypoint_table, kTelecommands> waypoint_tables_;
-  TimeOrderedQueue<gnc_configuration, kTelecommands> configurations_;
-  TimeOrderedQueue<mode_command, kTelecommands> mode_commands_;
-  TimeOrderedQueue<navigation_configuration, kTelecommands> navigation_configurations_;
-  TimeOrderedQueue<camera_configuration, kTelecommands> camera_configurations_;
-  TimeOrderedQueue<angles_only_configuration, kTelecommands> angles_only_configurations_;
-  TimeOrderedQueue<target_apriori, kTelecommands> target_aprioris_;
-  TimeOrderedQueue<pose_configuration, kTelecommands> pose_configurations_;
-  TimeOrderedQueue<gnss_bytes, kGnssPackets> gnss_bytes_;
-  TimeOrderedQueue<crosslink_gnss_bytes, kGnssPackets> crosslink_gnss_bytes_;
-  TimeOrderedQueue<attitude, kMeasurements> attitudes_;
-  TimeOrderedQueue<crosslink_attitude, kMeasurements> crosslink_attitudes_;
+  packets::TupleOfRoute<packets::RouteKind::kQueue, Queue>::Type queues_;
   imaging::ImageAssembly image_;
 };
 

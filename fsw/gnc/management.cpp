@@ -49,9 +49,9 @@ void Management::update(GpsTime now, Inbox& inbox) {
       }
     }
   };
-  take_all(inbox.configurations());
-  take_all(inbox.waypoint_tables());
-  take_all(inbox.mode_commands());
+  take_all(inbox.queue<vbar::gnc_configuration>());
+  take_all(inbox.queue<vbar::waypoint_table>());
+  take_all(inbox.queue<vbar::mode_command>());
 
   // A waypoint is reached when its time comes: the schedule is fixed in time, whatever the error on arrival.
   while (next_ < count_ && waypoints_[next_].time <= now) ++next_;

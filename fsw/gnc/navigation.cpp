@@ -108,7 +108,7 @@ void Navigation::set_uncertainty(GpsTime now) {
 }
 
 void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
-  const auto& configurations = inbox.navigation_configurations();
+  const auto& configurations = inbox.queue<vbar::navigation_configuration>();
   for (std::size_t k = 0; k < configurations.size(); ++k) {
     if (configurations[k].tag.time > now) {
       inbox.count_unusable_time();
@@ -121,9 +121,10 @@ void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
     sensors_ = static_cast<Sensors>(configurations[k].value.source);  // validated with the settings
     drop_state();
   }
-  const bool camera_changes = inbox.camera_configurations().size() > 0 ||
-                              inbox.angles_only_configurations().size() > 0 || inbox.target_aprioris().size() > 0 ||
-                              inbox.pose_configurations().size() > 0;
+  const bool camera_changes = inbox.queue<vbar::camera_configuration>().size() > 0 ||
+                              inbox.queue<vbar::angles_only_configuration>().size() > 0 ||
+                              inbox.queue<vbar::target_apriori>().size() > 0 ||
+                              inbox.queue<vbar::pose_configuration>().size() > 0;
   if (camera_changes && uses_camera()) drop_state();
   trunk_.configure(now, inbox);
 }
@@ -153,7 +154,7 @@ void Navigation::take_trunk(GpsTime now, Inbox& inbox) {
 }
 
 void Navigation::take_maneuvers(GpsTime now, Inbox& inbox) {
-  const auto& reports = inbox.executed_maneuvers();
+  const auto& reports = inbox.queue<vbar::executed_maneuver>();
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const GpsTime time = reports[k].tag.time;
     const executed_maneuver& report = reports[k].value;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <tuple>
 
 #include "fsw/gnc/vbar_gnc.h"
 #include "fsw/packets/messages.h"
@@ -19,13 +20,14 @@ class Outbox {
     context_ = context;
   }
 
-  /// Encodes and emits a message. A message with a NaN or infinity is dropped and counted: the interface excludes them.
+  /// Encodes and emits a message that message_list.h lists as from the flight software. A message with a NaN or
+  /// infinity is dropped and counted: the interface excludes them.
   template <class Message>
   void send(GpsTime time, const Message& message) {
     packets::PacketHeader header;
     header.time = time;
     header.spacecraft = spacecraft_;
-    std::uint16_t& count = sequence_count_[sequence_slot(packets::MessageTraits<Message>::kApid)];
+    std::uint16_t& count = std::get<SequenceCount<Message>>(sequence_counts_).next;
     header.sequence_count = count;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): encode writes what is read
     std::array<std::uint8_t, packets::kMaxPacketBytes> buffer;
@@ -41,13 +43,16 @@ class Outbox {
   [[nodiscard]] std::int32_t dropped() const { return dropped_; }
 
  private:
-  static std::size_t sequence_slot(packets::Apid apid);
+  /// Of the packets of one message: 14 bits.
+  template <class Message>
+  struct SequenceCount {
+    std::uint16_t next = 0;
+  };
 
-  static constexpr std::size_t kSlots = 9;  ///< kinds of message the flight software sends
   std::uint8_t spacecraft_;
   vbar_packet_sink sink_;
   void* context_;
-  std::array<std::uint16_t, kSlots> sequence_count_{};
+  packets::TupleOfRoute<packets::RouteKind::kFromFlight, SequenceCount>::Type sequence_counts_;
   std::int32_t dropped_ = 0;
 };
 

@@ -48,13 +48,14 @@ void put_attitudes(GpsTime now, const Queue& packets, Inbox& inbox, navigation::
 
 void TrunkNavigation::configure(GpsTime now, Inbox& inbox) {
   take_apriori(now, inbox);
-  const bool has_any = !inbox.navigation_configurations().empty() || !inbox.camera_configurations().empty() ||
-                       !inbox.angles_only_configurations().empty() || !inbox.pose_configurations().empty();
+  const bool has_any =
+      !inbox.queue<vbar::navigation_configuration>().empty() || !inbox.queue<vbar::camera_configuration>().empty() ||
+      !inbox.queue<vbar::angles_only_configuration>().empty() || !inbox.queue<vbar::pose_configuration>().empty();
   if (!has_any) return;
-  inbox.keep_newest(inbox.navigation_configurations(), now, navigation_);
-  inbox.keep_newest(inbox.camera_configurations(), now, camera_);
-  inbox.keep_newest(inbox.angles_only_configurations(), now, angles_only_);
-  inbox.keep_newest(inbox.pose_configurations(), now, pose_);
+  inbox.keep_newest(inbox.queue<vbar::navigation_configuration>(), now, navigation_);
+  inbox.keep_newest(inbox.queue<vbar::camera_configuration>(), now, camera_);
+  inbox.keep_newest(inbox.queue<vbar::angles_only_configuration>(), now, angles_only_);
+  inbox.keep_newest(inbox.queue<vbar::pose_configuration>(), now, pose_);
   configure_sources(now, inbox);
 }
 
@@ -132,7 +133,7 @@ void TrunkNavigation::select_sources(GpsTime now) {
 }
 
 void TrunkNavigation::take_apriori(GpsTime now, Inbox& inbox) {
-  const auto& aprioris = inbox.target_aprioris();
+  const auto& aprioris = inbox.queue<vbar::target_apriori>();
   for (std::size_t k = 0; k < aprioris.size(); ++k) {
     const target_apriori& known = aprioris[k].value;
     trunk::TargetApriori apriori;
@@ -150,8 +151,8 @@ void TrunkNavigation::take_apriori(GpsTime now, Inbox& inbox) {
 }
 
 void TrunkNavigation::take_attitudes(GpsTime now, Inbox& inbox) {
-  put_attitudes(now, inbox.attitudes(), inbox, platform_.servicer_attitude);
-  put_attitudes(now, inbox.crosslink_attitudes(), inbox, platform_.target_attitude);
+  put_attitudes(now, inbox.queue<vbar::attitude>(), inbox, platform_.servicer_attitude);
+  put_attitudes(now, inbox.queue<vbar::crosslink_attitude>(), inbox, platform_.target_attitude);
 }
 
 void TrunkNavigation::update(GpsTime now, Inbox& inbox, std::span<const navigation::Burn> burns) {

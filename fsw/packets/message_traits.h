@@ -1,57 +1,29 @@
 #pragma once
-// Which messages are packets: the compile-time list, the APID of each, and whether its numbers are finite.
-// A new message is a struct in vbar.lcm, an APID in packet.h and a line in VBAR_FOR_EACH_MESSAGE.
+// The list of messages (message_list.h) at compile time: APID, place and route of each, visitors of all of them; and
+// whether the numbers of a message are finite.
 
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include <vbar/fields.h>
 
 #include "fsw/packets/packet.h"
 
-/// Expands X(message type, Apid enumerator) for every message that travels as a packet.
-#define VBAR_FOR_EACH_MESSAGE(X)                                 \
-  X(::vbar::tick, kTick)                                         \
-  X(::vbar::ideal_navigation, kIdealNavigation)                  \
-  X(::vbar::gnss_bytes, kGnssBytes)                              \
-  X(::vbar::crosslink_gnss_bytes, kCrosslinkGnssBytes)           \
-  X(::vbar::attitude, kAttitude)                                 \
-  X(::vbar::crosslink_attitude, kCrosslinkAttitude)              \
-  X(::vbar::image_tile, kImageTile)                              \
-  X(::vbar::range_measurement, kRangeMeasurement)                \
-  X(::vbar::executed_maneuver, kExecutedManeuver)                \
-  X(::vbar::waypoint_table, kWaypointTable)                      \
-  X(::vbar::gnc_configuration, kGncConfiguration)                \
-  X(::vbar::mode_command, kModeCommand)                          \
-  X(::vbar::navigation_configuration, kNavigationConfiguration)  \
-  X(::vbar::camera_configuration, kCameraConfiguration)          \
-  X(::vbar::angles_only_configuration, kAnglesOnlyConfiguration) \
-  X(::vbar::target_apriori, kTargetApriori)                      \
-  X(::vbar::pose_configuration, kPoseConfiguration)              \
-  X(::vbar::maneuver_command, kManeuverCommand)                  \
-  X(::vbar::pointing_command, kPointingCommand)                  \
-  X(::vbar::telemetry_navigation, kTelemetryNavigation)          \
-  X(::vbar::telemetry_control, kTelemetryControl)                \
-  X(::vbar::telemetry_health, kTelemetryHealth)                  \
-  X(::vbar::telemetry_gnss, kTelemetryGnss)                      \
-  X(::vbar::telemetry_image, kTelemetryImage)                    \
-  X(::vbar::telemetry_objects, kTelemetryObjects)                \
-  X(::vbar::telemetry_pose, kTelemetryPose)                      \
-  X(::vbar::step_report, kStepReport)                            \
-  X(::vbar::wired_bytes, kWiredBytes)
-
 namespace vbar::fsw::packets {
 
-/// MessageTraits<M>::kApid for every message that is a packet; undefined for any other type.
+/// Of every message that is a packet: its APID and its route. Undefined for any other type.
 template <class Message>
 struct MessageTraits;
 
-#define VBAR_MESSAGE(type, enumerator)              \
-  template <>                                       \
-  struct MessageTraits<type> {                      \
-    static constexpr Apid kApid = Apid::enumerator; \
+#define VBAR_MESSAGE(type, enumerator, number, message_route) \
+  template <>                                                 \
+  struct MessageTraits<type> {                                \
+    static constexpr Apid kApid = Apid::enumerator;           \
+    static constexpr Route kRoute = message_route;            \
   };
 VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)
 #undef VBAR_MESSAGE
@@ -59,7 +31,7 @@ VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)
 /// Calls visit.template operator()<Message>() for every message that is a packet.
 template <class Visitor>
 constexpr void for_each_message(Visitor&& visit) {
-#define VBAR_MESSAGE(type, enumerator) visit.template operator()<type>();
+#define VBAR_MESSAGE(type, enumerator, number, route) visit.template operator()<type>();
   VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)
 #undef VBAR_MESSAGE
 }
@@ -71,6 +43,25 @@ constexpr void for_each_telemetry(Visitor&& visit) {
     if constexpr (is_telemetry(MessageTraits<Message>::kApid)) visit.template operator()<Message>();
   });
 }
+
+/// The same for every telecommand.
+template <class Visitor>
+constexpr void for_each_telecommand(Visitor&& visit) {
+  for_each_message([&]<class Message>() {
+    if constexpr (MessageTraits<Message>::kRoute.is_telecommand) visit.template operator()<Message>();
+  });
+}
+
+/// A tuple of Of<Message> for each message whose route is of this kind, in the order of the list: storage derived from
+/// the list, without an entry for the other messages.
+template <RouteKind kKind, template <class> class Of>
+struct TupleOfRoute {
+  template <class Message>
+  using Entry = std::conditional_t<MessageTraits<Message>::kRoute.kind == kKind, std::tuple<Of<Message>>, std::tuple<>>;
+#define VBAR_MESSAGE(type, enumerator, number, route) , std::declval<Entry<type>>()
+  using Type = decltype(std::tuple_cat(std::tuple<>() VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)));
+#undef VBAR_MESSAGE
+};
 
 /// False if any floating-point field, inner messages and all elements included, is a NaN or an infinity. By the bits:
 /// no compiler option for fast mathematics can make this always true.

@@ -45,7 +45,7 @@ Result<Message> decode(const PacketView& packet) {
   return message;
 }
 
-#define VBAR_MESSAGE(type, enumerator)                                                           \
+#define VBAR_MESSAGE(type, enumerator, number, route)                                            \
   template Result<std::size_t> encode<type>(PacketHeader, const type&, std::span<std::uint8_t>); \
   template Result<type> decode<type>(const PacketView&);
 VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)

@@ -17,6 +17,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
+#include "fsw/packets/message_list.h"
 
 namespace vbar::fsw::packets {
 
@@ -25,36 +26,11 @@ inline constexpr std::size_t kPacketCrcBytes = 2;
 inline constexpr std::size_t kMaxPacketBytes = 1376;
 inline constexpr std::size_t kMaxPayloadBytes = kMaxPacketBytes - kPacketHeaderBytes - kPacketCrcBytes;
 
-/// Message kind. To the flight software below 0x400, from it above; telemetry is 0x500 to 0x5FF.
+/// Message kind: the enumerators and numbers of message_list.h.
 enum class Apid : std::uint16_t {
-  kTick = 0x001,
-  kIdealNavigation = 0x010,
-  kGnssBytes = 0x011,
-  kCrosslinkGnssBytes = 0x012,
-  kAttitude = 0x013,
-  kCrosslinkAttitude = 0x014,
-  kImageTile = 0x015,
-  kRangeMeasurement = 0x016,
-  kExecutedManeuver = 0x020,
-  kWaypointTable = 0x101,
-  kGncConfiguration = 0x102,
-  kModeCommand = 0x103,
-  kNavigationConfiguration = 0x104,
-  kCameraConfiguration = 0x105,
-  kAnglesOnlyConfiguration = 0x106,
-  kTargetApriori = 0x107,
-  kPoseConfiguration = 0x108,
-  kManeuverCommand = 0x401,
-  kPointingCommand = 0x402,
-  kTelemetryNavigation = 0x501,
-  kTelemetryControl = 0x502,
-  kTelemetryHealth = 0x503,
-  kTelemetryGnss = 0x504,
-  kTelemetryImage = 0x505,
-  kTelemetryObjects = 0x506,
-  kTelemetryPose = 0x507,
-  kStepReport = 0x601,
-  kWiredBytes = 0x602,
+#define VBAR_MESSAGE(type, enumerator, number, route) enumerator = (number),
+  VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)
+#undef VBAR_MESSAGE
 };
 
 /// True for APIDs of telemetry, whose bytes make `telemetry_sha256`.

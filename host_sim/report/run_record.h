@@ -124,7 +124,7 @@ using TelemetryTable = std::conditional_t<fsw::packets::is_telemetry(fsw::packet
 
 /// A table of every message of telemetry: one that is new in vbar.lcm is here without a line. Those of which a module
 /// makes rows beside the truth (Extension::messages) stay empty.
-#define VBAR_MESSAGE(type, enumerator) , std::declval<TelemetryTable<type>>()
+#define VBAR_MESSAGE(type, enumerator, number, route) , std::declval<TelemetryTable<type>>()
 using TelemetryTables = decltype(std::tuple_cat(std::tuple<>() VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)));
 #undef VBAR_MESSAGE
 

@@ -17,8 +17,8 @@ class ReceiverDecoders {
   /// packet with a count beyond its array is counted in the inbox and skipped.
   template <class OnEpoch, class OnEphemeris>
   void decode(gnc::Inbox& inbox, OnEpoch&& on_epoch, OnEphemeris&& on_ephemeris) {
-    decode_one(Receiver::kServicer, inbox.gnss_bytes_packets(), inbox, on_epoch, on_ephemeris);
-    decode_one(Receiver::kTarget, inbox.crosslink_gnss_bytes_packets(), inbox, on_epoch, on_ephemeris);
+    decode_one(Receiver::kServicer, inbox.queue<vbar::gnss_bytes>(), inbox, on_epoch, on_ephemeris);
+    decode_one(Receiver::kTarget, inbox.queue<vbar::crosslink_gnss_bytes>(), inbox, on_epoch, on_ephemeris);
   }
 
   /// Complete messages of both receivers, and those refused because of checksum or contents.

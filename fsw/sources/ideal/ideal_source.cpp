@@ -7,7 +7,7 @@ namespace vbar::fsw::sources {
 using gnc::vector;
 
 void IdealSource::collect(Context& context, RecordFiler records) {
-  const auto& measurements = context.inbox.ideal_navigation_states();
+  const auto& measurements = context.inbox.queue<vbar::ideal_navigation>();
   for (std::size_t k = 0; k < measurements.size(); ++k) {
     const GpsTime time = measurements[k].tag.time;
     if (time > context.now) {

@@ -28,7 +28,7 @@ class IdealSource {
   };
 
   Aid aid_;
-  std::array<States, gnc::Inbox::kMeasurements> waiting_{};  ///< of the records filed last
+  std::array<States, gnc::Inbox::kCapacity<ideal_navigation>> waiting_{};  ///< of the records filed last
   std::uint32_t filed_ = 0;
   GpsTime last_measurement_;
 };

@@ -19,9 +19,9 @@ TEST(Inbox, FilesByTimeTagWhateverTheOrderOfArrival) {
   for (const std::int64_t ns : {30, 10, 20}) {
     EXPECT_EQ(inbox.receive(packet_of({ns}, ideal_navigation{})), Status::kOk);
   }
-  ASSERT_EQ(inbox.ideal_navigation_states().size(), 3U);
+  ASSERT_EQ(inbox.queue<vbar::ideal_navigation>().size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(inbox.ideal_navigation_states()[k].tag.time.ns, static_cast<std::int64_t>(10 * (k + 1)));
+    EXPECT_EQ(inbox.queue<vbar::ideal_navigation>()[k].tag.time.ns, static_cast<std::int64_t>(10 * (k + 1)));
   }
 }
 
@@ -30,13 +30,13 @@ TEST(Inbox, RefusesADuplicateButNotAnotherPacketOfTheSameInstant) {
   EXPECT_EQ(inbox.receive(packet_of({10}, executed_maneuver{}, 7)), Status::kOk);
   EXPECT_EQ(inbox.receive(packet_of({10}, executed_maneuver{}, 7)), Status::kBadSequence);
   EXPECT_EQ(inbox.receive(packet_of({10}, executed_maneuver{}, 8)), Status::kOk);
-  EXPECT_EQ(inbox.executed_maneuvers().size(), 2U);
+  EXPECT_EQ(inbox.queue<vbar::executed_maneuver>().size(), 2U);
   EXPECT_EQ(inbox.counters().rejected_other, 1);
 }
 
 TEST(Inbox, DropsTheNewestWhenFullAndKeepsWhatItHas) {
   Inbox inbox(kServicer);
-  const auto capacity = static_cast<std::int64_t>(Inbox::kMeasurements);
+  const auto capacity = static_cast<std::int64_t>(Inbox::kCapacity<ideal_navigation>);
   for (std::int64_t k = 0; k < capacity; ++k) {
     ideal_navigation message{};
     message.servicer_position_eci[0] = static_cast<double>(k);
@@ -46,9 +46,9 @@ TEST(Inbox, DropsTheNewestWhenFullAndKeepsWhatItHas) {
     EXPECT_EQ(inbox.receive(packet_of({capacity + k}, ideal_navigation{})), Status::kFull);
   }
   EXPECT_EQ(inbox.counters().dropped_full, 5);
-  ASSERT_EQ(inbox.ideal_navigation_states().size(), Inbox::kMeasurements);
-  for (std::size_t k = 0; k < Inbox::kMeasurements; ++k) {
-    EXPECT_EQ(inbox.ideal_navigation_states()[k].value.servicer_position_eci[0], static_cast<double>(k));
+  ASSERT_EQ(inbox.queue<vbar::ideal_navigation>().size(), Inbox::kCapacity<ideal_navigation>);
+  for (std::size_t k = 0; k < Inbox::kCapacity<ideal_navigation>; ++k) {
+    EXPECT_EQ(inbox.queue<vbar::ideal_navigation>()[k].value.servicer_position_eci[0], static_cast<double>(k));
   }
 }
 
@@ -91,7 +91,7 @@ TEST(Inbox, RefusesAMessageUnderAnotherOnesName) {
 
   Inbox inbox(kServicer);
   EXPECT_NE(inbox.receive(bytes), Status::kOk);
-  EXPECT_TRUE(inbox.ideal_navigation_states().empty());
+  EXPECT_TRUE(inbox.queue<vbar::ideal_navigation>().empty());
 }
 
 // encode() refuses a NaN, so it is put into the bytes by hand, with a CRC that fits.
@@ -145,6 +145,51 @@ TEST(Inbox, RefusesTimesOutsideTheClocksRange) {
   tick message{};
   message.period_ns = kMax;
   EXPECT_EQ(inbox.receive(packet_of({1}, message)), Status::kOutOfRange);
+}
+
+// Each message of the list, by its route: into its queue, into its place in the inbox, accepted without effect, or
+// refused by its APID.
+TEST(Inbox, FilesEveryMessageByItsRoute) {
+  packets::for_each_message([]<class Message>() {
+    using packets::RouteKind;
+    constexpr packets::Route kRoute = packets::MessageTraits<Message>::kRoute;
+    Inbox inbox(kServicer);
+    const Status status = inbox.receive(packet_of({1}, Message{}));
+    if constexpr (kRoute.kind == RouteKind::kQueue) {
+      EXPECT_EQ(status, Status::kOk) << Message::getTypeName();
+      ASSERT_EQ(inbox.queue<Message>().size(), 1U) << Message::getTypeName();
+      EXPECT_EQ(inbox.queue<Message>()[0].tag.time.ns, 1);
+    } else if constexpr (kRoute.kind == RouteKind::kSpecial) {
+      EXPECT_EQ(inbox.counters().rejected_type, 0) << Message::getTypeName();  // its own checks follow
+    } else if constexpr (kRoute.kind == RouteKind::kIgnored) {
+      EXPECT_EQ(status, Status::kOk) << Message::getTypeName();
+    } else {
+      EXPECT_EQ(status, Status::kWrongType) << Message::getTypeName();
+    }
+    EXPECT_EQ(packets::is_to_flight(packets::MessageTraits<Message>::kApid),
+              kRoute.kind != RouteKind::kFromFlight && kRoute.kind != RouteKind::kBoard)
+        << Message::getTypeName();
+  });
+}
+
+// A full queue of one message leaves the room of the others; after the step all of them are empty.
+TEST(Inbox, EveryQueueHasItsOwnRoomAndIsClearedWithTheStep) {
+  Inbox inbox(kServicer);
+  packets::for_each_message([&]<class Message>() {
+    if constexpr (packets::MessageTraits<Message>::kRoute.kind == packets::RouteKind::kQueue) {
+      for (std::uint16_t k = 0; k < Inbox::kCapacity<Message>; ++k) {
+        EXPECT_EQ(inbox.receive(packet_of({1}, Message{}, k)), Status::kOk) << Message::getTypeName();
+      }
+      EXPECT_EQ(inbox.receive(packet_of({1}, Message{}, Inbox::kCapacity<Message>)), Status::kFull);
+    }
+  });
+  inbox.clear(GpsTime{});
+  packets::for_each_message([&]<class Message>() {
+    if constexpr (packets::MessageTraits<Message>::kRoute.kind == packets::RouteKind::kQueue) {
+      EXPECT_TRUE(inbox.queue<Message>().empty()) << Message::getTypeName();
+      EXPECT_EQ(inbox.receive(packet_of({1}, Message{})), Status::kOk) << Message::getTypeName();
+    }
+  });
 }
 
 }  // namespace

@@ -41,6 +41,20 @@ TEST_F(OutboxTest, CountsEachKindByItself) {
   EXPECT_EQ(header(2).time.ns, 20);
 }
 
+TEST_F(OutboxTest, EveryMessageFromTheFlightSoftwareHasACountOfItsOwn) {
+  for (std::uint16_t round = 0; round < 3; ++round) {
+    sent_.clear();
+    packets::for_each_message([&]<class Message>() {
+      if constexpr (packets::MessageTraits<Message>::kRoute.kind == packets::RouteKind::kFromFlight) {
+        outbox_.send({10}, Message{});
+        ASSERT_FALSE(sent_.empty());
+        EXPECT_EQ(header(sent_.size() - 1).apid, packets::MessageTraits<Message>::kApid);
+        EXPECT_EQ(header(sent_.size() - 1).sequence_count, round) << Message::getTypeName();
+      }
+    });
+  }
+}
+
 TEST_F(OutboxTest, TheCountWrapsAtFourteenBits) {
   for (int k = 0; k < 0x4000 + 2; ++k) {
     sent_.clear();

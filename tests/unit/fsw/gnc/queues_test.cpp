@@ -22,7 +22,7 @@ executed_maneuver tiny_maneuver(std::int32_t id) {
 TEST(Queues, OfMeasurementsKeepWhatTheyHave) {
   Flight flight(kStart);
   const std::int64_t first = flight.now.ns - kNanosecondsPerSecond;
-  const auto capacity = static_cast<std::int64_t>(Inbox::kMeasurements);
+  const auto capacity = static_cast<std::int64_t>(Inbox::kCapacity<ideal_navigation>);
   for (std::int64_t k = 0; k < capacity; ++k) {
     EXPECT_EQ(flight.article.deliver({first + k}, flight.world.measurement()), 0);
   }
@@ -34,7 +34,7 @@ TEST(Queues, OfMeasurementsKeepWhatTheyHave) {
   const Answer answer = flight.step();
   EXPECT_EQ(answer.health.inbox_dropped, 7);
   EXPECT_EQ(answer.health.faults, kFaultInboxFull);
-  EXPECT_EQ(answer.health.packets_accepted, Inbox::kMeasurements + 1);    // and the tick
+  EXPECT_EQ(answer.health.packets_accepted, Inbox::kCapacity<ideal_navigation> + 1);  // and the tick
   EXPECT_NEAR(answer.navigation.relative_position_rtn[1], -100.0, 10.0);  // not the -10 m of the dropped ones
 
   // The next step has all its room again.
@@ -56,10 +56,10 @@ TEST(Queues, OfManeuversAndTelecommandsKeepWhatTheyHave) {
       ++dropped;
     }
   };
-  fill(Inbox::kManeuvers, tiny_maneuver(99));
-  fill(Inbox::kTelecommands, configuration());
-  fill(Inbox::kTelecommands, table_of({waypoint_at(8, 3 * 3600, 1, kNear)}));
-  fill(Inbox::kTelecommands, mode(1));
+  fill(Inbox::kCapacity<executed_maneuver>, tiny_maneuver(99));
+  fill(Inbox::kCapacity<gnc_configuration>, configuration());
+  fill(Inbox::kCapacity<waypoint_table>, table_of({waypoint_at(8, 3 * 3600, 1, kNear)}));
+  fill(Inbox::kCapacity<mode_command>, mode(1));
   const Answer answer = flight.step();
   EXPECT_EQ(answer.health.inbox_dropped, dropped);
   EXPECT_EQ(answer.control.mode, 1);

@@ -96,7 +96,7 @@ std::map<int, std::string> table_of_apids() {
 
 TEST(WireFormatsDocument, TableHasEveryMessageUnderItsApid) {
   std::map<int, std::string> expected;
-#define VBAR_EXPECT_MESSAGE(type, apid) \
+#define VBAR_EXPECT_MESSAGE(type, apid, number, route) \
   expected[static_cast<int>(packets::Apid::apid)] = std::string(#type).substr(std::string("::vbar::").size());
   VBAR_FOR_EACH_MESSAGE(VBAR_EXPECT_MESSAGE)
 #undef VBAR_EXPECT_MESSAGE
