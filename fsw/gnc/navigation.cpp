@@ -17,9 +17,11 @@ namespace {
 // 75 km down to 7 m.)
 constexpr double kUnmodelledGradient = 1e-10;  // 1/s^2, 1 sigma, constant over a coast
 
-// The state ends to be valid when the target may be anywhere about its distance: by covariance, not by elapsed time.
+// The state is valid for planning unless the target may be anywhere about its distance, now or soon: by covariance, not
+// by elapsed time.
 constexpr double kMaxRelativeSigma = 0.25;  // of the separation
 constexpr double kAlwaysAccurate_m = 0.5;
+constexpr double kSoon_s = 300.0;
 
 // Largest delay of a report or measurement with respect to its time tag.
 constexpr Duration kLongestDelay = duration_of_seconds(600);
@@ -103,7 +105,8 @@ void Navigation::set_uncertainty(GpsTime now) {
     state_.sigma_rtn(axis) = math::hypot(position + velocity * coast_s, 0.5 * acceleration * coast_s * coast_s);
     state_.sigma_rtn(3 + axis) = math::hypot(velocity, acceleration * coast_s);
   }
-  const double largest = state_.sigma_rtn.head<3>().maxCoeff();
+  const double largest =
+      math::hypot(state_.sigma_rtn.head<3>().maxCoeff(), kSoon_s * state_.sigma_rtn.tail<3>().maxCoeff());
   if (!(largest < kMaxRelativeSigma * separation + kAlwaysAccurate_m)) state_.valid = false;
 }
 

@@ -23,8 +23,8 @@ constexpr int kRefusedBeforeLoss = 10;
 // This number of consecutive contradicting positions inflates the covariance, the second time more than the first; the
 // third time the orbit is initialised from poses.
 constexpr int kFarBeforeInflation = 5;
-constexpr std::array<double, 3> kInflatedVelocity = {0.1, 1.0, 1.0};  // m/s
-constexpr std::array<double, 3> kInflatedDistance = {0.1, 0.3, 0.5};  // relative
+constexpr std::array<double, 3> kInflatedVelocity = {0.01, 1.0, 1.0};  // m/s
+constexpr std::array<double, 3> kInflatedDistance = {0.1, 0.3, 0.5};   // relative
 // A wrong attitude has biased the position as well: keypoints of another side appear larger or smaller.
 constexpr double kWrongAttitudeDistance = 0.03;  // relative
 // After this number of consecutive images without the illuminated target its position is uncertain: the crop is then
@@ -38,7 +38,7 @@ constexpr Duration kSilence = duration_of_seconds(60);
 
 // Errors of neighbouring images are correlated: factor on the covariance of their positions.
 constexpr double kAlike = 4.0;
-constexpr double kMinVariance_m2 = 1e-4;
+constexpr double kMinSigma_m = 0.01;
 
 bool is_finite(const KeypointImage& image) {
   return image.R_camera_eci.has_value() && math::is_finite(image.R_camera_eci->sum()) &&
@@ -201,16 +201,19 @@ bool KeypointAiding::begin_attitude(trunk::Trunk& trunk) {
   return trunk.has_attitude();
 }
 
-Matrix3 KeypointAiding::position_covariance(const navigation::PoseSample& sample, double range_share) const {
-  const Vector3 range_sigma = range_share * sample.relative_eci;
-  return range_sigma * range_sigma.transpose() + kMinVariance_m2 * Matrix3::Identity();
+/// What a pose may be off by in addition to its own covariance.
+Matrix3 KeypointAiding::position_covariance(const navigation::PoseSample& sample, bool is_agreed) const {
+  const Vector3 range_sigma =
+      (is_agreed ? settings_.agreed_range_share : settings_.pose_range_share) * sample.relative_eci;
+  const double lateral_sigma = is_agreed ? kMinSigma_m : settings_.pose_lateral_sigma_m;
+  return range_sigma * range_sigma.transpose() + lateral_sigma * lateral_sigma * Matrix3::Identity();
 }
 
 bool KeypointAiding::is_far(const navigation::PoseSample& sample, const trunk::Trunk& trunk) const {
   const auto target = trunk.target();
   if (!target.ok()) return true;
   const math::Cholesky<3> factor(trunk.position_covariance_eci() + sample.covariance_eci +
-                                 position_covariance(sample, settings_.pose_range_share));
+                                 position_covariance(sample, false));
   if (!factor.ok()) return true;
   const Vector3 miss = sample.relative_eci - (target.value().position_eci - trunk.servicer().position_eci);
   return !(factor.solve_lower(miss).squaredNorm() <= settings_.position_gate);
@@ -218,7 +221,8 @@ bool KeypointAiding::is_far(const navigation::PoseSample& sample, const trunk::T
 
 KeypointEditStatus KeypointAiding::take_position(const KeypointImage& image, const CameraPose& camera,
                                                  trunk::Trunk& trunk) {
-  if (!image.pnp || !is_finite(*image.pnp)) return KeypointEditStatus::kNone;
+  // In penumbra and from behind one face is lit, and poses are wrong alike.
+  if (!image.pnp || !is_finite(*image.pnp) || !light_.is_lit) return KeypointEditStatus::kNone;
   const navigation::PoseSample sample = sample_of(image, camera, trunk);
   if (is_far(sample, trunk)) {
     count_refusal(image.time, true, trunk);
@@ -228,8 +232,7 @@ KeypointEditStatus KeypointAiding::take_position(const KeypointImage& image, con
   inflations_in_a_row_ = 0;
   const auto agreed = start_.attitude();
   const bool is_agreed = has_sample_ && agreed.ok() && agrees_with_image(agreed.value().attitude);
-  const double range_share = is_agreed ? settings_.agreed_range_share : settings_.pose_range_share;
-  const Matrix3 covariance = kAlike * sample.covariance_eci + position_covariance(sample, range_share);
+  const Matrix3 covariance = kAlike * sample.covariance_eci + position_covariance(sample, is_agreed);
   if (position_rows(trunk, sample.relative_eci, covariance) != Status::kOk || !trunk.fold()) {
     return KeypointEditStatus::kRefused;
   }

@@ -102,7 +102,7 @@ class KeypointAiding {
   bool begin_attitude(trunk::Trunk& trunk);
   KeypointEditStatus take_position(const KeypointImage& image, const CameraPose& camera, trunk::Trunk& trunk);
   KeypointEditStatus take_keypoints(const KeypointImage& image, const CameraPose& camera, trunk::Trunk& trunk);
-  [[nodiscard]] Matrix3 position_covariance(const navigation::PoseSample& sample, double range_share) const;
+  [[nodiscard]] Matrix3 position_covariance(const navigation::PoseSample& sample, bool is_agreed) const;
   [[nodiscard]] bool is_far(const navigation::PoseSample& sample, const trunk::Trunk& trunk) const;
   void count_refusal(GpsTime time, bool is_position_far, trunk::Trunk& trunk);
   void count_missing(trunk::Trunk& trunk);
