@@ -53,9 +53,8 @@ bool has_apriori(const pose_configuration& p) {
 
 bool has_valid_orbits(const pose_configuration& p) {
   const auto is_sigma = [](const Vector6& sigma) { return (sigma.array() > 0.0).all() && (sigma.array() < 1e6).all(); };
-  const bool apriori_is_valid =
-      is_usable(GpsTime{p.apriori_epoch_ns}) && is_sigma(vector(p.apriori_sigma_a_roe_m)) &&
-      (vector(p.apriori_a_roe_m).array().abs() < 1e6).all();
+  const bool apriori_is_valid = is_usable(GpsTime{p.apriori_epoch_ns}) && is_sigma(vector(p.apriori_sigma_a_roe_m)) &&
+                                (vector(p.apriori_a_roe_m).array().abs() < 1e6).all();
   return is_sigma(vector(p.start_sigma_a_roe_m)) && (!has_apriori(p) || apriori_is_valid);
 }
 
