@@ -1,5 +1,6 @@
 #include "fsw/gnc/camera_configuration.h"
 
+#include "fsw/gnc/inbox.h"
 #include "fsw/gnc/message_fields.h"
 #include "fsw/math/symmetric_eigen.h"
 
@@ -42,7 +43,50 @@ Result<pose::KeypointShape> keypoint_shape(const pose_configuration& p) {
   return shape;
 }
 
+bool has_valid_network(const pose_configuration& p) {
+  return is_between(p.dark_level_dn, 0.0, 4095.0) && is_above(p.noise_dn, 1e3);
+}
+
+bool has_apriori(const pose_configuration& p) {
+  return !vector(p.apriori_sigma_a_roe_m).isZero(0.0);
+}
+
+bool has_valid_orbits(const pose_configuration& p) {
+  const auto is_sigma = [](const Vector6& sigma) { return (sigma.array() > 0.0).all() && (sigma.array() < 1e6).all(); };
+  const bool apriori_is_valid = is_usable(GpsTime{p.apriori_epoch_ns}) && is_sigma(vector(p.apriori_sigma_a_roe_m)) &&
+                                (vector(p.apriori_a_roe_m).array().abs() < 1e6).all();
+  return is_sigma(vector(p.start_sigma_a_roe_m)) && (!has_apriori(p) || apriori_is_valid);
+}
+
 }  // namespace
+
+bool is_valid(const camera_configuration& camera) {
+  return calibrated_camera(camera).ok();
+}
+
+bool is_valid(const angles_only_configuration& a) {
+  return is_between(a.detection_sigmas, 1.0, 30.0) && is_between(a.centroid_floor_px, 0.0, 10.0) &&
+         is_above(a.pointing_tolerance, stars::kLargestTolerance) && is_above(a.acceleration_psd, 1.0) &&
+         is_above(a.acceleration_psd_least, a.acceleration_psd) &&
+         is_between(a.acceleration_psd_most, a.acceleration_psd, 1.0) &&
+         is_between(a.brightness_offset_m, 0.0, 100.0) && is_between(a.centroid_noise_m, 0.0, 100.0) &&
+         is_above(a.bearing_bias, 0.1) && is_between(a.maneuver_sigma, 0.0, 1.0) &&
+         is_between(a.maneuver_sigma_relative, 0.0, 1.0) && a.batch_images >= 10 &&
+         a.batch_images <= static_cast<std::int32_t>(navigation::BearingBatch::kCapacity);
+}
+
+bool is_valid(const pose_configuration& p) {
+  return has_valid_network(p) && keypoint_shape(p).ok() && inertia_of(p).ok() && has_valid_orbits(p) &&
+         is_above(p.keypoint_sigma_scale, 100.0) && is_between(p.keypoint_floor_px, 0.0, 100.0) &&
+         is_above(p.acceleration_psd, 1.0) && is_above(p.acceleration_psd_least, p.acceleration_psd) &&
+         is_between(p.acceleration_psd_most, p.acceleration_psd, 1.0) && is_above(p.angular_acceleration_psd, 1.0) &&
+         is_between(p.maneuver_sigma, 0.0, 1.0) && is_between(p.maneuver_sigma_relative, 0.0, 1.0) &&
+         p.start_images >= 1 && p.start_images <= static_cast<std::int32_t>(navigation::PoseInitialiser::kMaxSamples);
+}
+
+bool agree(const camera_configuration& camera, const pose_configuration& configuration) {
+  return configuration.dark_level_dn < camera.saturation_dn;
+}
 
 Result<CalibratedCamera> calibrated_camera(const camera_configuration& c) {
   const Vector3 position = vector(c.position_body_m);
@@ -70,10 +114,7 @@ Result<CalibratedCamera> calibrated_camera(const camera_configuration& c) {
 
 Result<angles_only::CameraSettings> camera_settings(const camera_configuration& c, const angles_only_configuration& a) {
   const Result<CalibratedCamera> camera = calibrated_camera(c);
-  const bool is_usable = camera.ok() && is_between(a.detection_sigmas, 1.0, 30.0) &&
-                         is_between(a.centroid_floor_px, 0.0, 10.0) &&
-                         is_above(a.pointing_tolerance, stars::kLargestTolerance);
-  if (!is_usable) return Status::kOutOfRange;
+  if (!camera.ok() || !is_valid(a)) return Status::kOutOfRange;
   angles_only::CameraSettings settings;
   settings.frame = camera.value().frame;
   settings.model = camera.value().model;
@@ -90,13 +131,7 @@ Result<angles_only::CameraSettings> camera_settings(const camera_configuration& 
 }
 
 Result<BearingNavigationSettings> bearing_settings(const angles_only_configuration& a) {
-  const bool is_usable = is_above(a.acceleration_psd, 1.0) && is_above(a.acceleration_psd_least, a.acceleration_psd) &&
-                         is_between(a.acceleration_psd_most, a.acceleration_psd, 1.0) &&
-                         is_between(a.brightness_offset_m, 0.0, 100.0) && is_between(a.centroid_noise_m, 0.0, 100.0) &&
-                         is_above(a.bearing_bias, 0.1) && is_between(a.maneuver_sigma, 0.0, 1.0) &&
-                         is_between(a.maneuver_sigma_relative, 0.0, 1.0) && a.batch_images >= 10 &&
-                         a.batch_images <= static_cast<std::int32_t>(navigation::BearingBatch::kCapacity);
-  if (!is_usable) return Status::kOutOfRange;
+  if (!is_valid(a)) return Status::kOutOfRange;
   BearingNavigationSettings settings;
   settings.blocks.burn_sigma = a.maneuver_sigma;
   settings.blocks.burn_sigma_relative = a.maneuver_sigma_relative;
@@ -111,8 +146,7 @@ Result<BearingNavigationSettings> bearing_settings(const angles_only_configurati
 
 Result<pose::PoseCameraSettings> pose_camera_settings(const camera_configuration& c, const pose_configuration& p) {
   const Result<CalibratedCamera> camera = calibrated_camera(c);
-  const bool is_usable = camera.ok() && is_between(p.dark_level_dn, 0.0, 4095.0) && is_above(p.noise_dn, 1e3);
-  if (!is_usable) return Status::kOutOfRange;
+  if (!camera.ok() || !has_valid_network(p) || !agree(c, p)) return Status::kOutOfRange;
   pose::PoseCameraSettings settings;
   settings.frame = camera.value().frame;
   settings.model = camera.value().model;
@@ -129,21 +163,7 @@ Result<KeypointNavigationSettings> keypoint_settings(const camera_configuration&
   const Result<CalibratedCamera> camera = calibrated_camera(c);
   const Result<pose::PoseCameraSettings> network = pose_camera_settings(c, p);
   const Result<navigation::Inertia> inertia = inertia_of(p);
-  const Vector6 start_sigma_a_roe_m = vector(p.start_sigma_a_roe_m);
-  const Vector6 apriori_sigma_a_roe_m = vector(p.apriori_sigma_a_roe_m);
-  const bool has_apriori = !apriori_sigma_a_roe_m.isZero(0.0);
-  const bool apriori_is_usable = (apriori_sigma_a_roe_m.array() > 0.0).all() &&
-                                 (apriori_sigma_a_roe_m.array() < 1e6).all() &&
-                                 (vector(p.apriori_a_roe_m).array().abs() < 1e6).all();
-  const bool is_usable = camera.ok() && network.ok() && inertia.ok() && (!has_apriori || apriori_is_usable) &&
-                         is_above(p.keypoint_sigma_scale, 100.0) && is_between(p.keypoint_floor_px, 0.0, 100.0) &&
-                         is_above(p.acceleration_psd, 1.0) && is_above(p.acceleration_psd_least, p.acceleration_psd) &&
-                         is_between(p.acceleration_psd_most, p.acceleration_psd, 1.0) &&
-                         is_above(p.angular_acceleration_psd, 1.0) && is_between(p.maneuver_sigma, 0.0, 1.0) &&
-                         is_between(p.maneuver_sigma_relative, 0.0, 1.0) && p.start_images >= 1 &&
-                         p.start_images <= static_cast<std::int32_t>(navigation::PoseInitialiser::kMaxSamples) &&
-                         (start_sigma_a_roe_m.array() > 0.0).all() && (start_sigma_a_roe_m.array() < 1e6).all();
-  if (!is_usable) return Status::kOutOfRange;
+  if (!camera.ok() || !network.ok() || !inertia.ok() || !is_valid(p)) return Status::kOutOfRange;
   KeypointNavigationSettings settings;
   sources::KeypointSettings& keypoints = settings.keypoints;
   keypoints.camera = network.value();
@@ -153,7 +173,7 @@ Result<KeypointNavigationSettings> keypoint_settings(const camera_configuration&
   // Its boresight is known against the star tracker alone.
   keypoints.aiding.model = {.camera = 1, .optics = camera.value().model, .shape = network.value().shape};
   keypoints.aiding.start.min_images = p.start_images;
-  keypoints.aiding.start.sigma_a_roe_m = start_sigma_a_roe_m;
+  keypoints.aiding.start.sigma_a_roe_m = vector(p.start_sigma_a_roe_m);
   keypoints.aiding.inertia = inertia.value();
   keypoints.aiding.camera_position_camera_m = camera.value().R_camera_body * camera.value().position_body_m;
   settings.blocks.burn_sigma = p.maneuver_sigma;
@@ -161,12 +181,12 @@ Result<KeypointNavigationSettings> keypoint_settings(const camera_configuration&
   settings.blocks.relative_orbit.acceleration = {p.acceleration_psd, p.acceleration_psd_least, p.acceleration_psd_most};
   settings.blocks.attitude.inertia = inertia.value();
   settings.blocks.attitude.angular_acceleration.psd = p.angular_acceleration_psd;
-  if (has_apriori) {
+  if (has_apriori(p)) {
     trunk::TargetApriori& apriori = settings.apriori.emplace();
     apriori.kind = trunk::TargetApriori::Kind::kMeanRoe;
     apriori.time = GpsTime{p.apriori_epoch_ns};
     apriori.mean_a_roe_m = vector(p.apriori_a_roe_m);
-    apriori.sigma_a_roe_m = apriori_sigma_a_roe_m;
+    apriori.sigma_a_roe_m = vector(p.apriori_sigma_a_roe_m);
   }
   return settings;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Validated telecommands of cameras and of camera-based navigation. kOutOfRange for a value outside its valid range.
+// Telecommands of cameras and of camera-based navigation, validated and converted to settings. kOutOfRange for a value
+// outside its valid range, or for telecommands that contradict each other.
 
 #include <optional>
 
@@ -11,6 +12,13 @@
 #include "fsw/sources/keypoints/keypoint_source.h"
 
 namespace vbar::fsw::gnc {
+
+/// Whether the values of a telecommand are within their valid ranges, irrespective of all other telecommands.
+[[nodiscard]] bool is_valid(const camera_configuration& camera);
+[[nodiscard]] bool is_valid(const angles_only_configuration& configuration);
+[[nodiscard]] bool is_valid(const pose_configuration& configuration);
+/// Whether a valid camera and a valid model of the target may be used together: a pixel without light is not saturated.
+[[nodiscard]] bool agree(const camera_configuration& camera, const pose_configuration& configuration);
 
 /// A camera as calibrated on the ground.
 struct CalibratedCamera {

@@ -30,12 +30,13 @@ Status Gnc::step(GpsTime now) {
 }
 
 void Gnc::manage() {
-  management_.update(now_, inbox_);
+  telecommands_.update(now_, inbox_);
+  management_.update(now_, telecommands_);
   if (inbox_.counters().dropped_full > 0) faults_ |= kFaultInboxFull;
 }
 
 void Gnc::navigate() {
-  navigation_.update(now_, inbox_);
+  navigation_.update(now_, telecommands_, inbox_);
   const NavigationState& state = navigation_.state();
   const double timeout = management_.configuration().navigation_timeout_s;
   if (state.valid && seconds(now_ - state.last_measurement) > timeout) faults_ |= kFaultNavigationTimeout;
@@ -66,6 +67,7 @@ void Gnc::report() {
     copy(commanded.burn.dv_rtn, message.dv_rtn);
     outbox_.send(commanded.burn.time, message);
   }
+  telecommands_.report(outbox_, step_, now_);
   report_navigation();
   if (navigation_.uses_camera()) point_camera();
   navigation_.trunk().report(outbox_, step_, now_, inbox_);

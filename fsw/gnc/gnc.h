@@ -12,6 +12,7 @@
 #include "fsw/gnc/management.h"
 #include "fsw/gnc/navigation.h"
 #include "fsw/gnc/outbox.h"
+#include "fsw/gnc/telecommands.h"
 
 namespace vbar::fsw::gnc {
 
@@ -52,6 +53,7 @@ class Gnc {
 
   Inbox inbox_;
   Outbox outbox_;
+  Telecommands telecommands_;
   Management management_;
   Navigation navigation_;
   Guidance guidance_;

@@ -7,7 +7,17 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-bool has_usable_values(const navigation_configuration& c) {
+orbit::EarthOrientation earth_orientation(const navigation_configuration& c) {
+  return {.epoch = GpsTime{c.earth_epoch_ns},
+          .ut1_minus_gps_s = c.ut1_minus_gps_s,
+          .ut1_rate = c.ut1_rate,
+          .pole_x = c.pole_x,
+          .pole_y = c.pole_y};
+}
+
+}  // namespace
+
+bool is_valid(const navigation_configuration& c) {
   const auto positive = [](double x, double maximum) { return x > 0.0 && x <= maximum; };
   const auto within = [](double x, double minimum, double maximum) { return x >= minimum && x <= maximum; };
   const bool wander_usable = within(c.phase_wander_sigma_m, 0.0, 1.0) && within(c.phase_wander_time_s, 0.0, 1e6) &&
@@ -23,18 +33,8 @@ bool has_usable_values(const navigation_configuration& c) {
          math::abs(c.pole_x) < 1e-4 && math::abs(c.pole_y) < 1e-4;
 }
 
-orbit::EarthOrientation earth_orientation(const navigation_configuration& c) {
-  return {.epoch = GpsTime{c.earth_epoch_ns},
-          .ut1_minus_gps_s = c.ut1_minus_gps_s,
-          .ut1_rate = c.ut1_rate,
-          .pole_x = c.pole_x,
-          .pole_y = c.pole_y};
-}
-
-}  // namespace
-
 Result<CarrierNavigationSettings> carrier_settings(const navigation_configuration& c) {
-  if (!has_usable_values(c)) return Status::kOutOfRange;
+  if (!is_valid(c)) return Status::kOutOfRange;
   CarrierNavigationSettings settings;
   settings.pair_wait = Duration{c.pair_wait_ns};
   settings.carrier.filter = {.antenna_offset_sigma_m = c.antenna_offset_sigma_m,

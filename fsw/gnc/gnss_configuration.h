@@ -8,8 +8,11 @@
 
 namespace vbar::fsw::gnc {
 
+/// Whether a filter can operate with the values.
+[[nodiscard]] bool is_valid(const navigation_configuration& configuration);
+
 /// Navigation by the receivers of both spacecraft: the source, and the blocks of the trunk that it tunes. kOutOfRange
-/// for values with which no filter can operate.
+/// for an invalid telecommand.
 struct CarrierNavigationSettings {
   sources::CarrierSettings carrier;
   Duration pair_wait;

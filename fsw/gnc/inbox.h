@@ -2,7 +2,6 @@
 // receive: decode, check and file each packet by its time tag. Packets are not processed until the step.
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <tuple>
 
@@ -53,19 +52,6 @@ class Inbox {
   /// Counts an entry that proved unusable at the step (late, or of the future).
   void count_unusable_time() { ++counters_.rejected_time; }
 
-  /// Writes the newest entry of a queue into `kept`, which is unchanged if there is none. Entries tagged after `now`
-  /// are counted as unusable.
-  template <class Message, std::size_t kCapacity>
-  void keep_newest(const TimeOrderedQueue<Message, kCapacity>& queue, GpsTime now, std::optional<Message>& kept) {
-    for (std::size_t k = 0; k < queue.size(); ++k) {
-      if (queue[k].tag.time > now) {
-        count_unusable_time();
-      } else {
-        kept = queue[k].value;
-      }
-    }
-  }
-
   /// Counts a telecommand whose content the step refused.
   void count_bad_content() { ++counters_.rejected_content; }
 
@@ -95,7 +81,7 @@ class Inbox {
   std::uint8_t spacecraft_;
   PacketCounters counters_;
   Duration step_period_;
-  packets::TupleOfRoute<packets::RouteKind::kQueue, Queue>::Type queues_;
+  packets::TupleOfRoute<&packets::has_queue, Queue>::Type queues_;
   imaging::ImageAssembly image_;
 };
 

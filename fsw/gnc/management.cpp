@@ -1,11 +1,9 @@
 #include "fsw/gnc/management.h"
 
-#include "fsw/math/math.h"
+#include <type_traits>
 
 namespace vbar::fsw::gnc {
 namespace {
-
-constexpr double kLargestARoe = 1e6;  // m; beyond it the relative-orbit models are not valid
 
 /// Defaults are those of the paper's mission; a telecommand replaces them.
 gnc_configuration default_configuration() {
@@ -28,78 +26,41 @@ gnc_configuration default_configuration() {
   return c;
 }
 
-bool is_usable_span(std::int64_t ns) {
-  return is_usable(Duration{ns});
-}
-bool is_usable_span(double s) {
-  return s > 0.0 && s <= seconds(kLongestSpan);
-}
+static_assert(Management::kMaxWaypoints == std::extent_v<decltype(waypoint_table::waypoints)>);
 
 }  // namespace
 
 Management::Management() : configuration_(default_configuration()) {}
 
-void Management::update(GpsTime now, Inbox& inbox) {
-  const auto take_all = [&](const auto& queue) {
-    for (std::size_t k = 0; k < queue.size(); ++k) {
-      if (queue[k].tag.time > now) {
-        inbox.count_unusable_time();
-      } else if (!take(queue[k].value)) {
-        inbox.count_bad_content();
-      }
-    }
-  };
-  take_all(inbox.queue<vbar::gnc_configuration>());
-  take_all(inbox.queue<vbar::waypoint_table>());
-  take_all(inbox.queue<vbar::mode_command>());
-
-  // A waypoint is reached when its time comes: the schedule is fixed in time, whatever the error on arrival.
-  while (next_ < count_ && waypoints_[next_].time <= now) ++next_;
+void Management::update(GpsTime now, const Telecommands& telecommands) {
+  if (telecommands.is_new<gnc_configuration>()) configuration_ = *telecommands.in_force<gnc_configuration>();
+  if (telecommands.is_new<waypoint_table>()) take(now, *telecommands.in_force<waypoint_table>());
+  if (telecommands.is_new<mode_command>()) mode_ = static_cast<Mode>(telecommands.in_force<mode_command>()->mode);
+  pass_waypoints(now);
   if (mode_ == Mode::kApproach && next_ == count_ && count_ > 0) mode_ = Mode::kStationKeeping;
-  if (mode_ == Mode::kStationKeeping && next_ == 0) mode_ = Mode::kIdle;  // no waypoint reached: no position to keep
 }
 
-bool Management::take(const waypoint_table& table) {
-  if (table.count < 1 || table.count > static_cast<std::int32_t>(kMaxWaypoints)) return false;
-  if (table.reference_semi_major_axis_m < 6.4e6 || table.reference_semi_major_axis_m > 1e9) return false;
-  const auto count = static_cast<std::size_t>(table.count);
-  for (std::size_t k = 0; k < count; ++k) {
-    const waypoint& w = table.waypoints[k];
-    if (!is_usable(GpsTime{w.gps_time_ns})) return false;
-    if (w.control_mode < 0 || w.control_mode > 2) return false;
-    if (k > 0 && w.gps_time_ns <= table.waypoints[k - 1].gps_time_ns) return false;
-    for (const double a_roe : w.a_roe_m) {
-      if (math::abs(a_roe) > kLargestARoe) return false;
-    }
-  }
+/// A waypoint is reached when its time comes: the schedule is fixed in time, whatever the error on arrival.
+void Management::pass_waypoints(GpsTime now) {
+  while (next_ < count_ && waypoints_[next_].time <= now) ++next_;
+}
+
+/// The position being kept ends with its table, unless the new table has reached one as well. A command to keep a
+/// position that has not been reached yet stays in force: table and command may arrive in any order.
+void Management::take(GpsTime now, const waypoint_table& table) {
+  const bool was_keeping = mode() == Mode::kStationKeeping;
   reference_semi_major_axis_ = table.reference_semi_major_axis_m;
-  count_ = count;
+  count_ = static_cast<std::size_t>(table.count);  // validated by the store
   next_ = 0;
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < count_; ++k) {
     const waypoint& w = table.waypoints[k];
     waypoints_[k].index = w.index;
     waypoints_[k].control_mode = w.control_mode;
     waypoints_[k].time = {w.gps_time_ns};
     for (int i = 0; i < 6; ++i) waypoints_[k].roe(i) = w.a_roe_m[i] / reference_semi_major_axis_;
   }
-  return true;
-}
-
-bool Management::take(const gnc_configuration& c) {
-  const bool usable =
-      (c.compute_latency_ns == 0 || is_usable_span(c.compute_latency_ns)) && is_usable_span(c.closed_form_period_ns) &&
-      is_usable_span(c.koenig_damico_period_ns) && is_usable_span(c.koenig_damico_grid_ns) && c.minimum_dv >= 0.0 &&
-      c.maximum_dv > c.minimum_dv && c.roe_error_threshold_m >= 0.0 && c.keep_out_radius_m >= 0.0 &&
-      c.safety_horizon_s >= 0.0 && c.station_keeping_deadband_m > 0.0 && c.closed_form_tolerance_m > 0.0 &&
-      c.koenig_damico_tolerance_m > 0.0 && is_usable_span(c.station_keeping_horizon_s) && c.navigation_timeout_s > 0.0;
-  if (usable) configuration_ = c;
-  return usable;
-}
-
-bool Management::take(const mode_command& command) {
-  if (command.mode < 0 || command.mode > 3) return false;
-  mode_ = static_cast<Mode>(command.mode);
-  return true;
+  pass_waypoints(now);
+  if (was_keeping && next_ == 0) mode_ = Mode::kIdle;
 }
 
 }  // namespace vbar::fsw::gnc

@@ -6,7 +6,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
-#include "fsw/gnc/inbox.h"
+#include "fsw/gnc/telecommands.h"
 
 namespace vbar::fsw::gnc {
 
@@ -31,11 +31,12 @@ class Management {
 
   Management();
 
-  /// Processes the telecommands of the inbox (configurations, tables, modes; each in order of time tags), then updates
-  /// the state machine to `now`. A telecommand with an invalid value has no effect and is counted.
-  void update(GpsTime now, Inbox& inbox);
+  /// Processes the telecommands that are new in the store (configuration, table, mode), then updates the state machine
+  /// to `now`.
+  void update(GpsTime now, const Telecommands& telecommands);
 
-  [[nodiscard]] Mode mode() const { return mode_; }
+  /// Station keeping without a waypoint reached is idle: there is no position to keep yet.
+  [[nodiscard]] Mode mode() const { return mode_ == Mode::kStationKeeping && next_ == 0 ? Mode::kIdle : mode_; }
   [[nodiscard]] const gnc_configuration& configuration() const { return configuration_; }
   [[nodiscard]] double reference_semi_major_axis() const { return reference_semi_major_axis_; }
 
@@ -45,9 +46,8 @@ class Management {
   [[nodiscard]] const Waypoint* last_waypoint() const { return next_ > 0 ? &waypoints_[next_ - 1] : nullptr; }
 
  private:
-  bool take(const waypoint_table& table);
-  bool take(const gnc_configuration& configuration);
-  bool take(const mode_command& command);
+  void take(GpsTime now, const waypoint_table& table);
+  void pass_waypoints(GpsTime now);
 
   Mode mode_ = Mode::kIdle;
   gnc_configuration configuration_;

@@ -2,7 +2,6 @@
 
 #include <span>
 
-#include "fsw/gnc/gnss_configuration.h"
 #include "fsw/gnc/message_fields.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/propagate.h"
@@ -35,8 +34,8 @@ bool is_orbit(const orbit::CartesianState& state) {
 
 }  // namespace
 
-void Navigation::update(GpsTime now, Inbox& inbox) {
-  take_configurations(now, inbox);
+void Navigation::update(GpsTime now, const Telecommands& telecommands, Inbox& inbox) {
+  take_configurations(now, telecommands);
   take_maneuvers(now, inbox);
   take_trunk(now, inbox);
   if (!has_reference_) return;
@@ -110,26 +109,16 @@ void Navigation::set_uncertainty(GpsTime now) {
   if (!(largest < kMaxRelativeSigma * separation + kAlwaysAccurate_m)) state_.valid = false;
 }
 
-void Navigation::take_configurations(GpsTime now, Inbox& inbox) {
-  const auto& configurations = inbox.queue<vbar::navigation_configuration>();
-  for (std::size_t k = 0; k < configurations.size(); ++k) {
-    if (configurations[k].tag.time > now) {
-      inbox.count_unusable_time();
-      continue;
-    }
-    if (!carrier_settings(configurations[k].value).ok()) {
-      inbox.count_bad_content();
-      continue;
-    }
-    sensors_ = static_cast<Sensors>(configurations[k].value.source);  // validated with the settings
+void Navigation::take_configurations(GpsTime now, const Telecommands& telecommands) {
+  if (telecommands.is_new<navigation_configuration>()) {
+    sensors_ = static_cast<Sensors>(telecommands.in_force<navigation_configuration>()->source);
     drop_state();
   }
-  const bool camera_changes = inbox.queue<vbar::camera_configuration>().size() > 0 ||
-                              inbox.queue<vbar::angles_only_configuration>().size() > 0 ||
-                              inbox.queue<vbar::target_apriori>().size() > 0 ||
-                              inbox.queue<vbar::pose_configuration>().size() > 0;
+  const bool camera_changes = telecommands.is_new<camera_configuration>() ||
+                              telecommands.is_new<angles_only_configuration>() ||
+                              telecommands.is_new<target_apriori>() || telecommands.is_new<pose_configuration>();
   if (camera_changes && uses_camera()) drop_state();
-  trunk_.configure(now, inbox);
+  trunk_.configure(now, telecommands);
 }
 
 std::span<const navigation::Burn> Navigation::own_burns() {

@@ -14,6 +14,7 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
 #include "fsw/gnc/inbox.h"
+#include "fsw/gnc/telecommands.h"
 #include "fsw/gnc/trunk_navigation.h"
 #include "fsw/orbit/elements.h"
 
@@ -44,8 +45,9 @@ struct NavigationState {
 
 class Navigation {
  public:
-  /// Propagates the state to `now`. Entries tagged after `now` or before the reference state are counted as unusable.
-  void update(GpsTime now, Inbox& inbox);
+  /// Derives the settings from telecommands that are new, and propagates the state to `now`. Entries tagged after `now`
+  /// or before the reference state are counted as unusable.
+  void update(GpsTime now, const Telecommands& telecommands, Inbox& inbox);
 
   /// A maneuver was commanded: `dv_rtn` (m/s) at `time`, which lies after the last update.
   void expect_maneuver(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn);
@@ -74,7 +76,7 @@ class Navigation {
     Vector3 dv_rtn = Vector3::Zero();
   };
 
-  void take_configurations(GpsTime now, Inbox& inbox);
+  void take_configurations(GpsTime now, const Telecommands& telecommands);
   void take_trunk(GpsTime now, Inbox& inbox);
   [[nodiscard]] double differential_acceleration_sigma() const;
   void set_reference(const Pair& estimated);

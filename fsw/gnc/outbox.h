@@ -52,7 +52,7 @@ class Outbox {
   std::uint8_t spacecraft_;
   vbar_packet_sink sink_;
   void* context_;
-  packets::TupleOfRoute<packets::RouteKind::kFromFlight, SequenceCount>::Type sequence_counts_;
+  packets::TupleOfRoute<&packets::is_from_flight, SequenceCount>::Type sequence_counts_;
   std::int32_t dropped_ = 0;
 };
 

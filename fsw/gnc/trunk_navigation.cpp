@@ -46,48 +46,36 @@ void put_attitudes(GpsTime now, const Queue& packets, Inbox& inbox, navigation::
 
 }  // namespace
 
-void TrunkNavigation::configure(GpsTime now, Inbox& inbox) {
-  take_apriori(now, inbox);
-  const bool has_any =
-      !inbox.queue<vbar::navigation_configuration>().empty() || !inbox.queue<vbar::camera_configuration>().empty() ||
-      !inbox.queue<vbar::angles_only_configuration>().empty() || !inbox.queue<vbar::pose_configuration>().empty();
-  if (!has_any) return;
-  inbox.keep_newest(inbox.queue<vbar::navigation_configuration>(), now, navigation_);
-  inbox.keep_newest(inbox.queue<vbar::camera_configuration>(), now, camera_);
-  inbox.keep_newest(inbox.queue<vbar::angles_only_configuration>(), now, angles_only_);
-  inbox.keep_newest(inbox.queue<vbar::pose_configuration>(), now, pose_);
-  configure_sources(now, inbox);
+void TrunkNavigation::configure(GpsTime now, const Telecommands& telecommands) {
+  const bool is_new = telecommands.is_new<navigation_configuration>() || telecommands.is_new<camera_configuration>() ||
+                      telecommands.is_new<angles_only_configuration>() || telecommands.is_new<pose_configuration>();
+  if (is_new) configure_sources(now, telecommands);
+  if (is_new || telecommands.is_new<target_apriori>()) configure_apriori(telecommands);
 }
 
-void TrunkNavigation::configure_sources(GpsTime now, Inbox& inbox) {
-  if (!navigation_) return;
-  const auto carrier = carrier_settings(*navigation_);
-  if (!carrier.ok()) {
-    inbox.count_bad_content();
-    navigation_.reset();
-    return;
-  }
+/// From all telecommands in force together: their order of arrival has no effect. The store has validated them, so that
+/// no conversion fails.
+void TrunkNavigation::configure_sources(GpsTime now, const Telecommands& telecommands) {
+  const auto* navigation = telecommands.in_force<navigation_configuration>();
+  if (navigation == nullptr) return;
+  const auto carrier = carrier_settings(*navigation);
+  if (!carrier.ok()) return;
   trunk::TrunkSettings blocks = carrier.value().blocks;
   std::get<sources::OwnGnssSource>(sources_).configure(carrier.value().carrier.servicer_antenna_body_m);
   std::get<sources::CarrierSource>(sources_).configure(carrier.value().carrier, carrier.value().pair_wait);
-  if (!configure_bearings(blocks) || !configure_keypoints(blocks)) {
-    inbox.count_bad_content();
-    return;
-  }
+  configure_bearings(telecommands, blocks);
+  configure_keypoints(telecommands, blocks);
   trunk_.configure(blocks);
-  select_sources(now);
+  select_sources(now, telecommands);
 }
 
-/// False if the telecommands are invalid; they are discarded.
-bool TrunkNavigation::configure_bearings(trunk::TrunkSettings& blocks) {
-  if (!camera_ || !angles_only_) return true;
-  const auto camera = camera_settings(*camera_, *angles_only_);
-  const auto bearings = bearing_settings(*angles_only_);
-  if (!camera.ok() || !bearings.ok()) {
-    camera_.reset();
-    angles_only_.reset();
-    return false;
-  }
+void TrunkNavigation::configure_bearings(const Telecommands& telecommands, trunk::TrunkSettings& blocks) {
+  const auto* known_camera = telecommands.in_force<camera_configuration>();
+  const auto* angles_only = telecommands.in_force<angles_only_configuration>();
+  if (known_camera == nullptr || angles_only == nullptr) return;
+  const auto camera = camera_settings(*known_camera, *angles_only);
+  const auto bearings = bearing_settings(*angles_only);
+  if (!camera.ok() || !bearings.ok()) return;
   const trunk::TrunkSettings& tuned = bearings.value().blocks;
   blocks.burn_sigma = tuned.burn_sigma;
   blocks.burn_sigma_relative = tuned.burn_sigma_relative;
@@ -95,30 +83,27 @@ bool TrunkNavigation::configure_bearings(trunk::TrunkSettings& blocks) {
   blocks.brightness_offset = tuned.brightness_offset;
   blocks.boresight_a = tuned.boresight_a;
   std::get<sources::BearingSource>(sources_).configure(camera.value(), bearings.value().bearings);
-  return true;
 }
 
-bool TrunkNavigation::configure_keypoints(trunk::TrunkSettings& blocks) {
-  if (!camera_ || !pose_) return true;
-  const auto keypoints = keypoint_settings(*camera_, *pose_);
-  if (!keypoints.ok()) {
-    camera_.reset();
-    pose_.reset();
-    return false;
-  }
+void TrunkNavigation::configure_keypoints(const Telecommands& telecommands, trunk::TrunkSettings& blocks) {
+  const auto* camera = telecommands.in_force<camera_configuration>();
+  const auto* pose = telecommands.in_force<pose_configuration>();
+  if (camera == nullptr || pose == nullptr) return;
+  const auto keypoints = keypoint_settings(*camera, *pose);
+  if (!keypoints.ok()) return;
   const trunk::TrunkSettings& tuned = keypoints.value().blocks;
   blocks.burn_sigma = tuned.burn_sigma;
   blocks.burn_sigma_relative = tuned.burn_sigma_relative;
   blocks.relative_orbit.acceleration = tuned.relative_orbit.acceleration;
   blocks.attitude = tuned.attitude;
   std::get<sources::KeypointSource>(sources_).configure(keypoints.value().keypoints);
-  if (keypoints.value().apriori) trunk_.set_apriori(*keypoints.value().apriori);
-  return true;
+  pose_apriori_ = keypoints.value().apriori;
 }
 
 /// As navigation_configuration.source; a camera that is not configured is not a source.
-void TrunkNavigation::select_sources(GpsTime now) {
-  const int source = navigation_->source;
+void TrunkNavigation::select_sources(GpsTime now, const Telecommands& telecommands) {
+  const int source = telecommands.in_force<navigation_configuration>()->source;
+  const bool has_camera = telecommands.in_force<camera_configuration>() != nullptr;
   const auto select = [&](auto& which, bool is_selected) {
     if (is_selected && !which.aid().is_on()) which.aid().go_to(AidState::kWaiting, now);
     if (!is_selected && which.aid().is_on()) which.stop(now, trunk_);
@@ -126,28 +111,31 @@ void TrunkNavigation::select_sources(GpsTime now) {
   select(std::get<sources::IdealSource>(sources_), source == navigation_configuration::kSourceIdealNavigation);
   select(std::get<sources::OwnGnssSource>(sources_), source != navigation_configuration::kSourceIdealNavigation);
   select(std::get<sources::CarrierSource>(sources_), source == navigation_configuration::kSourceGnss);
-  select(std::get<sources::BearingSource>(sources_),
-         source == navigation_configuration::kSourceAnglesOnly && camera_ && angles_only_);
-  select(std::get<sources::KeypointSource>(sources_),
-         source == navigation_configuration::kSourcePose && camera_ && pose_);
+  select(std::get<sources::BearingSource>(sources_), source == navigation_configuration::kSourceAnglesOnly &&
+                                                         has_camera &&
+                                                         telecommands.in_force<angles_only_configuration>() != nullptr);
+  select(std::get<sources::KeypointSource>(sources_), source == navigation_configuration::kSourcePose && has_camera &&
+                                                          telecommands.in_force<pose_configuration>() != nullptr);
 }
 
-void TrunkNavigation::take_apriori(GpsTime now, Inbox& inbox) {
-  const auto& aprioris = inbox.queue<vbar::target_apriori>();
-  for (std::size_t k = 0; k < aprioris.size(); ++k) {
-    const target_apriori& known = aprioris[k].value;
-    trunk::TargetApriori apriori;
-    apriori.time = aprioris[k].tag.time;
-    apriori.target = {vector(known.position_eci), vector(known.velocity_eci)};
-    apriori.sigma_a_roe_m = vector(known.sigma_a_roe_m);
-    const bool is_usable = apriori.time <= now && orbit::qns_from_cartesian(apriori.target).ok() &&
-                           (apriori.sigma_a_roe_m.array() > 0.0).all() && (apriori.sigma_a_roe_m.array() < 1e6).all();
-    if (is_usable) {
-      trunk_.set_apriori(apriori);
-    } else {
-      inbox.count_bad_content();
-    }
-  }
+/// With navigation by poses, ROE of preceding navigation take precedence over an absolute orbit, whichever of the two
+/// telecommands arrived first. An a-priori orbit in use is set again only by a new telecommand: it has been propagated.
+void TrunkNavigation::configure_apriori(const Telecommands& telecommands) {
+  const auto* navigation = telecommands.in_force<navigation_configuration>();
+  const bool is_pose =
+      navigation != nullptr && navigation->source == navigation_configuration::kSourcePose && pose_apriori_.has_value();
+  const auto* known = telecommands.in_force<target_apriori>();
+  if (!is_pose && known == nullptr) return;
+  const AprioriOrigin origin = is_pose ? AprioriOrigin::kPose : AprioriOrigin::kTarget;
+  const bool is_new = is_pose ? telecommands.is_new<pose_configuration>() : telecommands.is_new<target_apriori>();
+  if (origin == apriori_origin_ && !is_new) return;
+  apriori_origin_ = origin;
+  if (is_pose) return trunk_.set_apriori(*pose_apriori_);
+  trunk::TargetApriori apriori;
+  apriori.time = telecommands.time_of<target_apriori>();
+  apriori.target = {vector(known->position_eci), vector(known->velocity_eci)};
+  apriori.sigma_a_roe_m = vector(known->sigma_a_roe_m);
+  trunk_.set_apriori(apriori);
 }
 
 void TrunkNavigation::take_attitudes(GpsTime now, Inbox& inbox) {

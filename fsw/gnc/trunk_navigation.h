@@ -5,6 +5,7 @@
 // record to record, never beyond the oldest time of which a source still owes a record: late inputs are used without
 // going back, and their order of arrival has no effect.
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -12,6 +13,7 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/outbox.h"
+#include "fsw/gnc/telecommands.h"
 #include "fsw/navigation/burn.h"
 #include "fsw/sources/bearings/bearing_source.h"
 #include "fsw/sources/carrier_pair/carrier_source.h"
@@ -28,9 +30,9 @@ class TrunkNavigation {
   /// Until a telecommand selects other sources, ideal navigation is used.
   TrunkNavigation() { std::get<sources::IdealSource>(sources_).aid().go_to(sources::AidState::kWaiting, GpsTime{}); }
 
-  /// Selects and sets the sources from the telecommands in the inbox; those not present remain unchanged. Estimates
-  /// stay; the blocks of a source that is not selected any more rest.
-  void configure(GpsTime now, Inbox& inbox);
+  /// Selects and sets the sources from the telecommands in force, if one of them is new. Estimates stay; the blocks of
+  /// a source that is not selected any more rest.
+  void configure(GpsTime now, const Telecommands& telecommands);
 
   /// Processes the packets of the step. `burns`: the servicer's from the epoch on, executed or commanded, in order of
   /// time. Records before the epoch are counted as unusable.
@@ -59,12 +61,15 @@ class TrunkNavigation {
 
   static_assert(std::tuple_size_v<Sources> <= trunk::Trunk::kMaxSources);
 
-  void select_sources(GpsTime now);
-  void configure_sources(GpsTime now, Inbox& inbox);
-  bool configure_bearings(trunk::TrunkSettings& blocks);
-  bool configure_keypoints(trunk::TrunkSettings& blocks);
+  /// Telecommand from which the a-priori orbit of the target comes.
+  enum class AprioriOrigin : std::uint8_t { kNone, kTarget, kPose };
+
+  void configure_sources(GpsTime now, const Telecommands& telecommands);
+  void configure_bearings(const Telecommands& telecommands, trunk::TrunkSettings& blocks);
+  void configure_keypoints(const Telecommands& telecommands, trunk::TrunkSettings& blocks);
+  void select_sources(GpsTime now, const Telecommands& telecommands);
+  void configure_apriori(const Telecommands& telecommands);
   void take_attitudes(GpsTime now, Inbox& inbox);
-  void take_apriori(GpsTime now, Inbox& inbox);
   [[nodiscard]] GpsTime owed_until(GpsTime now) const;
   void fold_records(sources::Context& context, std::span<const navigation::Burn> burns);
 
@@ -73,10 +78,8 @@ class TrunkNavigation {
   sources::Platform platform_;
   sources::GnssFrontEnd gnss_;
   Sources sources_;
-  std::optional<navigation_configuration> navigation_;
-  std::optional<camera_configuration> camera_;
-  std::optional<angles_only_configuration> angles_only_;
-  std::optional<pose_configuration> pose_;
+  AprioriOrigin apriori_origin_ = AprioriOrigin::kNone;
+  std::optional<trunk::TargetApriori> pose_apriori_;  ///< of the pose_configuration in force
 };
 
 }  // namespace vbar::fsw::gnc

@@ -25,16 +25,30 @@ enum class RouteKind : std::uint8_t {
 struct Route {
   RouteKind kind = RouteKind::kBoard;
   std::size_t capacity = 0;  ///< of the queue, 0 without one
-  bool is_telecommand = false;
+  std::size_t units = 0;     ///< of a telecommand: header units 0 ... units - 1 are known; 0: not a telecommand
 };
+
+constexpr bool has_queue(const Route& route) {
+  return route.kind == RouteKind::kQueue;
+}
+constexpr bool is_telecommand(const Route& route) {
+  return route.units > 0;
+}
+constexpr bool is_from_flight(const Route& route) {
+  return route.kind == RouteKind::kFromFlight;
+}
 
 namespace route {
 
 constexpr Route queue(std::size_t capacity) {
   return {.kind = RouteKind::kQueue, .capacity = capacity};
 }
-/// Telecommands are rare; of each kind this number may arrive in a step.
-inline constexpr Route kTelecommand{.kind = RouteKind::kQueue, .capacity = 4, .is_telecommand = true};
+/// Telecommands are rare: of each kind this number may arrive in a step. The newest of each unit is kept
+/// (fsw/gnc/telecommands.h).
+constexpr Route telecommand(std::size_t units) {
+  return {.kind = RouteKind::kQueue, .capacity = 4, .units = units};
+}
+inline constexpr Route kTelecommand = telecommand(1);
 inline constexpr Route kSpecial{.kind = RouteKind::kSpecial};
 inline constexpr Route kIgnored{.kind = RouteKind::kIgnored};
 inline constexpr Route kFromFlight{.kind = RouteKind::kFromFlight};
@@ -64,7 +78,7 @@ inline constexpr Route kManeuvers = queue(32);
   X(::vbar::gnc_configuration, kGncConfiguration, 0x102, route::kTelecommand)                \
   X(::vbar::mode_command, kModeCommand, 0x103, route::kTelecommand)                          \
   X(::vbar::navigation_configuration, kNavigationConfiguration, 0x104, route::kTelecommand)  \
-  X(::vbar::camera_configuration, kCameraConfiguration, 0x105, route::kTelecommand)          \
+  X(::vbar::camera_configuration, kCameraConfiguration, 0x105, route::telecommand(2))        \
   X(::vbar::angles_only_configuration, kAnglesOnlyConfiguration, 0x106, route::kTelecommand) \
   X(::vbar::target_apriori, kTargetApriori, 0x107, route::kTelecommand)                      \
   X(::vbar::pose_configuration, kPoseConfiguration, 0x108, route::kTelecommand)              \
@@ -77,5 +91,6 @@ inline constexpr Route kManeuvers = queue(32);
   X(::vbar::telemetry_image, kTelemetryImage, 0x505, route::kFromFlight)                     \
   X(::vbar::telemetry_objects, kTelemetryObjects, 0x506, route::kFromFlight)                 \
   X(::vbar::telemetry_pose, kTelemetryPose, 0x507, route::kFromFlight)                       \
+  X(::vbar::telemetry_telecommand, kTelemetryTelecommand, 0x508, route::kFromFlight)         \
   X(::vbar::step_report, kStepReport, 0x601, route::kBoard)                                  \
   X(::vbar::wired_bytes, kWiredBytes, 0x602, route::kBoard)

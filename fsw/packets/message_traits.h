@@ -48,16 +48,16 @@ constexpr void for_each_telemetry(Visitor&& visit) {
 template <class Visitor>
 constexpr void for_each_telecommand(Visitor&& visit) {
   for_each_message([&]<class Message>() {
-    if constexpr (MessageTraits<Message>::kRoute.is_telecommand) visit.template operator()<Message>();
+    if constexpr (is_telecommand(MessageTraits<Message>::kRoute)) visit.template operator()<Message>();
   });
 }
 
-/// A tuple of Of<Message> for each message whose route is of this kind, in the order of the list: storage derived from
-/// the list, without an entry for the other messages.
-template <RouteKind kKind, template <class> class Of>
+/// A tuple of Of<Message> for each message whose route is selected, in the order of the list: storage derived from the
+/// list, without an entry for the other messages.
+template <bool (*kSelects)(const Route&), template <class> class Of>
 struct TupleOfRoute {
   template <class Message>
-  using Entry = std::conditional_t<MessageTraits<Message>::kRoute.kind == kKind, std::tuple<Of<Message>>, std::tuple<>>;
+  using Entry = std::conditional_t<kSelects(MessageTraits<Message>::kRoute), std::tuple<Of<Message>>, std::tuple<>>;
 #define VBAR_MESSAGE(type, enumerator, number, route) , std::declval<Entry<type>>()
   using Type = decltype(std::tuple_cat(std::tuple<>() VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)));
 #undef VBAR_MESSAGE

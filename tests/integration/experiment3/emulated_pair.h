@@ -103,6 +103,7 @@ class EmulatedPair {
   std::vector<Arrival> under_way_;
   std::map<fsw::GpsTime, Integers> integers_;  ///< target minus servicer
   fsw::gnc::Inbox inbox_;
+  fsw::gnc::Telecommands telecommands_;
   std::unique_ptr<fsw::gnc::Navigation> navigation_;
   Tamper tamper_;
   std::size_t next_ = 0;

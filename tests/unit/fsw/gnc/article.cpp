@@ -69,6 +69,11 @@ Answer Article::collect(vbar_status status) {
     EXPECT_TRUE(packet.ok());
     if (!packet.ok()) continue;
     const packets::PacketView& view = packet.value();
+    if (view.header.apid == Apid::kTelemetryTelecommand) {
+      answer.acknowledgments.push_back(decoded<telemetry_telecommand>(view));
+      answer.packets.push_back(bytes);
+      continue;
+    }
     answer.telemetry_count += packets::is_telemetry(view.header.apid) ? 1 : 0;
     if (view.header.apid == Apid::kManeuverCommand) {
       answer.commands.push_back({view.header.time, decoded<maneuver_command>(view)});

@@ -24,7 +24,8 @@ struct Answer {
   telemetry_navigation navigation{};
   telemetry_control control{};
   telemetry_health health{};
-  int telemetry_count = 0;  ///< three a step: one of each kind
+  std::vector<telemetry_telecommand> acknowledgments;
+  int telemetry_count = 0;  ///< three a step, one of each kind; without acknowledgments
 };
 
 class Article {

@@ -8,31 +8,13 @@
 
 #include <gtest/gtest.h>
 
-#include "fsw/gnc/inbox.h"
+#include "tests/unit/fsw/gnc/configurations.h"
 
 namespace vbar::fsw::gnc {
 namespace {
 
 navigation_configuration good() {
-  navigation_configuration c{};
-  c.source = navigation_configuration::kSourceGnss;
-  c.resolve_ambiguities = 1;
-  c.min_success_rate = 0.999;
-  c.min_ratio = 3.0;
-  c.pair_wait_ns = 12'000'000'000;
-  c.antenna_offset_sigma_m = 3.2e-3;
-  c.phase_centre_jitter_m = 1e-3;
-  c.phase_wander_sigma_m = 0.5e-3;
-  c.phase_wander_time_s = 60.0;
-  c.code_bias_sigma_m = 2.0;
-  c.start_velocity_sigma = 0.2;
-  c.acceleration_sigma = 1e-8;
-  c.acceleration_time_s = 1500.0;
-  c.maneuver_sigma = 2e-6;
-  c.maneuver_sigma_relative = 2e-3;
-  c.earth_epoch_ns = 994'986'015'000'000'000;
-  c.ut1_minus_gps_s = -15.3;
-  return c;
+  return test::navigation(navigation_configuration::kSourceGnss);
 }
 
 TEST(GnssConfiguration, ReachesTheFilter) {

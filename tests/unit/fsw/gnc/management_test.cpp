@@ -37,11 +37,13 @@ class ManagementTest : public ::testing::Test {
     ASSERT_EQ(inbox_.receive(packet_of({ns}, message)), Status::kOk);
   }
   void step(std::int64_t ns) {
-    management_.update({ns}, inbox_);
+    telecommands_.update({ns}, inbox_);
+    management_.update({ns}, telecommands_);
     inbox_.clear(GpsTime{});
   }
 
   Inbox inbox_{kServicer};
+  Telecommands telecommands_;
   Management management_;
 };
 

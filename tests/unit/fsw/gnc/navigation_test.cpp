@@ -36,10 +36,12 @@ ideal_navigation measurement_of(const orbit::CartesianState& servicer, double se
 class NavigationTest : public ::testing::Test {
  protected:
   void update(std::int64_t seconds) {
-    navigation_.update({seconds * kSecond}, inbox_);
+    telecommands_.update({seconds * kSecond}, inbox_);
+    navigation_.update({seconds * kSecond}, telecommands_, inbox_);
     inbox_.clear(GpsTime{});
   }
   Inbox inbox_{kServicer};
+  Telecommands telecommands_;
   Navigation navigation_;
 };
 

@@ -6,65 +6,23 @@
 #include <gtest/gtest.h>
 
 #include "fsw/gnc/camera_configuration.h"
-#include "tests/support/tango_view.h"
+#include "tests/unit/fsw/gnc/configurations.h"
 
 namespace vbar::fsw::gnc {
 namespace {
 
-camera_configuration good_camera() {
-  camera_configuration c{};
-  c.width = 800;
-  c.height = 500;
-  c.origin_x = 80;
-  c.origin_y = 50;
-  c.bits = 12;
-  c.focal_length_px[0] = c.focal_length_px[1] = 1450.5;
-  c.principal_point_px[0] = 479.5;
-  c.principal_point_px[1] = 299.5;
-  c.point_spread_sigma_px = 0.3;
-  c.zero_magnitude_dn = 1e4;
-  c.saturation_dn = 4000.0;
-  c.gain_dn_per_electron = 0.03125;
-  c.q_camera_body[0] = 1.0;
-  return c;
-}
-
-pose_configuration good_pose() {
-  pose_configuration p{};
-  p.dark_level_dn = 64.0;
-  p.noise_dn = 0.5;
-  const pose::KeypointShape shape = test::tango_shape();
-  for (std::size_t k = 0; k < shape.size(); ++k) {
-    for (int axis = 0; axis < 3; ++axis) p.keypoints_body_m[3 * k + static_cast<std::size_t>(axis)] = shape[k](axis);
-  }
-  p.inertia_kgm2[0] = 2.7;
-  p.inertia_kgm2[1] = 2.5;
-  p.inertia_kgm2[2] = 3.1;
-  p.keypoint_sigma_scale = 1.0;
-  p.keypoint_floor_px = 0.2;
-  p.acceleration_psd = 1e-13;
-  p.acceleration_psd_least = 1e-14;
-  p.acceleration_psd_most = 1e-11;
-  p.angular_acceleration_psd = 1e-11;
-  p.maneuver_sigma = 2e-6;
-  p.maneuver_sigma_relative = 1e-3;
-  for (double& sigma : p.start_sigma_a_roe_m) sigma = 5.0;
-  p.start_images = 3;
-  return p;
-}
-
 TEST(PoseConfiguration, SettingsAreTheMessages) {
-  pose_configuration p = good_pose();
+  pose_configuration p = test::pose();
   p.apriori_epoch_ns = 7;
   for (int k = 0; k < 6; ++k) {
     p.apriori_a_roe_m[k] = k - 2.0;
     p.apriori_sigma_a_roe_m[k] = 0.1 * (k + 1);
   }
-  const auto camera = pose_camera_settings(good_camera(), p);
+  const auto camera = pose_camera_settings(test::camera(), p);
   ASSERT_TRUE(camera.ok());
   EXPECT_EQ(camera.value().dark_level_dn, 64.0);
-  EXPECT_EQ(camera.value().shape[10], test::tango_shape()[10]);
-  const auto settings = keypoint_settings(good_camera(), p);
+  EXPECT_EQ(camera.value().shape[10], ::vbar::test::tango_shape()[10]);
+  const auto settings = keypoint_settings(test::camera(), p);
   ASSERT_TRUE(settings.ok());
   EXPECT_EQ(settings.value().blocks.relative_orbit.acceleration.psd_max, 1e-11);
   EXPECT_EQ(settings.value().blocks.attitude.inertia.tensor(1, 1), 2.5);
@@ -79,7 +37,7 @@ TEST(PoseConfiguration, SettingsAreTheMessages) {
 }
 
 TEST(PoseConfiguration, NothingHandedOver) {
-  const auto settings = keypoint_settings(good_camera(), good_pose());
+  const auto settings = keypoint_settings(test::camera(), test::pose());
   ASSERT_TRUE(settings.ok());
   EXPECT_FALSE(settings.value().apriori.has_value());
 }
@@ -104,6 +62,11 @@ TEST(PoseConfiguration, WhatMakesNoSenseIsRefused) {
       {"more images than are kept", [](auto& p) { p.start_images = 13; }},
       {"a formation known without doubt", [](auto& p) { p.start_sigma_a_roe_m[3] = 0.0; }},
       {"half an a-priori", [](auto& p) { p.apriori_sigma_a_roe_m[2] = 0.3; }},
+      {"an a-priori before the origin of time",
+       [](auto& p) {
+         for (double& sigma : p.apriori_sigma_a_roe_m) sigma = 1.0;
+         p.apriori_epoch_ns = std::numeric_limits<std::int64_t>::min();
+       }},
       {"an a-priori a million metres out",
        [](auto& p) {
          for (double& sigma : p.apriori_sigma_a_roe_m) sigma = 1.0;
@@ -111,14 +74,14 @@ TEST(PoseConfiguration, WhatMakesNoSenseIsRefused) {
        }},
   };
   for (const auto& [what, spoil] : spoils) {
-    pose_configuration p = good_pose();
+    pose_configuration p = test::pose();
     spoil(p);
-    EXPECT_EQ(keypoint_settings(good_camera(), p).status(), Status::kOutOfRange) << what;
+    EXPECT_EQ(keypoint_settings(test::camera(), p).status(), Status::kOutOfRange) << what;
   }
-  camera_configuration bent = good_camera();
+  camera_configuration bent = test::camera();
   bent.focal_length_px[0] = 0.0;
-  EXPECT_EQ(keypoint_settings(bent, good_pose()).status(), Status::kOutOfRange);
-  EXPECT_EQ(pose_camera_settings(bent, good_pose()).status(), Status::kOutOfRange);
+  EXPECT_EQ(keypoint_settings(bent, test::pose()).status(), Status::kOutOfRange);
+  EXPECT_EQ(pose_camera_settings(bent, test::pose()).status(), Status::kOutOfRange);
 }
 
 }  // namespace

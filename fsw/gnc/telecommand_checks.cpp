@@ -1,0 +1,61 @@
+#include "fsw/gnc/telecommand_checks.h"
+
+#include <type_traits>
+
+#include "fsw/gnc/inbox.h"
+#include "fsw/gnc/message_fields.h"
+#include "fsw/math/math.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+constexpr double kLargestARoe = 1e6;  // m; beyond it the relative-orbit models are not valid
+
+bool is_usable_span(std::int64_t ns) {
+  return is_usable(Duration{ns});
+}
+bool is_usable_span(double s) {
+  return s > 0.0 && s <= seconds(kLongestSpan);
+}
+
+bool is_valid(const waypoint& w) {
+  if (!is_usable(GpsTime{w.gps_time_ns}) || w.control_mode < 0 || w.control_mode > 2) return false;
+  for (const double a_roe : w.a_roe_m) {
+    if (math::abs(a_roe) > kLargestARoe) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool is_valid(const waypoint_table& table) {
+  constexpr auto kMaxWaypoints = static_cast<std::int32_t>(std::extent_v<decltype(waypoint_table::waypoints)>);
+  if (table.count < 1 || table.count > kMaxWaypoints) return false;
+  if (table.reference_semi_major_axis_m < 6.4e6 || table.reference_semi_major_axis_m > 1e9) return false;
+  for (std::int32_t k = 0; k < table.count; ++k) {
+    if (!is_valid(table.waypoints[k])) return false;
+    if (k > 0 && table.waypoints[k].gps_time_ns <= table.waypoints[k - 1].gps_time_ns) return false;
+  }
+  return true;
+}
+
+bool is_valid(const gnc_configuration& c) {
+  return (c.compute_latency_ns == 0 || is_usable_span(c.compute_latency_ns)) &&
+         is_usable_span(c.closed_form_period_ns) && is_usable_span(c.koenig_damico_period_ns) &&
+         is_usable_span(c.koenig_damico_grid_ns) && c.minimum_dv >= 0.0 && c.maximum_dv > c.minimum_dv &&
+         c.roe_error_threshold_m >= 0.0 && c.keep_out_radius_m >= 0.0 && c.safety_horizon_s >= 0.0 &&
+         c.station_keeping_deadband_m > 0.0 && c.closed_form_tolerance_m > 0.0 && c.koenig_damico_tolerance_m > 0.0 &&
+         is_usable_span(c.station_keeping_horizon_s) && c.navigation_timeout_s > 0.0;
+}
+
+bool is_valid(const mode_command& command) {
+  return command.mode >= 0 && command.mode <= mode_command::kModeHold;
+}
+
+bool is_valid(const target_apriori& apriori) {
+  const Vector6 sigma_a_roe_m = vector(apriori.sigma_a_roe_m);
+  return orbit::qns_from_cartesian({vector(apriori.position_eci), vector(apriori.velocity_eci)}).ok() &&
+         (sigma_a_roe_m.array() > 0.0).all() && (sigma_a_roe_m.array() < 1e6).all();
+}
+
+}  // namespace vbar::fsw::gnc

@@ -1,0 +1,125 @@
+#include "fsw/gnc/telecommands.h"
+
+#include "fsw/gnc/telecommand_checks.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+// The last of the list stands for all: the list of vbar.lcm is that of the code.
+static_assert(static_cast<int>(TelecommandStatus::kContradiction) == telemetry_telecommand::kStatusContradiction);
+
+/// Older time tag, or the same with an older sequence count, which wraps at 14 bits. A repetition is not older.
+bool is_older(const FilingTag& tag, const FilingTag& than) {
+  if (tag.time != than.time) return tag.time < than.time;
+  constexpr unsigned kCounts = 0x4000;
+  return ((tag.sequence_count - than.sequence_count) & (kCounts - 1)) >= kCounts / 2;
+}
+
+}  // namespace
+
+void Telecommands::update(GpsTime now, Inbox& inbox) {
+  acknowledgment_count_ = 0;
+  packets::for_each_telecommand([&]<class Message>() { propose_all<Message>(now, inbox); });
+  refuse_contradictions();
+  packets::for_each_telecommand([&]<class Message>() {
+    for (Slot<Message>& slot : std::get<Slots<Message>>(slots_).units) {
+      slot.is_new = slot.proposed.has_value();
+      if (!slot.is_new) continue;
+      slot.value = slot.proposed;
+      slot.tag = slot.proposed_tag;
+      slot.proposed.reset();
+    }
+  });
+  count_refusals(inbox);
+}
+
+template <class Message>
+void Telecommands::propose_all(GpsTime now, const Inbox& inbox) {
+  const auto& queue = inbox.queue<Message>();
+  for (std::size_t k = 0; k < queue.size(); ++k) {
+    acknowledgments_[acknowledgment_count_++] = {.apid = packets::MessageTraits<Message>::kApid,
+                                                 .tag = queue[k].tag,
+                                                 .status = propose(now, queue[k].tag, queue[k].value)};
+  }
+}
+
+template <class Message>
+TelecommandStatus Telecommands::propose(GpsTime now, const FilingTag& tag, const Message& message) {
+  auto& units = std::get<Slots<Message>>(slots_).units;
+  if (tag.time > now) return TelecommandStatus::kFuture;
+  if (tag.unit >= units.size()) return TelecommandStatus::kUnknownUnit;
+  Slot<Message>& slot = units[tag.unit];
+  const bool is_superseded =
+      (slot.value && is_older(tag, slot.tag)) || (slot.proposed && is_older(tag, slot.proposed_tag));
+  if (is_superseded) return TelecommandStatus::kSuperseded;
+  if (!is_valid(message)) return TelecommandStatus::kOutOfRange;
+  slot.proposed = message;
+  slot.proposed_tag = tag;
+  return TelecommandStatus::kAccepted;
+}
+
+template <class Message>
+const Message* Telecommands::proposed_or_in_force() const {
+  const Slot<Message>& first = slot<Message>(0);
+  return first.proposed ? &*first.proposed : in_force<Message>();
+}
+
+/// The camera of navigation is unit 0.
+bool Telecommands::are_consistent() const {
+  const auto* camera = proposed_or_in_force<camera_configuration>();
+  const auto* pose = proposed_or_in_force<pose_configuration>();
+  return camera == nullptr || pose == nullptr || agree(*camera, *pose);
+}
+
+/// Those in force agree with each other, so that without the proposals nothing contradicts.
+void Telecommands::refuse_contradictions() {
+  if (!are_consistent()) refuse_proposal<pose_configuration>();
+  if (!are_consistent()) refuse_proposal<camera_configuration>();
+}
+
+template <class Message>
+void Telecommands::refuse_proposal() {
+  Slot<Message>& first = std::get<Slots<Message>>(slots_).units[0];
+  if (!first.proposed) return;
+  first.proposed.reset();
+  for (std::size_t k = 0; k < acknowledgment_count_; ++k) {
+    Acknowledgment& acknowledgment = acknowledgments_[k];
+    if (acknowledgment.apid == packets::MessageTraits<Message>::kApid && acknowledgment.tag == first.proposed_tag) {
+      acknowledgment.status = TelecommandStatus::kContradiction;
+    }
+  }
+}
+
+void Telecommands::count_refusals(Inbox& inbox) const {
+  for (std::size_t k = 0; k < acknowledgment_count_; ++k) {
+    switch (acknowledgments_[k].status) {
+      case TelecommandStatus::kAccepted:
+        break;
+      case TelecommandStatus::kFuture:
+      case TelecommandStatus::kSuperseded:
+        inbox.count_unusable_time();
+        break;
+      case TelecommandStatus::kUnknownUnit:
+      case TelecommandStatus::kOutOfRange:
+      case TelecommandStatus::kContradiction:
+        inbox.count_bad_content();
+        break;
+    }
+  }
+}
+
+void Telecommands::report(Outbox& outbox, std::int64_t step, GpsTime now) const {
+  for (std::size_t k = 0; k < acknowledgment_count_; ++k) {
+    const Acknowledgment& acknowledgment = acknowledgments_[k];
+    telemetry_telecommand message{};
+    message.step = step;
+    message.time_tag_gps_ns = acknowledgment.tag.time.ns;
+    message.apid = static_cast<std::int32_t>(acknowledgment.apid);
+    message.sequence_count = acknowledgment.tag.sequence_count;
+    message.unit = acknowledgment.tag.unit;
+    message.status = static_cast<std::int8_t>(acknowledgment.status);
+    outbox.send(now, message);
+  }
+}
+
+}  // namespace vbar::fsw::gnc

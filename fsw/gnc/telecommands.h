@@ -1,0 +1,104 @@
+#pragma once
+// The telecommands in force: of every kind and unit the newest valid one.
+//
+// A telecommand is checked in the step that it arrives for, stored, and acknowledged. Its users derive their settings
+// from the store when it has changed, and combine telecommands that belong together when all of them are present:
+// neither the order in which telecommands arrive nor their distribution over steps has an effect. A refused telecommand
+// leaves the previous one in force.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/time_ordered_queue.h"
+#include "fsw/gnc/inbox.h"
+#include "fsw/gnc/outbox.h"
+#include "fsw/packets/messages.h"
+
+namespace vbar::fsw::gnc {
+
+/// Numbers of telemetry_telecommand.status.
+enum class TelecommandStatus : std::int8_t {
+  kAccepted = 0,
+  kFuture = 1,         ///< time tag after the step
+  kSuperseded = 2,     ///< a newer one of its kind and unit is in force
+  kUnknownUnit = 3,    ///< message_list.h states the number of units of each kind
+  kOutOfRange = 4,     ///< telecommand_checks.h
+  kContradiction = 5,  ///< valid alone, but not with another telecommand in force
+};
+
+class Telecommands {
+ public:
+  /// Checks and stores the telecommands of the step; the inbox counts those refused. Of two that contradict each other
+  /// and arrive for the same step, the one listed later in message_list.h is refused.
+  void update(GpsTime now, Inbox& inbox);
+
+  /// The telecommand in force, or nullptr. `unit` must be below the number of units of its kind.
+  template <class Message>
+  [[nodiscard]] const Message* in_force(std::size_t unit = 0) const {
+    const auto& value = slot<Message>(unit).value;
+    return value ? &*value : nullptr;
+  }
+  /// Time tag of the telecommand in force; 0 without one.
+  template <class Message>
+  [[nodiscard]] GpsTime time_of(std::size_t unit = 0) const {
+    return slot<Message>(unit).tag.time;
+  }
+  /// Whether the last update replaced it.
+  template <class Message>
+  [[nodiscard]] bool is_new(std::size_t unit = 0) const {
+    return slot<Message>(unit).is_new;
+  }
+
+  /// Acknowledges each telecommand of the last update, in the order of message_list.h, then of time tags.
+  void report(Outbox& outbox, std::int64_t step, GpsTime now) const;
+
+ private:
+  template <class Message>
+  struct Slot {
+    std::optional<Message> value;
+    FilingTag tag;
+    bool is_new = false;
+    std::optional<Message> proposed;  ///< of the step, valid by itself
+    FilingTag proposed_tag;
+  };
+  /// Of all units of one kind.
+  template <class Message>
+  struct Slots {
+    std::array<Slot<Message>, packets::MessageTraits<Message>::kRoute.units> units{};
+  };
+  struct Acknowledgment {
+    packets::Apid apid = packets::Apid::kTick;
+    FilingTag tag;
+    TelecommandStatus status = TelecommandStatus::kAccepted;
+  };
+  static constexpr std::size_t kMaxAcknowledgments = [] {
+    std::size_t sum = 0;
+    packets::for_each_telecommand([&]<class Message>() { sum += Inbox::kCapacity<Message>; });
+    return sum;
+  }();
+
+  template <class Message>
+  [[nodiscard]] const Slot<Message>& slot(std::size_t unit) const {
+    return std::get<Slots<Message>>(slots_).units[unit];
+  }
+  template <class Message>
+  void propose_all(GpsTime now, const Inbox& inbox);
+  template <class Message>
+  TelecommandStatus propose(GpsTime now, const FilingTag& tag, const Message& message);
+  template <class Message>
+  [[nodiscard]] const Message* proposed_or_in_force() const;
+  [[nodiscard]] bool are_consistent() const;
+  void refuse_contradictions();
+  template <class Message>
+  void refuse_proposal();
+  void count_refusals(Inbox& inbox) const;
+
+  packets::TupleOfRoute<&packets::is_telecommand, Slots>::Type slots_;
+  std::array<Acknowledgment, kMaxAcknowledgments> acknowledgments_{};
+  std::size_t acknowledgment_count_ = 0;
+};
+
+}  // namespace vbar::fsw::gnc
