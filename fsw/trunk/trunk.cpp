@@ -39,7 +39,8 @@ void Trunk::set_apriori(const TargetApriori& apriori) {
 
 void Trunk::advance_to(GpsTime time, std::span<const navigation::Burn> burns) {
   if (!own_orbit_.started()) {
-    if (knowledge_ != RelativeKnowledge::kNone) fail_relative();  // it cannot be propagated without the servicer's orbit
+    if (knowledge_ != RelativeKnowledge::kNone)
+      fail_relative();  // it cannot be propagated without the servicer's orbit
     epoch_ = time;
     return;
   }

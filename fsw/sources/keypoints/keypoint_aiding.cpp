@@ -23,7 +23,7 @@ constexpr int kRefusedBeforeLoss = 10;
 // This number of consecutive contradicting positions inflates the covariance, the second time more than the first; the
 // third time the orbit is initialised from poses.
 constexpr int kFarBeforeInflation = 5;
-constexpr std::array<double, 3> kInflatedVelocity = {0.01, 1.0, 1.0};  // m/s
+constexpr std::array<double, 3> kInflatedVelocity = {0.1, 1.0, 1.0};  // m/s
 constexpr std::array<double, 3> kInflatedDistance = {0.1, 0.3, 0.5};   // relative
 // A wrong attitude has biased the position as well: keypoints of another side appear larger or smaller.
 constexpr double kWrongAttitudeDistance = 0.03;  // relative

@@ -31,7 +31,10 @@ struct KeypointAidingSettings {
   double keypoint_range_share = 0.03;  ///< beyond it, 1 sigma, only positions are used: keypoints are not linear in it
   double pose_range_share = 0.1;       ///< 1 sigma of the range of a single-image pose, as for a wrong attitude,
   double agreed_range_share = 0.035;   ///< and of one whose attitude agrees with those of the images before
-  double max_phase = 1.92;             ///< rad, 110 deg: a target lit from behind shows its dark side
+  /// 1 sigma, m, across the line of sight, of a pose whose attitude may be wrong: another side is taken for the one
+  /// seen.
+  double pose_lateral_sigma_m = 0.15;
+  double max_phase = 1.92;  ///< rad, 110 deg: a target lit from behind shows its dark side
   /// 1 sigma, rad: an attitude less certain than this is deactivated until it can be initialised again.
   double widest_attitude = 0.35;
   double position_gate = 25.0;  ///< of the normalised squared distance of a single-image position
