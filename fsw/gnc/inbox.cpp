@@ -34,11 +34,9 @@ Status Inbox::take(const PacketView& packet) {
     if constexpr (kKind == RouteKind::kQueue) {
       const FilingTag tag{header.time, header.unit, header.sequence_count};
       return std::get<Queue<Message>>(queues_).file(tag, message.value());
-    } else if constexpr (kKind == RouteKind::kSpecial) {
-      return take_special(header, message.value());
     } else {
-      static_assert(kKind == RouteKind::kIgnored);
-      return Status::kOk;
+      static_assert(kKind == RouteKind::kSpecial);
+      return take_special(header, message.value());
     }
   }
 }

@@ -16,5 +16,9 @@ namespace vbar::fsw::gnc {
 [[nodiscard]] bool is_valid(const mode_command& command);
 /// A bound orbit with positive standard deviations.
 [[nodiscard]] bool is_valid(const target_apriori& apriori);
+/// Noise and bias of up to a kilometre.
+[[nodiscard]] inline bool is_valid(const range_configuration& c) {
+  return c.noise_sigma_m > 0.0 && c.noise_sigma_m <= 1e3 && c.bias_sigma_m >= 0.0 && c.bias_sigma_m <= 1e3;
+}
 
 }  // namespace vbar::fsw::gnc

@@ -48,7 +48,8 @@ void put_attitudes(GpsTime now, const Queue& packets, Inbox& inbox, navigation::
 
 void TrunkNavigation::configure(GpsTime now, const Telecommands& telecommands) {
   const bool is_new = telecommands.is_new<navigation_configuration>() || telecommands.is_new<camera_configuration>() ||
-                      telecommands.is_new<angles_only_configuration>() || telecommands.is_new<pose_configuration>();
+                      telecommands.is_new<angles_only_configuration>() || telecommands.is_new<pose_configuration>() ||
+                      telecommands.is_new<range_configuration>();
   if (is_new) configure_sources(now, telecommands);
   if (is_new || telecommands.is_new<target_apriori>()) configure_apriori(telecommands);
 }
@@ -65,6 +66,7 @@ void TrunkNavigation::configure_sources(GpsTime now, const Telecommands& telecom
   std::get<sources::CarrierSource>(sources_).configure(carrier.value().carrier, carrier.value().pair_wait);
   configure_bearings(telecommands, blocks);
   configure_keypoints(telecommands, blocks);
+  configure_ranges(telecommands);
   trunk_.configure(blocks);
   select_sources(now, telecommands);
 }
@@ -100,7 +102,15 @@ void TrunkNavigation::configure_keypoints(const Telecommands& telecommands, trun
   pose_apriori_ = keypoints.value().apriori;
 }
 
-/// As navigation_configuration.source; a camera that is not configured is not a source.
+void TrunkNavigation::configure_ranges(const Telecommands& telecommands) {
+  const auto* ranges = telecommands.in_force<range_configuration>();
+  if (ranges == nullptr) return;
+  std::get<sources::RangeSource>(sources_).configure(
+      {.noise_sigma_m = ranges->noise_sigma_m, .bias_sigma_m = ranges->bias_sigma_m});
+}
+
+/// As navigation_configuration.source, and a range finder beside any of them; a camera that is not configured is not a
+/// source.
 void TrunkNavigation::select_sources(GpsTime now, const Telecommands& telecommands) {
   const int source = telecommands.in_force<navigation_configuration>()->source;
   const bool has_camera = telecommands.in_force<camera_configuration>() != nullptr;
@@ -116,6 +126,8 @@ void TrunkNavigation::select_sources(GpsTime now, const Telecommands& telecomman
                                                          telecommands.in_force<angles_only_configuration>() != nullptr);
   select(std::get<sources::KeypointSource>(sources_), source == navigation_configuration::kSourcePose && has_camera &&
                                                           telecommands.in_force<pose_configuration>() != nullptr);
+  select(std::get<sources::RangeSource>(sources_), source != navigation_configuration::kSourceIdealNavigation &&
+                                                       telecommands.in_force<range_configuration>() != nullptr);
 }
 
 /// With navigation by poses, ROE of preceding navigation take precedence over an absolute orbit, whichever of the two

@@ -20,6 +20,7 @@
 #include "fsw/sources/ideal/ideal_source.h"
 #include "fsw/sources/keypoints/keypoint_source.h"
 #include "fsw/sources/own_gnss/own_gnss_source.h"
+#include "fsw/sources/range_finder/range_source.h"
 #include "fsw/sources/source.h"
 #include "fsw/trunk/trunk.h"
 
@@ -57,7 +58,7 @@ class TrunkNavigation {
  private:
   /// Records of one time are processed in this order: the servicer's own position first.
   using Sources = std::tuple<sources::IdealSource, sources::OwnGnssSource, sources::CarrierSource,
-                             sources::BearingSource, sources::KeypointSource>;
+                             sources::BearingSource, sources::KeypointSource, sources::RangeSource>;
 
   static_assert(std::tuple_size_v<Sources> <= trunk::Trunk::kMaxSources);
 
@@ -67,6 +68,7 @@ class TrunkNavigation {
   void configure_sources(GpsTime now, const Telecommands& telecommands);
   void configure_bearings(const Telecommands& telecommands, trunk::TrunkSettings& blocks);
   void configure_keypoints(const Telecommands& telecommands, trunk::TrunkSettings& blocks);
+  void configure_ranges(const Telecommands& telecommands);
   void select_sources(GpsTime now, const Telecommands& telecommands);
   void configure_apriori(const Telecommands& telecommands);
   void take_attitudes(GpsTime now, Inbox& inbox);

@@ -16,7 +16,6 @@ namespace vbar::fsw::packets {
 enum class RouteKind : std::uint8_t {
   kQueue,       ///< to the flight software: waits for the step in a queue, in order of time tags
   kSpecial,     ///< to the flight software: the inbox itself has a place for it
-  kIgnored,     ///< to the flight software: checked and counted, without another effect
   kFromFlight,  ///< from the flight software
   kBoard,       ///< between host and board; never given to the flight software, and not sent by it
 };
@@ -50,7 +49,6 @@ constexpr Route telecommand(std::size_t units) {
 }
 inline constexpr Route kTelecommand = telecommand(1);
 inline constexpr Route kSpecial{.kind = RouteKind::kSpecial};
-inline constexpr Route kIgnored{.kind = RouteKind::kIgnored};
 inline constexpr Route kFromFlight{.kind = RouteKind::kFromFlight};
 inline constexpr Route kBoard{.kind = RouteKind::kBoard};
 
@@ -72,7 +70,7 @@ inline constexpr Route kManeuvers = queue(32);
   X(::vbar::attitude, kAttitude, 0x013, route::kMeasurements)                                \
   X(::vbar::crosslink_attitude, kCrosslinkAttitude, 0x014, route::kMeasurements)             \
   X(::vbar::image_tile, kImageTile, 0x015, route::kSpecial)                                  \
-  X(::vbar::range_measurement, kRangeMeasurement, 0x016, route::kIgnored)                    \
+  X(::vbar::range_measurement, kRangeMeasurement, 0x016, route::kMeasurements)               \
   X(::vbar::executed_maneuver, kExecutedManeuver, 0x020, route::kManeuvers)                  \
   X(::vbar::waypoint_table, kWaypointTable, 0x101, route::kTelecommand)                      \
   X(::vbar::gnc_configuration, kGncConfiguration, 0x102, route::kTelecommand)                \
@@ -82,6 +80,7 @@ inline constexpr Route kManeuvers = queue(32);
   X(::vbar::angles_only_configuration, kAnglesOnlyConfiguration, 0x106, route::kTelecommand) \
   X(::vbar::target_apriori, kTargetApriori, 0x107, route::kTelecommand)                      \
   X(::vbar::pose_configuration, kPoseConfiguration, 0x108, route::kTelecommand)              \
+  X(::vbar::range_configuration, kRangeConfiguration, 0x109, route::telecommand(1))          \
   X(::vbar::maneuver_command, kManeuverCommand, 0x401, route::kFromFlight)                   \
   X(::vbar::pointing_command, kPointingCommand, 0x402, route::kFromFlight)                   \
   X(::vbar::telemetry_navigation, kTelemetryNavigation, 0x501, route::kFromFlight)           \
@@ -92,5 +91,6 @@ inline constexpr Route kManeuvers = queue(32);
   X(::vbar::telemetry_objects, kTelemetryObjects, 0x506, route::kFromFlight)                 \
   X(::vbar::telemetry_pose, kTelemetryPose, 0x507, route::kFromFlight)                       \
   X(::vbar::telemetry_telecommand, kTelemetryTelecommand, 0x508, route::kFromFlight)         \
+  X(::vbar::telemetry_range, kTelemetryRange, 0x509, route::kFromFlight)                     \
   X(::vbar::step_report, kStepReport, 0x601, route::kBoard)                                  \
   X(::vbar::wired_bytes, kWiredBytes, 0x602, route::kBoard)

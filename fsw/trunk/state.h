@@ -1,7 +1,7 @@
 #pragma once
 // The state of the relative estimator, x = [roe(6), push(2), emp(3) | turn(3), rate(3), body(2) | com(3), beta_A(2),
-// beta_B(2), sun_off(1), wander(2), kp_common(4), kp_err(22), ant_s(3), ant_t(3), pcv(3), clk(1), cb(3), amb(56),
-// phase_wander(56), lidar(1)].
+// beta_B(2), sun_off(1), wander(2), kp_common(4), kp_err(22), range_bias(1), ant_s(3), ant_t(3), pcv(3), clk(1), cb(3),
+// amb(56), phase_wander(56)].
 //
 // One estimate for all sensors: each block is inactive (variance zero, no influence, no cost behind the last active
 // one) until a source needs it. The blocks at the head are nonlinear and propagated by sigma points; all others enter
@@ -57,6 +57,9 @@ struct KeypointCommon {
 struct KeypointErrors {
   static constexpr int kSize = 2 * network::kKeypoints;  ///< each over its standard deviation
 };
+struct RangeBias {
+  static constexpr int kSize = 1;  ///< of a range finder, constant, m
+};
 struct ServicerAntenna {
   static constexpr int kSize = 3;  ///< offset from the nominal phase centre, body axes, m
 };
@@ -81,8 +84,8 @@ struct PhaseWander {
 
 using State = estimation::Layout<Roe, DifferentialAccelerations, EmpiricalAcceleration, Turn, Rate, InertiaRatios,
                                  KeypointOrigin, BoresightA, BoresightB, BrightnessOffset, CentroidWander,
-                                 KeypointCommon, KeypointErrors, ServicerAntenna, TargetAntenna, PhaseCentreJitter,
-                                 ClockDifference, CodeBiases, Ambiguities, PhaseWander>;
+                                 KeypointCommon, KeypointErrors, RangeBias, ServicerAntenna, TargetAntenna,
+                                 PhaseCentreJitter, ClockDifference, CodeBiases, Ambiguities, PhaseWander>;
 using Estimate = estimation::Estimate<State::kSize>;
 
 /// Most rows of one measurement: two of each keypoint.

@@ -24,7 +24,11 @@ std::shared_ptr<const mission::SensorSettings> read(const TableReader& section, 
   settings.half_angle_rad =
       0.5 * section.number("field_of_view_deg", above_to(0.0, 180.0), 20.0) * fsw::math::kPi / 180.0;
   const auto axis = section.three_numbers("boresight_body", from_to(-1.0, 1.0), std::array{0.0, 0.0, 1.0});
+  sensor->is_used_by_navigation = section.flag("used_by_navigation", false);
   section.finish();
+  if (sensor->is_used_by_navigation && !(settings.noise_sigma_m > 0.0)) {
+    section.refuse_value("noise_sigma_m", "a number above 0: navigation weights its ranges by it");
+  }
   const fsw::Vector3 boresight(axis[0], axis[1], axis[2]);
   if (!(boresight.norm() > 1e-6)) section.refuse_value("boresight_body", "an axis that is not zero");
   settings.boresight_body = boresight.normalized();
@@ -37,6 +41,17 @@ void check(const TableReader& section, const mission::Sensor& /*sensor*/, const 
   if (!spacecraft.attitude)
     section.refuse("", "no attitude of " + spacecraft.name,
                    "a spacecraft with an attitude: the boresight points somewhere");
+}
+
+/// What navigation is told of its errors, if it is to use its ranges.
+void add_telecommands(const mission::Sensor& sensor, const TelecommandContext& /*context*/,
+                      Telecommands& telecommands) {
+  const auto& own = settings_of<RangeFinderSensor>(sensor);
+  if (!own.is_used_by_navigation) return;
+  vbar::range_configuration configuration{};
+  configuration.noise_sigma_m = own.range_finder.noise_sigma_m;
+  configuration.bias_sigma_m = own.range_finder.bias_sigma_m;
+  telecommands.add(configuration);
 }
 
 void add_sources(const mission::Sensor& sensor, const MakeContext& context, std::vector<twins::NamedSource>& sources) {
@@ -65,7 +80,7 @@ std::vector<report::Section> sections(const report::RunRecord& record) {
 }  // namespace
 
 const SensorKind kRangeFinder{
-    {"range_finder", "", read, nullptr, check}, nullptr, add_sources, nullptr, evaluate_ranges,
+    {"range_finder", "", read, nullptr, check}, add_telecommands, add_sources, nullptr, evaluate_ranges,
     {tables, summarise_ranges, sections}};
 
 }  // namespace vbar::sensors

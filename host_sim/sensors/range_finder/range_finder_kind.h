@@ -7,10 +7,11 @@
 
 namespace vbar::sensors {
 
-/// It observes no spacecraft in the sense of SensorSettings::observed: navigation does not use it.
+/// It observes no spacecraft in the sense of SensorSettings::observed: it does not choose the kind of navigation.
 struct RangeFinderSensor : mission::SensorSettings {
   std::string target;
   RangeFinderSettings range_finder;
+  bool is_used_by_navigation = false;
 };
 
 extern const SensorKind kRangeFinder;

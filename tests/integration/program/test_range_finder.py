@@ -24,6 +24,18 @@ class RangeFinder(unittest.TestCase):
         without = fly(self.folder / "without", *SHORT, mission=SOURCE / "missions" / "experiment3.toml")
         self.assertEqual(hashes(self.summary)[0], hashes(without)[0])
 
+    def test_navigation_estimates_its_bias(self):
+        used = fly(self.folder / "used", *SHORT, "spacecraft.servicer.sensors.lidar.used_by_navigation=true",
+                   mission=SOURCE / "missions" / "range_finder.toml")
+        self.assertNotEqual(hashes(self.summary)[1], hashes(used)[1])
+        with open(self.folder / "used" / "telemetry_range.csv", newline="") as table:
+            last = list(csv.DictReader(table))[-1]
+        errors = [float(row["error_m"]) for row in self.rows if row["measured_m"]]
+        self.assertGreater(int(last["used"]), 100)
+        self.assertEqual(int(last["refused"]), 0)
+        self.assertLess(float(last["bias_sigma_m"]), 0.5 * BIAS_SIGMA_M)
+        self.assertLess(abs(float(last["bias_m"]) - statistics.mean(errors)), 3 * float(last["bias_sigma_m"]))
+
     def test_measurements_are_beside_the_truth(self):
         self.assertEqual(len(self.rows), 181)  # every 10 s, both ends included
         measured = [row for row in self.rows if row["measured_m"]]

@@ -88,6 +88,13 @@ inline pose_configuration pose() {
   return p;
 }
 
+inline range_configuration ranges() {
+  range_configuration r{};
+  r.noise_sigma_m = 0.01;
+  r.bias_sigma_m = 0.02;
+  return r;
+}
+
 /// The target's present orbit, to a few hundred metres.
 inline target_apriori target(const SmallWorld& world) {
   const ideal_navigation known = world.measurement();

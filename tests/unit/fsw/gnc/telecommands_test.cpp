@@ -70,6 +70,7 @@ TEST_F(TelecommandsTest, EveryKindIsStored) {
   send(1, camera());
   send(1, angles_only());
   send(1, pose());
+  send(1, ranges());
   send(1, target(SmallWorld(Vector6::Constant(100.0))));
   send(1, table_of({waypoint_at(1, 60, 0, Vector6::Zero())}));
   send(1, configuration());

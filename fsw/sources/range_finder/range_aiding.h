@@ -1,0 +1,68 @@
+#pragma once
+// Ranges of a laser range finder as an aid of the trunk: one row each, with the bias of the instrument as a state.
+//
+// A range alone initialises nothing: it is used once the relative orbit is estimated. Ranges that contradict the orbit
+// never change it: the source is suspended until several agree again.
+
+#include <cstdint>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/result.h"
+#include "fsw/sources/aid.h"
+#include "fsw/trunk/trunk.h"
+
+namespace vbar::fsw::sources {
+
+struct RangeSettings {
+  double noise_sigma_m = 0.01;  ///< of each measurement
+  double bias_sigma_m = 0.02;   ///< constant
+  double gate = 16.0;           ///< of the normalised innovation squared
+};
+
+enum class RangeEditStatus : std::uint8_t {
+  kNone,     ///< no relative orbit yet
+  kRefused,  ///< beyond the gate, or while the source is suspended
+  kUsed,
+};
+
+struct RangeCounters {
+  std::int32_t used = 0;
+  std::int32_t refused = 0;
+};
+
+/// Writes the distance of the centres of mass, plus the bias, to trunk.rows(). Any status of the orbit conversions.
+Status range_rows(trunk::Trunk& trunk, double range_m, double noise_sigma_m);
+
+class RangeAiding {
+ public:
+  void configure(const RangeSettings& settings) { settings_ = settings; }
+
+  /// A range in m; the trunk stands at its time.
+  RangeEditStatus process(double range_m, trunk::Trunk& trunk);
+  /// Nothing was measured until `now`.
+  void check_age(GpsTime now);
+  /// Not selected any more: the bias rests.
+  void stop(GpsTime now, trunk::Trunk& trunk);
+
+  [[nodiscard]] const Aid& aid() const { return aid_; }
+  [[nodiscard]] Aid& aid() { return aid_; }
+  [[nodiscard]] const RangeCounters& counters() const { return counters_; }
+  [[nodiscard]] GpsTime last_accepted() const { return last_accepted_; }
+  /// Of the last measurement: innovation, m, and its normalised square.
+  [[nodiscard]] double prefit_m() const { return prefit_m_; }
+  [[nodiscard]] double nis() const { return nis_; }
+
+ private:
+  RangeEditStatus refuse(GpsTime time);
+
+  RangeSettings settings_;
+  Aid aid_;
+  RangeCounters counters_;
+  GpsTime last_accepted_;
+  int refused_in_excess_ = 0;  ///< refusals minus acceptances, not below zero
+  int agreeing_in_a_row_ = 0;  ///< while suspended
+  double prefit_m_ = 0.0;
+  double nis_ = 0.0;
+};
+
+}  // namespace vbar::fsw::sources

@@ -1,0 +1,47 @@
+#include "fsw/sources/range_finder/range_source.h"
+
+namespace vbar::fsw::sources {
+
+static_assert(static_cast<int>(RangeEditStatus::kUsed) == telemetry_range::kEditUsed);
+
+void RangeSource::collect(Context& context, RecordFiler records) {
+  folded_.reset();
+  const auto& packets = context.inbox.queue<range_measurement>();
+  for (std::size_t k = 0; k < packets.size(); ++k) {
+    const GpsTime time = packets[k].tag.time;
+    const double range_m = packets[k].value.range_m;
+    if (!(range_m > 0.0)) {
+      context.inbox.count_bad_content();
+    } else if (time > context.now || context.now - time > kLongestDelay ||
+               records.file(time, next_number_) != Status::kOk) {
+      context.inbox.count_unusable_time();
+    } else {
+      ranges_m_[next_number_ % kMaxWaiting] = range_m;
+      ++next_number_;
+    }
+  }
+}
+
+void RangeSource::fold(const Record& record, Context& /*context*/, trunk::Trunk& trunk) {
+  folded_ = record.time;
+  range_m_ = ranges_m_[record.number % kMaxWaiting];
+  edit_status_ = aiding_.process(range_m_, trunk);
+}
+
+void RangeSource::report(const Telemetry& telemetry) const {
+  if (!folded_) return;
+  constexpr int kBias = trunk::kAt<trunk::RangeBias>;
+  telemetry_range message{};
+  message.step = telemetry.step;
+  message.range_m = range_m_;
+  message.fate = static_cast<std::int8_t>(edit_status_);
+  message.prefit_m = aiding_.prefit_m();
+  message.nis = aiding_.nis();
+  message.bias_m = telemetry.trunk.estimate().mean(kBias);
+  message.bias_sigma_m = math::sqrt(telemetry.trunk.estimate().variance(kBias));
+  message.used = aiding_.counters().used;
+  message.refused = aiding_.counters().refused;
+  telemetry.outbox.send(*folded_, message);
+}
+
+}  // namespace vbar::fsw::sources

@@ -1,0 +1,40 @@
+#pragma once
+// Source: ranges of a laser range finder to the target.
+
+#include <array>
+#include <optional>
+
+#include "fsw/sources/range_finder/range_aiding.h"
+#include "fsw/sources/source.h"
+
+namespace vbar::fsw::sources {
+
+class RangeSource {
+ public:
+  void configure(const RangeSettings& settings) { aiding_.configure(settings); }
+  void collect(Context& context, RecordFiler records);
+  void fold(const Record& record, Context& context, trunk::Trunk& trunk);
+  [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
+  void watch(GpsTime now, trunk::Trunk& /*trunk*/) { aiding_.check_age(now); }
+  void stop(GpsTime now, trunk::Trunk& trunk) { aiding_.stop(now, trunk); }
+  /// Telemetry of the last range of the step, if there was one.
+  void report(const Telemetry& telemetry) const;
+
+  [[nodiscard]] Aid& aid() { return aiding_.aid(); }
+  [[nodiscard]] const Aid& aid() const { return aiding_.aid(); }
+  [[nodiscard]] GpsTime last_measurement() const { return aiding_.last_accepted(); }
+  [[nodiscard]] const RangeAiding& aiding() const { return aiding_; }
+
+ private:
+  /// Records that wait for their fold.
+  static constexpr std::size_t kMaxWaiting = 64;
+
+  RangeAiding aiding_;
+  std::array<double, kMaxWaiting> ranges_m_{};  ///< by number of the record, modulo the size
+  std::uint32_t next_number_ = 0;
+  std::optional<GpsTime> folded_;  ///< of the step
+  double range_m_ = 0.0;
+  RangeEditStatus edit_status_ = RangeEditStatus::kNone;
+};
+
+}  // namespace vbar::fsw::sources
