@@ -91,7 +91,8 @@ bool OwnOrbit::take(GpsTime time, const OwnPosition& measured) {
   return true;
 }
 
-/// Persistent contradiction: the orbit stays, as after an unknown burn, so that what refers to it is propagated with it.
+/// Persistent contradiction: the orbit stays, as after an unknown burn, so that what refers to it is propagated with
+/// it.
 void OwnOrbit::widen(double residual_m) {
   const double velocity_sigma = std::max(settings_.start_velocity_sigma, residual_m / kMaxBaseline_s);
   for (int axis = 0; axis < 3; ++axis) {
