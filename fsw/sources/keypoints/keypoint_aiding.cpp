@@ -24,7 +24,7 @@ constexpr int kRefusedBeforeLoss = 10;
 // third time the orbit is initialised from poses.
 constexpr int kFarBeforeInflation = 5;
 constexpr std::array<double, 3> kInflatedVelocity = {0.1, 1.0, 1.0};  // m/s
-constexpr std::array<double, 3> kInflatedDistance = {0.1, 0.3, 0.5};   // relative
+constexpr std::array<double, 3> kInflatedDistance = {0.1, 0.3, 0.5};  // relative
 // A wrong attitude has biased the position as well: keypoints of another side appear larger or smaller.
 constexpr double kWrongAttitudeDistance = 0.03;  // relative
 // After this number of consecutive images without the illuminated target its position is uncertain: the crop is then
