@@ -89,7 +89,10 @@ Status StarIdentifier::try_hypothesis(std::span<const ObservedStar> objects, con
   int agreements = 0;
   for (std::size_t k = 0; k < pattern_.others && agreements < kNeeded; ++k) {
     if (agreements == 0 && k >= kPatience) return Status::kDidNotConverge;
-    const Vector3 place = without_aberration(R_eci_pattern * pattern_.direction[k], velocity_over_c_eci);
+    const Vector3 apparent = R_eci_pattern * pattern_.direction[k];
+    // Nine of ten hypotheses end here. The length of the direction does not matter yet.
+    if (!is_occupied(apparent - velocity_over_c_eci)) continue;
+    const Vector3 place = without_aberration(apparent, velocity_over_c_eci);
     const double magnitude = objects[pattern_.object[k]].magnitude;
     if (nearest_star(place, pattern_.tolerance[k], magnitude, kGate).star >= 0) ++agreements;
   }

@@ -15,7 +15,7 @@ namespace vbar::fsw::stars {
 
 /// Work limit of a lost-in-space identification: pairs of objects are tried, brightest first, until one fits or this
 /// many catalogue pairs have been matched.
-inline constexpr int kMaxHypotheses = 200'000;
+inline constexpr int kMaxHypotheses = 180'000;
 /// Number of the brightest objects used in patterns.
 inline constexpr std::size_t kMaxPatternObjects = 48;
 /// Largest tolerance of a predicted attitude, rad (1 degree).
