@@ -30,7 +30,7 @@ def fly(binary, seed, hours, factor, folder):
     command = ["nice", binary, "run", MISSION, "--seed", str(seed), "--quiet", "--force", "--out", str(folder),
                "--set", f"mission.duration_h={hours}"]
     for key, sigma in APRIORI_SIGMAS_M.items():
-        command += ["--set", f"navigation.angles_only.apriori.{key}={factor * sigma}"]
+        command += ["--set", f"navigation.apriori.{key}={factor * sigma}"]
     result = subprocess.run(command, capture_output=True, text=True)
     if result.returncode not in (0, NEVER_NAVIGATED):
         raise SystemExit(f"seed {seed}: {result.stderr.strip()}")

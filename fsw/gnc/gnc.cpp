@@ -70,7 +70,7 @@ void Gnc::report() {
   telecommands_.report(outbox_, step_, now_);
   report_navigation();
   if (navigation_.uses_camera()) point_camera();
-  navigation_.trunk().report(outbox_, step_, now_, inbox_);
+  navigation_.report(outbox_, step_, now_, inbox_);
   report_control();
   report_health();
 }

@@ -5,6 +5,12 @@ namespace vbar::fsw::gnc {
 using packets::PacketView;
 using packets::RouteKind;
 
+Inbox::Inbox(std::uint8_t spacecraft)
+    : spacecraft_(spacecraft), images_{{imaging::ImageAssembly(0), imaging::ImageAssembly(1)}} {
+  static_assert(packets::kCameras == 2);
+  for (imaging::ImageAssembly& image : images_) image.accept_until(GpsTime{-1});
+}
+
 Status Inbox::receive(std::span<const std::uint8_t> bytes) {
   const Result<PacketView> packet = packets::parse_packet(bytes);
   const Status status = packet.ok() ? file(packet.value()) : packet.status();
@@ -49,7 +55,8 @@ Status Inbox::take_special(const packets::PacketHeader& /*header*/, const tick& 
 }
 
 Status Inbox::take_special(const packets::PacketHeader& header, const image_tile& message) {
-  return image_.take(header.time, header.unit, message);
+  if (header.unit >= images_.size()) return Status::kWrongType;
+  return images_[header.unit].take(header.time, header.unit, message);
 }
 
 void Inbox::count(Status status) {
@@ -86,8 +93,10 @@ void Inbox::count(Status status) {
 }
 
 void Inbox::clear(GpsTime next_step) {
-  if (image_.has_image()) image_.clear();
-  image_.accept_until(next_step);
+  for (imaging::ImageAssembly& image : images_) {
+    if (image.has_image()) image.clear();
+    image.accept_until(next_step);
+  }
   std::apply([](auto&... queue) { (queue.clear(), ...); }, queues_);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // receive: decode, check and file each packet by its time tag. Packets are not processed until the step.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <tuple>
@@ -44,7 +45,7 @@ class Inbox {
   template <class Message>
   using Queue = TimeOrderedQueue<Message, kCapacity<Message>>;
 
-  explicit Inbox(std::uint8_t spacecraft) : spacecraft_(spacecraft) { image_.accept_until(GpsTime{-1}); }
+  explicit Inbox(std::uint8_t spacecraft);
 
   /// Receives one packet; the status is the reason for a refusal. Never reads past `bytes`.
   Status receive(std::span<const std::uint8_t> bytes);
@@ -65,8 +66,8 @@ class Inbox {
   [[nodiscard]] const Queue<Message>& queue() const {
     return std::get<Queue<Message>>(queues_);
   }
-  /// The image whose tiles arrived, complete or not.
-  [[nodiscard]] const imaging::ImageAssembly& image() const { return image_; }
+  /// The image of a camera (unit below kCameras) whose tiles arrived, complete or not.
+  [[nodiscard]] const imaging::ImageAssembly& image(std::size_t camera) const { return images_[camera]; }
   /// Time from the last tick to the next one; 0 before the first tick.
   [[nodiscard]] Duration step_period() const { return step_period_; }
 
@@ -82,7 +83,7 @@ class Inbox {
   PacketCounters counters_;
   Duration step_period_;
   packets::TupleOfRoute<&packets::has_queue, Queue>::Type queues_;
-  imaging::ImageAssembly image_;
+  std::array<imaging::ImageAssembly, packets::kCameras> images_;
 };
 
 }  // namespace vbar::fsw::gnc

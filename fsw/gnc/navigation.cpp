@@ -35,7 +35,7 @@ bool is_orbit(const orbit::CartesianState& state) {
 }  // namespace
 
 void Navigation::update(GpsTime now, const Telecommands& telecommands, Inbox& inbox) {
-  take_configurations(now, telecommands);
+  configure(now, telecommands);
   take_maneuvers(now, inbox);
   take_trunk(now, inbox);
   if (!has_reference_) return;
@@ -61,23 +61,18 @@ void Navigation::drop_state() {
   state_.has_target = false;
 }
 
+/// The source of the newest measurement; of several, the most accurate.
 NavigationSource Navigation::source_of(GpsTime now) const {
-  const auto if_fresh = [](bool is_fresh, NavigationSource source) {
-    return is_fresh ? source : NavigationSource::kPropagated;
-  };
-  switch (sensors_) {
-    case Sensors::kIdeal:
-      return if_fresh(state_.last_measurement == now, NavigationSource::kIdeal);
-    case Sensors::kGnss:
-      return if_fresh(seconds(now - state_.last_measurement) <= kFreshGnss_s,
-                      trunk_.source<sources::CarrierSource>().is_fixed() ? NavigationSource::kGnssFixed
-                                                                         : NavigationSource::kGnssFloat);
-    case Sensors::kBearings:
-      return if_fresh(trunk_.source<sources::BearingSource>().has_aided(), NavigationSource::kAnglesOnly);
-    case Sensors::kPose:
-      return if_fresh(trunk_.source<sources::KeypointSource>().has_aided(), NavigationSource::kPose);
+  if (trunk_.uses<sources::IdealSource>() && state_.last_measurement == now) return NavigationSource::kIdeal;
+  const auto& carrier = trunk_.source<sources::CarrierSource>();
+  if (carrier.aid().is_on() && seconds(now - carrier.last_measurement()) <= kFreshGnss_s) {
+    return carrier.is_fixed() ? NavigationSource::kGnssFixed : NavigationSource::kGnssFloat;
   }
-  return NavigationSource::kNone;
+  const auto& keypoints = trunk_.source<sources::KeypointSource>();
+  if (keypoints.aid().is_on() && keypoints.has_aided()) return NavigationSource::kPose;
+  const auto& bearings = trunk_.source<sources::BearingSource>();
+  if (bearings.aid().is_on() && bearings.has_aided()) return NavigationSource::kAnglesOnly;
+  return NavigationSource::kPropagated;
 }
 
 /// 1 sigma of the differential acceleration of the target, m/s^2, of all axes.
@@ -109,15 +104,14 @@ void Navigation::set_uncertainty(GpsTime now) {
   if (!(largest < kMaxRelativeSigma * separation + kAlwaysAccurate_m)) state_.valid = false;
 }
 
-void Navigation::take_configurations(GpsTime now, const Telecommands& telecommands) {
+/// The estimate of the trunk becomes the reference state again, unless it has none.
+void Navigation::configure(GpsTime now, const Telecommands& telecommands) {
   if (telecommands.is_new<navigation_configuration>()) {
-    sensors_ = static_cast<Sensors>(telecommands.in_force<navigation_configuration>()->source);
+    constexpr std::int32_t kCamera = sources::BearingSource::kUse | sources::KeypointSource::kUse;
+    uses_camera_ = (telecommands.in_force<navigation_configuration>()->sources & kCamera) != 0;
     drop_state();
   }
-  const bool camera_changes = telecommands.is_new<camera_configuration>() ||
-                              telecommands.is_new<angles_only_configuration>() ||
-                              telecommands.is_new<target_apriori>() || telecommands.is_new<pose_configuration>();
-  if (camera_changes && uses_camera()) drop_state();
+  if (telecommands.is_new<target_apriori>()) drop_state();
   trunk_.configure(now, telecommands);
 }
 

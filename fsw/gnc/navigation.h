@@ -54,8 +54,13 @@ class Navigation {
 
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
+  /// Telemetry and events of the sources.
+  void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) {
+    trunk_.report(outbox, step, now, inbox);
+  }
+
   [[nodiscard]] const TrunkNavigation& trunk() const { return trunk_; }
-  [[nodiscard]] bool uses_camera() const { return sensors_ == Sensors::kBearings || sensors_ == Sensors::kPose; }
+  [[nodiscard]] bool uses_camera() const { return uses_camera_; }
 
   /// Commanded pointing of the camera, after the last update.
   void expect_pointing(const sources::Pointing& pointing) { trunk_.set_pointing(pointing); }
@@ -76,7 +81,7 @@ class Navigation {
     Vector3 dv_rtn = Vector3::Zero();
   };
 
-  void take_configurations(GpsTime now, const Telecommands& telecommands);
+  void configure(GpsTime now, const Telecommands& telecommands);
   void take_trunk(GpsTime now, Inbox& inbox);
   [[nodiscard]] double differential_acceleration_sigma() const;
   void set_reference(const Pair& estimated);
@@ -99,9 +104,7 @@ class Navigation {
   std::array<OwnManeuver, kMaxManeuvers> maneuvers_{};  ///< in order of time, none before the reference state
   std::size_t maneuver_count_ = 0;
 
-  /// As navigation_configuration.source.
-  enum class Sensors : std::int8_t { kIdeal = 0, kGnss = 1, kBearings = 2, kPose = 3 };
-  Sensors sensors_ = Sensors::kIdeal;
+  bool uses_camera_ = false;  ///< selected: the camera is pointed before its telecommands are complete
   TrunkNavigation trunk_;
   std::array<navigation::Burn, kMaxManeuvers> burns_{};
 };

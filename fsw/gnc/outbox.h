@@ -21,11 +21,12 @@ class Outbox {
   }
 
   /// Encodes and emits a message that message_list.h lists as from the flight software. A message with a NaN or
-  /// infinity is dropped and counted: the interface excludes them.
+  /// infinity is dropped and counted: the interface excludes them. `unit`: of the device that it is about.
   template <class Message>
-  void send(GpsTime time, const Message& message) {
+  void send(GpsTime time, const Message& message, std::uint8_t unit = 0) {
     packets::PacketHeader header;
     header.time = time;
+    header.unit = unit;
     header.spacecraft = spacecraft_;
     std::uint16_t& count = std::get<SequenceCount<Message>>(sequence_counts_).next;
     header.sequence_count = count;

@@ -52,10 +52,4 @@ bool is_valid(const mode_command& command) {
   return command.mode >= 0 && command.mode <= mode_command::kModeHold;
 }
 
-bool is_valid(const target_apriori& apriori) {
-  const Vector6 sigma_a_roe_m = vector(apriori.sigma_a_roe_m);
-  return orbit::qns_from_cartesian({vector(apriori.position_eci), vector(apriori.velocity_eci)}).ok() &&
-         (sigma_a_roe_m.array() > 0.0).all() && (sigma_a_roe_m.array() < 1e6).all();
-}
-
 }  // namespace vbar::fsw::gnc

@@ -1,8 +1,16 @@
 #include "fsw/gnc/telecommands.h"
 
 #include "fsw/gnc/telecommand_checks.h"
+#include "fsw/gnc/trunk_configuration.h"
+#include "fsw/sources/bearings/bearing_configuration.h"
+#include "fsw/sources/calibrated_camera.h"
+#include "fsw/sources/carrier_pair/carrier_settings.h"
+#include "fsw/sources/keypoints/keypoint_settings.h"
+#include "fsw/sources/source_list.h"
 
 namespace vbar::fsw::gnc {
+using sources::is_valid;
+
 namespace {
 
 // The last of the list stands for all: the list of vbar.lcm is that of the code.
@@ -19,12 +27,14 @@ bool is_older(const FilingTag& tag, const FilingTag& than) {
 
 void Telecommands::update(GpsTime now, Inbox& inbox) {
   acknowledgment_count_ = 0;
+  has_changed_ = false;
   packets::for_each_telecommand([&]<class Message>() { propose_all<Message>(now, inbox); });
   refuse_contradictions();
   packets::for_each_telecommand([&]<class Message>() {
     for (Slot<Message>& slot : std::get<Slots<Message>>(slots_).units) {
       slot.is_new = slot.proposed.has_value();
       if (!slot.is_new) continue;
+      has_changed_ = true;
       slot.value = slot.proposed;
       slot.tag = slot.proposed_tag;
       slot.proposed.reset();
@@ -59,33 +69,41 @@ TelecommandStatus Telecommands::propose(GpsTime now, const FilingTag& tag, const
 }
 
 template <class Message>
-const Message* Telecommands::proposed_or_in_force() const {
-  const Slot<Message>& first = slot<Message>(0);
-  return first.proposed ? &*first.proposed : in_force<Message>();
+const Message* Telecommands::proposed_or_in_force(std::size_t unit) const {
+  const Slot<Message>& known = slot<Message>(unit);
+  return known.proposed ? &*known.proposed : in_force<Message>(unit);
 }
 
-/// The camera of navigation is unit 0.
+/// An image feeds one source: bearings and keypoints, if both are used, are those of different cameras.
 bool Telecommands::are_consistent() const {
-  const auto* camera = proposed_or_in_force<camera_configuration>();
-  const auto* pose = proposed_or_in_force<pose_configuration>();
-  return camera == nullptr || pose == nullptr || agree(*camera, *pose);
+  constexpr std::int32_t kBoth = sources::BearingSource::kUse | sources::KeypointSource::kUse;
+  const auto* navigation = proposed_or_in_force<navigation_configuration>(0);
+  if (navigation == nullptr || (navigation->sources & kBoth) != kBoth) return true;
+  for (std::size_t unit = 0; unit < packets::kCameras; ++unit) {
+    const bool feeds_two = proposed_or_in_force<angles_only_configuration>(unit) != nullptr &&
+                           proposed_or_in_force<pose_configuration>(unit) != nullptr;
+    if (feeds_two) return false;
+  }
+  return true;
 }
 
 /// Those in force agree with each other, so that without the proposals nothing contradicts.
 void Telecommands::refuse_contradictions() {
-  if (!are_consistent()) refuse_proposal<pose_configuration>();
-  if (!are_consistent()) refuse_proposal<camera_configuration>();
+  if (!are_consistent()) refuse_proposals<pose_configuration>();
+  if (!are_consistent()) refuse_proposals<angles_only_configuration>();
+  if (!are_consistent()) refuse_proposals<navigation_configuration>();
 }
 
 template <class Message>
-void Telecommands::refuse_proposal() {
-  Slot<Message>& first = std::get<Slots<Message>>(slots_).units[0];
-  if (!first.proposed) return;
-  first.proposed.reset();
-  for (std::size_t k = 0; k < acknowledgment_count_; ++k) {
-    Acknowledgment& acknowledgment = acknowledgments_[k];
-    if (acknowledgment.apid == packets::MessageTraits<Message>::kApid && acknowledgment.tag == first.proposed_tag) {
-      acknowledgment.status = TelecommandStatus::kContradiction;
+void Telecommands::refuse_proposals() {
+  for (Slot<Message>& slot : std::get<Slots<Message>>(slots_).units) {
+    if (!slot.proposed) continue;
+    slot.proposed.reset();
+    for (std::size_t k = 0; k < acknowledgment_count_; ++k) {
+      Acknowledgment& acknowledgment = acknowledgments_[k];
+      if (acknowledgment.apid == packets::MessageTraits<Message>::kApid && acknowledgment.tag == slot.proposed_tag) {
+        acknowledgment.status = TelecommandStatus::kContradiction;
+      }
     }
   }
 }

@@ -52,6 +52,9 @@ class Telecommands {
     return slot<Message>(unit).is_new;
   }
 
+  /// Whether the last update replaced any.
+  [[nodiscard]] bool has_changed() const { return has_changed_; }
+
   /// Acknowledges each telecommand of the last update, in the order of message_list.h, then of time tags.
   void report(Outbox& outbox, std::int64_t step, GpsTime now) const;
 
@@ -89,16 +92,17 @@ class Telecommands {
   template <class Message>
   TelecommandStatus propose(GpsTime now, const FilingTag& tag, const Message& message);
   template <class Message>
-  [[nodiscard]] const Message* proposed_or_in_force() const;
+  [[nodiscard]] const Message* proposed_or_in_force(std::size_t unit) const;
   [[nodiscard]] bool are_consistent() const;
   void refuse_contradictions();
   template <class Message>
-  void refuse_proposal();
+  void refuse_proposals();
   void count_refusals(Inbox& inbox) const;
 
   packets::TupleOfRoute<&packets::is_telecommand, Slots>::Type slots_;
   std::array<Acknowledgment, kMaxAcknowledgments> acknowledgments_{};
   std::size_t acknowledgment_count_ = 0;
+  bool has_changed_ = false;
 };
 
 }  // namespace vbar::fsw::gnc

@@ -1,8 +1,9 @@
 #include "fsw/gnc/trunk_navigation.h"
 
-#include "fsw/gnc/camera_configuration.h"
-#include "fsw/gnc/gnss_configuration.h"
+#include <array>
+
 #include "fsw/gnc/message_fields.h"
+#include "fsw/gnc/trunk_configuration.h"
 
 namespace vbar::fsw::gnc {
 namespace {
@@ -44,110 +45,46 @@ void put_attitudes(GpsTime now, const Queue& packets, Inbox& inbox, navigation::
   }
 }
 
+// The last of the list stands for all: the list of vbar.lcm is that of the code.
+static_assert(static_cast<int>(AidState::kFailed) == telemetry_event::kAidFailed);
+
+telemetry_event event_of(const sources::AidTransition& transition, std::int32_t device, std::int64_t step) {
+  telemetry_event event{};
+  event.step = step;
+  event.event = telemetry_event::kEventAid;
+  event.severity = transition.after == AidState::kSuspended || transition.after == AidState::kFailed
+                       ? telemetry_event::kSeverityWarning
+                       : telemetry_event::kSeverityInformation;
+  event.device = device;
+  event.before = static_cast<std::int32_t>(transition.before);
+  event.after = static_cast<std::int32_t>(transition.after);
+  return event;
+}
+
 }  // namespace
 
 void TrunkNavigation::configure(GpsTime now, const Telecommands& telecommands) {
-  const bool is_new = telecommands.is_new<navigation_configuration>() || telecommands.is_new<camera_configuration>() ||
-                      telecommands.is_new<angles_only_configuration>() || telecommands.is_new<pose_configuration>() ||
-                      telecommands.is_new<range_configuration>();
-  if (is_new) configure_sources(now, telecommands);
-  if (is_new || telecommands.is_new<target_apriori>()) configure_apriori(telecommands);
+  if (!telecommands.has_changed()) return;
+  select(now, telecommands);
+  if (telecommands.is_new<target_apriori>()) {
+    trunk_.set_apriori(apriori_of(*telecommands.in_force<target_apriori>(), telecommands.time_of<target_apriori>()));
+  }
 }
 
-/// From all telecommands in force together: their order of arrival has no effect. The store has validated them, so that
-/// no conversion fails.
-void TrunkNavigation::configure_sources(GpsTime now, const Telecommands& telecommands) {
+/// A source is used if it is selected and all its telecommands are in force.
+void TrunkNavigation::select(GpsTime now, const Telecommands& telecommands) {
   const auto* navigation = telecommands.in_force<navigation_configuration>();
   if (navigation == nullptr) return;
-  const auto carrier = carrier_settings(*navigation);
-  if (!carrier.ok()) return;
-  trunk::TrunkSettings blocks = carrier.value().blocks;
-  std::get<sources::OwnGnssSource>(sources_).configure(carrier.value().carrier.servicer_antenna_body_m);
-  std::get<sources::CarrierSource>(sources_).configure(carrier.value().carrier, carrier.value().pair_wait);
-  configure_bearings(telecommands, blocks);
-  configure_keypoints(telecommands, blocks);
-  configure_ranges(telecommands);
+  trunk::TrunkSettings blocks = trunk_settings(telecommands);
+  std::array<bool, std::tuple_size_v<sources::SourceList>> is_used{};
+  for_each(sources_, [&]<class Source>(Source& source, std::uint8_t index) {
+    is_used[index] = source.configure({telecommands, blocks}) && (navigation->sources & Source::kUse) != 0;
+  });
   trunk_.configure(blocks);
-  select_sources(now, telecommands);
-}
-
-void TrunkNavigation::configure_bearings(const Telecommands& telecommands, trunk::TrunkSettings& blocks) {
-  const auto* known_camera = telecommands.in_force<camera_configuration>();
-  const auto* angles_only = telecommands.in_force<angles_only_configuration>();
-  if (known_camera == nullptr || angles_only == nullptr) return;
-  const auto camera = camera_settings(*known_camera, *angles_only);
-  const auto bearings = bearing_settings(*angles_only);
-  if (!camera.ok() || !bearings.ok()) return;
-  const trunk::TrunkSettings& tuned = bearings.value().blocks;
-  blocks.burn_sigma = tuned.burn_sigma;
-  blocks.burn_sigma_relative = tuned.burn_sigma_relative;
-  blocks.relative_orbit.acceleration = tuned.relative_orbit.acceleration;
-  blocks.brightness_offset = tuned.brightness_offset;
-  blocks.boresight_a = tuned.boresight_a;
-  std::get<sources::BearingSource>(sources_).configure(camera.value(), bearings.value().bearings);
-}
-
-void TrunkNavigation::configure_keypoints(const Telecommands& telecommands, trunk::TrunkSettings& blocks) {
-  const auto* camera = telecommands.in_force<camera_configuration>();
-  const auto* pose = telecommands.in_force<pose_configuration>();
-  if (camera == nullptr || pose == nullptr) return;
-  const auto keypoints = keypoint_settings(*camera, *pose);
-  if (!keypoints.ok()) return;
-  const trunk::TrunkSettings& tuned = keypoints.value().blocks;
-  blocks.burn_sigma = tuned.burn_sigma;
-  blocks.burn_sigma_relative = tuned.burn_sigma_relative;
-  blocks.relative_orbit.acceleration = tuned.relative_orbit.acceleration;
-  blocks.attitude = tuned.attitude;
-  std::get<sources::KeypointSource>(sources_).configure(keypoints.value().keypoints);
-  pose_apriori_ = keypoints.value().apriori;
-}
-
-void TrunkNavigation::configure_ranges(const Telecommands& telecommands) {
-  const auto* ranges = telecommands.in_force<range_configuration>();
-  if (ranges == nullptr) return;
-  std::get<sources::RangeSource>(sources_).configure(
-      {.noise_sigma_m = ranges->noise_sigma_m, .bias_sigma_m = ranges->bias_sigma_m});
-}
-
-/// As navigation_configuration.source, and a range finder beside any of them; a camera that is not configured is not a
-/// source.
-void TrunkNavigation::select_sources(GpsTime now, const Telecommands& telecommands) {
-  const int source = telecommands.in_force<navigation_configuration>()->source;
-  const bool has_camera = telecommands.in_force<camera_configuration>() != nullptr;
-  const auto select = [&](auto& which, bool is_selected) {
-    if (is_selected && !which.aid().is_on()) which.aid().go_to(AidState::kWaiting, now);
-    if (!is_selected && which.aid().is_on()) which.stop(now, trunk_);
-  };
-  select(std::get<sources::IdealSource>(sources_), source == navigation_configuration::kSourceIdealNavigation);
-  select(std::get<sources::OwnGnssSource>(sources_), source != navigation_configuration::kSourceIdealNavigation);
-  select(std::get<sources::CarrierSource>(sources_), source == navigation_configuration::kSourceGnss);
-  select(std::get<sources::BearingSource>(sources_), source == navigation_configuration::kSourceAnglesOnly &&
-                                                         has_camera &&
-                                                         telecommands.in_force<angles_only_configuration>() != nullptr);
-  select(std::get<sources::KeypointSource>(sources_), source == navigation_configuration::kSourcePose && has_camera &&
-                                                          telecommands.in_force<pose_configuration>() != nullptr);
-  select(std::get<sources::RangeSource>(sources_), source != navigation_configuration::kSourceIdealNavigation &&
-                                                       telecommands.in_force<range_configuration>() != nullptr);
-}
-
-/// With navigation by poses, ROE of preceding navigation take precedence over an absolute orbit, whichever of the two
-/// telecommands arrived first. An a-priori orbit in use is set again only by a new telecommand: it has been propagated.
-void TrunkNavigation::configure_apriori(const Telecommands& telecommands) {
-  const auto* navigation = telecommands.in_force<navigation_configuration>();
-  const bool is_pose =
-      navigation != nullptr && navigation->source == navigation_configuration::kSourcePose && pose_apriori_.has_value();
-  const auto* known = telecommands.in_force<target_apriori>();
-  if (!is_pose && known == nullptr) return;
-  const AprioriOrigin origin = is_pose ? AprioriOrigin::kPose : AprioriOrigin::kTarget;
-  const bool is_new = is_pose ? telecommands.is_new<pose_configuration>() : telecommands.is_new<target_apriori>();
-  if (origin == apriori_origin_ && !is_new) return;
-  apriori_origin_ = origin;
-  if (is_pose) return trunk_.set_apriori(*pose_apriori_);
-  trunk::TargetApriori apriori;
-  apriori.time = telecommands.time_of<target_apriori>();
-  apriori.target = {vector(known->position_eci), vector(known->velocity_eci)};
-  apriori.sigma_a_roe_m = vector(known->sigma_a_roe_m);
-  trunk_.set_apriori(apriori);
+  for_each(sources_, [&](auto& source, std::uint8_t index) {
+    if (is_used[index] && !source.aid().is_on()) source.aid().go_to(AidState::kWaiting, now);
+    if (!is_used[index] && source.aid().is_on()) source.stop(now, trunk_);
+  });
 }
 
 void TrunkNavigation::take_attitudes(GpsTime now, Inbox& inbox) {
@@ -201,18 +138,21 @@ void TrunkNavigation::fold_records(Context& context, std::span<const navigation:
 }
 
 GpsTime TrunkNavigation::last_measurement() const {
-  GpsTime last = source<sources::IdealSource>().last_measurement();
-  const auto compare = [&](GpsTime measured) { last = measured > last ? measured : last; };
-  compare(source<sources::CarrierSource>().last_measurement());
-  compare(source<sources::BearingSource>().last_measurement());
-  compare(source<sources::KeypointSource>().last_measurement());
+  GpsTime last;
+  for_each(sources_, [&](const auto& source, std::uint8_t /*index*/) {
+    if (source.last_measurement() > last) last = source.last_measurement();
+  });
   return last;
 }
 
-void TrunkNavigation::report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) const {
+void TrunkNavigation::report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) {
   const sources::Telemetry telemetry{outbox, step, now, inbox, gnss_, trunk_};
-  for_each(sources_, [&](const auto& source, std::uint8_t /*index*/) {
+  for_each(sources_, [&]<class Source>(Source& source, std::uint8_t /*index*/) {
     if (source.aid().is_on()) source.report(telemetry);
+    for (const sources::AidTransition& transition : source.aid().transitions()) {
+      outbox.send(transition.time, event_of(transition, Source::kUse, step));
+    }
+    source.aid().forget_transitions();
   });
 }
 

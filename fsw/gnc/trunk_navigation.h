@@ -15,13 +15,8 @@
 #include "fsw/gnc/outbox.h"
 #include "fsw/gnc/telecommands.h"
 #include "fsw/navigation/burn.h"
-#include "fsw/sources/bearings/bearing_source.h"
-#include "fsw/sources/carrier_pair/carrier_source.h"
-#include "fsw/sources/ideal/ideal_source.h"
-#include "fsw/sources/keypoints/keypoint_source.h"
-#include "fsw/sources/own_gnss/own_gnss_source.h"
-#include "fsw/sources/range_finder/range_source.h"
 #include "fsw/sources/source.h"
+#include "fsw/sources/source_list.h"
 #include "fsw/trunk/trunk.h"
 
 namespace vbar::fsw::gnc {
@@ -31,8 +26,8 @@ class TrunkNavigation {
   /// Until a telecommand selects other sources, ideal navigation is used.
   TrunkNavigation() { std::get<sources::IdealSource>(sources_).aid().go_to(sources::AidState::kWaiting, GpsTime{}); }
 
-  /// Selects and sets the sources from the telecommands in force, if one of them is new. Estimates stay; the blocks of
-  /// a source that is not selected any more rest.
+  /// Selects and sets the sources from all telecommands in force together, if one of them is new: their order of
+  /// arrival has no effect. Estimates stay; the blocks of a source that is not selected any more rest.
   void configure(GpsTime now, const Telecommands& telecommands);
 
   /// Processes the packets of the step. `burns`: the servicer's from the epoch on, executed or commanded, in order of
@@ -46,31 +41,21 @@ class TrunkNavigation {
   /// Whether the relative orbit suffices to plan.
   [[nodiscard]] bool valid() const { return trunk_.knowledge() == trunk::RelativeKnowledge::kEstimated; }
   template <class Source>
+  [[nodiscard]] bool uses() const {
+    return source<Source>().aid().is_on();
+  }
+  template <class Source>
   [[nodiscard]] const Source& source() const {
     return std::get<Source>(sources_);
   }
   /// Latest measurement of the relative orbit that was processed.
   [[nodiscard]] GpsTime last_measurement() const;
 
-  /// Telemetry of the sources in use.
-  void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) const;
+  /// Telemetry of the sources in use, and an event of each change of the state of any source.
+  void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox);
 
  private:
-  /// Records of one time are processed in this order: the servicer's own position first.
-  using Sources = std::tuple<sources::IdealSource, sources::OwnGnssSource, sources::CarrierSource,
-                             sources::BearingSource, sources::KeypointSource, sources::RangeSource>;
-
-  static_assert(std::tuple_size_v<Sources> <= trunk::Trunk::kMaxSources);
-
-  /// Telecommand from which the a-priori orbit of the target comes.
-  enum class AprioriOrigin : std::uint8_t { kNone, kTarget, kPose };
-
-  void configure_sources(GpsTime now, const Telecommands& telecommands);
-  void configure_bearings(const Telecommands& telecommands, trunk::TrunkSettings& blocks);
-  void configure_keypoints(const Telecommands& telecommands, trunk::TrunkSettings& blocks);
-  void configure_ranges(const Telecommands& telecommands);
-  void select_sources(GpsTime now, const Telecommands& telecommands);
-  void configure_apriori(const Telecommands& telecommands);
+  void select(GpsTime now, const Telecommands& telecommands);
   void take_attitudes(GpsTime now, Inbox& inbox);
   [[nodiscard]] GpsTime owed_until(GpsTime now) const;
   void fold_records(sources::Context& context, std::span<const navigation::Burn> burns);
@@ -79,9 +64,7 @@ class TrunkNavigation {
   sources::RecordQueue queue_;
   sources::Platform platform_;
   sources::GnssFrontEnd gnss_;
-  Sources sources_;
-  AprioriOrigin apriori_origin_ = AprioriOrigin::kNone;
-  std::optional<trunk::TargetApriori> pose_apriori_;  ///< of the pose_configuration in force
+  sources::SourceList sources_;
 };
 
 }  // namespace vbar::fsw::gnc

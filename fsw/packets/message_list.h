@@ -37,6 +37,9 @@ constexpr bool is_from_flight(const Route& route) {
   return route.kind == RouteKind::kFromFlight;
 }
 
+/// Cameras whose images the flight software uses: header units 0 ... kCameras - 1.
+inline constexpr std::size_t kCameras = 2;
+
 namespace route {
 
 constexpr Route queue(std::size_t capacity) {
@@ -62,35 +65,41 @@ inline constexpr Route kManeuvers = queue(32);
 
 /// Expands X(message type, Apid enumerator, APID, route) for every message. The numbers are those on the wire: a line
 /// may be added, but an APID is never given to another message.
-#define VBAR_FOR_EACH_MESSAGE(X)                                                             \
-  X(::vbar::tick, kTick, 0x001, route::kSpecial)                                             \
-  X(::vbar::ideal_navigation, kIdealNavigation, 0x010, route::kMeasurements)                 \
-  X(::vbar::gnss_bytes, kGnssBytes, 0x011, route::kReceiver)                                 \
-  X(::vbar::crosslink_gnss_bytes, kCrosslinkGnssBytes, 0x012, route::kReceiver)              \
-  X(::vbar::attitude, kAttitude, 0x013, route::kMeasurements)                                \
-  X(::vbar::crosslink_attitude, kCrosslinkAttitude, 0x014, route::kMeasurements)             \
-  X(::vbar::image_tile, kImageTile, 0x015, route::kSpecial)                                  \
-  X(::vbar::range_measurement, kRangeMeasurement, 0x016, route::kMeasurements)               \
-  X(::vbar::executed_maneuver, kExecutedManeuver, 0x020, route::kManeuvers)                  \
-  X(::vbar::waypoint_table, kWaypointTable, 0x101, route::kTelecommand)                      \
-  X(::vbar::gnc_configuration, kGncConfiguration, 0x102, route::kTelecommand)                \
-  X(::vbar::mode_command, kModeCommand, 0x103, route::kTelecommand)                          \
-  X(::vbar::navigation_configuration, kNavigationConfiguration, 0x104, route::kTelecommand)  \
-  X(::vbar::camera_configuration, kCameraConfiguration, 0x105, route::telecommand(2))        \
-  X(::vbar::angles_only_configuration, kAnglesOnlyConfiguration, 0x106, route::kTelecommand) \
-  X(::vbar::target_apriori, kTargetApriori, 0x107, route::kTelecommand)                      \
-  X(::vbar::pose_configuration, kPoseConfiguration, 0x108, route::kTelecommand)              \
-  X(::vbar::range_configuration, kRangeConfiguration, 0x109, route::telecommand(1))          \
-  X(::vbar::maneuver_command, kManeuverCommand, 0x401, route::kFromFlight)                   \
-  X(::vbar::pointing_command, kPointingCommand, 0x402, route::kFromFlight)                   \
-  X(::vbar::telemetry_navigation, kTelemetryNavigation, 0x501, route::kFromFlight)           \
-  X(::vbar::telemetry_control, kTelemetryControl, 0x502, route::kFromFlight)                 \
-  X(::vbar::telemetry_health, kTelemetryHealth, 0x503, route::kFromFlight)                   \
-  X(::vbar::telemetry_gnss, kTelemetryGnss, 0x504, route::kFromFlight)                       \
-  X(::vbar::telemetry_image, kTelemetryImage, 0x505, route::kFromFlight)                     \
-  X(::vbar::telemetry_objects, kTelemetryObjects, 0x506, route::kFromFlight)                 \
-  X(::vbar::telemetry_pose, kTelemetryPose, 0x507, route::kFromFlight)                       \
-  X(::vbar::telemetry_telecommand, kTelemetryTelecommand, 0x508, route::kFromFlight)         \
-  X(::vbar::telemetry_range, kTelemetryRange, 0x509, route::kFromFlight)                     \
-  X(::vbar::step_report, kStepReport, 0x601, route::kBoard)                                  \
+#define VBAR_FOR_EACH_MESSAGE(X)                                                                      \
+  X(::vbar::tick, kTick, 0x001, route::kSpecial)                                                      \
+  X(::vbar::ideal_navigation, kIdealNavigation, 0x010, route::kMeasurements)                          \
+  X(::vbar::gnss_bytes, kGnssBytes, 0x011, route::kReceiver)                                          \
+  X(::vbar::crosslink_gnss_bytes, kCrosslinkGnssBytes, 0x012, route::kReceiver)                       \
+  X(::vbar::attitude, kAttitude, 0x013, route::kMeasurements)                                         \
+  X(::vbar::crosslink_attitude, kCrosslinkAttitude, 0x014, route::kMeasurements)                      \
+  X(::vbar::image_tile, kImageTile, 0x015, route::kSpecial)                                           \
+  X(::vbar::range_measurement, kRangeMeasurement, 0x016, route::kMeasurements)                        \
+  X(::vbar::executed_maneuver, kExecutedManeuver, 0x020, route::kManeuvers)                           \
+  X(::vbar::waypoint_table, kWaypointTable, 0x101, route::kTelecommand)                               \
+  X(::vbar::gnc_configuration, kGncConfiguration, 0x102, route::kTelecommand)                         \
+  X(::vbar::mode_command, kModeCommand, 0x103, route::kTelecommand)                                   \
+  X(::vbar::navigation_configuration, kNavigationConfiguration, 0x104, route::kTelecommand)           \
+  X(::vbar::camera_configuration, kCameraConfiguration, 0x105, route::telecommand(kCameras))          \
+  X(::vbar::angles_only_configuration, kAnglesOnlyConfiguration, 0x106, route::telecommand(kCameras)) \
+  X(::vbar::target_apriori, kTargetApriori, 0x107, route::kTelecommand)                               \
+  X(::vbar::pose_configuration, kPoseConfiguration, 0x108, route::telecommand(kCameras))              \
+  X(::vbar::range_configuration, kRangeConfiguration, 0x109, route::kTelecommand)                     \
+  X(::vbar::earth_configuration, kEarthConfiguration, 0x10A, route::kTelecommand)                     \
+  X(::vbar::thruster_configuration, kThrusterConfiguration, 0x10B, route::kTelecommand)               \
+  X(::vbar::target_model, kTargetModel, 0x10C, route::kTelecommand)                                   \
+  X(::vbar::receiver_configuration, kReceiverConfiguration, 0x10D, route::kTelecommand)               \
+  X(::vbar::carrier_configuration, kCarrierConfiguration, 0x10E, route::kTelecommand)                 \
+  X(::vbar::maneuver_command, kManeuverCommand, 0x401, route::kFromFlight)                            \
+  X(::vbar::pointing_command, kPointingCommand, 0x402, route::kFromFlight)                            \
+  X(::vbar::telemetry_navigation, kTelemetryNavigation, 0x501, route::kFromFlight)                    \
+  X(::vbar::telemetry_control, kTelemetryControl, 0x502, route::kFromFlight)                          \
+  X(::vbar::telemetry_health, kTelemetryHealth, 0x503, route::kFromFlight)                            \
+  X(::vbar::telemetry_gnss, kTelemetryGnss, 0x504, route::kFromFlight)                                \
+  X(::vbar::telemetry_image, kTelemetryImage, 0x505, route::kFromFlight)                              \
+  X(::vbar::telemetry_objects, kTelemetryObjects, 0x506, route::kFromFlight)                          \
+  X(::vbar::telemetry_pose, kTelemetryPose, 0x507, route::kFromFlight)                                \
+  X(::vbar::telemetry_telecommand, kTelemetryTelecommand, 0x508, route::kFromFlight)                  \
+  X(::vbar::telemetry_range, kTelemetryRange, 0x509, route::kFromFlight)                              \
+  X(::vbar::telemetry_event, kTelemetryEvent, 0x50A, route::kFromFlight)                              \
+  X(::vbar::step_report, kStepReport, 0x601, route::kBoard)                                           \
   X(::vbar::wired_bytes, kWiredBytes, 0x602, route::kBoard)

@@ -5,13 +5,16 @@
 //
 // A failed or suspended source deactivates its own blocks and no others; it may start again.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <span>
 
 #include "fsw/core/gps_time.h"
 
 namespace vbar::fsw::sources {
 
+/// Numbers of telemetry_event, states of a source.
 enum class AidState : std::uint8_t {
   kOff,        ///< not selected, or not configured
   kWaiting,    ///< no usable record yet
@@ -19,6 +22,12 @@ enum class AidState : std::uint8_t {
   kAiding,     ///< its rows update the trunk
   kSuspended,  ///< nothing usable for a time, or its records contradict the trunk
   kFailed,     ///< its own estimates were discarded
+};
+
+struct AidTransition {
+  AidState before = AidState::kOff;
+  AidState after = AidState::kOff;
+  GpsTime time;
 };
 
 class Aid {
@@ -29,21 +38,30 @@ class Aid {
 
   void go_to(AidState next, GpsTime time) {
     if (next == state_) return;
+    // Of more transitions than fit, the last ones are merged into one.
+    if (transition_count_ == kMaxTransitions) {
+      transitions_.back().after = next;
+      transitions_.back().time = time;
+    } else {
+      transitions_[transition_count_++] = {state_, next, time};
+    }
     state_ = next;
     since_ = time;
-    has_changed_ = true;
-  }
-  /// Whether the state has changed since the last call: then an event is due.
-  [[nodiscard]] bool take_change() {
-    const bool changed = has_changed_;
-    has_changed_ = false;
-    return changed;
   }
 
+  /// Since forget_transitions(), in order: an event is due for each.
+  [[nodiscard]] std::span<const AidTransition> transitions() const {
+    return std::span(transitions_).first(transition_count_);
+  }
+  void forget_transitions() { transition_count_ = 0; }
+
  private:
+  static constexpr std::size_t kMaxTransitions = 8;
+
   AidState state_ = AidState::kOff;
   GpsTime since_;
-  bool has_changed_ = false;
+  std::array<AidTransition, kMaxTransitions> transitions_{};
+  std::size_t transition_count_ = 0;
 };
 
 }  // namespace vbar::fsw::sources

@@ -4,6 +4,8 @@
 //
 // A source is a folder with a class that offers
 //
+//   static constexpr std::int32_t kUse                    its bit of navigation_configuration.sources
+//   bool configure(Configuration)                         settings from the telecommands in force; false: not complete
 //   void collect(Context&, RecordFiler)                   packets of the step -> records
 //   void fold(const Record&, Context&, trunk::Trunk&)     rows of a record; the trunk stands at its time
 //   void watch(GpsTime now, trunk::Trunk&)                after the records of the step: silence
@@ -12,7 +14,7 @@
 //   Aid& aid()                                            its state
 //   void report(const Telemetry&) const                   its telemetry
 //
-// and a place in the list of sources of fsw/gnc/trunk_navigation.h.
+// with is_valid(telecommand) for each of its telecommands, and a place in fsw/sources/source_list.h.
 
 #include <array>
 #include <compare>
@@ -24,6 +26,7 @@
 #include "fsw/core/result.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/outbox.h"
+#include "fsw/gnc/telecommands.h"
 #include "fsw/navigation/attitude_history.h"
 #include "fsw/sources/aid.h"
 #include "fsw/sources/gnss/gnss_front_end.h"
@@ -77,6 +80,12 @@ class RecordFiler {
  private:
   RecordQueue& queue_;
   std::uint8_t source_;
+};
+
+/// The telecommands in force, and the settings of the trunk, of which a source sets those of its own blocks.
+struct Configuration {
+  const gnc::Telecommands& telecommands;
+  trunk::TrunkSettings& blocks;
 };
 
 /// Pointing and attitudes, as all sources need them.

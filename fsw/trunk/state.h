@@ -1,7 +1,7 @@
 #pragma once
-// The state of the relative estimator, x = [roe(6), push(2), emp(3) | turn(3), rate(3), body(2) | com(3), beta_A(2),
-// beta_B(2), sun_off(1), wander(2), kp_common(4), kp_err(22), range_bias(1), ant_s(3), ant_t(3), pcv(3), clk(1), cb(3),
-// amb(56), phase_wander(56)].
+// The state of the relative estimator, x = [roe(6), push(2), emp(3) | turn(3), rate(3), body(2) | com(3),
+// bearing_bias(2), mounts(4), sun_off(1), wander(2), kp_common(4), kp_err(22), range_bias(1), ant_s(3), ant_t(3),
+// pcv(3), clk(1), cb(3), amb(56), phase_wander(56)].
 //
 // One estimate for all sensors: each block is inactive (variance zero, no influence, no cost behind the last active
 // one) until a source needs it. The blocks at the head are nonlinear and propagated by sigma points; all others enter
@@ -12,6 +12,7 @@
 #include "fsw/estimation/layout.h"
 #include "fsw/estimation/rows.h"
 #include "fsw/network/sizes.h"
+#include "fsw/packets/message_list.h"
 
 namespace vbar::fsw::trunk {
 
@@ -39,11 +40,12 @@ struct InertiaRatios {
 struct KeypointOrigin {
   static constexpr int kSize = 3;  ///< of the keypoints' frame from the centre of mass, body axes, m
 };
-struct BoresightA {
-  static constexpr int kSize = 2;  ///< bias of the bearings of camera 0, in the rows of bearing_axes(), rad
+struct BearingBias {
+  static constexpr int kSize = 2;  ///< of bearings among stars, in the rows of bearing_axes(), rad
 };
-struct BoresightB {
-  static constexpr int kSize = 2;  ///< the same of camera 1
+struct CameraMounts {
+  static constexpr int kPerCamera = 2;  ///< error of the boresight against the star tracker, likewise, rad
+  static constexpr int kSize = kPerCamera * static_cast<int>(packets::kCameras);
 };
 struct BrightnessOffset {
   static constexpr int kSize = 1;  ///< centre of brightness from the centre of mass, towards the Sun, m
@@ -83,7 +85,7 @@ struct PhaseWander {
 };
 
 using State = estimation::Layout<Roe, DifferentialAccelerations, EmpiricalAcceleration, Turn, Rate, InertiaRatios,
-                                 KeypointOrigin, BoresightA, BoresightB, BrightnessOffset, CentroidWander,
+                                 KeypointOrigin, BearingBias, CameraMounts, BrightnessOffset, CentroidWander,
                                  KeypointCommon, KeypointErrors, RangeBias, ServicerAntenna, TargetAntenna,
                                  PhaseCentreJitter, ClockDifference, CodeBiases, Ambiguities, PhaseWander>;
 using Estimate = estimation::Estimate<State::kSize>;
@@ -95,6 +97,10 @@ using Rows = estimation::Rows<State::kSize, kMaxRows>;
 /// Index of the first component of a block.
 template <class Block>
 inline constexpr int kAt = State::offset<Block>();
+/// The same of the mount of a camera.
+constexpr int mount_at(std::size_t camera) {
+  return kAt<CameraMounts> + CameraMounts::kPerCamera * static_cast<int>(camera);
+}
 
 /// The blocks of the orbit and of the attitude that are sampled together; both stand at the head of the state.
 inline constexpr int kOrbitSize = Roe::kSize + DifferentialAccelerations::kSize + EmpiricalAcceleration::kSize;

@@ -78,8 +78,11 @@ void Trunk::advance_relative(const OrbitStep& step) {
   estimate_.transform_head<kHeadSize>(motion_.mean, motion_.jacobian, motion_.noise);
   const double rate = math::sqrt(estimate_.mean().segment<3>(kAt<Rate>).squaredNorm());
   advance_block<KeypointOrigin>(estimate_, settings_.keypoint_origin, step.dt);
-  advance_block<BoresightA>(estimate_, settings_.boresight_a, step.dt);
-  advance_block<BoresightB>(estimate_, settings_.boresight_b, step.dt);
+  advance_block<BearingBias>(estimate_, settings_.bearing_bias, step.dt);
+  const double mount_decay = settings_.camera_mount.decay(step.dt);
+  for (int k = 0; k < CameraMounts::kSize; ++k) {
+    advance_process(estimate_, kAt<CameraMounts> + k, settings_.camera_mount, mount_decay);
+  }
   advance_block<BrightnessOffset>(estimate_, settings_.brightness_offset, step.dt);
   advance_block<CentroidWander>(estimate_, settings_.centroid_wander, step.dt);
   advance_keypoint_errors(estimate_, settings_.keypoint_errors, rate, step.dt);

@@ -31,8 +31,8 @@ struct TrunkSettings {
   TargetAttitudeSettings attitude;
   KeypointErrorSettings keypoint_errors;
   GaussMarkov keypoint_origin{.sigma = 0.01};                       ///< m
-  GaussMarkov boresight_a{.sigma = 1.5e-5, .time_s = 43200.0};      ///< rad; camera with stars: 3 arcsec
-  GaussMarkov boresight_b{.sigma = 2.9e-4, .time_s = 43200.0};      ///< rad; against the star tracker: 60 arcsec
+  GaussMarkov bearing_bias{.sigma = 1.5e-5, .time_s = 43200.0};     ///< rad; of a camera with stars: 3 arcsec
+  GaussMarkov camera_mount{.sigma = 2.9e-4, .time_s = 43200.0};     ///< rad; against the star tracker: 60 arcsec
   GaussMarkov brightness_offset{.sigma = 0.15, .time_s = 20000.0};  ///< m
   GaussMarkov centroid_wander{.sigma = 0.05, .time_s = 2000.0};     ///< m
   GaussMarkov phase_wander{.sigma = 0.0, .time_s = 1.0};            ///< m, of a single difference

@@ -72,8 +72,8 @@ struct SensorSettings {
   std::string source;         ///< provider of its data: "digital", "recorded" or the name of a testbed
   std::filesystem::path log;  ///< of source "recorded": the packet log
   std::string observed;       ///< the other spacecraft that it measures or exchanges data with; empty: none
-  /// Its use in navigation, as in vbar.lcm, navigation_configuration.source; negative: none.
-  std::int8_t navigation = -1;
+  /// What navigation uses it for: a sum of navigation_configuration::kUse (vbar.lcm); 0: nothing.
+  std::int32_t navigation = 0;
 };
 
 /// What a kind of sensor has read from tables of the document, for all of its sensors.
@@ -161,6 +161,19 @@ struct Guidance {
   vbar::gnc_configuration configuration{};
 };
 
+/// What is known of the target's orbit at the start.
+enum class Apriori : std::int8_t { kNone = 0, kOrbit = 1, kRoe = 2 };
+
+/// [navigation]: telecommands to navigation that do not depend on its sensors.
+struct Navigation {
+  vbar::navigation_configuration configuration{};  ///< without the sources
+  vbar::thruster_configuration thruster{};
+  Apriori apriori = Apriori::kNone;
+  /// Mean ROE times the reference semi-major axis, 1 sigma.
+  fsw::Vector6 apriori_sigma_a_roe_m = fsw::Vector6::Zero();
+  double angular_acceleration_psd = 0.0;  ///< of the target, rad^2/s^3, each axis
+};
+
 /// Live packets on an LCM bus.
 struct LcmMirror {
   bool mirror = false;
@@ -189,6 +202,7 @@ struct Mission {
   truth::TruthSettings truth;  ///< all but the data folder, which the program determines
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
+  Navigation navigation;
   std::vector<std::shared_ptr<const SharedSettings>> shared;  ///< one of each kind of sensor
   std::vector<Testbed> testbeds;
   std::vector<PrescribedBurn> burns;  ///< of the spacecraft that flies, in order of time

@@ -27,6 +27,8 @@ inline constexpr Names<Mode, 4> kModes{{{"idle", Mode::kIdle},
                                         {"approach", Mode::kApproach},
                                         {"station_keeping", Mode::kStationKeeping},
                                         {"hold", Mode::kHold}}};
+inline constexpr Names<Apriori, 3> kAprioris{
+    {{"none", Apriori::kNone}, {"orbit", Apriori::kOrbit}, {"roe", Apriori::kRoe}}};
 inline constexpr Names<ImagesInLog, 2> kImagesInLog{
     {{"recipes", ImagesInLog::kRecipes}, {"tiles", ImagesInLog::kTiles}}};
 inline constexpr Names<engine::ClockMode, 2> kClockModes{

@@ -16,8 +16,9 @@ void read_truth(const TableReader& document, Mission& mission);                 
 void read_testbeds(const TableReader& document, Mission& mission, const Installation& installation);  // [testbed.*]
 void read_waypoints(const TableReader& document, Mission& mission);                                   // [[waypoint]]
 void read_spacecraft(const TableReader& document, Mission& mission,
-                     const Installation& installation);             // [[spacecraft]]
-void read_guidance(const TableReader& document, Mission& mission);  // [guidance]
+                     const Installation& installation);               // [[spacecraft]]
+void read_guidance(const TableReader& document, Mission& mission);    // [guidance]
+void read_navigation(const TableReader& document, Mission& mission);  // [navigation]
 void read_shared(const TableReader& document, Mission& mission,
                  const Installation& installation);  // by the kinds of sensors: [navigation.*], [links.crosslink]
 void read_burns(const TableReader& document, Mission& mission);                                    // [[burn]]

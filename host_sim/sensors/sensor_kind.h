@@ -28,12 +28,13 @@ class Telecommands {
  public:
   Telecommands(fsw::GpsTime time, std::uint8_t spacecraft) : time_(time), spacecraft_(spacecraft) {}
 
-  /// Throws std::runtime_error for a message that holds a NaN or an infinity.
+  /// `unit`: of the device that it is for. Throws std::runtime_error for a message that holds a NaN or an infinity.
   template <class Message>
-  void add(const Message& message) {
+  void add(const Message& message, std::uint8_t unit = 0) {
     fsw::packets::PacketHeader header;
     header.time = time_;
     header.spacecraft = spacecraft_;
+    header.unit = unit;
     twins::Packet packet(fsw::packets::kMaxPacketBytes);
     const auto size = fsw::packets::encode(header, message, packet);
     if (!size.ok()) throw std::runtime_error("a telecommand cannot be sent: it contains a number that is not finite");

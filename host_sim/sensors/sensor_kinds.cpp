@@ -10,6 +10,7 @@
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
 #include "host_sim/sensors/ideal_navigation/ideal_navigation_kind.h"
+#include "host_sim/sensors/navigation_telecommands.h"
 #include "host_sim/sensors/range_finder/range_finder_kind.h"
 
 namespace vbar::sensors {
@@ -98,6 +99,7 @@ report::Extensions extensions() {
 std::vector<twins::Packet> telecommands_of(const TelecommandContext& context) {
   Telecommands telecommands(context.mission.start_time(), context.servicer.number);
   telecommands.add(context.mission.guidance.configuration);
+  add_navigation_telecommands(context, telecommands);
   for (const mission::Sensor& sensor : context.servicer.sensors) {
     const SensorKind& kind = kind_of(sensor);
     if (kind.add_telecommands != nullptr) kind.add_telecommands(sensor, context, telecommands);

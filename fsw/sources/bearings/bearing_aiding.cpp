@@ -63,10 +63,8 @@ void BearingAiding::activate_blocks(trunk::Trunk& trunk) const {
   if (!trunk::is_active<trunk::CentroidWander>(estimate)) {
     trunk::begin_block<trunk::CentroidWander>(estimate, blocks.centroid_wander);
   }
-  if (!estimate.is_idle(boresight_index(settings_.model.camera))) return;
-  const trunk::GaussMarkov& boresight = settings_.model.camera == 0 ? blocks.boresight_a : blocks.boresight_b;
-  for (int axis = 0; axis < 2; ++axis) {
-    trunk::begin_process(estimate, boresight_index(settings_.model.camera) + axis, boresight);
+  if (!trunk::is_active<trunk::BearingBias>(estimate)) {
+    trunk::begin_block<trunk::BearingBias>(estimate, blocks.bearing_bias);
   }
 }
 
@@ -74,7 +72,7 @@ void BearingAiding::rest_blocks(trunk::Trunk& trunk) const {
   trunk::Estimate& estimate = trunk.estimate();
   trunk::rest_block<trunk::BrightnessOffset>(estimate);
   trunk::rest_block<trunk::CentroidWander>(estimate);
-  for (int axis = 2; axis-- > 0;) estimate.reset(boresight_index(settings_.model.camera) + axis, 0.0, 0.0);
+  trunk::rest_block<trunk::BearingBias>(estimate);
 }
 
 void BearingAiding::stop(GpsTime now, trunk::Trunk& trunk) {
@@ -100,12 +98,12 @@ BearingEditStatus BearingAiding::collect(const navigation::BearingMeasurement& b
   rest_blocks(trunk);
   trunk.begin_relative(solution.roe, solution.covariance.topLeftCorner<6, 6>(), RelativeKnowledge::kEstimated);
   activate_blocks(trunk);
-  const int boresight = boresight_index(settings_.model.camera);
+  constexpr int kBias = trunk::kAt<trunk::BearingBias>;
   for (int axis = 0; axis < 2; ++axis) {
-    estimate.reset(boresight + axis, solution.bias(axis), solution.covariance(6 + axis, 6 + axis));
-    for (int k = 0; k < 6; ++k) estimate.correlate(k, boresight + axis, solution.covariance(k, 6 + axis));
+    estimate.reset(kBias + axis, solution.bias(axis), solution.covariance(6 + axis, 6 + axis));
+    for (int k = 0; k < 6; ++k) estimate.correlate(k, kBias + axis, solution.covariance(k, 6 + axis));
   }
-  estimate.correlate(boresight, boresight + 1, solution.covariance(6, 7));
+  estimate.correlate(kBias, kBias + 1, solution.covariance(6, 7));
   trunk.finish_update();
   trunk.confirm_relative();
   counters_.used += solution.used;

@@ -45,7 +45,7 @@ Status bearing_rows(trunk::Trunk& trunk, const navigation::BearingMeasurement& b
     for (int axis = 0; axis < 2; ++axis) {
       rows.sensitivity(kAt<trunk::BrightnessOffset>, axis) = along_sun(axis);
       rows.sensitivity(kAt<trunk::CentroidWander> + axis, axis) = 1.0 / range;
-      rows.sensitivity(boresight_index(model.camera) + axis, axis) = 1.0;
+      rows.sensitivity(kAt<trunk::BearingBias> + axis, axis) = 1.0;
     }
   }
   const auto regression = transform.regress<2>(values);
@@ -53,7 +53,7 @@ Status bearing_rows(trunk::Trunk& trunk, const navigation::BearingMeasurement& b
   for (int axis = 0; axis < 2; ++axis) {
     rows.sensitivity.col(axis).head<6>() = regression.jacobian.row(axis).transpose();
     const double linear =
-        estimate.mean(boresight_index(model.camera) + axis) +
+        estimate.mean(kAt<trunk::BearingBias> + axis) +
         rows.sensitivity(kAt<trunk::CentroidWander> + axis, axis) * estimate.mean(kAt<trunk::CentroidWander> + axis);
     rows.residual(axis) = -(regression.mean(axis) + linear);  // the measured direction has no component across itself
     rows.noise.col(axis).head<2>() = regression.nonlinearity.col(axis);

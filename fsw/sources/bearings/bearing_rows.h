@@ -6,13 +6,7 @@
 
 namespace vbar::fsw::sources {
 
-/// Index in the state of the boresight bias of a camera: 0 or 1.
-constexpr int boresight_index(int camera) {
-  return camera == 0 ? trunk::kAt<trunk::BoresightA> : trunk::kAt<trunk::BoresightB>;
-}
-
 struct BearingModel {
-  int camera = 0;
   /// 1 sigma, m, per axis: centroid of the target's light about its mean, independent from image to image (its attitude
   /// and illumination change meanwhile). In metres it is the same at all ranges: negligible beyond 30 km, most of the
   /// error within 10 km.
@@ -24,7 +18,7 @@ struct BearingModel {
 /// Writes the two components of the measured direction across the predicted one (bearing_axes(), rad) to trunk.rows().
 /// The trunk stands at the time of the bearing. Any status of the orbit conversions if there is no target to predict.
 ///
-/// Model: axes (rho + sun_offset s + wander - o) / |...| + boresight bias; rho is sampled over the ROE, all others
+/// Model: axes (rho + sun_offset s + wander - o) / |...| + bearing bias; rho is sampled over the ROE, all others
 /// enter linearly.
 Status bearing_rows(trunk::Trunk& trunk, const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
                     const BearingModel& model);

@@ -1,10 +1,10 @@
 #include "fsw/sources/bearings/bearing_source.h"
 
-#include "fsw/gnc/camera_configuration.h"
 #include "fsw/gnc/message_fields.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/orbit/sun.h"
+#include "fsw/sources/bearings/bearing_configuration.h"
 
 namespace vbar::fsw::sources {
 namespace {
@@ -34,10 +34,31 @@ double detection_probability(const orbit::CartesianState& target, const Vector3&
 
 }  // namespace
 
+bool BearingSource::configure(const Configuration& configuration) {
+  const gnc::Telecommands& telecommands = configuration.telecommands;
+  for (std::size_t unit = 0; unit < packets::kCameras; ++unit) {
+    const auto* camera = telecommands.in_force<camera_configuration>(unit);
+    const auto* angles_only = telecommands.in_force<angles_only_configuration>(unit);
+    if (camera == nullptr || angles_only == nullptr) continue;
+    const auto optics = camera_settings(*camera, *angles_only);
+    const auto bearings = bearing_settings(*angles_only);
+    if (!optics.ok() || !bearings.ok()) return false;
+    configuration.blocks.brightness_offset.sigma = angles_only->brightness_offset_m;
+    configuration.blocks.bearing_bias.sigma = angles_only->bearing_bias;
+    aiding_.configure(bearings.value());
+    const bool is_new = unit != camera_ || telecommands.is_new<camera_configuration>(unit) ||
+                        telecommands.is_new<angles_only_configuration>(unit);
+    camera_ = unit;
+    if (is_new) tracking_.configure(optics.value());
+    return true;
+  }
+  return false;
+}
+
 void BearingSource::collect(Context& context, RecordFiler records) {
   has_image_ = false;
   edit_status_ = BearingEditStatus::kNone;
-  const imaging::ImageAssembly& image = context.inbox.image();
+  const imaging::ImageAssembly& image = context.inbox.image(camera_);
   if (!aid().is_on() || !image.has_image()) return;
   const bool is_timely = image.image_time() <= context.now && context.now - image.image_time() <= kLongestDelay &&
                          (!last_image_ || image.image_time() > *last_image_);
@@ -51,7 +72,7 @@ std::optional<GpsTime> BearingSource::owes(GpsTime /*now*/) const {
 }
 
 void BearingSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
-  const imaging::ImageAssembly& image = context.inbox.image();
+  const imaging::ImageAssembly& image = context.inbox.image(camera_);
   if (!image.has_image() || image.image_time() != record.time) return context.inbox.count_unusable_time();
   has_image_ = true;
   const Vector3 sun_eci = orbit::sun_position_gcrf(record.time).normalized();
@@ -136,8 +157,8 @@ void BearingSource::report_image(const Telemetry& telemetry) const {
   message.bearings_used = aiding_.counters().used;
   message.bearings_refused = aiding_.counters().refused;
   message.images_without_stars = images_without_stars_;
-  message.tiles_refused = telemetry.inbox.image().counts().tiles_refused;
-  telemetry.outbox.send(sighting.time, message);
+  message.tiles_refused = telemetry.inbox.image(camera_).counts().tiles_refused;
+  telemetry.outbox.send(sighting.time, message, static_cast<std::uint8_t>(camera_));
 }
 
 void BearingSource::report_objects(const Telemetry& telemetry) const {
@@ -157,7 +178,7 @@ void BearingSource::report_objects(const Telemetry& telemetry) const {
     message.x_px[k] = static_cast<float>(objects[k].centroid_px.x());
     message.y_px[k] = static_cast<float>(objects[k].centroid_px.y());
   }
-  telemetry.outbox.send(sighting.time, message);
+  telemetry.outbox.send(sighting.time, message, static_cast<std::uint8_t>(camera_));
 }
 
 }  // namespace vbar::fsw::sources

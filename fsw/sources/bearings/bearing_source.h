@@ -12,11 +12,9 @@ namespace vbar::fsw::sources {
 
 class BearingSource {
  public:
-  /// Settings from the telecommands kept; a change re-initialises the front end, not the trunk.
-  void configure(const angles_only::CameraSettings& camera, const BearingSettings& settings) {
-    tracking_.configure(camera);
-    aiding_.configure(settings);
-  }
+  static constexpr std::int32_t kUse = navigation_configuration::kUseBearings;
+  /// Of the first camera that is configured for bearings. A change re-initialises the front end, not the trunk.
+  bool configure(const Configuration& configuration);
   [[nodiscard]] Aid& aid() { return aiding_.aid(); }
   void collect(Context& context, RecordFiler records);
   void fold(const Record& record, Context& context, trunk::Trunk& trunk);
@@ -36,6 +34,7 @@ class BearingSource {
   void report_image(const Telemetry& telemetry) const;
   void report_objects(const Telemetry& telemetry) const;
 
+  std::size_t camera_ = 0;  ///< unit
   angles_only::AnglesOnlyTracking tracking_;
   BearingAiding aiding_;
   std::array<tracking::OwnBurn, trunk::Trunk::kMaxImpulses> burns_since_image_{};

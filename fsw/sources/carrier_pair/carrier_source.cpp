@@ -1,10 +1,23 @@
 #include "fsw/sources/carrier_pair/carrier_source.h"
 
 #include "fsw/gnc/message_fields.h"
+#include "fsw/sources/carrier_pair/carrier_settings.h"
 
 namespace vbar::fsw::sources {
 
 static_assert(static_cast<int>(gnss::RejectionReason::kSearch) == telemetry_gnss::kObstacleSearch);
+
+bool CarrierSource::configure(const Configuration& configuration) {
+  const auto* carrier = configuration.telecommands.in_force<carrier_configuration>();
+  const auto* receiver = configuration.telecommands.in_force<receiver_configuration>();
+  if (carrier == nullptr || receiver == nullptr) return false;
+  const auto settings = carrier_settings(*carrier, *receiver);
+  if (!settings.ok()) return false;
+  configuration.blocks.phase_wander = phase_wander_of(*carrier);
+  aiding_.configure(settings.value());
+  pair_wait_ = Duration{carrier->pair_wait_ns};
+  return true;
+}
 
 void CarrierSource::collect(Context& context, RecordFiler records) {
   owed_.reset();

@@ -11,11 +11,8 @@ namespace vbar::fsw::sources {
 
 class CarrierSource {
  public:
-  /// `pair_wait`: how long an epoch of the servicer waits for that of the target.
-  void configure(const CarrierSettings& settings, Duration pair_wait) {
-    aiding_.configure(settings);
-    pair_wait_ = pair_wait;
-  }
+  static constexpr std::int32_t kUse = navigation_configuration::kUseCarrierPair;
+  bool configure(const Configuration& configuration);
   /// Files the epochs of both receivers with one tag, in order.
   void collect(Context& context, RecordFiler records);
   void fold(const Record& record, Context& context, trunk::Trunk& trunk);
@@ -39,8 +36,8 @@ class CarrierSource {
 
  private:
   CarrierAiding aiding_;
-  Duration pair_wait_ = duration_of_seconds(12);
-  GpsTime decided_until_{-1};  ///< tags up to this are filed, or were alone
+  Duration pair_wait_ = duration_of_seconds(12);  ///< how long an epoch of the servicer waits for that of the target
+  GpsTime decided_until_{-1};                     ///< tags up to this are filed, or were alone
   std::optional<GpsTime> owed_;
   std::int32_t alone_ = 0;
 };

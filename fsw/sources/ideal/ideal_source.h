@@ -11,6 +11,8 @@ namespace vbar::fsw::sources {
 
 class IdealSource {
  public:
+  static constexpr std::int32_t kUse = navigation_configuration::kUseIdeal;
+  [[nodiscard]] bool configure(const Configuration& /*configuration*/) { return true; }
   void collect(Context& context, RecordFiler records);
   void fold(const Record& record, Context& context, trunk::Trunk& trunk);
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }

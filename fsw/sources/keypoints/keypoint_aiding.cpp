@@ -4,7 +4,6 @@
 
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
-#include "fsw/sources/bearings/bearing_rows.h"
 
 namespace vbar::fsw::sources {
 namespace {
@@ -97,7 +96,7 @@ void KeypointAiding::follow_burns(const trunk::Trunk& trunk) {
 
 KeypointEditStatus KeypointAiding::edit(const KeypointImage& image, trunk::Trunk& trunk) {
   if (!trunk.own_orbit().started() || !is_finite(image)) return KeypointEditStatus::kNone;
-  const CameraPose camera{*image.R_camera_eci, image.R_camera_eci->transpose() * settings_.camera_position_camera_m};
+  const CameraPose camera{*image.R_camera_eci, image.R_camera_eci->transpose() * image.camera.position_camera_m};
   light_ = light_of(image, trunk);
   has_sample_ = is_fit_for_start(image);
   if (has_sample_) {
@@ -134,7 +133,8 @@ KeypointAiding::Light KeypointAiding::light_of(const KeypointImage& image, const
   const double range = math::sqrt(to_camera.squaredNorm());
   const bool is_from_front = to_camera.dot(image.sun_eci) >= math::cos(settings_.max_phase) * range;
   Light light;
-  light.is_lit = is_lit_after(-kEdge_s) && is_lit_after(kEdge_s) && is_from_front;
+  light.is_sunlit = is_lit_after(-kEdge_s) && is_lit_after(kEdge_s);
+  light.is_lit = light.is_sunlit && is_from_front;
   light.may_start = light.is_lit && is_lit_after(kBeforeShadow_s);
   return light;
 }
@@ -185,17 +185,6 @@ bool KeypointAiding::begin_attitude(trunk::Trunk& trunk) {
   const auto attitude = start_.attitude();
   if (!attitude.ok() || !agrees_with_image(attitude.value().attitude)) return false;
   trunk.begin_attitude(attitude.value().attitude, attitude.value().covariance);
-  trunk::Estimate& estimate = trunk.estimate();
-  const trunk::TrunkSettings& blocks = trunk.settings();
-  const int boresight = boresight_index(settings_.model.camera);
-  const trunk::GaussMarkov& bias = settings_.model.camera == 0 ? blocks.boresight_a : blocks.boresight_b;
-  if (!trunk::is_active<trunk::KeypointOrigin>(estimate)) {
-    trunk::begin_block<trunk::KeypointOrigin>(estimate, blocks.keypoint_origin);
-  }
-  for (int axis = 0; axis < 2 && estimate.is_idle(boresight + 1); ++axis) {
-    trunk::begin_process(estimate, boresight + axis, bias);
-  }
-  trunk.finish_update();
   if (has_begun_) ++counters_.attitudes_reset;
   has_begun_ = true;
   return trunk.has_attitude();
@@ -221,8 +210,8 @@ bool KeypointAiding::is_far(const navigation::PoseSample& sample, const trunk::T
 
 KeypointEditStatus KeypointAiding::take_position(const KeypointImage& image, const CameraPose& camera,
                                                  trunk::Trunk& trunk) {
-  // In penumbra and from behind one face is lit, and poses are wrong alike.
-  if (!image.pnp || !is_finite(*image.pnp) || !light_.is_lit) return KeypointEditStatus::kNone;
+  // In penumbra poses are wrong alike.
+  if (!image.pnp || !is_finite(*image.pnp) || !light_.is_sunlit) return KeypointEditStatus::kNone;
   const navigation::PoseSample sample = sample_of(image, camera, trunk);
   if (is_far(sample, trunk)) {
     count_refusal(image.time, true, trunk);
@@ -241,13 +230,28 @@ KeypointEditStatus KeypointAiding::take_position(const KeypointImage& image, con
   return KeypointEditStatus::kPosition;
 }
 
+void KeypointAiding::activate_blocks(std::size_t camera, trunk::Trunk& trunk) const {
+  trunk::Estimate& estimate = trunk.estimate();
+  const trunk::TrunkSettings& blocks = trunk.settings();
+  const int mount = trunk::mount_at(camera);
+  if (trunk::is_active<trunk::KeypointOrigin>(estimate) && !estimate.is_idle(mount)) return;
+  if (!trunk::is_active<trunk::KeypointOrigin>(estimate)) {
+    trunk::begin_block<trunk::KeypointOrigin>(estimate, blocks.keypoint_origin);
+  }
+  for (int axis = 0; axis < trunk::CameraMounts::kPerCamera && estimate.is_idle(mount + 1); ++axis) {
+    trunk::begin_process(estimate, mount + axis, blocks.camera_mount);
+  }
+  trunk.finish_update();
+}
+
 KeypointEditStatus KeypointAiding::take_keypoints(const KeypointImage& image, const CameraPose& camera,
                                                   trunk::Trunk& trunk) {
+  activate_blocks(image.camera.model.camera, trunk);
   const Matrix3 R_camera_body = camera.R_camera_eci * trunk.attitude().state().q_eci_body.toRotationMatrix();
   const double range = range_m(trunk);
   const View view{Eigen::Quaterniond(R_camera_body).normalized(), range > 0.0 ? math::log(range) : 0.0};
   const KeypointsUpdate& update =
-      editing_.take(trunk, image.time, *image.keypoints, camera, settings_.model, seen_.scale(view, image.time));
+      editing_.take(trunk, image.time, *image.keypoints, camera, image.camera.model, seen_.scale(view, image.time));
   bool is_any_usable = false;
   for (const pose::Keypoint& keypoint : *image.keypoints) is_any_usable = is_any_usable || is_usable(keypoint);
   if (!is_any_usable) return KeypointEditStatus::kNone;

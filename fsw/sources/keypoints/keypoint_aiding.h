@@ -18,12 +18,10 @@
 namespace vbar::fsw::sources {
 
 struct KeypointAidingSettings {
-  KeypointModel model;
   KeypointEditingSettings editing;
   NoveltySettings novelty;
   navigation::PoseInitialiserSettings start;
-  navigation::Inertia inertia;                         ///< that of the trunk's attitude
-  Vector3 camera_position_camera_m = Vector3::Zero();  ///< from the servicer's centre of mass, camera axes
+  navigation::Inertia inertia;  ///< that of the trunk's attitude
   /// In addition to `start`: poses of fewer keypoints are used there only if their attitude is this accurate, rad.
   int start_inliers = 8;
   double start_attitude_sigma = 0.05;
@@ -40,9 +38,16 @@ struct KeypointAidingSettings {
   double position_gate = 25.0;  ///< of the normalised squared distance of a single-image position
 };
 
+/// A camera with the model of the target.
+struct KeypointCamera {
+  KeypointModel model;
+  Vector3 position_camera_m = Vector3::Zero();  ///< from the servicer's centre of mass, camera axes
+};
+
 /// A processed image, or one without a target.
 struct KeypointImage {
   GpsTime time;
+  KeypointCamera camera;
   Vector3 sun_eci = Vector3::UnitX();          ///< unit vector
   std::optional<Matrix3> R_camera_eci;         ///< at the image
   const pose::Keypoints* keypoints = nullptr;  ///< null: no target detected
@@ -90,7 +95,8 @@ class KeypointAiding {
  private:
   /// Illumination of the target as the camera sees it.
   struct Light {
-    bool is_lit = false;     ///< surely outside the shadow, and not from behind
+    bool is_sunlit = false;  ///< surely outside the shadow
+    bool is_lit = false;     ///< and not from behind
     bool may_start = false;  ///< and for two minutes to come
   };
 
@@ -104,6 +110,7 @@ class KeypointAiding {
   [[nodiscard]] bool agrees_with_image(const navigation::AttitudeState& attitude) const;
   bool begin_attitude(trunk::Trunk& trunk);
   KeypointEditStatus take_position(const KeypointImage& image, const CameraPose& camera, trunk::Trunk& trunk);
+  void activate_blocks(std::size_t camera, trunk::Trunk& trunk) const;
   KeypointEditStatus take_keypoints(const KeypointImage& image, const CameraPose& camera, trunk::Trunk& trunk);
   [[nodiscard]] Matrix3 position_covariance(const navigation::PoseSample& sample, bool is_agreed) const;
   [[nodiscard]] bool is_far(const navigation::PoseSample& sample, const trunk::Trunk& trunk) const;

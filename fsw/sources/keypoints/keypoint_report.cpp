@@ -51,36 +51,56 @@ void copy_counters(const KeypointCounters& counters, telemetry_pose& message) {
   message.restarts = counters.restarts;
 }
 
+void copy_estimate(const KeypointImage& image, const trunk::Trunk& trunk, telemetry_pose& message) {
+  if (!image.R_camera_eci) return;
+  const Result<Vector3> position = target_position_camera(image.camera, *image.R_camera_eci, trunk);
+  if (!position.ok()) return;
+  copy(position.value(), message.position_camera_m);
+  Matrix3 R_camera_body = *image.R_camera_eci;
+  if (trunk.has_attitude()) {
+    const navigation::AttitudeState& attitude = trunk.attitude().state();
+    R_camera_body = *image.R_camera_eci * attitude.q_eci_body.toRotationMatrix();
+    message.has_attitude = 1;
+    copy(attitude.rate_body, message.rate_body);
+    gnc::copy_lower_triangle(trunk::attitude_covariance(trunk.estimate()), message.covariance_attitude);
+  }
+  gnc::copy_rotation(R_camera_body, message.q_camera_body);
+  copy(trunk.a_roe_m(), message.a_roe_osculating_m);
+  gnc::copy_lower_triangle(trunk.a_roe_covariance_m2(), message.covariance_a_roe);
+}
+
 }  // namespace
 
-void KeypointSource::report(const Telemetry& telemetry) const {
-  if (!has_image_) return;
+/// Of the trunk after the image.
+telemetry_pose KeypointSource::report_of(const KeypointImage& image, KeypointEditStatus edit_status, int tiles_missing,
+                                         const trunk::Trunk& trunk) const {
   const pose::PoseSighting& sighting = network_.sighting();
   const KeypointsUpdate& update = aiding_.last_update();
   telemetry_pose message{};
-  message.step = telemetry.step;
   copy_sighting(sighting, message);
   for (std::size_t k = 0; k < sighting.keypoints.size(); ++k) {
     message.keypoint_fate[k] = keypoint_fate(sighting.keypoints[k], update.keypoints[k]);
   }
-  message.fate = static_cast<std::int8_t>(edit_status_);
-  message.filter_runs = telemetry.trunk.knowledge() == trunk::RelativeKnowledge::kEstimated ? 1 : 0;
-  message.tiles_missing = static_cast<std::int16_t>(tiles_missing_);
-  if (estimated_) {
-    message.has_attitude = estimated_->has_attitude ? 1 : 0;
-    gnc::copy_rotation(estimated_->pose.R_camera_body, message.q_camera_body);
-    copy(estimated_->pose.position_camera_m, message.position_camera_m);
-    copy(estimated_->rate_body, message.rate_body);
-    gnc::copy_lower_triangle(estimated_->attitude_covariance, message.covariance_attitude);
-    gnc::copy_lower_triangle(estimated_->a_roe_covariance_m2, message.covariance_a_roe);
-    copy(estimated_->a_roe_m, message.a_roe_osculating_m);
-  }
+  message.fate = static_cast<std::int8_t>(edit_status);
+  message.filter_runs = trunk.knowledge() == trunk::RelativeKnowledge::kEstimated ? 1 : 0;
+  message.tiles_missing = static_cast<std::int16_t>(tiles_missing);
+  copy_estimate(image, trunk, message);
   message.nis = update.nis;
   message.nis_degrees = 2 * update.used;
-  message.acceleration_psd = telemetry.trunk.relative_orbit().noise().psd();
+  message.acceleration_psd = trunk.relative_orbit().noise().psd();
   copy_counters(aiding_.counters(), message);
-  message.tiles_refused = telemetry.inbox.image().counts().tiles_refused;
-  telemetry.outbox.send(sighting.time, message);
+  return message;
+}
+
+void KeypointSource::report(const Telemetry& telemetry) const {
+  for (std::size_t unit = 0; unit < cameras_.size(); ++unit) {
+    const Camera& camera = cameras_[unit];
+    if (!camera.report || !camera.last_image) continue;
+    telemetry_pose message = *camera.report;
+    message.step = telemetry.step;
+    message.tiles_refused = telemetry.inbox.image(unit).counts().tiles_refused;
+    telemetry.outbox.send(*camera.last_image, message, static_cast<std::uint8_t>(unit));
+  }
 }
 
 }  // namespace vbar::fsw::sources

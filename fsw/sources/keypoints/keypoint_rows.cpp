@@ -5,7 +5,6 @@
 #include "fsw/estimation/unscented.h"
 #include "fsw/math/math.h"
 #include "fsw/navigation/bearing.h"
-#include "fsw/sources/bearings/bearing_rows.h"
 
 namespace vbar::fsw::sources {
 namespace {
@@ -76,7 +75,7 @@ bool add_linear_states(trunk::Trunk& trunk, const pose::Keypoints& keypoints, co
   const double share = trunk.settings().keypoint_errors.correlated_share;
   const Vector3 sight_eci = camera.R_camera_eci.transpose() * mean.centre_camera;
   const Matrix3 axes = navigation::bearing_axes(sight_eci.normalized(), trunk.servicer());
-  const int boresight = boresight_index(model.camera);
+  const int mount = trunk::mount_at(model.camera);
   const Vector3 origin = estimate.mean().segment<3>(kAt<trunk::KeypointOrigin>);
   for (int k = 0; k < kCount; ++k) {
     const int row = 2 * k;
@@ -90,19 +89,19 @@ bool add_linear_states(trunk::Trunk& trunk, const pose::Keypoints& keypoints, co
     const Eigen::Matrix<double, 2, 3> by_point = projection.value().derivative;
     const Eigen::Matrix<double, 2, 3> by_origin = by_point * mean.R_camera_body;
     const Eigen::Matrix<double, 3, 2> across = camera.R_camera_eci * axes.topRows<2>().transpose();
-    const Matrix2 by_boresight = math::sqrt(point.squaredNorm()) * by_point * across;
+    const Matrix2 by_mount = math::sqrt(point.squaredNorm()) * by_point * across;
     const Matrix2 covariance = keypoints[at(k)].covariance_px2;
     const Matrix2 root = math::sqrt(share) * root_of(covariance);
     for (int axis = 0; axis < 2; ++axis) {
       auto sensitivity = rows.sensitivity.col(row + axis);
       sensitivity.segment<3>(kAt<trunk::KeypointOrigin>) = by_origin.row(axis).transpose();
-      sensitivity.segment<2>(boresight) = by_boresight.row(axis).transpose();
+      sensitivity.segment<2>(mount) = by_mount.row(axis).transpose();
       const double from_centre = predicted(row + axis) - centre_px.value()(axis);
       sensitivity(kAt<trunk::KeypointCommon> + axis) = 1.0;
       sensitivity(kAt<trunk::KeypointCommon> + 2) = from_centre;
       sensitivity(kAt<trunk::KeypointCommon> + 3) = from_centre;
       sensitivity.segment<2>(kAt<trunk::KeypointErrors> + row) = root.row(axis).transpose();
-      const double linear = sensitivity.segment<2>(boresight).dot(estimate.mean().segment<2>(boresight)) +
+      const double linear = sensitivity.segment<2>(mount).dot(estimate.mean().segment<2>(mount)) +
                             sensitivity.segment<4>(kAt<trunk::KeypointCommon>)
                                 .dot(estimate.mean().segment<4>(kAt<trunk::KeypointCommon>)) +
                             sensitivity.segment<2>(kAt<trunk::KeypointErrors> + row)

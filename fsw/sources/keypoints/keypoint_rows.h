@@ -15,7 +15,7 @@ struct CameraPose {
 };
 
 struct KeypointModel {
-  int camera = 0;  ///< 0 or 1: which boresight bias applies
+  std::size_t camera = 0;  ///< whose mount applies
   imaging::CameraModel optics;
   pose::KeypointShape shape{};  ///< body axes from the centre of mass of the model, m
 };
@@ -28,7 +28,7 @@ struct KeypointModel {
 /// trunk stands at the time of the image and has an attitude. Any status of the orbit conversions, or kSingular for
 /// an invalid covariance.
 ///
-/// Model: pixel of R_camera_eci (rho - o) + R_camera_body (p_k + origin), shifted by the boresight bias, plus the
+/// Model: pixel of R_camera_eci (rho - o) + R_camera_body (p_k + origin), shifted by the error of its mount, plus the
 /// errors that all keypoints or successive images have in common (fsw/trunk/keypoint_errors.h). ROE and rotation are
 /// sampled, all others enter linearly. The correlated share of a keypoint's covariance is a state in units of its root;
 /// the rest is noise.

@@ -1,33 +1,30 @@
 #pragma once
-// Source: keypoints of a camera that resolves the target, by the pose network.
+// Source: keypoints of the cameras that resolve the target, by the pose network.
 
+#include <array>
 #include <optional>
 
 #include "fsw/pose/spacecraft_pose_network.h"
 #include "fsw/sources/keypoints/keypoint_aiding.h"
+#include "fsw/sources/keypoints/keypoint_settings.h"
 #include "fsw/sources/source.h"
 
 namespace vbar::fsw::sources {
 
-struct KeypointSettings {
-  pose::PoseCameraSettings camera;
-  Matrix3 R_camera_body = Matrix3::Identity();
-  double sigma_scale = 1.0;  ///< factor on the network's standard deviations: other illumination than in its training
-  double sigma_floor_px = 0.0;  ///< and a standard deviation added to them
-  KeypointAidingSettings aiding;
-};
-
 class KeypointSource {
  public:
-  /// Replaces the settings; the poses collected for initialisation are discarded, the trunk stays.
-  void configure(const KeypointSettings& settings);
+  static constexpr std::int32_t kUse = navigation_configuration::kUseKeypoints;
+  /// Of all cameras that are configured for keypoints, with the model of the target. A change discards the poses
+  /// collected for initialisation; the trunk stays.
+  bool configure(const Configuration& configuration);
+  /// At most one image of each camera in a step.
   void collect(Context& context, RecordFiler records);
   /// Predicts the crop, runs the network and updates the trunk by its keypoints.
   void fold(const Record& record, Context& context, trunk::Trunk& trunk);
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
   void watch(GpsTime now, trunk::Trunk& /*trunk*/) { aiding_.check_age(now); }
   void stop(GpsTime now, trunk::Trunk& trunk);
-  /// Telemetry of the image of the step, if there was one.
+  /// Telemetry of the images of the step.
   void report(const Telemetry& telemetry) const;
 
   [[nodiscard]] Aid& aid() { return aiding_.aid(); }
@@ -40,36 +37,30 @@ class KeypointSource {
   [[nodiscard]] const std::optional<Vector3>& last_seen_rtn() const { return last_seen_rtn_; }
 
  private:
-  /// Of the trunk after the image, for telemetry.
-  struct Estimated {
-    pose::TargetPose pose;  ///< of the target with respect to the camera
-    bool has_attitude = false;
-    Vector3 rate_body = Vector3::Zero();
-    Matrix6 attitude_covariance = Matrix6::Zero();
-    Vector6 a_roe_m = Vector6::Zero();
-    Matrix6 a_roe_covariance_m2 = Matrix6::Zero();
+  /// A camera, and the telemetry of its image of the step.
+  struct Camera {
+    std::optional<KeypointCameraSettings> settings;
+    std::optional<GpsTime> last_image;
+    std::optional<telemetry_pose> report;
   };
 
-  [[nodiscard]] std::optional<Matrix3> R_camera_eci_at(GpsTime time, const Platform& platform,
-                                                       const trunk::Trunk& trunk) const;
-  [[nodiscard]] std::optional<Vector3> target_position_camera(const Matrix3& R_camera_eci,
-                                                              const trunk::Trunk& trunk) const;
-  [[nodiscard]] std::optional<Vector3> predicted_position_camera(const std::optional<Matrix3>& R_camera_eci,
-                                                                 const trunk::Trunk& trunk) const;
-  void remember_direction(const std::optional<Matrix3>& R_camera_eci, const trunk::Trunk& trunk);
-  [[nodiscard]] pose::Keypoints widened(pose::Keypoints keypoints) const;
-  void keep_estimate(const std::optional<Matrix3>& R_camera_eci, const trunk::Trunk& trunk);
+  [[nodiscard]] static std::optional<Matrix3> R_camera_eci_at(GpsTime time, const Matrix3& R_camera_body,
+                                                              const Platform& platform, const trunk::Trunk& trunk);
+  void remember_direction(const KeypointCameraSettings& camera, const std::optional<Matrix3>& R_camera_eci,
+                          const trunk::Trunk& trunk);
+  [[nodiscard]] telemetry_pose report_of(const KeypointImage& image, KeypointEditStatus edit_status, int tiles_missing,
+                                         const trunk::Trunk& trunk) const;
 
-  KeypointSettings settings_;
-  pose::SpacecraftPoseNetwork network_;
+  std::array<Camera, packets::kCameras> cameras_;
+  pose::SpacecraftPoseNetwork network_;  ///< with the settings of the camera of the last image
   KeypointAiding aiding_;
   pose::Keypoints keypoints_{};  ///< as processed
   std::optional<GpsTime> last_image_;
   std::optional<Vector3> last_seen_rtn_;
-  bool has_image_ = false;
-  int tiles_missing_ = 0;
-  KeypointEditStatus edit_status_ = KeypointEditStatus::kNone;
-  std::optional<Estimated> estimated_;
 };
+
+/// Of the target's centre of mass with respect to the camera, in its axes, m. kNotReady without a target.
+Result<Vector3> target_position_camera(const KeypointCamera& camera, const Matrix3& R_camera_eci,
+                                       const trunk::Trunk& trunk);
 
 }  // namespace vbar::fsw::sources

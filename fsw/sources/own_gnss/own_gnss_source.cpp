@@ -1,6 +1,20 @@
 #include "fsw/sources/own_gnss/own_gnss_source.h"
 
+#include "fsw/gnc/message_fields.h"
+
 namespace vbar::fsw::sources {
+
+bool is_valid(const receiver_configuration& configuration) {
+  return gnc::vector(configuration.antenna_body_m).norm() < 100.0;
+}
+
+/// Satellites are placed by the Earth orientation.
+bool OwnGnssSource::configure(const Configuration& configuration) {
+  const auto* receiver = configuration.telecommands.in_force<receiver_configuration>();
+  if (receiver == nullptr || configuration.telecommands.in_force<earth_configuration>() == nullptr) return false;
+  aiding_.set_antenna(gnc::vector(receiver->antenna_body_m));
+  return true;
+}
 
 void OwnGnssSource::collect(Context& context, RecordFiler records) {
   const navigation::EpochBuffer& epochs = context.gnss.waiting(Receiver::kServicer);

@@ -8,10 +8,13 @@
 
 namespace vbar::fsw::sources {
 
+/// An antenna on the spacecraft.
+[[nodiscard]] bool is_valid(const receiver_configuration& configuration);
+
 class OwnGnssSource {
  public:
-  /// Nominal phase centre from the centre of mass, m, body axes.
-  void configure(const Vector3& antenna_body_m) { aiding_.set_antenna(antenna_body_m); }
+  static constexpr std::int32_t kUse = navigation_configuration::kUseOwnGnss;
+  bool configure(const Configuration& configuration);
   void collect(Context& context, RecordFiler records);
   void fold(const Record& record, Context& context, trunk::Trunk& trunk);
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
@@ -20,6 +23,8 @@ class OwnGnssSource {
   void report(const Telemetry& /*telemetry*/) const {}
   [[nodiscard]] Aid& aid() { return aiding_.aid(); }
   [[nodiscard]] const Aid& aid() const { return aiding_.aid(); }
+  /// Its positions do not measure the relative orbit.
+  [[nodiscard]] static GpsTime last_measurement() { return {}; }
   [[nodiscard]] const OwnGnssCounters& counters() const { return aiding_.counters(); }
 
  private:

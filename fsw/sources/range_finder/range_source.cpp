@@ -1,8 +1,21 @@
 #include "fsw/sources/range_finder/range_source.h"
 
+#include "fsw/sources/valid_range.h"
+
 namespace vbar::fsw::sources {
 
 static_assert(static_cast<int>(RangeEditStatus::kUsed) == telemetry_range::kEditUsed);
+
+bool is_valid(const range_configuration& c) {
+  return is_positive(c.noise_sigma_m, 1e3) && is_between(c.bias_sigma_m, 0.0, 1e3);
+}
+
+bool RangeSource::configure(const Configuration& configuration) {
+  const auto* ranges = configuration.telecommands.in_force<range_configuration>();
+  if (ranges == nullptr) return false;
+  aiding_.configure({.noise_sigma_m = ranges->noise_sigma_m, .bias_sigma_m = ranges->bias_sigma_m});
+  return true;
+}
 
 void RangeSource::collect(Context& context, RecordFiler records) {
   folded_.reset();

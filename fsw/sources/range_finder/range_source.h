@@ -9,9 +9,13 @@
 
 namespace vbar::fsw::sources {
 
+/// Noise and bias of up to a kilometre.
+[[nodiscard]] bool is_valid(const range_configuration& configuration);
+
 class RangeSource {
  public:
-  void configure(const RangeSettings& settings) { aiding_.configure(settings); }
+  static constexpr std::int32_t kUse = navigation_configuration::kUseRangeFinder;
+  bool configure(const Configuration& configuration);
   void collect(Context& context, RecordFiler records);
   void fold(const Record& record, Context& context, trunk::Trunk& trunk);
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }

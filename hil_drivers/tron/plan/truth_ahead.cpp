@@ -65,7 +65,7 @@ mission::Mission with_true_states(mission::Mission mission, const std::string& s
     auto navigation = std::make_shared<sensors::NavigationSensor>();
     navigation->source = "ideal";
     navigation->observed = observed;
-    navigation->navigation = vbar::navigation_configuration::kSourceIdealNavigation;
+    navigation->navigation = vbar::navigation_configuration::kUseIdeal;
     navigation->period = mission.step;
     spacecraft.sensors.clear();
     spacecraft.sensors.push_back({"navigation", std::string(sensors::kIdealNavigation.name), std::move(navigation)});

@@ -24,9 +24,10 @@ struct ImageTelemetry {
   std::optional<telemetry_pose> pose;
 };
 
-ImageTelemetry image_telemetry(std::span<const fsw::packets::PacketView> answer) {
+ImageTelemetry image_telemetry(std::span<const fsw::packets::PacketView> answer, std::uint8_t unit) {
   ImageTelemetry told;
   for (const fsw::packets::PacketView& packet : answer) {
+    if (packet.header.unit != unit) continue;
     if (const auto image = fsw::packets::decode<telemetry_image>(packet); image.ok()) {
       told.exposure = packet.header.time;
       told.image = image.value();
@@ -47,25 +48,30 @@ class CameraEvaluation final : public Evaluation {
         record_(context.record),
         known_camera_(known_camera(camera, context.mission, mission::data_directory()).sensor),
         gallery_(context.mission, context.servicer, twin_of_testbed_camera(context.mission, context.servicer)),
-        pose_gallery_(context.mission, context.servicer) {
+        pose_gallery_(context.mission, context.servicer),
+        unit_(camera_unit(camera, context.servicer)),
+        has_galleries_(&camera == navigation_camera(context.servicer, camera.use)) {
     if (camera.use == CameraNavigation::kPose)
-      known_target_ = pose_configuration_of(context.mission, camera, mission::data_directory());
+      known_target_ = target_model_of(context.mission, camera, mission::data_directory());
   }
 
   void on_measured(const twins::TruthSnapshot& truth) override { kept_truth_.keep(truth); }
 
   void on_inputs(fsw::GpsTime time, std::span<const twins::Packet> inputs) override {
+    if (!has_galleries_) return;
     gallery_.on_inputs(time, inputs);
     pose_gallery_.on_inputs(time, inputs);
   }
 
   void on_answer(fsw::GpsTime time, std::span<const fsw::packets::PacketView> answer) override {
-    const ImageTelemetry told = image_telemetry(answer);
+    const ImageTelemetry told = image_telemetry(answer, unit_);
     if (told.image) on_image(seconds_of(time), told);
     if (told.pose) on_pose(seconds_of(time), told);
   }
 
-  void finish() override { gallery_.finish(record_.gallery); }
+  void finish() override {
+    if (has_galleries_) gallery_.finish(record_.gallery);
+  }
 
  private:
   [[nodiscard]] double seconds_of(fsw::GpsTime time) const { return fsw::seconds(time - context_.mission.epoch); }
@@ -81,7 +87,7 @@ class CameraEvaluation final : public Evaluation {
     if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
     if (objects != nullptr) append_objects(row.time_s, *objects, record_.tables.rows<ObjectRow>());
     record_.tables.rows<ImageRow>().push_back(row);
-    gallery_.on_image({told.exposure, row, objects, truth ? &*truth : nullptr}, record_.gallery);
+    if (has_galleries_) gallery_.on_image({told.exposure, row, objects, truth ? &*truth : nullptr}, record_.gallery);
   }
 
   void on_pose(double step_time_s, const ImageTelemetry& told) {
@@ -94,16 +100,18 @@ class CameraEvaluation final : public Evaluation {
       add_truth(row, record_.tables.rows<KeypointRow>(), *told.pose, known_target_->keypoints_body_m, known_camera_,
                 context_.servicer, *truth);
     record_.tables.rows<PoseRow>().push_back(row);
-    pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
+    if (has_galleries_) pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
   }
 
   EvaluationContext context_;
   report::RunRecord& record_;
   CameraSensor known_camera_;
   KeptTruth kept_truth_;
-  std::optional<pose_configuration> known_target_;  ///< as telecommanded, with navigation by the pose network
+  std::optional<target_model> known_target_;  ///< as telecommanded, with navigation by the pose network
   GalleryKeeper gallery_;
   PoseGallery pose_gallery_;
+  std::uint8_t unit_;
+  bool has_galleries_;  ///< of several cameras with one use the first
 };
 
 }  // namespace

@@ -38,13 +38,20 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
   if (camera.use == CameraNavigation::kNone) return;
   if (!servicer.flight_computer)
     section.refuse("", "a camera without a flight computer", "a camera of a spacecraft that flies software");
+  using Use = vbar::navigation_configuration;
   const Sensor* receiver = nullptr;
+  std::size_t cameras = 0;
   for (const Sensor& other : servicer.sensors) {
-    if (other.settings->navigation == vbar::navigation_configuration::kSourceGnss) receiver = &other;
-    if (&other != &sensor && other.settings->navigation > vbar::navigation_configuration::kSourceGnss)
-      section.refuse("navigation", "a second camera whose images navigation uses",
-                     "\"none\" for all cameras of a spacecraft but one");
+    if ((other.settings->navigation & Use::kUseOwnGnss) != 0) receiver = &other;
+    if (other.kind != sensor.kind || other.settings->navigation == 0) continue;
+    ++cameras;
+    if (&other != &sensor && (other.settings->navigation & camera.navigation & Use::kUseBearings) != 0)
+      section.refuse("navigation", "a second camera whose bearings navigation uses",
+                     "\"angles_only\" for one camera of a spacecraft; \"pose\" or \"none\" for the others");
   }
+  if (cameras > fsw::packets::kCameras)
+    section.refuse("navigation", std::to_string(cameras) + " cameras whose images navigation uses",
+                   "\"none\" for all cameras of a spacecraft but " + std::to_string(fsw::packets::kCameras));
   if (receiver == nullptr)
     section.refuse("", "a camera without a GNSS receiver", "a GNSS receiver too: it gives the spacecraft's own orbit");
   if (!receiver->settings->observed.empty())
@@ -140,12 +147,36 @@ const SensorKind kCamera{{"camera", "", read_camera, read_camera_shared, check},
                          {tables, summarise_images, sections, kMessagesInTables, camera_paper_columns},
                          make_camera_tile_source};
 
-const CameraSensor* navigation_camera(const Spacecraft& carrier) {
+namespace {
+
+template <class Condition>
+const CameraSensor* first_camera(const Spacecraft& carrier, const Condition& is_wanted) {
   for (const Sensor& sensor : carrier.sensors)
     if (const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
-        camera != nullptr && camera->use != CameraNavigation::kNone)
+        camera != nullptr && is_wanted(*camera))
       return camera;
   return nullptr;
+}
+
+}  // namespace
+
+const CameraSensor* navigation_camera(const Spacecraft& carrier) {
+  return first_camera(carrier, [](const CameraSensor& camera) { return camera.use != CameraNavigation::kNone; });
+}
+
+const CameraSensor* navigation_camera(const Spacecraft& carrier, CameraNavigation use) {
+  return first_camera(carrier, [&](const CameraSensor& camera) { return camera.use == use; });
+}
+
+std::uint8_t camera_unit(const CameraSensor& camera, const Spacecraft& carrier) {
+  const bool is_used = camera.use != CameraNavigation::kNone;
+  std::uint8_t unit = is_used ? 0 : static_cast<std::uint8_t>(fsw::packets::kCameras);
+  for (const Sensor& sensor : carrier.sensors) {
+    const auto* const other = dynamic_cast<const CameraSensor*>(sensor.settings.get());
+    if (other == &camera) break;
+    if (other != nullptr && (other->use != CameraNavigation::kNone) == is_used) ++unit;
+  }
+  return unit;
 }
 
 }  // namespace vbar::sensors

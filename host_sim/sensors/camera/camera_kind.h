@@ -26,15 +26,17 @@ struct CameraSensor : mission::SensorSettings {
   fsw::Vector3 position_body_m = fsw::Vector3::Zero();                ///< from the centre of mass
 };
 
-/// The camera whose images navigation uses; null if there is none.
+/// The first camera whose images navigation uses, and the first with that use; null if there is none.
 [[nodiscard]] const CameraSensor* navigation_camera(const mission::Spacecraft& carrier);
+[[nodiscard]] const CameraSensor* navigation_camera(const mission::Spacecraft& carrier, CameraNavigation use);
+
+/// The unit in packet headers: cameras whose images navigation uses come first, in the order of the mission; the flight
+/// software does not know the others, from packets::kCameras on.
+[[nodiscard]] std::uint8_t camera_unit(const CameraSensor& camera, const mission::Spacecraft& carrier);
 
 /// [navigation.angles_only] and [navigation.pose]: what does not depend on camera and target.
 struct CameraShared : mission::SharedSettings {
   vbar::angles_only_configuration angles_only{};
-  /// Of the target's a-priori state for angles-only navigation: mean ROE times the reference a, 1 sigma.
-  fsw::Vector6 angles_only_apriori_sigma_a_roe_m = fsw::Vector6::Zero();
-  /// The a-priori sigmas are those of the mission, without an a-priori state.
   vbar::pose_configuration pose{};
 };
 
@@ -57,17 +59,9 @@ void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandCon
 /// The camera as calibrated on the ground: without error.
 [[nodiscard]] vbar::camera_configuration camera_configuration_of(const CameraSensor& camera);
 
-/// The target of the camera as the ground knows it: keypoints of its model, inertia of its body; no a-priori state.
-/// Throws MissionError for files that cannot be read.
-[[nodiscard]] vbar::pose_configuration pose_configuration_of(const mission::Mission& mission,
-                                                             const CameraSensor& camera,
-                                                             const std::filesystem::path& data_directory);
-
-/// Where the ground last knew the target to be, out of the true states of both at the start: mean ROE off by what the
-/// seed draws with the mission's sigmas. Throws std::runtime_error for states that are not orbits.
-[[nodiscard]] vbar::target_apriori target_apriori_of(const mission::Mission& mission,
-                                                     const mission::Spacecraft& servicer,
-                                                     const fsw::orbit::CartesianState& servicer_state,
-                                                     const fsw::orbit::CartesianState& target_state);
+/// The target of the camera as the ground knows it: keypoints of its model, inertia of its body. Throws MissionError
+/// for files that cannot be read.
+[[nodiscard]] vbar::target_model target_model_of(const mission::Mission& mission, const CameraSensor& camera,
+                                                 const std::filesystem::path& data_directory);
 
 }  // namespace vbar::sensors

@@ -44,9 +44,9 @@ std::string caption(const ImageRow& row) {
 GalleryKeeper::GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer,
                              TakeTwinImage take_twin)
     : take_twin_(std::move(take_twin)) {
-  const auto* const camera = navigation_camera(servicer);
-  if (camera == nullptr || camera->use != CameraNavigation::kAnglesOnly) return;
-  assembly_ = std::make_unique<fsw::imaging::ImageAssembly>();
+  const auto* const camera = navigation_camera(servicer, CameraNavigation::kAnglesOnly);
+  if (camera == nullptr) return;
+  assembly_ = std::make_unique<fsw::imaging::ImageAssembly>(camera_unit(*camera, servicer));
   before_ = fsw::Duration{kExposuresBefore * camera->period.ns};
   focal_length_px_ = camera->settings.focal_length_px();
   for (const mission::Waypoint& waypoint : mission.waypoints)

@@ -18,18 +18,6 @@ using mission::Mission;
 using mission::Sensor;
 using mission::Spacecraft;
 
-/// The unit in packet headers. The flight software takes the images of unit 0: those of the camera that navigation
-/// uses.
-std::uint8_t camera_unit(const Sensor& sensor, const Spacecraft& carrier) {
-  std::uint8_t unit = navigation_camera(carrier) != nullptr ? 1 : 0;
-  if (sensor.settings->navigation >= 0) return 0;
-  for (const Sensor& other : carrier.sensors) {
-    if (other.name == sensor.name) break;
-    if (other.kind == sensor.kind && other.settings->navigation < 0) ++unit;
-  }
-  return unit;
-}
-
 twins::camera::ImageMaker::Settings image_settings(const Mission& mission, const Spacecraft& spacecraft,
                                                    const Sensor& sensor) {
   twins::camera::ImageMaker::Settings settings;
@@ -37,7 +25,7 @@ twins::camera::ImageMaker::Settings image_settings(const Mission& mission, const
   settings.name = spacecraft.name + "/" + sensor.name;
   settings.seed = mission.seed;
   settings.spacecraft = spacecraft.number;
-  settings.unit = camera_unit(sensor, spacecraft);
+  settings.unit = camera_unit(settings_of<CameraSensor>(sensor), spacecraft);
   return settings;
 }
 
@@ -54,7 +42,7 @@ twins::camera::Renderer make_scene_renderer(const Mission& mission, const Spacec
 const Sensor& digital_camera(const Spacecraft& servicer, std::uint8_t unit) {
   for (const Sensor& sensor : servicer.sensors) {
     const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
-    if (camera == nullptr || camera_unit(sensor, servicer) != unit) continue;
+    if (camera == nullptr || camera_unit(*camera, servicer) != unit) continue;
     if (camera->source == "digital" || camera->source == "recorded") return sensor;
   }
   throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no digital camera of unit " +

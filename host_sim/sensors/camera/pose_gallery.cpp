@@ -26,11 +26,12 @@ std::string caption(const PoseRow& row) {
 }  // namespace
 
 PoseGallery::PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  const auto* const camera = navigation_camera(servicer);
-  if (camera == nullptr || camera->use != CameraNavigation::kPose) return;
+  const auto* const camera = navigation_camera(servicer, CameraNavigation::kPose);
+  if (camera == nullptr) return;
   work_ = std::make_unique<Work>();
   static_cast<void>(work_->network.load(fsw::network::weights_on_board()));  // without it, pictures without maps
-  const pose_configuration configuration = pose_configuration_of(mission, *camera, mission::data_directory());
+  work_->assembly = fsw::imaging::ImageAssembly(camera_unit(*camera, servicer));
+  const camera_configuration configuration = camera_configuration_of(*camera);
   dark_level_dn_ = configuration.dark_level_dn;
   noise_dn_ = configuration.noise_dn;
   for (int k = 0; k < kPictures; ++k)

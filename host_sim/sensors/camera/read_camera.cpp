@@ -58,10 +58,9 @@ std::shared_ptr<const mission::SensorSettings> read_camera(const TableReader& se
   camera.settings = file.settings();
   camera.observed = mission::read_other_spacecraft(section, context.spacecraft, context.spacecraft_names);
   camera.use = section.choice<CameraNavigation>("navigation", kCameraNavigations, CameraNavigation::kAnglesOnly);
-  using Source = vbar::navigation_configuration;
-  constexpr std::int8_t kNotUsed = -1;  // by navigation: none of the codes
-  constexpr std::int8_t kNumber[] = {kNotUsed, Source::kSourceAnglesOnly, Source::kSourcePose};
-  camera.navigation = kNumber[static_cast<std::size_t>(camera.use)];
+  constexpr std::int32_t kUses[] = {0, vbar::navigation_configuration::kUseBearings,
+                                    vbar::navigation_configuration::kUseKeypoints};
+  camera.navigation = kUses[static_cast<std::size_t>(camera.use)];
   camera.period = section.span("period_s", 1.0, from_to(0.1, 3600.0), fsw::seconds(context.mission.step));
   camera.readout = section.span("readout_s", 1.0, from_to(0.0, 3600.0), 2.0);
   if (const auto q = mission::read_quaternion(section, "q_camera_body")) camera.q_camera_body = *q;

@@ -39,8 +39,8 @@ Vector3 hermite(const TruthRow& before, const TruthRow& after, double time_s) {
          (3.0 * u2 - 2.0 * u3) * relative_position(after) + (u3 - u2) * h * relative_velocity(after);
 }
 
-fsw::orbit::EarthOrientation orientation_of(const vbar::navigation_configuration& configuration) {
-  return {.epoch = fsw::GpsTime{configuration.earth_epoch_ns},
+fsw::orbit::EarthOrientation orientation_of(const vbar::earth_configuration& configuration) {
+  return {.epoch = fsw::GpsTime{configuration.epoch_ns},
           .ut1_minus_gps_s = configuration.ut1_minus_gps_s,
           .ut1_rate = configuration.ut1_rate,
           .pole_x = configuration.pole_x,
@@ -65,9 +65,12 @@ void GnssEvaluation::take(const fsw::packets::PacketView& packet) {
     take_attitude(kServicer, time, attitude.value());
   } else if (const auto their_attitude = fsw::packets::decode<crosslink_attitude>(packet); their_attitude.ok()) {
     take_attitude(kTarget, time, their_attitude.value());
-  } else if (const auto configuration = fsw::packets::decode<vbar::navigation_configuration>(packet);
-             configuration.ok()) {
-    configuration_ = configuration.value();
+  } else if (const auto earth = fsw::packets::decode<vbar::earth_configuration>(packet); earth.ok()) {
+    earth_ = earth.value();
+  } else if (const auto receiver = fsw::packets::decode<vbar::receiver_configuration>(packet); receiver.ok()) {
+    receiver_ = receiver.value();
+  } else if (const auto carrier = fsw::packets::decode<vbar::carrier_configuration>(packet); carrier.ok()) {
+    carrier_ = carrier.value();
   }
 }
 
@@ -106,9 +109,9 @@ void GnssEvaluation::match_epochs() {
 
 void GnssEvaluation::add_pair(const fsw::gnss::ObservationEpoch& ours, const fsw::gnss::ObservationEpoch& theirs) {
   using fsw::navigation::EarthFrame;
-  if (!configuration_) return;
+  if (!earth_ || !receiver_ || !carrier_) return;
   const fsw::GpsTime tag = ours.receiver_time;
-  const EarthFrame frame = EarthFrame::at(tag, orientation_of(*configuration_));
+  const EarthFrame frame = EarthFrame::at(tag, orientation_of(*earth_));
   const auto our_point = fsw::navigation::single_point(ours, ephemerides_, frame);
   const auto their_point = fsw::navigation::single_point(theirs, ephemerides_, frame);
   const auto our_attitude = attitudes_[kServicer].R_eci_body_at(tag);
@@ -117,8 +120,8 @@ void GnssEvaluation::add_pair(const fsw::gnss::ObservationEpoch& ours, const fsw
   Pair& pair = pairs_.emplace_back();
   fsw::navigation::form_differences(ours, theirs, ephemerides_, frame, pair.differences);
   pair.servicer_eci = our_point.value().position_eci;
-  pair.lever_arms_eci = *their_attitude * fsw::gnc::vector(configuration_->target_antenna_body_m) -
-                        *our_attitude * fsw::gnc::vector(configuration_->servicer_antenna_body_m);
+  pair.lever_arms_eci = *their_attitude * fsw::gnc::vector(carrier_->target_antenna_body_m) -
+                        *our_attitude * fsw::gnc::vector(receiver_->antenna_body_m);
   // A clock that is ahead shows the tag before its time.
   pair.target_later_s = (our_point.value().clock_m - their_point.value().clock_m) / fsw::gnss::kSpeedOfLight;
 }

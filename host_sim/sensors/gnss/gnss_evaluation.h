@@ -51,7 +51,10 @@ class GnssEvaluation final : public Evaluation {
   [[nodiscard]] double seconds_of(fsw::GpsTime time) const { return fsw::seconds(time - context_.mission.epoch); }
 
   EvaluationContext context_;
-  std::optional<vbar::navigation_configuration> configuration_;
+  // As telecommanded.
+  std::optional<vbar::earth_configuration> earth_;
+  std::optional<vbar::receiver_configuration> receiver_;
+  std::optional<vbar::carrier_configuration> carrier_;
   std::array<fsw::gnss::ReceiverDecoder, 2> decoders_{};
   fsw::navigation::EphemerisStore ephemerides_;
   std::array<fsw::navigation::EpochBuffer, 2> waiting_{};

@@ -37,11 +37,12 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
   for (const Sensor& other : spacecraft.sensors) {
     if (&other == &sensor) continue;
     if (other.kind == sensor.kind) section.refuse("", "a second sensor of kind gnss", "one on a spacecraft");
-    if (other.settings->navigation == vbar::navigation_configuration::kSourceIdealNavigation)
+    if (other.settings->navigation == vbar::navigation_configuration::kUseIdeal)
       section.refuse("", "a second way to navigate", "a sensor of kind navigation or gnss, not both");
   }
   const bool is_beside_camera = std::ranges::any_of(spacecraft.sensors, [](const Sensor& other) {
-    return other.settings->navigation > vbar::navigation_configuration::kSourceGnss;
+    using Use = vbar::navigation_configuration;
+    return (other.settings->navigation & (std::int32_t{Use::kUseBearings} + Use::kUseKeypoints)) != 0;
   });
   if (!spacecraft.flight_computer || is_beside_camera) return;
   const Spacecraft* const partner = mission.find_spacecraft(sensor.settings->observed);
@@ -111,15 +112,15 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
   if (const Spacecraft* const partner = context.mission.find_spacecraft(sensor.settings->observed)) add(*partner);
 }
 
-void add_telecommands(const Sensor& /*sensor*/, const TelecommandContext& context, Telecommands& telecommands) {
-  telecommands.add(navigation_configuration_of(context.mission, context.servicer, context.earth_orientation));
+void add_telecommands(const Sensor& sensor, const TelecommandContext& context, Telecommands& telecommands) {
+  telecommands.add(receiver_configuration_of(context.servicer));
+  if (!sensor.settings->observed.empty()) telecommands.add(carrier_configuration_of(context.mission, context.servicer));
 }
 
-/// The kind of navigation of the spacecraft: that of its camera, if it has one.
-std::int8_t navigation_of(const Spacecraft& servicer) {
-  std::int8_t navigation = 0;
-  for (const Sensor& sensor : servicer.sensors) navigation = std::max(navigation, sensor.settings->navigation);
-  return navigation;
+template <std::size_t kAxes>
+void copy_antenna(const GnssSensor& gnss, double (&antenna_m)[kAxes]) {
+  const fsw::Vector3& nominal = gnss.receiver.body_frame.antenna_in_body_m;
+  std::copy(nominal.begin(), nominal.end(), antenna_m);
 }
 
 void add_facts(const Sensor& sensor, const Mission& mission, const Spacecraft& servicer, report::RunFacts& facts) {
@@ -152,29 +153,16 @@ const SensorKind kGnss{{"gnss", "constellation", read_gnss, read_gnss_shared, ch
                        evaluate,
                        {tables, summarise_gnss, sections, kMessagesInTables, gnss_paper_columns}};
 
-vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer,
-                                                           const truth::EarthOrientationSeries& orientation) {
-  vbar::navigation_configuration configuration = mission::shared_settings<GnssShared>(mission).navigation;
-  configuration.source = navigation_of(servicer);
-  const auto copy_antenna = [](const GnssSensor& gnss, double(&antenna_m)[3]) {
-    const fsw::Vector3& nominal = gnss.receiver.body_frame.antenna_in_body_m;
-    std::copy(nominal.begin(), nominal.end(), antenna_m);
-  };
-  const GnssSensor& own = *find_settings<GnssSensor>(servicer);
-  copy_antenna(own, configuration.servicer_antenna_body_m);
-  if (const Spacecraft* const partner = mission.find_spacecraft(own.observed))
-    copy_antenna(*find_settings<GnssSensor>(*partner), configuration.target_antenna_body_m);
-  // GPS time is 19 s behind TAI. A prediction is told to what the IERS bulletins print: 10 us and 10 uas.
-  constexpr double kGpsMinusTai_s = -19.0;
-  constexpr double kLookAhead_s = 3600.0;
-  const truth::EarthOrientation now = orientation.at(mission.start_time());
-  const truth::EarthOrientation later = orientation.at(mission.start_time(), kLookAhead_s);
-  configuration.earth_epoch_ns = mission.start_time().ns;
-  configuration.ut1_minus_gps_s = 1e-5 * std::round(1e5 * (now.ut1_minus_tai_s - kGpsMinusTai_s));
-  configuration.ut1_rate = (later.ut1_minus_tai_s - now.ut1_minus_tai_s) / kLookAhead_s;
-  constexpr double kTenMicroarcseconds = 1e-5 * fsw::math::kPi / 648000.0;
-  configuration.pole_x = kTenMicroarcseconds * std::round(now.pole_x / kTenMicroarcseconds);
-  configuration.pole_y = kTenMicroarcseconds * std::round(now.pole_y / kTenMicroarcseconds);
+vbar::receiver_configuration receiver_configuration_of(const Spacecraft& servicer) {
+  vbar::receiver_configuration configuration{};
+  copy_antenna(*find_settings<GnssSensor>(servicer), configuration.antenna_body_m);
+  return configuration;
+}
+
+vbar::carrier_configuration carrier_configuration_of(const Mission& mission, const Spacecraft& servicer) {
+  vbar::carrier_configuration configuration = mission::shared_settings<GnssShared>(mission).carrier;
+  const Spacecraft& partner = *mission.find_spacecraft(find_settings<GnssSensor>(servicer)->observed);
+  copy_antenna(*find_settings<GnssSensor>(partner), configuration.target_antenna_body_m);
   return configuration;
 }
 

@@ -21,7 +21,7 @@ struct GnssSensor : mission::SensorSettings {
 
 /// [navigation.carrier_phase], [constellation] and [links.crosslink].
 struct GnssShared : mission::SharedSettings {
-  vbar::navigation_configuration navigation{};  ///< what does not depend on spacecraft and time
+  vbar::carrier_configuration carrier{};  ///< without the antenna
   twins::gnss::ConstellationSettings constellation;
   twins::gnss::CrosslinkSettings crosslink;
 };
@@ -45,11 +45,11 @@ std::shared_ptr<const mission::SensorSettings> read_gnss(const mission::TableRea
 std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const mission::TableReader& document,
                                                                 const mission::Mission& mission);
 
-/// For a spacecraft that has a GNSS receiver. `orientation`: the Earth's at the start, as the ground predicts it.
-/// Antennas are the nominal ones of the spacecraft that flies and its GNSS partner, if it has one.
-[[nodiscard]] vbar::navigation_configuration navigation_configuration_of(
-    const mission::Mission& mission, const mission::Spacecraft& servicer,
-    const truth::EarthOrientationSeries& orientation);
+/// Antennas are the nominal ones: of the spacecraft that flies,
+[[nodiscard]] vbar::receiver_configuration receiver_configuration_of(const mission::Spacecraft& servicer);
+/// and of its GNSS partner, which it must have.
+[[nodiscard]] vbar::carrier_configuration carrier_configuration_of(const mission::Mission& mission,
+                                                                   const mission::Spacecraft& servicer);
 
 /// Distance (m) between where the antennas of `servicer` and its partner are and where navigation takes them to be,
 /// from the run's own draws, as if the bodies had parallel axes. For the report only. None without a GNSS pair.

@@ -90,8 +90,9 @@ std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& sect
   auto sensor = std::make_shared<GnssSensor>();
   const std::vector<std::string>& names = context.spacecraft_names;
   mission::read_source(section, "digital", context, *sensor);
-  sensor->navigation = vbar::navigation_configuration::kSourceGnss;
+  using Use = vbar::navigation_configuration;
   sensor->observed = section.text("partner", "");
+  sensor->navigation = Use::kUseOwnGnss + (sensor->observed.empty() ? 0 : std::int32_t{Use::kUseCarrierPair});
   const bool is_known = std::find(names.begin(), names.end(), sensor->observed) != names.end();
   if (!sensor->observed.empty() && (!is_known || sensor->observed == context.spacecraft))
     section.refuse_value("partner", "another spacecraft: " + mission::listing_of({names.begin(), names.end()}));
@@ -129,24 +130,20 @@ void read_crosslink(const TableReader& section, twins::gnss::CrosslinkSettings& 
 }
 
 // Defaults: what the paper's Appendix A makes of each axis of an antenna (a vector of 5 mm of any direction, a ball of
-// 3 mm), and differential forces of two spacecraft whose drag and sunlight are not modelled on board.
-void read_carrier_phase(const TableReader& section, vbar::navigation_configuration& navigation) {
-  navigation.resolve_ambiguities = section.flag("resolve_ambiguities", true) ? 1 : 0;
-  navigation.min_success_rate = section.number("success_rate_min", from_to(0.5, 1.0), 0.999);
-  navigation.min_ratio = section.number("ratio_min", from_to(1.0, 1e3), 3.0);
-  navigation.pair_wait_ns = section.span("pair_timeout_s", 1.0, from_to(0.1, 600.0), 12.0).ns;
-  navigation.antenna_offset_sigma_m = 1e-3 * section.number("antenna_offset_sigma_mm", above_to(0.0, 1e3), 3.2);
-  navigation.phase_centre_jitter_m = 1e-3 * section.number("phase_centre_jitter_mm", above_to(0.0, 100.0), 1.0);
-  navigation.phase_wander_sigma_m = 1e-3 * section.number("phase_wander_sigma_mm", from_to(0.0, 100.0), 0.0);
-  navigation.phase_wander_time_s = section.number("phase_wander_time_s", from_to(0.0, 1e6), 0.0);
-  if (navigation.phase_wander_sigma_m > 0.0 && navigation.phase_wander_time_s == 0.0)
+// 3 mm).
+void read_carrier_phase(const TableReader& section, vbar::carrier_configuration& carrier) {
+  carrier.resolve_ambiguities = section.flag("resolve_ambiguities", true) ? 1 : 0;
+  carrier.min_success_rate = section.number("success_rate_min", from_to(0.5, 1.0), 0.999);
+  carrier.min_ratio = section.number("ratio_min", from_to(1.0, 1e3), 3.0);
+  carrier.pair_wait_ns = section.span("pair_timeout_s", 1.0, from_to(0.1, 600.0), 12.0).ns;
+  carrier.antenna_offset_sigma_m = 1e-3 * section.number("antenna_offset_sigma_mm", above_to(0.0, 1e3), 3.2);
+  carrier.phase_centre_jitter_m = 1e-3 * section.number("phase_centre_jitter_mm", above_to(0.0, 100.0), 1.0);
+  carrier.phase_wander_sigma_m = 1e-3 * section.number("phase_wander_sigma_mm", from_to(0.0, 100.0), 0.0);
+  carrier.phase_wander_time_s = section.number("phase_wander_time_s", from_to(0.0, 1e6), 0.0);
+  if (carrier.phase_wander_sigma_m > 0.0 && carrier.phase_wander_time_s == 0.0)
     section.refuse_value("phase_wander_time_s", "a number above 0 where phase_wander_sigma_mm is above 0");
-  navigation.code_bias_sigma_m = section.number("code_bias_sigma_m", above_to(0.0, 100.0), 2.0);
-  navigation.start_velocity_sigma = section.number("initial_velocity_sigma_mps", above_to(0.0, 100.0), 0.2);
-  navigation.acceleration_sigma = 1e-9 * section.number("acceleration_sigma_nmps2", above_to(0.0, 1e6), 1.0);
-  navigation.acceleration_time_s = section.number("acceleration_correlation_time_s", above_to(0.0, 1e6), 1500.0);
-  navigation.maneuver_sigma = 1e-3 * section.number("maneuver_sigma_mmps", above_to(0.0, 1e3), 0.002);
-  navigation.maneuver_sigma_relative = 1e-2 * section.number("maneuver_sigma_percent", from_to(0.0, 100.0), 0.2);
+  carrier.code_bias_sigma_m = section.number("code_bias_sigma_m", above_to(0.0, 100.0), 2.0);
+  carrier.start_velocity_sigma = section.number("initial_velocity_sigma_mps", above_to(0.0, 100.0), 0.2);
   section.finish();
 }
 
@@ -155,7 +152,7 @@ void read_carrier_phase(const TableReader& section, vbar::navigation_configurati
 std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const TableReader& document,
                                                                 const mission::Mission& /*mission*/) {
   auto shared = std::make_shared<GnssShared>();
-  read_carrier_phase(document.table("navigation").table("carrier_phase"), shared->navigation);
+  read_carrier_phase(document.table("navigation").table("carrier_phase"), shared->carrier);
   read_constellation(document.table("constellation"), shared->constellation);
   read_crosslink(document.table("links").table("crosslink"), shared->crosslink);
   return shared;

@@ -14,7 +14,7 @@ std::shared_ptr<const mission::SensorSettings> read(const TableReader& section, 
   auto sensor = std::make_shared<NavigationSensor>();
   const std::vector<std::string>& names = context.spacecraft_names;
   mission::read_source(section, "ideal", context, *sensor);
-  sensor->navigation = vbar::navigation_configuration::kSourceIdealNavigation;
+  sensor->navigation = vbar::navigation_configuration::kUseIdeal;
   sensor->observed = section.name("target", "target");
   if (std::find(names.begin(), names.end(), sensor->observed) == names.end())
     section.refuse("target", "the spacecraft \"" + sensor->observed + "\"",

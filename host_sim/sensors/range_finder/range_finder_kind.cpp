@@ -25,6 +25,7 @@ std::shared_ptr<const mission::SensorSettings> read(const TableReader& section, 
       0.5 * section.number("field_of_view_deg", above_to(0.0, 180.0), 20.0) * fsw::math::kPi / 180.0;
   const auto axis = section.three_numbers("boresight_body", from_to(-1.0, 1.0), std::array{0.0, 0.0, 1.0});
   sensor->is_used_by_navigation = section.flag("used_by_navigation", false);
+  if (sensor->is_used_by_navigation) sensor->navigation = vbar::navigation_configuration::kUseRangeFinder;
   section.finish();
   if (sensor->is_used_by_navigation && !(settings.noise_sigma_m > 0.0)) {
     section.refuse_value("noise_sigma_m", "a number above 0: navigation weights its ranges by it");

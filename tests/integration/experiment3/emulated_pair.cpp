@@ -10,6 +10,7 @@
 #include "host_sim/app/initial_attitudes.h"
 #include "host_sim/app/initial_orbits.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/sensors/navigation_telecommands.h"
 #include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/twins/gnss/gnss_receiver.h"
@@ -65,9 +66,14 @@ EmulatedPair::EmulatedPair(const CoastingPair& coast, std::uint64_t seed, const 
   const mission::Spacecraft& servicer = *mission_.find_spacecraft("servicer");
   sensors_ = sensors::make_sources(mission_, servicer, kRoot + "/data").sources;
   twins::PacketEncoder encoder(kServicerNumber, 0);
-  const auto packet = encoder.encode(
-      mission_.start_time(), sensors::navigation_configuration_of(mission_, servicer, coast.earth_orientation()));
-  under_way_.push_back({mission_.start_time(), packet.value()});
+  const auto send = [&](const auto& message) {
+    under_way_.push_back({mission_.start_time(), encoder.encode(mission_.start_time(), message).value()});
+  };
+  send(sensors::navigation_configuration_of(mission_, servicer));
+  send(sensors::earth_configuration_of(mission_, coast.earth_orientation()));
+  send(mission_.navigation.thruster);
+  send(sensors::receiver_configuration_of(servicer));
+  send(sensors::carrier_configuration_of(mission_, servicer));
 }
 
 void EmulatedPair::fly(int epochs) {

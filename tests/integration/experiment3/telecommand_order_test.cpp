@@ -11,6 +11,7 @@
 
 #include "fsw/gnc/gnc.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/sensors/navigation_telecommands.h"
 #include "host_sim/sensors/sensor_kinds.h"
 #include "tests/integration/experiment3/emulated_pair.h"
 #include "tests/support/paths.h"
@@ -55,22 +56,32 @@ Packets without_counts(const Packets& sent) {
   return all;
 }
 
-class TelecommandOrder : public ::testing::TestWithParam<std::int8_t> {
+constexpr std::int32_t kOwn = navigation_configuration::kUseOwnGnss;
+constexpr std::int32_t kCarrier = kOwn + navigation_configuration::kUseCarrierPair;
+constexpr std::int32_t kBearings = kOwn + navigation_configuration::kUseBearings;
+constexpr std::int32_t kKeypoints = kOwn + navigation_configuration::kUseKeypoints;
+
+class TelecommandOrder : public ::testing::TestWithParam<std::int32_t> {
  protected:
   TelecommandOrder() {
     const mission::Mission mission = sensors::load_mission(tests::source_path() + "/missions/experiment3.toml", {});
     const mission::Spacecraft& servicer = *mission.find_spacecraft("servicer");
     start_ = coast_.epochs().front().time;
     receive_all(mission, servicer);
-    auto navigation = sensors::navigation_configuration_of(mission, servicer, coast_.earth_orientation());
-    navigation.source = GetParam();
+    auto navigation = sensors::navigation_configuration_of(mission, servicer);
+    navigation.sources = GetParam();
     const fsw::GpsTime sent = start_ - periods(kArrivalSteps);
     const auto add = [&](const auto& message) { telecommands_.push_back(packet_of(sent, message)); };
     add(navigation);
+    add(sensors::earth_configuration_of(mission, coast_.earth_orientation()));
+    add(mission.navigation.thruster);
+    add(sensors::receiver_configuration_of(servicer));
+    add(sensors::carrier_configuration_of(mission, servicer));
     add(fsw::gnc::test::camera());
     add(fsw::gnc::test::angles_only());
-    add(known_target());
-    add(target_of_truth());
+    add(fsw::gnc::test::pose());
+    add(fsw::gnc::test::target_shape());
+    add(GetParam() == kKeypoints ? fsw::gnc::test::target(kRelative) : target_of_truth());
     add(fsw::gnc::test::table_of({fsw::gnc::test::waypoint_at(8, 400 * 3600, 1, kRelative)}));
     add(fsw::gnc::test::configuration());
     add(fsw::gnc::test::mode(mode_command::kModeApproach));
@@ -88,16 +99,6 @@ class TelecommandOrder : public ::testing::TestWithParam<std::int8_t> {
         to.insert(to.end(), measurement.packets.begin(), measurement.packets.end());
       }
     }
-  }
-
-  [[nodiscard]] pose_configuration known_target() const {
-    pose_configuration pose = fsw::gnc::test::pose();
-    pose.apriori_epoch_ns = (start_ - periods(kArrivalSteps)).ns;
-    for (int k = 0; k < 6; ++k) {
-      pose.apriori_a_roe_m[k] = kRelative(k);
-      pose.apriori_sigma_a_roe_m[k] = 2.0;
-    }
-    return pose;
   }
 
   [[nodiscard]] target_apriori target_of_truth() const {
@@ -157,9 +158,9 @@ TEST_P(TelecommandOrder, HasNoEffect) {
   ASSERT_NE(last_of(reference, navigation), nullptr);
   EXPECT_NE(navigation.source, telemetry_navigation::kSourceIdealNavigation);
   // By the receivers of both, or by the ROE of preceding navigation; an absolute orbit suffices to point only.
-  EXPECT_EQ(navigation.valid, GetParam() == navigation_configuration::kSourceAnglesOnly ? 0 : 1);
+  EXPECT_EQ(navigation.valid, GetParam() == kBearings ? 0 : 1);
   pointing_command pointing{};
-  EXPECT_EQ(last_of(reference, pointing) != nullptr, GetParam() != navigation_configuration::kSourceGnss);
+  EXPECT_EQ(last_of(reference, pointing) != nullptr, GetParam() != kCarrier);
 
   std::mt19937_64 random(7);
   for (int k = 0; k < kOrders; ++k) {
@@ -169,10 +170,7 @@ TEST_P(TelecommandOrder, HasNoEffect) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sources, TelecommandOrder,
-                         ::testing::Values(std::int8_t{navigation_configuration::kSourceGnss},
-                                           std::int8_t{navigation_configuration::kSourceAnglesOnly},
-                                           std::int8_t{navigation_configuration::kSourcePose}));
+INSTANTIATE_TEST_SUITE_P(Sources, TelecommandOrder, ::testing::Values(kCarrier, kBearings, kKeypoints));
 
 }  // namespace
 }  // namespace vbar::test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "fsw/gnc/camera_configuration.h"
+#include "fsw/sources/keypoints/keypoint_settings.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/sensor_kinds.h"
@@ -42,9 +42,8 @@ CloseScene::CloseScene()
   const mission::Spacecraft& servicer = *mission.find_spacecraft("servicer");
   const auto& sensor = *mission::find_settings<sensors::CameraSensor>(servicer);
   camera_ = sensor.settings;
-  const auto settings =
-      fsw::gnc::pose_camera_settings(sensors::camera_configuration_of(sensor),
-                                     sensors::pose_configuration_of(mission, sensor, mission::data_directory()));
+  const auto settings = fsw::sources::pose_camera_settings(
+      sensors::camera_configuration_of(sensor), sensors::target_model_of(mission, sensor, mission::data_directory()));
   if (!settings.ok()) throw std::runtime_error("the mission's camera does not suit the flight software");
   settings_ = settings.value();
   network_->configure(settings_);

@@ -121,10 +121,10 @@ class Experiment2BadInput(unittest.TestCase):
     def test_keys_of_pose(self):
         self.refuse("pose", "keypoint_sigma", "keypoint_sigma_scale", settings=["navigation.pose.keypoint_sigma=1"])
         self.refuse("navigation.pose.keypoint_sigma_scale", settings=["navigation.pose.keypoint_sigma_scale=0"])
-        self.refuse("navigation.pose.acceleration_psd", "outside its limits", settings=["navigation.pose.acceleration_psd=1e-15"])
+        self.refuse("navigation.acceleration_psd", "outside its limits", settings=["navigation.acceleration_psd=1e-15"])
         self.refuse("navigation.pose.initial_poses", "12", settings=["navigation.pose.initial_poses=13"])
-        self.refuse("navigation.pose.apriori.sigma_a_da_m", settings=["navigation.pose.apriori.sigma_a_da_m=0"])
-        self.refuse("navigation.pose.apriori", "sigma_a_dL_m", settings=["navigation.pose.apriori.sigma_a_dL_m=1"])
+        self.refuse("navigation.apriori.sigma_a_da_m", settings=["navigation.apriori.sigma_a_da_m=0"])
+        self.refuse("navigation.apriori", "sigma_a_dL_m", settings=["navigation.apriori.sigma_a_dL_m=1"])
 
     def test_a_target_that_does_not_tumble(self):
         self.refuse("target", "tumble", settings=["spacecraft.target.attitude.profile=inertial"])

@@ -74,6 +74,20 @@ Answer Article::collect(vbar_status status) {
       answer.packets.push_back(bytes);
       continue;
     }
+    if (view.header.apid == Apid::kTelemetryEvent) {
+      answer.events.push_back(decoded<telemetry_event>(view));
+      answer.packets.push_back(bytes);
+      continue;
+    }
+    if (view.header.apid == Apid::kTelemetryPose) {
+      answer.poses.push_back({view.header.unit, view.header.time, decoded<telemetry_pose>(view)});
+      answer.packets.push_back(bytes);
+      continue;
+    }
+    if (view.header.apid == Apid::kPointingCommand || view.header.apid == Apid::kTelemetryRange) {
+      answer.packets.push_back(bytes);
+      continue;
+    }
     answer.telemetry_count += packets::is_telemetry(view.header.apid) ? 1 : 0;
     if (view.header.apid == Apid::kManeuverCommand) {
       answer.commands.push_back({view.header.time, decoded<maneuver_command>(view)});

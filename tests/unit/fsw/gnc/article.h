@@ -16,6 +16,13 @@ struct Command {
   maneuver_command message;
 };
 
+/// Of one image.
+struct PoseReport {
+  std::uint8_t unit = 0;  ///< of the camera
+  GpsTime time;
+  telemetry_pose message{};
+};
+
 /// Everything one step said.
 struct Answer {
   vbar_status status = 0;
@@ -25,7 +32,9 @@ struct Answer {
   telemetry_control control{};
   telemetry_health health{};
   std::vector<telemetry_telecommand> acknowledgments;
-  int telemetry_count = 0;  ///< three a step, one of each kind; without acknowledgments
+  std::vector<telemetry_event> events;
+  std::vector<PoseReport> poses;
+  int telemetry_count = 0;  ///< three a step, one of each kind; without acknowledgments, events and those of sources
 };
 
 class Article {

@@ -77,20 +77,19 @@ Flown fly(const std::vector<Bytes>& telecommands, const std::vector<Arrival>& ar
 }
 
 /// The telecommands of a mission as in a simulation: one time tag for all of them.
-std::vector<Bytes> mission_of(std::int8_t source, const waypoint_table& table, std::int8_t commanded_mode) {
-  pose_configuration known_target = pose();
-  known_target.apriori_epoch_ns = kEpoch.ns;
-  for (int k = 0; k < 6; ++k) {
-    known_target.apriori_a_roe_m[k] = kStart(k);
-    known_target.apriori_sigma_a_roe_m[k] = 2.0;
-  }
+std::vector<Bytes> mission_of(std::int32_t sources, const waypoint_table& table, std::int8_t commanded_mode) {
   gnc_configuration guidance = configuration();
   guidance.minimum_dv = 2e-6;
-  return {packet_of(kEpoch, navigation(source)),
+  return {packet_of(kEpoch, navigation(sources)),
+          packet_of(kEpoch, earth()),
+          packet_of(kEpoch, thruster()),
+          packet_of(kEpoch, receiver()),
+          packet_of(kEpoch, carrier()),
+          packet_of(kEpoch, target_shape()),
           packet_of(kEpoch, camera()),
           packet_of(kEpoch, angles_only()),
-          packet_of(kEpoch, known_target),
-          packet_of(kEpoch, target(SmallWorld(kStart))),
+          packet_of(kEpoch, pose()),
+          packet_of(kEpoch, target(kStart)),
           packet_of(kEpoch, table),
           packet_of(kEpoch, guidance),
           packet_of(kEpoch, mode(commanded_mode))};
@@ -115,8 +114,8 @@ Flown expect_same_in_any_order(const std::vector<Bytes>& telecommands, int steps
 
 TEST(TelecommandOrder, HasNoEffectOnAnApproach) {
   const auto table = table_of({waypoint_at(7, 30, 0, kStart), waypoint_at(8, 3 * 3600, 1, kNear)});
-  const Flown flown = expect_same_in_any_order(
-      mission_of(navigation_configuration::kSourceIdealNavigation, table, mode_command::kModeApproach), 12);
+  const Flown flown =
+      expect_same_in_any_order(mission_of(navigation_configuration::kUseIdeal, table, mode_command::kModeApproach), 12);
   EXPECT_EQ(flown.last.control.mode, mode_command::kModeApproach);
   EXPECT_EQ(flown.last.control.waypoint_index, 8);
   EXPECT_EQ(flown.last.navigation.valid, 1);
@@ -128,14 +127,14 @@ TEST(TelecommandOrder, HasNoEffectOnAnApproach) {
 TEST(TelecommandOrder, HasNoEffectOnStationKeeping) {
   const auto table = table_of({waypoint_at(7, 60, 0, kStart), waypoint_at(8, 3 * 3600, 1, kNear)});
   const Flown flown = expect_same_in_any_order(
-      mission_of(navigation_configuration::kSourceIdealNavigation, table, mode_command::kModeStationKeeping), 12);
+      mission_of(navigation_configuration::kUseIdeal, table, mode_command::kModeStationKeeping), 12);
   EXPECT_EQ(flown.last.control.mode, mode_command::kModeStationKeeping);
 }
 
 TEST(TelecommandOrder, HasNoEffectOnATableThatHasPassed) {
   const auto table = table_of({waypoint_at(7, 30, 0, kStart)});
-  const Flown flown = expect_same_in_any_order(
-      mission_of(navigation_configuration::kSourceIdealNavigation, table, mode_command::kModeApproach), 12);
+  const Flown flown =
+      expect_same_in_any_order(mission_of(navigation_configuration::kUseIdeal, table, mode_command::kModeApproach), 12);
   EXPECT_EQ(flown.last.control.mode, mode_command::kModeStationKeeping);
 }
 

@@ -11,6 +11,9 @@ namespace {
 
 using packets::Apid;
 
+constexpr std::int32_t kOwnAndKeypoints =
+    std::int32_t{navigation_configuration::kUseOwnGnss} + navigation_configuration::kUseKeypoints;
+
 class TelecommandsTest : public ::testing::Test {
  protected:
   template <class Message>
@@ -66,7 +69,12 @@ TEST_F(TelecommandsTest, AnAcknowledgmentIdentifiesItsTelecommand) {
 }
 
 TEST_F(TelecommandsTest, EveryKindIsStored) {
-  send(1, navigation(navigation_configuration::kSourcePose));
+  send(1, navigation(kOwnAndKeypoints));
+  send(1, earth());
+  send(1, thruster());
+  send(1, receiver());
+  send(1, carrier());
+  send(1, target_shape());
   send(1, camera());
   send(1, angles_only());
   send(1, pose());
@@ -130,38 +138,69 @@ TEST_F(TelecommandsTest, CamerasHaveTwoUnits) {
   EXPECT_EQ(telecommands_.in_force<camera_configuration>(1)->width, 640);
 }
 
-// A camera of which pixels without light are saturated cannot be used with the model of the target, whichever of the
-// two is sent last; both sent together replace both.
+// An image feeds one source: bearings and keypoints of one camera contradict each other once both are selected.
 TEST_F(TelecommandsTest, AContradictionIsRefusedAndTheOldOneStays) {
-  send(1, camera());
+  constexpr std::int32_t kBoth = kOwnAndKeypoints + navigation_configuration::kUseBearings;
+  send(1, angles_only());
   send(1, pose());
-  step(1);
-  camera_configuration shallow = camera();
-  shallow.bits = 8;
-  shallow.saturation_dn = 50.0;
-  send(2, shallow);
+  send(1, navigation(kOwnAndKeypoints));
+  for (const auto& acknowledgment : step(1)) EXPECT_EQ(acknowledgment.status, telemetry_telecommand::kStatusAccepted);
+  send(2, navigation(kBoth));
   EXPECT_EQ(status_of_step(2), telemetry_telecommand::kStatusContradiction);
-  EXPECT_EQ(telecommands_.in_force<camera_configuration>()->bits, 12);
-  pose_configuration bright = pose();
-  bright.dark_level_dn = 4050.0;
-  send(3, bright);
-  EXPECT_EQ(status_of_step(3), telemetry_telecommand::kStatusContradiction);
-  EXPECT_EQ(telecommands_.in_force<pose_configuration>()->dark_level_dn, pose().dark_level_dn);
+  EXPECT_EQ(telecommands_.in_force<navigation_configuration>()->sources, kOwnAndKeypoints);
+  EXPECT_FALSE(telecommands_.has_changed());
+  EXPECT_EQ(inbox_.counters().rejected_content, 1);
+}
 
-  pose_configuration dark = pose();
-  dark.dark_level_dn = 10.0;
-  send(4, shallow);
-  send(4, dark);
-  for (const auto& acknowledgment : step(4)) EXPECT_EQ(acknowledgment.status, telemetry_telecommand::kStatusAccepted);
-  EXPECT_EQ(telecommands_.in_force<camera_configuration>()->bits, 8);
-  EXPECT_EQ(telecommands_.in_force<pose_configuration>()->dark_level_dn, 10.0);
+TEST_F(TelecommandsTest, OfTwoThatContradictTheLaterOfTheListIsRefused) {
+  constexpr std::int32_t kBoth = kOwnAndKeypoints + navigation_configuration::kUseBearings;
+  send(1, pose(), 0, 1);
+  send(1, navigation(kBoth));
+  send(1, angles_only(), 0, 1);
+  const auto acknowledgments = step(1);
+  ASSERT_EQ(acknowledgments.size(), 3U);  // in the order of the list: navigation, bearings, keypoints
+  EXPECT_EQ(acknowledgments[0].status, telemetry_telecommand::kStatusAccepted);
+  EXPECT_EQ(acknowledgments[1].status, telemetry_telecommand::kStatusAccepted);
+  EXPECT_EQ(acknowledgments[2].status, telemetry_telecommand::kStatusContradiction);
+  EXPECT_EQ(telecommands_.in_force<pose_configuration>(1), nullptr);
+  // Of another camera they agree.
+  send(2, pose(), 0, 0);
+  EXPECT_EQ(status_of_step(2), telemetry_telecommand::kStatusAccepted);
+}
 
-  send(5, camera());
-  send(5, bright);
-  const auto both = step(5);
-  ASSERT_EQ(both.size(), 2U);
-  EXPECT_EQ(both[0].status, telemetry_telecommand::kStatusAccepted);
-  EXPECT_EQ(both[1].status, telemetry_telecommand::kStatusContradiction);
+TEST_F(TelecommandsTest, SourcesAreKnownAndIdealNavigationStandsAlone) {
+  for (const std::int32_t sources :
+       {64, -1, std::int32_t{navigation_configuration::kUseIdeal} + navigation_configuration::kUseOwnGnss}) {
+    send(sources == -1 ? 2 : 1, navigation(sources));
+    EXPECT_EQ(status_of_step(3), telemetry_telecommand::kStatusOutOfRange) << sources;
+  }
+  send(3, navigation(0));  // none: the state is propagated
+  EXPECT_EQ(status_of_step(3), telemetry_telecommand::kStatusAccepted);
+}
+
+TEST_F(TelecommandsTest, AnAprioriOrbitIsOfOneOfTwoKinds) {
+  const Vector6 a_roe_m = Vector6::Constant(3.0);
+  send(1, target(a_roe_m));
+  EXPECT_EQ(status_of_step(1), telemetry_telecommand::kStatusAccepted);
+  for (const double sigma : {0.0, -1.0, 1e30}) {
+    target_apriori spoiled = target(a_roe_m);
+    spoiled.sigma_a_roe_m[3] = sigma;
+    send(2, spoiled);
+    EXPECT_EQ(status_of_step(2), telemetry_telecommand::kStatusOutOfRange) << sigma;
+  }
+  target_apriori no_kind = target(a_roe_m);
+  no_kind.kind = 2;
+  send(2, no_kind);
+  EXPECT_EQ(status_of_step(2), telemetry_telecommand::kStatusOutOfRange);
+  target_apriori no_orbit = target(a_roe_m);
+  no_orbit.kind = target_apriori::kKindOrbit;  // its state is zero
+  send(2, no_orbit);
+  EXPECT_EQ(status_of_step(2), telemetry_telecommand::kStatusOutOfRange);
+  target_apriori far = target(a_roe_m);
+  far.mean_a_roe_m[1] = 1e7;
+  send(2, far);
+  EXPECT_EQ(status_of_step(2), telemetry_telecommand::kStatusOutOfRange);
+  EXPECT_EQ(telecommands_.in_force<target_apriori>()->mean_a_roe_m[1], 3.0);
 }
 
 // As many as fit the queues are acknowledged in one step.

@@ -19,9 +19,8 @@ namespace vbar::fsw::trunk {
 namespace {
 
 using namespace navigation::test;
-using sources::boresight_index;
 
-constexpr int kActive = 13;  // ROE, drag, radiation pressure, boresight, brightness offset, wander
+constexpr int kActive = 13;  // ROE, drag, radiation pressure, bearing bias, brightness offset, wander
 constexpr std::array<int, kActive> kIndex = {0,
                                              1,
                                              2,
@@ -30,8 +29,8 @@ constexpr std::array<int, kActive> kIndex = {0,
                                              5,
                                              kAt<DifferentialAccelerations>,
                                              kAt<DifferentialAccelerations> + 1,
-                                             kAt<BoresightA>,
-                                             kAt<BoresightA> + 1,
+                                             kAt<BearingBias>,
+                                             kAt<BearingBias> + 1,
                                              kAt<BrightnessOffset>,
                                              kAt<CentroidWander>,
                                              kAt<CentroidWander> + 1};
@@ -130,7 +129,7 @@ Square covariance_of(const Estimate& estimate) {
 
 /// The process of a component behind the head.
 const GaussMarkov& process_of(int k, const TrunkSettings& settings) {
-  if (k < 10) return settings.boresight_a;
+  if (k < 10) return settings.bearing_bias;
   return k == 10 ? settings.brightness_offset : settings.centroid_wander;
 }
 
@@ -149,7 +148,7 @@ TEST(UdReplay, ADayOfBearingsHasTheSameMeansAndSigmas) {
   sigma /= kA;
   trunk->begin_relative(wrong, sigma.cwiseAbs2().asDiagonal(), RelativeKnowledge::kEstimated);
   Estimate& estimate = trunk->estimate();
-  begin_block<BoresightA>(estimate, settings.boresight_a);
+  begin_block<BearingBias>(estimate, settings.bearing_bias);
   begin_block<BrightnessOffset>(estimate, settings.brightness_offset);
   begin_block<CentroidWander>(estimate, settings.centroid_wander);
   UdFilter ud(mean_of(estimate), covariance_of(estimate));

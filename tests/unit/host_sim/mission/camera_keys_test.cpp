@@ -8,6 +8,7 @@
 #include "fsw/orbit/roe.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/sensors/camera/camera_file.h"
+#include "host_sim/sensors/navigation_telecommands.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
@@ -157,16 +158,25 @@ TEST(CameraKeys, AnglesOnlyDefaultsAndUnits) {
   EXPECT_EQ(navigation.detection_sigmas, 5.0);
   EXPECT_EQ(navigation.centroid_floor_px, 0.05);
   EXPECT_DOUBLE_EQ(navigation.pointing_tolerance, 600.0 / 3600.0 * kDegree);
-  EXPECT_EQ(navigation.acceleration_psd, 1e-14);
-  EXPECT_EQ(navigation.acceleration_psd_least, 1e-15);
-  EXPECT_EQ(navigation.acceleration_psd_most, 1e-11);
   EXPECT_EQ(navigation.brightness_offset_m, 0.15);
   EXPECT_EQ(navigation.centroid_noise_m, 0.08);
   EXPECT_DOUBLE_EQ(navigation.bearing_bias, 3.0 / 3600.0 * kDegree);
-  EXPECT_DOUBLE_EQ(navigation.maneuver_sigma, 2e-6);
-  EXPECT_DOUBLE_EQ(navigation.maneuver_sigma_relative, 2e-3);
   EXPECT_EQ(navigation.batch_images, 30);
-  EXPECT_THAT(shared.angles_only_apriori_sigma_a_roe_m, ElementsAre(30, 1000, 200, 200, 200, 200));
+}
+
+TEST(CameraKeys, NavigationDefaultsAndUnits) {
+  const Mission mission = mission_with();
+  const vbar::navigation_configuration& navigation = mission.navigation.configuration;
+  EXPECT_EQ(navigation.acceleration_psd, 1e-14);
+  EXPECT_EQ(navigation.acceleration_psd_least, 1e-15);
+  EXPECT_EQ(navigation.acceleration_psd_most, 1e-11);
+  EXPECT_DOUBLE_EQ(navigation.acceleration_sigma, 1e-9);
+  EXPECT_EQ(navigation.acceleration_time_s, 1500.0);
+  EXPECT_DOUBLE_EQ(mission.navigation.thruster.sigma_mps, 2e-6);
+  EXPECT_DOUBLE_EQ(mission.navigation.thruster.sigma_relative, 2e-3);
+  EXPECT_EQ(mission.navigation.apriori, Apriori::kOrbit) << "bearings need one";
+  EXPECT_THAT(mission.navigation.apriori_sigma_a_roe_m, ElementsAre(30, 1000, 200, 200, 200, 200));
+  EXPECT_EQ(mission.navigation.angular_acceleration_psd, 1e-11);
 }
 
 TEST(CameraTelecommands, CameraIsAsCalibrated) {
@@ -191,11 +201,12 @@ TEST(CameraTelecommands, NavigationIsByCameraWithoutAPartner) {
   const auto orientation =
       truth::EarthOrientationSeries::load(vbar::tests::source_path("data/earth/eop_2009_2013.csv"));
   const Mission mission = mission_with({"gnss.body_frame.antenna_in_body_m=[0, -0.3, 0]"});
-  const auto c = navigation_configuration_of(mission, mission.spacecraft[0], orientation);
-  EXPECT_EQ(c.source, 2);
-  EXPECT_EQ(c.servicer_antenna_body_m[1], -0.3);
-  EXPECT_THAT(c.target_antenna_body_m, ElementsAre(0, 0, 0));
-  EXPECT_NEAR(c.ut1_minus_gps_s, -15.0 - 0.285, 0.01) << "2011-07-18: UT1-UTC about -0.285 s, 15 leap seconds";
+  using Use = vbar::navigation_configuration;
+  EXPECT_EQ(navigation_configuration_of(mission, mission.spacecraft[0]).sources,
+            std::int32_t{Use::kUseOwnGnss} + Use::kUseBearings);
+  EXPECT_EQ(sensors::receiver_configuration_of(mission.spacecraft[0]).antenna_body_m[1], -0.3);
+  EXPECT_NEAR(sensors::earth_configuration_of(mission, orientation).ut1_minus_gps_s, -15.0 - 0.285, 0.01)
+      << "2011-07-18: UT1-UTC about -0.285 s, 15 leap seconds";
 }
 
 /// Mean ROE of the a-priori target less those of the true one, in metres.
@@ -314,14 +325,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{
             "NoAttitude", {"spacecraft.servicer.attitude.profile=none"}, "camera: found a camera without an attitude"},
         BadOverride{"PsdOutsideItsLimits",
-                    {"navigation.angles_only.acceleration_psd=1e-10"},
-                    "navigation.angles_only.acceleration_psd: found an initial value outside its limits"},
+                    {"navigation.acceleration_psd=1e-10"},
+                    "navigation.acceleration_psd: found an initial value outside its limits"},
         BadOverride{"NoBatch",
                     {"navigation.angles_only.batch_images=2"},
                     "navigation.angles_only.batch_images: found the integer 2"},
         BadOverride{"AprioriWithoutError",
-                    {"navigation.angles_only.apriori.sigma_a_da_m=0"},
-                    "navigation.angles_only.apriori.sigma_a_da_m: found the integer 0; accepted: a number above 0"}),
+                    {"navigation.apriori.sigma_a_da_m=0"},
+                    "navigation.apriori.sigma_a_da_m: found the integer 0; accepted: a number above 0"}),
     [](const auto& test) { return std::string(test.param.label); });
 
 TEST(BadCameraMission, SensorsThatDoNotGoTogether) {

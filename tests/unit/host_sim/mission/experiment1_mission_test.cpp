@@ -168,7 +168,7 @@ TEST(Experiment1Mission, EveryKeyIsExplained) {
   expect_all_shown(text, kFile,
                    {"spacecraft.servicer.sensors.camera", "spacecraft.servicer.sensors.camera.optics",
                     "spacecraft.servicer.sensors.camera.detector", "spacecraft.servicer.attitude",
-                    "navigation.angles_only", "navigation.angles_only.apriori"});
+                    "navigation.angles_only", "navigation.apriori"});
 }
 
 TEST(Experiment1Mission, ShowsTheDefaults) {
@@ -176,15 +176,17 @@ TEST(Experiment1Mission, ShowsTheDefaults) {
   const auto& defaults = shared_settings<CameraShared>(bare);
   vbar::angles_only_configuration shown = shared_settings<CameraShared>(mission).angles_only;
   // Those that the file says are not the defaults.
-  EXPECT_DOUBLE_EQ(shown.maneuver_sigma_relative, 3e-4);
+  EXPECT_DOUBLE_EQ(mission.navigation.thruster.sigma_relative, 3e-4);
+  EXPECT_DOUBLE_EQ(bare.navigation.thruster.sigma_relative, 2e-3);
   EXPECT_EQ(shown.centroid_floor_px, 0.02);
   EXPECT_LT(shown.bearing_bias, defaults.angles_only.bearing_bias);
-  shown.maneuver_sigma_relative = defaults.angles_only.maneuver_sigma_relative;
   shown.centroid_floor_px = defaults.angles_only.centroid_floor_px;
   shown.bearing_bias = defaults.angles_only.bearing_bias;
   EXPECT_EQ(packet_of(shown), packet_of(defaults.angles_only));
-  EXPECT_EQ(shared_settings<CameraShared>(mission).angles_only_apriori_sigma_a_roe_m,
-            defaults.angles_only_apriori_sigma_a_roe_m);
+  EXPECT_EQ(packet_of(mission.navigation.configuration), packet_of(bare.navigation.configuration));
+  EXPECT_EQ(mission.navigation.apriori, Apriori::kOrbit);
+  EXPECT_EQ(bare.navigation.apriori, Apriori::kNone) << "without a camera";
+  EXPECT_EQ(mission.navigation.apriori_sigma_a_roe_m, bare.navigation.apriori_sigma_a_roe_m);
 }
 
 // ------------------------------------------------------------------------------------------------------------- extends

@@ -52,7 +52,9 @@ TEST(Experiment3Mission, ShowsTheDefaults) {
   const Mission bare = small_mission();
   const auto &tables = shared_settings<GnssShared>(shown), &defaults_of_tables = shared_settings<GnssShared>(bare);
   EXPECT_TRUE(tables.constellation == defaults_of_tables.constellation);
-  EXPECT_EQ(packet_of(tables.navigation), packet_of(defaults_of_tables.navigation));
+  EXPECT_EQ(packet_of(tables.carrier), packet_of(defaults_of_tables.carrier));
+  EXPECT_EQ(packet_of(shown.navigation.configuration), packet_of(bare.navigation.configuration));
+  EXPECT_EQ(packet_of(shown.navigation.thruster), packet_of(bare.navigation.thruster));
   EXPECT_EQ(defaults_of_tables.crosslink.link.loss_probability, 0.0);
   twins::gnss::CrosslinkSettings without_loss = tables.crosslink;
   without_loss.link.loss_probability = 0.0;

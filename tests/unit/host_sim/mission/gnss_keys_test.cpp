@@ -176,10 +176,10 @@ std::vector<BadValue> bad_values() {
       {"navigation.carrier_phase.phase_wander_time_s", "from 0 to 1000000"},
       {"navigation.carrier_phase.code_bias_sigma_m", "above 0, up to 100"},
       {"navigation.carrier_phase.initial_velocity_sigma_mps", "above 0, up to 100"},
-      {"navigation.carrier_phase.acceleration_sigma_nmps2", "above 0, up to 1000000"},
-      {"navigation.carrier_phase.acceleration_correlation_time_s", "above 0, up to 1000000"},
-      {"navigation.carrier_phase.maneuver_sigma_mmps", "above 0, up to 1000"},
-      {"navigation.carrier_phase.maneuver_sigma_percent", "from 0 to 100"},
+      {"navigation.acceleration_sigma_nmps2", "above 0, up to 1000000"},
+      {"navigation.acceleration_correlation_time_s", "above 0, up to 1000000"},
+      {"navigation.maneuver_sigma_mmps", "above 0, up to 1000"},
+      {"navigation.maneuver_sigma_percent", "from 0 to 100"},
       {"constellation.orbit_error_radial_m", "from 0 to 10000"},
       {"constellation.orbit_error_transverse_m", "from 0 to 10000"},
       {"constellation.orbit_error_normal_m", "from 0 to 10000"},
@@ -228,12 +228,13 @@ TEST(BadGnssValue, WordsThatAreNone) {
 }
 
 TEST(GnssKeys, GoodOnesArriveInSiUnits) {
-  const std::string text = changed(
-      gnss_mission(), "[mission]",
-      "[[burn]]\ntime_h = 0.5\ndv_rtn_mmps = [1, -2, 3]\n[navigation.carrier_phase]\nantenna_offset_sigma_mm = 4\n"
-      "acceleration_sigma_nmps2 = 20\nmaneuver_sigma_mmps = 0.5\nmaneuver_sigma_percent = 3\npair_timeout_s = 7\n"
-      "phase_wander_sigma_mm = 0.5\nphase_wander_time_s = 60\n"
-      "[links.crosslink]\nsilence_begin_s = 100\nsilence_duration_s = 600\n[mission]");
+  const std::string text =
+      changed(gnss_mission(), "[mission]",
+              "[[burn]]\ntime_h = 0.5\ndv_rtn_mmps = [1, -2, 3]\n[navigation]\n"
+              "acceleration_sigma_nmps2 = 20\nmaneuver_sigma_mmps = 0.5\nmaneuver_sigma_percent = 3\n"
+              "[navigation.carrier_phase]\nantenna_offset_sigma_mm = 4\npair_timeout_s = 7\n"
+              "phase_wander_sigma_mm = 0.5\nphase_wander_time_s = 60\n"
+              "[links.crosslink]\nsilence_begin_s = 100\nsilence_duration_s = 600\n[mission]");
   const Mission mission = parse_mission(text, "m.toml");
   EXPECT_EQ(sensor_of<GnssSensor>(mission).observed, "target");
   EXPECT_EQ(sensor_of<GnssSensor>(mission, "target").receiver.output.period_s, 5.0);
@@ -243,13 +244,13 @@ TEST(GnssKeys, GoodOnesArriveInSiUnits) {
   EXPECT_DOUBLE_EQ(mission.burns[0].dv_rtn.y(), -0.002);
   EXPECT_DOUBLE_EQ(mission.burns[0].dv_rtn.z(), 0.003);
   const auto& shared = shared_settings<GnssShared>(mission);
-  EXPECT_DOUBLE_EQ(shared.navigation.antenna_offset_sigma_m, 0.004);
-  EXPECT_DOUBLE_EQ(shared.navigation.acceleration_sigma, 2e-8);
-  EXPECT_DOUBLE_EQ(shared.navigation.maneuver_sigma, 5e-4);
-  EXPECT_DOUBLE_EQ(shared.navigation.maneuver_sigma_relative, 0.03);
-  EXPECT_DOUBLE_EQ(shared.navigation.phase_wander_sigma_m, 5e-4);
-  EXPECT_DOUBLE_EQ(shared.navigation.phase_wander_time_s, 60.0);
-  EXPECT_EQ(shared.navigation.pair_wait_ns, std::int64_t{7} * 1000000000);
+  EXPECT_DOUBLE_EQ(shared.carrier.antenna_offset_sigma_m, 0.004);
+  EXPECT_DOUBLE_EQ(mission.navigation.configuration.acceleration_sigma, 2e-8);
+  EXPECT_DOUBLE_EQ(mission.navigation.thruster.sigma_mps, 5e-4);
+  EXPECT_DOUBLE_EQ(mission.navigation.thruster.sigma_relative, 0.03);
+  EXPECT_DOUBLE_EQ(shared.carrier.phase_wander_sigma_m, 5e-4);
+  EXPECT_DOUBLE_EQ(shared.carrier.phase_wander_time_s, 60.0);
+  EXPECT_EQ(shared.carrier.pair_wait_ns, std::int64_t{7} * 1000000000);
   EXPECT_EQ(shared.crosslink.silence_begin_s, 100.0);
   EXPECT_EQ(shared.crosslink.silence_duration_s, 600.0);
 }

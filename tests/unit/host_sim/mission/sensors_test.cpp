@@ -43,11 +43,11 @@ TEST(Sensors, HaveNamesOfTheirOwn) {
   EXPECT_EQ(sensors::settings_of<CameraSensor>(sensors[2]).period, fsw::duration_of_seconds(30));
 }
 
-TEST(Sensors, NavigationUsesOneCamera) {
+TEST(Sensors, BearingsAreThoseOfOneCamera) {
   EXPECT_THAT(message_of(with_sensors("sensors.wide = { kind = \"camera\" }\nsensors.narrow = { kind = \"camera\" }\n"
                                       "sensors.gnss = {}")),
-              HasSubstr("sensors.narrow.navigation: found a second camera whose images navigation uses; accepted: "
-                        "\"none\" for all cameras of a spacecraft but one"));
+              HasSubstr("sensors.narrow.navigation: found a second camera whose bearings navigation uses; accepted: "
+                        "\"angles_only\" for one camera of a spacecraft; \"pose\" or \"none\" for the others"));
 }
 
 TEST(Sensors, AreRefusedWithOneMessage) {

@@ -209,7 +209,7 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
   estimate.reset(kAt<trunk::BrightnessOffset>, 0.1, 0.15 * 0.15);
   for (int axis = 0; axis < 2; ++axis) {
     estimate.reset(kAt<trunk::CentroidWander> + axis, 0.02 - 0.05 * axis, 0.3 * 0.3);
-    estimate.reset(kAt<trunk::BoresightA> + axis, 1e-6, 1.5e-5 * 1.5e-5);
+    estimate.reset(kAt<trunk::BearingBias> + axis, 1e-6, 1.5e-5 * 1.5e-5);
   }
 
   using Small = Eigen::Matrix<double, 11, 1>;  // ROE, brightness offset, wander, boresight
@@ -222,8 +222,8 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
                                           kAt<trunk::BrightnessOffset>,
                                           kAt<trunk::CentroidWander>,
                                           kAt<trunk::CentroidWander> + 1,
-                                          kAt<trunk::BoresightA>,
-                                          kAt<trunk::BoresightA> + 1};
+                                          kAt<trunk::BearingBias>,
+                                          kAt<trunk::BearingBias> + 1};
   const auto bearing = bearing_of(scene_start(), servicer, scene_target(servicer, roe), 12.0 * kArcsec, {2e-5, -3e-5});
   const Matrix3 axes = navigation::bearing_axes(bearing.direction_eci, servicer);
   const auto shown = [&](const Small& x) {

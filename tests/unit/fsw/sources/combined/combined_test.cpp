@@ -42,7 +42,7 @@ struct CombinedPair : test::TrunkPair {
     trunk_settings.relative_orbit.empirical.sigma = 1e-10;
     trunk_settings.centroid_wander.sigma = 1e-4;
     trunk_settings.brightness_offset.sigma = 1e-4;
-    trunk_settings.boresight_a.sigma = 1e-7;
+    trunk_settings.bearing_bias.sigma = 1e-7;
     begin_trunk();
     set_centroid_noise(0.0);
   }
@@ -201,7 +201,6 @@ struct ClosePair : CombinedPair {
     begin_trunk();
     set_centroid_noise(0.05);  // of a resolved target
     KeypointAidingSettings settings;
-    settings.model = {.camera = 1, .optics = optics, .shape = shape};
     settings.inertia = trunk_settings.attitude.inertia;
     keypoints.configure(settings);
   }
@@ -247,6 +246,7 @@ struct ClosePair : CombinedPair {
     const Vector3 apart = target.state_at(tag).position_eci - ours.position_eci;
     KeypointImage made;
     made.time = tag;
+    made.camera.model = {.camera = 1, .optics = optics, .shape = shape};
     made.sun_eci = ours.position_eci.cross(ours.velocity_eci).normalized();
     Matrix3 R_camera_eci;
     R_camera_eci.row(2) = apart.normalized().transpose();

@@ -30,10 +30,14 @@ inline trunk::TrunkSettings flight_blocks(const vbar::test::CloseFlight& flight)
 inline KeypointAidingSettings flight_settings() {
   const vbar::test::CloseFlightCamera camera = vbar::test::close_flight_camera();
   KeypointAidingSettings settings;
-  settings.model = {.camera = 1, .optics = camera.optics, .shape = camera.shape};
   settings.inertia = camera.inertia;
-  settings.camera_position_camera_m = camera.position_camera_m;
   return settings;
+}
+
+inline KeypointCamera flight_camera() {
+  const vbar::test::CloseFlightCamera camera = vbar::test::close_flight_camera();
+  return {.model = {.camera = 1, .optics = camera.optics, .shape = camera.shape},
+          .position_camera_m = camera.position_camera_m};
 }
 
 struct FlightError {
@@ -74,6 +78,7 @@ class KeypointFlight {
     trunk->take_own_position(position);
     KeypointImage image;
     image.time = measured.time;
+    image.camera = camera;
     image.sun_eci = sun_eci.value_or(measured.sun_eci);
     image.R_camera_eci = measured.R_camera_eci;
     if (has_image) {
@@ -127,6 +132,7 @@ class KeypointFlight {
   std::vector<navigation::Burn> burns;
   std::unique_ptr<trunk::Trunk> trunk = std::make_unique<trunk::Trunk>();
   std::unique_ptr<KeypointAiding> aiding = std::make_unique<KeypointAiding>();
+  KeypointCamera camera = flight_camera();
   std::size_t next = 0;
   std::optional<Vector3> sun_eci;  ///< in place of the true one
   FlightError error;

@@ -82,8 +82,8 @@ TEST(KeypointFlight, IsConsistentInWhiteNoise) {
                             .stretch_sigma = 1e-6,
                             .lasting_stretch = {.sigma = 1e-6, .time_s = 3600.0}};
   blocks.keypoint_origin.sigma = 1e-6;
+  blocks.camera_mount.sigma = 1.5e-5;
   KeypointAidingSettings settings = flight_settings();
-  settings.model.camera = 0;  // a boresight bias of 3 arcsec
   settings.novelty.gain = 0.0;
   settings.editing.tail_degrees = 1e9;  // Gaussian
   const Outcome mean = mean_of_seeds(blocks, settings, {}, kSeeds);
@@ -258,6 +258,7 @@ TEST_F(KeypointFaults, ValuesThatAreNotFiniteChangeNothing) {
   for (auto& keypoint : keypoints) keypoint.pixel.x() = nan;
   KeypointImage image;
   image.time = measured.time;
+  image.camera = flown.camera;
   image.sun_eci = *flown.sun_eci;
   image.R_camera_eci = measured.R_camera_eci;
   image.keypoints = &keypoints;

@@ -27,7 +27,7 @@ class KeypointRows : public testing::Test {
     attitude.q_eci_body = Eigen::Quaterniond(0.5, -0.1, 0.7, 0.4).normalized();
     trunk->begin_attitude(attitude, 1e-10 * Matrix6::Identity());
     trunk::begin_block<trunk::KeypointOrigin>(trunk->estimate(), {.sigma = 0.01});
-    trunk::begin_block<trunk::BoresightB>(trunk->estimate(), {.sigma = 1e-4});
+    trunk::begin_block<trunk::CameraMounts>(trunk->estimate(), {.sigma = 1e-4});
     q_eci_body = attitude.q_eci_body;
 
     const Vector3 z = (scene_target(scene_servicer(), roe).position_eci - scene_servicer().position_eci).normalized();
@@ -95,7 +95,7 @@ TEST_F(KeypointRows, SensitivitiesAreThoseOfTheGeometry) {
                   [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), none, d * Vector3::Unit(i), flat); });
   }
   for (int i = 0; i < 2; ++i) {
-    expect_column(kAt<trunk::BoresightB> + i, 1e-5,
+    expect_column(trunk::mount_at(1) + i, 1e-5,
                   [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), none, none, d * Vector2::Unit(i)); });
   }
 }

@@ -1,0 +1,21 @@
+#pragma once
+// The list of all sources of navigation. A new source is a folder beside this file and a line in each of the two lists
+// below.
+
+#include <tuple>
+
+#include "fsw/sources/bearings/bearing_source.h"
+#include "fsw/sources/carrier_pair/carrier_source.h"
+#include "fsw/sources/ideal/ideal_source.h"
+#include "fsw/sources/keypoints/keypoint_source.h"
+#include "fsw/sources/own_gnss/own_gnss_source.h"
+#include "fsw/sources/range_finder/range_source.h"
+
+namespace vbar::fsw::sources {
+
+/// Records of one time are processed in this order: the servicer's own position first.
+using SourceList = std::tuple<IdealSource, OwnGnssSource, CarrierSource, BearingSource, KeypointSource, RangeSource>;
+
+static_assert(std::tuple_size_v<SourceList> <= trunk::Trunk::kMaxSources);
+
+}  // namespace vbar::fsw::sources

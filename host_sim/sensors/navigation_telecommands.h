@@ -1,0 +1,31 @@
+#pragma once
+// Telecommands to navigation that no single sensor determines: its sources, the Earth, burns and the a-priori orbit.
+
+#include <cstdint>
+
+#include "host_sim/sensors/sensor_kind.h"
+
+namespace vbar::sensors {
+
+/// What navigation of the spacecraft uses: a sum of navigation_configuration::kUse.
+[[nodiscard]] std::int32_t sources_of(const mission::Spacecraft& servicer);
+
+[[nodiscard]] vbar::navigation_configuration navigation_configuration_of(const mission::Mission& mission,
+                                                                         const mission::Spacecraft& servicer);
+
+/// `orientation`: the Earth's at the start, as the ground predicts it.
+[[nodiscard]] vbar::earth_configuration earth_configuration_of(const mission::Mission& mission,
+                                                               const truth::EarthOrientationSeries& orientation);
+
+/// Where the ground, or preceding navigation, last knew the target to be, out of the true states of both at the start:
+/// mean ROE off by what the seed draws with the mission's sigmas. Throws std::runtime_error for states that are not
+/// orbits.
+[[nodiscard]] vbar::target_apriori target_apriori_of(const mission::Mission& mission,
+                                                     const mission::Spacecraft& servicer,
+                                                     const fsw::orbit::CartesianState& servicer_state,
+                                                     const fsw::orbit::CartesianState& target_state);
+
+/// None with ideal navigation, which needs none.
+void add_navigation_telecommands(const TelecommandContext& context, Telecommands& telecommands);
+
+}  // namespace vbar::sensors
