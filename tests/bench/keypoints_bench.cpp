@@ -35,6 +35,7 @@ void image(benchmark::State& state) {
     for (std::size_t k = 0; k < epochs.size(); ++k) {
       trunk->advance_to(epochs[k].time, {});
       aiding->process({.time = epochs[k].time,
+                       .camera = flown.camera,
                        .sun_eci = epochs[k].sun_eci,
                        .R_camera_eci = epochs[k].R_camera_eci,
                        .keypoints = &keypoints[k],
