@@ -1,8 +1,8 @@
 #pragma once
 // navigate: the state of servicer and target at the time of the step, from measurements at their own times and own
-// maneuvers. A telecommand chooses the sources of the trunk (trunk_navigation.h): ideal navigation (true states in a
-// packet), the GNSS receivers of both spacecraft, or the servicer's own receiver and a camera, for bearings or for
-// keypoints; between measurements the state is propagated under J2.
+// maneuvers. A telecommand selects the sources of the trunk (trunk_navigation.h): true states in a packet, or the
+// servicer's own receiver with any of bearings, keypoints, ranges and the receiver of the target; between measurements
+// the state is propagated under J2.
 //
 // Late inputs are used: the state is rebuilt at each step from a reference state, that of the last measurement, and the
 // own maneuvers since. A commanded maneuver is assumed executed as commanded until the actuator reports otherwise, so

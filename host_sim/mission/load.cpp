@@ -26,7 +26,6 @@ constexpr Section kSections[] = {{"mission", without_installation<read_general>}
                                  {"waypoint", without_installation<read_waypoints>},
                                  {"spacecraft", read_spacecraft},
                                  {"guidance", without_installation<read_guidance>},
-                                 {"navigation", without_installation<read_navigation>},
                                  {"navigation", read_shared},
                                  {"burn", without_installation<read_burns>},
                                  {"clock", read_clock},

@@ -23,9 +23,8 @@ bool uses(const Mission& mission, std::int32_t use) {
 }
 
 /// Bearings alone do not find an orbit; keypoints do.
-void read_apriori(const TableReader& document, Mission& mission) {
+void read_apriori(const TableReader& navigation, Mission& mission) {
   const bool has_bearings = uses(mission, vbar::navigation_configuration::kUseBearings);
-  const TableReader navigation = document.table("navigation");
   const bool has_table = navigation.has("apriori");
   const TableReader section = navigation.table("apriori");
   const Apriori of_sensors = has_bearings ? Apriori::kOrbit : has_table ? Apriori::kRoe : Apriori::kNone;
@@ -49,19 +48,18 @@ void read_navigation(const TableReader& document, Mission& mission) {
   navigation.acceleration_psd = section.number("acceleration_psd", kPsd, 1e-14);
   navigation.acceleration_psd_least = section.number("acceleration_psd_min", kPsd, 1e-15);
   navigation.acceleration_psd_most = section.number("acceleration_psd_max", kPsd, 1e-11);
-  if (navigation.acceleration_psd < navigation.acceleration_psd_least ||
-      navigation.acceleration_psd > navigation.acceleration_psd_most)
-    section.refuse("acceleration_psd", "an initial value outside its limits",
-                   "a number from acceleration_psd_min to acceleration_psd_max");
   navigation.acceleration_sigma = 1e-9 * section.number("acceleration_sigma_nmps2", above_to(0.0, 1e6), 1.0);
   navigation.acceleration_time_s = section.number("acceleration_correlation_time_s", above_to(0.0, 1e6), 1500.0);
   vbar::thruster_configuration& thruster = mission.navigation.thruster;
   thruster.sigma_mps = 1e-3 * section.number("maneuver_sigma_mmps", above_to(0.0, 1e3), 0.002);
   thruster.sigma_relative = 1e-2 * section.number("maneuver_sigma_percent", from_to(0.0, 100.0), 0.2);
-  const TableReader target = section.table("target");
-  mission.navigation.angular_acceleration_psd = target.number("angular_acceleration_psd", kPsd, 1e-11);
-  target.finish();
-  read_apriori(document, mission);
+  mission.navigation.angular_acceleration_psd = section.number("angular_acceleration_psd", kPsd, 1e-11);
+  read_apriori(section, mission);
+  section.finish();
+  if (navigation.acceleration_psd < navigation.acceleration_psd_least ||
+      navigation.acceleration_psd > navigation.acceleration_psd_most)
+    section.refuse("acceleration_psd", "an initial value outside its limits",
+                   "a number from acceleration_psd_min to acceleration_psd_max");
 }
 
 }  // namespace vbar::mission

@@ -75,7 +75,7 @@ void read_shared(const TableReader& document, Mission& mission, const Installati
     if (kind->read_shared == nullptr) continue;
     mission.shared.push_back(kind->read_shared(document, mission));
   }
-  document.table("navigation").finish();
+  read_navigation(document, mission);
 }
 
 void read_testbeds(const TableReader& document, Mission& mission, const Installation& installation) {

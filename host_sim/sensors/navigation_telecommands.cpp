@@ -39,9 +39,10 @@ fsw::Vector6 drawn_roe(const QnsElements& chief_mean, const fsw::orbit::Cartesia
   return roe;
 }
 
+constexpr std::int32_t kCamera = std::int32_t{Use::kUseBearings} + Use::kUseKeypoints;
+
 /// The spacecraft that a camera navigates to; empty: no camera does.
 std::string observed_by_camera(const Spacecraft& servicer) {
-  constexpr std::int32_t kCamera = std::int32_t{Use::kUseBearings} + Use::kUseKeypoints;
   const auto camera = std::ranges::find_if(
       servicer.sensors, [](const mission::Sensor& sensor) { return (sensor.settings->navigation & kCamera) != 0; });
   return camera == servicer.sensors.end() ? std::string() : camera->settings->observed;
@@ -52,7 +53,9 @@ std::string observed_by_camera(const Spacecraft& servicer) {
 std::int32_t sources_of(const Spacecraft& servicer) {
   std::int32_t sources = 0;
   for (const mission::Sensor& sensor : servicer.sensors) sources |= sensor.settings->navigation;
-  return sources;
+  if ((sources & Use::kUseIdeal) != 0) return Use::kUseIdeal;
+  // The target of a camera does not cooperate.
+  return (sources & kCamera) != 0 ? sources & ~std::int32_t{Use::kUseCarrierPair} : sources;
 }
 
 vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer) {

@@ -7,7 +7,8 @@
 
 namespace vbar::sensors {
 
-/// What navigation of the spacecraft uses: a sum of navigation_configuration::kUse.
+/// What navigation of the spacecraft uses, a sum of navigation_configuration::kUse: true states alone, or all that its
+/// sensors offer; differences between two receivers only without a camera.
 [[nodiscard]] std::int32_t sources_of(const mission::Spacecraft& servicer);
 
 [[nodiscard]] vbar::navigation_configuration navigation_configuration_of(const mission::Mission& mission,

@@ -26,15 +26,18 @@ void RecordedLog::add(PacketRecord&& record, const Selection& selection) {
   const bool wants_images = std::ranges::find(selection.apids, Apid::kImageTile) != selection.apids.end();
   if (record.tiles) {
     if (!wants_images || record.tiles->spacecraft != selection.spacecraft) return;
+    if (record.tiles->unit != selection.unit.value_or(record.tiles->unit)) return;
     plays_images_ = true;
   } else {
     const auto view = fsw::packets::parse_packet(record.packet);
     if (!view.ok() || view.value().header.spacecraft != selection.spacecraft) return;
-    const Apid apid = view.value().header.apid;
+    const fsw::packets::PacketHeader& header = view.value().header;
+    if (header.unit != selection.unit.value_or(header.unit)) return;
+    const Apid apid = header.apid;
     if (std::ranges::find(selection.apids, apid) == selection.apids.end()) return;
     if (apid == Apid::kImageTile) {
       plays_images_ = true;
-      epochs_.insert(view.value().header.time);
+      epochs_.insert(header.time);
     }
   }
   epochs_.insert(record.time);

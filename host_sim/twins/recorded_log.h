@@ -1,6 +1,7 @@
 #pragma once
 // A recorded run as a sensor: the packets of a log, at the steps of their delivery.
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -20,6 +21,7 @@ class RecordedLog final : public PacketSource {
   struct Selection {
     std::uint8_t spacecraft = 0;
     std::vector<fsw::packets::Apid> apids;
+    std::optional<std::uint8_t> unit = {};  ///< none: of all
   };
 
   /// `make_tiles` is needed for logs without the pixels of their images. Throws std::runtime_error, as read_packet_log,

@@ -48,9 +48,11 @@ class SceneTap final : public twins::PacketSource {
   std::vector<SceneAhead>& scenes_;
 };
 
-/// The camera whose images navigation uses, with a target that it can see.
+/// The camera by whose images navigation finds the pose, otherwise the one whose images it uses, with a target that it
+/// can see.
 const sensors::CameraSensor& camera_of(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  const sensors::CameraSensor* camera = sensors::navigation_camera(servicer);
+  const sensors::CameraSensor* camera = sensors::navigation_camera(servicer, sensors::CameraNavigation::kPose);
+  if (camera == nullptr) camera = sensors::navigation_camera(servicer);
   const mission::Spacecraft* target = camera != nullptr ? mission.find_spacecraft(camera->observed) : nullptr;
   if (target == nullptr || target->model.empty() || !target->attitude)
     throw mission::MissionError(mission.file.string(), "spacecraft.sensors", "no camera that navigates",

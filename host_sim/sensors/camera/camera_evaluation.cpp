@@ -43,14 +43,14 @@ ImageTelemetry image_telemetry(std::span<const fsw::packets::PacketView> answer,
 
 class CameraEvaluation final : public Evaluation {
  public:
-  CameraEvaluation(const CameraSensor& camera, const EvaluationContext& context)
+  CameraEvaluation(const mission::Sensor& sensor, const CameraSensor& camera, const EvaluationContext& context)
       : context_(context),
         record_(context.record),
         known_camera_(known_camera(camera, context.mission, mission::data_directory()).sensor),
-        gallery_(context.mission, context.servicer, twin_of_testbed_camera(context.mission, context.servicer)),
-        pose_gallery_(context.mission, context.servicer),
-        unit_(camera_unit(camera, context.servicer)),
-        has_galleries_(&camera == navigation_camera(context.servicer, camera.use)) {
+        unit_(camera_unit(sensor, context.servicer)),
+        gallery_(context.mission, context.servicer, twin_of_testbed_camera(context.mission, context.servicer, sensor),
+                 unit_),
+        pose_gallery_(context.mission, context.servicer, unit_) {
     if (camera.use == CameraNavigation::kPose)
       known_target_ = target_model_of(context.mission, camera, mission::data_directory());
   }
@@ -58,7 +58,6 @@ class CameraEvaluation final : public Evaluation {
   void on_measured(const twins::TruthSnapshot& truth) override { kept_truth_.keep(truth); }
 
   void on_inputs(fsw::GpsTime time, std::span<const twins::Packet> inputs) override {
-    if (!has_galleries_) return;
     gallery_.on_inputs(time, inputs);
     pose_gallery_.on_inputs(time, inputs);
   }
@@ -69,9 +68,7 @@ class CameraEvaluation final : public Evaluation {
     if (told.pose) on_pose(seconds_of(time), told);
   }
 
-  void finish() override {
-    if (has_galleries_) gallery_.finish(record_.gallery);
-  }
+  void finish() override { gallery_.finish(record_.gallery); }
 
  private:
   [[nodiscard]] double seconds_of(fsw::GpsTime time) const { return fsw::seconds(time - context_.mission.epoch); }
@@ -87,7 +84,7 @@ class CameraEvaluation final : public Evaluation {
     if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
     if (objects != nullptr) append_objects(row.time_s, *objects, record_.tables.rows<ObjectRow>());
     record_.tables.rows<ImageRow>().push_back(row);
-    if (has_galleries_) gallery_.on_image({told.exposure, row, objects, truth ? &*truth : nullptr}, record_.gallery);
+    gallery_.on_image({told.exposure, row, objects, truth ? &*truth : nullptr}, record_.gallery);
   }
 
   void on_pose(double step_time_s, const ImageTelemetry& told) {
@@ -100,7 +97,7 @@ class CameraEvaluation final : public Evaluation {
       add_truth(row, record_.tables.rows<KeypointRow>(), *told.pose, known_target_->keypoints_body_m, known_camera_,
                 context_.servicer, *truth);
     record_.tables.rows<PoseRow>().push_back(row);
-    if (has_galleries_) pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
+    pose_gallery_.on_pose(told.exposure, *told.pose, row, record_.gallery);
   }
 
   EvaluationContext context_;
@@ -108,10 +105,9 @@ class CameraEvaluation final : public Evaluation {
   CameraSensor known_camera_;
   KeptTruth kept_truth_;
   std::optional<target_model> known_target_;  ///< as telecommanded, with navigation by the pose network
+  std::uint8_t unit_;
   GalleryKeeper gallery_;
   PoseGallery pose_gallery_;
-  std::uint8_t unit_;
-  bool has_galleries_;  ///< of several cameras with one use the first
 };
 
 }  // namespace
@@ -119,7 +115,7 @@ class CameraEvaluation final : public Evaluation {
 std::unique_ptr<Evaluation> evaluate_camera(const mission::Sensor& sensor, const EvaluationContext& context) {
   const auto& camera = settings_of<CameraSensor>(sensor);
   if (camera.use == CameraNavigation::kNone) return nullptr;  // the flight software says nothing of its images
-  return std::make_unique<CameraEvaluation>(camera, context);
+  return std::make_unique<CameraEvaluation>(sensor, camera, context);
 }
 
 }  // namespace vbar::sensors

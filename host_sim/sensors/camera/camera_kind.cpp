@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "fsw/math/math.h"
@@ -45,6 +46,11 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
     if ((other.settings->navigation & Use::kUseOwnGnss) != 0) receiver = &other;
     if (other.kind != sensor.kind || other.settings->navigation == 0) continue;
     ++cameras;
+    if (other.settings->observed != camera.observed)
+      section.refuse("target",
+                     "the spacecraft \"" + camera.observed + "\" beside a camera that navigates to \"" +
+                         other.settings->observed + "\"",
+                     "one target of all cameras whose images navigation uses");
     if (&other != &sensor && (other.settings->navigation & camera.navigation & Use::kUseBearings) != 0)
       section.refuse("navigation", "a second camera whose bearings navigation uses",
                      "\"angles_only\" for one camera of a spacecraft; \"pose\" or \"none\" for the others");
@@ -86,7 +92,8 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
   const auto& camera = settings_of<CameraSensor>(sensor);
   const std::string name = source_name(context.servicer, sensor);
   if (camera.source == "recorded") {
-    const twins::RecordedLog::Selection selection{context.servicer.number, {fsw::packets::Apid::kImageTile}};
+    twins::RecordedLog::Selection selection{context.servicer.number, {fsw::packets::Apid::kImageTile}};
+    if (camera.use != CameraNavigation::kNone) selection.unit = camera_unit(sensor, context.servicer);
     const auto make_tiles = [&](twins::ImagesOfLog&& images) {
       return make_recorded_tile_source(
           [&mission = context.mission, &servicer = context.servicer, &sensor, data = context.data_directory] {
@@ -102,11 +109,16 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
                                  make_image_taker(sensor, context))});
 }
 
-void add_facts(const Sensor& sensor, const Mission& /*mission*/, const Spacecraft& /*servicer*/,
-               report::RunFacts& facts) {
+std::string_view name_of_navigation(const Spacecraft& servicer) {
+  const bool has_bearings = navigation_camera(servicer, CameraNavigation::kAnglesOnly) != nullptr;
+  const bool has_pose = navigation_camera(servicer, CameraNavigation::kPose) != nullptr;
+  return has_bearings && has_pose ? "angles_only+pose" : has_pose ? "pose" : "angles_only";
+}
+
+void add_facts(const Sensor& sensor, const Mission& /*mission*/, const Spacecraft& servicer, report::RunFacts& facts) {
   const CameraNavigation use = settings_of<CameraSensor>(sensor).use;
   if (use != CameraNavigation::kNone || facts.camera.empty()) facts.camera = sensor.settings->source;
-  if (use != CameraNavigation::kNone) facts.navigation = use == CameraNavigation::kPose ? "pose" : "angles_only";
+  if (use != CameraNavigation::kNone) facts.navigation = name_of_navigation(servicer);
 }
 
 using fsw::math::kArcsecond;
@@ -147,34 +159,30 @@ const SensorKind kCamera{{"camera", "", read_camera, read_camera_shared, check},
                          {tables, summarise_images, sections, kMessagesInTables, camera_paper_columns},
                          make_camera_tile_source};
 
-namespace {
-
-template <class Condition>
-const CameraSensor* first_camera(const Spacecraft& carrier, const Condition& is_wanted) {
+const CameraSensor* navigation_camera(const Spacecraft& carrier, std::uint8_t unit) {
   for (const Sensor& sensor : carrier.sensors)
     if (const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
-        camera != nullptr && is_wanted(*camera))
+        camera != nullptr && camera->use != CameraNavigation::kNone && camera_unit(sensor, carrier) == unit)
       return camera;
   return nullptr;
 }
 
-}  // namespace
-
-const CameraSensor* navigation_camera(const Spacecraft& carrier) {
-  return first_camera(carrier, [](const CameraSensor& camera) { return camera.use != CameraNavigation::kNone; });
-}
-
 const CameraSensor* navigation_camera(const Spacecraft& carrier, CameraNavigation use) {
-  return first_camera(carrier, [&](const CameraSensor& camera) { return camera.use == use; });
+  for (const Sensor& sensor : carrier.sensors)
+    if (const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
+        camera != nullptr && camera->use == use)
+      return camera;
+  return nullptr;
 }
 
-std::uint8_t camera_unit(const CameraSensor& camera, const Spacecraft& carrier) {
-  const bool is_used = camera.use != CameraNavigation::kNone;
-  std::uint8_t unit = is_used ? 0 : static_cast<std::uint8_t>(fsw::packets::kCameras);
-  for (const Sensor& sensor : carrier.sensors) {
-    const auto* const other = dynamic_cast<const CameraSensor*>(sensor.settings.get());
-    if (other == &camera) break;
-    if (other != nullptr && (other->use != CameraNavigation::kNone) == is_used) ++unit;
+std::uint8_t camera_unit(const Sensor& sensor, const Spacecraft& carrier) {
+  const auto is_used = [](const Sensor& camera) {
+    return settings_of<CameraSensor>(camera).use != CameraNavigation::kNone;
+  };
+  std::uint8_t unit = is_used(sensor) ? 0 : static_cast<std::uint8_t>(fsw::packets::kCameras);
+  for (const Sensor& other : carrier.sensors) {
+    if (other.name == sensor.name) break;
+    if (other.kind == sensor.kind && is_used(other) == is_used(sensor)) ++unit;
   }
   return unit;
 }

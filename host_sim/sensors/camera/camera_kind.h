@@ -26,13 +26,14 @@ struct CameraSensor : mission::SensorSettings {
   fsw::Vector3 position_body_m = fsw::Vector3::Zero();                ///< from the centre of mass
 };
 
-/// The first camera whose images navigation uses, and the first with that use; null if there is none.
-[[nodiscard]] const CameraSensor* navigation_camera(const mission::Spacecraft& carrier);
+/// The camera of that unit whose images navigation uses, and the first with that use; null if there is none.
+[[nodiscard]] const CameraSensor* navigation_camera(const mission::Spacecraft& carrier, std::uint8_t unit = 0);
 [[nodiscard]] const CameraSensor* navigation_camera(const mission::Spacecraft& carrier, CameraNavigation use);
 
 /// The unit in packet headers: cameras whose images navigation uses come first, in the order of the mission; the flight
-/// software does not know the others, from packets::kCameras on.
-[[nodiscard]] std::uint8_t camera_unit(const CameraSensor& camera, const mission::Spacecraft& carrier);
+/// software does not know the others, from packets::kCameras on. By the name of the sensor: its settings may be those
+/// of a calibrated copy.
+[[nodiscard]] std::uint8_t camera_unit(const mission::Sensor& sensor, const mission::Spacecraft& carrier);
 
 /// [navigation.angles_only] and [navigation.pose]: what does not depend on camera and target.
 struct CameraShared : mission::SharedSettings {

@@ -75,7 +75,7 @@ void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandCon
                              Telecommands& telecommands) {
   const auto& own = settings_of<CameraSensor>(sensor);
   if (own.use == CameraNavigation::kNone) return;
-  const std::uint8_t unit = camera_unit(own, context.servicer);
+  const std::uint8_t unit = camera_unit(sensor, context.servicer);
   const KnownCamera known = known_camera(own, context.mission, context.data_directory);
   const CameraSensor& camera = known.sensor;
   const auto& shared = mission::shared_settings<CameraShared>(context.mission);

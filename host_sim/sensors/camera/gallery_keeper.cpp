@@ -42,11 +42,11 @@ std::string caption(const ImageRow& row) {
 }  // namespace
 
 GalleryKeeper::GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer,
-                             TakeTwinImage take_twin)
+                             TakeTwinImage take_twin, std::uint8_t unit)
     : take_twin_(std::move(take_twin)) {
-  const auto* const camera = navigation_camera(servicer, CameraNavigation::kAnglesOnly);
-  if (camera == nullptr) return;
-  assembly_ = std::make_unique<fsw::imaging::ImageAssembly>(camera_unit(*camera, servicer));
+  const auto* const camera = navigation_camera(servicer, unit);
+  if (camera == nullptr || camera->use != CameraNavigation::kAnglesOnly) return;
+  assembly_ = std::make_unique<fsw::imaging::ImageAssembly>(unit);
   before_ = fsw::Duration{kExposuresBefore * camera->period.ns};
   focal_length_px_ = camera->settings.focal_length_px();
   for (const mission::Waypoint& waypoint : mission.waypoints)

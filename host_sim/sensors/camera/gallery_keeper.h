@@ -34,9 +34,10 @@ class GalleryKeeper {
  public:
   static constexpr int kExposuresBefore = 20;  ///< that are looked at before a waypoint
 
-  /// Keeps nothing unless `servicer` has a camera that navigates by angles only.
+  /// Keeps nothing unless the camera of that unit navigates by angles only.
   /// `take_twin`: for images of a testbed, whose images the gallery shows beside those of the digital twin.
-  GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer, TakeTwinImage take_twin = {});
+  GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer, TakeTwinImage take_twin = {},
+                std::uint8_t unit = 0);
 
   /// The packets that the flight software got with the step at `now`: tiles among them are assembled if they may be
   /// wanted. One image is kept, as in the flight software.

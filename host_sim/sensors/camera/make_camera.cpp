@@ -25,7 +25,7 @@ twins::camera::ImageMaker::Settings image_settings(const Mission& mission, const
   settings.name = spacecraft.name + "/" + sensor.name;
   settings.seed = mission.seed;
   settings.spacecraft = spacecraft.number;
-  settings.unit = camera_unit(settings_of<CameraSensor>(sensor), spacecraft);
+  settings.unit = camera_unit(sensor, spacecraft);
   return settings;
 }
 
@@ -42,7 +42,7 @@ twins::camera::Renderer make_scene_renderer(const Mission& mission, const Spacec
 const Sensor& digital_camera(const Spacecraft& servicer, std::uint8_t unit) {
   for (const Sensor& sensor : servicer.sensors) {
     const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
-    if (camera == nullptr || camera_unit(*camera, servicer) != unit) continue;
+    if (camera == nullptr || camera_unit(sensor, servicer) != unit) continue;
     if (camera->source == "digital" || camera->source == "recorded") return sensor;
   }
   throw std::runtime_error("spacecraft \"" + servicer.name + "\" has no digital camera of unit " +

@@ -25,12 +25,12 @@ std::string caption(const PoseRow& row) {
 
 }  // namespace
 
-PoseGallery::PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  const auto* const camera = navigation_camera(servicer, CameraNavigation::kPose);
-  if (camera == nullptr) return;
+PoseGallery::PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer, std::uint8_t unit) {
+  const auto* const camera = navigation_camera(servicer, unit);
+  if (camera == nullptr || camera->use != CameraNavigation::kPose) return;
   work_ = std::make_unique<Work>();
   static_cast<void>(work_->network.load(fsw::network::weights_on_board()));  // without it, pictures without maps
-  work_->assembly = fsw::imaging::ImageAssembly(camera_unit(*camera, servicer));
+  work_->assembly = fsw::imaging::ImageAssembly(unit);
   const camera_configuration configuration = camera_configuration_of(*camera);
   dark_level_dn_ = configuration.dark_level_dn;
   noise_dn_ = configuration.noise_dn;

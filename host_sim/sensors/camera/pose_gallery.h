@@ -20,8 +20,8 @@ class PoseGallery {
  public:
   static constexpr int kPictures = 9;
 
-  /// Keeps nothing unless the camera of `servicer` navigates by poses.
-  PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer);
+  /// Keeps nothing unless the camera of that unit navigates by poses.
+  PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer, std::uint8_t unit = 0);
 
   /// The packets that the flight software got with the step at `now`.
   void on_inputs(fsw::GpsTime now, std::span<const twins::Packet> inputs);

@@ -80,17 +80,15 @@ std::optional<Eigen::Vector2d> centroid(const ImagePair& pair, std::span<const s
 
 }  // namespace
 
-TakeTwinImage twin_of_testbed_camera(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  const auto own = std::ranges::find_if(servicer.sensors, [&](const mission::Sensor& sensor) {
-    return sensor.settings.get() == navigation_camera(servicer);
-  });
-  if (own == servicer.sensors.end() || testbeds::find_testbed(own->settings->source) == nullptr) return {};
+TakeTwinImage twin_of_testbed_camera(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                                     const mission::Sensor& sensor) {
+  if (testbeds::find_testbed(sensor.settings->source) == nullptr) return {};
   struct Twin {
     std::unique_ptr<twins::camera::ImageMaker> camera;
     twins::camera::CameraMount mount;
   };
-  return [twin = std::make_shared<Twin>(), &mission, &servicer, &sensor = *own](const twins::TruthSnapshot& truth,
-                                                                                std::int64_t number) {
+  return [twin = std::make_shared<Twin>(), &mission, &servicer, &sensor](const twins::TruthSnapshot& truth,
+                                                                         std::int64_t number) {
     if (!twin->camera) {
       const auto data = mission::data_directory();
       const CameraSensor known = known_camera(settings_of<CameraSensor>(sensor), mission, data).sensor;

@@ -18,10 +18,10 @@ namespace vbar::sensors {
 /// The pixels that the digital camera takes at this truth: the region, rows from the top.
 using TakeTwinImage = std::function<std::vector<std::uint16_t>(const twins::TruthSnapshot& truth, std::int64_t number)>;
 
-/// Of the camera whose images navigation uses, as the testbed that provides them has calibrated it; empty if none does.
-/// The renderer is made with the first image. `mission` and `servicer` must outlive it.
-[[nodiscard]] TakeTwinImage twin_of_testbed_camera(const mission::Mission& mission,
-                                                   const mission::Spacecraft& servicer);
+/// Of a camera of `servicer`, as the testbed that provides its images has calibrated it; empty if none does. The
+/// renderer is made with the first image. `mission`, `servicer` and `sensor` must outlive it.
+[[nodiscard]] TakeTwinImage twin_of_testbed_camera(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                                                   const mission::Sensor& sensor);
 
 /// Both images of one region.
 struct ImagePair {

@@ -64,7 +64,7 @@ class TwoCameras(unittest.TestCase):
             epochs = {source["name"]: source["epochs"] for source in two["sources"]}
             self.assertEqual((epochs["servicer/a_wide"], epochs["servicer/camera"]), (7, 15))
             self.assertEqual(recipes_by_unit(folder / "one"), {0: 15})
-            self.assertEqual(recipes_by_unit(folder / "two"), {0: 15, 1: 7})
+            self.assertEqual(recipes_by_unit(folder / "two"), {0: 15, 2: 7})
             result = vbar("replay", folder / "two")
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
             self.assertIn("identical", result.stdout)

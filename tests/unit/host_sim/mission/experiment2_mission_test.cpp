@@ -38,7 +38,7 @@ TEST(Experiment2Mission, WaypointsAreThePapers) {
 }
 
 TEST(Experiment2Mission, EveryKeyOfNavigationByPosesIsExplained) {
-  expect_all_shown(text_of_file(kFile), kFile, {"navigation.pose", "navigation.apriori", "navigation.target"});
+  expect_all_shown(text_of_file(kFile), kFile, {"navigation.pose", "navigation.apriori"});
 }
 
 /// What flight software is telecommanded about the camera by a mission file of this text.

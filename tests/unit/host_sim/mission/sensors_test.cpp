@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
-#include "host_sim/sensors/navigation_telecommands.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
@@ -42,47 +41,6 @@ TEST(Sensors, HaveNamesOfTheirOwn) {
   EXPECT_EQ(sensors::settings_of<CameraSensor>(sensors[1]).use, sensors::CameraNavigation::kNone);
   EXPECT_EQ(sensors::settings_of<CameraSensor>(sensors[2]).camera, "tron");
   EXPECT_EQ(sensors::settings_of<CameraSensor>(sensors[2]).period, fsw::duration_of_seconds(30));
-}
-
-// Bearings of one camera and keypoints of another: each is told its own unit, the target once.
-TEST(Sensors, TwoCamerasNavigateTogether) {
-  const Mission mission = parse_mission(
-      with_sensors(
-          "sensors.wide = { kind = \"camera\", camera = \"tron\", navigation = \"pose\" }\n"
-          "sensors.narrow = { kind = \"camera\" }\nsensors.spare = { kind = \"camera\", navigation = \"none\" }\n"
-          "sensors.gnss = {}"),
-      "m.toml");
-  const Spacecraft& servicer = mission.spacecraft[0];
-  using Use = vbar::navigation_configuration;
-  EXPECT_EQ(sensors::sources_of(servicer), std::int32_t{Use::kUseOwnGnss} + Use::kUseBearings + Use::kUseKeypoints);
-  EXPECT_EQ(mission.navigation.apriori, Apriori::kOrbit);
-
-  const auto orientation =
-      truth::EarthOrientationSeries::load(vbar::tests::source_path("data/earth/eop_2009_2013.csv"));
-  const fsw::orbit::CartesianState own{{7.0e6, 0.0, 0.0}, {0.0, 100.0, 7546.0}};
-  const fsw::orbit::CartesianState target{own.position_eci + fsw::Vector3(1.0, 8.0, 3.0), own.velocity_eci};
-  const auto packets =
-      sensors::telecommands_of({mission, servicer, vbar::tests::source_path("data"), orientation,
-                                [&](std::string_view spacecraft) { return spacecraft == "servicer" ? own : target; }});
-  using fsw::packets::Apid;
-  std::vector<std::pair<Apid, int>> told;
-  for (const twins::Packet& packet : packets) {
-    const fsw::packets::PacketHeader header = fsw::packets::parse_packet(packet).value().header;
-    const bool is_of_camera = header.apid == Apid::kCameraConfiguration ||
-                              header.apid == Apid::kAnglesOnlyConfiguration ||
-                              header.apid == Apid::kPoseConfiguration || header.apid == Apid::kTargetModel ||
-                              header.apid == Apid::kTargetApriori;
-    if (is_of_camera) told.emplace_back(header.apid, header.unit);
-  }
-  EXPECT_THAT(told, testing::UnorderedElementsAre(
-                        std::pair(Apid::kTargetApriori, 0), std::pair(Apid::kCameraConfiguration, 0),
-                        std::pair(Apid::kAnglesOnlyConfiguration, 0), std::pair(Apid::kCameraConfiguration, 1),
-                        std::pair(Apid::kPoseConfiguration, 1), std::pair(Apid::kTargetModel, 0)));
-  // The images of a camera that navigation does not use are not for the flight software.
-  const auto& cameras = servicer.sensors;
-  EXPECT_EQ(sensors::camera_unit(sensors::settings_of<CameraSensor>(cameras[1]), servicer), 0) << "narrow";
-  EXPECT_EQ(sensors::camera_unit(sensors::settings_of<CameraSensor>(cameras[2]), servicer), 2) << "spare";
-  EXPECT_EQ(sensors::camera_unit(sensors::settings_of<CameraSensor>(cameras[3]), servicer), 1) << "wide";
 }
 
 TEST(Sensors, BearingsAreThoseOfOneCamera) {
