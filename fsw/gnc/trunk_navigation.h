@@ -23,11 +23,9 @@ namespace vbar::fsw::gnc {
 
 class TrunkNavigation {
  public:
-  /// Until a telecommand selects other sources, ideal navigation is used.
-  TrunkNavigation() { std::get<sources::IdealSource>(sources_).aid().go_to(sources::AidState::kWaiting, GpsTime{}); }
-
-  /// Selects and sets the sources from all telecommands in force together, if one of them is new: their order of
-  /// arrival has no effect. Estimates stay; the blocks of a source that is not selected any more rest.
+  /// Selects and sets the sources (true states until a telecommand does) from all telecommands in force together, if
+  /// one of them is new: their order of arrival has no effect. Estimates stay; the blocks of a source that is not
+  /// selected any more rest.
   void configure(GpsTime now, const Telecommands& telecommands);
 
   /// Processes the packets of the step. `burns`: the servicer's from the epoch on, executed or commanded, in order of

@@ -32,6 +32,8 @@ struct AidTransition {
 
 class Aid {
  public:
+  explicit Aid(AidState initial = AidState::kOff) : state_(initial) {}
+
   [[nodiscard]] AidState state() const { return state_; }
   [[nodiscard]] GpsTime since() const { return since_; }
   [[nodiscard]] bool is_on() const { return state_ != AidState::kOff; }
@@ -58,7 +60,7 @@ class Aid {
  private:
   static constexpr std::size_t kMaxTransitions = 8;
 
-  AidState state_ = AidState::kOff;
+  AidState state_;
   GpsTime since_;
   std::array<AidTransition, kMaxTransitions> transitions_{};
   std::size_t transition_count_ = 0;

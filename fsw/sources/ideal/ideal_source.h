@@ -29,7 +29,7 @@ class IdealSource {
     orbit::CartesianState target;
   };
 
-  Aid aid_;
+  Aid aid_{AidState::kWaiting};  ///< until a telecommand selects other sources
   std::array<States, gnc::Inbox::kCapacity<ideal_navigation>> waiting_{};  ///< of the records filed last
   std::uint32_t filed_ = 0;
   GpsTime last_measurement_;
