@@ -1,6 +1,6 @@
 #pragma once
-// The list of all sources of navigation. A new source is a folder beside this file, with its header and its place in the
-// list below.
+// The list of all sources of navigation. A new source is a folder beside this file, with its header and its place in
+// the list below.
 
 #include <tuple>
 
