@@ -39,7 +39,8 @@ void Gnc::navigate() {
   navigation_.update(now_, telecommands_, inbox_);
   const NavigationState& state = navigation_.state();
   const double timeout = management_.configuration().navigation_timeout_s;
-  if (state.valid && seconds(now_ - state.last_measurement) > timeout) faults_ |= kFaultNavigationTimeout;
+  const GpsTime last_heard = state.last_measurement > started_ ? state.last_measurement : started_;
+  if (state.valid && seconds(now_ - last_heard) > timeout) faults_ |= kFaultNavigationTimeout;
   has_navigated_ = has_navigated_ || state.valid;
   if (!has_navigated_ && seconds(now_ - started_) > timeout) faults_ |= kFaultNeverNavigated;
 }
@@ -70,6 +71,7 @@ void Gnc::report() {
   telecommands_.report(outbox_, step_, now_);
   report_navigation();
   if (navigation_.uses_camera()) point_camera();
+  command_exposures();
   navigation_.report(outbox_, step_, now_, inbox_);
   report_control();
   report_health();

@@ -47,6 +47,7 @@ class Gnc {
 
   void report_navigation();
   void point_camera();
+  void command_exposures();
   [[nodiscard]] std::optional<sources::Pointing> pointing_to_target() const;
   void report_control();
   void report_health();

@@ -60,6 +60,14 @@ void Gnc::point_camera() {
   outbox_.send(now_, message);
 }
 
+void Gnc::command_exposures() {
+  const auto& keypoints = navigation_.trunk().source<sources::KeypointSource>();
+  for (std::size_t camera = 0; camera < packets::kCameras; ++camera) {
+    const std::optional<double> exposure_s = keypoints.wanted_exposure_s(camera);
+    if (exposure_s) outbox_.send(now_, exposure_command{.exposure_s = *exposure_s}, static_cast<std::uint8_t>(camera));
+  }
+}
+
 void Gnc::report_control() {
   const GuidanceReport& guidance = guidance_.report();
   const double a = management_.reference_semi_major_axis();

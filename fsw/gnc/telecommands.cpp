@@ -5,6 +5,7 @@
 #include "fsw/sources/bearings/bearing_configuration.h"
 #include "fsw/sources/calibrated_camera.h"
 #include "fsw/sources/carrier_pair/carrier_settings.h"
+#include "fsw/sources/image_use.h"
 #include "fsw/sources/keypoints/keypoint_settings.h"
 #include "fsw/sources/source_list.h"
 
@@ -74,15 +75,16 @@ const Message* Telecommands::proposed_or_in_force(std::size_t unit) const {
   return known.proposed ? &*known.proposed : in_force<Message>(unit);
 }
 
-/// An image feeds one source: bearings and keypoints, if both are used, are those of different cameras.
+/// An image feeds one source: of a camera for bearings and keypoints the exposure decides which, and there are two.
 bool Telecommands::are_consistent() const {
   constexpr std::int32_t kBoth = sources::BearingSource::kUse | sources::KeypointSource::kUse;
   const auto* navigation = proposed_or_in_force<navigation_configuration>(0);
   if (navigation == nullptr || (navigation->sources & kBoth) != kBoth) return true;
   for (std::size_t unit = 0; unit < packets::kCameras; ++unit) {
-    const bool feeds_two = proposed_or_in_force<angles_only_configuration>(unit) != nullptr &&
-                           proposed_or_in_force<pose_configuration>(unit) != nullptr;
-    if (feeds_two) return false;
+    const auto* bearings = proposed_or_in_force<angles_only_configuration>(unit);
+    const auto* keypoints = proposed_or_in_force<pose_configuration>(unit);
+    const bool feeds_two = bearings != nullptr && keypoints != nullptr;
+    if (feeds_two && !sources::two_exposures(*bearings, *keypoints).ok()) return false;
   }
   return true;
 }

@@ -7,6 +7,8 @@
 namespace vbar::fsw::imaging {
 namespace {
 
+constexpr float kLongestExposure_s = 3600.0F;
+
 constexpr int pixels_of_tile(int bits) {
   return bits == 8 ? kTilePixels8 : kTilePixels12;
 }
@@ -21,6 +23,7 @@ Status check(const image_tile& tile) {
   if (tile.bits != 8 && tile.bits != 12) return Status::kInvalidArgument;
   if (tile.image < 0 || tile.width < 1 || tile.height < 1) return Status::kInvalidArgument;
   if (tile.origin_x < 0 || tile.origin_y < 0) return Status::kInvalidArgument;
+  if (!(tile.exposure_s >= 0.0F && tile.exposure_s <= kLongestExposure_s)) return Status::kInvalidArgument;
   const int pixels = pixels_of(tile);
   if (tile.width > kMaxSide || tile.height > kMaxSide || pixels > int{kMaxPixels}) return Status::kOutOfRange;
   const int maximum = pixels_of_tile(tile.bits);
@@ -78,6 +81,7 @@ void ImageAssembly::begin(GpsTime time, const image_tile& tile) {
   is_open_ = true;
   frame_ = frame_of(tile);
   number_ = tile.image;
+  exposure_s_ = tile.exposure_s;
   tiles_ = tile.tiles;
   tiles_there_ = 0;
   is_there_.fill(false);
@@ -85,7 +89,7 @@ void ImageAssembly::begin(GpsTime time, const image_tile& tile) {
 }
 
 bool ImageAssembly::is_of_this_image(const image_tile& tile) const {
-  return tile.image == number_ && frame_of(tile) == frame_;
+  return tile.image == number_ && tile.exposure_s == exposure_s_ && frame_of(tile) == frame_;
 }
 
 bool ImageAssembly::has_same_pixels(const image_tile& tile) const {

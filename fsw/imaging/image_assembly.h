@@ -42,6 +42,8 @@ class ImageAssembly {
   [[nodiscard]] ImageView view() const;
   [[nodiscard]] GpsTime image_time() const { return time_; }
   [[nodiscard]] std::int32_t image_number() const { return number_; }
+  /// Duration of the exposure; 0: not stated.
+  [[nodiscard]] double exposure_s() const { return exposure_s_; }
   [[nodiscard]] int tiles_missing() const { return tiles_ - tiles_there_; }
 
   /// The image has been used: it is discarded, and tiles of its time or before are refused from now on.
@@ -64,6 +66,7 @@ class ImageAssembly {
   bool is_open_ = false;     ///< tiles of that time are still accepted
   ImageFrame frame_;
   std::int32_t number_ = 0;
+  float exposure_s_ = 0.0F;
   int tiles_ = 0;
   int tiles_there_ = 0;
   std::array<bool, kMaxTiles> is_there_{};

@@ -8,7 +8,7 @@ namespace vbar::fsw::navigation {
 namespace {
 
 constexpr int kMaxIterations = 15;
-constexpr double kDifferenceStep = 1e-5;                 // difference step of an element for its Jacobian: 70 m
+constexpr double kDifferenceStep = 1e-7;                 // of an element, for its Jacobian: 0.7 m
 constexpr double kConverged = 1e-3;                      // of a sigma, every unknown
 constexpr double kHuber = 3.0;                           // residuals beyond this number of sigma have a linear cost
 constexpr double kOutlier = 5.0;                         // residuals beyond this do not count as used
@@ -43,7 +43,7 @@ Status BearingBatch::linearise(const orbit::CartesianState& servicer, const Unkn
   orbits[0] = servicer;
   for (int k = 1; k < kOrbits; ++k) {
     Vector6 roe = x.head<6>();
-    if (k >= 2) roe((k - 2) / 2) += k % 2 == 0 ? kDifferenceStep : -kDifferenceStep;
+    if (k >= 2) roe(k - 2) += kDifferenceStep;
     const auto target = target_from_roe(chief.value(), roe);
     if (!target.ok()) return target.status();
     orbits[static_cast<std::size_t>(k)] = target.value();
@@ -70,13 +70,11 @@ Status BearingBatch::linearise(const orbit::CartesianState& servicer, const Unkn
       const Vector3 sight = orbits[orbit].position_eci - orbits[0].position_eci - bearing.origin_eci;
       return Vector2(axes.topRows<2>() * sight / math::sqrt(sight.squaredNorm()));
     };
+    const Vector2 target = seen(1);
     Eigen::Matrix<double, 2, kUnknowns> jacobian;
-    for (int j = 0; j < 6; ++j) {
-      const auto above = static_cast<std::size_t>(2 + 2 * j);
-      jacobian.col(j) = (seen(above) - seen(above + 1)) / (2.0 * kDifferenceStep);
-    }
+    for (int j = 0; j < 6; ++j) jacobian.col(j) = (seen(static_cast<std::size_t>(2 + j)) - target) / kDifferenceStep;
     jacobian.rightCols<2>() = Matrix2::Identity();
-    const Vector2 residual = -(seen(1) + x.tail<2>());
+    const Vector2 residual = -(target + x.tail<2>());
     const double distance = math::sqrt(residual.squaredNorm()) / bearing.sigma;
     const double weight = distance <= kHuber ? 1.0 : kHuber / distance;
     const double information = weight / (bearing.sigma * bearing.sigma);

@@ -60,7 +60,7 @@ class BearingBatch {
 
  private:
   static constexpr int kUnknowns = 8;  ///< six ROE, two of bias
-  static constexpr int kOrbits = 14;   ///< servicer, target, and the target with each element increased and decreased
+  static constexpr int kOrbits = 8;    ///< servicer, target, and the target with each element increased
   static constexpr std::size_t kMaxBurns = 32;
   using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
   using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;

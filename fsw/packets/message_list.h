@@ -91,6 +91,7 @@ inline constexpr Route kManeuvers = queue(32);
   X(::vbar::carrier_configuration, kCarrierConfiguration, 0x10E, route::kTelecommand)                 \
   X(::vbar::maneuver_command, kManeuverCommand, 0x401, route::kFromFlight)                            \
   X(::vbar::pointing_command, kPointingCommand, 0x402, route::kFromFlight)                            \
+  X(::vbar::exposure_command, kExposureCommand, 0x403, route::kFromFlight)                            \
   X(::vbar::telemetry_navigation, kTelemetryNavigation, 0x501, route::kFromFlight)                    \
   X(::vbar::telemetry_control, kTelemetryControl, 0x502, route::kFromFlight)                          \
   X(::vbar::telemetry_health, kTelemetryHealth, 0x503, route::kFromFlight)                            \

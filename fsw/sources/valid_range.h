@@ -3,6 +3,8 @@
 
 namespace vbar::fsw::sources {
 
+inline constexpr double kLongestExposure_s = 3600.0;
+
 constexpr bool is_between(double x, double minimum, double maximum) {
   return x >= minimum && x <= maximum;
 }

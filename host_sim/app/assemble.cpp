@@ -131,7 +131,7 @@ class Recording final : public RunObserver {
 class LineWatch final : public RunObserver {
  public:
   LineWatch(const mission::Mission& mission, const mission::Spacecraft& servicer, const pil::FlightComputer& computer)
-      : computer_(computer), usage_(*servicer.flight_computer, mission.step, computer.statistics()) {}
+      : computer_(computer), usage_(*servicer.flight_computer, mission.step.shortest_period(), computer.statistics()) {}
   void on_step(std::uint32_t, fsw::GpsTime, std::span<const pil::Packet>, std::span<const pil::Packet>) override {
     usage_.after_step(computer_.statistics());
   }

@@ -58,7 +58,7 @@ Propagation::Propagation(const mission::Mission& mission, const std::filesystem:
 
 std::vector<fsw::GpsTime> Propagation::sampling_times() const {
   std::vector<fsw::GpsTime> times;
-  for (fsw::GpsTime time = mission_.start_time(); time < mission_.end_time(); time = time + mission_.step)
+  for (fsw::GpsTime time = mission_.start_time(); time < mission_.end_time(); time = mission_.step.next_after(time))
     times.push_back(time);
   times.push_back(mission_.end_time());
   return times;

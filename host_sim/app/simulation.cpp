@@ -250,7 +250,8 @@ void Simulation::handle(const StepFlight&) {
   }
   take_commands(answer);
   ++step_;
-  if (now + timetable_.step <= timetable_.end) schedule(now + timetable_.step, StepFlight{});
+  const GpsTime next = timetable_.step.next_after(now);
+  if (next <= timetable_.end) schedule(next, StepFlight{});
   if (world_.progress) world_.progress(now - timetable_.start);
   interrupted_ = stop_requested();
 }
@@ -258,7 +259,7 @@ void Simulation::handle(const StepFlight&) {
 twins::Packet Simulation::make_tick() {
   tick message{};
   message.step = step_;
-  message.period_ns = timetable_.step.ns;
+  message.period_ns = (timetable_.step.next_after(events_.now()) - events_.now()).ns;
   return *ticks_.encode(events_.now(), message);  // holds integers only
 }
 
@@ -269,6 +270,7 @@ void Simulation::take_commands(const pil::StepResult& answer) {
   for (const pil::Packet& bytes : answer.packets) {
     const auto packet = fsw::packets::parse_packet(bytes);
     if (!packet.ok()) continue;
+    for (const Source& source : world_.sources) source.packets->command(packet.value(), effective);
     if (packet.value().header.apid == Apid::kPointingCommand) point(packet.value(), effective);
     if (packet.value().header.apid != Apid::kManeuverCommand) continue;
     const auto command = fsw::packets::decode<maneuver_command>(packet.value());

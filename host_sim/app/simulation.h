@@ -19,6 +19,7 @@
 
 #include "host_sim/app/run_observer.h"
 #include "host_sim/app/true_world.h"
+#include "host_sim/engine/cadence.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/event_queue.h"
 #include "host_sim/engine/link_model.h"
@@ -52,7 +53,7 @@ struct Timetable {
   };
   fsw::GpsTime start;  ///< first flight step
   fsw::GpsTime end;
-  fsw::Duration step;             ///< between flight steps
+  engine::Cadence step{fsw::GpsTime{}, fsw::duration_of_seconds(60)};  ///< after the first
   fsw::Duration compute_latency;  ///< from a step to the moment its outputs take effect
   std::uint8_t spacecraft = 0;    ///< as in packet headers
   engine::ClockSettings clock;

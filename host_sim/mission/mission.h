@@ -16,6 +16,7 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
 #include "fsw/packets/messages.h"
+#include "host_sim/engine/cadence.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/link_model.h"
 #include "host_sim/mission/attitude.h"
@@ -197,7 +198,8 @@ struct Mission {
   fsw::GpsTime epoch;      ///< of the orbital elements and of waypoint times
   fsw::Duration start;     ///< first step, after the epoch
   fsw::Duration duration;  ///< from the first step to the end of the run
-  fsw::Duration step;      ///< between flight steps
+  engine::Cadence step{fsw::GpsTime{},
+                       fsw::duration_of_seconds(60)};  ///< of the flight software, the first at the start
   std::uint64_t seed = 1;
   truth::TruthSettings truth;  ///< all but the data folder, which the program determines
   std::vector<Spacecraft> spacecraft;

@@ -1,6 +1,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "host_sim/mission/read_cadence.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/truth/earth/time_scales.h"
 
@@ -26,7 +27,9 @@ void read_general(const TableReader& document, Mission& mission) {
   mission.epoch = read_epoch(section);
   mission.start = section.span("start_h", kHour_s, from_to(0.0, kLongestMission_h), 0.0);
   mission.duration = section.span("duration_h", kHour_s, above_to(0.0, kLongestMission_h));
-  mission.step = section.span("step_s", 1.0, from_to(1e-3, 3600.0), 60.0);
+  mission.step = read_cadence(section, "step_s", from_to(1e-3, 3600.0), mission, fsw::duration_of_seconds(60));
+  if (mission.step.parts().front().from > mission.start_time())
+    section.refuse_value("step_s", "a first period that holds from the start of the mission on");
   constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
   mission.seed = static_cast<std::uint64_t>(section.integer("seed", 0, kLargestSeed, 1));
   section.finish();

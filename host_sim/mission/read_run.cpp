@@ -114,7 +114,8 @@ void read_clock(const TableReader& document, Mission& mission, const Installatio
   clock.compute_budget =
       section.span("compute_budget_s", 1.0, above_to(0.0, 3600.0),
                    std::max(1e-3, 1e-9 * static_cast<double>(mission.guidance.configuration.compute_latency_ns)));
-  clock.link_budget = section.span("link_budget_s", 1.0, above_to(0.0, 3600.0), fsw::seconds(mission.step));
+  clock.link_budget =
+      section.span("link_budget_s", 1.0, above_to(0.0, 3600.0), fsw::seconds(mission.step.shortest_period()));
   const double tolerance_ms = section.number("wake_tolerance_ms", from_to(0.0, 1e4), 2.0);
   if (installation.clocks.empty()) throw std::logic_error("the program has no clock source");
   mission.clock_source = section.text("source", std::string(installation.clocks.front()->name));

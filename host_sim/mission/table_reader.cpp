@@ -302,6 +302,27 @@ std::vector<double> TableReader::numbers(std::string_view key, std::size_t min_c
   });
 }
 
+std::vector<std::pair<double, double>> TableReader::pairs(std::string_view key, std::size_t max_count, Range first,
+                                                          Range second) const {
+  const std::string accepted = "an array of 1 to " + std::to_string(max_count) + " pairs of numbers: [[0.0, 60.0]]";
+  const auto* array = required(key, accepted).as_array();
+  if (array == nullptr || array->empty() || array->size() > max_count) refuse_value(key, accepted);
+  std::vector<std::pair<double, double>> values;
+  for (std::size_t k = 0; k < array->size(); ++k) {
+    const std::string place = std::string(key) + "[" + std::to_string(k) + "]";
+    const auto* pair = (*array)[k].as_array();
+    if (pair == nullptr || pair->size() != 2) refuse_value(key, accepted);
+    values.emplace_back(checked_number((*pair)[0], place + "[0]", first),
+                        checked_number((*pair)[1], place + "[1]", second));
+  }
+  return values;
+}
+
+bool TableReader::is_array(std::string_view key) const {
+  const toml::node* const node = find(key);
+  return node != nullptr && node->is_array();
+}
+
 std::array<double, 3> TableReader::three_numbers(std::string_view key, Range range,
                                                  std::optional<std::array<double, 3>> default_value) const {
   if (!has(key) && default_value) return *default_value;

@@ -52,6 +52,8 @@ class TableReader {
 
   [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
 
+  [[nodiscard]] bool is_array(std::string_view key) const;
+
   [[nodiscard]] const std::string& path() const { return path_; }
   /// The keys of the table, in alphabetical order; this does not count as reading them.
   [[nodiscard]] std::vector<std::string> keys() const;
@@ -69,6 +71,9 @@ class TableReader {
   std::string name(std::string_view key, std::optional<std::string> default_value = std::nullopt) const;
   /// An array of `min_count` to `max_count` numbers.
   std::vector<double> numbers(std::string_view key, std::size_t min_count, std::size_t max_count, Range range) const;
+  /// An array of 1 to `max_count` pairs of numbers: [[first, second], ...].
+  std::vector<std::pair<double, double>> pairs(std::string_view key, std::size_t max_count, Range first,
+                                               Range second) const;
   /// Three numbers or, where the key is missing, `default_value`; without it the key is required.
   std::array<double, 3> three_numbers(std::string_view key, Range range,
                                       std::optional<std::array<double, 3>> default_value = std::nullopt) const;

@@ -11,6 +11,9 @@ namespace vbar::report {
 /// What was flown, by what, how fast, and whether it came to its end (section_overview.cpp).
 [[nodiscard]] std::string overview(const RunRecord& record);
 
+/// Distance, accuracy, aiding sources and maneuvers of the whole run (section_glance.cpp).
+[[nodiscard]] Section glance_section(const RunRecord& record);
+
 /// The paper's performance metrics at each waypoint (section_waypoints.cpp).
 [[nodiscard]] Section waypoint_section(const RunRecord& record);
 

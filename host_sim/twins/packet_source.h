@@ -13,6 +13,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
+#include "fsw/packets/packet.h"
 #include "host_sim/io/wired_receiver.h"
 #include "host_sim/truth/attitude/attitude_state.h"
 
@@ -143,6 +144,13 @@ class PacketSource {
   /// Measures at the epoch of `truth`. Epochs are in order. It should return within a second, since it cannot be
   /// interrupted: longer work is `pending`.
   virtual Measurement measure(const TruthSnapshot& truth) = 0;
+
+  /// A command of the flight software, of any kind and to any device; it takes effect at `effective`, the present or
+  /// later.
+  virtual void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) {
+    static_cast<void>(packet);
+    static_cast<void>(effective);
+  }
 
   /// The content that its snapshots need.
   [[nodiscard]] virtual TruthDetail truth_detail() const { return TruthDetail::kStates; }

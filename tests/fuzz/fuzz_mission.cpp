@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (text.find("extends") != std::string_view::npos) return 0;
   try {
     const auto mission = vbar::sensors::parse_mission(text, "/fuzz/fuzz.toml");
-    VBAR_FUZZ_EXPECT(mission.step.ns > 0 && mission.duration.ns > 0);
+    VBAR_FUZZ_EXPECT(mission.step.shortest_period().ns > 0 && mission.duration.ns > 0);
   } catch (const vbar::mission::MissionError& error) {
     VBAR_FUZZ_EXPECT(std::string_view(error.what()).starts_with("/fuzz/"));
   }

@@ -6,9 +6,10 @@
 namespace vbar::fsw::sources {
 
 bool is_valid(const angles_only_configuration& a) {
-  return is_between(a.detection_sigmas, 1.0, 30.0) && is_between(a.centroid_floor_px, 0.0, 10.0) &&
-         is_positive(a.pointing_tolerance, stars::kLargestTolerance) && is_between(a.brightness_offset_m, 0.0, 100.0) &&
-         is_between(a.centroid_noise_m, 0.0, 100.0) && is_positive(a.bearing_bias, 0.1) && a.batch_images >= 10 &&
+  return is_between(a.exposure_s, 0.0, kLongestExposure_s) && is_between(a.detection_sigmas, 1.0, 30.0) &&
+         is_between(a.centroid_floor_px, 0.0, 10.0) && is_positive(a.pointing_tolerance, stars::kLargestTolerance) &&
+         is_between(a.brightness_offset_m, 0.0, 100.0) && is_between(a.centroid_noise_m, 0.0, 100.0) &&
+         is_positive(a.bearing_bias, 0.1) && a.batch_images >= 10 &&
          a.batch_images <= static_cast<std::int32_t>(navigation::BearingBatch::kCapacity);
 }
 

@@ -49,6 +49,7 @@ bool BearingSource::configure(const Configuration& configuration) {
     const bool is_new = unit != camera_ || telecommands.is_new<camera_configuration>(unit) ||
                         telecommands.is_new<angles_only_configuration>(unit);
     camera_ = unit;
+    exposures_ = two_exposures(telecommands, unit);
     if (is_new) tracking_.configure(optics.value());
     return true;
   }
@@ -60,6 +61,7 @@ void BearingSource::collect(Context& context, RecordFiler records) {
   edit_status_ = BearingEditStatus::kNone;
   const imaging::ImageAssembly& image = context.inbox.image(camera_);
   if (!aid().is_on() || !image.has_image()) return;
+  if (exposures_ && exposures_->is_for_keypoints(image.exposure_s())) return;
   const bool is_timely = image.image_time() <= context.now && context.now - image.image_time() <= kLongestDelay &&
                          (!last_image_ || image.image_time() > *last_image_);
   if (!is_timely || records.file(image.image_time(), static_cast<std::uint32_t>(image.image_number())) != Status::kOk) {

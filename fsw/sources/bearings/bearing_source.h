@@ -6,6 +6,7 @@
 
 #include "fsw/angles_only/angles_only_tracking.h"
 #include "fsw/sources/bearings/bearing_aiding.h"
+#include "fsw/sources/image_use.h"
 #include "fsw/sources/source.h"
 
 namespace vbar::fsw::sources {
@@ -34,7 +35,8 @@ class BearingSource {
   void report_image(const Telemetry& telemetry) const;
   void report_objects(const Telemetry& telemetry) const;
 
-  std::size_t camera_ = 0;  ///< unit
+  std::size_t camera_ = 0;                 ///< unit
+  std::optional<TwoExposures> exposures_;  ///< if it takes images for keypoints too
   angles_only::AnglesOnlyTracking tracking_;
   BearingAiding aiding_;
   std::array<tracking::OwnBurn, trunk::Trunk::kMaxImpulses> burns_since_image_{};

@@ -330,7 +330,6 @@ void KeypointAiding::follow_state(GpsTime time, KeypointEditStatus status) {
       return aid_.go_to(AidState::kStarting, time);
     case KeypointEditStatus::kNone:
     case KeypointEditStatus::kRefused:
-      if (aid_.state() == AidState::kAiding && !light_.is_lit) aid_.go_to(AidState::kSuspended, time);
       return check_age(time);
   }
 }

@@ -99,7 +99,7 @@ bool add_linear_states(trunk::Trunk& trunk, const pose::Keypoints& keypoints, co
       const double from_centre = predicted(row + axis) - centre_px.value()(axis);
       sensitivity(kAt<trunk::KeypointCommon> + axis) = 1.0;
       sensitivity(kAt<trunk::KeypointCommon> + 2) = from_centre;
-      sensitivity(kAt<trunk::KeypointCommon> + 3) = from_centre;
+      sensitivity(kAt<trunk::KeypointCommon> + 3) = model.lasting_stretch_scale * from_centre;
       sensitivity.segment<2>(kAt<trunk::KeypointErrors> + row) = root.row(axis).transpose();
       const double linear = sensitivity.segment<2>(mount).dot(estimate.mean().segment<2>(mount)) +
                             sensitivity.segment<4>(kAt<trunk::KeypointCommon>)

@@ -17,7 +17,8 @@ struct CameraPose {
 struct KeypointModel {
   std::size_t camera = 0;  ///< whose mount applies
   imaging::CameraModel optics;
-  pose::KeypointShape shape{};  ///< body axes from the centre of mass of the model, m
+  pose::KeypointShape shape{};         ///< body axes from the centre of mass of the model, m
+  double lasting_stretch_scale = 1.0;  ///< of the image, 1 and above: that of a small image is less certain
 };
 
 /// Whether the network considers it usable and its covariance is one.

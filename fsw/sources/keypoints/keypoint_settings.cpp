@@ -44,8 +44,9 @@ bool is_valid(const target_model& model) {
 
 bool is_valid(const pose_configuration& p) {
   const Vector6 sigma_a_roe_m = gnc::vector(p.start_sigma_a_roe_m);
-  return is_positive(p.keypoint_sigma_scale, 100.0) && is_between(p.keypoint_floor_px, 0.0, 100.0) &&
-         (sigma_a_roe_m.array() > 0.0).all() && (sigma_a_roe_m.array() < 1e6).all() && p.start_images >= 1 &&
+  return is_between(p.exposure_s, 0.0, kLongestExposure_s) && is_positive(p.keypoint_sigma_scale, 100.0) &&
+         is_between(p.keypoint_floor_px, 0.0, 100.0) && (sigma_a_roe_m.array() > 0.0).all() &&
+         (sigma_a_roe_m.array() < 1e6).all() && p.start_images >= 1 &&
          p.start_images <= static_cast<std::int32_t>(navigation::PoseInitialiser::kMaxSamples);
 }
 

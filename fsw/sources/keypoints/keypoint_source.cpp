@@ -1,6 +1,7 @@
 #include "fsw/sources/keypoints/keypoint_source.h"
 
 #include "fsw/imaging/camera_model.h"
+#include "fsw/math/math.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/orbit/sun.h"
 
@@ -63,6 +64,7 @@ bool KeypointSource::configure(const Configuration& configuration) {
     const auto settings = keypoint_camera_settings(unit, *camera, *target, *pose);
     if (!settings.ok()) return false;
     cameras_[unit].settings = settings.value();
+    cameras_[unit].exposures = two_exposures(telecommands, unit);
     if (first == nullptr) first = pose;
     is_new = is_new || telecommands.is_new<camera_configuration>(unit) || telecommands.is_new<pose_configuration>(unit);
   }
@@ -81,6 +83,8 @@ void KeypointSource::collect(Context& context, RecordFiler records) {
     camera.report.reset();
     const imaging::ImageAssembly& image = context.inbox.image(unit);
     if (!camera.settings || !image.has_image()) continue;
+    if (camera.exposures && !camera.exposures->is_for_keypoints(image.exposure_s())) continue;
+    if (!shows_keypoints(camera)) continue;
     const GpsTime time = image.image_time();
     const bool is_timely =
         time <= context.now && context.now - time <= kLongestDelay && (!camera.last_image || time > *camera.last_image);
@@ -88,6 +92,28 @@ void KeypointSource::collect(Context& context, RecordFiler records) {
       context.inbox.count_unusable_time();
     }
   }
+}
+
+/// Without a known range only a camera for nothing else may show them.
+bool KeypointSource::shows_keypoints(const Camera& camera) {
+  if (camera.resolution == Resolution::kUnknown) return !camera.exposures;
+  return camera.resolution == Resolution::kResolved;
+}
+
+void KeypointSource::watch(GpsTime now, trunk::Trunk& trunk) {
+  for (Camera& camera : cameras_) {
+    if (camera.settings)
+      camera.resolution = resolution_of(*camera.settings, camera.exposures.has_value(), trunk, camera.resolution);
+  }
+  aiding_.check_age(now);
+}
+
+/// A target that fills the image of this camera is resolved by another: stars are not expected beside it.
+std::optional<double> KeypointSource::wanted_exposure_s(std::size_t camera) const {
+  const auto& [settings, exposures, resolution, last_image, report] = cameras_[camera];
+  if (!exposures) return std::nullopt;
+  const bool is_resolved = resolution == Resolution::kResolved || resolution == Resolution::kTooLarge;
+  return aid().is_on() && is_resolved ? exposures->keypoints_s : exposures->bearings_s;
 }
 
 void KeypointSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
@@ -105,6 +131,12 @@ void KeypointSource::fold(const Record& record, Context& context, trunk::Trunk& 
   image.camera = settings.camera;
   image.sun_eci = orbit::sun_position_gcrf(record.time).normalized();
   image.R_camera_eci = R_camera_eci_at(record.time, settings.R_camera_body, context.platform, trunk);
+  const Result<Vector3> position =
+      image.R_camera_eci ? target_position_camera(image.camera, *image.R_camera_eci, trunk) : Status::kNotReady;
+  if (position.ok()) {
+    const double range_m = math::sqrt(position.value().squaredNorm());
+    image.camera.model.lasting_stretch_scale = lasting_stretch_scale(image_scale(settings, range_m));
+  }
   network_.configure(settings.network);
   const pose::PoseSighting& sighting =
       network_.process(record.time, frame.image_number(), frame.view(), predicted_position_camera(image, trunk));

@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "fsw/pose/spacecraft_pose_network.h"
+#include "fsw/sources/image_use.h"
 #include "fsw/sources/keypoints/keypoint_aiding.h"
 #include "fsw/sources/keypoints/keypoint_settings.h"
+#include "fsw/sources/keypoints/resolution.h"
 #include "fsw/sources/source.h"
 
 namespace vbar::fsw::sources {
@@ -22,7 +24,7 @@ class KeypointSource {
   /// Predicts the crop, runs the network and updates the trunk by its keypoints.
   void fold(const Record& record, Context& context, trunk::Trunk& trunk);
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
-  void watch(GpsTime now, trunk::Trunk& /*trunk*/) { aiding_.check_age(now); }
+  void watch(GpsTime now, trunk::Trunk& trunk);
   void stop(GpsTime now, trunk::Trunk& trunk);
   /// Telemetry of the images of the step.
   void report(const Telemetry& telemetry) const;
@@ -33,6 +35,8 @@ class KeypointSource {
   [[nodiscard]] GpsTime last_measurement() const { return aiding_.last_accepted(); }
   /// Whether the last image was processed.
   [[nodiscard]] bool has_aided() const { return last_image_ && *last_image_ == aiding_.last_accepted(); }
+  /// The exposure that a camera with two uses shall take its next images with; empty for any other.
+  [[nodiscard]] std::optional<double> wanted_exposure_s(std::size_t camera) const;
   /// The direction, in the servicer's RTN, in which the target was seen last: for pointing while its orbit is unknown.
   [[nodiscard]] const std::optional<Vector3>& last_seen_rtn() const { return last_seen_rtn_; }
 
@@ -40,10 +44,13 @@ class KeypointSource {
   /// A camera, and the telemetry of its image of the step.
   struct Camera {
     std::optional<KeypointCameraSettings> settings;
+    std::optional<TwoExposures> exposures;  ///< if it takes images for bearings too
+    Resolution resolution = Resolution::kUnknown;
     std::optional<GpsTime> last_image;
     std::optional<telemetry_pose> report;
   };
 
+  [[nodiscard]] static bool shows_keypoints(const Camera& camera);
   [[nodiscard]] static std::optional<Matrix3> R_camera_eci_at(GpsTime time, const Matrix3& R_camera_body,
                                                               const Platform& platform, const trunk::Trunk& trunk);
   void remember_direction(const KeypointCameraSettings& camera, const std::optional<Matrix3>& R_camera_eci,

@@ -23,14 +23,14 @@ class SceneTap final : public twins::PacketSource {
   struct Settings {
     twins::camera::CameraMount mount;
     std::string model;  ///< of the target
-    fsw::GpsTime epoch, start;
-    fsw::Duration period;
+    fsw::GpsTime epoch;
+    engine::Cadence images{fsw::GpsTime{}, fsw::duration_of_seconds(60)};
     double exposure_s = 0.0, scale = 1.0;
   };
   SceneTap(Settings settings, std::vector<SceneAhead>& scenes) : settings_(std::move(settings)), scenes_(scenes) {}
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override {
-    return twins::next_periodic_epoch(settings_.start, settings_.period, from);
+    return settings_.images.next_at(from);
   }
   twins::Measurement measure(const twins::TruthSnapshot& truth) override {
     const auto exposure =
@@ -51,7 +51,7 @@ class SceneTap final : public twins::PacketSource {
 /// The camera by whose images navigation finds the pose, otherwise the one whose images it uses, with a target that it
 /// can see.
 const sensors::CameraSensor& camera_of(const mission::Mission& mission, const mission::Spacecraft& servicer) {
-  const sensors::CameraSensor* camera = sensors::navigation_camera(servicer, sensors::CameraNavigation::kPose);
+  const sensors::CameraSensor* camera = sensors::first_camera_for(sensors::CameraSensor::kKeypoints, servicer);
   if (camera == nullptr) camera = sensors::navigation_camera(servicer);
   const mission::Spacecraft* target = camera != nullptr ? mission.find_spacecraft(camera->observed) : nullptr;
   if (target == nullptr || target->model.empty() || !target->attitude)
@@ -68,7 +68,7 @@ mission::Mission with_true_states(mission::Mission mission, const std::string& s
     navigation->source = "ideal";
     navigation->observed = observed;
     navigation->navigation = vbar::navigation_configuration::kUseIdeal;
-    navigation->period = mission.step;
+    navigation->period = mission.step.shortest_period();
     spacecraft.sensors.clear();
     spacecraft.sensors.push_back({"navigation", std::string(sensors::kIdealNavigation.name), std::move(navigation)});
     spacecraft.flight_computer = mission::FlightComputer{};
@@ -92,8 +92,7 @@ std::vector<SceneAhead> fly_ahead(const mission::Mission& mission, const std::fi
     SceneTap::Settings settings{sensors::mount_of(mission, servicer, camera, data),
                                 mission.find_spacecraft(camera.observed)->model,
                                 mission.epoch,
-                                mission.start_time() + camera.period,
-                                camera.period,
+                                camera.images,
                                 camera.settings.exposure_s,
                                 scale};
     made.sources.push_back({"scenes", "digital", std::make_unique<SceneTap>(std::move(settings), scenes)});

@@ -51,7 +51,7 @@ class CameraEvaluation final : public Evaluation {
         gallery_(context.mission, context.servicer, twin_of_testbed_camera(context.mission, context.servicer, sensor),
                  unit_),
         pose_gallery_(context.mission, context.servicer, unit_) {
-    if (camera.use == CameraNavigation::kPose)
+    if (camera.has_use(CameraSensor::kKeypoints))
       known_target_ = target_model_of(context.mission, camera, mission::data_directory());
   }
 
@@ -114,7 +114,7 @@ class CameraEvaluation final : public Evaluation {
 
 std::unique_ptr<Evaluation> evaluate_camera(const mission::Sensor& sensor, const EvaluationContext& context) {
   const auto& camera = settings_of<CameraSensor>(sensor);
-  if (camera.use == CameraNavigation::kNone) return nullptr;  // the flight software says nothing of its images
+  if (!camera.is_used()) return nullptr;  // the flight software says nothing of its images
   return std::make_unique<CameraEvaluation>(sensor, camera, context);
 }
 

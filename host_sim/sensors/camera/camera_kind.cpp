@@ -26,7 +26,7 @@ void check_target(const TableReader& section, const CameraSensor& camera, const 
         "target",
         "the spacecraft \"" + target.name + "\" without " + (target.model.empty() ? "a model" : "an attitude"),
         "a spacecraft with a model and an attitude, so that it can be seen");
-  if (camera.use == CameraNavigation::kPose && !std::holds_alternative<mission::Tumble>(*target.attitude))
+  if (camera.has_use(CameraSensor::kKeypoints) && !std::holds_alternative<mission::Tumble>(*target.attitude))
     section.refuse("target", "the spacecraft \"" + target.name + "\", which does not tumble",
                    "with navigation = \"pose\": a spacecraft that tumbles, by laws that are known on board");
 }
@@ -36,7 +36,11 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
   const auto& camera = settings_of<CameraSensor>(sensor);
   if (!servicer.attitude) section.refuse("", "a camera without an attitude", "an attitude: a camera looks somewhere");
   check_target(section, camera, mission);
-  if (camera.use == CameraNavigation::kNone) return;
+  if (!camera.is_used()) return;
+  if (camera.changes_use() && camera.source != "digital" && camera.source != "recorded")
+    section.refuse("navigation",
+                   "two uses of a camera of the testbed \"" + camera.source + "\", whose exposure is fixed",
+                   "one of \"angles_only\" and \"pose\"");
   if (!servicer.flight_computer)
     section.refuse("", "a camera without a flight computer", "a camera of a spacecraft that flies software");
   using Use = vbar::navigation_configuration;
@@ -93,7 +97,7 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
   const std::string name = source_name(context.servicer, sensor);
   if (camera.source == "recorded") {
     twins::RecordedLog::Selection selection{context.servicer.number, {fsw::packets::Apid::kImageTile}};
-    if (camera.use != CameraNavigation::kNone) selection.unit = camera_unit(sensor, context.servicer);
+    if (camera.is_used()) selection.unit = camera_unit(sensor, context.servicer);
     const auto make_tiles = [&](twins::ImagesOfLog&& images) {
       return make_recorded_tile_source(
           [&mission = context.mission, &servicer = context.servicer, &sensor, data = context.data_directory] {
@@ -110,15 +114,15 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
 }
 
 std::string_view name_of_navigation(const Spacecraft& servicer) {
-  const bool has_bearings = navigation_camera(servicer, CameraNavigation::kAnglesOnly) != nullptr;
-  const bool has_pose = navigation_camera(servicer, CameraNavigation::kPose) != nullptr;
+  const bool has_bearings = first_camera_for(CameraSensor::kBearings, servicer) != nullptr;
+  const bool has_pose = first_camera_for(CameraSensor::kKeypoints, servicer) != nullptr;
   return has_bearings && has_pose ? "angles_only+pose" : has_pose ? "pose" : "angles_only";
 }
 
 void add_facts(const Sensor& sensor, const Mission& /*mission*/, const Spacecraft& servicer, report::RunFacts& facts) {
-  const CameraNavigation use = settings_of<CameraSensor>(sensor).use;
-  if (use != CameraNavigation::kNone || facts.camera.empty()) facts.camera = sensor.settings->source;
-  if (use != CameraNavigation::kNone) facts.navigation = name_of_navigation(servicer);
+  const bool is_used = settings_of<CameraSensor>(sensor).is_used();
+  if (is_used || facts.camera.empty()) facts.camera = sensor.settings->source;
+  if (is_used) facts.navigation = name_of_navigation(servicer);
 }
 
 using fsw::math::kArcsecond;
@@ -162,23 +166,21 @@ const SensorKind kCamera{{"camera", "", read_camera, read_camera_shared, check},
 const CameraSensor* navigation_camera(const Spacecraft& carrier, std::uint8_t unit) {
   for (const Sensor& sensor : carrier.sensors)
     if (const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
-        camera != nullptr && camera->use != CameraNavigation::kNone && camera_unit(sensor, carrier) == unit)
+        camera != nullptr && camera->is_used() && camera_unit(sensor, carrier) == unit)
       return camera;
   return nullptr;
 }
 
-const CameraSensor* navigation_camera(const Spacecraft& carrier, CameraNavigation use) {
+const CameraSensor* first_camera_for(std::int32_t use, const Spacecraft& carrier) {
   for (const Sensor& sensor : carrier.sensors)
     if (const auto* const camera = dynamic_cast<const CameraSensor*>(sensor.settings.get());
-        camera != nullptr && camera->use == use)
+        camera != nullptr && camera->has_use(use))
       return camera;
   return nullptr;
 }
 
 std::uint8_t camera_unit(const Sensor& sensor, const Spacecraft& carrier) {
-  const auto is_used = [](const Sensor& camera) {
-    return settings_of<CameraSensor>(camera).use != CameraNavigation::kNone;
-  };
+  const auto is_used = [](const Sensor& camera) { return settings_of<CameraSensor>(camera).is_used(); };
   std::uint8_t unit = is_used(sensor) ? 0 : static_cast<std::uint8_t>(fsw::packets::kCameras);
   for (const Sensor& other : carrier.sensors) {
     if (other.name == sensor.name) break;

@@ -7,28 +7,36 @@
 #include <Eigen/Geometry>
 
 #include "fsw/packets/messages.h"
+#include "host_sim/engine/cadence.h"
 #include "host_sim/sensors/sensor_kind.h"
 #include "host_sim/twins/camera/camera_settings.h"
 
 namespace vbar::sensors {
 
-/// What navigation makes of a camera's images.
-enum class CameraNavigation { kNone, kAnglesOnly, kPose };
-
 /// `observed` is the spacecraft that it navigates to.
 struct CameraSensor : mission::SensorSettings {
   std::string camera;  ///< its file as the mission names it, which `settings` began with
   twins::camera::CameraSettings settings;
-  CameraNavigation use = CameraNavigation::kAnglesOnly;
-  fsw::Duration period;   ///< between exposures
+  engine::Cadence images{fsw::GpsTime{}, fsw::duration_of_seconds(60)};  ///< middles of the exposures
+  /// Of images for keypoints; those for bearings have the exposure of `settings`. The flight software commands which.
+  double keypoint_exposure_s = 0.0;
   fsw::Duration readout;  ///< from the middle of an exposure until the image leaves the camera
   Eigen::Quaterniond q_camera_body = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
   fsw::Vector3 position_body_m = fsw::Vector3::Zero();                ///< from the centre of mass
+
+  [[nodiscard]] bool has_use(std::int32_t use) const { return (navigation & use) != 0; }
+  [[nodiscard]] bool is_used() const { return navigation != 0; }
+  /// Bearings while the target is a point, keypoints once it is resolved.
+  [[nodiscard]] bool changes_use() const { return has_use(kBearings) && has_use(kKeypoints); }
+
+  static constexpr std::int32_t kBearings = vbar::navigation_configuration::kUseBearings;
+  static constexpr std::int32_t kKeypoints = vbar::navigation_configuration::kUseKeypoints;
 };
 
-/// The camera of that unit whose images navigation uses, and the first with that use; null if there is none.
+/// The camera of that unit whose images navigation uses, and the first with that use (CameraSensor::kBearings,
+/// kKeypoints); null if there is none.
 [[nodiscard]] const CameraSensor* navigation_camera(const mission::Spacecraft& carrier, std::uint8_t unit = 0);
-[[nodiscard]] const CameraSensor* navigation_camera(const mission::Spacecraft& carrier, CameraNavigation use);
+[[nodiscard]] const CameraSensor* first_camera_for(std::int32_t use, const mission::Spacecraft& carrier);
 
 /// The unit in packet headers: cameras whose images navigation uses come first, in the order of the mission; the flight
 /// software does not know the others, from packets::kCameras on. By the name of the sensor: its settings may be those

@@ -74,19 +74,23 @@ vbar::target_model target_model_of(const Mission& mission, const CameraSensor& s
 void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandContext& context,
                              Telecommands& telecommands) {
   const auto& own = settings_of<CameraSensor>(sensor);
-  if (own.use == CameraNavigation::kNone) return;
+  if (!own.is_used()) return;
   const std::uint8_t unit = camera_unit(sensor, context.servicer);
   const KnownCamera known = known_camera(own, context.mission, context.data_directory);
   const CameraSensor& camera = known.sensor;
   const auto& shared = mission::shared_settings<CameraShared>(context.mission);
   telecommands.add(camera_configuration_of(camera), unit);
-  if (camera.use == CameraNavigation::kPose) {
-    telecommands.add(shared.pose, unit);
+  if (camera.has_use(CameraSensor::kKeypoints)) {
+    auto configuration = shared.pose;
+    configuration.exposure_s = camera.keypoint_exposure_s;
+    telecommands.add(configuration, unit);
     // Once, whatever the number of cameras.
-    if (&own == navigation_camera(context.servicer, CameraNavigation::kPose))
+    if (&own == first_camera_for(CameraSensor::kKeypoints, context.servicer))
       telecommands.add(target_model_of(context.mission, camera, context.data_directory));
-  } else {
+  }
+  if (camera.has_use(CameraSensor::kBearings)) {
     auto configuration = shared.angles_only;
+    configuration.exposure_s = camera.settings.exposure_s;
     if (known.centroid_floor_px)
       configuration.centroid_floor_px = std::max(configuration.centroid_floor_px, *known.centroid_floor_px);
     telecommands.add(configuration, unit);

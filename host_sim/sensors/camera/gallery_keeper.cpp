@@ -45,9 +45,9 @@ GalleryKeeper::GalleryKeeper(const mission::Mission& mission, const mission::Spa
                              TakeTwinImage take_twin, std::uint8_t unit)
     : take_twin_(std::move(take_twin)) {
   const auto* const camera = navigation_camera(servicer, unit);
-  if (camera == nullptr || camera->use != CameraNavigation::kAnglesOnly) return;
+  if (camera == nullptr || !camera->has_use(CameraSensor::kBearings)) return;
   assembly_ = std::make_unique<fsw::imaging::ImageAssembly>(unit);
-  before_ = fsw::Duration{kExposuresBefore * camera->period.ns};
+  before_ = fsw::Duration{kExposuresBefore * camera->images.parts().front().period.ns};
   focal_length_px_ = camera->settings.focal_length_px();
   for (const mission::Waypoint& waypoint : mission.waypoints)
     if (waypoint.time > mission.start_time() && waypoint.time < mission.end_time()) moments_.push_back(waypoint.time);

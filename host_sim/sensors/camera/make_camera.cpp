@@ -96,10 +96,10 @@ std::unique_ptr<twins::PacketSource> make_camera(const Mission& mission, const S
   settings.image = image_settings(mission, servicer, sensor);
   settings.mount = mount_of(mission, servicer, camera, data_directory);
   // The first image is taken one period after the first step, which tells the platform where to look.
-  settings.start = mission.start_time() + camera.period;
-  settings.period = camera.period;
+  settings.images = camera.images;
   settings.readout = camera.readout;
-  settings.sends_packets = camera.use != CameraNavigation::kNone;
+  if (camera.changes_use()) settings.first_exposure_s = camera.settings.exposure_s;
+  settings.sends_packets = camera.is_used();
   return std::make_unique<twins::camera::CameraSensor>(settings, std::move(taker));
 }
 

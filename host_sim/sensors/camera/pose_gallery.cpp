@@ -27,7 +27,7 @@ std::string caption(const PoseRow& row) {
 
 PoseGallery::PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer, std::uint8_t unit) {
   const auto* const camera = navigation_camera(servicer, unit);
-  if (camera == nullptr || camera->use != CameraNavigation::kPose) return;
+  if (camera == nullptr || !camera->has_use(CameraSensor::kKeypoints)) return;
   work_ = std::make_unique<Work>();
   static_cast<void>(work_->network.load(fsw::network::weights_on_board()));  // without it, pictures without maps
   work_->assembly = fsw::imaging::ImageAssembly(unit);

@@ -4,6 +4,7 @@
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/nearest_name.h"
 #include "host_sim/mission/read_attitude.h"
+#include "host_sim/mission/read_cadence.h"
 #include "host_sim/sensors/camera/camera_file.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 
@@ -13,9 +14,29 @@ namespace {
 using mission::from_to;
 using mission::TableReader;
 
-constexpr mission::Names<CameraNavigation, 3> kCameraNavigations{{{"none", CameraNavigation::kNone},
-                                                                  {"angles_only", CameraNavigation::kAnglesOnly},
-                                                                  {"pose", CameraNavigation::kPose}}};
+constexpr mission::Names<std::int32_t, 3> kUses{
+    {{"none", 0}, {"angles_only", CameraSensor::kBearings}, {"pose", CameraSensor::kKeypoints}}};
+
+/// One of the names, or an array of "angles_only" and "pose".
+std::int32_t read_uses(const TableReader& section) {
+  if (!section.is_array("navigation"))
+    return section.choice<std::int32_t>("navigation", kUses, CameraSensor::kBearings);
+  std::int32_t uses = 0;
+  for (const std::int32_t use : section.choices<std::int32_t>("navigation", kUses)) {
+    if (use == 0) section.refuse_value("navigation", "\"none\" alone");
+    uses |= use;
+  }
+  return uses;
+}
+
+/// Keypoints want a target that is not saturated, bearings want stars: a camera with both uses has two exposures.
+double read_keypoint_exposure(const TableReader& section, const CameraSensor& camera) {
+  constexpr std::string_view kKey = "exposure_keypoints_s";
+  if (camera.changes_use()) return section.number(kKey, from_to(1e-6, camera.settings.exposure_s));
+  if (section.has(kKey))
+    section.refuse(kKey, "a second exposure of a camera with one use", "no such key, or both uses");
+  return camera.settings.exposure_s;
+}
 
 std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
@@ -57,17 +78,16 @@ std::shared_ptr<const mission::SensorSettings> read_camera(const TableReader& se
   read_camera_settings(section, file);
   camera.settings = file.settings();
   camera.observed = mission::read_other_spacecraft(section, context.spacecraft, context.spacecraft_names);
-  camera.use = section.choice<CameraNavigation>("navigation", kCameraNavigations, CameraNavigation::kAnglesOnly);
-  constexpr std::int32_t kUses[] = {0, vbar::navigation_configuration::kUseBearings,
-                                    vbar::navigation_configuration::kUseKeypoints};
-  camera.navigation = kUses[static_cast<std::size_t>(camera.use)];
-  camera.period = section.span("period_s", 1.0, from_to(0.1, 3600.0), fsw::seconds(context.mission.step));
+  camera.navigation = read_uses(section);
+  camera.keypoint_exposure_s = read_keypoint_exposure(section, camera);
+  camera.images =
+      mission::read_cadence(section, "period_s", from_to(0.1, 3600.0), context.mission, context.mission.step);
   camera.readout = section.span("readout_s", 1.0, from_to(0.0, 3600.0), 2.0);
   if (const auto q = mission::read_quaternion(section, "q_camera_body")) camera.q_camera_body = *q;
   const auto position = section.three_numbers("position_body_m", from_to(-50.0, 50.0), {{0.0, 0.0, 0.0}});
   camera.position_body_m = {position[0], position[1], position[2]};
   section.finish();
-  if (fsw::seconds(camera.readout) + camera.settings.exposure_s > fsw::seconds(camera.period))
+  if (fsw::seconds(camera.readout) + camera.settings.exposure_s > fsw::seconds(camera.images.shortest_period()))
     section.refuse(section.has("readout_s") ? "readout_s" : "period_s",
                    "images that come faster than one is exposed and read",
                    "exposure_s and readout_s that fit into period_s");

@@ -19,7 +19,8 @@ std::shared_ptr<const mission::SensorSettings> read(const TableReader& section, 
   if (std::find(names.begin(), names.end(), sensor->observed) == names.end())
     section.refuse("target", "the spacecraft \"" + sensor->observed + "\"",
                    mission::listing_of({names.begin(), names.end()}));
-  sensor->period = section.span("period_s", 1.0, mission::from_to(1e-3, 1e6), fsw::seconds(context.mission.step));
+  sensor->period =
+      section.span("period_s", 1.0, mission::from_to(1e-3, 1e6), fsw::seconds(context.mission.step.shortest_period()));
   return sensor;
 }
 

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "fsw/packets/messages.h"
 #include "host_sim/twins/camera/image_recipe.h"
 #include "host_sim/twins/camera/recorded_image.h"
 
@@ -26,18 +27,33 @@ void check_models(const CameraMount& mount) {
 CameraSensor::CameraSensor(const Settings& settings, std::unique_ptr<ImageTaker> taker)
     : settings_(settings), taker_(std::move(taker)) {
   check_models(settings.mount);
+  if (settings.first_exposure_s) commanded_.push_back({fsw::GpsTime{}, *settings.first_exposure_s});
 }
 
 std::optional<fsw::GpsTime> CameraSensor::next_epoch(fsw::GpsTime from) const {
-  return next_periodic_epoch(settings_.start, settings_.period, from);
+  return settings_.images.next_at(from);
+}
+
+void CameraSensor::command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) {
+  const bool is_mine = settings_.first_exposure_s && packet.header.apid == fsw::packets::Apid::kExposureCommand &&
+                       packet.header.unit == settings_.image.unit;
+  if (!is_mine) return;
+  const auto message = fsw::packets::decode<exposure_command>(packet);
+  if (message.ok() && message.value().exposure_s > 0.0) commanded_.push_back({effective, message.value().exposure_s});
+}
+
+std::optional<double> CameraSensor::duration_at(fsw::GpsTime time) {
+  while (commanded_.size() > 1 && commanded_[1].from <= time) commanded_.erase(commanded_.begin());
+  return commanded_.empty() ? std::nullopt : std::optional(commanded_.front().duration_s);
 }
 
 Measurement CameraSensor::measure(const TruthSnapshot& truth) {
   Measurement measurement;
   measurement.available = truth.time + settings_.readout;
   try {
-    const std::int64_t number = (truth.time - settings_.start).ns / settings_.period.ns;
-    const Exposure exposure = exposure_of_truth(settings_.mount, truth, number);
+    const std::int64_t number = settings_.images.number_of(truth.time);
+    Exposure exposure = exposure_of_truth(settings_.mount, truth, number);
+    exposure.duration_s = duration_at(truth.time);
     const ImageMaker::Settings& image = settings_.image;
     measurement.recipe = LoggedImage{{image.spacecraft, image.unit, image_number_on_link(number)},
                                      bytes_of({image.spacecraft, image.unit, exposure})};

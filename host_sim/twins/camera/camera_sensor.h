@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fsw/core/gps_time.h"
+#include "host_sim/engine/cadence.h"
 #include "host_sim/twins/camera/exposure_of_truth.h"
 #include "host_sim/twins/camera/image_maker.h"
 #include "host_sim/twins/camera/image_taker.h"
@@ -22,10 +23,11 @@ class CameraSensor final : public PacketSource {
   struct Settings {
     ImageMaker::Settings image;
     CameraMount mount;
-    fsw::GpsTime start;         ///< middle of the first exposure
-    fsw::Duration period;       ///< > 0, between exposures
-    fsw::Duration readout;      ///< >= 0: from the middle of an exposure until its packets leave
-    bool sends_packets = true;  ///< false: the images are in the log only
+    engine::Cadence images{fsw::GpsTime{}, fsw::duration_of_seconds(60)};  ///< middles of the exposures
+    fsw::Duration readout;  ///< >= 0: from the middle of an exposure until its packets leave
+    /// Of the first images, if commands may change it; otherwise it is always that of the settings.
+    std::optional<double> first_exposure_s = std::nullopt;
+    bool sends_packets = true;                                    ///< false: the images are in the log only
     std::chrono::milliseconds timeout = std::chrono::minutes(5);  ///< on the wall, for one image
   };
 
@@ -49,6 +51,9 @@ class CameraSensor final : public PacketSource {
   /// the truth lacks the spacecraft or its attitude.
   Measurement measure(const TruthSnapshot& truth) override;
 
+  /// Of the exposure of its images.
+  void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) override;
+
   [[nodiscard]] bool truth_is_compared() const override { return settings_.sends_packets; }
   [[nodiscard]] std::chrono::milliseconds wait_limit() const override { return settings_.timeout; }
 
@@ -57,11 +62,17 @@ class CameraSensor final : public PacketSource {
   [[nodiscard]] std::vector<Note> statistics() const override;
 
  private:
+  struct CommandedExposure {
+    fsw::GpsTime from;
+    double duration_s = 0.0;
+  };
+  [[nodiscard]] std::optional<double> duration_at(fsw::GpsTime time);
   Completion take(const Exposure& exposure);
   LoggedImage record(const Exposure& exposure, std::span<const std::uint16_t> dn);
 
   Settings settings_;
   std::unique_ptr<ImageTaker> taker_;
+  std::vector<CommandedExposure> commanded_;  ///< in order of time, that in force first
   std::atomic<double> packing_s_{0.0};
   std::atomic<double> recording_s_{0.0};
   std::atomic<std::int64_t> images_{0}, recorded_bytes_{0};

@@ -87,17 +87,19 @@ void Detector::add_hot_pixels() {
   }
 }
 
-void Detector::expose(const PhotonImage& image, std::int64_t exposure_number, std::vector<std::uint16_t>& dn) {
+void Detector::expose(const PhotonImage& image, std::int64_t exposure_number, std::vector<std::uint16_t>& dn,
+                      std::optional<double> duration_s) {
   if (image.region != settings_.region || image.electrons.size() != pixels_)
     throw std::invalid_argument("the image is not of the region that the detector reads");
   const auto exposure = static_cast<std::uint64_t>(exposure_number);
-  collect(image, exposure);
+  const double dark_share = duration_s ? *duration_s / settings_.exposure_s : 1.0;
+  collect(image, exposure, static_cast<float>(dark_share));
   const BloomingSettings blooming{settings_.detector.full_well_electrons, settings_.detector.blooming_fraction};
   drained_electrons_ = bloom(blooming, settings_.region.width, settings_.region.height, charge_);
   read_out(exposure, dn);
 }
 
-void Detector::collect(const PhotonImage& image, std::uint64_t exposure) {
+void Detector::collect(const PhotonImage& image, std::uint64_t exposure, float dark_share) {
   const NoiseKey key{noise_key_, exposure};
   ChunkWords words;
   ChunkFloats means{};
@@ -105,7 +107,7 @@ void Detector::collect(const PhotonImage& image, std::uint64_t exposure) {
     const std::size_t begin = chunk * kChunk;
     const std::size_t count = std::min(kChunk, pixels_ - begin);
     for (std::size_t k = 0; k < count; ++k)
-      means[k] = image.electrons[begin + k] * response_[begin + k] + dark_electrons_[begin + k];
+      means[k] = image.electrons[begin + k] * response_[begin + k] + dark_share * dark_electrons_[begin + k];
     draw_words(key, NoiseKind::kShot, static_cast<std::uint32_t>(chunk), words);
     poisson_numbers(words, means, chunk_of(charge_, chunk));
   }

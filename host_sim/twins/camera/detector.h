@@ -10,6 +10,7 @@
 // The model is that of the EMVA standard 1288, with blooming added.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -40,8 +41,10 @@ class Detector {
            std::span<const HotPixel> hot_pixels);
 
   /// Exposes and reads the region: `dn` gets its pixels, rows from the top. Throws std::invalid_argument for an image
-  /// of another region. Negative and NaN expected electrons count as zero.
-  void expose(const PhotonImage& image, std::int64_t exposure_number, std::vector<std::uint16_t>& dn);
+  /// of another region. Negative and NaN expected electrons count as zero. Without a duration it is that of the
+  /// settings.
+  void expose(const PhotonImage& image, std::int64_t exposure_number, std::vector<std::uint16_t>& dn,
+              std::optional<double> duration_s = std::nullopt);
 
   [[nodiscard]] std::span<const HotPixel> hot_pixels() const { return hot_pixels_; }
   /// Lost by blooming in the last exposure, electrons.
@@ -50,7 +53,7 @@ class Detector {
  private:
   void draw_fixed_pattern(std::uint64_t seed, std::string_view camera_name);
   void add_hot_pixels();
-  void collect(const PhotonImage& image, std::uint64_t exposure);
+  void collect(const PhotonImage& image, std::uint64_t exposure, float dark_share);
   void read_out(std::uint64_t exposure, std::vector<std::uint16_t>& dn) const;
 
   CameraSettings settings_;
@@ -60,7 +63,7 @@ class Detector {
   double drained_electrons_ = 0.0;
   // A value a pixel, filled up to whole chunks.
   std::vector<float> response_;        // relative to the mean pixel
-  std::vector<float> dark_electrons_;  // expected, of one exposure
+  std::vector<float> dark_electrons_;  // expected, of an exposure as in the settings
   std::vector<float> charge_;
 };
 

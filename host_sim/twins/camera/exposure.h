@@ -3,6 +3,7 @@
 // bit.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct ObjectInView {
 struct Exposure {
   fsw::GpsTime time;
   std::int64_t number = 0;                                           ///< from 0; selects the noise
+  std::optional<double> duration_s = std::nullopt;                   ///< as commanded; otherwise that of the settings
   Eigen::Quaterniond q_camera_eci = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
   fsw::Vector3 rate_camera = fsw::Vector3::Zero();  ///< of the camera with respect to ECI, in its own axes, rad/s
   fsw::Vector3 camera_position_eci = fsw::Vector3::Zero();  ///< geocentric, m

@@ -21,7 +21,7 @@ TakenImage ImageMaker::take(const Exposure& exposure) {
     renderer_(exposure, photons_);
   }
   const Stopwatch watch(detector_s_);
-  detector_.expose(photons_, exposure.number, image.dn);
+  detector_.expose(photons_, exposure.number, image.dn, exposure.duration_s);
   return image;
 }
 
@@ -35,7 +35,8 @@ std::vector<Packet> ImageMaker::packets_of(const Exposure& exposure) {
 
 std::vector<Packet> packets_of(const ImageMaker::Settings& settings, const Exposure& exposure,
                                std::span<const std::uint16_t> dn) {
-  const ImageLabel label{exposure.time, exposure.number, settings.spacecraft, settings.unit};
+  const ImageLabel label{exposure.time, exposure.number, settings.spacecraft, settings.unit,
+                         exposure.duration_s.value_or(settings.camera.exposure_s)};
   return image_tiles(label, settings.camera.region, settings.camera.detector.bits, dn);
 }
 

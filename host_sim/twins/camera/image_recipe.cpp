@@ -74,6 +74,7 @@ std::vector<std::uint8_t> bytes_of(const ImageRecipe& recipe) {
   message.unit = recipe.unit;
   message.gps_time_ns = exposure.time.ns;
   message.number = exposure.number;
+  message.duration_s = exposure.duration_s.value_or(0.0);
   write(exposure.q_camera_eci, message.q_camera_eci);
   write(exposure.rate_camera, message.rate_camera);
   write(exposure.camera_position_eci, message.camera_position_eci);
@@ -102,6 +103,7 @@ std::optional<ImageRecipe> recipe_of(std::span<const std::uint8_t> bytes) {
   Exposure& exposure = recipe.exposure;
   exposure.time = {message.gps_time_ns};
   exposure.number = message.number;
+  if (message.duration_s > 0.0) exposure.duration_s = message.duration_s;
   exposure.q_camera_eci = quaternion_of(message.q_camera_eci);
   exposure.rate_camera = vector_of(message.rate_camera);
   exposure.camera_position_eci = vector_of(message.camera_position_eci);

@@ -55,6 +55,7 @@ std::vector<Packet> image_tiles(const ImageLabel& label, const Region& region, i
   message.origin_x = static_cast<std::int16_t>(region.x);
   message.origin_y = static_cast<std::int16_t>(region.y);
   message.bits = static_cast<std::int8_t>(bits);
+  message.exposure_s = static_cast<float>(label.exposure_s);
   const auto sent_before = static_cast<std::uint64_t>(label.number) * tiles;
   PacketEncoder encoder(label.spacecraft, label.unit, static_cast<std::uint16_t>(sent_before & 0x3FFFU));
   std::vector<Packet> packets;
@@ -67,7 +68,7 @@ std::vector<Packet> image_tiles(const ImageLabel& label, const Region& region, i
     if (piece.size() < pixels_of_tile) std::fill(std::begin(message.data), std::end(message.data), std::uint8_t{0});
     if (fsw::imaging::pack_pixels(piece, bits, message.data) == 0)
       throw std::invalid_argument("a pixel of the image has more bits than the link carries");
-    packets.push_back(*encoder.encode(label.time, message));  // integers are always finite
+    packets.push_back(*encoder.encode(label.time, message));  // its numbers are finite
   }
   return packets;
 }

@@ -23,6 +23,7 @@ struct ImageLabel {
   std::int64_t number = 0;      ///< of the exposure, 0 or above; the link counts it modulo 2^31
   std::uint8_t spacecraft = 0;  ///< whose flight software receives it
   std::uint8_t unit = 0;        ///< number of the camera
+  double exposure_s = 0.0;      ///< its duration
 };
 
 /// How many tiles an image makes; empty for bits other than 8 and 12, for a region without pixels or outside what the

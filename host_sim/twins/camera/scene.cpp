@@ -77,6 +77,7 @@ void SceneRenderer::render(const Exposure& exposure, PhotonImage& image) {
   image.region = settings_.region;
   image.electrons.assign(
       static_cast<std::size_t>(settings_.region.width) * static_cast<std::size_t>(settings_.region.height), 0.0F);
+  duration_s_ = exposure.duration_s.value_or(settings_.exposure_s);
   const View view(exposure, settings_, *projection_, detector_cone_);
   add_stars(view, image);
   const bool one_hides =
@@ -95,14 +96,13 @@ void SceneRenderer::render(const Exposure& exposure, PhotonImage& image) {
 }
 
 double SceneRenderer::electrons_of(const LightSample& light, const Vector2& pixel) const {
-  return light.photons_per_m2_s * settings_.electrons_per_photon_m2() * settings_.exposure_s *
-         projection_->vignetting(pixel);
+  return light.photons_per_m2_s * settings_.electrons_per_photon_m2() * duration_s_ * projection_->vignetting(pixel);
 }
 
 void SceneRenderer::add_stars(const View& view, PhotonImage& image) {
   const Exposure& exposure = view.exposure;
   const Vector3 axis_eci = view.R_camera_eci.transpose() * region_cone_.axis;
-  const double turned = exposure.rate_camera.norm() * settings_.exposure_s;
+  const double turned = exposure.rate_camera.norm() * duration_s_;
   stars_.clear();
   sky_.find(axis_eci, std::min(region_cone_.half_angle + 0.5 * turned, M_PI), exposure.years_since_j2000,
             exposure.earth_velocity_bcrs + exposure.camera_velocity_eci, stars_);
@@ -114,7 +114,7 @@ void SceneRenderer::add_stars(const View& view, PhotonImage& image) {
     const double passed = view.earth_in_field ? view.passed_by_earth(star.direction_eci) : 1.0;
     if (passed == 0.0) continue;
     const Vector2 smear_px =
-        settings_.exposure_s * projection_->image_velocity(direction, direction.cross(exposure.rate_camera));
+        duration_s_ * projection_->image_velocity(direction, direction.cross(exposure.rate_camera));
     spread_.add(ImagePoint{*pixel, passed * electrons_of({direction, star.star->photons_per_m2_s}, *pixel)}, smear_px,
                 image);
   }
@@ -175,7 +175,7 @@ void SceneRenderer::add_object(const View& view, const ObjectInView& object, Pho
   // Motion across the line of sight rotates the direction; the rotation of the camera adds to it.
   const Vector3 across = object.velocity_eci - direction_eci * direction_eci.dot(object.velocity_eci);
   const Vector3 direction_rate = view.R_camera_eci * across / distance + direction.cross(view.exposure.rate_camera);
-  spread_.add(points_, settings_.exposure_s * projection_->image_velocity(direction, direction_rate), image);
+  spread_.add(points_, duration_s_ * projection_->image_velocity(direction, direction_rate), image);
 }
 
 /// Their electrons on the detector.
@@ -220,14 +220,14 @@ double SceneRenderer::add_disc(const View& view, const Vector3& velocity, Photon
   if (points_.empty()) return 0.0;
   middle.normalize();
   const Vector2 velocity_px = projection_->image_velocity(middle, middle.cross(view.exposure.rate_camera));
-  spread_.add(points_, settings_.exposure_s * velocity_px, image);
+  spread_.add(points_, duration_s_ * velocity_px, image);
   return electrons;
 }
 
 /// Covers what lies behind and adds its light; electrons on the detector.
 double SceneRenderer::add_earth(const View& view, PhotonImage& image) const {
   const double from_surface = EarthDisc::radiance(view.sun_photons) * settings_.electrons_per_photon_m2() *
-                              settings_.exposure_s * view.pixel_rad * view.pixel_rad;
+                              duration_s_ * view.pixel_rad * view.pixel_rad;
   const auto electrons_at = [&](const Vector2& pixel) {
     const Vector3 direction = projection_->direction_of(pixel);
     const EarthSight sight = view.earth.look(view.R_camera_eci.transpose() * direction, view.pixel_rad);
@@ -273,7 +273,7 @@ void SceneRenderer::add_background(const View& view, double scattered, PhotonIma
   const double closeness = std::clamp((exclusion - off_axis) / (exclusion - edge), 0.0, 1.0);
   double stray = 0.0;
   if (closeness > 0.0)
-    stray = settings_.optics.stray_light_electrons * settings_.exposure_s * closeness * closeness * sun_in_sight(view);
+    stray = settings_.optics.stray_light_electrons * duration_s_ * closeness * closeness * sun_in_sight(view);
   if (even == 0.0 && stray == 0.0) return;
 
   const double half_diagonal = 0.5 * std::hypot(detector.width, detector.height);

@@ -152,6 +152,17 @@ TEST_F(TelecommandsTest, AContradictionIsRefusedAndTheOldOneStays) {
   EXPECT_EQ(inbox_.counters().rejected_content, 1);
 }
 
+TEST_F(TelecommandsTest, ACameraWithTwoExposuresFeedsBoth) {
+  auto bearings = angles_only();
+  auto keypoints = pose();
+  bearings.exposure_s = 0.2;
+  keypoints.exposure_s = 1e-5;
+  send(1, bearings);
+  send(1, keypoints);
+  send(1, navigation(kOwnAndKeypoints + navigation_configuration::kUseBearings));
+  for (const auto& acknowledgment : step(1)) EXPECT_EQ(acknowledgment.status, telemetry_telecommand::kStatusAccepted);
+}
+
 TEST_F(TelecommandsTest, OfTwoThatContradictTheLaterOfTheListIsRefused) {
   constexpr std::int32_t kBoth = kOwnAndKeypoints + navigation_configuration::kUseBearings;
   send(1, pose(), 0, 1);

@@ -2,6 +2,7 @@
 
 #include "fsw/imaging/image_assembly.h"
 
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -68,6 +69,21 @@ TEST_F(ImageAssemblyTest, TheLargestImagesOfBothDepths) {
     assembly = std::make_unique<ImageAssembly>(3);
     for (const image_tile& tile : tiles) EXPECT_EQ(take(tile), Status::kOk);
     EXPECT_EQ(pixels_of(*assembly), pixels);
+  }
+}
+
+TEST_F(ImageAssemblyTest, AllTilesHaveOneExposure) {
+  std::vector<image_tile> tiles = tiles_of(random_pixels(small, 1), small, 7);
+  for (image_tile& tile : tiles) tile.exposure_s = 0.25F;
+  EXPECT_EQ(take(tiles[0]), Status::kOk);
+  EXPECT_EQ(assembly->exposure_s(), 0.25);
+  tiles[1].exposure_s = 0.5F;
+  EXPECT_EQ(take(tiles[1]), Status::kInvalidArgument);
+  EXPECT_FALSE(assembly->has_image()) << "spoiled: neither can be trusted";
+  for (const float impossible : {-1.0F, 1e9F, std::numeric_limits<float>::quiet_NaN()}) {
+    image_tile tile = tiles[0];
+    tile.exposure_s = impossible;
+    EXPECT_EQ(take(tile, kLater), Status::kInvalidArgument) << impossible;
   }
 }
 

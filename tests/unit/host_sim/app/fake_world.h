@@ -147,7 +147,7 @@ struct FakeWorld {
   FakeWorld() {
     timetable.start = kFakeStart;
     timetable.end = at(60.0);
-    timetable.step = fsw::duration_of_seconds(10);
+    timetable.step = {kFakeStart, fsw::duration_of_seconds(10)};
     timetable.spacecraft = 1;
   }
   FakeSource& add(const std::string& name, double period_s, FakeSource::Measure measure) {

@@ -45,7 +45,7 @@ TEST(CameraKeys, DefaultIsTheOpticalStimulator) {
   EXPECT_EQ(camera.camera, "optical_stimulator");
   EXPECT_EQ(camera.observed, "target");
   EXPECT_EQ(mission.spacecraft[0].observes(), "target");
-  EXPECT_EQ(camera.period, mission.step);
+  EXPECT_EQ(camera.images, mission.step);
   EXPECT_EQ(camera.readout, fsw::duration_of_seconds(2));
   EXPECT_EQ(camera.q_camera_body.coeffs(), Eigen::Quaterniond::Identity().coeffs());
   // The paper's camera: 18.3 deg across, 500 x 800 of 1920 x 1200 pixels; 35 mm over 5.86 um.
@@ -96,6 +96,18 @@ TEST(CameraKeys, TheOpticalStimulatorsFileIsTheDefault) {
   EXPECT_EQ(numbers(file), numbers(usual));
 }
 
+TEST(CameraKeys, ACameraOfTwoUsesHasTwoExposures) {
+  const Mission mission =
+      mission_with({"camera.navigation=[\"angles_only\", \"pose\"]", "camera.exposure_s=0.2",
+                    "camera.exposure_keypoints_s=1e-5", "camera.period_s=[[0.0, 60.0], [36.0, 20.0]]"});
+  const CameraSensor& camera = sensor_of<CameraSensor>(mission);
+  EXPECT_TRUE(camera.changes_use());
+  EXPECT_EQ(camera.settings.exposure_s, 0.2);
+  EXPECT_EQ(camera.keypoint_exposure_s, 1e-5);
+  ASSERT_EQ(camera.images.parts().size(), 2U);
+  EXPECT_EQ(camera.images.parts()[1].from, mission.epoch + fsw::duration_of_seconds(36 * 3600));
+}
+
 TEST(CameraKeys, EveryKeyArrives) {
   const Mission mission = mission_with({"camera.camera=tron", "camera.period_s=30", "camera.readout_s=1.5",
                                         "camera.exposure_s=0.1", "camera.region_px=[10, 20, 300, 400]",
@@ -105,7 +117,7 @@ TEST(CameraKeys, EveryKeyArrives) {
   const CameraSensor& camera = sensor_of<CameraSensor>(mission);
   EXPECT_NEAR(camera.settings.focal_length_px(), 2901.0, 0.1) << "of TRON's 17 mm";
   EXPECT_EQ(camera.settings.optics.distortion[0], -0.22383);
-  EXPECT_EQ(camera.period, fsw::duration_of_seconds(30));
+  EXPECT_EQ(camera.images, engine::Cadence(mission.start_time(), fsw::duration_of_seconds(30)));
   EXPECT_EQ(camera.readout.ns, 1500000000);
   EXPECT_EQ(camera.settings.exposure_s, 0.1);
   EXPECT_EQ(camera.settings.region, (twins::camera::Region{10, 20, 300, 400}));
@@ -309,6 +321,15 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"FasterThanItReads",
                     {"camera.period_s=2"},
                     "camera.period_s: found images that come faster than one is exposed and read"},
+        BadOverride{"TwoUsesOfOneExposure",
+                    {"camera.navigation=[\"angles_only\", \"pose\"]"},
+                    "exposure_keypoints_s: found no value; accepted: a number from"},
+        BadOverride{"TwoExposuresOfOneUse",
+                    {"camera.exposure_keypoints_s=1e-5"},
+                    "exposure_keypoints_s: found a second exposure of a camera with one use"},
+        BadOverride{"PeriodsOutOfOrder",
+                    {"camera.period_s=[[1.0, 60.0], [1.0, 20.0]]"},
+                    "camera.period_s: found an array; accepted: hours in increasing order"},
         BadOverride{"NoRotation", {"camera.q_camera_body=[1, 1, 0, 0]"}, "camera.q_camera_body: found a quaternion"},
         BadOverride{"LooksForNobody",
                     {"camera.target=moon"},

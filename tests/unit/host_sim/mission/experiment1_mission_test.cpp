@@ -221,7 +221,7 @@ TEST_F(Extends, SaysOnlyWhatDiffers) {
   const Mission mission = load_mission(folder_ / "own.toml", std::vector<std::string>{"mission.step_s=30"});
   EXPECT_EQ(mission.seed, 7U);
   EXPECT_EQ(mission.duration, fsw::duration_of_seconds(7200)) << "the base's";
-  EXPECT_EQ(mission.step, fsw::duration_of_seconds(30)) << "the command line's";
+  EXPECT_EQ(mission.step.shortest_period(), fsw::duration_of_seconds(30)) << "the command line's";
   ASSERT_EQ(mission.spacecraft.size(), 3U);
   EXPECT_EQ(mission.spacecraft[1].surface.mass_kg, 41.0);
   EXPECT_EQ(mission.spacecraft[2].name, "third");

@@ -110,7 +110,7 @@ TEST(Experiment2Mission, FliesByTheCameraOfTheTestbed) {
   const Spacecraft& servicer = *mission.find_spacecraft("servicer");
   const auto* const camera = find_settings<sensors::CameraSensor>(servicer);
   ASSERT_NE(camera, nullptr);
-  EXPECT_EQ(camera->use, sensors::CameraNavigation::kPose);
+  EXPECT_EQ(camera->navigation, sensors::CameraSensor::kKeypoints);
   EXPECT_EQ(camera->camera, "tron");
   EXPECT_TRUE(std::holds_alternative<Tumble>(*mission.find_spacecraft("target")->attitude));
   EXPECT_FALSE(mission.find_spacecraft("target")->flight_computer.has_value()) << "it does not cooperate";

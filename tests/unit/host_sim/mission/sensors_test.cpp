@@ -38,9 +38,9 @@ TEST(Sensors, HaveNamesOfTheirOwn) {
   EXPECT_THAT(names_of(mission), ElementsAre("gnss:gnss", "narrow:camera", "wide:camera"));
   const auto& sensors = mission.spacecraft[0].sensors;
   EXPECT_EQ(sensors::settings_of<CameraSensor>(sensors[1]).camera, "optical_stimulator");
-  EXPECT_EQ(sensors::settings_of<CameraSensor>(sensors[1]).use, sensors::CameraNavigation::kNone);
+  EXPECT_FALSE(sensors::settings_of<CameraSensor>(sensors[1]).is_used());
   EXPECT_EQ(sensors::settings_of<CameraSensor>(sensors[2]).camera, "tron");
-  EXPECT_EQ(sensors::settings_of<CameraSensor>(sensors[2]).period, fsw::duration_of_seconds(30));
+  EXPECT_EQ(sensors::settings_of<CameraSensor>(sensors[2]).images.shortest_period(), fsw::duration_of_seconds(30));
 }
 
 TEST(Sensors, BearingsAreThoseOfOneCamera) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "host_sim/report/compare_report.h"
@@ -50,9 +51,9 @@ TEST_F(HtmlReport, TheCheckSeesFaults) {
 TEST_F(HtmlReport, TellsTheWholeRun) {
   const std::string html = html_report(synthetic_run());
   for (const char* heading :
-       {"Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation", "Carrier-phase navigation",
-        "Angles-only navigation", "Navigation by the pose network", "Attitude", "Guidance and passive safety",
-        "Health of the flight software", "Flight computer, link and time"}) {
+       {"Mission at a glance", "Waypoints", "Trajectory", "Relative orbital elements", "Maneuvers", "Navigation",
+        "Carrier-phase navigation", "Angles-only navigation", "Navigation by the pose network", "Attitude",
+        "Guidance and passive safety", "Health of the flight software", "Flight computer, link and time"}) {
     EXPECT_THAT(html, HasSubstr("<h2>" + std::string(heading) + "</h2>"));
     EXPECT_THAT(html, HasSubstr("\">" + std::string(heading) + "</a>")) << "in the contents";
   }
@@ -70,6 +71,30 @@ TEST_F(HtmlReport, TellsTheWholeRun) {
   EXPECT_THAT(html, HasSubstr("data:image/png;base64,iVBORw0KGgo")) << "the signature of every PNG";
   EXPECT_THAT(html, HasSubstr("12.476 in 12 maneuvers")) << "the paper's, as the run meets its waypoints 9 and 10";
   EXPECT_THAT(html, HasSubstr("at most 350,000, on average 250,001 instructions; at most 21,000 bytes of stack"));
+}
+
+TEST_F(HtmlReport, ShowsWhichSourceAidedWhen) {
+  RunRecord record = synthetic_run();
+  const double start_s = record.truth.front().time_s;
+  const auto change = [&](double after_s, std::int32_t source, std::int32_t state) {
+    telemetry_event event{};
+    event.event = telemetry_event::kEventAid;
+    event.device = source;
+    event.after = state;
+    std::get<std::vector<TelemetryRow<telemetry_event>>>(record.telemetry)
+        .push_back({start_s + after_s, start_s + after_s, event});
+  };
+  change(0.0, navigation_configuration::kUseBearings, telemetry_event::kAidWaiting);
+  change(3600.0, navigation_configuration::kUseBearings, telemetry_event::kAidAiding);
+  change(7200.0, navigation_configuration::kUseBearings, telemetry_event::kAidSuspended);
+  change(9000.0, navigation_configuration::kUseBearings, telemetry_event::kAidOff);
+  const std::string html = html_report(record);
+  EXPECT_EQ(complaints(html), "");
+  EXPECT_THAT(html, HasSubstr(">bearings</text>"));
+  const double start_h = start_s / 3600.0;
+  EXPECT_THAT(html, HasSubstr(fmt::format("aiding, {:.2f} h to {:.2f} h", start_h + 1.0, start_h + 2.0)));
+  EXPECT_THAT(html, HasSubstr(fmt::format("suspended, {:.2f} h to {:.2f} h", start_h + 2.0, start_h + 2.5)));
+  EXPECT_THAT(html, Not(HasSubstr("waiting,")));
 }
 
 TEST_F(HtmlReport, ShowsProvenanceAndFailuresOfSources) {

@@ -214,7 +214,7 @@ TEST_F(PoseGalleryTest, CaptionSaysWhatIsKnown) {
 
 TEST_F(PoseGalleryTest, NeedsACameraThatNavigatesByPoses) {
   mission::Mission other = mission_;
-  editable_camera(other.spacecraft[0]).use = CameraNavigation::kAnglesOnly;
+  editable_camera(other.spacecraft[0]).navigation = CameraSensor::kBearings;
   PoseGallery by_angles(other, other.spacecraft[0]);
   remove_camera(other.spacecraft[0]);
   PoseGallery blind(other, other.spacecraft[0]);

@@ -16,6 +16,7 @@
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/twins/camera/image_recipe.h"
 #include "host_sim/twins/camera/recorded_image.h"
+#include "host_sim/twins/packet_encoder.h"
 
 namespace vbar::twins::camera {
 namespace {
@@ -51,8 +52,7 @@ CameraSensor::Settings small_camera() {
   settings.image.unit = 2;
   settings.mount.spacecraft = "servicer";
   settings.mount.models = {{"servicer", "mango"}, {"target", "tango"}, {"debris", "tango"}, {"nobody", "tango"}};
-  settings.start = kStart;
-  settings.period = kPeriod;
+  settings.images = {kStart - kPeriod, kPeriod};
   settings.readout = fsw::duration_of_seconds(2);
   return settings;
 }
@@ -96,6 +96,44 @@ TEST(CameraSensor, PacketsAreTheImage) {
   const std::uint8_t* pair = tile.value().data + 412 / 2 * 3;
   EXPECT_NEAR(pair[0] << 4 | pair[1] >> 4, 1064, 60);
   EXPECT_NEAR((pair[1] & 0xF) << 8 | pair[2], 64, 6) << "its neighbour is dark";
+}
+
+/// The command of an exposure to a camera, as the flight software sends it.
+Packet exposure_packet(std::uint8_t unit, double exposure_s) {
+  return *PacketEncoder(1, unit).encode(kStart, exposure_command{.exposure_s = exposure_s});
+}
+
+double exposure_of_image_at(CameraSensor& sensor, fsw::GpsTime time) {
+  const Measurement measurement = sensor.measure(snapshot(time));
+  return recipe_of(measurement.recipe->bytes)->exposure.duration_s.value_or(-1.0);
+}
+
+TEST(CameraSensor, TakesTheExposureCommandedFromItsTimeOn) {
+  CameraSensor::Settings settings = small_camera();
+  settings.first_exposure_s = 0.2;
+  CameraSensor sensor(settings, one_pixel);
+  const Packet shorter = exposure_packet(2, 1e-5), of_another = exposure_packet(1, 0.5), none = exposure_packet(2, 0.0);
+  sensor.command(fsw::packets::parse_packet(shorter).value(), kStart + kPeriod);
+  sensor.command(fsw::packets::parse_packet(of_another).value(), kStart);
+  sensor.command(fsw::packets::parse_packet(none).value(), kStart);
+  EXPECT_EQ(exposure_of_image_at(sensor, kStart), 0.2) << "not in effect yet";
+  EXPECT_EQ(exposure_of_image_at(sensor, kStart + kPeriod), 1e-5);
+}
+
+TEST(CameraSensor, OneWithAFixedExposureTakesNoCommand) {
+  CameraSensor sensor(small_camera(), one_pixel);
+  const Packet shorter = exposure_packet(2, 1e-5);
+  sensor.command(fsw::packets::parse_packet(shorter).value(), kStart);
+  EXPECT_EQ(exposure_of_image_at(sensor, kStart), -1.0) << "that of the settings";
+}
+
+TEST(CameraSensor, TilesStateTheExposure) {
+  CameraSensor::Settings settings = small_camera();
+  settings.first_exposure_s = 0.125;
+  CameraSensor sensor(settings, one_pixel);
+  const std::vector<Packet> packets = sensor.measure(snapshot(kStart)).pending.get().packets;
+  const auto tile = fsw::packets::decode<image_tile>(fsw::packets::parse_packet(packets[0]).value());
+  EXPECT_EQ(tile.value().exposure_s, 0.125F);
 }
 
 TEST(CameraSensor, ExposureIsTheTruth) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -284,6 +285,27 @@ TEST(Detector, ImageOfAnotherRegionIsRefused) {
   image = even_light(settings, 0.0F);
   image.electrons.pop_back();
   EXPECT_THROW(expose(settings, image), std::invalid_argument);
+}
+
+TEST(Detector, DarkCurrentIsThatOfTheDuration) {
+  CameraSettings settings;
+  settings.region = {0, 0, 200, 100};
+  settings.exposure_s = 2.0;
+  settings.detector.hot_pixels = 0;
+  settings.detector.dark_electrons_per_s = 4000.0;
+  Detector detector(settings, 5, "camera");
+  const PhotonImage dark{settings.region, std::vector<float>(20000, 0.0F)};
+  const auto mean_electrons = [&](std::optional<double> duration_s) {
+    std::vector<std::uint16_t> dn;
+    detector.expose(dark, 1, dn, duration_s);
+    double sum = 0.0;
+    for (const std::uint16_t value : dn) sum += value - settings.detector.offset_dn;
+    return sum / static_cast<double>(dn.size()) / settings.detector.gain_dn_per_electron;
+  };
+  // 1 sigma of the mean: 10 % of pattern and shot noise over 20,000 pixels are below 6 electrons.
+  EXPECT_NEAR(mean_electrons(std::nullopt), 8000.0, 30.0);
+  EXPECT_NEAR(mean_electrons(2.0), 8000.0, 30.0);
+  EXPECT_NEAR(mean_electrons(0.5), 2000.0, 10.0);
 }
 
 }  // namespace
