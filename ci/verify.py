@@ -19,6 +19,7 @@ import verify_experiment1_hil
 import verify_experiment2_hil
 import verify_experiment2
 import verify_experiment3
+import verify_full_range
 import verify_grand
 from flights import fly
 
@@ -91,7 +92,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/host")
     experiments = {"experiment1": verify_experiment1, "experiment2": verify_experiment2, "experiment3": verify_experiment3,
-                   "grand": verify_grand, "experiment1_hil": verify_experiment1_hil,
+                   "grand": verify_grand, "full_range": verify_full_range, "experiment1_hil": verify_experiment1_hil,
                    "experiment2_hil": verify_experiment2_hil}
     for name in experiments:
         parser.add_argument(f"--{name}", action="store_true")

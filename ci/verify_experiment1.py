@@ -111,7 +111,7 @@ def section(build, root, runs, table):
         f"The complete run of seed 1 on the emulated Zynq over Ethernet, {zynq['link']['bytes'] / 1e9:.2f} GB of image tiles and"
         f" answers: same hashes {yes(same)} (commands `{zynq['commands_sha256'][:16]}…`, telemetry"
         f" `{zynq['telemetry_sha256'][:16]}…`), {zynq['wall_s']:.0f} s of wall-clock time; a step takes"
-        f" {step['mean']:,.0f} {step['unit']} in the mean and {step['max']:,} at most (lost-in-space star identification), and"
+        f" {step['mean']:,.0f} {step['unit']} in the mean and {step['max']:,} at most (the first orbit, from a batch of bearings), and"
         f" {step['stack_bytes_max']:,} bytes of stack.",
         "",
     ]

@@ -71,7 +71,8 @@ NavigationSource Navigation::source_of(GpsTime now) const {
   const auto& keypoints = trunk_.source<sources::KeypointSource>();
   if (keypoints.aid().is_on() && keypoints.has_aided()) return NavigationSource::kPose;
   const auto& bearings = trunk_.source<sources::BearingSource>();
-  if (bearings.aid().is_on() && bearings.has_aided()) return NavigationSource::kAnglesOnly;
+  const bool is_newest = bearings.last_measurement() == state_.last_measurement;
+  if (bearings.aid().is_on() && bearings.has_aided() && is_newest) return NavigationSource::kAnglesOnly;
   return NavigationSource::kPropagated;
 }
 

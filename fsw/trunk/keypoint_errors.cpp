@@ -5,7 +5,7 @@ namespace {
 
 constexpr int kCommon = kAt<KeypointCommon>;
 constexpr int kStretch = kCommon + 2;
-constexpr int kLastingStretch = kCommon + 3;
+constexpr int kLastingStretch = kCommon + KeypointCommon::kLastingStretch;
 constexpr GaussMarkov kWhitened{.sigma = 1.0};  // in units of the root of a keypoint's covariance
 
 }  // namespace
@@ -13,7 +13,9 @@ constexpr GaussMarkov kWhitened{.sigma = 1.0};  // in units of the root of a key
 void begin_keypoint_errors(Estimate& estimate, const KeypointErrorSettings& settings) {
   for (int axis = 0; axis < 2; ++axis) begin_process(estimate, kCommon + axis, {.sigma = settings.shift_sigma_px});
   begin_process(estimate, kStretch, {.sigma = settings.stretch_sigma});
-  begin_process(estimate, kLastingStretch, settings.lasting_stretch);
+  for (int i = kLastingStretch; i < kCommon + KeypointCommon::kSize; ++i) {
+    begin_process(estimate, i, settings.lasting_stretch);
+  }
   begin_block<KeypointErrors>(estimate, kWhitened);
 }
 
@@ -29,7 +31,10 @@ void advance_keypoint_errors(Estimate& estimate, const KeypointErrorSettings& se
     advance_process(estimate, kCommon + axis, {.sigma = settings.shift_sigma_px}, view);
   }
   advance_process(estimate, kStretch, {.sigma = settings.stretch_sigma}, view);
-  advance_process(estimate, kLastingStretch, settings.lasting_stretch, settings.lasting_stretch.decay(dt));
+  const double lasting = settings.lasting_stretch.decay(dt);
+  for (int i = kLastingStretch; i < kCommon + KeypointCommon::kSize; ++i) {
+    advance_process(estimate, i, settings.lasting_stretch, lasting);
+  }
   for (int k = 0; k < KeypointErrors::kSize; ++k) {
     advance_process(estimate, kAt<KeypointErrors> + k, kWhitened, view);
   }

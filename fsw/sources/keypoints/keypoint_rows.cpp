@@ -76,6 +76,8 @@ bool add_linear_states(trunk::Trunk& trunk, const pose::Keypoints& keypoints, co
   const Vector3 sight_eci = camera.R_camera_eci.transpose() * mean.centre_camera;
   const Matrix3 axes = navigation::bearing_axes(sight_eci.normalized(), trunk.servicer());
   const int mount = trunk::mount_at(model.camera);
+  const int stretch =
+      kAt<trunk::KeypointCommon> + trunk::KeypointCommon::kLastingStretch + static_cast<int>(model.camera);
   const Vector3 origin = estimate.mean().segment<3>(kAt<trunk::KeypointOrigin>);
   for (int k = 0; k < kCount; ++k) {
     const int row = 2 * k;
@@ -99,13 +101,14 @@ bool add_linear_states(trunk::Trunk& trunk, const pose::Keypoints& keypoints, co
       const double from_centre = predicted(row + axis) - centre_px.value()(axis);
       sensitivity(kAt<trunk::KeypointCommon> + axis) = 1.0;
       sensitivity(kAt<trunk::KeypointCommon> + 2) = from_centre;
-      sensitivity(kAt<trunk::KeypointCommon> + 3) = model.lasting_stretch_scale * from_centre;
+      sensitivity(stretch) = model.lasting_stretch_scale * from_centre;
       sensitivity.segment<2>(kAt<trunk::KeypointErrors> + row) = root.row(axis).transpose();
-      const double linear = sensitivity.segment<2>(mount).dot(estimate.mean().segment<2>(mount)) +
-                            sensitivity.segment<4>(kAt<trunk::KeypointCommon>)
-                                .dot(estimate.mean().segment<4>(kAt<trunk::KeypointCommon>)) +
-                            sensitivity.segment<2>(kAt<trunk::KeypointErrors> + row)
-                                .dot(estimate.mean().segment<2>(kAt<trunk::KeypointErrors> + row));
+      const double linear =
+          sensitivity.segment<2>(mount).dot(estimate.mean().segment<2>(mount)) +
+          sensitivity.segment<trunk::KeypointCommon::kSize>(kAt<trunk::KeypointCommon>)
+              .dot(estimate.mean().segment<trunk::KeypointCommon::kSize>(kAt<trunk::KeypointCommon>)) +
+          sensitivity.segment<2>(kAt<trunk::KeypointErrors> + row)
+              .dot(estimate.mean().segment<2>(kAt<trunk::KeypointErrors> + row));
       rows.residual(row + axis) = keypoints[at(k)].pixel(axis) - predicted(row + axis) - linear;
     }
     rows.noise.block<2, 2>(row, row) += (1.0 - share) * covariance;

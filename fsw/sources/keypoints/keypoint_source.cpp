@@ -83,8 +83,7 @@ void KeypointSource::collect(Context& context, RecordFiler records) {
     camera.report.reset();
     const imaging::ImageAssembly& image = context.inbox.image(unit);
     if (!camera.settings || !image.has_image()) continue;
-    if (camera.exposures && !camera.exposures->is_for_keypoints(image.exposure_s())) continue;
-    if (!shows_keypoints(camera)) continue;
+    if (!shows_keypoints(camera, image.exposure_s())) continue;
     const GpsTime time = image.image_time();
     const bool is_timely =
         time <= context.now && context.now - time <= kLongestDelay && (!camera.last_image || time > *camera.last_image);
@@ -94,16 +93,15 @@ void KeypointSource::collect(Context& context, RecordFiler records) {
   }
 }
 
-/// Without a known range only a camera for nothing else may show them.
-bool KeypointSource::shows_keypoints(const Camera& camera) {
-  if (camera.resolution == Resolution::kUnknown) return !camera.exposures;
-  return camera.resolution == Resolution::kResolved;
+/// A camera for nothing else may always show them.
+bool KeypointSource::shows_keypoints(const Camera& camera, double exposure_s) {
+  if (!camera.exposures) return true;
+  return camera.resolution == Resolution::kResolved && camera.exposures->is_for_keypoints(exposure_s);
 }
 
 void KeypointSource::watch(GpsTime now, trunk::Trunk& trunk) {
   for (Camera& camera : cameras_) {
-    if (camera.settings)
-      camera.resolution = resolution_of(*camera.settings, camera.exposures.has_value(), trunk, camera.resolution);
+    if (camera.exposures) camera.resolution = resolution_of(*camera.settings, trunk, camera.resolution);
   }
   aiding_.check_age(now);
 }

@@ -44,13 +44,13 @@ class KeypointSource {
   /// A camera, and the telemetry of its image of the step.
   struct Camera {
     std::optional<KeypointCameraSettings> settings;
-    std::optional<TwoExposures> exposures;  ///< if it takes images for bearings too
-    Resolution resolution = Resolution::kUnknown;
+    std::optional<TwoExposures> exposures;         ///< if it takes images for bearings too
+    Resolution resolution = Resolution::kUnknown;  ///< of such a camera
     std::optional<GpsTime> last_image;
     std::optional<telemetry_pose> report;
   };
 
-  [[nodiscard]] static bool shows_keypoints(const Camera& camera);
+  [[nodiscard]] static bool shows_keypoints(const Camera& camera, double exposure_s);
   [[nodiscard]] static std::optional<Matrix3> R_camera_eci_at(GpsTime time, const Matrix3& R_camera_body,
                                                               const Platform& platform, const trunk::Trunk& trunk);
   void remember_direction(const KeypointCameraSettings& camera, const std::optional<Matrix3>& R_camera_eci,

@@ -27,8 +27,8 @@ double lasting_stretch_scale(double image_scale) {
   return shortfall > 1.0 ? shortfall * shortfall : 1.0;
 }
 
-Resolution resolution_of(const KeypointCameraSettings& camera, bool gives_bearings, const trunk::Trunk& trunk,
-                         Resolution before, const ResolutionLimits& limits) {
+Resolution resolution_of(const KeypointCameraSettings& camera, const trunk::Trunk& trunk, Resolution before,
+                         const ResolutionLimits& limits) {
   const Result<orbit::CartesianState> target = trunk.target();
   if (!target.ok()) return Resolution::kUnknown;
   const Vector3 apart = target.value().position_eci - trunk.servicer().position_eci;
@@ -49,8 +49,7 @@ Resolution resolution_of(const KeypointCameraSettings& camera, bool gives_bearin
   if (was_resolved) return scale >= limits.stop_scale ? Resolution::kResolved : Resolution::kTooSmall;
   const double lateral_sigma = math::sqrt(std::max(0.0, covariance.trace() - along_variance));
   const bool is_well_known = 3.0 * lateral_sigma <= limits.start_lateral_share * side_m;
-  return scale >= limits.start_scale && (is_well_known || !gives_bearings) ? Resolution::kResolved
-                                                                           : Resolution::kTooSmall;
+  return scale >= limits.start_scale && is_well_known ? Resolution::kResolved : Resolution::kTooSmall;
 }
 
 }  // namespace vbar::fsw::sources

@@ -1,6 +1,6 @@
 #pragma once
-// Whether a camera resolves the target: its keypoints are used from the range on at which the network has enough
-// pixels, to the range at which the target fills the image.
+// Whether a camera that gives bearings as long as the target is a point resolves it: its keypoints are used from the
+// range on at which the network has enough pixels, to the range at which the target fills the image.
 
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
@@ -19,7 +19,7 @@ enum class Resolution : std::uint8_t {
 struct ResolutionLimits {
   double start_scale = 0.6;  ///< pixels of the camera per sample of the network: above it the target is resolved,
   double stop_scale = 0.45;  ///< below it no longer
-  /// 3 sigma across the line of sight over the side of the crop, at most, where the camera gives bearings until then.
+  /// 3 sigma across the line of sight over the side of the crop, at most.
   double start_lateral_share = 0.15;
 };
 
@@ -31,9 +31,8 @@ struct ResolutionLimits {
 /// to 1.5, and 0.2 % from 2 on.
 [[nodiscard]] double lasting_stretch_scale(double image_scale);
 
-/// The resolution after `before`, with hysteresis. `gives_bearings`: as long as it does not resolve the target.
-[[nodiscard]] Resolution resolution_of(const KeypointCameraSettings& camera, bool gives_bearings,
-                                       const trunk::Trunk& trunk, Resolution before,
-                                       const ResolutionLimits& limits = {});
+/// The resolution after `before`, with hysteresis.
+[[nodiscard]] Resolution resolution_of(const KeypointCameraSettings& camera, const trunk::Trunk& trunk,
+                                       Resolution before, const ResolutionLimits& limits = {});
 
 }  // namespace vbar::fsw::sources

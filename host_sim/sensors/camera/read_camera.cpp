@@ -31,11 +31,8 @@ std::int32_t read_uses(const TableReader& section) {
 
 /// Keypoints want a target that is not saturated, bearings want stars: a camera with both uses has two exposures.
 double read_keypoint_exposure(const TableReader& section, const CameraSensor& camera) {
-  constexpr std::string_view kKey = "exposure_keypoints_s";
-  if (camera.changes_use()) return section.number(kKey, from_to(1e-6, camera.settings.exposure_s));
-  if (section.has(kKey))
-    section.refuse(kKey, "a second exposure of a camera with one use", "no such key, or both uses");
-  return camera.settings.exposure_s;
+  if (!camera.changes_use()) return camera.settings.exposure_s;
+  return section.number("exposure_keypoints_s", from_to(1e-6, camera.settings.exposure_s));
 }
 
 std::vector<std::string> names_in(const std::filesystem::path& folder) {

@@ -100,6 +100,21 @@ TEST_F(KeypointRows, SensitivitiesAreThoseOfTheGeometry) {
   }
 }
 
+/// A lasting error of the apparent size is that of one camera, larger for a small image.
+TEST_F(KeypointRows, EachCameraHasItsOwnLastingStretch) {
+  model.lasting_stretch_scale = 3.0;
+  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kOk);
+  constexpr int kLasting = kAt<trunk::KeypointCommon> + trunk::KeypointCommon::kLastingStretch;
+  const trunk::Rows& rows = trunk->rows();
+  for (int row = 0; row < rows.count(); ++row) {
+    EXPECT_EQ(rows.sensitivity(kLasting, row), 0.0) << "of the other camera";
+    // That of the stretch of one view is the distance from the centre.
+    const double from_centre = rows.sensitivity(kAt<trunk::KeypointCommon> + 2, row);
+    EXPECT_NE(from_centre, 0.0);
+    EXPECT_DOUBLE_EQ(rows.sensitivity(kLasting + 1, row), 3.0 * from_centre);
+  }
+}
+
 /// The noise and the variance of the error states add up to the covariance of the network.
 TEST_F(KeypointRows, CorrelatedAndWhiteErrorsAddUpToTheCovariance) {
   ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kOk);

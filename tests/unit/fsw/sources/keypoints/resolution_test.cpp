@@ -42,9 +42,7 @@ class ResolutionTest : public testing::Test {
     covariance(4, 4) = covariance(5, 5) = lateral_m * lateral_m / (a * a);
     trunk_->begin_relative(roe, covariance, trunk::RelativeKnowledge::kEstimated);
   }
-  Resolution far(Resolution before, bool gives_bearings = true) {
-    return resolution_of(kFar, gives_bearings, *trunk_, before);
-  }
+  Resolution far(Resolution before) { return resolution_of(kFar, *trunk_, before); }
   std::unique_ptr<trunk::Trunk> trunk_ = std::make_unique<trunk::Trunk>();
 };
 
@@ -75,7 +73,7 @@ TEST_F(ResolutionTest, EndsWhereTheTargetFillsTheImage) {
   EXPECT_EQ(far(Resolution::kResolved), Resolution::kResolved);
   place(17.5);
   EXPECT_EQ(far(Resolution::kResolved), Resolution::kTooLarge) << "1.5 m are 512 px of 500";
-  EXPECT_EQ(resolution_of(kClose, false, *trunk_, Resolution::kTooSmall), Resolution::kResolved);
+  EXPECT_EQ(resolution_of(kClose, *trunk_, Resolution::kTooSmall), Resolution::kResolved);
   place(18.5);
   EXPECT_EQ(far(Resolution::kTooLarge), Resolution::kResolved);
 }
@@ -83,7 +81,6 @@ TEST_F(ResolutionTest, EndsWhereTheTargetFillsTheImage) {
 TEST_F(ResolutionTest, BearingsGoOnUntilThePlaceIsKnown) {
   place(100.0, 0.15);
   EXPECT_EQ(far(Resolution::kTooSmall), Resolution::kTooSmall);
-  EXPECT_EQ(far(Resolution::kTooSmall, false), Resolution::kResolved) << "a camera for nothing else has no choice";
 }
 
 TEST_F(ResolutionTest, TheSizeOfASmallImageIsLessCertain) {
