@@ -17,7 +17,8 @@ struct KeypointErrorSettings {
   double stretch_sigma = 9e-3;        ///< of the target's apparent size: likewise
   double correlation_angle = 0.21;    ///< rad: rotation of the target over which keypoint errors decorrelate
   double correlation_time_s = 120.0;  ///< s: decorrelation for a target with a small rate
-  GaussMarkov lasting_stretch{.sigma = 4e-3, .time_s = 3600.0};  ///< of the apparent size in a camera, constant over all views
+  GaussMarkov lasting_stretch{.sigma = 4e-3,
+                              .time_s = 3600.0};  ///< of the apparent size in a camera, constant over all views
 };
 
 /// All errors with their stationary distribution.
