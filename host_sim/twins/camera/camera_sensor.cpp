@@ -84,8 +84,10 @@ Completion CameraSensor::take(const Exposure& exposure) {
 LoggedImage CameraSensor::record(const Exposure& exposure, std::span<const std::uint16_t> dn) {
   const Stopwatch watch(recording_s_);
   const ImageMaker::Settings& image = settings_.image;
-  const ImageHeader header{
-      {exposure.time, exposure.number, image.spacecraft, image.unit}, image.camera.region, image.camera.detector.bits};
+  const ImageHeader header{{exposure.time, exposure.number, image.spacecraft, image.unit,
+                            exposure.duration_s.value_or(image.camera.exposure_s)},
+                           image.camera.region,
+                           image.camera.detector.bits};
   LoggedImage recording{header.key(), recorded_image_of(header, dn)};
   recorded_bytes_ += static_cast<std::int64_t>(recording.bytes.size());
   return recording;

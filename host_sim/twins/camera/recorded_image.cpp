@@ -1,6 +1,7 @@
 #include "host_sim/twins/camera/recorded_image.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -14,8 +15,8 @@ namespace vbar::twins::camera {
 namespace {
 
 constexpr std::int8_t kJpegLs = 1;
-// Of the encoded message: type hash, spacecraft, unit, time, number, region, bits, coding.
-constexpr std::size_t kSizeAt = 8 + 2 * 2 + 2 * 8 + 4 * 4 + 2 * 1;
+// Of the encoded message: type hash, spacecraft, unit, time, number, exposure, region, bits, coding.
+constexpr std::size_t kSizeAt = 8 + 2 * 2 + 3 * 8 + 4 * 4 + 2 * 1;
 constexpr std::size_t kDataAt = kSizeAt + 4;
 
 std::size_t pixels_in(const Region& region) {
@@ -94,11 +95,13 @@ std::optional<ImageHeader> header_of(const vbar_host::recorded_image& message) {
   const ImageHeader header{{{message.gps_time_ns},
                             message.number,
                             static_cast<std::uint8_t>(message.spacecraft),
-                            static_cast<std::uint8_t>(message.unit)},
+                            static_cast<std::uint8_t>(message.unit),
+                            message.exposure_s},
                            {message.x, message.y, message.width, message.height},
                            message.bits};
   const bool is_good = fits_header(message.spacecraft) && fits_header(message.unit) && message.number >= 0 &&
-                       message.coding == kJpegLs && number_of_tiles(header.region, header.bits).has_value();
+                       message.exposure_s >= 0.0 && std::isfinite(message.exposure_s) && message.coding == kJpegLs &&
+                       number_of_tiles(header.region, header.bits).has_value();
   return is_good ? std::optional(header) : std::nullopt;
 }
 
@@ -116,6 +119,7 @@ std::vector<std::uint8_t> recorded_image_of(const ImageHeader& header, std::span
   message.unit = header.label.unit;
   message.gps_time_ns = header.label.time.ns;
   message.number = header.label.number;
+  message.exposure_s = header.label.exposure_s;
   message.x = header.region.x;
   message.y = header.region.y;
   message.width = header.region.width;

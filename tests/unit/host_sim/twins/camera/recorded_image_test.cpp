@@ -16,7 +16,7 @@ namespace {
 constexpr Region kRegion{710, 200, 60, 40};
 
 ImageHeader header(int bits, Region region = kRegion) {
-  return {{{995'000'000LL * 1'000'000'000LL + 1}, 2'147'483'700LL, 1, 3}, region, bits};
+  return {{{995'000'000LL * 1'000'000'000LL + 1}, 2'147'483'700LL, 1, 3, 0.125}, region, bits};
 }
 
 std::vector<std::uint16_t> noise(std::size_t pixels, int bits) {
@@ -50,6 +50,7 @@ TEST(RecordedImage, ComesBackInEveryBit) {
         EXPECT_EQ(read->bits, bits);
         EXPECT_EQ(read->label.time, header(bits).label.time);
         EXPECT_EQ(read->label.number, 2'147'483'700LL);
+        EXPECT_EQ(read->label.exposure_s, 0.125);
         EXPECT_EQ(read->key(), (ImageKey{1, 3, 52})) << "the link counts images modulo 2^31";
       }
     }
@@ -99,7 +100,7 @@ TEST(RecordedImage, HeaderThatIsDamagedIsRejected) {
 
 /// The image of `header` with the JPEG-LS data of another one.
 std::vector<std::uint8_t> with_data_of(const ImageHeader& other, const ImageHeader& header) {
-  constexpr std::size_t kDataAt = 50;
+  constexpr std::size_t kDataAt = 58;
   const auto pixels = [](const ImageHeader& of) {
     return static_cast<std::size_t>(of.region.width) * static_cast<std::size_t>(of.region.height);
   };
