@@ -43,7 +43,7 @@ class ImageAssembly {
   [[nodiscard]] GpsTime image_time() const { return time_; }
   [[nodiscard]] std::int32_t image_number() const { return number_; }
   /// Duration of the exposure; 0: not stated.
-  [[nodiscard]] double exposure_s() const { return double{exposure_s_}; }
+  [[nodiscard]] double exposure_s() const { return static_cast<double>(exposure_s_); }
   [[nodiscard]] int tiles_missing() const { return tiles_ - tiles_there_; }
 
   /// The image has been used: it is discarded, and tiles of its time or before are refused from now on.

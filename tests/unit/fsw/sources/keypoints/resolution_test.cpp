@@ -99,7 +99,7 @@ TEST(TwoExposures, TheExposureStatesTheUse) {
   const auto both = two_exposures(bearings, keypoints);
   ASSERT_TRUE(both.ok());
   EXPECT_FALSE(both.value().is_for_keypoints(0.2));
-  EXPECT_TRUE(both.value().is_for_keypoints(1e-5F));
+  EXPECT_TRUE(both.value().is_for_keypoints(static_cast<double>(1e-5F)));
   EXPECT_TRUE(both.value().is_for_keypoints(1e-3)) << "nearer to the shorter, as ratios go";
   EXPECT_FALSE(both.value().is_for_keypoints(2e-3));
 }
