@@ -68,8 +68,8 @@ TEST(RecordedImage, PixelsThatAreNotOfTheImageAreRejected) {
   EXPECT_THROW(static_cast<void>(recorded_image_of(header(12, {0, 0, 0, 0}), {})), std::invalid_argument);
 }
 
-// Offsets of the encoded message (recorded_image.lcm): hash 0, spacecraft 8, unit 10, time 12, number 20, x 28, y 32,
-// width 36, height 40, bits 44, coding 45, size 46, data 50.
+// Offsets of the encoded message (recorded_image.lcm): hash 0, spacecraft 8, unit 10, time 12, number 20, exposure 28,
+// x 36, y 40, width 44, height 48, bits 52, coding 53, size 54, data 58.
 TEST(RecordedImage, HeaderThatIsDamagedIsRejected) {
   const std::vector<std::uint8_t> good = recorded_image_of(header(12), noise(2400, 12));
   const auto changed = [&](std::size_t at, std::uint8_t value) {
@@ -81,12 +81,13 @@ TEST(RecordedImage, HeaderThatIsDamagedIsRejected) {
                                         {8, 0x01, "spacecraft above 255"},
                                         {10, 0xFF, "unit below zero"},
                                         {20, 0xFF, "number below zero"},
-                                        {28, 0x80, "x below zero"},
-                                        {37, 0x01, "width above 32767"},
-                                        {44, 10, "bits"},
-                                        {45, 2, "coding"},
-                                        {46, 0x7F, "size"},
-                                        {49, 0x00, "size"}}) {
+                                        {28, 0xBF, "exposure below zero"},
+                                        {36, 0x80, "x below zero"},
+                                        {45, 0x01, "width above 32767"},
+                                        {52, 10, "bits"},
+                                        {53, 2, "coding"},
+                                        {54, 0x7F, "size"},
+                                        {57, 0x00, "size"}}) {
     const std::vector<std::uint8_t> bytes = changed(at, static_cast<std::uint8_t>(value));
     EXPECT_FALSE(header_of_recorded_image(bytes)) << what;
     EXPECT_EQ(error_of(bytes), "is a damaged record") << what;
@@ -94,7 +95,7 @@ TEST(RecordedImage, HeaderThatIsDamagedIsRejected) {
   std::vector<std::uint8_t> longer = good;
   longer.push_back(0);
   EXPECT_FALSE(header_of_recorded_image(longer));
-  for (std::size_t size = 0; size < 60; ++size)
+  for (std::size_t size = 0; size < 68; ++size)
     EXPECT_FALSE(header_of_recorded_image(std::span(good).first(size))) << size;
 }
 
@@ -109,7 +110,7 @@ std::vector<std::uint8_t> with_data_of(const ImageHeader& other, const ImageHead
   bytes.resize(kDataAt);
   bytes.insert(bytes.end(), data.begin() + kDataAt, data.end());
   const auto size = static_cast<std::uint32_t>(data.size() - kDataAt);
-  for (std::size_t k = 0; k < 4; ++k) bytes[46 + k] = static_cast<std::uint8_t>(size >> (24U - 8U * k));
+  for (std::size_t k = 0; k < 4; ++k) bytes[54 + k] = static_cast<std::uint8_t>(size >> (24U - 8U * k));
   return bytes;
 }
 
@@ -128,7 +129,7 @@ TEST(RecordedImage, DamagedDataAreAnErrorOrPixels) {
   int errors = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     std::vector<std::uint8_t> bytes = good;
-    bytes[50 + random() % (bytes.size() - 50)] = static_cast<std::uint8_t>(random());
+    bytes[58 + random() % (bytes.size() - 58)] = static_cast<std::uint8_t>(random());
     try {
       const std::vector<std::uint16_t> dn = pixels_of_recorded_image(bytes);
       EXPECT_EQ(dn.size(), 2400U);
@@ -139,9 +140,9 @@ TEST(RecordedImage, DamagedDataAreAnErrorOrPixels) {
   }
   EXPECT_GT(errors, 0);
   // Cut anywhere, with a size that says so.
-  for (std::size_t size = 50; size < good.size(); size += 97) {
+  for (std::size_t size = 58; size < good.size(); size += 97) {
     std::vector<std::uint8_t> bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
-    for (std::size_t k = 0; k < 4; ++k) bytes[46 + k] = static_cast<std::uint8_t>((size - 50) >> (24U - 8U * k));
+    for (std::size_t k = 0; k < 4; ++k) bytes[54 + k] = static_cast<std::uint8_t>((size - 58) >> (24U - 8U * k));
     EXPECT_EQ(error_of(bytes).rfind("holds damaged JPEG-LS data: ", 0), 0U) << size << ": " << error_of(bytes);
   }
 }
