@@ -76,7 +76,7 @@ std::string aids(const RunRecord& record) {
   for (const auto& row : events)
     if (row.message.event == telemetry_event::kEventAid) sources.push_back(row.message.device);
   std::ranges::sort(sources);
-  sources.erase(std::ranges::unique(sources).begin(), sources.end());
+  sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
   const Range all = hours_of(whole_run(record));
   std::vector<TimelineRow> rows;
   for (const std::int32_t source : sources)
