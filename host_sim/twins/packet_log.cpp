@@ -205,7 +205,9 @@ PacketLog read_packet_log(const std::filesystem::path& file) {
   log.file = file;
   std::int64_t before = -1;
   while (auto event = reader.next()) {
-    if (event->number != before + 1 && !log.gap) log.gap = {event->offset, before, event->number};
+    // A damaged number may be the largest, which has no successor.
+    const bool follows = static_cast<std::uint64_t>(event->number) == static_cast<std::uint64_t>(before) + 1U;
+    if (!follows && !log.gap) log.gap = {event->offset, before, event->number};
     before = event->number;
     take(*event, file, log);
   }
