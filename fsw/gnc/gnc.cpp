@@ -10,7 +10,7 @@ Gnc::Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context)
 Status Gnc::step(GpsTime now) {
   const bool is_later = !stepped_ || now > now_;
   if (!is_later || !is_usable(now)) {
-    faults_ |= kFaultClock;
+    faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = true, .argument = seconds(now - now_)});
     inbox_.clear(now_);
     return is_later ? Status::kOutOfRange : Status::kBadSequence;
   }
@@ -32,7 +32,15 @@ Status Gnc::step(GpsTime now) {
 void Gnc::manage() {
   telecommands_.update(now_, inbox_);
   management_.update(now_, telecommands_);
-  if (inbox_.counters().dropped_full > 0) faults_ |= kFaultInboxFull;
+  if (telecommands_.is_new<fault_command>()) {
+    faults_.clear(now_, telecommands_.in_force<fault_command>()->clear);
+  }
+  const std::int32_t dropped = inbox_.counters().dropped_full;
+  faults_.check(now_, {.fault = telemetry_health::kFaultInboxFull,
+                       .is_detected = dropped > packets_dropped_,
+                       .argument = static_cast<double>(dropped)});
+  packets_dropped_ = dropped;
+  faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = false});
 }
 
 void Gnc::navigate() {
@@ -40,9 +48,15 @@ void Gnc::navigate() {
   const NavigationState& state = navigation_.state();
   const double timeout = management_.configuration().navigation_timeout_s;
   const GpsTime last_heard = state.last_measurement > started_ ? state.last_measurement : started_;
-  if (state.valid && seconds(now_ - last_heard) > timeout) faults_ |= kFaultNavigationTimeout;
+  const double age_s = seconds(now_ - last_heard);
+  faults_.check(now_, {.fault = telemetry_health::kFaultNavigationTimeout,
+                       .is_detected = state.valid && age_s > timeout,
+                       .argument = age_s});
   has_navigated_ = has_navigated_ || state.valid;
-  if (!has_navigated_ && seconds(now_ - started_) > timeout) faults_ |= kFaultNeverNavigated;
+  const double since_start_s = seconds(now_ - started_);
+  faults_.check(now_, {.fault = telemetry_health::kFaultNeverNavigated,
+                       .is_detected = !has_navigated_ && since_start_s > timeout,
+                       .argument = since_start_s});
 }
 
 void Gnc::assess() {
@@ -55,7 +69,11 @@ void Gnc::control() {
     const CommandedBurn& commanded = guidance_.command(k);
     navigation_.expect_maneuver(commanded.maneuver_id, commanded.burn.time, commanded.burn.dv_rtn);
   }
-  if (guidance_.report().holds > 0) faults_ |= kFaultHold;
+  const std::int32_t holds = guidance_.report().holds;
+  faults_.check(
+      now_,
+      {.fault = telemetry_health::kFaultHold, .is_detected = holds > holds_, .argument = static_cast<double>(holds)});
+  holds_ = holds;
 }
 
 void Gnc::report() {
@@ -75,6 +93,7 @@ void Gnc::report() {
   navigation_.report(outbox_, step_, now_, inbox_);
   report_control();
   report_health();
+  report_events();
 }
 
 }  // namespace vbar::fsw::gnc

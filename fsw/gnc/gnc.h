@@ -7,6 +7,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
+#include "fsw/faults/fault_monitor.h"
 #include "fsw/gnc/guidance.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/management.h"
@@ -15,15 +16,6 @@
 #include "fsw/gnc/telecommands.h"
 
 namespace vbar::fsw::gnc {
-
-/// Latched faults, bits of telemetry_health.faults.
-enum Fault : std::int32_t {
-  kFaultNavigationTimeout = 1 << 0,  ///< no measurement for longer than navigation_timeout_s
-  kFaultHold = 1 << 1,               ///< no solver produced a plan that is safe to fly
-  kFaultInboxFull = 1 << 2,          ///< a packet was dropped because its queue was full
-  kFaultClock = 1 << 3,  ///< a step was requested at or before the last step's time, or outside the clock's range
-  kFaultNeverNavigated = 1 << 4,  ///< no state was valid within navigation_timeout_s of the first step
-};
 
 class Gnc {
  public:
@@ -51,6 +43,7 @@ class Gnc {
   [[nodiscard]] std::optional<sources::Pointing> pointing_to_target() const;
   void report_control();
   void report_health();
+  void report_events();
 
   Inbox inbox_;
   Outbox outbox_;
@@ -61,7 +54,9 @@ class Gnc {
   GpsTime now_;
   GpsTime started_;  ///< first step
   std::int64_t step_ = 0;
-  std::int32_t faults_ = 0;
+  faults::FaultMonitor faults_;
+  std::int32_t packets_dropped_ = 0;  ///< of the inbox, until the last step
+  std::int32_t holds_ = 0;            ///< of guidance, until the last step
   bool stepped_ = false;
   bool has_navigated_ = false;  ///< since the first step
 };

@@ -14,7 +14,6 @@ constexpr bool is_reported_as(Enumerator enumerator, int constant) {
 
 // The last of each list stands for all: the lists of vbar.lcm are those of the code.
 static_assert(is_reported_as(Status::kNotReady, telemetry_control::kStatusNotReady));
-static_assert(is_reported_as(kFaultNeverNavigated, telemetry_health::kFaultNeverNavigated));
 static_assert(is_reported_as(NavigationSource::kPose, telemetry_navigation::kSourcePose));
 
 }  // namespace
@@ -109,8 +108,23 @@ void Gnc::report_health() {
   message.solver_fallbacks = guidance.solver_fallbacks;
   message.plans_unsafe = guidance.plans_unsafe;
   message.holds = guidance.holds;
-  message.faults = faults_;
+  message.faults = faults_.latched();
+  message.faults_present = faults_.present();
   outbox_.send(now_, message);
+}
+
+void Gnc::report_events() {
+  for (const faults::Transition& transition : faults_.transitions()) {
+    telemetry_event event{};
+    event.step = step_;
+    event.event = transition.event;
+    event.severity = transition.severity;
+    event.device = transition.device;
+    event.fault = transition.fault;
+    event.argument = transition.argument;
+    outbox_.send(transition.time, event);
+  }
+  faults_.forget_transitions();
 }
 
 }  // namespace vbar::fsw::gnc

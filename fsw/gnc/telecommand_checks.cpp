@@ -9,7 +9,8 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-constexpr double kLargestARoe = 1e6;  // m; beyond it the relative-orbit models are not valid
+constexpr double kLongestHorizon_s = 2e5;  // of an assessment of a drift: forty revolutions
+constexpr double kLargestARoe = 1e6;       // m; beyond it the relative-orbit models are not valid
 
 bool is_usable_span(std::int64_t ns) {
   return is_usable(Duration{ns});
@@ -23,7 +24,7 @@ bool is_valid(const waypoint& w) {
   for (const double a_roe : w.a_roe_m) {
     if (math::abs(a_roe) > kLargestARoe) return false;
   }
-  return true;
+  return w.keep_out_radius_m >= 0.0 && w.keep_out_radius_m <= kLargestARoe;
 }
 
 }  // namespace
@@ -49,7 +50,23 @@ bool is_valid(const gnc_configuration& c) {
 }
 
 bool is_valid(const mode_command& command) {
-  return command.mode >= 0 && command.mode <= mode_command::kModeHold;
+  return command.mode >= 0 && command.mode <= mode_command::kModeRetreat;
+}
+
+bool is_valid(const safety_configuration& c) {
+  constexpr double kLargestDistance_m = 1e5;
+  const auto is_distance = [](double x) { return x > 0.0 && x <= kLargestDistance_m; };
+  return is_distance(c.contact_distance_m) && is_distance(c.recession_m) && is_distance(c.hold_distance_m) &&
+         is_distance(c.hold_separation_m) && is_distance(c.data_timeout_range_m) && is_distance(c.target_size_m) &&
+         is_usable_span(c.horizon_s) && c.horizon_s <= kLongestHorizon_s && is_usable_span(c.retreat_delay_s) &&
+         is_usable_span(c.data_timeout_s) && c.semi_major_axis_error_m >= 0.0 &&
+         c.semi_major_axis_error_m <= kLargestDistance_m && c.differential_drag >= 0.0 && c.differential_drag <= 1e-3 &&
+         c.maximum_collision_probability > 0.0 && c.maximum_collision_probability <= 1.0 &&
+         c.hold_distance_m > c.contact_distance_m && c.hold_separation_m > c.contact_distance_m;
+}
+
+bool is_valid(const fault_command& /*command*/) {
+  return true;
 }
 
 }  // namespace vbar::fsw::gnc

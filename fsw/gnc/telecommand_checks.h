@@ -12,5 +12,7 @@ namespace vbar::fsw::gnc {
 [[nodiscard]] bool is_valid(const waypoint_table& table);
 [[nodiscard]] bool is_valid(const gnc_configuration& configuration);
 [[nodiscard]] bool is_valid(const mode_command& command);
+[[nodiscard]] bool is_valid(const safety_configuration& configuration);
+[[nodiscard]] bool is_valid(const fault_command& command);
 
 }  // namespace vbar::fsw::gnc

@@ -89,6 +89,8 @@ inline constexpr Route kManeuvers = queue(32);
   X(::vbar::target_model, kTargetModel, 0x10C, route::kTelecommand)                                   \
   X(::vbar::receiver_configuration, kReceiverConfiguration, 0x10D, route::kTelecommand)               \
   X(::vbar::carrier_configuration, kCarrierConfiguration, 0x10E, route::kTelecommand)                 \
+  X(::vbar::safety_configuration, kSafetyConfiguration, 0x10F, route::kTelecommand)                   \
+  X(::vbar::fault_command, kFaultCommand, 0x110, route::kTelecommand)                                 \
   X(::vbar::maneuver_command, kManeuverCommand, 0x401, route::kFromFlight)                            \
   X(::vbar::pointing_command, kPointingCommand, 0x402, route::kFromFlight)                            \
   X(::vbar::exposure_command, kExposureCommand, 0x403, route::kFromFlight)                            \
@@ -102,5 +104,6 @@ inline constexpr Route kManeuvers = queue(32);
   X(::vbar::telemetry_telecommand, kTelemetryTelecommand, 0x508, route::kFromFlight)                  \
   X(::vbar::telemetry_range, kTelemetryRange, 0x509, route::kFromFlight)                              \
   X(::vbar::telemetry_event, kTelemetryEvent, 0x50A, route::kFromFlight)                              \
+  X(::vbar::telemetry_safety, kTelemetrySafety, 0x50B, route::kFromFlight)                            \
   X(::vbar::step_report, kStepReport, 0x601, route::kBoard)                                           \
   X(::vbar::wired_bytes, kWiredBytes, 0x602, route::kBoard)

@@ -26,6 +26,7 @@ constexpr Section kSections[] = {{"mission", without_installation<read_general>}
                                  {"waypoint", without_installation<read_waypoints>},
                                  {"spacecraft", read_spacecraft},
                                  {"guidance", without_installation<read_guidance>},
+                                 {"safety", without_installation<read_safety>},
                                  {"navigation", read_shared},
                                  {"burn", without_installation<read_burns>},
                                  {"clock", read_clock},

@@ -150,10 +150,11 @@ struct Waypoint {
   fsw::Vector6 a_roe_m =
       fsw::Vector6::Zero();  ///< mean ROE of the target with respect to the servicer, times the reference a
   Solver solver = Solver::kClosedForm;
+  std::optional<double> keep_out_radius_m;  ///< of the leg that ends here; default: that of guidance
 };
 
 /// Numbers as in vbar.lcm, mode_command.
-enum class Mode : std::int8_t { kIdle = 0, kApproach = 1, kStationKeeping = 2, kHold = 3 };
+enum class Mode : std::int8_t { kIdle = 0, kApproach = 1, kStationKeeping = 2, kHold = 3, kRetreat = 4 };
 
 /// Telecommands to the flight software at the start.
 struct Guidance {
@@ -204,6 +205,7 @@ struct Mission {
   truth::TruthSettings truth;  ///< all but the data folder, which the program determines
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
+  std::optional<vbar::safety_configuration> safety;  ///< without it neither retreat nor guard
   Navigation navigation;
   std::vector<std::shared_ptr<const SharedSettings>> shared;  ///< one of each kind of sensor
   std::vector<Testbed> testbeds;

@@ -23,10 +23,11 @@ inline constexpr Names<FlightLink, 2> kFlightLinks{{{"serial", FlightLink::kSeri
 inline constexpr Names<Solver, 3> kSolvers{{{"closed_form", Solver::kClosedForm},
                                             {"koenig_damico", Solver::kKoenigDamico},
                                             {"least_squares", Solver::kLeastSquares}}};
-inline constexpr Names<Mode, 4> kModes{{{"idle", Mode::kIdle},
+inline constexpr Names<Mode, 5> kModes{{{"idle", Mode::kIdle},
                                         {"approach", Mode::kApproach},
                                         {"station_keeping", Mode::kStationKeeping},
-                                        {"hold", Mode::kHold}}};
+                                        {"hold", Mode::kHold},
+                                        {"retreat", Mode::kRetreat}}};
 inline constexpr Names<Apriori, 3> kAprioris{
     {{"none", Apriori::kNone}, {"orbit", Apriori::kOrbit}, {"roe", Apriori::kRoe}}};
 inline constexpr Names<ImagesInLog, 2> kImagesInLog{

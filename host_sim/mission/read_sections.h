@@ -18,6 +18,7 @@ void read_waypoints(const TableReader& document, Mission& mission);             
 void read_spacecraft(const TableReader& document, Mission& mission,
                      const Installation& installation);               // [[spacecraft]]
 void read_guidance(const TableReader& document, Mission& mission);    // [guidance]
+void read_safety(const TableReader& document, Mission& mission);      // [safety]
 void read_navigation(const TableReader& document, Mission& mission);  // [navigation], after its tables by kinds
 void read_shared(const TableReader& document, Mission& mission,
                  const Installation& installation);  // by the kinds of sensors: [navigation.*], [links.crosslink]

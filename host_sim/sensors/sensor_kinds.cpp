@@ -105,6 +105,7 @@ std::vector<twins::Packet> telecommands_of(const TelecommandContext& context) {
     if (kind.add_telecommands != nullptr) kind.add_telecommands(sensor, context, telecommands);
   }
   telecommands.add(mission::waypoint_table_of(context.mission));
+  if (context.mission.safety) telecommands.add(*context.mission.safety);
   telecommands.add(mission::mode_command_of(context.mission));
   return telecommands.packets();
 }

@@ -68,7 +68,7 @@ TEST_P(Silence, OfTenMinutesIsCoastedToldAndRecoveredFrom) {
   EXPECT_LT(fixed_again_s, 120.0);
   const std::vector<telemetry_health> health = telemetry_of<telemetry_health>(flight.flown);
   ASSERT_FALSE(health.empty());
-  EXPECT_NE(health.back().faults & fsw::gnc::kFaultNavigationTimeout, 0);
+  EXPECT_NE(health.back().faults & vbar::telemetry_health::kFaultNavigationTimeout, 0);
   EXPECT_LT(waypoint(record, 10).control_error_m, 0.05);
   EXPECT_LT(waypoint(record, 10).navigation_error_m.value_or(1e9), 0.02);
 }

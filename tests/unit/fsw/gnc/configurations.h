@@ -100,6 +100,23 @@ inline target_model target_shape() {
   return t;
 }
 
+inline safety_configuration safety() {
+  safety_configuration c{};
+  c.contact_distance_m = 2.0;
+  c.horizon_s = 86400.0;
+  c.retreat_delay_s = 600.0;
+  c.semi_major_axis_error_m = 0.05;
+  c.differential_drag = 1e-9;
+  c.maximum_collision_probability = 1e-4;
+  c.recession_m = 1.0;
+  c.hold_distance_m = 200.0;
+  c.hold_separation_m = 6.0;
+  c.data_timeout_s = 2100.0;
+  c.data_timeout_range_m = 100.0;
+  c.target_size_m = 0.69;
+  return c;
+}
+
 inline pose_configuration pose() {
   pose_configuration p{};
   p.keypoint_sigma_scale = 1.0;

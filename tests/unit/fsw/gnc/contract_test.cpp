@@ -102,6 +102,17 @@ TEST(Contract, APacketDeliveredBetweenStepsIsPartOfTheSavedState) {
   EXPECT_EQ(a.step(flight.now, kStep).packets, b.step(flight.now, kStep).packets);
 }
 
+/// Without the packets that report faults.
+template <class Packets>
+Packets without_health(Packets packets) {
+  std::erase_if(packets, [](const auto& packet) {
+    const auto view = packets::parse_packet(packet);
+    return !view.ok() || view.value().header.apid == packets::Apid::kTelemetryHealth ||
+           view.value().header.apid == packets::Apid::kTelemetryEvent;
+  });
+  return packets;
+}
+
 TEST(Contract, TheClockGoesForwardOnly) {
   Flight flight = under_way();
   const std::vector<std::byte> before = flight.article.save();
@@ -120,10 +131,9 @@ TEST(Contract, TheClockGoesForwardOnly) {
   EXPECT_EQ(undisturbed.deliver(flight.now, flight.world.measurement()), 0);
   const Answer answer = article.step(flight.now, kStep);
   const Answer reference = undisturbed.step(flight.now, kStep);
-  EXPECT_EQ(answer.health.faults & kFaultClock, kFaultClock);
-  EXPECT_EQ(reference.health.faults & kFaultClock, 0);
-  ASSERT_EQ(answer.packets.size(), reference.packets.size());
-  for (std::size_t k = 0; k + 1 < answer.packets.size(); ++k) EXPECT_EQ(answer.packets[k], reference.packets[k]);
+  EXPECT_EQ(answer.health.faults & telemetry_health::kFaultClock, telemetry_health::kFaultClock);
+  EXPECT_EQ(reference.health.faults & telemetry_health::kFaultClock, 0);
+  EXPECT_EQ(without_health(answer.packets), without_health(reference.packets));
 }
 
 TEST(Contract, AStepOutsideTheClocksRangeIsRefused) {

@@ -111,11 +111,12 @@ TEST(Fallback, NothingIsPlannedOnceNavigationHasTimedOut) {
   EXPECT_EQ(flight.now, at(420));
   EXPECT_EQ(answer.control.active_solver, kKoenigDamico)
       << "at 360 s the measurement is 300 s old, which is not too old";
-  EXPECT_EQ(answer.health.faults & kFaultNavigationTimeout, 0);
+  EXPECT_EQ(answer.health.faults & telemetry_health::kFaultNavigationTimeout, 0);
   answer = flight.step();
   EXPECT_EQ(answer.control.active_solver, kNone);
   EXPECT_EQ(answer.control.planned_burns, 0);
-  EXPECT_EQ(answer.health.faults & kFaultNavigationTimeout, kFaultNavigationTimeout);
+  EXPECT_EQ(answer.health.faults & telemetry_health::kFaultNavigationTimeout,
+            telemetry_health::kFaultNavigationTimeout);
   EXPECT_DOUBLE_EQ(answer.navigation.age_s, 360.0);
 
   const int executed = flight.executed;
@@ -129,7 +130,7 @@ TEST(Fallback, NothingIsPlannedOnceNavigationHasTimedOut) {
   recovering.measures = true;
   answer = recovering.step();
   EXPECT_EQ(answer.control.active_solver, kKoenigDamico);
-  EXPECT_NE(answer.health.faults & kFaultNavigationTimeout, 0) << "the fault stays latched";
+  EXPECT_NE(answer.health.faults & telemetry_health::kFaultNavigationTimeout, 0) << "the fault stays latched";
 }
 
 TEST(Fallback, NavigationThatNeverBeginsIsAFault) {
@@ -140,18 +141,18 @@ TEST(Fallback, NavigationThatNeverBeginsIsAFault) {
   Answer answer = flight.fly_until(at(301));  // the last step at 300 s
   EXPECT_EQ(answer.health.faults, 0);
   answer = flight.step();
-  EXPECT_EQ(answer.health.faults, kFaultNeverNavigated);
+  EXPECT_EQ(answer.health.faults, telemetry_health::kFaultNeverNavigated);
   EXPECT_EQ(answer.navigation.valid, 0);
   flight.measures = true;
   answer = flight.step();
   EXPECT_EQ(answer.navigation.valid, 1);
-  EXPECT_EQ(answer.health.faults, kFaultNeverNavigated) << "the fault stays latched";
+  EXPECT_EQ(answer.health.faults, telemetry_health::kFaultNeverNavigated) << "the fault stays latched";
 
   // A state that was valid once times out instead.
   Flight later = approach(3 * 3600, kKoenigDamico, c);
   later.step();
   later.measures = false;
-  EXPECT_EQ(later.fly_until(at(3600)).health.faults, kFaultNavigationTimeout);
+  EXPECT_EQ(later.fly_until(at(3600)).health.faults, telemetry_health::kFaultNavigationTimeout);
 }
 
 // Nothing may come within 20 m, and the waypoint is at 10: no plan can be flown, whoever makes it.
@@ -167,7 +168,7 @@ TEST(Safety, UnsafePlansAreRefusedCountedAndNotFlown) {
     EXPECT_EQ(answer.health.plans_unsafe, rungs);
     EXPECT_EQ(answer.health.solver_fallbacks, rungs - 1);
     EXPECT_EQ(answer.health.holds, 1);
-    EXPECT_EQ(answer.health.faults, kFaultHold);
+    EXPECT_EQ(answer.health.faults, telemetry_health::kFaultHold);
     EXPECT_TRUE(answer.commands.empty());
     // The drift from 100 m away passes no nearer than its separation in the RN plane, 3 m, but is 100 m away along
     // track.

@@ -33,7 +33,7 @@ TEST(Queues, OfMeasurementsKeepWhatTheyHave) {
   flight.measures = false;
   const Answer answer = flight.step();
   EXPECT_EQ(answer.health.inbox_dropped, 7);
-  EXPECT_EQ(answer.health.faults, kFaultInboxFull);
+  EXPECT_EQ(answer.health.faults, telemetry_health::kFaultInboxFull);
   EXPECT_EQ(answer.health.packets_accepted, Inbox::kCapacity<ideal_navigation> + 1);  // and the tick
   EXPECT_NEAR(answer.navigation.relative_position_rtn[1], -100.0, 10.0);  // not the -10 m of the dropped ones
 

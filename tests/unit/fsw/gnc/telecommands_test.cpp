@@ -82,6 +82,8 @@ TEST_F(TelecommandsTest, EveryKindIsStored) {
   send(1, target(SmallWorld(Vector6::Constant(100.0))));
   send(1, table_of({waypoint_at(1, 60, 0, Vector6::Zero())}));
   send(1, configuration());
+  send(1, safety());
+  send(1, fault_command{});
   send(1, mode(1));
   std::size_t kinds = 0;
   packets::for_each_telecommand([&]<class Message>() { ++kinds; });
@@ -98,7 +100,7 @@ TEST_F(TelecommandsTest, EveryKindIsStored) {
 TEST_F(TelecommandsTest, ARefusedOneLeavesThePreviousInForce) {
   send(1, mode(1));
   EXPECT_EQ(status_of_step(1), telemetry_telecommand::kStatusAccepted);
-  send(2, mode(4));
+  send(2, mode(5));
   EXPECT_EQ(status_of_step(2), telemetry_telecommand::kStatusOutOfRange);
   send(9, mode(3));
   EXPECT_EQ(status_of_step(3), telemetry_telecommand::kStatusFuture);

@@ -1,0 +1,92 @@
+#pragma once
+// The table of all faults: how long a detection must persist, and the response. The names are those of vbar.lcm,
+// telemetry_health.kFault..., whose bits are the numbers here.
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "fsw/faults/persistence.h"
+#include "fsw/packets/messages.h"
+
+namespace vbar::fsw::faults {
+
+/// What the flight software does while a fault is present, besides reporting it.
+enum class Response : std::uint8_t {
+  kReport,   ///< nothing: others have isolated what failed (fsw/sources/aid.h), or the ground must act
+  kHold,     ///< no burn is planned or commanded but the retreat
+  kRetreat,  ///< mode retreat
+};
+
+struct Rule {
+  std::int32_t fault = 0;    ///< bit of telemetry_health.faults
+  std::int8_t severity = 0;  ///< telemetry_event.kSeverity
+  int limit = 1;             ///< of the last `window` checks, these must detect it
+  int window = 1;
+  Response response = Response::kReport;
+};
+
+using vbar::telemetry_event;
+using vbar::telemetry_health;
+
+// The comment states the argument of the event. A check is one step, image, epoch or burn, as its detector has it.
+inline constexpr auto kFaultTable = std::to_array<Rule>({
+    // navigation
+    {telemetry_health::kFaultNavigationTimeout, telemetry_event::kSeverityFault},     // age, s
+    {telemetry_health::kFaultNeverNavigated, telemetry_event::kSeverityFault},        // time, s
+    {telemetry_health::kFaultImagesMissing, telemetry_event::kSeverityFault},         // camera
+    {telemetry_health::kFaultImageFrozen, telemetry_event::kSeverityFault, 2, 2},     // camera
+    {telemetry_health::kFaultSourceInconsistent, telemetry_event::kSeverityWarning},  // mean NIS/dof
+    {telemetry_health::kFaultSourceRestarts, telemetry_event::kSeverityFault},        // restarts
+    {telemetry_health::kFaultSourcesContradict, telemetry_event::kSeverityFault},     // sigmas
+    {telemetry_health::kFaultState, telemetry_event::kSeverityFault},                 // failures
+    // guidance
+    {telemetry_health::kFaultHold, telemetry_event::kSeverityFault},                                   // holds so far
+    {telemetry_health::kFaultDriftUnsafe, telemetry_event::kSeverityFault, 2, 3, Response::kRetreat},  // distance, m
+    {telemetry_health::kFaultCollisionProbability, telemetry_event::kSeverityFault, 2, 3, Response::kRetreat},
+    {telemetry_health::kFaultRetreat, telemetry_event::kSeverityFault},  // size, m/s
+    // burns
+    {telemetry_health::kFaultBurnRefused, telemetry_event::kSeverityWarning},                              // maneuver
+    {telemetry_health::kFaultBurnMissed, telemetry_event::kSeverityWarning},                               // maneuver
+    {telemetry_health::kFaultBurnSize, telemetry_event::kSeverityWarning},                                 // scale
+    {telemetry_health::kFaultBurnUncommanded, telemetry_event::kSeverityFault, 1, 1, Response::kRetreat},  // m/s
+    {telemetry_health::kFaultThruster, telemetry_event::kSeverityFault, 2, 2, Response::kHold},            // scale
+    // guard
+    {telemetry_health::kFaultGuardRange, telemetry_event::kSeverityFault, 3, 5, Response::kRetreat},    // ln ratio
+    {telemetry_health::kFaultGuardSilence, telemetry_event::kSeverityFault, 1, 1, Response::kRetreat},  // age, s
+    {telemetry_health::kFaultGuardBurns, telemetry_event::kSeverityFault, 2, 2, Response::kRetreat},    // difference
+    {telemetry_health::kFaultGuardClosing, telemetry_event::kSeverityFault, 3, 5, Response::kRetreat},  // rate, m/s
+    // computer
+    {telemetry_health::kFaultInboxFull, telemetry_event::kSeverityWarning},  // packets
+    {telemetry_health::kFaultClock, telemetry_event::kSeverityFault},        // jump, s
+    {telemetry_health::kFaultStepLate, telemetry_event::kSeverityWarning},   // delay, s
+    {telemetry_health::kFaultRestart, telemetry_event::kSeverityWarning},    // age of state, s
+    {telemetry_health::kFaultColdStart, telemetry_event::kSeverityWarning},  // Status
+});
+
+inline constexpr std::size_t kFaultCount = kFaultTable.size();
+
+namespace detail {
+constexpr bool is_complete() {
+  std::uint32_t seen = 0;
+  for (const Rule& rule : kFaultTable) {
+    const auto bit = static_cast<std::uint32_t>(rule.fault);
+    if (!std::has_single_bit(bit) || (seen & bit) != 0) return false;
+    if (rule.limit < 1 || rule.limit > rule.window || rule.window > Persistence::kMaxWindow) return false;
+    seen |= bit;
+  }
+  return seen == (std::uint32_t{1} << kFaultCount) - 1;
+}
+}  // namespace detail
+static_assert(detail::is_complete(), "one rule for each fault of vbar.lcm, whose bits have no gap");
+
+/// Place in the table of a fault given by its bit.
+constexpr std::size_t place_of(std::int32_t fault) {
+  for (std::size_t k = 0; k < kFaultCount; ++k) {
+    if (kFaultTable[k].fault == fault) return k;
+  }
+  return 0;
+}
+
+}  // namespace vbar::fsw::faults

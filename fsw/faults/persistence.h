@@ -1,0 +1,38 @@
+#pragma once
+// Persistence of a detection: the one counter of all faults.
+
+#include <bit>
+#include <cstdint>
+
+namespace vbar::fsw::faults {
+
+/// Persistent once `limit` of the last `window` checks detected something, until none of them does.
+class Persistence {
+ public:
+  static constexpr int kMaxWindow = 64;
+
+  /// 1 <= limit <= window <= kMaxWindow.
+  constexpr Persistence(int limit, int window) : limit_(limit), window_(window) {}
+
+  /// Records a check; whether the detection is persistent after it.
+  constexpr bool add(bool is_detected) {
+    const std::uint64_t mask = window_ == kMaxWindow ? ~std::uint64_t{0} : (std::uint64_t{1} << window_) - 1;
+    history_ = ((history_ << 1U) | (is_detected ? 1U : 0U)) & mask;
+    if (std::popcount(history_) >= limit_) is_persistent_ = true;
+    if (history_ == 0) is_persistent_ = false;
+    return is_persistent_;
+  }
+  [[nodiscard]] constexpr bool is_persistent() const { return is_persistent_; }
+  constexpr void reset() {
+    history_ = 0;
+    is_persistent_ = false;
+  }
+
+ private:
+  std::uint64_t history_ = 0;  ///< of the checks in the window, the latest in the lowest bit
+  int limit_;
+  int window_;
+  bool is_persistent_ = false;
+};
+
+}  // namespace vbar::fsw::faults

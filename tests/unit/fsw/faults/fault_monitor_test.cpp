@@ -1,0 +1,85 @@
+#include "fsw/faults/fault_monitor.h"
+
+#include <gtest/gtest.h>
+
+namespace vbar::fsw::faults {
+namespace {
+
+constexpr std::int32_t kFrozen = telemetry_health::kFaultImageFrozen;  // two of two checks
+
+GpsTime at(int s) {
+  return GpsTime{} + duration_of_seconds(s);
+}
+
+TEST(FaultMonitor, AFaultIsRaisedOnceItPersistsWithAnEvent) {
+  FaultMonitor monitor;
+  monitor.check(at(1), {.fault = kFrozen, .is_detected = true});
+  EXPECT_EQ(monitor.latched(), 0);
+  monitor.check(at(2), {.fault = kFrozen, .is_detected = true, .device = 8, .argument = 1.0});
+  EXPECT_EQ(monitor.latched(), kFrozen);
+  EXPECT_EQ(monitor.present(), kFrozen);
+  EXPECT_EQ(monitor.onset(kFrozen), at(2));
+  ASSERT_EQ(monitor.transitions().size(), 1U);
+  const Transition& raised = monitor.transitions()[0];
+  EXPECT_EQ(raised.fault, kFrozen);
+  EXPECT_EQ(raised.event, telemetry_event::kEventFaultRaised);
+  EXPECT_EQ(raised.severity, telemetry_event::kSeverityFault);
+  EXPECT_EQ(raised.device, 8);
+  EXPECT_EQ(raised.argument, 1.0);
+  EXPECT_EQ(raised.time, at(2));
+}
+
+TEST(FaultMonitor, AFaultThatEndsStaysLatchedWithItsFirstOnset) {
+  FaultMonitor monitor;
+  for (int s = 1; s <= 2; ++s) monitor.check(at(s), {.fault = kFrozen, .is_detected = true});
+  for (int s = 3; s <= 4; ++s) monitor.check(at(s), {.fault = kFrozen, .is_detected = false});
+  EXPECT_EQ(monitor.latched(), kFrozen);
+  EXPECT_EQ(monitor.present(), 0);
+  EXPECT_EQ(monitor.transitions().back().event, telemetry_event::kEventFaultEnded);
+  for (int s = 5; s <= 6; ++s) monitor.check(at(s), {.fault = kFrozen, .is_detected = true});
+  EXPECT_EQ(monitor.onset(kFrozen), at(2));
+  EXPECT_EQ(monitor.present(), kFrozen);
+}
+
+TEST(FaultMonitor, ClearingUnlatchesAndAFaultThatPersistsIsRaisedAgain) {
+  FaultMonitor monitor;
+  for (int s = 1; s <= 2; ++s) monitor.check(at(s), {.fault = kFrozen, .is_detected = true});
+  monitor.forget_transitions();
+  monitor.clear(at(3), ~0);
+  EXPECT_EQ(monitor.latched(), 0);
+  ASSERT_EQ(monitor.transitions().size(), 1U) << "only of the fault that was latched";
+  EXPECT_EQ(monitor.transitions()[0].event, telemetry_event::kEventFaultCleared);
+  for (int s = 4; s <= 5; ++s) monitor.check(at(s), {.fault = kFrozen, .is_detected = true});
+  EXPECT_EQ(monitor.latched(), kFrozen);
+  EXPECT_EQ(monitor.onset(kFrozen), at(5));
+}
+
+TEST(FaultMonitor, ClearingOneLeavesTheOthers) {
+  FaultMonitor monitor;
+  monitor.check(at(1), {.fault = telemetry_health::kFaultInboxFull, .is_detected = true});
+  monitor.check(at(1), {.fault = telemetry_health::kFaultClock, .is_detected = true});
+  monitor.clear(at(2), telemetry_health::kFaultClock);
+  EXPECT_EQ(monitor.latched(), telemetry_health::kFaultInboxFull);
+  EXPECT_EQ(monitor.present(), telemetry_health::kFaultInboxFull);
+}
+
+TEST(FaultMonitor, TheResponseIsThatOfTheTable) {
+  FaultMonitor monitor;
+  EXPECT_FALSE(monitor.demands(Response::kRetreat));
+  monitor.check(at(1), {.fault = telemetry_health::kFaultGuardSilence, .is_detected = true});
+  EXPECT_TRUE(monitor.demands(Response::kRetreat));
+  EXPECT_FALSE(monitor.demands(Response::kHold));
+  monitor.check(at(2), {.fault = telemetry_health::kFaultGuardSilence, .is_detected = false});
+  EXPECT_FALSE(monitor.demands(Response::kRetreat));
+}
+
+TEST(FaultMonitor, TransitionsWithoutAPlaceAreCounted) {
+  FaultMonitor monitor;
+  for (int s = 0; s < 200; ++s)
+    monitor.check(at(s), {.fault = telemetry_health::kFaultClock, .is_detected = s % 2 == 0});
+  EXPECT_EQ(monitor.transitions().size() + static_cast<std::size_t>(monitor.lost_transitions()), 200U);
+  EXPECT_GT(monitor.lost_transitions(), 0);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::faults
