@@ -1,6 +1,7 @@
 #include "fsw/gnc/gnc.h"
 
 #include "fsw/gnc/message_fields.h"
+#include "fsw/math/math.h"
 
 namespace vbar::fsw::gnc {
 
@@ -21,6 +22,8 @@ Status Gnc::step(GpsTime now) {
   manage();
   navigate();
   assess();
+  supervise();
+  respond();
   control();
   report();
 
@@ -61,13 +64,68 @@ void Gnc::navigate() {
 
 void Gnc::assess() {
   guidance_.assess(now_, navigation_, management_);
+  assessment_.is_known = false;
+  const std::optional<DriftSituation> situation = guidance_.drift_situation();
+  if (situation && management_.safety() != nullptr) {
+    assessment_ = assess_drift_now(*situation, *management_.safety(), retreat_);
+  }
+}
+
+/// By the guard, of which navigation knows nothing.
+void Gnc::supervise() {
+  const safety_configuration* safety = management_.safety();
+  if (safety == nullptr) return;
+  guard_.configure({.target_size_m = safety->target_size_m,
+                    .data_timeout_s = safety->data_timeout_s,
+                    .data_timeout_range_m = safety->data_timeout_range_m});
+  const NavigationState& state = navigation_.state();
+  const double range_m = state.valid ? (state.target.position_eci - state.servicer.position_eci).norm() : 0.0;
+  feed_guard(guard_, inbox_, telecommands_, attitude_, range_m);
+  check_verdicts(guard_.judge(now_), now_, faults_);
+}
+
+/// Faults and what they lead to. A drift counts as unsafe only if no plan can be flown that leaves it.
+void Gnc::respond() {
+  burns_.update(now_, inbox_, faults_);
+  const safety_configuration* safety = management_.safety();
+  if (safety == nullptr) return;
+  if (assessment_.is_known) {
+    faults_.check(now_, {.fault = telemetry_health::kFaultDriftUnsafe,
+                         .is_detected = guidance_.is_holding() &&
+                                        assessment_.passive_distance < guidance_.keep_out(management_.configuration()),
+                         .argument = assessment_.passive_distance});
+    faults_.check(now_, {.fault = telemetry_health::kFaultCollisionProbability,
+                         .is_detected = assessment_.collision_probability > safety->maximum_collision_probability,
+                         .argument = assessment_.collision_probability});
+  }
+  const bool is_demanded = faults_.demands(faults::Response::kRetreat);
+  const bool was_retreating = retreat_.phase() != RetreatSequence::Phase::kNone;
+  if (is_demanded) management_.retreat();
+  const bool is_retreating = management_.mode() == Mode::kRetreat;
+  if (is_retreating && !was_retreating) retreat_.begin();
+  if (!is_retreating) retreat_.end();
+  if (is_retreating) {
+    retreat_.update(
+        now_,
+        {.is_known = guidance_.situation_known(),
+         .is_demanded = is_demanded,
+         .is_drift_unsafe = assessment_.is_known && assessment_.passive_distance < safety->contact_distance_m,
+         .roe = guidance_.report().roe},
+        management_);
+  }
+  faults_.check(now_, {.fault = telemetry_health::kFaultRetreat,
+                       .is_detected = is_retreating,
+                       .argument = math::sqrt(retreat_.burn().dv_rtn.squaredNorm())});
 }
 
 void Gnc::control() {
-  guidance_.update(now_, inbox_.step_period(), navigation_, management_);
+  const bool may_plan = management_.safety() == nullptr || !faults_.demands(faults::Response::kHold);
+  guidance_.update(now_, inbox_.step_period(), navigation_, management_, retreat_, may_plan);
   for (std::size_t k = 0; k < guidance_.command_count(); ++k) {
     const CommandedBurn& commanded = guidance_.command(k);
     navigation_.expect_maneuver(commanded.maneuver_id, commanded.burn.time, commanded.burn.dv_rtn);
+    burns_.expect(commanded.maneuver_id, commanded.burn.time, commanded.burn.dv_rtn);
+    guard_.take_command(commanded.maneuver_id, commanded.burn.dv_rtn);
   }
   const std::int32_t holds = guidance_.report().holds;
   faults_.check(
@@ -92,6 +150,7 @@ void Gnc::report() {
   command_exposures();
   navigation_.report(outbox_, step_, now_, inbox_);
   report_control();
+  report_safety();
   report_health();
   report_events();
 }

@@ -8,11 +8,15 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
 #include "fsw/faults/fault_monitor.h"
+#include "fsw/gnc/assessment.h"
+#include "fsw/gnc/burn_monitor.h"
+#include "fsw/gnc/guard_feed.h"
 #include "fsw/gnc/guidance.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/management.h"
 #include "fsw/gnc/navigation.h"
 #include "fsw/gnc/outbox.h"
+#include "fsw/gnc/retreat_sequence.h"
 #include "fsw/gnc/telecommands.h"
 
 namespace vbar::fsw::gnc {
@@ -34,6 +38,8 @@ class Gnc {
   void manage();
   void navigate();
   void assess();
+  void supervise();
+  void respond();
   void control();
   void report();
 
@@ -42,6 +48,7 @@ class Gnc {
   void command_exposures();
   [[nodiscard]] std::optional<sources::Pointing> pointing_to_target() const;
   void report_control();
+  void report_safety();
   void report_health();
   void report_events();
 
@@ -51,6 +58,11 @@ class Gnc {
   Management management_;
   Navigation navigation_;
   Guidance guidance_;
+  RetreatSequence retreat_;
+  Assessment assessment_;
+  BurnMonitor burns_;
+  guard::Guard guard_;
+  std::optional<vbar::attitude> attitude_;  ///< the last one received, for the guard
   GpsTime now_;
   GpsTime started_;  ///< first step
   std::int64_t step_ = 0;

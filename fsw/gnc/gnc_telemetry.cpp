@@ -91,6 +91,28 @@ void Gnc::report_control() {
   outbox_.send(now_, message);
 }
 
+void Gnc::report_safety() {
+  if (management_.safety() == nullptr) return;
+  telemetry_safety message{};
+  message.step = step_;
+  message.phase = static_cast<std::int8_t>(retreat_.phase());
+  message.choice = static_cast<std::int8_t>(retreat_.burn().choice);
+  copy(retreat_.burn().dv_rtn, message.retreat_dv_rtn);
+  message.retreat_distance_m = assessment_.retreat_distance;
+  message.passive_distance_m = assessment_.passive_distance;
+  message.collision_probability = assessment_.collision_probability;
+  message.collision_probability_in_plane = assessment_.collision_probability_in_plane;
+  message.burn_scale = burns_.scale().scale();
+  message.burn_scale_sigma = burns_.scale().sigma();
+  const guard::RangeFilter& range = guard_.range();
+  if (range.is_known()) {
+    message.guard_range_m = range.range_m(now_);
+    message.guard_range_rate = range.range_rate(now_);
+    message.guard_age_s = seconds(now_ - range.last());
+  }
+  outbox_.send(now_, message);
+}
+
 void Gnc::report_health() {
   const PacketCounters& packets = inbox_.counters();
   const GuidanceReport& guidance = guidance_.report();

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "fsw/control/least_squares.h"
+#include "fsw/gnc/assessment.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
@@ -95,66 +96,106 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   const Vector6 sigma_a_roe_m = navigation.sigma_a_roe_m();
   sigma_roe_ = sigma_a_roe_m / orbits_.servicer.a;
   position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m(0), orbits_.servicer);
+  covariance_m2_ = navigation.a_roe_covariance_m2();
+  safety_ = management.safety() != nullptr ? std::optional(*management.safety()) : std::nullopt;
+  const trunk::TrunkSettings& settings = navigation.trunk().trunk().settings();
+  burn_uncertainty_ =
+      safety_ ? safety::BurnUncertainty{settings.burn_sigma, settings.burn_sigma_relative} : safety::BurnUncertainty{};
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
   const Result<safety::PlanSafety> ahead = safety_of(plan_, configuration);
   if (ahead.ok()) report_.passive_safety_distance = ahead.value().min_distance;
 }
 
-void Guidance::update(GpsTime now, Duration period, const Navigation& navigation, const Management& management) {
+double Guidance::keep_out(const gnc_configuration& configuration) const {
+  return goal_.keep_out_radius_m > 0.0 ? goal_.keep_out_radius_m : configuration.keep_out_radius_m;
+}
+
+std::optional<DriftSituation> Guidance::drift_situation() const {
+  if (!situation_known_) return std::nullopt;
+  const Result<control::MeanOrbits> orbits = control::fly(orbits_, pending_.all(), earliest_start());
+  if (!orbits.ok()) return std::nullopt;
+  return DriftSituation{.orbits = orbits.value(), .bound = position_bound_, .covariance_m2 = covariance_m2_};
+}
+
+void Guidance::update(GpsTime now, Duration period, const Navigation& navigation, const Management& management,
+                      RetreatSequence& retreat, bool may_plan) {
   command_count_ = 0;
   report_.waypoint_index = -1;
   const gnc_configuration& configuration = management.configuration();
+  if (retreat.phase() == RetreatSequence::Phase::kBurn) return command_retreat(now, configuration, retreat);
   const double age = seconds(now - navigation.state().last_measurement);
-  const bool may_plan = situation_known_ && age <= configuration.navigation_timeout_s &&
-                        now.ns >= configuration.planner_start_ns && select_goal(now, management);
-  if (!may_plan) {
-    plan_ = {};
-    has_goal_ = false;
-    report_.active_solver = Solver::kNone;
-    return;
-  }
+  const bool plans = may_plan && situation_known_ && age <= configuration.navigation_timeout_s &&
+                     now.ns >= configuration.planner_start_ns && select_goal(now, management, retreat);
+  if (!plans) return drop_plan();
   if (decision_is_due(now, configuration)) decide(configuration);
   commit_due_burns(now, period, configuration);
 }
 
+void Guidance::drop_plan() {
+  plan_ = {};
+  has_goal_ = false;
+  is_holding_ = false;
+  report_.active_solver = Solver::kNone;
+}
+
+/// The burn needs neither a plan nor a present estimate: it is known from the last step that had one.
+void Guidance::command_retreat(GpsTime now, const gnc_configuration& configuration, RetreatSequence& retreat) {
+  drop_plan();
+  earliest_burn_ = now + Duration{configuration.compute_latency_ns};
+  drop_burns_before(pending_, now);
+  const control::Burn burn{.time = earliest_start(), .dv_rtn = retreat.burn_at(earliest_start())};
+  retreat.commanded(burn.time);
+  if (burn.dv_rtn.norm() < configuration.minimum_dv || pending_.count == control::kMaxBurns) return;
+  commands_[command_count_++] = {next_maneuver_id_++, -1, Solver::kNone, burn};
+  pending_.burns[pending_.count++] = burn;
+  commanded_dv_ += burn.dv_rtn.norm();
+}
+
 /// Selects the waypoint ahead. Sets `goal_`; a new one discards the plan of the previous one.
-bool Guidance::select_goal(GpsTime now, const Management& management) {
-  const Waypoint* wanted = nullptr;
-  Waypoint stay;
+bool Guidance::select_goal(GpsTime now, const Management& management, const RetreatSequence& retreat) {
   switch (management.mode()) {
     case Mode::kIdle:
     case Mode::kHold:
       return false;
     case Mode::kApproach:
-      wanted = management.next_waypoint();
-      break;
-    case Mode::kStationKeeping: {
-      const Waypoint* last = management.last_waypoint();
-      if (last == nullptr) return false;
-      if (has_goal_ && goal_.index == last->index && goal_.time > now) {  // a correction under way
-        report_.waypoint_index = goal_.index;
-        return true;
-      }
-      const gnc_configuration& configuration = management.configuration();
-      const Vector6 error_m = management.reference_semi_major_axis() * (report_.roe - last->roe);
-      if (error_m.norm() <= configuration.station_keeping_deadband_m) return false;
-      stay = *last;
-      stay.time = now + nearest_duration(configuration.station_keeping_horizon_s);
-      wanted = &stay;
-      break;
-    }
+      if (management.next_waypoint() == nullptr) return false;
+      set_goal(now, *management.next_waypoint());
+      return true;
+    case Mode::kStationKeeping:
+      return select_kept_orbit(now, management, management.last_waypoint());
+    case Mode::kRetreat:
+      return select_kept_orbit(now, management, retreat.hold_orbit());
   }
-  if (wanted == nullptr) return false;
-  if (!has_goal_ || wanted->index != goal_.index || wanted->time != goal_.time) {
+  return false;
+}
+
+/// An orbit that is kept is a goal while a correction is under way, and when the error exceeds the deadband.
+bool Guidance::select_kept_orbit(GpsTime now, const Management& management, const Waypoint* kept) {
+  if (kept == nullptr) return false;
+  if (has_goal_ && goal_.index == kept->index && goal_.roe == kept->roe && goal_.time > now) {
+    report_.waypoint_index = goal_.index;
+    return true;
+  }
+  const gnc_configuration& configuration = management.configuration();
+  const Vector6 error_m = management.reference_semi_major_axis() * (report_.roe - kept->roe);
+  if (error_m.norm() <= configuration.station_keeping_deadband_m) return false;
+  Waypoint stay = *kept;
+  stay.time = now + nearest_duration(configuration.station_keeping_horizon_s);
+  set_goal(now, stay);
+  return true;
+}
+
+void Guidance::set_goal(GpsTime now, const Waypoint& wanted) {
+  if (!has_goal_ || wanted.index != goal_.index || wanted.time != goal_.time) {
     plan_ = {};
     next_decision_ = now;
+    is_holding_ = false;
     report_.active_solver = Solver::kNone;
   }
-  goal_ = *wanted;
+  goal_ = wanted;
   has_goal_ = true;
   report_.waypoint_index = goal_.index;
   report_.roe_desired = goal_.roe;
-  return true;
 }
 
 bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configuration) {
@@ -169,8 +210,8 @@ void Guidance::decide(const gnc_configuration& configuration) {
   if (goal_.time <= earliest_burn_) return;  // this waypoint cannot be influenced any more
   const double sigma_m = orbits_.servicer.a * sigma_roe_.maxCoeff();
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 && sigma_m > configuration.roe_error_threshold_m;
-  if (stays_on_plan(configuration, too_coarse)) return;
-  if (climbs_ladder(configuration, too_coarse)) return;
+  is_holding_ = !stays_on_plan(configuration, too_coarse) && !climbs_ladder(configuration, too_coarse);
+  if (!is_holding_) return;
   plan_ = {};
   report_.active_solver = Solver::kNone;
   ++report_.holds;
@@ -276,8 +317,17 @@ control::LegPolicy Guidance::leg_policy(const gnc_configuration& configuration) 
 
 Result<safety::PlanSafety> Guidance::safety_of(const Plan& candidate, const gnc_configuration& configuration) const {
   const Plan all = joined(pending_, candidate);
-  const safety::SafetyCriterion criterion{configuration.keep_out_radius_m, configuration.safety_horizon_s,
-                                          position_bound_};
+  safety::SafetyCriterion criterion{.keep_out_radius = keep_out(configuration),
+                                    .horizon = configuration.safety_horizon_s,
+                                    .bound = position_bound_,
+                                    .burns = burn_uncertainty_};
+  if (safety_) {
+    criterion.horizon = safety_->horizon_s;
+    criterion.retreat = {.settings = retreat_settings(*safety_, position_bound_.radial_normal),
+                         .delay = safety_->retreat_delay_s,
+                         .covariance_m2 = covariance_m2_,
+                         .maximum_collision_probability = safety_->maximum_collision_probability};
+  }
   return safety::assess_plan(orbits_.epoch, orbits_.servicer, report_.roe, all, criterion);
 }
 

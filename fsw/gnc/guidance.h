@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "fsw/control/arrival.h"
 #include "fsw/control/koenig_damico.h"
@@ -14,6 +15,7 @@
 #include "fsw/control/plan.h"
 #include "fsw/gnc/management.h"
 #include "fsw/gnc/navigation.h"
+#include "fsw/gnc/retreat_sequence.h"
 #include "fsw/safety/passive_safety.h"
 
 namespace vbar::fsw::gnc {
@@ -35,6 +37,13 @@ struct GuidanceReport {
   std::int32_t holds = 0;
 };
 
+/// Where the burns already commanded lead.
+struct DriftSituation {
+  control::MeanOrbits orbits;               ///< at the earliest time of another burn
+  safety::PositionBound bound;              ///< 3 sigma
+  Matrix6 covariance_m2 = Matrix6::Zero();  ///< of the mean ROE times a
+};
+
 /// A burn to be commanded now.
 struct CommandedBurn {
   std::int32_t maneuver_id = 0;
@@ -50,10 +59,19 @@ class Guidance {
   /// Mean orbits of both spacecraft and the passive safety of the current plan.
   void assess(GpsTime now, const Navigation& navigation, const Management& management);
 
-  /// One step: discards past burns, replans if due and necessary, and collects the burns to command. `period` is the
-  /// time to the next step.
-  void update(GpsTime now, Duration period, const Navigation& navigation, const Management& management);
+  /// Nothing without a situation that is known.
+  [[nodiscard]] std::optional<DriftSituation> drift_situation() const;
 
+  /// One step: discards past burns, replans if due and necessary, and collects the burns to command. `period` is the
+  /// time to the next step. `may_plan`: false if a fault forbids burns other than the retreat's.
+  void update(GpsTime now, Duration period, const Navigation& navigation, const Management& management,
+              RetreatSequence& retreat, bool may_plan);
+
+  /// No plan could be flown at the last decision.
+  [[nodiscard]] bool is_holding() const { return is_holding_; }
+  /// Distance that drifts on the present leg keep, m.
+  [[nodiscard]] double keep_out(const gnc_configuration& configuration) const;
+  [[nodiscard]] bool situation_known() const { return situation_known_; }
   [[nodiscard]] const GuidanceReport& report() const { return report_; }
   [[nodiscard]] std::size_t command_count() const { return command_count_; }
   [[nodiscard]] const CommandedBurn& command(std::size_t k) const { return commands_[k]; }
@@ -62,7 +80,11 @@ class Guidance {
   [[nodiscard]] std::int32_t commanded_maneuvers() const { return next_maneuver_id_; }
 
  private:
-  bool select_goal(GpsTime now, const Management& management);
+  bool select_goal(GpsTime now, const Management& management, const RetreatSequence& retreat);
+  bool select_kept_orbit(GpsTime now, const Management& management, const Waypoint* kept);
+  void set_goal(GpsTime now, const Waypoint& wanted);
+  void drop_plan();
+  void command_retreat(GpsTime now, const gnc_configuration& configuration, RetreatSequence& retreat);
   bool decision_is_due(GpsTime now, const gnc_configuration& configuration);
   void decide(const gnc_configuration& configuration);
   bool stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse);
@@ -80,14 +102,18 @@ class Guidance {
   void commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration);
 
   // Results of assess(), used by the rest of the step.
+  std::optional<safety_configuration> safety_;  ///< in force in this step
   bool situation_known_ = false;
   GpsTime earliest_burn_;
   control::MeanOrbits orbits_;
-  Vector6 sigma_roe_ = Vector6::Zero();   ///< 1 sigma, dimensionless
-  safety::PositionBound position_bound_;  ///< 3 sigma
+  Vector6 sigma_roe_ = Vector6::Zero();      ///< 1 sigma, dimensionless
+  safety::PositionBound position_bound_;     ///< 3 sigma
+  Matrix6 covariance_m2_ = Matrix6::Zero();  ///< of the mean ROE times a
+  safety::BurnUncertainty burn_uncertainty_;
 
   Waypoint goal_;
   bool has_goal_ = false;
+  bool is_holding_ = false;
   control::Plan plan_;     ///< still to be commanded
   control::Plan pending_;  ///< commanded, not yet due
   GpsTime next_decision_;

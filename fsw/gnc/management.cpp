@@ -34,9 +34,14 @@ Management::Management() : configuration_(default_configuration()) {}
 
 void Management::update(GpsTime now, const Telecommands& telecommands) {
   if (telecommands.is_new<gnc_configuration>()) configuration_ = *telecommands.in_force<gnc_configuration>();
+  if (telecommands.is_new<safety_configuration>()) {
+    safety_ = *telecommands.in_force<safety_configuration>();
+    has_safety_ = true;
+  }
   if (telecommands.is_new<waypoint_table>()) take(now, *telecommands.in_force<waypoint_table>());
   if (telecommands.is_new<mode_command>()) mode_ = static_cast<Mode>(telecommands.in_force<mode_command>()->mode);
   pass_waypoints(now);
+  if (mode_ == Mode::kRetreat && !has_safety_) mode_ = Mode::kHold;  // nothing states what a retreat would be
   if (mode_ == Mode::kApproach && next_ == count_ && count_ > 0) mode_ = Mode::kStationKeeping;
 }
 
@@ -57,6 +62,7 @@ void Management::take(GpsTime now, const waypoint_table& table) {
     waypoints_[k].index = w.index;
     waypoints_[k].control_mode = w.control_mode;
     waypoints_[k].time = {w.gps_time_ns};
+    waypoints_[k].keep_out_radius_m = w.keep_out_radius_m;
     for (int i = 0; i < 6; ++i) waypoints_[k].roe(i) = w.a_roe_m[i] / reference_semi_major_axis_;
   }
   pass_waypoints(now);

@@ -15,6 +15,7 @@ enum class Mode : std::int8_t {
   kApproach = 1,        ///< transfer to the next waypoint of the table
   kStationKeeping = 2,  ///< keep the last waypoint reached
   kHold = 3,            ///< no burns until the next command
+  kRetreat = 4,         ///< recede from the target, then keep station on a safe orbit, until the next command
 };
 
 /// A relative orbit to be reached at a time.
@@ -22,7 +23,8 @@ struct Waypoint {
   std::int32_t index = -1;
   std::int8_t control_mode = 0;  ///< solver of the leg that ends here, numbers of control::Solver
   GpsTime time;
-  Vector6 roe = Vector6::Zero();  ///< dimensionless mean ROE
+  Vector6 roe = Vector6::Zero();   ///< dimensionless mean ROE
+  double keep_out_radius_m = 0.0;  ///< of drifts after the burns of the leg that ends here
 };
 
 class Management {
@@ -37,6 +39,12 @@ class Management {
 
   /// Station keeping without a waypoint reached is idle: there is no position to keep yet.
   [[nodiscard]] Mode mode() const { return mode_ == Mode::kStationKeeping && next_ == 0 ? Mode::kIdle : mode_; }
+  /// A fault calls for the retreat: until the next mode command. Nothing happens while idle.
+  void retreat() {
+    if (mode() != Mode::kIdle) mode_ = Mode::kRetreat;
+  }
+  /// Null unless one is in force.
+  [[nodiscard]] const safety_configuration* safety() const { return has_safety_ ? &safety_ : nullptr; }
   [[nodiscard]] const gnc_configuration& configuration() const { return configuration_; }
   [[nodiscard]] double reference_semi_major_axis() const { return reference_semi_major_axis_; }
 
@@ -51,6 +59,8 @@ class Management {
 
   Mode mode_ = Mode::kIdle;
   gnc_configuration configuration_;
+  safety_configuration safety_{};
+  bool has_safety_ = false;
   double reference_semi_major_axis_ = 0.0;
   std::array<Waypoint, kMaxWaypoints> waypoints_{};
   std::size_t count_ = 0;

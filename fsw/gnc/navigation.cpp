@@ -240,4 +240,14 @@ Vector6 Navigation::sigma_a_roe_m() const {
   return sigma;
 }
 
+Matrix6 Navigation::a_roe_covariance_m2() const {
+  const Matrix6 covariance = trunk_.trunk().a_roe_covariance_m2();
+  const auto servicer = orbit::qns_from_cartesian(state_.servicer);
+  if (!servicer.ok()) return covariance;
+  const double coast_s = seconds(state_.epoch - trunk_.trunk().epoch());
+  const double changed = 2.0 / orbit::mean_motion(servicer.value().a) * differential_acceleration_sigma() * coast_s;
+  const Matrix6 transition = orbit::roe_transition_j2(servicer.value(), coast_s);
+  return transition * covariance * transition.transpose() + changed * changed * Matrix6::Identity();
+}
+
 }  // namespace vbar::fsw::gnc

@@ -67,6 +67,8 @@ class Navigation {
 
   /// 1 sigma of a * ROE (m, six components).
   [[nodiscard]] Vector6 sigma_a_roe_m() const;
+  /// Their covariance, m^2, at the state.
+  [[nodiscard]] Matrix6 a_roe_covariance_m2() const;
 
  private:
   /// Both spacecraft at one instant, before any impulse of that instant.

@@ -127,6 +127,61 @@ DriftSafety watch(const DriftPath& path, double duration, int samples, const Pos
   return {.spatial = spatial.closest(), .radial_normal = radial_normal.closest()};
 }
 
+/// A situation after some burns of a plan.
+struct Prefix {
+  QnsElements servicer;
+  QnsElements target;
+  GpsTime time;
+  PositionBound bound;
+  Matrix6 covariance_m2 = Matrix6::Zero();  ///< of the mean ROE times a
+
+  /// Drifts to the burn and executes it, as the control matrix states its effect in terms of ROE.
+  void execute(const control::Burn& burn, const BurnUncertainty& uncertainty) {
+    const double dt = seconds(burn.time - time);
+    const Matrix6 transition = orbit::roe_transition_j2(servicer, dt);
+    servicer = orbit::propagate_secular(servicer, dt);
+    target = orbit::propagate_secular(target, dt);
+    time = burn.time;
+    const Matrix63 control = orbit::roe_control_matrix(servicer);
+    servicer = orbit::qns_from_roe(servicer, control * burn.dv_rtn);
+
+    const double sigma = uncertainty.sigma_mps + uncertainty.sigma_relative * math::sqrt(burn.dv_rtn.squaredNorm());
+    const Matrix63 a_control = servicer.a * control;
+    covariance_m2 =
+        transition * covariance_m2 * transition.transpose() + sigma * sigma * a_control * a_control.transpose();
+    // Bounds of three sigma, as those of the caller: an impulse v moves the orbit by at most 2 v / n, and its drift
+    // along track by 3 v.
+    const double bound_mps = 3.0 * sigma;
+    bound.along_track += bound.along_track_rate * dt;
+    bound.along_track_rate = math::hypot(bound.along_track_rate, 3.0 * bound_mps);
+    bound.radial_normal = math::hypot(bound.radial_normal, 2.0 * bound_mps / orbit::mean_motion(servicer.a));
+  }
+};
+
+struct RetreatOutlook {
+  bool is_possible = false;
+  double distance = 0.0;
+  double probability = 0.0;
+};
+
+/// The errors of a retreat grow with the uncertainty of the prefix.
+Result<RetreatOutlook> assess_retreat(const Prefix& prefix, const RetreatCriterion& criterion) {
+  RetreatSettings settings = criterion.settings;
+  const double a_da_bound_m = 3.0 * math::sqrt(prefix.covariance_m2(0, 0));
+  if (a_da_bound_m > settings.a_da_error_m) settings.a_da_error_m = a_da_bound_m;
+  const Vector6 a_roe_m = prefix.servicer.a * orbit::roe_from_qns(prefix.servicer, prefix.target);
+  const Result<DelayedRetreat> retreat = find_delayed_retreat(prefix.servicer, a_roe_m, criterion.delay, settings);
+  if (!retreat.ok()) return retreat.status();
+  const Matrix6 transition = orbit::roe_transition_j2(prefix.servicer, criterion.delay);
+  const Matrix6 covariance_m2 = transition * prefix.covariance_m2 * transition.transpose();
+  const Result<DriftProbability> probability = retreat_probability(retreat.value(), covariance_m2, settings);
+  if (!probability.ok()) return probability.status();
+  return RetreatOutlook{.is_possible = retreat.value().burn.keeps_distance &&
+                                       probability.value().spatial <= criterion.maximum_collision_probability,
+                        .distance = retreat.value().burn.distance,
+                        .probability = probability.value().spatial};
+}
+
 }  // namespace
 
 double eccentricity_inclination_separation(const Vector6& roe, double a) {
@@ -164,37 +219,45 @@ Result<DriftSafety> assess_drift(const QnsElements& servicer_mean, const Vector6
 Result<PlanSafety> assess_plan(GpsTime start, const QnsElements& servicer_mean, const Vector6& mean_roe,
                                const control::Plan& plan, const SafetyCriterion& criterion) {
   if (plan.count > control::kMaxBurns) return Status::kInvalidArgument;
-  QnsElements servicer = servicer_mean;
-  QnsElements target = orbit::qns_from_roe(servicer_mean, mean_roe);
-  GpsTime now = start;
-  PositionBound bound = criterion.bound;
+  Prefix now{.servicer = servicer_mean,
+             .target = orbit::qns_from_roe(servicer_mean, mean_roe),
+             .time = start,
+             .bound = criterion.bound};
+  if (criterion.retreat) now.covariance_m2 = criterion.retreat->covariance_m2;
   PlanSafety worst;
   for (std::size_t prefix = 0; prefix <= plan.count; ++prefix) {
     const bool more = prefix < plan.count;
-    const double until_next = more ? seconds(plan.burns[prefix].time - now) : 0.0;
+    const double until_next = more ? seconds(plan.burns[prefix].time - now.time) : 0.0;
     if (until_next < 0.0) return Status::kInvalidArgument;
     const double watched = until_next > criterion.horizon ? until_next : criterion.horizon;
-    const Result<DriftSafety> drift = assess_drift(servicer, orbit::roe_from_qns(servicer, target), watched, bound);
+    const Result<DriftSafety> drift =
+        assess_drift(now.servicer, orbit::roe_from_qns(now.servicer, now.target), watched, now.bound);
     if (!drift.ok()) return drift.status();
     const DriftSafety& d = drift.value();
     if (prefix == 0 || d.spatial.distance < worst.min_distance) {
       worst.min_distance = d.spatial.distance;
-      worst.time = seconds(now - start) + d.spatial.time;
+      worst.time = seconds(now.time - start) + d.spatial.time;
       worst.prefix = prefix;
     }
     if (prefix == 0 || d.radial_normal.distance < worst.min_rn_distance) {
       worst.min_rn_distance = d.radial_normal.distance;
     }
+    if (criterion.retreat) {
+      const Result<RetreatOutlook> outlook = assess_retreat(now, *criterion.retreat);
+      if (!outlook.ok()) return outlook.status();
+      worst.allows_retreat = worst.allows_retreat && outlook.value().is_possible;
+      if (prefix == 0 || outlook.value().distance < worst.retreat_distance) {
+        worst.retreat_distance = outlook.value().distance;
+      }
+      if (outlook.value().probability > worst.collision_probability) {
+        worst.collision_probability = outlook.value().probability;
+      }
+      if (!worst.allows_retreat) break;
+    }
     if (!more) break;
-
-    servicer = orbit::propagate_secular(servicer, until_next);
-    target = orbit::propagate_secular(target, until_next);
-    bound.along_track += bound.along_track_rate * until_next;
-    now = plan.burns[prefix].time;
-    // The control matrix gives the effect of the impulse on the orbit, in terms of ROE.
-    servicer = orbit::qns_from_roe(servicer, orbit::roe_control_matrix(servicer) * plan.burns[prefix].dv_rtn);
+    now.execute(plan.burns[prefix], criterion.burns);
   }
-  worst.safe = worst.min_distance >= criterion.keep_out_radius;
+  worst.safe = worst.min_distance >= criterion.keep_out_radius && worst.allows_retreat;
   return worst;
 }
 

@@ -7,12 +7,14 @@
 // mission's orbit, for its waypoints and most others; the worst of 1,500 random drifts by 0.85 (e + J2).
 
 #include <cstddef>
+#include <optional>
 
 #include "fsw/control/plan.h"
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
+#include "fsw/safety/retreat.h"
 
 namespace vbar::fsw::safety {
 
@@ -48,20 +50,40 @@ struct DriftSafety {
 Result<DriftSafety> assess_drift(const orbit::QnsElements& servicer_mean, const Vector6& mean_roe, double horizon,
                                  const PositionBound& bound = {});
 
+/// Uncertainty of a burn of the servicer, each axis, 1 sigma.
+struct BurnUncertainty {
+  double sigma_mps = 0.0;
+  double sigma_relative = 0.0;  ///< of its size
+};
+
+/// A plan must also allow a retreat after every burn.
+struct RetreatCriterion {
+  RetreatSettings settings;
+  double delay = 0.0;                          ///< s until the retreat burn, from now and from each burn
+  Matrix6 covariance_m2 = Matrix6::Zero();     ///< of the mean ROE times a at the start
+  double maximum_collision_probability = 1.0;  ///< after the retreat burn, over the horizon
+};
+
 /// Criteria of a plan.
 struct SafetyCriterion {
   double keep_out_radius = 0.0;  ///< m
   double horizon = 0.0;          ///< s, how long each drift is evaluated
   PositionBound bound{};
+  BurnUncertainty burns{};
+  std::optional<RetreatCriterion> retreat{};
 };
 
 /// The worst drift of a plan. Prefix k: the first k burns are executed, the others are missed.
 struct PlanSafety {
-  bool safe = false;             ///< min_distance reaches the keep-out radius
+  bool safe = false;             ///< min_distance reaches the keep-out radius, and a retreat is possible throughout
   double min_distance = 0.0;     ///< m, in space, bound subtracted, over all prefixes
   double min_rn_distance = 0.0;  ///< m, in the RN plane, bound subtracted, over all prefixes
   double time = 0.0;             ///< s after `start`, of min_distance
   std::size_t prefix = 0;        ///< with which it occurs
+  /// With a RetreatCriterion: whether it holds after all prefixes, and the worst of them.
+  bool allows_retreat = true;
+  double retreat_distance = 0.0;       ///< m
+  double collision_probability = 0.0;  ///< after the retreat burn
 };
 
 /// Evaluates the drift after each prefix of the plan's burns (the servicer's, in its RTN), from 0 burns at `start` to

@@ -114,23 +114,34 @@ Result<RetreatBurn> find_retreat(const orbit::QnsElements& servicer_mean, const 
   return receding;
 }
 
-Result<RetreatBurn> find_delayed_retreat(const orbit::QnsElements& servicer_mean, const Vector6& a_roe_m, double delay,
-                                         const RetreatSettings& settings) {
+Result<DelayedRetreat> find_delayed_retreat(const orbit::QnsElements& servicer_mean, const Vector6& a_roe_m,
+                                            double delay, const RetreatSettings& settings) {
   if (!math::is_finite(delay)) return Status::kNotFinite;
   if (delay < 0.0 || delay > settings.horizon) return Status::kOutOfRange;
-  const Matrix6 transition = orbit::roe_transition_j2(servicer_mean, delay);
-  Result<RetreatBurn> burn =
-      find_retreat(orbit::propagate_secular(servicer_mean, delay), transition * a_roe_m, settings);
-  if (!burn.ok()) return burn;
-  RetreatBurn delayed = burn.value();
+  DelayedRetreat delayed{.burn = {},
+                         .servicer_mean = orbit::propagate_secular(servicer_mean, delay),
+                         .a_roe_m = orbit::roe_transition_j2(servicer_mean, delay) * a_roe_m};
+  const Result<RetreatBurn> burn = find_retreat(delayed.servicer_mean, delayed.a_roe_m, settings);
+  if (!burn.ok()) return burn.status();
+  delayed.burn = burn.value();
   for (double t = 0.0; t < delay; t += kDelayStep_s) {
     const orbit::QnsElements servicer = orbit::propagate_secular(servicer_mean, t);
     const Vector6 roe = orbit::roe_transition_j2(servicer_mean, t) * a_roe_m / servicer.a;
     const double distance = math::sqrt(orbit::rtn_from_roe_linear(servicer, roe).head<3>().squaredNorm());
-    if (distance < delayed.distance) delayed.distance = distance;
+    if (distance < delayed.burn.distance) delayed.burn.distance = distance;
   }
-  delayed.keeps_distance = delayed.keeps_distance && delayed.distance >= settings.contact_distance + settings.margin;
+  delayed.burn.keeps_distance =
+      delayed.burn.keeps_distance && delayed.burn.distance >= settings.contact_distance + settings.margin;
   return delayed;
+}
+
+Result<DriftProbability> retreat_probability(const DelayedRetreat& retreat, const Matrix6& covariance_m2,
+                                             const RetreatSettings& settings) {
+  const Result<LinearDrift> drift = LinearDrift::make(retreat.servicer_mean, settings.horizon);
+  if (!drift.ok()) return drift.status();
+  const Matrix63 a_control = retreat.servicer_mean.a * orbit::roe_control_matrix(retreat.servicer_mean);
+  return drift_probability(drift.value(), retreat.a_roe_m - a_control * retreat.burn.dv_rtn, covariance_m2,
+                           settings.contact_distance);
 }
 
 }  // namespace vbar::fsw::safety

@@ -11,6 +11,7 @@
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
+#include "fsw/safety/drift_probability.h"
 
 namespace vbar::fsw::safety {
 
@@ -39,8 +40,19 @@ struct RetreatBurn {
 Result<RetreatBurn> find_retreat(const orbit::QnsElements& servicer_mean, const Vector6& a_roe_m,
                                  const RetreatSettings& settings);
 
+/// A retreat burn and the situation in which it is flown.
+struct DelayedRetreat {
+  RetreatBurn burn;
+  orbit::QnsElements servicer_mean;   ///< at the burn
+  Vector6 a_roe_m = Vector6::Zero();  ///< before it
+};
+
 /// The same after a drift of `delay` s (>= 0) from these elements, of which the least distance is contained.
-Result<RetreatBurn> find_delayed_retreat(const orbit::QnsElements& servicer_mean, const Vector6& a_roe_m, double delay,
-                                         const RetreatSettings& settings);
+Result<DelayedRetreat> find_delayed_retreat(const orbit::QnsElements& servicer_mean, const Vector6& a_roe_m,
+                                            double delay, const RetreatSettings& settings);
+
+/// Probability of collision over the horizon after the burn; `covariance_m2` of the mean ROE times a at the burn.
+Result<DriftProbability> retreat_probability(const DelayedRetreat& retreat, const Matrix6& covariance_m2,
+                                             const RetreatSettings& settings);
 
 }  // namespace vbar::fsw::safety

@@ -13,7 +13,7 @@ vbar::waypoint_table waypoint_table_of(const Mission& mission) {
     entry.control_mode = static_cast<std::int8_t>(waypoint.solver);
     entry.gps_time_ns = waypoint.time.ns;
     std::copy(waypoint.a_roe_m.begin(), waypoint.a_roe_m.end(), entry.a_roe_m);
-    entry.keep_out_radius_m = waypoint.keep_out_radius_m.value_or(mission.guidance.configuration.keep_out_radius_m);
+    entry.keep_out_radius_m = waypoint.keep_out_radius_m.value_or(0.0);
   }
   return table;
 }

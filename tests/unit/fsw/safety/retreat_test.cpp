@@ -103,8 +103,8 @@ TEST(Retreat, TheDelayContainsTheDriftUntilTheBurn) {
   Vector6 closing = Vector6::Zero();
   closing(0) = 0.3;
   closing(1) = 2.4;
-  EXPECT_FALSE(find_delayed_retreat(servicer_at(40.0), closing, 1200.0, {}).value().keeps_distance);
-  const auto at_once = find_delayed_retreat(servicer_at_waypoint(9), a_roe_of(9), 0.0, {}).value();
+  EXPECT_FALSE(find_delayed_retreat(servicer_at(40.0), closing, 1200.0, {}).value().burn.keeps_distance);
+  const auto at_once = find_delayed_retreat(servicer_at_waypoint(9), a_roe_of(9), 0.0, {}).value().burn;
   const auto direct = find_retreat(servicer_at_waypoint(9), a_roe_of(9), {}).value();
   EXPECT_EQ(at_once.dv_rtn, direct.dv_rtn);
   EXPECT_EQ(at_once.distance, direct.distance);

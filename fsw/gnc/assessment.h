@@ -1,0 +1,28 @@
+#pragma once
+// assess: what happens to the present drift if nothing more is done, and if the retreat is flown. Only with a
+// safety_configuration in force.
+
+#include "fsw/gnc/guidance.h"
+#include "fsw/gnc/management.h"
+#include "fsw/gnc/retreat_sequence.h"
+#include "fsw/safety/retreat.h"
+
+namespace vbar::fsw::gnc {
+
+/// Settings of the retreat; `margin_m` is the uncertainty of the position.
+[[nodiscard]] safety::RetreatSettings retreat_settings(const safety_configuration& configuration, double margin_m);
+
+/// Of the last step whose situation was known.
+struct Assessment {
+  bool is_known = false;
+  double passive_distance = 0.0;       ///< m, least over the horizon without another burn, three sigma subtracted
+  double retreat_distance = 0.0;       ///< m, least with a retreat at the end of the delay, errors included
+  double collision_probability = 0.0;  ///< largest, were the retreat flown now
+  double collision_probability_in_plane = 0.0;
+};
+
+/// Assesses the drift after the burns already commanded, and prepares the retreat from it.
+Assessment assess_drift_now(const DriftSituation& situation, const safety_configuration& configuration,
+                            RetreatSequence& retreat);
+
+}  // namespace vbar::fsw::gnc

@@ -1,0 +1,101 @@
+#include "fsw/gnc/burn_monitor.h"
+
+#include "fsw/gnc/message_fields.h"
+#include "fsw/math/math.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+// A burn differs from the command if it does so by more than this share of its size and this impulse: a thruster's
+// least impulse, which dominates burns of micrometres per second.
+constexpr double kUsualShare = 0.05;
+constexpr double kUsualImpulse = 1e-5;  // m/s
+constexpr double kNothing = 0.1;        // share of the size below which a burn counts as missed
+constexpr Duration kOnTime = duration_of_seconds(1);
+constexpr Duration kLatestReport = duration_of_seconds(300);
+
+// Of the estimate of the scale: a report by itself, and the drift from burn to burn.
+constexpr double kRatioSigma = 0.01;
+constexpr double kScaleDrift = 0.002;
+
+double square(double x) {
+  return x * x;
+}
+
+}  // namespace
+
+void BurnScale::update(double ratio, double dv) {
+  const double prior = square(sigma_) + square(kScaleDrift);
+  const double noise = square(kRatioSigma) + square(kUsualImpulse / dv);
+  const double gain = prior / (prior + noise);
+  scale_ += gain * (ratio - scale_);
+  sigma_ = math::sqrt((1.0 - gain) * prior);
+}
+
+void BurnMonitor::expect(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn) {
+  if (count_ == kMaxCommanded) forget(0);
+  commanded_[count_++] = {maneuver_id, time, dv_rtn};
+}
+
+void BurnMonitor::forget(std::size_t k) {
+  for (std::size_t j = k + 1; j < count_; ++j) commanded_[j - 1] = commanded_[j];
+  --count_;
+}
+
+void BurnMonitor::update(GpsTime now, const Inbox& inbox, faults::FaultMonitor& faults) {
+  const auto& reports = inbox.queue<executed_maneuver>();
+  bool is_any_uncommanded = false;
+  double uncommanded = 0.0;
+  for (std::size_t r = 0; r < reports.size(); ++r) {
+    const executed_maneuver& report = reports[r].value;
+    std::size_t k = 0;
+    while (k < count_ && commanded_[k].id != report.maneuver_id) ++k;
+    if (k < count_) {
+      judge(commanded_[k], reports[r].tag.time, report, now, faults);
+      forget(k);
+    } else if (report.accepted != 0 && report.maneuver_id >= 0) {
+      is_any_uncommanded = true;
+      uncommanded += math::sqrt(vector(report.dv_rtn).squaredNorm());
+    }
+  }
+  faults.check(
+      now,
+      {.fault = telemetry_health::kFaultBurnUncommanded, .is_detected = is_any_uncommanded, .argument = uncommanded});
+  for (std::size_t k = count_; k-- > 0;) {
+    if (now - commanded_[k].time <= kLatestReport) continue;
+    faults.check(now, {.fault = telemetry_health::kFaultBurnMissed,
+                       .is_detected = true,
+                       .argument = static_cast<double>(commanded_[k].id)});
+    faults.check(now, {.fault = telemetry_health::kFaultThruster, .is_detected = true, .argument = scale_.scale()});
+    forget(k);
+  }
+}
+
+void BurnMonitor::judge(const Commanded& commanded, GpsTime time, const executed_maneuver& report, GpsTime now,
+                        faults::FaultMonitor& faults) {
+  const double size = math::sqrt(commanded.dv_rtn.squaredNorm());
+  const Vector3 executed = vector(report.dv_rtn);
+  const double ratio = size > 0.0 ? executed.dot(commanded.dv_rtn) / (size * size) : 1.0;
+  const double difference = math::sqrt((executed - commanded.dv_rtn).squaredNorm());
+  const double delay_s = seconds(time - commanded.time);
+  const auto id = static_cast<double>(commanded.id);
+
+  const bool is_refused = report.accepted == 0;
+  const bool is_missed = !is_refused && ratio < kNothing;
+  const bool is_executed = !is_refused && !is_missed;
+  const bool is_late = is_executed && math::abs(delay_s) > seconds(kOnTime);
+  const bool is_of_other_size = is_executed && difference > kUsualShare * size + kUsualImpulse;
+  faults.check(now, {.fault = telemetry_health::kFaultBurnRefused, .is_detected = is_refused, .argument = id});
+  faults.check(now, {.fault = telemetry_health::kFaultBurnMissed, .is_detected = is_missed, .argument = id});
+  faults.check(now, {.fault = telemetry_health::kFaultBurnLate, .is_detected = is_late, .argument = delay_s});
+  faults.check(now, {.fault = telemetry_health::kFaultBurnSize, .is_detected = is_of_other_size, .argument = ratio});
+  // A refusal is the command's lateness, not the thruster's failure.
+  if (!is_refused) {
+    faults.check(now, {.fault = telemetry_health::kFaultThruster, .is_detected = is_missed, .argument = ratio});
+  }
+  if (!is_executed) return;
+  ++executed_;
+  if (size > kUsualImpulse) scale_.update(ratio, size);
+}
+
+}  // namespace vbar::fsw::gnc

@@ -1,0 +1,60 @@
+#pragma once
+// Burns as commanded against burns as executed: refused, late, missing, of another size, or never commanded; and the
+// ratio of executed to commanded size, by which commands are corrected.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/types.h"
+#include "fsw/faults/fault_monitor.h"
+#include "fsw/gnc/inbox.h"
+
+namespace vbar::fsw::gnc {
+
+/// Ratio of executed to commanded size, constant but for a slow drift: one state, updated by each report.
+class BurnScale {
+ public:
+  /// `ratio` of a burn of `dv` m/s.
+  void update(double ratio, double dv);
+  [[nodiscard]] double scale() const { return scale_; }
+  [[nodiscard]] double sigma() const { return sigma_; }
+
+ private:
+  double scale_ = 1.0;
+  double sigma_ = 0.1;
+};
+
+class BurnMonitor {
+ public:
+  /// A burn was commanded.
+  void expect(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn);
+
+  /// Checks the reports of the step, and burns of which none has come.
+  void update(GpsTime now, const Inbox& inbox, faults::FaultMonitor& faults);
+
+  [[nodiscard]] const BurnScale& scale() const { return scale_; }
+  /// Burns reported so far, other than refused or missing ones.
+  [[nodiscard]] std::int32_t executed() const { return executed_; }
+
+ private:
+  struct Commanded {
+    std::int32_t id = 0;
+    GpsTime time;
+    Vector3 dv_rtn = Vector3::Zero();
+  };
+
+  void judge(const Commanded& commanded, GpsTime time, const executed_maneuver& report, GpsTime now,
+             faults::FaultMonitor& faults);
+  void forget(std::size_t k);
+
+  static constexpr std::size_t kMaxCommanded = 32;  // of a step at most 16, each reported within minutes
+
+  std::array<Commanded, kMaxCommanded> commanded_{};
+  std::size_t count_ = 0;
+  std::int32_t executed_ = 0;
+  BurnScale scale_;
+};
+
+}  // namespace vbar::fsw::gnc

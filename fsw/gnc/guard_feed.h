@@ -1,0 +1,19 @@
+#pragma once
+// What the guard is given in a step: images, attitude and burns, straight from the packets. Nothing of navigation but
+// the range that it states.
+
+#include "fsw/faults/fault_monitor.h"
+#include "fsw/gnc/inbox.h"
+#include "fsw/gnc/telecommands.h"
+#include "fsw/guard/guard.h"
+
+namespace vbar::fsw::gnc {
+
+/// Gives the packets of the step to the guard. `attitude`: the last one received, replaced by those of the step.
+void feed_guard(guard::Guard& guard, const Inbox& inbox, const Telecommands& telecommands,
+                std::optional<vbar::attitude>& attitude, double navigation_range_m);
+
+/// Checks its verdicts as faults.
+void check_verdicts(const guard::GuardVerdicts& verdicts, GpsTime now, faults::FaultMonitor& faults);
+
+}  // namespace vbar::fsw::gnc

@@ -1,0 +1,66 @@
+#include "fsw/guard/guard.h"
+
+#include "fsw/math/math.h"
+
+namespace vbar::fsw::guard {
+namespace {
+
+// A burn contradicts its command by more than this share of it, and by more than a thruster's least impulse.
+constexpr double kLargestShare = 0.2;
+constexpr double kLeastImpulse = 2e-5;  // m/s
+
+// Closing: by more than the whole range in this time, and by more than relative orbits of metres do by themselves.
+constexpr double kClosingTime_s = 2000.0;
+constexpr double kOrbitalRate = 0.01;  // m/s
+constexpr double kClosingWithin_m = 150.0;
+
+}  // namespace
+
+void Guard::take_image(GpsTime time, const imaging::ImageView& image, const GuardCamera& camera,
+                       const Illumination& illumination, double navigation_range_m) {
+  const std::optional<double> range_m =
+      range_from_size(lit_area(image, camera), camera, illumination, settings_.target_size_m);
+  if (!range_m) return;
+  range_.add(time, *range_m);
+  const bool is_near = *range_m < kCompareWithin_m || navigation_range_m < kCompareWithin_m;
+  if (!is_near || !(navigation_range_m > 0.0)) return;
+  const double logarithm = math::log(*range_m / navigation_range_m);
+  pending_.range = {.is_checked = true, .is_alarm = math::abs(logarithm) > kLargestLogarithm, .value = logarithm};
+  if (!range_.has_rate()) return;
+  const double rate = range_.range_rate(time);
+  const double range_now_m = range_.range_m(time);
+  pending_.closing = {
+      .is_checked = range_now_m<kClosingWithin_m, .is_alarm = -rate> range_now_m / kClosingTime_s + kOrbitalRate,
+      .value = rate};
+}
+
+void Guard::take_command(std::int32_t maneuver_id, const Vector3& dv_rtn) {
+  commands_[next_command_] = {maneuver_id, dv_rtn};
+  next_command_ = (next_command_ + 1) % kCommands;
+}
+
+void Guard::take_report(std::int32_t maneuver_id, const Vector3& dv_rtn) {
+  Vector3 commanded = Vector3::Zero();
+  for (const Command& command : commands_) {
+    if (command.id == maneuver_id) commanded = command.dv_rtn;
+  }
+  const double size = math::sqrt(commanded.squaredNorm());
+  const double difference = math::sqrt((dv_rtn - commanded).squaredNorm());
+  const bool is_alarm = difference > kLargestShare * size + kLeastImpulse;
+  // Of several reports in a step, one that contradicts decides.
+  if (pending_.burns.is_alarm) return;
+  pending_.burns = {.is_checked = true, .is_alarm = is_alarm, .value = size > 0.0 ? difference / size : difference};
+}
+
+GuardVerdicts Guard::judge(GpsTime now) {
+  GuardVerdicts verdicts = pending_;
+  pending_ = {};
+  if (range_.is_known()) {
+    const double age_s = seconds(now - range_.last());
+    const bool is_near = range_.range_m(range_.last()) < settings_.data_timeout_range_m;
+    verdicts.silence = {.is_checked = true, .is_alarm = is_near && age_s > settings_.data_timeout_s, .value = age_s};
+  }
+  return verdicts;
+}
+
+}  // namespace vbar::fsw::guard

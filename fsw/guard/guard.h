@@ -1,0 +1,78 @@
+#pragma once
+// The guard: a second opinion that shares nothing with navigation and can only demand the retreat.
+//
+// Of the sensors it uses images and the attitude, of guidance the burns commanded, of actuators the burns reported. It
+// has its own range and range rate (range_filter.h), its own record of burns and its own timer of outages. What
+// navigation states is compared with them, and used for nothing else.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/types.h"
+#include "fsw/guard/apparent_size.h"
+#include "fsw/guard/range_filter.h"
+
+namespace vbar::fsw::guard {
+
+struct GuardSettings {
+  double target_size_m = 0.0;         ///< square root of the mean silhouette area
+  double data_timeout_s = 0.0;        ///< age of the last range that is accepted
+  double data_timeout_range_m = 0.0;  ///< inside this range
+};
+
+/// A quantity that was judged in a step; nothing to judge: not checked.
+struct Verdict {
+  bool is_checked = false;
+  bool is_alarm = false;
+  double value = 0.0;
+};
+
+/// All verdicts of a step.
+struct GuardVerdicts {
+  Verdict range;  ///< logarithm of the guard's range of an image over that of navigation, nearer than kCompareWithin_m
+  Verdict silence;  ///< age of the last range, s
+  Verdict burns;    ///< difference of a burn from its command, share of the command
+  Verdict closing;  ///< range rate, m/s
+};
+
+class Guard {
+ public:
+  /// Navigation's range is compared with that of an image inside this distance, m, by either.
+  static constexpr double kCompareWithin_m = 150.0;
+  /// Largest logarithm of the ratio: two thirds to one and a half.
+  static constexpr double kLargestLogarithm = 0.4;
+
+  void configure(const GuardSettings& settings) { settings_ = settings; }
+
+  /// An image in which a resolved target is exposed properly. `navigation_range_m`: what navigation states, 0 nothing.
+  void take_image(GpsTime time, const imaging::ImageView& image, const GuardCamera& camera,
+                  const Illumination& illumination, double navigation_range_m);
+
+  void take_command(std::int32_t maneuver_id, const Vector3& dv_rtn);
+  /// A burn that was executed, whatever was commanded.
+  void take_report(std::int32_t maneuver_id, const Vector3& dv_rtn);
+
+  /// The verdicts on all that was taken since the last call.
+  GuardVerdicts judge(GpsTime now);
+
+  [[nodiscard]] const RangeFilter& range() const { return range_; }
+
+ private:
+  struct Command {
+    std::int32_t id = -1;
+    Vector3 dv_rtn = Vector3::Zero();
+  };
+
+  static constexpr std::size_t kCommands = 16;
+
+  GuardSettings settings_;
+  RangeFilter range_;
+  GuardVerdicts pending_;
+  std::array<Command, kCommands> commands_{};
+  std::size_t next_command_ = 0;
+};
+
+}  // namespace vbar::fsw::guard
