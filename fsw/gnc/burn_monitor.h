@@ -18,8 +18,12 @@ class BurnScale {
  public:
   /// `ratio` of a burn of `dv` m/s.
   void update(double ratio, double dv);
-  [[nodiscard]] double scale() const { return scale_; }
+  /// Within kLeast and kMost: a thruster off by more is not corrected but failed.
+  [[nodiscard]] double scale() const { return scale_ < kLeast ? kLeast : (scale_ > kMost ? kMost : scale_); }
   [[nodiscard]] double sigma() const { return sigma_; }
+
+  static constexpr double kLeast = 0.5;
+  static constexpr double kMost = 2.0;
 
  private:
   double scale_ = 1.0;

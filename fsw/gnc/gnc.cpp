@@ -124,14 +124,18 @@ void Gnc::control() {
   for (std::size_t k = 0; k < guidance_.command_count(); ++k) {
     const CommandedBurn& commanded = guidance_.command(k);
     navigation_.expect_maneuver(commanded.maneuver_id, commanded.burn.time, commanded.burn.dv_rtn);
-    burns_.expect(commanded.maneuver_id, commanded.burn.time, commanded.burn.dv_rtn);
-    guard_.take_command(commanded.maneuver_id, commanded.burn.dv_rtn);
+    const Vector3 command = command_for(commanded.burn.dv_rtn);
+    burns_.expect(commanded.maneuver_id, commanded.burn.time, command);
+    guard_.take_command(commanded.maneuver_id, command);
   }
-  const std::int32_t holds = guidance_.report().holds;
-  faults_.check(
-      now_,
-      {.fault = telemetry_health::kFaultHold, .is_detected = holds > holds_, .argument = static_cast<double>(holds)});
-  holds_ = holds;
+  faults_.check(now_, {.fault = telemetry_health::kFaultHold,
+                       .is_detected = guidance_.is_holding(),
+                       .argument = static_cast<double>(guidance_.report().holds)});
+}
+
+Vector3 Gnc::command_for(const Vector3& dv_rtn) const {
+  const bool is_off = (faults_.latched() & telemetry_health::kFaultBurnSize) != 0;
+  return is_off ? Vector3(dv_rtn / burns_.scale().scale()) : dv_rtn;
 }
 
 void Gnc::report() {
@@ -141,7 +145,7 @@ void Gnc::report() {
     message.maneuver_id = commanded.maneuver_id;
     message.waypoint_index = commanded.waypoint_index;
     message.solver = static_cast<std::int8_t>(commanded.solver);
-    copy(commanded.burn.dv_rtn, message.dv_rtn);
+    copy(command_for(commanded.burn.dv_rtn), message.dv_rtn);
     outbox_.send(commanded.burn.time, message);
   }
   telecommands_.report(outbox_, step_, now_);

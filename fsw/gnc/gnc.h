@@ -43,6 +43,9 @@ class Gnc {
   void control();
   void report();
 
+  /// What is commanded for an impulse that is wanted, with the thruster as its burns have shown it.
+  [[nodiscard]] Vector3 command_for(const Vector3& dv_rtn) const;
+
   void report_navigation();
   void point_camera();
   void command_exposures();
@@ -68,7 +71,6 @@ class Gnc {
   std::int64_t step_ = 0;
   faults::FaultMonitor faults_;
   std::int32_t packets_dropped_ = 0;  ///< of the inbox, until the last step
-  std::int32_t holds_ = 0;            ///< of guidance, until the last step
   bool stepped_ = false;
   bool has_navigated_ = false;  ///< since the first step
 };

@@ -32,6 +32,10 @@ Ladder ladder_of(const Waypoint& goal, bool estimate_too_coarse) {
 /// cost twice as much as a new plan: a correction more expensive by this factor is replaced by one.
 constexpr double kDearCorrection = 1.1;
 
+/// With a safety_configuration no burn is commanded later than this after the last measurement, as in eclipse: its
+/// effect would not be seen. A few images of the longest period.
+constexpr Duration kMeasuredForBurn = duration_of_seconds(180);
+
 bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
   for (const control::Burn& burn : plan.all()) {
     if (!burn.dv_rtn.allFinite() || burn.dv_rtn.norm() > configuration.maximum_dv) return false;
@@ -127,6 +131,7 @@ void Guidance::update(GpsTime now, Duration period, const Navigation& navigation
   const bool plans = may_plan && situation_known_ && age <= configuration.navigation_timeout_s &&
                      now.ns >= configuration.planner_start_ns && select_goal(now, management, retreat);
   if (!plans) return drop_plan();
+  is_measured_ = !safety_ || age <= seconds(kMeasuredForBurn);
   if (decision_is_due(now, configuration)) decide(configuration);
   commit_due_burns(now, period, configuration);
 }
@@ -359,6 +364,7 @@ void Guidance::discard_past_burns(GpsTime now) {
 
 /// Commands every burn that could not be commanded in time in the next step.
 void Guidance::commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration) {
+  if (!is_measured_) return;
   const GpsTime next_chance = now + period + Duration{configuration.compute_latency_ns};
   while (plan_.count > 0 && plan_.burns[0].time < next_chance && command_count_ < kMaxCommandsPerStep &&
          pending_.count < control::kMaxBurns) {

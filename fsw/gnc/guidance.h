@@ -114,8 +114,9 @@ class Guidance {
   Waypoint goal_;
   bool has_goal_ = false;
   bool is_holding_ = false;
-  control::Plan plan_;     ///< still to be commanded
-  control::Plan pending_;  ///< commanded, not yet due
+  bool is_measured_ = false;  ///< recently enough to execute a burn
+  control::Plan plan_;        ///< still to be commanded
+  control::Plan pending_;     ///< commanded, not yet due
   GpsTime next_decision_;
   std::array<CommandedBurn, kMaxCommandsPerStep> commands_{};
   std::size_t command_count_ = 0;

@@ -84,6 +84,11 @@ Answer Article::collect(vbar_status status) {
       answer.packets.push_back(bytes);
       continue;
     }
+    if (view.header.apid == Apid::kTelemetrySafety) {
+      answer.safety = decoded<telemetry_safety>(view);
+      answer.packets.push_back(bytes);
+      continue;
+    }
     if (view.header.apid == Apid::kPointingCommand || view.header.apid == Apid::kTelemetryRange) {
       answer.packets.push_back(bytes);
       continue;

@@ -31,6 +31,7 @@ struct Answer {
   telemetry_navigation navigation{};
   telemetry_control control{};
   telemetry_health health{};
+  telemetry_safety safety{};
   std::vector<telemetry_telecommand> acknowledgments;
   std::vector<telemetry_event> events;
   std::vector<PoseReport> poses;

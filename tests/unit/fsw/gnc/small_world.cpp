@@ -93,7 +93,15 @@ SmallWorld::SmallWorld(const Vector6& a_roe_m)
 void SmallWorld::advance_to(GpsTime time) {
   coast(servicer_, seconds(time - time_));
   coast(target_, seconds(time - time_));
+  if (differential_drag != 0.0) {
+    target_ = orbit::apply_impulse_rtn(target_, {0.0, differential_drag * seconds(time - time_), 0.0});
+  }
   time_ = time;
+}
+
+void SmallWorld::add_a_da(double metres) {
+  const double n = orbit::mean_motion(kReferenceA);
+  target_ = orbit::apply_impulse_rtn(target_, {0.0, 0.5 * n * metres, 0.0});
 }
 
 void SmallWorld::apply(const Vector3& dv_rtn) {
@@ -142,7 +150,7 @@ void Flight::execute_until(GpsTime until) {
 
 void Flight::execute(const Command& command) {
   const double(&dv)[3] = command.message.dv_rtn;
-  const Vector3 dv_rtn(dv[0], dv[1], dv[2]);
+  const Vector3 dv_rtn = thrust * Vector3(dv[0], dv[1], dv[2]);
   world.advance_to(command.time);
   world.apply(dv_rtn);
   executed_dv += dv_rtn.norm();

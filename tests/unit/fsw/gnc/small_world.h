@@ -44,6 +44,12 @@ class SmallWorld {
   [[nodiscard]] ideal_navigation measurement() const;
   /// True mean ROE of the target, m.
   [[nodiscard]] Vector6 a_roe_m() const;
+  /// Between the centres of mass, m.
+  [[nodiscard]] double distance_m() const { return (target_.position_eci - servicer_.position_eci).norm(); }
+  /// Changes the relative semi-major axis by an impulse of the target along its flight.
+  void add_a_da(double metres);
+
+  double differential_drag = 0.0;  ///< m/s^2, acceleration of the target along its flight
 
  private:
   GpsTime time_ = kEpoch;
@@ -72,6 +78,7 @@ class Flight {
   Article article;
   GpsTime now = kEpoch;
   bool measures = true;           ///< a measurement before each step
+  double thrust = 1.0;            ///< executed share of a commanded burn
   bool reports_maneuvers = true;  ///< what was executed is told before the next step
   std::deque<Command> to_execute;
   double executed_dv = 0.0;  ///< m/s

@@ -1,0 +1,104 @@
+#include "fsw/guard/guard.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace vbar::fsw::guard {
+namespace {
+
+constexpr int kSidePx = 300;
+constexpr GuardCamera kCamera{.focal_length_px = 6000.0, .dark_level_dn = 0.0, .saturation_dn = 4000.0};
+constexpr GuardSettings kSettings{.target_size_m = 0.7, .data_timeout_s = 2100.0, .data_timeout_range_m = 100.0};
+const Illumination kFullLight{.line_of_sight = Vector3::UnitZ(), .to_sun = -Vector3::UnitZ()};
+
+GpsTime at(double s) {
+  return GpsTime{} + nearest_duration(s);
+}
+
+class GuardTest : public ::testing::Test {
+ protected:
+  GuardTest() { guard_.configure(kSettings); }
+
+  /// An image of the target at a distance; what navigation states.
+  void look(double s, double true_range_m, double navigation_range_m) {
+    std::vector<std::uint16_t> pixels(static_cast<std::size_t>(kSidePx * kSidePx));
+    const int side = static_cast<int>(std::lround(6000.0 * 0.7 / true_range_m));
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) pixels[static_cast<std::size_t>((y + 10) * kSidePx + x + 10)] = 2000;
+    }
+    guard_.take_image(at(s), {.frame = {.width = kSidePx, .height = kSidePx}, .pixels = pixels}, kCamera, kFullLight,
+                      navigation_range_m);
+  }
+
+  Guard guard_;
+};
+
+TEST_F(GuardTest, AgreesWithTheTruth) {
+  look(0.0, 40.0, 40.0);
+  const GuardVerdicts verdicts = guard_.judge(at(1.0));
+  EXPECT_TRUE(verdicts.range.is_checked);
+  EXPECT_FALSE(verdicts.range.is_alarm);
+  EXPECT_NEAR(verdicts.range.value, 0.0, 0.01);
+  EXPECT_FALSE(guard_.judge(at(2.0)).range.is_checked) << "an image is judged once";
+}
+
+TEST_F(GuardTest, ARangeThatNavigationStatesWronglyIsAnAlarm) {
+  look(0.0, 40.0, 65.0);
+  EXPECT_TRUE(guard_.judge(at(1.0)).range.is_alarm);
+  look(5.0, 40.0, 25.0);
+  EXPECT_TRUE(guard_.judge(at(6.0)).range.is_alarm);
+  look(10.0, 40.0, 50.0);
+  EXPECT_FALSE(guard_.judge(at(11.0)).range.is_alarm) << "an attitude may do that";
+}
+
+TEST_F(GuardTest, FarFromTheTargetNothingIsCompared) {
+  look(0.0, 200.0, 400.0);
+  EXPECT_FALSE(guard_.judge(at(1.0)).range.is_checked);
+  look(5.0, 200.0, 100.0);
+  EXPECT_TRUE(guard_.judge(at(6.0)).range.is_alarm) << "navigation claims to be near";
+}
+
+TEST_F(GuardTest, SilenceNearTheTargetIsAnAlarm) {
+  look(0.0, 40.0, 40.0);
+  EXPECT_FALSE(guard_.judge(at(2100.0)).silence.is_alarm);
+  EXPECT_TRUE(guard_.judge(at(2101.0)).silence.is_alarm);
+}
+
+TEST_F(GuardTest, SilenceFarAwayIsNone) {
+  EXPECT_FALSE(guard_.judge(at(1e5)).silence.is_checked) << "there never was a range";
+  look(0.0, 140.0, 140.0);
+  EXPECT_FALSE(guard_.judge(at(9000.0)).silence.is_alarm);
+}
+
+TEST_F(GuardTest, ABurnThatDiffersFromItsCommandIsAnAlarm) {
+  guard_.take_command(4, {0.0, 1e-3, 0.0});
+  guard_.take_report(4, {0.0, 0.9e-3, 0.0});
+  EXPECT_FALSE(guard_.judge(at(0.0)).burns.is_alarm);
+  guard_.take_command(5, {0.0, 1e-3, 0.0});
+  guard_.take_report(5, {0.0, 0.7e-3, 0.0});
+  EXPECT_TRUE(guard_.judge(at(1.0)).burns.is_alarm);
+  guard_.take_report(99, {0.0, 1e-2, 0.0});
+  EXPECT_TRUE(guard_.judge(at(2.0)).burns.is_alarm) << "nobody commanded it";
+}
+
+// 60 m at 0.1 m/s: the whole range in ten minutes.
+TEST_F(GuardTest, AFastApproachIsAnAlarm) {
+  bool is_alarm = false;
+  for (int k = 0; k < 500 && !is_alarm; ++k) {
+    const double t = 5.0 * k;
+    const double range_m = t < 1500.0 ? 60.0 : 60.0 - 0.1 * (t - 1500.0);
+    if (range_m < 15.0) break;
+    look(t, range_m, range_m);
+    const Verdict closing = guard_.judge(at(t)).closing;
+    if (t <= 1500.0) {
+      EXPECT_FALSE(closing.is_alarm) << t;
+    }
+    is_alarm = closing.is_alarm;
+  }
+  EXPECT_TRUE(is_alarm);
+}
+
+}  // namespace
+}  // namespace vbar::fsw::guard
