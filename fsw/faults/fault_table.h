@@ -36,10 +36,11 @@ inline constexpr auto kFaultTable = std::to_array<Rule>({
     {telemetry_health::kFaultNavigationTimeout, telemetry_event::kSeverityFault},     // age, s
     {telemetry_health::kFaultNeverNavigated, telemetry_event::kSeverityFault},        // time, s
     {telemetry_health::kFaultImagesMissing, telemetry_event::kSeverityFault},         // camera
-    {telemetry_health::kFaultImageFrozen, telemetry_event::kSeverityFault, 2, 2},     // camera
+    {telemetry_health::kFaultImageFrozen, telemetry_event::kSeverityFault},           // camera
+    {telemetry_health::kFaultAttitude, telemetry_event::kSeverityFault, 2, 3},        // difference, rad
     {telemetry_health::kFaultSourceInconsistent, telemetry_event::kSeverityWarning},  // mean NIS/dof
     {telemetry_health::kFaultSourceRestarts, telemetry_event::kSeverityFault},        // restarts
-    {telemetry_health::kFaultSourcesContradict, telemetry_event::kSeverityFault},     // sigmas
+    {telemetry_health::kFaultSourcesContradict, telemetry_event::kSeverityFault},     // mean NIS/dof
     {telemetry_health::kFaultState, telemetry_event::kSeverityFault},                 // failures
     // guidance
     {telemetry_health::kFaultHold, telemetry_event::kSeverityFault},                                   // holds so far

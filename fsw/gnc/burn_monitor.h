@@ -18,12 +18,14 @@ class BurnScale {
  public:
   /// `ratio` of a burn of `dv` m/s.
   void update(double ratio, double dv);
-  /// Within kLeast and kMost: a thruster off by more is not corrected but failed.
-  [[nodiscard]] double scale() const { return scale_ < kLeast ? kLeast : (scale_ > kMost ? kMost : scale_); }
+  /// Within kMinScale and kMaxScale: a thruster off by more is not corrected but failed.
+  [[nodiscard]] double scale() const {
+    return scale_ < kMinScale ? kMinScale : (scale_ > kMaxScale ? kMaxScale : scale_);
+  }
   [[nodiscard]] double sigma() const { return sigma_; }
 
-  static constexpr double kLeast = 0.5;
-  static constexpr double kMost = 2.0;
+  static constexpr double kMinScale = 0.5;
+  static constexpr double kMaxScale = 2.0;
 
  private:
   double scale_ = 1.0;

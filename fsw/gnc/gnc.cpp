@@ -47,7 +47,9 @@ void Gnc::manage() {
 }
 
 void Gnc::navigate() {
+  images_.update(now_, inbox_, faults_);
   navigation_.update(now_, telecommands_, inbox_);
+  navigation_.check_sources(now_, faults_);
   const NavigationState& state = navigation_.state();
   const double timeout = management_.configuration().navigation_timeout_s;
   const GpsTime last_heard = state.last_measurement > started_ ? state.last_measurement : started_;
@@ -71,7 +73,7 @@ void Gnc::assess() {
   }
 }
 
-/// By the guard, of which navigation knows nothing.
+/// By the guard, which is independent of navigation.
 void Gnc::supervise() {
   const safety_configuration* safety = management_.safety();
   if (safety == nullptr) return;

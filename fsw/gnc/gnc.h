@@ -12,6 +12,7 @@
 #include "fsw/gnc/burn_monitor.h"
 #include "fsw/gnc/guard_feed.h"
 #include "fsw/gnc/guidance.h"
+#include "fsw/gnc/image_watch.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/management.h"
 #include "fsw/gnc/navigation.h"
@@ -65,6 +66,7 @@ class Gnc {
   Assessment assessment_;
   BurnMonitor burns_;
   guard::Guard guard_;
+  ImageWatch images_;
   std::optional<vbar::attitude> attitude_;  ///< the last one received, for the guard
   GpsTime now_;
   GpsTime started_;  ///< first step

@@ -16,9 +16,8 @@ bool is_for_resolved_target(const imaging::ImageAssembly& image, const pose_conf
 }
 
 guard::GuardCamera guard_camera(const camera_configuration& camera) {
-  return {.focal_length_px = camera.focal_length_px[0],
-          .dark_level_dn = camera.dark_level_dn,
-          .saturation_dn = camera.saturation_dn};
+  return {
+      .focal_length_px = camera.focal_length_px[0], .dark_level_dn = camera.dark_level_dn, .noise_dn = camera.noise_dn};
 }
 
 }  // namespace

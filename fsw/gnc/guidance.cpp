@@ -32,10 +32,6 @@ Ladder ladder_of(const Waypoint& goal, bool estimate_too_coarse) {
 /// cost twice as much as a new plan: a correction more expensive by this factor is replaced by one.
 constexpr double kDearCorrection = 1.1;
 
-/// With a safety_configuration no burn is commanded later than this after the last measurement, as in eclipse: its
-/// effect would not be seen. A few images of the longest period.
-constexpr Duration kMeasuredForBurn = duration_of_seconds(180);
-
 bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
   for (const control::Burn& burn : plan.all()) {
     if (!burn.dv_rtn.allFinite() || burn.dv_rtn.norm() > configuration.maximum_dv) return false;
@@ -106,6 +102,10 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   burn_uncertainty_ =
       safety_ ? safety::BurnUncertainty{settings.burn_sigma, settings.burn_sigma_relative} : safety::BurnUncertainty{};
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
+  // Only cameras depend on light; with carrier phase or true states burns are measured at any time.
+  const bool is_by_camera = state.source != NavigationSource::kIdeal && state.source != NavigationSource::kGnssFixed &&
+                            state.source != NavigationSource::kGnssFloat;
+  lit_ = safety_ && is_by_camera ? std::optional(LitWindows(now, orbits_.servicer)) : std::nullopt;
   const Result<safety::PlanSafety> ahead = safety_of(plan_, configuration);
   if (ahead.ok()) report_.passive_safety_distance = ahead.value().min_distance;
 }
@@ -131,7 +131,6 @@ void Guidance::update(GpsTime now, Duration period, const Navigation& navigation
   const bool plans = may_plan && situation_known_ && age <= configuration.navigation_timeout_s &&
                      now.ns >= configuration.planner_start_ns && select_goal(now, management, retreat);
   if (!plans) return drop_plan();
-  is_measured_ = !safety_ || age <= seconds(kMeasuredForBurn);
   if (decision_is_due(now, configuration)) decide(configuration);
   commit_due_burns(now, period, configuration);
 }
@@ -296,6 +295,7 @@ Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configurati
     case Solver::kKoenigDamico: {
       control::KoenigDamicoSettings settings;
       settings.grid_step = {configuration.koenig_damico_grid_ns};
+      if (lit_) settings.windows = lit_->thrust_windows();
       return control::solve_koenig_damico(problem.value(), settings, koenig_damico_workspace_);
     }
     case Solver::kLeastSquares:
@@ -364,12 +364,13 @@ void Guidance::discard_past_burns(GpsTime now) {
 
 /// Commands every burn that could not be commanded in time in the next step.
 void Guidance::commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration) {
-  if (!is_measured_) return;
   const GpsTime next_chance = now + period + Duration{configuration.compute_latency_ns};
   while (plan_.count > 0 && plan_.burns[0].time < next_chance && command_count_ < kMaxCommandsPerStep &&
          pending_.count < control::kMaxBurns) {
     const control::Burn burn = plan_.burns[0];
     remove_first(plan_);
+    const bool is_in_the_dark = lit_ && plan_.solver == Solver::kKoenigDamico && !lit_->allows(burn.time);
+    if (is_in_the_dark) continue;
     if (burn.time < earliest_burn_ || burn.dv_rtn.norm() < configuration.minimum_dv) continue;
     commands_[command_count_++] = {next_maneuver_id_++, goal_.index, plan_.solver, burn};
     pending_.burns[pending_.count++] = burn;

@@ -13,6 +13,7 @@
 #include "fsw/control/koenig_damico.h"
 #include "fsw/control/leg.h"
 #include "fsw/control/plan.h"
+#include "fsw/gnc/lit_windows.h"
 #include "fsw/gnc/management.h"
 #include "fsw/gnc/navigation.h"
 #include "fsw/gnc/retreat_sequence.h"
@@ -106,6 +107,7 @@ class Guidance {
   bool situation_known_ = false;
   GpsTime earliest_burn_;
   control::MeanOrbits orbits_;
+  std::optional<LitWindows> lit_;            ///< burns are restricted to sunlight
   Vector6 sigma_roe_ = Vector6::Zero();      ///< 1 sigma, dimensionless
   safety::PositionBound position_bound_;     ///< 3 sigma
   Matrix6 covariance_m2_ = Matrix6::Zero();  ///< of the mean ROE times a
@@ -114,9 +116,8 @@ class Guidance {
   Waypoint goal_;
   bool has_goal_ = false;
   bool is_holding_ = false;
-  bool is_measured_ = false;  ///< recently enough to execute a burn
-  control::Plan plan_;        ///< still to be commanded
-  control::Plan pending_;     ///< commanded, not yet due
+  control::Plan plan_;     ///< still to be commanded
+  control::Plan pending_;  ///< commanded, not yet due
   GpsTime next_decision_;
   std::array<CommandedBurn, kMaxCommandsPerStep> commands_{};
   std::size_t command_count_ = 0;

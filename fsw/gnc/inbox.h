@@ -68,6 +68,8 @@ class Inbox {
   }
   /// The image of a camera (unit below kCameras) whose tiles arrived, complete or not.
   [[nodiscard]] const imaging::ImageAssembly& image(std::size_t camera) const { return images_[camera]; }
+  /// The image of a camera is not to be used.
+  void discard_image(std::size_t camera) { images_[camera].clear(); }
   /// Time from the last tick to the next one; 0 before the first tick.
   [[nodiscard]] Duration step_period() const { return step_period_; }
 

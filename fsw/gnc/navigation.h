@@ -59,6 +59,9 @@ class Navigation {
     trunk_.report(outbox, step, now, inbox);
   }
 
+  /// Inconsistency, repeated restarts and contradictions of sources.
+  void check_sources(GpsTime now, faults::FaultMonitor& faults) const { trunk_.check_sources(now, faults); }
+
   [[nodiscard]] const TrunkNavigation& trunk() const { return trunk_; }
   [[nodiscard]] bool uses_camera() const { return uses_camera_; }
 

@@ -1,7 +1,7 @@
 #pragma once
 // Mode retreat: one burn away from the target, a drift, and station-keeping on a safe orbit.
 //
-// The burn is known before it is needed: it is worked out in every step whose situation is known, and kept where it is
+// The burn is known before it is needed: it is computed in every step whose situation is known, and kept where it is
 // not. Transfer and station-keeping begin when navigation suffices to plan and nothing calls for a retreat any more.
 
 #include <cstdint>
@@ -17,7 +17,7 @@ class RetreatSequence {
   /// Numbers of telemetry_safety.phase.
   enum class Phase : std::int8_t { kNone = 0, kBurn = 1, kRecede = 2, kTransfer = 3, kKeep = 4 };
 
-  /// What the step knows of the situation.
+  /// The situation of the step, as far as it is known.
   struct Situation {
     bool is_known = false;          ///< the estimate suffices to plan
     bool is_demanded = false;       ///< a fault that calls for a retreat is present

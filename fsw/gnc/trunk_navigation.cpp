@@ -30,15 +30,16 @@ bool attitude_of(const Message& message, navigation::AttitudeSample& sample) {
   return sample.rate_body.squaredNorm() <= kMaxRate * kMaxRate;
 }
 
-template <class Queue>
-void put_attitudes(GpsTime now, const Queue& packets, Inbox& inbox, navigation::AttitudeHistory& history) {
+/// Calls put(sample) for each attitude of the queue that is one.
+template <class Queue, class Put>
+void for_each_attitude(GpsTime now, const Queue& packets, Inbox& inbox, Put&& put) {
   for (std::size_t k = 0; k < packets.size(); ++k) {
     navigation::AttitudeSample sample;
     sample.time = packets[k].tag.time;
     if (sample.time > now) {
       inbox.count_unusable_time();
     } else if (attitude_of(packets[k].value, sample)) {
-      history.put(sample);
+      put(sample);
     } else {
       inbox.count_bad_content();
     }
@@ -88,8 +89,22 @@ void TrunkNavigation::select(GpsTime now, const Telecommands& telecommands) {
 }
 
 void TrunkNavigation::take_attitudes(GpsTime now, Inbox& inbox) {
-  put_attitudes(now, inbox.queue<vbar::attitude>(), inbox, platform_.servicer_attitude);
-  put_attitudes(now, inbox.queue<vbar::crosslink_attitude>(), inbox, platform_.target_attitude);
+  attitudes_ = {};
+  for_each_attitude(now, inbox.queue<vbar::attitude>(), inbox, [&](const navigation::AttitudeSample& sample) {
+    std::optional<Matrix3> R_body_eci_commanded;
+    if (platform_.pointing && trunk_.own_orbit().started()) {
+      R_body_eci_commanded = R_body_eci_of(*platform_.pointing, sample.time, trunk_.servicer());
+    }
+    ++attitudes_.received;
+    if (attitude_gate_.accepts(sample, platform_.servicer_attitude, R_body_eci_commanded)) {
+      platform_.servicer_attitude.put(sample);
+    } else {
+      ++attitudes_.refused;
+      attitudes_.difference = attitude_gate_.difference();
+    }
+  });
+  for_each_attitude(now, inbox.queue<vbar::crosslink_attitude>(), inbox,
+                    [&](const navigation::AttitudeSample& sample) { platform_.target_attitude.put(sample); });
 }
 
 void TrunkNavigation::update(GpsTime now, Inbox& inbox, std::span<const navigation::Burn> burns) {
@@ -143,6 +158,33 @@ GpsTime TrunkNavigation::last_measurement() const {
     if (source.last_measurement() > last) last = source.last_measurement();
   });
   return last;
+}
+
+void TrunkNavigation::check_sources(GpsTime now, faults::FaultMonitor& faults) const {
+  faults::Check inconsistent{.fault = telemetry_health::kFaultSourceInconsistent};
+  faults::Check restarts{.fault = telemetry_health::kFaultSourceRestarts};
+  faults::Check contradicting{.fault = telemetry_health::kFaultSourcesContradict};
+  const auto detect = [](faults::Check& check, std::int32_t device, double argument) {
+    if (check.is_detected) return;
+    check.is_detected = true;
+    check.device = device;
+    check.argument = argument;
+  };
+  for_each(sources_, [&]<class Source>(const Source& source, std::uint8_t /*index*/) {
+    const sources::Aid& aid = source.aid();
+    if (!aid.is_on()) return;
+    if (aid.consistency().is_outside()) detect(inconsistent, Source::kUse, aid.consistency().mean());
+    if (aid.restarts().are_repeated(now)) detect(restarts, Source::kUse, static_cast<double>(aid.restarts().count()));
+    if (aid.is_contradicting()) detect(contradicting, Source::kUse, aid.consistency().mean());
+  });
+  if (attitudes_.received > 0) {
+    faults.check(now, {.fault = telemetry_health::kFaultAttitude,
+                       .is_detected = attitudes_.refused > 0,
+                       .argument = attitudes_.difference});
+  }
+  faults.check(now, inconsistent);
+  faults.check(now, restarts);
+  faults.check(now, contradicting);
 }
 
 void TrunkNavigation::report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) {

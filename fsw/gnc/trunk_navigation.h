@@ -11,6 +11,8 @@
 #include <tuple>
 
 #include "fsw/core/gps_time.h"
+#include "fsw/faults/fault_monitor.h"
+#include "fsw/gnc/attitude_gate.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/outbox.h"
 #include "fsw/gnc/telecommands.h"
@@ -49,6 +51,10 @@ class TrunkNavigation {
   /// Latest measurement of the relative orbit that was processed.
   [[nodiscard]] GpsTime last_measurement() const;
 
+  /// Innovations outside their band, repeated restarts, and records that contradict an orbit which others confirm. One
+  /// fault stands for all sources: it states the first.
+  void check_sources(GpsTime now, faults::FaultMonitor& faults) const;
+
   /// Telemetry of the sources in use, and an event of each change of the state of any source.
   void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox);
 
@@ -58,9 +64,18 @@ class TrunkNavigation {
   [[nodiscard]] GpsTime owed_until(GpsTime now) const;
   void fold_records(sources::Context& context, std::span<const navigation::Burn> burns);
 
+  /// Of the servicer, in the step.
+  struct Attitudes {
+    int received = 0;
+    int refused = 0;
+    double difference = 0.0;  ///< of the last one refused, rad
+  };
+
   trunk::Trunk trunk_;
   sources::RecordQueue queue_;
   sources::Platform platform_;
+  AttitudeGate attitude_gate_;
+  Attitudes attitudes_;
   sources::GnssFrontEnd gnss_;
   sources::SourceList sources_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// The guard's own range: from the lit area of the target in an image. It knows neither shape nor attitude of the
+// The guard's own range: from the lit area of the target in an image. It uses neither the shape nor the attitude of the
 // target, only the square root of its mean silhouette area, which its attitude changes by a tenth, and the share of it
 // that the Sun lights at a phase angle, as of a sphere: (1 + cos(phase)) / 2.
 
@@ -14,7 +14,7 @@ namespace vbar::fsw::guard {
 struct GuardCamera {
   double focal_length_px = 0.0;
   double dark_level_dn = 0.0;  ///< of a pixel without light
-  double saturation_dn = 0.0;
+  double noise_dn = 0.0;       ///< of such a pixel, 1 sigma
 };
 
 /// Where the light comes from, and from where the target is seen: unit vectors in one frame.
@@ -23,16 +23,18 @@ struct Illumination {
   Vector3 to_sun = Vector3::UnitX();
 };
 
-/// Lit pixels of an image, and whether they touch its rim.
+/// Lit pixels of an image, and whether they touch its rim. None if the brightest are hardly brighter than the noise, as
+/// in penumbra.
 struct LitArea {
   int pixels = 0;
   bool is_cut = false;
 };
 
-/// Pixels brighter than the dark level by more than a twentieth of the range to saturation.
+/// Pixels brighter than a twelfth of the brightest ones, so that neither exposure nor penumbra matters: white and dark
+/// surfaces of a target differ by about that factor.
 LitArea lit_area(const imaging::ImageView& image, const GuardCamera& camera);
 
-/// Range, m. Empty for fewer lit pixels than a shape needs, a target cut by the rim, or a phase angle beyond 110 deg,
+/// Range, m. Empty for fewer lit pixels than a shape needs, a target cut by the rim, or a phase angle beyond 100 deg,
 /// where the lit part is a crescent or nothing.
 std::optional<double> range_from_size(const LitArea& area, const GuardCamera& camera, const Illumination& illumination,
                                       double target_size_m);

@@ -7,7 +7,7 @@ namespace {
 
 // A burn contradicts its command by more than this share of it, and by more than a thruster's least impulse.
 constexpr double kLargestShare = 0.2;
-constexpr double kLeastImpulse = 2e-5;  // m/s
+constexpr double kMinImpulse = 2e-5;  // m/s
 
 // Closing: by more than the whole range in this time, and by more than relative orbits of metres do by themselves.
 constexpr double kClosingTime_s = 2000.0;
@@ -46,7 +46,7 @@ void Guard::take_report(std::int32_t maneuver_id, const Vector3& dv_rtn) {
   }
   const double size = math::sqrt(commanded.squaredNorm());
   const double difference = math::sqrt((dv_rtn - commanded).squaredNorm());
-  const bool is_alarm = difference > kLargestShare * size + kLeastImpulse;
+  const bool is_alarm = difference > kLargestShare * size + kMinImpulse;
   // Of several reports in a step, one that contradicts decides.
   if (pending_.burns.is_alarm) return;
   pending_.burns = {.is_checked = true, .is_alarm = is_alarm, .value = size > 0.0 ? difference / size : difference};

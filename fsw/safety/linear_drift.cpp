@@ -42,7 +42,7 @@ PositionMap LinearDrift::map_at(int sample) const {
   return map + time_s(sample) * (map * rate_);
 }
 
-double LinearDrift::least_distance(const Vector6& a_roe_m, const DriftError& error, double enough_m) const {
+double LinearDrift::min_distance(const Vector6& a_roe_m, const DriftError& error, double enough_m) const {
   Vector6 roe = a_roe_m;
   roe(0) += error.a_da_m;
   const Vector6 change = step_s_ * (rate_ * roe);

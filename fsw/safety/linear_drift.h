@@ -37,8 +37,7 @@ class LinearDrift {
 
   /// Least distance, m, of the drift from mean ROE times a, m. A drift that comes closer than `enough_m` is not
   /// followed further: its result is then some distance below that.
-  [[nodiscard]] double least_distance(const Vector6& a_roe_m, const DriftError& error = {},
-                                      double enough_m = 0.0) const;
+  [[nodiscard]] double min_distance(const Vector6& a_roe_m, const DriftError& error = {}, double enough_m = 0.0) const;
 
   /// Samples of all drifts, equally spaced from 0 to the horizon.
   [[nodiscard]] int samples() const { return samples_; }

@@ -68,9 +68,9 @@ class Judge {
     const double da = settings_.a_da_error_m;
     const double drag = settings_.differential_drag;
     const std::array<DriftError, 5> errors{{{}, {da, drag}, {-da, -drag}, {da, -drag}, {-da, drag}}};
-    double least = drift_.least_distance(after, errors[0], enough);
+    double least = drift_.min_distance(after, errors[0], enough);
     for (std::size_t k = 1; k < errors.size() && least >= enough; ++k) {
-      const double distance = drift_.least_distance(after, errors[k], enough);
+      const double distance = drift_.min_distance(after, errors[k], enough);
       if (distance < least) least = distance;
     }
     return least;

@@ -121,17 +121,18 @@ BearingEditStatus BearingAiding::fold(const navigation::BearingMeasurement& bear
   last_update_.prefit = rows.residual.head<2>();
   last_update_.postfit = last_update_.prefit;
   last_update_.nis = estimation::group_nis(rows, 0, 2);
+  aid_.consistency().add(last_update_.nis, 2);
   if (!(last_update_.nis <= settings_.gate)) {
     count_refusal(bearing.time, trunk);
     return BearingEditStatus::kRefused;
   }
-  if (is_contradicting_ && ++agreeing_in_a_row_ < kAgreeingBeforeAiding) return BearingEditStatus::kRefused;
+  if (aid_.is_contradicting() && ++agreeing_in_a_row_ < kAgreeingBeforeAiding) return BearingEditStatus::kRefused;
   adapt_noise(bearing, trunk);
   if (!trunk.fold()) return BearingEditStatus::kRefused;
   last_update_.postfit = rows.residual.head<2>();
   trunk.confirm_relative();
   ++counters_.used;
-  is_contradicting_ = false;
+  aid_.set_contradicting(false);
   refused_in_excess_ = refused_in_excess_ > 0 ? refused_in_excess_ - 1 : 0;
   refused_in_a_row_ = 0;
   inflations_in_a_row_ = 0;
@@ -155,11 +156,11 @@ void BearingAiding::count_refusal(GpsTime time, trunk::Trunk& trunk) {
   if (trunk.is_confirmed_by_others()) {
     refused_in_a_row_ = 0;
     if (++refused_in_excess_ < kRefusedBeforeSuspension) return;
-    is_contradicting_ = true;
+    aid_.set_contradicting(true);
     aid_.go_to(AidState::kSuspended, time);
     return;
   }
-  is_contradicting_ = false;
+  aid_.set_contradicting(false);
   refused_in_excess_ = 0;
   if (++refused_in_a_row_ < kRefusedBeforeInflation) return;
   refused_in_a_row_ = 0;

@@ -75,7 +75,6 @@ class BearingAiding {
   GpsTime last_accepted_;
   GpsTime last_folded_;
   int refused_in_a_row_ = 0;
-  bool is_contradicting_ = false;  ///< an orbit that other sources confirm
   int refused_in_excess_ = 0;      ///< of accepted ones, while others confirm the orbit
   int agreeing_in_a_row_ = 0;      ///< while contradicting
   std::size_t inflations_in_a_row_ = 0;

@@ -67,6 +67,8 @@ bool CarrierAiding::process(const PairEpoch& pair, trunk::Trunk& trunk) {
   counters_.codes_refused += last_update_.codes_refused;
   counters_.phases_refused += last_update_.phases_refused;
   counters_.slips += last_update_.slips;
+  aid_.consistency().add(last_update_.code_nis + last_update_.phase_nis,
+                         last_update_.codes_used + last_update_.phases_used);
   judge(tag, trunk);
   return true;
 }

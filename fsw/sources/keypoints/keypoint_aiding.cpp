@@ -185,7 +185,10 @@ bool KeypointAiding::begin_attitude(trunk::Trunk& trunk) {
   const auto attitude = start_.attitude();
   if (!attitude.ok() || !agrees_with_image(attitude.value().attitude)) return false;
   trunk.begin_attitude(attitude.value().attitude, attitude.value().covariance);
-  if (has_begun_) ++counters_.attitudes_reset;
+  if (has_begun_) {
+    ++counters_.attitudes_reset;
+    aid_.restarts().add(trunk.epoch());
+  }
   has_begun_ = true;
   return trunk.has_attitude();
 }
@@ -256,6 +259,7 @@ KeypointEditStatus KeypointAiding::take_keypoints(const KeypointImage& image, co
   for (const pose::Keypoint& keypoint : *image.keypoints) is_any_usable = is_any_usable || is_usable(keypoint);
   if (!is_any_usable) return KeypointEditStatus::kNone;
   const int used = update.accepted ? update.used : 0;
+  aid_.consistency().add(update.nis, 2 * update.used);
   counters_.keypoints_used += used;
   counters_.keypoints_refused += update.usable - used;
   if (update.accepted) {

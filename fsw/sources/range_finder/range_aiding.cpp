@@ -52,12 +52,14 @@ RangeEditStatus RangeAiding::process(double range_m, trunk::Trunk& trunk) {
   estimation::predict_innovations(trunk.estimate(), trunk.rows());
   prefit_m_ = trunk.rows().residual(0);
   nis_ = estimation::group_nis(trunk.rows(), 0, 1);
+  aid_.consistency().add(nis_, 1);
   if (!(nis_ <= settings_.gate)) return refuse(time);
   const bool is_suspended = refused_in_excess_ >= kRefusedBeforeSuspension;
   if (is_suspended && ++agreeing_in_a_row_ < kAgreeingBeforeAiding) return RangeEditStatus::kRefused;
   if (!trunk.fold()) return refuse(time);
   refused_in_excess_ = is_suspended || refused_in_excess_ == 0 ? 0 : refused_in_excess_ - 1;
   agreeing_in_a_row_ = 0;
+  aid_.set_contradicting(false);
   ++counters_.used;
   last_accepted_ = time;
   aid_.go_to(AidState::kAiding, time);
@@ -68,6 +70,7 @@ RangeEditStatus RangeAiding::refuse(GpsTime time) {
   ++counters_.refused;
   agreeing_in_a_row_ = 0;
   if (refused_in_excess_ < kRefusedBeforeSuspension && ++refused_in_excess_ == kRefusedBeforeSuspension) {
+    aid_.set_contradicting(true);
     aid_.go_to(AidState::kSuspended, time);
   }
   return RangeEditStatus::kRefused;

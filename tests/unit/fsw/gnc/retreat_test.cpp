@@ -1,8 +1,6 @@
 // Mode retreat in flight: from anywhere on the last legs the servicer keeps its distance, ends on a safe orbit, and
 // resumes its approach.
 
-#include <algorithm>
-
 #include "fsw/gnc/gnc.h"
 #include "tests/support/figures.h"
 #include "tests/unit/fsw/gnc/configurations.h"
@@ -43,22 +41,22 @@ Flight approach() {
 }
 
 /// Least distance of a flight for a day.
-double least_distance(Flight& flight) {
-  double least = flight.world.distance_m();
+double min_distance(Flight& flight) {
+  accuracy::Smallest least(flight.world.distance_m());
   const GpsTime until = flight.now + duration_of_seconds(24 * kHour);
   while (flight.now < until) {
     flight.step();
-    least = std::min(least, flight.world.distance_m());
+    least.add(flight.world.distance_m());
   }
   return least;
 }
 
 /// The same of a flight whose flight software does nothing any more.
-double least_distance_of_drift(Flight& flight) {
-  double least = flight.world.distance_m();
+double min_distance_of_drift(Flight& flight) {
+  accuracy::Smallest least(flight.world.distance_m());
   for (int k = 0; k < 720; ++k) {
     flight.world.advance_to(flight.world.time() + duration_of_seconds(120));
-    least = std::min(least, flight.world.distance_m());
+    least.add(flight.world.distance_m());
   }
   return least;
 }
@@ -79,12 +77,12 @@ void put(Flight& flight, const Saved& saved) {
 
 TEST(RetreatMode, TheNominalApproachNeedsNone) {
   Flight flight = approach();
-  double least_by_retreat = 1e9;
+  accuracy::Smallest least_by_retreat;
   while (flight.now < at(5 * kHour + 900)) {
     const Answer answer = flight.step();
     ASSERT_NE(answer.control.mode, kRetreat) << seconds(flight.now - kEpoch);
     EXPECT_EQ(answer.health.faults, 0);
-    least_by_retreat = std::min(least_by_retreat, answer.safety.retreat_distance_m);
+    least_by_retreat.add(answer.safety.retreat_distance_m);
     EXPECT_LE(answer.safety.collision_probability, 1e-4);
   }
   EXPECT_GE(least_by_retreat, kContact_m);
@@ -97,8 +95,8 @@ TEST(RetreatMode, TheNominalApproachNeedsNone) {
 // either sign.
 TEST(RetreatMode, KeepsItsDistanceForADayFromEverywhere) {
   Flight nominal = approach();
-  double least = 1e9;
-  double largest_dv = 0.0;
+  accuracy::Smallest least;
+  accuracy::Largest largest_dv;
   int cases = 0;
   for (int minute = 0; minute < 315; ++minute) {
     nominal.step();
@@ -116,9 +114,9 @@ TEST(RetreatMode, KeepsItsDistanceForADayFromEverywhere) {
         EXPECT_TRUE(flight.to_execute.empty()) << "the burn is flown within the step";
         flight.world.add_a_da(0.05 * sign);
         flight.world.differential_drag = 1e-9 * sign;
-        const double distance = least_distance_of_drift(flight);
-        least = std::min(least, distance);
-        largest_dv = std::max(largest_dv, flight.executed_dv - before);
+        const double distance = min_distance_of_drift(flight);
+        least.add(distance);
+        largest_dv.add(flight.executed_dv - before);
         EXPECT_GE(distance, kContact_m) << "minute " << minute << ", after " << wait_minutes << ", sign " << sign;
         ++cases;
       }
@@ -126,8 +124,8 @@ TEST(RetreatMode, KeepsItsDistanceForADayFromEverywhere) {
   }
   EXPECT_EQ(cases, 105 * 9);
   EXPECT_LT(largest_dv, 5e-3);
-  RecordProperty("least_distance_m", std::to_string(least));
-  RecordProperty("largest_dv_mps", std::to_string(largest_dv));
+  RecordProperty("min_distance_m", std::to_string(least.value));
+  RecordProperty("largest_dv_mps", std::to_string(largest_dv.value));
 }
 
 TEST(RetreatMode, EndsOnTheHoldOrbitAndTheApproachIsResumed) {
@@ -138,10 +136,10 @@ TEST(RetreatMode, EndsOnTheHoldOrbitAndTheApproachIsResumed) {
   EXPECT_EQ(answer.control.mode, kRetreat);
   EXPECT_NE(answer.health.faults & telemetry_health::kFaultRetreat, 0);
   EXPECT_EQ(answer.safety.phase, telemetry_safety::kPhaseRecede);
-  double least = flight.world.distance_m();
+  accuracy::Smallest least(flight.world.distance_m());
   while (flight.now < at(20 * kHour)) {
     answer = flight.step();
-    least = std::min(least, flight.world.distance_m());
+    least.add(flight.world.distance_m());
   }
   EXPECT_GE(least, kContact_m);
   EXPECT_EQ(answer.safety.phase, telemetry_safety::kPhaseKeep);
@@ -174,7 +172,7 @@ TEST(RetreatMode, AnUncommandedBurnStartsIt) {
   EXPECT_EQ(answer.control.mode, kRetreat);
   ASSERT_EQ(answer.commands.size(), 1U);
   EXPECT_EQ(answer.commands[0].message.waypoint_index, -1);
-  EXPECT_GE(least_distance(flight), kContact_m);
+  EXPECT_GE(min_distance(flight), kContact_m);
 }
 
 TEST(RetreatMode, WithoutASafetyConfigurationItIsAHold) {

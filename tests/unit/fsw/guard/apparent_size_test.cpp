@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kWidth = 400;
 constexpr int kHeight = 300;
-constexpr GuardCamera kCamera{.focal_length_px = 6000.0, .dark_level_dn = 64.0, .saturation_dn = 4000.0};
+constexpr GuardCamera kCamera{.focal_length_px = 6000.0, .dark_level_dn = 64.0, .noise_dn = 2.0};
 constexpr double kSide = 0.7;  // m
 
 /// A dark image with a bright rectangle.
@@ -52,7 +52,7 @@ TEST(ApparentSize, ThePhaseReducesTheLitArea) {
 TEST(ApparentSize, NothingFromACrescentACutTargetOrAFewPixels) {
   EXPECT_FALSE(range_from_size({3600, false}, kCamera, at_phase(2.0), kSide).has_value());
   EXPECT_FALSE(range_from_size({3600, true}, kCamera, at_phase(0.0), kSide).has_value());
-  EXPECT_FALSE(range_from_size({59, false}, kCamera, at_phase(0.0), kSide).has_value());
+  EXPECT_FALSE(range_from_size({299, false}, kCamera, at_phase(0.0), kSide).has_value());
   EXPECT_FALSE(range_from_size({0, false}, kCamera, at_phase(0.0), kSide).has_value());
   const double nan = std::nan("");
   EXPECT_FALSE(range_from_size({3600, false}, kCamera, {Vector3::Constant(nan), Vector3::UnitX()}, kSide).has_value());
@@ -62,6 +62,22 @@ TEST(ApparentSize, ATargetAtTheRimIsCut) {
   EXPECT_TRUE(lit_area(view(picture(kWidth - 60, 100, 60, 60)), kCamera).is_cut);
   EXPECT_TRUE(lit_area(view(picture(100, 0, 60, 60)), kCamera).is_cut);
   EXPECT_FALSE(lit_area(view(picture(1, 1, 60, 60)), kCamera).is_cut);
+}
+
+TEST(ApparentSize, DimmerLightShowsTheSameArea) {
+  auto pixels = picture(100, 90, 60, 60);
+  for (std::uint16_t& pixel : pixels) pixel = pixel > 1000 ? 300 : pixel;
+  EXPECT_EQ(lit_area(view(pixels), kCamera).pixels, 3600);
+  for (std::uint16_t& pixel : pixels) pixel = pixel > 200 ? 150 : pixel;
+  EXPECT_EQ(lit_area(view(pixels), kCamera).pixels, 0) << "hardly lit";
+}
+
+TEST(ApparentSize, AFewHotPixelsAreNotTheBrightestPart) {
+  auto pixels = picture(100, 90, 60, 60);
+  for (std::size_t k = 0; k < 50; ++k) pixels[37 * k + 11] = 4095;
+  const int lit = lit_area(view(pixels), kCamera).pixels;
+  EXPECT_GE(lit, 3600);
+  EXPECT_LE(lit, 3650);
 }
 
 TEST(ApparentSize, MissingPixelsAreNotLight) {

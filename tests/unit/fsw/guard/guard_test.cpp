@@ -9,7 +9,7 @@ namespace vbar::fsw::guard {
 namespace {
 
 constexpr int kSidePx = 300;
-constexpr GuardCamera kCamera{.focal_length_px = 6000.0, .dark_level_dn = 0.0, .saturation_dn = 4000.0};
+constexpr GuardCamera kCamera{.focal_length_px = 6000.0, .dark_level_dn = 0.0, .noise_dn = 2.0};
 constexpr GuardSettings kSettings{.target_size_m = 0.7, .data_timeout_s = 2100.0, .data_timeout_range_m = 100.0};
 const Illumination kFullLight{.line_of_sight = Vector3::UnitZ(), .to_sun = -Vector3::UnitZ()};
 

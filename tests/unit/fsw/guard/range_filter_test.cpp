@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/figures.h"
+
 namespace vbar::fsw::guard {
 namespace {
 
@@ -33,11 +35,11 @@ TEST(RangeFilter, FollowsASteadyApproach) {
 // A tumbling target changes its size by a third in five minutes: a rate of 1e-3 a second if it were believed.
 TEST(RangeFilter, AttitudesOfTheTargetAverageOut) {
   RangeFilter filter;
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (int k = 0; k < 4000; ++k) {
     const double t = 5.0 * k;
     filter.add(at(t), 10.0 * std::exp(0.15 * std::sin(2.0 * M_PI * t / 600.0)));
-    if (filter.has_rate()) largest = std::max(largest, std::abs(filter.range_rate(at(t))));
+    if (filter.has_rate()) largest.add(std::abs(filter.range_rate(at(t))));
   }
   EXPECT_LT(largest, 10.0 / 2000.0);
 }

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "fsw/safety/collision_probability.h"
+#include "tests/support/figures.h"
 #include "tests/unit/fsw/orbit/mission.h"
 
 namespace vbar::fsw::safety {
@@ -43,19 +44,19 @@ TEST(DriftProbability, IsTheLargestOfTheDrift) {
   covariance.diagonal() << 0.01, 0.25, 0.04, 0.04, 0.04, 0.04;
   const auto found = drift_probability(drift, a_roe, covariance, 2.0);
   ASSERT_TRUE(found.ok());
-  double largest = 0.0;
+  accuracy::Largest largest;
   for (int sample = 0; sample < drift.samples(); ++sample) {
     const PositionMap map = drift.map_at(sample);
     const auto p = collision_probability(map * a_roe, map * covariance * map.transpose(), 2.0);
     ASSERT_TRUE(p.ok());
-    largest = std::max(largest, p.value());
+    largest.add(p.value());
   }
   EXPECT_NEAR(found.value().spatial, largest, 1e-9);
   EXPECT_GE(found.value().radial_normal, found.value().spatial);
 
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
-  double most = 0.0;
+  accuracy::Largest most;
   for (int sample = 0; sample < drift.samples(); sample += 2) {
     int hits = 0;
     constexpr int kDraws = 4000;
@@ -64,7 +65,7 @@ TEST(DriftProbability, IsTheLargestOfTheDrift) {
       for (int i = 0; i < 6; ++i) x(i) += std::sqrt(covariance(i, i)) * normal(random);
       if ((drift.map_at(sample) * x).norm() < 2.0) ++hits;
     }
-    most = std::max(most, static_cast<double>(hits) / kDraws);
+    most.add(static_cast<double>(hits) / kDraws);
   }
   EXPECT_NEAR(found.value().spatial, most, 0.03);
 }

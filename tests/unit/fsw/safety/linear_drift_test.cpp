@@ -32,15 +32,15 @@ LinearDrift drift_from(std::size_t waypoint) {
 }
 
 TEST(LinearDrift, LeastDistancesFromTheLastWaypoints) {
-  EXPECT_NEAR(drift_from(8).least_distance(a_roe_of(8)), 1.498, 0.005);
-  EXPECT_NEAR(drift_from(9).least_distance(a_roe_of(9)), 5.16, 0.02);
-  EXPECT_NEAR(drift_from(10).least_distance(a_roe_of(10)), 6.46, 0.02);
+  EXPECT_NEAR(drift_from(8).min_distance(a_roe_of(8)), 1.498, 0.005);
+  EXPECT_NEAR(drift_from(9).min_distance(a_roe_of(9)), 5.16, 0.02);
+  EXPECT_NEAR(drift_from(10).min_distance(a_roe_of(10)), 6.46, 0.02);
 }
 
 TEST(LinearDrift, ErrorsOfSemiMajorAxisAndDrag) {
-  EXPECT_NEAR(drift_from(9).least_distance(a_roe_of(9), {.a_da_m = -0.05}), 0.99, 0.02);
-  EXPECT_NEAR(drift_from(10).least_distance(a_roe_of(10), {.a_da_m = -0.05}), 0.95, 0.02);
-  EXPECT_NEAR(drift_from(10).least_distance(a_roe_of(10), {.differential_drag = -1e-9}), 0.80, 0.02);
+  EXPECT_NEAR(drift_from(9).min_distance(a_roe_of(9), {.a_da_m = -0.05}), 0.99, 0.02);
+  EXPECT_NEAR(drift_from(10).min_distance(a_roe_of(10), {.a_da_m = -0.05}), 0.95, 0.02);
+  EXPECT_NEAR(drift_from(10).min_distance(a_roe_of(10), {.differential_drag = -1e-9}), 0.80, 0.02);
 }
 
 // Constant acceleration along track moves the target by -3/2 d t^2 in the mean, and nothing else within a millimetre:
@@ -53,7 +53,7 @@ TEST(LinearDrift, DragDrivesTheTargetBack) {
   const double drag = 1e-9;
   const double along = 20.0 - 1.5 * drag * end_s * end_s;
   const double radial = 2.0 * drag / orbit::mean_motion(servicer_at(10).a) * end_s;
-  EXPECT_NEAR(drift.least_distance(a_roe, {.differential_drag = drag}), std::hypot(along, radial), 0.02);
+  EXPECT_NEAR(drift.min_distance(a_roe, {.differential_drag = drag}), std::hypot(along, radial), 0.02);
 }
 
 // Another model of the same drift: exact elements, curvilinear, a hundred samples a revolution.
@@ -62,7 +62,7 @@ TEST(LinearDrift, AgreesWithTheCurvilinearDrift) {
     const auto servicer = servicer_at(waypoint);
     const Vector6 a_roe = a_roe_of(waypoint);
     const double other = assess_drift(servicer, a_roe / servicer.a, kDay_s).value().spatial.distance;
-    EXPECT_NEAR(drift_from(waypoint).least_distance(a_roe), other, 0.003 * std::abs(a_roe(1)) + 0.01) << waypoint;
+    EXPECT_NEAR(drift_from(waypoint).min_distance(a_roe), other, 0.003 * std::abs(a_roe(1)) + 0.01) << waypoint;
   }
 }
 
@@ -81,8 +81,8 @@ TEST(LinearDrift, TheMapIsThatOfTheOrbitLibrary) {
 
 TEST(LinearDrift, ADriftThatIsTooCloseIsNotFollowedFurther) {
   const LinearDrift drift = drift_from(8);
-  EXPECT_LT(drift.least_distance(a_roe_of(8), {}, 2.0), 2.0);
-  EXPECT_GE(drift.least_distance(a_roe_of(8), {}, 2.0), drift.least_distance(a_roe_of(8)));
+  EXPECT_LT(drift.min_distance(a_roe_of(8), {}, 2.0), 2.0);
+  EXPECT_GE(drift.min_distance(a_roe_of(8), {}, 2.0), drift.min_distance(a_roe_of(8)));
 }
 
 TEST(LinearDrift, RefusesWhatIsNoDrift) {

@@ -10,6 +10,7 @@
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/secular.h"
 #include "fsw/safety/linear_drift.h"
+#include "tests/support/figures.h"
 #include "tests/unit/fsw/orbit/mission.h"
 
 namespace vbar::fsw::safety {
@@ -32,9 +33,9 @@ double distance_after(std::size_t waypoint, const Vector3& dv_rtn) {
   const auto servicer = servicer_at_waypoint(waypoint);
   const LinearDrift drift = LinearDrift::make(servicer, 86400.0).value();
   const Vector6 after = a_roe_of(waypoint) - servicer.a * orbit::roe_control_matrix(servicer) * dv_rtn;
-  double least = drift.least_distance(after);
+  accuracy::Smallest least(drift.min_distance(after));
   for (const double sign : {-1.0, 1.0}) {
-    least = std::min(least, drift.least_distance(after, {.a_da_m = 0.05 * sign, .differential_drag = 1e-9 * sign}));
+    least.add(drift.min_distance(after, {.a_da_m = 0.05 * sign, .differential_drag = 1e-9 * sign}));
   }
   return least;
 }
@@ -83,8 +84,8 @@ TEST(Retreat, TheMenuIsSearchedWhereTheRecedingBurnIsTooClose) {
     ASSERT_TRUE(burn.value().keeps_distance);
     const LinearDrift drift = LinearDrift::make(servicer, 86400.0).value();
     const Vector6 after = a_roe - servicer.a * orbit::roe_control_matrix(servicer) * burn.value().dv_rtn;
-    EXPECT_GE(drift.least_distance(after), 2.0);
-    EXPECT_GE(drift.least_distance(after, {.a_da_m = -0.05, .differential_drag = -1e-9}), 2.0);
+    EXPECT_GE(drift.min_distance(after), 2.0);
+    EXPECT_GE(drift.min_distance(after, {.a_da_m = -0.05, .differential_drag = -1e-9}), 2.0);
   }
   EXPECT_GT(by_menu, 0);
 }

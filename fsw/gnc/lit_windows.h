@@ -1,0 +1,33 @@
+#pragma once
+// Times at which a burn is seen by a camera: in sunlight, from the first images after dawn until shortly before dusk.
+
+#include "fsw/control/koenig_damico.h"
+#include "fsw/core/gps_time.h"
+#include "fsw/core/types.h"
+#include "fsw/orbit/elements.h"
+
+namespace vbar::fsw::gnc {
+
+class LitWindows {
+ public:
+  /// `servicer_mean`: mean elements at `epoch`. Valid for the horizon of a plan: the Sun's direction is that of the
+  /// epoch.
+  LitWindows(GpsTime epoch, const orbit::QnsElements& servicer_mean);
+
+  [[nodiscard]] bool allows(GpsTime time) const;
+
+  /// For the solver; this object must outlive it.
+  [[nodiscard]] control::ThrustWindows thrust_windows() const;
+
+  static constexpr Duration kAfterDawn = duration_of_seconds(120);
+  static constexpr Duration kBeforeDusk = duration_of_seconds(60);
+
+ private:
+  [[nodiscard]] bool is_lit(GpsTime time) const;
+
+  GpsTime epoch_;
+  orbit::QnsElements servicer_mean_;
+  Vector3 sun_eci_ = Vector3::UnitX();
+};
+
+}  // namespace vbar::fsw::gnc
