@@ -108,7 +108,7 @@ void Gnc::report_safety() {
   if (range.is_known()) {
     message.guard_range_m = range.range_m(now_);
     message.guard_range_rate = range.range_rate(now_);
-    message.guard_age_s = seconds(now_ - range.last());
+    message.guard_age_s = guard_.seen() ? seconds(now_ - *guard_.seen()) : 0.0;
   }
   outbox_.send(now_, message);
 }

@@ -5,6 +5,8 @@
 namespace vbar::fsw::guard {
 namespace {
 
+constexpr int kSeenPixels = 60;  // a crescent is seen, too
+
 // A burn contradicts its command by more than this share of it, and by more than a thruster's least impulse.
 constexpr double kLargestShare = 0.2;
 constexpr double kMinImpulse = 2e-5;  // m/s
@@ -18,8 +20,9 @@ constexpr double kClosingWithin_m = 150.0;
 
 void Guard::take_image(GpsTime time, const imaging::ImageView& image, const GuardCamera& camera,
                        const Illumination& illumination, double navigation_range_m) {
-  const std::optional<double> range_m =
-      range_from_size(lit_area(image, camera), camera, illumination, settings_.target_size_m);
+  const LitArea area = lit_area(image, camera);
+  if (area.pixels >= kSeenPixels) seen_ = time;
+  const std::optional<double> range_m = range_from_size(area, camera, illumination, settings_.target_size_m);
   if (!range_m) return;
   range_.add(time, *range_m);
   const bool is_near = *range_m < kCompareWithin_m || navigation_range_m < kCompareWithin_m;
@@ -55,8 +58,8 @@ void Guard::take_report(std::int32_t maneuver_id, const Vector3& dv_rtn) {
 GuardVerdicts Guard::judge(GpsTime now) {
   GuardVerdicts verdicts = pending_;
   pending_ = {};
-  if (range_.is_known()) {
-    const double age_s = seconds(now - range_.last());
+  if (range_.is_known() && seen_) {
+    const double age_s = seconds(now - *seen_);
     const bool is_near = range_.range_m(range_.last()) < settings_.data_timeout_range_m;
     verdicts.silence = {.is_checked = true, .is_alarm = is_near && age_s > settings_.data_timeout_s, .value = age_s};
   }

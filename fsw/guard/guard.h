@@ -19,7 +19,7 @@ namespace vbar::fsw::guard {
 
 struct GuardSettings {
   double target_size_m = 0.0;         ///< square root of the mean silhouette area
-  double data_timeout_s = 0.0;        ///< age of the last range that is accepted
+  double data_timeout_s = 0.0;        ///< longest time without the target in an image
   double data_timeout_range_m = 0.0;  ///< inside this range
 };
 
@@ -33,7 +33,7 @@ struct Verdict {
 /// All verdicts of a step.
 struct GuardVerdicts {
   Verdict range;  ///< logarithm of the guard's range of an image over that of navigation, nearer than kCompareWithin_m
-  Verdict silence;  ///< age of the last range, s
+  Verdict silence;  ///< time since the target was last seen, s
   Verdict burns;    ///< difference of a burn from its command, share of the command
   Verdict closing;  ///< range rate, m/s
 };
@@ -42,8 +42,9 @@ class Guard {
  public:
   /// Navigation's range is compared with that of an image inside this distance, m, by either.
   static constexpr double kCompareWithin_m = 150.0;
-  /// Largest logarithm of the ratio: two thirds to one and a half.
-  static constexpr double kLargestLogarithm = 0.4;
+  /// Largest logarithm of the ratio: half to twice. Attitude and phase of the target scatter it by 0.2 (1 sigma) and for
+  /// minutes alike.
+  static constexpr double kLargestLogarithm = 0.7;
 
   void configure(const GuardSettings& settings) { settings_ = settings; }
 
@@ -59,6 +60,7 @@ class Guard {
   GuardVerdicts judge(GpsTime now);
 
   [[nodiscard]] const RangeFilter& range() const { return range_; }
+  [[nodiscard]] std::optional<GpsTime> seen() const { return seen_; }
 
  private:
   struct Command {
@@ -70,6 +72,7 @@ class Guard {
 
   GuardSettings settings_;
   RangeFilter range_;
+  std::optional<GpsTime> seen_;  ///< the last image with a lit target, whether its size gives a range or not
   GuardVerdicts pending_;
   std::array<Command, kCommands> commands_{};
   std::size_t next_command_ = 0;

@@ -45,9 +45,9 @@ TEST_F(GuardTest, AgreesWithTheTruth) {
 }
 
 TEST_F(GuardTest, ARangeThatNavigationStatesWronglyIsAnAlarm) {
-  look(0.0, 40.0, 65.0);
+  look(0.0, 40.0, 85.0);
   EXPECT_TRUE(guard_.judge(at(1.0)).range.is_alarm);
-  look(5.0, 40.0, 25.0);
+  look(5.0, 40.0, 18.0);
   EXPECT_TRUE(guard_.judge(at(6.0)).range.is_alarm);
   look(10.0, 40.0, 50.0);
   EXPECT_FALSE(guard_.judge(at(11.0)).range.is_alarm) << "an attitude may do that";
@@ -56,7 +56,7 @@ TEST_F(GuardTest, ARangeThatNavigationStatesWronglyIsAnAlarm) {
 TEST_F(GuardTest, FarFromTheTargetNothingIsCompared) {
   look(0.0, 200.0, 400.0);
   EXPECT_FALSE(guard_.judge(at(1.0)).range.is_checked);
-  look(5.0, 200.0, 100.0);
+  look(5.0, 200.0, 80.0);
   EXPECT_TRUE(guard_.judge(at(6.0)).range.is_alarm) << "navigation claims to be near";
 }
 
