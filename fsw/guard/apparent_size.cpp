@@ -13,7 +13,8 @@ constexpr double kMinSigmas = 60.0;       // of their brightness
 constexpr double kThresholdSigmas = 6.0;
 constexpr int kMinPixels = 300;
 constexpr int kMaxRimPixels = 4;  // hot pixels
-constexpr double kMinCosPhase = -0.2;
+constexpr double kMinCosPhase = 0.0;
+constexpr double kBrightShare = 0.9;   // of a silhouette's size: what is brighter than the threshold, measured on Tango
 constexpr std::size_t kLevels = 4096;  // of 12 bits
 
 /// Brightness that kBrightest pixels exceed or reach.
@@ -58,7 +59,7 @@ std::optional<double> range_from_size(const LitArea& area, const GuardCamera& ca
                                       double target_size_m) {
   const double cos_phase = -illumination.line_of_sight.dot(illumination.to_sun);
   if (area.is_cut || area.pixels < kMinPixels || !(cos_phase >= kMinCosPhase)) return std::nullopt;
-  const double lit_size_m = target_size_m * math::sqrt(0.5 * (1.0 + cos_phase));
+  const double lit_size_m = kBrightShare * target_size_m * math::sqrt(0.5 * (1.0 + cos_phase));
   return camera.focal_length_px * lit_size_m / math::sqrt(static_cast<double>(area.pixels));
 }
 

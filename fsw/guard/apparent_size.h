@@ -34,7 +34,7 @@ struct LitArea {
 /// surfaces of a target differ by about that factor.
 LitArea lit_area(const imaging::ImageView& image, const GuardCamera& camera);
 
-/// Range, m. Empty for fewer lit pixels than a shape needs, a target cut by the rim, or a phase angle beyond 100 deg,
+/// Range, m. Empty for fewer lit pixels than a shape needs, a target cut by the rim, or a phase angle beyond 90 deg,
 /// where the lit part is a crescent or nothing.
 std::optional<double> range_from_size(const LitArea& area, const GuardCamera& camera, const Illumination& illumination,
                                       double target_size_m);

@@ -42,9 +42,9 @@ class Guard {
  public:
   /// Navigation's range is compared with that of an image inside this distance, m, by either.
   static constexpr double kCompareWithin_m = 150.0;
-  /// Largest logarithm of the ratio: half to twice. Attitude and phase of the target scatter it by 0.2 (1 sigma) and for
-  /// minutes alike.
-  static constexpr double kLargestLogarithm = 0.7;
+  /// Largest logarithm of the ratio: 0.45 to 2.2 times. Attitude and phase of the target scatter it by 0.2 (1 sigma)
+  /// and for minutes alike.
+  static constexpr double kLargestLogarithm = 0.8;
 
   void configure(const GuardSettings& settings) { settings_ = settings; }
 

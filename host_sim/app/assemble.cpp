@@ -10,6 +10,10 @@
 #include "host_sim/app/flight_recorder.h"
 #include "host_sim/app/line_usage.h"
 #include "host_sim/app/make_thruster.h"
+#include "host_sim/faults/fault_log.h"
+#include "host_sim/faults/faulty_computer.h"
+#include "host_sim/faults/faulty_source.h"
+#include "host_sim/faults/faulty_thruster.h"
 #include "host_sim/report/summarise.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
@@ -46,7 +50,13 @@ Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraf
   timetable.spacecraft = servicer.number;
   timetable.clock = mission.clock;
   for (const mission::Waypoint& waypoint : mission.waypoints) timetable.waypoints.push_back(waypoint.time);
-  for (const mission::PrescribedBurn& burn : mission.burns) timetable.burns.push_back({burn.time, burn.dv_rtn});
+  // Numbers below zero are those of burns that the ground announces.
+  for (const mission::PrescribedBurn& burn : mission.burns) {
+    const auto id = -1 - static_cast<std::int32_t>(timetable.burns.size());
+    timetable.burns.push_back({burn.time, burn.dv_rtn, id});
+  }
+  for (const faults::UncommandedImpulse& impulse : faults::uncommanded_impulses(mission.faults))
+    timetable.burns.push_back({impulse.time, impulse.dv_rtn, impulse.id});
   const auto state_at_start = [&](std::string_view spacecraft) {
     return truth.state(truth.index_of(std::string(spacecraft)));
   };
@@ -198,6 +208,25 @@ void summarise_run(const RunFacts& facts, std::span<const Source> sources, repor
   }
 }
 
+/// Sources with faults of theirs are wrapped; the others are not touched.
+sensors::MadeSources with_faults(sensors::MadeSources made, const mission::Mission& mission,
+                                 const mission::Spacecraft& servicer) {
+  for (Source& source : made.sources) {
+    std::vector<mission::Fault> of_source;
+    for (const mission::Fault& fault : mission.faults)
+      if (!fault.unit.empty() && source.name == servicer.name + "/" + fault.unit) of_source.push_back(fault);
+    if (!of_source.empty())
+      source.packets = std::make_unique<faults::FaultySource>(std::move(source.packets), std::move(of_source));
+  }
+  return made;
+}
+
+std::unique_ptr<twins::Actuator> with_faults(std::unique_ptr<twins::Actuator> thruster,
+                                             const mission::Mission& mission) {
+  if (mission.faults.empty()) return thruster;
+  return std::make_unique<faults::FaultyThruster>(std::move(thruster), mission.faults);
+}
+
 }  // namespace
 
 AssembledMission::AssembledMission(const mission::Mission& mission, const std::filesystem::path& data_directory,
@@ -205,8 +234,8 @@ AssembledMission::AssembledMission(const mission::Mission& mission, const std::f
     : mission_(mission),
       servicer_(complete_servicer(mission)),
       truth_(mission, servicer_, data_directory),
-      made_(make_sources(mission, servicer_, data_directory, &truth_)),
-      thruster_(make_thruster(mission, servicer_)),
+      made_(with_faults(make_sources(mission, servicer_, data_directory, &truth_), mission, servicer_)),
+      thruster_(with_faults(make_thruster(mission, servicer_), mission)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
       timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())) {}
 
@@ -222,16 +251,17 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
   LineWatch line(mission_, servicer_, surroundings.flight_computer);
   std::vector<RunObserver*> observers(surroundings.observers.begin(), surroundings.observers.end());
   observers.insert(observers.end(), {&recording, &line});
+  faults::FaultLog fault_log(mission_, servicer_.name, servicer_.observes(), record);
+  if (!mission_.faults.empty()) observers.push_back(&fault_log);
+  faults::FaultyComputer faulty_computer(
+      surroundings.flight_computer, mission_.faults,
+      [this] { return connect_flight_computer(servicer_, wired_receiver()); }, timetable_.first_packets);
+  pil::FlightComputer& flight_computer =
+      faults::concern_computer(mission_.faults) ? faulty_computer : surroundings.flight_computer;
   SelectedClock wall(surroundings.wall);
-  const World world{truth_,
-                    made_.sources,
-                    *thruster_,
-                    surroundings.flight_computer,
-                    board_link_,
-                    wall,
-                    observers,
-                    surroundings.progress,
-                    surroundings.stop_requested};
+  const World world{truth_,          made_.sources,         *thruster_,
+                    flight_computer, board_link_,           wall,
+                    observers,       surroundings.progress, surroundings.stop_requested};
   Simulation simulation(world, timetable_);
 
   const auto finish = [&](twins::StopReason reason) {
@@ -239,6 +269,7 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
     const std::string trouble = started_.stop(reason);
     for (const auto& testbed : made_.testbeds) testbed->finish();
     recording.finish();
+    fault_log.finish();
     summarise_mission(mission_, servicer_, record.summary);
     summarise_run(facts_, made_.sources, record.summary);
     record.summary.flight_software = surroundings.flight_computer.description();

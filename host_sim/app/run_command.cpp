@@ -148,6 +148,9 @@ int run_command(const RunOptions& options) {
   } catch (const std::exception&) {
     if (!trouble) throw;  // the record is complete, its report is not
   }
+  for (const report::FaultRow& fault : record.faults) {
+    if (!fault.effect_s) fmt::print("fault \"{}\" never took effect\n", fault.name);
+  }
   if (!trouble && record.summary.never_navigated) {
     fmt::print(stderr, "vbar: {}: never navigated: no estimate was valid\n", folder.path().string());
     return kNeverNavigated;

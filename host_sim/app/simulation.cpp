@@ -300,10 +300,9 @@ void Simulation::handle(const ExecuteBurn& burn) {
   execute(burn.command);
 }
 
-/// Numbers below zero, which the flight software never gives.
 void Simulation::handle(const ExecutePrescribedBurn& prescribed) {
   maneuver_command command{};
-  command.maneuver_id = -1 - static_cast<std::int32_t>(prescribed.index);
+  command.maneuver_id = timetable_.burns[prescribed.index].id;
   command.waypoint_index = -1;
   command.solver = waypoint::kSolverNone;
   const fsw::Vector3& dv_rtn = timetable_.burns[prescribed.index].dv_rtn;
@@ -324,7 +323,7 @@ void Simulation::execute(const maneuver_command& command) {
 void Simulation::report_execution(const twins::Execution& execution) {
   note(execution.time, "thruster", execution.notes);
   for (RunObserver* observer : world_.observers) observer->on_execution(execution.time, execution.maneuver);
-  send_to_flight(execution.packet, events_.now());
+  if (!execution.packet.empty()) send_to_flight(execution.packet, events_.now());
 }
 
 }  // namespace vbar::app

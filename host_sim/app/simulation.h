@@ -50,6 +50,7 @@ struct Timetable {
   struct Burn {
     fsw::GpsTime time;
     fsw::Vector3 dv_rtn = fsw::Vector3::Zero();
+    std::int32_t id = 0;  ///< its number in reports: one that the flight software never gives
   };
   fsw::GpsTime start;  ///< first flight step
   fsw::GpsTime end;

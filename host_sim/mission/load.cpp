@@ -29,6 +29,7 @@ constexpr Section kSections[] = {{"mission", without_installation<read_general>}
                                  {"safety", without_installation<read_safety>},
                                  {"navigation", read_shared},
                                  {"burn", without_installation<read_burns>},
+                                 {"fault", without_installation<read_faults>},
                                  {"clock", read_clock},
                                  {"links", without_installation<read_links>},
                                  {"lcm", without_installation<read_lcm>},

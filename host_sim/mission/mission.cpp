@@ -37,4 +37,8 @@ std::string_view name_of(FlightLink link) {
   return name_in(kFlightLinks, link);
 }
 
+std::string_view name_of(FaultKind kind) {
+  return name_in(kFaultKinds, kind);
+}
+
 }  // namespace vbar::mission

@@ -110,6 +110,32 @@ struct PrescribedBurn {
   fsw::Vector3 dv_rtn = fsw::Vector3::Zero();
 };
 
+enum class FaultKind {
+  kSilent,             ///< a sensor gives nothing
+  kFrozen,             ///< a camera gives its last image again
+  kAttitudeError,      ///< attitudes of a sensor are turned by `value`, rad
+  kThrustScale,        ///< burns are executed at `value` of their size; 0: not at all
+  kThrustUncommanded,  ///< an acceleration of `value` m/s^2 along `direction_rtn`
+  kComputerSilent,     ///< the flight computer gets no packets and takes no steps, then continues
+  kComputerReboot,     ///< the same, and it starts anew: its telecommands are sent again
+};
+
+/// [[fault]]: something that fails in the simulation.
+struct Fault {
+  std::string name;
+  FaultKind kind = FaultKind::kSilent;
+  std::string unit;  ///< the sensor concerned; empty for other kinds
+  fsw::GpsTime begin;
+  std::optional<fsw::Duration> duration;  ///< empty: to the end
+  double value = 0.0;
+  fsw::Vector3 direction_rtn = fsw::Vector3::Zero();
+  bool is_reported = true;  ///< the thruster reports what happened; otherwise what was commanded
+
+  [[nodiscard]] bool is_present(fsw::GpsTime time) const {
+    return time >= begin && (!duration || time < begin + *duration);
+  }
+};
+
 /// actuators.thruster; 1-sigma errors of each burn.
 struct Thruster {
   double magnitude_error = 0.0;     ///< relative
@@ -210,6 +236,7 @@ struct Mission {
   std::vector<std::shared_ptr<const SharedSettings>> shared;  ///< one of each kind of sensor
   std::vector<Testbed> testbeds;
   std::vector<PrescribedBurn> burns;  ///< of the spacecraft that flies, in order of time
+  std::vector<Fault> faults;          ///< in the order of the file
   std::vector<Waypoint> waypoints;    ///< in order of time
   engine::ClockSettings clock;
   std::string clock_source;  ///< "<name>" or "<name>:<device>", engine::WallClockSource
@@ -239,6 +266,7 @@ template <class Settings>
 }
 
 /// The names that mission files and summaries use (names.h has them all).
+[[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::string_view name_of(FlightTarget target);
 [[nodiscard]] std::string_view name_of(FlightLink link);
 

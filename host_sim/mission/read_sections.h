@@ -23,6 +23,7 @@ void read_navigation(const TableReader& document, Mission& mission);  // [naviga
 void read_shared(const TableReader& document, Mission& mission,
                  const Installation& installation);  // by the kinds of sensors: [navigation.*], [links.crosslink]
 void read_burns(const TableReader& document, Mission& mission);                                    // [[burn]]
+void read_faults(const TableReader& document, Mission& mission);                                   // [[fault]]
 void read_clock(const TableReader& document, Mission& mission, const Installation& installation);  // [clock]
 void read_links(const TableReader& document, Mission& mission);                                    // [links.board]
 void read_lcm(const TableReader& document, Mission& mission);                                      // [lcm]

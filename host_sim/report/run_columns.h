@@ -184,6 +184,19 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"text"}, row.text);
 }
 
+template <columns::RowOf<FaultRow> Row, class Visitor>
+void visit_columns(Row& row, Visitor& visit) {
+  visit(ColumnName{"name"}, row.name);
+  visit(ColumnName{"kind"}, row.kind);
+  visit(ColumnName{"unit"}, row.unit);
+  visit(ColumnName{"begin_s"}, row.begin_s);
+  visit(ColumnName{"end_s"}, row.end_s);
+  visit(ColumnName{"effect_s"}, row.effect_s);
+  visit(ColumnName{"recovered_s"}, row.recovered_s);
+  visit(ColumnName{"witnessed"}, row.witnessed);
+  visit(ColumnName{"evidence"}, row.evidence);
+}
+
 template <columns::RowOf<ResidualRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"time_s"}, row.time_s);

@@ -137,6 +137,18 @@ struct NoteRow {
   std::string text;
 };
 
+/// A fault of the scenario, and what witnesses other than its cause have seen of it (faults.csv). Times since the
+/// mission's epoch.
+struct FaultRow {
+  std::string name, kind, unit;
+  double begin_s = 0.0;
+  std::optional<double> end_s;     ///< empty: it lasts to the end
+  std::optional<double> effect_s;  ///< first witnessed; empty: it never took effect
+  std::optional<double> recovered_s;
+  int witnessed = 0;  ///< times
+  std::string evidence;
+};
+
 /// The row that a message is, with nothing beside it yet.
 template <class Row, class Message>
 Row row_of(const Message& message) {
@@ -179,6 +191,7 @@ struct RunRecord {
   std::vector<ManeuverRow> maneuvers;
   std::vector<ResidualRow> residuals;
   std::vector<NoteRow> notes;
+  std::vector<FaultRow> faults;
   TelemetryTables telemetry;
   Extensions extensions;
   TableSet tables;                         ///< of the extensions

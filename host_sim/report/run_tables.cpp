@@ -55,6 +55,7 @@ std::vector<TableKind> own_tables() {
       table_kind<&RunRecord::maneuvers>("maneuvers.csv", kChange, kAlways),
       table_kind<&RunRecord::residuals>("residuals.csv"),
       table_kind<&RunRecord::notes>("notes.csv"),
+      table_kind<&RunRecord::faults>("faults.csv", kChange),
   };
 }
 

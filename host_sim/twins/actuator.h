@@ -14,7 +14,7 @@ struct Execution {
   fsw::GpsTime time;  ///< of the impulse, or of the refused one
   vbar::executed_maneuver
       maneuver{};  ///< accepted or not, and the impulse that happened, m/s in the servicer's RTN at `time`
-  Packet packet;   ///< `maneuver` as sent to the flight software
+  Packet packet;   ///< `maneuver` as sent to the flight software; empty: nothing is sent
   std::vector<Note> notes;
 };
 

@@ -24,7 +24,7 @@ class GuardTest : public ::testing::Test {
   /// An image of the target at a distance; what navigation states.
   void look(double s, double true_range_m, double navigation_range_m) {
     std::vector<std::uint16_t> pixels(static_cast<std::size_t>(kSidePx * kSidePx));
-    const int side = static_cast<int>(std::lround(6000.0 * 0.7 / true_range_m));
+    const int side = static_cast<int>(std::lround(6000.0 * 0.7 * 0.9 / true_range_m));
     for (int y = 0; y < side; ++y) {
       for (int x = 0; x < side; ++x) pixels[static_cast<std::size_t>((y + 10) * kSidePx + x + 10)] = 2000;
     }
@@ -45,9 +45,9 @@ TEST_F(GuardTest, AgreesWithTheTruth) {
 }
 
 TEST_F(GuardTest, ARangeThatNavigationStatesWronglyIsAnAlarm) {
-  look(0.0, 40.0, 85.0);
+  look(0.0, 40.0, 95.0);
   EXPECT_TRUE(guard_.judge(at(1.0)).range.is_alarm);
-  look(5.0, 40.0, 18.0);
+  look(5.0, 40.0, 17.0);
   EXPECT_TRUE(guard_.judge(at(6.0)).range.is_alarm);
   look(10.0, 40.0, 50.0);
   EXPECT_FALSE(guard_.judge(at(11.0)).range.is_alarm) << "an attitude may do that";

@@ -1,0 +1,49 @@
+#include "host_sim/faults/faulty_computer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "fsw/packets/packet.h"
+
+namespace vbar::faults {
+namespace {
+
+using mission::FaultKind;
+
+bool is_of_computer(const mission::Fault& fault) {
+  return fault.kind == FaultKind::kComputerSilent || fault.kind == FaultKind::kComputerReboot;
+}
+
+}  // namespace
+
+bool concern_computer(const std::vector<mission::Fault>& faults) {
+  return std::ranges::any_of(faults, is_of_computer);
+}
+
+FaultyComputer::FaultyComputer(pil::FlightComputer& computer, std::vector<mission::Fault> faults, Start start,
+                               std::vector<pil::Packet> telecommands)
+    : computer_(computer),
+      faults_(std::move(faults)),
+      start_(std::move(start)),
+      telecommands_(std::move(telecommands)) {}
+
+pil::StepResult FaultyComputer::step(std::uint32_t step, std::span<const pil::Packet> packets) {
+  const auto tick = packets.empty() ? fsw::Result<fsw::packets::PacketView>(fsw::Status::kNotReady)
+                                    : fsw::packets::parse_packet(packets.back());
+  if (tick.ok()) {
+    for (const mission::Fault& fault : faults_) {
+      if (!is_of_computer(fault) || !fault.is_present(tick.value().header.time)) continue;
+      must_restart_ = must_restart_ || fault.kind == FaultKind::kComputerReboot;
+      return {};
+    }
+  }
+  if (!must_restart_) return present().step(step, packets);
+  must_restart_ = false;
+  present().close();
+  restarted_ = start_();
+  std::vector<pil::Packet> first = telecommands_;
+  first.insert(first.end(), packets.begin(), packets.end());
+  return restarted_->step(step, first);
+}
+
+}  // namespace vbar::faults

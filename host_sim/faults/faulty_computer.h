@@ -1,0 +1,42 @@
+#pragma once
+// A flight computer that is dark for a time: its packets are lost, and it takes no steps. Afterwards it continues, or
+// it has been started anew.
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "host_sim/mission/mission.h"
+#include "pil_bridge/flight_computer.h"
+
+namespace vbar::faults {
+
+class FaultyComputer final : public pil::FlightComputer {
+ public:
+  using Start = std::function<std::unique_ptr<pil::FlightComputer>()>;
+
+  /// `computer` must outlive it. `start` makes another one in its place; `telecommands` are sent to that one before
+  /// its first step, as the ground would when the computer asks for its configuration.
+  FaultyComputer(pil::FlightComputer& computer, std::vector<mission::Fault> faults, Start start,
+                 std::vector<pil::Packet> telecommands);
+
+  pil::StepResult step(std::uint32_t step, std::span<const pil::Packet> packets) override;
+  [[nodiscard]] pil::LinkStatistics statistics() const override { return present().statistics(); }
+  [[nodiscard]] std::string description() const override { return present().description(); }
+  void close() override { present().close(); }
+
+ private:
+  [[nodiscard]] pil::FlightComputer& present() const { return restarted_ ? *restarted_ : computer_; }
+
+  pil::FlightComputer& computer_;
+  std::vector<mission::Fault> faults_;
+  Start start_;
+  std::vector<pil::Packet> telecommands_;
+  std::unique_ptr<pil::FlightComputer> restarted_;
+  bool must_restart_ = false;
+};
+
+/// Whether the faults contain one of the flight computer.
+[[nodiscard]] bool concern_computer(const std::vector<mission::Fault>& faults);
+
+}  // namespace vbar::faults

@@ -1,0 +1,74 @@
+#include <algorithm>
+
+#include "host_sim/mission/names.h"
+#include "host_sim/mission/read_sections.h"
+
+namespace vbar::mission {
+namespace {
+
+const Spacecraft& flying(const TableReader& section, const Mission& mission) {
+  for (const Spacecraft& spacecraft : mission.spacecraft)
+    if (spacecraft.flight_computer) return spacecraft;
+  section.refuse("kind", "a fault in a mission without a flight computer", "a spacecraft that flies");
+}
+
+/// A sensor of the spacecraft that flies.
+void read_unit(const TableReader& section, const Mission& mission, Fault& fault) {
+  fault.unit = section.text("unit");
+  const auto& sensors = flying(section, mission).sensors;
+  const auto is_named = [&](const Sensor& sensor) { return sensor.name == fault.unit; };
+  if (std::ranges::none_of(sensors, is_named)) {
+    std::string names;
+    for (const Sensor& sensor : sensors) names += (names.empty() ? "" : ", ") + sensor.name;
+    section.refuse_value("unit", "a sensor of the spacecraft that flies: " + names);
+  }
+}
+
+Fault read_fault(const TableReader& section, const Mission& mission) {
+  Fault fault;
+  fault.kind = section.choice<FaultKind>("kind", kFaultKinds);
+  fault.name = section.text("name", std::string(name_of(fault.kind)));
+  fault.begin = mission.epoch + section.span("at_h", kHour_s, from_to(0.0, kLongestMission_h));
+  if (fault.begin < mission.start_time() || fault.begin > mission.end_time())
+    section.refuse_value("at_h", "a time of the run");
+  if (section.has("for_s")) fault.duration = section.span("for_s", 1.0, above_to(0.0, 1e7));
+  switch (fault.kind) {
+    case FaultKind::kSilent:
+    case FaultKind::kFrozen:
+      read_unit(section, mission, fault);
+      break;
+    case FaultKind::kAttitudeError:
+      read_unit(section, mission, fault);
+      fault.value = section.number("value_deg", above_to(0.0, 180.0));
+      break;
+    case FaultKind::kThrustScale:
+      fault.value = section.number("value", from_to(0.0, 10.0));
+      fault.is_reported = section.flag("reported", true);
+      break;
+    case FaultKind::kThrustUncommanded: {
+      fault.value = section.number("value_mps2", above_to(0.0, 1.0));
+      const auto direction = section.three_numbers("direction_rtn", from_to(-1.0, 1.0));
+      fault.direction_rtn = fsw::Vector3(direction[0], direction[1], direction[2]);
+      if (!(fault.direction_rtn.norm() > 0.0)) section.refuse_value("direction_rtn", "a direction");
+      fault.direction_rtn.normalize();
+      fault.is_reported = section.flag("reported", true);
+      if (!fault.duration) section.refuse("for_s", "a thruster stuck for ever", "the time until its valve is closed");
+      break;
+    }
+    case FaultKind::kComputerSilent:
+    case FaultKind::kComputerReboot:
+      if (!fault.duration) section.refuse("for_s", "a flight computer that stays dark", "the time until it returns");
+      break;
+  }
+  section.finish();
+  return fault;
+}
+
+}  // namespace
+
+// Faults of the scenario: docs/faults.md.
+void read_faults(const TableReader& document, Mission& mission) {
+  for (const TableReader& section : document.tables("fault")) mission.faults.push_back(read_fault(section, mission));
+}
+
+}  // namespace vbar::mission
