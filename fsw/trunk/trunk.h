@@ -35,6 +35,7 @@ struct TrunkSettings {
   GaussMarkov camera_mount{.sigma = 2.9e-4, .time_s = 43200.0};     ///< rad; against the star tracker: 60 arcsec
   GaussMarkov brightness_offset{.sigma = 0.15, .time_s = 20000.0};  ///< m
   GaussMarkov centroid_wander{.sigma = 0.05, .time_s = 2000.0};     ///< m
+  GaussMarkov ionosphere{.sigma = 0.5, .time_s = 1800.0};           ///< m; gradients: m per 1000 km
   GaussMarkov phase_wander{.sigma = 0.0, .time_s = 1.0};            ///< m, of a single difference
 };
 

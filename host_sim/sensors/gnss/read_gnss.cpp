@@ -121,7 +121,10 @@ std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& sect
 
 namespace {
 
-void read_crosslink(const TableReader& section, twins::gnss::CrosslinkSettings& crosslink) {
+void read_crosslink(const TableReader& section, GnssShared& shared) {
+  constexpr double kHour_s = 3600.0;
+  shared.crosslink_from = section.span("from_h", kHour_s, from_to(0.0, mission::kLongestMission_h), 0.0);
+  twins::gnss::CrosslinkSettings& crosslink = shared.crosslink;
   if (section.has("latency")) crosslink.link.latency = mission::read_latency(section.table("latency"));
   read(section, "loss_probability", from_to(0.0, 1.0), crosslink.link.loss_probability);
   read(section, "silence_begin_s", from_to(0.0, 1e7), crosslink.silence_begin_s);
@@ -154,7 +157,7 @@ std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const TableReade
   auto shared = std::make_shared<GnssShared>();
   read_carrier_phase(document.table("navigation").table("carrier_phase"), shared->carrier);
   read_constellation(document.table("constellation"), shared->constellation);
-  read_crosslink(document.table("links").table("crosslink"), shared->crosslink);
+  read_crosslink(document.table("links").table("crosslink"), *shared);
   return shared;
 }
 
