@@ -128,6 +128,12 @@ class Trunk {
   /// Whether a source other than the present one has updated the relative orbit within kConfirmation of the epoch.
   /// Then the orbit is not changed because measurements of the present one contradict it.
   [[nodiscard]] bool is_confirmed_by_others() const;
+  /// Whether differences of two receivers update the relative orbit at present. They determine it far better than any
+  /// image: the innovations of a camera are then the errors of that camera.
+  [[nodiscard]] bool is_determined_by_receivers() const { return is_active<ClockDifference>(estimate_); }
+  /// Factor on the variance of the wander of the centroid from now on: other than that of the settings where a source
+  /// has measured it.
+  void scale_centroid_wander(double variance_factor) { centroid_wander_scale_ = variance_factor; }
   static constexpr std::size_t kMaxSources = 8;
   static constexpr Duration kConfirmation = duration_of_seconds(900);
 
@@ -156,6 +162,7 @@ class Trunk {
   RelativeOrbit relative_orbit_;
   TargetAttitude attitude_;
   Estimate estimate_;
+  double centroid_wander_scale_ = 1.0;
   int failures_ = 0;
   std::array<Impulse, kMaxImpulses> impulses_{};
   std::size_t impulse_count_ = 0;
