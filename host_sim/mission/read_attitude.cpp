@@ -196,12 +196,9 @@ std::optional<Attitude> read_attitude(const TableReader& section, const std::str
 
 std::vector<LaterAttitude> read_later_attitudes(const TableReader& section, const std::optional<Attitude>& first) {
   constexpr double kHour_s = 3600.0;
-  const std::vector<TableReader> tables = section.tables("then");
-  if (!tables.empty() && (!first || std::holds_alternative<Commanded>(*first)))
-    section.refuse("then", first ? "profiles that follow a commanded one" : "profiles that follow none",
-                   "a first profile that does not end by a command: tumble, inertial or one that points");
   std::vector<LaterAttitude> later;
-  for (const TableReader& table : tables) {
+  if (!first || std::holds_alternative<Commanded>(*first)) return later;
+  for (const TableReader& table : section.tables("then")) {
     LaterAttitude one;
     one.from_s = kHour_s * table.number("from_h", from_to(0.0, 1e5));
     one.slew_s = table.number("slew_s", above_to(0.0, 1e5), 600.0);

@@ -28,7 +28,7 @@ namespace vbar::mission {
                                                     const std::string& body, const std::vector<std::string>& names);
 
 /// The elements of `then` of [spacecraft.attitude], whose profiles replace `first` and each other; empty without the
-/// key. Throws MissionError, also where `first` is none, or is commanded by the flight software.
+/// key, which is not one of no profile or of one that the flight software commands. Throws MissionError.
 [[nodiscard]] std::vector<LaterAttitude> read_later_attitudes(const TableReader& section,
                                                               const std::optional<Attitude>& first);
 

@@ -50,10 +50,6 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
     section.refuse("partner", partner == nullptr ? "nothing" : "the spacecraft \"" + partner->name + "\" without GNSS",
                    "a spacecraft that has sensors.gnss too");
   check_sources(section, sensor, *partner);
-  const bool is_in_testbed = testbeds::find_testbed(sensor.settings->source) != nullptr;
-  if (is_in_testbed && mission::shared_settings<GnssShared>(mission).crosslink_from > fsw::Duration{})
-    section.refuse_value("source",
-                         "digital or recorded: with links.crosslink.from_h the partner's receiver starts later");
   for (const Spacecraft* one : {&spacecraft, partner})
     if (!one->attitude)
       section.refuse("", "no attitude of " + one->name, "both spacecraft with an attitude: antennas point somewhere");

@@ -193,12 +193,12 @@ INSTANTIATE_TEST_SUITE_P(
                     ".profile: found the text \"zenit\" (did you mean zenith?); accepted: none, tumble, inertial, "
                     "zenith, nadir, along_track, target or commanded"},
         BadAttitude{"KeyOfAnotherProfile", "profile = \"zenith\"\ninertia_kgm2 = [1, 1, 1]",
-                    ".inertia_kgm2: found an unknown key; accepted: profile, boresight_body, secondary_axis_body or "
-                    "secondary_direction"},
+                    ".inertia_kgm2: found an unknown key; accepted: profile, boresight_body, secondary_axis_body, "
+                    "secondary_direction or then"},
         BadAttitude{"KeyWithoutProfile", "boresight_body = [1, 0, 0]",
                     ".boresight_body: found an unknown key; accepted: profile"},
         BadAttitude{"LaterOfNone", "[[spacecraft.attitude.then]]\nfrom_h = 1\nprofile = \"zenith\"",
-                    ".then: found profiles that follow none; accepted: a first profile"},
+                    ".then: found an unknown key; accepted: profile"},
         BadAttitude{"LaterWithoutHour", "profile = \"tumble\"\n[[spacecraft.attitude.then]]\nprofile = \"zenith\"",
                     ".then.0.from_h: found no key"},
         BadAttitude{"LaterTumble",

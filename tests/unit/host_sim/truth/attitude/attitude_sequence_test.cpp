@@ -3,7 +3,6 @@
 
 #include "host_sim/truth/attitude/attitude_sequence.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -62,13 +61,12 @@ Vector3 differenced_rate(const AttitudeSequence& sequence, double t) {
 
 TEST(AttitudeSequence, RateIsTheDerivativeOfTheAttitudeDuringTheSlew) {
   AttitudeSequence sequence = tumble_to_zenith();
-  accuracy::Largest error;
-  double greatest = 0.0;
+  accuracy::Largest error, greatest;
   for (double t = kBegin_s + 1.0; t < kEnd_s - 1.0; t += 7.3) {
     sequence.advance_to(t + 1.0, t + 2.0);
     const Vector3 rate = sequence.state_at(t).rate_body;
     error.add((rate - differenced_rate(sequence, t)).norm());
-    greatest = std::max(greatest, rate.norm());
+    greatest.add(rate.norm());
   }
   accuracy::expect_below("attitude: rate during a slew", "differenced attitude, 82 instants", error, 1e-9, "rad/s");
   // The cubic polynomial begins at the rate of the tumble times the inverse Jacobian of an angle up to pi (at most
