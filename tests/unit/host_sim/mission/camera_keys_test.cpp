@@ -339,7 +339,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "camera.target: found the spacecraft \"decoy\" without an attitude; accepted: a spacecraft with a "
                     "model and an attitude"},
         BadOverride{"PartnerOtherThanTheTargetOfTheCamera",
-                    {"gnss.partner=decoy"},
+                    {"gnss.partner=decoy", "spacecraft.decoy.sensors.gnss.period_s=10",
+                     "spacecraft.decoy.attitude.profile=zenith"},
                     "camera.target: found the spacecraft \"target\" beside a GNSS receiver with the partner \"decoy\"; "
                     "accepted: the partner"},
         BadOverride{
