@@ -59,7 +59,7 @@ def other_rows(flown, folders):
     for name, what in (("images.csv", "bearings"), ("poses.csv", "keypoints")):
         values = [innovations(folder, name) for folder in folders]
         median = statistics.median(values)
-        rows.append((f"NIS of {what} per degree of freedom, mean from 25 h on", f"{median:.2f}",
+        rows.append((f"NIS of used {what} per degree of freedom, mean from 25 h on", f"{median:.2f}",
                      f"{min(values):.2f} to {max(values):.2f}", f"{NIS_LIMITS[0]:g} to {NIS_LIMITS[1]:g}",
                      NIS_LIMITS[0] <= median <= NIS_LIMITS[1]))
     fixed = [s["first_fix_s"] - COOPERATES_FROM_S if s["first_fix_s"] is not None else float("inf") for s in flown]
