@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Flies the missions at full length on every flight computer and writes the results to docs/verification.md.
 
-usage: ci/verify.py [--build build/host] [--experiment1 | --experiment2 | --experiment3 | --grand |
-                     --experiment1_hil | --experiment2_hil]     (ci/verify.sh builds first)
+usage: ci/verify.py [--build build/host] [--experiment1 | --experiment2 | --experiment3 | --grand | --full_range |
+                     --full_range_cooperative | --experiment1_hil | --experiment2_hil]     (ci/verify.sh builds first)
 
---experiment1, 2 and 3 fly that experiment only and replace its section.
+Each option flies that mission only and replaces its section.
 """
 import argparse
 import pathlib
@@ -20,6 +20,7 @@ import verify_experiment2_hil
 import verify_experiment2
 import verify_experiment3
 import verify_full_range
+import verify_full_range_cooperative
 import verify_grand
 from flights import fly
 
@@ -92,7 +93,8 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/host")
     experiments = {"experiment1": verify_experiment1, "experiment2": verify_experiment2, "experiment3": verify_experiment3,
-                   "grand": verify_grand, "full_range": verify_full_range, "experiment1_hil": verify_experiment1_hil,
+                   "grand": verify_grand, "full_range": verify_full_range,
+                   "full_range_cooperative": verify_full_range_cooperative, "experiment1_hil": verify_experiment1_hil,
                    "experiment2_hil": verify_experiment2_hil}
     for name in experiments:
         parser.add_argument(f"--{name}", action="store_true")

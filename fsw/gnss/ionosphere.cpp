@@ -63,4 +63,23 @@ Result<double> klobuchar_delay_l1_m(const KlobucharCoefficients& coefficients, c
   return kSpeedOfLight * slant * vertical;
 }
 
+ShellCrossing shell_crossing(const Vector3& position_m, const Vector3& direction) {
+  constexpr double kMeanEarthRadius_m = 6371e3;
+  constexpr double kPeakAltitude_m = 420e3;
+  constexpr double kScaleHeight_m = 100e3;
+  const double radius_m = math::sqrt(position_m.squaredNorm());
+  const double altitude_m = radius_m - kMeanEarthRadius_m;
+  if (!(altitude_m > 0.0)) return {};
+  // Electrons below the spacecraft, the integral of the profile; e: all of them.
+  const double below = math::exp(1.0 - math::exp(-(altitude_m - kPeakAltitude_m) / kScaleHeight_m));
+  const double half = 0.5 * (math::exp(1.0) + below);
+  const double shell_m = kMeanEarthRadius_m + kPeakAltitude_m - kScaleHeight_m * math::log(1.0 - math::log(half));
+  const double along_m = position_m.dot(direction);
+  const double across2_m2 = radius_m * radius_m - along_m * along_m;
+  const double left_m2 = shell_m * shell_m - across2_m2;
+  if (!(left_m2 > 0.0)) return {};
+  const double root_m = math::sqrt(left_m2);
+  return {.slant_factor = shell_m / root_m, .distance_m = root_m - along_m};
+}
+
 }  // namespace vbar::fsw::gnss

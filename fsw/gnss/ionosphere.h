@@ -5,6 +5,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
+#include "fsw/core/types.h"
 
 namespace vbar::fsw::gnss {
 
@@ -29,5 +30,17 @@ struct LineOfSight {
 /// the frequency; the phase advance is the same. kNotFinite; kOutOfRange for an elevation outside [0, pi/2], where
 /// the model's mapping is not valid (it has a pole at -19.8 degrees), or coefficients that fail check().
 Result<double> klobuchar_delay_l1_m(const KlobucharCoefficients& coefficients, const LineOfSight& sight, GpsTime time);
+
+/// Where a signal passes the electrons above a spacecraft in a low orbit.
+struct ShellCrossing {
+  double slant_factor = 1.0;  ///< delay over that of a vertical signal at the same place
+  double distance_m = 0.0;    ///< from the spacecraft along the line of sight
+};
+
+/// Crossing of a thin shell with half of the electrons above the spacecraft below it (Montenbruck, Gill 2002:
+/// "Ionospheric correction for GPS tracking of LEO satellites"; peak of the density at 420 km, scale height 100 km),
+/// also for elevations below the horizon. `position_m`: from the Earth's centre, `direction`: unit vector to the
+/// satellite, in any frame. The default value for a position at or below the ground.
+ShellCrossing shell_crossing(const Vector3& position_m, const Vector3& direction);
 
 }  // namespace vbar::fsw::gnss

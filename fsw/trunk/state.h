@@ -1,7 +1,7 @@
 #pragma once
 // The state of the relative estimator, x = [roe(6), push(2), emp(3) | turn(3), rate(3), body(2) | com(3),
 // bearing_bias(2), mounts(4), sun_off(1), wander(2), kp_common(5), kp_err(22), range_bias(1), ant_s(3), ant_t(3),
-// pcv(3), clk(1), cb(3), amb(56), phase_wander(56)].
+// pcv(3), clk(1), cb(3), iono(3), amb(56), phase_wander(56)].
 //
 // One estimate for all sensors: each block is inactive (variance zero, no influence, no cost behind the last active
 // one) until a source needs it. The blocks at the head are nonlinear and propagated by sigma points; all others enter
@@ -79,6 +79,11 @@ struct ClockDifference {
 struct CodeBiases {
   static constexpr int kSize = 3;  ///< of GPS L2, Galileo E1, BeiDou B1I over GPS L1, m
 };
+struct Ionosphere {
+  /// Vertical group delay of L1 by the electrons above the servicer, m, and its change along the track and the orbit
+  /// normal, m per 1000 km.
+  static constexpr int kSize = 3;
+};
 struct Ambiguities {
   static constexpr int kSize = kPhaseChannelCount;  ///< of single differences, m
 };
@@ -89,7 +94,7 @@ struct PhaseWander {
 using State = estimation::Layout<Roe, DifferentialAccelerations, EmpiricalAcceleration, Turn, Rate, InertiaRatios,
                                  KeypointOrigin, BearingBias, CameraMounts, BrightnessOffset, CentroidWander,
                                  KeypointCommon, KeypointErrors, RangeBias, ServicerAntenna, TargetAntenna,
-                                 PhaseCentreJitter, ClockDifference, CodeBiases, Ambiguities, PhaseWander>;
+                                 PhaseCentreJitter, ClockDifference, CodeBiases, Ionosphere, Ambiguities, PhaseWander>;
 using Estimate = estimation::Estimate<State::kSize>;
 
 /// Most rows of one measurement: two of each keypoint.

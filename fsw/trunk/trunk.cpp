@@ -84,8 +84,11 @@ void Trunk::advance_relative(const OrbitStep& step) {
     advance_process(estimate_, kAt<CameraMounts> + k, settings_.camera_mount, mount_decay);
   }
   advance_block<BrightnessOffset>(estimate_, settings_.brightness_offset, step.dt);
-  advance_block<CentroidWander>(estimate_, settings_.centroid_wander, step.dt);
+  GaussMarkov centroid_wander = settings_.centroid_wander;
+  centroid_wander.sigma *= math::sqrt(centroid_wander_scale_);
+  advance_block<CentroidWander>(estimate_, centroid_wander, step.dt);
   advance_keypoint_errors(estimate_, settings_.keypoint_errors, rate, step.dt);
+  advance_block<Ionosphere>(estimate_, settings_.ionosphere, step.dt);
   for (int k = 0; k < PhaseWander::kSize; ++k) {
     const int i = kAt<PhaseWander> + k;
     if (!estimate_.is_idle(i)) {

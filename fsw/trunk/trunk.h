@@ -35,6 +35,7 @@ struct TrunkSettings {
   GaussMarkov camera_mount{.sigma = 2.9e-4, .time_s = 43200.0};     ///< rad; against the star tracker: 60 arcsec
   GaussMarkov brightness_offset{.sigma = 0.15, .time_s = 20000.0};  ///< m
   GaussMarkov centroid_wander{.sigma = 0.05, .time_s = 2000.0};     ///< m
+  GaussMarkov ionosphere{.sigma = 0.5, .time_s = 1800.0};           ///< m; gradients: m per 1000 km
   GaussMarkov phase_wander{.sigma = 0.0, .time_s = 1.0};            ///< m, of a single difference
 };
 
@@ -127,6 +128,12 @@ class Trunk {
   /// Whether a source other than the present one has updated the relative orbit within kConfirmation of the epoch.
   /// Then the orbit is not changed because measurements of the present one contradict it.
   [[nodiscard]] bool is_confirmed_by_others() const;
+  /// Whether differences of two receivers update the relative orbit at present. They determine it far better than any
+  /// image: the innovations of a camera are then the errors of that camera.
+  [[nodiscard]] bool is_determined_by_receivers() const { return is_active<ClockDifference>(estimate_); }
+  /// Factor on the variance of the wander of the centroid from now on: other than that of the settings where a source
+  /// has measured it.
+  void scale_centroid_wander(double variance_factor) { centroid_wander_scale_ = variance_factor; }
   static constexpr std::size_t kMaxSources = 8;
   static constexpr Duration kConfirmation = duration_of_seconds(900);
 
@@ -155,6 +162,7 @@ class Trunk {
   RelativeOrbit relative_orbit_;
   TargetAttitude attitude_;
   Estimate estimate_;
+  double centroid_wander_scale_ = 1.0;
   int failures_ = 0;
   std::array<Impulse, kMaxImpulses> impulses_{};
   std::size_t impulse_count_ = 0;

@@ -1,6 +1,7 @@
 #include "host_sim/app/initial_attitudes.h"
 
 #include <stdexcept>
+#include <vector>
 
 #include "host_sim/mission/body_file.h"
 
@@ -23,12 +24,12 @@ struct SettingsOf {
     return settings;
   }
 
-  truth::AttitudeSettings operator()(const mission::Inertial& inertial) const {
+  truth::InertialSettings operator()(const mission::Inertial& inertial) const {
     return truth::InertialSettings{inertial.q_body_eci ? *inertial.q_body_eci
                                                        : mission::drawn_attitude(mission.seed, spacecraft.name)};
   }
 
-  truth::AttitudeSettings operator()(const truth::PointedSettings& pointed) const { return pointed; }
+  truth::PointedSettings operator()(const truth::PointedSettings& pointed) const { return pointed; }
 
   truth::AttitudeSettings operator()(const mission::Commanded& commanded) const {
     return truth::CommandedSettings{
@@ -42,10 +43,18 @@ void set_attitudes(const mission::Mission& mission, const std::filesystem::path&
                    truth::TruthModel& truth) {
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (!spacecraft.attitude) continue;
-    const truth::AttitudeSettings settings =
-        std::visit(SettingsOf{mission, spacecraft, data_directory}, *spacecraft.attitude);
+    const SettingsOf settings_of{mission, spacecraft, data_directory};
+    const auto settings =
+        std::visit([&](const auto& one) { return truth::AttitudeSettings(settings_of(one)); }, *spacecraft.attitude);
+    std::vector<truth::LaterAttitudeSettings> later;
+    for (const mission::LaterAttitude& one : spacecraft.later_attitudes) {
+      truth::LaterAttitudeSettings& added = later.emplace_back();
+      added.from_s = one.from_s;
+      added.slew_s = one.slew_s;
+      std::visit([&](const auto& profile) { added.attitude = settings_of(profile); }, one.profile);
+    }
     try {
-      truth.set_attitude(truth.index_of(spacecraft.name), settings);
+      truth.set_attitude(truth.index_of(spacecraft.name), settings, later);
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error("spacecraft \"" + spacecraft.name + "\", attitude: " + error.what());
     }

@@ -40,6 +40,13 @@ struct Commanded {
 /// The pointing profiles need no draws.
 using Attitude = std::variant<Tumble, Inertial, truth::PointedSettings, Commanded>;
 
+/// An element of attitude.then: the profile that replaces the one before.
+struct LaterAttitude {
+  double from_s = 0.0;  ///< after the epoch of the mission
+  double slew_s = 0.0;  ///< from the attitude and rate before to the profile
+  std::variant<Inertial, truth::PointedSettings> profile;
+};
+
 /// An attitude drawn for a spacecraft: uniform over all rotations.
 [[nodiscard]] Eigen::Quaterniond drawn_attitude(std::uint64_t seed, std::string_view spacecraft);
 

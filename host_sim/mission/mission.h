@@ -151,6 +151,7 @@ struct Spacecraft {
   std::string model;           ///< CAD file for cameras, data/models/<model>.obj; empty: invisible to cameras
   std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe> orbit;
   std::optional<Attitude> attitude;
+  std::vector<LaterAttitude> later_attitudes;  ///< in order of time
   std::optional<FlightComputer> flight_computer;
   std::vector<Sensor> sensors;  ///< kinds in the order of the program's list, the sensors of a kind by name
   std::optional<Thruster> thruster;

@@ -30,6 +30,11 @@ constexpr Names<Profile, 8> kProfiles{{{"none", Profile::kNone},
                                        {"along_track", Profile::kAlongTrack},
                                        {"target", Profile::kTarget},
                                        {"commanded", Profile::kCommanded}}};
+// Those that follow another profile: functions of the spacecraft's own orbit alone.
+constexpr Names<Profile, 4> kLaterProfiles{{{"inertial", Profile::kInertial},
+                                            {"zenith", Profile::kZenith},
+                                            {"nadir", Profile::kNadir},
+                                            {"along_track", Profile::kAlongTrack}}};
 constexpr Names<Direction, 5> kSecondDirections{{{"orbit_normal", Direction::kOrbitNormal},
                                                  {"along_track", Direction::kAlongTrack},
                                                  {"zenith", Direction::kZenith},
@@ -88,14 +93,8 @@ Direction boresight_of(Profile profile) {
   }
 }
 
-truth::PointedSettings read_pointed(const TableReader& section, Profile profile, const std::string& own,
-                                    const std::vector<std::string>& names) {
-  truth::PointedSettings pointed;
-  if (profile == Profile::kTarget) {
-    pointed.spacecraft = read_other_spacecraft(section, own, names);
-  } else {
-  }
-  truth::PointingSettings& pointing = pointed.pointing;
+truth::PointingSettings read_pointing(const TableReader& section, Profile profile) {
+  truth::PointingSettings pointing;
   const Range component = from_to(-1.0, 1.0);
   pointing.boresight_to = boresight_of(profile);
   pointing.boresight_body = vector(section.three_numbers("boresight_body", component, {{0.0, 0.0, 1.0}}));
@@ -106,6 +105,14 @@ truth::PointedSettings read_pointed(const TableReader& section, Profile profile,
                    "an axis along the other one", "boresight_body and secondary_axis_body in two different directions");
   if (truth::are_one_line(pointing.boresight_to, pointing.second_to))
     section.refuse("secondary_direction", "the line that the boresight follows", "another direction");
+  return pointing;
+}
+
+truth::PointedSettings read_pointed(const TableReader& section, Profile profile, const std::string& own,
+                                    const std::vector<std::string>& names) {
+  truth::PointedSettings pointed;
+  if (profile == Profile::kTarget) pointed.spacecraft = read_other_spacecraft(section, own, names);
+  pointed.pointing = read_pointing(section, profile);
   return pointed;
 }
 
@@ -185,6 +192,28 @@ std::optional<Attitude> read_attitude(const TableReader& section, const std::str
     default:
       return read_pointed(section, profile, own, names);
   }
+}
+
+std::vector<LaterAttitude> read_later_attitudes(const TableReader& section, const std::optional<Attitude>& first) {
+  constexpr double kHour_s = 3600.0;
+  std::vector<LaterAttitude> later;
+  if (!first || std::holds_alternative<Commanded>(*first)) return later;
+  for (const TableReader& table : section.tables("then")) {
+    LaterAttitude one;
+    one.from_s = kHour_s * table.number("from_h", from_to(0.0, 1e5));
+    one.slew_s = table.number("slew_s", above_to(0.0, 1e5), 600.0);
+    const auto profile = table.choice<Profile>("profile", kLaterProfiles);
+    if (profile == Profile::kInertial) {
+      one.profile = Inertial{read_quaternion(table, "q_body_eci")};
+    } else {
+      one.profile = truth::PointedSettings{read_pointing(table, profile), ""};
+    }
+    if (!later.empty() && one.from_s < later.back().from_s + later.back().slew_s)
+      table.refuse_value("from_h", "a time at which the slew of the profile before has ended");
+    table.finish();
+    later.push_back(std::move(one));
+  }
+  return later;
 }
 
 }  // namespace vbar::mission

@@ -27,4 +27,9 @@ namespace vbar::mission {
 [[nodiscard]] std::optional<Attitude> read_attitude(const TableReader& section, const std::string& own,
                                                     const std::string& body, const std::vector<std::string>& names);
 
+/// The elements of `then` of [spacecraft.attitude], whose profiles replace `first` and each other; empty without the
+/// key, which is not one of no profile or of one that the flight software commands. Throws MissionError.
+[[nodiscard]] std::vector<LaterAttitude> read_later_attitudes(const TableReader& section,
+                                                              const std::optional<Attitude>& first);
+
 }  // namespace vbar::mission

@@ -147,7 +147,9 @@ Spacecraft read_one(TableReader& section, const Member& member, const std::vecto
   spacecraft.mass_sigma_kg = section.number("mass_sigma_kg", from_to(0.0, 1e3), 0.0);
   if (section.has("model")) spacecraft.model = section.name("model");
   spacecraft.orbit = read_orbit(section, member, mission);
-  spacecraft.attitude = read_attitude(section.table("attitude"), spacecraft.name, spacecraft.body, names);
+  const TableReader attitude = section.table("attitude");
+  spacecraft.attitude = read_attitude(attitude, spacecraft.name, spacecraft.body, names);
+  spacecraft.later_attitudes = read_later_attitudes(attitude, spacecraft.attitude);
   if (section.has("flight_computer"))
     spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
 

@@ -53,9 +53,7 @@ std::string observed_by_camera(const Spacecraft& servicer) {
 std::int32_t sources_of(const Spacecraft& servicer) {
   std::int32_t sources = 0;
   for (const mission::Sensor& sensor : servicer.sensors) sources |= sensor.settings->navigation;
-  if ((sources & Use::kUseIdeal) != 0) return Use::kUseIdeal;
-  // The target of a camera does not cooperate.
-  return (sources & kCamera) != 0 ? sources & ~std::int32_t{Use::kUseCarrierPair} : sources;
+  return (sources & Use::kUseIdeal) != 0 ? std::int32_t{Use::kUseIdeal} : sources;
 }
 
 vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer) {

@@ -8,7 +8,7 @@
 namespace vbar::sensors {
 
 /// What navigation of the spacecraft uses, a sum of navigation_configuration::kUse: true states alone, or all that its
-/// sensors offer; differences between two receivers only without a camera.
+/// sensors offer.
 [[nodiscard]] std::int32_t sources_of(const mission::Spacecraft& servicer);
 
 [[nodiscard]] vbar::navigation_configuration navigation_configuration_of(const mission::Mission& mission,

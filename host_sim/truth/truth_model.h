@@ -79,8 +79,10 @@ class TruthModel {
   void apply_impulse_rtn(std::size_t index, const fsw::Vector3& dv_rtn);
 
   /// Gives a spacecraft an attitude from the current time on. Throws std::invalid_argument for inconsistent settings
-  /// (an invalid body, parallel axes, an unknown spacecraft to point at).
-  void set_attitude(std::size_t index, const AttitudeSettings& settings);
+  /// (an invalid body, parallel axes, an unknown spacecraft to point at). `later`: the attitudes that follow, in order
+  /// of time; of those that begin before the current time, or at it, the last one holds at once, without a slew.
+  void set_attitude(std::size_t index, const AttitudeSettings& settings,
+                    const std::vector<LaterAttitudeSettings>& later = {});
 
   /// Commands the boresight of a spacecraft with a commanded attitude to a direction in its own RTN: a unit vector and
   /// its rate there (1/s), at `time`. A command for the past takes effect now, with its line advanced to now. False if
@@ -112,6 +114,7 @@ class TruthModel {
  private:
   double seconds_after_epoch(fsw::GpsTime time) const { return fsw::seconds(time - settings_.epoch); }
   fsw::Vector3 perturbation_eci(std::size_t index) const;
+  std::unique_ptr<AttitudeMotion> attitude_motion(std::size_t index, const AttitudeSettings& settings);
   void advance_in_parallel(const std::vector<SpacecraftPropagator*>& spacecraft, double seconds) const;
 
   TruthSettings settings_;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/truth/attitude/air_and_light.h"
+#include "host_sim/truth/attitude/attitude_sequence.h"
 #include "host_sim/truth/attitude/spacecraft_attitude.h"
 #include "host_sim/truth/truth_model.h"
 
@@ -23,7 +24,7 @@ bool has_torque(const AttitudeSettings& settings, TorqueKind kind) {
 
 }  // namespace
 
-void TruthModel::set_attitude(std::size_t index, const AttitudeSettings& settings) {
+std::unique_ptr<AttitudeMotion> TruthModel::attitude_motion(std::size_t index, const AttitudeSettings& settings) {
   SpacecraftPropagator* const own = spacecraft_.at(index).get();
   AttitudeSurroundings surroundings;
   surroundings.gm = own->dynamics().gm();
@@ -50,7 +51,28 @@ void TruthModel::set_attitude(std::size_t index, const AttitudeSettings& setting
     surroundings.air = std::make_unique<AirOfDrag>(std::make_unique<DragForce>(
         kAnySphere, data_.atmosphere, data_.space_weather, settings_.forces.geomagnetic_index, settings_.epoch));
   }
-  own->set_attitude(make_attitude(settings, std::move(surroundings)));
+  return make_attitude(settings, std::move(surroundings));
+}
+
+void TruthModel::set_attitude(std::size_t index, const AttitudeSettings& settings,
+                              const std::vector<LaterAttitudeSettings>& later) {
+  std::unique_ptr<AttitudeMotion> first = attitude_motion(index, settings);
+  std::vector<AttitudeSequence::Later> following;
+  for (const LaterAttitudeSettings& one : later) {
+    const auto* const pointed = std::get_if<PointedSettings>(&one.attitude);
+    if (pointed != nullptr && !pointed->spacecraft.empty()) {
+      throw std::invalid_argument("an attitude that follows another one cannot point at a spacecraft");
+    }
+    auto motion = attitude_motion(
+        index, std::visit([](const auto& settings_of_one) { return AttitudeSettings(settings_of_one); }, one.attitude));
+    if (one.from_s <= seconds_after_epoch(time_)) {
+      first = std::move(motion);
+    } else {
+      following.push_back({one.from_s, one.slew_s, std::move(motion)});
+    }
+  }
+  if (!following.empty()) first = std::make_unique<AttitudeSequence>(std::move(first), std::move(following));
+  spacecraft_.at(index)->set_attitude(std::move(first));
 }
 
 bool TruthModel::command_pointing(std::size_t index, fsw::GpsTime time, const fsw::Vector3& boresight_rtn,

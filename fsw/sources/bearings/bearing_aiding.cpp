@@ -1,5 +1,7 @@
 #include "fsw/sources/bearings/bearing_aiding.h"
 
+#include <algorithm>
+
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::sources {
@@ -115,13 +117,18 @@ BearingEditStatus BearingAiding::collect(const navigation::BearingMeasurement& b
 
 BearingEditStatus BearingAiding::fold(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
                                       trunk::Trunk& trunk) {
-  if (bearing_rows(trunk, bearing, sun_eci, settings_.model) != Status::kOk) return BearingEditStatus::kRefused;
+  if (!trunk.is_determined_by_receivers()) centroid_scale_ = 1.0;
+  BearingModel model = settings_.model;
+  model.centroid_noise_m *= math::sqrt(centroid_scale_);
+  trunk.scale_centroid_wander(centroid_scale_);
+  if (bearing_rows(trunk, bearing, sun_eci, model) != Status::kOk) return BearingEditStatus::kRefused;
   trunk::Rows& rows = trunk.rows();
   estimation::predict_innovations(trunk.estimate(), rows);
   last_update_.prefit = rows.residual.head<2>();
   last_update_.postfit = last_update_.prefit;
   last_update_.nis = estimation::group_nis(rows, 0, 2);
   aid_.consistency().add(last_update_.nis, 2);
+  adapt_centroid_noise(trunk);
   if (!(last_update_.nis <= settings_.gate)) {
     count_refusal(bearing.time, trunk);
     return BearingEditStatus::kRefused;
@@ -145,9 +152,23 @@ void BearingAiding::adapt_noise(const navigation::BearingMeasurement& bearing, t
   navigation::AdaptiveNoise& noise = trunk.relative_orbit().noise();
   if (bearing.time - last_folded_ > kNeighbours) noise.interrupt();
   last_folded_ = bearing.time;
+  // An empirical acceleration stands for the process noise.
+  if (trunk.is_determined_by_receivers()) return noise.interrupt();
   const trunk::Rows& rows = trunk.rows();
   noise.take(
       {rows.residual(0) / math::sqrt(rows.innovation(0, 0)), rows.residual(1) / math::sqrt(rows.innovation(1, 1))});
+}
+
+/// Where receivers determine the orbit, the innovations measure the errors of the centroid, which the attitude of the
+/// target changes: that of a target that follows the orbit varies less than that of a tumbling one. By a tenth of the
+/// misfit with each bearing, so that an hour suffices; a single one counts no more than five on average.
+void BearingAiding::adapt_centroid_noise(const trunk::Trunk& trunk) {
+  constexpr double kShare = 0.1;
+  constexpr double kMaxMisfit = 5.0;
+  constexpr double kMinScale = 0.01, kMaxScale = 9.0;
+  if (!trunk.is_determined_by_receivers()) return;
+  const double misfit = std::min(0.5 * last_update_.nis, kMaxMisfit);
+  centroid_scale_ = std::clamp(centroid_scale_ * (1.0 + kShare * (misfit - 1.0)), kMinScale, kMaxScale);
 }
 
 void BearingAiding::count_refusal(GpsTime time, trunk::Trunk& trunk) {

@@ -66,6 +66,7 @@ class BearingAiding {
   BearingEditStatus collect(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci, trunk::Trunk& trunk);
   BearingEditStatus fold(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci, trunk::Trunk& trunk);
   void adapt_noise(const navigation::BearingMeasurement& bearing, trunk::Trunk& trunk);
+  void adapt_centroid_noise(const trunk::Trunk& trunk);
   void count_refusal(GpsTime time, trunk::Trunk& trunk);
 
   BearingSettings settings_;
@@ -78,6 +79,8 @@ class BearingAiding {
   int refused_in_excess_ = 0;      ///< of accepted ones, while others confirm the orbit
   int agreeing_in_a_row_ = 0;      ///< while contradicting
   std::size_t inflations_in_a_row_ = 0;
+  double centroid_scale_ =
+      1.0;  ///< factor on the variances of the centroid, adapted while receivers determine the orbit
   BearingUpdate last_update_;
   BearingCounters counters_;
 };

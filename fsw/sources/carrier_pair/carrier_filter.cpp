@@ -27,6 +27,10 @@ constexpr std::size_t kMinForMedian = 5;
 // in a few epochs. Phases of a wider orbit would update it along a wrong tangent, with the weight of a millimetre.
 constexpr double kMaxNonlinearity_m = 0.3e-3;
 
+// Of the baseline: below, differential delays are some hundredths of a millimetre.
+constexpr double kIonosphereFrom_m = 40.0;
+constexpr double kIonosphereUntil_m = 30.0;
+
 // Steps of the Jacobian of the ROE.
 constexpr double kStep_m = 1.0;
 constexpr double kStep_mps = 1e-3;
@@ -69,6 +73,7 @@ void CarrierFilter::rest_blocks(trunk::Trunk& trunk) {
   rest_channels(trunk);
   rest_epoch_states(trunk);
   trunk::Estimate& estimate = trunk.estimate();
+  trunk::rest_block<trunk::Ionosphere>(estimate);
   trunk::rest_block<trunk::CodeBiases>(estimate);
   trunk::rest_block<trunk::TargetAntenna>(estimate);
   trunk::rest_block<trunk::ServicerAntenna>(estimate);
@@ -95,6 +100,7 @@ CarrierUpdate CarrierFilter::take(const DifferentialEpoch& epoch, const AntennaP
   renew_epoch_states(servicer, target, estimate);
   edits_.fill(Edit{});
   if (rows_.form(epoch, servicer, target, trunk) != Status::kOk) return update;
+  follow_ionosphere(trunk);
   find_outlying_codes(epoch, estimate);
   use_codes(epoch, estimate, update);
   if (rows_.nonlinearity_m() < kMaxNonlinearity_m || channels_.is_any_tracked()) {
@@ -104,6 +110,17 @@ CarrierUpdate CarrierFilter::take(const DifferentialEpoch& epoch, const AntennaP
   }
   trunk.finish_update();
   return update;
+}
+
+/// The delays of two receivers differ by the curvature of the ionosphere over their baseline: by millimetres at low
+/// elevations a kilometre apart, as if the baseline were shorter.
+void CarrierFilter::follow_ionosphere(trunk::Trunk& trunk) const {
+  const bool is_active = trunk::is_active<trunk::Ionosphere>(trunk.estimate());
+  if (!is_active && rows_.baseline_m() > kIonosphereFrom_m) {
+    trunk::begin_block<trunk::Ionosphere>(trunk.estimate(), trunk.settings().ionosphere);
+  } else if (is_active && rows_.baseline_m() < kIonosphereUntil_m) {
+    trunk::rest_block<trunk::Ionosphere>(trunk.estimate());
+  }
 }
 
 /// Clocks and jitter are independent of the previous epoch.
@@ -181,7 +198,7 @@ void CarrierFilter::find_slips_by_median(const DifferentialEpoch& epoch, trunk::
   for (std::size_t n = 0; n < epoch.count; ++n) {
     const std::optional<std::size_t>& place = edits_[n].channel;
     if (!place || channels_[*place].epochs == 0) continue;
-    residuals.add({n, rows_.phase_residual(n, *place, epoch.observations[n].phase_m, estimate)});
+    residuals.add({n, rows_.phase_residual(n, *place, epoch.observations[n], estimate)});
   }
   if (residuals.count < kMinForMedian) return;
   const std::size_t middle = residuals.median().observation;
@@ -190,7 +207,8 @@ void CarrierFilter::find_slips_by_median(const DifferentialEpoch& epoch, trunk::
     if (n == middle) continue;
     const std::size_t place = *edits_[n].channel;
     const trunk::Estimate::Vector h =
-        rows_.phase_sensitivity(n, place) - rows_.phase_sensitivity(middle, *edits_[middle].channel);
+        rows_.phase_sensitivity(n, place, epoch.observations[n].signal) -
+        rows_.phase_sensitivity(middle, *edits_[middle].channel, epoch.observations[middle].signal);
     const double variance =
         square(epoch.observations[n].phase_sigma_m) + square(epoch.observations[middle].phase_sigma_m);
     const estimation::Innovation apart =
@@ -217,9 +235,9 @@ void CarrierFilter::use_phases(const DifferentialEpoch& epoch, trunk::Trunk& tru
         trunk::begin_process(estimate, wander_index(*place), trunk.settings().phase_wander);
       }
       const double variance = square(observation.phase_sigma_m) + rows_.extra_variance(n);
-      const estimation::Innovation innovation = estimate.update(
-          rows_.phase_sensitivity(n, *place), rows_.phase_residual(n, *place, observation.phase_m, estimate), variance,
-          known ? kGate : kNoGate);
+      const estimation::Innovation innovation =
+          estimate.update(rows_.phase_sensitivity(n, *place, observation.signal),
+                          rows_.phase_residual(n, *place, observation, estimate), variance, known ? kGate : kNoGate);
       if (!innovation.accepted) {
         ++update.phases_refused;
         contradict(*place, estimate, update);

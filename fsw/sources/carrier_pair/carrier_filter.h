@@ -79,6 +79,7 @@ class CarrierFilter {
   };
 
   void renew_epoch_states(const AntennaPlatform& servicer, const AntennaPlatform& target, trunk::Estimate& estimate);
+  void follow_ionosphere(trunk::Trunk& trunk) const;
   void find_outlying_codes(const navigation::DifferentialEpoch& epoch, const trunk::Estimate& estimate);
   void use_codes(const navigation::DifferentialEpoch& epoch, trunk::Estimate& estimate, CarrierUpdate& update);
   void follow_channels(const navigation::DifferentialEpoch& epoch, trunk::Estimate& estimate, CarrierUpdate& update);

@@ -27,13 +27,18 @@ void CarrierSource::collect(Context& context, RecordFiler records) {
     const GpsTime tag = ours[k].receiver_time;
     if (tag <= decided_until_ || tag > context.now) continue;
     if (theirs.find(tag) != nullptr) {
+      alone_in_a_row_ = 0;
       // A pair behind an epoch that still waits may be in the queue already.
       const Status filed = records.file(tag, 0);
       if (filed != Status::kOk && filed != Status::kBadSequence) return;
     } else if (context.now - tag < pair_wait_) {
+      // A silent target is not waited for: the images of a camera would be replaced by newer ones meanwhile. An epoch
+      // that arrives all the same is used if the trunk has not passed it.
+      if (alone_in_a_row_ >= kSilentAfter) break;
       if (!owed_) owed_ = tag;
     } else {
       ++alone_;
+      if (alone_in_a_row_ < kSilentAfter) ++alone_in_a_row_;
     }
     if (!owed_) decided_until_ = tag;
   }

@@ -34,12 +34,15 @@ class CarrierSource {
 
   void report(const Telemetry& telemetry) const;
 
+  static constexpr int kSilentAfter = 3;
+
  private:
   CarrierAiding aiding_;
   Duration pair_wait_ = duration_of_seconds(12);  ///< how long an epoch of the servicer waits for that of the target
   GpsTime decided_until_{-1};                     ///< tags up to this are filed, or were alone
   std::optional<GpsTime> owed_;
   std::int32_t alone_ = 0;
+  int alone_in_a_row_ = 0;  ///< from kSilentAfter on the target is silent: nothing is owed until it is heard again
 };
 
 }  // namespace vbar::fsw::sources

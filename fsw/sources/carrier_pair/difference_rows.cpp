@@ -1,9 +1,11 @@
 #include "fsw/sources/carrier_pair/difference_rows.h"
 
 #include "fsw/estimation/unscented.h"
+#include "fsw/gnss/ionosphere.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/constants.h"
 #include "fsw/orbit/roe.h"
+#include "fsw/orbit/rtn.h"
 
 namespace vbar::fsw::sources {
 namespace {
@@ -59,6 +61,16 @@ Status sample(const orbit::QnsElements& servicer, const Vector6& roe, const Matr
   return Status::kOk;
 }
 
+/// Group delay of L1 at `antenna` over the states of the ionosphere, whose gradients are about the servicer's antenna.
+Vector3 group_delay_l1(const Matrix3& R_rtn_eci, const Vector3& servicer_antenna, const Vector3& antenna,
+                       const Vector3& direction) {
+  constexpr double kThousandKilometres_m = 1e6;
+  const gnss::ShellCrossing crossing = gnss::shell_crossing(antenna, direction);
+  const Vector3 apart_rtn = R_rtn_eci * (antenna + crossing.distance_m * direction - servicer_antenna);
+  return crossing.slant_factor *
+         Vector3(1.0, apart_rtn.y() / kThousandKilometres_m, apart_rtn.z() / kThousandKilometres_m);
+}
+
 /// Index of the code bias, or -1 for GPS L1, which defines the clock.
 int code_bias_index(gnss::Signal signal) {
   return signal == gnss::Signal::kGpsL1 ? -1 : kAt<trunk::CodeBiases> + static_cast<int>(signal) - 1;
@@ -101,6 +113,8 @@ Status DifferenceRows::form(const navigation::DifferentialEpoch& epoch, const An
                                    servicer.R_eci_body * (servicer.antenna_body_m + reference_.servicer_antenna);
   const Vector3 target_antenna = map.value().position_eci + reference_.jitter +
                                  target.R_eci_body * (target.antenna_body_m + reference_.target_antenna);
+  const Matrix3 R_rtn_eci = orbit::R_rtn_eci(trunk.servicer());
+  baseline_m_ = (target_antenna - servicer_antenna).norm();
   for (std::size_t n = 0; n < epoch.count; ++n) {
     const navigation::DifferentialObservation& observation = epoch.observations[n];
     const Vector3 servicer_line = servicer_antenna - observation.servicer_source_eci;
@@ -119,6 +133,8 @@ Status DifferenceRows::form(const navigation::DifferentialEpoch& epoch, const An
     row.servicer_antenna = -servicer.R_eci_body.transpose() * (servicer_line / servicer_range);
     row.target_antenna = target.R_eci_body.transpose() * direction;
     row.jitter = direction;
+    row.group_delay = group_delay_l1(R_rtn_eci, servicer_antenna, target_antenna, -direction) -
+                      group_delay_l1(R_rtn_eci, servicer_antenna, servicer_antenna, -servicer_line / servicer_range);
   }
   return Status::kOk;
 }
@@ -136,14 +152,17 @@ double DifferenceRows::residual(std::size_t n, double measured_m, const trunk::E
 double DifferenceRows::code_residual(std::size_t n, const navigation::DifferentialObservation& observation,
                                      const trunk::Estimate& estimate) const {
   const int bias = code_bias_index(observation.signal);
-  return residual(n, observation.code_m, estimate) - (bias >= 0 ? estimate.mean(bias) : 0.0);
+  return residual(n, observation.code_m, estimate) - (bias >= 0 ? estimate.mean(bias) : 0.0) -
+         group_delay(n, observation.signal).dot(estimate.mean().segment<3>(kAt<trunk::Ionosphere>));
 }
 
-double DifferenceRows::phase_residual(std::size_t n, std::size_t channel, double measured_m,
+double DifferenceRows::phase_residual(std::size_t n, std::size_t channel,
+                                      const navigation::DifferentialObservation& observation,
                                       const trunk::Estimate& estimate) const {
   const int place = static_cast<int>(channel);
-  return residual(n, measured_m, estimate) - estimate.mean(kAt<trunk::Ambiguities> + place) -
-         estimate.mean(kAt<trunk::PhaseWander> + place);
+  return residual(n, observation.phase_m, estimate) - estimate.mean(kAt<trunk::Ambiguities> + place) -
+         estimate.mean(kAt<trunk::PhaseWander> + place) +
+         group_delay(n, observation.signal).dot(estimate.mean().segment<3>(kAt<trunk::Ionosphere>));
 }
 
 DifferenceRows::Sensitivity DifferenceRows::range_sensitivity(std::size_t n) const {
@@ -160,14 +179,23 @@ DifferenceRows::Sensitivity DifferenceRows::range_sensitivity(std::size_t n) con
 DifferenceRows::Sensitivity DifferenceRows::code_sensitivity(std::size_t n, gnss::Signal signal) const {
   Sensitivity h = range_sensitivity(n);
   if (const int bias = code_bias_index(signal); bias >= 0) h(bias) = 1.0;
+  h.segment<3>(kAt<trunk::Ionosphere>) = group_delay(n, signal);
   return h;
 }
 
-DifferenceRows::Sensitivity DifferenceRows::phase_sensitivity(std::size_t n, std::size_t channel) const {
+DifferenceRows::Sensitivity DifferenceRows::phase_sensitivity(std::size_t n, std::size_t channel,
+                                                              gnss::Signal signal) const {
   Sensitivity h = range_sensitivity(n);
   h(kAt<trunk::Ambiguities> + static_cast<int>(channel)) = 1.0;
   h(kAt<trunk::PhaseWander> + static_cast<int>(channel)) = 1.0;
+  h.segment<3>(kAt<trunk::Ionosphere>) = -group_delay(n, signal);
   return h;
+}
+
+/// Of the difference; proportional to the square of the wavelength.
+Vector3 DifferenceRows::group_delay(std::size_t n, gnss::Signal signal) const {
+  const double ratio = gnss::wavelength(signal) / gnss::wavelength(gnss::Signal::kGpsL1);
+  return ratio * ratio * rows_[n].group_delay;
 }
 
 }  // namespace vbar::fsw::sources

@@ -48,18 +48,21 @@ class DifferenceRows {
   Status form(const navigation::DifferentialEpoch& epoch, const AntennaPlatform& servicer,
               const AntennaPlatform& target, const trunk::Trunk& trunk);
 
-  /// Measured minus predicted by the estimate, m; of a code with its bias, of a phase without ambiguity or with
-  /// ambiguity and wander of `channel`.
+  /// Measured minus predicted by the estimate, m; of a code with its bias, of a phase with ambiguity and wander of
+  /// `channel`, of either without these and without the ionosphere.
   [[nodiscard]] double code_residual(std::size_t n, const navigation::DifferentialObservation& observation,
                                      const trunk::Estimate& estimate) const;
   [[nodiscard]] double residual(std::size_t n, double measured_m, const trunk::Estimate& estimate) const;
-  [[nodiscard]] double phase_residual(std::size_t n, std::size_t channel, double measured_m,
+  [[nodiscard]] double phase_residual(std::size_t n, std::size_t channel,
+                                      const navigation::DifferentialObservation& observation,
                                       const trunk::Estimate& estimate) const;
 
   [[nodiscard]] Sensitivity code_sensitivity(std::size_t n, gnss::Signal signal) const;
-  [[nodiscard]] Sensitivity phase_sensitivity(std::size_t n, std::size_t channel) const;
+  [[nodiscard]] Sensitivity phase_sensitivity(std::size_t n, std::size_t channel, gnss::Signal signal) const;
   /// Variance due to the nonlinearity, m^2.
   [[nodiscard]] double extra_variance(std::size_t n) const { return rows_[n].extra_variance; }
+  /// Distance between the phase centres, m.
+  [[nodiscard]] double baseline_m() const { return baseline_m_; }
   /// 1 sigma of the target's position due to the nonlinearity of its elements, m; zero of a narrow orbit.
   [[nodiscard]] double nonlinearity_m() const { return nonlinearity_m_; }
 
@@ -69,6 +72,7 @@ class DifferenceRows {
     Vector3 servicer_antenna = Vector3::Zero();
     Vector3 target_antenna = Vector3::Zero();
     Vector3 jitter = Vector3::Zero();
+    Vector3 group_delay = Vector3::Zero();  ///< of L1, of the states of the ionosphere
     double predicted = 0.0;
     double extra_variance = 0.0;
   };
@@ -82,10 +86,12 @@ class DifferenceRows {
   };
 
   [[nodiscard]] Sensitivity range_sensitivity(std::size_t n) const;
+  [[nodiscard]] Vector3 group_delay(std::size_t n, gnss::Signal signal) const;
 
   std::array<Row, gnss::kMaxObservations> rows_{};
   Reference reference_;
   double nonlinearity_m_ = 0.0;
+  double baseline_m_ = 0.0;
 };
 
 }  // namespace vbar::fsw::sources

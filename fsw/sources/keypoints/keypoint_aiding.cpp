@@ -294,7 +294,13 @@ void KeypointAiding::count_refusal(GpsTime time, bool is_position_far, trunk::Tr
     aid_.go_to(AidState::kFailed, time);
   }
   reset_refusals();
-  trunk.inflate_relative(0.0, kWrongAttitudeDistance * range_m(trunk));
+  inflate(0.0, kWrongAttitudeDistance, trunk);
+}
+
+/// `distance`: relative. An orbit that receivers determine is not changed because images contradict it.
+void KeypointAiding::inflate(double velocity_sigma, double distance, trunk::Trunk& trunk) {
+  if (trunk.is_determined_by_receivers()) return;
+  trunk.inflate_relative(velocity_sigma, distance * range_m(trunk));
   ++counters_.inflations;
 }
 
@@ -303,16 +309,17 @@ void KeypointAiding::count_missing(trunk::Trunk& trunk) {
   if (!light_.is_lit || !trunk.has_relative() || range_uncertainty(trunk) > kMissingDistance) return;
   if (++missing_in_a_row_ < kMissingBeforeInflation) return;
   missing_in_a_row_ = 0;
-  trunk.inflate_relative(kMissingVelocity, kMissingDistance * range_m(trunk));
-  ++counters_.inflations;
+  inflate(kMissingVelocity, kMissingDistance, trunk);
 }
 
 void KeypointAiding::contradict_orbit(GpsTime time, trunk::Trunk& trunk) {
   reset_refusals();
-  trunk.inflate_relative(kInflatedVelocity[inflations_in_a_row_],
-                         kInflatedDistance[inflations_in_a_row_] * range_m(trunk));
-  ++counters_.inflations;
   aid_.go_to(AidState::kSuspended, time);
+  if (trunk.is_determined_by_receivers()) {
+    trunk.rest_attitude();  // with which the poses were wrong
+    return;
+  }
+  inflate(kInflatedVelocity[inflations_in_a_row_], kInflatedDistance[inflations_in_a_row_], trunk);
   if (++inflations_in_a_row_ < kInflatedVelocity.size()) return;
   inflations_in_a_row_ = 0;
   trunk.rest_attitude();

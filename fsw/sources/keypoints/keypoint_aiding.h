@@ -116,6 +116,7 @@ class KeypointAiding {
   [[nodiscard]] bool is_far(const navigation::PoseSample& sample, const trunk::Trunk& trunk) const;
   void count_refusal(GpsTime time, bool is_position_far, trunk::Trunk& trunk);
   void count_missing(trunk::Trunk& trunk);
+  void inflate(double velocity_sigma, double distance, trunk::Trunk& trunk);
   void contradict_orbit(GpsTime time, trunk::Trunk& trunk);
   void reset_refusals();
   void follow_state(GpsTime time, KeypointEditStatus status);

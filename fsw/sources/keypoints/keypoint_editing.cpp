@@ -33,7 +33,10 @@ const KeypointsUpdate& KeypointEditing::take(trunk::Trunk& trunk, GpsTime time, 
                                              double novelty_scale) {
   update_ = {};
   scaled_ = keypoints;
-  for (pose::Keypoint& keypoint : scaled_) keypoint.covariance_px2 *= adapted_scale() * novelty_scale;
+  // Against an orbit that receivers determine, the innovations are errors of the network, which are tested with its own
+  // covariances; a view that was seen before then only loses weight.
+  const double tested_scale = trunk.is_determined_by_receivers() ? 1.0 : novelty_scale;
+  for (pose::Keypoint& keypoint : scaled_) keypoint.covariance_px2 *= adapted_scale() * tested_scale;
   if (keypoint_rows(trunk, scaled_, camera, model) != Status::kOk) return update_;
   trunk::Rows& rows = trunk.rows();
   estimation::predict_innovations(trunk.estimate(), rows);
@@ -51,7 +54,7 @@ const KeypointsUpdate& KeypointEditing::take(trunk::Trunk& trunk, GpsTime time, 
   const double misfit = nis > max_expected(degrees) ? std::min(nis / degrees, settings_.max_noise_scale) : 1.0;
   update_.noise_scale = misfit * adapted_scale() * novelty_scale;
   adapt_noise(trunk, time, camera);
-  weight_keypoints(rows, misfit);
+  weight_keypoints(rows, misfit * (novelty_scale / tested_scale));
   if (!trunk.fold()) return update_;
   for (int k = 0; k < kCount; ++k) update_.keypoints[at(k)].postfit = rows.residual.segment<2>(2 * k);
   adapt_scale();
@@ -75,14 +78,14 @@ void KeypointEditing::gate_keypoints(trunk::Rows& rows) {
   }
 }
 
-/// The covariance of each keypoint is multiplied by the misfit of the image and by the inverse weight of its own
-/// innovation under the Student distribution, (nu + d^2) / (nu + 2), not below one.
-void KeypointEditing::weight_keypoints(trunk::Rows& rows, double misfit) const {
+/// The covariance of each keypoint is multiplied by `common`, the misfit of the image or more, and by the inverse
+/// weight of its own innovation under the Student distribution, (nu + d^2) / (nu + 2), not below one.
+void KeypointEditing::weight_keypoints(trunk::Rows& rows, double common) const {
   for (int k = 0; k < kCount; ++k) {
     const KeypointUpdate& keypoint = update_.keypoints[at(k)];
     if (!keypoint.accepted) continue;
     const double tail = (settings_.tail_degrees + keypoint.nis) / (settings_.tail_degrees + 2.0);
-    const double scale = misfit * (tail > 1.0 ? tail : 1.0);
+    const double scale = common * (tail > 1.0 ? tail : 1.0);
     rows.noise.block<2, 2>(2 * k, 2 * k) += (scale - 1.0) * scaled_[at(k)].covariance_px2;
   }
 }
@@ -142,7 +145,11 @@ void KeypointEditing::adapt_noise(trunk::Trunk& trunk, GpsTime time, const Camer
     if (!(variance > 0.0)) return;
     normalised(i) = fitted(i) / math::sqrt(variance);
   }
-  acceleration.take(normalised.head<2>());
+  if (trunk.is_determined_by_receivers()) {
+    acceleration.interrupt();
+  } else {
+    acceleration.take(normalised.head<2>());
+  }
   angular.take({normalised(2), normalised(4)});
 }
 

@@ -58,7 +58,7 @@ class KeypointEditing {
 
  private:
   void gate_keypoints(trunk::Rows& rows);
-  void weight_keypoints(trunk::Rows& rows, double misfit) const;
+  void weight_keypoints(trunk::Rows& rows, double common) const;
   void adapt_noise(trunk::Trunk& trunk, GpsTime time, const CameraPose& camera);
   void adapt_scale();
 

@@ -64,9 +64,12 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
                    "\"none\" for all cameras of a spacecraft but " + std::to_string(fsw::packets::kCameras));
   if (receiver == nullptr)
     section.refuse("", "a camera without a GNSS receiver", "a GNSS receiver too: it gives the spacecraft's own orbit");
-  if (!receiver->settings->observed.empty())
-    section.refuse("", "a camera beside a GNSS receiver with the partner \"" + receiver->settings->observed + "\"",
-                   "a GNSS receiver without a partner: the target does not cooperate");
+  const std::string& partner = receiver->settings->observed;
+  if (!partner.empty() && partner != camera.observed)
+    section.refuse(
+        "target",
+        "the spacecraft \"" + camera.observed + "\" beside a GNSS receiver with the partner \"" + partner + "\"",
+        "the partner, or a GNSS receiver without a partner: one target of all sensors");
 }
 
 std::unique_ptr<twins::camera::ImageTaker> make_of_testbed(const testbeds::TestbedKind& testbed, const Sensor& own,

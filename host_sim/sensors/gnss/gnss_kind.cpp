@@ -44,7 +44,7 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
     using Use = vbar::navigation_configuration;
     return (other.settings->navigation & (std::int32_t{Use::kUseBearings} + Use::kUseKeypoints)) != 0;
   });
-  if (!spacecraft.flight_computer || is_beside_camera) return;
+  if (!spacecraft.flight_computer || (is_beside_camera && sensor.settings->observed.empty())) return;
   const Spacecraft* const partner = mission.find_spacecraft(sensor.settings->observed);
   if (partner == nullptr || find_settings<GnssSensor>(*partner) == nullptr)
     section.refuse("partner", partner == nullptr ? "nothing" : "the spacecraft \"" + partner->name + "\" without GNSS",
@@ -87,6 +87,10 @@ std::unique_ptr<twins::PacketSource> make_receiver(const MakeContext& context, c
   auto receiver = testbed != nullptr ? make_of_testbed(*testbed, context, carrier) : make_twin(context, carrier);
   sensor.period = receiver->call_period().value_or(
       fsw::nearest_duration(find_settings<GnssSensor>(carrier)->receiver.output.period_s));
+  // The partner's epochs are those of the servicer's receiver, whenever they begin.
+  if (&carrier != &context.servicer)
+    sensor.start = twins::next_periodic_epoch(
+        sensor.start, sensor.period, mission.epoch + mission::shared_settings<GnssShared>(mission).crosslink_from);
   std::unique_ptr<twins::gnss::Crosslink> crosslink;
   if (&carrier != &context.servicer)
     crosslink = std::make_unique<twins::gnss::Crosslink>(mission::shared_settings<GnssShared>(mission).crosslink,

@@ -13,7 +13,7 @@
 namespace vbar::sensors {
 
 /// `observed` is the partner: the spacecraft whose receiver's data come over the crosslink; empty: this one's go to its
-/// partner, or they are all there is, beside a camera.
+/// partner, or they are all there is, beside a camera of a target that does not cooperate.
 struct GnssSensor : mission::SensorSettings {
   twins::gnss::GnssReceiverSettings receiver;
   testbeds::ReceiverLine line;  ///< of a receiver in a testbed
@@ -24,6 +24,7 @@ struct GnssShared : mission::SharedSettings {
   vbar::carrier_configuration carrier{};  ///< without the antenna
   twins::gnss::ConstellationSettings constellation;
   twins::gnss::CrosslinkSettings crosslink;
+  fsw::Duration crosslink_from{};  ///< after the epoch of the mission: before, the partner's receiver is off
 };
 
 extern const SensorKind kGnss;

@@ -121,7 +121,20 @@ std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& sect
 
 namespace {
 
-void read_crosslink(const TableReader& section, twins::gnss::CrosslinkSettings& crosslink) {
+bool has_receiver_in_testbed(const mission::Mission& mission) {
+  for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
+    const auto* const receiver = mission::find_settings<GnssSensor>(spacecraft);
+    if (receiver != nullptr && testbeds::find_testbed(receiver->source) != nullptr) return true;
+  }
+  return false;
+}
+
+void read_crosslink(const TableReader& section, const mission::Mission& mission, GnssShared& shared) {
+  constexpr double kHour_s = 3600.0;
+  shared.crosslink_from = section.span("from_h", kHour_s, from_to(0.0, mission::kLongestMission_h), 0.0);
+  if (shared.crosslink_from > fsw::Duration{} && has_receiver_in_testbed(mission))
+    section.refuse_value("from_h", "0: a receiver in a testbed is not switched on during the mission");
+  twins::gnss::CrosslinkSettings& crosslink = shared.crosslink;
   if (section.has("latency")) crosslink.link.latency = mission::read_latency(section.table("latency"));
   read(section, "loss_probability", from_to(0.0, 1.0), crosslink.link.loss_probability);
   read(section, "silence_begin_s", from_to(0.0, 1e7), crosslink.silence_begin_s);
@@ -150,11 +163,11 @@ void read_carrier_phase(const TableReader& section, vbar::carrier_configuration&
 }  // namespace
 
 std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const TableReader& document,
-                                                                const mission::Mission& /*mission*/) {
+                                                                const mission::Mission& mission) {
   auto shared = std::make_shared<GnssShared>();
   read_carrier_phase(document.table("navigation").table("carrier_phase"), shared->carrier);
   read_constellation(document.table("constellation"), shared->constellation);
-  read_crosslink(document.table("links").table("crosslink"), shared->crosslink);
+  read_crosslink(document.table("links").table("crosslink"), mission, *shared);
   return shared;
 }
 

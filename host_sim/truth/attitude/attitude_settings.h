@@ -41,4 +41,12 @@ struct CommandedSettings {
 
 using AttitudeSettings = std::variant<TumbleSettings, InertialSettings, PointedSettings, CommandedSettings>;
 
+/// The attitude from `from_s` (s after the truth model's epoch) on, reached after a slew of `slew_s`
+/// (attitude_sequence.h). A pointing profile must not point at a spacecraft.
+struct LaterAttitudeSettings {
+  double from_s = 0.0;
+  double slew_s = 0.0;
+  std::variant<InertialSettings, PointedSettings> attitude;
+};
+
 }  // namespace vbar::truth

@@ -71,5 +71,37 @@ TEST(Klobuchar, RefusesWhatItHasNoMeaningFor) {
   }
 }
 
+// The shell halves the electrons above the spacecraft: by quadrature of the Chapman profile exp(1 - z - e^-z), z the
+// height over the peak at 420 km in units of 100 km. The slant factor at the horizon is that of the sine rule.
+TEST(ShellCrossing, HalvesTheElectronsAboveTheSpacecraft) {
+  constexpr double kEarth_m = 6371e3;
+  for (const double altitude_m : {500e3, 709e3, 900e3}) {
+    const Vector3 position = (kEarth_m + altitude_m) * Vector3(0.6, 0.0, 0.8), zenith(0.6, 0.0, 0.8),
+                  level(0.8, 0.0, -0.6);
+    const double shell_m = altitude_m + shell_crossing(position, zenith).distance_m;
+    const auto electrons = [](double from_m, double to_m) {
+      constexpr int kSteps = 20000;
+      double sum = 0.0;
+      for (int k = 0; k < kSteps; ++k) {
+        const double z = (from_m + (k + 0.5) * (to_m - from_m) / kSteps - 420e3) / 100e3;
+        sum += std::exp(1.0 - z - std::exp(-z));
+      }
+      return sum * (to_m - from_m) / kSteps;
+    };
+    // 2000 km above the spacecraft the rest is e^-20 of them; the midpoint rule is exact to 1e-6.
+    EXPECT_NEAR(electrons(altitude_m, shell_m) / electrons(altitude_m, altitude_m + 2000e3), 0.5, 1e-5) << altitude_m;
+    EXPECT_NEAR(shell_crossing(position, zenith).slant_factor, 1.0, 1e-12);
+    const double sine = (kEarth_m + altitude_m) / (kEarth_m + shell_m);
+    EXPECT_NEAR(shell_crossing(position, level).slant_factor, 1.0 / std::sqrt(1.0 - sine * sine), 1e-6);
+    EXPECT_NEAR(shell_crossing(position, level).distance_m, (kEarth_m + shell_m) * std::sqrt(1.0 - sine * sine), 1e-3);
+  }
+}
+
+TEST(ShellCrossing, IsVerticalAtTheGround) {
+  const ShellCrossing crossing = shell_crossing(Vector3(6371e3, 0.0, 0.0), Vector3::UnitY());
+  EXPECT_EQ(crossing.slant_factor, 1.0);
+  EXPECT_EQ(crossing.distance_m, 0.0);
+}
+
 }  // namespace
 }  // namespace vbar::fsw::gnss

@@ -41,6 +41,25 @@ TEST(AttitudeKeys, NoTableAndProfileNoneMeanNoAttitude) {
   EXPECT_FALSE(small_mission({"spacecraft.target.attitude.profile=none"}).spacecraft[1].attitude);
 }
 
+TEST(AttitudeKeys, LaterProfilesHaveTheirTimesAndKeys) {
+  const std::string lines =
+      "profile = \"tumble\"\n"
+      "[[spacecraft.attitude.then]]\nfrom_h = 1.5\nprofile = \"zenith\"\nboresight_body = [0, 1, 0]\n"
+      "secondary_axis_body = [1, 0, 0]\n"
+      "[[spacecraft.attitude.then]]\nfrom_h = 2.0\nslew_s = 60\nprofile = \"inertial\"";
+  const Mission mission = parse_mission(with_attitude(lines), "m.toml", {});
+  const std::vector<LaterAttitude>& later = mission.spacecraft[1].later_attitudes;
+  ASSERT_EQ(later.size(), 2U);
+  EXPECT_TRUE(std::holds_alternative<Tumble>(*mission.spacecraft[1].attitude));
+  EXPECT_DOUBLE_EQ(later[0].from_s, 5400.0);
+  EXPECT_DOUBLE_EQ(later[0].slew_s, 600.0) << "the default";
+  EXPECT_EQ(std::get<truth::PointedSettings>(later[0].profile).pointing.boresight_to, Direction::kZenith);
+  EXPECT_EQ(std::get<truth::PointedSettings>(later[0].profile).pointing.boresight_body, Vector3::UnitY());
+  EXPECT_DOUBLE_EQ(later[1].slew_s, 60.0);
+  EXPECT_FALSE(std::get<Inertial>(later[1].profile).q_body_eci);
+  EXPECT_TRUE(mission.spacecraft[0].later_attitudes.empty());
+}
+
 TEST(AttitudeKeys, TumbleLeavesItsStartToTheSeed) {
   const auto tumble = std::get<Tumble>(attitude_of("profile = \"tumble\""));
   EXPECT_FALSE(tumble.q_body_eci);
@@ -174,10 +193,24 @@ INSTANTIATE_TEST_SUITE_P(
                     ".profile: found the text \"zenit\" (did you mean zenith?); accepted: none, tumble, inertial, "
                     "zenith, nadir, along_track, target or commanded"},
         BadAttitude{"KeyOfAnotherProfile", "profile = \"zenith\"\ninertia_kgm2 = [1, 1, 1]",
-                    ".inertia_kgm2: found an unknown key; accepted: profile, boresight_body, secondary_axis_body or "
-                    "secondary_direction"},
+                    ".inertia_kgm2: found an unknown key; accepted: profile, boresight_body, secondary_axis_body, "
+                    "secondary_direction or then"},
         BadAttitude{"KeyWithoutProfile", "boresight_body = [1, 0, 0]",
                     ".boresight_body: found an unknown key; accepted: profile"},
+        BadAttitude{"LaterOfNone", "[[spacecraft.attitude.then]]\nfrom_h = 1\nprofile = \"zenith\"",
+                    ".then: found an unknown key; accepted: profile"},
+        BadAttitude{"LaterWithoutHour", "profile = \"tumble\"\n[[spacecraft.attitude.then]]\nprofile = \"zenith\"",
+                    ".then.0.from_h: found nothing; accepted: a number"},
+        BadAttitude{"LaterTumble",
+                    "profile = \"zenith\"\n[[spacecraft.attitude.then]]\nfrom_h = 1\nprofile = \"tumble\"",
+                    ".then.0.profile: found the text \"tumble\"; accepted: inertial, zenith, nadir or along_track"},
+        BadAttitude{"LaterWithoutASlew",
+                    "profile = \"tumble\"\n[[spacecraft.attitude.then]]\nfrom_h = 1\nslew_s = 0\nprofile = \"zenith\"",
+                    ".then.0.slew_s: found the integer 0; accepted: a number above 0"},
+        BadAttitude{"LaterDuringASlew",
+                    "profile = \"tumble\"\n[[spacecraft.attitude.then]]\nfrom_h = 1\nslew_s = 3600\nprofile = "
+                    "\"zenith\"\n[[spacecraft.attitude.then]]\nfrom_h = 1.5\nprofile = \"nadir\"",
+                    ".then.1.from_h: found the number 1.5; accepted: a time at which the slew of the profile before"},
         BadAttitude{"NoUnitQuaternion", "profile = \"inertial\"\nq_body_eci = [0.5, 0.5, 0, 0]",
                     ".q_body_eci: found a quaternion whose length is not 1; accepted: [w, x, y, z] of length 1, to "
                     "0.001"},

@@ -338,11 +338,11 @@ INSTANTIATE_TEST_SUITE_P(
                     {"camera.target=decoy"},
                     "camera.target: found the spacecraft \"decoy\" without an attitude; accepted: a spacecraft with a "
                     "model and an attitude"},
-        BadOverride{
-            "PartnerBesideACamera",
-            {"gnss.partner=target"},
-            "camera: found a camera beside a GNSS receiver with the partner \"target\"; accepted: a GNSS receiver "
-            "without a partner"},
+        BadOverride{"PartnerOtherThanTheTargetOfTheCamera",
+                    {"gnss.partner=decoy", "spacecraft.decoy.sensors.gnss.period_s=10",
+                     "spacecraft.decoy.attitude.profile=zenith"},
+                    "camera.target: found the spacecraft \"target\" beside a GNSS receiver with the partner \"decoy\"; "
+                    "accepted: the partner"},
         BadOverride{
             "NoAttitude", {"spacecraft.servicer.attitude.profile=none"}, "camera: found a camera without an attitude"},
         BadOverride{"PsdOutsideItsLimits",

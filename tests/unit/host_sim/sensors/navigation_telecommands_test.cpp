@@ -58,6 +58,8 @@ TEST(NavigationSources, AreTheUnionOverTheSensors) {
   EXPECT_EQ(sources_of(kReceiver + kFar), sum({Use::kUseOwnGnss, Use::kUseBearings}));
   EXPECT_EQ(sources_of(kReceiver + kClose + kLidar), sum({Use::kUseOwnGnss, Use::kUseKeypoints, Use::kUseRangeFinder}));
   EXPECT_EQ(sources_of(kReceiver + kClose + kFar), sum({Use::kUseOwnGnss, Use::kUseBearings, Use::kUseKeypoints}));
+  EXPECT_EQ(sources_of(kPair + kClose + kFar),
+            sum({Use::kUseOwnGnss, Use::kUseCarrierPair, Use::kUseBearings, Use::kUseKeypoints}));
 }
 
 TEST(NavigationSources, TrueStatesStandAlone) {

@@ -6,6 +6,7 @@
 
 #include "fsw/estimation/unscented.h"
 #include "fsw/orbit/roe.h"
+#include "tests/support/accuracy.h"
 #include "tests/unit/fsw/sources/carrier_pair/trunk_pair.h"
 
 namespace vbar::fsw::sources {
@@ -93,22 +94,24 @@ TEST(DifferenceRows, ResidualsAndSensitivitiesAreDerivatives) {
   ASSERT_EQ(rows.form(epoch, servicer, target, *pair.estimator), Status::kOk);
   ASSERT_GT(epoch.count, 10U);
   using trunk::kAt;
-  const std::array<int, 9> components = {0,
-                                         1,
-                                         4,
-                                         kAt<trunk::ServicerAntenna> + 1,
-                                         kAt<trunk::TargetAntenna> + 2,
-                                         kAt<trunk::PhaseCentreJitter>,
-                                         kAt<trunk::ClockDifference>,
-                                         kAt<trunk::Ambiguities> + 3,
-                                         kAt<trunk::CodeBiases>};
+  const std::array<int, 11> components = {0,
+                                          1,
+                                          4,
+                                          kAt<trunk::ServicerAntenna> + 1,
+                                          kAt<trunk::TargetAntenna> + 2,
+                                          kAt<trunk::PhaseCentreJitter>,
+                                          kAt<trunk::ClockDifference>,
+                                          kAt<trunk::Ambiguities> + 3,
+                                          kAt<trunk::CodeBiases>,
+                                          kAt<trunk::Ionosphere>,
+                                          kAt<trunk::Ionosphere> + 1};
   for (const int i : components) {
     const double step = i < 6 ? 1.0 / 7e6 : 1.0;
     for (const std::size_t n : {std::size_t{0}, std::size_t{1}, epoch.count - 1}) {
       const auto& o = epoch.observations[n];
       const auto values = [&](const DifferenceRows& of) {
         return std::pair(of.code_residual(n, o, pair.estimator->estimate()),
-                         of.phase_residual(n, 3, o.phase_m, pair.estimator->estimate()));
+                         of.phase_residual(n, 3, o, pair.estimator->estimate()));
       };
       const auto before = values(rows);
       pair.estimator->estimate().shift(i, step);
@@ -118,9 +121,46 @@ TEST(DifferenceRows, ResidualsAndSensitivitiesAreDerivatives) {
       pair.estimator->estimate().shift(i, -step);
       // The residual falls by the sensitivity; the model formed anew differs by curvature: (1 m)^2 / a.
       EXPECT_NEAR(linear.first - before.first, -step * rows.code_sensitivity(n, o.signal)(i), 1e-8) << i;
-      EXPECT_NEAR(linear.second - before.second, -step * rows.phase_sensitivity(n, 3)(i), 1e-8) << i;
+      EXPECT_NEAR(linear.second - before.second, -step * rows.phase_sensitivity(n, 3, o.signal)(i), 1e-8) << i;
       EXPECT_NEAR(exact.first, linear.first, 3e-7) << i;
       EXPECT_NEAR(exact.second, linear.second, 3e-7) << i;
+    }
+  }
+}
+
+// The ionosphere delays codes and advances phases, by the square of the wavelength: 1.647 as much at L2 as at L1. Of a
+// target at the place of the servicer there is hardly a difference.
+TEST(DifferenceRows, IonosphereDelaysCodesAndAdvancesPhases) {
+  test::TrunkPair pair(21);
+  pair.fly_trunk(6);
+  const gnss::ObservationEpoch ours = pair.servicer.observe(pair.estimator->epoch(), pair.satellites, test::kEarth);
+  const gnss::ObservationEpoch theirs = pair.target.observe(pair.estimator->epoch(), pair.satellites, test::kEarth);
+  const auto frame = navigation::EarthFrame::at(pair.estimator->epoch(), test::kEarth);
+  navigation::DifferentialEpoch epoch;
+  navigation::form_differences(ours, theirs, pair.store, frame, epoch);
+  const AntennaPlatform platform{pair.servicer.R_eci_body_at(epoch.time), pair.nominal_antenna_m, 0.0};
+  constexpr int kVertical = trunk::kAt<trunk::Ionosphere>;
+  const auto chief = orbit::qns_from_cartesian(pair.estimator->servicer()).value();
+  trunk::Trunk& trunk = *pair.estimator;
+  DifferenceRows rows;
+  for (const double distance_m : {0.0, 1000.0}) {
+    const Vector6 roe = -distance_m / chief.a * Vector6::Unit(1);
+    trunk.begin_relative(roe, 1e-20 * Matrix6::Identity(), trunk::RelativeKnowledge::kEstimated);
+    ASSERT_EQ(rows.form(epoch, platform, platform, trunk), Status::kOk);
+    accuracy::Largest largest;
+    for (std::size_t n = 0; n < epoch.count; ++n) {
+      const double l1 = rows.code_sensitivity(n, gnss::Signal::kGpsL1)(kVertical);
+      largest.add(std::abs(l1));
+      EXPECT_NEAR(rows.code_sensitivity(n, gnss::Signal::kGpsL2)(kVertical), 1.6469444 * l1, 1e-6 * std::abs(l1));
+      EXPECT_EQ(rows.phase_sensitivity(n, 0, gnss::Signal::kGpsL1)(kVertical), -l1);
+    }
+    // The two signals leave a satellite up to a millisecond apart, which is 2e-7 rad of its path. A kilometre is 1.4e-4
+    // rad of the direction of the zenith, and the slant factor rises by up to 30 per radian.
+    if (distance_m == 0.0) {
+      EXPECT_LT(largest, 1e-5);
+    } else {
+      EXPECT_GT(largest, 3e-5);
+      EXPECT_LT(largest, 5e-3);
     }
   }
 }

@@ -192,6 +192,34 @@ TEST(CombinedSources, AChangeOfSourcesLeavesTheOrbit) {
   }
 }
 
+// Where receivers determine the orbit, the noise of the centroid is measured: here a quarter of the configured one. The
+// normalised innovations then have their expected mean; without receivers they keep that of the configuration.
+TEST(CombinedSources, CentroidNoiseIsMeasuredAgainstCarrierPhase) {
+  for (const bool with_receivers : {true, false}) {
+    double sum = 0.0;
+    int count = 0;
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      CombinedPair pair(seed, 200.0);
+      pair.fly(20, true, false);
+      pair.set_centroid_noise(0.12);
+      pair.centroid_noise_m = 0.03;
+      if (!with_receivers) pair.carrier->stop(pair.tag, *pair.estimator);
+      for (int k = 0; k < 160; ++k) {
+        pair.fly(1, with_receivers, true);
+        if (k < 60) continue;
+        sum += 0.5 * pair.camera.last_update().nis;
+        ++count;
+      }
+    }
+    // 500 values of mean 1 have one of standard deviation 0.04; the adaptation by a tenth spreads it to 0.1.
+    if (with_receivers) {
+      EXPECT_NEAR(sum / count, 1.0, 0.3);
+    } else {
+      EXPECT_LT(sum / count, 0.3);
+    }
+  }
+}
+
 /// The pair 12 m apart, with a camera whose images show keypoints besides: lit from abeam of the orbit.
 struct ClosePair : CombinedPair {
   explicit ClosePair(unsigned seed) : CombinedPair(seed, 12.0) {
@@ -227,6 +255,17 @@ struct ClosePair : CombinedPair {
     }
   }
 
+  /// Beside receivers, which determine the orbit.
+  void fly_with_receivers_and_keypoints(int images) {
+    for (int k = 0; k < images; ++k, tag = tag + duration_of_seconds(10)) {
+      const auto ours = servicer.observe(tag, satellites, kEarth);
+      const auto theirs = target.observe(tag, satellites, kEarth);
+      step(ours, &theirs);
+      keypoint_status = keypoints.process(image(), *estimator);
+    }
+  }
+
+  Vector3 pose_error_camera_m = Vector3::Zero();
   imaging::CameraModel optics = vbar::test::close_camera();
   pose::KeypointShape shape = vbar::test::tango_shape();
   KeypointAiding keypoints;
@@ -255,7 +294,7 @@ struct ClosePair : CombinedPair {
     made.R_camera_eci = R_camera_eci;
     pose::PnpSolution pnp;
     pnp.pose.R_camera_body = R_camera_eci * target.R_eci_body_at(tag);
-    pnp.pose.position_camera_m = R_camera_eci * apart;
+    pnp.pose.position_camera_m = R_camera_eci * apart + pose_error_camera_m;
     pnp.inliers = static_cast<int>(shape.size());
     pnp.covariance = 1e-4 * Matrix6::Identity();
     for (std::size_t k = 0; k < shape.size(); ++k) {
@@ -303,6 +342,26 @@ TEST(CombinedSources, FourSourcesInTurnLeaveOneOrbit) {
     EXPECT_EQ(pair.estimator->failures(), 0);
     EXPECT_EQ(pair.keypoints.counters().restarts + pair.carrier->counters().restarts, 0);
   }
+}
+
+// Images that contradict the orbit, by poses 3 m off, may end the attitude and suspend their source: the orbit that
+// receivers determine stays as it is without them.
+TEST(CombinedSources, KeypointsDoNotInflateAnOrbitByCarrierPhase) {
+  ClosePair pair(1);
+  pair.hand_over(0.2);
+  pair.fly(30, true, false);
+  ASSERT_TRUE(pair.carrier->is_fixed());
+  pair.fly_with_receivers_and_keypoints(20);
+  ASSERT_TRUE(pair.estimator->has_attitude());
+  const double sigma_before = std::sqrt(pair.estimator->position_covariance_eci().trace());
+  pair.pose_error_camera_m = Vector3(3.0, 0.0, 0.0);
+  pair.fly_with_receivers_and_keypoints(40);
+  EXPECT_EQ(pair.keypoints.counters().inflations, 0);
+  EXPECT_FALSE(pair.estimator->has_attitude());
+  EXPECT_EQ(pair.keypoints.aid().state(), AidState::kSuspended);
+  EXPECT_LT(std::sqrt(pair.estimator->position_covariance_eci().trace()), 1.2 * sigma_before);
+  EXPECT_LT(pair.error_in_sigmas(), 3.0);
+  EXPECT_TRUE(pair.carrier->is_fixed());
 }
 
 }  // namespace

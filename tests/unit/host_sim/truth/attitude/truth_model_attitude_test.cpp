@@ -57,6 +57,41 @@ bool same_attitude(const AttitudeState& a, const AttitudeState& b) {
   return a.q_body_eci.coeffs() == b.q_body_eci.coeffs() && a.rate_body == b.rate_body;
 }
 
+LaterAttitudeSettings zenith_from(double seconds) {
+  LaterAttitudeSettings later;
+  later.from_s = seconds;
+  later.slew_s = 600.0;
+  later.attitude = PointedSettings{};
+  return later;
+}
+
+// A slew begins and ends where the two profiles are, also for a body under torques; after its end there is none.
+TEST(TruthModelAttitude, ALaterProfileFollowsASlewUnlessItBeganBeforeTheStart) {
+  TruthModel tumbling = pair(), slewing = pair(2), pointing = pair();
+  slewing.set_attitude(1, tumbling_box(kAllTorques), {zenith_from(1800.0)});
+  pointing.set_attitude(1, PointedSettings{});
+  for (TruthModel* model : {&tumbling, &slewing, &pointing}) model->advance_to(after(1800.0));
+  // Steps of the integrator end at the slew.
+  EXPECT_LT(angle_between(tumbling.attitude(1).q_body_eci, slewing.attitude(1).q_body_eci), 1e-8);
+  for (TruthModel* model : {&slewing, &pointing}) model->advance_to(after(2100.0));
+  EXPECT_GT(angle_between(slewing.attitude(1).q_body_eci, pointing.attitude(1).q_body_eci), 0.1);
+  for (TruthModel* model : {&slewing, &pointing}) model->advance_to(after(2400.0));
+  EXPECT_TRUE(same_attitude(slewing.attitude(1), pointing.attitude(1)));
+
+  TruthModel late = pair();
+  late.advance_to(after(1800.0));
+  late.set_attitude(1, tumbling_box(kAllTorques), {zenith_from(1800.0)});
+  late.advance_to(after(2100.0));
+  pointing = pair();
+  pointing.set_attitude(1, PointedSettings{});
+  pointing.advance_to(after(2100.0));
+  EXPECT_LT(angle_between(late.attitude(1).q_body_eci, pointing.attitude(1).q_body_eci), 1e-9);
+
+  LaterAttitudeSettings at_spacecraft = zenith_from(1800.0);
+  at_spacecraft.attitude = PointedSettings{{.boresight_to = Direction::kSpacecraft}, "servicer"};
+  EXPECT_THROW(late.set_attitude(1, PointedSettings{}, {at_spacecraft}), std::invalid_argument);
+}
+
 TEST(TruthModelAttitude, IsTheSameForAnyTimesAndThreads) {
   TruthModel at_once = pair(), often = pair(), threaded = pair(2);
   at_once.advance_to(after(7000.0));

@@ -1,0 +1,47 @@
+// missions/full_range_cooperative.toml: the whole mission to a target that cooperates from waypoint 4 on.
+
+#include <gtest/gtest.h>
+
+#include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/sensors/navigation_telecommands.h"
+#include "tests/support/paths.h"
+#include "tests/unit/host_sim/mission/mission_text.h"
+
+namespace vbar::mission::test {
+namespace {
+
+const Mission& mission() {
+  static const Mission loaded = load_mission(vbar::tests::source_path("missions/full_range_cooperative.toml"));
+  return loaded;
+}
+
+TEST(FullRangeCooperativeMission, UsesAllSourcesFromTheFirstStepOn) {
+  using Use = navigation_configuration;
+  EXPECT_EQ(sensors::sources_of(*mission().find_spacecraft("servicer")),
+            std::int32_t{Use::kUseOwnGnss} + std::int32_t{Use::kUseCarrierPair} + std::int32_t{Use::kUseBearings} +
+                std::int32_t{Use::kUseKeypoints});
+}
+
+TEST(FullRangeCooperativeMission, TheTargetCooperatesFromWaypoint4On) {
+  const fsw::Duration waypoint_4 = mission().waypoints[4].time - mission().epoch;
+  const std::vector<LaterAttitude>& later = mission().find_spacecraft("target")->later_attitudes;
+  ASSERT_EQ(later.size(), 1U);
+  EXPECT_EQ(fsw::nearest_duration(later[0].from_s), waypoint_4);
+  EXPECT_EQ(std::get<truth::PointedSettings>(later[0].profile).pointing.boresight_to, truth::Direction::kZenith);
+  EXPECT_EQ(shared_settings<sensors::GnssShared>(mission()).crosslink_from, waypoint_4);
+}
+
+// What is not of the target is that of full_range.toml.
+TEST(FullRangeCooperativeMission, IsOtherwiseTheWholeMission) {
+  const Mission whole = load_mission(vbar::tests::source_path("missions/full_range.toml"));
+  ASSERT_EQ(mission().waypoints.size(), whole.waypoints.size());
+  for (std::size_t k = 0; k < whole.waypoints.size(); ++k) {
+    EXPECT_EQ(mission().waypoints[k].a_roe_m, whole.waypoints[k].a_roe_m) << k;
+    EXPECT_EQ(mission().waypoints[k].time, whole.waypoints[k].time) << k;
+  }
+  EXPECT_EQ(mission().end_time(), whole.end_time());
+  EXPECT_EQ(mission().spacecraft.size(), whole.spacecraft.size());
+}
+
+}  // namespace
+}  // namespace vbar::mission::test
