@@ -9,15 +9,15 @@ Gnc::Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context)
     : inbox_(spacecraft), outbox_(spacecraft, sink, sink_context) {}
 
 Status Gnc::step(GpsTime now) {
-  const bool is_later = !stepped_ || now > now_;
-  if (!is_later || !is_usable(now)) {
-    faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = true, .argument = seconds(now - now_)});
-    inbox_.clear(now_);
-    return is_later ? Status::kOutOfRange : Status::kBadSequence;
-  }
+  const TickGate::Verdict verdict = is_usable(now) ? ticks_.judge(now) : TickGate::Verdict::kTooFarAhead;
+  if (verdict != TickGate::Verdict::kTaken) return refuse(now, verdict);
+  const double late_s = stepped_ ? seconds(now - expected_) : 0.0;
   now_ = now;
   if (!stepped_) started_ = now;
   stepped_ = true;
+  faults_.check(now_, {.fault = telemetry_health::kFaultStepLate,
+                       .is_detected = late_s > 0.5 * seconds(inbox_.step_period()) && inbox_.step_period().ns > 0,
+                       .argument = late_s});
 
   manage();
   navigate();
@@ -27,9 +27,19 @@ Status Gnc::step(GpsTime now) {
   control();
   report();
 
-  inbox_.clear(now_ + inbox_.step_period());
+  expected_ = now_ + inbox_.step_period();
+  inbox_.clear(expected_);
   ++step_;
   return Status::kOk;
+}
+
+/// A step that is refused changes nothing but counters and faults, and says so.
+Status Gnc::refuse(GpsTime now, TickGate::Verdict verdict) {
+  faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = true, .argument = seconds(now - now_)});
+  inbox_.clear(now_);
+  report_health();
+  report_events();
+  return verdict == TickGate::Verdict::kBackward ? Status::kBadSequence : Status::kOutOfRange;
 }
 
 void Gnc::manage() {

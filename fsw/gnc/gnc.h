@@ -19,6 +19,7 @@
 #include "fsw/gnc/outbox.h"
 #include "fsw/gnc/retreat_sequence.h"
 #include "fsw/gnc/telecommands.h"
+#include "fsw/gnc/tick_gate.h"
 
 namespace vbar::fsw::gnc {
 
@@ -31,11 +32,12 @@ class Gnc {
   /// Checks and files one packet for the coming step.
   Status receive(std::span<const std::uint8_t> packet) { return inbox_.receive(packet); }
 
-  /// Runs the step at `now`. Only discards the packets of the step if `now` is not later than the last step
-  /// (kBadSequence) or outside the clock's range (kOutOfRange).
+  /// Runs the step at `now`. Only discards the packets of the step, and reports its health, if `now` is not later than
+  /// the last step (kBadSequence), too far ahead of it or outside the clock's range (kOutOfRange): tick_gate.h.
   Status step(GpsTime now);
 
  private:
+  Status refuse(GpsTime now, TickGate::Verdict verdict);
   void manage();
   void navigate();
   void assess();
@@ -69,7 +71,9 @@ class Gnc {
   ImageWatch images_;
   std::optional<vbar::attitude> attitude_;  ///< the last one received, for the guard
   GpsTime now_;
-  GpsTime started_;  ///< first step
+  GpsTime started_;   ///< first step
+  GpsTime expected_;  ///< time of the next step
+  TickGate ticks_;
   std::int64_t step_ = 0;
   faults::FaultMonitor faults_;
   std::int32_t packets_dropped_ = 0;  ///< of the inbox, until the last step

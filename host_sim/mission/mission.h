@@ -117,7 +117,7 @@ enum class FaultKind {
   kThrustScale,        ///< burns are executed at `value` of their size; 0: not at all
   kThrustUncommanded,  ///< an acceleration of `value` m/s^2 along `direction_rtn`
   kComputerSilent,     ///< the flight computer gets no packets and takes no steps, then continues
-  kComputerReboot,     ///< the same, and it starts anew: its telecommands are sent again
+  kComputerReboot,     ///< the same, and it starts again: its telecommands are sent again
 };
 
 /// [[fault]]: something that fails in the simulation.

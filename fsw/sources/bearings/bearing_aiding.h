@@ -76,8 +76,8 @@ class BearingAiding {
   GpsTime last_accepted_;
   GpsTime last_folded_;
   int refused_in_a_row_ = 0;
-  int refused_in_excess_ = 0;      ///< of accepted ones, while others confirm the orbit
-  int agreeing_in_a_row_ = 0;      ///< while contradicting
+  int refused_in_excess_ = 0;  ///< of accepted ones, while others confirm the orbit
+  int agreeing_in_a_row_ = 0;  ///< while contradicting
   std::size_t inflations_in_a_row_ = 0;
   double centroid_scale_ =
       1.0;  ///< factor on the variances of the centroid, adapted while receivers determine the orbit
