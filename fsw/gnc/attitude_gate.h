@@ -12,8 +12,8 @@ namespace vbar::fsw::gnc {
 
 class AttitudeGate {
  public:
-  /// Ten times what a platform's control error and the drift of a gyro over half a minute amount to.
-  static constexpr double kLargestDifference = 5e-3;  // rad
+  /// Many times what a platform's control error and the drift of a gyro over half a minute amount to.
+  static constexpr double kLargestDifference = 0.01;  // rad
 
   /// Whether `sample` may be used. `history`: the attitudes accepted so far; `R_body_eci_commanded`: at its time, empty
   /// without a command. What no other attitude can judge is accepted.

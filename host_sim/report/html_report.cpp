@@ -13,8 +13,9 @@
 namespace vbar::report {
 
 std::string html_report(const RunRecord& record) {
-  std::vector<Section> sections{glance_section(record),   waypoint_section(record), trajectory_section(record),
-                                elements_section(record), maneuver_section(record), navigation_section(record)};
+  std::vector<Section> sections{glance_section(record),     faults_section(record),   waypoint_section(record),
+                                trajectory_section(record), elements_section(record), maneuver_section(record),
+                                navigation_section(record)};
   for (const Extension* extension : record.extensions) {
     if (extension->sections == nullptr) continue;
     for (Section& section : extension->sections(record)) sections.push_back(std::move(section));

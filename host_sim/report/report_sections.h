@@ -13,6 +13,8 @@ namespace vbar::report {
 
 /// Distance, accuracy, aiding sources and maneuvers of the whole run (section_glance.cpp).
 [[nodiscard]] Section glance_section(const RunRecord& record);
+/// Faults of the scenario and of the flight software (section_faults.cpp).
+[[nodiscard]] Section faults_section(const RunRecord& record);
 
 /// The paper's performance metrics at each waypoint (section_waypoints.cpp).
 [[nodiscard]] Section waypoint_section(const RunRecord& record);

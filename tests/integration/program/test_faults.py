@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Faults of a scenario: what they do, who witnesses it, what the flight software reports, and nothing before they begin."""
+import csv
+import unittest
+
+from vbar_program import SOURCE, fly, hashes, main, scratch
+
+EXPERIMENT2 = SOURCE / "missions" / "experiment2.toml"
+START_H = 39.0
+SHORT = "mission.duration_h=0.2"
+FAULTS = """
+extends = "{base}"
+[[fault]]
+kind = "silent"
+unit = "camera"
+at_h = 39.05
+for_s = 90.0
+[[fault]]
+kind = "frozen"
+unit = "camera"
+at_h = 39.1
+for_s = 45.0
+[[fault]]
+kind = "attitude_error"
+unit = "gnss"
+at_h = 39.13
+for_s = 60.0
+value_deg = 1.0
+[[fault]]
+kind = "thrust_uncommanded"
+at_h = 39.16
+for_s = 3.0
+value_mps2 = 1e-3
+direction_rtn = [0.0, 1.0, 0.0]
+[[fault]]
+name = "between two burns"
+kind = "thrust_scale"
+at_h = 39.001
+for_s = 0.001
+value = 0.5
+"""
+
+
+def rows_of(folder, name):
+    with (folder / name).open() as file:
+        return list(csv.DictReader(file))
+
+
+class Faults(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = cls.enterClassContext(scratch())
+        mission = cls.folder / "faults.toml"
+        mission.write_text(FAULTS.format(base=EXPERIMENT2))
+        cls.mission = mission
+        cls.summary = fly(cls.folder / "run", SHORT, mission=mission)
+        cls.faults = {row["name"]: row for row in rows_of(cls.folder / "run", "faults.csv")}
+        cls.raised = [row for row in rows_of(cls.folder / "run", "telemetry_event.csv") if row["event"] == "fault_raised"]
+
+    def raised_after(self, fault, within_s):
+        """Whether the flight software raised `fault` within a time of the injected fault's beginning."""
+        return lambda begin_s: any(row["fault"] == fault and begin_s <= float(row["time_s"]) <= begin_s + within_s for row in self.raised)
+
+    def test_witnesses_see_effect_and_recovery(self):
+        for name, lasting_s in (("silent", 90.0), ("frozen", 45.0), ("attitude_error", 60.0)):
+            row = self.faults[name]
+            self.assertGreater(int(row["witnessed"]), 0, name)
+            self.assertLess(float(row["effect_s"]) - float(row["begin_s"]), 30.0, name)
+            self.assertGreaterEqual(float(row["recovered_s"]), float(row["begin_s"]) + lasting_s, name)
+        self.assertEqual(int(self.faults["thrust_uncommanded"]["witnessed"]), 3)
+
+    def test_the_flight_software_reports_each(self):
+        for name, fault, within_s in (("silent", "images_missing", 30.0), ("frozen", "image_frozen", 15.0),
+                                      ("attitude_error", "attitude", 20.0), ("thrust_uncommanded", "burn_uncommanded", 10.0)):
+            self.assertTrue(self.raised_after(fault, within_s)(float(self.faults[name]["begin_s"])), name)
+
+    def test_a_fault_without_effect_is_counted(self):
+        self.assertEqual(self.faults["between two burns"]["effect_s"], "")
+        figures = self.summary["sensor_figures"]["faults"]
+        self.assertEqual(figures["injected"], 5)
+        self.assertEqual(figures["without_effect"], 1)
+        self.assertGreater(figures["min_distance_m"], 0.0)
+
+    def test_nothing_changes_before_the_first_fault(self):
+        before = "mission.duration_h=0.049"
+        late = self.folder / "late.toml"
+        late.write_text(f'extends = "{EXPERIMENT2}"\n[[fault]]\nkind = "silent"\nunit = "camera"\nat_h = 39.0489\n')
+        self.assertEqual(hashes(fly(self.folder / "with", before, mission=late)), hashes(fly(self.folder / "without", before)))
+
+    def test_the_same_again(self):
+        self.assertEqual(hashes(fly(self.folder / "again", SHORT, mission=self.mission)), hashes(self.summary))
+
+
+class Reboot(unittest.TestCase):
+    def test_the_flight_computer_begins_again(self):
+        with scratch() as folder:
+            mission = folder / "reboot.toml"
+            mission.write_text(f'extends = "{EXPERIMENT2}"\n[[fault]]\nkind = "computer_reboot"\nat_h = 39.05\nfor_s = 60.0\n')
+            summary = fly(folder / "run", "mission.duration_h=0.1", mission=mission)
+            row = rows_of(folder / "run", "faults.csv")[0]
+            self.assertEqual(float(row["recovered_s"]), float(row["begin_s"]) + 60.0)
+            steps = [int(health["step"]) for health in rows_of(folder / "run", "telemetry_health.csv")]
+            self.assertEqual(steps.count(0), 2)
+            self.assertTrue(summary["complete"])
+
+
+if __name__ == "__main__":
+    main()
