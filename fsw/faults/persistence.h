@@ -1,7 +1,6 @@
 #pragma once
 // Persistence of a detection: the one counter of all faults.
 
-#include <bit>
 #include <cstdint>
 
 namespace vbar::fsw::faults {
@@ -18,7 +17,7 @@ class Persistence {
   constexpr bool add(bool is_detected) {
     const std::uint64_t mask = window_ == kMaxWindow ? ~std::uint64_t{0} : (std::uint64_t{1} << window_) - 1;
     history_ = ((history_ << 1U) | (is_detected ? 1U : 0U)) & mask;
-    if (std::popcount(history_) >= limit_) is_persistent_ = true;
+    if (detections() >= limit_) is_persistent_ = true;
     if (history_ == 0) is_persistent_ = false;
     return is_persistent_;
   }
@@ -29,6 +28,13 @@ class Persistence {
   }
 
  private:
+  /// Within the window.
+  [[nodiscard]] constexpr int detections() const {
+    int count = 0;
+    for (int k = 0; k < window_; ++k) count += static_cast<int>((history_ >> static_cast<unsigned>(k)) & 1U);
+    return count;
+  }
+
   std::uint64_t history_ = 0;  ///< of the checks in the window, the latest in the lowest bit
   int limit_;
   int window_;

@@ -27,7 +27,7 @@ GENERATED_HEADER = re.compile(r"vbar/(\w+\.hpp|fields\.h)|lcm/lcm_coretypes\.h")
 STD_NAMES = set("""
     size_t ptrdiff_t byte int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t uintptr_t
     array span tuple tuple_size_v get apply dynamic_extent optional nullopt numeric_limits bit_cast to_integer as_bytes
-    to_array popcount has_single_bit
+    to_array has_single_bit
     min max clamp swap copy copy_n fill fill_n equal all_of any_of none_of sort lower_bound upper_bound
     memcpy memset memmove memcmp strlen strcmp strchr strrchr
     move forward exchange is_same_v is_array_v is_class_v is_floating_point_v is_trivially_copyable_v is_standard_layout_v integral unsigned_integral same_as

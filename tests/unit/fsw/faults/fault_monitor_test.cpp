@@ -5,7 +5,7 @@
 namespace vbar::fsw::faults {
 namespace {
 
-constexpr std::int32_t kFrozen = telemetry_health::kFaultImageFrozen;  // two of two checks
+constexpr std::int32_t kThruster = telemetry_health::kFaultThruster;  // two of two checks
 
 GpsTime at(int s) {
   return GpsTime{} + duration_of_seconds(s);
@@ -13,15 +13,15 @@ GpsTime at(int s) {
 
 TEST(FaultMonitor, AFaultIsRaisedOnceItPersistsWithAnEvent) {
   FaultMonitor monitor;
-  monitor.check(at(1), {.fault = kFrozen, .is_detected = true});
+  monitor.check(at(1), {.fault = kThruster, .is_detected = true});
   EXPECT_EQ(monitor.latched(), 0);
-  monitor.check(at(2), {.fault = kFrozen, .is_detected = true, .device = 8, .argument = 1.0});
-  EXPECT_EQ(monitor.latched(), kFrozen);
-  EXPECT_EQ(monitor.present(), kFrozen);
-  EXPECT_EQ(monitor.onset(kFrozen), at(2));
+  monitor.check(at(2), {.fault = kThruster, .is_detected = true, .device = 8, .argument = 1.0});
+  EXPECT_EQ(monitor.latched(), kThruster);
+  EXPECT_EQ(monitor.present(), kThruster);
+  EXPECT_EQ(monitor.onset(kThruster), at(2));
   ASSERT_EQ(monitor.transitions().size(), 1U);
   const Transition& raised = monitor.transitions()[0];
-  EXPECT_EQ(raised.fault, kFrozen);
+  EXPECT_EQ(raised.fault, kThruster);
   EXPECT_EQ(raised.event, telemetry_event::kEventFaultRaised);
   EXPECT_EQ(raised.severity, telemetry_event::kSeverityFault);
   EXPECT_EQ(raised.device, 8);
@@ -31,27 +31,27 @@ TEST(FaultMonitor, AFaultIsRaisedOnceItPersistsWithAnEvent) {
 
 TEST(FaultMonitor, AFaultThatEndsStaysLatchedWithItsFirstOnset) {
   FaultMonitor monitor;
-  for (int s = 1; s <= 2; ++s) monitor.check(at(s), {.fault = kFrozen, .is_detected = true});
-  for (int s = 3; s <= 4; ++s) monitor.check(at(s), {.fault = kFrozen, .is_detected = false});
-  EXPECT_EQ(monitor.latched(), kFrozen);
+  for (int s = 1; s <= 2; ++s) monitor.check(at(s), {.fault = kThruster, .is_detected = true});
+  for (int s = 3; s <= 4; ++s) monitor.check(at(s), {.fault = kThruster, .is_detected = false});
+  EXPECT_EQ(monitor.latched(), kThruster);
   EXPECT_EQ(monitor.present(), 0);
   EXPECT_EQ(monitor.transitions().back().event, telemetry_event::kEventFaultEnded);
-  for (int s = 5; s <= 6; ++s) monitor.check(at(s), {.fault = kFrozen, .is_detected = true});
-  EXPECT_EQ(monitor.onset(kFrozen), at(2));
-  EXPECT_EQ(monitor.present(), kFrozen);
+  for (int s = 5; s <= 6; ++s) monitor.check(at(s), {.fault = kThruster, .is_detected = true});
+  EXPECT_EQ(monitor.onset(kThruster), at(2));
+  EXPECT_EQ(monitor.present(), kThruster);
 }
 
 TEST(FaultMonitor, ClearingUnlatchesAndAFaultThatPersistsIsRaisedAgain) {
   FaultMonitor monitor;
-  for (int s = 1; s <= 2; ++s) monitor.check(at(s), {.fault = kFrozen, .is_detected = true});
+  for (int s = 1; s <= 2; ++s) monitor.check(at(s), {.fault = kThruster, .is_detected = true});
   monitor.forget_transitions();
   monitor.clear(at(3), ~0);
   EXPECT_EQ(monitor.latched(), 0);
   ASSERT_EQ(monitor.transitions().size(), 1U) << "only of the fault that was latched";
   EXPECT_EQ(monitor.transitions()[0].event, telemetry_event::kEventFaultCleared);
-  for (int s = 4; s <= 5; ++s) monitor.check(at(s), {.fault = kFrozen, .is_detected = true});
-  EXPECT_EQ(monitor.latched(), kFrozen);
-  EXPECT_EQ(monitor.onset(kFrozen), at(5));
+  for (int s = 4; s <= 5; ++s) monitor.check(at(s), {.fault = kThruster, .is_detected = true});
+  EXPECT_EQ(monitor.latched(), kThruster);
+  EXPECT_EQ(monitor.onset(kThruster), at(5));
 }
 
 TEST(FaultMonitor, ClearingOneLeavesTheOthers) {

@@ -39,7 +39,8 @@ struct Declaration {
 };
 std::optional<Declaration> declaration_in(const std::string& line) {
   const std::size_t end = line.find(';');
-  if (!line.starts_with("  ") || line.starts_with("  const ") || line.starts_with("  //") || end == std::string::npos)
+  const bool is_comment = line.find("//") < end;
+  if (!line.starts_with("  ") || line.starts_with("  const ") || is_comment || end == std::string::npos)
     return std::nullopt;
   std::istringstream words(line.substr(0, end));
   Declaration declaration;
