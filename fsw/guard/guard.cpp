@@ -12,7 +12,7 @@ constexpr double kLargestShare = 0.2;
 constexpr double kMinImpulse = 2e-5;  // m/s
 
 // Closing: by more than the whole range in this time, and by more than relative orbits of metres do by themselves.
-constexpr double kClosingTime_s = 2000.0;
+constexpr double kClosingTime_s = 1000.0;
 constexpr double kOrbitalRate = 0.01;  // m/s
 constexpr double kClosingWithin_m = 150.0;
 

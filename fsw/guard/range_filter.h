@@ -18,7 +18,7 @@ class RangeFilter {
   [[nodiscard]] double range_m(GpsTime time) const;
   [[nodiscard]] double range_rate(GpsTime time) const { return range_m(time) * rate_; }  ///< m/s
 
-  static constexpr double kMemory_s = 200.0;
+  static constexpr double kMemory_s = 300.0;
   /// After a longer gap the filter begins with the next range.
   static constexpr double kLongestGap_s = 600.0;
 

@@ -83,13 +83,13 @@ TEST_F(GuardTest, ABurnThatDiffersFromItsCommandIsAnAlarm) {
   EXPECT_TRUE(guard_.judge(at(2.0)).burns.is_alarm) << "nobody commanded it";
 }
 
-// 60 m at 0.1 m/s: the whole range in ten minutes.
+// 140 m at 0.3 m/s: the whole range in eight minutes.
 TEST_F(GuardTest, AFastApproachIsAnAlarm) {
   bool is_alarm = false;
   for (int k = 0; k < 500 && !is_alarm; ++k) {
     const double t = 5.0 * k;
-    const double range_m = t < 1500.0 ? 60.0 : 60.0 - 0.1 * (t - 1500.0);
-    if (range_m < 15.0) break;
+    const double range_m = t < 1500.0 ? 140.0 : 140.0 - 0.3 * (t - 1500.0);
+    if (range_m < 20.0) break;
     look(t, range_m, range_m);
     const Verdict closing = guard_.judge(at(t)).closing;
     if (t <= 1500.0) {
