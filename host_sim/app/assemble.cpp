@@ -269,13 +269,13 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
     const std::string trouble = started_.stop(reason);
     for (const auto& testbed : made_.testbeds) testbed->finish();
     recording.finish();
-    fault_log.finish();
     summarise_mission(mission_, servicer_, record.summary);
     summarise_run(facts_, made_.sources, record.summary);
     record.summary.flight_software = surroundings.flight_computer.description();
     record.summary.flight_step.unit = facts_.cost_unit;
     line.summarise(record.summary.link);
     report::evaluate(record);
+    fault_log.finish();  // adds its figures to the summary
     return trouble;
   };
   bool complete = false;
