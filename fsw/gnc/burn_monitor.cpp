@@ -11,6 +11,7 @@ namespace {
 constexpr double kUsualShare = 0.05;
 constexpr double kUsualImpulse = 1e-5;  // m/s
 constexpr double kNothing = 0.1;        // share of the size below which a burn counts as missed
+constexpr double kImplausible = 10.0;   // share of the size from which on a report says nothing of the thruster
 constexpr Duration kOnTime = duration_of_seconds(1);
 constexpr Duration kLatestReport = duration_of_seconds(300);
 
@@ -95,7 +96,8 @@ void BurnMonitor::judge(const Commanded& commanded, GpsTime time, const executed
   }
   if (!is_executed) return;
   ++executed_;
-  if (size > kUsualImpulse) scale_.update(ratio, size);
+  // A report of another order of magnitude is a fault, not a scale.
+  if (size > kUsualImpulse && ratio < kImplausible) scale_.update(ratio, size);
 }
 
 }  // namespace vbar::fsw::gnc

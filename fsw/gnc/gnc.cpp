@@ -35,7 +35,9 @@ Status Gnc::step(GpsTime now) {
 
 /// A step that is refused changes nothing but counters and faults, and says so.
 Status Gnc::refuse(GpsTime now, TickGate::Verdict verdict) {
-  faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = true, .argument = seconds(now - now_)});
+  // In double: the difference of a time outside the clock's range may not be one of 64 bits.
+  const double jump_s = 1e-9 * (static_cast<double>(now.ns) - static_cast<double>(now_.ns));
+  faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = true, .argument = jump_s});
   inbox_.clear(now_);
   report_health();
   report_events();

@@ -21,7 +21,7 @@ std::uint64_t sum_of(const imaging::ImageView& image) {
 
 bool ImageWatch::is_missing(const Camera& camera, GpsTime now) {
   if (!camera.last || camera.interval.ns <= 0) return false;
-  return now - *camera.last > Duration{kMissingIntervals * camera.interval.ns};
+  return seconds(now - *camera.last) > kMissingIntervals * seconds(camera.interval);
 }
 
 void ImageWatch::update(GpsTime now, Inbox& inbox, faults::FaultMonitor& faults) {

@@ -26,7 +26,7 @@ class ImageWatch {
     std::uint64_t sum = 0;        ///< of its pixels
   };
 
-  static constexpr std::int64_t kMissingIntervals = 3;
+  static constexpr double kMissingIntervals = 3.0;
 
   [[nodiscard]] static bool is_missing(const Camera& camera, GpsTime now);
 
