@@ -9,15 +9,19 @@ Gnc::Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context)
     : inbox_(spacecraft), outbox_(spacecraft, sink, sink_context) {}
 
 Status Gnc::step(GpsTime now) {
-  const bool is_later = !stepped_ || now > now_;
-  if (!is_later || !is_usable(now)) {
-    faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = true, .argument = seconds(now - now_)});
-    inbox_.clear(now_);
-    return is_later ? Status::kOutOfRange : Status::kBadSequence;
+  if (!accepts(now)) {
+    refuse(now);
+    return is_usable(now) && now <= now_ ? Status::kBadSequence : Status::kOutOfRange;
   }
+  resume(now);
+  const Duration gap = stepped_ ? now - now_ : Duration{};
   now_ = now;
   if (!stepped_) started_ = now;
   stepped_ = true;
+  const double delay_s = seconds(gap) - seconds(promised_period_);
+  faults_.check(now_, {.fault = telemetry_health::kFaultStepLate,
+                       .is_detected = promised_period_.ns > 0 && delay_s > 0.5 * seconds(promised_period_),
+                       .argument = delay_s});
 
   manage();
   navigate();
@@ -28,6 +32,7 @@ Status Gnc::step(GpsTime now) {
   report();
 
   inbox_.clear(now_ + inbox_.step_period());
+  promised_period_ = inbox_.step_period();
   ++step_;
   return Status::kOk;
 }
