@@ -60,8 +60,8 @@ size_t vbar_gnc_snapshot_size(void);
  * is below vbar_gnc_snapshot_size(), kNotReady before the first step. */
 vbar_status vbar_gnc_save(const void* state, uint8_t* snapshot, size_t size);
 
-/* Restores a state that vbar_gnc_init has just made, with its sink and spacecraft number. The next step continues from a
- * snapshot that is at most 600 s older; of an older one it keeps the telecommands only. A snapshot that is truncated
+/* Restores a state that vbar_gnc_init has just made, with its sink and spacecraft number. The next step continues from
+ * a snapshot that is at most 600 s older; of an older one it keeps the telecommands only. A snapshot that is truncated
  * (kTooShort), of another layout, version or spacecraft (kWrongType) or damaged (kBadChecksum) is refused and leaves a
  * cold state, whose next step reports the refusal. */
 vbar_status vbar_gnc_restore(void* state, const uint8_t* snapshot, size_t size);
