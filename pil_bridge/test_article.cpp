@@ -49,10 +49,11 @@ std::shared_ptr<const TestArticle> load_test_article(const std::string& path) {
   resolve(path, handle, "vbar_gnc_set_sink", functions.set_sink);
   resolve(path, handle, "vbar_gnc_receive", functions.receive);
   resolve(path, handle, "vbar_gnc_step", functions.step);
-  if (functions.abi_version() != VBAR_GNC_ABI_VERSION) {
-    throw FlightComputerError(
-        "flight_computer.library '" + path + "' was built for version " + std::to_string(functions.abi_version()) +
-        " of the test-article interface, this program for " + std::to_string(VBAR_GNC_ABI_VERSION));
+  const std::int32_t version = functions.abi_version();
+  if (version < VBAR_GNC_ABI_VERSION_MIN || version > VBAR_GNC_ABI_VERSION) {
+    throw FlightComputerError("flight_computer.library '" + path + "' was built for version " +
+                              std::to_string(version) + " of the test-article interface, this program for " +
+                              std::to_string(VBAR_GNC_ABI_VERSION));
   }
   return {article, &functions};
 }

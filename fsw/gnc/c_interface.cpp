@@ -1,5 +1,6 @@
 // The C interface of the flight software (vbar_gnc.h).
 
+#include <cstring>
 #include <new>
 
 #include "fsw/gnc/gnc.h"
@@ -41,6 +42,8 @@ size_t vbar_gnc_state_alignment(void) {
 
 vbar_status vbar_gnc_init(void* state, uint8_t spacecraft, vbar_packet_sink sink, void* sink_context) {
   if (state == nullptr || sink == nullptr || !is_aligned(state)) return as_c(Status::kInvalidArgument);
+  // Padding included, the state is a function of what the flight software received.
+  std::memset(state, 0, sizeof(Gnc));
   new (state) Gnc(spacecraft, sink, sink_context);
   return as_c(Status::kOk);
 }
@@ -57,6 +60,20 @@ vbar_status vbar_gnc_receive(void* state, const uint8_t* packet, size_t size) {
 vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns) {
   if (state == nullptr) return as_c(Status::kInvalidArgument);
   return as_c(static_cast<Gnc*>(state)->step({gps_time_ns}));
+}
+
+size_t vbar_gnc_snapshot_size(void) {
+  return Gnc::kSnapshotBytes;
+}
+
+vbar_status vbar_gnc_save(const void* state, uint8_t* snapshot, size_t size) {
+  if (state == nullptr || snapshot == nullptr) return as_c(Status::kInvalidArgument);
+  return as_c(static_cast<const Gnc*>(state)->save({snapshot, size}));
+}
+
+vbar_status vbar_gnc_restore(void* state, const uint8_t* snapshot, size_t size) {
+  if (state == nullptr || snapshot == nullptr) return as_c(Status::kInvalidArgument);
+  return as_c(static_cast<Gnc*>(state)->restore({snapshot, size}));
 }
 
 }  // extern "C"

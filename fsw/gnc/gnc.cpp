@@ -9,15 +9,19 @@ Gnc::Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context)
     : inbox_(spacecraft), outbox_(spacecraft, sink, sink_context) {}
 
 Status Gnc::step(GpsTime now) {
-  const TickGate::Verdict verdict = is_usable(now) ? ticks_.judge(now) : TickGate::Verdict::kTooFarAhead;
-  if (verdict != TickGate::Verdict::kTaken) return refuse(now, verdict);
-  const double late_s = stepped_ ? seconds(now - expected_) : 0.0;
+  if (!accepts(now)) {
+    refuse(now);
+    return is_usable(now) && now <= now_ ? Status::kBadSequence : Status::kOutOfRange;
+  }
+  resume(now);
+  const Duration gap = stepped_ ? now - now_ : Duration{};
   now_ = now;
   if (!stepped_) started_ = now;
   stepped_ = true;
+  const double delay_s = seconds(gap) - seconds(promised_period_);
   faults_.check(now_, {.fault = telemetry_health::kFaultStepLate,
-                       .is_detected = late_s > 0.5 * seconds(inbox_.step_period()) && inbox_.step_period().ns > 0,
-                       .argument = late_s});
+                       .is_detected = promised_period_.ns > 0 && delay_s > 0.5 * seconds(promised_period_),
+                       .argument = delay_s});
 
   manage();
   navigate();
@@ -27,21 +31,10 @@ Status Gnc::step(GpsTime now) {
   control();
   report();
 
-  expected_ = now_ + inbox_.step_period();
-  inbox_.clear(expected_);
+  inbox_.clear(now_ + inbox_.step_period());
+  promised_period_ = inbox_.step_period();
   ++step_;
   return Status::kOk;
-}
-
-/// A step that is refused changes nothing but counters and faults, and says so.
-Status Gnc::refuse(GpsTime now, TickGate::Verdict verdict) {
-  // In double: the difference of a time outside the clock's range may not be one of 64 bits.
-  const double jump_s = 1e-9 * (static_cast<double>(now.ns) - static_cast<double>(now_.ns));
-  faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = true, .argument = jump_s});
-  inbox_.clear(now_);
-  report_health();
-  report_events();
-  return verdict == TickGate::Verdict::kBackward ? Status::kBadSequence : Status::kOutOfRange;
 }
 
 void Gnc::manage() {

@@ -1,6 +1,8 @@
 #pragma once
-// The flight software: packets in, a step, packets out. Its complete state is this one object.
+// The flight software: packets in, a step, packets out. Its complete state is this one object, of which a
+// snapshot contains the part that outlives a step.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -18,12 +20,34 @@
 #include "fsw/gnc/navigation.h"
 #include "fsw/gnc/outbox.h"
 #include "fsw/gnc/retreat_sequence.h"
+#include "fsw/gnc/step_clock.h"
 #include "fsw/gnc/telecommands.h"
-#include "fsw/gnc/tick_gate.h"
 
 namespace vbar::fsw::gnc {
 
-class Gnc {
+/// The state that one step leaves for the next one: the content of a snapshot, but for counters of inbox and outbox.
+struct GncState {
+  Telecommands telecommands_;
+  Management management_;
+  Navigation navigation_;
+  Guidance guidance_;
+  RetreatSequence retreat_;
+  Assessment assessment_;
+  BurnMonitor burns_;
+  guard::Guard guard_;
+  ImageWatch images_;
+  std::optional<vbar::attitude> attitude_;  ///< the last one received, for the guard
+  GpsTime now_;
+  GpsTime started_;  ///< first step
+  std::int64_t step_ = 0;
+  faults::FaultMonitor faults_;
+  std::int32_t packets_dropped_ = 0;  ///< of the inbox, until the last step
+  Duration promised_period_;          ///< from the last step to this one, as its tick stated; 0 unknown
+  bool stepped_ = false;
+  bool has_navigated_ = false;  ///< since the first step
+};
+
+class Gnc : private GncState {
  public:
   Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context);
 
@@ -32,12 +56,17 @@ class Gnc {
   /// Checks and files one packet for the coming step.
   Status receive(std::span<const std::uint8_t> packet) { return inbox_.receive(packet); }
 
-  /// Runs the step at `now`. Only discards the packets of the step, and reports its health, if `now` is not later than
-  /// the last step (kBadSequence), too far ahead of it or outside the clock's range (kOutOfRange): tick_gate.h.
+  /// Runs the step at `now`. Discards the packets of the step and sends its health only, if the clock refuses `now`
+  /// (step_clock.h): not later than the last step (kBadSequence), or far ahead or outside the range of times
+  /// (kOutOfRange). The time of the next step is accepted if a telecommand clears the fault of the clock.
   Status step(GpsTime now);
 
+  /// vbar_gnc_save and vbar_gnc_restore of the interface in C.
+  Status save(std::span<std::uint8_t> snapshot) const;
+  Status restore(std::span<const std::uint8_t> snapshot);
+  static const std::size_t kSnapshotBytes;
+
  private:
-  Status refuse(GpsTime now, TickGate::Verdict verdict);
   void manage();
   void navigate();
   void assess();
@@ -58,27 +87,16 @@ class Gnc {
   void report_health();
   void report_events();
 
-  Inbox inbox_;
+  [[nodiscard]] bool accepts(GpsTime now);
+  void refuse(GpsTime now);
+  void restart(GpsTime now);
+  void resume(GpsTime now);
+
+  alignas(GncState) Inbox inbox_;  // aligned, and so behind the padding of the state, which a snapshot contains
   Outbox outbox_;
-  Telecommands telecommands_;
-  Management management_;
-  Navigation navigation_;
-  Guidance guidance_;
-  RetreatSequence retreat_;
-  Assessment assessment_;
-  BurnMonitor burns_;
-  guard::Guard guard_;
-  ImageWatch images_;
-  std::optional<vbar::attitude> attitude_;  ///< the last one received, for the guard
-  GpsTime now_;
-  GpsTime started_;   ///< first step
-  GpsTime expected_;  ///< time of the next step
-  TickGate ticks_;
-  std::int64_t step_ = 0;
-  faults::FaultMonitor faults_;
-  std::int32_t packets_dropped_ = 0;  ///< of the inbox, until the last step
-  bool stepped_ = false;
-  bool has_navigated_ = false;  ///< since the first step
+  StepClock clock_;
+  Status restored_ = Status::kOk;  ///< of a snapshot, until the step after it
+  bool is_restored_ = false;       ///< from a snapshot since the last step
 };
 
 }  // namespace vbar::fsw::gnc

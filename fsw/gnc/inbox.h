@@ -61,6 +61,16 @@ class Inbox {
   void clear(GpsTime next_step);
 
   [[nodiscard]] const PacketCounters& counters() const { return counters_; }
+  /// What outlives a step, for the snapshot.
+  struct Retained {
+    PacketCounters counters;
+    Duration step_period;
+  };
+  [[nodiscard]] Retained retained() const { return {counters_, step_period_}; }
+  void restore(const Retained& retained) {
+    counters_ = retained.counters;
+    step_period_ = retained.step_period;
+  }
   /// The packets of one message, in order of their time tags.
   template <class Message>
   [[nodiscard]] const Queue<Message>& queue() const {

@@ -41,19 +41,31 @@ class Outbox {
     sink_(context_, buffer.data(), size.value());
   }
 
+  [[nodiscard]] std::uint8_t spacecraft() const { return spacecraft_; }
   [[nodiscard]] std::int32_t dropped() const { return dropped_; }
 
- private:
   /// Of the packets of one message: 14 bits.
   template <class Message>
   struct SequenceCount {
     std::uint16_t next = 0;
   };
+  using SequenceCounts = packets::TupleOfRoute<&packets::is_from_flight, SequenceCount>::Type;
+  /// What outlives a step, for the snapshot.
+  struct Retained {
+    SequenceCounts sequence_counts;
+    std::int32_t dropped = 0;
+  };
+  [[nodiscard]] Retained retained() const { return {sequence_counts_, dropped_}; }
+  void restore(const Retained& retained) {
+    sequence_counts_ = retained.sequence_counts;
+    dropped_ = retained.dropped;
+  }
 
+ private:
   std::uint8_t spacecraft_;
   vbar_packet_sink sink_;
   void* context_;
-  packets::TupleOfRoute<&packets::is_from_flight, SequenceCount>::Type sequence_counts_;
+  SequenceCounts sequence_counts_;
   std::int32_t dropped_ = 0;
 };
 

@@ -33,24 +33,37 @@ void Telecommands::update(GpsTime now, Inbox& inbox) {
   refuse_contradictions();
   packets::for_each_telecommand([&]<class Message>() {
     for (Slot<Message>& slot : std::get<Slots<Message>>(slots_).units) {
-      slot.is_new = slot.proposed.has_value();
+      slot.is_new = slot.proposed.has_value() || (is_renewed_ && slot.value.has_value());
       if (!slot.is_new) continue;
       has_changed_ = true;
+      if (!slot.proposed) continue;
       slot.value = slot.proposed;
       slot.tag = slot.proposed_tag;
       slot.proposed.reset();
     }
   });
+  is_renewed_ = false;
   count_refusals(inbox);
+}
+
+void Telecommands::renew(GpsTime now) {
+  is_renewed_ = true;
+  packets::for_each_telecommand([&]<class Message>() {
+    for (Slot<Message>& slot : std::get<Slots<Message>>(slots_).units) {
+      if (slot.tag.time > now) slot.tag.time = now;
+    }
+  });
 }
 
 template <class Message>
 void Telecommands::propose_all(GpsTime now, const Inbox& inbox) {
   const auto& queue = inbox.queue<Message>();
   for (std::size_t k = 0; k < queue.size(); ++k) {
-    acknowledgments_[acknowledgment_count_++] = {.apid = packets::MessageTraits<Message>::kApid,
-                                                 .tag = queue[k].tag,
-                                                 .status = propose(now, queue[k].tag, queue[k].value)};
+    // Member by member: a copied aggregate would bring the padding of the stack into the state.
+    Acknowledgment& acknowledgment = acknowledgments_[acknowledgment_count_++];
+    acknowledgment.apid = packets::MessageTraits<Message>::kApid;
+    acknowledgment.tag = queue[k].tag;
+    acknowledgment.status = propose(now, queue[k].tag, queue[k].value);
   }
 }
 

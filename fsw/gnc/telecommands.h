@@ -35,6 +35,10 @@ class Telecommands {
   /// and arrive for the same step, the one listed later in message_list.h is refused.
   void update(GpsTime now, Inbox& inbox);
 
+  /// After a restart at `now`: the next update treats those in force as new, so that their users derive their settings
+  /// again. One whose time tag is later, of a clock that has been set back, has that of the restart from now on.
+  void renew(GpsTime now);
+
   /// The telecommand in force, or nullptr. `unit` must be below the number of units of its kind.
   template <class Message>
   [[nodiscard]] const Message* in_force(std::size_t unit = 0) const {
@@ -103,6 +107,7 @@ class Telecommands {
   std::array<Acknowledgment, kMaxAcknowledgments> acknowledgments_{};
   std::size_t acknowledgment_count_ = 0;
   bool has_changed_ = false;
+  bool is_renewed_ = false;
 };
 
 }  // namespace vbar::fsw::gnc

@@ -17,8 +17,9 @@
 extern "C" {
 #endif
 
-/* Version of this header. A caller refuses another one. */
-#define VBAR_GNC_ABI_VERSION 1
+/* Version of this header, which added the snapshot; a caller that takes none accepts VBAR_GNC_ABI_VERSION_MIN too. */
+#define VBAR_GNC_ABI_VERSION 2
+#define VBAR_GNC_ABI_VERSION_MIN 1
 
 /* 0: done. Otherwise the reason, as in fsw/core/result.h (`Status`). */
 typedef int32_t vbar_status;
@@ -47,6 +48,23 @@ vbar_status vbar_gnc_receive(void* state, const uint8_t* packet, size_t size);
 
 /* Runs the step at `gps_time_ns` on the packets received since the last one. */
 vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns);
+
+/* The snapshot is what a computer retains through a reboot: a header with version, size, step, time and checksum, and
+ * the state without workspaces and without addresses, in the representation of the computer and the build that made it.
+ * It is optional: an implementation without these three functions cannot be restored. */
+
+/* Size (bytes) of a snapshot. */
+size_t vbar_gnc_snapshot_size(void);
+
+/* Writes the snapshot after a step; packets received since are not part of it. kTooShort (fsw/core/result.h) if `size`
+ * is below vbar_gnc_snapshot_size(), kNotReady before the first step. */
+vbar_status vbar_gnc_save(const void* state, uint8_t* snapshot, size_t size);
+
+/* Restores a state that vbar_gnc_init has just made, with its sink and spacecraft number. The next step continues from
+ * a snapshot that is at most 600 s older; of an older one it keeps the telecommands only. A snapshot that is truncated
+ * (kTooShort), of another layout, version or spacecraft (kWrongType) or damaged (kBadChecksum) is refused and leaves a
+ * cold state, whose next step reports the refusal. */
+vbar_status vbar_gnc_restore(void* state, const uint8_t* snapshot, size_t size);
 
 #ifdef __cplusplus
 }

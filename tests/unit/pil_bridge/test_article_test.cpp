@@ -53,7 +53,7 @@ TEST(TestArticle, LoadingSaysWhatIsWrong) {
   EXPECT_THAT(error_of_loading("/nowhere/gnc.so"), AllOf(HasSubstr("/nowhere/gnc.so"), HasSubstr("cannot be loaded")));
   EXPECT_THAT(error_of_loading(kLibraries + "libvbar_article_without_step.so"), HasSubstr("no function vbar_gnc_step"));
   EXPECT_THAT(error_of_loading(kLibraries + "libvbar_article_of_other_version.so"),
-              HasSubstr("version 2 of the test-article interface, this program for 1"));
+              HasSubstr("version 3 of the test-article interface, this program for 2"));
 }
 
 // A library flies in a child process, with the same bits.

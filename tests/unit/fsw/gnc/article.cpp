@@ -22,7 +22,7 @@ void Article::Free::operator()(std::byte* state) const {
 Article::Article()
     : tray_(std::make_unique<Tray>()),
       state_(new (std::align_val_t(vbar_gnc_state_alignment())) std::byte[vbar_gnc_state_size()]) {
-  std::memset(state_.get(), 0, vbar_gnc_state_size());
+  std::memset(state_.get(), fill, vbar_gnc_state_size());
   EXPECT_EQ(vbar_gnc_init(state_.get(), kServicer, &Article::sink, tray_.get()), 0);
 }
 
@@ -49,6 +49,17 @@ void Article::restore(const std::vector<std::byte>& saved) {
   ASSERT_EQ(saved.size(), vbar_gnc_state_size());
   std::memcpy(state_.get(), saved.data(), saved.size());
   vbar_gnc_set_sink(state_.get(), &Article::sink, tray_.get());
+}
+
+std::vector<std::uint8_t> Article::snapshot() const {
+  std::vector<std::uint8_t> bytes(vbar_gnc_snapshot_size());
+  EXPECT_EQ(vbar_gnc_save(state_.get(), bytes.data(), bytes.size()), 0);
+  return bytes;
+}
+
+vbar_status Article::restore_snapshot(const std::vector<std::uint8_t>& snapshot) {
+  static constexpr std::uint8_t kNothing = 0;
+  return vbar_gnc_restore(state_.get(), snapshot.empty() ? &kNothing : snapshot.data(), snapshot.size());
 }
 
 void Article::sink(void* context, const std::uint8_t* packet, std::size_t size) {

@@ -58,6 +58,13 @@ class Article {
   /// Puts saved bytes in place of the state, and this article's own sink in place of the one they name.
   void restore(const std::vector<std::byte>& saved);
 
+  /// The snapshot of the interface in C, and a restart from it.
+  [[nodiscard]] std::vector<std::uint8_t> snapshot() const;
+  vbar_status restore_snapshot(const std::vector<std::uint8_t>& snapshot);
+
+  /// What the memory of a new article contains.
+  static inline int fill = 0;
+
   /// Called with true just before, and with false just after, each delivery and step; may be null.
   void (*around_flight_code)(bool entering) = nullptr;
 

@@ -1,0 +1,163 @@
+// Snapshot, restart, and which steps are accepted.
+
+#include <cstring>
+#include <new>
+
+#include "fsw/gnc/gnc.h"
+#include "fsw/packets/crc.h"
+
+namespace vbar::fsw::gnc {
+namespace {
+
+constexpr std::uint32_t kMagic = 0x52414256;  // "VBAR" in the order of a little-endian computer
+constexpr std::uint32_t kVersion = 1;
+constexpr Duration kOldestWarm = duration_of_seconds(600);
+
+/// Without padding; the representation is that of the computer.
+struct SnapshotHeader {
+  std::uint32_t magic = kMagic;
+  std::uint32_t version = kVersion;
+  std::uint64_t bytes = 0;  ///< of the snapshot with this header
+  std::int64_t step = 0;    ///< the next one
+  std::int64_t time_ns = 0;
+  std::uint32_t spacecraft = 0;
+  std::uint32_t crc = 0;  ///< CRC-32 of all that precedes it and all that follows it
+};
+static_assert(sizeof(SnapshotHeader) == 40);
+
+constexpr std::size_t kInboxAt = sizeof(SnapshotHeader);
+constexpr std::size_t kOutboxAt = kInboxAt + sizeof(Inbox::Retained);
+constexpr std::size_t kStateAt = kOutboxAt + sizeof(Outbox::Retained);
+constexpr std::size_t kBytes = kStateAt + sizeof(GncState);
+
+std::uint32_t checksum(std::span<const std::uint8_t> snapshot) {
+  const std::uint32_t of_header = packets::crc32_ieee(snapshot.first(offsetof(SnapshotHeader, crc)));
+  return of_header ^ packets::crc32_ieee(snapshot.subspan(sizeof(SnapshotHeader)));
+}
+
+/// The state is copied as bytes, which suits every type whose copy would be that of its bytes; Eigen's own matrices
+/// declare a copy and are not trivially copyable by the letter of the language.
+void copy_bytes(void* to, const void* from, std::size_t count) {
+  std::memcpy(to, from, count);
+}
+
+}  // namespace
+
+const std::size_t Gnc::kSnapshotBytes = kBytes;
+
+Status Gnc::save(std::span<std::uint8_t> snapshot) const {
+  if (snapshot.size() < kBytes) return Status::kTooShort;
+  if (!stepped_) return Status::kNotReady;
+  const std::span<std::uint8_t> bytes = snapshot.first(kBytes);
+  SnapshotHeader header;
+  header.bytes = kBytes;
+  header.step = step_;
+  header.time_ns = now_.ns;
+  header.spacecraft = outbox_.spacecraft();
+  const Inbox::Retained inbox = inbox_.retained();
+  const Outbox::Retained outbox = outbox_.retained();
+  copy_bytes(&bytes[0], &header, sizeof header);
+  copy_bytes(&bytes[kInboxAt], &inbox, sizeof inbox);
+  copy_bytes(&bytes[kOutboxAt], &outbox, sizeof outbox);
+  copy_bytes(&bytes[kStateAt], static_cast<const GncState*>(this), sizeof(GncState));
+  header.crc = checksum(bytes);
+  copy_bytes(&bytes[0], &header, sizeof header);
+  return Status::kOk;
+}
+
+Status Gnc::restore(std::span<const std::uint8_t> snapshot) {
+  is_restored_ = true;
+  restored_ = [&] {
+    if (snapshot.size() < kBytes) return Status::kTooShort;
+    SnapshotHeader header;
+    copy_bytes(&header, &snapshot[0], sizeof header);
+    const bool is_ours = header.magic == kMagic && header.version == kVersion && header.bytes == kBytes &&
+                         header.spacecraft == outbox_.spacecraft();
+    if (!is_ours) return Status::kWrongType;
+    return header.crc == checksum(snapshot.first(kBytes)) ? Status::kOk : Status::kBadChecksum;
+  }();
+  if (restored_ != Status::kOk) return restored_;
+  Inbox::Retained inbox;
+  Outbox::Retained outbox;
+  copy_bytes(&inbox, &snapshot[kInboxAt], sizeof inbox);
+  copy_bytes(&outbox, &snapshot[kOutboxAt], sizeof outbox);
+  copy_bytes(static_cast<GncState*>(this), &snapshot[kStateAt], sizeof(GncState));
+  inbox_.restore(inbox);
+  outbox_.restore(outbox);
+  inbox_.clear(now_ + inbox_.step_period());
+  return Status::kOk;
+}
+
+/// The first step after a restart of the computer is accepted at any usable time: its age decides what is kept.
+bool Gnc::accepts(GpsTime now) {
+  if (!is_usable(now)) return false;
+  if (!stepped_ || is_restored_) return true;
+  switch (clock_.judge(now_, now, inbox_.step_period())) {
+    case StepClock::Verdict::kContinue:
+      return true;
+    case StepClock::Verdict::kRestart:
+      restart(now);
+      return true;
+    case StepClock::Verdict::kRefuse:
+      break;
+  }
+  return false;
+}
+
+/// The health packet has the time of the last step, and the number of the next one.
+void Gnc::refuse(GpsTime now) {
+  const double jump_s = (static_cast<double>(now.ns) - static_cast<double>(now_.ns)) / 1e9;
+  faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = true, .argument = jump_s});
+  const auto& commands = inbox_.queue<fault_command>();
+  for (std::size_t k = 0; k < commands.size(); ++k) {
+    if ((commands[k].value.clear & telemetry_health::kFaultClock) != 0) clock_.accept_next();
+  }
+  report_health();
+  report_events();
+  inbox_.clear(now_);
+}
+
+/// After a restore: a state that is too old is discarded, and the faults that report the restart are raised.
+void Gnc::resume(GpsTime now) {
+  if (!is_restored_) return;
+  is_restored_ = false;
+  if (restored_ != Status::kOk) {
+    faults_.check(
+        now,
+        {.fault = telemetry_health::kFaultColdStart, .is_detected = true, .argument = static_cast<double>(restored_)});
+    return;
+  }
+  const Duration age = now - now_;
+  if (age.ns > 0 && age <= kOldestWarm) {
+    faults_.check(now, {.fault = telemetry_health::kFaultRestart, .is_detected = true, .argument = seconds(age)});
+    return;
+  }
+  restart(now);
+  faults_.check(now, {.fault = telemetry_health::kFaultColdStart,
+                      .is_detected = true,
+                      .argument = static_cast<double>(Status::kOutOfRange)});
+}
+
+/// Everything but the telecommands, the faults and the number of the step is as at the first step.
+void Gnc::restart(GpsTime now) {
+  telecommands_.renew(now);
+  // Constructed in place: a second state would exceed the stack on board.
+  const auto renew = []<class Member>(Member& member) {
+    member.~Member();
+    new (&member) Member();
+  };
+  renew(management_);
+  renew(navigation_);
+  renew(guidance_);
+  renew(retreat_);
+  renew(assessment_);
+  renew(burns_);
+  renew(guard_);
+  renew(images_);
+  attitude_.reset();
+  has_navigated_ = false;
+  promised_period_ = Duration{};
+  stepped_ = false;
+}
+
+}  // namespace vbar::fsw::gnc
