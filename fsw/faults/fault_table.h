@@ -41,7 +41,7 @@ inline constexpr auto kFaultTable = std::to_array<Rule>({
     {telemetry_health::kFaultSourceInconsistent, telemetry_event::kSeverityWarning},  // mean NIS/dof
     {telemetry_health::kFaultSourceRestarts, telemetry_event::kSeverityFault},        // restarts
     {telemetry_health::kFaultSourcesContradict, telemetry_event::kSeverityFault},     // mean NIS/dof
-    {telemetry_health::kFaultState, telemetry_event::kSeverityFault},                 // failures
+    {telemetry_health::kFaultState, telemetry_event::kSeverityFault},                 // Integrity
     // guidance
     {telemetry_health::kFaultHold, telemetry_event::kSeverityFault},                                   // holds so far
     {telemetry_health::kFaultDriftUnsafe, telemetry_event::kSeverityFault, 2, 3, Response::kRetreat},  // distance, m

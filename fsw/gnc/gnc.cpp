@@ -23,6 +23,7 @@ Status Gnc::step(GpsTime now) {
                        .is_detected = promised_period_.ns > 0 && delay_s > 0.5 * seconds(promised_period_),
                        .argument = delay_s});
 
+  verify_state();
   manage();
   navigate();
   assess();
@@ -31,10 +32,26 @@ Status Gnc::step(GpsTime now) {
   control();
   report();
 
+  navigation_.seal();
   inbox_.clear(now_ + inbox_.step_period());
   promised_period_ = inbox_.step_period();
   ++step_;
   return Status::kOk;
+}
+
+/// An estimate that was changed since the last step, or that the last step had to discard.
+void Gnc::verify_state() {
+  const Integrity integrity = navigation_.verify();
+  if (integrity == Integrity::kLost) {
+    restart(now_);
+    started_ = now_;
+    stepped_ = true;
+  }
+  const int failures = navigation_.trunk().trunk().failures();
+  faults_.check(now_, {.fault = telemetry_health::kFaultState,
+                       .is_detected = integrity != Integrity::kIntact || failures > failures_,
+                       .argument = static_cast<double>(integrity)});
+  failures_ = failures;
 }
 
 void Gnc::manage() {

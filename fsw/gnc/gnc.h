@@ -42,6 +42,7 @@ struct GncState {
   std::int64_t step_ = 0;
   faults::FaultMonitor faults_;
   std::int32_t packets_dropped_ = 0;  ///< of the inbox, until the last step
+  int failures_ = 0;                  ///< of the trunk, until the last step
   Duration promised_period_;          ///< from the last step to this one, as its tick stated; 0 unknown
   bool stepped_ = false;
   bool has_navigated_ = false;  ///< since the first step
@@ -67,6 +68,7 @@ class Gnc : private GncState {
   static const std::size_t kSnapshotBytes;
 
  private:
+  void verify_state();
   void manage();
   void navigate();
   void assess();

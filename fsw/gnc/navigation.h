@@ -63,6 +63,9 @@ class Navigation {
   void check_sources(GpsTime now, faults::FaultMonitor& faults) const { trunk_.check_sources(now, faults); }
 
   [[nodiscard]] const TrunkNavigation& trunk() const { return trunk_; }
+  /// The estimate is at rest until the next step, which begins with verify(): state_integrity.h.
+  void seal() { trunk_.seal(); }
+  [[nodiscard]] Integrity verify() { return trunk_.verify(); }
   [[nodiscard]] bool uses_camera() const { return uses_camera_; }
 
   /// Commanded pointing of the camera, after the last update.

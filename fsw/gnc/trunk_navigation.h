@@ -15,6 +15,7 @@
 #include "fsw/gnc/attitude_gate.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/outbox.h"
+#include "fsw/gnc/state_integrity.h"
 #include "fsw/gnc/telecommands.h"
 #include "fsw/navigation/burn.h"
 #include "fsw/sources/source.h"
@@ -38,6 +39,9 @@ class TrunkNavigation {
   void set_pointing(const sources::Pointing& pointing) { platform_.pointing = pointing; }
 
   [[nodiscard]] const trunk::Trunk& trunk() const { return trunk_; }
+  /// At the end of a step, and at the beginning of the next one (state_integrity.h).
+  void seal() { integrity_.seal(trunk_); }
+  [[nodiscard]] Integrity verify() { return integrity_.verify(trunk_); }
   /// Whether the relative orbit suffices to plan.
   [[nodiscard]] bool valid() const { return trunk_.knowledge() == trunk::RelativeKnowledge::kEstimated; }
   template <class Source>
@@ -72,6 +76,7 @@ class TrunkNavigation {
   };
 
   trunk::Trunk trunk_;
+  StateIntegrity integrity_;
   sources::RecordQueue queue_;
   sources::Platform platform_;
   AttitudeGate attitude_gate_;

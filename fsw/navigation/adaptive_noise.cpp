@@ -13,7 +13,7 @@ constexpr double kLower = 0.5;
 
 }  // namespace
 
-void AdaptiveNoise::take(const Vector2& normalised) {
+void AdaptiveNoise::take(const Vector2& normalised, Correlation correlation) {
   if (has_last_) {
     products_ += normalised.dot(last_);
     squares_ += 0.5 * (normalised.squaredNorm() + last_.squaredNorm());
@@ -22,9 +22,10 @@ void AdaptiveNoise::take(const Vector2& normalised) {
   last_ = normalised;
   has_last_ = true;
   if (pairs_ < kWindow) return;
+  const bool may_lag = correlation == Correlation::kOfLag;
   if (products_ > kLagging * squares_) {
-    psd_ = std::min(psd_ * kRaise, settings_.psd_max);
-  } else if (products_ < kWhite * squares_) {
+    if (may_lag) psd_ = std::min(psd_ * kRaise, settings_.psd_max);
+  } else if (products_ < (may_lag ? kWhite : kLagging) * squares_) {
     psd_ = std::max(psd_ * kLower, settings_.psd_min);
   }
   interrupt();

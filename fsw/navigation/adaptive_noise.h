@@ -27,9 +27,14 @@ class AdaptiveNoise {
   /// m^2/s^3, of the relative acceleration, per axis.
   [[nodiscard]] double psd() const { return psd_; }
 
+  /// What makes neighbouring innovations alike, if they are.
+  enum class Correlation : unsigned char {
+    kOfLag,    ///< a filter that lags
+    kOfEither  ///< or errors of the measurements that are themselves correlated: no reason for more noise
+  };
   /// Two innovations, each normalised by its standard deviation. After every kWindow pairs of neighbours the noise may
   /// change.
-  void take(const Vector2& normalised);
+  void take(const Vector2& normalised, Correlation correlation = Correlation::kOfLag);
 
   /// A burn or a gap: the next innovation has no neighbour, and the window restarts.
   void interrupt();

@@ -155,8 +155,12 @@ void BearingAiding::adapt_noise(const navigation::BearingMeasurement& bearing, t
   // An empirical acceleration stands for the process noise.
   if (trunk.is_determined_by_receivers()) return noise.interrupt();
   const trunk::Rows& rows = trunk.rows();
+  // Near the target the centroid dominates, whose errors follow its tumbling: the same sign from image to image.
+  const bool is_of_centroid = rows.noise(0, 0) > 2.0 * bearing.sigma * bearing.sigma;
+  using Correlation = navigation::AdaptiveNoise::Correlation;
   noise.take(
-      {rows.residual(0) / math::sqrt(rows.innovation(0, 0)), rows.residual(1) / math::sqrt(rows.innovation(1, 1))});
+      {rows.residual(0) / math::sqrt(rows.innovation(0, 0)), rows.residual(1) / math::sqrt(rows.innovation(1, 1))},
+      is_of_centroid ? Correlation::kOfEither : Correlation::kOfLag);
 }
 
 /// Where receivers determine the orbit, the innovations measure the errors of the centroid, which the attitude of the

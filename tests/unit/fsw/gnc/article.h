@@ -62,6 +62,9 @@ class Article {
   [[nodiscard]] std::vector<std::uint8_t> snapshot() const;
   vbar_status restore_snapshot(const std::vector<std::uint8_t>& snapshot);
 
+  /// The complete state, for upsets of its memory.
+  [[nodiscard]] void* memory() { return state_.get(); }
+
   /// What the memory of a new article contains.
   static inline int fill = 0;
 

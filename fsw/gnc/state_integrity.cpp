@@ -1,0 +1,48 @@
+#include "fsw/gnc/state_integrity.h"
+
+#include <cstddef>
+#include <cstring>
+
+namespace vbar::fsw::gnc {
+namespace {
+
+/// Any change within one aligned word is detected with certainty, because multiplication by an odd number maps distinct
+/// words to distinct ones; any other with a probability of 1 - 2^-64. (Fowler, Noll and Vo's hash, with words of 64 bits
+/// in place of bytes: a step costs one multiplication for eight bytes.)
+std::uint64_t checksum(const trunk::Trunk& trunk) {
+  constexpr std::uint64_t kPrime = 0x100000001B3U;
+  static_assert(sizeof(trunk::Trunk) % sizeof(std::uint64_t) == 0);
+  std::uint64_t sum = 0xCBF29CE484222325U;
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(&trunk);
+  for (std::size_t at = 0; at < sizeof(trunk::Trunk); at += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes + at, sizeof word);
+    sum = (sum ^ word) * kPrime;
+  }
+  return sum;
+}
+
+/// As bytes, with their padding: assignment would first read what may be damaged, such as whether an optional value is
+/// present. The trunk consists of plain objects without pointers.
+void copy_bytes(trunk::Trunk& to, const trunk::Trunk& from) {
+  std::memcpy(static_cast<void*>(&to), static_cast<const void*>(&from), sizeof(trunk::Trunk));
+}
+
+}  // namespace
+
+void StateIntegrity::seal(const trunk::Trunk& trunk) {
+  copy_bytes(copy_, trunk);
+  checksum_ = checksum(trunk);
+  is_sealed_ = true;
+}
+
+Integrity StateIntegrity::verify(trunk::Trunk& trunk) const {
+  if (!is_sealed_) return Integrity::kIntact;
+  const bool is_copy_intact = checksum(copy_) == checksum_;
+  if (checksum(trunk) == checksum_) return is_copy_intact ? Integrity::kIntact : Integrity::kCopyDamaged;
+  if (!is_copy_intact) return Integrity::kLost;
+  copy_bytes(trunk, copy_);
+  return Integrity::kRestored;
+}
+
+}  // namespace vbar::fsw::gnc
