@@ -108,20 +108,31 @@ void Gnc::supervise() {
   check_verdicts(guard_.judge(now_), now_, faults_);
 }
 
-/// Faults and what they lead to. A drift counts as unsafe only if no plan can be flown that leaves it.
+/// A drift counts as unsafe once no plan that leaves it could be flown for the delay that a retreat is allowed, or as
+/// soon as a retreat after that delay would not keep the distance: in an eclipse the uncertainty of a drift grows past
+/// its limit and shrinks again with the first images.
+void Gnc::check_drift(const safety_configuration& safety) {
+  if (!assessment_.is_known) return;
+  const double keep_out = guidance_.keep_out(management_.configuration());
+  const bool is_unsafe = guidance_.is_holding() && assessment_.passive_distance < keep_out;
+  if (!is_unsafe) unsafe_since_.reset();
+  if (is_unsafe && !unsafe_since_) unsafe_since_ = now_;
+  const bool has_lasted = unsafe_since_ && seconds(now_ - *unsafe_since_) >= safety.retreat_delay_s;
+  const bool must_leave = is_unsafe && assessment_.retreat_distance < safety.contact_distance_m;
+  faults_.check(now_, {.fault = telemetry_health::kFaultDriftUnsafe,
+                       .is_detected = has_lasted || must_leave,
+                       .argument = assessment_.passive_distance});
+  faults_.check(now_, {.fault = telemetry_health::kFaultCollisionProbability,
+                       .is_detected = assessment_.collision_probability > safety.maximum_collision_probability,
+                       .argument = assessment_.collision_probability});
+}
+
+/// Faults and what they lead to.
 void Gnc::respond() {
   burns_.update(now_, inbox_, faults_);
   const safety_configuration* safety = management_.safety();
   if (safety == nullptr) return;
-  if (assessment_.is_known) {
-    faults_.check(now_, {.fault = telemetry_health::kFaultDriftUnsafe,
-                         .is_detected = guidance_.is_holding() &&
-                                        assessment_.passive_distance < guidance_.keep_out(management_.configuration()),
-                         .argument = assessment_.passive_distance});
-    faults_.check(now_, {.fault = telemetry_health::kFaultCollisionProbability,
-                         .is_detected = assessment_.collision_probability > safety->maximum_collision_probability,
-                         .argument = assessment_.collision_probability});
-  }
+  check_drift(*safety);
   const bool is_demanded = faults_.demands(faults::Response::kRetreat);
   const bool was_retreating = retreat_.phase() != RetreatSequence::Phase::kNone;
   if (is_demanded) management_.retreat();

@@ -37,6 +37,7 @@ struct GncState {
   guard::Guard guard_;
   ImageWatch images_;
   std::optional<vbar::attitude> attitude_;  ///< the last one received, for the guard
+  std::optional<GpsTime> unsafe_since_;     ///< no plan leaves an unsafe drift
   GpsTime now_;
   GpsTime started_;  ///< first step
   std::int64_t step_ = 0;
@@ -73,6 +74,7 @@ class Gnc : private GncState {
   void navigate();
   void assess();
   void supervise();
+  void check_drift(const safety_configuration& safety);
   void respond();
   void control();
   void report();

@@ -155,6 +155,7 @@ void Gnc::restart(GpsTime now) {
   renew(guard_);
   renew(images_);
   attitude_.reset();
+  unsafe_since_.reset();
   has_navigated_ = false;
   promised_period_ = Duration{};
   stepped_ = false;
