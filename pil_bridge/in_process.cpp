@@ -61,6 +61,22 @@ class InProcess final : public FlightComputer {
     return result;
   }
 
+  [[nodiscard]] std::vector<std::uint8_t> snapshot() const override {
+    if (article_->save == nullptr) return {};
+    std::vector<std::uint8_t> bytes(article_->snapshot_size());
+    if (article_->save(state_.get(), bytes.data(), bytes.size()) != 0) return {};
+    return bytes;
+  }
+
+  void restore(std::span<const std::uint8_t> snapshot) override {
+    if (article_->restore == nullptr) return FlightComputer::restore(snapshot);
+    const vbar_status status = article_->restore(state_.get(), snapshot.data(), snapshot.size());
+    if (status != 0) {
+      throw FlightComputerError("the flight software '" + std::string(article_->name()) +
+                                "' refused the snapshot: status " + std::to_string(status));
+    }
+  }
+
   [[nodiscard]] LinkStatistics statistics() const override { return {}; }
   [[nodiscard]] std::string description() const override { return std::string("in process: ") + article_->name(); }
   void close() override {}

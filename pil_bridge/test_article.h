@@ -17,6 +17,10 @@ struct TestArticle {
   decltype(&vbar_gnc_set_sink) set_sink = nullptr;
   decltype(&vbar_gnc_receive) receive = nullptr;
   decltype(&vbar_gnc_step) step = nullptr;
+  // null in an article without snapshots
+  decltype(&vbar_gnc_snapshot_size) snapshot_size = nullptr;
+  decltype(&vbar_gnc_save) save = nullptr;
+  decltype(&vbar_gnc_restore) restore = nullptr;
 };
 
 /// The test article linked with this program. Inline, so that only a program that calls it needs one.
@@ -28,7 +32,10 @@ inline std::shared_ptr<const TestArticle> linked_test_article() {
                                                          .init = &vbar_gnc_init,
                                                          .set_sink = &vbar_gnc_set_sink,
                                                          .receive = &vbar_gnc_receive,
-                                                         .step = &vbar_gnc_step});
+                                                         .step = &vbar_gnc_step,
+                                                         .snapshot_size = &vbar_gnc_snapshot_size,
+                                                         .save = &vbar_gnc_save,
+                                                         .restore = &vbar_gnc_restore});
 }
 
 /// The test article in the shared library at `path`, which stays loaded during the lifetime of the result. Throws

@@ -7,8 +7,8 @@ namespace vbar::fsw::gnc {
 namespace {
 
 /// Any change within one aligned word is detected with certainty, because multiplication by an odd number maps distinct
-/// words to distinct ones; any other with a probability of 1 - 2^-64. (Fowler, Noll and Vo's hash, with words of 64 bits
-/// in place of bytes: a step costs one multiplication for eight bytes.)
+/// words to distinct ones; any other with a probability of 1 - 2^-64. (Fowler, Noll and Vo's hash, with words of 64
+/// bits in place of bytes: a step costs one multiplication for eight bytes.)
 std::uint64_t checksum(const trunk::Trunk& trunk) {
   constexpr std::uint64_t kPrime = 0x100000001B3U;
   static_assert(sizeof(trunk::Trunk) % sizeof(std::uint64_t) == 0);

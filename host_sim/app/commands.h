@@ -35,6 +35,9 @@ struct ReplayOptions {
   std::vector<std::string> overrides;  ///< of the flight computer only
   bool trust = false;                  ///< libraries, devices and addresses that the folder names may be used
   bool quiet = false;
+  std::filesystem::path save;  ///< file of a snapshot to write; empty: none
+  double save_at_h = 0.0;      ///< after the last step until then, hours of the mission
+  std::filesystem::path from;  ///< snapshot to continue from; empty: from the start
 };
 int replay_command(const ReplayOptions& options);
 

@@ -134,6 +134,12 @@ int main(int argc, char** argv) {
   replay_app->add_option("run", replay.run_folder, "run folder")->required();
   replay_app->add_flag("--trust", replay.trust, "use a library, device or address that the run folder names");
   replay_app->add_flag("--quiet", replay.quiet, kQuietHelp);
+  CLI::Option* save =
+      replay_app->add_option("--save", replay.save, "write a snapshot of the flight software to a file");
+  replay_app->add_option("--at-h", replay.save_at_h, "with --save: after the last step until this hour of the mission")
+      ->needs(save)
+      ->check(CLI::NonNegativeNumber);
+  replay_app->add_option("--from", replay.from, "continue from a snapshot, at the step after it");
   add_set(replay_app, replay.overrides);
   replay_app->callback([&] { exit_code = replay_command(replay); });
 

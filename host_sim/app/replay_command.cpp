@@ -15,6 +15,7 @@
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/flown_from.h"
 #include "host_sim/app/replay_log.h"
+#include "host_sim/app/snapshot_file.h"
 #include "host_sim/app/stop_request.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/report/run_folder.h"
@@ -128,38 +129,95 @@ struct Compared {
   }
 };
 
+/// Without the packets in which a restart is reported.
+std::vector<pil::Packet> without_health(std::vector<pil::Packet> packets) {
+  std::erase_if(packets, [](const pil::Packet& bytes) {
+    const auto packet = fsw::packets::parse_packet(bytes);
+    using fsw::packets::Apid;
+    return packet.ok() && (packet.value().header.apid == Apid::kTelemetryHealth ||
+                           packet.value().header.apid == Apid::kTelemetryEvent);
+  });
+  return packets;
+}
+
+/// The first steps, of which a snapshot takes the place, if there is one.
+struct Continuation {
+  std::optional<Snapshot> snapshot;
+
+  [[nodiscard]] bool is_skipped(std::uint32_t step) const { return snapshot && step < snapshot->next_step; }
+  [[nodiscard]] std::vector<pil::Packet> compared(std::vector<pil::Packet> packets) const {
+    return snapshot ? without_health(std::move(packets)) : packets;
+  }
+};
+
+Continuation continuation(const ReplayOptions& options, const RecordedSteps& steps, pil::FlightComputer& computer) {
+  if (options.from.empty()) return {};
+  Continuation from{read_snapshot(options.from)};
+  if (!steps.contains(from.snapshot->next_step))
+    throw Refused(fmt::format("{}: continues at step {}, which the run does not have", options.from.string(),
+                              from.snapshot->next_step));
+  try {
+    computer.restore(from.snapshot->bytes);
+  } catch (const pil::FlightComputerError& error) {
+    throw Refused(fmt::format("{}: {}", options.from.string(), error.what()));
+  }
+  return from;
+}
+
+void save_snapshot(const ReplayOptions& options, std::uint32_t next_step, const pil::FlightComputer& computer) {
+  std::vector<std::uint8_t> bytes = computer.snapshot();
+  if (bytes.empty())
+    throw Refused("--save: " + computer.description() +
+                  " gives no snapshot; accepted: flight_computer.target=in_process, --at-h after the first step");
+  write_snapshot(options.save, {next_step, std::move(bytes)});
+}
+
 /// Feeds the steps to the flight computer and compares its answers. `may_be_cut`: the last step may not be whole.
-Verdict compare(const RecordedSteps& steps, bool may_be_cut, twins::TileSource& tiles,
-                pil::FlightComputer& flight_computer) {
+Verdict compare(const ReplayOptions& options, fsw::GpsTime save_until, const RecordedSteps& steps, bool may_be_cut,
+                twins::TileSource& tiles, pil::FlightComputer& flight_computer) {
+  const Continuation from = continuation(options, steps, flight_computer);
   Compared compared;
+  bool must_save = !options.save.empty();
   for (const auto& [number, step] : steps) {
+    if (from.is_skipped(number)) continue;
+    if (must_save && step.inputs.front().time > save_until) {
+      save_snapshot(options, number, flight_computer);
+      must_save = false;
+    }
     if (stop_requested()) return {kInterrupted, "interrupted after " + compared.text()};
     const bool cut = may_be_cut && number == steps.rbegin()->first;
     if (cut && step.outputs.empty()) continue;  // the log ends before the answer
     const pil::StepResult answer = flight_computer.step(number, packets_of(step.inputs, tiles));
-    if (const auto what = difference(step.outputs, answer.packets, cut))
+    if (const auto what = difference(from.compared(step.outputs), from.compared(answer.packets), cut))
       return {kDifferent, fmt::format("differs at step {}: {}; identical before: {}", number, *what, compared.text())};
     compared.add(step.outputs);
   }
+  if (must_save) save_snapshot(options, steps.rbegin()->first + 1, flight_computer);
   flight_computer.close();
-  return {kDone, fmt::format("identical: {} on {}", compared.text(), flight_computer.description())};
+  std::string sentence = fmt::format("identical: {} on {}", compared.text(), flight_computer.description());
+  if (from.snapshot)
+    sentence +=
+        fmt::format(" from step {} on, but for health and events, which report the restart", from.snapshot->next_step);
+  return {kDone, std::move(sentence)};
 }
 
 /// The verdict on a log that passed, fed to the flight computer.
-Verdict fly_again(const mission::Mission& mission, const report::Summary& summary, twins::ImagesOfLog&& images,
-                  const RecordedSteps& steps) {
+Verdict fly_again(const ReplayOptions& options, const mission::Mission& mission, const report::Summary& summary,
+                  twins::ImagesOfLog&& images, const RecordedSteps& steps) {
   const auto tiles =
       sensors::make_tile_source({mission, flying_spacecraft(mission), mission::data_directory()}, std::move(images));
   const auto flight_computer = connect_flight_computer(flying_spacecraft(mission));
-  Verdict verdict = compare(steps, !has_ended(summary), *tiles, *flight_computer);
+  const fsw::GpsTime save_until = mission.epoch + fsw::nearest_duration(3600.0 * options.save_at_h);
+  Verdict verdict = compare(options, save_until, steps, !has_ended(summary), *tiles, *flight_computer);
   if (verdict.code != kDone) return verdict;
-  if (has_ended(summary)) {
+  if (has_ended(summary) && options.from.empty()) {
     verdict.sentence += fmt::format("; all steps of the run, SHA-256 as in its summary (commands {}, telemetry {})",
                                     summary.commands_sha256.substr(0, 16), summary.telemetry_sha256.substr(0, 16));
     if (!summary.complete)
       verdict.sentence += fmt::format("; the run itself is incomplete: {}", summary.incomplete_reason);
     return verdict;
   }
+  if (has_ended(summary)) return verdict;
   return {kKilledRun, "the run was killed and left no summary to compare with; what it left is " + verdict.sentence};
 }
 
@@ -189,7 +247,7 @@ int replay_command(const ReplayOptions& options) {
       fmt::print("note: {}\n", change);
   }
   try {
-    return say(fly_again(mission, summary, std::move(log), steps), options.quiet);
+    return say(fly_again(options, mission, summary, std::move(log), steps), options.quiet);
   } catch (const twins::DamagedLog& error) {
     return say({kDamagedLog, error.what()}, options.quiet);
   }

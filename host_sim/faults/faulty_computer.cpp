@@ -33,6 +33,8 @@ pil::StepResult FaultyComputer::step(std::uint32_t step, std::span<const pil::Pa
   if (tick.ok()) {
     for (const mission::Fault& fault : faults_) {
       if (!is_of_computer(fault) || !fault.is_present(tick.value().header.time)) continue;
+      const bool begins = fault.kind == FaultKind::kComputerReboot && !must_restart_;
+      if (begins && fault.keeps_state) snapshot_ = present().snapshot();
       must_restart_ = must_restart_ || fault.kind == FaultKind::kComputerReboot;
       return {};
     }
@@ -41,6 +43,11 @@ pil::StepResult FaultyComputer::step(std::uint32_t step, std::span<const pil::Pa
   must_restart_ = false;
   present().close();
   restarted_ = start_();
+  if (!snapshot_.empty()) {
+    restarted_->restore(snapshot_);
+    snapshot_.clear();
+    return restarted_->step(step, packets);
+  }
   std::vector<pil::Packet> first = telecommands_;
   first.insert(first.end(), packets.begin(), packets.end());
   return restarted_->step(step, first);

@@ -1,6 +1,6 @@
 #pragma once
 // A flight computer that is dark for a time: its packets are lost, and it takes no steps. Afterwards it continues, or
-// it has been started anew.
+// it has been started anew, with or without the snapshot of its last step.
 
 #include <functional>
 #include <memory>
@@ -34,6 +34,7 @@ class FaultyComputer final : public pil::FlightComputer {
   std::vector<pil::Packet> telecommands_;
   std::unique_ptr<pil::FlightComputer> restarted_;
   bool must_restart_ = false;
+  std::vector<std::uint8_t> snapshot_;  ///< of the step before a reboot that keeps the state
 };
 
 /// Whether the faults contain one of the flight computer.

@@ -129,7 +129,8 @@ struct Fault {
   std::optional<fsw::Duration> duration;  ///< empty: to the end
   double value = 0.0;
   fsw::Vector3 direction_rtn = fsw::Vector3::Zero();
-  bool is_reported = true;  ///< the thruster reports what happened; otherwise what was commanded
+  bool is_reported = true;   ///< the thruster reports what happened; otherwise what was commanded
+  bool keeps_state = false;  ///< the flight computer that reboots continues from its snapshot
 
   [[nodiscard]] bool is_present(fsw::GpsTime time) const {
     return time >= begin && (!duration || time < begin + *duration);

@@ -55,8 +55,12 @@ Fault read_fault(const TableReader& section, const Mission& mission) {
       if (!fault.duration) section.refuse("for_s", "a thruster stuck for ever", "the time until its valve is closed");
       break;
     }
-    case FaultKind::kComputerSilent:
     case FaultKind::kComputerReboot:
+      fault.keeps_state = section.flag("keeps_state", false);
+      if (fault.keeps_state && flying(section, mission).flight_computer->target != FlightTarget::kInProcess)
+        section.refuse_value("keeps_state", "false, or flight_computer.target = \"in_process\"");
+      [[fallthrough]];
+    case FaultKind::kComputerSilent:
       if (!fault.duration) section.refuse("for_s", "a flight computer that stays dark", "the time until it returns");
       break;
   }

@@ -3,7 +3,7 @@
 import csv
 import unittest
 
-from vbar_program import SOURCE, fly, hashes, main, scratch
+from vbar_program import SOURCE, fly, hashes, main, scratch, vbar
 
 EXPERIMENT2 = SOURCE / "missions" / "experiment2.toml"
 START_H = 39.0
@@ -103,6 +103,61 @@ class Reboot(unittest.TestCase):
             steps = [int(health["step"]) for health in rows_of(folder / "run", "telemetry_health.csv")]
             self.assertEqual(steps.count(0), 2)
             self.assertTrue(summary["complete"])
+
+    def test_it_continues_from_its_snapshot(self):
+        with scratch() as folder:
+            mission = folder / "reboot.toml"
+            mission.write_text(f'extends = "{EXPERIMENT2}"\n[[fault]]\nkind = "computer_reboot"\nat_h = 39.05\nfor_s = 60.0\nkeeps_state = true\n')
+            fly(folder / "run", "mission.duration_h=0.1", mission=mission)
+            row = rows_of(folder / "run", "faults.csv")[0]
+            self.assertEqual(float(row["recovered_s"]), float(row["begin_s"]) + 60.0)
+            health = rows_of(folder / "run", "telemetry_health.csv")
+            steps = [int(row["step"]) for row in health]
+            self.assertEqual(steps, list(range(len(steps))), "the steps are numbered on")
+            begin_s = float(row["begin_s"])
+            after = [row for row in health if float(row["time_s"]) >= begin_s + 60.0]
+            self.assertIn("restart", after[0]["faults"])
+            self.assertNotIn("cold_start", after[0]["faults"])
+            states = {float(row["time_s"]): row for row in rows_of(folder / "run", "estimate.csv")}
+            self.assertEqual(states[begin_s + 60.0]["navigation_valid"], "1", "the first step after it navigates")
+            refused = vbar("run", mission, "--check", "--set", "flight_computer.target=host_process")
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn("keeps_state", refused.stderr)
+
+
+class Snapshot(unittest.TestCase):
+    """Flight software saved in one process and restored in another."""
+
+    def test_the_other_process_answers_with_the_same_bits(self):
+        for name, settings, at_h in (("experiment2", ["mission.duration_h=0.2"], 39.1), ("experiment3", [], 40.0)):
+            with self.subTest(name), scratch() as folder:
+                fly(folder / "run", *settings, mission=SOURCE / "missions" / f"{name}.toml")
+                saved = vbar("replay", folder / "run", "--save", folder / "snapshot", "--at-h", at_h)
+                self.assertEqual(saved.returncode, 0, saved.stderr)
+                restored = vbar("replay", folder / "run", "--from", folder / "snapshot")
+                self.assertEqual(restored.returncode, 0, restored.stdout + restored.stderr)
+                self.assertRegex(restored.stdout, r"identical: \d{2,} steps, .* from step \d{2,} on")
+
+    def test_what_is_no_snapshot_is_refused(self):
+        with scratch() as folder:
+            fly(folder / "run", "mission.duration_h=0.1", mission=EXPERIMENT2)
+            whole = folder / "snapshot"
+            self.assertEqual(vbar("replay", folder / "run", "--save", whole, "--at-h", 39.05).returncode, 0)
+            content = whole.read_bytes()
+            damaged = bytearray(content)
+            damaged[len(content) // 2] ^= 0x10
+            line_end = content.index(b"\n")
+            for name, other, sentence in (("cut", content[:100_000], "bytes of"), ("damaged", bytes(damaged), "refused the snapshot"),
+                                          ("text", b"hello\n", "is no snapshot"), ("empty", b"", "is no snapshot"),
+                                          ("later", b"vbar-snapshot 99999 " + content[:line_end].split()[-1] + content[line_end:], "does not have")):
+                with self.subTest(name):
+                    (folder / name).write_bytes(other)
+                    result = vbar("replay", folder / "run", "--from", folder / name)
+                    self.assertEqual(result.returncode, 2)
+                    self.assertIn(sentence, result.stderr)
+            early = vbar("replay", folder / "run", "--save", folder / "none", "--at-h", 1)
+            self.assertEqual(early.returncode, 2)
+            self.assertIn("after the first step", early.stderr)
 
 
 if __name__ == "__main__":

@@ -82,8 +82,7 @@ TEST(StateIntegrity, DamageToEstimateAndCopyIsAColdStart) {
   flip(estimate[1000], 3);
   // The copy lies somewhere behind: the first place with the same bytes as the first two means.
   const trunk::Trunk& trunk = state->navigation_.trunk().trunk();
-  const std::span<unsigned char> behind =
-      bytes_of(&trunk + 1, sizeof(TrunkNavigation) - sizeof(trunk::Trunk));
+  const std::span<unsigned char> behind = bytes_of(&trunk + 1, sizeof(TrunkNavigation) - sizeof(trunk::Trunk));
   const auto copy = std::search(behind.begin(), behind.end(), estimate.begin(), estimate.begin() + 16);
   ASSERT_NE(copy, behind.end());
   flip(*copy, 0);
