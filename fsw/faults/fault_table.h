@@ -55,7 +55,7 @@ inline constexpr auto kFaultTable = std::to_array<Rule>({
     {telemetry_health::kFaultBurnUncommanded, telemetry_event::kSeverityFault, 1, 1, Response::kRetreat},  // m/s
     {telemetry_health::kFaultThruster, telemetry_event::kSeverityFault, 2, 2, Response::kHold},            // scale
     // guard
-    {telemetry_health::kFaultGuardRange, telemetry_event::kSeverityFault, 5, 7, Response::kRetreat},    // ln ratio
+    {telemetry_health::kFaultGuardRange, telemetry_event::kSeverityFault, 1, 1, Response::kRetreat},    // ln ratio
     {telemetry_health::kFaultGuardSilence, telemetry_event::kSeverityFault, 1, 1, Response::kRetreat},  // age, s
     {telemetry_health::kFaultGuardBurns, telemetry_event::kSeverityFault, 2, 2, Response::kRetreat},    // difference
     {telemetry_health::kFaultGuardClosing, telemetry_event::kSeverityFault, 3, 5, Response::kRetreat},  // rate, m/s

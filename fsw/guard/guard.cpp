@@ -28,13 +28,24 @@ void Guard::take_image(GpsTime time, const imaging::ImageView& image, const Guar
   const bool is_near = *range_m < kCompareWithin_m || navigation_range_m < kCompareWithin_m;
   if (!is_near || !(navigation_range_m > 0.0)) return;
   const double logarithm = math::log(*range_m / navigation_range_m);
-  pending_.range = {.is_checked = true, .is_alarm = math::abs(logarithm) > kLargestLogarithm, .value = logarithm};
+  pending_.range = {.is_checked = true, .is_alarm = disagrees(time, logarithm), .value = logarithm};
   if (!range_.has_rate()) return;
   const double rate = range_.range_rate(time);
   const double range_now_m = range_.range_m(time);
   pending_.closing = {
       .is_checked = range_now_m<kClosingWithin_m, .is_alarm = -rate> range_now_m / kClosingTime_s + kOrbitalRate,
       .value = rate};
+}
+
+bool Guard::disagrees(GpsTime time, double logarithm) {
+  if (!(math::abs(logarithm) > kLargestLogarithm)) {
+    disagreement_.reset();
+    return false;
+  }
+  const bool continues = disagreement_ && seconds(time - disagreement_->last) <= RangeFilter::kLongestGap_s;
+  if (!continues) disagreement_ = Disagreement{.first = time, .last = time};
+  disagreement_->last = time;
+  return seconds(time - disagreement_->first) >= kLongestDisagreement_s;
 }
 
 void Guard::take_command(std::int32_t maneuver_id, const Vector3& dv_rtn) {

@@ -45,6 +45,9 @@ class Guard {
   /// Largest logarithm of the ratio: 0.45 to 2.2 times. Attitude and phase of the target scatter it by 0.2 (1 sigma)
   /// and for minutes alike.
   static constexpr double kLargestLogarithm = 0.8;
+  /// Every image must contradict navigation for this long, s: attitude and phase change the lit area for minutes alike,
+  /// and in penumbra the target is too dim to be measured.
+  static constexpr double kLongestDisagreement_s = 300.0;
 
   void configure(const GuardSettings& settings) { settings_ = settings; }
 
@@ -68,11 +71,19 @@ class Guard {
     Vector3 dv_rtn = Vector3::Zero();
   };
 
+  /// Images that contradict navigation, without one between them that does not.
+  struct Disagreement {
+    GpsTime first;
+    GpsTime last;
+  };
+  [[nodiscard]] bool disagrees(GpsTime time, double logarithm);
+
   static constexpr std::size_t kCommands = 16;
 
   GuardSettings settings_;
   RangeFilter range_;
   std::optional<GpsTime> seen_;  ///< the last image with a lit target, whether its size gives a range or not
+  std::optional<Disagreement> disagreement_;
   GuardVerdicts pending_;
   std::array<Command, kCommands> commands_{};
   std::size_t next_command_ = 0;

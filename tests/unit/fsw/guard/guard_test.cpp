@@ -44,20 +44,37 @@ TEST_F(GuardTest, AgreesWithTheTruth) {
   EXPECT_FALSE(guard_.judge(at(2.0)).range.is_checked) << "an image is judged once";
 }
 
-TEST_F(GuardTest, ARangeThatNavigationStatesWronglyIsAnAlarm) {
+TEST_F(GuardTest, ARangeThatNavigationStatesWronglyForMinutesIsAnAlarm) {
+  for (const double stated_m : {95.0, 17.0}) {
+    guard_ = Guard();
+    guard_.configure(kSettings);
+    for (double t = 0.0; t < 600.0; t += 20.0) {
+      look(t, 40.0, stated_m);
+      EXPECT_EQ(guard_.judge(at(t)).range.is_alarm, t >= Guard::kLongestDisagreement_s) << stated_m << " m, " << t;
+    }
+  }
+}
+
+TEST_F(GuardTest, AnImageThatAgreesEndsTheAlarm) {
+  for (double t = 0.0; t <= 1000.0; t += 20.0) {
+    look(t, 40.0, t == 280.0 || t == 560.0 || t == 840.0 ? 50.0 : 95.0);
+    EXPECT_FALSE(guard_.judge(at(t)).range.is_alarm) << "an attitude may do that, " << t;
+  }
+}
+
+// Two disagreements with an eclipse between them are two.
+TEST_F(GuardTest, ALongGapBeginsAnew) {
   look(0.0, 40.0, 95.0);
-  EXPECT_TRUE(guard_.judge(at(1.0)).range.is_alarm);
-  look(5.0, 40.0, 17.0);
-  EXPECT_TRUE(guard_.judge(at(6.0)).range.is_alarm);
-  look(10.0, 40.0, 50.0);
-  EXPECT_FALSE(guard_.judge(at(11.0)).range.is_alarm) << "an attitude may do that";
+  EXPECT_FALSE(guard_.judge(at(0.0)).range.is_alarm);
+  look(2000.0, 40.0, 95.0);
+  EXPECT_FALSE(guard_.judge(at(2000.0)).range.is_alarm);
 }
 
 TEST_F(GuardTest, FarFromTheTargetNothingIsCompared) {
   look(0.0, 200.0, 400.0);
   EXPECT_FALSE(guard_.judge(at(1.0)).range.is_checked);
-  look(5.0, 200.0, 80.0);
-  EXPECT_TRUE(guard_.judge(at(6.0)).range.is_alarm) << "navigation claims to be near";
+  for (double t = 5.0; t <= 305.0; t += 20.0) look(t, 200.0, 80.0);
+  EXPECT_TRUE(guard_.judge(at(306.0)).range.is_alarm) << "navigation claims to be near";
 }
 
 TEST_F(GuardTest, SilenceNearTheTargetIsAnAlarm) {
