@@ -66,8 +66,8 @@ class FlightComputer {
   /// numbered upwards from any start. Throws FlightComputerError.
   virtual StepResult step(std::uint32_t step, std::span<const Packet> packets) = 0;
 
-  /// What the flight software retains through a reboot, as of the last step (vbar_gnc_save). Empty if this target or its
-  /// flight software does not give it.
+  /// What the flight software retains through a reboot, as of the last step (vbar_gnc_save). Empty if this target or
+  /// its flight software does not give it.
   [[nodiscard]] virtual std::vector<std::uint8_t> snapshot() const { return {}; }
 
   /// Continues from a snapshot, before the first step (vbar_gnc_restore). Throws FlightComputerError if it is refused.

@@ -216,6 +216,17 @@ Result<DriftSafety> assess_drift(const QnsElements& servicer_mean, const Vector6
   return watch(DriftPath(servicer_mean, mean_roe, roe_end, horizon), horizon, samples, bound);
 }
 
+namespace {
+
+/// With a retreat the present drift is judged for itself, and left if it is unsafe: it does not stand in the way of a
+/// plan whose burns leave it. Until the first of them, and a retreat in its place, it must keep the distance.
+double watched_s(const SafetyCriterion& criterion, std::size_t prefix, bool more, double until_next_s) {
+  if (prefix == 0 && more && criterion.retreat) return until_next_s + criterion.retreat->delay;
+  return until_next_s > criterion.horizon ? until_next_s : criterion.horizon;
+}
+
+}  // namespace
+
 Result<PlanSafety> assess_plan(GpsTime start, const QnsElements& servicer_mean, const Vector6& mean_roe,
                                const control::Plan& plan, const SafetyCriterion& criterion) {
   if (plan.count > control::kMaxBurns) return Status::kInvalidArgument;
@@ -229,7 +240,7 @@ Result<PlanSafety> assess_plan(GpsTime start, const QnsElements& servicer_mean, 
     const bool more = prefix < plan.count;
     const double until_next = more ? seconds(plan.burns[prefix].time - now.time) : 0.0;
     if (until_next < 0.0) return Status::kInvalidArgument;
-    const double watched = until_next > criterion.horizon ? until_next : criterion.horizon;
+    const double watched = watched_s(criterion, prefix, more, until_next);
     const Result<DriftSafety> drift =
         assess_drift(now.servicer, orbit::roe_from_qns(now.servicer, now.target), watched, now.bound);
     if (!drift.ok()) return drift.status();

@@ -209,12 +209,11 @@ void summarise_run(const RunFacts& facts, std::span<const Source> sources, repor
 }
 
 /// Sources with faults of theirs are wrapped; the others are not touched.
-sensors::MadeSources with_faults(sensors::MadeSources made, const mission::Mission& mission,
-                                 const mission::Spacecraft& servicer) {
+sensors::MadeSources with_faults(sensors::MadeSources made, const mission::Mission& mission) {
   for (Source& source : made.sources) {
     std::vector<mission::Fault> of_source;
     for (const mission::Fault& fault : mission.faults)
-      if (!fault.unit.empty() && source.name == servicer.name + "/" + fault.unit) of_source.push_back(fault);
+      if (!fault.unit.empty() && source.name == fault.spacecraft + "/" + fault.unit) of_source.push_back(fault);
     if (!of_source.empty())
       source.packets = std::make_unique<faults::FaultySource>(std::move(source.packets), std::move(of_source));
   }
@@ -234,7 +233,7 @@ AssembledMission::AssembledMission(const mission::Mission& mission, const std::f
     : mission_(mission),
       servicer_(complete_servicer(mission)),
       truth_(mission, servicer_, data_directory),
-      made_(with_faults(make_sources(mission, servicer_, data_directory, &truth_), mission, servicer_)),
+      made_(with_faults(make_sources(mission, servicer_, data_directory, &truth_), mission)),
       thruster_(with_faults(make_thruster(mission, servicer_), mission)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
       timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())) {}

@@ -10,6 +10,7 @@
 #include "fsw/packets/messages.h"
 #include "host_sim/faults/faulty_thruster.h"
 #include "host_sim/mission/names.h"
+#include "host_sim/sensors/camera/camera_rows.h"
 
 namespace vbar::faults {
 namespace {
@@ -32,13 +33,13 @@ double norm(const double (&v)[3]) {
 }
 
 /// The messages of a camera, a receiver, a star tracker and a range finder, by the words of their sensor's kind.
-std::optional<Apid> message_of(const mission::Mission& mission, const std::string& unit) {
+std::optional<Apid> message_of(const mission::Mission& mission, const mission::Fault& fault) {
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
-    if (!spacecraft.flight_computer) continue;
+    if (spacecraft.name != fault.spacecraft) continue;
     for (const mission::Sensor& sensor : spacecraft.sensors) {
-      if (sensor.name != unit) continue;
+      if (sensor.name != fault.unit) continue;
       if (sensor.kind == "camera") return Apid::kImageTile;
-      if (sensor.kind == "gnss") return Apid::kGnssBytes;
+      if (sensor.kind == "gnss") return spacecraft.flight_computer ? Apid::kGnssBytes : Apid::kCrosslinkGnssBytes;
       if (sensor.kind == "range_finder") return Apid::kRangeMeasurement;
       return Apid::kIdealNavigation;
     }
@@ -103,6 +104,7 @@ void FaultLog::on_step(std::uint32_t /*step*/, GpsTime time, std::span<const pil
   for (State& state : states_) {
     switch (state.fault.kind) {
       case FaultKind::kSilent:
+      case FaultKind::kReceiverSilent:
         look_at_silence(state, time);
         break;
       case FaultKind::kFrozen:
@@ -114,6 +116,8 @@ void FaultLog::on_step(std::uint32_t /*step*/, GpsTime time, std::span<const pil
       case FaultKind::kThrustScale:
       case FaultKind::kThrustUncommanded:
         break;  // on_execution
+      case FaultKind::kTargetTurned:
+        break;  // finish
       case FaultKind::kComputerSilent:
       case FaultKind::kComputerReboot:
         if (time >= state.fault.begin && outputs.empty()) {
@@ -145,7 +149,7 @@ void FaultLog::look_at_packets(GpsTime /*time*/, std::span<const pil::Packet> in
 }
 
 std::optional<FaultLog::StreamKey> FaultLog::stream_of(const mission::Fault& fault) const {
-  const auto apid = message_of(mission_, fault.unit);
+  const auto apid = message_of(mission_, fault);
   if (!apid) return std::nullopt;
   return StreamKey{*apid, *apid == Apid::kImageTile ? unit_of(mission_, fault.unit) : std::uint8_t{0}};
 }
@@ -222,7 +226,23 @@ void FaultLog::on_execution(GpsTime time, const executed_maneuver& executed) {
   }
 }
 
+/// Poses that the flight software found in the images, against the truth.
+void FaultLog::look_at_poses(State& state) {
+  for (const sensors::PoseRow& pose : record_.tables.rows<sensors::PoseRow>()) {
+    const GpsTime time = mission_.epoch + fsw::nearest_duration(pose.time_s);
+    if (!pose.pnp_error_deg || time < state.fault.begin) continue;
+    const bool is_off = *pose.pnp_error_deg > 0.5 * state.fault.value / kDegree;
+    if (is_off && state.fault.is_present(time)) {
+      witness_effect(state, time, fmt::format("pose off by {:.0f} deg", *pose.pnp_error_deg));
+    } else if (!is_off && !state.fault.is_present(time)) {
+      witness_recovery(state, time);
+    }
+  }
+}
+
 void FaultLog::finish() {
+  for (State& state : states_)
+    if (state.fault.kind == FaultKind::kTargetTurned) look_at_poses(state);
   int without_effect = 0;
   for (const State& state : states_) {
     const mission::Fault& fault = state.fault;

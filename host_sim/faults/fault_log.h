@@ -47,6 +47,7 @@ class FaultLog final : public app::RunObserver {
   void witness_recovery(State& state, fsw::GpsTime time);
   void look_at_packets(fsw::GpsTime time, std::span<const pil::Packet> inputs);
   void look_at_silence(State& state, fsw::GpsTime time);
+  void look_at_poses(State& state);
   void look_at_images(State& state, fsw::GpsTime time);
   void look_at_attitudes(State& state, fsw::GpsTime time, std::span<const pil::Packet> inputs);
   [[nodiscard]] std::optional<StreamKey> stream_of(const mission::Fault& fault) const;

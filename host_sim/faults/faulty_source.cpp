@@ -32,6 +32,13 @@ Packet packet_of(const fsw::packets::PacketHeader& header, const Message& messag
   return Packet(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(size.value()));
 }
 
+bool is_of_receiver(const Packet& packet) {
+  using fsw::packets::Apid;
+  const auto view = fsw::packets::parse_packet(packet);
+  return view.ok() &&
+         (view.value().header.apid == Apid::kGnssBytes || view.value().header.apid == Apid::kCrosslinkGnssBytes);
+}
+
 }  // namespace
 
 struct FaultySource::LastImage {
@@ -52,9 +59,22 @@ struct FaultySource::LastImage {
 FaultySource::FaultySource(std::unique_ptr<twins::PacketSource> source, std::vector<mission::Fault> faults)
     : source_(std::move(source)), faults_(std::move(faults)), last_image_(std::make_shared<LastImage>()) {}
 
+twins::TruthSnapshot FaultySource::seen(const twins::TruthSnapshot& truth) const {
+  twins::TruthSnapshot seen = truth;
+  for (const mission::Fault& fault : faults_) {
+    if (fault.kind != mission::FaultKind::kTargetTurned || !fault.is_present(truth.time)) continue;
+    for (twins::SpacecraftTruth& spacecraft : seen.spacecraft) {
+      if (spacecraft.name != fault.observed || !spacecraft.attitude) continue;
+      Eigen::Quaterniond& q_body_eci = spacecraft.attitude->q_body_eci;
+      q_body_eci = Eigen::Quaterniond(Eigen::AngleAxisd(fault.value, fsw::Vector3::UnitX())) * q_body_eci;
+    }
+  }
+  return seen;
+}
+
 twins::Measurement FaultySource::measure(const twins::TruthSnapshot& truth) {
   using mission::FaultKind;
-  twins::Measurement measurement = source_->measure(truth);
+  twins::Measurement measurement = source_->measure(seen(truth));
   bool is_frozen = false;
   bool may_freeze = false;
   for (const mission::Fault& fault : faults_) {
@@ -68,6 +88,7 @@ twins::Measurement FaultySource::measure(const twins::TruthSnapshot& truth) {
       nothing.available = measurement.available;
       return nothing;
     }
+    if (fault.kind == FaultKind::kReceiverSilent) std::erase_if(measurement.packets, is_of_receiver);
     if (fault.kind == FaultKind::kAttitudeError) {
       for (Packet& packet : measurement.packets) packet = with_attitude_error(packet, fault.value);
     }

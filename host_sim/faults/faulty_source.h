@@ -32,6 +32,9 @@ class FaultySource final : public twins::PacketSource {
   [[nodiscard]] std::vector<twins::Note> statistics() const override { return source_->statistics(); }
 
  private:
+  /// The truth as this source sees it.
+  [[nodiscard]] twins::TruthSnapshot seen(const twins::TruthSnapshot& truth) const;
+
   /// The tiles of an image, shared with measurements that are pending.
   struct LastImage;
 

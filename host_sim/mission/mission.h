@@ -113,6 +113,8 @@ struct PrescribedBurn {
 enum class FaultKind {
   kSilent,             ///< a sensor gives nothing
   kFrozen,             ///< a camera gives its last image again
+  kReceiverSilent,     ///< a receiver gives no bytes; attitudes of the same sensor continue
+  kTargetTurned,       ///< a camera sees the target turned by `value`, rad, about its body's x axis
   kAttitudeError,      ///< attitudes of a sensor are turned by `value`, rad
   kThrustScale,        ///< burns are executed at `value` of their size; 0: not at all
   kThrustUncommanded,  ///< an acceleration of `value` m/s^2 along `direction_rtn`
@@ -124,7 +126,9 @@ enum class FaultKind {
 struct Fault {
   std::string name;
   FaultKind kind = FaultKind::kSilent;
-  std::string unit;  ///< the sensor concerned; empty for other kinds
+  std::string unit;        ///< the sensor concerned; empty for other kinds
+  std::string spacecraft;  ///< that carries it
+  std::string observed;    ///< kTargetTurned: the spacecraft in its images
   fsw::GpsTime begin;
   std::optional<fsw::Duration> duration;  ///< empty: to the end
   double value = 0.0;

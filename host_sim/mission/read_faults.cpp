@@ -12,16 +12,29 @@ const Spacecraft& flying(const TableReader& section, const Mission& mission) {
   section.refuse("kind", "a fault in a mission without a flight computer", "a spacecraft that flies");
 }
 
-/// A sensor of the spacecraft that flies.
-void read_unit(const TableReader& section, const Mission& mission, Fault& fault) {
+/// The spacecraft that carries the sensor: by default the one that flies.
+const Spacecraft& read_carrier(const TableReader& section, const Mission& mission) {
+  const Spacecraft& servicer = flying(section, mission);
+  const Spacecraft* const carrier = mission.find_spacecraft(section.text("spacecraft", servicer.name));
+  if (carrier == nullptr || (carrier != &servicer && carrier->name != servicer.observes()))
+    section.refuse_value("spacecraft", servicer.name + ", or the spacecraft that it observes");
+  return *carrier;
+}
+
+/// A sensor, of one of `kinds` unless these are empty.
+const Sensor& read_unit(const TableReader& section, const Mission& mission, Fault& fault,
+                        std::initializer_list<std::string_view> kinds = {}) {
+  const Spacecraft& carrier = read_carrier(section, mission);
+  fault.spacecraft = carrier.name;
   fault.unit = section.text("unit");
-  const auto& sensors = flying(section, mission).sensors;
-  const auto is_named = [&](const Sensor& sensor) { return sensor.name == fault.unit; };
-  if (std::ranges::none_of(sensors, is_named)) {
-    std::string names;
-    for (const Sensor& sensor : sensors) names += (names.empty() ? "" : ", ") + sensor.name;
-    section.refuse_value("unit", "a sensor of the spacecraft that flies: " + names);
+  std::string names;
+  for (const Sensor& sensor : carrier.sensors) {
+    if (kinds.size() > 0 && std::ranges::find(kinds, sensor.kind) == kinds.end()) continue;
+    if (sensor.name == fault.unit) return sensor;
+    names += (names.empty() ? "" : ", ") + sensor.name;
   }
+  section.refuse_value("unit", "a sensor of " + carrier.name +
+                                   " that can fail so: " + (names.empty() ? std::string("it has none") : names));
 }
 
 Fault read_fault(const TableReader& section, const Mission& mission) {
@@ -34,11 +47,20 @@ Fault read_fault(const TableReader& section, const Mission& mission) {
   if (section.has("for_s")) fault.duration = section.span("for_s", 1.0, above_to(0.0, 1e7));
   switch (fault.kind) {
     case FaultKind::kSilent:
-    case FaultKind::kFrozen:
       read_unit(section, mission, fault);
       break;
+    case FaultKind::kFrozen:
+      read_unit(section, mission, fault, {"camera"});
+      break;
+    case FaultKind::kReceiverSilent:
+      read_unit(section, mission, fault, {"gnss"});
+      break;
+    case FaultKind::kTargetTurned:
+      fault.observed = read_unit(section, mission, fault, {"camera"}).settings->observed;
+      fault.value = section.number("value_deg", above_to(0.0, 180.0));
+      break;
     case FaultKind::kAttitudeError:
-      read_unit(section, mission, fault);
+      read_unit(section, mission, fault, {"gnss"});
       fault.value = section.number("value_deg", above_to(0.0, 180.0));
       break;
     case FaultKind::kThrustScale:
