@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/html_page.h"
@@ -16,6 +20,7 @@ namespace vbar::report {
 namespace {
 
 constexpr int kWarningColour = 6;
+constexpr double kNarrowestBand = 0.003;  // of the figure's width: a fault of seconds is seen, too
 
 Plot distance_plot(const RunRecord& record) {
   const View whole = whole_run(record);
@@ -70,6 +75,38 @@ std::vector<Band> bands_of(const std::vector<TelemetryRow<telemetry_event>>& eve
   return bands;
 }
 
+/// Faults of the scenario, and the retreat if it was flown.
+std::vector<TimelineRow> fault_rows(const RunRecord& record, const Range& all) {
+  const double narrowest_h = kNarrowestBand * (all.high - all.low);
+  const auto band = [&](double from_s, const std::optional<double>& to_s, std::string text) {
+    const double from_h = hours(from_s);
+    const double to_h = to_s ? hours(*to_s) : all.high;
+    return Band{.start_h = from_h,
+                .end_h = std::min(std::max(to_h, from_h + narrowest_h), all.high),
+                .colour = kWarningColour,
+                .text = std::move(text)};
+  };
+  std::vector<TimelineRow> rows;
+  for (const FaultRow& fault : record.faults)
+    rows.push_back({"fault: " + fault.name, {band(fault.begin_s, fault.end_s, fault.kind)}});
+  std::vector<Band> retreats;
+  double begun_s = 0.0;
+  bool is_flown = false;
+  for (const auto& [time_s, step_time_s, event] : record.of<telemetry_event>()) {
+    if (event.fault != telemetry_health::kFaultRetreat) continue;
+    if (event.event == telemetry_event::kEventFaultRaised) {
+      begun_s = time_s;
+      is_flown = true;
+    } else if (event.event == telemetry_event::kEventFaultEnded && is_flown) {
+      retreats.push_back(band(begun_s, time_s, "retreat"));
+      is_flown = false;
+    }
+  }
+  if (is_flown) retreats.push_back(band(begun_s, std::nullopt, "retreat"));
+  if (!retreats.empty()) rows.push_back({"retreat", retreats});
+  return rows;
+}
+
 std::string aids(const RunRecord& record) {
   const auto& events = record.of<telemetry_event>();
   std::vector<std::int32_t> sources;
@@ -82,7 +119,10 @@ std::string aids(const RunRecord& record) {
   for (const std::int32_t source : sources)
     rows.push_back(
         {word_of(columns::words(codes::navigation_configuration_kUse), source), bands_of(events, source, all.high)});
-  return rows.empty() ? "" : "<p class=\"note\">Sources of navigation:</p>\n" + figures(1, {timeline(rows, all)});
+  const std::vector<TimelineRow> faults = fault_rows(record, all);
+  rows.insert(rows.end(), faults.begin(), faults.end());
+  const std::string_view note = faults.empty() ? "Sources of navigation:" : "Sources of navigation, and faults:";
+  return rows.empty() ? "" : fmt::format("<p class=\"note\">{}</p>\n", note) + figures(1, {timeline(rows, all)});
 }
 
 }  // namespace

@@ -1,0 +1,83 @@
+// [[fault]]: what is read, and what the mission cannot apply.
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/host_sim/mission/mission_text.h"
+
+namespace vbar::mission::test {
+namespace {
+
+const std::string kBase(kSmallMission);
+
+std::string with_fault(const std::string& keys) {
+  return kBase + "[[fault]]\n" + keys;
+}
+
+Mission mission_with(const std::string& keys) {
+  return parse_mission(with_fault(keys), "m.toml", {});
+}
+
+TEST(FaultKeys, AreReadWithTheirUnits) {
+  const Mission mission = mission_with(
+      "kind = \"thrust_uncommanded\"\nat_h = 0.5\nfor_s = 10.0\nvalue_mps2 = 1e-3\ndirection_rtn = [0.0, 0.5, 0.0]\n");
+  ASSERT_EQ(mission.faults.size(), 1U);
+  const Fault& fault = mission.faults[0];
+  EXPECT_EQ(fault.kind, FaultKind::kThrustUncommanded);
+  EXPECT_EQ(fault.name, "thrust_uncommanded");
+  EXPECT_EQ(fsw::seconds(fault.begin - mission.epoch), 1800.0);
+  EXPECT_EQ(fsw::seconds(*fault.duration), 10.0);
+  EXPECT_EQ(fault.direction_rtn.y(), 1.0);
+  EXPECT_TRUE(fault.is_reported);
+  EXPECT_FALSE(fault.is_present(fault.begin - fsw::Duration{1}));
+  EXPECT_TRUE(fault.is_present(fault.begin));
+  EXPECT_FALSE(fault.is_present(fault.begin + *fault.duration));
+}
+
+TEST(FaultKeys, ASensorIsNamedByItsSpacecraftAndItself) {
+  const Fault fault = mission_with("kind = \"silent\"\nunit = \"navigation\"\nat_h = 0.5\n").faults[0];
+  EXPECT_EQ(fault.spacecraft, "servicer");
+  EXPECT_EQ(fault.unit, "navigation");
+  EXPECT_FALSE(fault.duration.has_value());
+}
+
+TEST(FaultKeys, ARebootKeepsItsStateOnlyInProcess) {
+  const std::string reboot = "kind = \"computer_reboot\"\nat_h = 0.5\nfor_s = 60.0\nkeeps_state = true\n";
+  EXPECT_TRUE(mission_with(reboot).faults[0].keeps_state);
+  const std::string remote =
+      changed(with_fault(reboot), "flight_computer = {}", "flight_computer = { target = \"host_process\" }");
+  EXPECT_NE(message_of(remote).find("fault.0.keeps_state: found true; accepted: false, or flight_computer.target"),
+            std::string::npos)
+      << message_of(remote);
+}
+
+struct Refused {
+  std::string keys;
+  std::string message;  ///< the end of it
+};
+
+TEST(FaultKeys, WhatTheMissionCannotApplyIsRefused) {
+  const Refused refused[] = {
+      {"kind = \"silent\"\nunit = \"radar\"\nat_h = 0.5\n", "a sensor of servicer that can fail so: navigation"},
+      {"kind = \"frozen\"\nunit = \"navigation\"\nat_h = 0.5\n", "can fail so: it has none"},
+      {"kind = \"receiver_silent\"\nunit = \"navigation\"\nat_h = 0.5\n", "can fail so: it has none"},
+      {"kind = \"target_turned\"\nunit = \"navigation\"\nat_h = 0.5\nvalue_deg = 90.0\n", "can fail so: it has none"},
+      {"kind = \"silent\"\nunit = \"gnss\"\nspacecraft = \"moon\"\nat_h = 0.5\n",
+       "accepted: servicer, or the spacecraft that it observes"},
+      {"kind = \"silent\"\nunit = \"navigation\"\nat_h = 3.0\n", "accepted: a time of the run"},
+      {"kind = \"computer_silent\"\nat_h = 0.5\n", "accepted: the time until it returns"},
+      {"kind = \"thrust_uncommanded\"\nat_h = 0.5\nvalue_mps2 = 1e-3\ndirection_rtn = [0, 1, 0]\n",
+       "accepted: the time until its valve is closed"},
+      {"kind = \"thrust_uncommanded\"\nat_h = 0.5\nfor_s = 1\nvalue_mps2 = 1e-3\ndirection_rtn = [0, 0, 0]\n",
+       "accepted: a direction"},
+      {"kind = \"thrust_scale\"\nat_h = 0.5\nvalue = -0.1\n", "accepted: a number from 0 to 10"},
+      {"kind = \"thrust_scale\"\nat_h = 0.5\nvalue = 0.5\nunit = \"thruster\"\n",
+       "accepted: kind, name, at_h, for_s, value or reported"},
+  };
+  for (const Refused& one : refused) {
+    const std::string message = message_of(with_fault(one.keys));
+    EXPECT_TRUE(message.starts_with("m.toml:") && message.ends_with(one.message)) << one.keys << message;
+  }
+}
+
+}  // namespace
+}  // namespace vbar::mission::test
