@@ -6,6 +6,13 @@
 
 #include "fsw/gnc/vbar_gnc.h"
 
+// Optional functions: an article that is linked without them has null in their place.
+extern "C" {
+[[gnu::weak]] size_t vbar_gnc_snapshot_size(void);
+[[gnu::weak]] vbar_status vbar_gnc_save(const void* state, uint8_t* snapshot, size_t size);
+[[gnu::weak]] vbar_status vbar_gnc_restore(void* state, const uint8_t* snapshot, size_t size);
+}
+
 namespace vbar::pil {
 
 struct TestArticle {
