@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <cmath>
 
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
 namespace {
+
+constexpr double kDegree = M_PI / 180.0;
 
 const Spacecraft& flying(const TableReader& section, const Mission& mission) {
   for (const Spacecraft& spacecraft : mission.spacecraft)
@@ -57,11 +60,11 @@ Fault read_fault(const TableReader& section, const Mission& mission) {
       break;
     case FaultKind::kTargetTurned:
       fault.observed = read_unit(section, mission, fault, {"camera"}).settings->observed;
-      fault.value = section.number("value_deg", above_to(0.0, 180.0));
+      fault.value = kDegree * section.number("value_deg", above_to(0.0, 180.0));
       break;
     case FaultKind::kAttitudeError:
       read_unit(section, mission, fault, {"gnss"});
-      fault.value = section.number("value_deg", above_to(0.0, 180.0));
+      fault.value = kDegree * section.number("value_deg", above_to(0.0, 180.0));
       break;
     case FaultKind::kThrustScale:
       fault.value = section.number("value", from_to(0.0, 10.0));

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Faults of a scenario: what they do, who witnesses it, what the flight software reports, and nothing before they begin."""
 import csv
+import math
 import unittest
 
 from vbar_program import SOURCE, fly, hashes, main, scratch, vbar
@@ -73,6 +74,12 @@ class Faults(unittest.TestCase):
         for name, fault, within_s in (("silent", "images_missing", 30.0), ("frozen", "image_frozen", 15.0),
                                       ("attitude_error", "attitude", 20.0), ("thrust_uncommanded", "burn_uncommanded", 10.0)):
             self.assertTrue(self.raised_after(fault, within_s)(float(self.faults[name]["begin_s"])), name)
+
+    def test_angles_are_those_of_the_mission(self):
+        off_deg = float(self.faults["attitude_error"]["evidence"].removeprefix("off by ").removesuffix(" deg"))
+        self.assertAlmostEqual(off_deg, 1.0, delta=0.05)
+        reported = [abs(float(row["argument"])) for row in self.raised if row["fault"] == "attitude"]
+        self.assertAlmostEqual(reported[0], math.radians(1.0), delta=math.radians(0.1))
 
     def test_a_fault_without_effect_is_counted(self):
         self.assertEqual(self.faults["between two burns"]["effect_s"], "")
