@@ -14,6 +14,7 @@ Status Gnc::step(GpsTime now) {
     return is_usable(now) && now <= now_ ? Status::kBadSequence : Status::kOutOfRange;
   }
   resume(now);
+  verify_state(now);
   const Duration gap = stepped_ ? now - now_ : Duration{};
   now_ = now;
   if (!stepped_) started_ = now;
@@ -23,7 +24,6 @@ Status Gnc::step(GpsTime now) {
                        .is_detected = promised_period_.ns > 0 && delay_s > 0.5 * seconds(promised_period_),
                        .argument = delay_s});
 
-  verify_state();
   manage();
   navigate();
   assess();
@@ -40,17 +40,13 @@ Status Gnc::step(GpsTime now) {
 }
 
 /// An estimate that was changed since the last step, or that the last step had to discard.
-void Gnc::verify_state() {
+void Gnc::verify_state(GpsTime now) {
   const Integrity integrity = navigation_.verify();
-  if (integrity == Integrity::kLost) {
-    restart(now_);
-    started_ = now_;
-    stepped_ = true;
-  }
+  if (integrity == Integrity::kLost) restart(now);
   const int failures = navigation_.trunk().trunk().failures();
-  faults_.check(now_, {.fault = telemetry_health::kFaultState,
-                       .is_detected = integrity != Integrity::kIntact || failures > failures_,
-                       .argument = static_cast<double>(integrity)});
+  faults_.check(now, {.fault = telemetry_health::kFaultState,
+                      .is_detected = integrity != Integrity::kIntact || failures > failures_,
+                      .argument = static_cast<double>(integrity)});
   failures_ = failures;
 }
 

@@ -69,7 +69,7 @@ class Gnc : private GncState {
   static const std::size_t kSnapshotBytes;
 
  private:
-  void verify_state();
+  void verify_state(GpsTime now);
   void manage();
   void navigate();
   void assess();

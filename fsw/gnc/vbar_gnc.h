@@ -50,7 +50,7 @@ vbar_status vbar_gnc_receive(void* state, const uint8_t* packet, size_t size);
 vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns);
 
 /* The snapshot is what a computer retains through a reboot: a header with version, size, step, time and checksum, and
- * the state without workspaces and without addresses, in the representation of the computer and the build that made it.
+ * the state with its workspaces, without addresses, in the representation of the computer and the build that made it.
  * It is optional: an implementation without these three functions cannot be restored. */
 
 /* Size (bytes) of a snapshot. */

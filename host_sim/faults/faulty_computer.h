@@ -1,6 +1,6 @@
 #pragma once
 // A flight computer that is dark for a time: its packets are lost, and it takes no steps. Afterwards it continues, or
-// it has been started anew, with or without the snapshot of its last step.
+// it is re-initialised, with or without the snapshot of its last step.
 
 #include <functional>
 #include <memory>

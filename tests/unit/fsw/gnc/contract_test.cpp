@@ -11,19 +11,6 @@
 namespace vbar::fsw::gnc::test {
 namespace {
 
-const Vector6 kWaypoint0 = (Vector6() << -2000, -75000, 0, 0, 0, 0).finished();
-
-/// A flight that has had burns, half an orbit into the paper's first leg.
-Flight under_way() {
-  Flight flight(kWaypoint0);
-  flight.send(configuration());
-  flight.send(paper_waypoints());
-  flight.send(mode(1));
-  flight.fly_until(at(3000));
-  EXPECT_GT(flight.executed, 0);
-  return flight;
-}
-
 executed_maneuver unheard_of_maneuver(std::int32_t id, double dv_t) {
   executed_maneuver message{};
   message.maneuver_id = id;
@@ -100,17 +87,6 @@ TEST(Contract, APacketDeliveredBetweenStepsIsPartOfTheSavedState) {
   EXPECT_EQ(a.deliver(flight.now, flight.world.measurement()), 0);
   b.restore(a.save());
   EXPECT_EQ(a.step(flight.now, kStep).packets, b.step(flight.now, kStep).packets);
-}
-
-/// Without the packets that report faults.
-template <class Packets>
-Packets without_health(Packets packets) {
-  std::erase_if(packets, [](const auto& packet) {
-    const auto view = packets::parse_packet(packet);
-    return !view.ok() || view.value().header.apid == packets::Apid::kTelemetryHealth ||
-           view.value().header.apid == packets::Apid::kTelemetryEvent;
-  });
-  return packets;
 }
 
 TEST(Contract, TheClockGoesForwardOnly) {

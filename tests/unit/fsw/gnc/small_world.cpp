@@ -162,4 +162,23 @@ void Flight::execute(const Command& command) {
   if (reports_maneuvers) reports_.push_back(packet_of(command.time, report, sequence_++));
 }
 
+Flight under_way() {
+  Flight flight(kWaypoint0);
+  flight.send(configuration());
+  flight.send(paper_waypoints());
+  flight.send(mode(1));
+  flight.fly_until(at(3000));
+  EXPECT_GT(flight.executed, 0);
+  return flight;
+}
+
+std::vector<Bytes> without_health(std::vector<Bytes> packets) {
+  std::erase_if(packets, [](const Bytes& packet) {
+    const auto view = packets::parse_packet(packet);
+    return !view.ok() || view.value().header.apid == packets::Apid::kTelemetryHealth ||
+           view.value().header.apid == packets::Apid::kTelemetryEvent;
+  });
+  return packets;
+}
+
 }  // namespace vbar::fsw::gnc::test

@@ -92,4 +92,13 @@ class Flight {
   std::uint16_t sequence_ = 0;
 };
 
+/// The paper's first waypoint, a * ROE, m.
+inline const Vector6 kWaypoint0 = (Vector6() << -2000, -75000, 0, 0, 0, 0).finished();
+
+/// A flight that has had burns, half an orbit into the paper's first leg.
+Flight under_way();
+
+/// Without the packets that report faults: health and events.
+std::vector<Bytes> without_health(std::vector<Bytes> packets);
+
 }  // namespace vbar::fsw::gnc::test
