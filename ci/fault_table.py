@@ -39,6 +39,7 @@ class Case:
     distance_m: float = 2.0
     retreats: object = None  # True: must, False: must not, None: may
     sources: tuple = ()      # sources that must be aiding again at the end
+    within_burns: object = None  # the number of burns from the fault on with which it must be reported
 
 
 def fault(kind, **keys):
@@ -55,15 +56,16 @@ CASES = {
                                     retreats=True),
     "image frozen 5 min": Case([fault("frozen", unit="camera", for_s=300.0)], "image_frozen", lambda p: 2 * p + 60.0, points=("10km", "300m", "40m")),
     "close images frozen 5 min": Case([fault("frozen", unit="close_camera", for_s=300.0)], "image_frozen", lambda p: 2 * p + 10.0, points=("9m",)),
-    "star tracker 1 deg 10 min": Case([fault("attitude_error", unit="gnss", value_deg=1.0, for_s=600.0)], "attitude", lambda p: 3 * p + 60.0,
+    "star tracker 1 deg 10 min": Case([fault("attitude_error", unit="gnss", value_deg=1.0, for_s=600.0)], "attitude", lambda p: 3 * p,
                                       retreats=False),
-    "receiver silent 1 h": Case([fault("receiver_silent", unit="gnss", for_s=3600.0)], "", None, retreats=False),
-    "network wrong by 90 deg 60 s": Case([fault("target_turned", unit=u, value_deg=90.0, for_s=60.0) for u in ("camera", "close_camera")], "", None,
+    "receiver silent 1 h": Case([fault("receiver_silent", unit="gnss", for_s=3600.0)], "receiver_silent", lambda p: 20.0 + p, retreats=False),
+    "network wrong by 90 deg 60 s": Case([fault("target_turned", unit=u, value_deg=90.0, for_s=60.0) for u in ("camera", "close_camera")], "pose_network",
+                                         lambda p: 65.0 if p < 60.0 else 35.0,  # images every 20 and 10 s
                                          points=NEAR, retreats=False),
-    "thruster off": Case([fault("thrust_scale", value=0.0)], "thruster", None, distance_m=1.0),
+    "thruster off": Case([fault("thrust_scale", value=0.0)], "thruster", None, distance_m=1.0, within_burns=2),
     "thruster on 10 s": Case([fault("thrust_uncommanded", value_mps2=1e-3, direction_rtn=[0.0, 1.0, 0.0], for_s=10.0)], "burn_uncommanded", 61.0,
                              retreats=True),
-    "burns 10 % short": Case([fault("thrust_scale", value=0.9)], "burn_size", None, retreats=False),
+    "burns 10 % short": Case([fault("thrust_scale", value=0.9)], "burn_size", None, retreats=False, within_burns=3),
     "reboot warm 60 s": Case([fault("computer_reboot", for_s=60.0, keeps_state=True)], "restart", lambda p: 60.0 + 2 * p, retreats=False),
     "reboot cold 60 s": Case([fault("computer_reboot", for_s=60.0)], "", None),
     "silent for 3 steps": Case([fault("computer_silent", for_s=181.0)], "step_late", lambda p: 181.0 + 2 * p, retreats=False),
@@ -136,6 +138,10 @@ def judge(run, case, point):
         limit_s = case.within(period_s) if callable(case.within) else case.within
         if reported_s > limit_s:
             misses.append(f"reported later than {limit_s:.0f} s")
+    if case.within_burns is not None and reported_s is not None:
+        burns = sum(begin_s <= float(r["execution_time_s"]) <= begin_s + reported_s for r in rows_of(run / "maneuvers.csv"))
+        if burns > case.within_burns:
+            misses.append(f"reported at burn {burns}, not {case.within_burns}")
     if case.retreats is not None and case.retreats != (retreat_s is not None):
         misses.append("retreats" if retreat_s is not None else "does not retreat")
     for source in case.sources:
