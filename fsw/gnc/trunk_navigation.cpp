@@ -196,7 +196,7 @@ void TrunkNavigation::check_sources(GpsTime now, faults::FaultMonitor& faults) {
   faults.check(now, contradicting);
   check_attitudes(now, faults);
   const auto& network = source<sources::KeypointSource>().aiding().network_verdict();
-  if (network) {
+  if (network && uses<sources::KeypointSource>()) {
     faults.check(now, {.fault = telemetry_health::kFaultPoseNetwork,
                        .is_detected = network->contradicts,
                        .device = sources::KeypointSource::kUse,

@@ -268,7 +268,7 @@ KeypointEditStatus KeypointAiding::take_keypoints(const KeypointImage& image, co
   for (const pose::Keypoint& keypoint : *image.keypoints) is_any_usable = is_any_usable || is_usable(keypoint);
   if (!is_any_usable) return KeypointEditStatus::kNone;
   const int used = update.accepted ? update.used : 0;
-  aid_.consistency().add(update.nis, 2 * update.used);
+  if (update.accepted) aid_.consistency().add(update.nis, 2 * update.used);
   counters_.keypoints_used += used;
   counters_.keypoints_refused += update.usable - used;
   judge_network(image, camera, update.is_mostly_rejected(settings_.editing.max_refused_share), trunk);
