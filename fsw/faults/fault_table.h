@@ -35,20 +35,20 @@ using vbar::telemetry_health;
 // The comment states the argument of the event. A check is one step, image, epoch or burn, as its detector has it.
 inline constexpr auto kFaultTable = std::to_array<Rule>({
     // navigation
-    {telemetry_health::kFaultNavigationTimeout, telemetry_event::kSeverityFault},     // age, s
-    {telemetry_health::kFaultNeverNavigated, telemetry_event::kSeverityFault},        // time, s
-    {telemetry_health::kFaultImagesMissing, telemetry_event::kSeverityFault},         // camera
-    {telemetry_health::kFaultImageFrozen, telemetry_event::kSeverityFault, 1, 1, Response::kIsolate},    // camera
-    {telemetry_health::kFaultPoseNetwork, telemetry_event::kSeverityFault, 3, 3, Response::kIsolate},    // rad
-    {telemetry_health::kFaultAttitude, telemetry_event::kSeverityFault, 2, 3, Response::kIsolate},       // rad
-    {telemetry_health::kFaultReceiverSilent, telemetry_event::kSeverityFault},                           // silence, s
-    {telemetry_health::kFaultCrosslinkSilent, telemetry_event::kSeverityWarning},                        // silence, s
+    {telemetry_health::kFaultNavigationTimeout, telemetry_event::kSeverityFault},                      // age, s
+    {telemetry_health::kFaultNeverNavigated, telemetry_event::kSeverityFault},                         // time, s
+    {telemetry_health::kFaultImagesMissing, telemetry_event::kSeverityFault},                          // camera
+    {telemetry_health::kFaultImageFrozen, telemetry_event::kSeverityFault, 1, 1, Response::kIsolate},  // camera
+    {telemetry_health::kFaultPoseNetwork, telemetry_event::kSeverityFault, 3, 3, Response::kIsolate},  // rad
+    {telemetry_health::kFaultAttitude, telemetry_event::kSeverityFault, 2, 3, Response::kIsolate},     // rad
+    {telemetry_health::kFaultReceiverSilent, telemetry_event::kSeverityFault},                         // silence, s
+    {telemetry_health::kFaultCrosslinkSilent, telemetry_event::kSeverityWarning},                      // silence, s
     // mean NIS/dof; of estimates that a source itself has found wrong: that, or sigmas
     {telemetry_health::kFaultSourceInconsistent, telemetry_event::kSeverityWarning, 1, 1, Response::kIsolate},
     // restarts; the source is isolated as well
     {telemetry_health::kFaultSourceRestarts, telemetry_event::kSeverityFault, 1, 1, Response::kHold},
     {telemetry_health::kFaultSourcesContradict, telemetry_event::kSeverityFault, 1, 1, Response::kIsolate},  // mean NIS
-    {telemetry_health::kFaultState, telemetry_event::kSeverityFault, 1, 1, Response::kIsolate},              // Integrity
+    {telemetry_health::kFaultState, telemetry_event::kSeverityFault, 1, 1, Response::kIsolate},  // Integrity
     // guidance
     {telemetry_health::kFaultHold, telemetry_event::kSeverityFault},                                   // holds so far
     {telemetry_health::kFaultDriftUnsafe, telemetry_event::kSeverityFault, 2, 3, Response::kRetreat},  // distance, m

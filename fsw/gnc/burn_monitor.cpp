@@ -13,8 +13,8 @@ constexpr double kImpulseSigma = 2e-6;  // m/s
 constexpr double kUsualImpulse = 5.0 * kImpulseSigma;
 // So does a scale that is off by the same share and by this multiple of its sigma, where single burns are too small.
 constexpr double kScaleSigmas = 3.0;
-constexpr double kNothing = 0.1;        // share of the size below which a burn counts as missed
-constexpr double kImplausible = 10.0;   // share of the size from which on a report says nothing of the thruster
+constexpr double kNothing = 0.1;       // share of the size below which a burn counts as missed
+constexpr double kImplausible = 10.0;  // share of the size from which on a report says nothing of the thruster
 constexpr Duration kOnTime = duration_of_seconds(1);
 constexpr Duration kLatestReport = duration_of_seconds(300);
 

@@ -71,7 +71,7 @@ bool OwnOrbit::take(GpsTime time, const OwnPosition& measured) {
   const math::Cholesky<3> joint(innovation);
   const math::Cholesky<3> noise(measured.covariance_m2);
   if (!noise.ok()) return false;
-  nis_ = joint.ok() ? joint.solve_lower(residual).squaredNorm() : estimation::kNoGate;
+  nis_ = joint.ok() ? joint.solve_lower(residual).squaredNorm() : kNoGate;
   if (!(nis_ <= settings_.gate)) {
     if (++refused_in_a_row_ < kMaxRefused) return false;
     widen(residual.norm());

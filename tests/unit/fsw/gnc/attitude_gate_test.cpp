@@ -86,7 +86,9 @@ TEST_F(AttitudeGateTest, WithoutACommandAGapEndsThePropagation) {
 /// A platform that is not where it was commanded: its gyro is then more accurate.
 TEST_F(AttitudeGateTest, APlatformThatControlsCoarselyIsReplacedByTheGyro) {
   constexpr double kControlError = 5e-3;  // rad
-  const auto coarse = [](std::int64_t s) { return Matrix3((sample(s).R_eci_body * turned(-kControlError)).transpose()); };
+  const auto coarse = [](std::int64_t s) {
+    return Matrix3((sample(s).R_eci_body * turned(-kControlError)).transpose());
+  };
   EXPECT_TRUE(offer(sample(0), coarse(0)));
   EXPECT_FALSE(offer(sample(5, kStep), coarse(5)));
   ASSERT_TRUE(used_);

@@ -232,7 +232,8 @@ INSTANTIATE_TEST_SUITE_P(AboutEachAxis, KeypointFlips, testing::Values(0, 1, 2))
 class KeypointUpsets : public KeypointFaults, public testing::WithParamInterface<int> {};
 
 /// The network sees the target turned by 90 deg for a minute, with confidence, after the attitude has been confirmed
-/// for longer than ten minutes: it is recognised from the first image on, nothing of it is used, and the attitude stays.
+/// for longer than ten minutes: it is recognised from the first image on, nothing of it is used, and the attitude
+/// stays.
 TEST_P(KeypointUpsets, AMinuteOfAWrongNetworkChangesNothing) {
   hand_over();
   while (flown.next < 140) {
