@@ -29,15 +29,14 @@ struct WeightPanel {
 /// out = rectified convolution of in. `weights` are the layer's bytes in the file. The shapes must be the layer's: as
 /// many channels, out.side = in.side / stride a multiple of eight. `registers` the computer must have.
 void convolve_rectified(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
-                        const FeatureMap& out, WeightPanel& panel, Registers registers = widest_registers());
+                        const FeatureMap& out, WeightPanel& panel, Registers registers);
 
 /// sum += convolution of in, each of its cells for two by two of the sum's, which has twice its side.
 void convolve_and_add_enlarged(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
-                               const FeatureMap& sum, WeightPanel& panel, Registers registers = widest_registers());
+                               const FeatureMap& sum, WeightPanel& panel, Registers registers);
 
 /// The convolution of in, channel by channel, rows from the top; channels beyond the heatmaps are left out.
 void convolve_to_maps(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
-                      std::span<std::array<float, kMapCells>> maps, WeightPanel& panel,
-                      Registers registers = widest_registers());
+                      std::span<std::array<float, kMapCells>> maps, WeightPanel& panel, Registers registers);
 
 }  // namespace vbar::fsw::network
