@@ -253,14 +253,20 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
   if (!mission_.faults.empty()) observers.insert(observers.end(), {faults_.get(), &fault_log});
   faults::UncommandedImpulses impulses(faults_);
   faults::FaultyComputer faulty_computer(
-      surroundings.flight_computer, faults_,
-      [this] { return connect_flight_computer(servicer_, wired_receiver()); }, timetable_.first_packets);
+      surroundings.flight_computer, faults_, [this] { return connect_flight_computer(servicer_, wired_receiver()); },
+      timetable_.first_packets);
   pil::FlightComputer& flight_computer =
       faults::concern_computer(mission_.faults) ? faulty_computer : surroundings.flight_computer;
   SelectedClock wall(surroundings.wall);
-  const World world{truth_,          made_.sources,         *thruster_,
-                    flight_computer, board_link_,           wall,
-                    observers,       surroundings.progress, surroundings.stop_requested,
+  const World world{truth_,
+                    made_.sources,
+                    *thruster_,
+                    flight_computer,
+                    board_link_,
+                    wall,
+                    observers,
+                    surroundings.progress,
+                    surroundings.stop_requested,
                     [&impulses] {
                       std::vector<Timetable::Burn> burns;
                       for (const faults::UncommandedImpulse& impulse : impulses.take())

@@ -1,6 +1,6 @@
 #pragma once
-// When each fault of the scenario begins: at its time, or once its event has happened. Events are those of the truth, of
-// the thruster and of what the flight computer sent; the same in every run with the same bits.
+// When each fault of the scenario begins: at its time, or once its event has happened. Events are those of the truth,
+// of the thruster and of what the flight computer sent; the same in every run with the same bits.
 
 #include <string>
 #include <vector>

@@ -64,7 +64,7 @@ FaultySource::FaultySource(std::unique_ptr<twins::PacketSource> source, std::sha
   is_upset_.resize(faults_.size(), false);
 }
 
-void FaultySource::upset(fsw::GpsTime time) {
+void FaultySource::upset_device(fsw::GpsTime time) {
   using mission::FaultKind;
   using twins::Upset;
   for (std::size_t k = 0; k < faults_.size(); ++k) {
@@ -94,7 +94,7 @@ twins::TruthSnapshot FaultySource::seen(const twins::TruthSnapshot& truth) const
 
 twins::Measurement FaultySource::measure(const twins::TruthSnapshot& truth) {
   using mission::FaultKind;
-  upset(truth.time);
+  upset_device(truth.time);
   twins::Measurement measurement = source_->measure(seen(truth));
   bool is_frozen = false;
   bool may_freeze = false;

@@ -27,6 +27,7 @@ class FaultySource final : public twins::PacketSource {
   void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) override {
     source_->command(packet, effective);
   }
+  bool upset(const twins::Upset& upset) override { return source_->upset(upset); }
   [[nodiscard]] twins::TruthDetail truth_detail() const override { return source_->truth_detail(); }
   [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const override { return source_->wired_receiver(); }
   [[nodiscard]] bool truth_is_compared() const override { return source_->truth_is_compared(); }
@@ -38,7 +39,7 @@ class FaultySource final : public twins::PacketSource {
   [[nodiscard]] twins::TruthSnapshot seen(const twins::TruthSnapshot& truth) const;
 
   /// What befalls the device at an instant that has come since the last measurement.
-  void upset(fsw::GpsTime time);
+  void upset_device(fsw::GpsTime time);
 
   /// The tiles of an image, shared with measurements that are pending.
   struct LastImage;

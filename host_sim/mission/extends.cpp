@@ -65,8 +65,8 @@ void resolve(toml::table& document, const std::filesystem::path& file, int depth
   const TableReader reader(document, file.string());
   if (!reader.has("extends")) return;
   if (depth == kLongestChain) reader.refuse_value("extends", "a chain of at most four files");
-  const std::vector<std::string> names = reader.is_array("extends") ? reader.texts("extends")
-                                                                     : std::vector<std::string>{reader.text("extends")};
+  const std::vector<std::string> names =
+      reader.is_array("extends") ? reader.texts("extends") : std::vector<std::string>{reader.text("extends")};
   if (names.empty()) reader.refuse("extends", "no file", "a mission file, or an array of them");
   toml::table base;
   for (const std::string& name : names) {

@@ -149,7 +149,7 @@ struct Fault {
   std::string start;       ///< as in the file: "waypoint:9"; empty: a time
   /// Empty if `begin` is known: before the run, or since the event has happened.
   std::optional<FaultEvent> awaited;
-  fsw::GpsTime begin;  ///< kNever while an event is awaited
+  fsw::GpsTime begin;                     ///< kNever while an event is awaited
   std::optional<fsw::Duration> duration;  ///< empty: to the end
   double value = 0.0;
   fsw::Vector3 direction_rtn = fsw::Vector3::Zero();

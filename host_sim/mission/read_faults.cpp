@@ -108,7 +108,8 @@ void read_begin(const TableReader& section, const Mission& mission, Fault& fault
 
 std::string read_satellite(const TableReader& section) {
   std::string satellite = section.text("satellite", "highest");
-  const bool is_number = satellite.size() == 3 && std::string_view("GEC").find(satellite[0]) != std::string_view::npos &&
+  const bool is_number = satellite.size() == 3 &&
+                         std::string_view("GEC").find(satellite[0]) != std::string_view::npos &&
                          number_in<unsigned>(std::string_view(satellite).substr(1)).value_or(0) > 0;
   if (satellite != "highest" && satellite != "all" && !is_number)
     section.refuse_value("satellite", "highest, all, or a satellite by letter and two digits: G05, E11, C03");

@@ -24,8 +24,8 @@ std::string injected(const RunRecord& record) {
   if (record.faults.empty()) return "";
   std::vector<std::vector<std::string>> rows;
   for (const FaultRow& fault : record.faults) {
-    rows.push_back({fault.name, fault.kind, fault.unit, fault.event, fault.begin_s ? hours_text(fault.begin_s) : "never",
-                    hours_text(fault.end_s),
+    rows.push_back({fault.name, fault.kind, fault.unit, fault.event,
+                    fault.begin_s ? hours_text(fault.begin_s) : "never", hours_text(fault.end_s),
                     fault.effect_s ? hours_text(fault.effect_s) : "never", hours_text(fault.recovered_s),
                     fault.evidence});
   }
