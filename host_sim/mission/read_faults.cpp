@@ -93,7 +93,8 @@ void read_event(const TableReader& section, const Mission& mission, Fault& fault
   }
   if (const auto number = number_in<int>(argument); kind == "burn" && number && *number >= 1)
     return await(Kind::kBurn, *number);
-  if (const auto range = number_in<double>(argument); kind == "range_below_m" && range && *range > 0.0)
+  if (const auto range = number_in<double>(argument);
+      kind == "range_below_m" && range && *range > 0.0 && std::isfinite(*range))
     return await(Kind::kRangeBelow, *range);
   section.refuse_value("event", "first_fix, waypoint:N, burn:N with N from 1 on, or range_below_m:X with X above 0");
 }
