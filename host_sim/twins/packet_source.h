@@ -166,12 +166,6 @@ class PacketSource {
     static_cast<void>(effective);
   }
 
-  /// At the next measurement. False if it cannot happen to this source, or not now.
-  virtual bool upset(const Upset& upset) {
-    static_cast<void>(upset);
-    return false;
-  }
-
   /// The content that its snapshots need.
   [[nodiscard]] virtual TruthDetail truth_detail() const { return TruthDetail::kStates; }
 
@@ -188,6 +182,12 @@ class PacketSource {
 
   /// Figures so far, for the summary. Must not wait for pending packets.
   [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
+
+  /// At the next measurement. False if it cannot happen to this source, or not now.
+  virtual bool upset(const Upset& upset) {
+    static_cast<void>(upset);
+    return false;
+  }
 };
 
 /// A source as the simulation, its record and its messages refer to it.

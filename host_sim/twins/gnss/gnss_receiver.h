@@ -77,7 +77,7 @@ class GnssReceiver final : public ReceiverBytes {
   void command_slip(SatelliteId satellite, Signal signal, std::int64_t cycles, bool seen);
 
   /// At the next epoch. A slip that is not detected, of all carriers of the satellites concerned; false while none of
-  /// them is tracked. A reset begins as the first epoch did, except that clock and ambiguities are drawn anew.
+  /// them is tracked. A reset begins as the first epoch did, except that it draws another clock and other ambiguities.
   bool upset(const Upset& upset) override;
 
   /// The last epoch's observations and the truth about them.

@@ -65,16 +65,18 @@ class ReceiverBytes {
   [[nodiscard]] virtual TruthDetail truth_detail() const { return TruthDetail::kStates; }
   [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
   [[nodiscard]] virtual std::optional<io::WiredReceiver> wired_receiver() const { return std::nullopt; }
-  virtual bool upset(const Upset& upset) {
-    static_cast<void>(upset);
-    return false;
-  }
 
   /// Between calls of output_at; empty: the sensor's period.
   [[nodiscard]] virtual std::optional<fsw::Duration> call_period() const { return std::nullopt; }
 
   /// Once every period, in order.
   virtual ReceiverOutput output_at(const BodyTruth& truth) = 0;
+
+  /// As that of PacketSource.
+  virtual bool upset(const Upset& upset) {
+    static_cast<void>(upset);
+    return false;
+  }
 };
 
 }  // namespace vbar::twins::gnss
