@@ -18,6 +18,19 @@ using fsw::link::kWindow;
 /// A board that cannot run its flight software sends the reason in place of its name.
 constexpr std::string_view kBoardErrorPrefix = "error: ";
 
+/// The text of a kHelloAck after that prefix; nothing if it is the name of a board.
+std::optional<std::string> board_error(const FrameView& frame) {
+  const std::string text(frame.payload.begin(), frame.payload.end());
+  if (!text.starts_with(kBoardErrorPrefix)) return std::nullopt;
+  return text.substr(kBoardErrorPrefix.size());
+}
+
+/// Of a session that was begun: throws SessionLost if the board says that it has ended.
+void check_session(const FrameView& frame) {
+  if (frame.header.type != FrameType::kHelloAck) return;
+  if (const auto error = board_error(frame)) throw SessionLost("the board has lost its session: " + *error);
+}
+
 std::string seconds_text(std::chrono::milliseconds duration) {
   const std::string text = std::to_string(static_cast<double>(duration.count()) * 1e-3);
   return text.substr(0, text.find('.') + 2) + " s";
@@ -29,10 +42,13 @@ StepBarrier::StepBarrier(FrameTransport& transport, std::uint32_t session, const
                          std::function<void()> watch)
     : transport_(transport), session_(session), timing_(timing), watch_(std::move(watch)) {}
 
-std::string StepBarrier::connect(std::uint8_t spacecraft, std::uint32_t receiver_baud) {
-  std::array<std::uint8_t, fsw::link::kHelloWithReceiverBytes> hello{spacecraft};
+std::string StepBarrier::connect(std::uint8_t spacecraft, std::uint32_t receiver_baud, std::uint64_t step_budget) {
+  std::array<std::uint8_t, fsw::link::kHelloWithBudgetBytes> hello{spacecraft};
   fsw::packets::write_big_endian(receiver_baud, std::span<std::uint8_t>(hello), fsw::link::kHelloBytes);
-  const auto payload = std::span(hello).first(receiver_baud == 0 ? fsw::link::kHelloBytes : hello.size());
+  fsw::packets::write_big_endian(step_budget, std::span<std::uint8_t>(hello), fsw::link::kHelloWithReceiverBytes);
+  const auto payload = std::span(hello).first(step_budget != 0     ? fsw::link::kHelloWithBudgetBytes
+                                              : receiver_baud != 0 ? fsw::link::kHelloWithReceiverBytes
+                                                                   : fsw::link::kHelloBytes);
   const auto give_up = Clock::now() + timing_.boot_limit;
   while (Clock::now() < give_up) {
     send({.type = FrameType::kHello, .session = session_}, payload);
@@ -42,11 +58,9 @@ std::string StepBarrier::connect(std::uint8_t spacecraft, std::uint32_t receiver
         ++counters_.frames_rejected;
         continue;
       }
-      const std::string name(frame->payload.begin(), frame->payload.end());
-      if (name.starts_with(kBoardErrorPrefix)) {
-        throw LinkError("the board cannot run its flight software: " + name.substr(kBoardErrorPrefix.size()));
-      }
-      return name;
+      if (const auto error = board_error(*frame))
+        throw LinkError("the board cannot run its flight software: " + *error);
+      return {frame->payload.begin(), frame->payload.end()};
     }
     watch_();
   }
@@ -58,6 +72,7 @@ std::optional<std::uint64_t> StepBarrier::receiver_count(Clock::time_point deadl
   while (const auto frame = receive(deadline)) {
     if (frame->header.type == FrameType::kReceiverCount && frame->payload.size() == fsw::link::kReceiverCountBytes)
       return fsw::packets::read_big_endian<std::uint64_t>(frame->payload, 0);
+    check_session(*frame);
     ++counters_.frames_duplicated;  // of a step that has been answered
   }
   watch_();
@@ -123,6 +138,7 @@ void StepBarrier::poll(Exchange& exchange) {
 }
 
 bool StepBarrier::take(Exchange& exchange, const FrameView& frame) {
+  check_session(frame);
   // The board received more than one hello, or more than one question for its count.
   if (frame.header.type == FrameType::kHelloAck || frame.header.type == FrameType::kReceiverCount) {
     ++counters_.frames_duplicated;

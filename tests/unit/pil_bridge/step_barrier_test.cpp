@@ -168,6 +168,16 @@ TEST(StepBarrier, PassesOnWhyABoardCannotFly) {
             "the board cannot run its flight software: no room for the state");
 }
 
+TEST(StepBarrier, PassesOnWhyABoardHasLostItsSession) {
+  ScriptedBoard late({{{.type = FrameType::kHelloAck, .session = kSession}, "the name, once more"},
+                      {{.type = FrameType::kHelloAck, .session = kSession}, "error: its watchdog reset it in step 7"}});
+  StepBarrier barrier(late, kSession, hasty(), watch_nothing);
+  const std::string expected = "the board has lost its session: its watchdog reset it in step 7";
+  EXPECT_THROW(barrier.exchange(7, step_packets(7, 1)), SessionLost);
+  EXPECT_EQ(link_error_of([&] { barrier.exchange(7, step_packets(7, 1)); }), expected);
+  EXPECT_EQ(link_error_of([&] { barrier.receiver_count(Clock::now() + milliseconds(5)); }), expected);
+}
+
 TEST(StepBarrier, GivesUpOnABoardThatStallsInAStep) {
   // It acknowledges for ever and never answers: progress once, when the acknowledgement says something new.
   ScriptedBoard board({{{.type = FrameType::kAck, .session = kSession, .step = 7, .index = 1}, ""}});
