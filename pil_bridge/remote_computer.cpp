@@ -71,6 +71,24 @@ StepResult RemoteComputer::step(std::uint32_t step, std::span<const Packet> pack
   return result;
 }
 
+std::vector<std::uint8_t> RemoteComputer::snapshot() {
+  try {
+    return barrier_.read_snapshot();
+  } catch (const LinkError& error) {
+    fail("while its snapshot was read", error.what());
+  }
+}
+
+void RemoteComputer::restore(std::span<const std::uint8_t> snapshot) {
+  try {
+    if (const std::int32_t status = barrier_.write_snapshot(snapshot); status != 0)
+      throw FlightComputerError("flight computer " + description() + " refused the snapshot: status " +
+                                std::to_string(status));
+  } catch (const LinkError& error) {
+    fail("while it was given a snapshot", error.what());
+  }
+}
+
 void RemoteComputer::check_budget(const StepReport& report) const {
   if (parts_.step_budget == 0 || report.unit != count_unit() || report.count <= parts_.step_budget) return;
   throw LinkError("the step took " + std::to_string(report.count) + " " + report.unit + ", and its budget is " +

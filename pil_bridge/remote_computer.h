@@ -33,6 +33,8 @@ class RemoteComputer final : public FlightComputer {
   ~RemoteComputer() override = default;
 
   StepResult step(std::uint32_t step, std::span<const Packet> packets) override;
+  [[nodiscard]] std::vector<std::uint8_t> snapshot() override;
+  void restore(std::span<const std::uint8_t> snapshot) override;
   [[nodiscard]] LinkStatistics statistics() const override;
   [[nodiscard]] std::string description() const override { return parts_.name + ": " + board_name_; }
   void close() override;

@@ -111,6 +111,64 @@ std::vector<Packet> StepBarrier::exchange(std::uint32_t step, std::span<const Pa
   return std::move(exchange.answer);
 }
 
+std::vector<std::uint8_t> StepBarrier::read_snapshot() {
+  std::vector<std::uint8_t> snapshot;
+  for (bool is_complete = false; !is_complete;) {
+    std::array<std::uint8_t, fsw::link::kSnapshotPollBytes> poll{};
+    fsw::packets::write_big_endian(static_cast<std::uint32_t>(snapshot.size()), std::span<std::uint8_t>(poll), 0);
+    ask(FrameType::kSnapshotPoll, poll, FrameType::kSnapshotPiece, [&](std::span<const std::uint8_t> piece) {
+      if (piece.size() < fsw::link::kSnapshotPieceHeaderBytes) return false;
+      const auto total = fsw::packets::read_big_endian<std::uint32_t>(piece, 0);
+      const auto content = piece.subspan(fsw::link::kSnapshotPieceHeaderBytes);
+      const bool is_next = fsw::packets::read_big_endian<std::uint32_t>(piece, 4) == snapshot.size();
+      const bool fits = total >= snapshot.size() && content.size() <= total - snapshot.size();
+      if (!is_next || !fits || (content.empty() && total != 0)) return false;
+      snapshot.insert(snapshot.end(), content.begin(), content.end());
+      is_complete = snapshot.size() == total;
+      return true;
+    });
+  }
+  return snapshot;
+}
+
+std::int32_t StepBarrier::write_snapshot(std::span<const std::uint8_t> snapshot) {
+  const auto total = static_cast<std::uint32_t>(snapshot.size());
+  std::int32_t status = 0;
+  for (std::uint32_t held = 0; held < total && status == 0;) {
+    const std::size_t count = std::min<std::size_t>(total - held, fsw::link::kSnapshotPieceBytes);
+    std::vector<std::uint8_t> piece(fsw::link::kSnapshotPieceHeaderBytes);
+    fsw::packets::write_big_endian(total, std::span<std::uint8_t>(piece), 0);
+    fsw::packets::write_big_endian(held, std::span<std::uint8_t>(piece), 4);
+    const auto content = snapshot.subspan(held, count);
+    piece.insert(piece.end(), content.begin(), content.end());
+    ask(FrameType::kSnapshotPiece, piece, FrameType::kSnapshotHeld, [&](std::span<const std::uint8_t> answer) {
+      if (answer.size() != fsw::link::kSnapshotHeldBytes) return false;
+      status = static_cast<std::int32_t>(fsw::packets::read_big_endian<std::uint32_t>(answer, 4));
+      const bool is_held = fsw::packets::read_big_endian<std::uint32_t>(answer, 0) == held + count;
+      return is_held || status != 0;
+    });
+    held += static_cast<std::uint32_t>(count);
+  }
+  return status;
+}
+
+void StepBarrier::ask(FrameType question, std::span<const std::uint8_t> payload, FrameType answer,
+                      const std::function<bool(std::span<const std::uint8_t>)>& accepts) {
+  const auto give_up = Clock::now() + timing_.give_up_after;
+  while (Clock::now() < give_up) {
+    send({.type = question, .session = session_}, payload);
+    const auto next_question = std::min(give_up, Clock::now() + timing_.poll_after);
+    while (const auto frame = receive(next_question)) {
+      check_session(*frame);
+      if (frame->header.type == answer && accepts(frame->payload)) return;
+      ++counters_.frames_duplicated;  // of a step, or of a question, that has been answered
+    }
+    watch_();
+  }
+  throw LinkError("no answer about the snapshot within " + seconds_text(timing_.give_up_after) + " on " +
+                  transport_.description());
+}
+
 void StepBarrier::goodbye() {
   send({.type = FrameType::kGoodbye, .session = session_});
 }

@@ -66,6 +66,13 @@ class StepBarrier {
   /// been reset since connect().
   std::vector<Packet> exchange(std::uint32_t step, std::span<const Packet> packets);
 
+  /// The snapshot of the flight software between two steps; empty if it gives none. Throws LinkError.
+  std::vector<std::uint8_t> read_snapshot();
+
+  /// Before the first step: gives the flight software a snapshot; the status of its restoration, 0 if it was accepted.
+  /// Throws LinkError.
+  std::int32_t write_snapshot(std::span<const std::uint8_t> snapshot);
+
   /// Sends the goodbye of the session. Not acknowledged.
   void goodbye();
 
@@ -90,6 +97,9 @@ class StepBarrier {
   bool take(Exchange& exchange, const fsw::link::FrameView& frame);
   bool take_acknowledgement(Exchange& exchange, std::uint16_t held);
   bool take_answer(Exchange& exchange, const fsw::link::FrameView& frame);
+  /// Sends a question until there is an answer of type `answer` that `accepts` takes. Throws LinkError.
+  void ask(fsw::link::FrameType question, std::span<const std::uint8_t> payload, fsw::link::FrameType answer,
+           const std::function<bool(std::span<const std::uint8_t>)>& accepts);
   void send(const fsw::link::FrameHeader& header, std::span<const std::uint8_t> payload = {});
   /// The next valid frame of this session, no value at `deadline`. Others are counted.
   std::optional<fsw::link::FrameView> receive(Clock::time_point deadline);

@@ -81,9 +81,16 @@ Activity FlightExecutive::on_frame(std::span<const std::uint8_t> bytes) {
     case FrameType::kReceiverPoll:
       on_receiver_poll();
       return Activity::kIdle;
+    case FrameType::kSnapshotPoll:
+      on_snapshot_poll(frame);
+      return Activity::kIdle;
+    case FrameType::kSnapshotPiece:
+      on_snapshot_piece(frame);
+      return Activity::kIdle;
     case FrameType::kHello:
     case FrameType::kHelloAck:
     case FrameType::kReceiverCount:
+    case FrameType::kSnapshotHeld:
       break;  // the first was handled above, the others are never sent to a board
   }
   ++counters_.rejected;
@@ -119,6 +126,7 @@ void FlightExecutive::begin_session(std::uint32_t session, std::span<const std::
   report_count_ = 0;
   step_time_ = fsw::GpsTime{};
   inputs_ = BatchReceiver{};
+  snapshot_.clear();
   answer_ = fsw::link::BatchSender{};
   outbox_.clear();
   const char* error = start_flight_software(hello_payload);
@@ -194,6 +202,36 @@ void FlightExecutive::on_receiver_poll() {
   std::array<std::uint8_t, fsw::link::kReceiverCountBytes> count{};
   fsw::packets::write_big_endian(receiver_.received(), std::span<std::uint8_t>(count), 0);
   send_frame(header, count);
+}
+
+void FlightExecutive::on_snapshot_poll(const FrameView& frame) {
+  const bool is_in_step = inputs_.is_open() && !has_answer_;
+  if (!can_fly_ || is_in_step || frame.payload.size() != fsw::link::kSnapshotPollBytes) {
+    ++counters_.rejected;
+    if (!can_fly_) answer_hello();
+    return;
+  }
+  const auto offset = fsw::packets::read_big_endian<std::uint32_t>(frame.payload, 0);
+  std::array<std::uint8_t, fsw::link::kSnapshotPieceHeaderBytes + fsw::link::kSnapshotPieceBytes> payload{};
+  const std::size_t size = snapshot_.read(gnc_state_.data(), offset, payload);
+  FrameHeader header;
+  header.type = FrameType::kSnapshotPiece;
+  header.session = session_;
+  send_frame(header, std::span(payload).first(size));
+}
+
+void FlightExecutive::on_snapshot_piece(const FrameView& frame) {
+  std::array<std::uint8_t, fsw::link::kSnapshotHeldBytes> payload{};
+  const bool is_before_steps = can_fly_ && !inputs_.is_open();
+  if (!is_before_steps || !snapshot_.write(gnc_state_.data(), frame.payload, payload).ok()) {
+    ++counters_.rejected;
+    if (!can_fly_) answer_hello();
+    return;
+  }
+  FrameHeader header;
+  header.type = FrameType::kSnapshotHeld;
+  header.session = session_;
+  send_frame(header, payload);
 }
 
 void FlightExecutive::deliver_receiver_bytes(fsw::GpsTime step_time) {
@@ -276,6 +314,7 @@ void FlightExecutive::on_poll(const FrameHeader& header) {
 
 void FlightExecutive::begin_step(std::uint32_t step) {
   inputs_.open(session_, step);
+  snapshot_.clear();
   // The first step keeps the output of the flight software from its construction.
   if (has_answer_) outbox_.clear();
   has_answer_ = false;

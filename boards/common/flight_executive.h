@@ -9,6 +9,7 @@
 
 #include "boards/common/outbox.h"
 #include "boards/common/receiver_port.h"
+#include "boards/common/snapshot_port.h"
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
 #include "fsw/gnc/vbar_gnc.h"
@@ -108,6 +109,8 @@ class FlightExecutive {
   const char* open_receiver(std::span<const std::uint8_t> hello_payload);
   void close_receiver();
   void on_receiver_poll();
+  void on_snapshot_poll(const fsw::link::FrameView& frame);
+  void on_snapshot_piece(const fsw::link::FrameView& frame);
   /// Gives the flight software what the receiver's line has brought, and the host the same bytes in the answer.
   void deliver_receiver_bytes(fsw::GpsTime step_time);
   void begin_step(std::uint32_t step);
@@ -133,6 +136,7 @@ class FlightExecutive {
   fsw::link::BatchSender answer_;
   Outbox outbox_;
   ReceiverPort receiver_;
+  SnapshotPort snapshot_;
   alignas(kGncStateAlignment) std::array<std::byte, kGncStateBytes> gnc_state_;
 };
 

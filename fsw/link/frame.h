@@ -34,6 +34,11 @@
 //   board that no longer flies the session, after a reset or a step beyond its budget: answers kData, and kPoll of a
 //   step
 //         that it has not run, with the kHelloAck that states the reason
+//   host  between two steps, kSnapshotPoll (offset in bytes): the board saves its flight software, once until the next
+//         step, and answers kSnapshotPiece (size of the snapshot, offset, bytes from there on; size 0: there is none)
+//   host  before the first step, kSnapshotPiece, each beginning where the last has ended: the board answers
+//         kSnapshotHeld (bytes that it holds, status); with the last one it restores its flight software. Status is a
+//         fsw::Status; these numbers have 4 bytes
 //   host  kGoodbye ends the run: the board stops.
 
 #include <cstddef>
@@ -61,6 +66,13 @@ inline constexpr std::size_t kHelloWithReceiverBytes = 5;
 inline constexpr std::size_t kHelloWithBudgetBytes = 13;
 inline constexpr std::size_t kReceiverCountBytes = 8;
 
+/// Payload of a kSnapshotPoll and of a kSnapshotHeld; of a kSnapshotPiece before its content, and the most content.
+inline constexpr std::size_t kSnapshotPollBytes = 4;
+inline constexpr std::size_t kSnapshotHeldBytes = 8;
+inline constexpr std::size_t kSnapshotPieceHeaderBytes = 8;
+inline constexpr std::size_t kSnapshotPieceBytes = 1280;
+static_assert(kSnapshotPieceHeaderBytes + kSnapshotPieceBytes + kFrameHeaderBytes + kFrameCrcBytes <= kMaxFrameBytes);
+
 enum class FrameType : std::uint8_t {
   kHello = 1,
   kHelloAck = 2,
@@ -69,7 +81,10 @@ enum class FrameType : std::uint8_t {
   kPoll = 5,
   kGoodbye = 6,
   kReceiverPoll = 7,
-  kReceiverCount = 8
+  kReceiverCount = 8,
+  kSnapshotPoll = 9,
+  kSnapshotPiece = 10,
+  kSnapshotHeld = 11
 };
 
 struct FrameHeader {
