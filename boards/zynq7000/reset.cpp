@@ -1,5 +1,7 @@
 #include "boards/zynq7000/reset.h"
 
+#include <tuple>
+
 #include "boards/zynq7000/cpu.h"
 #include "boards/zynq7000/memory_map.h"
 
@@ -14,7 +16,7 @@ constexpr std::uint32_t kUnlockKey = 0xDF0DU;
 constexpr std::uint32_t kFirstCoreWatchdog = 1U << 17;
 
 struct Retained {
-  RecordWords words;
+  std::uint32_t words[std::tuple_size_v<RecordWords>];  // an array of the language: the object is volatile
   std::uint32_t checksum;
 };
 // Not cleared at start-up, and not cached: what is written is in memory at the time of the reset.
