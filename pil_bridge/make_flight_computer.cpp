@@ -101,6 +101,7 @@ RemoteParts parts_for(const FlightComputerOptions& options) {
   parts.timing = options.timing;
   parts.spacecraft = options.spacecraft;
   parts.receiver = options.receiver;
+  if (options.target == Target::kZynqQemu || options.target == Target::kBoard) parts.step_budget = options.step_budget;
   return parts;
 }
 

@@ -62,6 +62,8 @@ struct FlightComputer {
   std::optional<int> baud;
   std::string address;  ///< board on UDP
   int port = 0;         ///< board on UDP
+  /// Of a step, beyond which the run fails: instructions on zynq_qemu, processor cycles on a board.
+  std::int64_t step_budget = 0;
 };
 
 /// What a kind of sensor has read from the table of one sensor: each kind derives its own settings.
