@@ -56,6 +56,7 @@ struct FlightComputer {
   FlightTarget target = FlightTarget::kInProcess;
   FlightLink link = FlightLink::kSerial;
   std::string library;            ///< shared library of another flight software; empty: vbar's own
+  std::string image;              ///< program or ELF image of another one; empty: vbar's own
   fsw::Duration compute_latency;  ///< from a step to the moment its outputs take effect
   std::string device;             ///< board on a serial link: the tty
   /// Serial link: the tty's rate (board: 921,600 by default); for others the bridge limits the rate to it.
