@@ -108,6 +108,10 @@ FlightComputer read_flight_computer(const TableReader& section) {
   computer.library = section.text("library", "");
   if (!computer.library.empty() && computer.target != FlightTarget::kInProcess)
     section.refuse_value("library", "nothing, unless target is in_process");
+  computer.image = section.text("image", "");
+  const bool starts_image = computer.target != FlightTarget::kInProcess && computer.target != FlightTarget::kBoard;
+  if (!computer.image.empty() && !starts_image)
+    section.refuse_value("image", "nothing, unless target is zynq_qemu, zynq_linux_qemu or host_process");
   computer.compute_latency = section.span("compute_latency_s", 1.0, from_to(0.0, 3600.0), 1.0);
   computer.device = section.text("device", "");
   if (section.has("baud")) computer.baud = static_cast<int>(section.integer("baud", 1200, 4000000));
