@@ -56,12 +56,15 @@ struct FlightComputer {
   FlightTarget target = FlightTarget::kInProcess;
   FlightLink link = FlightLink::kSerial;
   std::string library;            ///< shared library of another flight software; empty: vbar's own
+  std::string image;              ///< program or ELF image of another one; empty: vbar's own
   fsw::Duration compute_latency;  ///< from a step to the moment its outputs take effect
   std::string device;             ///< board on a serial link: the tty
   /// Serial link: the tty's rate (board: 921,600 by default); for others the bridge limits the rate to it.
   std::optional<int> baud;
   std::string address;  ///< board on UDP
   int port = 0;         ///< board on UDP
+  /// Of a step, beyond which the run fails: instructions on zynq_qemu, processor cycles on a board.
+  std::int64_t step_budget = 0;
 };
 
 /// What a kind of sensor has read from the table of one sensor: each kind derives its own settings.

@@ -180,8 +180,8 @@ Fault read_fault(const TableReader& section, const Mission& mission) {
     }
     case FaultKind::kComputerReboot:
       fault.keeps_state = section.flag("keeps_state", false);
-      if (fault.keeps_state && flying(section, mission).flight_computer->target != FlightTarget::kInProcess)
-        section.refuse_value("keeps_state", "false, or flight_computer.target = \"in_process\"");
+      if (fault.keeps_state && !flying(section, mission).flight_computer->library.empty())
+        section.refuse_value("keeps_state", "false, or no flight_computer.library");
       [[fallthrough]];
     case FaultKind::kComputerSilent:
       if (!fault.duration) section.refuse("for_s", "a flight computer that stays dark", "the time until it returns");

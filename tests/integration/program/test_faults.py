@@ -4,7 +4,7 @@ import csv
 import math
 import unittest
 
-from vbar_program import SOURCE, fly, hashes, main, scratch, vbar
+from vbar_program import MISSION, SOURCE, ZYNQ_IMAGE, fly, hashes, main, missing, scratch, vbar
 
 EXPERIMENT2 = SOURCE / "missions" / "experiment2.toml"
 EXPERIMENT3 = SOURCE / "missions" / "experiment3.toml"
@@ -234,9 +234,23 @@ class Reboot(unittest.TestCase):
             self.assertNotIn("cold_start", after[0]["faults"])
             states = {float(row["time_s"]): row for row in rows_of(folder / "run", "estimate.csv")}
             self.assertEqual(states[begin_s + 60.0]["navigation_valid"], "1", "the first step after it navigates")
-            refused = vbar("run", mission, "--check", "--set", "flight_computer.target=host_process")
+            refused = vbar("run", mission, "--check", "--set", "flight_computer.library=x.so")
             self.assertEqual(refused.returncode, 2)
             self.assertIn("keeps_state", refused.stderr)
+
+    def test_it_continues_on_every_flight_computer_with_the_same_bits(self):
+        with scratch() as folder:
+            reboot = f'extends = "{MISSION}"\n[[fault]]\nkind = "computer_reboot"\nat_h = 1.0\nfor_s = 180.0\n'
+            (folder / "cold.toml").write_text(reboot)
+            mission = folder / "reboot.toml"
+            mission.write_text(reboot + "keeps_state = true\n")
+            duration = "mission.duration_h=1.5"
+            here = fly(folder / "here", duration, mission=mission)
+            cold = fly(folder / "cold", duration, mission=folder / "cold.toml")
+            self.assertNotEqual(hashes(cold), hashes(here), "the state makes a difference")
+            for target in ["host_process"] + ([] if missing(ZYNQ_IMAGE) else ["zynq_qemu"]):
+                remote = fly(folder / target, duration, f"flight_computer.target={target}", "flight_computer.link=udp", mission=mission)
+                self.assertEqual(hashes(remote), hashes(here), target)
 
 
 class Snapshot(unittest.TestCase):
@@ -251,6 +265,17 @@ class Snapshot(unittest.TestCase):
                 restored = vbar("replay", folder / "run", "--from", folder / "snapshot")
                 self.assertEqual(restored.returncode, 0, restored.stdout + restored.stderr)
                 self.assertRegex(restored.stdout, r"identical: \d{2,} steps, .* from step \d{2,} on")
+
+    def test_so_it_does_on_another_flight_computer(self):
+        with scratch() as folder:
+            fly(folder / "run", "mission.duration_h=2")
+            for target in ["host_process"] + ([] if missing(ZYNQ_IMAGE) else ["zynq_qemu"]):
+                computer = ["--set", f"flight_computer.target={target}", "--set", "flight_computer.link=udp"]
+                saved = vbar("replay", folder / "run", "--save", folder / target, "--at-h", 1.0, *computer)
+                self.assertEqual(saved.returncode, 0, saved.stderr)
+                restored = vbar("replay", folder / "run", "--from", folder / target, *computer)
+                self.assertEqual(restored.returncode, 0, restored.stdout + restored.stderr)
+                self.assertRegex(restored.stdout, rf"on {target} over udp.* from step \d{{2,}} on")
 
     def test_what_is_no_snapshot_is_refused(self):
         with scratch() as folder:

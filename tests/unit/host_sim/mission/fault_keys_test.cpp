@@ -41,14 +41,17 @@ TEST(FaultKeys, ASensorIsNamedByItsSpacecraftAndItself) {
   EXPECT_FALSE(fault.duration.has_value());
 }
 
-TEST(FaultKeys, ARebootKeepsItsStateOnlyInProcess) {
+TEST(FaultKeys, ARebootKeepsItsStateOnEveryTargetButNotThatOfALibrary) {
   const std::string reboot = "kind = \"computer_reboot\"\nat_h = 0.5\nfor_s = 60.0\nkeeps_state = true\n";
   EXPECT_TRUE(mission_with(reboot).faults[0].keeps_state);
-  const std::string remote =
-      changed(with_fault(reboot), "flight_computer = {}", "flight_computer = { target = \"host_process\" }");
-  EXPECT_NE(message_of(remote).find("fault.0.keeps_state: found true; accepted: false, or flight_computer.target"),
+  const auto on = [&](const std::string& computer) {
+    return changed(with_fault(reboot), "flight_computer = {}", "flight_computer = { " + computer + " }");
+  };
+  EXPECT_TRUE(parse_mission(on("target = \"zynq_qemu\""), "m.toml").faults[0].keeps_state);
+  const std::string message = message_of(on("library = \"x.so\""));
+  EXPECT_NE(message.find("fault.0.keeps_state: found true; accepted: false, or no flight_computer.library"),
             std::string::npos)
-      << message_of(remote);
+      << message;
 }
 
 // Both spacecraft with a receiver.
