@@ -149,7 +149,11 @@ int run_command(const RunOptions& options) {
     if (!trouble) throw;  // the record is complete, its report is not
   }
   for (const report::FaultRow& fault : record.faults) {
-    if (!fault.effect_s) fmt::print("fault \"{}\" never took effect\n", fault.name);
+    if (!fault.begin_s) {
+      fmt::print("fault \"{}\" never began: {} did not happen\n", fault.name, fault.event);
+    } else if (!fault.effect_s) {
+      fmt::print("fault \"{}\" never took effect\n", fault.name);
+    }
   }
   if (!trouble && record.summary.never_navigated) {
     fmt::print(stderr, "vbar: {}: never navigated: no estimate was valid\n", folder.path().string());
