@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -12,6 +13,17 @@ namespace {
 
 using files::TextLines;
 using fsw::Vector3;
+
+/// Of files that were thinned, whose first lines state the interval that they had.
+double median_step_s(const Track& track) {
+  std::vector<double> steps_s;
+  for (std::size_t k = 1; k < track.states.size(); ++k)
+    steps_s.push_back(fsw::seconds(track.states[k].time - track.states[k - 1].time));
+  if (steps_s.empty()) return 0.0;
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::ranges::nth_element(steps_s, middle);
+  return *middle;
+}
 
 class Sp3Reader {
  public:
@@ -116,7 +128,7 @@ class Sp3Reader {
       if (track.states.empty()) continue;
       track.frame = Frame::kItrf;
       track.has_velocities = has_velocities_;
-      track.largest_step_s = 1.5 * interval_s_;
+      track.largest_step_s = 1.5 * std::max(interval_s_, median_step_s(track));
       if (has_velocities_ && velocities_[name] != track.states.size())
         lines_.refuse(fmt::format("{} positions and {} velocities of {}", track.states.size(), velocities_[name], name),
                       "a velocity for each position");

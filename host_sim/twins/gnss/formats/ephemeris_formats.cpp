@@ -47,7 +47,7 @@ std::string problem_of(const BroadcastRecord& record) {
     return fmt::format("week {} is not an integer from 0 to {}", record.week, kLastWeek);
   if (!(record.toe_s >= 0.0 && record.toe_s < static_cast<double>(kSecondsPerWeek)))
     return fmt::format("toe of {} s does not lie in a week", record.toe_s);
-  if (!(std::abs(record.toc_s - record.toe_s) <= 86400.0))
+  if (!(std::abs(record.toc_s - record.toe_s) <= kLongestClockAge_s))
     return fmt::format("week and toe are {:.0f} s from the reference time of the clock; they must lie within a day",
                        std::abs(record.toc_s - record.toe_s));
   if (!(set.sqrt_a > 2000.0 && set.sqrt_a < 9000.0) || !(set.e >= 0.0 && set.e < 0.1))

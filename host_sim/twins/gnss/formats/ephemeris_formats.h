@@ -21,7 +21,7 @@ struct EphemerisFormat {
 [[nodiscard]] EphemerisFile read_ephemeris_table(std::string_view text, const std::string& file);
 
 // RINEX navigation files, versions 2.xx (GPS), 3.xx and 4.xx (GPS, Galileo, BeiDou; records of other systems and
-// messages are skipped). Of each satellite one set: that whose reference time is nearest to noon of the file's day,
+// messages are skipped, and so are sets whose week contradicts their date, as merged files hold some). Of each satellite one set: that whose reference time is nearest to noon of the file's day,
 // which is the day of the median reference time. GPS LNAV, Galileo I/NAV, BeiDou D1 and D2.
 [[nodiscard]] bool is_rinex(std::string_view text);
 [[nodiscard]] EphemerisFile read_rinex(std::string_view text, const std::string& file);
@@ -40,6 +40,9 @@ struct BroadcastRecord {
   Ephemeris elements{};  ///< all but reference time, node and clock
   double af0 = 0.0, af1 = 0.0, af2 = 0.0;
 };
+
+/// Between the reference times of clock and orbit.
+inline constexpr double kLongestClockAge_s = 86400.0;
 
 /// What is wrong with a record; empty if nothing is.
 [[nodiscard]] std::string problem_of(const BroadcastRecord& record);
