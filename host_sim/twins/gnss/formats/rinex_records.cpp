@@ -188,13 +188,13 @@ std::optional<BroadcastRecord> RinexRecords::read_set() {
   // BeiDou's weeks begin in 2006; the date is in its own time.
   const double week_zero_s = satellite->system == System::kBeidou ? 1356.0 * kSecondsPerWeek : 0.0;
   record.toc_s = toc_s - week_zero_s - record.week * static_cast<double>(kSecondsPerWeek);
-  // Files merged from many receivers hold some sets with the week of another one; they are of no use.
-  const bool is_of_one_time = std::abs(record.toc_s - record.toe_s) <= kLongestClockAge_s;
+  // Files merged from many receivers hold some sets of zeros and some with the week of another one; they are of no use.
+  const bool is_set = record.elements.sqrt_a != 0.0 && std::abs(record.toc_s - record.toe_s) <= kLongestClockAge_s;
   const std::string problem = problem_of(record);
-  if (is_of_one_time && !problem.empty())
+  if (is_set && !problem.empty())
     lines_.refuse(fmt::format("a record of {} that cannot be right", name_of(*satellite)), problem);
   advance();
-  if (!is_of_one_time || !is_wanted(record, values)) return std::nullopt;
+  if (!is_set || !is_wanted(record, values)) return std::nullopt;
   return record;
 }
 

@@ -148,13 +148,13 @@ TEST(OrientationFormats, FinalsOfTwoYears) {
   EXPECT_DOUBLE_EQ(o.pole_x, 0.076541 * kArcsec);
   EXPECT_DOUBLE_EQ(o.pole_y, 0.447175 * kArcsec);
   EXPECT_DOUBLE_EQ(o.ut1_minus_tai_s, -0.2914214 - 34.0);
-  // The two services agree to 0.3 mas and 50 us over the excerpt.
+  // The two services agree to about 0.3 mas and, in UT1, 20 to 50 us.
   const OrientationDays table = bundled();
   for (const auto& day : days) {
     const EarthOrientation& other = day_of(table, day.mjd_utc).orientation;
     EXPECT_NEAR(day.orientation.pole_x, other.pole_x, 3e-4 * kArcsec);
     EXPECT_NEAR(day.orientation.pole_y, other.pole_y, 3e-4 * kArcsec);
-    EXPECT_NEAR(day.orientation.ut1_minus_tai_s, other.ut1_minus_tai_s, 5e-5);
+    EXPECT_NEAR(day.orientation.ut1_minus_tai_s, other.ut1_minus_tai_s, 1e-4);
     EXPECT_NEAR(day.orientation.cip_dx, other.cip_dx, 5e-4 * kArcsec);
   }
   // Debian's python3-astropy has a file of 2016 with predictions, which begin on 2016-04-29.

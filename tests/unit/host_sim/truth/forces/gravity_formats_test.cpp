@@ -96,7 +96,7 @@ TEST(GravityFormats, InvalidFilesAreRefusedWithALine) {
   EXPECT_EQ(error_of(egm2008()), "");
   const std::string& text = egm2008();
   EXPECT_THAT(error_of(text.substr(0, text.find("gfc     7    7"))),
-              AllOf(HasSubstr("m.gfc:48: found the end of the file"), HasSubstr("coefficients of degree 7, order 7")));
+              AllOf(HasSubstr("m.gfc:46: found the end of the file"), HasSubstr("coefficients of degree 7, order 7")));
   // Truncated behind the degrees that are used.
   EXPECT_THAT(error_of(text.substr(0, text.find("gfc     8")), "", "", 4), HasSubstr("coefficients of degree 8"));
   EXPECT_THAT(error_of(text, "gfc     5    0", "gfct    5    0"),

@@ -125,7 +125,7 @@ TEST(Rinex, InvalidFilesAreRefusedWithALine) {
   EXPECT_THAT(error_of(three, "NAVIGATION DATA", "OBSERVATION DAT"), HasSubstr("found a file of type \"OBSERVATION DAT"));
   EXPECT_THAT(error_of(three, "     3.02", "     5.02"), HasSubstr("found RINEX version 5.02, expected 2, 3 or 4"));
   EXPECT_THAT(error_of(two.substr(0, two.size() - 200)), HasSubstr("found the end of the file, expected the next line of"));
-  EXPECT_THAT(error_of(two, "0.515365901756D+04", "0.515365901756D+07"), HasSubstr("a record of G01 that cannot be right"));
+  EXPECT_THAT(error_of(two, "0.515358347130D+04", "0.515358347130D+07"), HasSubstr("a record of G02 that cannot be right"));
   EXPECT_THAT(error_of(two, "END OF HEADER", "END OF HEADXX"), HasSubstr("expected END OF HEADER"));
   EXPECT_THAT(error_of("x y\n"), HasSubstr("RINEX navigation file"));
 }
@@ -134,11 +134,14 @@ TEST(Rinex, InvalidFilesAreRefusedWithALine) {
 TEST(Rinex, ASetWithTheWeekOfAnotherOneIsLeftOut) {
   std::string text = text_of(published("brdc2930_excerpt.11n"));
   const std::string week = "0.165800000000D+04";
-  text.replace(text.find(week), week.size(), "0.165900000000D+04");
+  const std::size_t record = text.find(" 2 11 10 20 12  0  0.0");  // the set of G02 that is used
+  ASSERT_NE(record, std::string::npos);
+  text.replace(text.find(week, record), week.size(), "0.165900000000D+04");
   const EphemerisFile all = read_ephemeris_file(published("brdc2930_excerpt.11n"));
   const EphemerisFile rest = read_ephemerides(text, "brdc.rnx");
   ASSERT_EQ(rest.satellites.size(), all.satellites.size());
-  EXPECT_NE(rest.satellites[0].toe, all.satellites[0].toe);
+  EXPECT_EQ(rest.satellites[1].satellite, all.satellites[1].satellite);
+  EXPECT_NE(rest.satellites[1].toe, all.satellites[1].toe);
 }
 
 }  // namespace
