@@ -40,8 +40,7 @@ const Domain& domain_of(mission::Solver solver) {
 std::string alternatives(double eccentricity) {
   std::string names;
   for (const Domain& domain : kDomains)
-    if (eccentricity <= domain.max_eccentricity)
-      names += fmt::format("{}{}", names.empty() ? "" : " or ", domain.name);
+    if (eccentricity <= domain.max_eccentricity) names += fmt::format("{}{}", names.empty() ? "" : " or ", domain.name);
   return names.empty() ? "no planner of this flight software; flight_computer.library may name another one"
                        : fmt::format("solver = {}", names);
 }

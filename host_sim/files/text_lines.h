@@ -20,8 +20,8 @@ class FormatError : public std::runtime_error {
 /// Without blanks at either end.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
-/// The whole of `text`, blanks at either end aside, as a finite number; Fortran's exponents (1.0D-03) and a leading plus
-/// are accepted. Nothing otherwise.
+/// The whole of `text`, blanks at either end aside, as a finite number; Fortran's exponents (1.0D-03) and a leading
+/// plus are accepted. Nothing otherwise.
 [[nodiscard]] std::optional<double> number_of(std::string_view text);
 
 /// The same for a decimal integer.

@@ -89,8 +89,10 @@ Orbit read_relative(const TableReader& section, const Mission& mission) {
 Orbit read_orbit(const TableReader& section, const Member& member, const Mission& mission) {
   const int given = int{section.has("elements")} + int{section.has("relative")} + int{section.has("orbit_file")};
   if (given != 1)
-    section.refuse("", given == 0 ? "none of elements, relative and orbit_file" : "more than one of elements, relative and orbit_file",
-                   "exactly one of them");
+    section.refuse(
+        "",
+        given == 0 ? "none of elements, relative and orbit_file" : "more than one of elements, relative and orbit_file",
+        "exactly one of them");
   if (section.has("elements")) return read_elements(section.table("elements"), member);
   if (section.has("orbit_file"))
     return OrbitByFile{data_file(section, "orbit_file", "", mission), section.text("orbit_object", "")};

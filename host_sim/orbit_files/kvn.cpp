@@ -65,8 +65,7 @@ bool Metadata::take(const TextLines& lines, const Keyword& keyword) {
     R_gcrf_frame = rotation_of(lines, keyword.value);
   } else if (keyword.name == "TIME_SYSTEM") {
     time_system = time_system_named(keyword.value);
-    if (!time_system)
-      lines.refuse(fmt::format("TIME_SYSTEM {}", files::quoted(keyword.value)), "UTC, TAI, TT or GPS");
+    if (!time_system) lines.refuse(fmt::format("TIME_SYSTEM {}", files::quoted(keyword.value)), "UTC, TAI, TT or GPS");
   } else {
     return false;
   }

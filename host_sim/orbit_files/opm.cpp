@@ -61,8 +61,8 @@ std::vector<Track> read_opm(std::string_view text, const std::string& file) {
   vector.check(lines);
   const auto at = [&](std::size_t k) { return vector.components[k].value(); };
   Track track{metadata.object, metadata.object_id};
-  track.states.push_back({metadata.time(lines, vector.epoch),
-                          metadata.state(lines, {at(0), at(1), at(2)}, {at(3), at(4), at(5)})});
+  track.states.push_back(
+      {metadata.time(lines, vector.epoch), metadata.state(lines, {at(0), at(1), at(2)}, {at(3), at(4), at(5)})});
   return {track};
 }
 

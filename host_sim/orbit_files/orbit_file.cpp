@@ -59,8 +59,8 @@ OrbitFile tracks_of(const OrbitFile& file, std::string_view object) {
     if (std::ranges::find(names, track.object) == names.end()) names.push_back(track.object);
   }
   if (one.tracks.empty())
-    throw std::runtime_error(fmt::format("{}: has no object {}; it has {}", file.file, files::quoted(object),
-                                         fmt::join(names, ", ")));
+    throw std::runtime_error(
+        fmt::format("{}: has no object {}; it has {}", file.file, files::quoted(object), fmt::join(names, ", ")));
   if (object.empty() && names.size() > 1)
     throw std::runtime_error(
         fmt::format("{}: has {} objects: {}; one must be named", file.file, names.size(), fmt::join(names, ", ")));

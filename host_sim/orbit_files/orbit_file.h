@@ -1,6 +1,6 @@
 #pragma once
-// Orbits from files in published formats: each format is recognised by its contents, whatever the name of the file; each
-// has its file here and its line in the list.
+// Orbits from files in published formats: each format is recognised by its contents, whatever the name of the file;
+// each has its file here and its line in the list.
 
 #include <filesystem>
 #include <span>
@@ -22,7 +22,7 @@ struct TimedState {
 
 /// States of one object that follow each other, at least one.
 struct Track {
-  std::string object{};     ///< name in the file
+  std::string object{};   ///< name in the file
   std::string object_id;  ///< another name, may be empty
   Frame frame = Frame::kGcrf;
   bool has_velocities = true;

@@ -37,7 +37,8 @@ std::int64_t offset_ns(TimeSystem system) {
 std::optional<int> mjd_of(const Calendar& c) {
   double zero = 0.0, mjd = 0.0;
   const bool by_day_of_year = c.month == 0;
-  if (c.year < 1980 || c.year > 2200 || eraCal2jd(c.year, by_day_of_year ? 1 : c.month, by_day_of_year ? 1 : c.day, &zero, &mjd) != 0)
+  if (c.year < 1980 || c.year > 2200 ||
+      eraCal2jd(c.year, by_day_of_year ? 1 : c.month, by_day_of_year ? 1 : c.day, &zero, &mjd) != 0)
     return std::nullopt;
   if (!by_day_of_year) return static_cast<int>(mjd);
   const bool is_leap_year = c.year % 4 == 0 && (c.year % 100 != 0 || c.year % 400 == 0);
@@ -53,11 +54,11 @@ bool has_leap_second(int mjd) {
 
 std::optional<TimeSystem> time_system_named(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, TimeSystem>, 6> kNames{{{"UTC", TimeSystem::kUtc},
-                                                                          {"TAI", TimeSystem::kTai},
-                                                                          {"TT", TimeSystem::kTt},
-                                                                          {"GPS", TimeSystem::kGps},
-                                                                          {"GAL", TimeSystem::kGps},
-                                                                          {"BDT", TimeSystem::kBeidou}}};
+                                                                           {"TAI", TimeSystem::kTai},
+                                                                           {"TT", TimeSystem::kTt},
+                                                                           {"GPS", TimeSystem::kGps},
+                                                                           {"GAL", TimeSystem::kGps},
+                                                                           {"BDT", TimeSystem::kBeidou}}};
   for (const auto& [known, system] : kNames)
     if (known == name) return system;
   return std::nullopt;

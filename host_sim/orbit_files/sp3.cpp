@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -76,9 +75,10 @@ class Sp3Reader {
   }
 
   void take_epoch() {
-    const auto time = instant_of({whole(4, 7, "the year"), whole(9, 10, "the month"), whole(12, 13, "the day"),
-                                  whole(15, 16, "the hour"), whole(18, 19, "the minute"), number(21, 31, "the seconds")},
-                                 system_);
+    const auto time =
+        instant_of({whole(4, 7, "the year"), whole(9, 10, "the month"), whole(12, 13, "the day"),
+                    whole(15, 16, "the hour"), whole(18, 19, "the minute"), number(21, 31, "the seconds")},
+                   system_);
     if (!time || whole(9, 10, "the month") == 0) lines_.refuse("a date and a time of day");
     if (time_ && *time <= *time_) lines_.refuse("an epoch at or before the one before", "epochs in ascending order");
     time_ = time;

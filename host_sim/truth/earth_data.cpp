@@ -40,8 +40,7 @@ void check_reach(const TruthSettings& settings, const std::filesystem::path& fil
   };
   check(settings.epoch, "the epoch");
   if (settings.end <= settings.epoch) return;
-  check(last_instant(settings),
-        fmt::format("the last step of a run that ends at {}", format_utc(settings.end, 0)));
+  check(last_instant(settings), fmt::format("the last step of a run that ends at {}", format_utc(settings.end, 0)));
 }
 
 /// Whether bundled data serve: false where a file that is named would be rejected.
@@ -57,9 +56,10 @@ bool reaches(const TruthSettings& settings, const LookUp& look_up) {
 
 [[noreturn]] void refuse_prediction(const std::filesystem::path& file, const std::string& what,
                                     const std::string& from) {
-  throw std::runtime_error(fmt::format("{}: {} is predicted from {} on; accepted are observed values, unless "
-                                       "truth.accept_predictions is true",
-                                       file.string(), what, from));
+  throw std::runtime_error(
+      fmt::format("{}: {} is predicted from {} on; accepted are observed values, unless "
+                  "truth.accept_predictions is true",
+                  file.string(), what, from));
 }
 
 /// Error of one sigma of predictions `days` long: IERS Bulletin A, section "Predictions".
@@ -105,11 +105,11 @@ void assume_orientation(const TruthSettings& settings, bool is_bundled, ForceDat
 }
 
 void assume_weather(const TruthSettings& settings, bool is_bundled, ForceData& data) {
-  data.space_weather = std::make_shared<const SpaceWeather>(
-      SpaceWeather::constant(settings.constant_f107, settings.constant_ap));
+  data.space_weather =
+      std::make_shared<const SpaceWeather>(SpaceWeather::constant(settings.constant_f107, settings.constant_ap));
   data.notes.push_back(fmt::format(
       "{}: F10.7 = {} and Ap = {} are assumed; between F10.7 of 70 and 230 the density, and drag with it, grows by a "
-      "factor of 9 at 400 km and of 40 at 700 km; truth.space_weather_file names a file (CelesTrak SW-All).",
+      "factor of 11 at 400 km and of 36 at 700 km; truth.space_weather_file names a file (CelesTrak SW-All).",
       missing(settings, is_bundled, kBundledWeather, "space weather"), settings.constant_f107, settings.constant_ap));
 }
 

@@ -18,7 +18,8 @@ void check(const OrbitFile& file) {
     VBAR_FUZZ_EXPECT(!track.states.empty());
     for (std::size_t k = 0; k < track.states.size(); ++k) {
       VBAR_FUZZ_EXPECT(k == 0 || track.states[k - 1].time < track.states[k].time);
-      VBAR_FUZZ_EXPECT(track.states[k].state.position_eci.allFinite() && track.states[k].state.velocity_eci.allFinite());
+      VBAR_FUZZ_EXPECT(track.states[k].state.position_eci.allFinite() &&
+                       track.states[k].state.velocity_eci.allFinite());
     }
     const OrbitFile one{file.file, file.format, {track}};
     const auto span = track.states.back().time - track.states.front().time;

@@ -54,9 +54,8 @@ const SpaceWeather::Day* SpaceWeather::find_first(Kind kind, fsw::GpsTime begin,
   constexpr int kDaysOfMemory = 3;
   if (constant_) return nullptr;
   const int first = mjd_utc_of(begin) - kDaysOfMemory, last = mjd_utc_of(end);
-  const auto found = std::ranges::find_if(days_, [&](const Day& day) {
-    return day.kind == kind && day.mjd_utc >= first && day.mjd_utc <= last;
-  });
+  const auto found = std::ranges::find_if(
+      days_, [&](const Day& day) { return day.kind == kind && day.mjd_utc >= first && day.mjd_utc <= last; });
   return found == days_.end() ? nullptr : &*found;
 }
 

@@ -88,8 +88,8 @@ std::vector<EphemerisFile> navigation_files_of(const std::filesystem::path& data
 
 /// Of the first file that has any.
 BroadcastCorrections corrections_of(const std::vector<EphemerisFile>& files) {
-  const auto found = std::ranges::find_if(
-      files, [](const EphemerisFile& file) { return file.corrections != BroadcastCorrections{}; });
+  const auto found =
+      std::ranges::find_if(files, [](const EphemerisFile& file) { return file.corrections != BroadcastCorrections{}; });
   return found == files.end() ? BroadcastCorrections{} : found->corrections;
 }
 

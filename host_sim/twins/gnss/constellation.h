@@ -57,9 +57,9 @@ struct BroadcastSet {
 
 class Constellation {
  public:
-  /// Reads the navigation files, by default those of data_directory/gps. `epoch` gives the day that the elements are moved to. Errors are drawn from the streams
-  /// "gnss/constellation/<satellite>" of `seed`. Throws std::runtime_error naming file and line,
-  /// std::invalid_argument for settings.
+  /// Reads the navigation files, by default those of data_directory/gps. `epoch` gives the day that the elements are
+  /// moved to. Errors are drawn from the streams "gnss/constellation/<satellite>" of `seed`. Throws std::runtime_error
+  /// naming file and line, std::invalid_argument for settings.
   Constellation(const std::filesystem::path& data_directory, const ConstellationSettings& settings, fsw::GpsTime epoch,
                 std::uint64_t seed);
 

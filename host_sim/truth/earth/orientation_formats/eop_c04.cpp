@@ -44,10 +44,9 @@ int whole(const TextLines& lines, const std::vector<std::string_view>& words, st
 
 EarthOrientationSeries::Day day_of(const TextLines& lines, const std::vector<std::string_view>& words, int mjd,
                                    const Columns& at) {
-  return {mjd,
-          orientation_of(lines, mjd,
-                         {value(lines, words, at.x), value(lines, words, at.y), value(lines, words, at.ut1),
-                          value(lines, words, at.dx), value(lines, words, at.dy)})};
+  return {mjd, orientation_of(lines, mjd,
+                              {value(lines, words, at.x), value(lines, words, at.y), value(lines, words, at.ut1),
+                               value(lines, words, at.dx), value(lines, words, at.dy)})};
 }
 
 }  // namespace
@@ -65,9 +64,9 @@ OrientationDays read_eop_c04(std::string_view text, const std::string& file) {
     if (!is_row(lines)) continue;
     const auto words = lines.words();
     if (words.size() != kSeries14.count && words.size() != kSeries20.count)
-      lines.refuse(fmt::format("{} values", words.size()),
-                   fmt::format("the {} values of a row of series 14 or the {} of series 20", kSeries14.count,
-                               kSeries20.count));
+      lines.refuse(
+          fmt::format("{} values", words.size()),
+          fmt::format("the {} values of a row of series 14 or the {} of series 20", kSeries14.count, kSeries20.count));
     const Columns& at = words.size() == kSeries14.count ? kSeries14 : kSeries20;
     const int date = mjd_of_date(lines, whole(lines, words, 0), whole(lines, words, 1), whole(lines, words, 2));
     if (value(lines, words, at.mjd) != date)

@@ -19,8 +19,7 @@ bool is_orientation_table(std::string_view text) {
 OrientationDays read_orientation_table(std::string_view text, const std::string& file) {
   OrientationDays days;
   read_daily_table<6>(
-      text, file, kColumns,
-      [&](const files::TextLines& lines, int mjd_utc, const std::array<double, 6>& row) {
+      text, file, kColumns, [&](const files::TextLines& lines, int mjd_utc, const std::array<double, 6>& row) {
         days.push_back({mjd_utc, orientation_of(lines, mjd_utc, {row[1], row[2], row[3], row[4], row[5]})});
       });
   return days;

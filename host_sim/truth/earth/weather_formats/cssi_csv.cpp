@@ -81,7 +81,9 @@ void take_row(const TextLines& lines, const Columns& at, WeatherCollector& days)
 }  // namespace
 
 bool is_cssi_csv(std::string_view text) {
-  return text.starts_with("DATE,BSRN,") || text.starts_with("\xEF\xBB\xBF" "DATE,BSRN,");
+  return text.starts_with("DATE,BSRN,") || text.starts_with(
+                                               "\xEF\xBB\xBF"
+                                               "DATE,BSRN,");
 }
 
 WeatherDays read_cssi_csv(std::string_view text, const std::string& file) {

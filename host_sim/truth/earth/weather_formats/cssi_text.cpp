@@ -14,10 +14,9 @@ namespace {
 using files::TextLines;
 using Kind = SpaceWeather::Kind;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 3> kSections{
-    {{"OBSERVED", Kind::kObserved},
-     {"DAILY_PREDICTED", Kind::kPredictedDaily},
-     {"MONTHLY_PREDICTED", Kind::kPredictedMonthly}}};
+constexpr std::array<std::pair<std::string_view, Kind>, 3> kSections{{{"OBSERVED", Kind::kObserved},
+                                                                      {"DAILY_PREDICTED", Kind::kPredictedDaily},
+                                                                      {"MONTHLY_PREDICTED", Kind::kPredictedMonthly}}};
 
 int whole(const TextLines& lines, std::size_t first, std::size_t last, std::string_view what) {
   const auto value = files::integer_of(lines.columns(first, last));

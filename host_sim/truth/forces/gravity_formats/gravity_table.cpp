@@ -39,8 +39,7 @@ std::string header_text(LineReader& reader, std::string_view key) {
 
 double header_number(LineReader& reader, std::string_view key, double up_to) {
   const auto value = files::number_of(header_text(reader, key));
-  if (!value || !(*value > 0.0 && *value <= up_to))
-    reader.fail(fmt::format("\"{}\" above 0 and up to {}", key, up_to));
+  if (!value || !(*value > 0.0 && *value <= up_to)) reader.fail(fmt::format("\"{}\" above 0 and up to {}", key, up_to));
   return *value;
 }
 

@@ -134,8 +134,7 @@ class Coefficients {
     for (std::size_t at = 1; at < first && at < c_.size(); ++at)
       if (std::abs(c_[at]) > kLargestDegreeOne || std::abs(s_[at]) > kLargestDegreeOne)
         lines.refuse("coefficients of degree 1 other than 0", "a model about the Earth's centre of mass");
-    if (std::abs(c_[0] - 1.0) > kLargestDegreeOne)
-      lines.refuse(fmt::format("C of degree 0 of {}", c_[0]), "1");
+    if (std::abs(c_[0] - 1.0) > kLargestDegreeOne) lines.refuse(fmt::format("C of degree 0 of {}", c_[0]), "1");
     GravityCoefficients field;
     field.model = header_.model;
     field.tide_system = *header_.tide_system;

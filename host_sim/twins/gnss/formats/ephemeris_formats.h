@@ -21,8 +21,9 @@ struct EphemerisFormat {
 [[nodiscard]] EphemerisFile read_ephemeris_table(std::string_view text, const std::string& file);
 
 // RINEX navigation files, versions 2.xx (GPS), 3.xx and 4.xx (GPS, Galileo, BeiDou; records of other systems and
-// messages are skipped, and so are sets whose week contradicts their date, as merged files hold some). Of each satellite one set: that whose reference time is nearest to noon of the file's day,
-// which is the day of the median reference time. GPS LNAV, Galileo I/NAV, BeiDou D1 and D2.
+// messages are skipped, and so are sets whose week contradicts their date, as merged files hold some). Of each
+// satellite one set: that whose reference time is nearest to noon of the file's day, which is the day of the median
+// reference time. GPS LNAV, Galileo I/NAV, BeiDou D1 and D2.
 [[nodiscard]] bool is_rinex(std::string_view text);
 [[nodiscard]] EphemerisFile read_rinex(std::string_view text, const std::string& file);
 
@@ -35,8 +36,8 @@ struct EphemerisFormat {
 struct BroadcastRecord {
   SatelliteId satellite;
   double week = 0.0, toe_s = 0.0;
-  double toc_s = 0.0;   ///< of the same week: below 0 or beyond its end in the weeks beside
-  double omega0 = 0.0;  ///< at the begin of the week
+  double toc_s = 0.0;    ///< of the same week: below 0 or beyond its end in the weeks beside
+  double omega0 = 0.0;   ///< at the begin of the week
   Ephemeris elements{};  ///< all but reference time, node and clock
   double af0 = 0.0, af1 = 0.0, af2 = 0.0;
 };

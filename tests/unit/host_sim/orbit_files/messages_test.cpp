@@ -106,12 +106,14 @@ TEST(Oem, TimeSystemsAndFrames) {
 
 TEST(Oem, InvalidFilesAreRefusedWithALine) {
   const std::string text = oem();
-  EXPECT_THAT(error_of(oem("TEME")), HasSubstr("orbit.txt:10: found REF_FRAME \"TEME\", expected GCRF, ICRF or EME2000"));
+  EXPECT_THAT(error_of(oem("TEME")),
+              HasSubstr("orbit.txt:10: found REF_FRAME \"TEME\", expected GCRF, ICRF or EME2000"));
   EXPECT_THAT(error_of(oem("GCRF", "TDB")),
               HasSubstr("orbit.txt:11: found TIME_SYSTEM \"TDB\", expected UTC, TAI, TT or GPS"));
   EXPECT_THAT(error_of(text, "CENTER_NAME = EARTH", "CENTER_NAME = MARS BARYCENTER"), HasSubstr("expected EARTH"));
   EXPECT_THAT(error_of(text, "REF_FRAME = GCRF\n", ""), HasSubstr("found metadata without REF_FRAME"));
-  EXPECT_THAT(error_of(text, "2026-11-20T00:03:00.000", "2026-11-20T00:01:00.000"), HasSubstr("times in ascending order"));
+  EXPECT_THAT(error_of(text, "2026-11-20T00:03:00.000", "2026-11-20T00:01:00.000"),
+              HasSubstr("times in ascending order"));
   EXPECT_THAT(error_of(text, "2026-11-20T00:03:00.000", "2026-13-20T00:03:00.000"), HasSubstr("orbit.txt:21: found"));
   EXPECT_THAT(error_of(text, "6778.000000000", "6778000.000000"), HasSubstr("6400 to 1e6 km from its centre"));
   EXPECT_THAT(error_of(text.substr(0, text.find("META_STOP"))), HasSubstr("expected META_STOP"));
@@ -132,7 +134,8 @@ TEST(Oem, OneOfSeveralObjectsMustBeNamed) {
 }
 
 TEST(Opm, TheExampleOfTheStandard) {
-  EXPECT_THAT(error_of(opm("ITRF-97")), AllOf(HasSubstr("orbit.txt:8: found REF_FRAME \"ITRF-97\""), HasSubstr("EME2000")));
+  EXPECT_THAT(error_of(opm("ITRF-97")),
+              AllOf(HasSubstr("orbit.txt:8: found REF_FRAME \"ITRF-97\""), HasSubstr("EME2000")));
   const OrbitFile file = read_orbits(opm("GCRF"), "state.opm");
   const TimedState& state = file.tracks.at(0).states.at(0);
   EXPECT_EQ(state.time, truth::gps_from_utc("1998-12-18T14:28:15.1172Z"));
@@ -144,7 +147,8 @@ TEST(Opm, TheExampleOfTheStandard) {
 
 TEST(Opm, InvalidFilesAreRefusedWithALine) {
   const std::string text = opm("GCRF");
-  EXPECT_THAT(error_of(text, "1239.647000 [km]", "1239647.0 [m]"), HasSubstr("orbit.txt:12: found Y in \"m\", expected km"));
+  EXPECT_THAT(error_of(text, "1239.647000 [km]", "1239647.0 [m]"),
+              HasSubstr("orbit.txt:12: found Y in \"m\", expected km"));
   EXPECT_THAT(error_of(text, "6503.514000", "65O3.514000"), HasSubstr("expected a number"));
   EXPECT_THAT(error_of(text, "Z = -717.490000\n", ""), HasSubstr("found a message without Z"));
   EXPECT_THAT(error_of(text + "MAN_EPOCH_IGNITION = 1998-12-18T15:00:00\n"), HasSubstr("a state without maneuvers"));

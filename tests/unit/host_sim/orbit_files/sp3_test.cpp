@@ -88,9 +88,12 @@ TEST(Sp3, InterpolationFindsTheStatesLeftOut) {
 TEST(Sp3, InvalidFilesAreRefusedWithALine) {
   EXPECT_EQ(error_of(published()), "");
   EXPECT_THAT(error_of(published(), "EOF", ""), HasSubstr("expected EOF in its last line"));
-  EXPECT_THAT(error_of(published(), "%c M  cc GPS", "%c M  cc GLO"), HasSubstr("orbit.sp3:13: found the time system \"GLO\""));
-  EXPECT_THAT(error_of(published(), "*  2022 01 01 00 02", "*  2022 01 01 00 01"), HasSubstr("epochs in ascending order"));
-  EXPECT_THAT(error_of(published(), "VL47-17433", "VL48-17433"), HasSubstr("a velocity behind the satellite's position"));
+  EXPECT_THAT(error_of(published(), "%c M  cc GPS", "%c M  cc GLO"),
+              HasSubstr("orbit.sp3:13: found the time system \"GLO\""));
+  EXPECT_THAT(error_of(published(), "*  2022 01 01 00 02", "*  2022 01 01 00 01"),
+              HasSubstr("epochs in ascending order"));
+  EXPECT_THAT(error_of(published(), "VL47-17433", "VL48-17433"),
+              HasSubstr("a velocity behind the satellite's position"));
   EXPECT_THAT(error_of(published(), "  6594.4386928", "  65X4.4386928"), HasSubstr("expected x in columns 5 to 18"));
 }
 

@@ -85,8 +85,9 @@ Date date_of(int mjd) {
 
 /// FORMAT of series 20: four integers, the MJD, then 16 numbers.
 std::string as_series_20(const std::vector<Row>& rows) {
-  std::string text = "# EARTH ORIENTATION PARAMETER (EOP) PRODUCT CENTER CENTER (PARIS OBSERVATORY)\n"
-                     "# EOP (IERS) 20 C04 TIME SERIES  consistent with ITRF 2020 - sampled at 0h UTC\n";
+  std::string text =
+      "# EARTH ORIENTATION PARAMETER (EOP) PRODUCT CENTER CENTER (PARIS OBSERVATORY)\n"
+      "# EOP (IERS) 20 C04 TIME SERIES  consistent with ITRF 2020 - sampled at 0h UTC\n";
   for (const Row& row : rows) {
     const Date date = date_of(row.mjd);
     text += fmt::format(
@@ -104,11 +105,11 @@ std::string as_finals(const std::vector<Row>& rows, int first_predicted) {
   for (const Row& row : rows) {
     const Date date = date_of(row.mjd);
     const char flag = row.mjd >= first_predicted ? 'P' : 'I';
-    text += fmt::format("{:02}{:2}{:2} {:8.2f} {} {:>9}{:9.6f} {:>9}{:9.6f}  {}{:>10}{:10.7f} {:7.4f}{:7.4f}  {} "
-                        "{:9.3f}{:9.3f} {:9.3f}{:9.3f}\n",
-                        date.year % 100, date.month, date.day, static_cast<double>(row.mjd), flag, row.x, 1e-5, row.y,
-                        1e-5, flag, row.ut1, 1e-6, 1.0, 0.01, flag, 1e3 * std::stod(row.dx), 0.1,
-                        1e3 * std::stod(row.dy), 0.1);
+    text += fmt::format(
+        "{:02}{:2}{:2} {:8.2f} {} {:>9}{:9.6f} {:>9}{:9.6f}  {}{:>10}{:10.7f} {:7.4f}{:7.4f}  {} "
+        "{:9.3f}{:9.3f} {:9.3f}{:9.3f}\n",
+        date.year % 100, date.month, date.day, static_cast<double>(row.mjd), flag, row.x, 1e-5, row.y, 1e-5, flag,
+        row.ut1, 1e-6, 1.0, 0.01, flag, 1e3 * std::stod(row.dx), 0.1, 1e3 * std::stod(row.dy), 0.1);
   }
   return text;
 }
@@ -244,8 +245,8 @@ TEST(OrientationFormats, InvalidFilesAreRefusedWithALine) {
               HasSubstr("eop.txt:4: day 55754 follows day 55752; days must follow without gaps"));
   EXPECT_THAT(error_of(finals.substr(length, length) + finals.substr(0, length)),
               HasSubstr("eop.txt:2: day 55750 follows day 55751"));
-  EXPECT_THAT(changed(2, 19, " 76.54100"), AllOf(HasSubstr("eop.txt:2: found a pole x of 76.541 arcsec"),
-                                                HasSubstr("expected up to 1 arcsec")));
+  EXPECT_THAT(changed(2, 19, " 76.54100"),
+              AllOf(HasSubstr("eop.txt:2: found a pole x of 76.541 arcsec"), HasSubstr("expected up to 1 arcsec")));
   EXPECT_THAT(changed(2, 98, "  -95.000"), HasSubstr("a dX (IAU 2000A) of -0.095 arcsec"));
   EXPECT_THAT(changed(3, 17, "X"), HasSubstr("eop.txt:3: found"));
   EXPECT_THAT(changed(3, 59, "          "), HasSubstr("expected UT1-UTC in s in columns 59 to 68"));

@@ -183,7 +183,8 @@ TEST(GravityFile, ErrorsNameFileAndLine) {
   const std::string head = "# test\nmodel M\ngm_m3ps2 4e14\nradius_m 6378000\nmax_degree 1\ntide_system zero_tide\n";
   const std::string body = "coefficients\n0 0 1 0\n1 0 0 0\n1 1 0 0\n";
   EXPECT_EQ(error_for(head + body + "end\n"), "");
-  EXPECT_THAT(error_for(""), HasSubstr("vbar_gravity_test.txt:1: found \"\", expected a gravity model in one of the formats"));
+  EXPECT_THAT(error_for(""),
+              HasSubstr("vbar_gravity_test.txt:1: found \"\", expected a gravity model in one of the formats"));
   EXPECT_THAT(error_for(head + body), HasSubstr(":10: found the end of the file, expected \"end\""));
   EXPECT_THAT(error_for(head + "coefficients\n0 0 1 0\n1 0 0 0\n"),
               HasSubstr("found the end of the file, expected the coefficients C and S of degree 1, order 1"));

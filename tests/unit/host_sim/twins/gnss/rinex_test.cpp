@@ -117,15 +117,20 @@ std::string error_of(std::string text, std::string_view what = "", std::string_v
 }
 
 TEST(Rinex, InvalidFilesAreRefusedWithALine) {
-  const std::string two = text_of(published("brdc2930_excerpt.11n")), three = text_of(published("brdm2000_excerpt.13p"));
+  const std::string two = text_of(published("brdc2930_excerpt.11n")),
+                    three = text_of(published("brdm2000_excerpt.13p"));
   EXPECT_THAT(error_of(two, "NAVIGATION DATA", "GLONASS NAV DAT"),
               AllOf(HasSubstr("brdc.rnx:1: found a file of type \"GLONASS NAV DAT"), HasSubstr("navigation data (N)")));
-  EXPECT_THAT(error_of(three, "M (Mixed)", "R (GLO)  "),
-              AllOf(HasSubstr("brdc.rnx:1: found the satellite system \"R (GLO)\""), HasSubstr("GPS, Galileo, BeiDou")));
-  EXPECT_THAT(error_of(three, "NAVIGATION DATA", "OBSERVATION DAT"), HasSubstr("found a file of type \"OBSERVATION DAT"));
+  EXPECT_THAT(
+      error_of(three, "M (Mixed)", "R (GLO)  "),
+      AllOf(HasSubstr("brdc.rnx:1: found the satellite system \"R (GLO)\""), HasSubstr("GPS, Galileo, BeiDou")));
+  EXPECT_THAT(error_of(three, "NAVIGATION DATA", "OBSERVATION DAT"),
+              HasSubstr("found a file of type \"OBSERVATION DAT"));
   EXPECT_THAT(error_of(three, "     3.02", "     5.02"), HasSubstr("found RINEX version 5.02, expected 2, 3 or 4"));
-  EXPECT_THAT(error_of(two.substr(0, two.size() - 200)), HasSubstr("found the end of the file, expected the next line of"));
-  EXPECT_THAT(error_of(two, "0.515358347130D+04", "0.515358347130D+07"), HasSubstr("a record of G02 that cannot be right"));
+  EXPECT_THAT(error_of(two.substr(0, two.size() - 200)),
+              HasSubstr("found the end of the file, expected the next line of"));
+  EXPECT_THAT(error_of(two, "0.515358347130D+04", "0.515358347130D+07"),
+              HasSubstr("a record of G02 that cannot be right"));
   EXPECT_THAT(error_of(two, "END OF HEADER", "END OF HEADXX"), HasSubstr("expected END OF HEADER"));
   EXPECT_THAT(error_of("x y\n"), HasSubstr("RINEX navigation file"));
 }
