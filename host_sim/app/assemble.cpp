@@ -8,6 +8,7 @@
 
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/flight_recorder.h"
+#include "host_sim/app/guidance_domain.h"
 #include "host_sim/app/line_usage.h"
 #include "host_sim/app/make_thruster.h"
 #include "host_sim/faults/fault_log.h"
@@ -234,7 +235,9 @@ AssembledMission::AssembledMission(const mission::Mission& mission, const std::f
       made_(with_faults(make_sources(mission, servicer_, data_directory, &truth_), faults_)),
       thruster_(with_faults(make_thruster(mission, servicer_), faults_)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
-      timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())) {}
+      timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())) {
+  check_guidance_domain(mission, servicer_, truth_.model().state(servicer_.name));
+}
 
 std::optional<io::WiredReceiver> AssembledMission::wired_receiver() const {
   for (const Source& source : made_.sources)

@@ -49,6 +49,8 @@ class AssembledMission {
   [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const;
 
   [[nodiscard]] const RunFacts& facts() const { return facts_; }
+  /// On data of the truth that are missing or predicted.
+  [[nodiscard]] const std::vector<std::string>& data_notes() const { return truth_.model().data().notes; }
   [[nodiscard]] std::span<const Source> sources() const { return made_.sources; }
 
  private:

@@ -118,6 +118,10 @@ void report_health(const report::Summary& summary) {
   if (!line.empty()) fmt::print("flight software: {}\n", line);
 }
 
+void report_data(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print("data: {}\n", note);
+}
+
 }  // namespace
 
 int run_command(const RunOptions& options) {
@@ -133,6 +137,8 @@ int run_command(const RunOptions& options) {
   report::RunRecord record;
   record.extensions = sensors::extensions();
   record.summary = start_of(mission);
+  record.summary.data_notes = assembled->data_notes();
+  if (!options.quiet) report_data(record.summary.data_notes);
   record.summary.provenance = provenance_of(mission, options.overrides, mission_text);
   RunFolder folder(options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out,
                    record.summary, options.force ? RunFolder::Existing::kReplace : RunFolder::Existing::kRefuse,

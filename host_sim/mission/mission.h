@@ -46,6 +46,12 @@ struct OrbitByRoe {
   fsw::Vector6 a_roe_m = fsw::Vector6::Zero();  ///< times the reference a
 };
 
+/// Orbit given by the file of another program, at the epoch.
+struct OrbitByFile {
+  std::filesystem::path file;
+  std::string object;  ///< of the file; empty: its only one
+};
+
 using truth::SurfaceProperties;
 
 enum class FlightTarget { kInProcess, kHostProcess, kZynqQemu, kZynqLinuxQemu, kBoard };
@@ -181,7 +187,7 @@ struct Spacecraft {
   SurfaceProperties surface;   ///< nominal
   double mass_sigma_kg = 0.0;  ///< of its true mass
   std::string model;           ///< CAD file for cameras, data/models/<model>.obj; empty: invisible to cameras
-  std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe> orbit;
+  std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe, OrbitByFile> orbit;
   std::optional<Attitude> attitude;
   std::vector<LaterAttitude> later_attitudes;  ///< in order of time
   std::optional<FlightComputer> flight_computer;

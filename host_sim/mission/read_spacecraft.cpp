@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "fsw/math/math.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_attitude.h"
 #include "host_sim/mission/read_sections.h"
@@ -67,7 +68,7 @@ OrbitByElements read_elements(const TableReader& section, const Member& member) 
   return orbit;
 }
 
-using Orbit = std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe>;
+using Orbit = decltype(Spacecraft::orbit);
 
 Orbit read_relative(const TableReader& section, const Mission& mission) {
   const std::string to = section.name("to");
@@ -86,10 +87,15 @@ Orbit read_relative(const TableReader& section, const Mission& mission) {
 }
 
 Orbit read_orbit(const TableReader& section, const Member& member, const Mission& mission) {
-  if (section.has("elements") == section.has("relative"))
-    section.refuse("", section.has("elements") ? "both elements and relative" : "neither elements nor relative",
-                   "exactly one of them");
+  const int given = int{section.has("elements")} + int{section.has("relative")} + int{section.has("orbit_file")};
+  if (given != 1)
+    section.refuse(
+        "",
+        given == 0 ? "none of elements, relative and orbit_file" : "more than one of elements, relative and orbit_file",
+        "exactly one of them");
   if (section.has("elements")) return read_elements(section.table("elements"), member);
+  if (section.has("orbit_file"))
+    return OrbitByFile{data_file(section, "orbit_file", "", mission), section.text("orbit_object", "")};
   return read_relative(section.table("relative"), mission);
 }
 

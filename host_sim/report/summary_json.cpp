@@ -156,6 +156,7 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit("deadlines", s.deadlines);
   visit("sources", s.sources);
   visit("wall_share", s.wall_share);
+  visit("data_notes", s.data_notes);
   visit("provenance", s.provenance);
 }
 
