@@ -9,6 +9,7 @@
 
 #include "host_sim/campaign/sweep_table.h"
 #include "host_sim/campaign/value_text.h"
+#include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/toml_file.h"
 
 namespace vbar::campaign {

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kDigestDigits = 64;
 
-void copy(const fs::path& from, const fs::path& to) {
+void copy_one(const fs::path& from, const fs::path& to) {
   try {
     fs::create_directories(to.parent_path());
     fs::copy_file(from, to, fs::copy_options::overwrite_existing);
@@ -29,7 +29,7 @@ void copy(const fs::path& from, const fs::path& to) {
 void copy_data(const Folder& folder) {
   const fs::path data = mission::data_directory();
   for (const auto& entry : fs::recursive_directory_iterator(data))
-    if (entry.is_regular_file()) copy(entry.path(), folder.data() / entry.path().lexically_relative(data));
+    if (entry.is_regular_file()) copy_one(entry.path(), folder.data() / entry.path().lexically_relative(data));
 }
 
 std::string checksums_of(const Folder& folder) {
@@ -54,15 +54,15 @@ fs::path copy_of_mission(const fs::path& mission) {
 
 void make_copies(const Folder& folder, const UsedFiles& used, const std::string& mission_text) {
   const fs::path program = fs::read_symlink("/proc/self/exe");
-  copy(program, folder.program());
+  copy_one(program, folder.program());
   copy_data(folder);
   const fs::path mission = folder.root() / copy_of_mission(used.mission);
   fs::create_directories(mission.parent_path());
   report::replace_text_file(mission, mission_text);
-  for (const fs::path& file : used.beside_mission) copy(file, folder.mission_files() / file.relative_path());
+  for (const fs::path& file : used.beside_mission) copy_one(file, folder.mission_files() / file.relative_path());
   // The program finds images by their places relative to its own.
   for (const fs::path& image : used.flight_images)
-    copy(image, (folder.program().parent_path() / image.lexically_relative(program.parent_path())).lexically_normal());
+    copy_one(image, (folder.program().parent_path() / image.lexically_relative(program.parent_path())).lexically_normal());
   report::replace_text_file(folder.checksums(), checksums_of(folder));
 }
 

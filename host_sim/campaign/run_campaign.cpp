@@ -17,6 +17,7 @@
 #include "host_sim/campaign/kept_runs.h"
 #include "host_sim/campaign/prepare.h"
 #include "host_sim/campaign/progress_line.h"
+#include "host_sim/campaign/requirement.h"
 #include "host_sim/campaign/status.h"
 #include "host_sim/campaign/worker.h"
 #include "host_sim/report/run_lock.h"
