@@ -13,6 +13,7 @@
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/mission/extends.h"
 #include "host_sim/mission/mission_error.h"
+#include "host_sim/report/run_lock.h"
 #include "host_sim/report/text_file.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
@@ -95,7 +96,8 @@ void refuse_used_folder(const Folder& folder) {
     for (const auto& entry : fs::directory_iterator(folder.root())) {
       const bool is_part = entry.path() == folder.copies() || entry.path() == folder.result_files() ||
                            entry.path() == folder.attempt_files() || entry.path() == folder.flying() ||
-                           entry.path() == folder.cases() || entry.path() == folder.campaign_copy();
+                           entry.path() == folder.cases() || entry.path() == folder.campaign_copy() ||
+                           entry.path().filename() == report::RunLock::kFile;
       is_free = is_free && is_part;
     }
   }
@@ -118,6 +120,7 @@ void prepare(const CampaignFile& campaign, const Folder& folder, const std::stri
   plan.cases = cases.size();
 
   fs::create_directories(folder.root());
+  const report::RunLock lock(folder.root());
   make_copies(folder, used, mission::whole_mission_text(mission));
   plan.program_sha256 = files::sha256_of_file(folder.program()).value_or("");
   for (const fs::path& inner : {folder.result_files(), folder.attempt_files(), folder.flying()})

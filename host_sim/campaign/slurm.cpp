@@ -20,7 +20,6 @@ std::string job_name(const Folder& folder) {
   return "vbar-" + files::sha256_of(path).substr(0, 16);
 }
 
-/// Slurm's own record of its configuration is read, for a folder on a computer without Slurm asks nobody.
 bool has_slurm() {
   return run_command({"/bin/sh", "-c", "command -v squeue"}).succeeded;
 }

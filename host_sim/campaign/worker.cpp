@@ -46,8 +46,14 @@ Worker::End Worker::fly(const std::vector<Case>& cases) {
   waiting_.assign(cases.begin(), cases.end());
   Clock::time_point reported = Clock::now();
   while (!waiting_.empty() || !flights_.empty()) {
-    if (options_.stop_requested && options_.stop_requested()) return End::kInterrupted;
-    if (stops_after_failures()) return End::kStoppedAfterFailures;
+    if (options_.stop_requested && options_.stop_requested()) {
+      end_flights("interrupted");
+      return End::kInterrupted;
+    }
+    if (stops_after_failures()) {
+      end_flights("the campaign stopped after its failures");
+      return End::kStoppedAfterFailures;
+    }
     while (!waiting_.empty() && flights_.size() < static_cast<std::size_t>(options_.jobs)) {
       const Case next = waiting_.front();
       waiting_.pop_front();
@@ -111,6 +117,12 @@ void Worker::record(CaseFlight& flight, Result result) {
 std::string Worker::keep(const CaseFlight& flight, const Result& result) {
   if (result.state == State::kLost || !is_kept(plan_, result, flown_, folder_)) return {};
   return keep_run(folder_, flight.run_folder(), result.number);
+}
+
+void Worker::end_flights(const std::string& reason) {
+  for (const std::unique_ptr<CaseFlight>& flight : flights_)
+    attempts_.append(end_line(flight->one().number, flight->attempt(), reason, false), RecordFile::Sync::kNo);
+  flights_.clear();
 }
 
 bool Worker::stops_after_failures() const {

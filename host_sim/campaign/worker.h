@@ -38,6 +38,7 @@ class Worker {
   void finish(CaseFlight& flight, CaseFlight::End end);
   void record(CaseFlight& flight, Result result);
   [[nodiscard]] std::string keep(const CaseFlight& flight, const Result& result);
+  void end_flights(const std::string& reason);
   [[nodiscard]] bool stops_after_failures() const;
 
   const Folder& folder_;

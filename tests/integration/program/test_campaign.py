@@ -208,7 +208,7 @@ class CampaignRefusals(unittest.TestCase):
         with scratch() as folder:
             disk = folder / "disk"
             disk.mkdir()
-            if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64m", "tmpfs", disk], capture_output=True).returncode != 0:
+            if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=128m", "tmpfs", disk], capture_output=True).returncode != 0:
                 self.skipTest("no small file system can be mounted here")
             try:
                 file = campaign_file(folder)
