@@ -62,7 +62,8 @@ void make_copies(const Folder& folder, const UsedFiles& used, const std::string&
   for (const fs::path& file : used.beside_mission) copy_one(file, folder.mission_files() / file.relative_path());
   // The program finds images by their places relative to its own.
   for (const fs::path& image : used.flight_images)
-    copy_one(image, (folder.program().parent_path() / image.lexically_relative(program.parent_path())).lexically_normal());
+    copy_one(image,
+             (folder.program().parent_path() / image.lexically_relative(program.parent_path())).lexically_normal());
   report::replace_text_file(folder.checksums(), checksums_of(folder));
 }
 

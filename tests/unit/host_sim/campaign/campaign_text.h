@@ -1,6 +1,7 @@
 #pragma once
 // Campaign files for tests.
 
+#include <algorithm>
 #include <string>
 
 #include "host_sim/campaign/campaign_file.h"

@@ -12,13 +12,17 @@ namespace {
 using Kind = ConsistencyFigure::Kind;
 
 std::vector<ConsistencyFigure> figures(const RunRecord& /*record*/) {
-  return {{3600.0, Kind::kNees, 6.5, 6.0},  {3600.0, Kind::kNis, 21.0, 20.0}, {3660.0, Kind::kNees, 5.5, 6.0},
-          {3660.0, Kind::kNis, 11.0, 10.0}, {3670.0, Kind::kNis, 3.0, 0.0}};
+  return {{3600.0, Kind::kNees, 6.5, 6.0},
+          {3600.0, Kind::kNis, 21.0, 20.0},
+          {3660.0, Kind::kNees, 5.5, 6.0},
+          {3660.0, Kind::kNis, 11.0, 10.0},
+          {3670.0, Kind::kNis, 3.0, 0.0}};
 }
 const Extension kModule{.consistency = figures};
 const Extension* const kModules[] = {&kModule};
 
-/// A step a minute from the first hour on; the estimate is off by (1, 2, 2) mm and (0, 3, 4) um/s. The third is invalid.
+/// A step a minute from the first hour on; the estimate is off by (1, 2, 2) mm and (0, 3, 4) um/s. The third is
+/// invalid.
 RunRecord record(std::vector<double> sample_hours) {
   RunRecord record;
   record.extensions = kModules;
