@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "host_sim/app/build_info.h"
+#include "host_sim/app/campaign_command.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/mission/mission_error.h"
@@ -151,6 +152,8 @@ int main(int argc, char** argv) {
   report_app->add_flag("--fail-if-different", report.fail_if_different,
                        "exit code 3 unless all runs gave the same outputs as the first");
   report_app->callback([&] { exit_code = report_command(report); });
+
+  add_campaign_command(program, exit_code);
 
   std::filesystem::path missions;
   CLI::App* missions_app = program.add_subcommand("missions", "what can be run, one line each");

@@ -37,6 +37,7 @@ report::Summary start_of(const mission::Mission& mission) {
   summary.mission = mission.name;
   summary.seed = mission.seed;
   summary.target = flying_spacecraft(mission).observes();
+  for (const double hour : mission.record.samples_h) summary.samples.push_back({.time_h = hour});
   return summary;
 }
 
@@ -143,14 +144,17 @@ int run_command(const RunOptions& options) {
   RunFolder folder(options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out,
                    record.summary, options.force ? RunFolder::Existing::kReplace : RunFolder::Existing::kRefuse,
                    sensors::extensions());
+  if (!mission.record.tables) folder.leave_out_tables();
   keep_mission(mission_text, options, folder.path());
 
   const std::optional<std::string> trouble = fly_into(folder, mission, *assembled, options.quiet, record);
   try {
-    const std::filesystem::path report = report::write_html_report(folder.path(), record);
     if (!options.quiet && !record.waypoints.empty()) fmt::print("{}", report::waypoint_table(record));
     report_health(record.summary);
-    if (!options.quiet) fmt::print("report  {}\n", report.string());
+    if (mission.record.tables) {
+      const std::filesystem::path report = report::write_html_report(folder.path(), record);
+      if (!options.quiet) fmt::print("report  {}\n", report.string());
+    }
   } catch (const std::exception&) {
     if (!trouble) throw;  // the record is complete, its report is not
   }
