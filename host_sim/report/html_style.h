@@ -53,6 +53,7 @@ dl { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr));
 dl div { display: flex; gap: 14px; padding: 3px 0; border-bottom: 1px solid var(--grid); }
 dt { color: var(--muted); flex: 0 0 180px; }
 dd { margin: 0; overflow-wrap: anywhere; font-variant-numeric: tabular-nums; }
+code { font: 12.5px ui-monospace, "DejaVu Sans Mono", monospace; }
 details { margin: 8px 0; } summary { cursor: pointer; color: var(--muted); }
 .figures > .legend { grid-column: 1 / -1; }
 .figures { display: grid; gap: 10px 16px; margin: 8px 0 14px; }
@@ -78,6 +79,8 @@ svg .event { fill: none; stroke: var(--c4); stroke-width: 1.4; }
 svg .line { fill: none; stroke-width: 1.3; stroke-linejoin: round; }
 svg .line.broad { stroke-width: 4.5; stroke-opacity: 0.4; } svg .dots.broad { stroke-width: 6; stroke-opacity: 0.35; } svg .dashed { stroke-dasharray: 5 3; }
 svg .dots { fill: none; stroke-width: 3.4; stroke-linecap: round; }
+svg .dots.cells { stroke-width: 7.4; } svg .area { fill-opacity: 0.18; stroke: none; }
+svg .s0 { stroke-opacity: 0.14; } svg .s1 { stroke-opacity: 0.3; } svg .s2 { stroke-opacity: 0.5; } svg .s3 { stroke-opacity: 0.72; }
 svg .c0 { stroke: var(--c0); } svg .c1 { stroke: var(--c1); } svg .c2 { stroke: var(--c2); }
 svg .c3 { stroke: var(--c3); } svg .c4 { stroke: var(--c4); } svg .c5 { stroke: var(--c5); }
 svg .f0 { fill: var(--c0); } svg .f1 { fill: var(--c1); } svg .f2 { fill: var(--c2); }

@@ -1,0 +1,148 @@
+// Whether the filter's claims agree with its errors, over the cases at each selected time.
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "host_sim/campaign_report/case_text.h"
+#include "host_sim/campaign_report/samples.h"
+#include "host_sim/campaign_report/sections.h"
+#include "host_sim/campaign_report/sweep.h"
+#include "host_sim/report/number_text.h"
+#include "host_sim/report/svg_plot.h"
+
+namespace vbar::campaign_report {
+namespace {
+
+using report::Mark;
+using report::Plot;
+using report::Point;
+
+constexpr std::size_t kMaxPoints = 6;  // of the sweeps, each judged by itself; more are judged together
+
+struct Test {
+  const char* name;  ///< in the columns of results.csv
+  const char* title;
+  const char* mean;
+};
+constexpr std::array<Test, 2> kTests{Test{"nees", "NEES of the state", "ANEES"},
+                                     Test{"nis", "NIS of the innovations", "mean NIS"}};
+
+/// Cases that are judged together, and one test's epochs of them.
+struct Judged {
+  std::string name;  ///< of the point of the sweeps
+  const Test* test = nullptr;
+  std::vector<Epoch> epochs;
+};
+
+std::vector<Judged> judged_groups(const Campaign& campaign) {
+  std::vector<SweepPoint> groups = sweep_points(campaign);
+  if (groups.size() > kMaxPoints) {
+    groups.resize(1);
+    groups.front().name = "all points of the sweeps";
+    groups.front().places.clear();
+    for (std::size_t place = 0; place < campaign.cases.size(); ++place) groups.front().places.push_back(place);
+  }
+  std::vector<Judged> all;
+  for (const Test& test : kTests)
+    for (const SweepPoint& group : groups)
+      if (auto epochs = epochs_of(campaign, test.name, group.places); !epochs.empty())
+        all.push_back({group.name, &test, std::move(epochs)});
+  return all;
+}
+
+/// Per dimension, so that epochs with different numbers of measurements share a scale.
+Plot plot_of(const Judged& judged) {
+  Plot plot;
+  plot.title = fmt::format("{} per dimension{}{}", judged.test->mean, judged.name.empty() ? "" : ", ", judged.name);
+  plot.x = {.name = "time", .unit = report::Unit::kHours};
+  plot.y = {.name = std::string(judged.test->mean) + " per dimension"};
+  plot.height = 240.0;
+  std::vector<Point> inside, outside, mean, band, expected;
+  for (const Epoch& epoch : judged.epochs) {
+    const Point at{epoch.time_h, epoch.mean / epoch.mean_dimension};
+    mean.push_back(at);
+    (epoch.is_above() || epoch.is_below() ? outside : inside).push_back(at);
+    band.push_back({epoch.time_h, epoch.band.low / epoch.mean_dimension});
+    expected.push_back({epoch.time_h, 1.0});
+  }
+  for (auto epoch = judged.epochs.rbegin(); epoch != judged.epochs.rend(); ++epoch)
+    band.push_back({epoch->time_h, epoch->band.high / epoch->mean_dimension});
+  plot.series = {{"95 % band of a consistent filter", 2, Mark::kArea, std::move(band)},
+                 {"", 2, Mark::kDashedLine, std::move(expected)},
+                 {"", 0, Mark::kLine, std::move(mean)},
+                 {"mean of the cases, inside the band", 0, Mark::kDots, std::move(inside)},
+                 {"outside", 1, Mark::kDots, std::move(outside)}};
+  return plot;
+}
+
+std::string verdict(const Judged& judged) {
+  const Consistency found = consistency_of(judged.epochs);
+  const char* word = found.is_rejected ? R"(<span class="status bad">rejected</span>)"
+                                       : R"(<span class="status good">not rejected</span>)";
+  std::string text = fmt::format("<p>{} {}{}{}: inside the 95 % band at {} of {} ({:.0f} %)", word, judged.test->title,
+                                 judged.name.empty() ? "" : ", ", report::escaped(judged.name),
+                                 found.epochs - found.above - found.below, count_text(found.epochs, "epoch", "epochs"),
+                                 100.0 * found.share_inside());
+  if (found.above > 0) text += fmt::format("; above it (errors larger than claimed) at {}", found.above);
+  if (found.below > 0) text += fmt::format("; below it (errors smaller than claimed) at {}", found.below);
+  return text + ".</p>\n";
+}
+
+/// The epochs outside the band; all of them where they are few.
+std::string epoch_table(const std::vector<Judged>& all) {
+  constexpr std::size_t kMaxRows = 12;
+  std::vector<std::vector<std::string>> rows;
+  for (const Judged& judged : all) {
+    const bool is_short = judged.epochs.size() <= kMaxRows;
+    const std::size_t before = rows.size();
+    rows.push_back({fmt::format("{}{}{}{}", judged.test->title, judged.name.empty() ? "" : ", ", judged.name,
+                                is_short ? "" : fmt::format(", the first {} epochs outside the band", kMaxRows))});
+    for (const Epoch& epoch : judged.epochs) {
+      const bool is_outside = epoch.is_above() || epoch.is_below();
+      if ((!is_short && !is_outside) || rows.size() > before + kMaxRows) continue;
+      rows.push_back({fmt::format("{:g}", epoch.time_h), report::grouped(epoch.cases),
+                      report::fixed(epoch.mean_dimension, 2), report::fixed(epoch.mean, 3),
+                      fmt::format("{} to {}", report::fixed(epoch.band.low, 3), report::fixed(epoch.band.high, 3)),
+                      report::significant(epoch.p_value, 2),
+                      epoch.is_above()   ? "above"
+                      : epoch.is_below() ? "below"
+                                         : "inside"});
+    }
+    if (rows.size() == before + 1) rows.pop_back();
+  }
+  if (rows.empty()) return {};
+  return report::table({{"time, h"}, {"cases"}, {"expected"}, {"mean"}, {"95 % band"}, {"p value"}, {"", false}}, rows);
+}
+
+std::string notes(const Campaign& campaign, const std::vector<Judged>& all) {
+  std::string text =
+      "<p class=\"note\">At each time the mean over complete cases is compared with the chi-square distribution of its "
+      "sum. A filter is rejected if one epoch would occur in less than 5 % of the campaigns of a consistent filter, "
+      "after "
+      "correction for the number of epochs; this holds whatever the correlation of its epochs in time. About 5 % of "
+      "the "
+      "epochs of a consistent filter are outside their bands.";
+  const bool is_together = !all.empty() && campaign.swept.empty() == all.front().name.empty() &&
+                           all.front().name == "all points of the sweeps" && share_seeds(campaign);
+  if (is_together) text += " Points of the sweeps share seeds, so that the bands are approximate.";
+  return text + "</p>\n";
+}
+
+}  // namespace
+
+report::Section consistency_section(const Content& content) {
+  const std::vector<Judged> all = judged_groups(content.campaign);
+  if (all.empty()) return {};
+  std::string body = notes(content.campaign, all);
+  std::vector<Plot> plots;
+  for (const Judged& judged : all) {
+    body += verdict(judged);
+    if (judged.epochs.size() > 1) plots.push_back(plot_of(judged));
+  }
+  return {
+      "Consistency of the filter", body + report::plot_rows(2, std::move(plots)) + epoch_table(all), {"results.csv"}};
+}
+
+}  // namespace vbar::campaign_report
