@@ -37,7 +37,8 @@ Consistency consistency_of(const std::vector<Epoch>& epochs) {
     result.below += epoch.is_below() ? 1 : 0;
     p_values.push_back(epoch.p_value);
   }
-  result.is_rejected = std::ranges::any_of(holm(p_values), [](double p) { return p < kLevel; });
+  for (const double p : holm(p_values)) result.p_value = std::min(result.p_value, p);
+  result.is_rejected = result.p_value < kLevel;
   return result;
 }
 

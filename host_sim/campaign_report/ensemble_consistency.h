@@ -35,9 +35,8 @@ struct Epoch {
 /// The epochs of a filter together.
 struct Consistency {
   std::size_t epochs = 0, above = 0, below = 0;
-  /// At least one epoch would occur in less than 5 % of the campaigns of a consistent filter, however its epochs are
-  /// correlated (smallest p value, corrected for their number).
-  bool is_rejected = false;
+  double p_value = 1.0;      ///< the smallest, corrected for their number: holds however the epochs are correlated
+  bool is_rejected = false;  ///< a consistent filter would have such an epoch in less than 5 % of the campaigns
 
   [[nodiscard]] double share_inside() const {
     return 1.0 - static_cast<double>(above + below) / static_cast<double>(epochs);

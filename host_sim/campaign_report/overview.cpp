@@ -99,18 +99,20 @@ std::string tiles(const Content& content) {
 
 std::string overview(const Content& content) {
   const Campaign& campaign = content.campaign;
-  std::string keys;
+  std::string swept, dispersed;
   for (const std::string& key : campaign.keys) {
     const bool is_swept = std::ranges::find(campaign.swept, key) != campaign.swept.end();
-    keys += fmt::format("{}{} ({})", keys.empty() ? "" : ", ", key, is_swept ? "swept" : "dispersed");
+    std::string& names = is_swept ? swept : dispersed;
+    names.append(names.empty() ? "" : ", ").append(key);
   }
   return fmt::format("<h1>{}</h1>\n{}<p class=\"lead\">{}</p>\n", report::escaped(campaign.name), census(campaign),
                      report::escaped(campaign.description)) +
          requirement_text(campaign) + tiles(content) +
          report::fact_list({{"mission", campaign.mission},
                             {"vbar", campaign.vbar_version},
-                            {"program SHA-256", campaign.program_sha256},
-                            {"keys", keys.empty() ? "none but the seed" : keys}});
+                            {"swept", swept.empty() ? "no key" : swept},
+                            {"dispersed", dispersed.empty() ? "no key" : dispersed},
+                            {"program SHA-256", campaign.program_sha256}});
 }
 
 }  // namespace vbar::campaign_report

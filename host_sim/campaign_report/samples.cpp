@@ -11,6 +11,8 @@
 namespace vbar::campaign_report {
 namespace {
 
+constexpr double kSameTime_h = 1e-6;
+
 /// The time of "samples.<time>h.<rest>", and the rest.
 std::optional<std::pair<double, std::string_view>> sample_of(std::string_view key) {
   constexpr std::string_view kPrefix = "samples.", kUnit = "h.";
@@ -64,7 +66,7 @@ std::vector<double> missing_samples(const Campaign& campaign) {
   std::ranges::copy_if(campaign.samples_h, std::back_inserter(missing), [&](double time_h) {
     return std::ranges::none_of(campaign.figures, [&](const Figure& figure) {
       const auto sample = sample_of(figure.key);
-      return sample && sample->first == time_h;
+      return sample && std::abs(sample->first - time_h) < kSameTime_h;
     });
   });
   return missing;

@@ -20,6 +20,7 @@ using report::Plot;
 using report::Point;
 
 constexpr std::size_t kMaxPoints = 6;  // of the sweeps, each judged by itself; more are judged together
+constexpr const char* kTogether = "all points of the sweeps";
 
 struct Test {
   const char* name;  ///< in the columns of results.csv
@@ -40,7 +41,7 @@ std::vector<Judged> judged_groups(const Campaign& campaign) {
   std::vector<SweepPoint> groups = sweep_points(campaign);
   if (groups.size() > kMaxPoints) {
     groups.resize(1);
-    groups.front().name = "all points of the sweeps";
+    groups.front().name = kTogether;
     groups.front().places.clear();
     for (std::size_t place = 0; place < campaign.cases.size(); ++place) groups.front().places.push_back(place);
   }
@@ -77,43 +78,65 @@ Plot plot_of(const Judged& judged) {
   return plot;
 }
 
-std::string verdict(const Judged& judged) {
-  const Consistency found = consistency_of(judged.epochs);
-  const char* word = found.is_rejected ? R"(<span class="status bad">rejected</span>)"
-                                       : R"(<span class="status good">not rejected</span>)";
-  std::string text = fmt::format("<p>{} {}{}{}: inside the 95 % band at {} of {} ({:.0f} %)", word, judged.test->title,
-                                 judged.name.empty() ? "" : ", ", report::escaped(judged.name),
-                                 found.epochs - found.above - found.below, count_text(found.epochs, "epoch", "epochs"),
-                                 100.0 * found.share_inside());
-  if (found.above > 0) text += fmt::format("; above it (errors larger than claimed) at {}", found.above);
-  if (found.below > 0) text += fmt::format("; below it (errors smaller than claimed) at {}", found.below);
-  return text + ".</p>\n";
+std::string p_text(double p) {
+  return p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", p);
 }
 
-/// The epochs outside the band; all of them where they are few.
-std::string epoch_table(const std::vector<Judged>& all) {
-  constexpr std::size_t kMaxRows = 12;
+/// A row for each group.
+std::string verdict_table(const std::vector<Judged>& all) {
   std::vector<std::vector<std::string>> rows;
   for (const Judged& judged : all) {
-    const bool is_short = judged.epochs.size() <= kMaxRows;
-    const std::size_t before = rows.size();
-    rows.push_back({fmt::format("{}{}{}{}", judged.test->title, judged.name.empty() ? "" : ", ", judged.name,
-                                is_short ? "" : fmt::format(", the first {} epochs outside the band", kMaxRows))});
+    const Consistency found = consistency_of(judged.epochs);
+    rows.push_back(
+        {judged.test->title, judged.name.empty() ? "all cases" : judged.name,
+         found.is_rejected ? R"(<span class="status bad">rejected</span>)"
+                           : R"(<span class="status good">not rejected</span>)",
+         report::grouped(found.epochs),
+         fmt::format("{} ({:.0f} %)", found.epochs - found.above - found.below, 100.0 * found.share_inside()),
+         report::grouped(found.above), report::grouped(found.below), p_text(found.p_value)});
+  }
+  return report::table({{"", false},
+                        {"", false},
+                        {"filter", false, true},
+                        {"epochs"},
+                        {"inside the band"},
+                        {"above"},
+                        {"below"},
+                        {"p, corrected"}},
+                       rows);
+}
+
+/// Where the filter is not consistent.
+std::string outside_table(const std::vector<Judged>& all) {
+  constexpr std::size_t kMaxRows = 200;
+  std::vector<std::vector<std::string>> rows;
+  for (const Judged& judged : all) {
     for (const Epoch& epoch : judged.epochs) {
-      const bool is_outside = epoch.is_above() || epoch.is_below();
-      if ((!is_short && !is_outside) || rows.size() > before + kMaxRows) continue;
-      rows.push_back({fmt::format("{:g}", epoch.time_h), report::grouped(epoch.cases),
-                      report::fixed(epoch.mean_dimension, 2), report::fixed(epoch.mean, 3),
+      if (!epoch.is_above() && !epoch.is_below()) continue;
+      rows.push_back({judged.test->title, judged.name.empty() ? "all cases" : judged.name,
+                      epoch.is_above() ? "above" : "below", fmt::format("{:g}", epoch.time_h),
+                      report::grouped(epoch.cases), report::fixed(epoch.mean_dimension, 2),
+                      report::fixed(epoch.mean, 3),
                       fmt::format("{} to {}", report::fixed(epoch.band.low, 3), report::fixed(epoch.band.high, 3)),
-                      report::significant(epoch.p_value, 2),
-                      epoch.is_above()   ? "above"
-                      : epoch.is_below() ? "below"
-                                         : "inside"});
+                      p_text(epoch.p_value)});
     }
-    if (rows.size() == before + 1) rows.pop_back();
   }
   if (rows.empty()) return {};
-  return report::table({{"time, h"}, {"cases"}, {"expected"}, {"mean"}, {"95 % band"}, {"p value"}, {"", false}}, rows);
+  const std::size_t count = rows.size();
+  rows.resize(std::min(count, kMaxRows));
+  return fmt::format("<details><summary>{} outside the band{}</summary>\n", count_text(count, "epoch", "epochs"),
+                     count > kMaxRows ? fmt::format(", the first {}", kMaxRows) : "") +
+         report::table({{"", false},
+                        {"", false},
+                        {"", false},
+                        {"time, h"},
+                        {"cases"},
+                        {"expected"},
+                        {"mean"},
+                        {"95 % band"},
+                        {"p"}},
+                       rows) +
+         "</details>\n";
 }
 
 std::string notes(const Campaign& campaign, const std::vector<Judged>& all) {
@@ -124,9 +147,8 @@ std::string notes(const Campaign& campaign, const std::vector<Judged>& all) {
       "correction for the number of epochs; this holds whatever the correlation of its epochs in time. About 5 % of "
       "the "
       "epochs of a consistent filter are outside their bands.";
-  const bool is_together = !all.empty() && campaign.swept.empty() == all.front().name.empty() &&
-                           all.front().name == "all points of the sweeps" && share_seeds(campaign);
-  if (is_together) text += " Points of the sweeps share seeds, so that the bands are approximate.";
+  if (all.front().name == kTogether && share_seeds(campaign))
+    text += " Points of the sweeps share seeds, so that the bands are approximate.";
   return text + "</p>\n";
 }
 
@@ -135,14 +157,12 @@ std::string notes(const Campaign& campaign, const std::vector<Judged>& all) {
 report::Section consistency_section(const Content& content) {
   const std::vector<Judged> all = judged_groups(content.campaign);
   if (all.empty()) return {};
-  std::string body = notes(content.campaign, all);
+  const std::string body = notes(content.campaign, all) + verdict_table(all);
   std::vector<Plot> plots;
-  for (const Judged& judged : all) {
-    body += verdict(judged);
+  for (const Judged& judged : all)
     if (judged.epochs.size() > 1) plots.push_back(plot_of(judged));
-  }
   return {
-      "Consistency of the filter", body + report::plot_rows(2, std::move(plots)) + epoch_table(all), {"results.csv"}};
+      "Consistency of the filter", body + report::plot_rows(2, std::move(plots)) + outside_table(all), {"results.csv"}};
 }
 
 }  // namespace vbar::campaign_report

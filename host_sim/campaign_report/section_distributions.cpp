@@ -28,18 +28,18 @@ void add_percentiles(const Content& content, const Quantity& quantity, std::vect
       "{}{}{}: of {}, smallest {}, mean {}, largest {}", quantity.key, limits.empty() ? "" : ", ", limits,
       count_text(sorted.size(), "complete case", "complete cases"), value_text(quantity.key, sorted.front()),
       value_text(quantity.key, *report::mean_of(sorted)), value_text(quantity.key, sorted.back()))});
-  const auto text = [&](const std::optional<double>& value, const char* none) {
+  const auto text = [&](const std::optional<double>& value, const std::string& none) {
     return value ? value_text(quantity.key, *value) : none;
   };
   for (const double share : kShares) {
     const std::string name = fmt::format("{:g} %", 100.0 * share);
     if (!content.campaign.is_independent) {
-      rows.push_back({name, value_text(quantity.key, report::quantile(sorted, share)), "–", "–", ""});
+      rows.push_back({name, value_text(quantity.key, report::quantile(sorted, share)), "–", "–"});
       continue;
     }
     const Percentile found = percentile(sorted, share, kConfidence);
-    rows.push_back({name, text(found.estimate, "–"), text(found.lower, "open"), text(found.upper, "open"),
-                    found.upper ? "" : fmt::format("needs {} cases", values_needed(share, kConfidence))});
+    rows.push_back({name, text(found.estimate, "–"), text(found.lower, "open"),
+                    text(found.upper, fmt::format("open ({} needed)", values_needed(share, kConfidence)))});
   }
 }
 
@@ -52,7 +52,7 @@ std::string notes(const Content& content) {
   if (content.campaign.is_independent) {
     text += fmt::format(
         "Bounds: two-sided, {:g} %, for any distribution (order statistics). Where the cases are too few for an upper "
-        "bound it is open, and the percentile is not stated.",
+        "bound it is open, the percentile is not stated, and the number of cases needed is.",
         100.0 * kConfidence);
     if (share_seeds(content.campaign))
       text += " Points of the sweeps share seeds, so that bounds over all of them are approximate.";
@@ -74,7 +74,7 @@ report::Section distribution_section(const Content& content) {
     plots.push_back(histogram(quantity, sorted));
     plots.push_back(distribution_function(quantity, sorted));
   }
-  const std::vector<report::Column> columns{{"percentile"}, {"value"}, {"lower bound"}, {"upper bound"}, {"", false}};
+  const std::vector<report::Column> columns{{"percentile"}, {"value"}, {"lower bound"}, {"upper bound"}};
   return {"Distributions",
           notes(content) + report::table(columns, rows) + report::plot_rows(2, std::move(plots)),
           {"results.csv"}};

@@ -37,7 +37,7 @@ p { margin: 6px 0; max-width: 90ch; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 10px; margin: 18px 0; }
 .tile { background: var(--panel); border: 1px solid var(--grid); border-radius: 6px; padding: 10px 14px; }
 .tile b { display: block; font-size: 22px; line-height: 1.25; font-weight: 600; }
-.tile span { color: var(--muted); font-size: 13px; }
+.tile span { color: var(--muted); font-size: 13px; overflow-wrap: anywhere; }
 nav { display: flex; flex-wrap: wrap; gap: 2px 18px; font-size: 14px; margin: 12px 0; }
 a { color: var(--c0); text-decoration: none; } a:hover { text-decoration: underline; }
 .files { font-size: 13px; color: var(--muted); }

@@ -202,9 +202,10 @@ class Drawing {
       if (!(x >= left_ && x <= left_ + x_.length)) continue;
       append(R"(<line class="moment" x1="{0:.1f}" x2="{0:.1f}" y1="{1:.1f}" y2="{2:.1f}"/>)", x, top_, y_.start);
       const double half = 0.5 * kCharacterWidth * static_cast<double>(moment.text.size());
-      if (x - half < free_from) continue;
-      append(R"(<text class="moment mid" x="{:.1f}" y="{:.1f}">{}</text>)", x, top_ - 4.0, escaped(moment.text));
-      free_from = x + half + 3.0;
+      const double centre = std::max(half, std::min(x, plot_.width - half));  // a long text at the edge stays whole
+      if (centre - half < free_from) continue;
+      append(R"(<text class="moment mid" x="{:.1f}" y="{:.1f}">{}</text>)", centre, top_ - 4.0, escaped(moment.text));
+      free_from = centre + half + 3.0;
     }
   }
 
