@@ -30,14 +30,6 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   return xy / std::sqrt(xx * yy);
 }
 
-double two_sided_p(double rho, std::size_t count) {
-  const auto degrees = static_cast<double>(count - 2);
-  const double left = 1.0 - rho * rho;
-  if (!(left > 0.0)) return 0.0;
-  const boost::math::students_t distribution(degrees);
-  return 2.0 * boost::math::cdf(boost::math::complement(distribution, std::abs(rho) * std::sqrt(degrees / left)));
-}
-
 }  // namespace
 
 std::vector<double> ranks(const std::vector<double>& values) {
@@ -52,6 +44,14 @@ std::vector<double> ranks(const std::vector<double>& values) {
   return result;
 }
 
+double spearman_p_value(double rho, std::size_t count) {
+  const auto degrees = static_cast<double>(count - 2);
+  const double left = 1.0 - rho * rho;
+  if (!(left > 0.0)) return 0.0;
+  const boost::math::students_t distribution(degrees);
+  return 2.0 * boost::math::cdf(boost::math::complement(distribution, std::abs(rho) * std::sqrt(degrees / left)));
+}
+
 std::optional<RankCorrelation> spearman(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> paired_x, paired_y;
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -62,7 +62,7 @@ std::optional<RankCorrelation> spearman(const std::vector<double>& x, const std:
   if (paired_x.size() < kMinPairs) return std::nullopt;
   const double rho = std::clamp(correlation(ranks(paired_x), ranks(paired_y)), -1.0, 1.0);
   if (!std::isfinite(rho)) return std::nullopt;
-  return RankCorrelation{rho, two_sided_p(rho, paired_x.size()), paired_x.size()};
+  return RankCorrelation{rho, spearman_p_value(rho, paired_x.size()), paired_x.size()};
 }
 
 std::vector<double> holm(const std::vector<double>& p_values) {

@@ -17,6 +17,9 @@ struct RankCorrelation {
   std::size_t count = 0;
 };
 
+/// Of a rank correlation of `count` > 2 pairs.
+[[nodiscard]] double spearman_p_value(double rho, std::size_t count);
+
 /// Fewer pairs do not support the approximation of the p value.
 inline constexpr std::size_t kMinPairs = 10;
 
