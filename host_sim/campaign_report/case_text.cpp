@@ -1,5 +1,7 @@
 #include "host_sim/campaign_report/case_text.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "host_sim/report/csv_table.h"
@@ -40,13 +42,28 @@ std::string rerun_command(const Content& content, const Case& one) {
   return fmt::format("vbar campaign rerun {} {}", quoted, one.number);
 }
 
+std::vector<std::string> short_names(const std::vector<std::string>& keys) {
+  std::vector<std::string> names;
+  for (const std::string& key : keys) {
+    std::size_t start = key.rfind('.');
+    const auto is_shared = [&] {
+      const std::string_view ending = std::string_view(key).substr(start);
+      return std::ranges::count_if(keys, [&](const std::string& other) { return ("." + other).ends_with(ending); }) > 1;
+    };
+    while (start != std::string::npos && start > 0 && is_shared()) start = key.rfind('.', start - 1);
+    names.push_back(start == std::string::npos ? key : key.substr(start + 1));
+  }
+  return names;
+}
+
 std::string inputs_text(const Campaign& campaign, const Case& one) {
+  const std::vector<std::string> names = short_names(campaign.keys);
   std::string text;
   for (std::size_t k = 0; k < campaign.keys.size(); ++k) {
     double number = 0.0;
     const std::string& input = one.inputs[k];
     const bool is_number = !input.empty() && report::read_value(input, number);
-    text += fmt::format("{}{} = {}", text.empty() ? "" : "; ", campaign.keys[k],
+    text += fmt::format("{}{} = {}", text.empty() ? "" : "; ", names[k],
                         is_number ? value_text(campaign.keys[k], number) : input);
   }
   return text;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "host_sim/campaign_report/campaign.h"
 #include "host_sim/campaign_report/pass_rate.h"
@@ -22,7 +23,10 @@ namespace vbar::campaign_report {
 /// The command that flies a case again.
 [[nodiscard]] std::string rerun_command(const Content& content, const Case& one);
 
-/// "spacecraft.servicer.mass_kg = 153.41; ...": swept and dispersed values, shortened.
+/// Keys without what they need not have to be told apart: "servicer.mass_kg", "target.mass_kg", "loss_probability".
+[[nodiscard]] std::vector<std::string> short_names(const std::vector<std::string>& keys);
+
+/// "servicer.mass_kg = 153.41 kg; ...": swept and dispersed values, shortened.
 [[nodiscard]] std::string inputs_text(const Campaign& campaign, const Case& one);
 
 /// The number of cases that `holds` is true of.

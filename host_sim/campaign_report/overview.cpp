@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/campaign_report/case_text.h"
+#include "host_sim/campaign_report/percentile.h"
 #include "host_sim/campaign_report/sections.h"
 #include "host_sim/report/number_text.h"
 
@@ -58,13 +59,16 @@ std::string requirement_text(const Campaign& campaign) {
         "<p><span class=\"status bad\">not shown</span> Required: {}. Cases that are not independent "
         "draws have no such bound.</p>\n",
         claim);
-  const double bound = all.judged == 0 ? 0.0 : one_sided_lower_bound(all.passed, all.judged, required.confidence);
-  const bool is_met = bound >= required.pass_rate_min;
+  const PassRate rate = pass_rate(all.passed, all.judged, required.confidence);
+  const bool is_met = rate.lower >= required.pass_rate_min;
   return fmt::format(
       "<p><span class=\"status {}\">{}</span> Required: {}; {} of {} passed show at least {} "
-      "(one-sided).</p>\n",
+      "(two-sided){}.</p>\n",
       is_met ? "good" : "bad", is_met ? "shown" : "not shown", claim, report::grouped(all.passed),
-      report::grouped(all.judged), percent(bound));
+      report::grouped(all.judged), percent(rate.lower),
+      is_met ? ""
+             : fmt::format("; {} without a failure would show it",
+                           values_needed(required.pass_rate_min, required.confidence)));
 }
 
 std::string tile(std::string_view value, std::string_view meaning) {

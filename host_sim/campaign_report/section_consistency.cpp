@@ -149,7 +149,13 @@ std::string notes(const Campaign& campaign, const std::vector<Judged>& all) {
       "epochs of a consistent filter are outside their bands.";
   if (all.front().name == kTogether && share_seeds(campaign))
     text += " Points of the sweeps share seeds, so that the bands are approximate.";
-  return text + "</p>\n";
+  text += "</p>\n";
+  std::string missing;
+  for (const double time_h : missing_samples(campaign))
+    missing += fmt::format("{}{:g}", missing.empty() ? "" : ", ", time_h);
+  if (!missing.empty())
+    text += fmt::format("<p><span class=\"bad\">No case has figures at {} h.</span></p>\n", missing);
+  return text;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace vbar::campaign_report {
 namespace {
 
 constexpr std::size_t kWorst = 10;
+constexpr int kKeptColumn = 5;
 
 /// A link if the case's folder is kept: inside the campaign's own, by a plain name.
 std::string folder_link(const std::string& folder) {
@@ -45,16 +46,20 @@ std::string worst_of(const Content& content, const Quantity& quantity) {
                     folder_link(one.folder),
                     fmt::format("<code>{}</code>", report::escaped(rerun_command(content, one)))});
   }
+  std::vector<report::Column> columns{{"case"},
+                                      {"value", true, true},
+                                      {"", false},
+                                      {"seed"},
+                                      {"flown with", false},
+                                      {"kept in", false, true},
+                                      {"flown again by", false, true}};
+  if (std::ranges::all_of(content.campaign.cases, [](const Case& one) { return one.folder.empty(); })) {
+    columns.erase(columns.begin() + kKeptColumn);
+    for (std::vector<std::string>& row : rows) row.erase(row.begin() + kKeptColumn);
+  }
   const std::string limits = limits_text(quantity);
   return fmt::format("<h3>{}{}{}</h3>\n", report::escaped(quantity.key), limits.empty() ? "" : ", ", limits) +
-         report::table({{"case"},
-                        {"value", true, true},
-                        {"", false},
-                        {"seed"},
-                        {"flown with", false},
-                        {"kept in", false, true},
-                        {"flown again by", false, true}},
-                       rows);
+         report::table(columns, rows);
 }
 
 }  // namespace

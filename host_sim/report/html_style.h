@@ -48,6 +48,8 @@ th { color: var(--muted); font-weight: 600; border-bottom: 1px solid var(--frame
 td { border-bottom: 1px solid var(--grid); }
 th.number, td.number { text-align: right; padding: 4px 0 4px 22px; white-space: nowrap; }
 th.number { white-space: normal; }
+td.number + td:not(.number), th.number + th:not(.number) { padding-left: 22px; }
+td code { white-space: nowrap; }
 th.group { color: var(--ink); padding-top: 14px; max-width: none; }
 dl { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 0 36px; margin: 8px 0; font-size: 14px; }
 dl div { display: flex; gap: 14px; padding: 3px 0; border-bottom: 1px solid var(--grid); }

@@ -110,6 +110,13 @@ TEST_F(CampaignPage, RejectsAFilterThatClaimsHalfOfItsErrors) {
   EXPECT_THAT(page_of({.cases = 100, .sigma_scale = 0.5}), HasSubstr(">rejected<"));
 }
 
+TEST_F(CampaignPage, NamesTimesWithoutFigures) {
+  write_synthetic_campaign(scratch_ / "night's work", {.cases = 20, .epochs = 3});
+  const auto json = scratch_ / "night's work" / "campaign.json";
+  write(json, std::regex_replace(content(json), std::regex("\"samples_h\": \\["), "\"samples_h\": [12.5, 13, "));
+  EXPECT_THAT(page(), HasSubstr("No case has figures at 12.5, 13 h."));
+}
+
 TEST_F(CampaignPage, FindsWhatDrivesTheError) {
   const std::string html = page_of({.cases = 400});
   const std::size_t drivers = html.find("<h2>What drives the figures</h2>");

@@ -131,7 +131,6 @@ TEST_F(ReadCampaign, RefusesMembersThatAreMissingOrOfAnotherKind) {
               HasSubstr("\"x\" is not in \"keys\""));
   EXPECT_THAT(complaint_of(R"("pass": [], "require": {"pass_rate_at_least": 95, "confidence": 0.95})"),
               HasSubstr("require: key \"pass_rate_at_least\": 95 is not between 0 and 1"));
-  EXPECT_THAT(complaint_of(R"("pass": [], "samples_h": [1.5, 2.0])"), HasSubstr("no column \"samples.2h"));
   EXPECT_THAT(complaint_of(R"("pass": [], "format": 2)"), HasSubstr("2 is not supported; accepted: 1"));
   write(scratch_ / "campaign.json", "{");
   EXPECT_THAT(complaint(), HasSubstr("campaign.json: not a JSON file"));
