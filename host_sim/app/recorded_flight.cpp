@@ -36,6 +36,11 @@ report::Summary start_of(const mission::Mission& mission) {
 void keep_mission(const FlightOrder& order, const std::filesystem::path& folder) {
   report::replace_text_file(folder / kMissionCopy, order.mission_text);
   report::replace_text_file(folder / kOverridesCopy, fmt::format("{}\n", fmt::join(order.overrides, "\n")));
+  if (order.branch.empty()) {
+    std::filesystem::remove(folder / kBranchCopy);
+  } else {
+    report::replace_text_file(folder / kBranchCopy, order.branch);
+  }
 }
 
 /// Flies and fills the record. The reason why the run is not complete, or nothing.

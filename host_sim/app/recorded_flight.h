@@ -24,6 +24,7 @@ struct FlightOrder {
   std::string mission_text;            ///< of the copy in the run folder
   std::vector<std::string> overrides;  ///< "path=value", as given
   bool quiet = false;
+  std::string branch = {};       ///< text of kBranchCopy; empty: the run is no branch
   twins::EventCheck check = {};  ///< of the events of the packet log; may be empty
 };
 

@@ -66,18 +66,32 @@ FlownRun read_run(const fs::path& folder, bool trust) {
 
 /// The time and the version of the mission from which a run that is a branch left another one.
 struct BranchPoint {
+  double at_h = 0.0;
+  std::size_t changes = 0;  ///< how many of the overrides, the last ones, are those of the branch
   mission::Mission before;
-  fsw::GpsTime time;
+
+  [[nodiscard]] fsw::GpsTime time() const { return before.epoch + fsw::nearest_duration(3600.0 * at_h); }
 };
 
-BranchPoint branch_point(const fs::path& folder, const report::Provenance& provenance) {
-  const auto& all = provenance.overrides;
-  const std::size_t own = std::min(all.size(), provenance.branch_overrides.size());
-  BranchPoint point{sensors::load_mission(folder / kMissionCopy,
-                                          std::vector(all.begin(), all.end() - static_cast<std::ptrdiff_t>(own))),
-                    {}};
-  point.time = point.before.epoch + fsw::nearest_duration(3600.0 * *provenance.branch_at_h);
-  return point;
+/// Content of kBranchCopy.
+std::string text_of(const BranchPoint& point) {
+  return fmt::format("at_h = {}\noverrides = {}\n", point.at_h, point.changes);
+}
+
+/// Nothing if the run is no branch.
+std::optional<BranchPoint> branch_point(const FlownRun& run) {
+  const fs::path file = run.folder / kBranchCopy;
+  if (!fs::exists(file)) return std::nullopt;
+  const std::string text = report::read_text_file(file);
+  double at_h = 0.0;
+  std::size_t changes = 0;
+  int end = 0;
+  const int read = std::sscanf(text.c_str(), "at_h = %lf overrides = %zu %n", &at_h, &changes, &end);
+  if (read != 2 || std::cmp_not_equal(end, text.size()) || changes > run.overrides.size() || !(at_h > 0.0))
+    throw Refused(file.string() + ": is not that of a branch");
+  const std::vector<std::string> before(run.overrides.begin(),
+                                        run.overrides.end() - static_cast<std::ptrdiff_t>(changes));
+  return BranchPoint{at_h, changes, sensors::load_mission(run.folder / kMissionCopy, before)};
 }
 
 /// Only what is digital or recorded can be flown again.
@@ -94,7 +108,7 @@ std::unique_ptr<AssembledMission> assemble_again(const mission::Mission& mission
   auto assembled = assemble(mission, false);
   refuse_testbeds(*assembled);
   try {
-    if (branch) assembled->branch_from(branch->before, branch->time);
+    if (branch) assembled->branch_from(branch->before, branch->time());
     assembled->start();
   } catch (const std::runtime_error& error) {
     throw Refused(error.what());
@@ -173,16 +187,17 @@ int refuse(const fs::path& log, const Verdict& verdict) {
 }
 
 int continue_run(const ResumeOptions& options, const FlownRun& run, twins::FlownLog& log) {
-  std::optional<BranchPoint> branch;
-  if (run.summary.provenance.branch_at_h) branch = branch_point(run.folder, run.summary.provenance);
+  const std::optional<BranchPoint> branch = branch_point(run);
   Comparison comparison(run, log, options.quiet);
-  const FlightOrder order{run.mission, report::read_text_file(run.folder / kMissionCopy), run.overrides, options.quiet,
+  const FlightOrder order{run.mission,
+                          report::read_text_file(run.folder / kMissionCopy),
+                          run.overrides,
+                          options.quiet,
+                          branch ? text_of(*branch) : "",
                           std::ref(comparison)};
   const auto assembled = assemble_again(run.mission, branch);
   if (!options.quiet) announce(run, log);
   report::RunRecord record = record_at_start(order);
-  record.summary.provenance.branch_at_h = run.summary.provenance.branch_at_h;
-  record.summary.provenance.branch_overrides = run.summary.provenance.branch_overrides;
   std::optional<std::string> trouble;
   {
     report::RunFolder folder(resuming_folder(run.folder), record.summary, report::RunFolder::Existing::kReplace,
@@ -199,21 +214,22 @@ int continue_run(const ResumeOptions& options, const FlownRun& run, twins::Flown
 }
 
 int fly_branch(const ResumeOptions& options, const FlownRun& run, twins::FlownLog& log) {
-  if (run.summary.provenance.branch_at_h)
+  if (branch_point(run))
     throw Refused(run.folder.string() + ": is a branch; branches are flown from the run that it left");
   std::vector<std::string> overrides = run.overrides;
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
   const mission::Mission mission = sensors::load_mission(run.folder / kMissionCopy, overrides);
   check_trust(mission, run.folder, options.overrides, options.trust);
-  const BranchPoint point{run.mission, run.mission.epoch + fsw::nearest_duration(3600.0 * *options.branch_at_h)};
-  if (log.steps() == 0 || point.time <= run.mission.start_time() || point.time > log.time()) {
+  const BranchPoint point{*options.branch_at_h, options.overrides.size(), run.mission};
+  if (log.steps() == 0 || point.time() <= run.mission.start_time() || point.time() > log.time()) {
     throw Refused(fmt::format("--at {}: the log of the run holds {:.4f} to {:.4f} h", *options.branch_at_h,
                               run.hours(run.mission.start_time()), log.steps() > 0 ? run.hours(log.time()) : 0.0));
   }
-  log.compare_before(point.time);
+  log.compare_before(point.time());
   Comparison comparison(run, log, options.quiet);
-  const FlightOrder order{mission, report::read_text_file(run.folder / kMissionCopy), overrides, options.quiet,
-                          std::ref(comparison)};
+  const FlightOrder order{mission,        report::read_text_file(run.folder / kMissionCopy),
+                          overrides,      options.quiet,
+                          text_of(point), std::ref(comparison)};
   std::unique_ptr<AssembledMission> assembled;
   const std::string sets = fmt::format("--set {}", fmt::join(options.overrides, " --set "));
   try {
@@ -222,8 +238,6 @@ int fly_branch(const ResumeOptions& options, const FlownRun& run, twins::FlownLo
     throw Refused(fmt::format("{}: not in flight: {}", sets, error.what()));
   }
   report::RunRecord record = record_at_start(order);
-  record.summary.provenance.branch_at_h = options.branch_at_h;
-  record.summary.provenance.branch_overrides = options.overrides;
   report::RunFolder folder(options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out,
                            record.summary, report::RunFolder::Existing::kRefuse, sensors::extensions());
   const auto trouble = fly_into(folder, order, *assembled, record);

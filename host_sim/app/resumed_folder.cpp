@@ -50,7 +50,7 @@ void synchronise_all(const fs::path& folder) {
 }
 
 std::set<std::string> names_of_run_files() {
-  std::set<std::string> names{kMissionCopy, kOverridesCopy, report::RunLock::kFile, "gallery"};
+  std::set<std::string> names{kMissionCopy, kOverridesCopy, kBranchCopy, report::RunLock::kFile, "gallery"};
   for (const fs::path& file : {report::summary_file(""), report::packet_log_file(""), report::report_file("")})
     names.insert(file.string());
   for (const std::string& table : report::table_files(sensors::extensions())) {

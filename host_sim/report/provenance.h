@@ -23,8 +23,6 @@ struct Provenance {
   std::vector<std::string> overrides;  ///< "path=value", as given
   std::string mission_sha256;          ///< of mission.toml in the run folder
   std::string program_sha256;
-  std::optional<double> branch_at_h;          ///< a branch of another run: from this time of the mission on ...
-  std::vector<std::string> branch_overrides;  ///< ... with these, the last ones of `overrides`
   std::optional<FileDigest> flight_software;  ///< the library or image that flew; none: in the program, or on a board
   std::vector<FileDigest> testbed;            ///< program and scenario of an emulated bench
   std::vector<FileDigest> data;

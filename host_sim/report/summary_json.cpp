@@ -105,8 +105,6 @@ void members(Is<Provenance> auto& s, auto& visit) {
   visit("epoch_utc", s.epoch_utc);
   visit("mission_sha256", s.mission_sha256);
   visit("overrides", s.overrides);
-  visit("branch_at_h", s.branch_at_h);
-  visit("branch_overrides", s.branch_overrides);
   visit("flight_software", s.flight_software);
   visit("testbed", s.testbed);
   visit("data", s.data);

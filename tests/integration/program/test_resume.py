@@ -373,8 +373,8 @@ class Branch(Resuming):
         with_fault = fly(self.folder / "with_fault", *SHORT, fault)
         self.assertEqual(hashes(summary_of(out)), hashes(with_fault))
         self.assertNotEqual(hashes(with_fault), hashes(self.summary))
-        self.assertEqual(summary_of(out)["provenance"]["branch_at_h"], self.AT)
-        self.assertEqual(summary_of(out)["provenance"]["branch_overrides"], [fault])
+        self.assertEqual((out / "branch.txt").read_text(), f"at_h = {self.AT}\noverrides = 1\n")
+        self.assertEqual(summary_of(out)["provenance"]["overrides"], [*SHORT, fault])
         self.assertTrue(summary_of(self.whole)["complete"])
         self.expect_refused(DIFFERENT, "is not what is flown now", "has an effect before 2.5 h", settings=(fault,), at=2.5)
 
