@@ -11,6 +11,7 @@
 #include "host_sim/app/flown_truth.h"
 #include "host_sim/app/simulation.h"
 #include "host_sim/app/started_sources.h"
+#include "host_sim/faults/fault_schedule.h"
 #include "host_sim/io/wired_receiver.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
@@ -58,6 +59,7 @@ class AssembledMission {
   const mission::Mission& mission_;
   const mission::Spacecraft& servicer_;
   std::filesystem::path data_directory_;
+  std::shared_ptr<faults::FaultSchedule> faults_;
   FlownTruth truth_;
   sensors::MadeSources made_;
   std::unique_ptr<twins::Actuator> thruster_;

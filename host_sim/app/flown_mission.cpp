@@ -52,8 +52,9 @@ void check_trust(const mission::Mission& mission, const std::filesystem::path& r
   if (is_trusted) return;
   const bool is_board = computer.target == mission::FlightTarget::kBoard;
   const bool is_serial = computer.link == mission::FlightLink::kSerial;
-  const std::array<std::pair<std::string_view, std::string>, 3> named{
+  const std::array<std::pair<std::string_view, std::string>, 4> named{
       {{"library", computer.library},
+       {"image", computer.image},
        {"device", is_board && is_serial ? computer.device : ""},
        {"address", is_board && !is_serial ? computer.address : ""}}};
   for (const auto& [key, value] : named) {

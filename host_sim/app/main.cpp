@@ -178,6 +178,12 @@ int main(int argc, char** argv) {
   missions_app->add_option("folder", missions, "folder of mission files");
   missions_app->callback([&] { exit_code = missions_command(missions); });
 
+  NewArticleOptions article;
+  CLI::App* article_app = program.add_subcommand("new-article", "create a project of your own flight software");
+  article_app->add_option("folder", article.folder, "created; its name is that of the flight software")->required();
+  article_app->add_option("--language", article.language, "c or c++ (default c)");
+  article_app->callback([&] { exit_code = new_article_command(article); });
+
   const int result = parse_and_run(program, argc, argv, exit_code);
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return result;

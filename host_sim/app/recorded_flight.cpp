@@ -137,7 +137,11 @@ void report_flight(const std::filesystem::path& folder, const std::filesystem::p
     if (!trouble) throw;  // the record is complete, its report is not
   }
   for (const report::FaultRow& fault : record.faults) {
-    if (!fault.effect_s) fmt::print("fault \"{}\" never took effect\n", fault.name);
+    if (!fault.begin_s) {
+      fmt::print("fault \"{}\" never began: {} did not happen\n", fault.name, fault.event);
+    } else if (!fault.effect_s) {
+      fmt::print("fault \"{}\" never took effect\n", fault.name);
+    }
   }
 }
 

@@ -113,11 +113,11 @@ Continuation continuation(const ReplayOptions& options, const RecordedSteps& ste
   return from;
 }
 
-void save_snapshot(const ReplayOptions& options, std::uint32_t next_step, const pil::FlightComputer& computer) {
+void save_snapshot(const ReplayOptions& options, std::uint32_t next_step, pil::FlightComputer& computer) {
   std::vector<std::uint8_t> bytes = computer.snapshot();
   if (bytes.empty())
     throw Refused("--save: " + computer.description() +
-                  " gives no snapshot; accepted: flight_computer.target=in_process, --at-h after the first step");
+                  " gives no snapshot; accepted: vbar's flight software, --at-h after the first step");
   write_snapshot(options.save, {next_step, std::move(bytes)});
 }
 

@@ -93,6 +93,14 @@ Orbit read_orbit(const TableReader& section, const Member& member, const Mission
   return read_relative(section.table("relative"), mission);
 }
 
+// Of a step, unless the mission states another: the largest of the missions of this repository (206 million
+// instructions, docs/board_bringup.md) and a fifth; at 4 cycles an instruction and 667 MHz these are 1.5 s. The least
+// is more than a board needs to start the flight software.
+constexpr std::int64_t kStepBudgetInstructions = 250'000'000;
+constexpr std::int64_t kStepBudgetCycles = 4 * kStepBudgetInstructions;
+constexpr std::int64_t kLeastStepBudget = 100'000;
+constexpr std::int64_t kGreatestStepBudget = 10'000'000'000;
+
 FlightComputer read_flight_computer(const TableReader& section) {
   FlightComputer computer;
   computer.target = section.choice<FlightTarget>("target", kFlightTargets, FlightTarget::kInProcess);
@@ -100,11 +108,18 @@ FlightComputer read_flight_computer(const TableReader& section) {
   computer.library = section.text("library", "");
   if (!computer.library.empty() && computer.target != FlightTarget::kInProcess)
     section.refuse_value("library", "nothing, unless target is in_process");
+  computer.image = section.text("image", "");
+  const bool starts_image = computer.target != FlightTarget::kInProcess && computer.target != FlightTarget::kBoard;
+  if (!computer.image.empty() && !starts_image)
+    section.refuse_value("image", "nothing, unless target is zynq_qemu, zynq_linux_qemu or host_process");
   computer.compute_latency = section.span("compute_latency_s", 1.0, from_to(0.0, 3600.0), 1.0);
   computer.device = section.text("device", "");
   if (section.has("baud")) computer.baud = static_cast<int>(section.integer("baud", 1200, 4000000));
   computer.address = section.text("address", "");
   computer.port = static_cast<int>(section.integer("port", 0, 65535, 0));
+  const std::int64_t step_budget =
+      computer.target == FlightTarget::kBoard ? kStepBudgetCycles : kStepBudgetInstructions;
+  computer.step_budget = section.integer("step_budget", kLeastStepBudget, kGreatestStepBudget, step_budget);
   if (computer.target == FlightTarget::kBoard) {
     if (computer.link == FlightLink::kSerial && computer.device.empty())
       section.refuse("device", "nothing", "the tty of the board, e.g. /dev/ttyUSB0");
