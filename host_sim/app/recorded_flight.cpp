@@ -32,15 +32,16 @@ report::Summary start_of(const mission::Mission& mission) {
   return summary;
 }
 
-/// The mission file as it was flown, for the replay.
+/// The mission as it was flown, for a replay and a resume. Its file is the last one: where it is, the others are too.
 void keep_mission(const FlightOrder& order, const std::filesystem::path& folder) {
-  report::replace_text_file(folder / kMissionCopy, order.mission_text);
+  std::filesystem::remove(folder / kMissionCopy);
   report::replace_text_file(folder / kOverridesCopy, fmt::format("{}\n", fmt::join(order.overrides, "\n")));
   if (order.branch.empty()) {
     std::filesystem::remove(folder / kBranchCopy);
   } else {
     report::replace_text_file(folder / kBranchCopy, order.branch);
   }
+  report::replace_text_file(folder / kMissionCopy, order.mission_text);
 }
 
 /// Flies and fills the record. The reason why the run is not complete, or nothing.
