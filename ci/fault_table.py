@@ -3,20 +3,22 @@
 
     ci/fault_table.py BINARY [--seeds 1-3] [--points 10km,300m,40m,9m] [--cases NAME,...] [--jobs 2] [--runs FOLDER]
 
-BINARY is a built vbar; the working directory is the root of the repository. Each case is missions/full_range_retreat.toml from the
-waypoint before its point, with one fault, for 24 h after it. `distance` is the least true one from centre to centre since the fault
-began, of which 2.0 m are required (1.0 m without an operational thruster); `reported` the time until the event, against its limit.
-Run folders are kept with --runs, and are otherwise deleted. The exit status is 1 if a case misses its row.
+BINARY is a built vbar; the working directory is the root of the repository. Each case is missions/full_range_retreat.toml, or
+full_range_cooperative_retreat.toml, from the waypoint before its point, with one fault, for 24 h after it. `distance` is the least true
+one from centre to centre since the fault began, of which 2.0 m are required (1.0 m without an operational thruster); `reported` the
+time until the event, against its limit; `error` the largest ratio of navigation errors (their maximum and their median, while the fault
+lasts and for an hour after it) to those of the same run without the fault, which is flown once for each point and seed. Run folders are
+kept with --runs, and are otherwise deleted. The exit status is 1 if a case misses its row. ci/fault_judgement.py has the rules.
 """
 import argparse
 import concurrent.futures
-import csv
-import dataclasses
 import json
 import pathlib
 import subprocess
 import sys
 import tempfile
+
+from fault_judgement import Case, JudgementError, judge, navigation_errors, window_of
 
 # name: hour of the fault, start and its waypoint, image period there (s), a-priori sigmas (m) of a da, a dlambda, a de, a di
 POINTS = {
@@ -25,20 +27,9 @@ POINTS = {
     "40m": (37.9, 36.0, 7, 20.0, (0.02, 0.3, 0.03, 0.03)),
     "9m": (39.8, 39.0, 8, 60.0, (0.01, 0.05, 0.02, 0.02)),
 }
-ALL = tuple(POINTS)
 NEAR = ("40m", "9m")
+FIXED = ("300m", "40m", "9m")
 AFTER_H = 24.0
-
-
-@dataclasses.dataclass
-class Case:
-    faults: list            # tables of [[fault]], without at_h
-    event: str              # fault that the flight software must raise
-    within: object          # s, or a function of the image period; None: with the burns, whenever they are
-    points: tuple = ALL
-    distance_m: float = 2.0
-    retreats: object = None  # True: must, False: must not, None: may
-    sources: tuple = ()      # sources that must be aiding again at the end
 
 
 def fault(kind, **keys):
@@ -55,19 +46,37 @@ CASES = {
                                     retreats=True),
     "image frozen 5 min": Case([fault("frozen", unit="camera", for_s=300.0)], "image_frozen", lambda p: 2 * p + 60.0, points=("10km", "300m", "40m")),
     "close images frozen 5 min": Case([fault("frozen", unit="close_camera", for_s=300.0)], "image_frozen", lambda p: 2 * p + 10.0, points=("9m",)),
-    "star tracker 1 deg 10 min": Case([fault("attitude_error", unit="gnss", value_deg=1.0, for_s=600.0)], "attitude", lambda p: 3 * p + 60.0,
+    "star tracker 1 deg 10 min": Case([fault("attitude_error", unit="gnss", value_deg=1.0, for_s=600.0)], "attitude", lambda p: 3 * p,
                                       retreats=False),
-    "receiver silent 1 h": Case([fault("receiver_silent", unit="gnss", for_s=3600.0)], "", None, retreats=False),
-    "network wrong by 90 deg 60 s": Case([fault("target_turned", unit=u, value_deg=90.0, for_s=60.0) for u in ("camera", "close_camera")], "", None,
+    "receiver silent 1 h": Case([fault("receiver_silent", unit="gnss", for_s=3600.0)], "receiver_silent", lambda p: 20.0 + p, retreats=False),
+    "network wrong by 90 deg 60 s": Case([fault("target_turned", unit=u, value_deg=90.0, for_s=60.0) for u in ("camera", "close_camera")], "pose_network",
+                                         lambda p: 65.0 if p < 60.0 else 35.0,  # images every 20 and 10 s
                                          points=NEAR, retreats=False),
-    "thruster off": Case([fault("thrust_scale", value=0.0)], "thruster", None, distance_m=1.0),
+    "thruster off": Case([fault("thrust_scale", value=0.0)], "thruster", None, distance_m=1.0, within_burns=2),
     "thruster on 10 s": Case([fault("thrust_uncommanded", value_mps2=1e-3, direction_rtn=[0.0, 1.0, 0.0], for_s=10.0)], "burn_uncommanded", 61.0,
                              retreats=True),
-    "burns 10 % short": Case([fault("thrust_scale", value=0.9)], "burn_size", None, retreats=False),
+    "burns 10 % short": Case([fault("thrust_scale", value=0.9)], "burn_size", None, retreats=False, within_burns=3),
     "reboot warm 60 s": Case([fault("computer_reboot", for_s=60.0, keeps_state=True)], "restart", lambda p: 60.0 + 2 * p, retreats=False),
     "reboot cold 60 s": Case([fault("computer_reboot", for_s=60.0)], "", None),
     "silent for 3 steps": Case([fault("computer_silent", for_s=181.0)], "step_late", lambda p: 181.0 + 2 * p, retreats=False),
 }
+
+# To a target that cooperates, from 1 km on.
+CAMERAS = ("camera", "close_camera")
+COOPERATIVE = {
+    "cooperative: none": Case([], "", None, FIXED, retreats=False),
+    "cooperative: crosslink silent 10 min": Case([fault("silent", unit="gnss", spacecraft="target", for_s=600.0)], "crosslink_silent", 30.0, FIXED,
+                                                 retreats=False, fixed_within_s=60.0),
+    "cooperative: integers wrong by one cycle": Case([fault("cycle_slip", unit="gnss", value_cycles=1)], "source_inconsistent", 300.0, FIXED,
+                                                     retreats=False, error_m=0.10, error_ratio=2.0, error_from_s=600.0),
+    "cooperative: receiver reset": Case([fault("receiver_reset", unit="gnss")], "", None, FIXED, retreats=False, error_ratio=1.2),
+    "cooperative: receiver silent 1 h": Case([fault("receiver_silent", unit="gnss", for_s=3600.0)], "receiver_silent", 20.0 + 10.0, FIXED,
+                                             retreats=False, error_ratio=1.2),
+    "cooperative: cameras and crosslink silent for ever": Case(
+        [fault("silent", unit=unit) for unit in CAMERAS] + [fault("silent", unit="gnss", spacecraft="target")], "retreat", 2100.0 + 60.0, NEAR,
+        retreats=True),
+}
+CASES |= COOPERATIVE
 
 
 def toml_of(value):
@@ -76,11 +85,12 @@ def toml_of(value):
     return json.dumps(value)
 
 
-def mission_of(case, point):
+def mission_of(case, point, is_cooperative, after_h=AFTER_H):
     at_h, start_h, waypoint, _, sigmas = POINTS[point]
     slow_h = 41.5  # from then on, images of every fifth minute
-    lines = [f'extends = "{pathlib.Path.cwd() / "missions/full_range_retreat.toml"}"', "[mission]", 'name = "fault_table"',
-             f"start_h = {start_h}", f"duration_h = {at_h + AFTER_H - start_h}",
+    name = "full_range_cooperative_retreat" if is_cooperative else "full_range_retreat"
+    lines = [f'extends = "{pathlib.Path.cwd() / "missions" / name}.toml"', "[mission]", 'name = "fault_table"',
+             f"start_h = {start_h}", f"duration_h = {at_h + after_h - start_h}",
              f"step_s = [[0.0, 60.0], [36.0, 20.0], [38.5, 5.0], [{slow_h}, 60.0]]",
              "[[spacecraft]]", 'name = "target"', f'relative = {{ to = "servicer", waypoint = {waypoint} }}',
              "[[spacecraft]]", 'name = "servicer"',
@@ -93,66 +103,71 @@ def mission_of(case, point):
     return "\n".join(lines) + "\n"
 
 
-def fly(binary, folder, name, point, seed):
-    case = CASES[name]
-    folder.mkdir(parents=True, exist_ok=True)
-    mission = folder / "mission.toml"
-    mission.write_text(mission_of(case, point))
-    run = folder / "run"
-    result = subprocess.run(["nice", binary, "run", str(mission), "--seed", str(seed), "--quiet", "--force", "--out", str(run)],
-                            capture_output=True, text=True)
-    if result.returncode not in (0, 10):
-        raise SystemExit(f"{name}, {point}, seed {seed}: {result.stderr.strip()}")
-    return judge(run, case, point)
+def points_of(case):
+    return case.points or tuple(POINTS)
 
 
-def rows_of(file):
-    with file.open(newline="") as content:
-        return list(csv.DictReader(content))
+def folder_name(*parts):
+    return "-".join(map(str, parts)).replace(" ", "_").replace("%", "percent").replace(":", "")
 
 
-def judge(run, case, point):
-    """What the run shows, and the list of what it misses."""
-    begin_s, period_s = 3600.0 * POINTS[point][0], POINTS[point][3]
-    summary = json.loads((run / "summary.json").read_text())
-    events = rows_of(run / "telemetry_event.csv")
-    raised = [e for e in events if e["event"] == "fault_raised" and float(e["step_time_s"]) >= begin_s]
-    reported_s = min((float(e["step_time_s"]) - begin_s for e in raised if e["fault"] == case.event), default=None)
-    retreat_s = min((float(e["step_time_s"]) - begin_s for e in raised if e["fault"] == "retreat"), default=None)
-    aid = {e["device"]: e["after"] for e in events if e["event"] == "aid"}
-    truth = [(float(r["time_s"]), float(r["range_m"])) for r in distances(run)]
-    distance_m = min(d for t, d in truth if t >= begin_s)
-    figures = summary["sensor_figures"].get("faults", {})
-    misses = []
-    if case.faults and not figures.get("without_effect", 0) < figures.get("injected", 0):
-        misses.append("no effect")  # of one of two cameras it is enough
-    if figures:
-        distance_m = min(distance_m, figures["min_distance_m"])
-    if not distance_m >= case.distance_m:
-        misses.append("distance")
-    if case.event and reported_s is None:
-        misses.append("not reported")
-    if case.within is not None and reported_s is not None:
-        limit_s = case.within(period_s) if callable(case.within) else case.within
-        if reported_s > limit_s:
-            misses.append(f"reported later than {limit_s:.0f} s")
-    if case.retreats is not None and case.retreats != (retreat_s is not None):
-        misses.append("retreats" if retreat_s is not None else "does not retreat")
-    for source in case.sources:
-        if aid.get(source) not in ("aiding", "suspended"):
-            misses.append(f"{source} {aid.get(source)}")
-    return {"distance_m": distance_m, "reported_s": reported_s, "retreat_s": retreat_s, "misses": misses,
-            "raised": sorted({e["fault"] for e in raised})}
+class Flights:
+    """The runs of a table, in a folder."""
+
+    def __init__(self, binary, root, pool):
+        self.binary, self.root, self.pool = binary, root.resolve(), pool
+        self.nominal = {}  # (point, seed, cooperative): future of the navigation errors without a fault
+
+    def run(self, name, text, seed):
+        folder = self.root / name
+        folder.mkdir(parents=True, exist_ok=True)
+        mission = folder / "mission.toml"
+        mission.write_text(text)
+        result = subprocess.run(["nice", self.binary, "run", str(mission), "--seed", str(seed), "--quiet", "--force", "--out", str(folder / "run")],
+                                capture_output=True, text=True)
+        if result.returncode not in (0, 10):
+            raise SystemExit(f"{name}: {result.stderr.strip()}")
+        return folder / "run"
+
+    def add_nominal(self, point, seed, is_cooperative, after_h):
+        """Flown once, before the cases that it is compared with."""
+        def fly():
+            name = folder_name("nominal_cooperative" if is_cooperative else "nominal", point, seed)
+            return navigation_errors(self.run(name, mission_of(Case([], "", None), point, is_cooperative, after_h), seed))
+        self.nominal[point, seed, is_cooperative] = self.pool.submit(fly)
+
+    def add_case(self, name, point, seed):
+        case, is_cooperative = CASES[name], name in COOPERATIVE
+        nominal = self.nominal.get((point, seed, is_cooperative)) if case.error_ratio is not None else None
+
+        def fly():
+            run = self.run(folder_name(name, point, seed), mission_of(case, point, is_cooperative), seed)
+            at_h, _, _, period_s, _ = POINTS[point]
+            return judge(run, case, 3600.0 * at_h, period_s, nominal.result() if nominal else None)
+        return self.pool.submit(fly)
 
 
-def distances(run):
-    for row in rows_of(run / "truth.csv"):
-        yield {"time_s": row["time_s"], "range_m": sum(float(row[f"relative_position_rtn_{k}_m"]) ** 2 for k in "rtn") ** 0.5}
+def add_nominals(flights, jobs):
+    longest_h = {}
+    for name, point, seed in jobs:
+        if CASES[name].error_ratio is None:
+            continue
+        key = (point, seed, name in COOPERATIVE)
+        longest_h[key] = max(longest_h.get(key, 0.0), window_of(CASES[name], 0.0).last_s / 3600.0)
+    for (point, seed, is_cooperative), after_h in longest_h.items():
+        flights.add_nominal(point, seed, is_cooperative, after_h)
 
 
 def seeds_of(text):
     first, _, last = text.partition("-")
     return range(int(first), int(last or first) + 1)
+
+
+def row_of(name, point, seed, result):
+    def text(value, form="{:.0f}"):
+        return "–" if value is None else form.format(value)
+    return (f"| {name} | {point} | {seed} | {text(result['reported_s'])} | {text(result['retreat_s'])} | {result['distance_m']:.2f} | "
+            f"{text(result['error_ratio'], '{:.2f}')} | {' '.join(result['raised'])} | {', '.join(result['misses'])} |")
 
 
 def main():
@@ -169,19 +184,20 @@ def main():
         for word in chosen:
             if word not in known:
                 parser.error(f"{word}: accepted: {', '.join(known)}")
-    jobs = [(name, point, seed) for seed in options.seeds for name in names for point in points if point in CASES[name].points]
+    jobs = [(name, point, seed) for seed in options.seeds for name in names for point in points if point in points_of(CASES[name])]
     failed = 0
     with tempfile.TemporaryDirectory(prefix="vbar-faults-") as scratch, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        root = options.runs or pathlib.Path(scratch)
-        print("| fault | point | seed | reported after, s | retreat after, s | distance, m | raised | missed |\n|---|---|---|---|---|---|---|---|", flush=True)
-        futures = [pool.submit(fly, options.binary, (root / f"{name}-{point}-{seed}".replace(" ", "_").replace("%", "percent")).resolve(), name, point, seed)
-                   for name, point, seed in jobs]
-        for (name, point, seed), future in zip(jobs, futures):
-            result = future.result()
+        flights = Flights(options.binary, options.runs or pathlib.Path(scratch), pool)
+        add_nominals(flights, jobs)
+        futures = [flights.add_case(*job) for job in jobs]
+        print("| fault | point | seed | reported after, s | retreat after, s | distance, m | error | raised | missed |\n|" + "---|" * 9, flush=True)
+        for job, future in zip(jobs, futures):
+            try:
+                result = future.result()
+            except JudgementError as error:
+                raise SystemExit(f"{', '.join(map(str, job))}: {error}") from None
             failed += bool(result["misses"])
-            text = lambda value: "–" if value is None else f"{value:.0f}"
-            print(f"| {name} | {point} | {seed} | {text(result['reported_s'])} | {text(result['retreat_s'])} | {result['distance_m']:.2f} | "
-                  f"{' '.join(result['raised'])} | {', '.join(result['misses'])} |", flush=True)
+            print(row_of(*job, result), flush=True)
     print(f"\n{len(jobs)} cases, {failed} miss their row")
     return 1 if failed else 0
 

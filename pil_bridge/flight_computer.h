@@ -68,7 +68,8 @@ class FlightComputer {
 
   /// What the flight software retains through a reboot, as of the last step (vbar_gnc_save). Empty if this target or
   /// its flight software does not give it.
-  [[nodiscard]] virtual std::vector<std::uint8_t> snapshot() const { return {}; }
+  /// Throws FlightComputerError.
+  [[nodiscard]] virtual std::vector<std::uint8_t> snapshot() { return {}; }
 
   /// Continues from a snapshot, before the first step (vbar_gnc_restore). Throws FlightComputerError if it is refused.
   virtual void restore(std::span<const std::uint8_t> /*snapshot*/) {

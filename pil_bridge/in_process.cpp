@@ -61,7 +61,7 @@ class InProcess final : public FlightComputer {
     return result;
   }
 
-  [[nodiscard]] std::vector<std::uint8_t> snapshot() const override {
+  [[nodiscard]] std::vector<std::uint8_t> snapshot() override {
     if (article_->save == nullptr) return {};
     std::vector<std::uint8_t> bytes(article_->snapshot_size());
     if (article_->save(state_.get(), bytes.data(), bytes.size()) != 0) return {};

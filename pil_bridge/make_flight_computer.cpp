@@ -101,6 +101,7 @@ RemoteParts parts_for(const FlightComputerOptions& options) {
   parts.timing = options.timing;
   parts.spacecraft = options.spacecraft;
   parts.receiver = options.receiver;
+  if (options.target == Target::kZynqQemu || options.target == Target::kBoard) parts.step_budget = options.step_budget;
   return parts;
 }
 
@@ -150,25 +151,34 @@ std::vector<io::FileDescriptor> only(io::FileDescriptor descriptor) {
   return list;
 }
 
-/// Where the build puts an image, relative to the running program, and the CMake preset that builds it.
+/// Where the build and the installation put an image, relative to the folder of the running program, and the CMake
+/// preset that builds it.
 struct BuiltImage {
-  const char* beside;
+  const char* built;
+  const char* installed;
   const char* preset;
 };
 
 BuiltImage built_image(Target target) {
-  if (target == Target::kZynqQemu) return {"../zynq/vbar_zynq7000.elf", "zynq"};
-  if (target == Target::kZynqLinuxQemu) return {"../zynq-linux/vbar_flight", "zynq-linux"};
-  return {"vbar_flight", "host"};
+  if (target == Target::kZynqQemu)
+    return {"../zynq/vbar_zynq7000.elf", "../lib/vbar/zynq7000/vbar_zynq7000.elf", "zynq"};
+  if (target == Target::kZynqLinuxQemu)
+    return {"../zynq-linux/vbar_flight", "../lib/vbar/zynq7000_linux/vbar_flight", "zynq-linux"};
+  return {"vbar_flight", "vbar_flight", "host"};
 }
 
 /// `options.image`, or the image that the build put beside the running program.
 std::string find_image(const FlightComputerOptions& options) {
-  const auto [beside, preset] = built_image(options.target);
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path image = options.image.empty() ? fs::read_symlink("/proc/self/exe", error).parent_path() / beside
-                                               : fs::path(options.image);
+  if (!options.image.empty()) {
+    if (fs::is_regular_file(options.image, error)) return options.image;
+    throw FlightComputerError("flight_computer.image '" + options.image + "': there is no such file");
+  }
+  const auto [built, installed, preset] = built_image(options.target);
+  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
+  if (fs::is_regular_file(here / installed, error)) return (here / installed).lexically_normal().string();
+  const fs::path image = here / built;
   if (!fs::is_regular_file(image, error)) {
     throw FlightComputerError("flight computer " + std::string(name_of(options.target)) + ": there is no image '" +
                               image.lexically_normal().string() + "' (built by the CMake preset '" + preset +

@@ -62,6 +62,10 @@ struct FlightComputerOptions {
   /// UART.
   std::optional<io::WiredReceiver> receiver = std::nullopt;
 
+  /// Of a step, beyond which the run fails: instructions on zynq_qemu, cycles on a board; others count neither. 0: what
+  /// the image has by default.
+  std::uint64_t step_budget = 0;
+
   double paced_bits_per_s = 0.0;  ///< serial and pty: limits the rate of the line to this; 0: unlimited
   BarrierTiming timing;
   LinkFaults faults;

@@ -9,7 +9,7 @@ constexpr std::uint64_t kNanosecondsPerTick = 10;
 constexpr const char* kBoardAddressAndPort = "10.0.2.15:5000";
 
 std::vector<std::string> zynq_machine(const std::string& elf, int icount_shift) {
-  return {"qemu-system-arm", "-M", "xilinx-zynq-a9", "-m", "256M", "-display", "none", "-monitor", "none", "-no-reboot",
+  return {"qemu-system-arm", "-M", "xilinx-zynq-a9", "-m", "256M", "-display", "none", "-monitor", "none",
           // A small translation buffer: the default is a gigabyte per machine.
           "-accel", "tcg,tb-size=64",
           // sleep=off: emulated time jumps while the board waits; align=off: it does not follow the wall clock.
@@ -57,6 +57,11 @@ std::vector<std::string> linux_arm_qemu(const std::string& program, const std::v
 std::uint64_t instructions_of_ticks(std::uint64_t ticks, int icount_shift) {
   const std::uint64_t instruction_ns = std::uint64_t{1} << static_cast<unsigned>(icount_shift);
   return (ticks * kNanosecondsPerTick + instruction_ns / 2) / instruction_ns;
+}
+
+std::uint64_t ticks_of_instructions(std::uint64_t instructions, int icount_shift) {
+  const std::uint64_t instruction_ns = std::uint64_t{1} << static_cast<unsigned>(icount_shift);
+  return (instructions * instruction_ns + kNanosecondsPerTick / 2) / kNanosecondsPerTick;
 }
 
 }  // namespace vbar::pil

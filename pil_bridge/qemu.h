@@ -30,5 +30,7 @@ inline constexpr const char* kPortTakenMessage = "Could not set up host forwardi
 
 /// Instructions executed while the emulated board's global timer (100 MHz, 10 ns a tick) counted `ticks`.
 std::uint64_t instructions_of_ticks(std::uint64_t ticks, int icount_shift);
+/// Its inverse, rounded: that of the result is `instructions` again.
+std::uint64_t ticks_of_instructions(std::uint64_t instructions, int icount_shift);
 
 }  // namespace vbar::pil

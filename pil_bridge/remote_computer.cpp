@@ -24,6 +24,10 @@ std::uint32_t draw_session() {
   return device();
 }
 
+std::string budget_text(std::uint64_t budget, const char* unit) {
+  return budget == 0 ? "" : "; the budget of a step is " + std::to_string(budget) + " " + unit;
+}
+
 std::uint64_t counter(std::int64_t value) {
   return value > 0 ? static_cast<std::uint64_t>(value) : 0;
 }
@@ -41,7 +45,7 @@ RemoteComputer::RemoteComputer(RemoteParts parts)
     : parts_(std::move(parts)),
       barrier_(*parts_.transport, draw_session(), parts_.timing, [this] { check_process(); }) {
   try {
-    board_name_ = barrier_.connect(parts_.spacecraft, parts_.receiver ? parts_.receiver->baud : 0U);
+    board_name_ = barrier_.connect(parts_.spacecraft, parts_.receiver ? parts_.receiver->baud : 0U, board_budget());
   } catch (const LinkError& error) {
     fail("while starting", error.what());
   }
@@ -58,10 +62,37 @@ StepResult RemoteComputer::step(std::uint32_t step, std::span<const Packet> pack
     result.packets = barrier_.exchange(step, packets);
     result.compute_wall_s = std::chrono::duration<double>(Clock::now() - start).count();
     sort_answer(result);
+    check_budget(result.report);
+  } catch (const SessionLost& lost) {
+    fail("at step " + std::to_string(step), lost.what() + budget_text(parts_.step_budget, count_unit()));
   } catch (const LinkError& error) {
     fail("at step " + std::to_string(step), error.what());
   }
   return result;
+}
+
+std::vector<std::uint8_t> RemoteComputer::snapshot() {
+  try {
+    return barrier_.read_snapshot();
+  } catch (const LinkError& error) {
+    fail("while its snapshot was read", error.what());
+  }
+}
+
+void RemoteComputer::restore(std::span<const std::uint8_t> snapshot) {
+  try {
+    if (const std::int32_t status = barrier_.write_snapshot(snapshot); status != 0)
+      throw FlightComputerError("flight computer " + description() + " refused the snapshot: status " +
+                                std::to_string(status));
+  } catch (const LinkError& error) {
+    fail("while it was given a snapshot", error.what());
+  }
+}
+
+void RemoteComputer::check_budget(const StepReport& report) const {
+  if (parts_.step_budget == 0 || report.unit != count_unit() || report.count <= parts_.step_budget) return;
+  throw LinkError("the step took " + std::to_string(report.count) + " " + report.unit + ", and its budget is " +
+                  std::to_string(parts_.step_budget));
 }
 
 void RemoteComputer::sort_answer(StepResult& result) {
@@ -111,6 +142,11 @@ void RemoteComputer::fail(const std::string& when, const std::string& cause) {
     if (!output.empty()) failure_ += "; its last output: " + output;
   }
   throw FlightComputerError(failure_);
+}
+
+std::uint64_t RemoteComputer::board_budget() const {
+  if (!parts_.icount_shift) return parts_.step_budget;
+  return ticks_of_instructions(parts_.step_budget, *parts_.icount_shift);
 }
 
 void RemoteComputer::check_process() const {

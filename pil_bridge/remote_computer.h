@@ -22,6 +22,7 @@ struct RemoteParts {
   std::uint8_t spacecraft = 0;
   /// Of the emulator; without it the board's timer ticks cannot be converted to instructions.
   std::optional<int> icount_shift;
+  std::uint64_t step_budget = 0;  ///< in instructions with `icount_shift`, else in cycles; 0: that of the board
   std::optional<io::WiredReceiver> receiver = std::nullopt;  ///< that is wired to the flight computer
 };
 
@@ -32,6 +33,8 @@ class RemoteComputer final : public FlightComputer {
   ~RemoteComputer() override = default;
 
   StepResult step(std::uint32_t step, std::span<const Packet> packets) override;
+  [[nodiscard]] std::vector<std::uint8_t> snapshot() override;
+  void restore(std::span<const std::uint8_t> snapshot) override;
   [[nodiscard]] LinkStatistics statistics() const override;
   [[nodiscard]] std::string description() const override { return parts_.name + ": " + board_name_; }
   void close() override;
@@ -43,8 +46,13 @@ class RemoteComputer final : public FlightComputer {
   /// Ends the process and throws FlightComputerError with all known information on the cause.
   [[noreturn]] void fail(const std::string& when, const std::string& cause);
   void check_process() const;
+  /// The budget of a step in the unit in which the board counts.
+  [[nodiscard]] std::uint64_t board_budget() const;
+  [[nodiscard]] const char* count_unit() const { return parts_.icount_shift ? "instructions" : "cycles"; }
   /// Takes everything out of the answer that is not from the flight software.
   void sort_answer(StepResult& result);
+  /// Throws LinkError if the step took more than the budget, after which the board takes no further step.
+  void check_budget(const StepReport& report) const;
   /// If `packet` is a step report: keeps its counters, fills `report`, and returns true.
   bool take_step_report(const Packet& packet, StepReport& report);
 

@@ -18,6 +18,19 @@ using fsw::link::kWindow;
 /// A board that cannot run its flight software sends the reason in place of its name.
 constexpr std::string_view kBoardErrorPrefix = "error: ";
 
+/// The text of a kHelloAck after that prefix; nothing if it is the name of a board.
+std::optional<std::string> board_error(const FrameView& frame) {
+  const std::string text(frame.payload.begin(), frame.payload.end());
+  if (!text.starts_with(kBoardErrorPrefix)) return std::nullopt;
+  return text.substr(kBoardErrorPrefix.size());
+}
+
+/// Of a session that was begun: throws SessionLost if the board says that it has ended.
+void check_session(const FrameView& frame) {
+  if (frame.header.type != FrameType::kHelloAck) return;
+  if (const auto error = board_error(frame)) throw SessionLost("the board has lost its session: " + *error);
+}
+
 std::string seconds_text(std::chrono::milliseconds duration) {
   const std::string text = std::to_string(static_cast<double>(duration.count()) * 1e-3);
   return text.substr(0, text.find('.') + 2) + " s";
@@ -29,10 +42,13 @@ StepBarrier::StepBarrier(FrameTransport& transport, std::uint32_t session, const
                          std::function<void()> watch)
     : transport_(transport), session_(session), timing_(timing), watch_(std::move(watch)) {}
 
-std::string StepBarrier::connect(std::uint8_t spacecraft, std::uint32_t receiver_baud) {
-  std::array<std::uint8_t, fsw::link::kHelloWithReceiverBytes> hello{spacecraft};
+std::string StepBarrier::connect(std::uint8_t spacecraft, std::uint32_t receiver_baud, std::uint64_t step_budget) {
+  std::array<std::uint8_t, fsw::link::kHelloWithBudgetBytes> hello{spacecraft};
   fsw::packets::write_big_endian(receiver_baud, std::span<std::uint8_t>(hello), fsw::link::kHelloBytes);
-  const auto payload = std::span(hello).first(receiver_baud == 0 ? fsw::link::kHelloBytes : hello.size());
+  fsw::packets::write_big_endian(step_budget, std::span<std::uint8_t>(hello), fsw::link::kHelloWithReceiverBytes);
+  const auto payload = std::span(hello).first(step_budget != 0     ? fsw::link::kHelloWithBudgetBytes
+                                              : receiver_baud != 0 ? fsw::link::kHelloWithReceiverBytes
+                                                                   : fsw::link::kHelloBytes);
   const auto give_up = Clock::now() + timing_.boot_limit;
   while (Clock::now() < give_up) {
     send({.type = FrameType::kHello, .session = session_}, payload);
@@ -42,11 +58,9 @@ std::string StepBarrier::connect(std::uint8_t spacecraft, std::uint32_t receiver
         ++counters_.frames_rejected;
         continue;
       }
-      const std::string name(frame->payload.begin(), frame->payload.end());
-      if (name.starts_with(kBoardErrorPrefix)) {
-        throw LinkError("the board cannot run its flight software: " + name.substr(kBoardErrorPrefix.size()));
-      }
-      return name;
+      if (const auto error = board_error(*frame))
+        throw LinkError("the board cannot run its flight software: " + *error);
+      return {frame->payload.begin(), frame->payload.end()};
     }
     watch_();
   }
@@ -58,6 +72,7 @@ std::optional<std::uint64_t> StepBarrier::receiver_count(Clock::time_point deadl
   while (const auto frame = receive(deadline)) {
     if (frame->header.type == FrameType::kReceiverCount && frame->payload.size() == fsw::link::kReceiverCountBytes)
       return fsw::packets::read_big_endian<std::uint64_t>(frame->payload, 0);
+    check_session(*frame);
     ++counters_.frames_duplicated;  // of a step that has been answered
   }
   watch_();
@@ -96,6 +111,64 @@ std::vector<Packet> StepBarrier::exchange(std::uint32_t step, std::span<const Pa
   return std::move(exchange.answer);
 }
 
+std::vector<std::uint8_t> StepBarrier::read_snapshot() {
+  std::vector<std::uint8_t> snapshot;
+  for (bool is_complete = false; !is_complete;) {
+    std::array<std::uint8_t, fsw::link::kSnapshotPollBytes> poll{};
+    fsw::packets::write_big_endian(static_cast<std::uint32_t>(snapshot.size()), std::span<std::uint8_t>(poll), 0);
+    ask(FrameType::kSnapshotPoll, poll, FrameType::kSnapshotPiece, [&](std::span<const std::uint8_t> piece) {
+      if (piece.size() < fsw::link::kSnapshotPieceHeaderBytes) return false;
+      const auto total = fsw::packets::read_big_endian<std::uint32_t>(piece, 0);
+      const auto content = piece.subspan(fsw::link::kSnapshotPieceHeaderBytes);
+      const bool is_next = fsw::packets::read_big_endian<std::uint32_t>(piece, 4) == snapshot.size();
+      const bool fits = total >= snapshot.size() && content.size() <= total - snapshot.size();
+      if (!is_next || !fits || (content.empty() && total != 0)) return false;
+      snapshot.insert(snapshot.end(), content.begin(), content.end());
+      is_complete = snapshot.size() == total;
+      return true;
+    });
+  }
+  return snapshot;
+}
+
+std::int32_t StepBarrier::write_snapshot(std::span<const std::uint8_t> snapshot) {
+  const auto total = static_cast<std::uint32_t>(snapshot.size());
+  std::int32_t status = 0;
+  for (std::uint32_t held = 0; held < total && status == 0;) {
+    const std::size_t count = std::min<std::size_t>(total - held, fsw::link::kSnapshotPieceBytes);
+    std::vector<std::uint8_t> piece(fsw::link::kSnapshotPieceHeaderBytes);
+    fsw::packets::write_big_endian(total, std::span<std::uint8_t>(piece), 0);
+    fsw::packets::write_big_endian(held, std::span<std::uint8_t>(piece), 4);
+    const auto content = snapshot.subspan(held, count);
+    piece.insert(piece.end(), content.begin(), content.end());
+    ask(FrameType::kSnapshotPiece, piece, FrameType::kSnapshotHeld, [&](std::span<const std::uint8_t> answer) {
+      if (answer.size() != fsw::link::kSnapshotHeldBytes) return false;
+      status = static_cast<std::int32_t>(fsw::packets::read_big_endian<std::uint32_t>(answer, 4));
+      const bool is_held = fsw::packets::read_big_endian<std::uint32_t>(answer, 0) == held + count;
+      return is_held || status != 0;
+    });
+    held += static_cast<std::uint32_t>(count);
+  }
+  return status;
+}
+
+void StepBarrier::ask(FrameType question, std::span<const std::uint8_t> payload, FrameType answer,
+                      const std::function<bool(std::span<const std::uint8_t>)>& accepts) {
+  const auto give_up = Clock::now() + timing_.give_up_after;
+  while (Clock::now() < give_up) {
+    send({.type = question, .session = session_}, payload);
+    const auto next_question = std::min(give_up, Clock::now() + timing_.poll_after);
+    while (const auto frame = receive(next_question)) {
+      check_session(*frame);
+      if (frame->header.type == answer && accepts(frame->payload)) return;
+      ++counters_.frames_duplicated;  // of a step, or of a question, that has been answered
+    }
+    watch_();
+  }
+  throw LinkError("no answer about the snapshot within " + seconds_text(timing_.give_up_after) + " on " +
+                  transport_.description());
+}
+
 void StepBarrier::goodbye() {
   send({.type = FrameType::kGoodbye, .session = session_});
 }
@@ -123,6 +196,7 @@ void StepBarrier::poll(Exchange& exchange) {
 }
 
 bool StepBarrier::take(Exchange& exchange, const FrameView& frame) {
+  check_session(frame);
   // The board received more than one hello, or more than one question for its count.
   if (frame.header.type == FrameType::kHelloAck || frame.header.type == FrameType::kReceiverCount) {
     ++counters_.frames_duplicated;

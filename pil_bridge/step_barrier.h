@@ -40,6 +40,12 @@ struct BarrierCounters {
   std::uint64_t polls = 0;
 };
 
+/// The board answers, but no longer flies this session: a reset has ended it.
+class SessionLost : public LinkError {
+ public:
+  using LinkError::LinkError;
+};
+
 class StepBarrier {
  public:
   /// `watch` is called periodically during a wait; it may throw to end it.
@@ -47,16 +53,25 @@ class StepBarrier {
               std::function<void()> watch);
 
   /// Sends hello until the board answers, which makes it construct the flight software of `spacecraft`, with its
-  /// receiver on a line of its own at `receiver_baud` if that is not 0; returns the name of the board. Throws
-  /// LinkError, also with the reason of a board that cannot run its flight software.
-  std::string connect(std::uint8_t spacecraft, std::uint32_t receiver_baud = 0);
+  /// receiver on a line of its own at `receiver_baud` if that is not 0 and with a budget of each step, in the unit of
+  /// the board's step reports, if that is not 0; returns the name of the board. Throws LinkError, also with the reason
+  /// of a board that cannot run its flight software.
+  std::string connect(std::uint8_t spacecraft, std::uint32_t receiver_baud = 0, std::uint64_t step_budget = 0);
 
   /// Number of bytes that the receiver's line has brought to the board since the hello; nothing if the board has not
   /// answered by `deadline`. Throws LinkError.
   std::optional<std::uint64_t> receiver_count(Clock::time_point deadline);
 
-  /// Sends the packets of `step` and returns the packets of the answer. Throws LinkError.
+  /// Sends the packets of `step` and returns the packets of the answer. Throws LinkError, SessionLost if the board has
+  /// been reset since connect().
   std::vector<Packet> exchange(std::uint32_t step, std::span<const Packet> packets);
+
+  /// The snapshot of the flight software between two steps; empty if it gives none. Throws LinkError.
+  std::vector<std::uint8_t> read_snapshot();
+
+  /// Before the first step: gives the flight software a snapshot; the status of its restoration, 0 if it was accepted.
+  /// Throws LinkError.
+  std::int32_t write_snapshot(std::span<const std::uint8_t> snapshot);
 
   /// Sends the goodbye of the session. Not acknowledged.
   void goodbye();
@@ -82,6 +97,9 @@ class StepBarrier {
   bool take(Exchange& exchange, const fsw::link::FrameView& frame);
   bool take_acknowledgement(Exchange& exchange, std::uint16_t held);
   bool take_answer(Exchange& exchange, const fsw::link::FrameView& frame);
+  /// Sends a question until there is an answer of type `answer` that `accepts` takes. Throws LinkError.
+  void ask(fsw::link::FrameType question, std::span<const std::uint8_t> payload, fsw::link::FrameType answer,
+           const std::function<bool(std::span<const std::uint8_t>)>& accepts);
   void send(const fsw::link::FrameHeader& header, std::span<const std::uint8_t> payload = {});
   /// The next valid frame of this session, no value at `deadline`. Others are counted.
   std::optional<fsw::link::FrameView> receive(Clock::time_point deadline);

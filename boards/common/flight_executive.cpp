@@ -18,6 +18,8 @@ using fsw::link::FrameView;
 /// Longest text in a kHelloAck, bytes.
 constexpr std::size_t kMaxHelloText = 120;
 
+constexpr const char* kOverBudget = "error: a step has exceeded its budget; its report states the cost";
+
 template <class Integer>
 constexpr Integer saturated(std::uint64_t value) {
   constexpr auto kMax = static_cast<std::uint64_t>(std::numeric_limits<Integer>::max());
@@ -79,9 +81,16 @@ Activity FlightExecutive::on_frame(std::span<const std::uint8_t> bytes) {
     case FrameType::kReceiverPoll:
       on_receiver_poll();
       return Activity::kIdle;
+    case FrameType::kSnapshotPoll:
+      on_snapshot_poll(frame);
+      return Activity::kIdle;
+    case FrameType::kSnapshotPiece:
+      on_snapshot_piece(frame);
+      return Activity::kIdle;
     case FrameType::kHello:
     case FrameType::kHelloAck:
     case FrameType::kReceiverCount:
+    case FrameType::kSnapshotHeld:
       break;  // the first was handled above, the others are never sent to a board
   }
   ++counters_.rejected;
@@ -90,20 +99,34 @@ Activity FlightExecutive::on_frame(std::span<const std::uint8_t> bytes) {
 
 void FlightExecutive::on_hello(const FrameView& frame) {
   if (!has_session_ || frame.header.session != session_) begin_session(frame.header.session, frame.payload);
+  answer_hello();
+}
+
+void FlightExecutive::answer_hello() {
   FrameHeader header;
   header.type = FrameType::kHelloAck;
   header.session = session_;
   send_frame(header, bytes_of(hello_text_));
 }
 
+void FlightExecutive::lose_session(std::uint32_t session, const char* error) {
+  has_session_ = true;
+  can_fly_ = false;
+  session_ = session;
+  hello_text_ = error;
+}
+
 void FlightExecutive::begin_session(std::uint32_t session, std::span<const std::uint8_t> hello_payload) {
   has_session_ = true;
   session_ = session;
+  step_budget_ = budget_of(hello_payload);
+  if (platform_.session_begins != nullptr) platform_.session_begins(platform_.context, session_, step_budget_);
   counters_ = Counters{.received = 1};  // the hello itself
   has_answer_ = false;
   report_count_ = 0;
   step_time_ = fsw::GpsTime{};
   inputs_ = BatchReceiver{};
+  snapshot_.clear();
   answer_ = fsw::link::BatchSender{};
   outbox_.clear();
   const char* error = start_flight_software(hello_payload);
@@ -112,9 +135,18 @@ void FlightExecutive::begin_session(std::uint32_t session, std::span<const std::
   hello_text_ = can_fly_ ? platform_.name : error;
 }
 
+std::uint64_t FlightExecutive::budget_of(std::span<const std::uint8_t> hello_payload) const {
+  if (platform_.counter == nullptr) return 0;  // nothing to compare it with
+  std::uint64_t budget = 0;
+  if (hello_payload.size() == fsw::link::kHelloWithBudgetBytes)
+    budget = fsw::packets::read_big_endian<std::uint64_t>(hello_payload, fsw::link::kHelloWithReceiverBytes);
+  return budget == 0 ? platform_.step_budget : budget;
+}
+
 const char* FlightExecutive::start_flight_software(std::span<const std::uint8_t> hello_payload) {
-  if (hello_payload.size() != fsw::link::kHelloBytes && hello_payload.size() != fsw::link::kHelloWithReceiverBytes)
-    return "error: a hello carries the spacecraft number and, for a receiver wired to the board, its rate in baud";
+  if (hello_payload.size() != fsw::link::kHelloBytes && hello_payload.size() != fsw::link::kHelloWithReceiverBytes &&
+      hello_payload.size() != fsw::link::kHelloWithBudgetBytes)
+    return "error: a hello carries the spacecraft number, a receiver's rate in baud and the budget of a step";
   spacecraft_ = hello_payload[0];
   if (vbar_gnc_abi_version() != VBAR_GNC_ABI_VERSION) return "error: the flight software has another interface version";
   if (vbar_gnc_state_size() > gnc_state_.size())
@@ -130,8 +162,9 @@ const char* FlightExecutive::start_flight_software(std::span<const std::uint8_t>
 
 const char* FlightExecutive::open_receiver(std::span<const std::uint8_t> hello_payload) {
   close_receiver();
-  if (hello_payload.size() != fsw::link::kHelloWithReceiverBytes) return nullptr;
+  if (hello_payload.size() < fsw::link::kHelloWithReceiverBytes) return nullptr;
   const auto baud = fsw::packets::read_big_endian<std::uint32_t>(hello_payload, fsw::link::kHelloBytes);
+  if (baud == 0 && hello_payload.size() == fsw::link::kHelloWithBudgetBytes) return nullptr;
   const bool is_possible = baud != 0 && platform_.open_receiver != nullptr && platform_.read_receiver != nullptr;
   if (!is_possible || !platform_.open_receiver(platform_.context, baud))
     return "error: no line to a receiver at this rate, or the line is the link to the host";
@@ -171,6 +204,36 @@ void FlightExecutive::on_receiver_poll() {
   send_frame(header, count);
 }
 
+void FlightExecutive::on_snapshot_poll(const FrameView& frame) {
+  const bool is_in_step = inputs_.is_open() && !has_answer_;
+  if (!can_fly_ || is_in_step || frame.payload.size() != fsw::link::kSnapshotPollBytes) {
+    ++counters_.rejected;
+    if (!can_fly_) answer_hello();
+    return;
+  }
+  const auto offset = fsw::packets::read_big_endian<std::uint32_t>(frame.payload, 0);
+  std::array<std::uint8_t, fsw::link::kSnapshotPieceHeaderBytes + fsw::link::kSnapshotPieceBytes> payload{};
+  const std::size_t size = snapshot_.read(gnc_state_.data(), offset, payload);
+  FrameHeader header;
+  header.type = FrameType::kSnapshotPiece;
+  header.session = session_;
+  send_frame(header, std::span(payload).first(size));
+}
+
+void FlightExecutive::on_snapshot_piece(const FrameView& frame) {
+  std::array<std::uint8_t, fsw::link::kSnapshotHeldBytes> payload{};
+  const bool is_before_steps = can_fly_ && !inputs_.is_open();
+  if (!is_before_steps || !snapshot_.write(gnc_state_.data(), frame.payload, payload).ok()) {
+    ++counters_.rejected;
+    if (!can_fly_) answer_hello();
+    return;
+  }
+  FrameHeader header;
+  header.type = FrameType::kSnapshotHeld;
+  header.session = session_;
+  send_frame(header, payload);
+}
+
 void FlightExecutive::deliver_receiver_bytes(fsw::GpsTime step_time) {
   read_receiver();
   receiver_.begin_step();
@@ -186,12 +249,13 @@ void FlightExecutive::deliver_receiver_bytes(fsw::GpsTime step_time) {
 
 Activity FlightExecutive::on_data(const FrameView& frame) {
   const FrameHeader& header = frame.header;
-  if (!can_fly_) {
-    ++counters_.rejected;
-    return Activity::kIdle;
-  }
   if (already_run(header.step)) {
     ++counters_.duplicated;  // the answer is on its way or will be polled for
+    return Activity::kIdle;
+  }
+  if (!can_fly_) {
+    ++counters_.rejected;
+    answer_hello();  // with the reason
     return Activity::kIdle;
   }
   if (!inputs_.is_open() || has_answer_) begin_step(header.step);
@@ -236,6 +300,7 @@ void FlightExecutive::on_poll(const FrameHeader& header) {
   }
   if (!can_fly_) {
     ++counters_.rejected;
+    answer_hello();
     return;
   }
   const bool is_open_step = inputs_.is_open() && !has_answer_ && header.step == inputs_.step();
@@ -249,9 +314,11 @@ void FlightExecutive::on_poll(const FrameHeader& header) {
 
 void FlightExecutive::begin_step(std::uint32_t step) {
   inputs_.open(session_, step);
+  snapshot_.clear();
   // The first step keeps the output of the flight software from its construction.
   if (has_answer_) outbox_.clear();
   has_answer_ = false;
+  if (platform_.step_begins != nullptr) platform_.step_begins(platform_.context, step);
 }
 
 void FlightExecutive::close_step(std::span<const std::uint8_t> last_packet) {
@@ -269,6 +336,12 @@ void FlightExecutive::close_step(std::span<const std::uint8_t> last_packet) {
   append_step_report(cost);
   answer_.open(session_, inputs_.step(), outbox_.count());
   has_answer_ = true;
+  const bool within_budget = step_budget_ == 0 || cost <= step_budget_;
+  if (!within_budget) {
+    can_fly_ = false;
+    hello_text_ = kOverBudget;
+  }
+  if (platform_.step_ends != nullptr) platform_.step_ends(platform_.context, within_budget);
 }
 
 void FlightExecutive::append_step_report(std::uint64_t cost) {

@@ -9,6 +9,7 @@
 
 #include "boards/common/outbox.h"
 #include "boards/common/receiver_port.h"
+#include "boards/common/snapshot_port.h"
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
 #include "fsw/gnc/vbar_gnc.h"
@@ -28,6 +29,13 @@ struct Platform {
   std::uint64_t (*counter)(void* context) = nullptr;                           ///< cost counter; may be null
   std::uint32_t (*stack_high_water)(void* context) = nullptr;                  ///< bytes; may be null
   CounterUnit counter_unit = CounterUnit::kNone;
+  /// Budget of a step in units of `counter`, unless the hello states another; 0: none.
+  std::uint64_t step_budget = 0;
+  /// For a watchdog, and for what it has to say after a reset: told of each session, of the first packet of each step,
+  /// and of the end of the step. They may be null.
+  void (*session_begins)(void* context, std::uint32_t session, std::uint64_t step_budget) = nullptr;
+  void (*step_begins)(void* context, std::uint32_t step) = nullptr;
+  void (*step_ends)(void* context, bool within_budget) = nullptr;
   /// Makes the line on which a GNSS receiver is wired to the board ready at this rate; bytes that it brought before are
   /// discarded. False if there is no such line, or if the host uses it as its link. 0 baud: the session has no receiver
   /// there. Null: the board has no such line.
@@ -47,7 +55,8 @@ enum class Activity : std::uint8_t { kIdle, kStepped, kGoodbye };
 ///
 /// A kHello of another session constructs a new flight software and discards all else; one of the same session is only
 /// answered again. A flight software that does not fit this executive is never run: the kHelloAck states why ("error:
-/// ...").
+/// ..."). A step that exceeds its budget is the last: its answer remains available, and what is sent of the next step
+/// is answered by a kHelloAck with the reason.
 class FlightExecutive {
  public:
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): gnc_state_ is cleared when a session begins
@@ -64,6 +73,11 @@ class FlightExecutive {
 
   /// True during a session whose receiver is wired to the board.
   [[nodiscard]] bool has_receiver() const { return receiver_.is_open(); }
+
+  /// To be called once, after a reset that ended `session`: until the next hello, the host of that session is told
+  /// `error` ("error: ...", at most 120 characters, which must remain).
+  void lose_session(std::uint32_t session, const char* error);
+
   /// Takes what the receiver's line has brought. A board calls it when bytes have arrived, so that its own buffer does
   /// not overflow between two ticks.
   void read_receiver();
@@ -81,18 +95,22 @@ class FlightExecutive {
   static void sink(void* context, const std::uint8_t* packet, std::size_t size);
 
   void on_hello(const fsw::link::FrameView& frame);
+  void answer_hello();
   Activity on_data(const fsw::link::FrameView& frame);
   /// True for the step of the answer in hand and for every step before it.
   [[nodiscard]] bool already_run(std::uint32_t step) const;
   void on_poll(const fsw::link::FrameHeader& header);
 
   void begin_session(std::uint32_t session, std::span<const std::uint8_t> hello_payload);
+  [[nodiscard]] std::uint64_t budget_of(std::span<const std::uint8_t> hello_payload) const;
   /// Null if the flight software was constructed, otherwise the text for the host.
   const char* start_flight_software(std::span<const std::uint8_t> hello_payload);
   /// Null if the session has the receiver that its hello asks for, or asks for none, otherwise the text for the host.
   const char* open_receiver(std::span<const std::uint8_t> hello_payload);
   void close_receiver();
   void on_receiver_poll();
+  void on_snapshot_poll(const fsw::link::FrameView& frame);
+  void on_snapshot_piece(const fsw::link::FrameView& frame);
   /// Gives the flight software what the receiver's line has brought, and the host the same bytes in the answer.
   void deliver_receiver_bytes(fsw::GpsTime step_time);
   void begin_step(std::uint32_t step);
@@ -111,12 +129,14 @@ class FlightExecutive {
   std::uint32_t session_ = 0;
   std::uint8_t spacecraft_ = 0;
   std::uint16_t report_count_ = 0;
+  std::uint64_t step_budget_ = 0;  ///< 0: none
   fsw::GpsTime step_time_;
   const char* hello_text_ = "";
   fsw::link::BatchReceiver inputs_;
   fsw::link::BatchSender answer_;
   Outbox outbox_;
   ReceiverPort receiver_;
+  SnapshotPort snapshot_;
   alignas(kGncStateAlignment) std::array<std::byte, kGncStateBytes> gnc_state_;
 };
 

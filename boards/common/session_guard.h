@@ -35,6 +35,13 @@ class SessionGuard {
     return true;
   }
 
+  /// After a reset, at `now`: the peer of the session that it ended, which is answered until another says kHello.
+  void resume(const Sender& peer, std::uint64_t now) {
+    peer_ = peer;
+    has_peer_ = true;
+    last_heard_ = now;
+  }
+
   /// The peer sent kGoodbye.
   void end_session() { has_peer_ = false; }
 

@@ -55,16 +55,4 @@ class InterruptsMasked {
   std::uint32_t before_;
 };
 
-/// Interrupts are taken during the lifetime of this object, also inside an InterruptsMasked.
-class InterruptsAllowed {
- public:
-  InterruptsAllowed() : before_(detail::status_register()) { detail::unmask_interrupts(); }
-  ~InterruptsAllowed() { detail::restore_interrupts(before_); }
-  InterruptsAllowed(const InterruptsAllowed&) = delete;
-  InterruptsAllowed& operator=(const InterruptsAllowed&) = delete;
-
- private:
-  std::uint32_t before_;
-};
-
 }  // namespace vbar::boards::zynq7000

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "boards/zynq7000/cpu.h"
 #include "boards/zynq7000/memory_map.h"
 
 extern "C" void vbar_interrupt();
@@ -10,7 +11,10 @@ namespace vbar::boards::zynq7000 {
 namespace {
 
 constexpr unsigned kInterrupts = 96;
+constexpr unsigned kFirstPrivate = 16;
 constexpr unsigned kFirstShared = 32;
+// Smaller is more urgent; taken if smaller than the mask (detail::kUrgentInterrupts).
+constexpr std::uint32_t kUrgent = 0x20U;
 constexpr std::uintptr_t kDistributorControl = kInterruptDistributor + 0x000U;
 constexpr std::uintptr_t kDistributorGroup = kInterruptDistributor + 0x080U;
 constexpr std::uintptr_t kDistributorEnable = kInterruptDistributor + 0x100U;
@@ -30,6 +34,11 @@ struct Entry {
 };
 std::array<Entry, kInterrupts> entries;
 
+void enable(unsigned id, InterruptHandler handler, void* context) {
+  entries[id] = {handler, context};
+  reg(kDistributorEnable + 4U * (id / 32U)) = 1U << (id % 32U);
+}
+
 }  // namespace
 
 void interrupts_initialize() {
@@ -44,7 +53,7 @@ void interrupts_initialize() {
     reg(kDistributorPriority + 4U * word) = 0xA0A0A0A0U;  // equal: no handler interrupts another
     reg(kDistributorTarget + 4U * word) = 0x01010101U;    // first core
   }
-  reg(kCpuPriorityMask) = 0xF0U;
+  reg(kCpuPriorityMask) = detail::kAllInterrupts;
   reg(kCpuBinaryPoint) = 0;
   reg(kCpuControl) = 1;
   reg(kDistributorControl) = 1;
@@ -54,8 +63,24 @@ void interrupts_attach(unsigned id, InterruptHandler handler, void* context) {
   if (id < kFirstShared || id >= kInterrupts) {
     return;
   }
-  entries[id] = {handler, context};
-  reg(kDistributorEnable + 4U * (id / 32U)) = 1U << (id % 32U);
+  enable(id, handler, context);
+}
+
+void interrupts_attach_urgent(unsigned id, InterruptHandler handler, void* context) {
+  if (id < kFirstPrivate || id >= kFirstShared) {
+    return;
+  }
+  const std::uintptr_t priorities = kDistributorPriority + 4U * (id / 4U);
+  const unsigned shift = 8U * (id % 4U);
+  reg(priorities) = (reg(priorities) & ~(0xFFU << shift)) | (kUrgent << shift);
+  enable(id, handler, context);
+}
+
+std::uint32_t detail::exchange_priority_mask(std::uint32_t mask) {
+  const std::uint32_t before = reg(kCpuPriorityMask);
+  reg(kCpuPriorityMask) = mask;
+  synchronize();
+  return before;
 }
 
 }  // namespace vbar::boards::zynq7000

@@ -1,5 +1,8 @@
 #pragma once
-// The generic interrupt controller (PL390): handlers of shared interrupts.
+// The generic interrupt controller (PL390): handlers of the interrupts of peripherals, which can be deferred, and of
+// those of the core's own timers, which cannot.
+
+#include <cstdint>
 
 namespace vbar::boards::zynq7000 {
 
@@ -11,5 +14,39 @@ void interrupts_initialize();
 
 /// `handler(context)` serves interrupt `id` (a shared peripheral interrupt, 32 to 95) from now on.
 void interrupts_attach(unsigned id, InterruptHandler handler, void* context);
+
+/// The same for an interrupt of the core's own timers (16 to 31), also during a PeripheralsDeferred.
+void interrupts_attach_urgent(unsigned id, InterruptHandler handler, void* context);
+
+namespace detail {
+/// Replaces the priority mask of the processor's interface; the mask before.
+std::uint32_t exchange_priority_mask(std::uint32_t mask);
+inline constexpr std::uint32_t kAllInterrupts = 0xF0U;
+inline constexpr std::uint32_t kUrgentInterrupts = 0x80U;
+}  // namespace detail
+
+/// No interrupt of a peripheral is taken during the lifetime of this object.
+class PeripheralsDeferred {
+ public:
+  PeripheralsDeferred() : before_(detail::exchange_priority_mask(detail::kUrgentInterrupts)) {}
+  ~PeripheralsDeferred() { detail::exchange_priority_mask(before_); }
+  PeripheralsDeferred(const PeripheralsDeferred&) = delete;
+  PeripheralsDeferred& operator=(const PeripheralsDeferred&) = delete;
+
+ private:
+  std::uint32_t before_;
+};
+
+/// Interrupts of peripherals are taken during the lifetime of this object, also inside a PeripheralsDeferred.
+class PeripheralsServed {
+ public:
+  PeripheralsServed() : before_(detail::exchange_priority_mask(detail::kAllInterrupts)) {}
+  ~PeripheralsServed() { detail::exchange_priority_mask(before_); }
+  PeripheralsServed(const PeripheralsServed&) = delete;
+  PeripheralsServed& operator=(const PeripheralsServed&) = delete;
+
+ private:
+  std::uint32_t before_;
+};
 
 }  // namespace vbar::boards::zynq7000

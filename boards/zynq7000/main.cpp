@@ -1,6 +1,7 @@
 // The flight image: frames from UART0 or Ethernet to the flight executive, answers to the peer of the session. A
 // cyclic executive: one activity at a time, waiting for interrupts in between.
 
+#include <algorithm>
 #include <array>
 
 #include "boards/common/flight_executive.h"
@@ -10,12 +11,14 @@
 #include "boards/zynq7000/ethernet.h"
 #include "boards/zynq7000/interrupts.h"
 #include "boards/zynq7000/memory_map.h"
+#include "boards/zynq7000/reset.h"
 #include "boards/zynq7000/semihosting.h"
 #include "boards/zynq7000/session_guard.h"
 #include "boards/zynq7000/stack_meter.h"
 #include "boards/zynq7000/timer.h"
 #include "boards/zynq7000/uart.h"
 #include "boards/zynq7000/udp_endpoint.h"
+#include "boards/zynq7000/watchdog.h"
 #include "fsw/gnc/vbar_gnc.h"
 #include "fsw/link/cobs.h"
 
@@ -29,17 +32,22 @@ constexpr Ipv4Address kAddress{10, 0, 2, 15};
 constexpr std::uint16_t kPort = 5000;
 constexpr std::uint64_t kSilence = timer_span_ms(5'000);
 constexpr std::uint64_t kLinkPoll = timer_span_ms(500);
+// For a host that states no budget: 250 million instructions, at 4 cycles each and at 64 ns each (icount shift 6).
+constexpr std::uint64_t kStepBudgetCycles = 1'000'000'000;
+constexpr std::uint64_t kStepBudgetTicks = 1'600'000'000;
+constexpr std::uint64_t kMinWatchdogSpan = timer_span_ms(500);  // to start the flight software
 
 /// Both interfaces, the session guard and the executive.
 class FlightBoard {
  public:
-  FlightBoard() : executive_(platform()) {}
+  explicit FlightBoard(const Restart& restart) : restart_(restart), executive_(platform()) {}
 
   [[noreturn]] void run();
 
  private:
   Platform platform();
   void open();
+  void report_restart();
   bool serve_serial();
   bool serve_ethernet();
   void await_link();
@@ -49,6 +57,9 @@ class FlightBoard {
   void wait_for_input() const;
   void set_uart_rate(std::uint32_t baud);
 
+  static void session_begins(void* self, std::uint32_t session, std::uint64_t step_budget);
+  static void step_begins(void* self, std::uint32_t step);
+  static void step_ends(void* self, bool within_budget);
   static bool open_receiver(void* self, std::uint32_t baud);
   static std::size_t read_receiver(void* self, std::span<std::uint8_t> out);
   static void send(void* self, std::span<const std::uint8_t> frame);
@@ -66,17 +77,35 @@ class FlightBoard {
   std::array<std::uint8_t, kMaxEthernetFrameBytes> received_{};
   std::array<std::uint8_t, kMaxEthernetFrameBytes> transmitted_{};
   std::array<std::uint8_t, fsw::link::kMaxCobsFrameBytes> coded_{};
+  Restart restart_;
+  std::array<char, 120> restart_text_{};
+  FlightRecord record_;  ///< of this flight, as it is retained
   FlightExecutive executive_;
 };
+
+bool counts_cycles() {
+  return cost_counter_unit() == CounterUnit::kCycles;
+}
+
+/// Twice the budget of a step, in ticks of the global timer, of which one is two cycles.
+std::uint64_t watchdog_span(std::uint64_t step_budget) {
+  const std::uint64_t budget = std::min(step_budget, kWatchdogMaxSpan / 2U);
+  return std::max(counts_cycles() ? budget : 2U * budget, kMinWatchdogSpan);
+}
 
 Platform FlightBoard::platform() {
   Platform platform;
   platform.context = this;
-  platform.name = "vbar zynq7000, bare metal";
+  platform.name =
+      restart_.by_watchdog ? "vbar zynq7000, bare metal, reset by its watchdog" : "vbar zynq7000, bare metal";
   platform.send = &FlightBoard::send;
   platform.counter = [](void*) { return cost_counter(); };
   platform.stack_high_water = [](void*) { return stack_high_water(); };
   platform.counter_unit = cost_counter_unit();
+  platform.step_budget = counts_cycles() ? kStepBudgetCycles : kStepBudgetTicks;
+  platform.session_begins = &FlightBoard::session_begins;
+  platform.step_begins = &FlightBoard::step_begins;
+  platform.step_ends = &FlightBoard::step_ends;
   platform.open_receiver = &FlightBoard::open_receiver;
   platform.read_receiver = &FlightBoard::read_receiver;
   return platform;
@@ -89,16 +118,34 @@ void FlightBoard::open() {
   print("vbar zynq7000: ");
   print(vbar_gnc_name());
   print("\ncost in ");
-  print(cost_counter_unit() == CounterUnit::kCycles ? "processor cycles" : "ticks of the emulated timer");
+  print(counts_cycles() ? "processor cycles" : "ticks of the emulated timer");
   print("\nlink on UART0 and on UDP 10.0.2.15:5000, Ethernet ");
   print(ethernet_.waits_for_link() ? "waits for a link" : "up");
   print("\nready\n");
 }
 
+// The host of the session that the watchdog ended is told why as soon as it asks.
+void FlightBoard::report_restart() {
+  if (!restart_.by_watchdog) {
+    return;
+  }
+  print("\nreset by the watchdog\n");
+  if (restart_.has_record) {
+    describe_reset(restart_.record, restart_text_);
+    guard_.resume(peer_of(restart_.record), global_timer());
+    executive_.lose_session(restart_.record.session, restart_text_.data());
+    print(restart_text_.data());
+    print("\n");
+  }
+}
+
 void FlightBoard::run() {
+  report_restart();
   open();
+  watchdog_start(watchdog_span(counts_cycles() ? kStepBudgetCycles : kStepBudgetTicks));
   detail::unmask_interrupts();
   for (;;) {
+    watchdog_feed();
     const bool serial = serve_serial();
     const bool datagram = serve_ethernet();
     if (!serial && !datagram) {
@@ -165,9 +212,9 @@ void FlightBoard::deliver(const Sender& sender, std::span<const std::uint8_t> fr
     executive_.count_rejected(1);
     return;
   }
-  // Interrupts are masked while flight code runs, so that an arriving byte costs the step no time; the FIFO
-  // and the DMA ring hold what arrives, and the link retransmits what they cannot. send() unmasks them.
-  const InterruptsMasked masked;
+  // Peripherals wait while flight code runs, so that an arriving byte costs the step no time; the FIFO and the DMA ring
+  // hold what arrives, and the link retransmits what they cannot. send() serves them.
+  const PeripheralsDeferred deferred;
   if (executive_.on_frame(frame) == Activity::kGoodbye) {
     goodbye();
   }
@@ -206,6 +253,33 @@ void FlightBoard::print_counters() const {
   }
 }
 
+void FlightBoard::session_begins(void* self, std::uint32_t session, std::uint64_t step_budget) {
+  auto* const board = static_cast<FlightBoard*>(self);
+  board->record_ = {};
+  board->record_.session = session;
+  set_peer(board->record_, board->guard_.peer());
+  retain(board->record_);
+  watchdog_start(watchdog_span(step_budget));
+}
+
+void FlightBoard::step_begins(void* self, std::uint32_t step) {
+  auto* const board = static_cast<FlightBoard*>(self);
+  board->record_.step = step;
+  board->record_.in_step = 1;
+  retain(board->record_);
+}
+
+void FlightBoard::step_ends(void* self, bool within_budget) {
+  auto* const board = static_cast<FlightBoard*>(self);
+  board->record_.in_step = 0;
+  retain(board->record_);
+  if (!within_budget) {
+    print("step ");
+    print_decimal(board->record_.step);
+    print(" exceeded its budget\n");
+  }
+}
+
 // Of the emulator as well: it passes the rate on to the terminal that is UART0 there.
 void FlightBoard::set_uart_rate(std::uint32_t baud) {
   if (baud != uart_baud_) {
@@ -234,7 +308,7 @@ bool FlightBoard::open_receiver(void* self, std::uint32_t baud) {
 std::size_t FlightBoard::read_receiver(void* self, std::span<std::uint8_t> out) {
   Uart& uart = static_cast<FlightBoard*>(self)->uart_;
   {
-    const InterruptsMasked masked;
+    const PeripheralsDeferred deferred;
     uart.take_received();  // a count of received bytes includes those below the trigger level of the FIFO
   }
   std::size_t count = 0;
@@ -247,12 +321,14 @@ std::size_t FlightBoard::read_receiver(void* self, std::span<std::uint8_t> out) 
 void FlightBoard::wait_for_input() const {
   const InterruptsMasked masked;  // a byte that arrives after the last check is pending, and ends the wait at once
   if (!uart_.has_input() && !ethernet_.has_input()) {
+    watchdog_before_wait();
     wait_for_interrupt();
+    watchdog_after_wait();
   }
 }
 
 void FlightBoard::send(void* self, std::span<const std::uint8_t> frame) {
-  const InterruptsAllowed allowed;
+  const PeripheralsServed served;
   auto* const board = static_cast<FlightBoard*>(self);
   const Sender& peer = board->guard_.peer();
   switch (peer.interface) {
@@ -288,6 +364,7 @@ int main() {
   timers_initialize();
   console_open();
   interrupts_initialize();
-  static FlightBoard board;  // constructed here, not before main: its executive selects the cost counter
+  static FlightBoard board(
+      find_restart());  // constructed here, not before main: its executive selects the cost counter
   board.run();
 }

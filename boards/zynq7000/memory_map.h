@@ -17,14 +17,19 @@ inline constexpr std::uintptr_t kGem0 = 0xE000B000U;
 inline constexpr std::uintptr_t kSlcr = 0xF8000000U;
 inline constexpr std::uintptr_t kInterruptCpuInterface = 0xF8F00100U;
 inline constexpr std::uintptr_t kGlobalTimer = 0xF8F00200U;
+inline constexpr std::uintptr_t kPrivateTimer = 0xF8F00600U;
+inline constexpr std::uintptr_t kPrivateWatchdog = 0xF8F00620U;
 inline constexpr std::uintptr_t kInterruptDistributor = 0xF8F01000U;
 inline constexpr std::uintptr_t kLevel2Cache = 0xF8F02000U;
 
+inline constexpr unsigned kInterruptPrivateTimer = 29;
+inline constexpr unsigned kInterruptPrivateWatchdog = 30;
 inline constexpr unsigned kInterruptGem0 = 54;
 inline constexpr unsigned kInterruptUart0 = 59;
 inline constexpr unsigned kInterruptUart1 = 82;
 
-// Buffers of Ethernet's DMA lie in one uncached section of 1 MiB. Names of the linker script.
+// Buffers of Ethernet's DMA, and what outlasts a reset, lie in one uncached section of 1 MiB. Names of the linker
+// script.
 inline constexpr std::uintptr_t kSectionBytes = 0x00100000U;
 inline constexpr std::uintptr_t kImageStart = 0x00100000U;
 inline constexpr std::uintptr_t kStackGuard = 0x03E00000U;  ///< unmapped: an overflowing stack faults here

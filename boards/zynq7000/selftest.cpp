@@ -105,6 +105,51 @@ void check_interrupts() {
   check(d0 == 1.25 && d16 == 2.5 && d31 == 5.0, "floating-point registers survive an interrupt");
 }
 
+// While flight software runs, peripherals wait and the core's own timers do not. The timer also ends a wait.
+void check_deferral() {
+  constexpr unsigned kUnusedInterrupt = 62;  // PL interrupt 1: not connected here
+  constexpr std::uintptr_t kSetPending = kInterruptDistributor + 0x200U;
+  constexpr std::uint32_t kTicks = 10'000;
+  constexpr std::uint32_t kEnableWithInterrupt = 0x5U;
+  constexpr std::uintptr_t kLoad = kPrivateTimer + 0x0U;
+  constexpr std::uintptr_t kControl = kPrivateTimer + 0x8U;
+  constexpr std::uintptr_t kStatus = kPrivateTimer + 0xCU;
+  static volatile bool peripheral_served = false;
+  static volatile bool timer_served = false;
+  interrupts_attach(
+      kUnusedInterrupt, [](void*) { peripheral_served = true; }, nullptr);
+  interrupts_attach_urgent(
+      kInterruptPrivateTimer,
+      [](void*) {
+        reg(kStatus) = 1;
+        timer_served = true;
+      },
+      nullptr);
+  detail::unmask_interrupts();
+  {
+    const PeripheralsDeferred deferred;
+    reg(kSetPending + 4U) = 1U << (kUnusedInterrupt - 32U);
+    reg(kLoad) = kTicks;
+    reg(kControl) = kEnableWithInterrupt;
+    const std::uint64_t start = global_timer();
+    while (!timer_served && global_timer() - start < 10U * kTicks) {
+    }
+    check(timer_served, "an urgent interrupt is taken while peripherals are deferred");
+    check(!peripheral_served, "that of a peripheral is not");
+    {
+      const PeripheralsServed served;
+      check(peripheral_served, "it is taken when peripherals are served again");
+    }
+  }
+  timer_served = false;
+  reg(kLoad) = kTicks;
+  reg(kControl) = kEnableWithInterrupt;
+  wait_for_interrupt();
+  check(timer_served, "the timer ends a wait");
+  reg(kControl) = 0;
+  detail::mask_interrupts();
+}
+
 void check_ethernet() {
   static Ethernet ethernet;
   ethernet.open({0x02, 0, 0, 0, 0, 1});
@@ -160,6 +205,7 @@ int main() {
   check_memory();
   check_timers();
   check_interrupts();
+  check_deferral();
   check_ethernet();
   print(failures == 0 ? "self-test passed\n" : "self-test FAILED\n");
   semihosting_exit(static_cast<std::uint32_t>(failures == 0 ? ExitCode::kDone : ExitCode::kSelfTestFailed));

@@ -24,7 +24,7 @@ SINK = [r"^vbar::boards::FlightExecutive::sink\("]
 BOARD = r"^vbar::boards::zynq7000::\(anonymous namespace\)::FlightBoard::"
 # Functions with indirect calls (demangled), and what these may reach.
 INDIRECT = [
-    (r"^vbar_interrupt$", [r"^vbar::boards::zynq7000::(Uart|Ethernet)::on_interrupt\("]),
+    (r"^vbar_interrupt$", [r"^vbar::boards::zynq7000::(Uart|Ethernet)::on_interrupt\(", r"^vbar::boards::zynq7000::\(anonymous namespace\)::on_expiry\(", r"^vbar::boards::zynq7000::\(anonymous namespace\)::start_wake_timer\(\)::.*_FUN\("]),
     # packets to the sink
     (r"^void vbar::fsw::gnc::Outbox::send<", SINK),
     (r"^vbar::fsw::gnc::Gnc::(report_|point_|command_|report\()", SINK),

@@ -8,6 +8,8 @@
 // Products are Eigen's lazy ones: its blocked kernels for larger matrices leave heap calls in the object code.
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 
 #include <Eigen/Core>
 
@@ -82,15 +84,17 @@ class Estimate {
     mean_.template head<M>() = mean;
     extend_to(M - 1);
     for (int c = 0; c < extent_; ++c) {
+      if (c >= M && is_idle(c)) continue;
       const Eigen::Matrix<double, M, 1> column = matrix().col(c).template head<M>();
       matrix().col(c).template head<M>() = a.lazyProduct(column);
     }
     for (int r = 0; r < extent_; ++r) {
+      if (r >= M && is_idle(r)) continue;
       const Eigen::Matrix<double, M, 1> row = matrix().row(r).template head<M>().transpose();
       matrix().row(r).template head<M>() = a.lazyProduct(row).transpose();
     }
     matrix().template topLeftCorner<M, M>() += q;
-    symmetrise();
+    symmetrise_head(M);
   }
 
   /// Innovation of a measurement with the linear(ised) model z = h x + noise, without updating the estimate.
@@ -107,16 +111,7 @@ class Estimate {
     if (!(innovation.variance > 0.0) || !(innovation.nis() <= gate)) return innovation;
     innovation.accepted = true;
     mean_.head(extent_) += ph.head(extent_) * (residual / innovation.variance);
-    Eigen::Map<Matrix> p = matrix();
-    for (int c = 0; c < extent_; ++c) {
-      if (ph(c) == 0.0) continue;
-      const double gain = ph(c) / innovation.variance;
-      for (int r = c; r < extent_; ++r) {
-        const double less = p(r, c) - ph(r) * gain;
-        p(r, c) = less;
-        p(c, r) = less;
-      }
-    }
+    reduce(ph, innovation.variance);
     return innovation;
   }
 
@@ -135,6 +130,7 @@ class Estimate {
     double minimum = 0.0;
     for (int i = 0; i < N; ++i) sum += mean_(i);
     for (int i = 0; i < extent_; ++i) {
+      if (is_idle(i)) continue;  // its row and column are zero
       sum += matrix().col(i).head(extent_).sum();
       minimum = matrix()(i, i) < minimum ? matrix()(i, i) : minimum;
     }
@@ -147,10 +143,32 @@ class Estimate {
 
   void extend_to(int i) { extent_ = extent_ > i ? extent_ : i + 1; }
 
-  void symmetrise() {
+  /// Subtracts ph ph' / variance. Components that are not correlated with the measurement, inactive ones above all,
+  /// stay as they are and cost no time.
+  void reduce(const Vector& ph, double variance) {
+    std::array<std::int16_t, static_cast<std::size_t>(N)> moved;
+    std::size_t count = 0;
+    for (int i = 0; i < extent_; ++i) {
+      if (ph(i) != 0.0) moved[count++] = static_cast<std::int16_t>(i);
+    }
+    Eigen::Map<Matrix> p = matrix();
+    for (std::size_t k = 0; k < count; ++k) {
+      const int c = moved[k];
+      const double gain = ph(c) / variance;
+      for (std::size_t j = k; j < count; ++j) {
+        const int r = moved[j];
+        const double less = p(r, c) - ph(r) * gain;
+        p(r, c) = less;
+        p(c, r) = less;
+      }
+    }
+  }
+
+  /// Of the first m components and all others; the others are symmetric among themselves.
+  void symmetrise_head(int m) {
     Eigen::Map<Matrix> p = matrix();
     for (int c = 0; c < extent_; ++c) {
-      for (int r = 0; r < c; ++r) {
+      for (int r = 0; r < c && r < m; ++r) {
         const double both = 0.5 * (p(r, c) + p(c, r));
         p(r, c) = both;
         p(c, r) = both;

@@ -14,7 +14,9 @@ namespace vbar::fsw::faults {
 
 /// What the flight software does while a fault is present, besides reporting it.
 enum class Response : std::uint8_t {
-  kReport,   ///< nothing: others have isolated what failed (fsw/sources/aid.h), or the ground must act
+  kReport,   ///< nothing: the ground must act, or the event is over
+  kIsolate,  ///< what failed is not used: its data are refused or replaced, or the source is suspended; if no other
+             ///< source confirms the orbit, its covariance is inflated instead (fsw/gnc/trunk_navigation.h)
   kHold,     ///< no burn is planned or commanded but the retreat
   kRetreat,  ///< mode retreat
 };
@@ -33,15 +35,20 @@ using vbar::telemetry_health;
 // The comment states the argument of the event. A check is one step, image, epoch or burn, as its detector has it.
 inline constexpr auto kFaultTable = std::to_array<Rule>({
     // navigation
-    {telemetry_health::kFaultNavigationTimeout, telemetry_event::kSeverityFault},     // age, s
-    {telemetry_health::kFaultNeverNavigated, telemetry_event::kSeverityFault},        // time, s
-    {telemetry_health::kFaultImagesMissing, telemetry_event::kSeverityFault},         // camera
-    {telemetry_health::kFaultImageFrozen, telemetry_event::kSeverityFault},           // camera
-    {telemetry_health::kFaultAttitude, telemetry_event::kSeverityFault, 2, 3},        // difference, rad
-    {telemetry_health::kFaultSourceInconsistent, telemetry_event::kSeverityWarning},  // mean NIS/dof
-    {telemetry_health::kFaultSourceRestarts, telemetry_event::kSeverityFault},        // restarts
-    {telemetry_health::kFaultSourcesContradict, telemetry_event::kSeverityFault},     // mean NIS/dof
-    {telemetry_health::kFaultState, telemetry_event::kSeverityFault},                 // Integrity
+    {telemetry_health::kFaultNavigationTimeout, telemetry_event::kSeverityFault},                      // age, s
+    {telemetry_health::kFaultNeverNavigated, telemetry_event::kSeverityFault},                         // time, s
+    {telemetry_health::kFaultImagesMissing, telemetry_event::kSeverityFault},                          // camera
+    {telemetry_health::kFaultImageFrozen, telemetry_event::kSeverityFault, 1, 1, Response::kIsolate},  // camera
+    {telemetry_health::kFaultPoseNetwork, telemetry_event::kSeverityFault, 3, 3, Response::kIsolate},  // rad
+    {telemetry_health::kFaultAttitude, telemetry_event::kSeverityFault, 2, 3, Response::kIsolate},     // rad
+    {telemetry_health::kFaultReceiverSilent, telemetry_event::kSeverityFault},                         // silence, s
+    {telemetry_health::kFaultCrosslinkSilent, telemetry_event::kSeverityWarning},                      // silence, s
+    // mean NIS/dof; of estimates that a source itself has found wrong: that, or sigmas
+    {telemetry_health::kFaultSourceInconsistent, telemetry_event::kSeverityWarning, 1, 1, Response::kIsolate},
+    // restarts; the source is isolated as well
+    {telemetry_health::kFaultSourceRestarts, telemetry_event::kSeverityFault, 1, 1, Response::kHold},
+    {telemetry_health::kFaultSourcesContradict, telemetry_event::kSeverityFault, 1, 1, Response::kIsolate},  // mean NIS
+    {telemetry_health::kFaultState, telemetry_event::kSeverityFault, 1, 1, Response::kIsolate},  // Integrity
     // guidance
     {telemetry_health::kFaultHold, telemetry_event::kSeverityFault},                                   // holds so far
     {telemetry_health::kFaultDriftUnsafe, telemetry_event::kSeverityFault, 2, 3, Response::kRetreat},  // distance, m

@@ -6,12 +6,15 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// A burn differs from the command if it does so by more than this share of its size and this impulse: a thruster's
-// least impulse, which dominates burns of micrometres per second.
+// A burn differs from the command if it does so by more than this share of its size and five sigma of the impulse that
+// a thruster errs by, which dominates burns of micrometres per second: both errors are independent.
 constexpr double kUsualShare = 0.05;
-constexpr double kUsualImpulse = 1e-5;  // m/s
-constexpr double kNothing = 0.1;        // share of the size below which a burn counts as missed
-constexpr double kImplausible = 10.0;   // share of the size from which on a report says nothing of the thruster
+constexpr double kImpulseSigma = 2e-6;  // m/s
+constexpr double kUsualImpulse = 5.0 * kImpulseSigma;
+// So does a scale that is off by the same share and by this multiple of its sigma, where single burns are too small.
+constexpr double kScaleSigmas = 3.0;
+constexpr double kNothing = 0.1;       // share of the size below which a burn counts as missed
+constexpr double kImplausible = 10.0;  // share of the size from which on a report says nothing of the thruster
 constexpr Duration kOnTime = duration_of_seconds(1);
 constexpr Duration kLatestReport = duration_of_seconds(300);
 
@@ -27,10 +30,15 @@ double square(double x) {
 
 void BurnScale::update(double ratio, double dv) {
   const double prior = square(sigma_) + square(kScaleDrift);
-  const double noise = square(kRatioSigma) + square(kUsualImpulse / dv);
+  const double noise = square(kRatioSigma) + square(kImpulseSigma / dv);
   const double gain = prior / (prior + noise);
   scale_ += gain * (ratio - scale_);
   sigma_ = math::sqrt((1.0 - gain) * prior);
+}
+
+bool BurnScale::differs(double share, double sigmas) const {
+  const double off = math::abs(scale_ - 1.0);
+  return off > share && off > sigmas * sigma_;
 }
 
 void BurnMonitor::expect(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn) {
@@ -85,7 +93,10 @@ void BurnMonitor::judge(const Commanded& commanded, GpsTime time, const executed
   const bool is_missed = !is_refused && ratio < kNothing;
   const bool is_executed = !is_refused && !is_missed;
   const bool is_late = is_executed && math::abs(delay_s) > seconds(kOnTime);
-  const bool is_of_other_size = is_executed && difference > kUsualShare * size + kUsualImpulse;
+  // A report of another order of magnitude is a fault, not a scale.
+  if (is_executed && size > kUsualImpulse && ratio < kImplausible) scale_.update(ratio, size);
+  const bool is_of_other_size = is_executed && (difference > math::hypot(kUsualShare * size, kUsualImpulse) ||
+                                                scale_.differs(kUsualShare, kScaleSigmas));
   faults.check(now, {.fault = telemetry_health::kFaultBurnRefused, .is_detected = is_refused, .argument = id});
   faults.check(now, {.fault = telemetry_health::kFaultBurnMissed, .is_detected = is_missed, .argument = id});
   faults.check(now, {.fault = telemetry_health::kFaultBurnLate, .is_detected = is_late, .argument = delay_s});
@@ -94,10 +105,7 @@ void BurnMonitor::judge(const Commanded& commanded, GpsTime time, const executed
   if (!is_refused) {
     faults.check(now, {.fault = telemetry_health::kFaultThruster, .is_detected = is_missed, .argument = ratio});
   }
-  if (!is_executed) return;
-  ++executed_;
-  // A report of another order of magnitude is a fault, not a scale.
-  if (size > kUsualImpulse && ratio < kImplausible) scale_.update(ratio, size);
+  if (is_executed) ++executed_;
 }
 
 }  // namespace vbar::fsw::gnc

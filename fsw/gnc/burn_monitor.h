@@ -23,6 +23,8 @@ class BurnScale {
     return scale_ < kMinScale ? kMinScale : (scale_ > kMaxScale ? kMaxScale : scale_);
   }
   [[nodiscard]] double sigma() const { return sigma_; }
+  /// Whether it differs from one by more than `share` and by more than this multiple of its sigma.
+  [[nodiscard]] bool differs(double share, double sigmas) const;
 
   static constexpr double kMinScale = 0.5;
   static constexpr double kMaxScale = 2.0;

@@ -60,7 +60,7 @@ class Navigation {
   }
 
   /// Inconsistency, repeated restarts and contradictions of sources.
-  void check_sources(GpsTime now, faults::FaultMonitor& faults) const { trunk_.check_sources(now, faults); }
+  void check_sources(GpsTime now, faults::FaultMonitor& faults) { trunk_.check_sources(now, faults); }
 
   [[nodiscard]] const TrunkNavigation& trunk() const { return trunk_; }
   /// The estimate is at rest until the next step, which begins with verify(): state_integrity.h.

@@ -1,9 +1,11 @@
 #include "fsw/gnc/trunk_navigation.h"
 
 #include <array>
+#include <type_traits>
 
 #include "fsw/gnc/message_fields.h"
 #include "fsw/gnc/trunk_configuration.h"
+#include "fsw/orbit/propagate.h"
 
 namespace vbar::fsw::gnc {
 namespace {
@@ -88,20 +90,23 @@ void TrunkNavigation::select(GpsTime now, const Telecommands& telecommands) {
   });
 }
 
+/// The frame of the command turns with the orbit, so that the trunk's state is propagated to the time.
+std::optional<Matrix3> TrunkNavigation::commanded_attitude(GpsTime time) const {
+  if (!platform_.pointing || !trunk_.own_orbit().started()) return std::nullopt;
+  const auto servicer = orbit::propagate_j2(trunk_.servicer(), seconds(time - trunk_.epoch()));
+  if (!servicer.ok()) return std::nullopt;
+  return sources::R_body_eci_of(*platform_.pointing, time, servicer.value());
+}
+
 void TrunkNavigation::take_attitudes(GpsTime now, Inbox& inbox) {
   attitudes_ = {};
   for_each_attitude(now, inbox.queue<vbar::attitude>(), inbox, [&](const navigation::AttitudeSample& sample) {
-    std::optional<Matrix3> R_body_eci_commanded;
-    if (platform_.pointing && trunk_.own_orbit().started()) {
-      R_body_eci_commanded = R_body_eci_of(*platform_.pointing, sample.time, trunk_.servicer());
-    }
+    const AttitudeGate::Verdict verdict = attitude_gate_.judge(sample, commanded_attitude(sample.time));
+    if (verdict.used) platform_.servicer_attitude.put(*verdict.used);
     ++attitudes_.received;
-    if (attitude_gate_.accepts(sample, platform_.servicer_attitude, R_body_eci_commanded)) {
-      platform_.servicer_attitude.put(sample);
-    } else {
-      ++attitudes_.refused;
-      attitudes_.difference = attitude_gate_.difference();
-    }
+    if (verdict.is_accepted) return;
+    ++attitudes_.refused;
+    attitudes_.difference = attitude_gate_.difference();
   });
   for_each_attitude(now, inbox.queue<vbar::crosslink_attitude>(), inbox,
                     [&](const navigation::AttitudeSample& sample) { platform_.target_attitude.put(sample); });
@@ -109,6 +114,7 @@ void TrunkNavigation::take_attitudes(GpsTime now, Inbox& inbox) {
 
 void TrunkNavigation::update(GpsTime now, Inbox& inbox, std::span<const navigation::Burn> burns) {
   Context context{now, inbox, platform_, gnss_};
+  for_each(sources_, [](auto& source, std::uint8_t /*index*/) { source.aid().forget_inconsistency(); });
   take_attitudes(now, inbox);
   gnss_.decode(inbox, trunk_.epoch());
   for_each(sources_, [&](auto& source, std::uint8_t index) {
@@ -121,6 +127,9 @@ void TrunkNavigation::update(GpsTime now, Inbox& inbox, std::span<const navigati
   for_each(sources_, [&](auto& source, std::uint8_t /*index*/) {
     if (source.aid().is_on()) source.watch(now, trunk_);
   });
+  if (const auto stars = source<sources::BearingSource>().star_attitude()) {
+    attitude_gate_.take_stars(stars->time, stars->R_eci_body);
+  }
 }
 
 /// Not beyond the oldest record that a source still owes.
@@ -147,7 +156,8 @@ void TrunkNavigation::fold_records(Context& context, std::span<const navigation:
     trunk_.advance_to(record.time, burns);
     trunk_.set_source(record.source);
     for_each(sources_, [&](auto& source, std::uint8_t index) {
-      if (index == record.source && source.aid().is_on()) source.fold(record, context, trunk_);
+      const bool is_used = index == record.source && source.aid().is_on() && !is_isolated(index);
+      if (is_used) source.fold(record, context, trunk_);
     });
   }
 }
@@ -160,7 +170,7 @@ GpsTime TrunkNavigation::last_measurement() const {
   return last;
 }
 
-void TrunkNavigation::check_sources(GpsTime now, faults::FaultMonitor& faults) const {
+void TrunkNavigation::check_sources(GpsTime now, faults::FaultMonitor& faults) {
   faults::Check inconsistent{.fault = telemetry_health::kFaultSourceInconsistent};
   faults::Check restarts{.fault = telemetry_health::kFaultSourceRestarts};
   faults::Check contradicting{.fault = telemetry_health::kFaultSourcesContradict};
@@ -170,21 +180,57 @@ void TrunkNavigation::check_sources(GpsTime now, faults::FaultMonitor& faults) c
     check.device = device;
     check.argument = argument;
   };
-  for_each(sources_, [&]<class Source>(const Source& source, std::uint8_t /*index*/) {
+  for_each(sources_, [&]<class Source>(Source& source, std::uint8_t index) {
     const sources::Aid& aid = source.aid();
     if (!aid.is_on()) return;
-    if (aid.consistency().is_outside()) detect(inconsistent, Source::kUse, aid.consistency().mean());
-    if (aid.restarts().are_repeated(now)) detect(restarts, Source::kUse, static_cast<double>(aid.restarts().count()));
+    const bool is_outside = aid.consistency().is_outside();
+    const bool is_restarting = aid.restarts().are_repeated(now);
+    if (is_outside) detect(inconsistent, Source::kUse, aid.consistency().mean());
+    if (aid.inconsistency()) detect(inconsistent, Source::kUse, *aid.inconsistency());
+    if (is_restarting) detect(restarts, Source::kUse, static_cast<double>(aid.restarts().count()));
     if (aid.is_contradicting()) detect(contradicting, Source::kUse, aid.consistency().mean());
+    if (is_outside || (is_restarting && !is_isolated(index))) isolate(now, index, source);
   });
-  if (attitudes_.received > 0) {
-    faults.check(now, {.fault = telemetry_health::kFaultAttitude,
-                       .is_detected = attitudes_.refused > 0,
-                       .argument = attitudes_.difference});
-  }
   faults.check(now, inconsistent);
   faults.check(now, restarts);
   faults.check(now, contradicting);
+  check_attitudes(now, faults);
+  const auto& network = source<sources::KeypointSource>().aiding().network_verdict();
+  if (network && uses<sources::KeypointSource>()) {
+    faults.check(now, {.fault = telemetry_health::kFaultPoseNetwork,
+                       .is_detected = network->contradicts,
+                       .device = sources::KeypointSource::kUse,
+                       .argument = network->angle});
+  }
+  if (uses<sources::OwnGnssSource>()) receivers_.update(now, gnss_, uses<sources::CarrierSource>(), faults);
+}
+
+void TrunkNavigation::check_attitudes(GpsTime now, faults::FaultMonitor& faults) const {
+  if (attitudes_.received == 0) return;
+  faults.check(now, {.fault = telemetry_health::kFaultAttitude,
+                     .is_detected = attitudes_.refused > 0,
+                     .argument = attitudes_.difference});
+}
+
+/// The innovations are judged anew afterwards.
+template <class Source>
+void TrunkNavigation::isolate(GpsTime now, std::size_t index, Source& source) {
+  const double mean = source.aid().consistency().mean();
+  source.aid().consistency().reset();
+  const bool is_too_large = mean > sources::Consistency::kMax;
+  trunk_.set_source(index);
+  if constexpr (std::is_same_v<Source, sources::OwnGnssSource>) {
+    if (is_too_large) trunk_.inflate_own_orbit(kOwnOrbitInflation);
+  } else if (!trunk_.is_confirmed_by_others()) {
+    if (is_too_large) trunk_.scale_relative_covariance(mean);
+  } else {
+    isolated_until_[index] = now + kIsolation;
+    if constexpr (requires { source.suspend(now, trunk_); }) {
+      source.suspend(now, trunk_);
+    } else {
+      source.aid().go_to(AidState::kSuspended, now);
+    }
+  }
 }
 
 void TrunkNavigation::report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) {

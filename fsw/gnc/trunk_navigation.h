@@ -5,6 +5,7 @@
 // record to record, never beyond the oldest time of which a source still owes a record: late inputs are used without
 // going back, and their order of arrival has no effect.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -15,6 +16,7 @@
 #include "fsw/gnc/attitude_gate.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/outbox.h"
+#include "fsw/gnc/receiver_watch.h"
 #include "fsw/gnc/state_integrity.h"
 #include "fsw/gnc/telecommands.h"
 #include "fsw/navigation/burn.h"
@@ -55,9 +57,18 @@ class TrunkNavigation {
   /// Latest measurement of the relative orbit that was processed.
   [[nodiscard]] GpsTime last_measurement() const;
 
-  /// Innovations outside their band, repeated restarts, and records that contradict an orbit which others confirm. One
-  /// fault stands for all sources: it states the first.
-  void check_sources(GpsTime now, faults::FaultMonitor& faults) const;
+  /// After update(): innovations outside their band, repeated restarts, records that contradict an orbit which others
+  /// confirm, a star tracker or a pose network in error, and receivers that fall silent. One fault stands for all
+  /// sources: it states the first.
+  ///
+  /// A source whose innovations are outside their band, or which restarts repeatedly, is isolated for kIsolation if
+  /// others confirm the orbit: its records are not processed. Otherwise the covariance of the orbit grows by what the
+  /// innovations are too large; too small ones leave it as it is, which is on the safe side.
+  void check_sources(GpsTime now, faults::FaultMonitor& faults);
+
+  static constexpr Duration kIsolation = duration_of_seconds(600);
+  /// As after an unknown burn, m/s: the own orbit of a receiver that contradicts it and that nothing else measures.
+  static constexpr double kOwnOrbitInflation = 0.05;
 
   /// Telemetry of the sources in use, and an event of each change of the state of any source.
   void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox);
@@ -65,6 +76,11 @@ class TrunkNavigation {
  private:
   void select(GpsTime now, const Telecommands& telecommands);
   void take_attitudes(GpsTime now, Inbox& inbox);
+  [[nodiscard]] std::optional<Matrix3> commanded_attitude(GpsTime time) const;
+  void check_attitudes(GpsTime now, faults::FaultMonitor& faults) const;
+  template <class Source>
+  void isolate(GpsTime now, std::size_t index, Source& source);
+  [[nodiscard]] bool is_isolated(std::size_t index) const { return isolated_until_[index] > trunk_.epoch(); }
   [[nodiscard]] GpsTime owed_until(GpsTime now) const;
   void fold_records(sources::Context& context, std::span<const navigation::Burn> burns);
 
@@ -83,6 +99,8 @@ class TrunkNavigation {
   Attitudes attitudes_;
   sources::GnssFrontEnd gnss_;
   sources::SourceList sources_;
+  std::array<GpsTime, std::tuple_size_v<sources::SourceList>> isolated_until_{};  ///< no record before is processed
+  ReceiverWatch receivers_;
 };
 
 }  // namespace vbar::fsw::gnc

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fsw/core/crc32.h"
 #include "fsw/gnss/oem_bytes.h"
 
 namespace vbar::fsw::gnss {
@@ -20,21 +21,6 @@ constexpr std::size_t kShortHeaderBytes = 12;
 constexpr std::size_t kLongLengthKnown = 10;
 constexpr std::size_t kShortLengthKnown = 4;
 
-constexpr std::array<std::uint32_t, 256> make_crc_table() {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t byte = 0; byte < table.size(); ++byte) {
-    std::uint32_t crc = byte;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) * 0xEDB88320U);
-    table[byte] = crc;
-  }
-  return table;
-}
-constexpr auto kCrcTable = make_crc_table();
-
-constexpr std::uint32_t crc_after(std::uint32_t crc, std::uint8_t byte) {
-  return (crc >> 8U) ^ kCrcTable[(crc ^ byte) & 0xFFU];
-}
-
 }  // namespace
 
 bool OemStream::push(std::uint8_t byte) {
@@ -46,7 +32,7 @@ bool OemStream::push(std::uint8_t byte) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < open_count_; ++k) {
     Candidate candidate = open_[k];
-    candidate.crc = crc_after(candidate.crc, byte);
+    candidate.crc = crc32_after(candidate.crc, byte);
     const Verdict verdict = evaluate(candidate);
     if (verdict == Verdict::kWhole) {
       open_[k] = candidate;
@@ -109,7 +95,7 @@ void OemStream::open_at_sync() {
   }
   Candidate candidate;
   candidate.start = size_ - kSyncBytes;
-  for (const std::uint8_t byte : last) candidate.crc = crc_after(candidate.crc, byte);
+  candidate.crc = crc32_after(0, last);
   open_[open_count_++] = candidate;
 }
 

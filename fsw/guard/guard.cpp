@@ -32,9 +32,8 @@ void Guard::take_image(GpsTime time, const imaging::ImageView& image, const Guar
   if (!range_.has_rate()) return;
   const double rate = range_.range_rate(time);
   const double range_now_m = range_.range_m(time);
-  pending_.closing = {
-      .is_checked = range_now_m<kClosingWithin_m, .is_alarm = -rate> range_now_m / kClosingTime_s + kOrbitalRate,
-      .value = rate};
+  const double largest_rate = range_now_m / kClosingTime_s + kOrbitalRate;
+  pending_.closing = {.is_checked = range_now_m < kClosingWithin_m, .is_alarm = rate < -largest_rate, .value = rate};
 }
 
 bool Guard::disagrees(GpsTime time, double logarithm) {

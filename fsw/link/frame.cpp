@@ -35,7 +35,7 @@ void write_crc(std::uint32_t crc, std::span<std::uint8_t> bytes, std::size_t off
 
 bool is_frame_type(std::uint8_t value) {
   return value >= static_cast<std::uint8_t>(FrameType::kHello) &&
-         value <= static_cast<std::uint8_t>(FrameType::kReceiverCount);
+         value <= static_cast<std::uint8_t>(FrameType::kSnapshotHeld);
 }
 
 }  // namespace

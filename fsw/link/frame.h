@@ -10,9 +10,12 @@
 //   bytes 10-11  index: kData, position of this packet in its batch; kAck and kPoll, packets received without a gap
 //   byte  12     flags: bit 0, last packet of the batch; bit 1, answer with kAck at once
 //   byte  13     0
-//   14 ...       kData: one space packet; kHello: the spacecraft's number (1 byte) and, if the board has its GNSS
-//                receiver on a line of its own, the rate of that line in baud (4 bytes); kHelloAck: the board's name
-//                in ASCII; kReceiverCount: the bytes that this line has brought since the hello (8 bytes)
+//   14 ...       kData: one space packet; kHello: the spacecraft's number (1 byte); then, if the board has its
+//                GNSS receiver on a line of its own or a budget follows, the rate of that line in baud (4 bytes, 0:
+//                no such line); then the budget of a step (8 bytes), in the unit in which the board counts the cost of
+//                a step, if it is not the board's own; kHelloAck: the board's name in ASCII, or "error: " and why it
+//                does not fly this session; kReceiverCount: the bytes that this line has brought since the hello (8
+//                bytes)
 //   last 4       CRC-32 (IEEE 802.3, little-endian) over everything before it
 //
 // All but the CRC big-endian. Over a byte stream a frame is COBS-coded and ends with a zero byte; over UDP one frame is
@@ -28,6 +31,14 @@
 //         on. kData of a step already run is a duplicate: the answer is on its way or will be polled for
 //   host  before a step, kReceiverPoll: the board answers kReceiverCount at once. In lock-step the host begins the step
 //         when the board has all that the receiver has sent.
+//   board that no longer flies the session, after a reset or a step beyond its budget: answers kData, and kPoll of a
+//   step
+//         that it has not run, with the kHelloAck that states the reason
+//   host  between two steps, kSnapshotPoll (offset in bytes): the board saves its flight software, once until the next
+//         step, and answers kSnapshotPiece (size of the snapshot, offset, bytes from there on; size 0: there is none)
+//   host  before the first step, kSnapshotPiece, each beginning where the last has ended: the board answers
+//         kSnapshotHeld (bytes that it holds, status); with the last one it restores its flight software. Status is a
+//         fsw::Status; these numbers have 4 bytes
 //   host  kGoodbye ends the run: the board stops.
 
 #include <cstddef>
@@ -48,10 +59,19 @@ inline constexpr std::size_t kMaxCobsFrameBytes = kMaxFrameBytes + kMaxFrameByte
 inline constexpr std::uint16_t kWindow = 32;
 static_assert(packets::kMaxPacketBytes + kFrameHeaderBytes + kFrameCrcBytes <= kMaxFrameBytes);
 
-/// Payload of a kHello without and with the rate of the receiver's line, and of a kReceiverCount.
+/// Payload of a kHello without and with the rate of the receiver's line, and with that and a budget; of a
+/// kReceiverCount.
 inline constexpr std::size_t kHelloBytes = 1;
 inline constexpr std::size_t kHelloWithReceiverBytes = 5;
+inline constexpr std::size_t kHelloWithBudgetBytes = 13;
 inline constexpr std::size_t kReceiverCountBytes = 8;
+
+/// Payload of a kSnapshotPoll and of a kSnapshotHeld; of a kSnapshotPiece before its content, and the most content.
+inline constexpr std::size_t kSnapshotPollBytes = 4;
+inline constexpr std::size_t kSnapshotHeldBytes = 8;
+inline constexpr std::size_t kSnapshotPieceHeaderBytes = 8;
+inline constexpr std::size_t kSnapshotPieceBytes = 1280;
+static_assert(kSnapshotPieceHeaderBytes + kSnapshotPieceBytes + kFrameHeaderBytes + kFrameCrcBytes <= kMaxFrameBytes);
 
 enum class FrameType : std::uint8_t {
   kHello = 1,
@@ -61,7 +81,10 @@ enum class FrameType : std::uint8_t {
   kPoll = 5,
   kGoodbye = 6,
   kReceiverPoll = 7,
-  kReceiverCount = 8
+  kReceiverCount = 8,
+  kSnapshotPoll = 9,
+  kSnapshotPiece = 10,
+  kSnapshotHeld = 11
 };
 
 struct FrameHeader {

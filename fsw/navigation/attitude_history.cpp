@@ -21,6 +21,10 @@ Matrix3 rotation(const Vector3& angle) {
 
 }  // namespace
 
+Matrix3 rotated(const Matrix3& R_eci_body, const Vector3& angle_body) {
+  return R_eci_body * rotation(angle_body);
+}
+
 void AttitudeHistory::put(const AttitudeSample& sample) {
   samples_[next_] = sample;
   next_ = (next_ + 1) % kSamples;
@@ -33,7 +37,7 @@ std::optional<Matrix3> AttitudeHistory::R_eci_body_at(GpsTime time) const {
     if (nearest == nullptr || distance(samples_[k].time, time) < distance(nearest->time, time)) nearest = &samples_[k];
   }
   if (nearest == nullptr || distance(nearest->time, time) > kReach) return std::nullopt;
-  return nearest->R_eci_body * rotation(seconds(time - nearest->time) * nearest->rate_body);
+  return rotated(nearest->R_eci_body, seconds(time - nearest->time) * nearest->rate_body);
 }
 
 }  // namespace vbar::fsw::navigation

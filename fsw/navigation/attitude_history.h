@@ -16,6 +16,9 @@ struct AttitudeSample {
   Vector3 rate_body = Vector3::Zero();  ///< rad/s, of the body with respect to ECI
 };
 
+/// The attitude after a rotation by `angle_body` (rad, a vector in body axes).
+[[nodiscard]] Matrix3 rotated(const Matrix3& R_eci_body, const Vector3& angle_body);
+
 class AttitudeHistory {
  public:
   void put(const AttitudeSample& sample);

@@ -4,6 +4,7 @@
 
 #include "fsw/network/lanes.h"
 #include "fsw/network/number_range.h"
+#include "fsw/network/strip.h"
 
 namespace vbar::fsw::network {
 namespace {
@@ -139,10 +140,10 @@ void convolve_channels(const Layer& layer, const FeatureMap& in, int channel, co
   }
 }
 
-/// `sink(row, column, first channel, four channels)` receives the complete convolution.
+/// By four lanes, which every target has.
 template <class Sink>
-void convolve(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in, WeightPanel& panel,
-              const Sink& sink) {
+void convolve_by_panels(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
+                        WeightPanel& panel, const Sink& sink) {
   int channel = 0;
   for (; channel + 2 * kLanes <= layer.out; channel += 2 * kLanes) {
     fill_panel<2>(layer, weights, channel, panel);
@@ -154,18 +155,75 @@ void convolve(const Layer& layer, std::span<const std::byte> weights, const Feat
   }
 }
 
+#if defined(__x86_64__)
+
+constexpr std::size_t kMaxSumsOfRow = [] {
+  std::size_t most = 0;
+  int side = kInputSide;
+  for (const Layer& layer : kLayers) {
+    side /= layer.stride;
+    const auto sums = static_cast<std::size_t>(side) * static_cast<std::size_t>(layer.out);
+    most = sums > most ? sums : most;
+    if (!layer.is_rectified) side *= 2;
+  }
+  return most;
+}();
+
+/// By wider registers, a row at a time.
+template <class Sink>
+void convolve_by_strips(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
+                        Registers registers, const Sink& sink) {
+  const auto sum_strip = registers == Registers::kSixteen ? &sum_strip_avx512 : &sum_strip_avx2;
+  const int margin = layer.kernel / 2;
+  const int side = in.side / layer.stride;
+  alignas(64) std::array<float, kMaxSumsOfRow> sums;
+  Strip strip{.row_step = in.row_step(),
+              .cell_step = static_cast<std::ptrdiff_t>(layer.stride) * in.channels,
+              .rows = layer.kernel,
+              .run = layer.kernel * in.channels,
+              .weights = weights.data(),
+              .biases = weights.data() + layer.weights() * sizeof(float),
+              .cells = side,
+              .channels = layer.out,
+              .sums = sums.data()};
+  for (int row = 0; row < side; ++row) {
+    strip.first = in.cell(row * layer.stride - margin, -margin);
+    sum_strip(strip);
+    const float* from = sums.data();
+    for (int column = 0; column < side; ++column) {
+      for (int channel = 0; channel < layer.out; channel += kLanes, from += kLanes) {
+        sink(row, column, channel, load(from));
+      }
+    }
+  }
+}
+
+#endif
+
+/// `sink(row, column, first channel, four channels)` receives the complete convolution.
+template <class Sink>
+void convolve(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in, WeightPanel& panel,
+              Registers registers, const Sink& sink) {
+#if defined(__x86_64__)
+  if (registers != Registers::kFour) return convolve_by_strips(layer, weights, in, registers, sink);
+#else
+  static_cast<void>(registers);
+#endif
+  convolve_by_panels(layer, weights, in, panel, sink);
+}
+
 }  // namespace
 
 void convolve_rectified(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
-                        const FeatureMap& out, WeightPanel& panel) {
-  convolve(layer, weights, in, panel, [&out](int row, int column, int channel, Lanes x) {
+                        const FeatureMap& out, WeightPanel& panel, Registers registers) {
+  convolve(layer, weights, in, panel, registers, [&out](int row, int column, int channel, Lanes x) {
     store(out.cell(row, column) + channel, where_above(x, kMinActivation));
   });
 }
 
 void convolve_and_add_enlarged(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
-                               const FeatureMap& sum_map, WeightPanel& panel) {
-  convolve(layer, weights, in, panel, [&sum_map](int row, int column, int channel, Lanes x) {
+                               const FeatureMap& sum_map, WeightPanel& panel, Registers registers) {
+  convolve(layer, weights, in, panel, registers, [&sum_map](int row, int column, int channel, Lanes x) {
     for (int part = 0; part < 4; ++part) {
       float* const place = sum_map.cell(2 * row + part / 2, 2 * column + part % 2) + channel;
       store(place, where_beyond(sum(load(place), x), kMinActivation));
@@ -174,8 +232,8 @@ void convolve_and_add_enlarged(const Layer& layer, std::span<const std::byte> we
 }
 
 void convolve_to_maps(const Layer& layer, std::span<const std::byte> weights, const FeatureMap& in,
-                      std::span<std::array<float, kMapCells>> maps, WeightPanel& panel) {
-  convolve(layer, weights, in, panel, [&](int row, int column, int channel, Lanes x) {
+                      std::span<std::array<float, kMapCells>> maps, WeightPanel& panel, Registers registers) {
+  convolve(layer, weights, in, panel, registers, [&](int row, int column, int channel, Lanes x) {
     const std::size_t place = static_cast<std::size_t>(row * in.side + column);
     for (int lane = 0; lane < kLanes; ++lane) {
       const auto map = static_cast<std::size_t>(channel + lane);

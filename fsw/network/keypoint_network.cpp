@@ -16,11 +16,11 @@ Status KeypointNetwork::load(std::span<const std::byte> weights) {
   return Status::kOk;
 }
 
-Status KeypointNetwork::run(std::span<const float, kInputSamples> crop) {
+Status KeypointNetwork::run(std::span<const float, kInputSamples> crop, Registers registers) {
   if (!is_loaded()) return Status::kNotReady;
   const Status status = take_in(crop);
   if (status != Status::kOk) return status;
-  run_layers();
+  run_layers(registers);
   bool all_finite = true;
   for (const auto& map : maps_) {
     for (const float logit : map) all_finite = all_finite && logit - logit == 0.0F;
@@ -42,7 +42,7 @@ Status KeypointNetwork::take_in(std::span<const float, kInputSamples> crop) {
   return all_good ? Status::kOk : Status::kNotFinite;
 }
 
-void KeypointNetwork::run_layers() {
+void KeypointNetwork::run_layers(Registers registers) {
   const FeatureMap input = activations_.input.map();
   const FeatureMap stem = activations_.stem.map();
   const FeatureMap passing_32 = activations_.passing_32.map();
@@ -56,7 +56,7 @@ void KeypointNetwork::run_layers() {
     return weights_.subspan(offset_of_layer(l), kLayers[static_cast<std::size_t>(l)].bytes());
   };
   const auto layer = [&](int l, const FeatureMap& in, const FeatureMap& out) {
-    convolve_rectified(kLayers[static_cast<std::size_t>(l)], weights(l), in, out, activations_.panel);
+    convolve_rectified(kLayers[static_cast<std::size_t>(l)], weights(l), in, out, activations_.panel, registers);
   };
   layer(0, input, stem);
   layer(1, stem, passing_32);
@@ -66,11 +66,11 @@ void KeypointNetwork::run_layers() {
   layer(5, kept_16, first_8);
   layer(6, first_8, second_8);
   layer(7, second_8, first_8);
-  convolve_and_add_enlarged(kLayers[8], weights(8), first_8, kept_16, activations_.panel);
+  convolve_and_add_enlarged(kLayers[8], weights(8), first_8, kept_16, activations_.panel, registers);
   layer(9, kept_16, passing_16);
-  convolve_and_add_enlarged(kLayers[10], weights(10), passing_16, kept_32, activations_.panel);
+  convolve_and_add_enlarged(kLayers[10], weights(10), passing_16, kept_32, activations_.panel, registers);
   layer(11, kept_32, passing_32);
-  convolve_to_maps(kLayers[12], weights(12), passing_32, maps_, activations_.panel);
+  convolve_to_maps(kLayers[12], weights(12), passing_32, maps_, activations_.panel, registers);
 }
 
 }  // namespace vbar::fsw::network

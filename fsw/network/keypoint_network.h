@@ -11,6 +11,7 @@
 
 #include "fsw/core/result.h"
 #include "fsw/network/activations.h"
+#include "fsw/network/registers.h"
 #include "fsw/network/sizes.h"
 #include "fsw/network/weights_file.h"
 
@@ -27,8 +28,9 @@ class KeypointNetwork {
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
 
   /// Rows from the top. kNotReady without weights; kNotFinite for a sample that is NaN or above 2^20 in size,
-  /// or if the heatmaps are not finite: they are then not valid.
-  Status run(std::span<const float, kInputSamples> crop);
+  /// or if the heatmaps are not finite: they are then not valid. The computer must have the registers; they do not
+  /// change a bit of the result.
+  Status run(std::span<const float, kInputSamples> crop, Registers registers = widest_registers());
 
   /// Of the last run: the logits of keypoint k, cells in rows. Their softmax over the heatmap is the probability
   /// distribution of the keypoint position.
@@ -38,7 +40,7 @@ class KeypointNetwork {
 
  private:
   Status take_in(std::span<const float, kInputSamples> crop);
-  void run_layers();
+  void run_layers(Registers registers);
 
   std::span<const std::byte> weights_;
   Calibration calibration_;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "fsw/core/gps_time.h"
@@ -112,6 +113,12 @@ class Aid {
   void set_contradicting(bool is_contradicting) { is_contradicting_ = is_contradicting; }
   [[nodiscard]] bool is_contradicting() const { return is_contradicting_; }
 
+  /// What the source has found wrong with its own estimates in this step, beside its innovations, and has responded to;
+  /// in sigmas, or as a mean NIS per degree of freedom.
+  void note_inconsistency(double size) { inconsistency_ = size; }
+  void forget_inconsistency() { inconsistency_.reset(); }
+  [[nodiscard]] const std::optional<double>& inconsistency() const { return inconsistency_; }
+
   /// Since forget_transitions(), in order: an event is due for each.
   [[nodiscard]] std::span<const AidTransition> transitions() const {
     return std::span(transitions_).first(transition_count_);
@@ -128,6 +135,7 @@ class Aid {
   Consistency consistency_;
   Restarts restarts_;
   bool is_contradicting_ = false;
+  std::optional<double> inconsistency_;
 };
 
 }  // namespace vbar::fsw::sources

@@ -52,6 +52,7 @@ void OwnOrbit::begin_from_two(GpsTime time, const OwnPosition& measured) {
 }
 
 bool OwnOrbit::take(GpsTime time, const OwnPosition& measured) {
+  nis_ = 0.0;
   if (!started_) {
     begin_from_two(time, measured);
     return true;
@@ -70,7 +71,8 @@ bool OwnOrbit::take(GpsTime time, const OwnPosition& measured) {
   const math::Cholesky<3> joint(innovation);
   const math::Cholesky<3> noise(measured.covariance_m2);
   if (!noise.ok()) return false;
-  if (!joint.ok() || !(joint.solve_lower(residual).squaredNorm() <= settings_.gate)) {
+  nis_ = joint.ok() ? joint.solve_lower(residual).squaredNorm() : kNoGate;
+  if (!(nis_ <= settings_.gate)) {
     if (++refused_in_a_row_ < kMaxRefused) return false;
     widen(residual.norm());
     return take(time, measured);

@@ -51,6 +51,9 @@ class OwnOrbit {
   /// refused (false), and the last of kMaxRefused consecutive refusals inflates the covariance in order to be used.
   bool take(GpsTime time, const OwnPosition& measured);
 
+  /// Normalised innovation squared of the last position, three degrees of freedom; 0 of one that initialises the orbit.
+  [[nodiscard]] double nis() const { return nis_; }
+
   void advance(const navigation::Propagation& propagation, double dt);
   /// A burn (m/s, ECI), known to `sigma` per axis.
   void add_impulse(const Vector3& dv_eci, double sigma);
@@ -73,6 +76,7 @@ class OwnOrbit {
   First first_;
   int refused_in_a_row_ = 0;
   int inflations_ = 0;
+  double nis_ = 0.0;
   Estimate estimate_;
 };
 

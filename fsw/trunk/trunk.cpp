@@ -229,6 +229,12 @@ void Trunk::inflate_relative(double velocity_sigma, double along_track_sigma_m) 
   relative_orbit_.inflate(estimate_, servicer(), velocity_sigma, along_track_sigma_m / chief.value().a);
 }
 
+void Trunk::scale_relative_covariance(double factor) {
+  if (!has_relative() || !(factor > 1.0)) return;
+  estimate_.transform_head<6>(roe(), Matrix6::Identity(), (factor - 1.0) * roe_covariance());
+  finish_update();
+}
+
 void Trunk::inflate_own_orbit(double velocity_sigma) {
   own_orbit_.add_impulse(Vector3::Zero(), velocity_sigma);
 }

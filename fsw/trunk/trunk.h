@@ -140,7 +140,10 @@ class Trunk {
   /// After contradicting measurements: as after an unknown burn of `velocity_sigma`, m/s, with a sigma of the distance
   /// along track, m.
   void inflate_relative(double velocity_sigma, double along_track_sigma_m);
-  /// The same of the servicer's own orbit.
+  /// The innovations of a source are larger than its covariances state, by this mean normalised square: the covariance
+  /// of the relative orbit is multiplied by it.
+  void scale_relative_covariance(double factor);
+  /// The same of the servicer's own orbit as inflate_relative().
   void inflate_own_orbit(double velocity_sigma);
 
   /// Times that the relative estimate had to be discarded because it was not a covariance any more.

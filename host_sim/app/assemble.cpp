@@ -8,9 +8,11 @@
 
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/flight_recorder.h"
+#include "host_sim/app/guidance_domain.h"
 #include "host_sim/app/line_usage.h"
 #include "host_sim/app/make_thruster.h"
 #include "host_sim/faults/fault_log.h"
+#include "host_sim/faults/fault_schedule.h"
 #include "host_sim/faults/faulty_computer.h"
 #include "host_sim/faults/faulty_source.h"
 #include "host_sim/faults/faulty_thruster.h"
@@ -55,8 +57,6 @@ Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraf
     const auto id = -1 - static_cast<std::int32_t>(timetable.burns.size());
     timetable.burns.push_back({burn.time, burn.dv_rtn, id});
   }
-  for (const faults::UncommandedImpulse& impulse : faults::uncommanded_impulses(mission.faults))
-    timetable.burns.push_back({impulse.time, impulse.dv_rtn, impulse.id});
   const auto state_at_start = [&](std::string_view spacecraft) {
     return truth.state(truth.index_of(std::string(spacecraft)));
   };
@@ -209,21 +209,19 @@ void summarise_run(const RunFacts& facts, std::span<const Source> sources, repor
 }
 
 /// Sources with faults of theirs are wrapped; the others are not touched.
-sensors::MadeSources with_faults(sensors::MadeSources made, const mission::Mission& mission) {
+sensors::MadeSources with_faults(sensors::MadeSources made, const std::shared_ptr<faults::FaultSchedule>& schedule) {
   for (Source& source : made.sources) {
-    std::vector<mission::Fault> of_source;
-    for (const mission::Fault& fault : mission.faults)
-      if (!fault.unit.empty() && source.name == fault.spacecraft + "/" + fault.unit) of_source.push_back(fault);
-    if (!of_source.empty())
-      source.packets = std::make_unique<faults::FaultySource>(std::move(source.packets), std::move(of_source));
+    const auto is_of_it = [&](const mission::Fault& fault) { return faults::is_of_source(fault, source.name); };
+    if (std::ranges::any_of(schedule->faults(), is_of_it))
+      source.packets = std::make_unique<faults::FaultySource>(std::move(source.packets), schedule, source.name);
   }
   return made;
 }
 
 std::unique_ptr<twins::Actuator> with_faults(std::unique_ptr<twins::Actuator> thruster,
-                                             const mission::Mission& mission) {
-  if (mission.faults.empty()) return thruster;
-  return std::make_unique<faults::FaultyThruster>(std::move(thruster), mission.faults);
+                                             const std::shared_ptr<faults::FaultSchedule>& schedule) {
+  if (schedule->faults().empty()) return thruster;
+  return std::make_unique<faults::FaultyThruster>(std::move(thruster), schedule);
 }
 
 }  // namespace
@@ -232,11 +230,14 @@ AssembledMission::AssembledMission(const mission::Mission& mission, const std::f
                                    const sensors::MakeSources& make_sources)
     : mission_(mission),
       servicer_(complete_servicer(mission)),
+      faults_(std::make_shared<faults::FaultSchedule>(mission.faults, servicer_.name, servicer_.observes())),
       truth_(mission, servicer_, data_directory),
-      made_(with_faults(make_sources(mission, servicer_, data_directory, &truth_), mission)),
-      thruster_(with_faults(make_thruster(mission, servicer_), mission)),
+      made_(with_faults(make_sources(mission, servicer_, data_directory, &truth_), faults_)),
+      thruster_(with_faults(make_thruster(mission, servicer_), faults_)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
-      timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())) {}
+      timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())) {
+  check_guidance_domain(mission, servicer_, truth_.model().state(servicer_.name));
+}
 
 std::optional<io::WiredReceiver> AssembledMission::wired_receiver() const {
   for (const Source& source : made_.sources)
@@ -250,17 +251,31 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
   LineWatch line(mission_, servicer_, surroundings.flight_computer);
   std::vector<RunObserver*> observers(surroundings.observers.begin(), surroundings.observers.end());
   observers.insert(observers.end(), {&recording, &line});
-  faults::FaultLog fault_log(mission_, servicer_.name, servicer_.observes(), record);
-  if (!mission_.faults.empty()) observers.push_back(&fault_log);
+  faults::FaultLog fault_log(mission_, *faults_, servicer_.name, servicer_.observes(), record);
+  // Events first: what begins with one has begun for its witness.
+  if (!mission_.faults.empty()) observers.insert(observers.end(), {faults_.get(), &fault_log});
+  faults::UncommandedImpulses impulses(faults_);
   faults::FaultyComputer faulty_computer(
-      surroundings.flight_computer, mission_.faults,
-      [this] { return connect_flight_computer(servicer_, wired_receiver()); }, timetable_.first_packets);
+      surroundings.flight_computer, faults_, [this] { return connect_flight_computer(servicer_, wired_receiver()); },
+      timetable_.first_packets);
   pil::FlightComputer& flight_computer =
       faults::concern_computer(mission_.faults) ? faulty_computer : surroundings.flight_computer;
   SelectedClock wall(surroundings.wall);
-  const World world{truth_,          made_.sources,         *thruster_,
-                    flight_computer, board_link_,           wall,
-                    observers,       surroundings.progress, surroundings.stop_requested};
+  const World world{truth_,
+                    made_.sources,
+                    *thruster_,
+                    flight_computer,
+                    board_link_,
+                    wall,
+                    observers,
+                    surroundings.progress,
+                    surroundings.stop_requested,
+                    [&impulses] {
+                      std::vector<Timetable::Burn> burns;
+                      for (const faults::UncommandedImpulse& impulse : impulses.take())
+                        burns.push_back({impulse.time, impulse.dv_rtn, impulse.id});
+                      return burns;
+                    }};
   Simulation simulation(world, timetable_);
 
   const auto finish = [&](twins::StopReason reason) {

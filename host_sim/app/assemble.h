@@ -11,6 +11,7 @@
 #include "host_sim/app/flown_truth.h"
 #include "host_sim/app/simulation.h"
 #include "host_sim/app/started_sources.h"
+#include "host_sim/faults/fault_schedule.h"
 #include "host_sim/io/wired_receiver.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
@@ -48,11 +49,14 @@ class AssembledMission {
   [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const;
 
   [[nodiscard]] const RunFacts& facts() const { return facts_; }
+  /// On data of the truth that are missing or predicted.
+  [[nodiscard]] const std::vector<std::string>& data_notes() const { return truth_.model().data().notes; }
   [[nodiscard]] std::span<const Source> sources() const { return made_.sources; }
 
  private:
   const mission::Mission& mission_;
   const mission::Spacecraft& servicer_;
+  std::shared_ptr<faults::FaultSchedule> faults_;
   FlownTruth truth_;
   sensors::MadeSources made_;
   std::unique_ptr<twins::Actuator> thruster_;

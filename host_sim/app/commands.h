@@ -49,6 +49,14 @@ struct ReportOptions {
 /// Of one run: its report.html. Of several: a comparison.
 int report_command(const ReportOptions& options);
 
+struct NewArticleOptions {
+  std::filesystem::path folder;  ///< created; its name is that of the article
+  std::string language = "c";    ///< c | c++
+};
+/// A project of the user's own flight software, which builds a shared library or an image for the Zynq-7000 with the
+/// installed package of vbar.
+int new_article_command(const NewArticleOptions& options);
+
 /// `folder` empty: mission::missions_directory().
 int missions_command(const std::filesystem::path& folder);
 

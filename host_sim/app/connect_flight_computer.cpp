@@ -25,6 +25,8 @@ pil::FlightComputerOptions options_for(const mission::Spacecraft& spacecraft) {
   options.link = pil::link_from_name(mission::name_of(wanted.link));
   options.spacecraft = spacecraft.number;
   options.library = wanted.library;
+  options.step_budget = static_cast<std::uint64_t>(wanted.step_budget);
+  options.image = wanted.image;
   if (wanted.library.empty()) options.article = pil::linked_test_article();
   if (wanted.target == mission::FlightTarget::kBoard) {
     const bool serial = wanted.link == mission::FlightLink::kSerial;

@@ -14,7 +14,7 @@ FlownTruth::FlownTruth(const mission::Mission& mission, const mission::Spacecraf
       truth_(truth_settings(mission, data_directory)),
       earth_rotation_(truth_.data().earth_orientation, mission.epoch),
       is_pointed_(servicer.attitude && std::holds_alternative<mission::Commanded>(*servicer.attitude)) {
-  place_spacecraft(mission, truth_);
+  place_spacecraft(mission, data_directory, truth_);
   set_attitudes(mission, data_directory, truth_);
   servicer_ = truth_.index_of(servicer.name);
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {

@@ -6,6 +6,8 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "host_sim/mission/attitude.h"
+#include "host_sim/orbit_files/orbit_file.h"
+#include "host_sim/truth/earth/earth_rotation.h"
 
 namespace vbar::app {
 namespace {
@@ -27,6 +29,26 @@ CartesianState state_of(const QnsElements& mean, const mission::Spacecraft& spac
 CartesianState state_at_epoch(const mission::OrbitByElements& orbit, const mission::Spacecraft& spacecraft) {
   if (orbit.kind == mission::ElementsKind::kMean) return state_of(orbit.elements, spacecraft);
   return value_or_throw(fsw::orbit::cartesian_from_qns(orbit.elements), spacecraft);
+}
+
+/// To GCRF from the Earth-fixed frame. The rate of the rotation by a central difference: over 0.1 s it is good to 1e-8
+/// m/s in a low orbit.
+CartesianState gcrf_from_itrf(const CartesianState& itrf, const truth::TruthModel& truth, fsw::GpsTime time) {
+  constexpr double kHalf_s = 0.1;
+  truth::EarthRotation rotation(truth.data().earth_orientation, time);
+  const fsw::Matrix3 R = rotation.R_itrf_gcrf_at(0.0);
+  const fsw::Matrix3 rate = (rotation.R_itrf_gcrf_at(kHalf_s) - rotation.R_itrf_gcrf_at(-kHalf_s)) / (2.0 * kHalf_s);
+  CartesianState state;
+  state.position_eci = R.transpose() * itrf.position_eci;
+  state.velocity_eci = R.transpose() * itrf.velocity_eci + rate.transpose() * itrf.position_eci;
+  return state;
+}
+
+CartesianState state_at_epoch(const mission::OrbitByFile& orbit, const std::filesystem::path& data_directory,
+                              const truth::TruthModel& truth) {
+  const auto file = orbit_files::tracks_of(orbit_files::load_orbits(data_directory / orbit.file), orbit.object);
+  const orbit_files::FramedState at = orbit_files::state_at(file, truth.time());
+  return at.frame == orbit_files::Frame::kItrf ? gcrf_from_itrf(at.state, truth, truth.time()) : at.state;
 }
 
 /// Mean ROE of `spacecraft` with respect to another one; none if its orbit is given by elements.
@@ -67,10 +89,15 @@ truth::TruthSettings truth_settings(const mission::Mission& mission, const std::
   return settings;
 }
 
-void place_spacecraft(const mission::Mission& mission, truth::TruthModel& truth) {
+void place_spacecraft(const mission::Mission& mission, const std::filesystem::path& data_directory,
+                      truth::TruthModel& truth) {
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (const auto* orbit = std::get_if<mission::OrbitByElements>(&spacecraft.orbit)) {
       truth.add_spacecraft({spacecraft.name, state_at_epoch(*orbit, spacecraft), true_surface(mission, spacecraft)});
+    }
+    if (const auto* orbit = std::get_if<mission::OrbitByFile>(&spacecraft.orbit)) {
+      truth.add_spacecraft(
+          {spacecraft.name, state_at_epoch(*orbit, data_directory, truth), true_surface(mission, spacecraft)});
     }
   }
   truth.advance_to(mission.start_time());

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "host_sim/app/build_info.h"
+#include "host_sim/app/campaign_command.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/mission/mission_error.h"
@@ -152,10 +153,18 @@ int main(int argc, char** argv) {
                        "exit code 3 unless all runs gave the same outputs as the first");
   report_app->callback([&] { exit_code = report_command(report); });
 
+  add_campaign_command(program, exit_code);
+
   std::filesystem::path missions;
   CLI::App* missions_app = program.add_subcommand("missions", "what can be run, one line each");
   missions_app->add_option("folder", missions, "folder of mission files");
   missions_app->callback([&] { exit_code = missions_command(missions); });
+
+  NewArticleOptions article;
+  CLI::App* article_app = program.add_subcommand("new-article", "create a project of your own flight software");
+  article_app->add_option("folder", article.folder, "created; its name is that of the flight software")->required();
+  article_app->add_option("--language", article.language, "c or c++ (default c)");
+  article_app->callback([&] { exit_code = new_article_command(article); });
 
   const int result = parse_and_run(program, argc, argv, exit_code);
   errno = 0;

@@ -64,17 +64,18 @@ class PacketKeepers::Mirror final : public RunObserver {
 };
 
 PacketKeepers::PacketKeepers(const mission::Mission& mission, const std::filesystem::path& folder)
-    : log_(std::make_unique<Log>(report::packet_log_file(folder), mission.record.images)),
-      hash_(std::make_unique<Hash>()) {
+    : hash_(std::make_unique<Hash>()) {
+  if (mission.record.packets) log_ = std::make_unique<Log>(report::packet_log_file(folder), mission.record.images);
   if (mission.lcm.mirror) mirror_ = std::make_unique<Mirror>(mission.lcm.url);
-  observers_ = {log_.get(), hash_.get()};
+  if (log_) observers_.push_back(log_.get());
+  observers_.push_back(hash_.get());
   if (mirror_) observers_.push_back(mirror_.get());
 }
 
 PacketKeepers::~PacketKeepers() = default;
 
 void PacketKeepers::finish() {
-  log_->finish();
+  if (log_) log_->finish();
 }
 
 std::string PacketKeepers::commands_sha256() const {

@@ -14,7 +14,7 @@ namespace vbar::app {
 
 class PacketKeepers {
  public:
-  /// Starts packets.lcmlog in `folder`, and the LCM mirror if the mission asks for it. Throws std::runtime_error.
+  /// Starts packets.lcmlog in `folder` and the LCM mirror, each if the mission asks for it. Throws std::runtime_error.
   PacketKeepers(const mission::Mission& mission, const std::filesystem::path& folder);
   ~PacketKeepers();
   PacketKeepers(const PacketKeepers&) = delete;

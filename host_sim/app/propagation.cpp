@@ -51,7 +51,7 @@ Propagation::Propagation(const mission::Mission& mission, const std::filesystem:
     : mission_(mission),
       truth_(truth_settings(mission, data_directory)),
       earth_rotation_(truth_.data().earth_orientation, mission.epoch) {
-  place_spacecraft(mission, truth_);
+  place_spacecraft(mission, data_directory, truth_);
   for (const mission::Spacecraft& spacecraft : mission.spacecraft)
     truth_index_.push_back(truth_.index_of(spacecraft.name));
 }
@@ -98,6 +98,7 @@ report::PropagationRecord Propagation::run(const RowSink& sink, const std::funct
   report::PropagationRecord record;
   record.mission = mission_.name;
   record.threads = mission_.truth.threads;
+  record.data_notes = truth_.data().notes;
   std::vector<DecayMeter> decay;
   for (std::size_t k = 0; k < truth_index_.size(); ++k) {
     record.spacecraft.emplace_back().name = mission_.spacecraft[k].name;

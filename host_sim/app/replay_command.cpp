@@ -57,8 +57,9 @@ void check_trust(const mission::FlightComputer& computer, const ReplayOptions& o
   if (options.trust) return;
   const bool is_board = computer.target == mission::FlightTarget::kBoard;
   const bool is_serial = computer.link == mission::FlightLink::kSerial;
-  const std::array<std::pair<std::string_view, std::string>, 3> named{
+  const std::array<std::pair<std::string_view, std::string>, 4> named{
       {{"library", computer.library},
+       {"image", computer.image},
        {"device", is_board && is_serial ? computer.device : ""},
        {"address", is_board && !is_serial ? computer.address : ""}}};
   for (const auto& [key, value] : named) {
@@ -164,11 +165,11 @@ Continuation continuation(const ReplayOptions& options, const RecordedSteps& ste
   return from;
 }
 
-void save_snapshot(const ReplayOptions& options, std::uint32_t next_step, const pil::FlightComputer& computer) {
+void save_snapshot(const ReplayOptions& options, std::uint32_t next_step, pil::FlightComputer& computer) {
   std::vector<std::uint8_t> bytes = computer.snapshot();
   if (bytes.empty())
     throw Refused("--save: " + computer.description() +
-                  " gives no snapshot; accepted: flight_computer.target=in_process, --at-h after the first step");
+                  " gives no snapshot; accepted: vbar's flight software, --at-h after the first step");
   write_snapshot(options.save, {next_step, std::move(bytes)});
 }
 

@@ -37,6 +37,7 @@ report::Summary start_of(const mission::Mission& mission) {
   summary.mission = mission.name;
   summary.seed = mission.seed;
   summary.target = flying_spacecraft(mission).observes();
+  for (const double hour : mission.record.samples_h) summary.samples.push_back({.time_h = hour});
   return summary;
 }
 
@@ -118,6 +119,10 @@ void report_health(const report::Summary& summary) {
   if (!line.empty()) fmt::print("flight software: {}\n", line);
 }
 
+void report_data(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print("data: {}\n", note);
+}
+
 }  // namespace
 
 int run_command(const RunOptions& options) {
@@ -133,23 +138,32 @@ int run_command(const RunOptions& options) {
   report::RunRecord record;
   record.extensions = sensors::extensions();
   record.summary = start_of(mission);
+  record.summary.data_notes = assembled->data_notes();
+  if (!options.quiet) report_data(record.summary.data_notes);
   record.summary.provenance = provenance_of(mission, options.overrides, mission_text);
   RunFolder folder(options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out,
                    record.summary, options.force ? RunFolder::Existing::kReplace : RunFolder::Existing::kRefuse,
                    sensors::extensions());
+  if (!mission.record.tables) folder.leave_out_tables();
   keep_mission(mission_text, options, folder.path());
 
   const std::optional<std::string> trouble = fly_into(folder, mission, *assembled, options.quiet, record);
   try {
-    const std::filesystem::path report = report::write_html_report(folder.path(), record);
     if (!options.quiet && !record.waypoints.empty()) fmt::print("{}", report::waypoint_table(record));
     report_health(record.summary);
-    if (!options.quiet) fmt::print("report  {}\n", report.string());
+    if (mission.record.tables) {
+      const std::filesystem::path report = report::write_html_report(folder.path(), record);
+      if (!options.quiet) fmt::print("report  {}\n", report.string());
+    }
   } catch (const std::exception&) {
     if (!trouble) throw;  // the record is complete, its report is not
   }
   for (const report::FaultRow& fault : record.faults) {
-    if (!fault.effect_s) fmt::print("fault \"{}\" never took effect\n", fault.name);
+    if (!fault.begin_s) {
+      fmt::print("fault \"{}\" never began: {} did not happen\n", fault.name, fault.event);
+    } else if (!fault.effect_s) {
+      fmt::print("fault \"{}\" never took effect\n", fault.name);
+    }
   }
   if (!trouble && record.summary.never_navigated) {
     fmt::print(stderr, "vbar: {}: never navigated: no estimate was valid\n", folder.path().string());

@@ -72,6 +72,7 @@ void Simulation::fly() {
     interrupted_ = !wait_until_due(next->event);
     if (interrupted_) return;
     std::visit([this](const auto& event) { handle(event); }, next->event);
+    schedule_more_burns();
     if (interrupted_) return;
   }
 }
@@ -102,6 +103,16 @@ void Simulation::schedule_timetable() {
   }
   for (std::size_t k = 0; k < timetable_.burns.size(); ++k)
     schedule(timetable_.burns[k].time, ExecutePrescribedBurn{k});
+  schedule_more_burns();
+}
+
+void Simulation::schedule_more_burns() {
+  if (!world_.more_burns) return;
+  for (const Timetable::Burn& burn : world_.more_burns()) {
+    if (burn.time > timetable_.end) continue;
+    timetable_.burns.push_back(burn);
+    schedule(burn.time, ExecutePrescribedBurn{timetable_.burns.size() - 1});
+  }
 }
 
 void Simulation::schedule_measurement(std::size_t source, GpsTime from) {

@@ -32,19 +32,6 @@ namespace vbar::app {
 
 using Source = twins::NamedSource;
 
-/// What takes part in a run. All references must outlive it.
-struct World {
-  TrueWorld& truth;
-  std::span<const Source> sources;
-  twins::Actuator& thruster;
-  pil::FlightComputer& flight_computer;
-  engine::LinkModel& board_link;  ///< between sources or actuators and the flight computer
-  engine::WallClock& wall;
-  std::span<RunObserver* const> observers;
-  std::function<void(fsw::Duration)> progress = {};  ///< gets the simulated span after each step; may be empty
-  std::function<bool()> stop_requested = {};         ///< asked often; may be empty
-};
-
 /// When what happens.
 struct Timetable {
   struct Burn {
@@ -61,6 +48,22 @@ struct Timetable {
   std::vector<fsw::GpsTime> waypoints;
   std::vector<Burn> burns;                   ///< that the flight software did not ask for
   std::vector<twins::Packet> first_packets;  ///< telecommands that the first step brings
+};
+
+/// What takes part in a run. All references must outlive it.
+struct World {
+  TrueWorld& truth;
+  std::span<const Source> sources;
+  twins::Actuator& thruster;
+  pil::FlightComputer& flight_computer;
+  engine::LinkModel& board_link;  ///< between sources or actuators and the flight computer
+  engine::WallClock& wall;
+  std::span<RunObserver* const> observers;
+  std::function<void(fsw::Duration)> progress = {};  ///< gets the simulated span after each step; may be empty
+  std::function<bool()> stop_requested = {};         ///< asked often; may be empty
+  /// Burns that nobody commanded and whose times, the present or later, have become known; asked at the start and after
+  /// each event. May be empty.
+  std::function<std::vector<Timetable::Burn>()> more_burns = {};
 };
 
 /// What the simulation knows of a run that is over.
@@ -140,6 +143,7 @@ class Simulation {
   template <class E>
   void schedule(fsw::GpsTime time, E event);
   void schedule_timetable();
+  void schedule_more_burns();
   void schedule_measurement(std::size_t source, fsw::GpsTime from);
   bool wait_until_due(const Event& event);
   void fly();

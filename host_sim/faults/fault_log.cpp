@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "fsw/packets/messages.h"
+#include "host_sim/faults/fault_subject.h"
 #include "host_sim/faults/faulty_thruster.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/sensors/camera/camera_rows.h"
@@ -32,42 +35,19 @@ double norm(const double (&v)[3]) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/// The messages of a camera, a receiver, a star tracker and a range finder, by the words of their sensor's kind.
-std::optional<Apid> message_of(const mission::Mission& mission, const mission::Fault& fault) {
-  for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
-    if (spacecraft.name != fault.spacecraft) continue;
-    for (const mission::Sensor& sensor : spacecraft.sensors) {
-      if (sensor.name != fault.unit) continue;
-      if (sensor.kind == "camera") return Apid::kImageTile;
-      if (sensor.kind == "gnss") return spacecraft.flight_computer ? Apid::kGnssBytes : Apid::kCrosslinkGnssBytes;
-      if (sensor.kind == "range_finder") return Apid::kRangeMeasurement;
-      return Apid::kIdealNavigation;
-    }
-  }
-  return std::nullopt;
-}
-
-/// Header unit of a camera: cameras for navigation are numbered in the order of the sensors.
-std::uint8_t unit_of(const mission::Mission& mission, const std::string& name) {
-  std::uint8_t unit = 0;
-  for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
-    if (!spacecraft.flight_computer) continue;
-    for (const mission::Sensor& sensor : spacecraft.sensors) {
-      if (sensor.name == name) return unit;
-      if (sensor.kind == "camera" && sensor.settings->navigation != 0) ++unit;
-    }
-  }
-  return 0;
+bool is_upset_of_receiver(FaultKind kind) {
+  return kind == FaultKind::kCycleSlip || kind == FaultKind::kClockJump || kind == FaultKind::kReceiverReset;
 }
 
 }  // namespace
 
-FaultLog::FaultLog(const mission::Mission& mission, std::string servicer, std::string target, report::RunRecord& record)
+FaultLog::FaultLog(const mission::Mission& mission, const FaultSchedule& schedule, std::string servicer,
+                   std::string target, report::RunRecord& record)
     : mission_(mission), servicer_(std::move(servicer)), target_(std::move(target)), record_(record) {
-  for (const mission::Fault& fault : mission.faults) {
-    State state;
-    state.fault = fault;
-    states_.push_back(std::move(state));
+  for (const mission::Fault& fault : schedule.faults()) {
+    looks_at_receivers_ = looks_at_receivers_ || is_upset_of_receiver(fault.kind);
+    states_.push_back(
+        State{.fault = fault, .effect_s = {}, .over = {}, .witnessed = 0, .evidence = {}, .at_effect = {}});
   }
 }
 
@@ -77,8 +57,8 @@ void FaultLog::witness_effect(State& state, GpsTime time, const std::string& evi
   state.evidence = evidence;
 }
 
-void FaultLog::witness_recovery(State& state, GpsTime time) {
-  if (state.effect_s && !state.recovered_s) state.recovered_s = fsw::seconds(time - mission_.epoch);
+void FaultLog::witness_end(State& state, GpsTime time) {
+  if (state.effect_s && !state.over) state.over = time;
 }
 
 void FaultLog::on_truth(const twins::TruthSnapshot& truth) {
@@ -86,7 +66,7 @@ void FaultLog::on_truth(const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const target = truth.find(target_);
   if (servicer != nullptr) truth_ = *servicer;
   truth_time_ = truth.time;
-  const auto has_begun = [&](const State& state) { return truth.time >= state.fault.begin; };
+  const auto has_begun = [&](const State& state) { return state.fault.has_begun(truth.time); };
   if (servicer == nullptr || target == nullptr || std::ranges::none_of(states_, has_begun)) return;
   const double distance_m = (target->orbit.position_eci - servicer->orbit.position_eci).norm();
   min_distance_m_ = min_distance_m_ && *min_distance_m_ <= distance_m ? *min_distance_m_ : distance_m;
@@ -95,12 +75,7 @@ void FaultLog::on_truth(const twins::TruthSnapshot& truth) {
 void FaultLog::on_step(std::uint32_t /*step*/, GpsTime time, std::span<const pil::Packet> inputs,
                        std::span<const pil::Packet> outputs) {
   look_at_packets(time, inputs);
-  for (const pil::Packet& bytes : outputs) {
-    const auto packet = fsw::packets::parse_packet(bytes);
-    if (!packet.ok() || packet.value().header.apid != Apid::kManeuverCommand) continue;
-    const auto command = fsw::packets::decode<maneuver_command>(packet.value());
-    if (command.ok()) commanded_dv_[command.value().maneuver_id] = norm(command.value().dv_rtn);
-  }
+  look_at_outputs(time, outputs);
   for (State& state : states_) {
     switch (state.fault.kind) {
       case FaultKind::kSilent:
@@ -113,6 +88,13 @@ void FaultLog::on_step(std::uint32_t /*step*/, GpsTime time, std::span<const pil
       case FaultKind::kAttitudeError:
         look_at_attitudes(state, time, inputs);
         break;
+      case FaultKind::kReceiverReset:
+        look_at_silence(state, time);
+        [[fallthrough]];
+      case FaultKind::kCycleSlip:
+      case FaultKind::kClockJump:
+        look_at_receiver(state, time);
+        break;
       case FaultKind::kThrustScale:
       case FaultKind::kThrustUncommanded:
         break;  // on_execution
@@ -120,18 +102,32 @@ void FaultLog::on_step(std::uint32_t /*step*/, GpsTime time, std::span<const pil
         break;  // finish
       case FaultKind::kComputerSilent:
       case FaultKind::kComputerReboot:
-        if (time >= state.fault.begin && outputs.empty()) {
+        if (state.fault.has_begun(time) && outputs.empty()) {
           witness_effect(state, time, fmt::format("{} steps without an answer", state.witnessed + 1));
         } else if (!state.fault.is_present(time) && !outputs.empty()) {
-          witness_recovery(state, time);
+          witness_end(state, time);
         }
         break;
     }
   }
 }
 
+void FaultLog::look_at_outputs(GpsTime time, std::span<const pil::Packet> outputs) {
+  for (const pil::Packet& bytes : outputs) {
+    const auto packet = fsw::packets::parse_packet(bytes);
+    if (!packet.ok()) continue;
+    aids_.take(time, packet.value());
+    if (const auto command = fsw::packets::decode<maneuver_command>(packet.value()); command.ok()) {
+      commanded_dv_[command.value().maneuver_id] = norm(command.value().dv_rtn);
+    } else if (const auto telemetry = fsw::packets::decode<telemetry_gnss>(packet.value()); telemetry.ok()) {
+      carrier_phase_ = telemetry.value();
+    }
+  }
+}
+
 void FaultLog::look_at_packets(GpsTime /*time*/, std::span<const pil::Packet> inputs) {
   std::map<std::uint8_t, std::uint64_t> sums;
+  epochs_.clear();
   for (const pil::Packet& bytes : inputs) {
     const auto packet = fsw::packets::parse_packet(bytes);
     if (!packet.ok()) continue;
@@ -139,6 +135,9 @@ void FaultLog::look_at_packets(GpsTime /*time*/, std::span<const pil::Packet> in
     Stream& stream = streams_[{header.apid, header.unit}];
     if (stream.last.ns > 0 && header.time > stream.last) stream.interval = header.time - stream.last;
     stream.last = std::max(stream.last, header.time);
+    if (looks_at_receivers_ && (header.apid == Apid::kGnssBytes || header.apid == Apid::kCrosslinkGnssBytes)) {
+      std::ranges::move(receivers_[header.apid].take(packet.value()), std::back_inserter(epochs_[header.apid]));
+    }
     if (header.apid != Apid::kImageTile) continue;
     const auto tile = fsw::packets::decode<image_tile>(packet.value());
     if (!tile.ok()) continue;
@@ -148,27 +147,73 @@ void FaultLog::look_at_packets(GpsTime /*time*/, std::span<const pil::Packet> in
   for (const auto& [unit, sum] : sums) image_sums_[unit] = {image_sums_[unit][1], sum};
 }
 
-std::optional<FaultLog::StreamKey> FaultLog::stream_of(const mission::Fault& fault) const {
-  const auto apid = message_of(mission_, fault);
-  if (!apid) return std::nullopt;
-  return StreamKey{*apid, *apid == Apid::kImageTile ? unit_of(mission_, fault.unit) : std::uint8_t{0}};
+void FaultLog::look_at_receiver(State& state, GpsTime time) {
+  const auto key = stream_of(mission_, state.fault);
+  const auto epochs = key ? epochs_.find(key->first) : epochs_.end();
+  if (epochs != epochs_.end() && state.fault.has_begun(time)) {
+    for (const ReceiverEpoch& epoch : epochs->second) {
+      if (state.fault.kind == FaultKind::kCycleSlip) look_for_slip(state, epoch, time);
+      if (state.fault.kind == FaultKind::kClockJump && !state.over && epoch.clock_jump_s &&
+          std::abs(*epoch.clock_jump_s - state.fault.value) < 0.2 * std::abs(state.fault.value)) {
+        witness_effect(state, time, fmt::format("pseudoranges jump by {:.3g} s", *epoch.clock_jump_s));
+        witness_end(state, time);
+      }
+      // No carrier of before goes on.
+      if (state.fault.kind == FaultKind::kReceiverReset && !state.over && epoch.known > 0 &&
+          epoch.restarted == epoch.known) {
+        witness_effect(state, time, fmt::format("{} carriers, all locked anew", epoch.carriers));
+        witness_end(state, time);
+      }
+    }
+  }
+  if (state.fault.kind == FaultKind::kCycleSlip) look_for_reaction(state, time);
+}
+
+/// One satellite by the commanded cycles; of all, most of them by a multiple.
+void FaultLog::look_for_slip(State& state, const ReceiverEpoch& epoch, GpsTime time) {
+  std::set<fsw::gnss::SatelliteId> satellites;
+  std::size_t as_commanded = 0;
+  const bool is_of_all = state.fault.satellite == "all";
+  for (const ReceiverEpoch::Slip& slip : epoch.slips) {
+    const double ratio = slip.cycles / state.fault.value;
+    const double nearest = is_of_all ? std::round(ratio) : 1.0;
+    satellites.insert(slip.satellite);
+    if (std::abs(ratio - nearest) * std::abs(state.fault.value) < 0.3) ++as_commanded;
+  }
+  const bool is_seen = as_commanded == epoch.slips.size() && as_commanded > 0 &&
+                       (is_of_all ? 2 * as_commanded > epoch.carriers : satellites.size() == 1);
+  if (state.effect_s || !is_seen) return;
+  witness_effect(state, time,
+                 fmt::format("{} carriers of {} satellites jump, the first by {:.2f} cycles", as_commanded,
+                             satellites.size(), epoch.slips.front().cycles));
+  state.at_effect = carrier_phase_;
+}
+
+/// The flight software has refused the phase or given up integers, and holds integers again.
+void FaultLog::look_for_reaction(State& state, GpsTime time) {
+  if (!state.at_effect || !carrier_phase_ || state.over) return;
+  const telemetry_gnss& now = *carrier_phase_;
+  const telemetry_gnss& then = *state.at_effect;
+  const bool has_reacted = now.slips != then.slips || now.releases != then.releases ||
+                           now.phases_refused != then.phases_refused || now.restarts != then.restarts;
+  if (has_reacted && now.fixed > 0) witness_end(state, time);
 }
 
 /// Nothing for more than two intervals.
 void FaultLog::look_at_silence(State& state, GpsTime time) {
-  const auto key = stream_of(state.fault);
+  const auto key = stream_of(mission_, state.fault);
   const auto stream = key ? streams_.find(*key) : streams_.end();
   if (stream == streams_.end() || time < state.fault.begin) return;
   const fsw::Duration silent = time - stream->second.last;
   if (state.fault.is_present(time) && silent > stream->second.interval + stream->second.interval) {
     witness_effect(state, time, fmt::format("no packet for {:.0f} s", fsw::seconds(silent)));
   } else if (!state.fault.is_present(time) && stream->second.last >= state.fault.begin + *state.fault.duration) {
-    witness_recovery(state, stream->second.last);
+    witness_end(state, stream->second.last);
   }
 }
 
 void FaultLog::look_at_images(State& state, GpsTime time) {
-  const auto key = stream_of(state.fault);
+  const auto key = stream_of(mission_, state.fault);
   if (!key || time < state.fault.begin) return;
   const auto stream = streams_.find(*key);
   const auto sums = image_sums_.find(key->second);
@@ -177,7 +222,7 @@ void FaultLog::look_at_images(State& state, GpsTime time) {
   if (is_same && stream->second.last >= state.fault.begin) {
     witness_effect(state, time, "two images in a row with the same pixels");
   } else if (!is_same && state.fault.duration && stream->second.last >= state.fault.begin + *state.fault.duration) {
-    witness_recovery(state, stream->second.last);
+    witness_end(state, stream->second.last);
   }
 }
 
@@ -199,7 +244,7 @@ void FaultLog::look_at_attitudes(State& state, GpsTime time, std::span<const pil
     const bool is_wrong = error > 0.5 * state.fault.value;
     if (is_wrong) witness_effect(state, packet.value().header.time, fmt::format("off by {:.3f} deg", error / kDegree));
     if (!is_wrong && !state.fault.is_present(packet.value().header.time)) {
-      witness_recovery(state, packet.value().header.time);
+      witness_end(state, packet.value().header.time);
     }
   }
 }
@@ -213,7 +258,7 @@ void FaultLog::on_execution(GpsTime time, const executed_maneuver& executed) {
     }
     if (state.fault.kind == FaultKind::kThrustUncommanded && !is_uncommanded && !state.fault.is_present(time) &&
         time > state.fault.begin) {
-      witness_recovery(state, time);
+      witness_end(state, time);
     }
     const auto commanded = commanded_dv_.find(executed.maneuver_id);
     if (state.fault.kind != FaultKind::kThrustScale || commanded == commanded_dv_.end()) continue;
@@ -222,7 +267,7 @@ void FaultLog::on_execution(GpsTime time, const executed_maneuver& executed) {
     if (is_off && state.fault.is_present(time)) {
       witness_effect(state, time, fmt::format("{} burns, the last at {:.3f} of its size", state.witnessed + 1, ratio));
     }
-    if (!is_off && time > state.fault.begin && !state.fault.is_present(time)) witness_recovery(state, time);
+    if (!is_off && time > state.fault.begin && !state.fault.is_present(time)) witness_end(state, time);
   }
 }
 
@@ -235,7 +280,7 @@ void FaultLog::look_at_poses(State& state) {
     if (is_off && state.fault.is_present(time)) {
       witness_effect(state, time, fmt::format("pose off by {:.0f} deg", *pose.pnp_error_deg));
     } else if (!is_off && !state.fault.is_present(time)) {
-      witness_recovery(state, time);
+      witness_end(state, time);
     }
   }
 }
@@ -243,27 +288,49 @@ void FaultLog::look_at_poses(State& state) {
 void FaultLog::finish() {
   for (State& state : states_)
     if (state.fault.kind == FaultKind::kTargetTurned) look_at_poses(state);
-  int without_effect = 0;
-  for (const State& state : states_) {
-    const mission::Fault& fault = state.fault;
-    report::FaultRow row;
-    row.name = fault.name;
-    row.kind = std::string(mission::name_of(fault.kind));
-    row.unit = fault.unit;
-    row.begin_s = fsw::seconds(fault.begin - mission_.epoch);
-    if (fault.duration) row.end_s = row.begin_s + fsw::seconds(*fault.duration);
-    row.effect_s = state.effect_s;
-    row.recovered_s = state.recovered_s;
-    row.witnessed = state.witnessed;
-    row.evidence = state.evidence;
-    record_.faults.push_back(row);
-    if (!state.effect_s) ++without_effect;
-  }
   if (states_.empty()) return;
   auto& figures = record_.summary.sensor_figures["faults"];
   figures["injected"] = static_cast<double>(states_.size());
-  figures["without_effect"] = without_effect;
   if (min_distance_m_) figures["min_distance_m"] = *min_distance_m_;
+  double& without_effect = figures["without_effect"];
+  double& not_recovered = figures["not_recovered"];
+  for (const State& state : states_) {
+    const report::FaultRow row = row_of(state);
+    record_.faults.push_back(row);
+    if (!row.effect_s) ++without_effect;
+    if (!row.effect_s || !row.end_s || *row.end_s > fsw::seconds(mission_.end_time() - mission_.epoch)) continue;
+    if (row.recovered_s) {
+      double& after_s = figures[row.name + ".recovered_after_s"];
+      after_s = std::max(after_s, *row.recovered_s - *row.end_s);  // of several of one name: the last one
+    } else {
+      ++not_recovered;
+    }
+  }
+}
+
+std::optional<GpsTime> FaultLog::recovery_of(const State& state) const {
+  if (!state.over) return std::nullopt;
+  const std::int32_t needed = aids_concerned(mission_, state.fault) & aids_.before(state.fault.begin);
+  return aids_.first_with(needed, *state.over);
+}
+
+report::FaultRow FaultLog::row_of(const State& state) const {
+  const mission::Fault& fault = state.fault;
+  const auto seconds_of = [this](GpsTime time) { return fsw::seconds(time - mission_.epoch); };
+  report::FaultRow row;
+  row.name = fault.name;
+  row.kind = std::string(mission::name_of(fault.kind));
+  row.unit = fault.unit;
+  row.event = fault.start;
+  if (!fault.awaited) {
+    row.begin_s = seconds_of(fault.begin);
+    if (fault.duration) row.end_s = *row.begin_s + fsw::seconds(*fault.duration);
+  }
+  row.effect_s = state.effect_s;
+  if (const auto recovery = recovery_of(state)) row.recovered_s = seconds_of(*recovery);
+  row.witnessed = state.witnessed;
+  row.evidence = state.evidence;
+  return row;
 }
 
 }  // namespace vbar::faults

@@ -10,6 +10,10 @@
 #include <vector>
 
 #include "host_sim/app/run_observer.h"
+#include "host_sim/faults/aid_watch.h"
+#include "host_sim/faults/fault_schedule.h"
+#include "host_sim/faults/fault_subject.h"
+#include "host_sim/faults/receiver_witness.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
 
@@ -17,8 +21,9 @@ namespace vbar::faults {
 
 class FaultLog final : public app::RunObserver {
  public:
-  /// `servicer` and `target`: names in the truth. All must outlive it.
-  FaultLog(const mission::Mission& mission, std::string servicer, std::string target, report::RunRecord& record);
+  /// `schedule`: when faults begin, of `mission`. `servicer` and `target`: names in the truth. All must outlive it.
+  FaultLog(const mission::Mission& mission, const FaultSchedule& schedule, std::string servicer, std::string target,
+           report::RunRecord& record);
 
   void on_truth(const twins::TruthSnapshot& truth) override;
   void on_step(std::uint32_t step, fsw::GpsTime time, std::span<const pil::Packet> inputs,
@@ -31,26 +36,32 @@ class FaultLog final : public app::RunObserver {
  private:
   /// What a witness has seen of one fault.
   struct State {
-    mission::Fault fault;
-    std::optional<double> effect_s, recovered_s;
+    const mission::Fault& fault;
+    std::optional<double> effect_s;
+    std::optional<fsw::GpsTime> over;  ///< what it disturbed is right again
     int witnessed = 0;
     std::string evidence;
+    std::optional<telemetry_gnss> at_effect;  ///< kCycleSlip: the last telemetry of carrier phase then
   };
   /// Packets of one kind and unit.
   struct Stream {
     fsw::GpsTime last;
     fsw::Duration interval{0};
   };
-  using StreamKey = std::pair<fsw::packets::Apid, std::uint8_t>;
 
   void witness_effect(State& state, fsw::GpsTime time, const std::string& evidence);
-  void witness_recovery(State& state, fsw::GpsTime time);
+  void witness_end(State& state, fsw::GpsTime time);
   void look_at_packets(fsw::GpsTime time, std::span<const pil::Packet> inputs);
   void look_at_silence(State& state, fsw::GpsTime time);
   void look_at_poses(State& state);
   void look_at_images(State& state, fsw::GpsTime time);
   void look_at_attitudes(State& state, fsw::GpsTime time, std::span<const pil::Packet> inputs);
-  [[nodiscard]] std::optional<StreamKey> stream_of(const mission::Fault& fault) const;
+  void look_at_outputs(fsw::GpsTime time, std::span<const pil::Packet> outputs);
+  void look_at_receiver(State& state, fsw::GpsTime time);
+  void look_for_slip(State& state, const ReceiverEpoch& epoch, fsw::GpsTime time);
+  void look_for_reaction(State& state, fsw::GpsTime time);
+  [[nodiscard]] std::optional<fsw::GpsTime> recovery_of(const State& state) const;
+  [[nodiscard]] report::FaultRow row_of(const State& state) const;
 
   const mission::Mission& mission_;
   std::string servicer_;
@@ -60,6 +71,11 @@ class FaultLog final : public app::RunObserver {
   std::map<StreamKey, Stream> streams_;
   std::map<std::uint8_t, std::array<std::uint64_t, 2>> image_sums_;  ///< of each camera: the last one and the present
   std::map<std::int32_t, double> commanded_dv_;
+  std::map<fsw::packets::Apid, ReceiverWitness> receivers_;
+  std::map<fsw::packets::Apid, std::vector<ReceiverEpoch>> epochs_;  ///< of the present step
+  std::optional<telemetry_gnss> carrier_phase_;                      ///< the last one
+  AidWatch aids_;
+  bool looks_at_receivers_ = false;  ///< decoding costs, and most faults are not theirs
   std::optional<twins::SpacecraftTruth> truth_;
   fsw::GpsTime truth_time_;
   std::optional<double> min_distance_m_;  ///< from the first fault on

@@ -20,10 +20,10 @@ bool concern_computer(const std::vector<mission::Fault>& faults) {
   return std::ranges::any_of(faults, is_of_computer);
 }
 
-FaultyComputer::FaultyComputer(pil::FlightComputer& computer, std::vector<mission::Fault> faults, Start start,
-                               std::vector<pil::Packet> telecommands)
+FaultyComputer::FaultyComputer(pil::FlightComputer& computer, std::shared_ptr<const FaultSchedule> schedule,
+                               Start start, std::vector<pil::Packet> telecommands)
     : computer_(computer),
-      faults_(std::move(faults)),
+      schedule_(std::move(schedule)),
       start_(std::move(start)),
       telecommands_(std::move(telecommands)) {}
 
@@ -31,7 +31,7 @@ pil::StepResult FaultyComputer::step(std::uint32_t step, std::span<const pil::Pa
   const auto tick = packets.empty() ? fsw::Result<fsw::packets::PacketView>(fsw::Status::kNotReady)
                                     : fsw::packets::parse_packet(packets.back());
   if (tick.ok()) {
-    for (const mission::Fault& fault : faults_) {
+    for (const mission::Fault& fault : schedule_->faults()) {
       if (!is_of_computer(fault) || !fault.is_present(tick.value().header.time)) continue;
       const bool begins = fault.kind == FaultKind::kComputerReboot && !must_restart_;
       if (begins && fault.keeps_state) snapshot_ = present().snapshot();

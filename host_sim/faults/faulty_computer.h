@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "host_sim/mission/mission.h"
+#include "host_sim/faults/fault_schedule.h"
 #include "pil_bridge/flight_computer.h"
 
 namespace vbar::faults {
@@ -17,7 +17,7 @@ class FaultyComputer final : public pil::FlightComputer {
 
   /// `computer` must outlive it. `start` makes another one in its place; `telecommands` are sent to that one before
   /// its first step, as the ground would when the computer asks for its configuration.
-  FaultyComputer(pil::FlightComputer& computer, std::vector<mission::Fault> faults, Start start,
+  FaultyComputer(pil::FlightComputer& computer, std::shared_ptr<const FaultSchedule> schedule, Start start,
                  std::vector<pil::Packet> telecommands);
 
   pil::StepResult step(std::uint32_t step, std::span<const pil::Packet> packets) override;
@@ -29,7 +29,7 @@ class FaultyComputer final : public pil::FlightComputer {
   [[nodiscard]] pil::FlightComputer& present() const { return restarted_ ? *restarted_ : computer_; }
 
   pil::FlightComputer& computer_;
-  std::vector<mission::Fault> faults_;
+  std::shared_ptr<const FaultSchedule> schedule_;
   Start start_;
   std::vector<pil::Packet> telecommands_;
   std::unique_ptr<pil::FlightComputer> restarted_;

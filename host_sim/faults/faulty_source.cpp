@@ -56,17 +56,37 @@ struct FaultySource::LastImage {
   }
 };
 
-FaultySource::FaultySource(std::unique_ptr<twins::PacketSource> source, std::vector<mission::Fault> faults)
-    : source_(std::move(source)), faults_(std::move(faults)), last_image_(std::make_shared<LastImage>()) {}
+FaultySource::FaultySource(std::unique_ptr<twins::PacketSource> source, std::shared_ptr<const FaultSchedule> schedule,
+                           std::string name)
+    : source_(std::move(source)), schedule_(std::move(schedule)), last_image_(std::make_shared<LastImage>()) {
+  for (const mission::Fault& fault : schedule_->faults())
+    if (is_of_source(fault, name)) faults_.push_back(&fault);
+  is_upset_.resize(faults_.size(), false);
+}
+
+void FaultySource::upset_device(fsw::GpsTime time) {
+  using mission::FaultKind;
+  using twins::Upset;
+  for (std::size_t k = 0; k < faults_.size(); ++k) {
+    const mission::Fault& fault = *faults_[k];
+    // At its end: a reset receiver is off before.
+    if (is_upset_[k] || !fault.has_begun(time) || fault.is_present(time)) continue;
+    std::optional<Upset> upset;
+    if (fault.kind == FaultKind::kCycleSlip) upset = {Upset::Kind::kCycleSlip, fault.value, fault.satellite};
+    if (fault.kind == FaultKind::kClockJump) upset = {Upset::Kind::kClockJump, fault.value, {}};
+    if (fault.kind == FaultKind::kReceiverReset) upset = {Upset::Kind::kReset, 0.0, {}};
+    if (upset && source_->upset(*upset)) is_upset_[k] = true;
+  }
+}
 
 twins::TruthSnapshot FaultySource::seen(const twins::TruthSnapshot& truth) const {
   twins::TruthSnapshot seen = truth;
-  for (const mission::Fault& fault : faults_) {
-    if (fault.kind != mission::FaultKind::kTargetTurned || !fault.is_present(truth.time)) continue;
+  for (const mission::Fault* const fault : faults_) {
+    if (fault->kind != mission::FaultKind::kTargetTurned || !fault->is_present(truth.time)) continue;
     for (twins::SpacecraftTruth& spacecraft : seen.spacecraft) {
-      if (spacecraft.name != fault.observed || !spacecraft.attitude) continue;
+      if (spacecraft.name != fault->observed || !spacecraft.attitude) continue;
       Eigen::Quaterniond& q_body_eci = spacecraft.attitude->q_body_eci;
-      q_body_eci = Eigen::Quaterniond(Eigen::AngleAxisd(fault.value, fsw::Vector3::UnitX())) * q_body_eci;
+      q_body_eci = Eigen::Quaterniond(Eigen::AngleAxisd(fault->value, fsw::Vector3::UnitX())) * q_body_eci;
     }
   }
   return seen;
@@ -74,10 +94,12 @@ twins::TruthSnapshot FaultySource::seen(const twins::TruthSnapshot& truth) const
 
 twins::Measurement FaultySource::measure(const twins::TruthSnapshot& truth) {
   using mission::FaultKind;
+  upset_device(truth.time);
   twins::Measurement measurement = source_->measure(seen(truth));
   bool is_frozen = false;
   bool may_freeze = false;
-  for (const mission::Fault& fault : faults_) {
+  for (const mission::Fault* const each : faults_) {
+    const mission::Fault& fault = *each;
     may_freeze = may_freeze || fault.kind == FaultKind::kFrozen;
     if (!fault.is_present(truth.time)) continue;
     if (fault.kind == FaultKind::kSilent) {
@@ -88,7 +110,8 @@ twins::Measurement FaultySource::measure(const twins::TruthSnapshot& truth) {
       nothing.available = measurement.available;
       return nothing;
     }
-    if (fault.kind == FaultKind::kReceiverSilent) std::erase_if(measurement.packets, is_of_receiver);
+    if (fault.kind == FaultKind::kReceiverSilent || fault.kind == FaultKind::kReceiverReset)
+      std::erase_if(measurement.packets, is_of_receiver);
     if (fault.kind == FaultKind::kAttitudeError) {
       for (Packet& packet : measurement.packets) packet = with_attitude_error(packet, fault.value);
     }
@@ -113,6 +136,10 @@ twins::Measurement FaultySource::measure(const twins::TruthSnapshot& truth) {
   // One after the other: an image must be kept before the next one may repeat it.
   measurement.pending.wait();
   return measurement;
+}
+
+bool is_of_source(const mission::Fault& fault, std::string_view source) {
+  return !fault.unit.empty() && source == fault.spacecraft + "/" + fault.unit;
 }
 
 Packet with_attitude_error(const Packet& packet, double angle) {

@@ -4,17 +4,19 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "host_sim/mission/mission.h"
+#include "host_sim/faults/fault_schedule.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::faults {
 
 class FaultySource final : public twins::PacketSource {
  public:
-  /// `faults`: those of this source.
-  FaultySource(std::unique_ptr<twins::PacketSource> source, std::vector<mission::Fault> faults);
+  /// `name`: of the source, "servicer/camera"; its faults are those of this unit of this spacecraft.
+  FaultySource(std::unique_ptr<twins::PacketSource> source, std::shared_ptr<const FaultSchedule> schedule,
+               std::string name);
 
   void start(fsw::GpsTime first_epoch) override { source_->start(first_epoch); }
   void stop(twins::StopReason reason) override { source_->stop(reason); }
@@ -25,6 +27,7 @@ class FaultySource final : public twins::PacketSource {
   void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) override {
     source_->command(packet, effective);
   }
+  bool upset(const twins::Upset& upset) override { return source_->upset(upset); }
   [[nodiscard]] twins::TruthDetail truth_detail() const override { return source_->truth_detail(); }
   [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const override { return source_->wired_receiver(); }
   [[nodiscard]] bool truth_is_compared() const override { return source_->truth_is_compared(); }
@@ -35,13 +38,21 @@ class FaultySource final : public twins::PacketSource {
   /// The truth as this source sees it.
   [[nodiscard]] twins::TruthSnapshot seen(const twins::TruthSnapshot& truth) const;
 
+  /// What befalls the device at an instant that has come since the last measurement.
+  void upset_device(fsw::GpsTime time);
+
   /// The tiles of an image, shared with measurements that are pending.
   struct LastImage;
 
   std::unique_ptr<twins::PacketSource> source_;
-  std::vector<mission::Fault> faults_;
+  std::shared_ptr<const FaultSchedule> schedule_;
+  std::vector<const mission::Fault*> faults_;  ///< of the schedule: those of this source
+  std::vector<bool> is_upset_;                 ///< by each of them already
   std::shared_ptr<LastImage> last_image_;
 };
+
+/// Whether the fault is one of the source of this name.
+[[nodiscard]] bool is_of_source(const mission::Fault& fault, std::string_view source);
 
 /// The attitude packet with its attitude turned by `angle` (rad) about the body's x axis; other packets as they are.
 [[nodiscard]] twins::Packet with_attitude_error(const twins::Packet& packet, double angle);

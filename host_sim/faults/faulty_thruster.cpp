@@ -6,14 +6,15 @@
 
 namespace vbar::faults {
 
-FaultyThruster::FaultyThruster(std::unique_ptr<twins::Actuator> thruster, std::vector<mission::Fault> faults)
-    : thruster_(std::move(thruster)), faults_(std::move(faults)) {}
+FaultyThruster::FaultyThruster(std::unique_ptr<twins::Actuator> thruster, std::shared_ptr<FaultSchedule> schedule)
+    : thruster_(std::move(thruster)), schedule_(std::move(schedule)) {}
 
 twins::Execution FaultyThruster::execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time,
                                          fsw::GpsTime now) {
+  if (command.maneuver_id < kFirstUncommanded && burn_time >= now) schedule_->on_ignition(burn_time);
   double scale = 1.0;
   bool is_reported = true;
-  for (const mission::Fault& fault : faults_) {
+  for (const mission::Fault& fault : schedule_->faults()) {
     if (!fault.is_present(burn_time)) continue;
     if (fault.kind == mission::FaultKind::kThrustScale && command.maneuver_id < kFirstUncommanded) {
       scale *= fault.value;
@@ -22,7 +23,7 @@ twins::Execution FaultyThruster::execute(const vbar::maneuver_command& command, 
   }
   if (command.maneuver_id >= kFirstUncommanded) {
     twins::Execution execution = thruster_->execute(command, burn_time, now);
-    const bool is_told = std::ranges::any_of(faults_, [&](const mission::Fault& fault) {
+    const bool is_told = std::ranges::any_of(schedule_->faults(), [&](const mission::Fault& fault) {
       return fault.kind == mission::FaultKind::kThrustUncommanded && fault.is_present(burn_time) && fault.is_reported;
     });
     if (!is_told) execution.packet.clear();
@@ -36,17 +37,21 @@ twins::Execution FaultyThruster::execute(const vbar::maneuver_command& command, 
   return execution;
 }
 
-std::vector<UncommandedImpulse> uncommanded_impulses(const std::vector<mission::Fault>& faults) {
+UncommandedImpulses::UncommandedImpulses(std::shared_ptr<const FaultSchedule> schedule)
+    : schedule_(std::move(schedule)), is_taken_(schedule_->faults().size(), false) {}
+
+std::vector<UncommandedImpulse> UncommandedImpulses::take() {
   std::vector<UncommandedImpulse> impulses;
-  std::int32_t id = kFirstUncommanded;
-  for (const mission::Fault& fault : faults) {
-    if (fault.kind != mission::FaultKind::kThrustUncommanded) continue;
+  for (std::size_t k = 0; k < is_taken_.size(); ++k) {
+    const mission::Fault& fault = schedule_->faults()[k];
+    if (is_taken_[k] || fault.awaited || fault.kind != mission::FaultKind::kThrustUncommanded) continue;
+    is_taken_[k] = true;
     const double total_s = fsw::seconds(*fault.duration);
     for (double from_s = 0.0; from_s < total_s; from_s += 1.0) {
       const double span_s = std::min(1.0, total_s - from_s);
       impulses.push_back({.time = fault.begin + fsw::nearest_duration(from_s + 0.5 * span_s),
                           .dv_rtn = fault.value * span_s * fault.direction_rtn,
-                          .id = id++});
+                          .id = next_id_++});
     }
   }
   return impulses;

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "host_sim/mission/mission.h"
+#include "host_sim/faults/fault_schedule.h"
 #include "host_sim/twins/actuator.h"
 
 namespace vbar::faults {
@@ -14,14 +14,14 @@ inline constexpr std::int32_t kFirstUncommanded = 1'000'000'000;
 
 class FaultyThruster final : public twins::Actuator {
  public:
-  FaultyThruster(std::unique_ptr<twins::Actuator> thruster, std::vector<mission::Fault> faults);
+  FaultyThruster(std::unique_ptr<twins::Actuator> thruster, std::shared_ptr<FaultSchedule> schedule);
 
   /// A report that is not to be sent has no packet.
   twins::Execution execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time, fsw::GpsTime now) override;
 
  private:
   std::unique_ptr<twins::Actuator> thruster_;
-  std::vector<mission::Fault> faults_;
+  std::shared_ptr<FaultSchedule> schedule_;
 };
 
 /// An impulse of a thruster that is stuck open.
@@ -31,7 +31,18 @@ struct UncommandedImpulse {
   std::int32_t id = 0;
 };
 
-/// One each second of such faults, from its middle.
-[[nodiscard]] std::vector<UncommandedImpulse> uncommanded_impulses(const std::vector<mission::Fault>& faults);
+/// Impulses of thrusters that are stuck open: one each second of such a fault, from its middle.
+class UncommandedImpulses {
+ public:
+  explicit UncommandedImpulses(std::shared_ptr<const FaultSchedule> schedule);
+
+  /// Those of faults whose beginning has become known since the last call.
+  [[nodiscard]] std::vector<UncommandedImpulse> take();
+
+ private:
+  std::shared_ptr<const FaultSchedule> schedule_;
+  std::vector<bool> is_taken_;  ///< of each fault
+  std::int32_t next_id_ = kFirstUncommanded;
+};
 
 }  // namespace vbar::faults

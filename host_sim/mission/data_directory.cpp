@@ -5,9 +5,22 @@
 
 namespace vbar::mission {
 
+namespace {
+
+/// Of an installation, beside the folder of the running program.
+std::filesystem::path installed_data() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path folder = program.parent_path().parent_path() / "share/vbar/data";
+  return !error && std::filesystem::is_directory(folder, error) ? folder : std::filesystem::path();
+}
+
+}  // namespace
+
 std::filesystem::path data_directory() {
-  const char* chosen = std::getenv("VBAR_DATA");
-  const std::filesystem::path folder = chosen != nullptr ? chosen : VBAR_DATA_DIRECTORY;
+  const char* const chosen = std::getenv("VBAR_DATA");
+  const std::filesystem::path installed = chosen == nullptr ? installed_data() : std::filesystem::path();
+  const std::filesystem::path folder = chosen != nullptr ? chosen : installed.empty() ? VBAR_DATA_DIRECTORY : installed;
   if (!std::filesystem::is_directory(folder)) {
     throw std::runtime_error(folder.string() + ": no such data folder; set VBAR_DATA to the project's data folder");
   }

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/table_reader.h"
@@ -64,16 +65,23 @@ void resolve(toml::table& document, const std::filesystem::path& file, int depth
   const TableReader reader(document, file.string());
   if (!reader.has("extends")) return;
   if (depth == kLongestChain) reader.refuse_value("extends", "a chain of at most four files");
-  const std::filesystem::path other = file.parent_path() / reader.text("extends");
-  toml::table base = [&] {
-    try {
-      return parse_toml(read_text_file(other, "a mission file (TOML)"), other.string());
-    } catch (const MissionError& error) {
-      reader.refuse("extends", std::string("an invalid file: ") + error.what(), "a mission file");
-    }
-  }();
+  const std::vector<std::string> names =
+      reader.is_array("extends") ? reader.texts("extends") : std::vector<std::string>{reader.text("extends")};
+  if (names.empty()) reader.refuse("extends", "no file", "a mission file, or an array of them");
+  toml::table base;
+  for (const std::string& name : names) {
+    const std::filesystem::path other = file.parent_path() / name;
+    toml::table one = [&] {
+      try {
+        return parse_toml(read_text_file(other, "a mission file (TOML)"), other.string());
+      } catch (const MissionError& error) {
+        reader.refuse("extends", std::string("an invalid file: ") + error.what(), "a mission file");
+      }
+    }();
+    resolve(one, other, depth + 1);
+    put_over(base, one);
+  }
   document.erase("extends");
-  resolve(base, other, depth + 1);
   put_over(base, document);
   document = std::move(base);
 }

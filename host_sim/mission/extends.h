@@ -1,5 +1,5 @@
 #pragma once
-// `extends = "other.toml"`: a mission file that states only the differences from another one.
+// `extends = "other.toml"`, or an array of files: a mission file that states only the differences from others.
 
 #include <filesystem>
 #include <string>
@@ -9,9 +9,10 @@
 namespace vbar::mission {
 
 /// Replaces `document`, if it has the key `extends`, by the file it names (relative to `file`; it may extend another
-/// in turn) with `document` put over it: tables key by key; a [[spacecraft]] of the same name and a [[waypoint]] of the
-/// same index likewise, others are appended; every other value, arrays included, replaces the old one.
-/// Throws MissionError for a file that cannot be read, and for a chain of more than four.
+/// in turn), of several each put over those before it, with `document` put over it: tables key by key; a [[spacecraft]]
+/// of the same name and a [[waypoint]] of the same index likewise, others are appended; every other value, arrays
+/// included, replaces the old one. Throws MissionError for a file that cannot be read, and for a chain of more than
+/// four.
 void put_over_extended(toml::table& document, const std::filesystem::path& file);
 
 /// The file without dependence on others: its own text if it extends nothing, else its merged content, in TOML

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -45,6 +46,12 @@ struct OrbitByRoe {
   fsw::Vector6 a_roe_m = fsw::Vector6::Zero();  ///< times the reference a
 };
 
+/// Orbit given by the file of another program, at the epoch.
+struct OrbitByFile {
+  std::filesystem::path file;
+  std::string object;  ///< of the file; empty: its only one
+};
+
 using truth::SurfaceProperties;
 
 enum class FlightTarget { kInProcess, kHostProcess, kZynqQemu, kZynqLinuxQemu, kBoard };
@@ -55,12 +62,15 @@ struct FlightComputer {
   FlightTarget target = FlightTarget::kInProcess;
   FlightLink link = FlightLink::kSerial;
   std::string library;            ///< shared library of another flight software; empty: vbar's own
+  std::string image;              ///< program or ELF image of another one; empty: vbar's own
   fsw::Duration compute_latency;  ///< from a step to the moment its outputs take effect
   std::string device;             ///< board on a serial link: the tty
   /// Serial link: the tty's rate (board: 921,600 by default); for others the bridge limits the rate to it.
   std::optional<int> baud;
   std::string address;  ///< board on UDP
   int port = 0;         ///< board on UDP
+  /// Of a step, beyond which the run fails: instructions on zynq_qemu, processor cycles on a board.
+  std::int64_t step_budget = 0;
 };
 
 /// What a kind of sensor has read from the table of one sensor: each kind derives its own settings.
@@ -120,6 +130,21 @@ enum class FaultKind {
   kThrustUncommanded,  ///< an acceleration of `value` m/s^2 along `direction_rtn`
   kComputerSilent,     ///< the flight computer gets no packets and takes no steps, then continues
   kComputerReboot,     ///< the same, and it starts again: its telecommands are sent again
+  kCycleSlip,          ///< carriers of a receiver jump by `value` cycles without an indication in its data
+  kClockJump,          ///< the clock of a receiver jumps by `value`, s
+  kReceiverReset,      ///< a receiver is switched off, and on again after its duration, as at the start of a run
+};
+
+/// The circumstance in which a fault begins whose time is not known beforehand.
+struct FaultEvent {
+  enum class Kind : std::uint8_t {
+    kFirstFix,    ///< telemetry of a step reports fixed integers for the first time
+    kBurn,        ///< ignition of burn number `argument`, counted from 1 at the start of the run
+    kRangeBelow,  ///< true distance to the target at a step, below `argument`, m
+  };
+  Kind kind = Kind::kFirstFix;
+  double argument = 0.0;
+  fsw::Duration delay;  ///< from the event to the beginning of the fault
 };
 
 /// [[fault]]: something that fails in the simulation.
@@ -129,15 +154,23 @@ struct Fault {
   std::string unit;        ///< the sensor concerned; empty for other kinds
   std::string spacecraft;  ///< that carries it
   std::string observed;    ///< kTargetTurned: the spacecraft in its images
-  fsw::GpsTime begin;
+  std::string satellite;   ///< kCycleSlip: "G05", "highest" or "all"
+  std::string start;       ///< as in the file: "waypoint:9"; empty: a time
+  /// Empty if `begin` is known: before the run, or since the event has happened.
+  std::optional<FaultEvent> awaited;
+  fsw::GpsTime begin;                     ///< kNever while an event is awaited
   std::optional<fsw::Duration> duration;  ///< empty: to the end
   double value = 0.0;
   fsw::Vector3 direction_rtn = fsw::Vector3::Zero();
   bool is_reported = true;   ///< the thruster reports what happened; otherwise what was commanded
   bool keeps_state = false;  ///< the flight computer that reboots continues from its snapshot
 
+  static constexpr fsw::GpsTime kNever{std::numeric_limits<std::int64_t>::max()};
+
+  [[nodiscard]] bool has_begun(fsw::GpsTime time) const { return time >= begin && begin != kNever; }
+  /// False for a fault of an instant, which has a duration of 0.
   [[nodiscard]] bool is_present(fsw::GpsTime time) const {
-    return time >= begin && (!duration || time < begin + *duration);
+    return has_begun(time) && (!duration || time < begin + *duration);
   }
 };
 
@@ -154,7 +187,7 @@ struct Spacecraft {
   SurfaceProperties surface;   ///< nominal
   double mass_sigma_kg = 0.0;  ///< of its true mass
   std::string model;           ///< CAD file for cameras, data/models/<model>.obj; empty: invisible to cameras
-  std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe> orbit;
+  std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe, OrbitByFile> orbit;
   std::optional<Attitude> attitude;
   std::vector<LaterAttitude> later_attitudes;  ///< in order of time
   std::optional<FlightComputer> flight_computer;
@@ -220,8 +253,13 @@ enum class ImagesInLog {
   kTiles,    ///< their packets
 };
 
+/// What a run leaves besides its summary with the hashes of its outputs.
 struct Record {
   ImagesInLog images = ImagesInLog::kRecipes;
+  bool packets = true;  ///< the log of all packets
+  bool tables = true;   ///< tables, pictures and the report
+  std::vector<double>
+      samples_h;  ///< times after the epoch at which the summary states errors and consistency, ascending
 };
 
 struct Mission {

@@ -28,15 +28,18 @@ inline constexpr Names<Mode, 5> kModes{{{"idle", Mode::kIdle},
                                         {"station_keeping", Mode::kStationKeeping},
                                         {"hold", Mode::kHold},
                                         {"retreat", Mode::kRetreat}}};
-inline constexpr Names<FaultKind, 9> kFaultKinds{{{"silent", FaultKind::kSilent},
-                                                  {"frozen", FaultKind::kFrozen},
-                                                  {"receiver_silent", FaultKind::kReceiverSilent},
-                                                  {"target_turned", FaultKind::kTargetTurned},
-                                                  {"attitude_error", FaultKind::kAttitudeError},
-                                                  {"thrust_scale", FaultKind::kThrustScale},
-                                                  {"thrust_uncommanded", FaultKind::kThrustUncommanded},
-                                                  {"computer_silent", FaultKind::kComputerSilent},
-                                                  {"computer_reboot", FaultKind::kComputerReboot}}};
+inline constexpr Names<FaultKind, 12> kFaultKinds{{{"silent", FaultKind::kSilent},
+                                                   {"frozen", FaultKind::kFrozen},
+                                                   {"receiver_silent", FaultKind::kReceiverSilent},
+                                                   {"target_turned", FaultKind::kTargetTurned},
+                                                   {"attitude_error", FaultKind::kAttitudeError},
+                                                   {"thrust_scale", FaultKind::kThrustScale},
+                                                   {"thrust_uncommanded", FaultKind::kThrustUncommanded},
+                                                   {"computer_silent", FaultKind::kComputerSilent},
+                                                   {"computer_reboot", FaultKind::kComputerReboot},
+                                                   {"cycle_slip", FaultKind::kCycleSlip},
+                                                   {"clock_jump", FaultKind::kClockJump},
+                                                   {"receiver_reset", FaultKind::kReceiverReset}}};
 inline constexpr Names<Apriori, 3> kAprioris{
     {{"none", Apriori::kNone}, {"orbit", Apriori::kOrbit}, {"roe", Apriori::kRoe}}};
 inline constexpr Names<ImagesInLog, 2> kImagesInLog{

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_sections.h"
@@ -8,6 +11,8 @@ namespace vbar::mission {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
+/// Above the second differences of pseudoranges in orbit, by which its witness sees it.
+constexpr double kShortestClockJump_s = 1e-6;
 
 const Spacecraft& flying(const TableReader& section, const Mission& mission) {
   for (const Spacecraft& spacecraft : mission.spacecraft)
@@ -40,15 +45,108 @@ const Sensor& read_unit(const TableReader& section, const Mission& mission, Faul
                                    " that can fail so: " + (names.empty() ? std::string("it has none") : names));
 }
 
+/// A receiver that this program simulates.
+void read_digital_receiver(const TableReader& section, const Mission& mission, Fault& fault) {
+  const Sensor& sensor = read_unit(section, mission, fault, {"gnss"});
+  if (sensor.settings->source != "digital")
+    section.refuse_value("unit", "a receiver with source = \"digital\": that of " + sensor.settings->source +
+                                     " does not fail on request");
+}
+
+bool uses_carrier_phase(const Spacecraft& spacecraft) {
+  return std::ranges::any_of(spacecraft.sensors, [](const Sensor& sensor) {
+    return (sensor.settings->navigation & vbar::navigation_configuration::kUseCarrierPair) != 0;
+  });
+}
+
+template <class Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc{} && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+/// `event`, an alternative to `at_h`. Waypoints have times that are known.
+void read_event(const TableReader& section, const Mission& mission, Fault& fault) {
+  using Kind = FaultEvent::Kind;
+  fault.start = section.text("event");
+  const fsw::Duration delay = section.span("after_s", 1.0, from_to(0.0, 1e7), 0.0);
+  const std::string_view text = fault.start;
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const std::string_view kind = text.substr(0, colon);
+  const std::string_view argument = text.substr(std::min(colon + 1, text.size()));
+  const auto await = [&](Kind event, double number) {
+    fault.awaited = FaultEvent{event, number, delay};
+    fault.begin = Fault::kNever;
+  };
+  if (text == "first_fix") {
+    if (!uses_carrier_phase(flying(section, mission)))
+      section.refuse_value("event", "first_fix only in a mission that navigates by carrier phase");
+    return await(Kind::kFirstFix, 0.0);
+  }
+  if (const auto index = number_in<int>(argument); kind == "waypoint" && index) {
+    const Waypoint* const waypoint = mission.find_waypoint(*index);
+    if (waypoint == nullptr || waypoint->time < mission.start_time() || waypoint->time + delay > mission.end_time())
+      section.refuse_value("event", "a waypoint of the run");
+    fault.begin = waypoint->time + delay;
+    return;
+  }
+  if (const auto number = number_in<int>(argument); kind == "burn" && number && *number >= 1)
+    return await(Kind::kBurn, *number);
+  if (const auto range = number_in<double>(argument);
+      kind == "range_below_m" && range && *range > 0.0 && std::isfinite(*range))
+    return await(Kind::kRangeBelow, *range);
+  section.refuse_value("event", "first_fix, waypoint:N, burn:N with N from 1 on, or range_below_m:X with X above 0");
+}
+
+void read_begin(const TableReader& section, const Mission& mission, Fault& fault) {
+  if (section.has("event") && section.has("at_h")) section.refuse("event", "a second start", "at_h or event, not both");
+  if (section.has("event")) return read_event(section, mission, fault);
+  fault.begin = mission.epoch + section.span("at_h", kHour_s, from_to(0.0, kLongestMission_h));
+  if (fault.begin < mission.start_time() || fault.begin > mission.end_time())
+    section.refuse_value("at_h", "a time of the run");
+}
+
+std::string read_satellite(const TableReader& section) {
+  std::string satellite = section.text("satellite", "highest");
+  const bool is_number = satellite.size() == 3 &&
+                         std::string_view("GEC").find(satellite[0]) != std::string_view::npos &&
+                         number_in<unsigned>(std::string_view(satellite).substr(1)).value_or(0) > 0;
+  if (satellite != "highest" && satellite != "all" && !is_number)
+    section.refuse_value("satellite", "highest, all, or a satellite by letter and two digits: G05, E11, C03");
+  return satellite;
+}
+
+/// What happens at an instant has no duration.
+void refuse_duration(const TableReader& section, Fault& fault) {
+  if (fault.duration) section.refuse_value("for_s", "no duration: it jumps once");
+  fault.duration = fsw::Duration{0};
+}
+
 Fault read_fault(const TableReader& section, const Mission& mission) {
   Fault fault;
   fault.kind = section.choice<FaultKind>("kind", kFaultKinds);
   fault.name = section.text("name", std::string(name_of(fault.kind)));
-  fault.begin = mission.epoch + section.span("at_h", kHour_s, from_to(0.0, kLongestMission_h));
-  if (fault.begin < mission.start_time() || fault.begin > mission.end_time())
-    section.refuse_value("at_h", "a time of the run");
+  read_begin(section, mission, fault);
   if (section.has("for_s")) fault.duration = section.span("for_s", 1.0, above_to(0.0, 1e7));
   switch (fault.kind) {
+    case FaultKind::kCycleSlip:
+      read_digital_receiver(section, mission, fault);
+      fault.satellite = read_satellite(section);
+      fault.value = static_cast<double>(section.integer("value_cycles", -1000, 1000));
+      if (fault.value == 0.0) section.refuse_value("value_cycles", "an integer that is not 0");
+      refuse_duration(section, fault);
+      break;
+    case FaultKind::kClockJump:
+      read_digital_receiver(section, mission, fault);
+      fault.value = section.number("value_s", from_to(-1e-2, 1e-2));
+      if (std::abs(fault.value) < kShortestClockJump_s) section.refuse_value("value_s", "1e-6 or more, of either sign");
+      refuse_duration(section, fault);
+      break;
+    case FaultKind::kReceiverReset:
+      read_digital_receiver(section, mission, fault);
+      if (!fault.duration) fault.duration = fsw::Duration{0};
+      break;
     case FaultKind::kSilent:
       read_unit(section, mission, fault);
       break;
@@ -82,8 +180,8 @@ Fault read_fault(const TableReader& section, const Mission& mission) {
     }
     case FaultKind::kComputerReboot:
       fault.keeps_state = section.flag("keeps_state", false);
-      if (fault.keeps_state && flying(section, mission).flight_computer->target != FlightTarget::kInProcess)
-        section.refuse_value("keeps_state", "false, or flight_computer.target = \"in_process\"");
+      if (fault.keeps_state && !flying(section, mission).flight_computer->library.empty())
+        section.refuse_value("keeps_state", "false, or no flight_computer.library");
       [[fallthrough]];
     case FaultKind::kComputerSilent:
       if (!fault.duration) section.refuse("for_s", "a flight computer that stays dark", "the time until it returns");

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "fsw/math/math.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_attitude.h"
 #include "host_sim/mission/read_sections.h"
@@ -67,7 +68,7 @@ OrbitByElements read_elements(const TableReader& section, const Member& member) 
   return orbit;
 }
 
-using Orbit = std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe>;
+using Orbit = decltype(Spacecraft::orbit);
 
 Orbit read_relative(const TableReader& section, const Mission& mission) {
   const std::string to = section.name("to");
@@ -86,12 +87,25 @@ Orbit read_relative(const TableReader& section, const Mission& mission) {
 }
 
 Orbit read_orbit(const TableReader& section, const Member& member, const Mission& mission) {
-  if (section.has("elements") == section.has("relative"))
-    section.refuse("", section.has("elements") ? "both elements and relative" : "neither elements nor relative",
-                   "exactly one of them");
+  const int given = int{section.has("elements")} + int{section.has("relative")} + int{section.has("orbit_file")};
+  if (given != 1)
+    section.refuse(
+        "",
+        given == 0 ? "none of elements, relative and orbit_file" : "more than one of elements, relative and orbit_file",
+        "exactly one of them");
   if (section.has("elements")) return read_elements(section.table("elements"), member);
+  if (section.has("orbit_file"))
+    return OrbitByFile{data_file(section, "orbit_file", "", mission), section.text("orbit_object", "")};
   return read_relative(section.table("relative"), mission);
 }
+
+// Of a step, unless the mission states another: the largest of the missions of this repository (206 million
+// instructions, docs/board_bringup.md) and a fifth; at 4 cycles an instruction and 667 MHz these are 1.5 s. The least
+// is more than a board needs to start the flight software.
+constexpr std::int64_t kStepBudgetInstructions = 250'000'000;
+constexpr std::int64_t kStepBudgetCycles = 4 * kStepBudgetInstructions;
+constexpr std::int64_t kLeastStepBudget = 100'000;
+constexpr std::int64_t kGreatestStepBudget = 10'000'000'000;
 
 FlightComputer read_flight_computer(const TableReader& section) {
   FlightComputer computer;
@@ -100,11 +114,18 @@ FlightComputer read_flight_computer(const TableReader& section) {
   computer.library = section.text("library", "");
   if (!computer.library.empty() && computer.target != FlightTarget::kInProcess)
     section.refuse_value("library", "nothing, unless target is in_process");
+  computer.image = section.text("image", "");
+  const bool starts_image = computer.target != FlightTarget::kInProcess && computer.target != FlightTarget::kBoard;
+  if (!computer.image.empty() && !starts_image)
+    section.refuse_value("image", "nothing, unless target is zynq_qemu, zynq_linux_qemu or host_process");
   computer.compute_latency = section.span("compute_latency_s", 1.0, from_to(0.0, 3600.0), 1.0);
   computer.device = section.text("device", "");
   if (section.has("baud")) computer.baud = static_cast<int>(section.integer("baud", 1200, 4000000));
   computer.address = section.text("address", "");
   computer.port = static_cast<int>(section.integer("port", 0, 65535, 0));
+  const std::int64_t step_budget =
+      computer.target == FlightTarget::kBoard ? kStepBudgetCycles : kStepBudgetInstructions;
+  computer.step_budget = section.integer("step_budget", kLeastStepBudget, kGreatestStepBudget, step_budget);
   if (computer.target == FlightTarget::kBoard) {
     if (computer.link == FlightLink::kSerial && computer.device.empty())
       section.refuse("device", "nothing", "the tty of the board, e.g. /dev/ttyUSB0");

@@ -1,21 +1,11 @@
 #include <algorithm>
-#include <filesystem>
-#include <string>
 
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
 namespace {
-
-/// A data file: of the data folder, or, if it is absolute or begins with "./" or "../", relative to the mission file.
-std::filesystem::path read_file(const TableReader& section, std::string_view key,
-                                const std::filesystem::path& default_value, const Mission& mission) {
-  const std::string text = section.text(key, default_value.string());
-  if (text.empty()) section.refuse_value(key, "a file of the data folder, or one seen from the mission file (./...)");
-  if (!text.starts_with("./") && !text.starts_with("../")) return text;
-  return std::filesystem::absolute(mission.file).parent_path() / text;
-}
 
 /// A force that acts if its key is true; the default is the truth model of the paper.
 truth::ForceModel read_forces(const TableReader& section) {
@@ -48,9 +38,12 @@ void read_truth(const TableReader& document, Mission& mission) {
       "relative_tolerance", from_to(truth::TruthSettings::kSmallestTolerance, truth::TruthSettings::kLargestTolerance),
       truth.tolerance);
   truth.threads = static_cast<int>(section.integer("threads", 1, 256, truth.threads));
-  truth.gravity_file = read_file(section, "gravity_file", truth.gravity_file, mission);
-  truth.earth_orientation_file = read_file(section, "earth_orientation_file", truth.earth_orientation_file, mission);
-  truth.space_weather_file = read_file(section, "space_weather_file", truth.space_weather_file, mission);
+  truth.gravity_file = data_file(section, "gravity_file", truth.gravity_file, mission);
+  truth.earth_orientation_file = data_file(section, "earth_orientation_file", truth.earth_orientation_file, mission);
+  truth.space_weather_file = data_file(section, "space_weather_file", truth.space_weather_file, mission);
+  truth.constant_f107 = section.number("constant_f107", from_to(50.0, 400.0), truth.constant_f107);
+  truth.constant_ap = section.number("constant_ap", from_to(0.0, 400.0), truth.constant_ap);
+  truth.accept_predictions = section.flag("accept_predictions", truth.accept_predictions);
   section.finish();
 }
 

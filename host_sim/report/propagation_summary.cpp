@@ -71,8 +71,10 @@ Json json_of(const PropagatedSpacecraft& one) {
 }  // namespace
 
 std::string propagation_table(const PropagationRecord& record) {
-  return fmt::format("{}\n{}\n{} of {} spacecraft on {} thread{} in {:.3g} s: {} times real time\n",
-                     spacecraft_table(record), force_table(record), duration_text(record.simulated_s),
+  std::string notes;
+  for (const std::string& note : record.data_notes) notes += fmt::format("data       {}\n", note);
+  return fmt::format("{}\n{}\n{}{} of {} spacecraft on {} thread{} in {:.3g} s: {} times real time\n",
+                     spacecraft_table(record), force_table(record), notes, duration_text(record.simulated_s),
                      record.spacecraft.size(), record.threads, record.threads == 1 ? "" : "s", record.wall_s,
                      grouped_nearest(speed_factor(record)));
 }
@@ -92,6 +94,7 @@ std::string propagation_json(const PropagationRecord& record, std::span<const st
       {"threads", record.threads},
       {"spacecraft", std::move(spacecraft)},
       {"force_wall_s", std::move(times)},
+      {"data_notes", record.data_notes},
       {"files", files}};
   return json.dump(2) + "\n";
 }

@@ -189,6 +189,7 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"name"}, row.name);
   visit(ColumnName{"kind"}, row.kind);
   visit(ColumnName{"unit"}, row.unit);
+  visit(ColumnName{"event"}, row.event);
   visit(ColumnName{"begin_s"}, row.begin_s);
   visit(ColumnName{"end_s"}, row.end_s);
   visit(ColumnName{"effect_s"}, row.effect_s);

@@ -141,9 +141,11 @@ struct NoteRow {
 /// mission's epoch.
 struct FaultRow {
   std::string name, kind, unit;
-  double begin_s = 0.0;
-  std::optional<double> end_s;     ///< empty: it lasts to the end
+  std::string event;               ///< with which it begins; empty: at a time
+  std::optional<double> begin_s;   ///< empty: its event never happened
+  std::optional<double> end_s;     ///< empty: it lasts to the end, or never began
   std::optional<double> effect_s;  ///< first witnessed; empty: it never took effect
+  /// What it disturbed is as before again, and so is the aid of navigation by it; empty: not seen.
   std::optional<double> recovered_s;
   int witnessed = 0;  ///< times
   std::string evidence;

@@ -24,14 +24,17 @@ std::string injected(const RunRecord& record) {
   if (record.faults.empty()) return "";
   std::vector<std::vector<std::string>> rows;
   for (const FaultRow& fault : record.faults) {
-    rows.push_back({fault.name, fault.kind, fault.unit, hours_text(fault.begin_s), hours_text(fault.end_s),
+    rows.push_back({fault.name, fault.kind, fault.unit, fault.event,
+                    fault.begin_s ? hours_text(fault.begin_s) : "never", hours_text(fault.end_s),
                     fault.effect_s ? hours_text(fault.effect_s) : "never", hours_text(fault.recovered_s),
                     fault.evidence});
   }
-  return "<p class=\"note\">Faults of the scenario; effect and recovery are those that packets and truth show:</p>\n" +
+  return "<p class=\"note\">Faults of the scenario; effect and recovery are those that packets and truth show. "
+         "Recovered is when the data were right and their sources aided navigation as before:</p>\n" +
          table({{"fault", false},
                 {"kind", false},
                 {"unit", false},
+                {"event", false},
                 {"begins, h"},
                 {"ends, h"},
                 {"effect, h"},

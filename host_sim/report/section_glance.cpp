@@ -88,7 +88,7 @@ std::vector<TimelineRow> fault_rows(const RunRecord& record, const Range& all) {
   };
   std::vector<TimelineRow> rows;
   for (const FaultRow& fault : record.faults)
-    rows.push_back({"fault: " + fault.name, {band(fault.begin_s, fault.end_s, fault.kind)}});
+    if (fault.begin_s) rows.push_back({"fault: " + fault.name, {band(*fault.begin_s, fault.end_s, fault.kind)}});
   std::vector<Band> retreats;
   double begun_s = 0.0;
   bool is_flown = false;

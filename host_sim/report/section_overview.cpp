@@ -70,6 +70,7 @@ std::string overview(const RunRecord& record) {
                           {"seed", std::to_string(s.seed)},
                           {"commands SHA-256", s.commands_sha256},
                           {"telemetry SHA-256", s.telemetry_sha256}};
+  for (const std::string& note : s.data_notes) facts.push_back({"data", note, true});
   append_provenance(s.provenance, facts);
   for (const SourceFigures& source : s.sources)
     if (source.failures > 0)

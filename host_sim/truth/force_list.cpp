@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/truth/earth/time_scales.h"
+#include "host_sim/truth/earth_data.h"
 #include "host_sim/truth/forces/drag_force.h"
 #include "host_sim/truth/forces/gravity_coefficients.h"
 #include "host_sim/truth/forces/gravity_force.h"
@@ -21,30 +21,12 @@ namespace {
 
 constexpr const char* kAtmosphereFile = "atmosphere/nrlmsise00.csv";
 
-/// The integrator's last step goes beyond the end by up to its length: a minute or two in a low orbit. A longer one, of
-/// a high orbit, that overruns the data is refused when it happens.
-constexpr std::int64_t kLongestStep_s = 3600;
-
-/// Rejects before the run starts an epoch or end for which `look_up` has no data. `look_up`: of an instant, throws
-/// std::out_of_range.
-template <class LookUp>
-void check_reach(const TruthSettings& settings, const std::filesystem::path& file, const LookUp& look_up) {
-  const auto check = [&](fsw::GpsTime time, const std::string& what) {
-    try {
-      look_up(time);
-    } catch (const std::out_of_range& error) {
-      throw std::out_of_range(fmt::format("{}: {} needs it: {}", file.string(), what, error.what()));
-    }
-  };
-  check(settings.epoch, "the epoch");
-  if (settings.end <= settings.epoch) return;
-  check(settings.end + fsw::duration_of_seconds(kLongestStep_s),
-        fmt::format("the last step of a run that ends at {}", format_utc(settings.end, 0)));
-}
-
 void load_gravity(const TruthSettings& settings, ForceData& data) {
   const std::filesystem::path file = settings.data_directory / settings.gravity_file;
-  const auto coefficients = load_gravity_coefficients(file, settings.gravity_degree);
+  GravityCoefficients coefficients = load_gravity_coefficients(file, settings.gravity_degree);
+  // Without the force of the tides nothing else adds the permanent deformation.
+  if (!settings.forces.solid_tides && settings.gravity_degree >= 2 && coefficients.tide_system == "tide_free")
+    coefficients.c[GravityCoefficients::index(2, 0)] += permanent_tide_c20();
   data.gravity = std::make_shared<const GravityField>(coefficients, settings.gravity_degree, settings.gravity_order);
   if (!settings.forces.solid_tides) return;
   try {
@@ -52,12 +34,6 @@ void load_gravity(const TruthSettings& settings, ForceData& data) {
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
   }
-}
-
-void load_earth_orientation(const TruthSettings& settings, ForceData& data) {
-  const std::filesystem::path file = settings.data_directory / settings.earth_orientation_file;
-  data.earth_orientation = std::make_shared<const EarthOrientationSeries>(EarthOrientationSeries::load(file));
-  check_reach(settings, file, [&](fsw::GpsTime time) { static_cast<void>(data.earth_orientation->at(time)); });
 }
 
 /// A force on the surface is proportional to area over mass: both are required, or the force would vanish silently.
@@ -71,13 +47,9 @@ void require(const SpacecraftSettings& spacecraft, std::string_view force, std::
 
 void load_atmosphere(const TruthSettings& settings, ForceData& data) {
   if (data.atmosphere) return;
-  const std::filesystem::path file = settings.data_directory / settings.space_weather_file;
   data.atmosphere =
       std::make_shared<const Nrlmsise00Tables>(load_nrlmsise00_tables(settings.data_directory / kAtmosphereFile));
-  data.space_weather = std::make_shared<const SpaceWeather>(SpaceWeather::load(file));
-  check_reach(settings, file, [&](fsw::GpsTime time) {
-    static_cast<void>(data.space_weather->indices_at(time, settings.forces.geomagnetic_index));
-  });
+  load_space_weather(settings, data);
 }
 
 ForceData load_force_data(const TruthSettings& settings) {

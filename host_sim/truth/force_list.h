@@ -2,6 +2,7 @@
 // The forces on a spacecraft from the switches of a mission.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
@@ -22,6 +23,7 @@ struct ForceData {
   std::shared_ptr<const EarthOrientationSeries> earth_orientation;
   std::shared_ptr<const Nrlmsise00Tables> atmosphere;  ///< null without drag, as is the next
   std::shared_ptr<const SpaceWeather> space_weather;
+  std::vector<std::string> notes;  ///< a sentence on each that is missing or predicted, with the size of the error
 };
 
 /// Loads what the forces of `settings` need. Throws std::runtime_error for a missing or damaged file,

@@ -21,11 +21,19 @@ struct TruthSettings {
                              ///< kLargestTolerance
   int threads = 1;           ///< maximum number of spacecraft propagated concurrently; same bits for any
 
-  // Data files: absolute, or from the data folder. Space weather is read only if a force needs it.
+  // Data files: absolute, or from the data folder. Space weather is read only if a force needs it. A file that is named
+  // must hold the data of the run; what the data folder holds ("bundled") is used where it does, else nothing.
   std::filesystem::path data_directory;
   std::filesystem::path gravity_file = "gravity/ggm05s_120.txt";
-  std::filesystem::path earth_orientation_file = "earth/eop_2009_2013.csv";
-  std::filesystem::path space_weather_file = "earth/space_weather_2009_2013.csv";
+  std::filesystem::path earth_orientation_file = kBundled;  ///< or kNone
+  std::filesystem::path space_weather_file = kBundled;      ///< or kConstant
+  double constant_f107 = 150.0;                             ///< of kConstant, 1e-22 W/m^2/Hz
+  double constant_ap = 15.0;
+  bool accept_predictions = true;  ///< of Earth orientation and space weather in published files
+
+  static constexpr const char* kBundled = "bundled";
+  static constexpr const char* kNone = "none";
+  static constexpr const char* kConstant = "constant";
 
   /// Below it rounding would determine the step size.
   static constexpr double kSmallestTolerance = 1e-14;

@@ -34,6 +34,7 @@ class GnssSensor final : public PacketSource {
   [[nodiscard]] std::vector<Note> statistics() const override { return receiver_->statistics(); }
 
   [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const override { return receiver_->wired_receiver(); }
+  bool upset(const Upset& upset) override { return receiver_->upset(upset); }
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 

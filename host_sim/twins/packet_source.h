@@ -121,6 +121,20 @@ struct Measurement {
   std::string reason;  ///< kFailed: one sentence
 };
 
+/// What befalls a simulated device between two measurements.
+struct Upset {
+  enum class Kind : std::uint8_t {
+    kCycleSlip,  ///< carriers slip by `value` whole cycles, undetected by the receiver
+    kClockJump,  ///< its clock jumps by `value`, s
+    kReset,      ///< it starts again: no signal is tracked, clock and ambiguities are new
+  };
+  Kind kind = Kind::kReset;
+  double value = 0.0;
+  /// kCycleSlip: "G05"; "highest", that of the highest elevation at the last epoch; "all", each by another multiple of
+  /// `value`.
+  std::string satellite = {};
+};
+
 enum class StopReason { kCompleted, kInterrupted, kFailed };
 
 class PacketSource {
@@ -168,6 +182,12 @@ class PacketSource {
 
   /// Figures so far, for the summary. Must not wait for pending packets.
   [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
+
+  /// At the next measurement. False if it cannot happen to this source, or not now.
+  virtual bool upset(const Upset& upset) {
+    static_cast<void>(upset);
+    return false;
+  }
 };
 
 /// A source as the simulation, its record and its messages refer to it.

@@ -3,12 +3,14 @@
 // when a log leaves them out.
 
 #include <cstdint>
+#include <random>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "host_sim/twins/camera/detector.h"
 #include "host_sim/twins/camera/image_tiles.h"
+#include "host_sim/twins/camera/pixel_noise.h"
 #include "host_sim/twins/tile_run.h"
 
 namespace {
@@ -54,6 +56,33 @@ BENCHMARK_CAPTURE(expose, stray, Sky::kStrayLight)
 BENCHMARK_CAPTURE(expose, target, Sky::kBrightTarget)
     ->Name("camera/detector/500x800_bright_target")
     ->Unit(benchmark::kMillisecond);
+
+// Poisson numbers alone, in chunks of pixels, beside those of the standard library, one by one.
+void poisson_numbers(benchmark::State& state, float mean) {
+  camera::ChunkWords words{};
+  camera::ChunkFloats means, numbers;
+  means.fill(mean);
+  std::uint32_t chunk = 0;
+  for (auto _ : state) {
+    camera::draw_words({1, 2}, camera::NoiseKind::kShot, chunk++, words);
+    camera::poisson_numbers(words, means, numbers);
+    benchmark::DoNotOptimize(numbers.data());
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(camera::kChunk));
+}
+BENCHMARK_CAPTURE(poisson_numbers, dark, 0.3F)->Name("camera/poisson/vbar/0.3");
+BENCHMARK_CAPTURE(poisson_numbers, grey, 8.0F)->Name("camera/poisson/vbar/8");
+BENCHMARK_CAPTURE(poisson_numbers, bright, 400.0F)->Name("camera/poisson/vbar/400");
+
+void poisson_numbers_of_std(benchmark::State& state, double mean) {
+  std::mt19937 random(1);
+  std::poisson_distribution<int> poisson(mean);
+  for (auto _ : state) benchmark::DoNotOptimize(poisson(random));
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK_CAPTURE(poisson_numbers_of_std, dark, 0.3)->Name("camera/poisson/std/0.3");
+BENCHMARK_CAPTURE(poisson_numbers_of_std, grey, 8.0)->Name("camera/poisson/std/8");
+BENCHMARK_CAPTURE(poisson_numbers_of_std, bright, 400.0)->Name("camera/poisson/std/400");
 
 std::vector<vbar::twins::Packet> tiles_of_noise() {
   const camera::CameraSettings settings;

@@ -4,6 +4,10 @@
 #include <cstdint>
 
 #include <benchmark/benchmark.h>
+#include <boost/crc.hpp>
+#ifdef VBAR_HAVE_ZLIB
+#include <zlib.h>
+#endif
 
 #include "fsw/link/cobs.h"
 #include "fsw/packets/crc.h"
@@ -51,6 +55,26 @@ void crc32(benchmark::State& state) {
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes.size()));
 }
 BENCHMARK(crc32)->Name("crc32/vbar/1400");
+
+#ifdef VBAR_HAVE_ZLIB
+void crc32_of_zlib(benchmark::State& state) {
+  const auto bytes = some_bytes();
+  for (auto _ : state) benchmark::DoNotOptimize(::crc32(0, bytes.data(), static_cast<uInt>(bytes.size())));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes.size()));
+}
+BENCHMARK(crc32_of_zlib)->Name("crc32/zlib/1400");
+#endif
+
+void crc16_of_boost(benchmark::State& state) {
+  const auto bytes = some_bytes();
+  for (auto _ : state) {
+    boost::crc_optimal<16, 0x1021, 0xFFFF, 0, false, false> crc;
+    crc.process_bytes(bytes.data(), bytes.size());
+    benchmark::DoNotOptimize(crc.checksum());
+  }
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes.size()));
+}
+BENCHMARK(crc16_of_boost)->Name("crc16/boost/1400");
 
 void cobs_round_trip(benchmark::State& state) {
   const auto bytes = some_bytes();

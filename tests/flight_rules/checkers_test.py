@@ -2,7 +2,7 @@
 
 import unittest
 
-from check_objects import strangers
+from check_objects import shared_with_other_objects, strangers
 from check_sources import findings, without_comments_and_strings
 
 BREACHES = """
@@ -76,6 +76,10 @@ class CheckObjects(unittest.TestCase):
         first = "archive.a[a.o]:\nvbar_f T 0 10\nvbar_g U         \nmemcpy U         \nmalloc U         \nsin U\n"
         second = "archive.a[b.o]:\nvbar_g T 0 10\nvbar_gnc_step U\n__aeabi_uldivmod U\nweak_one w\n"
         self.assertEqual(["malloc", "sin", "weak_one"], strangers([first, second])[0])
+
+    def test_an_object_for_special_processors_defines_nothing_that_others_may(self):
+        listing = "a.a[sums.cpp.o]:\ncommon W 0 10\na.a[sums_avx2.cpp.o]:\nmine T 0 10\nhidden t 0 10\ncommon W 0 10\na.a[b.cpp.o]:\nother W 0 1\n"
+        self.assertEqual(["common"], shared_with_other_objects(listing))
 
 
 if __name__ == "__main__":

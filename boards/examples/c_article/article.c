@@ -8,16 +8,10 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "boards/examples/c_article/wire.h"
-#include "fsw/gnc/vbar_gnc.h"
+#include "vbar_gnc.h"
+#include "vbar_packets.h"
 
-enum {
-  STATUS_OK = 0,
-  STATUS_INVALID_ARGUMENT = 1,
-  STATUS_NOT_FINITE = 2,
-  STATUS_BAD_CHECKSUM = 10,
-  STATUS_WRONG_TYPE = 9
-};
+enum { STATUS_OK = 0, STATUS_INVALID_ARGUMENT = 1, STATUS_BAD_CHECKSUM = 10, STATUS_WRONG_TYPE = 9 };
 
 #define BANDWIDTH_RADPS 0.01
 #define HOLD_DISTANCE_M 100.0 /* along the target's orbit, behind it */
@@ -32,7 +26,7 @@ struct article {
   uint8_t spacecraft;
   bool has_states;
   int64_t states_time_ns;
-  double r_servicer_eci[3], v_servicer_eci[3], r_target_eci[3], v_target_eci[3];
+  struct vbar_ideal_navigation states;
   int64_t step, period_ns;
   unsigned maneuvers, reports; /* sequence counts */
 };
@@ -59,29 +53,25 @@ static double length(const double a[3]) {
   return __builtin_sqrt(dot(a, a));
 }
 
-static bool is_finite(double x) {
-  return x - x == 0.0;
-}
-
 static bool relative_state_of(const struct article* self, struct relative_state* relative) {
   double h[3];
-  cross(self->r_servicer_eci, self->v_servicer_eci, h);
-  const double r = length(self->r_servicer_eci);
+  cross(self->states.servicer_position_eci, self->states.servicer_velocity_eci, h);
+  const double r = length(self->states.servicer_position_eci);
   const double h_length = length(h);
   if (!(r > 1.0) || !(h_length > 1.0)) {
     return false; /* no orbit, no frame */
   }
   double axes[3][3]; /* rows: R, T, N in ECI */
   for (int i = 0; i < 3; ++i) {
-    axes[R][i] = self->r_servicer_eci[i] / r;
+    axes[R][i] = self->states.servicer_position_eci[i] / r;
     axes[N][i] = h[i] / h_length;
   }
   cross(axes[N], axes[R], axes[T]);
   double position[3];
   double velocity[3];
   for (int i = 0; i < 3; ++i) {
-    position[i] = self->r_target_eci[i] - self->r_servicer_eci[i];
-    velocity[i] = self->v_target_eci[i] - self->v_servicer_eci[i];
+    position[i] = self->states.target_position_eci[i] - self->states.servicer_position_eci[i];
+    velocity[i] = self->states.target_velocity_eci[i] - self->states.servicer_velocity_eci[i];
   }
   for (int axis = 0; axis < 3; ++axis) {
     relative->position_rtn[axis] = dot(axes[axis], position);
@@ -93,36 +83,29 @@ static bool relative_state_of(const struct article* self, struct relative_state*
   return true;
 }
 
-static void send(const struct article* self, struct wire_writer* packet) {
-  const size_t size = wire_finish(packet);
-  self->sink(self->sink_context, packet->bytes, size);
+static void copy(double to[3], const double from[3]) {
+  memcpy(to, from, 3 * sizeof from[0]);
 }
 
-static void write_vector(struct wire_writer* packet, const double vector[3]) {
-  for (int i = 0; i < 3; ++i) {
-    wire_write_double(packet, vector[i]);
-  }
+static struct vbar_packet_header header_of(const struct article* self, unsigned sequence_count, int64_t gps_time_ns) {
+  const struct vbar_packet_header header = {
+      .sequence_count = (uint16_t)sequence_count, .gps_time_ns = gps_time_ns, .spacecraft = self->spacecraft};
+  return header;
 }
 
 static void report(struct article* self, int64_t now_ns, const struct relative_state* relative) {
-  const double nothing[3] = {0.0, 0.0, 0.0};
-  const int8_t source_ideal = 2;
-  struct wire_writer packet;
-  wire_begin(&packet, WIRE_APID_TELEMETRY_NAVIGATION, self->reports++, now_ns, self->spacecraft,
-             WIRE_HASH_TELEMETRY_NAVIGATION);
-  wire_write_int64(&packet, self->step);
-  wire_write_int8(&packet, source_ideal);
-  wire_write_int8(&packet, 1); /* valid */
-  wire_write_double(&packet, (double)(now_ns - self->states_time_ns) * 1e-9);
-  write_vector(&packet, self->r_servicer_eci);
-  write_vector(&packet, self->v_servicer_eci);
-  write_vector(&packet, relative->position_rtn);
-  write_vector(&packet, relative->velocity_rtn);
-  write_vector(&packet, nothing); /* 1 sigma of position and velocity: ideal states have none */
-  write_vector(&packet, nothing);
-  write_vector(&packet, nothing); /* relative orbital elements: this article does not use them */
-  write_vector(&packet, nothing);
-  send(self, &packet);
+  struct vbar_telemetry_navigation message = {0}; /* sigmas and relative orbital elements: not used, 0 */
+  message.step = self->step;
+  message.source = VBAR_TELEMETRY_NAVIGATION_SOURCE_IDEAL_NAVIGATION;
+  message.valid = 1;
+  message.age_s = (double)(now_ns - self->states_time_ns) * 1e-9;
+  copy(message.servicer_position_eci, self->states.servicer_position_eci);
+  copy(message.servicer_velocity_eci, self->states.servicer_velocity_eci);
+  copy(message.relative_position_rtn, relative->position_rtn);
+  copy(message.relative_velocity_rtn, relative->velocity_rtn);
+  uint8_t packet[VBAR_MAX_PACKET_BYTES];
+  const struct vbar_packet_header header = header_of(self, self->reports++, now_ns);
+  self->sink(self->sink_context, packet, vbar_write_telemetry_navigation(packet, &header, &message));
 }
 
 static void control(struct article* self, int64_t now_ns, const struct relative_state* relative) {
@@ -138,52 +121,41 @@ static void control(struct article* self, int64_t now_ns, const struct relative_
     return;
   }
   const double scale = size > LARGEST_DV_MPS ? LARGEST_DV_MPS / size : 1.0;
-  const int8_t solver_none = -1;
-  struct wire_writer packet;
-  wire_begin(&packet, WIRE_APID_MANEUVER_COMMAND, self->maneuvers, now_ns + self->period_ns, self->spacecraft,
-             WIRE_HASH_MANEUVER_COMMAND);
-  wire_write_int32(&packet, (int32_t)(++self->maneuvers & 0x7FFFFFFFU));
-  wire_write_int32(&packet, -1); /* no waypoint */
-  wire_write_int8(&packet, solver_none);
+  const struct vbar_packet_header header = header_of(self, self->maneuvers, now_ns + self->period_ns);
+  struct vbar_maneuver_command message = {0};
+  message.maneuver_id = (int32_t)(++self->maneuvers & 0x7FFFFFFFU);
+  message.waypoint_index = -1; /* no waypoint */
+  message.solver = VBAR_WAYPOINT_SOLVER_NONE;
   for (int axis = 0; axis < 3; ++axis) {
-    wire_write_double(&packet, scale * dv[axis]);
+    message.dv_rtn[axis] = scale * dv[axis];
   }
-  send(self, &packet);
+  uint8_t packet[VBAR_MAX_PACKET_BYTES];
+  self->sink(self->sink_context, packet, vbar_write_maneuver_command(packet, &header, &message));
 }
 
-static vbar_status take_tick(struct article* self, struct wire_reader* packet) {
-  if (!wire_begins_with(packet, WIRE_HASH_TICK, 24)) {
+static vbar_status take_tick(struct article* self, const struct vbar_packet* packet) {
+  struct vbar_tick tick;
+  if (!vbar_read_tick(packet, &tick)) {
     return STATUS_WRONG_TYPE;
   }
-  const int64_t step = wire_read_int64(packet);
-  const int64_t period_ns = wire_read_int64(packet);
-  if (period_ns <= 0) {
+  if (tick.period_ns <= 0) {
     return STATUS_INVALID_ARGUMENT;
   }
-  self->step = step;
-  self->period_ns = period_ns;
+  self->step = tick.step;
+  self->period_ns = tick.period_ns;
   return STATUS_OK;
 }
 
-static vbar_status take_states(struct article* self, struct wire_reader* packet) {
-  double states[12];
-  if (!wire_begins_with(packet, WIRE_HASH_IDEAL_NAVIGATION, 8 + sizeof states)) {
+static vbar_status take_states(struct article* self, const struct vbar_packet* packet) {
+  struct vbar_ideal_navigation states;
+  if (!vbar_read_ideal_navigation(packet, &states)) {
     return STATUS_WRONG_TYPE;
   }
-  for (int i = 0; i < 12; ++i) {
-    states[i] = wire_read_double(packet);
-    if (!is_finite(states[i])) {
-      return STATUS_NOT_FINITE;
-    }
-  }
-  if (self->has_states && packet->gps_time_ns <= self->states_time_ns) {
+  if (self->has_states && packet->header.gps_time_ns <= self->states_time_ns) {
     return STATUS_OK; /* the newest counts, in whatever order they came */
   }
-  memcpy(self->r_servicer_eci, states, sizeof self->r_servicer_eci);
-  memcpy(self->v_servicer_eci, states + 3, sizeof self->v_servicer_eci);
-  memcpy(self->r_target_eci, states + 6, sizeof self->r_target_eci);
-  memcpy(self->v_target_eci, states + 9, sizeof self->v_target_eci);
-  self->states_time_ns = packet->gps_time_ns;
+  self->states = states;
+  self->states_time_ns = packet->header.gps_time_ns;
   self->has_states = true;
   return STATUS_OK;
 }
@@ -226,18 +198,18 @@ void vbar_gnc_set_sink(void* state, vbar_packet_sink sink, void* sink_context) {
 
 vbar_status vbar_gnc_receive(void* state, const uint8_t* packet, size_t size) {
   struct article* self = state;
-  struct wire_reader reader;
-  if (!wire_open(&reader, packet, size)) {
+  struct vbar_packet received;
+  if (!vbar_read_packet(packet, size, &received)) {
     return STATUS_BAD_CHECKSUM;
   }
-  if (reader.spacecraft != self->spacecraft) {
+  if (received.header.spacecraft != self->spacecraft) {
     return STATUS_INVALID_ARGUMENT;
   }
-  switch (reader.apid) {
-    case WIRE_APID_TICK:
-      return take_tick(self, &reader);
-    case WIRE_APID_IDEAL_NAVIGATION:
-      return take_states(self, &reader);
+  switch (received.header.apid) {
+    case VBAR_APID_TICK:
+      return take_tick(self, &received);
+    case VBAR_APID_IDEAL_NAVIGATION:
+      return take_states(self, &received);
     default:
       return STATUS_OK; /* telecommands that this article has no use for */
   }

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "fsw/gnc/vbar_gnc.h"
+#include "fsw/packets/big_endian.h"
 #include "fsw/packets/packet.h"
 
 namespace {
@@ -62,6 +63,17 @@ struct EchoArticle {
   }
 };
 
+/// A snapshot is the hash, the sequence count, and bytes that depend on both, so that it takes several frames of the
+/// link and a piece in the wrong place is noticed.
+constexpr std::size_t kSnapshotBytes = 5000;
+
+void write_snapshot(std::uint64_t hash, std::uint16_t sequence_count, std::span<std::uint8_t> snapshot) {
+  packets::write_big_endian(hash, snapshot, 0);
+  packets::write_big_endian(sequence_count, snapshot, 8);
+  std::uint64_t random = (hash ^ sequence_count) | 1U;
+  for (std::uint8_t& byte : snapshot.subspan(10)) byte = static_cast<std::uint8_t>(next(random) >> 56U);
+}
+
 vbar_status as_c(Status status) {
   return static_cast<vbar_status>(status);
 }
@@ -110,6 +122,31 @@ vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns) {
   const std::uint64_t most = next(random) % kLongAnswerEvery == 0 ? kLongAnswer : kShortAnswer;
   const std::uint64_t count = 1 + next(random) % most;
   for (std::uint64_t i = 0; i < count; ++i) article->send(gps_time_ns, random);
+  return as_c(Status::kOk);
+}
+
+size_t vbar_gnc_snapshot_size(void) {
+  return kSnapshotBytes;
+}
+
+vbar_status vbar_gnc_save(const void* state, uint8_t* snapshot, size_t size) {
+  if (size < kSnapshotBytes) return as_c(Status::kTooShort);
+  const auto* const article = static_cast<const EchoArticle*>(state);
+  write_snapshot(article->hash.value, article->sequence_count, std::span(snapshot, kSnapshotBytes));
+  return as_c(Status::kOk);
+}
+
+vbar_status vbar_gnc_restore(void* state, const uint8_t* snapshot, size_t size) {
+  if (size != kSnapshotBytes) return as_c(Status::kTooShort);
+  const std::span<const std::uint8_t> given(snapshot, size);
+  const auto hash = packets::read_big_endian<std::uint64_t>(given, 0);
+  const auto sequence_count = packets::read_big_endian<std::uint16_t>(given, 8);
+  std::array<std::uint8_t, kSnapshotBytes> expected{};
+  write_snapshot(hash, sequence_count, expected);
+  if (!std::equal(given.begin(), given.end(), expected.begin())) return as_c(Status::kBadChecksum);
+  auto* const article = static_cast<EchoArticle*>(state);
+  article->hash.value = hash;
+  article->sequence_count = sequence_count;
   return as_c(Status::kOk);
 }
 

@@ -17,6 +17,9 @@ static_assert(static_cast<int>(angles_only::StarMethod::kPredicted) == telemetry
 static_assert(static_cast<int>(angles_only::ObjectKind::kHotPixel) == telemetry_objects::kKindHotPixel);
 static_assert(static_cast<int>(BearingEditStatus::kBatch) == telemetry_image::kEditBatch);
 
+// Stars that fit an attitude of three components with a contradiction left to see.
+constexpr int kMinStars = 5;
+
 constexpr double kSpeedOfLight = 299792458.0;  // m/s
 
 // The target is visible when it is illuminated. Near an edge of the shadow it may or may not be.
@@ -120,6 +123,14 @@ angles_only::ImagePriors BearingSource::priors_of(const Context& context, const 
   }
   priors.burns = std::span(burns_since_image_).first(count);
   return priors;
+}
+
+std::optional<BearingSource::StarAttitude> BearingSource::star_attitude() const {
+  const angles_only::Sighting& sighting = tracking_.sighting();
+  if (!has_image_ || sighting.star_method == angles_only::StarMethod::kNone || sighting.stars < kMinStars) {
+    return std::nullopt;
+  }
+  return StarAttitude{sighting.time, sighting.R_camera_eci.transpose() * tracking_.settings().R_camera_body};
 }
 
 void BearingSource::report(const Telemetry& telemetry) const {

@@ -13,6 +13,11 @@ namespace vbar::fsw::sources {
 
 class BearingSource {
  public:
+  /// Of the servicer's body, by the stars of an image.
+  struct StarAttitude {
+    GpsTime time;
+    Matrix3 R_eci_body = Matrix3::Identity();
+  };
   static constexpr std::int32_t kUse = navigation_configuration::kUseBearings;
   /// Of the first camera that is configured for bearings. A change re-initialises the front end, not the trunk.
   bool configure(const Configuration& configuration);
@@ -26,6 +31,8 @@ class BearingSource {
   [[nodiscard]] bool has_aided() const { return last_image_ && *last_image_ == aiding_.last_accepted(); }
   void watch(GpsTime now, trunk::Trunk& /*trunk*/) { aiding_.check_age(now); }
   void stop(GpsTime now, trunk::Trunk& trunk) { aiding_.stop(now, trunk); }
+  /// By the image of the step, if enough of its stars were identified.
+  [[nodiscard]] std::optional<StarAttitude> star_attitude() const;
   /// Telemetry of the image of the step, if there was one.
   void report(const Telemetry& telemetry) const;
 

@@ -66,7 +66,11 @@ void AmbiguityResolution::watch(CarrierFilter& filter, trunk::Trunk& trunk, cons
     suspicious_in_a_row_ = disagree || refused ? suspicious_in_a_row_ + 1 : 0;
   }
   if (!many_contradict && suspicious_in_a_row_ < settings.suspicious_epochs) return;
-  filter.release(trunk, settings.release_sigma_m);
+  release(filter, trunk, settings.release_sigma_m);
+}
+
+void AmbiguityResolution::release(CarrierFilter& filter, trunk::Trunk& trunk, double position_sigma_m) {
+  filter.release(trunk, position_sigma_m);
   suspicious_in_a_row_ = 0;
   contradicted_ = 0;
   ++report_.releases;

@@ -37,6 +37,9 @@ class AmbiguityResolution {
   /// Resets the monitoring; counters stay.
   void reset();
 
+  /// Releases all integers (CarrierFilter::release).
+  void release(CarrierFilter& filter, trunk::Trunk& trunk, double position_sigma_m);
+
   /// After each epoch processed.
   void update(CarrierFilter& filter, trunk::Trunk& trunk, const CarrierUpdate& epoch,
               const AmbiguitySettings& settings);

@@ -83,7 +83,34 @@ void CarrierAiding::judge(GpsTime time, trunk::Trunk& trunk) {
   }
   if (last_update_.codes_used > 0) trunk.confirm_relative();
   aid_.go_to(AidState::kAiding, time);
+  judge_integers(trunk);
+  judge_antennas(trunk);
+}
+
+/// Held integers that the phases contradict are released one by one or together: an inconsistency either way.
+void CarrierAiding::judge_integers(trunk::Trunk& trunk) {
+  const std::int32_t releases = ambiguities_.report().releases;
   ambiguities_.update(filter_, trunk, last_update_, settings_.ambiguities);
+  if (last_update_.contradictions == 0 && ambiguities_.report().releases == releases) return;
+  const std::int32_t used = last_update_.phases_used;
+  aid_.note_inconsistency(used > 0 ? last_update_.phase_nis / used : 0.0);
+}
+
+/// A baseline between antennas that are not where they are assumed is fixed and precise, and wrong. Its motion
+/// contradicts the dynamics of the orbit, which the offsets of the antennas then follow.
+void CarrierAiding::judge_antennas(trunk::Trunk& trunk) {
+  const double offset = filter_.largest_antenna_offset(trunk.estimate());
+  if (!(offset > kMaxAntennaOffset)) return;
+  ambiguities_.release(filter_, trunk, offset * filter_.antenna_sigma_m());
+  filter_.widen_antennas(trunk, kWiderAntennas);
+  aid_.note_inconsistency(offset);
+}
+
+void CarrierAiding::suspend(GpsTime now, trunk::Trunk& trunk) {
+  CarrierFilter::rest_epoch_states(trunk);
+  filter_.rest_channels(trunk);
+  ambiguities_.reset();
+  aid_.go_to(AidState::kSuspended, now);
 }
 
 void CarrierAiding::watch(GpsTime now, trunk::Trunk& trunk) {

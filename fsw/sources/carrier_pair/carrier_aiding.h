@@ -62,6 +62,9 @@ class CarrierAiding {
   /// At each step: suspends after kSilence without a pair, and releases the ambiguities after kKept.
   void watch(GpsTime now, trunk::Trunk& trunk);
 
+  /// Its pairs will not be processed for a time: the states of an epoch and the integers rest, the orbit stays.
+  void suspend(GpsTime now, trunk::Trunk& trunk);
+
   /// Deactivates the own blocks; the orbit stays.
   void stop(GpsTime now, trunk::Trunk& trunk);
 
@@ -91,6 +94,10 @@ class CarrierAiding {
   static constexpr int kMinAgreeing = 3;
   /// The orbit is contradicted by most codes in this number of consecutive epochs.
   static constexpr int kMaxContradicted = 5;
+  /// An estimated offset of an antenna beyond this multiple of its sigma contradicts the sigma, which then grows by
+  /// kWiderAntennas.
+  static constexpr double kMaxAntennaOffset = 5.0;
+  static constexpr double kWiderAntennas = 3.0;
 
  private:
   struct CodeBaseline {
@@ -113,6 +120,8 @@ class CarrierAiding {
   void discard(trunk::Trunk& trunk);
   void give_up(GpsTime time, trunk::Trunk& trunk);
   void judge(GpsTime time, trunk::Trunk& trunk);
+  void judge_integers(trunk::Trunk& trunk);
+  void judge_antennas(trunk::Trunk& trunk);
 
   CarrierSettings settings_;
   bool has_changed_ = false;

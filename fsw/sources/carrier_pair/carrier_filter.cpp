@@ -58,9 +58,16 @@ struct Residuals {
 
 }  // namespace
 
+void CarrierFilter::configure(const CarrierFilterSettings& settings) {
+  if (settings.antenna_offset_sigma_m != settings_.antenna_offset_sigma_m) {
+    antenna_sigma_m_ = settings.antenna_offset_sigma_m;
+  }
+  settings_ = settings;
+}
+
 void CarrierFilter::begin_blocks(trunk::Trunk& trunk) const {
   trunk::Estimate& estimate = trunk.estimate();
-  const trunk::GaussMarkov offset{.sigma = settings_.antenna_offset_sigma_m};
+  const trunk::GaussMarkov offset{.sigma = antenna_sigma_m_};
   if (!trunk::is_active<trunk::ServicerAntenna>(estimate)) trunk::begin_block<trunk::ServicerAntenna>(estimate, offset);
   if (!trunk::is_active<trunk::TargetAntenna>(estimate)) trunk::begin_block<trunk::TargetAntenna>(estimate, offset);
   if (!trunk::is_active<trunk::CodeBiases>(estimate)) {
@@ -298,6 +305,26 @@ void CarrierFilter::release(trunk::Trunk& trunk, double position_sigma_m) {
   scaled.leftCols<3>() *= position_sigma_m;
   scaled.rightCols<3>() *= velocity_sigma;
   estimate.transform_head<6>(trunk.roe(), Matrix6::Identity(), scaled.lazyProduct(scaled.transpose()));
+  trunk.finish_update();
+}
+
+double CarrierFilter::largest_antenna_offset(const trunk::Estimate& estimate) const {
+  double largest_m = 0.0;
+  for (const int block : {kAt<trunk::ServicerAntenna>, kAt<trunk::TargetAntenna>}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double offset_m = math::abs(estimate.mean(block + axis));
+      if (offset_m > largest_m) largest_m = offset_m;
+    }
+  }
+  return largest_m / antenna_sigma_m_;
+}
+
+void CarrierFilter::widen_antennas(trunk::Trunk& trunk, double factor) {
+  const double added = (square(factor) - 1.0) * square(antenna_sigma_m_);
+  antenna_sigma_m_ *= factor;
+  for (const int block : {kAt<trunk::ServicerAntenna>, kAt<trunk::TargetAntenna>}) {
+    for (int axis = 0; axis < 3; ++axis) trunk.estimate().add_noise(block + axis, added);
+  }
   trunk.finish_update();
 }
 

@@ -42,7 +42,8 @@ struct CarrierUpdate {
 
 class CarrierFilter {
  public:
-  void configure(const CarrierFilterSettings& settings) { settings_ = settings; }
+  /// A change of the offsets' sigma discards what widen_antennas() has made of it.
+  void configure(const CarrierFilterSettings& settings);
 
   /// Activates the antenna offsets, the code biases and the empirical acceleration, those of them that are inactive.
   void begin_blocks(trunk::Trunk& trunk) const;
@@ -62,6 +63,14 @@ class CarrierFilter {
   /// Releases all integers; the orbit's covariance is inflated by `position_sigma_m` and the corresponding velocity:
   /// wrong integers may have shifted it by as much.
   void release(trunk::Trunk& trunk, double position_sigma_m);
+
+  /// The largest component of both antennas' estimated offsets, over its assumed 1 sigma: beyond what a normal
+  /// distribution allows, the nominal position of an antenna is wrong.
+  [[nodiscard]] double largest_antenna_offset(const trunk::Estimate& estimate) const;
+  /// 1 sigma of the offsets, per axis, m, as assumed at present.
+  [[nodiscard]] double antenna_sigma_m() const { return antenna_sigma_m_; }
+  /// The offsets may be larger by `factor` than assumed so far.
+  void widen_antennas(trunk::Trunk& trunk, double factor);
 
   [[nodiscard]] const PhaseChannels& channels() const { return channels_; }
   /// Index in the estimate of a channel's ambiguity, and of its wander.
@@ -91,6 +100,7 @@ class CarrierFilter {
   void contradict(std::size_t place, trunk::Estimate& estimate, CarrierUpdate& update);
 
   CarrierFilterSettings settings_;
+  double antenna_sigma_m_ = CarrierFilterSettings{}.antenna_offset_sigma_m;
   PhaseChannels channels_;
   DifferenceRows rows_;
   std::array<Edit, gnss::kMaxObservations> edits_{};

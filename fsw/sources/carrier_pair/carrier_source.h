@@ -19,6 +19,7 @@ class CarrierSource {
   /// The oldest epoch of the servicer whose counterpart may still arrive.
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return owed_; }
   void watch(GpsTime now, trunk::Trunk& trunk) { aiding_.watch(now, trunk); }
+  void suspend(GpsTime now, trunk::Trunk& trunk) { aiding_.suspend(now, trunk); }
   void stop(GpsTime now, trunk::Trunk& trunk);
   [[nodiscard]] Aid& aid() { return aiding_.aid(); }
   [[nodiscard]] const Aid& aid() const { return aiding_.aid(); }

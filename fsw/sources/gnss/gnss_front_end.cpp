@@ -2,8 +2,18 @@
 
 namespace vbar::fsw::sources {
 
+void GnssFrontEnd::hear(Receiver receiver, GpsTime tag) {
+  std::optional<Heard>& heard = heard_[static_cast<std::size_t>(receiver)];
+  if (!heard) {
+    heard = Heard{.newest = tag};
+  } else if (tag > heard->newest) {
+    heard = Heard{.newest = tag, .interval = tag - heard->newest};
+  }
+}
+
 void GnssFrontEnd::decode(gnc::Inbox& inbox, GpsTime oldest) {
   const auto file = [&](Receiver receiver, const gnss::ObservationEpoch& epoch) {
+    hear(receiver, epoch.receiver_time);
     navigation::EpochBuffer& buffer = waiting_[static_cast<std::size_t>(receiver)];
     if (epoch.receiver_time < oldest || buffer.file(epoch) != Status::kOk) ++too_late_;
   };

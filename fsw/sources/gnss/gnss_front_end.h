@@ -14,12 +14,23 @@ namespace vbar::fsw::sources {
 
 class GnssFrontEnd {
  public:
+  /// When a receiver was heard.
+  struct Heard {
+    GpsTime newest;        ///< tag of its newest epoch
+    Duration interval{0};  ///< from the epoch before it; 0 of the first
+  };
   /// Decodes the packets of the step. An epoch tagged before `oldest`, or twice, is counted as too late.
   void decode(gnc::Inbox& inbox, GpsTime oldest);
 
   [[nodiscard]] const navigation::EphemerisStore& ephemerides() const { return ephemerides_; }
   [[nodiscard]] const navigation::EpochBuffer& waiting(Receiver receiver) const {
     return waiting_[static_cast<std::size_t>(receiver)];
+  }
+  /// An epoch of a receiver was received.
+  void hear(Receiver receiver, GpsTime tag);
+  /// Empty before the first epoch of the receiver.
+  [[nodiscard]] const std::optional<Heard>& heard(Receiver receiver) const {
+    return heard_[static_cast<std::size_t>(receiver)];
   }
   /// Epochs of both receivers tagged before `time` are no longer needed.
   void drop_before(GpsTime time) {
@@ -46,6 +57,7 @@ class GnssFrontEnd {
   ReceiverDecoders decoders_;
   navigation::EphemerisStore ephemerides_;
   std::array<navigation::EpochBuffer, 2> waiting_{};
+  std::array<std::optional<Heard>, 2> heard_{};
   ServicerClock servicer_clock_;
   std::int32_t too_late_ = 0;
 };

@@ -19,6 +19,13 @@ constexpr double kBeforeShadow_s = 120.0;
 // and deactivated after the second number.
 constexpr int kRefusedBeforeAttitude = 3;
 constexpr int kRefusedBeforeLoss = 10;
+// An attitude that keypoints have confirmed for this long, with this number of images, does not jump: the network is in
+// error, for which it has this time before its poses may replace the attitude.
+constexpr Duration kProven = duration_of_seconds(600);
+constexpr int kProvenImages = 20;
+constexpr Duration kUpset = duration_of_seconds(120);
+// The pose of an image contradicts the attitude by more than this: other faces are taken for those seen.
+constexpr double kOtherAttitude = 0.52;  // rad
 // This number of consecutive contradicting positions inflates the covariance, the second time more than the first; the
 // third time the orbit is initialised from poses.
 constexpr int kFarBeforeInflation = 5;
@@ -185,6 +192,8 @@ bool KeypointAiding::begin_attitude(trunk::Trunk& trunk) {
   const auto attitude = start_.attitude();
   if (!attitude.ok() || !agrees_with_image(attitude.value().attitude)) return false;
   trunk.begin_attitude(attitude.value().attitude, attitude.value().covariance);
+  attitude_since_ = trunk.epoch();
+  images_of_attitude_ = 0;
   if (has_begun_) {
     ++counters_.attitudes_reset;
     aid_.restarts().add(trunk.epoch());
@@ -259,10 +268,12 @@ KeypointEditStatus KeypointAiding::take_keypoints(const KeypointImage& image, co
   for (const pose::Keypoint& keypoint : *image.keypoints) is_any_usable = is_any_usable || is_usable(keypoint);
   if (!is_any_usable) return KeypointEditStatus::kNone;
   const int used = update.accepted ? update.used : 0;
-  aid_.consistency().add(update.nis, 2 * update.used);
+  if (update.accepted) aid_.consistency().add(update.nis, 2 * update.used);
   counters_.keypoints_used += used;
   counters_.keypoints_refused += update.usable - used;
+  judge_network(image, camera, update.is_mostly_rejected(settings_.editing.max_refused_share), trunk);
   if (update.accepted) {
+    ++images_of_attitude_;
     seen_.add(view, image.time);
     ++counters_.images_used;
     reset_refusals();
@@ -278,6 +289,22 @@ KeypointEditStatus KeypointAiding::take_keypoints(const KeypointImage& image, co
   return KeypointEditStatus::kRefused;
 }
 
+void KeypointAiding::judge_network(const KeypointImage& image, const CameraPose& camera, bool is_refused,
+                                   const trunk::Trunk& trunk) {
+  if (!light_.is_lit || !trunk.has_attitude() || !image.pnp || !is_finite(*image.pnp)) return;
+  if (verdict_ && verdict_->contradicts) return;  // of another camera in the same step
+  const Eigen::Quaterniond q_eci_body = sample_of(image, camera, trunk).q_eci_body;
+  const Vector3 between = navigation::rotation_vector_of(trunk.attitude().state().q_eci_body.conjugate() * q_eci_body);
+  const double angle = math::sqrt(between.squaredNorm());
+  verdict_ = NetworkVerdict{.contradicts = is_refused && angle > kOtherAttitude, .angle = angle};
+}
+
+/// Whether the network may be in error in place of the attitude.
+bool KeypointAiding::is_upset(GpsTime time) const {
+  const bool is_proven = images_of_attitude_ >= kProvenImages && last_accepted_ - attitude_since_ >= kProven;
+  return is_proven && time - last_accepted_ < kUpset;
+}
+
 /// Refusals of an ill-lit target count toward no persistence.
 void KeypointAiding::count_refusal(GpsTime time, bool is_position_far, trunk::Trunk& trunk) {
   ++counters_.images_refused;
@@ -286,6 +313,7 @@ void KeypointAiding::count_refusal(GpsTime time, bool is_position_far, trunk::Tr
   far_in_a_row_ = is_position_far ? far_in_a_row_ + 1 : 0;
   if (far_in_a_row_ >= kFarBeforeInflation) return contradict_orbit(time, trunk);
   if (is_position_far || !trunk.has_attitude() || refused_in_a_row_ < kRefusedBeforeAttitude) return;
+  if (is_upset(time)) return aid_.go_to(AidState::kSuspended, time);
   // The range was known before the contradiction, so that the consensus is judged before the inflation.
   const bool has_renewed = begin_attitude(trunk);
   if (!has_renewed && refused_in_a_row_ < kRefusedBeforeLoss) return;

@@ -74,6 +74,12 @@ struct KeypointCounters {
   std::int32_t restarts = 0;         ///< of the relative orbit, from single images after persistent contradictions
 };
 
+/// Keypoints of a lit target against its known attitude.
+struct NetworkVerdict {
+  bool contradicts = false;  ///< most of them are refused, and the pose of the same image has another attitude
+  double angle = 0.0;        ///< rad, between both
+};
+
 class KeypointAiding {
  public:
   /// Replaces the settings; the poses collected for initialisation are discarded.
@@ -90,6 +96,9 @@ class KeypointAiding {
   /// Of the last image; empty if its keypoints were not processed.
   [[nodiscard]] const KeypointsUpdate& last_update() const { return editing_.last_update(); }
   [[nodiscard]] GpsTime last_accepted() const { return last_accepted_; }
+  /// Of the images since forget_verdict(); empty if none was judged.
+  [[nodiscard]] const std::optional<NetworkVerdict>& network_verdict() const { return verdict_; }
+  void forget_verdict() { verdict_.reset(); }
   [[nodiscard]] const KeypointCounters& counters() const { return counters_; }
 
  private:
@@ -114,6 +123,8 @@ class KeypointAiding {
   KeypointEditStatus take_keypoints(const KeypointImage& image, const CameraPose& camera, trunk::Trunk& trunk);
   [[nodiscard]] Matrix3 position_covariance(const navigation::PoseSample& sample, bool is_agreed) const;
   [[nodiscard]] bool is_far(const navigation::PoseSample& sample, const trunk::Trunk& trunk) const;
+  void judge_network(const KeypointImage& image, const CameraPose& camera, bool is_refused, const trunk::Trunk& trunk);
+  [[nodiscard]] bool is_upset(GpsTime time) const;
   void count_refusal(GpsTime time, bool is_position_far, trunk::Trunk& trunk);
   void count_missing(trunk::Trunk& trunk);
   void inflate(double velocity_sigma, double distance, trunk::Trunk& trunk);
@@ -132,6 +143,9 @@ class KeypointAiding {
   bool has_begun_ = false;                                                 ///< an attitude was initialised before
   GpsTime burns_until_;  ///< impulses of the trunk before this are known to `start_`
   GpsTime last_accepted_;
+  GpsTime attitude_since_;  ///< the present attitude was initialised
+  int images_of_attitude_ = 0;
+  std::optional<NetworkVerdict> verdict_;
   int refused_in_a_row_ = 0;
   int far_in_a_row_ = 0;
   int missing_in_a_row_ = 0;

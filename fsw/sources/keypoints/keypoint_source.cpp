@@ -78,6 +78,7 @@ bool KeypointSource::configure(const Configuration& configuration) {
 }
 
 void KeypointSource::collect(Context& context, RecordFiler records) {
+  aiding_.forget_verdict();
   for (std::size_t unit = 0; unit < cameras_.size(); ++unit) {
     Camera& camera = cameras_[unit];
     camera.report.reset();

@@ -25,7 +25,10 @@ Result<navigation::SinglePoint> OwnGnssAiding::process(const gnss::ObservationEp
   }
   // The position is that at the instant of reception, the tag that of the receiver clock.
   position.early_s = point.value().clock_m / gnss::kSpeedOfLight;
-  if (!trunk.take_own_position(position)) {
+  const bool was_started = trunk.own_orbit().started();
+  const bool is_accepted = trunk.take_own_position(position);
+  if (was_started) aid_.consistency().add(trunk.own_orbit().nis(), 3);
+  if (!is_accepted) {
     ++counters_.refused;
     if (!trunk.own_orbit().started()) aid_.go_to(AidState::kFailed, tag);
     return point;

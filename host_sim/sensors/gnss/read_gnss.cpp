@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/read_number.h"
 #include "host_sim/mission/read_sections.h"
@@ -166,7 +167,9 @@ std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const TableReade
                                                                 const mission::Mission& mission) {
   auto shared = std::make_shared<GnssShared>();
   read_carrier_phase(document.table("navigation").table("carrier_phase"), shared->carrier);
-  read_constellation(document.table("constellation"), shared->constellation);
+  const TableReader constellation = document.table("constellation");
+  shared->constellation.navigation_files = mission::data_files(constellation, "navigation_files", mission);
+  read_constellation(constellation, shared->constellation);
   read_crosslink(document.table("links").table("crosslink"), mission, *shared);
   return shared;
 }

@@ -5,14 +5,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "host_sim/files/data_stream.h"
+#include "host_sim/files/text_lines.h"
+#include "host_sim/truth/earth/day_sequence.h"
 
 namespace vbar::truth {
 
@@ -30,40 +29,35 @@ bool parse_numbers(std::string_view line, std::array<double, N>& numbers) {
   return at == end;
 }
 
-/// Calls `take(mjd_utc, numbers)` for each row; it returns what is accepted instead, or nothing if the row
-/// is valid. `what` names the file in messages. Throws std::runtime_error naming file, line, what was found and what is
-/// accepted.
+/// Whether the first line that is not a comment begins with "mjd_utc,".
+inline bool is_daily_table(std::string_view text) {
+  files::TextLines lines(text, "");
+  while (lines.next())
+    if (!lines.line().starts_with('#')) return lines.line().starts_with("mjd_utc,");
+  return false;
+}
+
+/// Calls `take(lines, mjd_utc, numbers)` for each row; it throws for a row that is not valid. Throws
+/// files::FormatError naming file, line, what was found and what is accepted.
 template <std::size_t N, class Take>
-void read_daily_table(const std::filesystem::path& file, std::string_view what, std::string_view columns, Take&& take) {
-  // Days of GPS time's century; a file of observations has no others.
-  constexpr double kFirstMjd = 44244.0;  // 1980-01-06
-  constexpr double kLastMjd = 88068.0;   // 2099-12-31
-  files::DataStream in(file);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot open the {} file", file.string(), what));
-  std::string line;
+void read_daily_table(std::string_view text, const std::string& file, std::string_view columns, Take&& take) {
+  files::TextLines lines(text, file);
+  DaySequence sequence;
   bool header_seen = false;
-  int before = 0;
-  for (int number = 1; std::getline(in, line); ++number) {
-    const auto refuse = [&](const std::string& expected) {
-      throw std::runtime_error(fmt::format("{}:{}: found \"{}\", expected {}", file.string(), number, line, expected));
-    };
-    if (line.starts_with('#')) continue;
+  while (lines.next()) {
+    if (lines.line().starts_with('#')) continue;
     if (!header_seen) {
-      if (line != columns) refuse(fmt::format("the columns {}", columns));
+      if (lines.line() != columns) lines.refuse(fmt::format("the columns {}", columns));
       header_seen = true;
       continue;
     }
     std::array<double, N> numbers;
-    const bool is_row = parse_numbers(line, numbers) && numbers[0] == std::floor(numbers[0]) &&
-                        numbers[0] >= kFirstMjd && numbers[0] <= kLastMjd;
-    if (!is_row) refuse(fmt::format("a whole MJD from 1980 to 2099 and {} numbers: {}", N - 1, columns));
+    const bool is_row = parse_numbers(lines.line(), numbers) && numbers[0] == std::floor(numbers[0]) &&
+                        numbers[0] >= kFirstDataMjd && numbers[0] <= kLastDataMjd;
+    if (!is_row) lines.refuse(fmt::format("a whole MJD from 1980 to 2099 and {} numbers: {}", N - 1, columns));
     const int mjd_utc = static_cast<int>(numbers[0]);
-    if (before != 0 && mjd_utc != before + 1) {
-      throw std::runtime_error(fmt::format("{}:{}: day {} follows day {}; days must follow without gaps", file.string(),
-                                           number, mjd_utc, before));
-    }
-    if (const std::string accepted = take(mjd_utc, numbers); !accepted.empty()) refuse(accepted);
-    before = mjd_utc;
+    sequence.take(lines, mjd_utc);
+    take(lines, mjd_utc, numbers);
   }
 }
 

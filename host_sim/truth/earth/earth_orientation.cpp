@@ -5,20 +5,17 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
-#include <string_view>
+#include <utility>
 
-#include <erfa.h>
-#include <erfam.h>
 #include <fmt/format.h>
 
-#include "host_sim/truth/earth/daily_table.h"
+#include "host_sim/files/data_stream.h"
+#include "host_sim/truth/earth/orientation_formats/orientation_formats.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/earth/utc_day.h"
 
 namespace vbar::truth {
 namespace {
-
-constexpr std::string_view kColumns = "mjd_utc,x_arcsec,y_arcsec,ut1_minus_utc_s,dx_arcsec,dy_arcsec";
 
 EarthOrientation& operator+=(EarthOrientation& sum, const EarthOrientation& term) {
   sum.ut1_minus_tai_s += term.ut1_minus_tai_s;
@@ -37,18 +34,21 @@ EarthOrientation operator*(double factor, const EarthOrientation& orientation) {
 }  // namespace
 
 EarthOrientationSeries EarthOrientationSeries::load(const std::filesystem::path& file) {
-  std::vector<Day> days;
-  read_daily_table<6>(file, "Earth orientation", kColumns, [&](int mjd_utc, const std::array<double, 6>& row) {
-    days.push_back({mjd_utc,
-                    {row[3] - tai_minus_utc_s(mjd_utc), row[1] * ERFA_DAS2R, row[2] * ERFA_DAS2R, row[4] * ERFA_DAS2R,
-                     row[5] * ERFA_DAS2R}});
-    return std::string();
-  });
+  const files::DataStream stream(file);
+  if (!stream) throw std::runtime_error(fmt::format("{}: cannot open the Earth orientation file", file.string()));
+  std::vector<Day> days = read_orientation(stream.view(), file.string());
   if (days.size() < 4) {
     throw std::runtime_error(
         fmt::format("{}: {} days of Earth orientation; at least four are needed", file.string(), days.size()));
   }
   return EarthOrientationSeries(std::move(days));
+}
+
+EarthOrientationSeries EarthOrientationSeries::unknown(fsw::GpsTime time) {
+  EarthOrientationSeries series;
+  series.is_constant_ = true;
+  series.nodes_.push_back({0.0, {.ut1_minus_tai_s = -tai_minus_utc_s(mjd_utc_of(time))}});
+  return series;
 }
 
 EarthOrientationSeries::EarthOrientationSeries(std::vector<Day> days) {
@@ -60,10 +60,16 @@ EarthOrientationSeries::EarthOrientationSeries(std::vector<Day> days) {
       throw std::invalid_argument("days of Earth orientation must follow without gaps");
     }
     nodes_.push_back({fsw::seconds(midnight_utc(day.mjd_utc) - first_), day.orientation});
+    if (day.is_predicted && !predicted_from_) {
+      // The polynomial reaches two days back.
+      const int from = std::max(day.mjd_utc - 2, days.front().mjd_utc);
+      predicted_from_ = midnight_utc(from);
+    }
   }
 }
 
 EarthOrientation EarthOrientationSeries::at(fsw::GpsTime epoch, double seconds) const {
+  if (is_constant_) return nodes_.front().orientation;
   const double time = fsw::seconds(epoch - first_) + seconds;
   if (!(time >= 0.0 && time <= nodes_.back().tai_s)) {
     const auto end = first_ + fsw::nearest_duration(nodes_.back().tai_s);

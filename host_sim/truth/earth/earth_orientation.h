@@ -1,10 +1,11 @@
 #pragma once
 // Earth orientation parameters: how the real Earth deviates from the models of rotation and precession-nutation.
-// Daily values of the IERS C04 series, interpolated by Lagrange polynomials through four days (as IERS recommends);
+// Daily values (IERS C04, finals2000A), interpolated by Lagrange polynomials through four days (as IERS recommends);
 // UT1-TAI is interpolated, since UT1-UTC jumps at leap seconds. The daily and half-daily ocean tides (below 1 mas, 0.1
 // ms) are neglected.
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
@@ -27,14 +28,22 @@ class EarthOrientationSeries {
   struct Day {
     int mjd_utc = 0;
     EarthOrientation orientation;
+    bool is_predicted = false;  ///< by the publication, not observed
   };
 
-  /// Reads data/earth/eop_2009_2013.csv or a file of the same columns, days without gaps.
+  /// Reads a file in any of orientation_formats.h, days without gaps.
   /// Throws std::runtime_error naming file, line and what is accepted.
   static EarthOrientationSeries load(const std::filesystem::path& file);
 
   /// `days` in order, without gaps, at least four of them: std::invalid_argument otherwise.
   explicit EarthOrientationSeries(std::vector<Day> days);
+
+  /// UT1 = UTC as at `time`, a pole at the origin: what is known without data, for all of GPS time. A leap second after
+  /// `time` changes nothing.
+  static EarthOrientationSeries unknown(fsw::GpsTime time);
+
+  /// The first instant whose value depends on a prediction; none if all days are observed.
+  [[nodiscard]] std::optional<fsw::GpsTime> predicted_from() const { return predicted_from_; }
 
   /// Orientation `seconds` after `epoch`. Throws std::out_of_range outside the series, naming the date and the range.
   EarthOrientation at(fsw::GpsTime epoch, double seconds = 0.0) const;
@@ -45,8 +54,12 @@ class EarthOrientationSeries {
     EarthOrientation orientation;
   };
 
+  EarthOrientationSeries() = default;
+
   fsw::GpsTime first_;
   std::vector<Node> nodes_;
+  std::optional<fsw::GpsTime> predicted_from_;
+  bool is_constant_ = false;  ///< at the first node
 };
 
 }  // namespace vbar::truth

@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
-#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "host_sim/truth/earth/daily_table.h"
+#include "host_sim/files/data_stream.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/earth/utc_day.h"
+#include "host_sim/truth/earth/weather_formats/weather_formats.h"
 
 namespace vbar::truth {
 namespace {
@@ -20,33 +21,6 @@ constexpr int kSlotsPerDay = 8;  // of three hours
 constexpr fsw::Duration kSlot = fsw::duration_of_seconds(10800);
 constexpr int kSlotsOfMemory = 19;  // 57 hours
 constexpr std::size_t kFewestDays = 4;
-
-constexpr std::size_t kColumnCount = 12;
-constexpr std::string_view kColumns =
-    "mjd_utc,ap1,ap2,ap3,ap4,ap5,ap6,ap7,ap8,ap_daily,f107_observed,f107_observed_81d";
-
-// ap on its scale, and a flux that a quiet Sun or a flare can have.
-constexpr double kLargestAp = 400.0;
-constexpr double kLargestFlux = 1000.0;
-constexpr std::string_view kAccepted = "ap of 0 to 400 and fluxes above 0 and up to 1000";
-
-using Row = std::array<double, kColumnCount>;
-
-bool in_range(const Row& row) {
-  const auto is_ap = [](double ap) { return ap >= 0.0 && ap <= kLargestAp; };
-  const auto is_flux = [](double flux) { return flux > 0.0 && flux <= kLargestFlux; };
-  return std::all_of(row.begin() + 1, row.begin() + 10, is_ap) && is_flux(row[10]) && is_flux(row[11]);
-}
-
-SpaceWeather::Day day_of(const Row& row) {
-  SpaceWeather::Day day;
-  day.mjd_utc = static_cast<int>(row[0]);
-  std::copy_n(row.begin() + 1, kSlotsPerDay, day.ap.begin());
-  day.ap_daily = row[9];
-  day.f107 = row[10];
-  day.f107_average = row[11];
-  return day;
-}
 
 /// Three-hourly slot of the day; the leap second belongs to the last.
 int slot_of_day(fsw::GpsTime time, int mjd_utc) {
@@ -57,16 +31,32 @@ int slot_of_day(fsw::GpsTime time, int mjd_utc) {
 }  // namespace
 
 SpaceWeather SpaceWeather::load(const std::filesystem::path& file) {
-  std::vector<Day> days;
-  read_daily_table<kColumnCount>(file, "space weather", kColumns, [&](int /*mjd_utc*/, const Row& row) {
-    days.push_back(day_of(row));
-    return std::string(in_range(row) ? "" : kAccepted);
-  });
+  const files::DataStream stream(file);
+  if (!stream) throw std::runtime_error(fmt::format("{}: cannot open the space weather file", file.string()));
+  std::vector<Day> days = read_weather(stream.view(), file.string());
   if (days.size() < kFewestDays) {
     throw std::runtime_error(
         fmt::format("{}: {} days of space weather; at least {} are needed", file.string(), days.size(), kFewestDays));
   }
   return SpaceWeather(std::move(days));
+}
+
+SpaceWeather SpaceWeather::constant(double f107, double ap) {
+  SpaceWeather weather;
+  SolarIndices& indices = weather.constant_.emplace();
+  indices.f107 = indices.f107_average = f107;
+  indices.ap_daily = ap;
+  indices.ap_history.fill(ap);
+  return weather;
+}
+
+const SpaceWeather::Day* SpaceWeather::find_first(Kind kind, fsw::GpsTime begin, fsw::GpsTime end) const {
+  constexpr int kDaysOfMemory = 3;
+  if (constant_) return nullptr;
+  const int first = mjd_utc_of(begin) - kDaysOfMemory, last = mjd_utc_of(end);
+  const auto found = std::ranges::find_if(
+      days_, [&](const Day& day) { return day.kind == kind && day.mjd_utc >= first && day.mjd_utc <= last; });
+  return found == days_.end() ? nullptr : &*found;
 }
 
 SpaceWeather::SpaceWeather(std::vector<Day> days) : days_(std::move(days)) {
@@ -81,6 +71,11 @@ SpaceWeather::SpaceWeather(std::vector<Day> days) : days_(std::move(days)) {
 }
 
 SolarIndices SpaceWeather::indices_at(fsw::GpsTime time, GeomagneticIndex geomagnetic_index) const {
+  if (constant_) {
+    SolarIndices indices = *constant_;
+    indices.geomagnetic_index = geomagnetic_index;
+    return indices;
+  }
   if (time.ns < 0) refuse(time, geomagnetic_index);
   const int mjd = mjd_utc_of(time);
   const int day = mjd - days_.front().mjd_utc;

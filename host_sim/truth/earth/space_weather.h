@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
@@ -12,24 +13,42 @@
 
 namespace vbar::truth {
 
-/// A series of days. Immutable once made, so it may be shared between threads.
+/// A series of days, or constant indices. Immutable once made, so it may be shared between threads.
 class SpaceWeather {
  public:
+  enum class Kind {
+    kObserved,
+    kPredictedDaily,
+    kPredictedMonthly,  ///< fluxes between predictions of months, geomagnetic index assumed
+    kMissing,           ///< the row lacks a value
+  };
+
+  /// Geomagnetic index where none is known: moderately disturbed.
+  static constexpr double kAssumedAp = 15.0;
+
   /// One UTC day's row.
   struct Day {
     int mjd_utc = 0;
+    Kind kind = Kind::kObserved;
+    int line = 0;                ///< of the file
     std::array<double, 8> ap{};  ///< three-hourly, from 00-03 to 21-24 UTC
     double ap_daily = 0.0;
     double f107 = 0.0;          ///< observed, 1e-22 W/m^2/Hz
     double f107_average = 0.0;  ///< over 81 days centred on the day
   };
 
-  /// Reads data/earth/space_weather_2009_2013.csv or a file of the same columns, days without gaps.
+  /// Reads a file in any of weather_formats.h, days without gaps.
   /// Throws std::runtime_error naming file, line and what is accepted.
   static SpaceWeather load(const std::filesystem::path& file);
 
   /// `days` in order, without gaps, at least four of them: std::invalid_argument otherwise.
   explicit SpaceWeather(std::vector<Day> days);
+
+  /// The same indices at any time.
+  static SpaceWeather constant(double f107, double ap);
+
+  /// Of the days whose values a flight between two instants uses, the first of a kind; null if there is none.
+  [[nodiscard]] const Day* find_first(Kind kind, fsw::GpsTime begin, fsw::GpsTime end) const;
 
   /// The indices that hold at `time`. F10.7 is the day before's. Throws std::out_of_range, naming date and range, where
   /// the series lacks the day itself, the day before or, three-hourly, the 57 hours before.
@@ -41,10 +60,12 @@ class SpaceWeather {
  private:
   double ap_before(int slot, int three_hours) const { return ap_[static_cast<std::size_t>(slot - three_hours)]; }
   double mean_of_eight_before(int slot, int latest) const;
+  SpaceWeather() = default;
   [[noreturn]] void refuse(fsw::GpsTime time, GeomagneticIndex geomagnetic_index) const;
 
   std::vector<Day> days_;
   std::vector<double> ap_;  // three-hourly, of all days
+  std::optional<SolarIndices> constant_;
 };
 
 }  // namespace vbar::truth

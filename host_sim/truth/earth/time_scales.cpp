@@ -1,9 +1,11 @@
 #include "host_sim/truth/earth/time_scales.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <vector>
 
 #include <erfa.h>
 #include <erfam.h>
@@ -26,6 +28,37 @@ JulianDate date_after(double julian_day, std::int64_t ns, double seconds) {
     --days;
   }
   return {julian_day + static_cast<double>(days), (static_cast<double>(rest) / 1e9 + seconds) / kSecondsPerDay};
+}
+
+struct LeapSeconds {
+  int first_mjd = 0;  // UTC day from which on the difference holds
+  double tai_minus_utc_s = 0.0;
+};
+
+constexpr int kFirstYear = 1972;  // of leap seconds
+constexpr int kLastYear = 2200;   // GPS time in nanoseconds ends in 2272; missions reach beyond their epoch
+
+// ERFA's table, asked once: each of its answers costs a conversion to the calendar and back. Leap seconds begin with a
+// month.
+std::vector<LeapSeconds> read_leap_seconds() {
+  std::vector<LeapSeconds> table;
+  for (int month = 12 * kFirstYear; month < 12 * (kLastYear + 1); ++month) {
+    double zero = 0.0, mjd = 0.0, difference = 0.0;
+    if (eraCal2jd(month / 12, month % 12 + 1, 1, &zero, &mjd) != 0 ||
+        eraDat(month / 12, month % 12 + 1, 1, 0.0, &difference) < 0)
+      throw std::logic_error(fmt::format("ERFA knows no leap seconds of month {} of {}", month % 12 + 1, month / 12));
+    if (table.empty() || table.back().tai_minus_utc_s != difference)
+      table.push_back({static_cast<int>(mjd), difference});
+  }
+  return table;
+}
+
+const LeapSeconds& leap_seconds_at(int mjd_utc) {
+  static const std::vector<LeapSeconds> kTable = read_leap_seconds();
+  const auto next = std::ranges::upper_bound(kTable, mjd_utc, {}, &LeapSeconds::first_mjd);
+  if (next == kTable.begin())
+    throw std::out_of_range(fmt::format("no leap seconds known at modified Julian day {}", mjd_utc));
+  return *(next - 1);
 }
 
 [[noreturn]] void refuse(std::string_view text) {
@@ -110,13 +143,11 @@ JulianDate ut1_of(JulianDate tai, double ut1_minus_tai_s) {
 }
 
 double tai_minus_utc_s(int mjd_utc) {
-  int year = 0, month = 0, day = 0;
-  double fraction = 0.0, difference = 0.0;
-  if (eraJd2cal(kModifiedJulianZero, mjd_utc, &year, &month, &day, &fraction) != 0 || year < 1972 ||
-      eraDat(year, month, day, 0.0, &difference) < 0) {
-    throw std::out_of_range(fmt::format("no leap seconds known at modified Julian day {}", mjd_utc));
-  }
-  return difference;
+  return leap_seconds_at(mjd_utc).tai_minus_utc_s;
+}
+
+int first_day_of_tai_minus_utc(int mjd_utc) {
+  return leap_seconds_at(mjd_utc).first_mjd;
 }
 
 fsw::GpsTime gps_from_utc(std::string_view iso8601) {
@@ -136,7 +167,6 @@ fsw::GpsTime gps_from_utc(std::string_view iso8601) {
   reader.end();
 
   double midnight = 0.0, mjd = 0.0, tai_minus_utc = 0.0, tai_minus_utc_next_day = 0.0;
-  constexpr int kLastYear = 2200;  // GPS time in nanoseconds ends in 2272; missions reach beyond their epoch
   if (year < 1980 || year > kLastYear || hour > 23 || minute > 59 ||
       eraCal2jd(year, month, day, &midnight, &mjd) != 0 || eraDat(year, month, day, 0.0, &tai_minus_utc) < 0) {
     refuse(iso8601);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host_sim/engine/distributions.h"
+#include "host_sim/engine/wide_loops.h"
 
 namespace vbar::twins::camera {
 namespace {
@@ -19,7 +20,7 @@ struct Blocks {
   std::array<std::uint32_t, kBlocksOfChunk> word[4];
 };
 
-void philox_round(Blocks& blocks, std::uint32_t key0, std::uint32_t key1) {
+VBAR_INLINE void philox_round(Blocks& blocks, std::uint32_t key0, std::uint32_t key1) {
   for (std::size_t k = 0; k < kBlocksOfChunk; ++k) {
     const std::uint64_t product0 = std::uint64_t{kMultiplier[0]} * blocks.word[0][k];
     const std::uint64_t product1 = std::uint64_t{kMultiplier[1]} * blocks.word[2][k];
@@ -73,7 +74,7 @@ constexpr std::array<float, kMaxBySearch + 1> kReciprocal = [] {
 }();
 
 /// exp(-x) for 0 <= x <= 80, relative error 2e-7: a power of two, and the series of the rest, at most ln(2) / 2.
-inline float exp_of_minus(float x) {
+VBAR_INLINE float exp_of_minus(float x) {
   const float octaves = x * 1.44269504F;
   const auto whole = static_cast<std::int32_t>(octaves + 0.5F);
   const auto n = static_cast<float>(whole);
@@ -89,43 +90,68 @@ inline float exp_of_minus(float x) {
   return series * std::bit_cast<float>((127 - whole) << 23);
 }
 
+// Pixels that are searched together: until the last of them is found.
+constexpr std::size_t kGroup = 32;
+
 /// Number of steps of the distribution at or below the uniform number: for means below kGaussianMean, and 0 for
 /// others, which are left to the expansion.
-void search(const ChunkWords& words, std::span<const float, kChunk> means, std::span<float, kChunk> numbers) {
-  ChunkFloats uniform, mean, term, sum;
-  for (std::size_t k = 0; k < kChunk; ++k) {
+VBAR_INLINE void search_group(const std::uint32_t* words, const float* means, float* numbers) {
+  float uniform[kGroup], mean[kGroup], term[kGroup], sum[kGroup];
+  std::int32_t steps[kGroup];
+  for (std::size_t k = 0; k < kGroup; ++k) {
     uniform[k] = static_cast<float>(static_cast<std::int32_t>(words[k] >> 8U)) * 0x1p-24F;
-    mean[k] = means[k] > 0.0F && means[k] < kGaussianMean ? means[k] : 0.0F;
+    const float positive = means[k] > 0.0F ? means[k] : 0.0F;
+    mean[k] = positive < kGaussianMean ? positive : 0.0F;
     term[k] = exp_of_minus(mean[k]);
     sum[k] = term[k];
-    numbers[k] = 0.0F;
+    steps[k] = 0;
   }
   for (std::size_t count = 1; count <= kMaxBySearch; ++count) {
     const float reciprocal = kReciprocal[count];
     std::int32_t beyond = 0;
-    for (std::size_t k = 0; k < kChunk; ++k) {
+    for (std::size_t k = 0; k < kGroup; ++k) {
       const std::int32_t is_beyond = uniform[k] >= sum[k] ? 1 : 0;
       beyond += is_beyond;
-      numbers[k] += static_cast<float>(is_beyond);
+      steps[k] += is_beyond;
       term[k] *= mean[k] * reciprocal;
       sum[k] += term[k];
     }
-    if (beyond == 0) return;
+    if (beyond == 0) break;
   }
+  for (std::size_t k = 0; k < kGroup; ++k) numbers[k] = static_cast<float>(steps[k]);
 }
 
-inline float by_expansion(float expected, float w) {
-  const float mean = std::min(expected, 1e12F);  // so that infinity has a result as well
+VBAR_WIDE_LOOPS void search(const std::uint32_t* words, const float* means, float* numbers) {
+  for (std::size_t k = 0; k < kChunk; k += kGroup) search_group(words + k, means + k, numbers + k);
+}
+
+/// For a mean of kGaussianMean to 1e12 and a normal number w.
+VBAR_INLINE float by_expansion(float mean, float w) {
   const float root = std::sqrt(mean), w2 = w * w;
   const float first = (1.0F / 3.0F) + w2 * (1.0F / 6.0F);
   const float second = w * (-1.0F / 36.0F - w2 * (1.0F / 72.0F)) / root;
   const float third = (-8.0F / 405.0F + w2 * (7.0F / 810.0F) + w2 * w2 * (1.0F / 270.0F)) / mean;
-  return std::max(0.0F, std::floor(mean + (root * w + (first + (second + third)))));
+  return mean + (root * w + (first + (second + third)));
+}
+
+/// Of the means from kGaussianMean on; the other numbers stay. Each loop is one that a compiler makes vectors of.
+VBAR_WIDE_LOOPS void expand(const float* means, const float* normal, float* numbers) {
+  ChunkFloats mean, number;
+  for (std::size_t k = 0; k < kChunk; ++k) {
+    const float large = means[k] >= kGaussianMean ? means[k] : kGaussianMean;
+    mean[k] = large < 1e12F ? large : 1e12F;  // so that infinity has a result as well
+  }
+  for (std::size_t k = 0; k < kChunk; ++k) number[k] = by_expansion(mean[k], normal[k]);
+  for (std::size_t k = 0; k < kChunk; ++k) number[k] = std::floor(number[k]);
+  for (std::size_t k = 0; k < kChunk; ++k) {
+    const float positive = number[k] > 0.0F ? number[k] : 0.0F;
+    numbers[k] = means[k] >= kGaussianMean ? positive : numbers[k];
+  }
 }
 
 }  // namespace
 
-void draw_words(const NoiseKey& key, NoiseKind kind, std::uint32_t chunk, ChunkWords& words) {
+VBAR_WIDE_LOOPS void draw_words(const NoiseKey& key, NoiseKind kind, std::uint32_t chunk, ChunkWords& words) {
   Blocks blocks;
   for (std::size_t k = 0; k < kBlocksOfChunk; ++k) {
     blocks.word[0][k] = chunk * static_cast<std::uint32_t>(kBlocksOfChunk) + static_cast<std::uint32_t>(k);
@@ -164,12 +190,11 @@ void normal_numbers(const ChunkWords& words, ChunkFloats& normal) {
 void poisson_numbers(const ChunkWords& words, std::span<const float, kChunk> means, std::span<float, kChunk> numbers) {
   int large = 0;
   for (std::size_t k = 0; k < kChunk; ++k) large += means[k] >= kGaussianMean ? 1 : 0;
-  if (large < static_cast<int>(kChunk)) search(words, means, numbers);
+  if (large < static_cast<int>(kChunk)) search(words.data(), means.data(), numbers.data());
   if (large == 0) return;
   ChunkFloats normal;
   normal_numbers(words, normal);
-  for (std::size_t k = 0; k < kChunk; ++k)
-    if (means[k] >= kGaussianMean) numbers[k] = by_expansion(means[k], normal[k]);
+  expand(means.data(), normal.data(), numbers.data());
 }
 
 }  // namespace vbar::twins::camera

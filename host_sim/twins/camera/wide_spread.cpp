@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <iterator>
 
+#include "host_sim/engine/wide_loops.h"
+
 namespace vbar::twins::camera {
 namespace {
 
@@ -41,7 +43,7 @@ std::array<float, 3> spline_weights(float u) {
   return {0.5F * (0.5F - u) * (0.5F - u), 0.75F - u * u, 0.5F * (0.5F + u) * (0.5F + u)};
 }
 
-void add_scaled(float factor, const float* from, std::size_t count, float* to) {
+VBAR_WIDE_LOOPS void add_scaled(float factor, const float* from, std::size_t count, float* to) {
   for (std::size_t k = 0; k < count; ++k) to[k] += factor * from[k];
 }
 

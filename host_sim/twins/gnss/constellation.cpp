@@ -1,6 +1,7 @@
 #include "host_sim/twins/gnss/constellation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -76,6 +77,35 @@ Ephemeris on_day_of(Ephemeris set, fsw::GpsTime epoch) {
   return set;
 }
 
+std::vector<EphemerisFile> navigation_files_of(const std::filesystem::path& data_directory,
+                                               const ConstellationSettings& settings) {
+  std::vector<std::filesystem::path> paths = settings.navigation_files;
+  if (paths.empty()) paths = {"gps/gps_2011_10_20.csv", "gps/galileo_beidou_2013_07_19.csv"};
+  std::vector<EphemerisFile> files;
+  for (const std::filesystem::path& path : paths) files.push_back(read_ephemeris_file(data_directory / path));
+  return files;
+}
+
+/// Of the first file that has any.
+BroadcastCorrections corrections_of(const std::vector<EphemerisFile>& files) {
+  const auto found =
+      std::ranges::find_if(files, [](const EphemerisFile& file) { return file.corrections != BroadcastCorrections{}; });
+  return found == files.end() ? BroadcastCorrections{} : found->corrections;
+}
+
+std::vector<Ephemeris> satellites_of(System system, const std::vector<EphemerisFile>& files) {
+  std::vector<Ephemeris> satellites;
+  for (const EphemerisFile& file : files) {
+    for (const Ephemeris& set : file.satellites)
+      if (set.satellite.system == system) satellites.push_back(set);
+    if (!satellites.empty()) return satellites;
+  }
+  constexpr std::array<const char*, kSystems> kKeys{"gps", "galileo", "beidou"};
+  throw std::runtime_error(fmt::format(
+      "constellation.navigation_files: no file has a satellite of {0}; constellation.{0} = \"broadcast\" needs one",
+      kKeys[static_cast<std::size_t>(system)]));
+}
+
 struct SetSchedule {
   std::int64_t period_s;
   std::int64_t toe_after_begin_s;
@@ -116,25 +146,23 @@ double Constellation::SlowError::at(double orbit_angle) const {
 Constellation::Constellation(const std::filesystem::path& data_directory, const ConstellationSettings& settings,
                              fsw::GpsTime epoch, std::uint64_t seed) {
   check(settings);
-  const EphemerisFile gps = read_ephemeris_file(data_directory / "gps" / "gps_2011_10_20.csv");
-  const EphemerisFile others = read_ephemeris_file(data_directory / "gps" / "galileo_beidou_2013_07_19.csv");
-  corrections_ = gps.corrections;
+  const std::vector<EphemerisFile> files = navigation_files_of(data_directory, settings);
+  corrections_ = corrections_of(files);
 
   std::vector<Ephemeris> sets;
-  const auto add = [&](System system, SatelliteSet which, const std::vector<Ephemeris>& broadcast) {
+  const auto add = [&](System system, SatelliteSet which) {
     if (which == SatelliteSet::kBroadcast)
-      for (const Ephemeris& set : broadcast)
-        if (set.satellite.system == system)
-          sets.push_back(on_day_of(is_geostationary(set.satellite) ? without_rates(set) : set, epoch));
+      for (const Ephemeris& set : satellites_of(system, files))
+        sets.push_back(on_day_of(is_geostationary(set.satellite) ? without_rates(set) : set, epoch));
     if (which == SatelliteSet::kNominal) {
       const WalkerPattern& pattern = system == System::kGalileo ? kNominalGalileo : kNominalBeidou;
       const fsw::GpsTime noon{epoch.ns / kDay_ns * kDay_ns + kDay_ns / 2};
       for (const Ephemeris& set : walker_satellites(pattern, noon + gps_minus_system_time(system))) sets.push_back(set);
     }
   };
-  add(System::kGps, settings.gps, gps.satellites);
-  add(System::kGalileo, settings.galileo, others.satellites);
-  add(System::kBeidou, settings.beidou, others.satellites);
+  add(System::kGps, settings.gps);
+  add(System::kGalileo, settings.galileo);
+  add(System::kBeidou, settings.beidou);
   if (sets.empty()) throw std::invalid_argument("gps, galileo and beidou are all none: no satellite is left");
 
   for (const Ephemeris& set : sets) {

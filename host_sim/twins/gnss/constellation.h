@@ -27,6 +27,9 @@ struct ConstellationSettings {
   SatelliteSet gps = SatelliteSet::kBroadcast;
   SatelliteSet galileo = SatelliteSet::kBroadcast;
   SatelliteSet beidou = SatelliteSet::kBroadcast;
+  /// Of kBroadcast: absolute, or from the data folder; empty: those of the data folder. The satellites of a system come
+  /// from the first file that has any.
+  std::vector<std::filesystem::path> navigation_files;
   // True minus broadcast, one sigma. Sizes of 2011: signal-in-space range error about 1 m.
   double orbit_error_radial_m = 0.4;
   double orbit_error_transverse_m = 1.5;
@@ -43,6 +46,7 @@ struct BroadcastCorrections {
   KlobucharCoefficients klobuchar;
   double utc_a0_s = 0.0;
   double utc_a1 = 0.0;
+  friend bool operator==(const BroadcastCorrections&, const BroadcastCorrections&) = default;
 };
 
 /// A broadcast set and the number that identifies it (IODE, IODnav, AODE).
@@ -53,9 +57,9 @@ struct BroadcastSet {
 
 class Constellation {
  public:
-  /// Reads data_directory/gps. `epoch` gives the day that the elements are moved to. Errors are drawn from the streams
-  /// "gnss/constellation/<satellite>" of `seed`. Throws std::runtime_error naming file and line,
-  /// std::invalid_argument for settings.
+  /// Reads the navigation files, by default those of data_directory/gps. `epoch` gives the day that the elements are
+  /// moved to. Errors are drawn from the streams "gnss/constellation/<satellite>" of `seed`. Throws std::runtime_error
+  /// naming file and line, std::invalid_argument for settings.
   Constellation(const std::filesystem::path& data_directory, const ConstellationSettings& settings, fsw::GpsTime epoch,
                 std::uint64_t seed);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Reads the broadcast ephemerides of data/gps.
+// Reads broadcast ephemerides: those of data/gps, RINEX navigation files (formats/ephemeris_formats.h).
 
 #include <filesystem>
 #include <vector>

@@ -1,5 +1,6 @@
 #include "host_sim/twins/gnss/gnss_receiver.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -48,6 +49,8 @@ void check_truth(const BodyTruth& truth) {
 GnssReceiver::GnssReceiver(const GnssReceiverSettings& settings, std::shared_ptr<const Constellation> constellation,
                            const std::filesystem::path& data_directory, std::uint64_t seed, const std::string& name)
     : settings_(checked(settings)),
+      seed_(seed),
+      name_(name),
       constellation_(needed(constellation)),
       pattern_(AntennaPattern::load(data_directory)),
       body_errors_(draw_body_frame(settings.body_frame, seed, name)),
@@ -97,13 +100,56 @@ void GnssReceiver::command_slip(SatelliteId satellite, Signal signal, std::int64
     if (tracking.satellite() == satellite) tracking.command_slip(signal, cycles, seen);
 }
 
+bool GnssReceiver::upset(const Upset& upset) {
+  switch (upset.kind) {
+    case Upset::Kind::kCycleSlip:
+      return slip_satellites(upset.satellite, std::llround(upset.value));
+    case Upset::Kind::kClockJump:
+      clock_step_s_ += upset.value;
+      return true;
+    case Upset::Kind::kReset:
+      must_restart_ = true;
+      return true;
+  }
+  return false;
+}
+
+/// Of all satellites each slips by another multiple: 1, -1, 2, -2, ...
+bool GnssReceiver::slip_satellites(const std::string& satellite, std::int64_t cycles) {
+  const auto highest = std::ranges::max_element(truth_.observations, {}, &ObservationTruth::elevation);
+  if (highest == truth_.observations.end()) return false;
+  std::int64_t slipped = 0;
+  for (SatelliteTracking& tracking : tracking_) {
+    const bool is_tracked = std::ranges::any_of(tracking.signals(), &SignalTrack::tracking);
+    const bool is_meant = satellite == "all" || satellite == name_of(tracking.satellite()) ||
+                          (satellite == "highest" && tracking.satellite() == highest->satellite);
+    if (!is_tracked || !is_meant) continue;
+    const std::int64_t multiple = (slipped % 2 == 0 ? 1 : -1) * (slipped / 2 + 1);
+    for (const SignalTrack& track : tracking.signals()) tracking.command_slip(track.signal, multiple * cycles, false);
+    ++slipped;
+  }
+  return slipped > 0;
+}
+
+void GnssReceiver::restart() {
+  must_restart_ = false;
+  on_ = false;
+  clock_ = ReceiverClock(settings_.clock, seed_, fmt::format("{}/restart_{}", name_, ++restarts_));
+  for (SatelliteTracking& tracking : tracking_) tracking.lose();
+  std::ranges::fill(messages_, MessageState{});
+  corrections_logged_ = false;
+}
+
 void GnssReceiver::advance(const BodyTruth& truth) {
+  if (must_restart_) restart();
   if (on_) {
     if (truth.time <= last_epoch_) throw std::invalid_argument("GNSS receiver: the epoch is not later than the last");
     clock_.advance(seconds(truth.time - last_epoch_));
   } else {
     switched_on_ = truth.time;
   }
+  // Added only if there is one: the clock of a run without keeps its bits.
+  if (clock_step_s_ != 0.0) clock_.shift(std::exchange(clock_step_s_, 0.0));
 }
 
 AntennaState GnssReceiver::antenna_state(const BodyTruth& truth) {

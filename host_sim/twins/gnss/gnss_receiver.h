@@ -76,6 +76,10 @@ class GnssReceiver final : public ReceiverBytes {
   /// Lets a carrier slip by whole cycles at the next epoch, if it is tracked then.
   void command_slip(SatelliteId satellite, Signal signal, std::int64_t cycles, bool seen);
 
+  /// At the next epoch. A slip that is not detected, of all carriers of the satellites concerned; false while none of
+  /// them is tracked. A reset begins as the first epoch did, except that it draws another clock and other ambiguities.
+  bool upset(const Upset& upset) override;
+
   /// The last epoch's observations and the truth about them.
   [[nodiscard]] const std::vector<oem::RangeRecord>& observations() const { return observations_; }
   [[nodiscard]] const ReceiverTruth& truth() const { return truth_; }
@@ -97,6 +101,8 @@ class GnssReceiver final : public ReceiverBytes {
   };
 
   void advance(const BodyTruth& truth);
+  void restart();
+  bool slip_satellites(const std::string& satellite, std::int64_t cycles);
   AntennaState antenna_state(const BodyTruth& truth);
   void observe(const AntennaState& antenna, fsw::GpsTime now);
   void observe_satellite(const AntennaState& antenna, fsw::GpsTime now, std::size_t index);
@@ -110,6 +116,8 @@ class GnssReceiver final : public ReceiverBytes {
                        const std::optional<PointSolution>& solution, const UtcOffset& utc) const;
 
   GnssReceiverSettings settings_;
+  std::uint64_t seed_;
+  std::string name_;
   std::shared_ptr<const Constellation> constellation_;
   AntennaPattern pattern_;
   BodyFrameErrors body_errors_;
@@ -118,6 +126,10 @@ class GnssReceiver final : public ReceiverBytes {
   std::vector<SatelliteTracking> tracking_;  ///< by the constellation's index, as the following
   std::vector<MessageState> messages_;
   std::array<SignalBias, kSignals> biases_{};
+
+  bool must_restart_ = false;
+  int restarts_ = 0;
+  double clock_step_s_ = 0.0;  ///< at the next epoch
 
   bool on_ = false;
   fsw::GpsTime switched_on_;

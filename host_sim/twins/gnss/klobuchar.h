@@ -10,6 +10,7 @@ namespace vbar::twins::gnss {
 struct KlobucharCoefficients {
   std::array<double, 4> alpha{};  ///< s, s/semicircle, ...
   std::array<double, 4> beta{};
+  friend bool operator==(const KlobucharCoefficients&, const KlobucharCoefficients&) = default;
 };
 
 /// Delay of an L1 signal on the ground, m. Latitude, longitude (geodetic), elevation, azimuth in rad; time of GPS week.

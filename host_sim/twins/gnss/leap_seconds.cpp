@@ -26,11 +26,10 @@ UtcOffset utc_offset_at(fsw::GpsTime time) {
   const int day = kGpsEpoch_mjd + static_cast<int>((gps_s - gps_minus_utc_s(about_day)) / kSecondsPerDay);
   UtcOffset offset;
   offset.gps_minus_utc_s = gps_minus_utc_s(day);
-  for (int earlier = day - 1; earlier >= kGpsEpoch_mjd && earlier > day - kDaysToSearch; --earlier) {
-    if (gps_minus_utc_s(earlier) == offset.gps_minus_utc_s) continue;
-    offset.change_week = (earlier - kGpsEpoch_mjd) / 7;
-    offset.change_day = (earlier - kGpsEpoch_mjd) % 7 + 1;
-    break;
+  const int last_before = truth::first_day_of_tai_minus_utc(day) - 1;
+  if (last_before >= kGpsEpoch_mjd && last_before > day - kDaysToSearch) {
+    offset.change_week = (last_before - kGpsEpoch_mjd) / 7;
+    offset.change_day = (last_before - kGpsEpoch_mjd) % 7 + 1;
   }
   return offset;
 }

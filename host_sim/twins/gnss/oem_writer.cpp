@@ -1,30 +1,17 @@
 #include "host_sim/twins/gnss/oem_writer.h"
 
-#include <array>
-
+#include "fsw/core/crc32.h"
 #include "host_sim/twins/gnss/system_time.h"
 
 namespace vbar::twins::gnss::oem {
 namespace {
-
-constexpr std::array<std::uint32_t, 256> kCrcTable = [] {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t k = 0; k < 256; ++k) {
-    std::uint32_t crc = k;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
-    table[k] = crc;
-  }
-  return table;
-}();
 
 constexpr std::size_t kHeaderBytes = 28;
 
 }  // namespace
 
 std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
-  std::uint32_t crc = 0;
-  for (const std::uint8_t byte : bytes) crc = (crc >> 8U) ^ kCrcTable[(crc ^ byte) & 0xFFU];
-  return crc;
+  return fsw::crc32_after(0, bytes);
 }
 
 MessageWriter::MessageWriter(Bytes& bytes, MessageId id, const Header& header, bool is_response)

@@ -71,6 +71,12 @@ class ReceiverBytes {
 
   /// Once every period, in order.
   virtual ReceiverOutput output_at(const BodyTruth& truth) = 0;
+
+  /// As that of PacketSource.
+  virtual bool upset(const Upset& upset) {
+    static_cast<void>(upset);
+    return false;
+  }
 };
 
 }  // namespace vbar::twins::gnss

@@ -38,6 +38,8 @@ class ReceiverClock {
 
   /// Lets `elapsed_s` >= 0 pass for the oscillator, then resets the clock where its offset is beyond the threshold.
   void advance(double elapsed_s);
+  /// Sets the clock by `step_s`, which does not count as a reset.
+  void shift(double step_s) { oscillator_.shift(step_s); }
 
   [[nodiscard]] double offset_s() const { return oscillator_.offset_s(); }  ///< clock minus GPS time
   [[nodiscard]] double drift() const { return oscillator_.drift(); }        ///< s/s

@@ -41,6 +41,9 @@ class SatelliteTracking {
   /// `first` is the epoch at which the receiver was switched on.
   void update(fsw::GpsTime now, bool first, const std::vector<double>& cn0_dbhz);
 
+  /// Loses all signals: they are searched at the next update.
+  void lose();
+
   /// Adds a slip at the next update, if the signal is tracked then; its whole cycles as given, not zero.
   void command_slip(Signal signal, std::int64_t cycles, bool seen);
 
@@ -59,7 +62,6 @@ class SatelliteTracking {
   };
 
   void search(fsw::GpsTime now, bool first);
-  void lose();
   void begin(SignalTrack& track, fsw::GpsTime since);
   void slip(SignalTrack& track, fsw::GpsTime now, std::int64_t cycles, bool seen);
   void slip_by_chance(SignalTrack& track, fsw::GpsTime now, double elapsed_s);

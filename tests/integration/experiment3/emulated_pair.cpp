@@ -39,7 +39,7 @@ CoastingPair::CoastingPair(int duration_s, const std::vector<std::string>& overr
     : overrides_(overrides),
       mission_(experiment3(overrides, {})),
       truth_(app::truth_settings(mission_, kRoot + "/data")) {
-  app::place_spacecraft(mission_, truth_);
+  app::place_spacecraft(mission_, kRoot + "/data", truth_);
   app::set_attitudes(mission_, kRoot + "/data", truth_);
   truth::EarthRotation earth_rotation(truth_.data().earth_orientation, mission_.epoch);
   const fsw::Duration period = fsw::nearest_duration(

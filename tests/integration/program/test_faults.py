@@ -4,10 +4,10 @@ import csv
 import math
 import unittest
 
-from vbar_program import SOURCE, fly, hashes, main, scratch, vbar
+from vbar_program import MISSION, SOURCE, ZYNQ_IMAGE, fly, hashes, main, missing, scratch, vbar
 
 EXPERIMENT2 = SOURCE / "missions" / "experiment2.toml"
-START_H = 39.0
+EXPERIMENT3 = SOURCE / "missions" / "experiment3.toml"
 SHORT = "mission.duration_h=0.2"
 FAULTS = """
 extends = "{base}"
@@ -99,6 +99,111 @@ class Faults(unittest.TestCase):
         self.assertEqual(hashes(fly(self.folder / "again", SHORT, mission=self.mission)), hashes(self.summary))
 
 
+RECEIVERS = """
+extends = "{base}"
+[[fault]]
+name = "slip"
+kind = "cycle_slip"
+unit = "gnss"
+event = "first_fix"
+after_s = 600.0
+value_cycles = 1
+[[fault]]
+name = "reset of the target"
+kind = "receiver_reset"
+unit = "gnss"
+spacecraft = "target"
+event = "waypoint:9"
+[[fault]]
+name = "second burn at half size"
+kind = "thrust_scale"
+event = "burn:2"
+for_s = 0.1
+value = 0.5
+[[fault]]
+name = "clock"
+kind = "clock_jump"
+unit = "gnss"
+at_h = 40.5
+value_s = 2e-5
+[[fault]]
+name = "crosslink"
+kind = "silent"
+unit = "gnss"
+spacecraft = "target"
+at_h = 40.7
+for_s = 120.0
+[[fault]]
+name = "never"
+kind = "silent"
+unit = "gnss"
+event = "range_below_m:1.0"
+"""
+
+
+class Receivers(unittest.TestCase):
+    """Faults of receivers and faults that begin with events, in the mission by carrier phase."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = cls.enterClassContext(scratch())
+        cls.mission = cls.folder / "receivers.toml"
+        cls.mission.write_text(RECEIVERS.format(base=EXPERIMENT3))
+        cls.summary = fly(cls.folder / "run", mission=cls.mission)
+        cls.faults = {row["name"]: row for row in rows_of(cls.folder / "run", "faults.csv")}
+        cls.figures = cls.summary["sensor_figures"]["faults"]
+
+    def begin_s(self, name):
+        return float(self.faults[name]["begin_s"])
+
+    def test_events_are_those_of_the_run(self):
+        fixed = next(float(row["time_s"]) for row in rows_of(self.folder / "run", "gnss.csv") if int(row["fixed"]) > 0)
+        self.assertEqual(self.begin_s("slip"), fixed + 600.0)
+        self.assertEqual(self.begin_s("reset of the target"), 40.0 * 3600.0)
+        burns = [row for row in rows_of(self.folder / "run", "maneuvers.csv") if row["accepted"] == "1"]
+        self.assertEqual(self.begin_s("second burn at half size"), float(burns[1]["execution_time_s"]))
+        size = [math.hypot(*(float(burns[1][f"{what}_dv_rtn_{axis}_mps"]) for axis in "rtn")) for what in ("executed", "commanded")]
+        self.assertAlmostEqual(size[0] / size[1], 0.5, delta=0.01)
+
+    def test_witnesses_decode_what_was_delivered(self):
+        for name, evidence in (("slip", r"2 carriers of 1 satellites jump, the first by (0\.[7-9]|1\.[0-2])\d cycles"),
+                               ("reset of the target", r"\d\d carriers, all locked anew"),
+                               ("clock", r"pseudoranges jump by (1\.9|2)\d*e-05 s"),
+                               ("second burn at half size", r"1 burns, the last at 0\.(49|50)\d* of its size")):
+            row = self.faults[name]
+            self.assertRegex(row["evidence"], evidence, name)
+            self.assertLessEqual(float(row["effect_s"]) - float(row["begin_s"]), 30.0, name)
+
+    def test_recovery_is_when_carrier_phase_aids_again(self):
+        row = self.faults["crosslink"]
+        after_s = self.figures["crosslink.recovered_after_s"]
+        self.assertEqual(after_s, float(row["recovered_s"]) - float(row["end_s"]))
+        self.assertGreaterEqual(after_s, 0.0)
+        self.assertLess(after_s, 300.0)
+        self.assertGreaterEqual(self.figures["slip.recovered_after_s"], 0.0)
+
+    def test_an_event_that_does_not_happen_is_no_effect(self):
+        row = self.faults["never"]
+        self.assertEqual((row["event"], row["begin_s"], row["effect_s"]), ("range_below_m:1.0", "", ""))
+        self.assertEqual(self.figures["without_effect"], 1)
+        told = vbar("run", self.mission, "--out", self.folder / "told")
+        self.assertIn('fault "never" never began: range_below_m:1.0 did not happen', told.stdout)
+
+    def test_nothing_changes_before_the_first_fault(self):
+        """The navigation of each step until the slip, bit for bit."""
+        fly(self.folder / "without", mission=EXPERIMENT3)
+        first_s = min(self.begin_s("slip"), self.begin_s("second burn at half size"))
+        before = [[row for row in rows_of(self.folder / run, "estimate.csv") if float(row["time_s"]) < first_s] for run in ("run", "without")]
+        self.assertGreater(len(before[0]), 60)
+        for with_fault, without in zip(*before):
+            for costly in ("step_cost", "stack_bytes"):
+                with_fault.pop(costly, None), without.pop(costly, None)
+            self.assertEqual(with_fault, without)
+
+    def test_the_same_again(self):
+        self.assertEqual(hashes(fly(self.folder / "again", mission=self.mission)), hashes(self.summary))
+
+
 class Reboot(unittest.TestCase):
     def test_the_flight_computer_begins_again(self):
         with scratch() as folder:
@@ -106,7 +211,9 @@ class Reboot(unittest.TestCase):
             mission.write_text(f'extends = "{EXPERIMENT2}"\n[[fault]]\nkind = "computer_reboot"\nat_h = 39.05\nfor_s = 60.0\n')
             summary = fly(folder / "run", "mission.duration_h=0.1", mission=mission)
             row = rows_of(folder / "run", "faults.csv")[0]
-            self.assertEqual(float(row["recovered_s"]), float(row["begin_s"]) + 60.0)
+            aided = [float(event["step_time_s"]) for event in rows_of(folder / "run", "telemetry_event.csv")
+                     if event["event"] == "aid" and event["after"] == "aiding" and float(event["step_time_s"]) > float(row["begin_s"])]
+            self.assertIn(float(row["recovered_s"]), aided, "what aided before the reboot aids again")
             steps = [int(health["step"]) for health in rows_of(folder / "run", "telemetry_health.csv")]
             self.assertEqual(steps.count(0), 2)
             self.assertTrue(summary["complete"])
@@ -127,9 +234,23 @@ class Reboot(unittest.TestCase):
             self.assertNotIn("cold_start", after[0]["faults"])
             states = {float(row["time_s"]): row for row in rows_of(folder / "run", "estimate.csv")}
             self.assertEqual(states[begin_s + 60.0]["navigation_valid"], "1", "the first step after it navigates")
-            refused = vbar("run", mission, "--check", "--set", "flight_computer.target=host_process")
+            refused = vbar("run", mission, "--check", "--set", "flight_computer.library=x.so")
             self.assertEqual(refused.returncode, 2)
             self.assertIn("keeps_state", refused.stderr)
+
+    def test_it_continues_on_every_flight_computer_with_the_same_bits(self):
+        with scratch() as folder:
+            reboot = f'extends = "{MISSION}"\n[[fault]]\nkind = "computer_reboot"\nat_h = 1.0\nfor_s = 180.0\n'
+            (folder / "cold.toml").write_text(reboot)
+            mission = folder / "reboot.toml"
+            mission.write_text(reboot + "keeps_state = true\n")
+            duration = "mission.duration_h=1.5"
+            here = fly(folder / "here", duration, mission=mission)
+            cold = fly(folder / "cold", duration, mission=folder / "cold.toml")
+            self.assertNotEqual(hashes(cold), hashes(here), "the state makes a difference")
+            for target in ["host_process"] + ([] if missing(ZYNQ_IMAGE) else ["zynq_qemu"]):
+                remote = fly(folder / target, duration, f"flight_computer.target={target}", "flight_computer.link=udp", mission=mission)
+                self.assertEqual(hashes(remote), hashes(here), target)
 
 
 class Snapshot(unittest.TestCase):
@@ -144,6 +265,17 @@ class Snapshot(unittest.TestCase):
                 restored = vbar("replay", folder / "run", "--from", folder / "snapshot")
                 self.assertEqual(restored.returncode, 0, restored.stdout + restored.stderr)
                 self.assertRegex(restored.stdout, r"identical: \d{2,} steps, .* from step \d{2,} on")
+
+    def test_so_it_does_on_another_flight_computer(self):
+        with scratch() as folder:
+            fly(folder / "run", "mission.duration_h=2")
+            for target in ["host_process"] + ([] if missing(ZYNQ_IMAGE) else ["zynq_qemu"]):
+                computer = ["--set", f"flight_computer.target={target}", "--set", "flight_computer.link=udp"]
+                saved = vbar("replay", folder / "run", "--save", folder / target, "--at-h", 1.0, *computer)
+                self.assertEqual(saved.returncode, 0, saved.stderr)
+                restored = vbar("replay", folder / "run", "--from", folder / target, *computer)
+                self.assertEqual(restored.returncode, 0, restored.stdout + restored.stderr)
+                self.assertRegex(restored.stdout, rf"on {target} over udp.* from step \d{{2,}} on")
 
     def test_what_is_no_snapshot_is_refused(self):
         with scratch() as folder:

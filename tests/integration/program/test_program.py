@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The program from outside: the same bits on every flight computer, replay, faults, bad input, the run folder."""
 import csv
+import datetime
 import json
 import math
 import os
@@ -31,6 +32,33 @@ def not_built(name):
     if name.startswith("ARM"):
         return missing(ZYNQ_LINUX_PROGRAM)
     return None
+
+
+
+def date_of(mjd):
+    return datetime.date(1858, 11, 17) + datetime.timedelta(days=mjd)
+
+
+def finals2000a(first_mjd, days, first_predicted):
+    """Numbers of no year in the published columns (readme.finals2000A)."""
+    rows = []
+    for mjd in range(first_mjd, first_mjd + days):
+        date, flag = date_of(mjd), "P" if mjd >= first_predicted else "I"
+        rows.append(f"{date.year % 100:2d}{date.month:2d}{date.day:2d} {mjd:8.2f} {flag} {0.1:9.6f}{1e-5:9.6f} {0.35:9.6f}{1e-5:9.6f}"
+                    f"  {flag}{0.05:10.7f}{1e-6:10.7f} {0.1:7.4f}{0.01:7.4f}  {flag} {0.3:9.3f}{0.1:9.3f} {-0.1:9.3f}{0.1:9.3f}\n")
+    return "".join(rows)
+
+
+def space_weather(first_mjd, days, first_predicted):
+    """Numbers of no year in the columns of CelesTrak's text."""
+    def row(mjd):
+        date = date_of(mjd)
+        return (f"{date.year:4d} {date.month:02d} {date.day:02d} 2637  1" + "20".rjust(3) * 8 + " 160" + "7".rjust(4) * 8 +
+                "   7 0.4 2 100 140.0 0 150.0 150.0 145.0 151.0 151.0\n")
+    observed = "".join(row(mjd) for mjd in range(first_mjd, first_predicted))
+    predicted = "".join(row(mjd) for mjd in range(first_predicted, first_mjd + days))
+    return (f"DATATYPE CssiSpaceWeather\nVERSION 1.2\nBEGIN OBSERVED\n{observed}END OBSERVED\n"
+            f"BEGIN DAILY_PREDICTED\n{predicted}END DAILY_PREDICTED\n")
 
 
 class SameBits(unittest.TestCase):
@@ -263,9 +291,44 @@ class Propagate(unittest.TestCase):
             self.assertFalse((folder / "out").exists())
 
     def test_data_that_end_are_noticed_at_the_start(self):
-        self.refuse(["mission.epoch_utc=2013-12-20T00:00:00Z", "mission.duration_h=480"], "eop_2009_2013.csv",
+        named = ["truth.earth_orientation_file=earth/eop_2009_2013.csv",
+                 "truth.space_weather_file=earth/space_weather_2009_2013.csv"]
+        self.refuse(named + ["mission.epoch_utc=2013-12-20T00:00:00Z", "mission.duration_h=480"], "eop_2009_2013.csv",
                     "ends at 2014-01-09T00:00:00Z")
-        self.refuse(["mission.epoch_utc=2009-01-02T00:00:00Z"], "space_weather_2009_2013.csv", "2009-01-02")
+        self.refuse(named + ["mission.epoch_utc=2009-01-02T00:00:00Z"], "space_weather_2009_2013.csv", "2009-01-02")
+
+    def test_a_date_of_today_flies_with_published_files_and_without(self):
+        today = ["mission.epoch_utc=2026-11-20T00:00:00Z", "mission.duration_h=1"]
+        with scratch() as folder:
+            (folder / "finals2000A.all").write_text(finals2000a(first_mjd=61350, days=60, first_predicted=61375))
+            (folder / "SW-All.txt").write_text(space_weather(first_mjd=61350, days=60, first_predicted=61370))
+            files = [f"truth.earth_orientation_file={folder / 'finals2000A.all'}",
+                     f"truth.space_weather_file={folder / 'SW-All.txt'}"]
+            flown = vbar("propagate", self.ORBIT, "--out", folder / "with", *overrides(*today, *files))
+            self.assertEqual(flown.returncode, 0, flown.stderr)
+            self.assertNotIn("data  ", flown.stdout)
+            later = ["mission.epoch_utc=2026-12-10T00:00:00Z", "mission.duration_h=1"]
+            flown = vbar("propagate", self.ORBIT, "--out", folder / "predicted", *overrides(*later, *files))
+            self.assertEqual(flown.returncode, 0, flown.stderr)
+            self.assertIn("Earth orientation is predicted from", flown.stdout)
+            self.assertIn("Space weather is predicted from", flown.stdout)
+            self.refuse(later + files + ["truth.accept_predictions=false"], "finals2000A.all", "is predicted from")
+            flown = vbar("propagate", self.ORBIT, "--out", folder / "without", *overrides(*today))
+            self.assertEqual(flown.returncode, 0, flown.stderr)
+            self.assertIn("UT1 = UTC is assumed, an error of up to 0.9 s", flown.stdout)
+            self.assertIn("F10.7 = 150 and Ap = 15 are assumed", flown.stdout)
+
+    def test_an_orbit_outside_the_domain_of_the_planner(self):
+        with scratch() as folder:
+            result = vbar("run", SOURCE / "missions" / "user_orbit_eccentric.toml", "--check",
+                          *overrides("waypoint.3.solver=closed_form"))
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("waypoint 3: solver = closed_form is the closed-form solver for near-circular orbits", result.stderr)
+            result = vbar("run", SOURCE / "missions" / "user_orbit_eccentric.toml", "--check",
+                          *overrides("spacecraft.servicer.elements.semi_major_axis_km=24400",
+                                     "spacecraft.servicer.elements.ex=0.7283"))
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("no planner of this flight software", result.stderr)
 
     def test_files_that_do_not_serve(self):
         self.refuse(["truth.gravity_degree=121"], "degree 121", "0 to 120")

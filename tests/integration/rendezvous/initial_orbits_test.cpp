@@ -30,7 +30,7 @@ Pair placed(const std::vector<std::string>& overrides = {}) {
   settings.gravity_order = mission.truth.gravity_order;
   settings.data_directory = root + "/data";
   truth::TruthModel truth(settings);
-  app::place_spacecraft(mission, truth);
+  app::place_spacecraft(mission, root + "/data", truth);
   EXPECT_EQ(truth.time(), mission.start_time());
   return {truth.state("servicer"), truth.state("target")};
 }
@@ -76,7 +76,7 @@ TEST(InitialOrbits, TheTrueMassIsDrawn) {
         root + "/missions/experiment3.toml", std::vector<std::string>{"mission.seed=" + std::to_string(seed),
                                                                       "spacecraft.servicer.mass_sigma_kg=" + sigma_kg});
     truth::TruthModel truth(app::truth_settings(mission, root + "/data"));
-    app::place_spacecraft(mission, truth);
+    app::place_spacecraft(mission, root + "/data", truth);
     return truth.state("servicer").position_eci;
   };
   const double moved = (servicer_of(1, "10") - servicer_of(1, "0")).norm();

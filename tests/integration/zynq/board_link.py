@@ -114,9 +114,11 @@ class Session:
         data = self.line.receive(timeout)
         return None if data is None else Frame(data)
 
-    def hello(self, receiver_baud=None):
+    def hello(self, receiver_baud=None, step_budget=None):
         """Says hello until somebody answers; the board's name. With a rate, the receiver is wired to the board."""
         payload = bytes([self.spacecraft]) + (b"" if receiver_baud is None else struct.pack(">I", receiver_baud))
+        if step_budget is not None:
+            payload = struct.pack(">BIQ", self.spacecraft, receiver_baud or 0, step_budget)
         for _ in range(self.TRIES):
             self.line.send(frame(HELLO, self.number, payload=payload))
             answer = self.next_frame(self.PATIENCE_S)

@@ -48,7 +48,7 @@ class EmulatedBoard:
         for argument in self.arguments:
             semihosting += ",arg=" + argument
         command = [
-            "qemu-system-arm", "-M", "xilinx-zynq-a9", "-m", "128M", "-nodefaults", "-display", "none", "-no-reboot",
+            "qemu-system-arm", "-M", "xilinx-zynq-a9", "-m", "128M", "-nodefaults", "-display", "none",
             "-accel", "tcg,tb-size=64", "-icount", "shift=5,sleep=off,align=off", "-semihosting-config", semihosting,
             "-chardev", f"socket,id=link,path={serial_path},server=off", "-serial", "chardev:link",
             "-chardev", f"file,id=console,path={self.console_path}", "-serial", "chardev:console",

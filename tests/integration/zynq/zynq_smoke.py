@@ -15,7 +15,7 @@ import tempfile
 import time
 import unittest
 
-from board_link import (ACK, APID_MANEUVER_COMMAND, APID_TELEMETRY_NAVIGATION, APID_WIRED_BYTES, HELLO, POLL, Datagrams,
+from board_link import (ACK, APID_MANEUVER_COMMAND, APID_TELEMETRY_NAVIGATION, APID_WIRED_BYTES, HELLO, HELLO_ACK, POLL, Datagrams,
                         Packet, SerialLine, Session, StepReport, WiredBytes, frame, ideal_navigation, tick)
 from emulated_board import EmulatedBoard
 from neighbour import (ADDRESS, ARP_REPLY, BOARD_ADDRESS, BOARD_MAC, ECHO_REPLY, ECHO_REQUEST, ICMP, MAC, UDP,
@@ -279,6 +279,37 @@ class ZynqSmoke(unittest.TestCase):
             self.check_flight(*fly(session, 5))
             self.assertIsNone(board.wait(0.2), "the board stopped")
 
+    def test_watchdog(self):
+        """A step that does not end: the watchdog resets the board, which says why, and serves the next hello."""
+        image = os.path.join(self.image_folder, "vbar_zynq7000_overrunning.elf")
+
+        def short_steps(session):
+            for step in range(3):
+                report = StepReport(Packet(session.step(step, [tick(step, 1000, PERIOD_NS)])[-1]))
+                self.assertEqual(report.step, step)
+
+        for make_line in (self.datagrams,):  # after a reset the emulated UART0 did not answer (docs/board_bringup.md)
+            with EmulatedBoard(image) as board:
+                session = Session(make_line(board), 41)
+                self.assertEqual(session.hello(step_budget=10_000_000), "vbar zynq7000, bare metal")
+                short_steps(session)
+                session.send_step(3, [tick(3, 2**60, PERIOD_NS)])
+                answer = None
+                for _ in range(session.TRIES):
+                    answer = session.next_frame(session.PATIENCE_S)
+                    if answer is not None:
+                        break
+                    session.line.send(frame(POLL, session.number, 3, 0))
+                self.assertEqual((answer.kind, answer.session), (HELLO_ACK, session.number))
+                self.assertIn(b"error: its watchdog reset it in step 3,", answer.payload)
+                session.drain()
+                session = Session(session.line, 42)
+                self.assertEqual(session.hello(), "vbar zynq7000, bare metal, reset by its watchdog")
+                short_steps(session)
+                session.goodbye()
+                self.assertEqual(board.wait(), 0, board.console())
+                self.assertEqual(board.console().count("ready"), 2)
+
     def test_image_check(self):
         """The check after each link passes the flight image, and bites on one in which something asks for memory."""
         check = os.path.join(os.path.dirname(__file__), "../../../boards/zynq7000/check_image.cmake")
@@ -309,7 +340,8 @@ class ZynqSmoke(unittest.TestCase):
 
 def main():
     ZynqSmoke.image_folder, ZynqSmoke.host_library = sys.argv[1:3]
-    images = ("vbar_zynq7000.elf", "vbar_zynq7000_example.elf", "vbar_zynq7000_selftest.elf")
+    images = ("vbar_zynq7000.elf", "vbar_zynq7000_example.elf", "vbar_zynq7000_overrunning.elf",
+              "vbar_zynq7000_selftest.elf")
     needed = [os.path.join(sys.argv[1], image) for image in images] + [sys.argv[2]]
     missing = [path for path in needed if not os.path.exists(path)]
     if missing or shutil.which("qemu-system-arm") is None:

@@ -47,7 +47,7 @@ def device(tool, address="127.0.0.1"):
 def take(tool, count, width, height, pixel_format, *more, address="127.0.0.1"):
     """Lines of the client, and its exit code."""
     command = [tool, "take", address, str(count), str(width), str(height), pixel_format, *more]
-    result = subprocess.run(command, capture_output=True, text=True, timeout=100)
+    result = subprocess.run(command, capture_output=True, text=True, timeout=200)
     return result.returncode, result.stdout.splitlines(), result.stderr
 
 

@@ -21,6 +21,14 @@ TEST(Qemu, TurnsTimerTicksIntoInstructions) {
   EXPECT_EQ(instructions_of_ticks(2828799, 6), 442000U);
 }
 
+TEST(Qemu, TurnsInstructionsIntoTimerTicksAndBack) {
+  EXPECT_EQ(ticks_of_instructions(10, 6), 64U);
+  EXPECT_EQ(ticks_of_instructions(10, 5), 32U);
+  for (const int shift : {5, 6, 7, 8})
+    for (const std::uint64_t instructions : {1U, 7U, 442'001U, 250'000'000U})
+      EXPECT_EQ(instructions_of_ticks(ticks_of_instructions(instructions, shift), shift), instructions);
+}
+
 TEST(Qemu, EmulationIsDeterministicAndIsolated) {
   const auto serial = zynq_qemu_over_serial("image.elf", 6, 3);
   EXPECT_THAT(serial, Contains("shift=6,sleep=off,align=off"));

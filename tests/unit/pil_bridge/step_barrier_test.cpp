@@ -95,6 +95,17 @@ TEST(StepBarrier, GivesTheSamePacketsAsAFlightSoftwareCalledDirectly) {
   EXPECT_EQ(counters.polls, 0U);
 }
 
+TEST(StepBarrier, ASnapshotThatIsRefusedOrTooLargeGivesItsStatus) {
+  LoopbackBoard board;
+  StepBarrier barrier(board, kSession, hasty(), watch_nothing);
+  barrier.connect(kSpacecraft);
+  std::vector<std::uint8_t> snapshot = barrier.read_snapshot();
+  snapshot.back() ^= 1U;
+  EXPECT_EQ(barrier.write_snapshot(snapshot), static_cast<std::int32_t>(fsw::Status::kBadChecksum));
+  EXPECT_EQ(barrier.write_snapshot(std::vector<std::uint8_t>(boards::kSnapshotBytes + 1)),
+            static_cast<std::int32_t>(fsw::Status::kTooLong));
+}
+
 TEST(StepBarrier, GoodbyeEndsTheBoard) {
   LoopbackBoard board;
   StepBarrier barrier(board, kSession, hasty(), watch_nothing);
@@ -129,6 +140,30 @@ TEST_P(BadLine, ChangesNothingButTheCounters) {
   if (faults.duplicate_frame > 0.0) {
     EXPECT_GT(counters.frames_duplicated, 0U);
   }
+}
+
+// Between two steps the state goes to another board, which continues.
+TEST_P(BadLine, ASnapshotPassesWhole) {
+  const auto line = with_frame_faults(std::make_unique<LoopbackBoard>(), GetParam().faults);
+  StepBarrier barrier(*line, kSession, hasty(), watch_nothing);
+  barrier.connect(kSpacecraft);
+  const auto direct = make_in_process(linked_test_article(), kSpacecraft);
+  const auto fly = [&](std::uint32_t step, StepBarrier& on) {
+    const auto inputs = step_packets(step, packet_count(step));
+    EXPECT_EQ(without_report(on.exchange(step, inputs)), direct->step(step, inputs).packets) << "step " << step;
+  };
+  for (std::uint32_t step = 0; step < 5; ++step) fly(step, barrier);
+  const std::vector<std::uint8_t> snapshot = barrier.read_snapshot();
+  EXPECT_EQ(snapshot, direct->snapshot());
+  fly(5, barrier);
+  const std::vector<std::uint8_t> later = barrier.read_snapshot();
+  EXPECT_NE(later, snapshot) << "of the last step, not of the first question";
+
+  const auto other_line = with_frame_faults(std::make_unique<LoopbackBoard>(), GetParam().faults);
+  StepBarrier other(*other_line, kSession + 1, hasty(), watch_nothing);
+  other.connect(kSpacecraft);
+  EXPECT_EQ(other.write_snapshot(later), 0);
+  for (std::uint32_t step = 6; step < 10; ++step) fly(step, other);
 }
 
 INSTANTIATE_TEST_SUITE_P(Faults, BadLine,
@@ -166,6 +201,16 @@ TEST(StepBarrier, PassesOnWhyABoardCannotFly) {
   StepBarrier barrier(board, kSession, hasty(), watch_nothing);
   EXPECT_EQ(link_error_of([&] { barrier.connect(kSpacecraft); }),
             "the board cannot run its flight software: no room for the state");
+}
+
+TEST(StepBarrier, PassesOnWhyABoardHasLostItsSession) {
+  ScriptedBoard late({{{.type = FrameType::kHelloAck, .session = kSession}, "the name, once more"},
+                      {{.type = FrameType::kHelloAck, .session = kSession}, "error: its watchdog reset it in step 7"}});
+  StepBarrier barrier(late, kSession, hasty(), watch_nothing);
+  const std::string expected = "the board has lost its session: its watchdog reset it in step 7";
+  EXPECT_THROW(barrier.exchange(7, step_packets(7, 1)), SessionLost);
+  EXPECT_EQ(link_error_of([&] { barrier.exchange(7, step_packets(7, 1)); }), expected);
+  EXPECT_EQ(link_error_of([&] { barrier.receiver_count(Clock::now() + milliseconds(5)); }), expected);
 }
 
 TEST(StepBarrier, GivesUpOnABoardThatStallsInAStep) {

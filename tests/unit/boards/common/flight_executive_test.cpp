@@ -87,6 +87,13 @@ class FlightExecutiveTest : public ::testing::Test {
     return report.value();
   }
 
+  static void expect_refusal(const std::vector<Sent>& answer, const std::string& why) {
+    ASSERT_EQ(answer.size(), 1U);
+    EXPECT_EQ(answer[0].header.type, FrameType::kHelloAck);
+    const std::string text(answer[0].payload.begin(), answer[0].payload.end());
+    EXPECT_THAT(text, ::testing::AllOf(::testing::StartsWith("error: "), ::testing::HasSubstr(why)));
+  }
+
   static void say(int count, std::size_t size = 30) {
     fake_gnc_settings().step_output = [count, size](std::uint64_t) {
       std::vector<Bytes> packets;
@@ -176,8 +183,8 @@ TEST_P(FlightExecutiveMisfit, IsRefusedWithAReasonAndNeverRun) {
   GetParam().spoil(fake_gnc_settings());
   EXPECT_THAT(hello(), ::testing::StartsWith("error: "));
   EXPECT_THAT(hello(), ::testing::HasSubstr(GetParam().why));  // also when asked again
-  EXPECT_TRUE(tick(0).empty());
-  EXPECT_TRUE(on(FrameType::kPoll, 0).empty());
+  expect_refusal(tick(0), GetParam().why);
+  expect_refusal(on(FrameType::kPoll, 0), GetParam().why);
   EXPECT_EQ(testing::fake_gnc_steps(), 0);
   testing::reset_fake_gnc();
   EXPECT_EQ(hello(kSession + 1), "unit");
@@ -190,6 +197,80 @@ INSTANTIATE_TEST_SUITE_P(
                       Misfit{"alignment", [](testing::FakeGncSettings& s) { s.state_alignment = 128; }},
                       Misfit{"alignment", [](testing::FakeGncSettings& s) { s.state_alignment = 0; }},
                       Misfit{"start", [](testing::FakeGncSettings& s) { s.init_status = 1; }}));
+
+/// Of a spacecraft without a receiver on a line, with a budget (big-endian).
+Bytes hello_with_budget(std::uint8_t budget_high, std::uint8_t budget_low) {
+  return {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, budget_high, budget_low};
+}
+
+// The counter gains 1000 in a step.
+TEST_F(FlightExecutiveTest, AStepBeyondItsBudgetIsTheLastOne) {
+  say(1);
+  on(FrameType::kHello, 0, 0, hello_with_budget(0x03, 0xE8));  // 1000
+  EXPECT_EQ(tick(0).size(), 2U);
+  EXPECT_EQ(tick(1).size(), 2U);
+  on(FrameType::kHello, 0, 0, hello_with_budget(0x03, 0xE7), false, kSession + 1);  // 999
+  const std::vector<Sent> answer = on(FrameType::kData, 0, 0, tick_packet(0, 0), true, kSession + 1);
+  EXPECT_EQ(report_of(answer).count, 1000);
+  const int steps = testing::fake_gnc_steps();
+  expect_refusal(on(FrameType::kData, 1, 0, tick_packet(1, 1), true, kSession + 1), "exceeded its budget");
+  expect_refusal(on(FrameType::kPoll, 1, 0, {}, false, kSession + 1), "exceeded its budget");
+  EXPECT_EQ(testing::fake_gnc_steps(), steps);
+  EXPECT_EQ(report_of(on(FrameType::kPoll, 0, 0, {}, false, kSession + 1)).count, 1000) << "the answer remains";
+  EXPECT_EQ(hello(kSession + 2), "unit") << "the next session flies";
+  EXPECT_EQ(tick(0).size(), 2U);
+}
+
+TEST_F(FlightExecutiveTest, AHelloWithoutABudgetLeavesThatOfTheBoard) {
+  Platform platform = FlightExecutiveTest::platform(this);
+  platform.step_budget = 999;
+  board_ = std::make_unique<FlightExecutive>(platform);
+  hello();
+  EXPECT_FALSE(tick(0).empty());
+  expect_refusal(tick(1), "exceeded its budget");
+  on(FrameType::kHello, 0, 0, hello_with_budget(0x03, 0xE8), false, kSession + 1);
+  EXPECT_FALSE(on(FrameType::kData, 0, 0, tick_packet(0, 0), true, kSession + 1).empty());
+  EXPECT_EQ(report_of(on(FrameType::kData, 1, 0, tick_packet(1, 1), true, kSession + 1)).step, 1);
+}
+
+TEST_F(FlightExecutiveTest, WithoutACounterThereIsNoBudget) {
+  Platform platform = FlightExecutiveTest::platform(this);
+  platform.counter = nullptr;
+  platform.step_budget = 1;
+  board_ = std::make_unique<FlightExecutive>(platform);
+  on(FrameType::kHello, 0, 0, hello_with_budget(0, 1));
+  for (std::uint32_t step = 0; step < 3; ++step) EXPECT_EQ(report_of(tick(step)).step, step);
+}
+
+TEST_F(FlightExecutiveTest, TheBoardIsToldOfSessionsAndSteps) {
+  static std::string told;
+  told.clear();
+  Platform platform = FlightExecutiveTest::platform(this);
+  platform.session_begins = [](void*, std::uint32_t session, std::uint64_t budget) {
+    told += "session " + std::to_string(session - kSession) + " " + std::to_string(budget) + "; ";
+  };
+  platform.step_begins = [](void*, std::uint32_t step) { told += "step " + std::to_string(step); };
+  platform.step_ends = [](void*, bool within) { told += within ? " ends; " : " ends late; "; };
+  board_ = std::make_unique<FlightExecutive>(platform);
+  on(FrameType::kHello, 0, 0, hello_with_budget(0x03, 0xE7));
+  on(FrameType::kHello, 0, 0, hello_with_budget(0x03, 0xE7));  // again: the same session
+  tick(4);
+  on(FrameType::kHello, 0, 0, {1}, false, kSession + 1);
+  on(FrameType::kData, 5, 0, testing::fake_output(1, 1), false, kSession + 1);
+  on(FrameType::kData, 5, 1, tick_packet(5, 5), true, kSession + 1);
+  EXPECT_EQ(told, "session 0 999; step 4 ends late; session 1 0; step 5 ends; ");
+}
+
+// As after a reset: the board has no other memory of the session.
+TEST_F(FlightExecutiveTest, TheHostOfALostSessionIsToldWhy) {
+  board_->lose_session(kSession, "error: reset in step 7");
+  for (const FrameType type : {FrameType::kData, FrameType::kPoll}) expect_refusal(on(type, 7), "reset in step 7");
+  EXPECT_TRUE(on(FrameType::kAck, 7).empty());
+  EXPECT_TRUE(on(FrameType::kPoll, 7, 0, {}, false, kSession + 1).empty()) << "another session is not its concern";
+  EXPECT_EQ(testing::fake_gnc_steps(), 0);
+  EXPECT_EQ(hello(kSession + 1), "unit");
+  EXPECT_EQ(report_of(on(FrameType::kData, 0, 0, tick_packet(0, 0), true, kSession + 1)).step, 0);
+}
 
 TEST_F(FlightExecutiveTest, HelloWithoutASpacecraftNumberIsRefused) {
   const std::vector<Sent> answer = on(FrameType::kHello);

@@ -83,5 +83,12 @@ TEST_F(SessionGuardTest, AHelloTakesOverFromASilentPeer) {
   EXPECT_FALSE(guard_.admits(kHost, data_, 501 + 2 * kSilence));
 }
 
+TEST_F(SessionGuardTest, AfterAResetThePeerIsHeardAgainWithoutAHello) {
+  guard_.resume(kHost, 100);
+  EXPECT_TRUE(guard_.admits(kHost, data_, 101));
+  EXPECT_FALSE(guard_.admits(kOtherPort, hello_, 102));
+  EXPECT_TRUE(guard_.admits(kOtherPort, hello_, 101 + kSilence));
+}
+
 }  // namespace
 }  // namespace vbar::boards::zynq7000

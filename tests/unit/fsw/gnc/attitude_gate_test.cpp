@@ -25,14 +25,21 @@ class AttitudeGateTest : public ::testing::Test {
   static Matrix3 commanded(std::int64_t s) { return sample(s).R_eci_body.transpose(); }
 
   bool offer(const navigation::AttitudeSample& offered, const std::optional<Matrix3>& command) {
-    const bool is_accepted = gate_.accepts(offered, history_, command);
-    if (is_accepted) history_.put(offered);
-    return is_accepted;
+    const AttitudeGate::Verdict verdict = gate_.judge(offered, command);
+    used_ = verdict.used;
+    return verdict.is_accepted;
+  }
+  /// Of the attitude that was used in place of the last one offered, rad.
+  double used_error() const {
+    const auto s = static_cast<std::int64_t>(seconds(used_->time - GpsTime{}));
+    return Eigen::AngleAxisd(Matrix3(used_->R_eci_body.transpose() * sample(s).R_eci_body)).angle();
   }
 
   AttitudeGate gate_;
-  navigation::AttitudeHistory history_;
+  std::optional<navigation::AttitudeSample> used_;
 };
+
+constexpr double kStep = 0.01745;  // rad, of the tracker: 1 deg
 
 TEST_F(AttitudeGateTest, ASteadyTrackerIsAccepted) {
   for (int s = 0; s < 100; s += 5) EXPECT_TRUE(offer(sample(s, 1e-4), commanded(s))) << s;
@@ -41,8 +48,10 @@ TEST_F(AttitudeGateTest, ASteadyTrackerIsAccepted) {
 TEST_F(AttitudeGateTest, AStepOfOneDegreeIsRefusedForAsLongAsItLasts) {
   offer(sample(0), commanded(0));
   for (int s = 5; s < 900; s += 5) {
-    EXPECT_FALSE(offer(sample(s, 0.01745), commanded(s))) << s;
-    EXPECT_NEAR(gate_.difference(), 0.01745, 1e-6);
+    EXPECT_FALSE(offer(sample(s, kStep), commanded(s))) << s;
+    EXPECT_NEAR(gate_.difference(), kStep, 1e-6);
+    ASSERT_TRUE(used_);
+    EXPECT_LT(used_error(), 1e-6) << s;
   }
   EXPECT_TRUE(offer(sample(900), commanded(900)));
 }
@@ -57,10 +66,53 @@ TEST_F(AttitudeGateTest, ANewCommandThatThePlatformFollowsAtOnceIsAccepted) {
   EXPECT_TRUE(offer(turned_by_command, Matrix3(turned_by_command.R_eci_body.transpose())));
 }
 
-TEST_F(AttitudeGateTest, WithoutACommandTheGyroJudgesAndThenNobody) {
+/// A step stays a step: the gyro continues through refusals, for as long as its drift is small.
+TEST_F(AttitudeGateTest, WithoutACommandTheGyroJudgesForHalfAnHourAndThenNothing) {
   EXPECT_TRUE(offer(sample(0), std::nullopt));
-  EXPECT_FALSE(offer(sample(5, 0.01745), std::nullopt));
-  EXPECT_TRUE(offer(sample(60, 0.01745), std::nullopt)) << "the last attitude is too old to be propagated";
+  for (int s = 5; s <= 1800; s += 5) {
+    EXPECT_FALSE(offer(sample(s, kStep), std::nullopt)) << s;
+    ASSERT_TRUE(used_);
+    EXPECT_LT(used_error(), 1e-6) << s;
+  }
+  EXPECT_TRUE(offer(sample(1805, kStep), std::nullopt));
+}
+
+TEST_F(AttitudeGateTest, WithoutACommandAGapEndsThePropagation) {
+  EXPECT_TRUE(offer(sample(0), std::nullopt));
+  EXPECT_FALSE(offer(sample(5, kStep), std::nullopt));
+  EXPECT_TRUE(offer(sample(60, kStep), std::nullopt));
+}
+
+/// A platform that is not where it was commanded: its gyro is then more accurate.
+TEST_F(AttitudeGateTest, APlatformThatControlsCoarselyIsReplacedByTheGyro) {
+  constexpr double kControlError = 5e-3;  // rad
+  const auto coarse = [](std::int64_t s) {
+    return Matrix3((sample(s).R_eci_body * turned(-kControlError)).transpose());
+  };
+  EXPECT_TRUE(offer(sample(0), coarse(0)));
+  EXPECT_FALSE(offer(sample(5, kStep), coarse(5)));
+  ASSERT_TRUE(used_);
+  EXPECT_LT(used_error(), 1e-6);
+}
+
+/// Stars of an image extend the refusal beyond what a gyro allows.
+TEST_F(AttitudeGateTest, StarsRestartThePropagation) {
+  EXPECT_TRUE(offer(sample(0), std::nullopt));
+  for (int s = 5; s <= 4000; s += 5) {
+    EXPECT_FALSE(offer(sample(s, kStep), std::nullopt)) << s;
+    if (s % 1000 == 0) gate_.take_stars(sample(s).time, sample(s).R_eci_body);
+  }
+  EXPECT_TRUE(offer(sample(4005), std::nullopt));
+}
+
+/// A tracker that was in error from the first attitude on.
+TEST_F(AttitudeGateTest, StarsContradictATrackerThatWasBelieved) {
+  EXPECT_TRUE(offer(sample(0, kStep), std::nullopt));
+  EXPECT_TRUE(offer(sample(5, kStep), std::nullopt));
+  gate_.take_stars(sample(3).time, sample(3).R_eci_body);
+  EXPECT_FALSE(offer(sample(10, kStep), std::nullopt));
+  ASSERT_TRUE(used_);
+  EXPECT_LT(used_error(), 1e-6);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -91,6 +92,35 @@ TEST_F(BurnMonitorTest, BurnsOfTheLeastImpulseMayDifferByIt) {
   monitor_.expect(3, at(100), {0.0, 2e-5, 0.0});
   report(3, at(100), {0.0, 1.2e-5, 0.0});
   EXPECT_EQ(step(at(120)), 0);
+}
+
+// A tenth of each is missing. The impulse that a thruster errs by is 2 um/s: of the smallest burn, 5 um/s are missing.
+TEST_F(BurnMonitorTest, BurnsTooShortAreReportedAtTheThirdAtTheLatest) {
+  for (const double size : {50e-6, 100e-6, 0.2e-3, 2e-3, 20e-3}) {
+    BurnMonitor monitor;
+    faults::FaultMonitor faults;
+    for (int id = 1; id <= 3; ++id) {
+      monitor.expect(id, at(100 * id), {0.0, size, 0.0});
+      report(id, at(100 * id), {0.0, 0.9 * size, 0.0});
+      monitor.update(at(100 * id + 20), inbox_, faults);
+      inbox_.clear(at(100 * id + 20));
+    }
+    EXPECT_EQ(faults.latched(), telemetry_health::kFaultBurnSize) << size;
+    EXPECT_NEAR(monitor.scale().scale(), 0.9, 2.5 * monitor.scale().sigma()) << size;
+  }
+}
+
+/// Errors of 2 um/s and of 1 %, one sigma, are the thruster's own.
+TEST_F(BurnMonitorTest, BurnsWithTheErrorsOfAThrusterRaiseNothing) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (int id = 1; id <= 400; ++id) {
+    const double size = id % 2 == 0 ? 40e-6 : 1e-3;
+    monitor_.expect(id, at(100 * id), {0.0, size, 0.0});
+    const double across = 2e-6 * normal(random);
+    report(id, at(100 * id), {across, size * (1.0 + 0.01 * normal(random)) + 2e-6 * normal(random), 0.0});
+    EXPECT_EQ(step(at(100 * id + 20)), 0) << id;
+  }
 }
 
 TEST_F(BurnMonitorTest, TwoMissedBurnsInARowAreTheThrusters) {

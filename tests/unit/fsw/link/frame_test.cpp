@@ -55,7 +55,8 @@ TEST(Frame, ChecksumIsInTheOrderOfTheStandard) {
 TEST(Frame, ParsesWhatWasWritten) {
   for (const FrameType type :
        {FrameType::kHello, FrameType::kHelloAck, FrameType::kData, FrameType::kAck, FrameType::kPoll,
-        FrameType::kGoodbye, FrameType::kReceiverPoll, FrameType::kReceiverCount}) {
+        FrameType::kGoodbye, FrameType::kReceiverPoll, FrameType::kReceiverCount, FrameType::kSnapshotPoll,
+        FrameType::kSnapshotPiece, FrameType::kSnapshotHeld}) {
     for (int flags = 0; flags < 4; ++flags) {
       FrameHeader header = example_header();
       header.type = type;

@@ -1,10 +1,15 @@
 // Check values of the catalogue of parametrised CRC algorithms (G. Cook, "CRC RevEng"): the checksum of "123456789".
+// And the definition: the remainder of a division of polynomials, one bit at a time.
 
 #include "fsw/packets/crc.h"
 
 #include <array>
+#include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
+
+#include "fsw/core/crc32.h"
 
 namespace vbar::fsw::packets {
 namespace {
@@ -22,6 +27,39 @@ TEST(Crc, Crc32HasItsCatalogueCheckValue) {
 TEST(Crc, NothingHasTheStartValue) {
   EXPECT_EQ(crc16_ccitt_false({}), 0xFFFF);
   EXPECT_EQ(crc32_ieee({}), 0U);  // start and final XOR cancel
+}
+
+std::uint16_t crc16_by_bits(std::span<const std::uint8_t> bytes) {
+  std::uint32_t crc = 0xFFFF;
+  for (const std::uint8_t byte : bytes)
+    for (int bit = 7; bit >= 0; --bit) {
+      const bool divides = (crc >> 15U & 1U) != (static_cast<std::uint32_t>(byte) >> bit & 1U);
+      crc = (crc << 1U ^ (divides ? 0x1021U : 0U)) & 0xFFFFU;
+    }
+  return static_cast<std::uint16_t>(crc);
+}
+
+std::uint32_t crc32_register_by_bits(std::uint32_t crc, std::span<const std::uint8_t> bytes) {
+  for (const std::uint8_t byte : bytes)
+    for (int bit = 0; bit < 8; ++bit) {
+      const bool divides = (crc & 1U) != (static_cast<std::uint32_t>(byte) >> bit & 1U);
+      crc = crc >> 1U ^ (divides ? 0xEDB88320U : 0U);
+    }
+  return crc;
+}
+
+// All lengths up to several times the bytes that are taken at once, from every alignment.
+TEST(Crc, EveryLengthAndAlignmentGivesTheRemainderOfTheDivision) {
+  std::mt19937 random(1);
+  std::array<std::uint8_t, 80> bytes{};
+  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random() & 0xFFU);
+  for (std::size_t begin = 0; begin < 8; ++begin)
+    for (std::size_t size = 0; begin + size <= bytes.size(); ++size) {
+      const auto piece = std::span(bytes).subspan(begin, size);
+      ASSERT_EQ(crc16_ccitt_false(piece), crc16_by_bits(piece)) << size << " bytes from " << begin;
+      ASSERT_EQ(crc32_ieee(piece), ~crc32_register_by_bits(0xFFFFFFFFU, piece)) << size << " bytes from " << begin;
+      ASSERT_EQ(crc32_after(0, piece), crc32_register_by_bits(0, piece)) << size << " bytes from " << begin;
+    }
 }
 
 // A polynomial with more than one term divides no single-bit error: every flipped bit must show.

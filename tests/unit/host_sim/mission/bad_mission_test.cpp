@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadChange{"NeitherOrbit",
                   "[[spacecraft]]\nname = \"target\"\nbody = \"tango\"\nrelative = { to = \"servicer\", waypoint = 0 }",
                   "[[spacecraft]] # bare\nname = \"target\"", "# bare",
-                  "spacecraft.target: found neither elements nor relative; accepted: exactly one of them"},
+                  "spacecraft.target: found none of elements, relative and orbit_file; accepted: exactly one of them"},
         BadChange{
             "RelativeToNobody", "to = \"servicer\"", "to = \"target\"", "to = ",
             "spacecraft.target.relative.to: found the text \"target\"; accepted: the name of a spacecraft further "

@@ -230,6 +230,19 @@ TEST_F(Extends, SaysOnlyWhatDiffers) {
   EXPECT_EQ(mission.waypoints[1].time - mission.epoch, fsw::duration_of_seconds(7200));
 }
 
+TEST_F(Extends, OfSeveralFilesTheLaterOnesWin) {
+  write("part.toml", "[mission]\nseed = 5\nstep_s = 20\n[[waypoint]]\nindex = 1\nkeep_out_radius_m = 3.0\n");
+  write("own.toml", "extends = [\"base.toml\", \"part.toml\"]\n[mission]\nseed = 7\n");
+  const Mission mission = load_mission(folder_ / "own.toml");
+  EXPECT_EQ(mission.seed, 7U);
+  EXPECT_EQ(mission.step.shortest_period(), fsw::duration_of_seconds(20)) << "the part's";
+  ASSERT_EQ(mission.waypoints.size(), 2U);
+  EXPECT_EQ(mission.waypoints[1].a_roe_m(5), 18.0) << "the base's";
+  EXPECT_EQ(mission.waypoints[1].keep_out_radius_m, 3.0) << "the part's";
+  write("own.toml", "extends = []\n");
+  EXPECT_THAT(message("own.toml"), testing::HasSubstr("extends: found no file; accepted: a mission file, or an array"));
+}
+
 TEST_F(Extends, MessagesNameTheFileThatSaysIt) {
   write("own.toml", "extends = \"base.toml\"\n[mission]\nseed = -1\n");
   EXPECT_THAT(message("own.toml"), testing::StartsWith((folder_ / "own.toml").string() + ":3: mission.seed: "));

@@ -1,5 +1,6 @@
 // [[fault]]: what is read, and what the mission cannot apply.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/unit/host_sim/mission/mission_text.h"
@@ -40,14 +41,65 @@ TEST(FaultKeys, ASensorIsNamedByItsSpacecraftAndItself) {
   EXPECT_FALSE(fault.duration.has_value());
 }
 
-TEST(FaultKeys, ARebootKeepsItsStateOnlyInProcess) {
+TEST(FaultKeys, ARebootKeepsItsStateOnEveryTargetButNotThatOfALibrary) {
   const std::string reboot = "kind = \"computer_reboot\"\nat_h = 0.5\nfor_s = 60.0\nkeeps_state = true\n";
   EXPECT_TRUE(mission_with(reboot).faults[0].keeps_state);
-  const std::string remote =
-      changed(with_fault(reboot), "flight_computer = {}", "flight_computer = { target = \"host_process\" }");
-  EXPECT_NE(message_of(remote).find("fault.0.keeps_state: found true; accepted: false, or flight_computer.target"),
+  const auto on = [&](const std::string& computer) {
+    return changed(with_fault(reboot), "flight_computer = {}", "flight_computer = { " + computer + " }");
+  };
+  EXPECT_TRUE(parse_mission(on("target = \"zynq_qemu\""), "m.toml").faults[0].keeps_state);
+  const std::string message = message_of(on("library = \"x.so\""));
+  EXPECT_NE(message.find("fault.0.keeps_state: found true; accepted: false, or no flight_computer.library"),
             std::string::npos)
-      << message_of(remote);
+      << message;
+}
+
+// Both spacecraft with a receiver.
+std::string with_receivers(const std::string& keys) {
+  std::string text = changed(with_fault(keys), "sensors.navigation = {}",
+                             "sensors.gnss = { partner = \"target\" }\nattitude = { profile = \"zenith\" }");
+  return changed(text, "body = \"tango\"", "body = \"tango\"\nattitude = { profile = \"zenith\" }\nsensors.gnss = {}");
+}
+
+TEST(FaultKeys, AFaultBeginsWithAnEventInPlaceOfATime) {
+  const std::string slip = "kind = \"cycle_slip\"\nunit = \"gnss\"\nvalue_cycles = -2\n";
+  const auto start_of = [&](const std::string& event) {
+    return parse_mission(with_receivers(slip + event), "m.toml", {}).faults[0];
+  };
+  const Fault fix = start_of("event = \"first_fix\"\nafter_s = 600.0\n");
+  ASSERT_TRUE(fix.awaited.has_value());
+  EXPECT_EQ(fix.awaited->kind, FaultEvent::Kind::kFirstFix);
+  EXPECT_EQ(fix.awaited->delay, fsw::duration_of_seconds(600));
+  EXPECT_FALSE(fix.has_begun(Fault::kNever));
+  EXPECT_EQ(fix.value, -2.0);
+  EXPECT_EQ(fix.satellite, "highest");
+  EXPECT_FALSE(fix.is_present(fix.begin)) << "an instant";
+  const Fault range = start_of("event = \"range_below_m:12.5\"\n");
+  EXPECT_EQ(range.awaited->kind, FaultEvent::Kind::kRangeBelow);
+  EXPECT_EQ(range.awaited->argument, 12.5);
+  EXPECT_EQ(start_of("event = \"burn:3\"\n").awaited->argument, 3.0);
+  const Mission mission =
+      mission_with("kind = \"thrust_scale\"\nvalue = 0.5\nevent = \"waypoint:0\"\nafter_s = 60.0\n");
+  EXPECT_EQ(mission.faults[0].begin, mission.epoch + fsw::duration_of_seconds(60)) << "known beforehand";
+  EXPECT_FALSE(mission.faults[0].awaited.has_value());
+  EXPECT_EQ(mission.faults[0].start, "waypoint:0");
+}
+
+TEST(FaultKeys, ReceiversFailAsTheirTwinCan) {
+  const Mission mission =
+      parse_mission(with_receivers("kind = \"receiver_reset\"\nunit = \"gnss\"\nspacecraft = \"target\"\nat_h = 0.5\n"),
+                    "m.toml", {});
+  EXPECT_EQ(mission.faults[0].spacecraft, "target");
+  EXPECT_EQ(*mission.faults[0].duration, fsw::Duration{0});
+  const auto refused = [](const std::string& keys) { return message_of(with_receivers(keys)); };
+  const std::string gnss = "unit = \"gnss\"\nat_h = 0.5\n";
+  EXPECT_THAT(refused("kind = \"cycle_slip\"\nvalue_cycles = 0\n" + gnss),
+              testing::EndsWith("an integer that is not 0"));
+  EXPECT_THAT(refused("kind = \"cycle_slip\"\nvalue_cycles = 1\nfor_s = 1\n" + gnss),
+              testing::EndsWith("it jumps once"));
+  EXPECT_THAT(refused("kind = \"cycle_slip\"\nvalue_cycles = 1\nsatellite = \"X05\"\n" + gnss),
+              testing::EndsWith("G05, E11, C03"));
+  EXPECT_THAT(refused("kind = \"clock_jump\"\nvalue_s = 1e-7\n" + gnss), testing::EndsWith("of either sign"));
 }
 
 struct Refused {
@@ -64,6 +116,17 @@ TEST(FaultKeys, WhatTheMissionCannotApplyIsRefused) {
       {"kind = \"silent\"\nunit = \"gnss\"\nspacecraft = \"moon\"\nat_h = 0.5\n",
        "accepted: servicer, or the spacecraft that it observes"},
       {"kind = \"silent\"\nunit = \"navigation\"\nat_h = 3.0\n", "accepted: a time of the run"},
+      {"kind = \"silent\"\nunit = \"navigation\"\n", "accepted: a number from 0 to 87660"},
+      {"kind = \"silent\"\nunit = \"navigation\"\nat_h = 0.5\nevent = \"burn:1\"\n",
+       "accepted: at_h or event, not both"},
+      {"kind = \"silent\"\nunit = \"navigation\"\nat_h = 0.5\nafter_s = 1.0\n", "at_h, for_s, unit or spacecraft"},
+      {"kind = \"silent\"\nunit = \"navigation\"\nevent = \"first_fix\"\n", "that navigates by carrier phase"},
+      {"kind = \"silent\"\nunit = \"navigation\"\nevent = \"waypoint:7\"\n", "accepted: a waypoint of the run"},
+      {"kind = \"silent\"\nunit = \"navigation\"\nevent = \"burn:0\"\n", "or range_below_m:X with X above 0"},
+      {"kind = \"silent\"\nunit = \"navigation\"\nevent = \"range_below_m:nan\"\n",
+       "or range_below_m:X with X above 0"},
+      {"kind = \"silent\"\nunit = \"navigation\"\nevent = \"first_fix:1\"\n", "or range_below_m:X with X above 0"},
+      {"kind = \"receiver_reset\"\nunit = \"navigation\"\nat_h = 0.5\n", "can fail so: it has none"},
       {"kind = \"computer_silent\"\nat_h = 0.5\n", "accepted: the time until it returns"},
       {"kind = \"thrust_uncommanded\"\nat_h = 0.5\nvalue_mps2 = 1e-3\ndirection_rtn = [0, 1, 0]\n",
        "accepted: the time until its valve is closed"},

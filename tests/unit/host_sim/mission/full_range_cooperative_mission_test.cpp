@@ -43,5 +43,20 @@ TEST(FullRangeCooperativeMission, IsOtherwiseTheWholeMission) {
   EXPECT_EQ(mission().spacecraft.size(), whole.spacecraft.size());
 }
 
+// Retreat and guard are those of full_range_retreat.toml.
+TEST(FullRangeCooperativeMission, HasAVariantWithARetreat) {
+  const Mission retreat = load_mission(vbar::tests::source_path("missions/full_range_cooperative_retreat.toml"));
+  const Mission alone = load_mission(vbar::tests::source_path("missions/full_range_retreat.toml"));
+  EXPECT_FALSE(mission().safety.has_value());
+  ASSERT_TRUE(retreat.safety.has_value());
+  EXPECT_EQ(packet_of(*retreat.safety), packet_of(*alone.safety));
+  EXPECT_EQ(packet_of(retreat.guidance.configuration), packet_of(alone.guidance.configuration));
+  EXPECT_EQ(sensors::sources_of(*retreat.find_spacecraft("servicer")),
+            sensors::sources_of(*mission().find_spacecraft("servicer")));
+  for (std::size_t k = 0; k < retreat.waypoints.size(); ++k)
+    EXPECT_EQ(retreat.waypoints[k].keep_out_radius_m, alone.waypoints[k].keep_out_radius_m) << k;
+  EXPECT_EQ(retreat.waypoints[8].keep_out_radius_m, 0.8);
+}
+
 }  // namespace
 }  // namespace vbar::mission::test

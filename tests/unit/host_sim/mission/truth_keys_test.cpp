@@ -71,8 +71,8 @@ TEST(TruthKeys, BadValuesEndWithOneMessage) {
             where +
                 "solid_tide: found an unknown key (did you mean solid_tides?); accepted: gravity_degree, "
                 "gravity_order, drag, geomagnetic_index, radiation_pressure, shadow, sun, moon, solid_tides, "
-                "relativity, relative_tolerance, threads, gravity_file, earth_orientation_file or "
-                "space_weather_file");
+                "relativity, relative_tolerance, threads, gravity_file, earth_orientation_file, "
+                "space_weather_file, constant_f107, constant_ap or accept_predictions");
   EXPECT_EQ(message("relative_tolerance = 1e-15"),
             where + "relative_tolerance: found the number 1e-15; accepted: a number from 1e-14 to 1e-06");
   EXPECT_EQ(message("relative_tolerance = 1e-5"),

@@ -115,16 +115,103 @@ TEST(ForceList, AForceWithoutWhatItNeedsIsRefused) {
 
 // The data end at a date; what a run needs is known before it.
 TEST(ForceList, ARunOutsideTheDataIsRefusedAtItsStart) {
-  EXPECT_THAT(error_with([](TruthSettings& t, SpacecraftSettings&) { t.epoch = gps_from_utc("2008-12-31T00:00:00Z"); }),
+  const auto named = [](TruthSettings& t) {
+    t.earth_orientation_file = "earth/eop_2009_2013.csv";
+    t.space_weather_file = "earth/space_weather_2009_2013.csv";
+  };
+  EXPECT_THAT(error_with([&](TruthSettings& t, SpacecraftSettings&) {
+                named(t);
+                t.epoch = gps_from_utc("2008-12-31T00:00:00Z");
+              }),
               AllOf(HasSubstr("eop_2009_2013.csv: the epoch needs it"), HasSubstr("2008-12-31")));
-  EXPECT_THAT(error_with([](TruthSettings& t, SpacecraftSettings&) {
+  EXPECT_THAT(error_with([&](TruthSettings& t, SpacecraftSettings&) {
+                named(t);
                 t.epoch = gps_from_utc("2013-12-20T00:00:00Z");
                 t.end = gps_from_utc("2014-01-10T00:00:00Z");
               }),
               AllOf(HasSubstr("eop_2009_2013.csv"), HasSubstr("a run that ends at 2014-01-10T00:00:00Z")));
   // Indices of the 57 hours before: the first days of the series have none.
-  EXPECT_THAT(error_with([](TruthSettings& t, SpacecraftSettings&) { t.epoch = gps_from_utc("2009-01-02T00:00:00Z"); }),
+  EXPECT_THAT(error_with([&](TruthSettings& t, SpacecraftSettings&) {
+                named(t);
+                t.epoch = gps_from_utc("2009-01-02T00:00:00Z");
+              }),
               AllOf(HasSubstr("space_weather_2009_2013.csv: the epoch needs it"), HasSubstr("2009-01-02")));
+}
+
+// What the data folder holds is used where it reaches; elsewhere the run flies, and says what it lacks.
+TEST(ForceList, WithoutDataForTheDateItFliesAndSaysSo) {
+  TruthSettings settings = all_forces_settings();
+  EXPECT_TRUE(load_force_data(settings).notes.empty());
+  settings.epoch = gps_from_utc("2026-11-20T00:00:00Z");
+  settings.end = settings.epoch + fsw::duration_of_seconds(86400);
+  const ForceData data = load_force_data(settings);
+  ASSERT_EQ(data.notes.size(), 2U);
+  EXPECT_THAT(data.notes[0],
+              AllOf(HasSubstr("UT1 = UTC is assumed"), HasSubstr("up to 0.9 s (13.5 arcsec, 419 m on the equator)"),
+                    HasSubstr("0.6 arcsec (19 m)")));
+  EXPECT_THAT(data.notes[1], AllOf(HasSubstr("F10.7 = 150 and Ap = 15 are assumed"), HasSubstr("factor of")));
+  TruthModel model(settings);
+  model.add_spacecraft(mango());
+  EXPECT_NO_THROW(model.advance_to(settings.epoch + fsw::duration_of_seconds(600)));
+
+  settings = all_forces_settings();
+  settings.earth_orientation_file = TruthSettings::kNone;
+  settings.space_weather_file = TruthSettings::kConstant;
+  EXPECT_THAT(load_force_data(settings).notes, ElementsAre(HasSubstr("The mission uses no Earth orientation"),
+                                                           HasSubstr("The mission uses no space weather")));
+}
+
+// The factors that the note on constant space weather states, of this atmosphere model.
+TEST(ForceList, DensityOverASolarCycle) {
+  Nrlmsise00 model(std::make_shared<const Nrlmsise00Tables>(
+      load_nrlmsise00_tables(test::kDataDirectory / "atmosphere/nrlmsise00.csv")));
+  // Mean over the hours of a day on the equator at equinox.
+  const auto density = [&](double altitude_km, double f107) {
+    double sum = 0.0;
+    for (int hour = 0; hour < 24; ++hour) {
+      AtmosphereInput input;
+      input.day_of_year = 80;
+      input.altitude_km = altitude_km;
+      input.local_solar_time_h = hour;
+      input.ut_s = 3600.0 * hour;
+      input.indices.f107 = input.indices.f107_average = f107;
+      input.indices.ap_daily = 15.0;
+      sum += model.at(input).density;
+    }
+    return sum;
+  };
+  EXPECT_NEAR(density(400.0, 230.0) / density(400.0, 70.0), 11.0, 1.0);
+  EXPECT_NEAR(density(700.0, 230.0) / density(700.0, 70.0), 36.0, 2.0);
+}
+
+TEST(ForceList, PredictedDataAreRefusedWhereObservedOnesAreRequired) {
+  const auto with = [](bool accept, const char* epoch) {
+    return error_with([&](TruthSettings& t, SpacecraftSettings&) {
+      t.earth_orientation_file = vbar::tests::source_path("tests/data/formats/finals2000a_2016_predicted.txt");
+      t.space_weather_file = TruthSettings::kConstant;
+      t.accept_predictions = accept;
+      t.epoch = gps_from_utc(epoch);
+      t.end = t.epoch + fsw::duration_of_seconds(86400);
+    });
+  };
+  EXPECT_EQ(with(true, "2016-05-02T00:00:00Z"), "");
+  EXPECT_EQ(with(false, "2016-04-20T00:00:00Z"), "");
+  EXPECT_THAT(with(false, "2016-05-02T00:00:00Z"),
+              HasSubstr("finals2000a_2016_predicted.txt: Earth orientation is predicted from 2016-04-27T00:00:00Z on; "
+                        "accepted are observed values, unless truth.accept_predictions is true"));
+}
+
+TEST(ForceList, ATideFreeModelGetsThePermanentTide) {
+  // The permanent deformation is 4.2e-9 of C20 (IERS Conventions 2010, section 6.2.2); gravity alone must hold it.
+  TruthSettings settings = all_forces_settings();
+  settings.forces = {};
+  settings.gravity_file = vbar::tests::source_path("tests/data/formats/egm2008_8.gfc");
+  settings.gravity_degree = settings.gravity_order = 8;
+  GravityCoefficients zero_tide = load_gravity_coefficients(settings.gravity_file, 8);
+  zero_tide.c[GravityCoefficients::index(2, 0)] += -4.4228e-8 * 0.31460 * 0.30190;
+  const fsw::Vector3 r(4e6, -3e6, 5e6);
+  const fsw::Vector3 expected = GravityField(zero_tide, 8, 8).perturbation_itrf(r);
+  EXPECT_LT((load_force_data(settings).gravity->perturbation_itrf(r) - expected).norm(), 1e-15 * expected.norm());
 }
 
 TEST(ForceList, SpaceWeatherMustReachTheEnd) {

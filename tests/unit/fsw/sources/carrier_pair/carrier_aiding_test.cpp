@@ -1,5 +1,6 @@
 #include "fsw/sources/carrier_pair/carrier_aiding.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -95,6 +96,69 @@ TEST(CarrierAiding, ASlipThatIsNotReportedIsFound) {
     EXPECT_LT(pair.trunk_position_error(), 3e-3) << cycles;
     pair.fly_trunk(10);
     EXPECT_TRUE(pair.trunk_integers_are_true()) << cycles;
+  }
+}
+
+/// One of the integers held is wrong by a cycle, and the estimate with it: what a false fix leaves behind.
+void falsify_integer(TrunkPair& pair, std::size_t place, double cycles) {
+  const double wavelength = gnss::wavelength(pair.carrier->filter().channels()[place].signal);
+  pair.estimator->estimate().shift(CarrierFilter::ambiguity_index(place), cycles * wavelength);
+}
+
+/// What the source reports as inconsistent in the next `epochs`, and how many of these pass until it does.
+int epochs_until_reported(TrunkPair& pair, int epochs) {
+  for (int k = 1; k <= epochs; ++k) {
+    pair.carrier->aid().forget_inconsistency();
+    pair.fly_trunk(1);
+    if (pair.carrier->aid().inconsistency()) return k;
+  }
+  return epochs + 1;
+}
+
+// Required: reported within 300 s, the error below 10 cm throughout, corrected within 600 s.
+TEST(CarrierAiding, AnIntegerThatIsWrongByOneCycleIsReportedAndCorrected) {
+  for (const unsigned seed : {6U, 7U, 8U}) {
+    for (const std::size_t falsified : {1U, 3U, 6U, 9U}) {
+      TrunkPair pair(seed);
+      pair.fly_trunk(20);
+      ASSERT_TRUE(pair.carrier->is_fixed());
+      ASSERT_FALSE(pair.carrier->aid().inconsistency());
+      for (std::size_t k = 0; k < falsified; ++k) falsify_integer(pair, k, 1.0);
+      EXPECT_FALSE(pair.trunk_integers_are_true()) << seed;
+      EXPECT_LE(epochs_until_reported(pair, 30), 30) << seed << ' ' << falsified;
+      double largest_m = 0.0;
+      for (int k = 0; k < 30; ++k) {
+        pair.fly_trunk(1);
+        largest_m = std::max(largest_m, pair.trunk_position_error());
+      }
+      EXPECT_LT(largest_m, 0.1) << seed << ' ' << falsified;
+      EXPECT_TRUE(pair.carrier->is_fixed()) << seed << ' ' << falsified;
+      EXPECT_TRUE(pair.trunk_integers_are_true()) << seed << ' ' << falsified;
+      EXPECT_LT(pair.trunk_position_error(), 3e-3) << seed << ' ' << falsified;
+    }
+  }
+}
+
+/// An antenna ten times as far from its nominal place as configured: a solution that is fixed, and wrong by many of its
+/// sigmas, until the offsets that the dynamics ask for exceed their own sigma. An offset along the track (x here) is an
+/// orbit as well: no receiver can see it.
+TEST(CarrierAiding, AnAntennaThatIsNotWhereItIsAssumedIsReportedAndAllowedFor) {
+  for (const int axis : {1, 2}) {
+    TrunkPair pair(21);
+    pair.expect_no_acceleration();
+    pair.target.antenna_body_m += 10.0 * 3.2e-3 * std::sqrt(3.0) * Vector3::Unit(axis);
+    const double sigma_m = pair.carrier->filter().antenna_sigma_m();
+    EXPECT_LE(epochs_until_reported(pair, 120), 120) << axis;
+    EXPECT_EQ(pair.carrier->report().releases, 1) << axis;
+    EXPECT_NEAR(pair.carrier->filter().antenna_sigma_m(), 3.0 * sigma_m, 1e-9) << axis;
+    // Consistent from then on, and fixed again: 99.9 % of chi-square with six degrees of freedom.
+    for (int k = 0; k < 4; ++k) {
+      pair.fly_trunk(10);
+      const Vector6 error = pair.trunk_error();
+      EXPECT_LT(error.dot(pair.trunk_covariance().inverse() * error), 22.5) << axis << ' ' << k;
+    }
+    EXPECT_TRUE(pair.carrier->is_fixed()) << axis;
+    EXPECT_EQ(pair.estimator->failures(), 0) << axis;
   }
 }
 

@@ -229,6 +229,48 @@ TEST_P(KeypointFlips, TheAttitudeIsInitialisedAgainAndTheOrbitKept) {
 
 INSTANTIATE_TEST_SUITE_P(AboutEachAxis, KeypointFlips, testing::Values(0, 1, 2));
 
+class KeypointUpsets : public KeypointFaults, public testing::WithParamInterface<int> {};
+
+/// The network sees the target turned by 90 deg for a minute, with confidence, after the attitude has been confirmed
+/// for longer than ten minutes: it is recognised from the first image on, nothing of it is used, and the attitude
+/// stays.
+TEST_P(KeypointUpsets, AMinuteOfAWrongNetworkChangesNothing) {
+  hand_over();
+  while (flown.next < 140) {
+    flown.aiding->forget_verdict();
+    flown.step();
+    const auto& verdict = flown.aiding->network_verdict();
+    EXPECT_FALSE(verdict && verdict->contradicts) << flown.next;
+  }
+  const double before = flown.error.position_m;
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.5 * M_PI, Vector3::Unit(GetParam())));
+  for (int k = 0; k < 12; ++k) {
+    flown.aiding->forget_verdict();
+    EXPECT_NE(flown.step(true, turned), KeypointEditStatus::kFilter) << k;
+    ASSERT_TRUE(flown.aiding->network_verdict()) << k;
+    EXPECT_TRUE(flown.aiding->network_verdict()->contradicts) << k;
+  }
+  EXPECT_EQ(flown.aiding->aid().state(), AidState::kSuspended);
+  EXPECT_EQ(flown.step(), KeypointEditStatus::kFilter);
+  EXPECT_EQ(flown.aiding->aid().state(), AidState::kAiding);
+  EXPECT_EQ(flown.aiding->counters().attitudes_reset, 0);
+  EXPECT_EQ(flown.aiding->counters().inflations, 0);
+  EXPECT_LT(flown.error.attitude, 3.0 * kDegree);
+  EXPECT_LT(flown.error.position_m, before + 0.03);
+}
+
+/// A contradiction that lasts is the attitude's.
+TEST_P(KeypointUpsets, AnAttitudeThatIsContradictedForLongerIsInitialisedAgain) {
+  hand_over();
+  while (flown.next < 140) flown.step();
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.5 * M_PI, Vector3::Unit(GetParam())));
+  for (int k = 0; k < 30; ++k) flown.step(true, turned);
+  EXPECT_GE(flown.aiding->counters().attitudes_reset, 1);
+  EXPECT_LT(flown.error.attitude, 3.0 * kDegree);
+}
+
+INSTANTIATE_TEST_SUITE_P(AboutEachAxis, KeypointUpsets, testing::Values(0, 1, 2));
+
 TEST_F(KeypointFaults, AFalseBurnOf30CentimetresASecondIsSurvived) {
   hand_over();
   while (flown.next < 60) flown.step();

@@ -111,7 +111,9 @@ TEST_F(EarthOrientationFile, IsReadWhenWhole) {
 
 TEST_F(EarthOrientationFile, ErrorsNameFileAndLine) {
   using testing::HasSubstr;
-  EXPECT_THAT(message_for("a,b\n"), HasSubstr("vbar_eop_test.csv:1: found \"a,b\", expected the columns"));
+  EXPECT_THAT(message_for("a,b\n"),
+              HasSubstr("vbar_eop_test.csv:1: found \"a,b\", expected Earth orientation in one of the formats"));
+  EXPECT_THAT(message_for("mjd_utc,b\n"), HasSubstr(":1: found \"mjd_utc,b\", expected the columns"));
   EXPECT_THAT(message_for(header_ + rows_ + "55005,0,0,0,0,0\n"), HasSubstr(":7: day 55005 follows day 55003"));
   EXPECT_THAT(message_for(header_ + rows_ + "55004,0,0,0,0\n"),
               HasSubstr(":7: found \"55004,0,0,0,0\", expected a whole MJD from 1980 to 2099 and 5 numbers"));

@@ -58,6 +58,8 @@ TEST(TimeScales, LeapSecondsOfTheIersList) {
   for (const auto& entry : kList) {
     EXPECT_EQ(tai_minus_utc_s(entry.mjd), entry.tai_minus_utc) << entry.mjd;
     EXPECT_EQ(tai_minus_utc_s(entry.mjd - 1), entry.tai_minus_utc - 1) << entry.mjd;
+    EXPECT_EQ(first_day_of_tai_minus_utc(entry.mjd), entry.mjd);
+    EXPECT_EQ(first_day_of_tai_minus_utc(entry.mjd + 100), entry.mjd);
   }
 }
 

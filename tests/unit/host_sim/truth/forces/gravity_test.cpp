@@ -87,6 +87,24 @@ TEST(Gravity, AgreesWithGeographicLibTo120) {
                          difference_from_peer(120, 120, points(10000)), kRounding, "relative");
 }
 
+// EGM2008 as ICGEM distributes it, cut at degree 8.
+TEST(Gravity, AnotherModelAgreesWithGeographicLib) {
+  const GravityCoefficients model =
+      load_gravity_coefficients(vbar::tests::source_path("tests/data/formats/egm2008_8.gfc"), 8);
+  EXPECT_EQ(model.model, "EGM2008");
+  EXPECT_EQ(model.tide_system, "tide_free");
+  EXPECT_EQ(model.c_nm(3, 1), 0.203046201047864e-05);
+  EXPECT_EQ(model.s_nm(8, 8), 0.120551889384997e-06);
+  const GravityField field(model, 8, 8);
+  const Peer peer(model, 8, 8);
+  accuracy::Largest largest;
+  for (const Vector3& r : points(2000)) {
+    const Vector3 expected = peer.acceleration(r);
+    largest.add((field.acceleration_itrf(r) - expected).norm() / expected.norm());
+  }
+  EXPECT_LT(static_cast<double>(largest), kRounding);
+}
+
 TEST(Gravity, AgreesWithGeographicLibForOddSizes) {
   for (const auto& [degree, order] : {std::pair{2, 0}, {2, 2}, {3, 1}, {5, 5}, {17, 6}, {31, 30}, {70, 1}}) {
     EXPECT_LT(difference_from_peer(degree, order, points(200)), kRounding) << degree << "x" << order;
@@ -165,10 +183,11 @@ TEST(GravityFile, ErrorsNameFileAndLine) {
   const std::string head = "# test\nmodel M\ngm_m3ps2 4e14\nradius_m 6378000\nmax_degree 1\ntide_system zero_tide\n";
   const std::string body = "coefficients\n0 0 1 0\n1 0 0 0\n1 1 0 0\n";
   EXPECT_EQ(error_for(head + body + "end\n"), "");
-  EXPECT_THAT(error_for(""), HasSubstr("vbar_gravity_test.txt:1: the file ends here, expected model"));
-  EXPECT_THAT(error_for(head + body), HasSubstr(":11: the file ends here, expected \"end\""));
+  EXPECT_THAT(error_for(""),
+              HasSubstr("vbar_gravity_test.txt:1: found \"\", expected a gravity model in one of the formats"));
+  EXPECT_THAT(error_for(head + body), HasSubstr(":10: found the end of the file, expected \"end\""));
   EXPECT_THAT(error_for(head + "coefficients\n0 0 1 0\n1 0 0 0\n"),
-              HasSubstr("the file ends here, expected the coefficients C and S of degree 1, order 1"));
+              HasSubstr("found the end of the file, expected the coefficients C and S of degree 1, order 1"));
   EXPECT_THAT(error_for(head + "coefficients\n0 0 1 0\n1 1 0 0\n"), HasSubstr(":9: found \"1 1 0 0\", expected the"));
   EXPECT_THAT(error_for(head + "coefficients\n0 0 nan 0\n"), HasSubstr("found \"0 0 nan 0\""));
   EXPECT_THAT(error_for(head + "coefficients\n0 0 1\n"), HasSubstr("found \"0 0 1\""));

@@ -1,18 +1,15 @@
-#include "host_sim/twins/gnss/ephemeris_file.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "host_sim/files/data_stream.h"
-#include "host_sim/twins/gnss/system_time.h"
+#include "host_sim/files/text_lines.h"
+#include "host_sim/twins/gnss/formats/ephemeris_formats.h"
 
 namespace vbar::twins::gnss {
 namespace {
@@ -62,20 +59,16 @@ SatelliteId satellite_of(std::string_view name) {
   return satellite;
 }
 
-Ephemeris ephemeris_of(const Row& row) {
+Ephemeris set_of(const Row& row) {
   if (row.count != kNumbers) throw LineError(fmt::format("{} numbers instead of {}", row.count, kNumbers));
-  Ephemeris set;
-  set.satellite = satellite_of(row.name);
-  const System system = set.satellite.system;
-  const auto whole = [](double value) { return static_cast<std::int64_t>(value); };
   const auto& v = row.numbers;
-  const int week = static_cast<int>(v[0]);
-  set.toe = gps_time_of(system, week, whole(v[1]));
+  BroadcastRecord record{.satellite = satellite_of(row.name), .week = v[0], .toe_s = v[1], .toc_s = v[2]};
+  Ephemeris& set = record.elements;
   set.sqrt_a = v[3];
   set.e = v[4];
   set.m0 = v[5];
   set.delta_n = v[6];
-  set.node_at_toe = v[7] - earth_rate(system) * v[1];
+  record.omega0 = v[7];
   set.omega_dot = v[8];
   set.i0 = v[9];
   set.i_dot = v[10];
@@ -86,15 +79,12 @@ Ephemeris ephemeris_of(const Row& row) {
   set.cis = v[15];
   set.crc = v[16];
   set.crs = v[17];
-  // The clock's reference time moved from toc to toe.
-  const double elapsed_s = v[1] - v[2];
-  set.af0 = v[18] + (v[19] + v[20] * elapsed_s) * elapsed_s;
-  set.af1 = v[19] + 2.0 * v[20] * elapsed_s;
-  set.af2 = v[20];
+  record.af0 = v[18];
+  record.af1 = v[19];
+  record.af2 = v[20];
   set.group_delay_s = v[21];
-  if (!(set.sqrt_a > 2000.0 && set.sqrt_a < 9000.0) || !(set.e >= 0.0 && set.e < 0.1))
-    throw LineError("sqrt_a must lie between 2000 and 9000 m^(1/2) and e between 0 and 0.1");
-  return set;
+  if (const std::string problem = problem_of(record); !problem.empty()) throw LineError(problem);
+  return ephemeris_of(record);
 }
 
 // True if the row is one of the corrections.
@@ -119,27 +109,35 @@ bool take_correction(const Row& row, BroadcastCorrections& corrections) {
 
 }  // namespace
 
-EphemerisFile read_ephemeris_file(const std::filesystem::path& file) {
-  files::DataStream in(file);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
+bool is_ephemeris_table(std::string_view text) {
+  files::TextLines lines(text, "");
+  while (lines.next()) {
+    if (lines.is_blank() || lines.line().starts_with('#')) continue;
+    return lines.line().find(',') != std::string_view::npos;
+  }
+  return true;  // a file without any line holds no satellite, as its reader says
+}
+
+EphemerisFile read_ephemeris_table(std::string_view text, const std::string& file) {
   EphemerisFile result;
   bool columns_seen = false;
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
+  files::TextLines lines(text, file);
+  while (lines.next()) {
+    const std::string_view line = lines.line();
     if (line.empty() || line.front() == '#') continue;
     try {
       if (line == kColumns) {
         columns_seen = true;
       } else if (columns_seen) {
-        result.satellites.push_back(ephemeris_of(split(line)));
+        result.satellites.push_back(set_of(split(line)));
       } else if (!take_correction(split(line), result.corrections)) {
         throw LineError(fmt::format("expected klobuchar_alpha, klobuchar_beta, utc_a0_a1 or the columns {}", kColumns));
       }
     } catch (const LineError& error) {
-      throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), number, error.what()));
+      throw std::runtime_error(fmt::format("{}:{}: {}", file, lines.number(), error.what()));
     }
   }
-  if (result.satellites.empty()) throw std::runtime_error(fmt::format("{}: holds no satellite", file.string()));
+  if (result.satellites.empty()) throw std::runtime_error(fmt::format("{}: holds no satellite", file));
   return result;
 }
 

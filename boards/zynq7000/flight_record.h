@@ -1,0 +1,49 @@
+#pragma once
+// What a board knows of its flight after a reset: a record in memory that a reset leaves as it is, of which a checksum
+// states whether it did.
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "boards/zynq7000/session_guard.h"
+
+namespace vbar::boards::zynq7000 {
+
+struct FlightRecord {
+  std::uint32_t session = 0;
+  std::uint32_t step = 0;
+  std::uint32_t in_step = 0;              ///< 1 from the first packet of `step` to its end
+  std::uint32_t expired = 0;              ///< 1: the handler of the watchdog has requested the reset
+  std::uint32_t is_ethernet = 0;          ///< 1: so is the interface of the peer
+  std::uint32_t port = 0;                 ///< of the peer, as all of the following
+  std::array<std::uint8_t, 4> address{};  ///< IPv4
+  std::array<std::uint8_t, 8> mac{};      ///< the first 6
+};
+using RecordWords = std::array<std::uint32_t, sizeof(FlightRecord) / sizeof(std::uint32_t)>;
+
+constexpr RecordWords words_of(const FlightRecord& record) {
+  return std::bit_cast<RecordWords>(record);
+}
+
+/// FNV-1a. That of zeros is not zero, so that memory which was never written is not taken for a record.
+constexpr std::uint32_t checksum_of(const FlightRecord& record) {
+  std::uint32_t hash = 0x811C9DC5U;
+  for (const std::uint32_t word : words_of(record)) {
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+      hash = (hash ^ ((word >> shift) & 0xFFU)) * 0x01000193U;
+    }
+  }
+  return hash;
+}
+
+/// The peer of the session in the words of a record, and back.
+void set_peer(FlightRecord& record, const Sender& sender);
+Sender peer_of(const FlightRecord& record);
+
+/// Writes why the session of `record` has ended, as its host is told: "error: ...", zero-terminated.
+void describe_reset(const FlightRecord& record, std::span<char, 120> text);
+
+}  // namespace vbar::boards::zynq7000

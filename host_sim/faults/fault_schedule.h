@@ -1,0 +1,40 @@
+#pragma once
+// When each fault of the scenario begins: at its time, or once its event has happened. Events are those of the truth,
+// of the thruster and of what the flight computer sent; the same in every run with the same bits.
+
+#include <string>
+#include <vector>
+
+#include "host_sim/app/run_observer.h"
+#include "host_sim/mission/mission.h"
+
+namespace vbar::faults {
+
+class FaultSchedule final : public app::RunObserver {
+ public:
+  /// `servicer` and `target`: names in the truth.
+  FaultSchedule(std::vector<mission::Fault> faults, std::string servicer, std::string target);
+
+  /// In the order of the file. Places do not change; `begin` of one does when its event happens.
+  [[nodiscard]] const std::vector<mission::Fault>& faults() const { return faults_; }
+
+  /// A burn that was commanded or announced begins, before it is known what becomes of it.
+  void on_ignition(fsw::GpsTime time);
+
+  void on_truth(const twins::TruthSnapshot& truth) override;
+  void on_step(std::uint32_t step, fsw::GpsTime time, std::span<const pil::Packet> inputs,
+               std::span<const pil::Packet> outputs) override;
+
+ private:
+  /// The event has happened to all faults that await one of this kind and accept it.
+  template <class Accept>
+  void happen(mission::FaultEvent::Kind kind, fsw::GpsTime time, const Accept& accept);
+  [[nodiscard]] bool awaits(mission::FaultEvent::Kind kind) const;
+
+  std::vector<mission::Fault> faults_;
+  std::string servicer_;
+  std::string target_;
+  int burns_ = 0;
+};
+
+}  // namespace vbar::faults

@@ -1,0 +1,67 @@
+#pragma once
+// Text of a data file line by line, in columns or words, with errors that name file, line, what was found and what is
+// accepted: the base of the readers of published formats.
+
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vbar::files {
+
+/// what() is "file:line: found ..., expected ...".
+class FormatError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Without blanks at either end.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+
+/// The whole of `text`, blanks at either end aside, as a finite number; Fortran's exponents (1.0D-03) and a leading
+/// plus are accepted. Nothing otherwise.
+[[nodiscard]] std::optional<double> number_of(std::string_view text);
+
+/// The same for a decimal integer.
+[[nodiscard]] std::optional<int> integer_of(std::string_view text);
+
+/// The part of `text` at the separators; blanks about the parts stay.
+[[nodiscard]] std::vector<std::string_view> split_at(std::string_view text, char separator);
+
+/// Goes through a text, which must outlive it. Lines end with a line feed, a carriage return before it is dropped.
+class TextLines {
+ public:
+  /// `file`: its name, for messages.
+  TextLines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {}
+
+  /// Goes to the next line; false behind the last one.
+  bool next();
+
+  [[nodiscard]] std::string_view line() const { return line_; }
+  [[nodiscard]] int number() const { return number_; }  ///< of the line, from 1
+  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] bool is_blank() const { return trimmed(line_).empty(); }
+
+  /// Columns `first` to `last` of the line, counted from 1 as format descriptions do; what the line lacks is left out.
+  [[nodiscard]] std::string_view columns(std::size_t first, std::size_t last) const;
+
+  /// The words of the line, between blanks and tabulators.
+  [[nodiscard]] std::vector<std::string_view> words() const;
+
+  /// "file:line: found "the line", expected ...".
+  [[noreturn]] void refuse(std::string_view expected) const;
+  [[noreturn]] void refuse(std::string_view found, std::string_view expected) const;
+
+ private:
+  std::string_view rest_;
+  std::string_view line_;
+  std::string file_;
+  int number_ = 0;
+};
+
+/// Text of a file for a message: in quotation marks, at most 100 characters of it, without control characters.
+[[nodiscard]] std::string quoted(std::string_view text);
+
+}  // namespace vbar::files

@@ -1,0 +1,53 @@
+#pragma once
+// CCSDS messages in keyword = value notation, and what OEM and OPM share.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "host_sim/files/text_lines.h"
+#include "host_sim/orbit_files/orbit_file.h"
+#include "host_sim/orbit_files/published_time.h"
+
+namespace vbar::orbit_files {
+
+struct Keyword {
+  std::string_view name, value;
+  std::string_view unit;  ///< between brackets behind the value; may be empty
+};
+
+/// "NAME = value [unit]"; nothing for another line.
+[[nodiscard]] std::optional<Keyword> keyword_in(std::string_view line);
+
+/// COMMENT or blank.
+[[nodiscard]] bool is_comment(const files::TextLines& lines);
+
+/// First line of a message of this kind ("CCSDS_OEM_VERS"), comments aside.
+[[nodiscard]] bool begins_with(std::string_view text, std::string_view version_keyword);
+
+/// What the metadata of both say.
+struct Metadata {
+  std::string object, object_id;
+  std::optional<TimeSystem> time_system;
+  bool has_centre = false;
+  /// To axes of GCRF from those of the message; empty without REF_FRAME.
+  std::optional<Eigen::Matrix3d> R_gcrf_frame;
+
+  /// Takes one of OBJECT_NAME, OBJECT_ID, CENTER_NAME, REF_FRAME, TIME_SYSTEM; false for another keyword. Throws
+  /// files::FormatError for a value that is not accepted.
+  bool take(const files::TextLines& lines, const Keyword& keyword);
+
+  /// Throws files::FormatError at the current line if something is missing.
+  void check(const files::TextLines& lines) const;
+
+  [[nodiscard]] fsw::GpsTime time(const files::TextLines& lines, std::string_view text) const;
+
+  /// From km and km/s along the axes of the message. Refuses what is not an orbit about the Earth in these units.
+  [[nodiscard]] fsw::orbit::CartesianState state(const files::TextLines& lines, const fsw::Vector3& position_km,
+                                                 const fsw::Vector3& velocity_kmps) const;
+};
+
+/// Throws files::FormatError for a state that cannot be one in orbit about the Earth; m, m/s.
+void check_state(const files::TextLines& lines, const fsw::orbit::CartesianState& state);
+
+}  // namespace vbar::orbit_files

@@ -1,0 +1,28 @@
+#pragma once
+// Instants as orbit files write them.
+
+#include <optional>
+#include <string_view>
+
+#include "fsw/core/gps_time.h"
+
+namespace vbar::orbit_files {
+
+enum class TimeSystem { kUtc, kTai, kTt, kGps, kBeidou };
+
+/// By its name in OEM, OPM and SP3; nothing for another.
+[[nodiscard]] std::optional<TimeSystem> time_system_named(std::string_view name);
+
+/// A calendar time. `month` 0: `day` is that of the year.
+struct Calendar {
+  int year = 0, month = 0, day = 0, hour = 0, minute = 0;
+  double second = 0.0;  ///< rounded to nanoseconds
+};
+
+/// Nothing for a time that does not exist, or not from 1980 to 2200.
+[[nodiscard]] std::optional<fsw::GpsTime> instant_of(const Calendar& calendar, TimeSystem system);
+
+/// CCSDS: YYYY-MM-DDThh:mm:ss or YYYY-DDDThh:mm:ss, decimals and Z behind it allowed. Nothing for another text.
+[[nodiscard]] std::optional<fsw::GpsTime> ccsds_time(std::string_view text, TimeSystem system);
+
+}  // namespace vbar::orbit_files

@@ -1,0 +1,54 @@
+#pragma once
+// The formats of broadcast ephemerides that are read as published. Each is recognised by its contents; each has its
+// file here and its line in the list.
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "host_sim/twins/gnss/ephemeris_file.h"
+
+namespace vbar::twins::gnss {
+
+struct EphemerisFormat {
+  std::string_view name;
+  bool (*recognises)(std::string_view text);
+  EphemerisFile (*read)(std::string_view text, const std::string& file);  ///< throws std::runtime_error
+};
+
+// Table of this project, data/gps.
+[[nodiscard]] bool is_ephemeris_table(std::string_view text);
+[[nodiscard]] EphemerisFile read_ephemeris_table(std::string_view text, const std::string& file);
+
+// RINEX navigation files, versions 2.xx (GPS), 3.xx and 4.xx (GPS, Galileo, BeiDou; records of other systems and
+// messages are skipped, and so are sets whose week contradicts their date, as merged files hold some). Of each
+// satellite one set: that whose reference time is nearest to noon of the file's day, which is the day of the median
+// reference time. GPS LNAV, Galileo I/NAV, BeiDou D1 and D2.
+[[nodiscard]] bool is_rinex(std::string_view text);
+[[nodiscard]] EphemerisFile read_rinex(std::string_view text, const std::string& file);
+
+[[nodiscard]] std::span<const EphemerisFormat> ephemeris_formats();
+
+/// The satellites of a text in any of the formats. Throws std::runtime_error; for an unknown format it names all.
+[[nodiscard]] EphemerisFile read_ephemerides(std::string_view text, const std::string& file);
+
+/// One set in the terms of the navigation message: week and seconds of week of its system.
+struct BroadcastRecord {
+  SatelliteId satellite;
+  double week = 0.0, toe_s = 0.0;
+  double toc_s = 0.0;    ///< of the same week: below 0 or beyond its end in the weeks beside
+  double omega0 = 0.0;   ///< at the begin of the week
+  Ephemeris elements{};  ///< all but reference time, node and clock
+  double af0 = 0.0, af1 = 0.0, af2 = 0.0;
+};
+
+/// Between the reference times of clock and orbit.
+inline constexpr double kLongestClockAge_s = 86400.0;
+
+/// What is wrong with a record; empty if nothing is.
+[[nodiscard]] std::string problem_of(const BroadcastRecord& record);
+
+/// The set with the clock's reference time moved to toe. The record must have no problem.
+[[nodiscard]] Ephemeris ephemeris_of(const BroadcastRecord& record);
+
+}  // namespace vbar::twins::gnss

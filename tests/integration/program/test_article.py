@@ -1,0 +1,95 @@
+"""Flight software of a user: created, built and flown outside the repository with the installed package."""
+import os
+import subprocess
+import unittest
+
+from vbar_program import BINARY, ZYNQ_IMAGE, hashes, main, missing, overrides, scratch, summary_of, vbar
+
+# From waypoint 7 on, where the examples can fly.
+SHORT = ("mission.start_h=36", "mission.duration_h=0.5", "spacecraft.target.relative.waypoint=7")
+
+
+def run(*command, cwd):
+    result = subprocess.run(list(map(str, command)), cwd=cwd, capture_output=True, text=True, timeout=300)
+    if result.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, command))}: {result.stdout}{result.stderr}")
+
+
+def install(prefix):
+    """The build trees that exist; whether the board's is one of them."""
+    has_board = missing(ZYNQ_IMAGE) is None
+    for tree in (BINARY, ZYNQ_IMAGE.parent) if has_board else (BINARY,):
+        run("cmake", "--install", tree, "--prefix", prefix, cwd=prefix.parent)
+    return has_board
+
+
+class NewArticle(unittest.TestCase):
+    def fly(self, program, folder, *settings):
+        result = subprocess.run([str(program), "run", "ideal_navigation", "--quiet", "--out", str(folder), *overrides(*SHORT, *settings)],
+                                cwd=folder.parent, capture_output=True, text=True, timeout=300,
+                                env={key: value for key, value in os.environ.items() if key != "VBAR_DATA"})
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return summary_of(folder)
+
+    def check(self, language, prefix, has_board):
+        project = prefix.parent / f"my-{language.replace('+', 'p')}"
+        program = prefix / "bin/vbar"
+        run(program, "new-article", project, "--language", language, cwd=prefix.parent)
+        self.assertIn(str(prefix), (project / "README.md").read_text(), "the commands name the prefix")
+        run("cmake", "-S", ".", "-B", "build", f"-DCMAKE_PREFIX_PATH={prefix}", cwd=project)
+        run("cmake", "--build", "build", cwd=project)
+        library = project / "build" / f"lib{project.name}.so"
+        shared = self.fly(program, project / "shared", f"flight_computer.library={library}")
+        self.assertTrue(shared["complete"])
+        self.assertGreater(shared["maneuvers"], 0)
+        if not has_board:
+            return
+        run("cmake", "-S", ".", "-B", "build-zynq", f"-DCMAKE_PREFIX_PATH={prefix}",
+            "--toolchain", prefix / "lib/cmake/vbar/arm-none-eabi-zynq7000.cmake", cwd=project)
+        run("cmake", "--build", "build-zynq", cwd=project)
+        board = self.fly(program, project / "board", "flight_computer.target=zynq_qemu", "flight_computer.link=udp",
+                         f"flight_computer.image={project / 'build-zynq' / (project.name + '.elf')}")
+        self.assertEqual(hashes(board), hashes(shared), "the same bits")
+
+    def test_in_both_languages_from_an_installed_prefix(self):
+        with scratch() as folder:
+            prefix = folder / "prefix"
+            prefix.mkdir()
+            has_board = install(prefix)
+            for language in ("c", "c++"):
+                with self.subTest(language):
+                    self.check(language, prefix, has_board)
+            if not has_board:
+                print(missing(ZYNQ_IMAGE))
+
+
+class NewArticleBadInput(unittest.TestCase):
+    def refused(self, sentence, *arguments):
+        result = vbar("new-article", *arguments)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn(sentence, result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1)
+
+    def test_one_sentence_and_nothing_is_written(self):
+        with scratch() as folder:
+            used = folder / "used"
+            used.mkdir()
+            (used / "mine").write_text("")
+            self.refused("a new or an empty folder is accepted", used)
+            self.refused("accepted: letters", folder / "my gnc")
+            self.refused("accepted: c, c++", folder / "new", "--language", "ada")
+            self.assertEqual(sorted(file.name for file in folder.iterdir()), ["used"])
+
+    def test_an_image_that_does_not_exist_or_is_of_no_use(self):
+        with scratch() as folder:
+            result = vbar("run", "ideal_navigation", "--out", folder / "run", *overrides(*SHORT, "flight_computer.target=zynq_qemu",
+                          "flight_computer.image=/nonexistent.elf"))
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("flight_computer.image '/nonexistent.elf': there is no such file", result.stderr)
+            result = vbar("run", "ideal_navigation", "--check", *overrides("flight_computer.image=/nonexistent.elf"))
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("unless target is zynq_qemu", result.stderr)
+
+
+if __name__ == "__main__":
+    main()

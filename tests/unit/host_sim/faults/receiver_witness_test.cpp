@@ -1,0 +1,125 @@
+// What happens to a receiver shows in its bytes, and nothing shows that did not happen.
+
+#include "host_sim/faults/receiver_witness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "fsw/packets/messages.h"
+#include "host_sim/twins/gnss/gnss_receiver.h"
+#include "host_sim/twins/packet_encoder.h"
+#include "tests/support/gnss_scene.h"
+
+namespace vbar::faults {
+namespace {
+
+using twins::Upset;
+
+constexpr double kPeriod_s = 10.0;
+constexpr int kUpsetEpoch = 12;
+
+/// The epochs of a receiver in orbit, `upset` before epoch kUpsetEpoch; epochs in `lost` do not arrive.
+std::vector<ReceiverEpoch> flown(const std::optional<Upset>& upset, const std::set<int>& lost = {}, int epochs = 40) {
+  twins::gnss::GnssReceiverSettings settings;
+  settings.tracking.cycle_slips_per_hour = 0.0;
+  twins::gnss::GnssReceiver receiver(settings, test::constellation(3), test::data_directory(), 3, "servicer");
+  twins::PacketEncoder encoder(1, 0);
+  ReceiverWitness witness;
+  std::vector<ReceiverEpoch> found;
+  for (int n = 0; n < epochs; ++n) {
+    if (upset && n == kUpsetEpoch) EXPECT_TRUE(receiver.upset(*upset));
+    const twins::gnss::BodyTruth truth = test::in_orbit(kPeriod_s * n);
+    const std::vector<std::uint8_t> bytes = receiver.bytes_at(truth);
+    if (lost.contains(n)) continue;
+    for (std::size_t begin = 0; begin < bytes.size(); begin += sizeof(gnss_bytes::data)) {
+      gnss_bytes message{};
+      message.count = static_cast<std::int32_t>(std::min(sizeof message.data, bytes.size() - begin));
+      std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(begin), message.count, message.data);
+      const auto packet = encoder.encode(truth.time, message);
+      for (ReceiverEpoch& epoch : witness.take(fsw::packets::parse_packet(*packet).value())) found.push_back(epoch);
+    }
+  }
+  return found;
+}
+
+TEST(ReceiverWitness, SeesNothingWhereNothingHappens) {
+  for (const ReceiverEpoch& epoch : flown(std::nullopt, {17, 25})) {
+    EXPECT_TRUE(epoch.slips.empty());
+    EXPECT_EQ(epoch.restarted, 0U);
+    if (epoch.clock_jump_s) EXPECT_LT(std::abs(*epoch.clock_jump_s), 1e-7);
+  }
+}
+
+TEST(ReceiverWitness, SeesASlipOfOneCycleInTheEpochInWhichItHappens) {
+  for (const std::set<int>& lost : {std::set<int>{}, {9}}) {
+    const std::vector<ReceiverEpoch> epochs = flown(Upset{Upset::Kind::kCycleSlip, 1.0, "highest"}, lost);
+    int seen = 0;
+    for (const ReceiverEpoch& epoch : epochs) {
+      if (epoch.slips.empty()) continue;
+      ++seen;
+      EXPECT_NEAR(fsw::seconds(epoch.time - test::kGnssStart), kPeriod_s * kUpsetEpoch, 1e-3);
+      EXPECT_EQ(epoch.slips.size(), 2U) << "L1 and L2";
+      for (const auto& slip : epoch.slips) {
+        EXPECT_EQ(slip.satellite, epoch.slips[0].satellite);
+        EXPECT_NEAR(slip.cycles, 1.0, 0.3);
+      }
+      EXPECT_EQ(epoch.restarted, 0U) << "the receiver does not say so";
+    }
+    EXPECT_EQ(seen, 1);
+  }
+}
+
+TEST(ReceiverWitness, SeesSlipsOfAllByDifferentCycles) {
+  const std::vector<ReceiverEpoch> epochs = flown(Upset{Upset::Kind::kCycleSlip, 2.0, "all"});
+  const ReceiverEpoch& then = epochs[kUpsetEpoch];
+  EXPECT_GT(2 * then.slips.size(), then.carriers);
+  std::set<double> sizes;
+  for (const auto& slip : then.slips) {
+    EXPECT_NEAR(slip.cycles / 2.0, std::round(slip.cycles / 2.0), 0.15);
+    sizes.insert(std::round(slip.cycles));
+  }
+  EXPECT_GT(sizes.size(), 4U);
+}
+
+TEST(ReceiverWitness, SeesAClockThatJumps) {
+  const std::vector<ReceiverEpoch> epochs = flown(Upset{Upset::Kind::kClockJump, 5e-6, {}});
+  for (std::size_t n = 1; n < epochs.size(); ++n) {
+    ASSERT_TRUE(epochs[n].clock_jump_s.has_value()) << n;
+    EXPECT_NEAR(*epochs[n].clock_jump_s, n == kUpsetEpoch ? 5e-6 : 0.0, 1e-7) << n;
+    EXPECT_EQ(epochs[n].restarted, 0U);
+  }
+}
+
+TEST(ReceiverWitness, SeesAReceiverThatBeginsAgain) {
+  const std::vector<ReceiverEpoch> epochs = flown(Upset{Upset::Kind::kReset, 0.0, {}});
+  bool is_seen = false;
+  for (const ReceiverEpoch& epoch : epochs) {
+    const double t_s = fsw::seconds(epoch.time - test::kGnssStart);
+    if (t_s < kPeriod_s * kUpsetEpoch - 1.0) EXPECT_EQ(epoch.restarted, 0U);
+    if (epoch.known > 0 && epoch.restarted == epoch.known) {
+      is_seen = true;
+      EXPECT_LE(t_s, kPeriod_s * (kUpsetEpoch + 1) + 1.0);
+      EXPECT_GT(epoch.carriers, 10U);
+    }
+  }
+  EXPECT_TRUE(is_seen);
+}
+
+// Ambiguities and clock are those of another start; what came before is not touched.
+TEST(ReceiverReset, DrawsItsClockAnewAndChangesNothingBefore) {
+  twins::gnss::GnssReceiver reset({}, test::constellation(3), test::data_directory(), 3, "servicer");
+  twins::gnss::GnssReceiver other({}, test::constellation(3), test::data_directory(), 3, "servicer");
+  for (int n = 0; n < kUpsetEpoch; ++n)
+    EXPECT_EQ(reset.bytes_at(test::in_orbit(kPeriod_s * n)), other.bytes_at(test::in_orbit(kPeriod_s * n)));
+  EXPECT_TRUE(reset.upset({Upset::Kind::kReset, 0.0, {}}));
+  static_cast<void>(reset.bytes_at(test::in_orbit(kPeriod_s * kUpsetEpoch)));
+  static_cast<void>(other.bytes_at(test::in_orbit(kPeriod_s * kUpsetEpoch)));
+  EXPECT_GT(std::abs(reset.truth().clock_offset_s - other.truth().clock_offset_s), 1e-6);
+}
+
+}  // namespace
+}  // namespace vbar::faults

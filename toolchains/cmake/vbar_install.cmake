@@ -1,0 +1,36 @@
+# What `cmake --install` installs: of the host build the programs, data, missions and the package for test articles; of the
+# build for the bare Zynq the flight image and the board's libraries, into the same prefix.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# Not CMAKE_INSTALL_LIBDIR, which some prefixes have below a name of the architecture: vbar finds images relative to itself.
+set(package lib/cmake/vbar)
+set(board lib/vbar/zynq7000)
+
+if(VBAR_TARGET STREQUAL "host")
+  foreach(program vbar vbar_flight vbar_grand_bench vbar_os_bench vbar_os_calibrate vbar_tron vbar_tron_bench)
+    install(TARGETS ${program} RUNTIME)
+  endforeach()
+  install(TARGETS vbar_packets ARCHIVE DESTINATION lib/vbar)
+  install(FILES ${PROJECT_SOURCE_DIR}/fsw/gnc/vbar_gnc.h ${VBAR_C_PACKETS}/vbar_packets.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vbar)
+  install(FILES ${PROJECT_SOURCE_DIR}/fsw/packets/vbar.lcm ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/NOTICE
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/data ${PROJECT_SOURCE_DIR}/missions DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar)
+  # Beside data and missions as in the source tree, where vbar new-article finds them.
+  foreach(example c_article/article.c cpp_article/article.cpp)
+    cmake_path(GET example PARENT_PATH folder)
+    install(FILES ${PROJECT_SOURCE_DIR}/boards/examples/${example} DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar/boards/examples/${folder})
+  endforeach()
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/toolchains/package/article DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar/toolchains/package)
+  configure_package_config_file(${PROJECT_SOURCE_DIR}/toolchains/package/vbarConfig.cmake.in vbarConfig.cmake
+    INSTALL_DESTINATION ${package})
+  write_basic_package_version_file(vbarConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+  install(FILES ${PROJECT_BINARY_DIR}/vbarConfig.cmake ${PROJECT_BINARY_DIR}/vbarConfigVersion.cmake
+    ${PROJECT_SOURCE_DIR}/toolchains/arm-none-eabi-zynq7000.cmake DESTINATION ${package})
+elseif(VBAR_TARGET STREQUAL "zynq7000")
+  install(TARGETS vbar_zynq7000 RUNTIME DESTINATION ${board})
+  install(TARGETS vbar_zynq7000_board vbar_zynq7000_main vbar_board_common vbar_fsw_link vbar_fsw_packets vbar_packets
+    ARCHIVE DESTINATION ${board})
+  set(source ${PROJECT_SOURCE_DIR}/boards/zynq7000)
+  install(FILES ${source}/zynq7000.ld ${source}/check_image.cmake ${source}/zynq7000_image.cmake DESTINATION ${board})
+endif()
