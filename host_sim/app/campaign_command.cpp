@@ -17,6 +17,7 @@
 #include "host_sim/campaign/rerun.h"
 #include "host_sim/campaign/run_campaign.h"
 #include "host_sim/campaign/status.h"
+#include "host_sim/campaign_report/write_page.h"
 
 namespace vbar::app {
 namespace {
@@ -87,13 +88,15 @@ int report(const std::filesystem::path& root) {
   const campaign::Folder folder(root);
   const campaign::Standing standing = campaign::read_standing(folder);
   campaign::write_results(folder, standing);
-  fmt::print("{}results  {}\n", campaign::status_text(standing, {}), folder.results().string());
+  campaign::write_page(folder.root());
+  fmt::print("{}results  {}\npage     {}\n", campaign::status_text(standing, {}), folder.results().string(),
+             (folder.root() / "campaign.html").string());
   return standing.results.conflicts.empty() ? kDone : kFailed;
 }
 
 void add_report(CLI::App& campaign, int& exit_code) {
   const auto folder = std::make_shared<std::filesystem::path>();
-  CLI::App* command = campaign.add_subcommand("report", "write results.csv of what has flown so far");
+  CLI::App* command = campaign.add_subcommand("report", "write results.csv and campaign.html of what has flown so far");
   command->add_option("folder", *folder, kFolderHelp)->required();
   command->callback([=, &exit_code] { exit_code = report(*folder); });
 }
