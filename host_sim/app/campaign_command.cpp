@@ -88,9 +88,9 @@ int report(const std::filesystem::path& root) {
   const campaign::Folder folder(root);
   const campaign::Standing standing = campaign::read_standing(folder);
   campaign::write_results(folder, standing);
-  campaign::write_page(root);
+  campaign::write_page(folder.root());
   fmt::print("{}results  {}\npage     {}\n", campaign::status_text(standing, {}), folder.results().string(),
-             (root / "campaign.html").string());
+             (folder.root() / "campaign.html").string());
   return standing.results.conflicts.empty() ? kDone : kFailed;
 }
 

@@ -84,7 +84,7 @@ TEST_F(CampaignPage, FailedCasesHaveNotPassedAndKilledOnesAreNotCounted) {
   std::string text = content(results());
   const auto change = [&](const std::string& number, const std::string& state) {
     text = std::regex_replace(text, std::regex("\n(" + number + ",[^\n]*),complete,1,[^\n]*"),
-                              "\n$1," + state + ",,,,1,h,p,1,1,,,,," + std::string(6, ','));
+                              "\n$1," + state + ",,,,1,h,p,1,1,,,," + std::string(6, ','));
   };
   change("1", "failed");
   change("2", "killed");
