@@ -31,7 +31,7 @@ struct Platform {
   CounterUnit counter_unit = CounterUnit::kNone;
   /// Budget of a step in units of `counter`, unless the hello states another; 0: none.
   std::uint64_t step_budget = 0;
-  /// For a watchdog, and for what it has to say after a reset: told of each session, of the first packet of each step,
+  /// For a watchdog, and for what it reports after a reset: notified of each session, of the first packet of each step,
   /// and of the end of the step. They may be null.
   void (*session_begins)(void* context, std::uint32_t session, std::uint64_t step_budget) = nullptr;
   void (*step_begins)(void* context, std::uint32_t step) = nullptr;
@@ -74,7 +74,7 @@ class FlightExecutive {
   /// True during a session whose receiver is wired to the board.
   [[nodiscard]] bool has_receiver() const { return receiver_.is_open(); }
 
-  /// To be called once, after a reset that ended `session`: until the next hello, the host of that session is told
+  /// To be called once, after a reset that ended `session`: until the next hello, the host of that session receives
   /// `error` ("error: ...", at most 120 characters, which must remain).
   void lose_session(std::uint32_t session, const char* error);
 

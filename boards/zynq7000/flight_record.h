@@ -1,5 +1,5 @@
 #pragma once
-// What a board knows of its flight after a reset: a record in memory that a reset leaves as it is, of which a checksum
+// What a board retains of its flight through a reset: a record in memory that a reset leaves as it is, of which a checksum
 // states whether it did.
 
 #include <array>
@@ -43,7 +43,7 @@ constexpr std::uint32_t checksum_of(const FlightRecord& record) {
 void set_peer(FlightRecord& record, const Sender& sender);
 Sender peer_of(const FlightRecord& record);
 
-/// Writes why the session of `record` has ended, as its host is told: "error: ...", zero-terminated.
+/// Writes why the session of `record` has ended, for its host: "error: ...", zero-terminated.
 void describe_reset(const FlightRecord& record, std::span<char, 120> text);
 
 }  // namespace vbar::boards::zynq7000

@@ -124,7 +124,7 @@ void FlightBoard::open() {
   print("\nready\n");
 }
 
-// The host of the session that the watchdog ended is told why as soon as it asks.
+// The host of the session that the watchdog ended receives the reason as soon as it asks.
 void FlightBoard::report_restart() {
   if (!restart_.by_watchdog) {
     return;

@@ -212,7 +212,7 @@ void TrunkNavigation::check_attitudes(GpsTime now, faults::FaultMonitor& faults)
                      .argument = attitudes_.difference});
 }
 
-/// The innovations are judged anew afterwards.
+/// The innovations are judged from the beginning afterwards.
 template <class Source>
 void TrunkNavigation::isolate(GpsTime now, std::size_t index, Source& source) {
   const double mean = source.aid().consistency().mean();

@@ -104,7 +104,7 @@ Orbit read_orbit(const TableReader& section, const Member& member, const Mission
 // is more than a board needs to start the flight software.
 constexpr std::int64_t kStepBudgetInstructions = 250'000'000;
 constexpr std::int64_t kStepBudgetCycles = 4 * kStepBudgetInstructions;
-constexpr std::int64_t kLeastStepBudget = 100'000;
+constexpr std::int64_t kMinStepBudget = 100'000;
 constexpr std::int64_t kGreatestStepBudget = 10'000'000'000;
 
 FlightComputer read_flight_computer(const TableReader& section) {
@@ -125,7 +125,7 @@ FlightComputer read_flight_computer(const TableReader& section) {
   computer.port = static_cast<int>(section.integer("port", 0, 65535, 0));
   const std::int64_t step_budget =
       computer.target == FlightTarget::kBoard ? kStepBudgetCycles : kStepBudgetInstructions;
-  computer.step_budget = section.integer("step_budget", kLeastStepBudget, kGreatestStepBudget, step_budget);
+  computer.step_budget = section.integer("step_budget", kMinStepBudget, kGreatestStepBudget, step_budget);
   if (computer.target == FlightTarget::kBoard) {
     if (computer.link == FlightLink::kSerial && computer.device.empty())
       section.refuse("device", "nothing", "the tty of the board, e.g. /dev/ttyUSB0");

@@ -16,6 +16,7 @@
 
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/earth/time_scales.h"
+#include "tests/support/accuracy.h"
 #include "tests/unit/host_sim/truth/truth_fixture.h"
 
 namespace vbar::truth {
@@ -219,7 +220,7 @@ TEST(OrientationFormats, EarthRotationAgreesWithErfaOnTheSameFile) {
     eraPom00(o.pole_x, o.pole_y, eraSp00(ERFA_DJM0 + utc_day, tt), polar);
     eraC2tcio(celestial, era, polar, matrix);
     const fsw::Matrix3 expected = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&matrix[0][0]);
-    EXPECT_LT((rotation.R_itrf_gcrf_at(seconds) - expected).cwiseAbs().maxCoeff(), 1e-11) << seconds;
+    EXPECT_LT(accuracy::largest_entry(rotation.R_itrf_gcrf_at(seconds) - expected), 1e-11) << seconds;
   }
 }
 
