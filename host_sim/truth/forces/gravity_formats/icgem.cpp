@@ -107,8 +107,8 @@ class Coefficients {
     if (words[0] != "gfc")
       lines.refuse(fmt::format("the term {}", files::quoted(words[0])),
                    "gfc alone: a static model (one with gfct, trnd, dot, acos or asin changes with time)");
-    constexpr std::size_t kLeastWords = 5;
-    if (words.size() < kLeastWords) lines.refuse("gfc, degree, order, C and S");
+    constexpr std::size_t kMinWords = 5;
+    if (words.size() < kMinWords) lines.refuse("gfc, degree, order, C and S");
     const auto n = files::integer_of(words[1]), m = files::integer_of(words[2]);
     const auto c = files::number_of(words[3]), s = files::number_of(words[4]);
     if (!n || !m || !c || !s || *n < 0 || *m < 0 || *m > *n || *n > *header_.max_degree)
