@@ -28,7 +28,8 @@ test=(
   libopencv-contrib-dev  # calibration of TRON: its board in images
 )
 peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr
-  libopencv-dev liborocos-kdl-dev tshark ffmpeg ola)
+  libopencv-dev liborocos-kdl-dev tshark ffmpeg ola
+  slurm-wlm munge)  # a cluster on loopback, for campaigns
 train=("${fly[@]}" python3 python3-numpy python3-torch)
 
 # The wire formats' peer is an npm package. Only if no other npm is installed: a vendor's node conflicts with

@@ -1,7 +1,7 @@
 #include "boards/zynq7000/flight_record.h"
 
 #include <algorithm>
-#include <string_view>
+#include <cstring>
 
 namespace vbar::boards::zynq7000 {
 namespace {
@@ -11,7 +11,8 @@ class Text {
  public:
   explicit Text(std::span<char> out) : out_(out) { out_[0] = '\0'; }
 
-  void append(std::string_view text) {
+  void append(const char* text) { append({text, std::strlen(text)}); }
+  void append(std::span<const char> text) {
     const std::size_t count = std::min(text.size(), out_.size() - 1U - size_);
     std::copy_n(text.begin(), count, out_.begin() + static_cast<std::ptrdiff_t>(size_));
     size_ += count;
@@ -24,7 +25,7 @@ class Text {
       digits[--first] = static_cast<char>('0' + static_cast<char>(number % 10U));
       number /= 10U;
     } while (number != 0U);
-    append(std::string_view(digits.data() + first, digits.size() - first));
+    append(std::span<const char>(digits).subspan(first));
   }
 
  private:

@@ -30,10 +30,8 @@ INDIRECT = [
     (r"^vbar::fsw::gnc::Gnc::(report_|point_|command_|report\()", SINK),
     (r"^vbar::fsw::sources::\w+::report\w*\(", SINK),
     # the platform of the executive
-    (r"^vbar::boards::FlightExecutive::open_receiver\(", [BOARD + r"open_receiver\("]),
-    (r"^vbar::boards::FlightExecutive::read_receiver\(", [BOARD + r"read_receiver\("]),
-    (r"^vbar::boards::FlightExecutive::(append_step_report|close_step)\(", [BOARD + r"platform\(\)::.*_FUN\("]),
-    (r"^vbar::boards::FlightExecutive::(send_frame|on_frame)\(", [BOARD + r"send\(", BOARD + r"platform\(\)::.*_FUN\("]),
+    (r"^vbar::boards::FlightExecutive::", [BOARD + r"(open_receiver|read_receiver|send|session_begins|step_begins|step_ends)\(",
+                                           BOARD + r"platform\(\)::.*_FUN\("]),
     # comparisons of sorts, windows of the solver, records of a receiver
     (r"^void std::__(insertion_sort|adjust_heap|introsort_loop)<vbar::fsw::imaging::DetectedObject", [r"^vbar::fsw::imaging::\(anonymous namespace\)::is_first\("]),
     (r"^void std::__(insertion_sort|adjust_heap|introsort_loop)<vbar::fsw::imaging::Component", [r"^vbar::fsw::imaging::is_brighter\("]),

@@ -2,8 +2,8 @@
 // CRC-32 with the polynomial 0x04C11DB7 in its reflected form, of frames, files and messages of GNSS receivers. They
 // differ in what the register begins with, and in whether the result is inverted.
 //
-// Eight bytes at a time, by eight tables (M. E. Kounavis, F. L. Berry, IEEE Trans. Computers 57, 2008): the remainders of
-// the bytes are independent look-ups, where one byte at a time waits for the one before it. 8 KiB.
+// Eight bytes at a time, by eight tables (M. E. Kounavis, F. L. Berry, IEEE Trans. Computers 57, 2008): the remainders
+// of the bytes are independent look-ups, where one byte at a time waits for the one before it. 8 KiB.
 
 #include <array>
 #include <cstddef>

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host_sim/app/changed_telecommands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/flight_recorder.h"
 #include "host_sim/app/guidance_domain.h"
@@ -42,6 +43,15 @@ PairTruth pair_in(const twins::TruthSnapshot& truth, const mission::Spacecraft& 
   return {truth.find(servicer.name)->orbit, truth.find(servicer.observes())->orbit};
 }
 
+std::vector<twins::Packet> telecommands_at_start(const mission::Mission& mission, const mission::Spacecraft& servicer,
+                                                 const std::filesystem::path& data_directory,
+                                                 const truth::TruthModel& truth) {
+  const auto state_at_start = [&](std::string_view spacecraft) {
+    return truth.state(truth.index_of(std::string(spacecraft)));
+  };
+  return sensors::telecommands_of({mission, servicer, data_directory, *truth.data().earth_orientation, state_at_start});
+}
+
 Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraft& servicer,
                        const std::filesystem::path& data_directory, const truth::TruthModel& truth) {
   Timetable timetable;
@@ -57,11 +67,7 @@ Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraf
     const auto id = -1 - static_cast<std::int32_t>(timetable.burns.size());
     timetable.burns.push_back({burn.time, burn.dv_rtn, id});
   }
-  const auto state_at_start = [&](std::string_view spacecraft) {
-    return truth.state(truth.index_of(std::string(spacecraft)));
-  };
-  timetable.first_packets =
-      sensors::telecommands_of({mission, servicer, data_directory, *truth.data().earth_orientation, state_at_start});
+  timetable.first_packets = telecommands_at_start(mission, servicer, data_directory, truth);
   return timetable;
 }
 
@@ -230,13 +236,20 @@ AssembledMission::AssembledMission(const mission::Mission& mission, const std::f
                                    const sensors::MakeSources& make_sources)
     : mission_(mission),
       servicer_(complete_servicer(mission)),
+      data_directory_(data_directory),
       faults_(std::make_shared<faults::FaultSchedule>(mission.faults, servicer_.name, servicer_.observes())),
       truth_(mission, servicer_, data_directory),
       made_(with_faults(make_sources(mission, servicer_, data_directory, &truth_), faults_)),
       thruster_(with_faults(make_thruster(mission, servicer_), faults_)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
-      timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())) {
+      timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())),
+      telecommands_(timetable_.first_packets) {
   check_guidance_domain(mission, servicer_, truth_.model().state(servicer_.name));
+}
+
+void AssembledMission::branch_from(const mission::Mission& before, fsw::GpsTime time) {
+  timetable_.first_packets = telecommands_at_start(before, flying_spacecraft(before), data_directory_, truth_.model());
+  timetable_.uplink = {time, changed_telecommands(timetable_.first_packets, telecommands_, time)};
 }
 
 std::optional<io::WiredReceiver> AssembledMission::wired_receiver() const {
@@ -257,7 +270,7 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
   faults::UncommandedImpulses impulses(faults_);
   faults::FaultyComputer faulty_computer(
       surroundings.flight_computer, faults_, [this] { return connect_flight_computer(servicer_, wired_receiver()); },
-      timetable_.first_packets);
+      telecommands_);
   pil::FlightComputer& flight_computer =
       faults::concern_computer(mission_.faults) ? faulty_computer : surroundings.flight_computer;
   SelectedClock wall(surroundings.wall);

@@ -38,6 +38,10 @@ class AssembledMission {
   AssembledMission(const AssembledMission&) = delete;
   AssembledMission& operator=(const AssembledMission&) = delete;
 
+  /// Before fly(): until `time` it is flown as `before`, another version of the mission, and the telecommands that
+  /// differ are sent to the flight software then. Throws std::runtime_error for one that cannot be given in flight.
+  void branch_from(const mission::Mission& before, fsw::GpsTime time);
+
   /// Makes the sources ready, before there is a run folder. Throws as StartedSources::start.
   void start() { started_.start(timetable_.start); }
 
@@ -56,12 +60,14 @@ class AssembledMission {
  private:
   const mission::Mission& mission_;
   const mission::Spacecraft& servicer_;
+  std::filesystem::path data_directory_;
   std::shared_ptr<faults::FaultSchedule> faults_;
   FlownTruth truth_;
   sensors::MadeSources made_;
   std::unique_ptr<twins::Actuator> thruster_;
   engine::LinkModel board_link_;
   Timetable timetable_;
+  std::vector<twins::Packet> telecommands_;  ///< that a flight computer needs when it begins
   RunFacts facts_;
   StartedSources started_{made_.sources};  // last: it stops the sources
 };

@@ -2,6 +2,7 @@
 // The commands of `vbar`. Each returns the program's exit code (exit_codes.h).
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,9 @@ namespace vbar::app {
 /// In a run folder: the mission file and the overrides it was flown with, one a line.
 inline constexpr const char* kMissionCopy = "mission.toml";
 inline constexpr const char* kOverridesCopy = "overrides.txt";
+
+/// In that of a branch: where it left another run.
+inline constexpr const char* kBranchCopy = "branch.txt";
 
 struct RunOptions {
   std::filesystem::path mission;
@@ -40,6 +44,16 @@ struct ReplayOptions {
   std::filesystem::path from;  ///< snapshot to continue from; empty: from the start
 };
 int replay_command(const ReplayOptions& options);
+
+struct ResumeOptions {
+  std::filesystem::path run_folder;
+  std::optional<double> branch_at_h;   ///< hours of the mission; none: the run itself is continued
+  std::vector<std::string> overrides;  ///< of the branch, "path=value"
+  std::filesystem::path out;           ///< of the branch; empty: report::default_run_folder
+  bool trust = false;                  ///< libraries, devices and addresses that the folder names may be used
+  bool quiet = false;
+};
+int resume_command(const ResumeOptions& options);
 
 struct ReportOptions {
   std::vector<std::filesystem::path> run_folders;

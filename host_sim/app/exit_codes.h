@@ -9,13 +9,13 @@ enum ExitCode : int {
   kDone = 0,             ///< complete; of a replay: identical to the record
   kFailed = 1,           ///< the run, propagation or replay failed; the message says why
   kRefused = 2,          ///< bad usage or input; nothing was flown and nothing written
-  kDifferent = 3,        ///< replay, report --fail-if-different: the outputs differ
+  kDifferent = 3,        ///< replay, resume, report --fail-if-different: the outputs differ
   kKilledRun = 4,        ///< replay: the run was killed and left no summary; what it left is identical
   kEmptyLog = 5,         ///< replay: the log is empty
   kCutLog = 6,           ///< replay: the log is cut at its end
-  kThinnedLog = 7,       ///< replay: records are missing from the middle of the log
+  kThinnedLog = 7,       ///< replay, resume: records are missing from the middle of the log
   kForeignLog = 8,       ///< replay: the log holds outputs other than those that the summary states
-  kDamagedLog = 9,       ///< replay: the log is damaged or was altered after the run
+  kDamagedLog = 9,       ///< replay, resume: the log is damaged or was altered after the run
   kNeverNavigated = 10,  ///< run: complete, but the flight software never had a valid state
   kInterrupted = 75  ///< Ctrl-C, SIGTERM or SIGHUP ended it; the record up to then is kept (EX_TEMPFAIL of sysexits.h)
 };
@@ -24,7 +24,7 @@ inline constexpr const char* kExitCodeHelp =
     "Exit codes: 0 complete or identical, 1 failed, 2 refused (bad usage or input), 3 outputs differ, 75 interrupted.\n"
     "vbar run also: 10 complete, but the flight software never had a valid state.\n"
     "vbar replay also: 4 the run was killed, 5 log empty, 6 log cut at its end, 7 records missing from the middle,\n"
-    "8 log of other outputs than the summary states, 9 log damaged or altered after the run.";
+    "8 log of other outputs than the summary states, 9 log damaged or altered after the run; vbar resume also 7 and 9.";
 
 /// Bad usage or input, noticed before anything was flown or written.
 class Refused : public std::runtime_error {

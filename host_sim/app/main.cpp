@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "host_sim/app/build_info.h"
+#include "host_sim/app/campaign_command.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/mission/mission_error.h"
@@ -33,6 +34,21 @@ constexpr const char* kQuietHelp = "print nothing but errors";
 /// One assignment for each --set, so that it never takes the mission for another.
 void add_set(CLI::App* command, std::vector<std::string>& overrides) {
   command->add_option("--set", overrides, kSetHelp)->allow_extra_args(false);
+}
+
+void add_resume(CLI::App& command, ResumeOptions& resume) {
+  command.add_option("run", resume.run_folder, "run folder")->required();
+  CLI::Option* at = command.add_option(
+      "--at", resume.branch_at_h, "leave the run as it is, and fly a branch of it from this hour of the mission on");
+  add_set(&command, resume.overrides);
+  CLI::Option* set = command.get_option("--set")->needs(at);
+  at->needs(set)->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--out", resume.out,
+                  "folder of the branch; by default runs/<mission>-<seed>, the next run .2, .3, ...")
+      ->needs(at);
+  command.add_flag("--trust", resume.trust, "use a library, device or address that the run folder names");
+  command.add_flag("--quiet", resume.quiet, kQuietHelp);
 }
 
 constexpr const char* kOtherProgramsHelp =
@@ -143,6 +159,12 @@ int main(int argc, char** argv) {
   add_set(replay_app, replay.overrides);
   replay_app->callback([&] { exit_code = replay_command(replay); });
 
+  ResumeOptions resume;
+  CLI::App* resume_app = program.add_subcommand(
+      "resume", "continue a run that was killed or interrupted: fly it again, compare it with its log, and go on");
+  add_resume(*resume_app, resume);
+  resume_app->callback([&] { exit_code = resume_command(resume); });
+
   ReportOptions report;
   CLI::App* report_app = program.add_subcommand("report", "write the report of a run, or of several side by side");
   report_app->add_option("run", report.run_folders, "run folders")->required();
@@ -151,6 +173,8 @@ int main(int argc, char** argv) {
   report_app->add_flag("--fail-if-different", report.fail_if_different,
                        "exit code 3 unless all runs gave the same outputs as the first");
   report_app->callback([&] { exit_code = report_command(report); });
+
+  add_campaign_command(program, exit_code);
 
   std::filesystem::path missions;
   CLI::App* missions_app = program.add_subcommand("missions", "what can be run, one line each");

@@ -1,5 +1,7 @@
 #include "host_sim/app/packet_keepers.h"
 
+#include <utility>
+
 #include "host_sim/report/lcm_mirror.h"
 #include "host_sim/report/output_hash.h"
 #include "host_sim/report/run_folder.h"
@@ -20,8 +22,8 @@ void for_each_record(std::uint32_t step, fsw::GpsTime time, std::span<const pil:
 
 class PacketKeepers::Log final : public RunObserver {
  public:
-  Log(const std::filesystem::path& file, mission::ImagesInLog images)
-      : writer_(file, images == mission::ImagesInLog::kTiles ? Tiles::kWhole : Tiles::kAsRuns) {}
+  Log(const std::filesystem::path& file, mission::ImagesInLog images, twins::EventCheck check)
+      : writer_(file, images == mission::ImagesInLog::kTiles ? Tiles::kWhole : Tiles::kAsRuns, std::move(check)) {}
   void on_step(std::uint32_t step, fsw::GpsTime time, std::span<const pil::Packet> inputs,
                std::span<const pil::Packet> outputs) override {
     for_each_record(step, time, inputs, outputs, [this](const twins::PacketRecord& record) { writer_.write(record); });
@@ -63,18 +65,21 @@ class PacketKeepers::Mirror final : public RunObserver {
   report::LcmMirror mirror_;
 };
 
-PacketKeepers::PacketKeepers(const mission::Mission& mission, const std::filesystem::path& folder)
-    : log_(std::make_unique<Log>(report::packet_log_file(folder), mission.record.images)),
-      hash_(std::make_unique<Hash>()) {
+PacketKeepers::PacketKeepers(const mission::Mission& mission, const std::filesystem::path& folder,
+                             twins::EventCheck check)
+    : hash_(std::make_unique<Hash>()) {
+  if (mission.record.packets)
+    log_ = std::make_unique<Log>(report::packet_log_file(folder), mission.record.images, std::move(check));
   if (mission.lcm.mirror) mirror_ = std::make_unique<Mirror>(mission.lcm.url);
-  observers_ = {log_.get(), hash_.get()};
+  if (log_) observers_.push_back(log_.get());
+  observers_.push_back(hash_.get());
   if (mirror_) observers_.push_back(mirror_.get());
 }
 
 PacketKeepers::~PacketKeepers() = default;
 
 void PacketKeepers::finish() {
-  log_->finish();
+  if (log_) log_->finish();
 }
 
 std::string PacketKeepers::commands_sha256() const {

@@ -9,13 +9,15 @@
 
 #include "host_sim/app/run_observer.h"
 #include "host_sim/mission/mission.h"
+#include "host_sim/twins/packet_log.h"
 
 namespace vbar::app {
 
 class PacketKeepers {
  public:
-  /// Starts packets.lcmlog in `folder`, and the LCM mirror if the mission asks for it. Throws std::runtime_error.
-  PacketKeepers(const mission::Mission& mission, const std::filesystem::path& folder);
+  /// Starts packets.lcmlog in `folder` and the LCM mirror, each if the mission asks for it. `check` is that of the log.
+  /// Throws std::runtime_error.
+  PacketKeepers(const mission::Mission& mission, const std::filesystem::path& folder, twins::EventCheck check = {});
   ~PacketKeepers();
   PacketKeepers(const PacketKeepers&) = delete;
   PacketKeepers& operator=(const PacketKeepers&) = delete;

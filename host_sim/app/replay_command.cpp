@@ -1,12 +1,9 @@
 // vbar replay: the recorded packets of a run into a flight computer.
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -14,59 +11,22 @@
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/flown_from.h"
+#include "host_sim/app/flown_mission.h"
 #include "host_sim/app/replay_log.h"
 #include "host_sim/app/snapshot_file.h"
 #include "host_sim/app/stop_request.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/report/run_folder.h"
-#include "host_sim/report/summary_json.h"
 #include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/lcm_log_reader.h"
 
 namespace vbar::app {
 namespace {
 
-/// "library" of "flight_computer.library=x" or "spacecraft.servicer.flight_computer.library=x"; empty for another key.
-std::string_view flight_computer_key(std::string_view assignment) {
-  constexpr std::string_view kTable = "flight_computer.";
-  std::string_view path = assignment.substr(0, assignment.find('='));
-  if (path.starts_with("spacecraft.")) {
-    path.remove_prefix(std::string_view("spacecraft.").size());
-    path.remove_prefix(std::min(path.find('.'), path.size() - 1) + 1);
-  }
-  return path.starts_with(kTable) ? path.substr(kTable.size()) : std::string_view();
-}
-
 void refuse_overrides_without_effect(const std::vector<std::string>& overrides) {
   for (const std::string& assignment : overrides) {
     if (flight_computer_key(assignment).empty())
       throw Refused("--set " + assignment + ": has no effect on a replay; accepted: keys of flight_computer");
-  }
-}
-
-std::vector<std::string> overrides_of_run(const std::filesystem::path& folder) {
-  std::vector<std::string> overrides;
-  std::ifstream lines(folder / kOverridesCopy);
-  for (std::string line; std::getline(lines, line);)
-    if (!line.empty()) overrides.push_back(line);
-  return overrides;
-}
-
-/// A folder may come from anywhere: what it names is neither loaded nor opened unless the user names or trusts it.
-void check_trust(const mission::FlightComputer& computer, const ReplayOptions& options) {
-  if (options.trust) return;
-  const bool is_board = computer.target == mission::FlightTarget::kBoard;
-  const bool is_serial = computer.link == mission::FlightLink::kSerial;
-  const std::array<std::pair<std::string_view, std::string>, 4> named{
-      {{"library", computer.library},
-       {"image", computer.image},
-       {"device", is_board && is_serial ? computer.device : ""},
-       {"address", is_board && !is_serial ? computer.address : ""}}};
-  for (const auto& [key, value] : named) {
-    const auto is_this = [key = key](const std::string& assignment) { return flight_computer_key(assignment) == key; };
-    if (value.empty() || std::ranges::any_of(options.overrides, is_this)) continue;
-    throw Refused(fmt::format("{}: names flight_computer.{} = \"{}\", which is used only with --trust, or with --set",
-                              options.run_folder.string(), key, value));
   }
 }
 
@@ -76,20 +36,8 @@ mission::Mission mission_as_flown(const ReplayOptions& options) {
   std::vector<std::string> overrides = overrides_of_run(options.run_folder);
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
   mission::Mission mission = sensors::load_mission(options.run_folder / kMissionCopy, overrides);
-  try {
-    check_trust(*flying_spacecraft(mission).flight_computer, options);
-  } catch (const std::runtime_error& error) {
-    throw Refused(error.what());
-  }
+  check_trust(mission, options.run_folder, options.overrides, options.trust);
   return mission;
-}
-
-report::Summary read_summary(const std::filesystem::path& folder) {
-  try {
-    return report::read_summary(report::summary_file(folder));
-  } catch (const std::runtime_error& error) {
-    throw Refused(error.what());
-  }
 }
 
 /// The packets that went to the flight software, with the image tiles restored that the log holds in another form.
@@ -230,7 +178,7 @@ int say(const Verdict& verdict, bool quiet) {
 }  // namespace
 
 int replay_command(const ReplayOptions& options) {
-  const report::Summary summary = read_summary(options.run_folder);
+  const report::Summary summary = summary_of_run(options.run_folder);
   const mission::Mission mission = mission_as_flown(options);
   const std::filesystem::path file = report::packet_log_file(options.run_folder);
   twins::PacketLog log;

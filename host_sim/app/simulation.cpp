@@ -104,6 +104,9 @@ void Simulation::schedule_timetable() {
   for (std::size_t k = 0; k < timetable_.burns.size(); ++k)
     schedule(timetable_.burns[k].time, ExecutePrescribedBurn{k});
   schedule_more_burns();
+  if (!timetable_.uplink) return;
+  for (const twins::Packet& packet : timetable_.uplink->packets)
+    schedule(timetable_.uplink->time, DeliverPacket{packet});
 }
 
 void Simulation::schedule_more_burns() {

@@ -48,6 +48,12 @@ struct Timetable {
   std::vector<fsw::GpsTime> waypoints;
   std::vector<Burn> burns;                   ///< that the flight software did not ask for
   std::vector<twins::Packet> first_packets;  ///< telecommands that the first step brings
+  /// Telecommands that arrive later, at the first step from then on.
+  struct Uplink {
+    fsw::GpsTime time;
+    std::vector<twins::Packet> packets;
+  };
+  std::optional<Uplink> uplink;
 };
 
 /// What takes part in a run. All references must outlive it.

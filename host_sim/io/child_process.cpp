@@ -12,6 +12,7 @@
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -117,11 +118,21 @@ ChildProcess::~ChildProcess() {
 }
 
 bool ChildProcess::has_ended() {
-  if (wait_status_) return true;
+  return wait_status_.has_value() || reap(WNOHANG);
+}
+
+bool ChildProcess::reap(int options) {
   int status = 0;
-  const pid_t reaped = ::waitpid(pid_, &status, WNOHANG);
-  if (reaped == pid_) wait_status_ = status;
-  return wait_status_.has_value();
+  struct rusage usage {};
+  pid_t reaped = -1;
+  do {
+    reaped = ::wait4(pid_, &status, options, &usage);
+  } while (reaped < 0 && errno == EINTR);
+  if (reaped != pid_) return false;
+  wait_status_ = status;
+  for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+    processor_time_s_ += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  return true;
 }
 
 bool ChildProcess::wait_for_end(std::chrono::milliseconds patience) {
@@ -140,10 +151,15 @@ void ChildProcess::terminate(std::chrono::milliseconds patience) {
     if (wait_for_end(patience)) return;
   }
   (void)::kill(-pid_, SIGKILL);
-  int status = 0;
-  while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-  }
-  wait_status_ = status;
+  (void)reap(0);
+}
+
+std::optional<int> ChildProcess::exit_status() const {
+  return wait_status_ && WIFEXITED(*wait_status_) ? std::optional(WEXITSTATUS(*wait_status_)) : std::nullopt;
+}
+
+std::optional<int> ChildProcess::killed_by() const {
+  return wait_status_ && WIFSIGNALED(*wait_status_) ? std::optional(WTERMSIG(*wait_status_)) : std::nullopt;
 }
 
 std::string ChildProcess::status_text() const {

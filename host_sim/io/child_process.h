@@ -36,6 +36,15 @@ class ChildProcess {
   /// is reaped.
   void terminate(std::chrono::milliseconds patience);
 
+  /// Of a child that ended by itself; empty of one that runs or was killed by a signal.
+  [[nodiscard]] std::optional<int> exit_status() const;
+
+  /// The signal that killed the child; empty of one that runs or ended by itself.
+  [[nodiscard]] std::optional<int> killed_by() const;
+
+  /// Processor time of the child and of its reaped children, s; 0 while it runs.
+  [[nodiscard]] double processor_time_s() const { return processor_time_s_; }
+
   /// "exit status 3", "killed by signal 9 (Killed)"; "running".
   [[nodiscard]] std::string status_text() const;
 
@@ -50,6 +59,9 @@ class ChildProcess {
   FileDescriptor output_;
   pid_t pid_ = -1;
   std::optional<int> wait_status_;
+  double processor_time_s_ = 0.0;
+
+  bool reap(int options);
 };
 
 }  // namespace vbar::io

@@ -253,8 +253,13 @@ enum class ImagesInLog {
   kTiles,    ///< their packets
 };
 
+/// What a run leaves besides its summary with the hashes of its outputs.
 struct Record {
   ImagesInLog images = ImagesInLog::kRecipes;
+  bool packets = true;  ///< the log of all packets
+  bool tables = true;   ///< tables, pictures and the report
+  std::vector<double>
+      samples_h;  ///< times after the epoch at which the summary states errors and consistency, ascending
 };
 
 struct Mission {

@@ -19,8 +19,8 @@ struct LabelledArray {
   std::string_view name;
   const char* label;
 };
-constexpr std::array<LabelledArray, 3> kLabelledArrays{
-    {{"spacecraft", "name"}, {"waypoint", "index"}, {"vehicle", "name"}}};
+constexpr std::array<LabelledArray, 4> kLabelledArrays{
+    {{"spacecraft", "name"}, {"waypoint", "index"}, {"fault", "name"}, {"vehicle", "name"}}};
 
 struct Override {
   std::string where;  // "--set path=value"
@@ -122,8 +122,8 @@ void apply_override(toml::table& document, const std::string& assignment) {
   toml::table* table = &document;
   std::size_t next = 0;
   const auto* const labelled = std::ranges::find(kLabelledArrays, path.front(), &LabelledArray::name);
-  if (labelled != kLabelledArrays.end()) {
-    if (path.size() < 3)
+  if (labelled != kLabelledArrays.end() && path.size() > 1) {
+    if (path.size() == 2)
       set.refuse("a path that ends too early", "spacecraft.NAME.KEY=value or waypoint.INDEX.KEY=value");
     table = &element_by_label(document, set, path[0], labelled->label, path[1]);
     next = 2;

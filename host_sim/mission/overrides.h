@@ -11,7 +11,8 @@ namespace vbar::mission {
 /// same as for the file. The value is TOML, or failing that a text without quotes.
 ///
 /// A path is dotted: mission.seed, spacecraft.servicer.flight_computer.target (by the spacecraft's name),
-/// waypoint.3.time_h (by the waypoint's index), vehicle.target.com_ports (of a bench's scenario). flight_computer, and
+/// waypoint.3.time_h (by the waypoint's index), fault.outage.at_h (by its name), vehicle.target.com_ports (of a bench's
+/// scenario). An array of tables is replaced as a whole: fault=[{kind="silent", ...}]. flight_computer, and
 /// the name of a sensor of the servicer need no spacecraft before them: camera.period_s is
 /// spacecraft.servicer.sensors.camera.period_s.
 ///

@@ -146,9 +146,32 @@ void read_lcm(const TableReader& document, Mission& mission) {
   section.finish();
 }
 
+namespace {
+
+constexpr std::size_t kMaxSamples = 1000;
+
+void read_samples(const TableReader& section, Mission& mission) {
+  if (!section.has("samples_h")) return;
+  constexpr double kHour_s = 3600.0;
+  std::vector<double> hours = section.numbers("samples_h", 0, kMaxSamples, from_to(0.0, kLongestMission_h));
+  double previous_h = -1.0;
+  for (const double hour : hours) {
+    const fsw::GpsTime time = mission.epoch + fsw::nearest_duration(kHour_s * hour);
+    if (hour <= previous_h || time < mission.start_time() || time > mission.end_time())
+      section.refuse_value("samples_h", "times of the run, in hours after the epoch, ascending");
+    previous_h = hour;
+  }
+  mission.record.samples_h = std::move(hours);
+}
+
+}  // namespace
+
 void read_record(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("record");
   mission.record.images = section.choice<ImagesInLog>("images", kImagesInLog, ImagesInLog::kRecipes);
+  mission.record.packets = section.flag("packets", true);
+  mission.record.tables = section.flag("tables", true);
+  read_samples(section, mission);
   section.finish();
 }
 

@@ -12,6 +12,15 @@
 
 namespace vbar::report {
 
+/// A normalised square of navigation: chi-square distributed with `dimension` degrees of freedom if consistent.
+struct ConsistencyFigure {
+  enum class Kind { kNees, kNis };
+  double time_s = 0.0;  ///< since the mission's epoch
+  Kind kind = Kind::kNees;
+  double value = 0.0;
+  double dimension = 0.0;
+};
+
 /// Functions that are null add nothing.
 struct Extension {
   std::vector<TableKind> (*tables)() = nullptr;
@@ -24,6 +33,8 @@ struct Extension {
   std::span<const fsw::packets::Apid> messages{};
   /// Published figures of the experiment that the run repeats; none for any other run.
   std::vector<PaperColumn> (*paper_columns)(const RunRecord& record) = nullptr;
+  /// Consistency figures of navigation by the module, in order of time.
+  std::vector<ConsistencyFigure> (*consistency)(const RunRecord& record) = nullptr;
 };
 
 /// Whether a module makes rows of the message.

@@ -10,7 +10,9 @@ namespace vbar::report {
 namespace {
 
 std::string cell(std::string_view tag, const Column& column, std::string_view text) {
-  return fmt::format("<{0}{1}>{2}</{0}>", tag, column.is_number ? " class=\"number\"" : "", escaped(text));
+  const bool is_html = column.is_html && tag != "th";
+  return fmt::format("<{0}{1}>{2}</{0}>", tag, column.is_number ? " class=\"number\"" : "",
+                     is_html ? std::string(text) : escaped(text));
 }
 
 /// "Angles-only navigation" is found at "angles-only-navigation".

@@ -30,9 +30,10 @@ struct Section {
 struct Column {
   std::string head;
   bool is_number = true;  ///< numbers are set flush right
+  bool is_html = false;   ///< its cells are HTML, not text
 };
 
-/// Cells are text, not HTML. A row of a single cell is a heading across all columns.
+/// Cells are text, unless their column says otherwise. A row of a single cell is a heading across all columns.
 [[nodiscard]] std::string table(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows);
 
 /// Names and values, one a line; values are text.

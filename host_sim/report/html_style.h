@@ -37,7 +37,7 @@ p { margin: 6px 0; max-width: 90ch; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 10px; margin: 18px 0; }
 .tile { background: var(--panel); border: 1px solid var(--grid); border-radius: 6px; padding: 10px 14px; }
 .tile b { display: block; font-size: 22px; line-height: 1.25; font-weight: 600; }
-.tile span { color: var(--muted); font-size: 13px; }
+.tile span { color: var(--muted); font-size: 13px; overflow-wrap: anywhere; }
 nav { display: flex; flex-wrap: wrap; gap: 2px 18px; font-size: 14px; margin: 12px 0; }
 a { color: var(--c0); text-decoration: none; } a:hover { text-decoration: underline; }
 .files { font-size: 13px; color: var(--muted); }
@@ -48,11 +48,14 @@ th { color: var(--muted); font-weight: 600; border-bottom: 1px solid var(--frame
 td { border-bottom: 1px solid var(--grid); }
 th.number, td.number { text-align: right; padding: 4px 0 4px 22px; white-space: nowrap; }
 th.number { white-space: normal; }
+td.number + td:not(.number), th.number + th:not(.number) { padding-left: 22px; }
+td code { white-space: nowrap; }
 th.group { color: var(--ink); padding-top: 14px; max-width: none; }
 dl { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 0 36px; margin: 8px 0; font-size: 14px; }
 dl div { display: flex; gap: 14px; padding: 3px 0; border-bottom: 1px solid var(--grid); }
 dt { color: var(--muted); flex: 0 0 180px; }
 dd { margin: 0; overflow-wrap: anywhere; font-variant-numeric: tabular-nums; }
+code { font: 12.5px ui-monospace, "DejaVu Sans Mono", monospace; }
 details { margin: 8px 0; } summary { cursor: pointer; color: var(--muted); }
 .figures > .legend { grid-column: 1 / -1; }
 .figures { display: grid; gap: 10px 16px; margin: 8px 0 14px; }
@@ -78,6 +81,8 @@ svg .event { fill: none; stroke: var(--c4); stroke-width: 1.4; }
 svg .line { fill: none; stroke-width: 1.3; stroke-linejoin: round; }
 svg .line.broad { stroke-width: 4.5; stroke-opacity: 0.4; } svg .dots.broad { stroke-width: 6; stroke-opacity: 0.35; } svg .dashed { stroke-dasharray: 5 3; }
 svg .dots { fill: none; stroke-width: 3.4; stroke-linecap: round; }
+svg .dots.cells { stroke-width: 7.4; } svg .area { fill-opacity: 0.18; stroke: none; }
+svg .s0 { stroke-opacity: 0.14; } svg .s1 { stroke-opacity: 0.3; } svg .s2 { stroke-opacity: 0.5; } svg .s3 { stroke-opacity: 0.72; }
 svg .c0 { stroke: var(--c0); } svg .c1 { stroke: var(--c1); } svg .c2 { stroke: var(--c2); }
 svg .c3 { stroke: var(--c3); } svg .c4 { stroke: var(--c4); } svg .c5 { stroke: var(--c5); }
 svg .f0 { fill: var(--c0); } svg .f1 { fill: var(--c1); } svg .f2 { fill: var(--c2); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -108,6 +109,27 @@ std::vector<Point> thinned_dots(const std::vector<Point>& points, double distanc
     if (taken.emplace(std::llround(p.x / distance), std::llround(p.y / distance)).second) kept.push_back(p);
   }
   return kept;
+}
+
+// Two rectangular grids, one shifted by half a cell: the nearest centre of either is the nearest of the hexagonal grid.
+std::vector<Cell> hexagonal_cells(const std::vector<Point>& points, double distance) {
+  const double height = std::sqrt(3.0) * distance;
+  const auto nearest = [&](const Point& p, double shift) {
+    return std::pair{std::llround(2.0 * (std::round(p.x / distance - shift) + shift)),
+                     std::llround(2.0 * (std::round(p.y / height - shift) + shift))};
+  };
+  const auto centre_of = [&](const std::pair<std::int64_t, std::int64_t>& place) {
+    return Point{0.5 * static_cast<double>(place.first) * distance, 0.5 * static_cast<double>(place.second) * height};
+  };
+  const auto distance_to = [](const Point& a, const Point& b) { return std::hypot(a.x - b.x, a.y - b.y); };
+  std::map<std::pair<std::int64_t, std::int64_t>, std::size_t> counts;
+  for (const Point& p : points) {
+    const auto even = nearest(p, 0.0), odd = nearest(p, 0.5);
+    ++counts[distance_to(p, centre_of(even)) <= distance_to(p, centre_of(odd)) ? even : odd];
+  }
+  std::vector<Cell> cells;
+  for (const auto& [place, count] : counts) cells.push_back({centre_of(place), count});
+  return cells;
 }
 
 std::vector<Point> stairs(const std::vector<Point>& points) {

@@ -1,6 +1,7 @@
 #pragma once
 // Curves thinned to what an eye can see, so that a report of a long run stays small.
 
+#include <cstddef>
 #include <vector>
 
 namespace vbar::report {
@@ -14,6 +15,15 @@ struct Point {
 
 /// Dots without those that would lie within `distance` of one already there, judged on a grid of that size.
 [[nodiscard]] std::vector<Point> thinned_dots(const std::vector<Point>& points, double distance);
+
+/// A cell of a hexagonal grid with the number of points in it.
+struct Cell {
+  Point centre;
+  std::size_t count = 0;
+};
+
+/// The cells that hold points, of a grid whose centres are `distance` apart (Carr et al., 1987).
+[[nodiscard]] std::vector<Cell> hexagonal_cells(const std::vector<Point>& points, double distance);
 
 /// A frame in the coordinates of the points.
 struct Box {

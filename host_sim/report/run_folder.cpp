@@ -117,12 +117,14 @@ RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing, E
 }
 
 void RunFolder::update(const RunRecord& record) {
-  tables_.update(record);
+  if (with_tables_) tables_.update(record);
 }
 
 void RunFolder::finish(const RunRecord& record) {
-  write_pictures(folder_, record.gallery);
-  tables_.finish(record);
+  if (with_tables_) {
+    write_pictures(folder_, record.gallery);
+    tables_.finish(record);
+  }
   replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
 }
 

@@ -36,6 +36,9 @@ class RunFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] std::filesystem::path packet_log() const { return packet_log_file(folder_); }
 
+  /// From now on no table and no picture is written: summary.json alone remains of the run.
+  void leave_out_tables() { with_tables_ = false; }
+
   /// Writes what has been added to the tables since the last call, so that a killed run leaves them. Throws
   /// std::runtime_error that names the file that could not be written, here and below.
   void update(const RunRecord& record);
@@ -50,6 +53,7 @@ class RunFolder {
  private:
   std::filesystem::path folder_;
   TableWriter tables_;
+  bool with_tables_ = true;
   std::optional<RunLock> lock_;
 };
 

@@ -53,7 +53,7 @@ RunLock::RunLock(const std::filesystem::path& folder) : file_(folder / kFile) {
 }
 
 RunLock::~RunLock() {
-  ::unlink(file_.c_str());
+  if (is_current(descriptor_, file_)) ::unlink(file_.c_str());  // the folder may have been replaced
   ::close(descriptor_);
 }
 

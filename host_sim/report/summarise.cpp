@@ -8,6 +8,7 @@
 #include "host_sim/report/extension.h"
 #include "host_sim/report/maneuver_series.h"
 #include "host_sim/report/navigation_errors.h"
+#include "host_sim/report/samples.h"
 #include "host_sim/report/statistics.h"
 
 namespace vbar::report {
@@ -72,6 +73,7 @@ Summary summarise(const RunRecord& record) {
   summary.sensor_figures.clear();
   for (const Extension* extension : record.extensions)
     if (extension->summarise != nullptr) extension->summarise(record, summary);
+  summarise_consistency(record, summary);
   if (!record.of<telemetry_health>().empty()) summary.health = record.of<telemetry_health>().back().message;
   summary.never_navigated = never_navigated(record, summary);
   return summary;

@@ -26,6 +26,16 @@ struct BearingError {
   double bias = 0.0;  ///< size of the mean
 };
 
+/// The estimate of the last step until a selected time, and the last consistency figures since the one before.
+struct Sample {
+  double time_h = 0.0;  ///< after the epoch
+  std::optional<double> navigation_error_m = {}, navigation_error_r_m = {}, navigation_error_t_m = {},
+                        navigation_error_n_m = {}, navigation_velocity_error_mps = {};
+  /// As navigation claims: square root of the sum of the variances, and each axis.
+  std::optional<double> sigma_m = {}, sigma_r_m = {}, sigma_t_m = {}, sigma_n_m = {}, sigma_velocity_mps = {};
+  std::optional<double> nees = {}, nees_dimension = {}, nis = {}, nis_dimension = {};
+};
+
 /// How often a source measured, failed and, in real time, began late.
 struct SourceFigures {
   std::string name;  ///< "servicer/gnss"
@@ -82,6 +92,11 @@ struct Summary : RunFacts {
   /// Mean normalised estimation error squared of the relative state over the steps of navigation_error_m, or over the
   /// images that angles-only navigation used; 6 if consistent.
   std::optional<double> navigation_nees;
+  std::optional<double> navigation_nees_dimension;
+  /// Mean normalised innovation squared over all measurement updates, and the mean number of innovations in it, which
+  /// it equals if consistent.
+  std::optional<double> navigation_nis, navigation_nis_dimension;
+  std::vector<Sample> samples;  ///< at the times that the mission selects
   // Angles-only navigation only.
   std::optional<BearingError> bearing_error_arcsec;
   std::optional<MeanAndDeviation> star_attitude_error_arcsec;  ///< of the boresight

@@ -34,6 +34,24 @@ void members(Is<BearingError> auto& s, auto& visit) {
   visit("bias", s.bias);
 }
 
+void members(Is<Sample> auto& s, auto& visit) {
+  visit("time_h", s.time_h);
+  visit("navigation_error_m", s.navigation_error_m);
+  visit("navigation_error_r_m", s.navigation_error_r_m);
+  visit("navigation_error_t_m", s.navigation_error_t_m);
+  visit("navigation_error_n_m", s.navigation_error_n_m);
+  visit("navigation_velocity_error_mps", s.navigation_velocity_error_mps);
+  visit("sigma_m", s.sigma_m);
+  visit("sigma_r_m", s.sigma_r_m);
+  visit("sigma_t_m", s.sigma_t_m);
+  visit("sigma_n_m", s.sigma_n_m);
+  visit("sigma_velocity_mps", s.sigma_velocity_mps);
+  visit("nees", s.nees);
+  visit("nees_dimension", s.nees_dimension);
+  visit("nis", s.nis);
+  visit("nis_dimension", s.nis_dimension);
+}
+
 void members(Is<SourceFigures> auto& s, auto& visit) {
   visit("name", s.name);
   visit("kind", s.kind);
@@ -143,6 +161,10 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit("first_fix_s", s.first_fix_s);
   visit("static_floor_m", s.static_floor_m);
   visit("navigation_nees", s.navigation_nees);
+  visit("navigation_nees_dimension", s.navigation_nees_dimension);
+  visit("navigation_nis", s.navigation_nis);
+  visit("navigation_nis_dimension", s.navigation_nis_dimension);
+  visit("samples", s.samples);
   visit("bearing_error_arcsec", s.bearing_error_arcsec);
   visit("star_attitude_error_arcsec", s.star_attitude_error_arcsec);
   visit("sensor_figures", s.sensor_figures);

@@ -21,6 +21,9 @@ constexpr double kCharacterWidth = 7.2;  // of the tick font, in print
 constexpr double kEventHeight = 9.0;
 constexpr double kCurveTolerance = 0.25;  // pixels
 constexpr double kDotDistance = 1.0;      // pixels
+constexpr double kCellDistance = 7.0;     // pixels, of the centres of hexagonal cells
+constexpr std::size_t kMostDots = 600;    // of a kDensity series; more are cells
+constexpr int kShades = 5;                // of cells
 constexpr double kPageWidth = 1190.0;     // pixels, of a row of plots on a wide screen
 constexpr double kGap = 16.0;             // between the plots of a row
 
@@ -29,7 +32,7 @@ bool finite(const Point& p) {
 }
 
 bool is_dots(const Series& series) {
-  return series.mark == Mark::kDots || series.mark == Mark::kBroadDots;
+  return series.mark == Mark::kDots || series.mark == Mark::kBroadDots || series.mark == Mark::kDensity;
 }
 
 std::string_view style_of(const Series& series) {
@@ -199,9 +202,10 @@ class Drawing {
       if (!(x >= left_ && x <= left_ + x_.length)) continue;
       append(R"(<line class="moment" x1="{0:.1f}" x2="{0:.1f}" y1="{1:.1f}" y2="{2:.1f}"/>)", x, top_, y_.start);
       const double half = 0.5 * kCharacterWidth * static_cast<double>(moment.text.size());
-      if (x - half < free_from) continue;
-      append(R"(<text class="moment mid" x="{:.1f}" y="{:.1f}">{}</text>)", x, top_ - 4.0, escaped(moment.text));
-      free_from = x + half + 3.0;
+      const double centre = std::max(half, std::min(x, plot_.width - half));  // a long text at the edge stays whole
+      if (centre - half < free_from) continue;
+      append(R"(<text class="moment mid" x="{:.1f}" y="{:.1f}">{}</text>)", centre, top_ - 4.0, escaped(moment.text));
+      free_from = centre + half + 3.0;
     }
   }
 
@@ -235,11 +239,48 @@ class Drawing {
 
   [[nodiscard]] Box frame() const { return {left_, top_, left_ + x_.length, y_.start}; }
 
+  /// The polygon, clamped to the frame.
+  void draw_area(const Series& series, const std::vector<Point>& pixels) {
+    append(R"(<path class="area f{}" d=")", series.colour);
+    char command = 'M';
+    for (const Point& p : pixels) {
+      append("{}{:.1f} {:.1f}", command, std::clamp(p.x, frame().left, frame().right),
+             std::clamp(p.y, frame().top, frame().bottom));
+      command = 'L';
+    }
+    out_ += "Z\"/>";
+  }
+
+  /// A path for each shade; shades are of the logarithm of the count.
+  void draw_cells(const Series& series, const std::vector<Point>& inside) {
+    const std::vector<Cell> cells = hexagonal_cells(inside, kCellDistance);
+    std::size_t largest = 1;
+    for (const Cell& cell : cells) largest = std::max(largest, cell.count);
+    const auto shade_of = [&](const Cell& cell) {
+      const double share = std::log(static_cast<double>(cell.count)) / std::log(static_cast<double>(largest) + 0.5);
+      return static_cast<int>(share * kShades);
+    };
+    for (int shade = 0; shade < kShades; ++shade) {
+      std::string path;
+      for (const Cell& cell : cells) {
+        if (shade_of(cell) == shade && frame().holds(cell.centre))
+          fmt::format_to(std::back_inserter(path), "M{:.1f} {:.1f}h0", cell.centre.x, cell.centre.y);
+      }
+      if (!path.empty()) append(R"(<path class="dots cells s{} c{}" d="{}"/>)", shade, series.colour, path);
+    }
+  }
+
   void draw_stretch(const Series& series, const std::vector<Point>& pixels) {
-    if (is_dots(series) || pixels.size() == 1) {
+    if (series.mark == Mark::kArea) {
+      draw_area(series, pixels);
+    } else if (is_dots(series) || pixels.size() == 1) {
       std::vector<Point> inside;
       std::ranges::copy_if(pixels, std::back_inserter(inside), [&](const Point& p) { return frame().holds(p); });
       if (inside.empty()) return;
+      if (series.mark == Mark::kDensity && inside.size() > kMostDots) {
+        draw_cells(series, inside);
+        return;
+      }
       append(R"(<path class="dots {}c{}" d=")", style_of(series), series.colour);
       // A line of no length with round ends is a dot: far shorter than a circle each.
       for (const Point& p : thinned_dots(inside, kDotDistance)) append("M{:.1f} {:.1f}h0", p.x, p.y);
@@ -280,6 +321,9 @@ class Drawing {
 };
 
 std::string swatch(const Series& series) {
+  if (series.mark == Mark::kArea)
+    return fmt::format(R"(<svg class="swatch" viewBox="0 0 24 10"><path class="area f{}" d="M1 1H23V9H1Z"/></svg>)",
+                       series.colour);
   return fmt::format(R"(<svg class="swatch" viewBox="0 0 24 10"><path class="{} {}c{}" d="{}"/></svg>)",
                      is_dots(series) ? "dots" : "line", style_of(series), series.colour,
                      is_dots(series) ? "M6 5h0M12 5h0M18 5h0" : "M1 5H23");

@@ -11,8 +11,9 @@
 
 namespace vbar::report {
 
-/// Broad ones are translucent: another series drawn over them leaves them visible.
-enum class Mark { kLine, kBroadLine, kDashedLine, kStairs, kDots, kBroadDots };
+/// Broad ones are translucent: another series drawn over them leaves them visible. kArea fills the polygon of the
+/// points; kDensity draws dots, or, of many points, hexagonal cells that are darker the more points they hold.
+enum class Mark { kLine, kBroadLine, kDashedLine, kStairs, kDots, kBroadDots, kArea, kDensity };
 
 struct Series {
   std::string name;

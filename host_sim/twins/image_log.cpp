@@ -17,7 +17,7 @@ void ImageLogWriter::write_recording(fsw::GpsTime time, const LoggedImage& recor
 
 void ImageLogWriter::write(const PacketRecord& record) {
   if (joins_run(record)) return;
-  end_step();
+  end_run();
   const auto tile = record.to_flight ? tile_run_of(record.packet) : std::nullopt;
   if (tile && known_.contains(tile->key())) {
     run_ = PacketRecord{record.step, record.time, true, {}, tile};
@@ -33,6 +33,11 @@ bool ImageLogWriter::joins_run(const PacketRecord& record) {
 }
 
 void ImageLogWriter::end_step() {
+  end_run();
+  writer_.flush();
+}
+
+void ImageLogWriter::end_run() {
   if (run_) writer_.write(*std::exchange(run_, std::nullopt));
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "host_sim/twins/packet_log.h"
 
@@ -21,7 +22,8 @@ class ImageLogWriter {
   };
 
   /// As PacketLogWriter.
-  ImageLogWriter(const std::filesystem::path& file, Tiles tiles) : writer_(file), tiles_(tiles) {}
+  ImageLogWriter(const std::filesystem::path& file, Tiles tiles, EventCheck check = {})
+      : writer_(file, std::move(check)), tiles_(tiles) {}
 
   /// Before the tiles of its image.
   void write_recipe(fsw::GpsTime time, const LoggedImage& recipe);
@@ -31,7 +33,8 @@ class ImageLogWriter {
   /// Packets in order. A tile may be held back until it is known how far its run goes.
   void write(const PacketRecord& record);
 
-  /// Writes what was held back: at the end of every step, because a run does not reach beyond one.
+  /// At the end of every step, because a run of tiles does not reach beyond one: writes what was held back. All that
+  /// was written outlives the program then. Throws as PacketLogWriter.
   void end_step();
 
   /// As PacketLogWriter.
@@ -39,6 +42,7 @@ class ImageLogWriter {
 
  private:
   bool joins_run(const PacketRecord& record);
+  void end_run();
 
   PacketLogWriter writer_;
   Tiles tiles_;

@@ -29,16 +29,21 @@ void LcmLogReader::fail(std::uint64_t offset, const std::string& what) const {
   throw DamagedLog(file_.string() + ": byte " + std::to_string(offset) + ": " + what);
 }
 
-/// The event at `offset` reaches beyond the end of the file. A truncated log ends there; if another
-/// event follows, the size is wrong.
-void LcmLogReader::take_rest_as_cut(std::uint64_t offset) {
+bool LcmLogReader::has_event_after(std::uint64_t offset) {
   stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(offset + sizeof kSyncWord));
+  stream_.seekg(static_cast<std::streamoff>(offset + 1));
   std::uint32_t window = 0;
   for (int byte = stream_.get(); byte != std::ifstream::traits_type::eof(); byte = stream_.get()) {
     window = window << 8U | static_cast<std::uint32_t>(byte);
-    if (window == kSyncWord) fail(offset, "an event whose size is wrong, as another event stands within it");
+    if (window == kSyncWord) return true;
   }
+  return false;
+}
+
+/// The event at `offset` reaches beyond the end of the file. A truncated log ends there; if another
+/// event follows, the size is wrong.
+void LcmLogReader::take_rest_as_cut(std::uint64_t offset) {
+  if (has_event_after(offset)) fail(offset, "an event whose size is wrong, as another event stands within it");
   cut_short_ = true;
   offset_ = size_;
 }
@@ -64,6 +69,7 @@ std::optional<LoggedEvent> LcmLogReader::next() {
   LoggedEvent event;
   event.offset = begin;
   event.number = static_cast<std::int64_t>(read_big_endian<std::uint64_t>(header, 4));
+  event.timestamp = static_cast<std::int64_t>(read_big_endian<std::uint64_t>(header, 12));
   const auto channel_bytes = read_big_endian<std::uint32_t>(header, 20);
   const auto data_bytes = read_big_endian<std::uint32_t>(header, 24);
   if (channel_bytes == 0 || channel_bytes > kChannelBytesMax)

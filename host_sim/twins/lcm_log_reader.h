@@ -22,6 +22,7 @@ class DamagedLog : public std::runtime_error {
 struct LoggedEvent {
   std::uint64_t offset = 0;  ///< of its first byte in the file
   std::int64_t number = 0;
+  std::int64_t timestamp = 0;  ///< us
   std::string channel;
   std::vector<std::uint8_t> data;
 };
@@ -34,7 +35,12 @@ class LcmLogReader {
   /// Nothing at the end of the file, or where it ends within an event: then cut_short(). Throws DamagedLog.
   [[nodiscard]] std::optional<LoggedEvent> next();
 
+  /// Whether another event may begin after the byte `offset`: its sync word stands there.
+  [[nodiscard]] bool has_event_after(std::uint64_t offset);
+
   [[nodiscard]] bool cut_short() const { return cut_short_; }
+  /// Of the first byte that was not read yet.
+  [[nodiscard]] std::uint64_t offset() const { return offset_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
  private:

@@ -21,10 +21,6 @@ namespace {
 // clock.
 constexpr std::int64_t kGpsOriginInUnixMicroseconds = 315964800LL * 1000000;
 
-std::int64_t lcm_timestamp(fsw::GpsTime time) {
-  return kGpsOriginInUnixMicroseconds + time.ns / 1000;
-}
-
 template <class Message>
 std::vector<std::uint8_t> bytes_of(const Message& message) {
   std::vector<std::uint8_t> data(static_cast<std::size_t>(message.getEncodedSize()));
@@ -102,7 +98,7 @@ PacketRecord tiles_of(const LoggedEvent& event, const std::filesystem::path& fil
   return {static_cast<std::uint32_t>(message.step), {message.gps_time_ns}, true, {}, run};
 }
 
-PacketRecord record_of(const LoggedEvent& event, const std::filesystem::path& file) {
+PacketRecord packet_of(const LoggedEvent& event, const std::filesystem::path& file) {
   vbar_host::packet_record message;
   const bool good = claims_its_size(event) && decode_whole(event, message) && is_step(message.step) &&
                     (message.to_flight == 0 || message.to_flight == 1);
@@ -114,8 +110,7 @@ PacketRecord record_of(const LoggedEvent& event, const std::filesystem::path& fi
 }
 
 void take(LoggedEvent& event, const std::filesystem::path& file, PacketLog& log) {
-  if (event.channel == kPacketChannel) log.records.push_back(record_of(event, file));
-  if (event.channel == kTilesChannel) log.records.push_back(tiles_of(event, file));
+  if (event.channel == kPacketChannel || event.channel == kTilesChannel) log.records.push_back(record_of(event, file));
   if (event.channel == kRecordingChannel) log.recordings.push_back({event.offset, std::move(event.data)});
   if (event.channel == kRecipeChannel) log.recipes.push_back(std::move(event.data));
   if (event.channel != kEndChannel) {
@@ -128,6 +123,10 @@ void take(LoggedEvent& event, const std::filesystem::path& file, PacketLog& log)
 }
 
 }  // namespace
+
+std::int64_t lcm_timestamp(fsw::GpsTime time) {
+  return kGpsOriginInUnixMicroseconds + time.ns / 1000;
+}
 
 std::vector<LcmEvent> lcm_events_of(const PacketRecord& record) {
   std::vector<LcmEvent> events;
@@ -148,30 +147,39 @@ std::vector<LcmEvent> lcm_events_of(const PacketRecord& record) {
   return events;
 }
 
+PacketRecord record_of(const LoggedEvent& event, const std::filesystem::path& file) {
+  return event.channel == kTilesChannel ? tiles_of(event, file) : packet_of(event, file);
+}
+
 struct PacketLogWriter::Log {
   std::filesystem::path file;
   LogHandle handle;
 };
 
-PacketLogWriter::PacketLogWriter(const std::filesystem::path& file)
-    : log_(new Log{file, LogHandle((errno = 0, lcm_eventlog_create(file.c_str(), "w")))}) {
+PacketLogWriter::PacketLogWriter(const std::filesystem::path& file, EventCheck check)
+    : log_(new Log{file, LogHandle((errno = 0, lcm_eventlog_create(file.c_str(), "w")))}), check_(std::move(check)) {
   if (log_->handle == nullptr) throw files::write_error(file);
 }
 
 PacketLogWriter::~PacketLogWriter() = default;
 
 void PacketLogWriter::write(const PacketRecord& record) {
-  for (LcmEvent& event : lcm_events_of(record)) write_event(record.time, std::move(event));
+  for (LcmEvent& event : lcm_events_of(record)) check_and_write(record.time, std::move(event));
 }
 
 void PacketLogWriter::write_recipe(fsw::GpsTime time, std::vector<std::uint8_t> recipe) {
-  write_event(time, {kRecipeChannel, std::move(recipe)});
+  check_and_write(time, {kRecipeChannel, std::move(recipe)});
 }
 
 // The flight software is to receive no image that is not in the file, on a full disk for instance.
 void PacketLogWriter::write_recording(fsw::GpsTime time, std::vector<std::uint8_t> recording) {
-  write_event(time, {kRecordingChannel, std::move(recording)});
+  check_and_write(time, {kRecordingChannel, std::move(recording)});
   flush();
+}
+
+void PacketLogWriter::check_and_write(fsw::GpsTime time, LcmEvent event) {
+  if (check_) check_(time, event);
+  write_event(time, std::move(event));
 }
 
 void PacketLogWriter::write_event(fsw::GpsTime time, LcmEvent event) {

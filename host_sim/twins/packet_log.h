@@ -15,6 +15,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -52,10 +53,16 @@ struct LcmEvent {
 /// The record and, if the packet is whole and holds an LCM message, the message.
 [[nodiscard]] std::vector<LcmEvent> lcm_events_of(const PacketRecord& record);
 
+/// Is given every event of a new log except its end, before it is written. An exception leaves it out.
+using EventCheck = std::function<void(fsw::GpsTime time, const LcmEvent& event)>;
+
+/// An event's time in the log, us: that of LCM.
+[[nodiscard]] std::int64_t lcm_timestamp(fsw::GpsTime time);
+
 class PacketLogWriter {
  public:
-  /// Creates or truncates `file`. Throws std::runtime_error that names it.
-  explicit PacketLogWriter(const std::filesystem::path& file);
+  /// Creates or truncates `file`. Throws std::runtime_error that names it. `check` may be empty.
+  explicit PacketLogWriter(const std::filesystem::path& file, EventCheck check = {});
   ~PacketLogWriter();
   PacketLogWriter(const PacketLogWriter&) = delete;
   PacketLogWriter& operator=(const PacketLogWriter&) = delete;
@@ -67,18 +74,27 @@ class PacketLogWriter {
   /// The same of a recording (Measurement::recording); it is in the file when the function returns.
   void write_recording(fsw::GpsTime time, std::vector<std::uint8_t> recording);
 
+  /// Hands all that was written to the operating system: it outlives the program. Throws as write.
+  void flush();
+
   /// Marks the end of the run; everything written is in the file then. Throws as write.
   void finish();
 
  private:
   struct Log;
+  void check_and_write(fsw::GpsTime time, LcmEvent event);
   void write_event(fsw::GpsTime time, LcmEvent event);
-  void flush();
 
   std::unique_ptr<Log> log_;
+  EventCheck check_;
   std::uint64_t events_ = 0;
   fsw::GpsTime last_;
 };
+
+struct LoggedEvent;
+
+/// The record that an event of kPacketChannel or kTilesChannel holds. Throws DamagedLog, which names `file`.
+[[nodiscard]] PacketRecord record_of(const LoggedEvent& event, const std::filesystem::path& file);
 
 /// Two consecutive events whose numbers are not consecutive: events between them were removed.
 /// The first event is preceded by event -1.

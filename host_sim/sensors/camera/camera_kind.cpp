@@ -158,13 +158,14 @@ std::vector<report::Section> sections(const report::RunRecord& record) {
 
 }  // namespace
 
-const SensorKind kCamera{{"camera", "", read_camera, read_camera_shared, check},
-                         add_camera_telecommands,
-                         add_sources,
-                         add_facts,
-                         evaluate_camera,
-                         {tables, summarise_images, sections, kMessagesInTables, camera_paper_columns},
-                         make_camera_tile_source};
+const SensorKind kCamera{
+    {"camera", "", read_camera, read_camera_shared, check},
+    add_camera_telecommands,
+    add_sources,
+    add_facts,
+    evaluate_camera,
+    {tables, summarise_images, sections, kMessagesInTables, camera_paper_columns, image_consistency},
+    make_camera_tile_source};
 
 const CameraSensor* navigation_camera(const Spacecraft& carrier, std::uint8_t unit) {
   for (const Sensor& sensor : carrier.sensors)

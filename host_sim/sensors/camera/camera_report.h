@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/report/extension.h"
 #include "host_sim/report/html_page.h"
 #include "host_sim/report/paper_column.h"
 #include "host_sim/report/run_record.h"
@@ -44,6 +45,9 @@ struct PoseFigures {
 /// Of images and of poses, where the run has any (summarise_images.cpp): sensor_figures "images" and "pose", and the
 /// summary's own figures of attitude and bearing.
 void summarise_images(const report::RunRecord& record, report::Summary& summary);
+
+/// NEES of the orbit; NIS of the bearings or of the keypoints that the filter processed.
+[[nodiscard]] std::vector<report::ConsistencyFigure> image_consistency(const report::RunRecord& record);
 
 /// Published figures of experiments 1 and 2; none for a run that does not navigate by the same measurements to the same
 /// waypoints (camera_paper_columns.cpp).

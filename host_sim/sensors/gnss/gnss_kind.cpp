@@ -155,7 +155,7 @@ const SensorKind kGnss{{"gnss", "constellation", read_gnss, read_gnss_shared, ch
                        add_sources,
                        add_facts,
                        evaluate,
-                       {tables, summarise_gnss, sections, kMessagesInTables, gnss_paper_columns}};
+                       {tables, summarise_gnss, sections, kMessagesInTables, gnss_paper_columns, gnss_consistency}};
 
 vbar::receiver_configuration receiver_configuration_of(const Spacecraft& servicer) {
   vbar::receiver_configuration configuration{};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fsw/packets/messages.h"
+#include "host_sim/report/extension.h"
 #include "host_sim/sensors/sensor_kind.h"
 #include "host_sim/twins/gnss/constellation.h"
 #include "host_sim/twins/gnss/crosslink.h"
@@ -39,6 +40,9 @@ extern const SensorKind kGnss;
 /// Time (s) from the run's first step until the relative position error stays below 20 mm; empty: it does not.
 [[nodiscard]] std::optional<double> time_to_20_mm(const report::RunRecord& record);
 void summarise_gnss(const report::RunRecord& record, report::Summary& summary);
+
+/// NEES of the relative state; NIS of all codes and carrier phases of an epoch.
+[[nodiscard]] std::vector<report::ConsistencyFigure> gnss_consistency(const report::RunRecord& record);
 
 // In read_gnss.cpp.
 std::shared_ptr<const mission::SensorSettings> read_gnss(const mission::TableReader& section,

@@ -31,6 +31,14 @@ TEST(Overrides, ReachASpacecraftByNameAndAWaypointByIndex) {
   EXPECT_DOUBLE_EQ(mission.find_spacecraft("servicer")->thruster->magnitude_error, 0.01);
 }
 
+TEST(Overrides, ReachAFaultByNameOrReplaceAllFaults) {
+  const std::string faults = "fault=[{kind=\"thrust_scale\", name=\"weak\", at_h=1.0, value=0.5}]";
+  const Mission mission = small_mission({faults, "fault.weak.value=0.25"});
+  ASSERT_EQ(mission.faults.size(), 1U);
+  EXPECT_EQ(mission.faults[0].value, 0.25);
+  EXPECT_NE(message_of(kSmall, {faults, "fault.strong.value=2"}).find("fault.weak"), std::string::npos);
+}
+
 TEST(Overrides, FlightComputerAloneIsTheServicers) {
   const Mission brief = small_mission({"flight_computer.target=zynq_qemu", "flight_computer.link=udp"});
   const Mission full = small_mission(

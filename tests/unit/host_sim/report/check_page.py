@@ -30,6 +30,8 @@ for element in root.iter():
             continue
         if element.tag == "a" and name == "href" and (value in anchors or re.fullmatch(r"\w+\.(csv|json)", value)):
             continue  # a section of the page, or a table of the same run folder
+        if element.tag == "a" and name == "href" and re.fullmatch(r"runs/\w+/", value):
+            continue  # the folder of a case of the same campaign
         if name in ("src", "href", "srcset", "data", "action"):
             print(f"{element.tag} refers to {value}")
         if re.search(r"\b(nan|inf)\b", value, re.IGNORECASE):

@@ -70,6 +70,22 @@ TEST(ThinnedCurve, KeepsASpike) {
   EXPECT_EQ(thinned_curve(line, 0.25).size(), 5U) << "two ends, the spike and its two feet";
 }
 
+// Every point is counted once, in the cell whose centre is nearest: never farther than the corner of a hexagon.
+TEST(HexagonalCells, CountEveryPointInTheNearestCell) {
+  constexpr double kDistance = 7.0;
+  const std::vector<Point> points = wavy_curve();
+  std::size_t total = 0;
+  for (const Cell& cell : hexagonal_cells(points, kDistance)) total += cell.count;
+  EXPECT_EQ(total, points.size());
+  for (const Point& p : points) {
+    const std::vector<Cell> alone = hexagonal_cells({p}, kDistance);
+    ASSERT_EQ(alone.size(), 1U);
+    EXPECT_LE(std::hypot(alone[0].centre.x - p.x, alone[0].centre.y - p.y), kDistance / std::sqrt(3.0) + 1e-9);
+  }
+  EXPECT_EQ(hexagonal_cells({{0.1, 0.1}, {-0.2, 0.0}, {20.0, 0.0}}, kDistance).size(), 2U);
+  EXPECT_TRUE(hexagonal_cells({}, kDistance).empty());
+}
+
 TEST(Clipped, CutsSegmentsAtTheFrame) {
   const Box box{0.0, 0.0, 10.0, 10.0};
   // In by the left edge, out at the top far above, back in, and out at the lower right corner's side.

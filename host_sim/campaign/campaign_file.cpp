@@ -1,0 +1,212 @@
+#include "host_sim/campaign/campaign_file.h"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "host_sim/campaign/sweep_table.h"
+#include "host_sim/campaign/value_text.h"
+#include "host_sim/mission/mission_error.h"
+#include "host_sim/mission/toml_file.h"
+
+namespace vbar::campaign {
+namespace {
+
+using mission::above_to;
+using mission::from_to;
+using mission::TableReader;
+
+constexpr std::size_t kMaxSeeds = 1'000'000;
+constexpr double kMaxHours = 1e6;
+constexpr double kLargest = 1e300;
+
+constexpr const char* kSeedsRule = "\"FIRST..LAST\" or an array of different integers from 0 on, at most a million";
+
+std::vector<std::uint64_t> seeds_of_range(const TableReader& section, const std::string& text) {
+  const std::size_t dots = text.find("..");
+  std::uint64_t first = 0, last = 0;
+  const auto is_number = [](std::string_view digits, std::uint64_t& number) {
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    return error == std::errc{} && end == digits.data() + digits.size();
+  };
+  const bool is_range = dots != std::string::npos && is_number(std::string_view(text).substr(0, dots), first) &&
+                        is_number(std::string_view(text).substr(dots + 2), last) && first <= last &&
+                        last - first < kMaxSeeds && last <= std::numeric_limits<std::int64_t>::max();
+  if (!is_range) section.refuse_value("seeds", kSeedsRule);
+  std::vector<std::uint64_t> seeds;
+  for (std::uint64_t seed = first; seed <= last; ++seed) seeds.push_back(seed);
+  return seeds;
+}
+
+std::vector<std::uint64_t> read_seeds(const TableReader& section, const toml::table& table) {
+  if (!section.is_array("seeds")) return seeds_of_range(section, section.text("seeds"));
+  std::vector<std::uint64_t> seeds;
+  for (const toml::node& node : *table["seeds"].as_array()) {
+    const auto* const integer = node.as_integer();
+    if (integer == nullptr || integer->get() < 0) section.refuse_value("seeds", kSeedsRule);
+    seeds.push_back(static_cast<std::uint64_t>(integer->get()));
+  }
+  if (seeds.empty() || seeds.size() > kMaxSeeds || std::set(seeds.begin(), seeds.end()).size() != seeds.size())
+    section.refuse_value("seeds", kSeedsRule);
+  return seeds;
+}
+
+Keep read_keep(const TableReader& section) {
+  constexpr const char* kRule = "\"summary\", \"failed\", \"worst:N\" or \"all\"";
+  const std::string text = section.text("keep", "summary");
+  if (text == "summary") return {};
+  if (text == "failed") return {Keep::Kind::kFailed};
+  if (text == "all") return {Keep::Kind::kAll};
+  constexpr std::string_view kWorst = "worst:";
+  std::size_t count = 0;
+  const char* const end = text.data() + text.size();
+  if (!text.starts_with(kWorst) || std::from_chars(text.data() + kWorst.size(), end, count).ptr != end || count == 0 ||
+      count > kMaxSeeds)
+    section.refuse_value("keep", kRule);
+  return {Keep::Kind::kWorst, count};
+}
+
+void read_general(const TableReader& section, const toml::table& table, CampaignFile& campaign) {
+  campaign.name = section.name("name", campaign.file.stem().string());
+  campaign.description = section.text("description", "");
+  campaign.mission = section.text("mission");
+  campaign.seeds = read_seeds(section, table);
+  campaign.seed = static_cast<std::uint64_t>(section.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
+  campaign.set = section.texts("set");
+  campaign.keep = read_keep(section);
+  if (section.has("samples_h")) campaign.samples_h = section.numbers("samples_h", 0, 1000, from_to(0.0, kMaxHours));
+  campaign.case_time_limit_s = section.number("case_time_limit_s", from_to(0.0, 1e7), 0.0);
+  campaign.expected_case_s = section.number("expected_case_s", above_to(0.0, 1e7), 60.0);
+  campaign.retries = section.integer("retries", 0, 1000, 2);
+  campaign.stop_after_failures = section.integer("stop_after_failures", 0, 1'000'000'000, 0);
+  campaign.common_draws = section.flag("common_draws", true);
+  const std::string sampling = section.choice("sampling", {"independent", "latin"}, "independent");
+  if (sampling == "latin") campaign.sampling = DrawSource::Sampling::kLatin;
+  section.finish();
+}
+
+Sweep sweep_of_values(const TableReader& section, const toml::table& table) {
+  static_cast<void>(section.is_array("values"));
+  const toml::array* const values = table["values"].as_array();
+  if (values == nullptr || values->empty()) section.refuse_value("values", "an array of at least one value");
+  Sweep sweep{{section.text("key")}, {}};
+  for (const toml::node& value : *values) sweep.rows.push_back({text_of(value)});
+  return sweep;
+}
+
+Sweep sweep_of_rows(const TableReader& section, const toml::table& table) {
+  Sweep sweep{section.texts("keys"), {}};
+  const std::string rule = fmt::format("an array of rows of {} values", sweep.keys.size());
+  static_cast<void>(section.is_array("rows"));
+  const toml::array* const rows = table["rows"].as_array();
+  if (rows == nullptr || rows->empty()) section.refuse_value("rows", rule);
+  for (const toml::node& row : *rows) {
+    const toml::array* const cells = row.as_array();
+    if (cells == nullptr || cells->size() != sweep.keys.size()) section.refuse_value("rows", rule);
+    std::vector<std::string>& texts = sweep.rows.emplace_back();
+    for (const toml::node& cell : *cells) texts.push_back(text_of(cell));
+  }
+  return sweep;
+}
+
+Sweep read_sweep(const TableReader& section, const toml::table& table, const std::filesystem::path& file) {
+  Sweep sweep;
+  if (section.has("table")) {
+    sweep = read_sweep_table(section, "table", file.parent_path() / section.text("table"));
+  } else if (section.has("keys")) {
+    sweep = sweep_of_rows(section, table);
+  } else {
+    sweep = sweep_of_values(section, table);
+  }
+  if (sweep.keys.empty()) section.refuse_value("keys", "at least one key of the mission");
+  for (std::size_t k = 0; k < sweep.rows.size(); ++k)
+    if (std::find(sweep.rows.begin(), sweep.rows.begin() + static_cast<std::ptrdiff_t>(k), sweep.rows[k]) !=
+        sweep.rows.begin() + static_cast<std::ptrdiff_t>(k))
+      section.refuse("", fmt::format("the values {} twice", fmt::join(sweep.rows[k], ", ")), "different values");
+  section.finish();
+  return sweep;
+}
+
+PassCriterion read_pass(const TableReader& section) {
+  PassCriterion pass;
+  pass.key = section.text("key");
+  if (section.has("most")) pass.most = section.number("most", from_to(-kLargest, kLargest));
+  if (section.has("least")) pass.least = section.number("least", from_to(-kLargest, kLargest));
+  if (!pass.most && !pass.least) section.refuse("", "neither most nor least", "at least one of them");
+  section.finish();
+  return pass;
+}
+
+void refuse_repeated_keys(const CampaignFile& campaign) {
+  std::set<std::string> seen;
+  const auto once = [&](const std::string& key) {
+    const char* const reason = key == "mission.seed" ? "a key that the seeds set" : "a key that is varied twice";
+    if (key == "mission.seed" || key.empty() || key.find('=') != std::string::npos || !seen.insert(key).second)
+      throw mission::MissionError(campaign.file.string(), key, key.empty() ? "an empty key" : reason,
+                                  "each key of the mission once, in sweep or disperse");
+  };
+  for (const std::string& key : campaign.keys()) once(key);
+  for (const std::string& assignment : campaign.set)
+    if (seen.contains(assignment.substr(0, assignment.find('='))))
+      throw mission::MissionError(campaign.file.string(), "campaign.set", "a key that is varied too: " + assignment,
+                                  "keys that are neither swept nor dispersed");
+}
+
+template <class Read>
+void for_each_table(const TableReader& document, const toml::table& table, const char* key, const Read& read) {
+  const std::vector<TableReader> sections = document.tables(key);
+  for (std::size_t k = 0; k < sections.size(); ++k) read(sections[k], *table[key].as_array()->get(k)->as_table());
+}
+
+}  // namespace
+
+std::vector<std::string> CampaignFile::swept_keys() const {
+  std::vector<std::string> all;
+  for (const Sweep& sweep : sweeps) all.insert(all.end(), sweep.keys.begin(), sweep.keys.end());
+  return all;
+}
+
+std::vector<std::string> CampaignFile::keys() const {
+  std::vector<std::string> all = swept_keys();
+  for (const Dispersion& dispersion : dispersions)
+    all.insert(all.end(), dispersion.keys.begin(), dispersion.keys.end());
+  return all;
+}
+
+CampaignFile parse_campaign(std::string_view text, const std::filesystem::path& file) {
+  const toml::table table = mission::parse_toml(text, file.string());
+  const TableReader document(table, file.string());
+  for (const char* const known : {"campaign", "sweep", "disperse", "pass", "require"})
+    static_cast<void>(document.has(known));
+  document.refuse_unknown_keys();
+  CampaignFile campaign;
+  campaign.file = file;
+  const toml::table* const general = table["campaign"].as_table();
+  const toml::table empty;
+  read_general(document.table("campaign"), general == nullptr ? empty : *general, campaign);
+  for_each_table(document, table, "sweep", [&](const TableReader& section, const toml::table& raw) {
+    campaign.sweeps.push_back(read_sweep(section, raw, file));
+  });
+  for_each_table(document, table, "disperse", [&](const TableReader& section, const toml::table& raw) {
+    campaign.dispersions.push_back(read_dispersion(section, raw));
+  });
+  for (const TableReader& section : document.tables("pass")) campaign.passes.push_back(read_pass(section));
+  if (document.has("require")) {
+    const TableReader section = document.table("require");
+    campaign.require = Requirement{section.number("pass_rate_at_least", above_to(0.0, 1.0)),
+                                   section.number("confidence", from_to(0.5, 0.9999), 0.95)};
+    section.finish();
+  }
+  document.finish();
+  refuse_repeated_keys(campaign);
+  return campaign;
+}
+
+CampaignFile read_campaign_file(const std::filesystem::path& file) {
+  return parse_campaign(mission::read_text_file(file, "a campaign file (TOML)"), file);
+}
+
+}  // namespace vbar::campaign

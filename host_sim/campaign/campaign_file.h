@@ -1,0 +1,70 @@
+#pragma once
+// A campaign file (TOML): a mission, seeds, sweeps, dispersions, pass criteria, what is kept, limits. docs/campaigns.md
+// explains its keys.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host_sim/campaign/dispersion.h"
+
+namespace vbar::campaign {
+
+/// Keys that take the values of a row together; the rows are swept one after the other.
+struct Sweep {
+  std::vector<std::string> keys;
+  std::vector<std::vector<std::string>> rows;  ///< text of each key's value
+};
+
+/// A limit of a number of the summary; at least one of both.
+struct PassCriterion {
+  std::string key;
+  std::optional<double> most, least;
+};
+
+/// Of the whole campaign: the lower Clopper-Pearson bound, two-sided, of the pass rate.
+struct Requirement {
+  double pass_rate = 0.0;
+  double confidence = 0.95;
+};
+
+/// Which run folders stay.
+struct Keep {
+  enum class Kind { kSummary, kFailed, kWorst, kAll };
+  Kind kind = Kind::kSummary;
+  std::size_t worst = 0;  ///< of each pass criterion
+};
+
+struct CampaignFile {
+  std::filesystem::path file;
+  std::string name, description;
+  std::string mission;  ///< as in the file: a path relative to it, or a name of the catalogue
+  std::vector<std::uint64_t> seeds;
+  std::uint64_t seed = 1;        ///< of the draws
+  std::vector<std::string> set;  ///< "path=value", for all cases
+  Keep keep;
+  std::vector<double> samples_h;
+  double case_time_limit_s = 0.0;        ///< 0: no limit
+  double expected_case_s = 0.0;          ///< processor time, for the number of workers
+  std::int64_t retries = 2;              ///< of a case that was killed
+  std::int64_t stop_after_failures = 0;  ///< 0: never
+  bool common_draws = true;              ///< the sweep points share their draws
+  DrawSource::Sampling sampling = DrawSource::Sampling::kIndependent;
+  std::vector<Sweep> sweeps;
+  std::vector<Dispersion> dispersions;
+  std::vector<PassCriterion> passes;
+  std::optional<Requirement> require;
+
+  /// Swept keys, then dispersed ones, in the order of the file.
+  [[nodiscard]] std::vector<std::string> swept_keys() const;
+  [[nodiscard]] std::vector<std::string> keys() const;
+};
+
+/// Throws MissionError that names place, key and what is accepted.
+[[nodiscard]] CampaignFile read_campaign_file(const std::filesystem::path& file);
+[[nodiscard]] CampaignFile parse_campaign(std::string_view text, const std::filesystem::path& file);
+
+}  // namespace vbar::campaign

@@ -1,0 +1,69 @@
+#pragma once
+// One flight of a case: `vbar run` in a process of its own, and what it left.
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "host_sim/campaign/folder.h"
+#include "host_sim/campaign/plan.h"
+#include "host_sim/campaign/result.h"
+#include "host_sim/io/child_process.h"
+
+namespace vbar::campaign {
+
+/// Name of this computer, and the type of its processor.
+struct Computer {
+  std::string host, processor;
+};
+[[nodiscard]] Computer this_computer();
+
+class CaseFlight {
+ public:
+  struct Request {
+    const Folder& folder;
+    const Plan& plan;
+    const Case& one;
+    std::string attempt;  ///< its name: of the run folder while it flies
+    bool full_record = false;
+  };
+
+  /// Starts the process, in a folder that no other attempt has. Throws std::runtime_error if it cannot be started.
+  explicit CaseFlight(const Request& request);
+  ~CaseFlight();
+  CaseFlight(const CaseFlight&) = delete;
+  CaseFlight& operator=(const CaseFlight&) = delete;
+
+  /// The case's own fault, or none: a result. Killed: to be flown again. Trouble: of the computer or the campaign, not
+  /// of the case (a full disk, a program that does not start): nothing more can be flown here.
+  struct End {
+    enum class Kind { kResult, kKilled, kTrouble };
+    Kind kind = Kind::kResult;
+    Result result = {};
+    std::string reason = {};
+  };
+
+  /// Once the process has ended, or has flown for too long and was ended.
+  [[nodiscard]] std::optional<End> poll();
+
+  [[nodiscard]] const Case& one() const { return one_; }
+  [[nodiscard]] const std::string& attempt() const { return attempt_; }
+  [[nodiscard]] const std::filesystem::path& run_folder() const { return run_folder_; }
+  [[nodiscard]] std::int64_t process() const { return child_->pid(); }
+
+ private:
+  [[nodiscard]] End judge();
+  [[nodiscard]] End judge_failure(Result result, const Json& summary) const;
+
+  const Case one_;
+  const std::string attempt_;
+  const double time_limit_s_;
+  std::filesystem::path run_folder_;
+  std::unique_ptr<io::ChildProcess> child_;
+  std::chrono::steady_clock::time_point started_;
+  bool over_time_ = false;
+};
+
+}  // namespace vbar::campaign

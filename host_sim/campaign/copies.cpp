@@ -1,0 +1,83 @@
+#include "host_sim/campaign/copies.h"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "host_sim/files/sha256.h"
+#include "host_sim/mission/data_directory.h"
+#include "host_sim/report/csv_table.h"
+#include "host_sim/report/text_file.h"
+
+namespace vbar::campaign {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kDigestDigits = 64;
+
+void copy_one(const fs::path& from, const fs::path& to) {
+  try {
+    fs::create_directories(to.parent_path());
+    fs::copy_file(from, to, fs::copy_options::overwrite_existing);
+  } catch (const fs::filesystem_error& error) {
+    throw std::runtime_error(
+        fmt::format("{}: cannot be copied to {}: {}", from.string(), to.string(), error.code().message()));
+  }
+}
+
+void copy_data(const Folder& folder) {
+  const fs::path data = mission::data_directory();
+  for (const auto& entry : fs::recursive_directory_iterator(data))
+    if (entry.is_regular_file()) copy_one(entry.path(), folder.data() / entry.path().lexically_relative(data));
+}
+
+std::string checksums_of(const Folder& folder) {
+  std::set<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder.copies()))
+    if (entry.is_regular_file() && entry.path() != folder.checksums()) files.insert(entry.path());
+  std::string text;
+  for (const fs::path& file : files) {
+    const auto sha256 = files::sha256_of_file(file);
+    if (!sha256) throw std::runtime_error(file.string() + ": cannot be read");
+    text += fmt::format("{}  {}\n", *sha256, file.lexically_relative(folder.copies()).string());
+  }
+  return text;
+}
+
+}  // namespace
+
+fs::path copy_of_mission(const fs::path& mission) {
+  const Folder relative{fs::path()};
+  return relative.mission_files() / mission.relative_path();
+}
+
+void make_copies(const Folder& folder, const UsedFiles& used, const std::string& mission_text) {
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  copy_one(program, folder.program());
+  copy_data(folder);
+  const fs::path mission = folder.root() / copy_of_mission(used.mission);
+  fs::create_directories(mission.parent_path());
+  report::replace_text_file(mission, mission_text);
+  for (const fs::path& file : used.beside_mission) copy_one(file, folder.mission_files() / file.relative_path());
+  // The program finds images by their places relative to its own.
+  for (const fs::path& image : used.flight_images)
+    copy_one(image,
+             (folder.program().parent_path() / image.lexically_relative(program.parent_path())).lexically_normal());
+  report::replace_text_file(folder.checksums(), checksums_of(folder));
+}
+
+void check_copies(const Folder& folder) {
+  for (const std::string& line : report::read_lines(folder.checksums())) {
+    if (line.empty()) continue;
+    const fs::path file = folder.copies() / (line.size() > kDigestDigits + 2 ? line.substr(kDigestDigits + 2) : line);
+    const auto sha256 = files::sha256_of_file(file);
+    if (!sha256) throw std::runtime_error(file.string() + ": cannot be read; the campaign's copies are not whole");
+    if (*sha256 != line.substr(0, kDigestDigits))
+      throw std::runtime_error(file.string() +
+                               ": differs from the file that the campaign began with (SHA-256); "
+                               "restore it, or begin a new campaign");
+  }
+}
+
+}  // namespace vbar::campaign

@@ -1,0 +1,31 @@
+#pragma once
+// The program, its data, flight images and mission files, copied once into the campaign's folder, so that neither a
+// rebuild nor an edit during the campaign mixes two versions. Every worker checks their SHA-256.
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "host_sim/campaign/folder.h"
+
+namespace vbar::campaign {
+
+/// What the missions of a campaign use besides the data folder: absolute paths.
+struct UsedFiles {
+  std::filesystem::path mission;
+  std::set<std::filesystem::path> beside_mission;  ///< that the mission names relative to itself
+  std::set<std::filesystem::path> flight_images;   ///< of flight computers in processes of their own
+};
+
+/// Copies all, writes bin/SHA256SUMS, which sha256sum -c reads. `mission_text` is the whole mission. Throws
+/// std::runtime_error that names a file that cannot be copied.
+void make_copies(const Folder& folder, const UsedFiles& files, const std::string& mission_text);
+
+/// Of the mission, relative to the campaign's folder. It stands at its own absolute path below bin/files, as all that
+/// it names relative to itself does.
+[[nodiscard]] std::filesystem::path copy_of_mission(const std::filesystem::path& mission);
+
+/// Throws std::runtime_error that names the first file that is missing or differs.
+void check_copies(const Folder& folder);
+
+}  // namespace vbar::campaign

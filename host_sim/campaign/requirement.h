@@ -1,0 +1,21 @@
+#pragma once
+// What a campaign as a whole has to show.
+
+#include <cstddef>
+
+#include "host_sim/campaign/campaign_file.h"
+
+namespace vbar::campaign {
+
+/// Lower Clopper-Pearson bound, two-sided, of a probability of which `passed` of `cases` independent trials succeeded.
+[[nodiscard]] double lower_bound(std::size_t passed, std::size_t cases, double confidence);
+
+/// One sentence; `met`: whether the bound reaches the required pass rate. Cases that failed count as not passed.
+struct RequirementVerdict {
+  bool met = false;
+  std::string sentence;
+};
+[[nodiscard]] RequirementVerdict judge(const Requirement& requirement, std::size_t passed, std::size_t cases,
+                                       bool independent);
+
+}  // namespace vbar::campaign

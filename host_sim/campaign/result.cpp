@@ -1,0 +1,119 @@
+#include "host_sim/campaign/result.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host_sim/campaign/folder.h"
+
+namespace vbar::campaign {
+namespace {
+
+constexpr std::array<std::pair<State, std::string_view>, 8> kStates{{{State::kComplete, "complete"},
+                                                                     {State::kFailed, "failed"},
+                                                                     {State::kOverTime, "over_time"},
+                                                                     {State::kLost, "lost"},
+                                                                     {State::kVoid, "void"},
+                                                                     {State::kNotBegun, "not_begun"},
+                                                                     {State::kFlying, "flying"},
+                                                                     {State::kKilled, "killed"}}};
+
+State state_of(const std::string& name) {
+  for (const auto& [state, word] : kStates)
+    if (word == name) return state;
+  throw std::runtime_error("an unknown state: " + name);
+}
+
+bool has_flown(const Result& result) {
+  return result.state == State::kComplete || result.state == State::kVoid;
+}
+
+bool meets(const PassCriterion& criterion, const std::optional<double>& value) {
+  return value && (!criterion.most || *value <= *criterion.most) && (!criterion.least || *value >= *criterion.least);
+}
+
+void add(Result&& result, AllResults& all) {
+  const auto [place, is_new] = all.of_case.try_emplace(result.number, result);
+  if (is_new) return;
+  Result& before = place->second;
+  if (has_flown(before) && has_flown(result) && !before.has_same_outputs(result))
+    all.conflicts.push_back(fmt::format("case {}: two flights with different outputs, on {} ({}) and on {} ({})",
+                                        result.number, before.host, before.processor, result.host, result.processor));
+  if (!has_flown(before)) before = std::move(result);
+}
+
+}  // namespace
+
+std::string_view name_of(State state) {
+  return std::ranges::find(kStates, state, &std::pair<State, std::string_view>::first)->second;
+}
+
+Json json_of(const Result& result) {
+  Json numbers = Json::object();
+  for (const auto& [key, value] : result.numbers) numbers[key] = value;
+  return {{"case", result.number},
+          {"attempt", result.attempt},
+          {"state", name_of(result.state)},
+          {"reason", result.reason},
+          {"host", result.host},
+          {"processor", result.processor},
+          {"wall_s", result.wall_s},
+          {"cpu_s", result.cpu_s},
+          {"commands_sha256", result.commands_sha256},
+          {"telemetry_sha256", result.telemetry_sha256},
+          {"waypoints_sha256", result.waypoints_sha256},
+          {"folder", result.folder},
+          {"numbers", std::move(numbers)}};
+}
+
+Result result_of(const Json& json) {
+  Result result;
+  json.at("case").get_to(result.number);
+  json.at("attempt").get_to(result.attempt);
+  result.state = state_of(json.at("state").get<std::string>());
+  json.at("reason").get_to(result.reason);
+  json.at("host").get_to(result.host);
+  json.at("processor").get_to(result.processor);
+  json.at("wall_s").get_to(result.wall_s);
+  json.at("cpu_s").get_to(result.cpu_s);
+  json.at("commands_sha256").get_to(result.commands_sha256);
+  json.at("telemetry_sha256").get_to(result.telemetry_sha256);
+  json.at("waypoints_sha256").get_to(result.waypoints_sha256);
+  json.at("folder").get_to(result.folder);
+  for (const auto& [key, value] : json.at("numbers").items()) result.numbers.emplace_back(key, value.get<double>());
+  return result;
+}
+
+std::vector<std::string> failed_limits(const Plan& plan, const Result& result) {
+  std::vector<std::string> keys;
+  for (const PassCriterion& criterion : plan.passes)
+    if (!meets(criterion, find_number(result.numbers, criterion.key)) &&
+        std::ranges::find(keys, criterion.key) == keys.end())
+      keys.push_back(criterion.key);
+  return keys;
+}
+
+bool has_passed(const Plan& plan, const Result& result) {
+  return result.state == State::kComplete && result.reason.empty() && failed_limits(plan, result).empty();
+}
+
+AllResults read_results(const std::filesystem::path& result_files) {
+  AllResults all;
+  for (const std::filesystem::path& file : record_files(result_files)) {
+    const ReadLines read = read_lines_of(file);
+    all.damaged_lines += read.damaged;
+    for (const Json& line : read.lines) {
+      try {
+        add(result_of(line), all);
+      } catch (const std::exception&) {
+        ++all.damaged_lines;
+      }
+    }
+  }
+  return all;
+}
+
+}  // namespace vbar::campaign

@@ -1,0 +1,54 @@
+#pragma once
+// What became of a case, as the worker that flew it recorded it.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host_sim/campaign/plan.h"
+#include "host_sim/campaign/summary_numbers.h"
+
+namespace vbar::campaign {
+
+/// Of a case. The first five are those of a result.
+enum class State { kComplete, kFailed, kOverTime, kLost, kVoid, kNotBegun, kFlying, kKilled };
+[[nodiscard]] std::string_view name_of(State state);
+
+struct Result {
+  std::size_t number = 0;  ///< of the case
+  std::string attempt;     ///< its name, which no other attempt has
+  State state = State::kComplete;
+  std::string reason;  ///< of a failure, in one sentence
+  std::string host, processor;
+  double wall_s = 0.0, cpu_s = 0.0;
+  std::string commands_sha256, telemetry_sha256, waypoints_sha256;
+  std::string folder;  ///< that was kept, relative to the campaign's; empty if none was
+  Numbers numbers;     ///< of the summary
+
+  [[nodiscard]] bool has_same_outputs(const Result& other) const {
+    return commands_sha256 == other.commands_sha256 && telemetry_sha256 == other.telemetry_sha256 &&
+           waypoints_sha256 == other.waypoints_sha256;
+  }
+};
+
+[[nodiscard]] Json json_of(const Result& result);
+
+/// Throws nlohmann::json::exception or std::runtime_error for an object that is not a result.
+[[nodiscard]] Result result_of(const Json& json);
+
+/// The keys of the criteria that the case does not meet; a number that is missing meets none. Of complete cases.
+[[nodiscard]] std::vector<std::string> failed_limits(const Plan& plan, const Result& result);
+[[nodiscard]] bool has_passed(const Plan& plan, const Result& result);
+
+struct AllResults {
+  std::map<std::size_t, Result> of_case;
+  std::size_t damaged_lines = 0;
+  std::vector<std::string> conflicts;  ///< a sentence for each case that was flown twice with different outputs
+};
+
+/// The results of all workers. Of a case with several, a complete one prevails, then the last of the last file.
+[[nodiscard]] AllResults read_results(const std::filesystem::path& result_files);
+
+}  // namespace vbar::campaign

@@ -1,0 +1,248 @@
+#include "host_sim/campaign/run_campaign.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <system_error>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "host_sim/app/exit_codes.h"
+#include "host_sim/campaign/case_selection.h"
+#include "host_sim/campaign/collect.h"
+#include "host_sim/campaign/engine.h"
+#include "host_sim/campaign/kept_runs.h"
+#include "host_sim/campaign/prepare.h"
+#include "host_sim/campaign/progress_line.h"
+#include "host_sim/campaign/requirement.h"
+#include "host_sim/campaign/status.h"
+#include "host_sim/campaign/worker.h"
+#include "host_sim/report/run_lock.h"
+#include "host_sim/report/text_file.h"
+
+namespace vbar::campaign {
+namespace {
+
+namespace fs = std::filesystem;
+using app::Refused;
+
+/// The folder of the request; made if it is given a campaign file and there is none yet.
+Folder open_folder(const RunRequest& request) {
+  std::error_code error;
+  if (fs::is_directory(request.campaign, error)) {
+    const Folder folder(request.campaign);
+    folder.require_campaign();
+    if (!request.out.empty()) throw Refused("--out: has no effect on a campaign that was begun");
+    return folder;
+  }
+  const CampaignFile campaign = read_campaign_file(request.campaign);
+  const Folder folder(request.out.empty() ? fs::path("runs") / ("campaign-" + campaign.name) : request.out);
+  if (!holds_same_campaign(folder, request.campaign)) prepare(campaign, folder, request.vbar_version);
+  return folder;
+}
+
+/// No case is flown twice at once.
+void refuse_if_being_flown(const Folder& folder, const Standing& standing) {
+  const std::string hint = "; vbar campaign status shows how it stands";
+  if (!standing.attempts.living_workers.empty())
+    throw Refused(fmt::format("{}: is being flown by worker {}{}", folder.root().string(),
+                              standing.attempts.living_workers.front(), hint));
+  const std::vector<std::string> jobs = jobs_of_campaign(folder);
+  if (!jobs.empty())
+    throw Refused(
+        fmt::format("{}: jobs wait or run for it: {}{}", folder.root().string(), fmt::join(jobs, ", "), hint));
+}
+
+void refuse_conflicts(const Standing& standing) {
+  if (!standing.results.conflicts.empty())
+    throw std::runtime_error(fmt::format("{}", fmt::join(standing.results.conflicts, "\n")));
+}
+
+std::vector<Case> cases_to_fly(const RunRequest& request, const Standing& standing) {
+  std::vector<Case> left = standing.left_to_fly(request.retry_failed);
+  if (request.cases.empty()) return left;
+  const std::vector<std::size_t> selected = selected_cases(request.cases, standing.cases.size());
+  std::erase_if(left, [&](const Case& one) { return !std::ranges::binary_search(selected, one.number); });
+  return left;
+}
+
+/// How the campaign stands with the results of this worker.
+class LocalProgress {
+ public:
+  LocalProgress(const Standing& standing, std::size_t to_fly, bool quiet)
+      : standing_(standing), to_fly_(to_fly), line_(quiet) {}
+  void operator()(const std::vector<Result>& results, std::size_t flying) {
+    for (; counted_ < results.size(); ++counted_) {
+      standing_.results.of_case[results[counted_].number] = results[counted_];
+    }
+    const std::size_t done = standing_.results.of_case.size();
+    std::size_t passed = 0, failed = 0;
+    for (const auto& [number, result] : standing_.results.of_case) {
+      passed += has_passed(standing_.plan, result) ? 1 : 0;
+      failed += result.state != State::kComplete && result.state != State::kVoid ? 1 : 0;
+    }
+    line_.draw(
+        progress_text({done, standing_.cases.size(), passed, failed, flying}, left_.seconds(results.size(), to_fly_)));
+  }
+
+ private:
+  Standing standing_;
+  std::size_t to_fly_, counted_ = 0;
+  ProgressLine line_;
+  TimeLeft left_;
+};
+
+int processors() {
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+void fly_here(const RunRequest& request, const Folder& folder, const Standing& standing,
+              const std::vector<Case>& cases) {
+  LocalProgress progress(standing, cases.size(), request.quiet);
+  WorkerOptions options{new_worker_name("local"), request.jobs > 0 ? request.jobs : processors(),
+                        request.stop_requested, std::ref(progress)};
+  Worker worker(folder, standing.plan, std::move(options));
+  if (worker.fly(cases) == Worker::End::kStoppedAfterFailures && !request.quiet)
+    fmt::print("stopped after {} failures\n", standing.plan.stop_after_failures);
+}
+
+double work_of(const Standing& standing, std::size_t cases) {
+  double sum_s = 0.0;
+  for (const auto& [number, result] : standing.results.of_case) sum_s += result.wall_s;
+  const std::size_t flown = standing.results.of_case.size();
+  return static_cast<double>(cases) * (flown > 0 ? sum_s / static_cast<double>(flown) : standing.plan.expected_case_s);
+}
+
+fs::path write_todo(const Folder& folder, const std::vector<Case>& cases) {
+  fs::create_directories(folder.submissions());
+  const fs::path file = folder.submissions() / (new_worker_name("todo") + ".txt");
+  std::string text;
+  for (const Case& one : cases) text += fmt::format("{}\n", one.number);
+  report::replace_text_file(file, text);
+  return file;
+}
+
+void submit(const RunRequest& request, const Engine& engine, const Folder& folder, const Standing& standing,
+            const std::vector<Case>& cases) {
+  const std::size_t workers = request.workers > 0
+                                  ? std::min(request.workers, std::min(cases.size(), engine.max_workers()))
+                                  : workers_for(work_of(standing, cases.size()), cases.size(), engine.max_workers());
+  const std::string submitted = engine.submit(
+      {folder, cases, workers, write_todo(folder, cases), request.engine_options, std::max(request.jobs, 1)});
+  if (!request.quiet) fmt::print("{}\n", submitted);
+  std::fflush(stdout);
+}
+
+/// Until no worker waits or runs. A worker that was submitted by a command may be late: it has begun when it holds a
+/// lock, and is missed only after all cases have been waited for.
+void wait_for_workers(const RunRequest& request, const Engine& engine, const Folder& folder, std::size_t to_fly) {
+  constexpr std::chrono::seconds kPeriod{1};
+  constexpr int kPatience = 30;  // periods without a job and without a worker
+  const bool lists_jobs = engine.name != "command";
+  ProgressLine line(request.quiet);
+  const TimeLeft left;
+  for (int idle = 0; idle < (lists_jobs ? 1 : kPatience);) {
+    if (request.stop_requested()) {
+      if (!request.quiet) fmt::print("no longer waiting; the workers go on\n");
+      return;
+    }
+    const auto begun = std::chrono::steady_clock::now();
+    const bool has_jobs = !engine.jobs_of(folder).empty();  // before the files: a worker's last lines are then seen
+    const Standing standing = read_standing(folder);
+    const std::size_t missing = cases_to_fly(request, standing).size();
+    if (missing == 0) return;
+    idle = has_jobs || !standing.attempts.living_workers.empty() ? 0 : idle + 1;
+    line.draw(progress_text(standing.progress(), left.seconds(to_fly - std::min(missing, to_fly), to_fly)));
+    // Reading ten thousand results must not become a load of its own.
+    const auto taken = std::chrono::steady_clock::now() - begun;
+    std::this_thread::sleep_for(std::max<std::chrono::steady_clock::duration>(kPeriod, 10 * taken));
+  }
+}
+
+int conclude(const RunRequest& request, const Folder& folder) {
+  const Standing standing = read_standing(folder);
+  std::vector<Result> results;
+  for (const auto& [number, result] : standing.results.of_case) results.push_back(result);
+  remove_outdone_runs(standing.plan, results, folder);
+  write_results(folder, standing);
+  if (!request.quiet) {
+    fmt::print("{}", status_text(standing, {}));
+    fmt::print("results  {}\n", folder.results().string());
+  }
+  refuse_conflicts(standing);
+  if (!standing.left_to_fly(false).empty()) return app::kInterrupted;
+  const bool has_lost = standing.counts().contains(State::kLost);
+  const auto& require = standing.plan.require;
+  const bool is_met =
+      !require || judge(*require, standing.passed(), standing.cases.size(), standing.plan.independent).met;
+  return is_met && !has_lost ? app::kDone : app::kFailed;
+}
+
+std::vector<Case> share_of(const WorkerRequest& request, const Standing& standing) {
+  std::vector<std::size_t> numbers;
+  if (request.todo.empty()) {
+    for (const Case& one : standing.cases) numbers.push_back(one.number);
+  } else {
+    std::ifstream lines(request.todo);
+    if (!lines) throw Refused(request.todo.string() + ": cannot be read");
+    for (std::size_t number = 0; lines >> number;) numbers.push_back(number);
+  }
+  // A case of the list that has flown since, or a failed one that is to be flown again, was chosen at submission.
+  std::vector<Case> share;
+  for (std::size_t place = request.k; place < numbers.size(); place += request.n) {
+    const std::size_t number = numbers[place];
+    if (number >= standing.cases.size())
+      throw Refused(fmt::format("{}: case {} is unknown", request.todo.string(), number));
+    const auto found = standing.results.of_case.find(number);
+    const bool is_wanted =
+        found == standing.results.of_case.end() || (!request.todo.empty() && found->second.state != State::kComplete);
+    if (is_wanted) share.push_back(standing.cases[number]);
+  }
+  return share;
+}
+
+}  // namespace
+
+int run_campaign(const RunRequest& request) {
+  const Engine* const engine = find_engine(request.engine);
+  if (engine == nullptr && request.engine != "local")
+    throw Refused("--engine: found \"" + request.engine + "\"; accepted: " + mission::listing_of(engine_names()));
+  const Folder folder = open_folder(request);
+  {
+    const report::RunLock lock(folder.root());
+    const Standing standing = read_standing(folder);
+    refuse_conflicts(standing);
+    const std::vector<Case> cases = cases_to_fly(request, standing);
+    if (!cases.empty()) {
+      refuse_if_being_flown(folder, standing);
+      remove_abandoned_flights(folder);
+      if (engine == nullptr) {
+        fly_here(request, folder, standing, cases);
+      } else {
+        submit(request, *engine, folder, standing, cases);
+        if (!request.wait) return app::kDone;
+        wait_for_workers(request, *engine, folder, cases.size());
+      }
+    }
+  }
+  return conclude(request, folder);
+}
+
+int run_worker(const WorkerRequest& request) {
+  const Folder folder(request.folder);
+  if (request.n == 0 || request.k >= request.n) throw Refused("worker K of N: K counts from 0 and is below N");
+  const Standing standing = read_standing(folder);
+  const std::vector<Case> cases = share_of(request, standing);
+  if (cases.empty()) return app::kDone;
+  const char* const job = std::getenv("SLURM_JOB_ID");
+  Worker worker(
+      folder, standing.plan,
+      {new_worker_name(job == nullptr ? fmt::format("worker{}", request.k) : fmt::format("slurm{}_{}", job, request.k)),
+       request.jobs, request.stop_requested});
+  return worker.fly(cases) == Worker::End::kDone ? app::kDone : app::kInterrupted;
+}
+
+}  // namespace vbar::campaign

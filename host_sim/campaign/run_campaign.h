@@ -1,0 +1,40 @@
+#pragma once
+// vbar campaign run: begins a campaign, or flies what is left of one.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace vbar::campaign {
+
+struct RunRequest {
+  std::filesystem::path campaign;  ///< a campaign file, or the folder of a campaign
+  std::filesystem::path out;       ///< folder of a new campaign; empty: runs/campaign-NAME
+  std::string vbar_version;
+  std::string engine = "local";
+  std::string engine_options;  ///< slurm: of sbatch; command: the template
+  int jobs = 0;                ///< flights at once; 0: local as there are processors, elsewhere 1 a worker
+  std::size_t workers = 0;     ///< of an engine that is not local; 0: by the work
+  std::string cases;           ///< a selection; empty: all
+  bool retry_failed = false;
+  bool wait = true;  ///< for the workers of an engine that is not local
+  bool quiet = false;
+  std::function<bool()> stop_requested;
+};
+
+/// The exit code: kDone if every case has its result and the requirement is met, kFailed if it is not met, cases were
+/// lost or two flights of one differ, kInterrupted if cases are left to fly. Throws app::Refused before anything is
+/// flown, std::runtime_error if no more can be flown.
+[[nodiscard]] int run_campaign(const RunRequest& request);
+
+/// One worker of an engine: its share k of n of the cases, of those listed in `todo` or, without it, of all.
+struct WorkerRequest {
+  std::filesystem::path folder;
+  std::size_t k = 0, n = 1;
+  std::filesystem::path todo;
+  int jobs = 1;
+  std::function<bool()> stop_requested;
+};
+[[nodiscard]] int run_worker(const WorkerRequest& request);
+
+}  // namespace vbar::campaign

@@ -1,0 +1,122 @@
+// The head of the page: what was asked, how many cases ended how, whether the campaign meets its requirement.
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "host_sim/campaign_report/case_text.h"
+#include "host_sim/campaign_report/percentile.h"
+#include "host_sim/campaign_report/sections.h"
+#include "host_sim/report/number_text.h"
+
+namespace vbar::campaign_report {
+namespace {
+
+std::size_t count_of(const Campaign& campaign, State state) {
+  return count_cases(campaign, [state](const Case& one) { return one.state == state; });
+}
+
+/// Every case is in it, and each kind that is not complete stands out.
+std::string census(const Campaign& campaign) {
+  std::string text = fmt::format("<p>{}: {} complete", count_text(campaign.cases.size(), "case", "cases"),
+                                 report::grouped(count_of(campaign, State::kComplete)));
+  const auto passed = count_cases(campaign, [](const Case& one) { return one.has_passed(); });
+  if (!campaign.limits.empty()) text += fmt::format(" ({} passed)", report::grouped(passed));
+  const auto add = [&](std::size_t count, std::string_view name) {
+    text += count > 0 ? fmt::format(", <span class=\"bad\">{} {}</span>", report::grouped(count), name)
+                      : fmt::format(", 0 {}", name);
+  };
+  add(count_of(campaign, State::kFailed), "failed");
+  add(count_of(campaign, State::kOverTime), "over time");
+  add(count_of(campaign, State::kLost), "lost");
+  add(count_of(campaign, State::kVoid), "void");
+  const std::size_t killed = count_of(campaign, State::kKilled), flying = count_of(campaign, State::kFlying),
+                    not_begun = count_of(campaign, State::kNotBegun);
+  add(killed + flying + not_begun, "not flown to an end");
+  if (killed + flying + not_begun > 0)
+    text += fmt::format(" ({} killed, {} flying, {} not begun)", killed, flying, not_begun);
+  return text + ".</p>\n";
+}
+
+struct Judgement {
+  std::size_t passed = 0, judged = 0;
+};
+
+Judgement judgement_of(const Campaign& campaign) {
+  return {count_cases(campaign, [](const Case& one) { return one.has_passed(); }),
+          count_cases(campaign, [](const Case& one) { return one.is_judged(); })};
+}
+
+std::string requirement_text(const Campaign& campaign) {
+  if (!campaign.requirement) return {};
+  const Requirement& required = *campaign.requirement;
+  const std::string claim = fmt::format("a pass rate of at least {} with a confidence of {}",
+                                        percent(required.pass_rate_min), percent(required.confidence));
+  const Judgement all = judgement_of(campaign);
+  if (!campaign.is_independent)
+    return fmt::format(
+        "<p><span class=\"status bad\">not shown</span> Required: {}. Cases that are not independent "
+        "draws have no such bound.</p>\n",
+        claim);
+  const PassRate rate = pass_rate(all.passed, all.judged, required.confidence);
+  const bool is_met = rate.lower >= required.pass_rate_min;
+  return fmt::format(
+      "<p><span class=\"status {}\">{}</span> Required: {}; {} of {} passed show at least {} "
+      "(two-sided){}.</p>\n",
+      is_met ? "good" : "bad", is_met ? "shown" : "not shown", claim, report::grouped(all.passed),
+      report::grouped(all.judged), percent(rate.lower),
+      is_met ? ""
+             : fmt::format("; {} without a failure would show it",
+                           values_needed(required.pass_rate_min, required.confidence)));
+}
+
+std::string tile(std::string_view value, std::string_view meaning) {
+  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>\n", report::escaped(value),
+                     report::escaped(meaning));
+}
+
+std::string tiles(const Content& content) {
+  const Campaign& campaign = content.campaign;
+  std::string out = "<div class=\"tiles\">\n";
+  const Judgement all = judgement_of(campaign);
+  if (all.judged > 0 && !campaign.limits.empty()) {
+    const PassRate rate = pass_rate(all.passed, all.judged, kConfidence);
+    out += tile(percent(rate.share()),
+                fmt::format("passed, {} of {} cases", report::grouped(all.passed), report::grouped(all.judged)));
+    if (campaign.is_independent) out += tile(percent(rate.lower), "lower bound, 95 % two-sided");
+  }
+  for (std::size_t k = 0; k < std::min<std::size_t>(content.quantities.size(), 2); ++k) {
+    const Quantity& quantity = content.quantities[k];
+    const std::vector<double> sorted = sorted_values(quantity);
+    const bool is_low_bad = quantity.min && !quantity.max;
+    out += tile(value_text(quantity.key, is_low_bad ? sorted.front() : sorted.back()),
+                fmt::format("{} {}", is_low_bad ? "smallest" : "largest", quantity.key));
+  }
+  double cpu_s = 0.0;
+  for (const Case& one : campaign.cases) cpu_s += std::isfinite(one.cpu_s) ? one.cpu_s : 0.0;
+  out += tile(report::duration_text(cpu_s), "processor time");
+  return out + "</div>\n";
+}
+
+}  // namespace
+
+std::string overview(const Content& content) {
+  const Campaign& campaign = content.campaign;
+  std::string swept, dispersed;
+  for (const std::string& key : campaign.keys) {
+    const bool is_swept = std::ranges::find(campaign.swept, key) != campaign.swept.end();
+    std::string& names = is_swept ? swept : dispersed;
+    names.append(names.empty() ? "" : ", ").append(key);
+  }
+  return fmt::format("<h1>{}</h1>\n{}<p class=\"lead\">{}</p>\n", report::escaped(campaign.name), census(campaign),
+                     report::escaped(campaign.description)) +
+         requirement_text(campaign) + tiles(content) +
+         report::fact_list({{"mission", campaign.mission},
+                            {"vbar", campaign.vbar_version},
+                            {"swept", swept.empty() ? "no key" : swept},
+                            {"dispersed", dispersed.empty() ? "no key" : dispersed},
+                            {"program SHA-256", campaign.program_sha256}});
+}
+
+}  // namespace vbar::campaign_report

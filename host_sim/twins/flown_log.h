@@ -1,0 +1,77 @@
+#pragma once
+// The log of a run that is flown again: event by event, what is flown now has to be what the log holds.
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "fsw/core/gps_time.h"
+#include "host_sim/twins/lcm_log_reader.h"
+#include "host_sim/twins/packet_log.h"
+
+namespace vbar::twins {
+
+/// Records are missing from the middle of a log; the message names file and place.
+class ThinnedLog : public DamagedLog {
+ public:
+  using DamagedLog::DamagedLog;
+};
+
+/// What is flown now is not what the log holds; the message names step and packet.
+class FlownOtherwise : public std::runtime_error {
+ public:
+  FlownOtherwise(fsw::GpsTime time, const std::string& what) : std::runtime_error(what), time_(time) {}
+  [[nodiscard]] fsw::GpsTime time() const { return time_; }
+
+ private:
+  fsw::GpsTime time_;
+};
+
+class FlownLog {
+ public:
+  /// Reads the log once: event numbers, steps, times, messages and checksums have to be consistent. A log that is cut
+  /// or damaged at its end, with no event after that place, counts until there. Throws DamagedLog or ThinnedLog for
+  /// damage elsewhere, and std::runtime_error that names a file that cannot be read.
+  explicit FlownLog(const std::filesystem::path& file);
+
+  /// Events before the damage or cut, the end excepted.
+  [[nodiscard]] std::uint64_t events() const { return events_; }
+  /// Steps that were begun, from 0 on, and the time of the last one.
+  [[nodiscard]] std::uint32_t steps() const { return steps_; }
+  [[nodiscard]] fsw::GpsTime time() const { return time_; }
+  /// The run closed it.
+  [[nodiscard]] bool has_end() const { return has_end_; }
+  /// The byte from which on it is damaged or cut.
+  [[nodiscard]] std::optional<std::uint64_t> damaged_from() const { return damaged_from_; }
+
+  /// Nothing from this time on is compared.
+  void compare_before(fsw::GpsTime time) { until_ = lcm_timestamp(time); }
+
+  /// The next event of the flight (twins::EventCheck). Throws FlownOtherwise, or DamagedLog if it differs from an event
+  /// whose checksum is wrong.
+  void compare(fsw::GpsTime time, const LcmEvent& flown);
+
+  /// Everything that was to be compared has been, and was identical.
+  [[nodiscard]] bool is_over() const { return is_over_; }
+
+ private:
+  std::optional<LoggedEvent> next_intact();
+  void check(const LoggedEvent& event);
+  void check_record(const LoggedEvent& event);
+  [[noreturn]] void part(fsw::GpsTime time, const LcmEvent& flown, const LoggedEvent* logged);
+
+  std::filesystem::path file_;
+  LcmLogReader reader_;
+  std::uint64_t events_ = 0, compared_ = 0;
+  std::uint32_t steps_ = 0;
+  fsw::GpsTime time_;
+  bool has_end_ = false, is_over_ = false;
+  std::optional<std::uint64_t> damaged_from_;
+  std::optional<LcmEvent> message_;  ///< that has to follow the last packet
+  std::int64_t until_ = std::numeric_limits<std::int64_t>::max();
+};
+
+}  // namespace vbar::twins

@@ -1,0 +1,342 @@
+#!/usr/bin/env python3
+"""Campaigns: the same results however they were flown, one result for each case whatever was killed, nothing flown of a campaign with
+a wrong case."""
+import csv
+import json
+import os
+import random
+import re
+import signal
+import subprocess
+import time
+import unittest
+import zlib
+
+import slurm_cluster
+from vbar_program import SOURCE, VBAR, children_of, is_running, main, scratch, start, vbar
+
+WALL_CLOCK = ("wall_s", "cpu_s", "host", "processor", "attempts")
+LOSS = "links.crosslink.loss_probability"
+CAMPAIGN = """[campaign]
+name = "short"
+mission = "{mission}"
+seeds = "{seeds}"
+set = ["mission.duration_h={hours}"]
+{general}
+[[sweep]]
+key = "{loss}"
+values = {values}
+[[disperse]]
+key = "spacecraft.servicer.mass_kg"
+distribution = "normal"
+mean = 154.0
+sigma = 2.0
+{rest}
+"""
+
+
+def campaign_file(folder, name="campaign.toml", seeds="1..10", values="[0.0, 0.2]", hours=0.02, general="", rest=""):
+    file = folder / name
+    file.write_text(CAMPAIGN.format(mission=SOURCE / "missions/experiment3.toml", seeds=seeds, values=values, hours=hours,
+                                    general=general, rest=rest, loss=LOSS))
+    return file
+
+
+def rows_of(folder):
+    with (folder / "results.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def comparable(folder, leave_out=()):
+    """Rows without what the wall clock and the computer put there."""
+    return [{key: value for key, value in row.items() if key not in (*WALL_CLOCK, *leave_out)} for row in rows_of(folder)]
+
+
+def by_case(rows, columns=("seed", LOSS)):
+    return {tuple(row[column] for column in columns): row for row in rows}
+
+
+def run(*arguments, expect=0, **keywords):
+    result = vbar("campaign", "run", *arguments, "--quiet", **keywords)
+    if result.returncode != expect:
+        raise AssertionError(f"exit code {result.returncode}: {result.stdout}{result.stderr}")
+    return result
+
+
+class Campaign(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = cls.enterClassContext(scratch())
+        cls.reference = cls.folder / "reference"
+        cls.file = campaign_file(cls.folder, general="samples_h = [39.01, 39.02]")
+        run(cls.file, "--out", cls.reference, "--jobs", 1)
+        cls.rows = comparable(cls.reference)
+
+    def test_every_case_has_its_row(self):
+        self.assertEqual([int(row["case"]) for row in self.rows], list(range(20)))
+        self.assertEqual({row["state"] for row in self.rows}, {"complete"})
+        self.assertEqual({row["passed"] for row in self.rows}, {"1"})
+        self.assertEqual(len({row["telemetry_sha256"] for row in self.rows}), 20)
+        self.assertGreater(float(self.rows[0]["samples.39.02h.sigma_m"]), 0.0)
+
+    def test_workers_and_order_change_nothing(self):
+        run(self.file, "--out", self.folder / "two", "--jobs", 2)
+        self.assertEqual(comparable(self.folder / "two"), self.rows)
+        shares = self.folder / "shares"
+        run(self.file, "--out", shares, "--jobs", 1, "--cases", "7-9,3", expect=75)
+        workers = [start("campaign", "worker", shares, k, 2) for k in (1, 0)]
+        for worker in workers:
+            self.assertEqual(worker.wait(timeout=300), 0, worker.communicate())
+        run(shares)
+        self.assertEqual(comparable(shares), self.rows)
+
+    def test_command_engine(self):
+        folder = self.folder / "command"
+        run(self.file, "--out", folder, "--engine", "command", "--workers", 2, "--submit", "{worker} >/dev/null 2>&1 &")
+        self.assertEqual(comparable(folder), self.rows)
+        self.assertEqual(len(list((folder / "results").glob("*.jsonl"))), 2)
+
+    def test_cases_keep_their_outputs_when_others_are_added(self):
+        more = """[[disperse]]
+key = "spacecraft.target.mass_sigma_kg"
+distribution = "uniform"
+low = 0.04
+high = 0.0400001
+"""
+        added = campaign_file(self.folder, "added.toml", seeds="1..11", values="[0.1, 0.0, 0.2]", general="samples_h = [39.01, 39.02]")
+        run(added, "--out", self.folder / "added", "--cases", "0-11", expect=75)
+        again = by_case(row for row in comparable(self.folder / "added") if row["state"] == "complete")
+        checked = 0
+        for key, row in by_case(self.rows).items():
+            if key in again:
+                self.assertEqual(again[key]["telemetry_sha256"], row["telemetry_sha256"])
+                checked += 1
+        self.assertGreaterEqual(checked, 6)
+        dispersed = campaign_file(self.folder, "dispersed.toml", rest=more)
+        run(dispersed, "--out", self.folder / "dispersed", "--cases", "0", expect=75)
+        self.assertEqual(rows_of(self.folder / "dispersed")[5]["spacecraft.servicer.mass_kg"], self.rows[5]["spacecraft.servicer.mass_kg"])
+
+    def test_rerun_proves_the_same_bits(self):
+        result = vbar("campaign", "rerun", self.reference, 13)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("same bits", result.stdout)
+        self.assertTrue((self.reference / "runs/000013/packets.lcmlog").exists())
+        self.assertTrue((self.reference / "runs/000013/report.html").exists())
+        self.assertEqual(vbar("campaign", "rerun", self.reference, 20).returncode, 2)
+
+    def test_rerun_reports_a_wrong_hash(self):
+        folder = self.folder / "wrong"
+        run(self.file, "--out", folder, "--cases", "4", expect=75)
+        (results,) = (folder / "results").glob("*.jsonl")
+        line = json.loads(results.read_text())
+        del line["crc32"]
+        line["commands_sha256"] = "0" * 64
+        text = json.dumps(line, separators=(",", ":"))
+        results.write_text(text[:-1] + ',"crc32":"%08x"}\n' % zlib.crc32(text.encode()))
+        result = vbar("campaign", "rerun", folder, 4)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("commands", result.stdout)
+
+    def test_failures_are_rows_and_stay_so(self):
+        folder = self.folder / "limits"
+        general = 'keep = "failed"\nsamples_h = [39.01, 39.02]'
+        limits = '[[pass]]\nkey = "samples.39.02h.sigma_m"\nmost = 0.0\n[require]\npass_rate_at_least = 0.5\n'
+        file = campaign_file(self.folder, "limits.toml", seeds="1..1", general=general, rest=limits)
+        result = vbar("campaign", "run", file, "--out", folder)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("requirement not met: 0 of 2", result.stdout)
+        for row in rows_of(folder):
+            self.assertEqual((row["state"], row["passed"], row["failed_limits"]), ("complete", "0", "samples.39.02h.sigma_m"))
+            self.assertTrue((folder / row["folder"] / "truth.csv").exists())
+        before = list((folder / "results").iterdir())
+        run(folder, expect=1)
+        self.assertEqual(list((folder / "results").iterdir()), before)
+
+    def test_over_time(self):
+        file = campaign_file(self.folder, "slow.toml", seeds="1..1", values="[0.0]", hours=2.25, general="case_time_limit_s = 0.2")
+        run(file, "--out", self.folder / "slow")
+        (row,) = rows_of(self.folder / "slow")
+        self.assertEqual((row["state"], row["passed"]), ("over_time", ""))
+        self.assertIn("0.2 s", row["reason"])
+
+
+class CampaignRefusals(unittest.TestCase):
+    def refused(self, folder, *parts, **keywords):
+        file = campaign_file(folder, **keywords)
+        result = vbar("campaign", "run", file, "--out", folder / "out")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        for part in parts:
+            self.assertIn(part, result.stderr)
+        self.assertFalse((folder / "out").exists())
+
+    def test_nothing_flies_of_a_campaign_with_a_wrong_case(self):
+        with scratch() as folder:
+            self.refused(folder, "case 0 ", "links.crosslink.los", "loss_probability",
+                         rest='[[sweep]]\nkey = "links.crosslink.los"\nvalues = [0.1]\n')
+            self.refused(folder, "case 1 (seed 1", LOSS, "from 0 to 1", values="[0.1, 1.5]")
+            self.refused(folder, "pass", "most", rest='[[pass]]\nkey = "dv_mps"\n')
+
+    def test_changed_copies_are_noticed(self):
+        with scratch() as folder:
+            file = campaign_file(folder, seeds="1..2")
+            run(file, "--out", folder / "out", "--cases", "0", expect=75)
+            (data,) = (folder / "out/bin/data/earth").glob("*finals*") or [None]
+            data.write_bytes(data.read_bytes() + b"\n")
+            result = vbar("campaign", "run", folder / "out")
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(data.name, result.stderr)
+
+    def test_a_campaign_is_flown_by_one_at_a_time(self):
+        with scratch() as folder:
+            file = campaign_file(folder, hours=2.25)
+            first = start("campaign", "run", file, "--out", folder / "out", "--quiet")
+            try:
+                while not list((folder / "out/attempts").glob("*.jsonl")):
+                    self.assertIsNone(first.poll())
+                    time.sleep(0.02)
+                second = vbar("campaign", "run", folder / "out")
+                self.assertEqual(second.returncode, 2, second.stdout)
+                self.assertIn(str(first.pid), second.stderr)
+                self.assertIn("flying", vbar("campaign", "status", folder / "out").stdout)
+            finally:
+                first.terminate()
+                self.assertEqual(first.wait(timeout=60), 75)
+                first.communicate()
+            self.assertEqual(list((folder / "out/flying").iterdir()), [])
+
+    def test_disk_full(self):
+        with scratch() as folder:
+            disk = folder / "disk"
+            disk.mkdir()
+            if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=128m", "tmpfs", disk], capture_output=True).returncode != 0:
+                self.skipTest("no small file system can be mounted here")
+            try:
+                file = campaign_file(folder)
+                run(file, "--out", disk / "out", "--cases", "0-1", expect=75)
+                filler = disk / "filler"
+                with filler.open("wb") as stream:
+                    try:
+                        while True:
+                            stream.write(b"\0" * 4096)
+                            stream.flush()
+                    except OSError:
+                        pass
+                result = vbar("campaign", "run", disk / "out")
+                self.assertEqual(result.returncode, 1, result.stdout)
+                self.assertIn("No space left on device", result.stderr)
+                filler.unlink()
+                run(disk / "out")
+                rows = rows_of(disk / "out")
+                self.assertEqual({row["state"] for row in rows}, {"complete"})
+                self.assertEqual(len(rows), 20)
+            finally:
+                subprocess.run(["umount", disk], check=True)
+
+
+class CampaignKills(unittest.TestCase):
+    """Kills at random instants, of a seed that is printed."""
+
+    def setUp(self):
+        seed = int(os.environ.get("VBAR_KILL_SEED", time.time_ns() % 1000000))
+        print(f"VBAR_KILL_SEED={seed}")
+        self.random = random.Random(seed)
+
+    def assert_undisturbed(self, folder, reference):
+        self.assertEqual(comparable(folder), comparable(reference))
+        lines = [json.loads(line) for file in (folder / "results").glob("*.jsonl") for line in file.read_text().splitlines()
+                 if line.endswith("}")]
+        self.assertEqual(sorted(line["case"] for line in lines), list(range(20)))
+        self.assertEqual({line["state"] for line in lines}, {"complete"})
+        self.assertEqual(list((folder / "flying").iterdir()), [])
+
+    def kill(self, pid):
+        try:
+            os.kill(pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+    def test_kills_leave_one_result_for_each_case(self):
+        with scratch() as folder:
+            file = campaign_file(folder, general="retries = 20")
+            run(file, "--out", folder / "reference")
+            out = folder / "out"
+            for _ in range(4):  # the whole campaign
+                flight = start("campaign", "run", file, "--out", out, "--jobs", 2, "--quiet")
+                time.sleep(self.random.uniform(0.0, 0.8))
+                flights = children_of(flight.pid)
+                self.kill(flight.pid)
+                flight.wait()
+                flight.communicate()
+                deadline = time.monotonic() + 20.0
+                while any(map(is_running, flights)) and time.monotonic() < deadline:
+                    time.sleep(0.01)
+                self.assertFalse(any(map(is_running, flights)), "flights outlived their worker")
+            flight = start("campaign", "run", file, "--out", out, "--jobs", 2, "--quiet")
+            for _ in range(4):  # single flights
+                time.sleep(self.random.uniform(0.0, 0.3))
+                for child in children_of(flight.pid)[:1]:
+                    self.kill(child)
+            self.assertEqual(flight.wait(timeout=300), 0, flight.communicate())
+            flight.communicate()
+            self.assert_undisturbed(out, folder / "reference")
+
+    def test_a_case_that_is_always_killed_is_lost(self):
+        with scratch() as folder:
+            file = campaign_file(folder, seeds="1..1", values="[0.0]", hours=2.25, general="retries = 1")
+            flight = start("campaign", "run", file, "--out", folder / "out", "--quiet")
+            while flight.poll() is None:
+                for child in children_of(flight.pid):
+                    self.kill(child)
+                time.sleep(0.01)
+            flight.communicate()
+            self.assertEqual(flight.returncode, 1)
+            (row,) = rows_of(folder / "out")
+            self.assertEqual((row["state"], row["attempts"]), ("lost", "2"))
+            self.assertIn("killed 2 times", row["reason"])
+            run(folder / "out", "--retry-failed")
+            (row,) = rows_of(folder / "out")
+            self.assertEqual((row["state"], row["attempts"]), ("complete", "3"))
+
+
+class CampaignSlurm(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        reason = slurm_cluster.why_not()
+        if reason:
+            raise unittest.SkipTest(reason)
+        cls.folder = cls.enterClassContext(scratch())
+        cls.file = campaign_file(cls.folder)
+        run(cls.file, "--out", cls.folder / "reference")
+        cls.cluster = cls.enterClassContext(slurm_cluster.cluster(cls.folder / "cluster", nodes=2, processors=1))
+        cls.environment = {"SLURM_CONF": cls.cluster.environment["SLURM_CONF"]}
+
+    def test_the_same_results_on_two_nodes(self):
+        out = self.folder / "two"
+        run(self.file, "--out", out, "--engine", "slurm", "--workers", 2, **self.environment)
+        self.assertEqual(comparable(out), comparable(self.folder / "reference"))
+        self.assertEqual(len(list((out / "results").glob("*slurm*.jsonl"))), 2)
+
+    def test_a_cancelled_job_and_a_killed_worker_go_on(self):
+        out = self.folder / "killed"
+        run(self.file, "--out", out, "--engine", "slurm", "--workers", 2, "--no-wait", **self.environment)
+        while not list((out / "results").glob("*.jsonl")):
+            time.sleep(0.05)
+        again = vbar("campaign", "run", out, "--engine", "slurm", **self.environment)
+        self.assertEqual(again.returncode, 2, again.stdout)
+        for pid in self.workers_of(out)[:1]:
+            os.kill(pid, signal.SIGKILL)
+        self.cluster.ask("scancel", "--user=root")
+        deadline = time.monotonic() + 60.0
+        while self.cluster.ask("squeue", "--noheader") and time.monotonic() < deadline:
+            time.sleep(0.1)
+        run(out, "--engine", "slurm", "--workers", 2, **self.environment)
+        self.assertEqual(comparable(out), comparable(self.folder / "reference"))
+
+    @staticmethod
+    def workers_of(out):
+        found = subprocess.run(["pgrep", "-f", f"campaign worker {re.escape(str(out))}"], capture_output=True, text=True).stdout
+        return [int(pid) for pid in found.split()]
+
+
+if __name__ == "__main__":
+    main()
