@@ -12,7 +12,7 @@ using fsw::orbit::CartesianState;
 
 constexpr std::size_t kStates = 4;
 constexpr std::size_t kPositions = 10;
-constexpr std::size_t kLeastPositions = 6;
+constexpr std::size_t kMinPositions = 6;
 
 /// Newton's divided differences: nodes may occur twice, with a derivative.
 struct Newton {
@@ -77,7 +77,7 @@ std::optional<CartesianState> interpolated(const Track& track, fsw::GpsTime time
   const auto exact = std::ranges::find(track.states, time, &TimedState::time);
   if (exact != track.states.end() && track.has_velocities) return exact->state;
   const auto states = states_about(track, time, track.has_velocities ? kStates : kPositions);
-  if (states.size() < (track.has_velocities ? 2 : kLeastPositions) || has_gap(track, states)) return std::nullopt;
+  if (states.size() < (track.has_velocities ? 2 : kMinPositions) || has_gap(track, states)) return std::nullopt;
   return polynomial_through(states, time, track.has_velocities).at(0.0);
 }
 

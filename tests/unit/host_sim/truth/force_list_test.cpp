@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "host_sim/truth/atmosphere/nrlmsise00.h"
+#include "host_sim/truth/forces/gravity_coefficients.h"
 #include "tests/unit/host_sim/truth/all_forces.h"
 
 namespace vbar::truth {
