@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "hil_drivers/testbeds.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/exit_codes.h"
@@ -97,7 +98,7 @@ std::optional<BranchPoint> branch_point(const FlownRun& run) {
 /// Only what is digital or recorded can be flown again.
 void refuse_testbeds(const AssembledMission& assembled) {
   for (const Source& source : assembled.sources()) {
-    if (source.kind != "digital" && source.kind != "recorded")
+    if (testbeds::find_testbed(source.kind) != nullptr)
       throw Refused(
           fmt::format("source {}: a run with the testbed {} cannot be flown again", source.name, source.kind));
   }
