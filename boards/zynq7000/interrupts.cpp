@@ -76,6 +76,10 @@ void interrupts_attach_urgent(unsigned id, InterruptHandler handler, void* conte
   enable(id, handler, context);
 }
 
+void interrupts_end(unsigned id) {
+  reg(kCpuEnd) = id;
+}
+
 std::uint32_t detail::exchange_priority_mask(std::uint32_t mask) {
   const std::uint32_t before = reg(kCpuPriorityMask);
   reg(kCpuPriorityMask) = mask;

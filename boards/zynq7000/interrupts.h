@@ -18,6 +18,9 @@ void interrupts_attach(unsigned id, InterruptHandler handler, void* context);
 /// The same for an interrupt of the core's own timers (16 to 31), also during a PeripheralsDeferred.
 void interrupts_attach_urgent(unsigned id, InterruptHandler handler, void* context);
 
+/// For a handler that does not return: ends interrupt `id`, which it serves.
+void interrupts_end(unsigned id);
+
 namespace detail {
 /// Replaces the priority mask of the processor's interface; the mask before.
 std::uint32_t exchange_priority_mask(std::uint32_t mask);
