@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Campaigns: the same results however they were flown, one result for each case whatever was killed, nothing flown of a campaign with
 a wrong case."""
-import contextlib
 import csv
+import errno
 import json
 import os
 import random
@@ -36,7 +36,7 @@ sigma = 2.0
 """
 
 
-def campaign_file(folder, name="campaign.toml", seeds="1..10", values="[0.0, 0.2]", hours=0.02, general="", rest=""):
+def campaign_file(folder, name="campaign.toml", seeds="1..10", values="[0.0, 0.2]", hours=0.05, general="", rest=""):
     file = folder / name
     file.write_text(CAMPAIGN.format(mission=SOURCE / "missions/experiment3.toml", seeds=seeds, values=values, hours=hours,
                                     general=general, rest=rest, loss=LOSS))
@@ -69,7 +69,7 @@ class Campaign(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = cls.enterClassContext(scratch())
         cls.reference = cls.folder / "reference"
-        cls.file = campaign_file(cls.folder, general="samples_h = [39.01, 39.02]")
+        cls.file = campaign_file(cls.folder, general="samples_h = [39.02, 39.05]")
         run(cls.file, "--out", cls.reference, "--jobs", 1)
         cls.rows = comparable(cls.reference)
 
@@ -78,7 +78,7 @@ class Campaign(unittest.TestCase):
         self.assertEqual({row["state"] for row in self.rows}, {"complete"})
         self.assertEqual({row["passed"] for row in self.rows}, {"1"})
         self.assertEqual(len({row["telemetry_sha256"] for row in self.rows}), 20)
-        self.assertGreater(float(self.rows[0]["samples.39.02h.sigma_m"]), 0.0)
+        self.assertGreater(float(self.rows[0]["samples.39.05h.sigma_m"]), 0.0)
 
     def test_workers_and_order_change_nothing(self):
         run(self.file, "--out", self.folder / "two", "--jobs", 2)
@@ -104,7 +104,7 @@ distribution = "uniform"
 low = 0.04
 high = 0.0400001
 """
-        added = campaign_file(self.folder, "added.toml", seeds="1..11", values="[0.1, 0.0, 0.2]", general="samples_h = [39.01, 39.02]")
+        added = campaign_file(self.folder, "added.toml", seeds="1..11", values="[0.1, 0.0, 0.2]", general="samples_h = [39.02, 39.05]")
         run(added, "--out", self.folder / "added", "--cases", "0-11", expect=75)
         again = by_case(row for row in comparable(self.folder / "added") if row["state"] == "complete")
         checked = 0
@@ -140,14 +140,14 @@ high = 0.0400001
 
     def test_failures_are_rows_and_stay_so(self):
         folder = self.folder / "limits"
-        general = 'keep = "failed"\nsamples_h = [39.01, 39.02]'
-        limits = '[[pass]]\nkey = "samples.39.02h.sigma_m"\nmost = 0.0\n[require]\npass_rate_at_least = 0.5\n'
+        general = 'keep = "failed"\nsamples_h = [39.02, 39.05]'
+        limits = '[[pass]]\nkey = "samples.39.05h.sigma_m"\nmost = 0.0\n[require]\npass_rate_at_least = 0.5\n'
         file = campaign_file(self.folder, "limits.toml", seeds="1..1", general=general, rest=limits)
         result = vbar("campaign", "run", file, "--out", folder)
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("requirement not met: 0 of 2", result.stdout)
         for row in rows_of(folder):
-            self.assertEqual((row["state"], row["passed"], row["failed_limits"]), ("complete", "0", "samples.39.02h.sigma_m"))
+            self.assertEqual((row["state"], row["passed"], row["failed_limits"]), ("complete", "0", "samples.39.05h.sigma_m"))
             self.assertTrue((folder / row["folder"] / "truth.csv").exists())
         before = list((folder / "results").iterdir())
         run(folder, expect=1)
@@ -181,7 +181,7 @@ class CampaignRefusals(unittest.TestCase):
         with scratch() as folder:
             file = campaign_file(folder, seeds="1..2")
             run(file, "--out", folder / "out", "--cases", "0", expect=75)
-            data = folder / "out/bin/data/earth/eop_2009_2013.csv"
+            data = next((folder / "out/bin/data/earth").glob("*.csv"))
             data.write_bytes(data.read_bytes() + b"\n")
             result = vbar("campaign", "run", folder / "out")
             self.assertEqual(result.returncode, 1)
@@ -209,15 +209,20 @@ class CampaignRefusals(unittest.TestCase):
         with scratch() as folder:
             disk = folder / "disk"
             disk.mkdir()
-            if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=128m", "tmpfs", disk], capture_output=True).returncode != 0:
+            if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=192m", "tmpfs", disk], capture_output=True).returncode != 0:
                 self.skipTest("no small file system can be mounted here")
             try:
                 file = campaign_file(folder)
                 run(file, "--out", disk / "out", "--cases", "0-1", expect=75)
                 filler = disk / "filler"
-                with filler.open("wb", buffering=0) as stream, contextlib.suppress(OSError):
-                    while True:
-                        stream.write(b"\0" * 4096)
+                descriptor = os.open(filler, os.O_WRONLY | os.O_CREAT)
+                try:
+                    while os.write(descriptor, b"\0" * 4096) > 0:
+                        pass
+                except OSError as error:
+                    self.assertEqual(error.errno, errno.ENOSPC)
+                finally:
+                    os.close(descriptor)
                 result = vbar("campaign", "run", disk / "out")
                 self.assertEqual(result.returncode, 1, result.stdout)
                 self.assertIn("No space left on device", result.stderr)
