@@ -4,7 +4,7 @@
     ci/verify_resume.py BINARY [--rows NAME,...] [--kills 20] [--costs 5] [--seed 18] [--json FILE]
 
 BINARY is a built vbar; the working directory is the root of the repository. A row is a mission and a flight computer. Its flight is killed
-by SIGKILL at `kills` instants, uniform over the time of an undisturbed flight; every time but the first it is a resume that is killed, and the
+by SIGKILL at `kills` instants, uniform over the log of an undisturbed flight; every time but the first it is a resume that is killed, and the
 last resume is left to end. Then every file has to be that of the undisturbed flight, but for the fields of WALL_CLOCK. `costs` further
 flights are killed once: the processor time of the flight until then, children included, against that of its resume until it has reached
 the end of the log. The exit status is 1 if a file differs.
@@ -70,31 +70,34 @@ class Row:
         if run.returncode != 0:
             raise SystemExit(f"{self.name}: the undisturbed flight failed: {errors}")
         self.wall_s = time.monotonic() - begun
+        self.log_bytes = (self.whole / "packets.lcmlog").stat().st_size
 
     def is_complete(self, folder):
         summary = folder / "summary.json"
         return summary.exists() and json.loads(summary.read_text())["complete"]
 
-    def kill(self, folder, after_s):
-        """Flies or resumes, and kills it. Its processor time, or None if it ended before."""
-        if (folder / "mission.toml").exists():
+    def kill(self, folder, share):
+        """Flies or resumes, and kills it when its log has this share of its final length. Its processor time, or None if it ended before."""
+        resuming = folder.with_name(folder.name + ".resuming")
+        is_resume = (folder / "mission.toml").exists()
+        if is_resume:
             run = self.start("resume", folder, "--quiet")
         else:
             shutil.rmtree(folder, ignore_errors=True)
             run = self.start(*self.fly, "--out", folder)
-        try:
-            run.wait(after_s)
-            _, errors = run.communicate()
-            if run.returncode != 0:
-                raise SystemExit(f"{self.name}: exit status {run.returncode}: {errors}")
-            return None
-        except subprocess.TimeoutExpired:
-            run.send_signal(signal.SIGSTOP)
-            spent = tree_s(run.pid)
-            run.send_signal(signal.SIGKILL)
-            run.send_signal(signal.SIGCONT)
-            run.communicate()
-            return spent
+        log = (resuming if is_resume else folder) / "packets.lcmlog"
+        while run.poll() is None:
+            if log.exists() and log.stat().st_size >= share * self.log_bytes:
+                run.send_signal(signal.SIGSTOP)
+                spent = tree_s(run.pid)
+                run.send_signal(signal.SIGKILL)
+                run.communicate()
+                return spent
+            time.sleep(0.0005)
+        _, errors = run.communicate()
+        if run.returncode != 0:
+            raise SystemExit(f"{self.name}: exit status {run.returncode}: {errors}")
+        return None
 
     def resume(self, folder):
         """Resumes to the end. Processor time until the end of the log."""
@@ -116,7 +119,7 @@ class Row:
         folder = self.folder / "killed"
         met = 0
         while met < kills and not self.is_complete(folder):
-            met += self.kill(folder, draw.uniform(0.0, self.wall_s)) is not None
+            met += self.kill(folder, draw.random()) is not None
         if not self.is_complete(folder):
             self.resume(folder)
         found = differences(folder, self.whole)
@@ -129,7 +132,7 @@ class Row:
         pairs = []
         while len(pairs) < number:
             folder = self.folder / "once"
-            spent = self.kill(folder, draw.uniform(0.3, 0.9) * self.wall_s)
+            spent = self.kill(folder, draw.uniform(0.3, 0.9))
             if spent is not None:
                 pairs.append((spent, self.resume(folder)))
             shutil.rmtree(folder)

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <ctime>
+#include <optional>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -20,6 +21,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kThisProgram = "/proc/self/exe";
+
+/// Nothing if it cannot be read. A resume needs it twice, and it takes a tenth of a second.
+const std::optional<std::string>& program_sha256() {
+  static const std::optional<std::string> sha256 = files::sha256_of_file(kThisProgram);
+  return sha256;
+}
 
 std::string host_name() {
   std::array<char, 256> name{};
@@ -63,7 +70,7 @@ report::Provenance provenance_of(const mission::Mission& mission, const std::vec
   provenance.epoch_utc = truth::format_utc(mission.epoch);
   provenance.overrides = overrides;
   provenance.mission_sha256 = files::sha256_of(mission_text);
-  provenance.program_sha256 = files::sha256_of_file(kThisProgram).value_or("");
+  provenance.program_sha256 = program_sha256().value_or("");
   const std::string file = flight_software_file(flying_spacecraft(mission));
   if (!file.empty()) provenance.flight_software = report::digest_of(file);
   return provenance;
@@ -83,8 +90,7 @@ std::vector<report::FileDigest> data_read() {
 std::vector<std::string> changes_since(const report::Provenance& then, const fs::path& mission_copy,
                                        const std::string& flight_software_now) {
   std::vector<std::string> changes;
-  const auto program = files::sha256_of_file(kThisProgram);
-  if (!then.program_sha256.empty() && program != then.program_sha256)
+  if (!then.program_sha256.empty() && program_sha256() != then.program_sha256)
     changes.push_back(
         fmt::format("this program (commit {}) is not the one that flew (commit {})", kBuildCommit, then.commit));
   compare(mission_copy.string(), then.mission_sha256, files::sha256_of_file(mission_copy), changes);
