@@ -1,6 +1,6 @@
 #pragma once
-// What a board retains of its flight through a reset: a record in memory that a reset leaves as it is, of which a checksum
-// states whether it did.
+// What a board retains of its flight through a reset: a record in memory that a reset leaves as it is, of which a
+// checksum states whether it did.
 
 #include <array>
 #include <bit>

@@ -34,7 +34,8 @@ bool is_emulated() {
 
 void on_expiry(void* /*context*/) {
   print("\nWATCHDOG expired\n");
-  // QEMU 7.2 retains the priority of an interrupt that has not ended through the reset, and takes no other one after it.
+  // QEMU 7.2 retains the priority of an interrupt that has not ended through the reset, and takes no other one after
+  // it.
   interrupts_end(kInterruptPrivateWatchdog);
   reset_by_watchdog();
 }

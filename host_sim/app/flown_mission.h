@@ -19,8 +19,8 @@ namespace vbar::app {
 /// "path=value", in the order in which they were given.
 [[nodiscard]] std::vector<std::string> overrides_of_run(const std::filesystem::path& run_folder);
 
-/// Throws Refused for a mission without a flight computer and, unless the folder is trusted, for a library, image, device or
-/// address of the flight computer that is not among the overrides `given` now.
+/// Throws Refused for a mission without a flight computer and, unless the folder is trusted, for a library, image,
+/// device or address of the flight computer that is not among the overrides `given` now.
 void check_trust(const mission::Mission& mission, const std::filesystem::path& run_folder,
                  std::span<const std::string> given, bool is_trusted);
 

@@ -27,7 +27,8 @@ std::vector<ConsistencyFigure> figures_of(const RunRecord& record) {
 }
 
 /// Mean of the figures' values or dimensions.
-std::optional<double> mean(const std::vector<ConsistencyFigure>& figures, Kind kind, double ConsistencyFigure::*member) {
+std::optional<double> mean(const std::vector<ConsistencyFigure>& figures, Kind kind,
+                           double ConsistencyFigure::*member) {
   double sum = 0.0, count = 0.0;
   for (const ConsistencyFigure& figure : figures) {
     if (figure.kind != kind) continue;

@@ -80,7 +80,8 @@ class Article {
   }
 
   void step(std::int64_t now_ns) {
-    const bool has_plane = norm(cross(vector(states_.servicer_position_eci), vector(states_.servicer_velocity_eci))) > 0.0;
+    const bool has_plane =
+        norm(cross(vector(states_.servicer_position_eci), vector(states_.servicer_velocity_eci))) > 0.0;
     if (states_time_ns_ != now_ns || tick_.period_ns <= 0 || !has_plane) return;
     const Relative relative = relative_state();
     report(now_ns, relative);

@@ -1,6 +1,6 @@
-// A test article for the supervision of steps: the step at GPS time t in nanoseconds takes t passes of a loop, so that a
-// test chooses between a short step, one beyond its budget, and one that does not end in the lifetime of a spacecraft.
-// It sends nothing; the board adds the step report.
+// A test article for the supervision of steps: the step at GPS time t in nanoseconds takes t passes of a loop, so that
+// a test chooses between a short step, one beyond its budget, and one that does not end in the lifetime of a
+// spacecraft. It sends nothing; the board adds the step report.
 
 #include <limits>
 #include <new>
