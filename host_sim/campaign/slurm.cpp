@@ -1,6 +1,7 @@
 #include "host_sim/campaign/slurm.h"
 
 #include <charconv>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -18,6 +19,11 @@ constexpr std::size_t kDefaultMaxArraySize = 1001;
 std::string job_name(const Folder& folder) {
   const std::string path = std::filesystem::weakly_canonical(folder.root()).string();
   return "vbar-" + files::sha256_of(path).substr(0, 16);
+}
+
+/// The jobs that were submitted, one a line.
+std::filesystem::path jobs_file(const Folder& folder) {
+  return folder.submissions() / "slurm_jobs.txt";
 }
 
 bool has_slurm() {
@@ -48,11 +54,13 @@ std::string submit_to_slurm(const Submission& submission) {
   const CommandResult result = run_command({"/bin/sh", "-c", command});
   if (!result.succeeded) throw app::Refused("Slurm does not take the workers: " + result.trouble);
   const std::string job = result.output.substr(0, result.output.find_first_of(";\n"));
+  std::ofstream(jobs_file(submission.folder), std::ios::app) << job << '\n';
   return fmt::format("Slurm job {}: {} workers for {} cases", job, submission.workers, submission.cases.size());
 }
 
 std::vector<std::string> slurm_jobs(const Folder& folder) {
-  if (!has_slurm()) return {};
+  // A computer may have Slurm's programs without a cluster; a campaign that was never submitted does not depend on one.
+  if (!std::filesystem::exists(jobs_file(folder)) || !has_slurm()) return {};
   const CommandResult result =
       run_command({"squeue", "--noheader", "--array", "--format=%F_%K %T", "--name=" + job_name(folder)});
   if (!result.succeeded) throw std::runtime_error(result.trouble);

@@ -13,8 +13,8 @@ namespace vbar::campaign {
 /// One less than Slurm's MaxArraySize.
 [[nodiscard]] std::size_t max_slurm_array();
 
-/// "12_3 RUNNING"; a campaign's jobs have a name of their own, made of its folder. Empty without Slurm. Throws
-/// std::runtime_error if this computer has Slurm but squeue does not answer.
+/// "12_3 RUNNING"; a campaign's jobs have a name of their own, made of its folder. Empty without Slurm, and of a
+/// campaign that was never submitted. Throws std::runtime_error if this computer has Slurm but squeue does not answer.
 [[nodiscard]] std::vector<std::string> slurm_jobs(const Folder& folder);
 
 }  // namespace vbar::campaign
