@@ -61,6 +61,8 @@ FlownRun read_run(const fs::path& folder, bool trust) {
   FlownRun run{folder, summary_of_run(folder), overrides_of_run(folder), {}};
   run.mission = sensors::load_mission(folder / kMissionCopy, run.overrides);
   check_trust(run.mission, folder, {}, trust);
+  if (!run.mission.record.packets)
+    throw Refused(folder.string() + ": a run with record.packets = false has no log to be compared with");
   refuse_changes(run);
   return run;
 }

@@ -309,6 +309,13 @@ class Resume(Resuming):
             (here / "photo.jpg").write_text("")
             self.expect(vbar("resume", here), REFUSED, "summary.json: no such file")
             self.assertEqual(files_of(here), ["photo.jpg"])
+        unlogged = self.folder / "unlogged"
+        run = start(*self.run_arguments(unlogged, "record.packets=false", "clock.mode=real_time"))
+        while not (unlogged / "mission.toml").exists() and run.poll() is None:
+            time.sleep(0.01)
+        run.kill()
+        run.communicate()
+        self.expect(vbar("resume", unlogged), REFUSED, "record.packets = false has no log")
         folder = self.cut(100, 0)
         beside = folder.with_name(folder.name + ".resuming")
         beside.mkdir()
