@@ -31,7 +31,9 @@ std::vector<ReceiverEpoch> flown(const std::optional<Upset>& upset, const std::s
   ReceiverWitness witness;
   std::vector<ReceiverEpoch> found;
   for (int n = 0; n < epochs; ++n) {
-    if (upset && n == kUpsetEpoch) EXPECT_TRUE(receiver.upset(*upset));
+    if (upset && n == kUpsetEpoch) {
+      EXPECT_TRUE(receiver.upset(*upset));
+    }
     const twins::gnss::BodyTruth truth = test::in_orbit(kPeriod_s * n);
     const std::vector<std::uint8_t> bytes = receiver.bytes_at(truth);
     if (lost.contains(n)) continue;
@@ -50,7 +52,9 @@ TEST(ReceiverWitness, SeesNothingWhereNothingHappens) {
   for (const ReceiverEpoch& epoch : flown(std::nullopt, {17, 25})) {
     EXPECT_TRUE(epoch.slips.empty());
     EXPECT_EQ(epoch.restarted, 0U);
-    if (epoch.clock_jump_s) EXPECT_LT(std::abs(*epoch.clock_jump_s), 1e-7);
+    if (epoch.clock_jump_s) {
+      EXPECT_LT(std::abs(*epoch.clock_jump_s), 1e-7);
+    }
   }
 }
 
@@ -99,7 +103,9 @@ TEST(ReceiverWitness, SeesAReceiverThatBeginsAgain) {
   bool is_seen = false;
   for (const ReceiverEpoch& epoch : epochs) {
     const double t_s = fsw::seconds(epoch.time - test::kGnssStart);
-    if (t_s < kPeriod_s * kUpsetEpoch - 1.0) EXPECT_EQ(epoch.restarted, 0U);
+    if (t_s < kPeriod_s * kUpsetEpoch - 1.0) {
+      EXPECT_EQ(epoch.restarted, 0U);
+    }
     if (epoch.known > 0 && epoch.restarted == epoch.known) {
       is_seen = true;
       EXPECT_LE(t_s, kPeriod_s * (kUpsetEpoch + 1) + 1.0);
