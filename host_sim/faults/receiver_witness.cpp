@@ -20,6 +20,8 @@ constexpr double kLockTolerance_s = 1.0;
 constexpr double kLongestGap_s = 15.0;
 constexpr std::size_t kPastSamples = 5;
 constexpr double kLongestPast_s = 70.0;
+/// Cycles: the continuation amplifies the noise of single phases 16-fold, which reaches 0.6 at low elevations.
+constexpr double kMinSlip = 0.75;
 
 /// The lower one of an even number; `values` must not be empty.
 double median(std::vector<double> values) {
@@ -112,7 +114,7 @@ void ReceiverWitness::find_slips(ReceiverEpoch& found) {
   const double common_m = median(std::move(differences_m));
   for (Carrier* const carrier : compared) {
     const double cycles = (*carrier->difference_m - common_m) / fsw::gnss::wavelength(carrier->last.signal);
-    if (std::abs(cycles) < 0.5) continue;
+    if (std::abs(cycles) < kMinSlip) continue;
     found.slips.push_back({carrier->last.satellite, cycles});
     carrier->past.erase(carrier->past.begin(), carrier->past.end() - 1);  // the next differences would contain it again
   }
