@@ -85,7 +85,8 @@ TEST(ReceiverWitness, SeesASlipOfOneCycleInTheEpochInWhichItHappens) {
   }
 }
 
-/// Each slip is seen with respect to that of another carrier, whose wavelength may differ: it need not be a whole number.
+/// Each slip is seen with respect to that of another carrier, whose wavelength may differ: it need not be a whole
+/// number.
 TEST(ReceiverWitness, SeesSlipsOfAllByDifferentCycles) {
   const std::vector<ReceiverEpoch> epochs = flown(Upset{Upset::Kind::kCycleSlip, 4.0, "all"});
   const auto found = std::ranges::find_if(epochs, is_upset);
