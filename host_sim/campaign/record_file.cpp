@@ -28,6 +28,7 @@ std::string checksum_of(std::string_view text) {
 std::optional<Json> object_of(std::string_view line) {
   const std::size_t end = kChecksum.size() + kDigits + 2;  // the quote and the brace
   if (line.size() < end || line.substr(line.size() - end, kChecksum.size()) != kChecksum) return std::nullopt;
+  if (!line.ends_with("\"}")) return std::nullopt;
   const std::string body = std::string(line.substr(0, line.size() - end)) + "}";
   if (line.substr(line.size() - kDigits - 2, kDigits) != checksum_of(body)) return std::nullopt;
   Json object = Json::parse(body, nullptr, false);

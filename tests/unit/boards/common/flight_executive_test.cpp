@@ -218,7 +218,7 @@ TEST_F(FlightExecutiveTest, AStepBeyondItsBudgetIsTheLastOne) {
   EXPECT_EQ(testing::fake_gnc_steps(), steps);
   EXPECT_EQ(report_of(on(FrameType::kPoll, 0, 0, {}, false, kSession + 1)).count, 1000) << "the answer remains";
   EXPECT_EQ(hello(kSession + 2), "unit") << "the next session flies";
-  EXPECT_EQ(tick(0).size(), 2U);
+  EXPECT_EQ(on(FrameType::kData, 0, 0, tick_packet(0, 0), true, kSession + 2).size(), 2U);
 }
 
 TEST_F(FlightExecutiveTest, AHelloWithoutABudgetLeavesThatOfTheBoard) {

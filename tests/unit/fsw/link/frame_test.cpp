@@ -113,7 +113,7 @@ TEST(Frame, AnotherVersionTypeOrFlagIsTheWrongType) {
   const struct {
     std::size_t at;
     std::uint8_t value;
-  } cases[] = {{0, 0}, {0, 2}, {1, 0}, {1, 9}, {1, 255}, {12, 4}, {12, 0x80}, {13, 1}};
+  } cases[] = {{0, 0}, {0, 2}, {1, 0}, {1, 12}, {1, 255}, {12, 4}, {12, 0x80}, {13, 1}};
   for (const auto& c : cases) {
     Bytes frame = written(example_header(), {});
     frame[c.at] = c.value;

@@ -116,10 +116,11 @@ TEST(FaultKeys, WhatTheMissionCannotApplyIsRefused) {
       {"kind = \"silent\"\nunit = \"gnss\"\nspacecraft = \"moon\"\nat_h = 0.5\n",
        "accepted: servicer, or the spacecraft that it observes"},
       {"kind = \"silent\"\nunit = \"navigation\"\nat_h = 3.0\n", "accepted: a time of the run"},
-      {"kind = \"silent\"\nunit = \"navigation\"\n", "accepted: a number from 0 to 87660"},
+      {"kind = \"silent\"\nunit = \"navigation\"\n", "accepted: a number from 0 to 2000"},
       {"kind = \"silent\"\nunit = \"navigation\"\nat_h = 0.5\nevent = \"burn:1\"\n",
        "accepted: at_h or event, not both"},
-      {"kind = \"silent\"\nunit = \"navigation\"\nat_h = 0.5\nafter_s = 1.0\n", "at_h, for_s, unit or spacecraft"},
+      {"kind = \"silent\"\nunit = \"navigation\"\nat_h = 0.5\nafter_s = 1.0\n",
+       "event, at_h, for_s, spacecraft or unit"},
       {"kind = \"silent\"\nunit = \"navigation\"\nevent = \"first_fix\"\n", "that navigates by carrier phase"},
       {"kind = \"silent\"\nunit = \"navigation\"\nevent = \"waypoint:7\"\n", "accepted: a waypoint of the run"},
       {"kind = \"silent\"\nunit = \"navigation\"\nevent = \"burn:0\"\n", "or range_below_m:X with X above 0"},
@@ -134,7 +135,7 @@ TEST(FaultKeys, WhatTheMissionCannotApplyIsRefused) {
        "accepted: a direction"},
       {"kind = \"thrust_scale\"\nat_h = 0.5\nvalue = -0.1\n", "accepted: a number from 0 to 10"},
       {"kind = \"thrust_scale\"\nat_h = 0.5\nvalue = 0.5\nunit = \"thruster\"\n",
-       "accepted: kind, name, at_h, for_s, value or reported"},
+       "accepted: kind, name, event, at_h, for_s, value or reported"},
   };
   for (const Refused& one : refused) {
     const std::string message = message_of(with_fault(one.keys));

@@ -263,6 +263,7 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
                           "flight_computer", "flight_software", "camera", "gnss", "navigation", "target", "simulated_s",
                           "wall_s", "speed_factor", "navigation_error_m", "navigation_velocity_error_mps",
                           "attitude_error_deg", "first_fix_s", "static_floor_m", "navigation_nees",
+                          "navigation_nees_dimension", "navigation_nis", "navigation_nis_dimension", "samples",
                           "bearing_error_arcsec", "star_attitude_error_arcsec", "sensor_figures", "dv_mps", "maneuvers",
                           "commands_sha256", "telemetry_sha256", "health", "flight_step", "link", "deadlines",
                           "sources", "wall_share", "data_notes", "provenance", "testbeds", "waypoints"));

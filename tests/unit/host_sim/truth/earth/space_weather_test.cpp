@@ -139,7 +139,8 @@ TEST_F(SpaceWeatherFile, IsReadWhenWhole) {
 }
 
 TEST_F(SpaceWeatherFile, ErrorsNameFileAndLine) {
-  EXPECT_THAT(message_for("a,b\n"), HasSubstr(file_.string() + ":1: found \"a,b\", expected the columns mjd_utc,"));
+  EXPECT_THAT(message_for("a,b\n"),
+              HasSubstr(file_.string() + ":1: found \"a,b\", expected space weather in one of the formats"));
   EXPECT_THAT(message_for(header_ + rows_ + "55005,1,2,3,4,5,6,7,8,5,70,71\n"),
               HasSubstr(":7: day 55005 follows day 55003"));
   EXPECT_THAT(message_for(header_ + rows_ + "55004,1,2,3,4,5,6,7,8,5,70\n"), HasSubstr(":7: found \"55004,"));
