@@ -171,11 +171,12 @@ BuiltImage built_image(Target target) {
 std::string find_image(const FlightComputerOptions& options) {
   namespace fs = std::filesystem;
   std::error_code error;
+  const auto [built, installed, preset] = built_image(options.target);
   if (!options.image.empty()) {
     if (fs::is_regular_file(options.image, error)) return options.image;
-    throw FlightComputerError("flight_computer.image '" + options.image + "': there is no such file");
+    throw FlightComputerError("flight_computer.image '" + options.image +
+                              "': there is no such file (vbar's own is built by the CMake preset '" + preset + "')");
   }
-  const auto [built, installed, preset] = built_image(options.target);
   const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (fs::is_regular_file(here / installed, error)) return (here / installed).lexically_normal().string();
   const fs::path image = here / built;
