@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include <boost/math/distributions/binomial.hpp>
 
@@ -16,10 +15,16 @@ namespace {
 template <class Reached>
 std::size_t first_rank(std::size_t count, double share, const Reached& reached) {
   const boost::math::binomial_distribution<double> below(static_cast<double>(count), share);
-  const auto ranks = std::views::iota(std::size_t{0}, count);
-  const auto found = std::ranges::partition_point(
-      ranks, [&](std::size_t k) { return !reached(boost::math::cdf(below, static_cast<double>(k))); });
-  return static_cast<std::size_t>(found - ranks.begin());
+  std::size_t first = 0, end = count;
+  while (first < end) {
+    const std::size_t middle = first + (end - first) / 2;
+    if (reached(boost::math::cdf(below, static_cast<double>(middle)))) {
+      end = middle;
+    } else {
+      first = middle + 1;
+    }
+  }
+  return first;
 }
 
 }  // namespace

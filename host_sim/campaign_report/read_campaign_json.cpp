@@ -91,7 +91,7 @@ std::vector<Limit> limits_of(const Object& object) {
     Limit* same = nullptr;
     for (Limit& other : limits)
       if (other.key == limit.key) same = &other;
-    if (same == nullptr) same = &limits.emplace_back(limit.key, std::nullopt, std::nullopt);
+    if (same == nullptr) same = &limits.emplace_back(Limit{limit.key, std::nullopt, std::nullopt});
     if (limit.max) same->max = same->max ? std::min(*same->max, *limit.max) : *limit.max;
     if (limit.min) same->min = same->min ? std::max(*same->min, *limit.min) : *limit.min;
   }

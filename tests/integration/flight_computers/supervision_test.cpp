@@ -89,7 +89,7 @@ TEST_P(Supervision, AStepThatDoesNotEndIsEndedByTheWatchdogAndTheHostIsToldWhy) 
 }
 
 INSTANTIATE_TEST_SUITE_P(Links, Supervision, testing::Values(LinkKind::kSerial, LinkKind::kUdp),
-                         [](const auto& info) { return std::string(name_of(info.param)); });
+                         [](const auto& of) { return std::string(name_of(of.param)); });
 
 }  // namespace
 }  // namespace vbar::pil
