@@ -17,7 +17,6 @@ namespace {
 constexpr double kGpsEpochJulianDay = 2444244.5;  // 1980-01-06
 constexpr std::int64_t kTaiMinusGps_ns = 19 * fsw::kNanosecondsPerSecond;
 constexpr std::int64_t kNanosecondsPerDay = 86400 * fsw::kNanosecondsPerSecond;
-constexpr double kModifiedJulianZero = 2400000.5;
 
 // A span of time as whole days (the larger part) and the remainder, so that neither loses digits to the other.
 JulianDate date_after(double julian_day, std::int64_t ns, double seconds) {
