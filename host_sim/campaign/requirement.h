@@ -7,9 +7,6 @@
 
 namespace vbar::campaign {
 
-/// Lower Clopper-Pearson bound, two-sided, of a probability of which `passed` of `cases` independent trials succeeded.
-[[nodiscard]] double lower_bound(std::size_t passed, std::size_t cases, double confidence);
-
 /// One sentence; `met`: whether the bound reaches the required pass rate. Cases that failed count as not passed.
 struct RequirementVerdict {
   bool met = false;

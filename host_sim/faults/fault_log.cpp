@@ -161,7 +161,7 @@ void FaultLog::look_at_receiver(State& state, GpsTime time) {
       // No carrier of before goes on.
       if (state.fault.kind == FaultKind::kReceiverReset && !state.over && epoch.known > 0 &&
           epoch.restarted == epoch.known) {
-        witness_effect(state, time, fmt::format("{} carriers, all locked anew", epoch.carriers));
+        witness_effect(state, time, fmt::format("{} carriers, all locked again", epoch.carriers));
         witness_end(state, time);
       }
     }

@@ -75,8 +75,6 @@ TEST_P(Supervision, AStepWithinItsBudgetPassesAndOneBeyondIsAFailureWithBothNumb
 }
 
 TEST_P(Supervision, AStepThatDoesNotEndIsEndedByTheWatchdogAndTheHostIsToldWhy) {
-  // After a reset the emulated UART0 did not answer (docs/board_bringup.md).
-  if (GetParam() == LinkKind::kSerial) GTEST_SKIP() << "over Ethernet only";
   (void)fly(0, kShort);
   const auto start = std::chrono::steady_clock::now();
   const std::string text = failure(1, kEndless);

@@ -167,7 +167,7 @@ class Receivers(unittest.TestCase):
 
     def test_witnesses_decode_what_was_delivered(self):
         for name, evidence in (("slip", r"2 carriers of 1 satellites jump, the first by (0\.[7-9]|1\.[0-2])\d cycles"),
-                               ("reset of the target", r"\d\d carriers, all locked anew"),
+                               ("reset of the target", r"\d\d carriers, all locked again"),
                                ("clock", r"pseudoranges jump by (1\.9|2)\d*e-05 s"),
                                ("second burn at half size", r"1 burns, the last at 0\.(49|50)\d* of its size")):
             row = self.faults[name]

@@ -7,6 +7,7 @@
 
 #include "host_sim/campaign/requirement.h"
 #include "host_sim/campaign/result.h"
+#include "host_sim/campaign_report/pass_rate.h"
 #include "host_sim/report/summary_json.h"
 
 namespace vbar::campaign {
@@ -71,10 +72,10 @@ TEST(Criteria, AreNotMetByANumberThatIsMissing) {
 
 // Clopper and Pearson (1934), 95 % two-sided, as in published tables.
 TEST(Requirement, IsJudgedByTheLowerClopperPearsonBound) {
-  EXPECT_NEAR(100.0 * lower_bound(20, 20, 0.95), 83.16, 0.005);
-  EXPECT_NEAR(100.0 * lower_bound(99, 100, 0.95), 94.55, 0.005);
-  EXPECT_NEAR(100.0 * lower_bound(997, 1000, 0.95), 99.13, 0.005);
-  EXPECT_EQ(lower_bound(0, 10, 0.95), 0.0);
+  EXPECT_NEAR(100.0 * campaign_report::pass_rate(20, 20, 0.95).lower, 83.16, 0.005);
+  EXPECT_NEAR(100.0 * campaign_report::pass_rate(99, 100, 0.95).lower, 94.55, 0.005);
+  EXPECT_NEAR(100.0 * campaign_report::pass_rate(997, 1000, 0.95).lower, 99.13, 0.005);
+  EXPECT_EQ(campaign_report::pass_rate(0, 10, 0.95).lower, 0.0);
   EXPECT_TRUE(judge({0.83, 0.95}, 20, 20, true).met);
   EXPECT_FALSE(judge({0.84, 0.95}, 20, 20, true).met);
   EXPECT_FALSE(judge({0.5, 0.95}, 20, 20, false).met) << "of a Latin hypercube no bound is known";

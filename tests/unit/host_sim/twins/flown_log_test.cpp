@@ -175,7 +175,7 @@ TEST_F(FlownLogFile, MissingRecordsAreNamed) {
   write(bytes.substr(second));
   EXPECT_THROW(FlownLog{file_}, ThinnedLog);
   {
-    PacketLogWriter writer(file_);  // numbered anew, without step 1
+    PacketLogWriter writer(file_);  // numbered from the beginning, without step 1
     for (const std::uint32_t step : {0U, 2U, 3U})
       for (const PacketRecord& record : records_of(step)) writer.write(record);
   }
