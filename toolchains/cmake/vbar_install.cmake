@@ -32,5 +32,6 @@ elseif(VBAR_TARGET STREQUAL "zynq7000")
   install(TARGETS vbar_zynq7000_board vbar_zynq7000_main vbar_board_common vbar_fsw_link vbar_fsw_packets vbar_packets
     ARCHIVE DESTINATION ${board})
   set(source ${PROJECT_SOURCE_DIR}/boards/zynq7000)
-  install(FILES ${source}/zynq7000.ld ${source}/check_image.cmake ${source}/zynq7000_image.cmake DESTINATION ${board})
+  install(FILES ${source}/zynq7000.ld ${source}/check_image.cmake ${source}/zynq7000_image.cmake ${source}/boot.bif DESTINATION ${board})
+  install(PROGRAMS ${source}/set_address.py DESTINATION ${board})
 endif()

@@ -22,11 +22,11 @@ endif()
 set(CMAKE_CXX_FLAGS_RELEASE "${optimisation} -g1")
 set(CMAKE_C_FLAGS_RELEASE "${optimisation} -g1")
 
-# Paths are hashed relative to the checkout, so that all checkouts on a computer share one cache. The precompiled header of
-# the tests needs the sloppiness that ccache's manual names for it (section "Precompiled headers").
+# Paths are hashed relative to the checkout, so that all checkouts on a computer share one cache. Precompiled headers need
+# the sloppiness that ccache's manual names for them (section "Precompiled headers").
 find_program(VBAR_CCACHE ccache)
 if(VBAR_CCACHE)
-  set(ccache env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+  set(ccache env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1
       CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${VBAR_CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${ccache})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${ccache})
@@ -34,13 +34,14 @@ endif()
 
 find_path(VBAR_EIGEN_INCLUDE Eigen/Core PATHS /usr/include/eigen3 NO_CMAKE_FIND_ROOT_PATH REQUIRED)
 
-# Flags of all code of the project.
+# Flags of all code of the project. A target with a precompiled header has eigen_assert.h as its first header instead: GCC
+# takes a precompiled header as the first file of a source only.
 add_library(vbar_options INTERFACE)
 target_include_directories(vbar_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_include_directories(vbar_options SYSTEM INTERFACE ${VBAR_EIGEN_INCLUDE})
 target_compile_definitions(vbar_options INTERFACE EIGEN_MPL2_ONLY EIGEN_DONT_VECTORIZE EIGEN_DONT_PARALLELIZE)
 target_compile_options(vbar_options INTERFACE
-  "$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include ${PROJECT_SOURCE_DIR}/fsw/core/eigen_assert.h>"
+  "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<BOOL:$<TARGET_PROPERTY:VBAR_PRECOMPILED>>>>:SHELL:-include ${PROJECT_SOURCE_DIR}/fsw/core/eigen_assert.h>"
   -ffp-contract=off -fno-math-errno
   -Wall -Wextra -Wpedantic -Wshadow -Wcast-align -Wformat=2 -Wimplicit-fallthrough -Werror
   $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual>)
@@ -56,6 +57,15 @@ target_compile_options(vbar_flight_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>
   -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Wswitch-enum)
 
+# Host code has the options that a shared precompiled header needs to be equal.
+if(VBAR_TARGET STREQUAL "host")
+  find_package(fmt REQUIRED)
+  add_library(vbar_host_options INTERFACE)
+  target_link_libraries(vbar_host_options INTERFACE vbar_options fmt::fmt)
+endif()
+
+include(vbar_precompiled_headers)
+
 # vbar_fsw_library(name SOURCES ... DEPENDS ...): a static library of flight code. The set common to all targets (fsw and
 # boards/common) is in the global property VBAR_FLIGHT_LIBRARIES, which the target flight_code and the flight rules go by.
 function(vbar_fsw_library name)
@@ -66,6 +76,7 @@ function(vbar_fsw_library name)
   endif()
   target_link_libraries(${name} PRIVATE vbar_flight_options PUBLIC ${ARG_DEPENDS})
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  vbar_use_precompiled(${name} vbar_flight_precompiled)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   if(folder MATCHES "^(fsw/|boards/common$)")
     set_property(GLOBAL APPEND PROPERTY VBAR_FLIGHT_LIBRARIES ${name})
@@ -76,7 +87,8 @@ endfunction()
 function(vbar_host_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
-  target_link_libraries(${name} PUBLIC vbar_options ${ARG_DEPENDS})
+  target_link_libraries(${name} PUBLIC vbar_host_options ${ARG_DEPENDS})
+  vbar_use_precompiled(${name} vbar_host_precompiled)
 endfunction()
 
 # vbar_test(name SOURCES ... DEPENDS ... [LABELS ...]): a googletest program, one ctest entry a test case (with a
@@ -87,7 +99,7 @@ function(vbar_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE vbar_options vbar_test_support ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
   target_compile_options(${name} PRIVATE ${VBAR_TEST_OPTIONS})
-  target_precompile_headers(${name} REUSE_FROM vbar_test_support)
+  vbar_use_precompiled(${name} vbar_test_support)
   file(RELATIVE_PATH module ${PROJECT_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
   string(REGEX REPLACE "^unit/" "" module ${module})
   if(NOT ARG_LABELS)

@@ -142,8 +142,8 @@ TEST(MonitorDatagrams, SubframeHasItsTenWords) {
 }
 
 TEST(MonitorDatagrams, SubframesOfAnotherLengthOrContentAreRefused) {
-  for (const std::string& bits :
-       {std::string(kBits).substr(1), std::string(kBits) + "0", "2" + std::string(kBits).substr(1), std::string()}) {
+  for (const std::string& bits : {std::string(kBits).substr(1), std::string(kBits).append("0"),
+                                  std::string("2").append(kBits + 1), std::string()}) {
     Bytes datagram;
     number(datagram, 3, 32);
     text(datagram, 5, bits);

@@ -88,7 +88,7 @@ TEST(Console, FillsInDefaults) {
 
 TEST(Console, AsciiAndBinaryFormsAreTheSameCommand) {
   Desk desk;
-  EXPECT_THAT(desk.tell(std::string(kAsciiLog) + "\r\n"), HasSubstr(";OK*"));
+  EXPECT_THAT(desk.tell(std::string(kAsciiLog).append("\r\n")), HasSubstr(";OK*"));
   EXPECT_TRUE(desk.said.starts_with("#LOGR,COM1,"));
   desk.console.listen(kBinaryLog, 0);
   ASSERT_EQ(desk.executed.size(), 2U);

@@ -26,7 +26,7 @@ TEST(CommandAnswer, IsFoundOnceComplete) {
 
 TEST(CommandAnswer, IgnoresGarbageThatResemblesOne) {
   EXPECT_FALSE(find_answer(bytes("<<<<ERR<")).has_value());
-  EXPECT_FALSE(find_answer(bytes(std::string("<ERROR:") + std::string(300, 'x') + "\r\n")).has_value());
+  EXPECT_FALSE(find_answer(bytes(std::string("<ERROR:").append(300, 'x').append("\r\n"))).has_value());
   EXPECT_FALSE(find_answer(bytes("<ERROR:\x01\x02\r\n")).has_value());
   EXPECT_TRUE(find_answer(bytes("<ERROR:\x01\x02\r\n<OK"))->is_accepted);
 }
