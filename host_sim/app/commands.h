@@ -63,6 +63,15 @@ struct ReportOptions {
 /// Of one run: its report.html. Of several: a comparison.
 int report_command(const ReportOptions& options);
 
+struct CheckOptions {
+  std::vector<std::filesystem::path> run_folders;
+  std::filesystem::path limits;  ///< mission file whose limits hold in place of those of the runs' own missions
+  std::filesystem::path junit;   ///< file of the results as JUnit XML; empty: none
+  bool numbers = false;          ///< only prints the numbers that a limit can name
+};
+/// kLimitMissed if a run is incomplete or misses one of its limits.
+int check_command(const CheckOptions& options);
+
 struct NewArticleOptions {
   std::filesystem::path folder;  ///< created; its name is that of the article
   std::string language = "c";    ///< c | c++

@@ -17,6 +17,7 @@ enum ExitCode : int {
   kForeignLog = 8,       ///< replay: the log holds outputs other than those that the summary states
   kDamagedLog = 9,       ///< replay, resume: the log is damaged or was altered after the run
   kNeverNavigated = 10,  ///< run: complete, but the flight software never had a valid state
+  kLimitMissed = 11,     ///< check: a run is incomplete or misses a limit
   kInterrupted = 75  ///< Ctrl-C, SIGTERM or SIGHUP ended it; the record up to then is kept (EX_TEMPFAIL of sysexits.h)
 };
 
@@ -24,7 +25,8 @@ inline constexpr const char* kExitCodeHelp =
     "Exit codes: 0 complete or identical, 1 failed, 2 refused (bad usage or input), 3 outputs differ, 75 interrupted.\n"
     "vbar run also: 10 complete, but the flight software never had a valid state.\n"
     "vbar replay also: 4 the run was killed, 5 log empty, 6 log cut at its end, 7 records missing from the middle,\n"
-    "8 log of other outputs than the summary states, 9 log damaged or altered after the run; vbar resume also 7 and 9.";
+    "8 log of other outputs than the summary states, 9 log damaged or altered after the run; vbar resume also 7 and 9.\n"
+    "vbar check also: 11 a run is incomplete or misses a limit.";
 
 /// Bad usage or input, noticed before anything was flown or written.
 class Refused : public std::runtime_error {

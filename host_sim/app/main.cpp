@@ -174,6 +174,15 @@ int main(int argc, char** argv) {
                        "exit code 3 unless all runs gave the same outputs as the first");
   report_app->callback([&] { exit_code = report_command(report); });
 
+  CheckOptions check;
+  CLI::App* check_app = program.add_subcommand("check", "judge runs by the limits of their mission, for a CI");
+  check_app->add_option("run", check.run_folders, "run folders")->required();
+  check_app->add_option("--limits", check.limits,
+                        "mission file whose [[limit]] tables hold in place of those of the runs' own missions");
+  check_app->add_option("--junit", check.junit, "file for the results as JUnit XML");
+  check_app->add_flag("--numbers", check.numbers, "only print the numbers that a limit can name");
+  check_app->callback([&] { exit_code = check_command(check); });
+
   add_campaign_command(program, exit_code);
 
   std::filesystem::path missions;

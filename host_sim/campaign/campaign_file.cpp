@@ -10,6 +10,7 @@
 #include "host_sim/campaign/sweep_table.h"
 #include "host_sim/campaign/value_text.h"
 #include "host_sim/mission/mission_error.h"
+#include "host_sim/mission/read_sections.h"
 #include "host_sim/mission/toml_file.h"
 
 namespace vbar::campaign {
@@ -21,7 +22,6 @@ using mission::TableReader;
 
 constexpr std::size_t kMaxSeeds = 1'000'000;
 constexpr double kMaxHours = 1e6;
-constexpr double kLargest = 1e300;
 
 constexpr const char* kSeedsRule = "\"FIRST..LAST\" or an array of different integers from 0 on, at most a million";
 
@@ -130,16 +130,6 @@ Sweep read_sweep(const TableReader& section, const toml::table& table, const std
   return sweep;
 }
 
-PassCriterion read_pass(const TableReader& section) {
-  PassCriterion pass;
-  pass.key = section.text("key");
-  if (section.has("most")) pass.most = section.number("most", from_to(-kLargest, kLargest));
-  if (section.has("least")) pass.least = section.number("least", from_to(-kLargest, kLargest));
-  if (!pass.most && !pass.least) section.refuse("", "neither most nor least", "at least one of them");
-  section.finish();
-  return pass;
-}
-
 void refuse_repeated_keys(const CampaignFile& campaign) {
   std::set<std::string> seen;
   const auto once = [&](const std::string& key) {
@@ -193,7 +183,7 @@ CampaignFile parse_campaign(std::string_view text, const std::filesystem::path& 
   for_each_table(document, table, "disperse", [&](const TableReader& section, const toml::table& raw) {
     campaign.dispersions.push_back(read_dispersion(section, raw));
   });
-  for (const TableReader& section : document.tables("pass")) campaign.passes.push_back(read_pass(section));
+  for (const TableReader& section : document.tables("pass")) campaign.passes.push_back(mission::read_limit(section));
   if (document.has("require")) {
     const TableReader section = document.table("require");
     campaign.require = Requirement{section.number("pass_rate_at_least", above_to(0.0, 1.0)),

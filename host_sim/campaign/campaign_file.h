@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host_sim/campaign/dispersion.h"
+#include "host_sim/mission/limit.h"
 
 namespace vbar::campaign {
 
@@ -19,11 +20,7 @@ struct Sweep {
   std::vector<std::vector<std::string>> rows;  ///< text of each key's value
 };
 
-/// A limit of a number of the summary; at least one of both.
-struct PassCriterion {
-  std::string key;
-  std::optional<double> most, least;
-};
+using PassCriterion = mission::Limit;
 
 /// Of the whole campaign: the lower Clopper-Pearson bound, two-sided, of the pass rate.
 struct Requirement {

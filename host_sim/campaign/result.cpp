@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/campaign/folder.h"
+#include "host_sim/check/limit_check.h"
 
 namespace vbar::campaign {
 namespace {
@@ -29,10 +30,6 @@ State state_of(const std::string& name) {
 
 bool has_flown(const Result& result) {
   return result.state == State::kComplete || result.state == State::kVoid;
-}
-
-bool meets(const PassCriterion& criterion, const std::optional<double>& value) {
-  return value && (!criterion.most || *value <= *criterion.most) && (!criterion.least || *value >= *criterion.least);
 }
 
 void add(Result&& result, AllResults& all) {
@@ -90,7 +87,7 @@ Result result_of(const Json& json) {
 std::vector<std::string> failed_limits(const Plan& plan, const Result& result) {
   std::vector<std::string> keys;
   for (const PassCriterion& criterion : plan.passes)
-    if (!meets(criterion, find_number(result.numbers, criterion.key)) &&
+    if (!check::meets(criterion, find_number(result.numbers, criterion.key)) &&
         std::ranges::find(keys, criterion.key) == keys.end())
       keys.push_back(criterion.key);
   return keys;

@@ -33,7 +33,8 @@ constexpr Section kSections[] = {{"mission", without_installation<read_general>}
                                  {"clock", read_clock},
                                  {"links", without_installation<read_links>},
                                  {"lcm", without_installation<read_lcm>},
-                                 {"record", without_installation<read_record>}};
+                                 {"record", without_installation<read_record>},
+                                 {"limit", without_installation<read_limits>}};
 
 template <class Use>
 void with_document(std::string_view text, const std::filesystem::path& file, std::span<const std::string> overrides,

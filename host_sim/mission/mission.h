@@ -21,6 +21,7 @@
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/link_model.h"
 #include "host_sim/mission/attitude.h"
+#include "host_sim/mission/limit.h"
 #include "host_sim/truth/truth_settings.h"
 
 namespace vbar::mission {
@@ -288,6 +289,7 @@ struct Mission {
       board_link;  ///< the simulated link between a spacecraft's sensors or actuators and its flight computer
   LcmMirror lcm;
   Record record;
+  std::vector<Limit> limits;  ///< of vbar check, in the order of the file
 
   [[nodiscard]] fsw::GpsTime start_time() const { return epoch + start; }
   [[nodiscard]] fsw::GpsTime end_time() const { return epoch + start + duration; }

@@ -28,6 +28,10 @@ void read_clock(const TableReader& document, Mission& mission, const Installatio
 void read_links(const TableReader& document, Mission& mission);                                    // [links.board]
 void read_lcm(const TableReader& document, Mission& mission);                                      // [lcm]
 void read_record(const TableReader& document, Mission& mission);                                   // [record]
+void read_limits(const TableReader& document, Mission& mission);                                   // [[limit]]
+
+/// A table of [[limit]] of a mission, or of [[pass]] of a campaign.
+Limit read_limit(const TableReader& section);
 
 /// [spacecraft.sensors.*]: kinds in the order of the installation, the sensors of a kind in alphabetical order.
 std::vector<Sensor> read_sensors(const TableReader& sensors, const SensorContext& context);
