@@ -11,6 +11,7 @@
 #include "boards/zynq7000/ethernet.h"
 #include "boards/zynq7000/interrupts.h"
 #include "boards/zynq7000/memory_map.h"
+#include "boards/zynq7000/network_settings.h"
 #include "boards/zynq7000/reset.h"
 #include "boards/zynq7000/semihosting.h"
 #include "boards/zynq7000/session_guard.h"
@@ -27,9 +28,6 @@ namespace {
 
 constexpr std::uint32_t kLinkBaud = 921'600;
 constexpr std::uint32_t kMinReceiverBaud = 2'400;
-constexpr MacAddress kMac{0x02, 0x76, 0x62, 0x61, 0x72, 0x15};  // locally administered
-constexpr Ipv4Address kAddress{10, 0, 2, 15};
-constexpr std::uint16_t kPort = 5000;
 constexpr std::uint64_t kSilence = timer_span_ms(5'000);
 constexpr std::uint64_t kLinkPoll = timer_span_ms(500);
 // For a host that states no budget: 250 million instructions, at 4 cycles each and at 64 ns each (icount shift 6).
@@ -69,7 +67,7 @@ class FlightBoard {
   Uart uart_{kUart0, kInterruptUart0};  ///< the link, or the line of the receiver while the link is Ethernet
   std::uint32_t uart_baud_ = kLinkBaud;
   Ethernet ethernet_;
-  UdpEndpoint endpoint_{kMac, kAddress, kPort};
+  UdpEndpoint endpoint_{kNetworkSettings.mac, kNetworkSettings.address, kNetworkSettings.udp_port()};
   fsw::link::CobsDecoder decoder_;
   std::uint32_t decoder_rejected_ = 0;
   SessionGuard guard_{kSilence};
@@ -82,6 +80,15 @@ class FlightBoard {
   FlightRecord record_;  ///< of this flight, as it is retained
   FlightExecutive executive_;
 };
+
+void print_address(const NetworkSettings& settings) {
+  for (std::size_t i = 0; i < settings.address.size(); ++i) {
+    print(i == 0 ? "" : ".");
+    print_decimal(settings.address[i]);
+  }
+  print(":");
+  print_decimal(settings.udp_port());
+}
 
 bool counts_cycles() {
   return cost_counter_unit() == CounterUnit::kCycles;
@@ -113,13 +120,15 @@ Platform FlightBoard::platform() {
 
 void FlightBoard::open() {
   uart_.open(uart_baud_);
-  ethernet_.open(kMac);
+  ethernet_.open(kNetworkSettings.mac);
   link_asked_ = global_timer();
   print("vbar zynq7000: ");
   print(vbar_gnc_name());
   print("\ncost in ");
   print(counts_cycles() ? "processor cycles" : "ticks of the emulated timer");
-  print("\nlink on UART0 and on UDP 10.0.2.15:5000, Ethernet ");
+  print("\nlink on UART0 and on UDP ");
+  print_address(kNetworkSettings);
+  print(", Ethernet ");
   print(ethernet_.waits_for_link() ? "waits for a link" : "up");
   print("\nready\n");
 }

@@ -22,11 +22,12 @@ def die_with_parent():
 class EmulatedBoard:
     """Context manager: the emulator runs inside the `with`."""
 
-    def __init__(self, image, semihosting=True, arguments=(), raw_ethernet=False):
+    def __init__(self, image, semihosting=True, arguments=(), raw_ethernet=False, address="10.0.2.15:5000"):
         self.image = image
         self.semihosting = semihosting
         self.arguments = arguments
         self.raw_ethernet = raw_ethernet
+        self.address = address  # of the image: IP address and UDP port
 
     def __enter__(self):
         self.folder = tempfile.TemporaryDirectory(prefix="vbar-zynq-")
@@ -38,7 +39,7 @@ class EmulatedBoard:
         listener.settimeout(30)
         self.udp_port = free_udp_port()
         # Not restrict=on: it holds back the answers to forwarded datagrams.
-        network = f"user,hostfwd=udp:127.0.0.1:{self.udp_port}-10.0.2.15:5000"
+        network = f"user,hostfwd=udp:127.0.0.1:{self.udp_port}-{self.address}"
         if self.raw_ethernet:  # each Ethernet frame as a datagram to and from self.frames
             self.frames = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
             self.frames.bind(("127.0.0.1", 0))
