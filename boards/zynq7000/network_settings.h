@@ -1,6 +1,6 @@
 #pragma once
-// Ethernet and UDP addresses of the board: part of the image, in which boards/zynq7000/set_address.py changes them, so that two
-// boards on one network need no second build.
+// Ethernet and UDP addresses of the board: part of the image, in which boards/zynq7000/set_address.py changes them, so
+// that two boards on one network need no second build.
 
 #include <array>
 #include <cstdint>

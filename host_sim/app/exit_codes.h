@@ -25,7 +25,8 @@ inline constexpr const char* kExitCodeHelp =
     "Exit codes: 0 complete or identical, 1 failed, 2 refused (bad usage or input), 3 outputs differ, 75 interrupted.\n"
     "vbar run also: 10 complete, but the flight software never had a valid state.\n"
     "vbar replay also: 4 the run was killed, 5 log empty, 6 log cut at its end, 7 records missing from the middle,\n"
-    "8 log of other outputs than the summary states, 9 log damaged or altered after the run; vbar resume also 7 and 9.\n"
+    "8 log of other outputs than the summary states, 9 log damaged or altered after the run; vbar resume also 7 and "
+    "9.\n"
     "vbar check also: 11 a run is incomplete or misses a limit.";
 
 /// Bad usage or input, noticed before anything was flown or written.
