@@ -42,9 +42,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadChange{"UnknownKeyNearNone", "duration_h = 2.0", "duration_h = 2.0\ncolour = 3", "colour",
                   "mission.colour: found an unknown key; accepted: name, description, epoch_utc, start_h, duration_h, "
                   "step_s or seed"},
-        BadChange{"UnknownSection", "[mission]", "[trut]\n[mission]", "[trut]",
-                  "trut: found an unknown key (did you mean truth?); accepted: mission, truth, testbed, waypoint, "
-                  "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record or constellation"},
+        BadChange{
+            "UnknownSection", "[mission]", "[trut]\n[mission]", "[trut]",
+            "trut: found an unknown key (did you mean truth?); accepted: mission, truth, testbed, waypoint, "
+            "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record, limit or constellation"},
         BadChange{"WrongTypeText", "duration_h = 2.0", "duration_h = \"two\"", "duration_h",
                   "mission.duration_h: found the text \"two\"; accepted: a number above 0, up to 2000"},
         BadChange{"WrongTypeInteger", "[mission]", "[mission]\nseed = 1.0", "seed",
@@ -56,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadChange{
             "WrongTypeOfArrayOfTables", "[mission]", "waypoint2 = 1\n[mission]", "waypoint2",
             "waypoint2: found an unknown key (did you mean waypoint?); accepted: mission, truth, testbed, waypoint, "
-            "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record or constellation"},
+            "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record, limit or constellation"},
         BadChange{"MissingRequiredKey", "duration_h = 2.0\n", "", "[mission]",
                   "mission.duration_h: found nothing; accepted: a number above 0, up to 2000"},
         BadChange{"NotANumber", "duration_h = 2.0", "duration_h = nan", "duration_h",

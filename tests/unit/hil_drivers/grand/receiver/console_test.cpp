@@ -116,7 +116,7 @@ TEST(Console, AnswersABinaryCommandInBinary) {
 // The CRC of the answer is that of the text between '#' and '*', by the function that reproduces the vector's.
 TEST(Console, AsciiAnswersCarryACrc) {
   Desk desk;
-  const std::string answer = desk.tell(std::string(kAsciiLog) + "\r\n");
+  const std::string answer = desk.tell(std::string(kAsciiLog).append("\r\n"));
   ASSERT_THAT(answer, EndsWith("\r\n"));
   const std::string text = answer.substr(1, answer.find('*') - 1);
   EXPECT_EQ(std::stoul(answer.substr(answer.find('*') + 1, 8), nullptr, 16),
