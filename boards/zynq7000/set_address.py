@@ -14,7 +14,8 @@ import re
 import sys
 
 LABEL = b"vbarnet1"
-SIZE = len(LABEL) + 6 + 4 + 2
+MAC, ADDRESS, PORT = slice(8, 14), slice(14, 18), slice(18, 20)
+SIZE = PORT.stop
 
 
 class SettingsError(Exception):
@@ -56,10 +57,9 @@ def port_of(text):
     return int(text)
 
 
-def line_of(image, at):
-    mac, address = image[at + 8:at + 14], image[at + 14:at + 18]
-    port = int.from_bytes(image[at + 18:at + 20], "big")
-    return f"{ipaddress.IPv4Address(bytes(address))}:{port}, Ethernet {bytes(mac).hex(':')}"
+def line_of(settings):
+    address, port = ipaddress.IPv4Address(bytes(settings[ADDRESS])), int.from_bytes(settings[PORT], "big")
+    return f"{address}:{port}, Ethernet {settings[MAC].hex(':')}"
 
 
 def main():
@@ -76,17 +76,19 @@ def main():
     try:
         image = bytearray(options.image.read_bytes())
         at = place_of(image, options.image)
+        settings = image[at:at + SIZE]
         if options.address:
-            image[at + 14:at + 18] = options.address
-            image[at + 8:at + 14] = b"\x02\x76" + options.address
+            settings[ADDRESS] = options.address
+            settings[MAC] = b"\x02\x76" + options.address
         if options.mac:
-            image[at + 8:at + 14] = options.mac
+            settings[MAC] = options.mac
         if options.port:
-            image[at + 18:at + 20] = options.port.to_bytes(2, "big")
+            settings[PORT] = options.port.to_bytes(2, "big")
+        image[at:at + SIZE] = settings
         if options.out:
             options.out.write_bytes(image)
             options.out.chmod(options.image.stat().st_mode & 0o777)
-        print(f"{options.out or options.image}: {line_of(image, at)}")
+        print(f"{options.out or options.image}: {line_of(settings)}")
     except (OSError, SettingsError) as error:
         print(f"set_address.py: {error}", file=sys.stderr)
         return 1

@@ -1,6 +1,5 @@
 // vbar check: the limits of a mission against runs of it.
 
-#include <algorithm>
 #include <span>
 
 #include <fmt/core.h>

@@ -177,10 +177,12 @@ int main(int argc, char** argv) {
   CheckOptions check;
   CLI::App* check_app = program.add_subcommand("check", "judge runs by the limits of their mission, for a CI");
   check_app->add_option("run", check.run_folders, "run folders")->required();
-  check_app->add_option("--limits", check.limits,
-                        "mission file whose [[limit]] tables hold in place of those of the runs' own missions");
-  check_app->add_option("--junit", check.junit, "file for the results as JUnit XML");
-  check_app->add_flag("--numbers", check.numbers, "only print the numbers that a limit can name");
+  CLI::Option* limits = check_app->add_option(
+      "--limits", check.limits, "mission file whose [[limit]] tables hold in place of those of the runs' own missions");
+  CLI::Option* junit = check_app->add_option("--junit", check.junit, "file for the results as JUnit XML");
+  check_app->add_flag("--numbers", check.numbers, "only print the numbers that a limit can name")
+      ->excludes(limits)
+      ->excludes(junit);
   check_app->callback([&] { exit_code = check_command(check); });
 
   add_campaign_command(program, exit_code);

@@ -59,6 +59,7 @@ class Check(unittest.TestCase):
         self.assertIn("navigation_error_mean_m", keys)
         file = self.limits_file("".join(f'[[limit]]\nkey = "{key}"\nleast = -1e300\n' for key in keys))
         self.check(self.run_folder, "--limits", file, expected=MET)
+        self.assertIn("--numbers", self.check(self.run_folder, "--limits", file, "--numbers", expected=REFUSED).stderr)
 
     def test_an_interrupted_run_fails_whatever_its_numbers(self):
         cut = self.folder / "cut"
