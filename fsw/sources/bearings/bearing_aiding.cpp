@@ -164,12 +164,13 @@ void BearingAiding::adapt_noise(const navigation::BearingMeasurement& bearing, t
 }
 
 /// Where receivers determine the orbit, the innovations measure the errors of the centroid, which the attitude of the
-/// target changes: that of a target that follows the orbit varies less than that of a tumbling one. By a tenth of the
-/// misfit with each bearing, so that an hour suffices; a single one counts no more than five on average.
+/// target changes: that of a target that follows the orbit varies less than that of a tumbling one, and once an orbit,
+/// as the Sun moves about it, by a factor of ten. By a tenth of the misfit with each bearing, so that an hour suffices
+/// for a decrease; an outlying bearing at once, before the gate refuses several in a row.
 void BearingAiding::adapt_centroid_noise(const trunk::Trunk& trunk) {
   constexpr double kShare = 0.1;
-  constexpr double kMaxMisfit = 5.0;
-  constexpr double kMinScale = 0.01, kMaxScale = 9.0;
+  constexpr double kMaxMisfit = 15.0;
+  constexpr double kMinScale = 0.03, kMaxScale = 9.0;
   if (!trunk.is_determined_by_receivers()) return;
   const double misfit = std::min(0.5 * last_update_.nis, kMaxMisfit);
   centroid_scale_ = std::clamp(centroid_scale_ * (1.0 + kShare * (misfit - 1.0)), kMinScale, kMaxScale);

@@ -24,9 +24,15 @@ double polynomial(const std::array<double, 4>& c, double x) {
   return c[0] + x * (c[1] + x * (c[2] + x * c[3]));
 }
 
+// Where the series of the cosine is taken as zero. The specification's value leaves a step of 2 % of the amplitude,
+// through which two receivers some hundred metres apart pass a tenth of a second after each other: a contradiction of
+// their carrier phases. Above the ground, where the model is this project's own, the series ends at its zero.
+constexpr double kSpecifiedHalfWidth = 1.57;
+const double kContinuousHalfWidth = std::sqrt(6.0 - std::sqrt(12.0));
+
 // Delay at the ionospheric point (semicircles) for obliquity factor F, m.
 double delay_at_point_m(const KlobucharCoefficients& coefficients, double latitude_sc, double longitude_sc,
-                        double obliquity, double seconds_of_week) {
+                        double obliquity, double seconds_of_week, double half_width) {
   const double geomagnetic_sc = latitude_sc + 0.064 * std::cos((longitude_sc - 1.617) * kPi);
   double local_time_s = std::fmod(4.32e4 * longitude_sc + seconds_of_week, 86400.0);
   if (local_time_s < 0.0) local_time_s += 86400.0;
@@ -34,7 +40,7 @@ double delay_at_point_m(const KlobucharCoefficients& coefficients, double latitu
   const double period_s = std::max(72000.0, polynomial(coefficients.beta, geomagnetic_sc));
   const double x = 2.0 * kPi * (local_time_s - 50400.0) / period_s;
   double delay_s = 5e-9;
-  if (std::abs(x) < 1.57) delay_s += amplitude_s * (1.0 - x * x / 2.0 + x * x * x * x / 24.0);
+  if (std::abs(x) < half_width) delay_s += amplitude_s * (1.0 - x * x / 2.0 + x * x * x * x / 24.0);
   return fsw::gnss::kSpeedOfLight * obliquity * delay_s;
 }
 
@@ -47,13 +53,14 @@ double klobuchar_delay_m(const KlobucharCoefficients& coefficients, double latit
   const double latitude_sc = std::clamp(latitude / kPi + earth_angle_sc * std::cos(azimuth), -0.416, 0.416);
   const double longitude_sc = longitude / kPi + earth_angle_sc * std::sin(azimuth) / std::cos(latitude_sc * kPi);
   const double below = 0.53 - elevation_sc;
-  return delay_at_point_m(coefficients, latitude_sc, longitude_sc, 1.0 + 16.0 * below * below * below, seconds_of_week);
+  return delay_at_point_m(coefficients, latitude_sc, longitude_sc, 1.0 + 16.0 * below * below * below, seconds_of_week,
+                          kSpecifiedHalfWidth);
 }
 
 double klobuchar_vertical_delay_m(const KlobucharCoefficients& coefficients, double latitude, double longitude,
                                   double seconds_of_week) {
   return delay_at_point_m(coefficients, std::clamp(latitude / kPi, -0.416, 0.416), longitude / kPi, 1.0,
-                          seconds_of_week);
+                          seconds_of_week, kContinuousHalfWidth);
 }
 
 double electron_content_above(double altitude_m) {

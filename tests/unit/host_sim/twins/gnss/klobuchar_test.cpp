@@ -1,10 +1,12 @@
 #include "host_sim/twins/gnss/klobuchar.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "fsw/gnss/constants.h"
 #include "tests/support/accuracy.h"
 
 namespace vbar::twins::gnss {
@@ -45,6 +47,22 @@ TEST(Klobuchar, SlantInOrbit) {
   const double slant = 1.0 / std::sqrt(1.0 - radius_m * radius_m / (shell_m * shell_m));
   EXPECT_NEAR(klobuchar_delay_in_orbit_m(kExample, position, fsw::Vector3::UnitY(), 50400.0),
               at_pierce_m * electron_content_above(709e3) * slant, 1e-9);
+}
+
+// Over a day in steps of 0.1 s, in which a low orbit moves by less than a kilometre: no step. The series of the cosine
+// has a slope of 1 per radian at most.
+TEST(Klobuchar, VerticalDelayIsContinuous) {
+  const double amplitude_m = fsw::gnss::kSpeedOfLight * kExample.alpha[0];
+  double last_m = klobuchar_vertical_delay_m(kExample, 0.0, 0.0, 0.0);
+  double largest_m = 0.0, lowest_m = last_m;
+  for (int tenths = 1; tenths < 864000; ++tenths) {
+    const double delay_m = klobuchar_vertical_delay_m(kExample, 0.0, 0.0, 0.1 * tenths);
+    largest_m = std::max(largest_m, std::abs(delay_m - last_m));
+    lowest_m = std::min(lowest_m, delay_m);
+    last_m = delay_m;
+  }
+  EXPECT_LT(largest_m, 2.0 * amplitude_m * 2.0 * std::numbers::pi * 0.1 / 72000.0);
+  EXPECT_GE(lowest_m, fsw::gnss::kSpeedOfLight * 5e-9 * (1.0 - 1e-12));
 }
 
 // From the ground the thin shell and the broadcast obliquity factor are two forms of one mapping: above 30 deg they
