@@ -20,7 +20,6 @@ import verify_experiment2_hil
 import verify_experiment2
 import verify_experiment3
 import verify_full_range
-import verify_full_range_cooperative
 import verify_grand
 from flights import fly
 
@@ -93,8 +92,8 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/host")
     experiments = {"experiment1": verify_experiment1, "experiment2": verify_experiment2, "experiment3": verify_experiment3,
-                   "grand": verify_grand, "full_range": verify_full_range,
-                   "full_range_cooperative": verify_full_range_cooperative, "experiment1_hil": verify_experiment1_hil,
+                   "grand": verify_grand, "full_range": verify_full_range.CAMERAS,
+                   "full_range_cooperative": verify_full_range.COOPERATIVE, "experiment1_hil": verify_experiment1_hil,
                    "experiment2_hil": verify_experiment2_hil}
     for name in experiments:
         parser.add_argument(f"--{name}", action="store_true")
