@@ -70,6 +70,7 @@ SceneRenderer::SceneRenderer(const CameraSettings& settings, const std::filesyst
       sky_(StarSky::load(data_directory, settings.zero_magnitude_photons)),
       objects_(objects ? std::move(objects) : lambert_sphere(0.35, 0.3)),
       covers_(std::move(covers)),
+      region_directions_(projection_),
       region_cone_(projection_->cone_of(settings.region, kMarginPx)),
       detector_cone_(projection_->cone_of({0, 0, settings.detector.width, settings.detector.height}, kMarginPx)) {}
 
@@ -225,11 +226,10 @@ double SceneRenderer::add_disc(const View& view, const Vector3& velocity, Photon
 }
 
 /// Covers what lies behind and adds its light; electrons on the detector.
-double SceneRenderer::add_earth(const View& view, PhotonImage& image) const {
+double SceneRenderer::add_earth(const View& view, PhotonImage& image) {
   const double from_surface = EarthDisc::radiance(view.sun_photons) * settings_.electrons_per_photon_m2() *
                               duration_s_ * view.pixel_rad * view.pixel_rad;
-  const auto electrons_at = [&](const Vector2& pixel) {
-    const Vector3 direction = projection_->direction_of(pixel);
+  const auto electrons_at = [&](const Vector2& pixel, const Vector3& direction) {
     const EarthSight sight = view.earth.look(view.R_camera_eci.transpose() * direction, view.pixel_rad);
     if (sight.covered == 0.0 || sight.cosine_of_sun <= 0.0) return 0.0;
     const double pixel_solid_angle = direction.z() * direction.z() * direction.z();  // against that on the boresight
@@ -237,17 +237,21 @@ double SceneRenderer::add_earth(const View& view, PhotonImage& image) const {
   };
   const Region& region = image.region;
   const Vector3 centre = view.R_camera_eci * view.earth.centre_direction_eci();
-  if (angle_between(centre, region_cone_.axis) < view.earth.angular_radius() + region_cone_.half_angle)
+  if (angle_between(centre, region_cone_.axis) < view.earth.angular_radius() + region_cone_.half_angle) {
+    region_directions_.prepare(region);
     for (int y = region.y; y < region.y + region.height; ++y)
       for (int x = region.x; x < region.x + region.width; ++x)
-        image.at(x, y) += static_cast<float>(electrons_at(Vector2(x, y)));
+        image.at(x, y) += static_cast<float>(electrons_at(Vector2(x, y), region_directions_.at(x, y)));
+  }
 
   constexpr int kAcross = 24, kDown = 15;  // sampling the whole detector
   double sum = 0.0;
   const DetectorSettings& detector = settings_.detector;
   for (int j = 0; j < kDown; ++j)
-    for (int i = 0; i < kAcross; ++i)
-      sum += electrons_at(Vector2((i + 0.5) * detector.width / kAcross, (j + 0.5) * detector.height / kDown));
+    for (int i = 0; i < kAcross; ++i) {
+      const Vector2 pixel((i + 0.5) * detector.width / kAcross, (j + 0.5) * detector.height / kDown);
+      sum += electrons_at(pixel, projection_->direction_of(pixel));
+    }
   return sum * detector.width * detector.height / (kAcross * kDown);
 }
 

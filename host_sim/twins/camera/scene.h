@@ -9,6 +9,7 @@
 #include "host_sim/twins/camera/exposure.h"
 #include "host_sim/twins/camera/object_view.h"
 #include "host_sim/twins/camera/photon_image.h"
+#include "host_sim/twins/camera/pixel_directions.h"
 #include "host_sim/twins/camera/point_spread.h"
 #include "host_sim/twins/camera/projection.h"
 #include "host_sim/twins/camera/star_sky.h"
@@ -53,7 +54,7 @@ class SceneRenderer {
   void add_object(const View& view, const ObjectInView& object, PhotonImage& image);
   double add_sun_and_moon(const View& view, PhotonImage& image);
   double add_disc(const View& view, const fsw::Vector3& velocity, PhotonImage& image);
-  double add_earth(const View& view, PhotonImage& image) const;
+  double add_earth(const View& view, PhotonImage& image);
   void add_background(const View& view, double scattered, PhotonImage& image);
   [[nodiscard]] double sun_in_sight(const View& view);
 
@@ -64,6 +65,7 @@ class SceneRenderer {
   StarSky sky_;
   ObjectRenderer objects_;
   ObjectCover covers_;
+  PixelDirections region_directions_;
   Cone region_cone_, detector_cone_;
   std::vector<ApparentStar> stars_;  // work space, as all below
   std::vector<LightSample> samples_;

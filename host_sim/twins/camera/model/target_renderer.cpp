@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -68,6 +70,25 @@ std::vector<float> surface_of(const CadModel& model) {
   return floats;
 }
 
+/// Buffers by size, kept from image to image: two cameras with different lenses use them in turn.
+template <class Buffer>
+class SizedBuffers {
+ public:
+  /// With the current context. The reference is valid until the next call.
+  template <class... Settings>
+  Buffer& of_size(int size, const Settings&... settings) {
+    const auto known = buffers_.find(size);
+    if (known != buffers_.end()) return known->second;
+    if (buffers_.size() == kMost) buffers_.clear();
+    return buffers_.try_emplace(size, size, settings...).first->second;
+  }
+  void clear() { buffers_.clear(); }
+
+ private:
+  static constexpr std::size_t kMost = 3;
+  std::map<int, Buffer> buffers_;
+};
+
 void check(const TargetView& view) {
   const double sum = view.position_camera.sum() + view.R_camera_body.sum() + view.sun_camera.sum() +
                      view.nadir_camera.sum() + view.sun_photons_per_m2_s + view.sunlit + view.earth_photons_per_m2_s +
@@ -89,8 +110,10 @@ struct TargetRenderer::Drawing {
   }
   ~Drawing() {
     const GlContext::Current current(context);
-    picture.reset();
-    shadow_map.reset();
+    picture = nullptr;
+    shadow_map = nullptr;
+    pictures.clear();
+    shadow_maps.clear();
     earth_light.reset();
     triangles.reset();
     surface_program.reset();
@@ -109,10 +132,12 @@ struct TargetRenderer::Drawing {
   GlContext context;
   std::optional<GlProgram> shadow_program, surface_program;
   std::optional<GlTriangles> triangles;
-  std::optional<GlShadowMap> shadow_map;
+  SizedBuffers<GlShadowMap> shadow_maps;
+  SizedBuffers<GlPicture> pictures;
+  GlShadowMap* shadow_map = nullptr;  // of this image
+  GlPicture* picture = nullptr;
   std::optional<GlTable> earth_light;  // for the Earth's half-angle whose sine is:
   double earth_table_sine = -1.0;
-  std::optional<GlPicture> picture;
   std::vector<float> texels;
 };
 
@@ -211,15 +236,8 @@ void TargetRenderer::render(const TargetView& view, std::vector<LightSample>& ou
 
   {
     const GlContext::Current current(d.context);
-    if (!d.picture || d.picture->size() != n) {
-      d.picture.reset();
-      d.picture.emplace(n, n > kFinePicture ? 1 : 4);
-    }
-    const int shadow_size = shadow_size_for(n);
-    if (!d.shadow_map || d.shadow_map->size() != shadow_size) {
-      d.shadow_map.reset();
-      d.shadow_map.emplace(shadow_size);
-    }
+    d.picture = &d.pictures.of_size(n, n > kFinePicture ? 1 : 4);
+    d.shadow_map = &d.shadow_maps.of_size(shadow_size_for(n));
     d.draw_shadow(R_sun_body);
     d.draw_surface(view, centre_camera, R_picture_camera, tan_half, R_sun_body, scale);
     d.picture->read(d.texels);

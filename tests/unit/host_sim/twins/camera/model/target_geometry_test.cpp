@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -104,6 +105,33 @@ TEST(TargetGeometry, IsNotMirrored) {
   EXPECT_EQ(light_at(-0.575, -0.305), 0.0);
   EXPECT_EQ(light_at(0.575, 0.305), 0.0);
   EXPECT_EQ(light_at(0.575, -0.305), 0.0);
+}
+
+// Two cameras draw in turn, with as many texels as their lenses resolve: what a picture's buffers held before, and that
+// they are given up when there are too many sizes, has no effect.
+TEST(TargetGeometry, PicturesOfDifferentSizesInTurnDoNotAffectEachOther) {
+  const CadModel model = load_cad_model(vbar::tests::source_path("data/models/tango.obj"));
+  const auto draw = [](TargetRenderer& renderer, double texel_m) {
+    TargetView view;
+    view.position_camera = Vector3(0.3, -0.2, 9.0);
+    view.R_camera_body = Eigen::AngleAxisd(0.7, Vector3(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+    view.sun_camera = Vector3(0.5, 0.3, -1.0);
+    view.sun_photons_per_m2_s = 1e20;
+    view.sunlit = 1.0;
+    view.texel_pitch = texel_m / 9.0;
+    std::vector<LightSample> samples;
+    renderer.render(view, samples);
+    return samples;
+  };
+  TargetRenderer one_after_the_other(model);
+  for (const double texel_m : {0.02, 0.004, 0.01, 0.006, 0.04, 0.004, 0.02, 0.02}) {
+    TargetRenderer alone(model);
+    const std::vector<LightSample> expected = draw(alone, texel_m), drawn = draw(one_after_the_other, texel_m);
+    ASSERT_GT(expected.size(), 100U);
+    ASSERT_EQ(drawn.size(), expected.size()) << texel_m;
+    for (std::size_t k = 0; k < drawn.size(); ++k)
+      ASSERT_EQ(drawn[k].photons_per_m2_s, expected[k].photons_per_m2_s) << texel_m << ", sample " << k;
+  }
 }
 
 }  // namespace
