@@ -80,6 +80,9 @@ struct NewArticleOptions {
 /// installed package of vbar.
 int new_article_command(const NewArticleOptions& options);
 
+/// Keys whose path or meaning contains `word` (empty: all), or all as a page in Markdown.
+int keys_command(const std::string& word, bool markdown);
+
 /// `folder` empty: mission::missions_directory().
 int missions_command(const std::filesystem::path& folder);
 

@@ -192,6 +192,13 @@ int main(int argc, char** argv) {
   missions_app->add_option("folder", missions, "folder of mission files");
   missions_app->callback([&] { exit_code = missions_command(missions); });
 
+  std::string key_word;
+  bool key_page = false;
+  CLI::App* keys_app = program.add_subcommand("keys", "keys of mission files: what is accepted, defaults, meaning");
+  CLI::Option* word_option = keys_app->add_option("word", key_word, "part of a key, of its table or of its meaning");
+  keys_app->add_flag("--markdown", key_page, "all of them, as docs/keys.md")->excludes(word_option);
+  keys_app->callback([&] { exit_code = keys_command(key_word, key_page); });
+
   NewArticleOptions article;
   CLI::App* article_app = program.add_subcommand("new-article", "create a project of your own flight software");
   article_app->add_option("folder", article.folder, "created; its name is that of the flight software")->required();

@@ -70,10 +70,10 @@ Mission load_mission(const std::filesystem::path& file, std::span<const std::str
   return parse_mission(read_text_file(file, "a mission file (TOML)"), file, overrides, installation);
 }
 
-std::map<std::string, std::vector<std::string>> accepted_keys(const std::filesystem::path& file,
+std::map<std::string, std::vector<AcceptedKey>> accepted_keys(const std::filesystem::path& file,
                                                               std::span<const std::string> overrides,
                                                               const Installation& installation) {
-  std::map<std::string, std::vector<std::string>> keys;
+  std::map<std::string, std::vector<AcceptedKey>> keys;
   with_document(read_text_file(file, "a mission file (TOML)"), file, overrides, installation,
                 [&](const TableReader& document, const Mission& /*mission*/) { keys = document.asked_of_all(); });
   return keys;

@@ -26,7 +26,7 @@ Mission parse_mission(std::string_view text, const std::filesystem::path& file, 
 
 /// The keys that the tables of a mission accept, by the dotted path of the table: those that were read when it was
 /// loaded. Throws MissionError for a mission that does not load.
-std::map<std::string, std::vector<std::string>> accepted_keys(const std::filesystem::path& file,
+std::map<std::string, std::vector<AcceptedKey>> accepted_keys(const std::filesystem::path& file,
                                                               std::span<const std::string> overrides,
                                                               const Installation& installation);
 

@@ -105,7 +105,17 @@ std::string listing_of(const std::vector<std::string_view>& names) {
 struct TableReader::Book {
   struct Entry {
     std::string path;
-    std::vector<std::string> keys;
+    std::vector<AcceptedKey> keys;
+
+    [[nodiscard]] std::vector<std::string> names() const {
+      std::vector<std::string> names;
+      for (const AcceptedKey& key : keys) names.push_back(key.name);
+      return names;
+    }
+    AcceptedKey& of(std::string_view name) {
+      const auto known = std::ranges::find(keys, name, &AcceptedKey::name);
+      return known != keys.end() ? *known : keys.emplace_back(AcceptedKey{std::string(name), {}, {}});
+    }
   };
   std::map<const toml::table*, Entry> entries;
   std::deque<toml::table> missing;  ///< stand-ins for tables that the file lacks
@@ -129,8 +139,7 @@ void TableReader::rename(std::string path) {
 }
 
 const toml::node* TableReader::find(std::string_view key) const {
-  std::vector<std::string>& keys = book_->entries[table_].keys;
-  if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.emplace_back(key);
+  static_cast<void>(book_->entries[table_].of(key));
   return table_->get(key);
 }
 
@@ -140,12 +149,27 @@ std::vector<std::string> TableReader::keys() const {
   return names;
 }
 
-std::vector<std::string> TableReader::asked() const {
-  return book_->entries[table_].keys;
+void TableReader::note(std::string_view key, std::string accepted, std::string default_value) const {
+  AcceptedKey& known = book_->entries[table_].of(key);
+  known.accepted = std::move(accepted);
+  known.default_value = std::move(default_value);
 }
 
-std::map<std::string, std::vector<std::string>> TableReader::asked_of_all() const {
-  std::map<std::string, std::vector<std::string>> all;
+void TableReader::note_choice(std::string_view key, const std::vector<std::string_view>& names,
+                              std::string_view default_name) const {
+  note(key, listing_of(names), default_name.empty() ? std::string() : '"' + std::string(default_name) + '"');
+}
+
+std::string TableReader::several_of(const std::vector<std::string_view>& names) {
+  return "an array of distinct names out of " + listing_of(names);
+}
+
+std::vector<std::string> TableReader::asked() const {
+  return book_->entries[table_].names();
+}
+
+std::map<std::string, std::vector<AcceptedKey>> TableReader::asked_of_all() const {
+  std::map<std::string, std::vector<AcceptedKey>> all;
   for (const auto& [table, entry] : book_->entries) all[entry.path] = entry.keys;
   return all;
 }
@@ -156,9 +180,10 @@ void TableReader::refuse_unknown_keys() const {
 
 void TableReader::refuse_unknown_keys(const toml::table& table) const {
   const Book::Entry& entry = book_->entries[&table];
+  const std::vector<std::string> names = entry.names();
   for (const auto& [key, node] : table) {
-    if (std::find(entry.keys.begin(), entry.keys.end(), key.str()) != entry.keys.end()) continue;
-    const std::vector<std::string_view> accepted(entry.keys.begin(), entry.keys.end());
+    if (std::ranges::find(names, key.str()) != names.end()) continue;
+    const std::vector<std::string_view> accepted(names.begin(), names.end());
     const auto nearest = nearest_name(key.str(), accepted);
     throw MissionError(location_of(node, file_), (entry.path.empty() ? "" : entry.path + ".") + std::string(key.str()),
                        "an unknown key" + (nearest ? " (did you mean " + std::string(*nearest) + "?)" : std::string()),
@@ -230,6 +255,7 @@ double TableReader::checked_number(const toml::node& node, std::string_view key,
 }
 
 double TableReader::number(std::string_view key, Range range, std::optional<double> default_value) const {
+  note(key, "a number " + text_of(range), default_value ? text_of(*default_value) : std::string());
   if (!has(key) && default_value) return *default_value;
   return or_later(default_value.value_or(range.above ? range.high : range.low),
                   [&] { return checked_number(required(key, "a number " + text_of(range)), key, range); });
@@ -237,9 +263,10 @@ double TableReader::number(std::string_view key, Range range, std::optional<doub
 
 std::int64_t TableReader::integer(std::string_view key, std::int64_t low, std::int64_t high,
                                   std::optional<std::int64_t> default_value) const {
+  const std::string accepted = "an integer from " + std::to_string(low) + " to " + std::to_string(high);
+  note(key, accepted, default_value ? std::to_string(*default_value) : std::string());
   if (!has(key) && default_value) return *default_value;
   return or_later(default_value.value_or(low), [&] {
-    const std::string accepted = "an integer from " + std::to_string(low) + " to " + std::to_string(high);
     const auto* value = required(key, accepted).as_integer();
     if (value == nullptr || value->get() < low || value->get() > high) refuse_value(key, accepted);
     return value->get();
@@ -247,6 +274,7 @@ std::int64_t TableReader::integer(std::string_view key, std::int64_t low, std::i
 }
 
 bool TableReader::flag(std::string_view key, bool default_value) const {
+  note(key, "true or false", default_value ? "true" : "false");
   if (!has(key)) return default_value;
   return or_later(default_value, [&] {
     const auto* value = table_->get(key)->as_boolean();
@@ -256,6 +284,7 @@ bool TableReader::flag(std::string_view key, bool default_value) const {
 }
 
 std::string TableReader::text(std::string_view key, std::optional<std::string> default_value) const {
+  note(key, "a text", default_value ? '"' + *default_value + '"' : std::string());
   if (!has(key) && default_value) return *default_value;
   const toml::node& node = required(key, "a text");
   if (const auto* date_time = node.as_date_time()) return streamed(date_time->get());
@@ -268,8 +297,9 @@ std::string TableReader::text(std::string_view key, std::optional<std::string> d
 
 std::vector<std::string> TableReader::texts(std::string_view key) const {
   std::vector<std::string> values;
-  if (!has(key)) return values;
   const std::string accepted = "an array of texts, each on one line";
+  note(key, accepted, "[]");
+  if (!has(key)) return values;
   const auto* array = table_->get(key)->as_array();
   if (array == nullptr) refuse_value(key, accepted);
   for (const toml::node& element : *array) {
@@ -282,17 +312,20 @@ std::vector<std::string> TableReader::texts(std::string_view key) const {
 }
 
 std::string TableReader::name(std::string_view key, std::optional<std::string> default_value) const {
+  const std::string default_text = default_value ? '"' + *default_value + '"' : std::string();
   const std::string value = text(key, std::move(default_value));
+  note(key, std::string(kNameRule), default_text);
   if (!is_name(value)) refuse(key, "the text \"" + value + "\"", std::string(kNameRule));
   return value;
 }
 
 std::vector<double> TableReader::numbers(std::string_view key, std::size_t min_count, std::size_t max_count,
                                          Range range) const {
+  const std::string count =
+      std::to_string(min_count) + (max_count == min_count ? "" : " to " + std::to_string(max_count));
+  const std::string accepted = "an array of " + count + " numbers " + text_of(range);
+  note(key, accepted);
   return or_later(std::vector<double>(min_count, range.above ? range.high : range.low), [&] {
-    const std::string count =
-        std::to_string(min_count) + (max_count == min_count ? "" : " to " + std::to_string(max_count));
-    const std::string accepted = "an array of " + count + " numbers " + text_of(range);
     const auto* array = required(key, accepted).as_array();
     if (array == nullptr || array->size() < min_count || array->size() > max_count) refuse_value(key, accepted);
     std::vector<double> values;
@@ -305,6 +338,7 @@ std::vector<double> TableReader::numbers(std::string_view key, std::size_t min_c
 std::vector<std::pair<double, double>> TableReader::pairs(std::string_view key, std::size_t max_count, Range first,
                                                           Range second) const {
   const std::string accepted = "an array of 1 to " + std::to_string(max_count) + " pairs of numbers: [[0.0, 60.0]]";
+  note(key, accepted);
   const auto* array = required(key, accepted).as_array();
   if (array == nullptr || array->empty() || array->size() > max_count) refuse_value(key, accepted);
   std::vector<std::pair<double, double>> values;
@@ -325,7 +359,12 @@ bool TableReader::is_array(std::string_view key) const {
 
 std::array<double, 3> TableReader::three_numbers(std::string_view key, Range range,
                                                  std::optional<std::array<double, 3>> default_value) const {
-  if (!has(key) && default_value) return *default_value;
+  if (!has(key) && default_value) {
+    const auto& [x, y, z] = *default_value;
+    note(key, "an array of 3 numbers " + text_of(range),
+         "[" + text_of(x) + ", " + text_of(y) + ", " + text_of(z) + "]");
+    return *default_value;
+  }
   std::array<double, 3> three{};
   std::ranges::copy(numbers(key, 3, 3, range), three.begin());
   return three;
@@ -358,7 +397,7 @@ std::vector<std::size_t> TableReader::chosen_several(std::string_view key,
                                                      const std::vector<std::string_view>& accepted) const {
   std::vector<std::size_t> indices;
   if (!has(key)) return indices;
-  const std::string listing = "an array of distinct names out of " + listing_of(accepted);
+  const std::string listing = several_of(accepted);
   const auto* array = table_->get(key)->as_array();
   if (array == nullptr) refuse_value(key, listing);
   for (const toml::node& element : *array) {
@@ -374,6 +413,7 @@ std::vector<std::size_t> TableReader::chosen_several(std::string_view key,
 
 TableReader TableReader::table(std::string_view key) const {
   const toml::node* node = find(key);
+  note(key, std::string(kTable));
   if (node == nullptr) return {book_->missing.emplace_back(), path_of(key), *this};
   if (!node->is_table()) refuse_value(key, "a table");
   TableReader inner(*node->as_table(), path_of(key), *this);
@@ -383,6 +423,7 @@ TableReader TableReader::table(std::string_view key) const {
 std::vector<TableReader> TableReader::tables(std::string_view key) const {
   std::vector<TableReader> readers;
   const toml::node* node = find(key);
+  note(key, std::string(kTable));
   if (node == nullptr) return readers;
   const std::string accepted = "an array of tables, [[" + path_of(key) + "]]";
   const auto* array = node->as_array();

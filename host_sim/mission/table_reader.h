@@ -30,6 +30,16 @@ constexpr Range above_to(double low, double high) {
   return {low, high, true};
 }
 
+inline constexpr std::string_view kTable = "a table";
+
+/// A key as a reader accepts it.
+struct AcceptedKey {
+  std::string name;
+  std::string accepted;       ///< "a number from 0 to 1", kTable, also of several; empty if only its presence was asked for
+  std::string default_value;  ///< as in TOML; empty without one
+  friend bool operator==(const AcceptedKey&, const AcceptedKey&) = default;
+};
+
 /// A key that has been read is a known key: finish() rejects all others, so that no list of keys is needed.
 class TableReader {
  public:
@@ -48,7 +58,7 @@ class TableReader {
   /// The keys that have been read, in that order.
   [[nodiscard]] std::vector<std::string> asked() const;
   /// The same for all tables of the document that have been read, by their dotted paths.
-  [[nodiscard]] std::map<std::string, std::vector<std::string>> asked_of_all() const;
+  [[nodiscard]] std::map<std::string, std::vector<AcceptedKey>> asked_of_all() const;
 
   [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
 
@@ -87,15 +97,21 @@ class TableReader {
   template <class Enum, std::size_t N>
   Enum choice(std::string_view key, const std::array<std::pair<std::string_view, Enum>, N>& names,
               std::optional<Enum> default_value = std::nullopt) const {
-    if (!has(key) && default_value) return *default_value;
     std::vector<std::string_view> accepted;
-    for (const auto& [name, value] : names) accepted.push_back(name);
+    std::string_view default_name;
+    for (const auto& [name, value] : names) {
+      accepted.push_back(name);
+      if (default_value && value == *default_value && default_name.empty()) default_name = name;
+    }
+    note_choice(key, accepted, default_name);
+    if (!has(key) && default_value) return *default_value;
     return names[chosen(key, accepted)].second;
   }
 
   /// One of the names; `default_value` where the key is missing.
   std::string choice(std::string_view key, const std::vector<std::string_view>& names,
                      std::string_view default_value) const {
+    note_choice(key, names, default_value);
     return std::string(has(key) ? names[chosen(key, names)] : default_value);
   }
 
@@ -104,6 +120,7 @@ class TableReader {
   std::vector<Enum> choices(std::string_view key, const std::array<std::pair<std::string_view, Enum>, N>& names) const {
     std::vector<std::string_view> accepted;
     for (const auto& [name, value] : names) accepted.push_back(name);
+    note(key, several_of(accepted), "[]");
     std::vector<Enum> values;
     for (const std::size_t index : chosen_several(key, accepted)) values.push_back(names[index].second);
     return values;
@@ -130,6 +147,11 @@ class TableReader {
   [[nodiscard]] const toml::node* find(std::string_view key) const;
   void finish(const toml::table& table) const;
   void refuse_unknown_keys(const toml::table& table) const;
+  /// What the key accepts, for asked_of_all().
+  void note(std::string_view key, std::string accepted, std::string default_value = {}) const;
+  void note_choice(std::string_view key, const std::vector<std::string_view>& names,
+                   std::string_view default_name) const;
+  [[nodiscard]] static std::string several_of(const std::vector<std::string_view>& names);
   /// Keeps the error for finish().
   template <class Value, class Read>
   Value or_later(Value accepted, const Read& read) const;

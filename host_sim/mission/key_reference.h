@@ -1,0 +1,29 @@
+#pragma once
+// The reference of mission files: every key that readers accept, from the readers themselves; its meaning, from the
+// comments of the missions that show it.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host_sim/mission/sensor_reader.h"
+#include "host_sim/mission/table_reader.h"
+
+namespace vbar::mission {
+
+struct DescribedKey {
+  std::string table;  ///< as in a header of a file: "spacecraft.sensors.camera"; empty at the top
+  AcceptedKey key;
+  std::string meaning;  ///< comment behind the key in the first file, by name, that has one; empty: none has
+};
+
+/// Of all missions in `folder`, in order of tables, keys in the order of reading. A key is listed if a mission's reader
+/// asks for it. Throws MissionError if a mission is invalid.
+[[nodiscard]] std::vector<DescribedKey> key_reference(const std::filesystem::path& folder,
+                                                      const Installation& installation);
+
+/// The path of a reader's table without names and numbers of elements: "spacecraft.servicer.sensors.camera" and
+/// "waypoint.3" are "spacecraft.sensors.camera" and "waypoint".
+[[nodiscard]] std::string table_of_path(const std::string& path);
+
+}  // namespace vbar::mission

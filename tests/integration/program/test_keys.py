@@ -1,0 +1,39 @@
+#!/usr/bin/env python3
+"""vbar keys: the reference of mission files, complete and as printed in docs/keys.md."""
+import re
+import unittest
+
+from vbar_program import SOURCE, main, vbar
+
+READERS = ("host_sim/mission/read_*.cpp", "host_sim/sensors/*/read_*.cpp", "host_sim/sensors/*/*_kind.cpp")
+READ = re.compile(r'\b(?:section|table|fault|document|waypoint|sensor|inner)\w*\.(?:number|integer|flag|text|texts|name|numbers|pairs|three_numbers|'
+                  r'six_numbers|span|choice|choices)\(\s*"(\w+)"')
+
+
+# Asked for only where a mission names an orbit file of the user's.
+WITH_AN_ORBIT_FILE = {"orbit_object"}
+
+
+class Keys(unittest.TestCase):
+    def test_page_is_what_the_program_prints(self):
+        printed = vbar("keys", "--markdown")
+        self.assertEqual(printed.returncode, 0, printed.stderr)
+        self.assertEqual(printed.stdout, (SOURCE / "docs/keys.md").read_text(), "renew it: build/host/vbar keys --markdown > docs/keys.md")
+
+    def test_every_key_that_a_reader_names_is_on_the_page(self):
+        page = set(re.findall(r"^\| `(\w+)` \|", (SOURCE / "docs/keys.md").read_text(), re.MULTILINE))
+        named = {(key, file.name) for pattern in READERS for file in SOURCE.glob(pattern) for key in READ.findall(file.read_text())}
+        self.assertGreater(len(named), 150)
+        self.assertEqual(sorted((key, file) for key, file in named if key not in page | WITH_AN_ORBIT_FILE), [])
+
+    def test_search(self):
+        found = vbar("keys", "recession")
+        self.assertEqual(found.returncode, 0, found.stderr)
+        self.assertIn("safety.recession_m\n    a number above 0, up to 100000; default 1\n", found.stdout)
+        missing = vbar("keys", "recesion_m")
+        self.assertEqual(missing.returncode, 2)
+        self.assertEqual(missing.stderr, "vbar: no key of a mission contains 'recesion_m' (did you mean recession_m?)\n")
+
+
+if __name__ == "__main__":
+    main()
