@@ -36,6 +36,16 @@ std::string seconds_text(std::chrono::milliseconds duration) {
   return text.substr(0, text.find('.') + 2) + " s";
 }
 
+/// What a line gave instead of an answer: a cable, an address and a rate that are wrong look different.
+std::string what_came(const TransportCounters& line, std::uint64_t other_frames) {
+  if (line.foreign_datagrams > 0)
+    return "; " + std::to_string(line.foreign_datagrams) + " datagrams came from another address";
+  if (line.bytes_received == 0) return "; nothing came";
+  if (other_frames > 0) return "; " + std::to_string(other_frames) + " frames came, none of them an answer to it";
+  return "; " + std::to_string(line.bytes_received) +
+         " bytes came that are no frame of the link: another rate, or a console";
+}
+
 }  // namespace
 
 StepBarrier::StepBarrier(FrameTransport& transport, std::uint32_t session, const BarrierTiming& timing,
@@ -49,6 +59,7 @@ std::string StepBarrier::connect(std::uint8_t spacecraft, std::uint32_t receiver
   const auto payload = std::span(hello).first(step_budget != 0     ? fsw::link::kHelloWithBudgetBytes
                                               : receiver_baud != 0 ? fsw::link::kHelloWithReceiverBytes
                                                                    : fsw::link::kHelloBytes);
+  std::uint64_t other_frames = 0;
   const auto give_up = Clock::now() + timing_.boot_limit;
   while (Clock::now() < give_up) {
     send({.type = FrameType::kHello, .session = session_}, payload);
@@ -56,6 +67,7 @@ std::string StepBarrier::connect(std::uint8_t spacecraft, std::uint32_t receiver
     while (const auto frame = receive(next_hello)) {
       if (frame->header.type != FrameType::kHelloAck) {
         ++counters_.frames_rejected;
+        ++other_frames;
         continue;
       }
       if (const auto error = board_error(*frame))
@@ -64,7 +76,8 @@ std::string StepBarrier::connect(std::uint8_t spacecraft, std::uint32_t receiver
     }
     watch_();
   }
-  throw LinkError("no answer to hello within " + seconds_text(timing_.boot_limit) + " on " + transport_.description());
+  throw LinkError("no answer to hello within " + seconds_text(timing_.boot_limit) + " on " + transport_.description() +
+                  what_came(transport_.counters(), other_frames));
 }
 
 std::optional<std::uint64_t> StepBarrier::receiver_count(Clock::time_point deadline) {

@@ -29,7 +29,7 @@ int32_t vbar_gnc_abi_version(void) {
 }
 
 const char* vbar_gnc_name(void) {
-  return "vbar GNC 0.1.0";
+  return "vbar GNC 0.3.0";
 }
 
 size_t vbar_gnc_state_size(void) {

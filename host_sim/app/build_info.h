@@ -8,7 +8,7 @@ namespace vbar::app {
 extern const char* const
     kBuildCommit;  ///< of the source tree, "+" behind it if files were changed; "unknown" outside git
 
-/// "0.1.0"
+/// "0.3.0"
 [[nodiscard]] std::string build_version();
 /// e.g. "GCC 12.2.0"
 [[nodiscard]] std::string build_compiler();

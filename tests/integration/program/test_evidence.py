@@ -330,7 +330,7 @@ class CommandLine(Evidence):
         self.expect(vbar("run", MISSION, "--seed", "-1"), REFUSED, "--seed", "-1")
 
     def test_version_and_help(self):
-        self.expect(vbar("--version"), DONE, "vbar 0.1.0", "commit")
+        self.expect(vbar("--version"), DONE, "vbar 0.3.0", "commit")
         self.expect(vbar("--help"), DONE, "75 interrupted", "log cut", "vbar_NAME")
 
     def test_another_word_runs_the_program_of_that_name(self):

@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import tempfile
+import time
 
 
 def free_udp_port():
@@ -22,12 +23,13 @@ def die_with_parent():
 class EmulatedBoard:
     """Context manager: the emulator runs inside the `with`."""
 
-    def __init__(self, image, semihosting=True, arguments=(), raw_ethernet=False, address="10.0.2.15:5000"):
+    def __init__(self, image, semihosting=True, arguments=(), raw_ethernet=False, address="10.0.2.15:5000", halted=False):
         self.image = image
         self.semihosting = semihosting
         self.arguments = arguments
         self.raw_ethernet = raw_ethernet
         self.address = address  # of the image: IP address and UDP port
+        self.halted = halted  # as after a reset by a debugger: nothing is loaded, self.gdb_socket is the debug server
 
     def __enter__(self):
         self.folder = tempfile.TemporaryDirectory(prefix="vbar-zynq-")
@@ -53,12 +55,18 @@ class EmulatedBoard:
             "-accel", "tcg,tb-size=64", "-icount", "shift=5,sleep=off,align=off", "-semihosting-config", semihosting,
             "-chardev", f"socket,id=link,path={serial_path},server=off", "-serial", "chardev:link",
             "-chardev", f"file,id=console,path={self.console_path}", "-serial", "chardev:console",
-            "-nic", network + ",model=cadence_gem",
-            "-kernel", self.image]
+            "-nic", network + ",model=cadence_gem"]
+        self.gdb_socket = os.path.join(self.folder.name, "gdb")
+        command += ["-S", "-gdb", f"unix:{self.gdb_socket},server=on,wait=off"] if self.halted else ["-kernel", self.image]
         try:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                             stderr=subprocess.PIPE, preexec_fn=die_with_parent)
             self.serial = listener.accept()[0]
+            deadline = time.monotonic() + 30
+            while self.halted and not os.path.exists(self.gdb_socket):
+                if time.monotonic() > deadline:
+                    raise TimeoutError("the emulator opens no debug server")
+                time.sleep(0.05)
         except BaseException:
             self.__exit__()
             raise

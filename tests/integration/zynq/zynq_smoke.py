@@ -294,6 +294,43 @@ class ZynqSmoke(unittest.TestCase):
                 self.assertEqual(internet_checksum(answer[14:34]), 0)
                 self.assertEqual(answer[34:42 + size], echo(ECHO_REPLY, body))
 
+    def test_two_boards(self):
+        """Two boards at a time, the second one at another address: both fly, step by step in turn."""
+        image = os.path.join(self.image_folder, "vbar_zynq7000_example.elf")
+        script = os.path.join(os.path.dirname(__file__), "../../../boards/zynq7000/set_address.py")
+        with tempfile.TemporaryDirectory(prefix="vbar-zynq-") as folder:
+            second = os.path.join(folder, "second.elf")
+            subprocess.run([sys.executable, script, image, "--address", "10.0.2.16", "--out", second], check=True, capture_output=True)
+            with EmulatedBoard(image) as board, EmulatedBoard(second, address="10.0.2.16:5000") as other:
+                sessions = [Session(self.datagrams(board), 51), Session(self.datagrams(other), 52)]
+                for session in sessions:
+                    session.hello()
+                answers = [[session.step(step, inputs(step))[:-1] for session in sessions] for step in range(5)]
+                for number in range(2):
+                    self.assertEqual([both[number] for both in answers], self.expected(5))
+                for session in sessions:
+                    session.goodbye()
+                self.assertEqual([board.wait(), other.wait()], [0, 0])
+                self.assertIn("10.0.2.16:5000", other.console())
+
+    def test_debugger(self):
+        """jtag.gdb through a debug server: the image arrives whole, starts and flies."""
+        if shutil.which("gdb-multiarch") is None:
+            self.skipTest("gdb-multiarch is not installed")
+        script = os.path.join(os.path.dirname(__file__), "../../../boards/zynq7000/jtag.gdb")
+        with self.example(halted=True) as board:
+            loaded = subprocess.run(["gdb-multiarch", "-nx", "-batch", "-ex", "target extended-remote " + board.gdb_socket, "-x", script,
+                                     board.image], capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(loaded.returncode, 0, loaded.stderr)
+            self.assertIn("Section .text", loaded.stdout)
+            self.assertIn("matched.", loaded.stdout)
+            self.assertNotIn("MIS-MATCHED", loaded.stdout)
+            session = Session(self.datagrams(board), 53)
+            session.hello()
+            self.check_flight(*fly(session, 5))
+            session.goodbye()
+            self.assertEqual(board.wait(), 0, board.console())
+
     def test_flight_image(self):
         """vbar's own flight software starts, answers ticks with telemetry, and stops when told."""
         image = os.path.join(self.image_folder, "vbar_zynq7000.elf")

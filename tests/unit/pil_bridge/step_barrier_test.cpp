@@ -44,9 +44,10 @@ class ScriptedBoard : public FrameTransport {
     const auto size = fsw::link::write_frame(header, bytes, frame_);
     return std::span(frame_).first(size.value());
   }
-  [[nodiscard]] TransportCounters counters() const override { return {}; }
+  [[nodiscard]] TransportCounters counters() const override { return line; }
   [[nodiscard]] std::string description() const override { return "scripted line"; }
   int sent = 0;
+  TransportCounters line;
 
  private:
   std::vector<std::pair<FrameHeader, std::string>> replies_;
@@ -187,6 +188,19 @@ TEST(StepBarrier, GivesUpOnABoardThatNeverAnswersHello) {
   // Ten hello periods fit the boot limit; the wait ends there, not a poll later. Generous for a loaded machine.
   EXPECT_GE(board.sent, 2);
   EXPECT_LT(Clock::now() - start, std::chrono::seconds(5));
+}
+
+TEST(StepBarrier, SaysWhatCameInsteadOfAnAnswer) {
+  const auto said = [](const TransportCounters& line) {
+    ScriptedBoard board({});
+    board.line = line;
+    StepBarrier barrier(board, kSession, hasty(), watch_nothing);
+    return link_error_of([&] { barrier.connect(kSpacecraft); });
+  };
+  EXPECT_THAT(said({}), HasSubstr("; nothing came"));
+  EXPECT_THAT(said({.bytes_received = 512, .frames_rejected = 2}),
+              HasSubstr("; 512 bytes came that are no frame of the link: another rate, or a console"));
+  EXPECT_THAT(said({.bytes_received = 40, .foreign_datagrams = 3}), HasSubstr("; 3 datagrams came from another address"));
 }
 
 TEST(StepBarrier, IgnoresAnAnswerOfAnotherSessionAndCountsIt) {
