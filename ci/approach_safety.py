@@ -41,9 +41,9 @@ def faults(folder):
 
 
 def largest_probability(folder):
-    """Of a collision after the retreat burn of a step, the larger of both forms."""
+    """Of a collision after the retreat burn of a step; that with an unknown position along track is not a criterion."""
     file = folder / "telemetry_safety.csv"
-    return max(number(row, column, file) for row in rows(file) for column in ("collision_probability", "collision_probability_in_plane"))
+    return max(number(row, "collision_probability", file) for row in rows(file))
 
 
 def longest_gap_s(folder, from_s, to_s):

@@ -30,6 +30,7 @@ test=(
 peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr
   libopencv-dev liborocos-kdl-dev tshark ffmpeg ola
   doxygen mkdocs   # documentation site (ci/site.py)
+  mmdebstrap       # a clean root for the Debian package (ci/package.sh)
   gdb-multiarch    # loads the flight image through a debug server
   xilinx-bootgen   # BOOT.BIN of the flight image
   slurm-wlm munge)  # a cluster on loopback, for campaigns

@@ -101,6 +101,10 @@ void Gnc::supervise() {
   const NavigationState& state = navigation_.state();
   const double range_m = state.valid ? (state.target.position_eci - state.servicer.position_eci).norm() : 0.0;
   feed_guard(guard_, inbox_, telecommands_, attitude_, range_m);
+  const TrunkNavigation& receivers = navigation_.trunk();
+  if (const auto codes = code_baseline(receivers.gnss(), receivers.trunk().settings().earth)) {
+    guard_.take_code_baseline(codes->time, codes->range_m, range_m);
+  }
   check_verdicts(guard_.judge(now_), now_, faults_);
 }
 

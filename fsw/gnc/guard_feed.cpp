@@ -2,6 +2,7 @@
 
 #include "fsw/gnc/message_fields.h"
 #include "fsw/math/math.h"
+#include "fsw/navigation/single_point.h"
 #include "fsw/orbit/sun.h"
 
 namespace vbar::fsw::gnc {
@@ -21,6 +22,22 @@ guard::GuardCamera guard_camera(const camera_configuration& camera) {
 }
 
 }  // namespace
+
+std::optional<CodeBaseline> code_baseline(const sources::GnssFrontEnd& gnss, const orbit::EarthOrientation& earth) {
+  const navigation::EpochBuffer& theirs = gnss.waiting(sources::Receiver::kTarget);
+  for (std::size_t k = theirs.size(); k-- > 0;) {  // in order of time
+    const GpsTime tag = theirs[k].receiver_time;
+    const gnss::ObservationEpoch* ours = gnss.waiting(sources::Receiver::kServicer).find(tag);
+    if (ours == nullptr) continue;
+    const auto frame = navigation::EarthFrame::at(tag, earth);
+    const auto their_point = navigation::single_point(theirs[k], gnss.ephemerides(), frame);
+    const auto our_point = navigation::single_point(*ours, gnss.ephemerides(), frame);
+    if (!their_point.ok() || !our_point.ok()) return std::nullopt;
+    const Vector3 apart = their_point.value().position_eci - our_point.value().position_eci;
+    return CodeBaseline{.time = tag, .range_m = math::sqrt(apart.squaredNorm())};
+  }
+  return std::nullopt;
+}
 
 void feed_guard(guard::Guard& guard, const Inbox& inbox, const Telecommands& telecommands,
                 std::optional<vbar::attitude>& attitude, double navigation_range_m) {

@@ -1,13 +1,23 @@
 #pragma once
-// What the guard is given in a step: images, attitude and burns, straight from the packets. Nothing of navigation but
-// the range that it states.
+// What the guard is given in a step: images, attitude, epochs of both receivers and burns, straight from the packets.
+// Nothing of navigation but the range that it states.
 
 #include "fsw/faults/fault_monitor.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/telecommands.h"
 #include "fsw/guard/guard.h"
+#include "fsw/orbit/earth_rotation.h"
+#include "fsw/sources/gnss/gnss_front_end.h"
 
 namespace vbar::fsw::gnc {
+
+/// Distance of the antennas by the pseudoranges of the newest epoch that both receivers have.
+struct CodeBaseline {
+  GpsTime time;
+  double range_m = 0.0;
+};
+/// No value without such an epoch, or where either receiver has no single-point solution in it.
+std::optional<CodeBaseline> code_baseline(const sources::GnssFrontEnd& gnss, const orbit::EarthOrientation& earth);
 
 /// Gives the packets of the step to the guard. `attitude`: the last one received, replaced by those of the step.
 void feed_guard(guard::Guard& guard, const Inbox& inbox, const Telecommands& telecommands,

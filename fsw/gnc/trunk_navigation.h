@@ -41,6 +41,8 @@ class TrunkNavigation {
   void set_pointing(const sources::Pointing& pointing) { platform_.pointing = pointing; }
 
   [[nodiscard]] const trunk::Trunk& trunk() const { return trunk_; }
+  /// The receivers' epochs as decoded, from the trunk's epoch on.
+  [[nodiscard]] const sources::GnssFrontEnd& gnss() const { return gnss_; }
   /// At the end of a step, and at the beginning of the next one (state_integrity.h).
   void seal() { integrity_.seal(trunk_); }
   [[nodiscard]] Integrity verify() { return integrity_.verify(trunk_); }

@@ -25,15 +25,24 @@ void Guard::take_image(GpsTime time, const imaging::ImageView& image, const Guar
   const std::optional<double> range_m = range_from_size(area, camera, illumination, settings_.target_size_m);
   if (!range_m) return;
   range_.add(time, *range_m);
-  const bool is_near = *range_m < kCompareWithin_m || navigation_range_m < kCompareWithin_m;
-  if (!is_near || !(navigation_range_m > 0.0)) return;
-  const double logarithm = math::log(*range_m / navigation_range_m);
-  pending_.range = {.is_checked = true, .is_alarm = disagrees(time, logarithm), .value = logarithm};
-  if (!range_.has_rate()) return;
+  if (!compare(time, *range_m, navigation_range_m) || !range_.has_rate()) return;
   const double rate = range_.range_rate(time);
   const double range_now_m = range_.range_m(time);
   const double largest_rate = range_now_m / kClosingTime_s + kOrbitalRate;
   pending_.closing = {.is_checked = range_now_m < kClosingWithin_m, .is_alarm = rate < -largest_rate, .value = rate};
+}
+
+void Guard::take_code_baseline(GpsTime time, double range_m, double navigation_range_m) {
+  if (!seen_ || time > *seen_) seen_ = time;
+  if (range_m > kCodeComparedFrom_m) static_cast<void>(compare(time, range_m, navigation_range_m));
+}
+
+bool Guard::compare(GpsTime time, double range_m, double navigation_range_m) {
+  const bool is_near = range_m < kCompareWithin_m || navigation_range_m < kCompareWithin_m;
+  if (!is_near || !(navigation_range_m > 0.0)) return false;
+  const double logarithm = math::log(range_m / navigation_range_m);
+  pending_.range = {.is_checked = true, .is_alarm = disagrees(time, logarithm), .value = logarithm};
+  return true;
 }
 
 bool Guard::disagrees(GpsTime time, double logarithm) {

@@ -1,8 +1,9 @@
 #pragma once
 // The guard: a second opinion that shares nothing with navigation and can only demand the retreat.
 //
-// Of the sensors it uses images and the attitude, of guidance the burns commanded, of actuators the burns reported. It
-// has its own range and range rate (range_filter.h), its own record of burns and its own timer of outages. What
+// Of the sensors it uses images, the attitude and the codes of both receivers, of guidance the burns commanded, of
+// actuators the burns reported. It has its own range and range rate (range_filter.h), its own record of burns and its
+// own timer of outages. What
 // navigation states is compared with them, and used for nothing else.
 
 #include <array>
@@ -19,7 +20,7 @@ namespace vbar::fsw::guard {
 
 struct GuardSettings {
   double target_size_m = 0.0;         ///< square root of the mean silhouette area
-  double data_timeout_s = 0.0;        ///< longest time without the target in an image
+  double data_timeout_s = 0.0;        ///< longest time without the target in an image or a code baseline
   double data_timeout_range_m = 0.0;  ///< inside this range
 };
 
@@ -33,7 +34,7 @@ struct Verdict {
 /// All verdicts of a step.
 struct GuardVerdicts {
   Verdict range;  ///< logarithm of the guard's range of an image over that of navigation, nearer than kCompareWithin_m
-  Verdict silence;  ///< time since the target was last seen, s
+  Verdict silence;  ///< time since the target was last seen or its receiver heard, s
   Verdict burns;    ///< difference of a burn from its command, share of the command
   Verdict closing;  ///< range rate, m/s
 };
@@ -49,11 +50,18 @@ class Guard {
   /// and in penumbra the target is too dim to be measured.
   static constexpr double kLongestDisagreement_s = 300.0;
 
+  /// Nearer than this, the errors of two code solutions are a large share of their distance.
+  static constexpr double kCodeComparedFrom_m = 20.0;
+
   void configure(const GuardSettings& settings) { settings_ = settings; }
 
   /// An image in which a resolved target is exposed properly. `navigation_range_m`: what navigation states, 0 nothing.
   void take_image(GpsTime time, const imaging::ImageView& image, const GuardCamera& camera,
                   const Illumination& illumination, double navigation_range_m);
+
+  /// Distance of the single-point solutions of both receivers, m: decimetres to metres, hence compared beyond
+  /// kCodeComparedFrom_m only. Range and rate are those of images alone.
+  void take_code_baseline(GpsTime time, double range_m, double navigation_range_m);
 
   void take_command(std::int32_t maneuver_id, const Vector3& dv_rtn);
   /// A burn that was executed, whatever was commanded.
@@ -77,12 +85,15 @@ class Guard {
     GpsTime last;
   };
   [[nodiscard]] bool disagrees(GpsTime time, double logarithm);
+  /// False if there is nothing to compare: far from the target, or no range of navigation.
+  bool compare(GpsTime time, double range_m, double navigation_range_m);
 
   static constexpr std::size_t kCommands = 16;
 
   GuardSettings settings_;
   RangeFilter range_;
-  std::optional<GpsTime> seen_;  ///< the last image with a lit target, whether its size gives a range or not
+  /// The last image with a lit target, whether its size gives a range or not, or the last code baseline.
+  std::optional<GpsTime> seen_;
   std::optional<Disagreement> disagreement_;
   GuardVerdicts pending_;
   std::array<Command, kCommands> commands_{};

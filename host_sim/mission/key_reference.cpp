@@ -106,8 +106,14 @@ std::vector<DescribedKey> key_reference(const std::filesystem::path& folder, con
     add_meanings(read_text_file(entry.file, "a mission file (TOML)"), meanings);
     for (const auto& [path, keys] : accepted_keys(entry.file, {}, installation)) {
       std::vector<AcceptedKey>& known = tables[table_of_path(path)];
-      for (const AcceptedKey& key : keys)
-        if (std::ranges::find(known, key.name, &AcceptedKey::name) == known.end()) known.push_back(key);
+      for (const AcceptedKey& key : keys) {
+        const auto place = std::ranges::find(known, key.name, &AcceptedKey::name);
+        if (place == known.end()) {
+          known.push_back(key);
+        } else if (place->accepted.empty()) {
+          *place = key;  // a mission read its value, not only whether it is there
+        }
+      }
     }
   }
   list_each_kind_once(tables);

@@ -66,15 +66,15 @@ class Approach(unittest.TestCase):
         self.write_states(sigma_m="nan")
         with self.assertRaisesRegex(SystemExit, "sigma_rtn_t_m is nan at 3000 s"):
             safety.largest_sigma_share(self.folder, 0, 6000)
-        write(self.folder / "telemetry_safety.csv", [{"time_s": 0, "collision_probability": "1e-9", "collision_probability_in_plane": "nan"}])
-        with self.assertRaisesRegex(SystemExit, "collision_probability_in_plane is nan"):
+        write(self.folder / "telemetry_safety.csv", [{"time_s": 0, "collision_probability": "nan"}])
+        with self.assertRaisesRegex(SystemExit, "collision_probability is nan"):
             safety.largest_probability(self.folder)
         (self.folder / "telemetry_event.csv").write_text("")
         with self.assertRaisesRegex(SystemExit, "no column fault"):
             safety.faults(self.folder)
 
-    def test_probability_is_the_larger_form(self):
-        write(self.folder / "telemetry_safety.csv", [{"time_s": t, "collision_probability": "1e-9", "collision_probability_in_plane": f"{t}e-9"} for t in (0, 5)])
+    def test_probability_is_the_greatest(self):
+        write(self.folder / "telemetry_safety.csv", [{"time_s": t, "collision_probability": f"{t}e-9"} for t in (0, 5, 3)])
         self.assertEqual(safety.largest_probability(self.folder), 5e-9)
 
     def test_faults_are_counted(self):

@@ -83,6 +83,31 @@ TEST_F(GuardTest, SilenceNearTheTargetIsAnAlarm) {
   EXPECT_TRUE(guard_.judge(at(2101.0)).silence.is_alarm);
 }
 
+// A target with its dark side towards the camera is not seen, but heard.
+TEST_F(GuardTest, ACodeBaselineEndsASilence) {
+  look(0.0, 40.0, 40.0);
+  guard_.take_code_baseline(at(2000.0), 41.0, 40.0);
+  EXPECT_FALSE(guard_.judge(at(2101.0)).silence.is_alarm);
+  guard_.take_code_baseline(at(1000.0), 41.0, 40.0);
+  EXPECT_FALSE(guard_.judge(at(4100.0)).silence.is_alarm) << "an older one does not count";
+  EXPECT_TRUE(guard_.judge(at(4101.0)).silence.is_alarm);
+}
+
+TEST_F(GuardTest, ACodeBaselineContradictsNavigationUnlessItIsShort) {
+  bool is_alarm = false;
+  for (double t = 0.0; t <= 400.0; t += 10.0) {
+    guard_.take_code_baseline(at(t), 40.0, 95.0);
+    is_alarm = guard_.judge(at(t)).range.is_alarm;
+    EXPECT_EQ(is_alarm, t >= Guard::kLongestDisagreement_s) << t;
+  }
+  guard_ = Guard();
+  guard_.configure(kSettings);
+  for (double t = 0.0; t <= 400.0; t += 10.0) {
+    guard_.take_code_baseline(at(t), 9.0, 3.0);
+    EXPECT_FALSE(guard_.judge(at(t)).range.is_checked) << "codes are wrong by metres";
+  }
+}
+
 TEST_F(GuardTest, SilenceFarAwayIsNone) {
   EXPECT_FALSE(guard_.judge(at(1e5)).silence.is_checked) << "there never was a range";
   look(0.0, 140.0, 140.0);

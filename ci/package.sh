@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# The Debian package of the programs, installed into a root with nothing but Debian's essential packages, where a mission is flown from
+# another folder. usage: ci/package.sh [--keep FOLDER]     builds build/host (and build/zynq, if it was configured) first
+# Exit status 77: there is no Debian mirror, or no mmdebstrap.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+[[ $# -eq 0 || ( $# -eq 2 && $1 == --keep ) ]] || { sed -n 2,4p "$0" >&2; exit 2; }
+[[ $(id -u) -eq 0 ]] || { echo "skipped: not root"; exit 77; }
+command -v mmdebstrap > /dev/null || { echo "skipped: mmdebstrap is not installed"; exit 77; }
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+for program in vbar vbar_flight vbar_grand_bench vbar_os_bench vbar_os_calibrate vbar_tron vbar_tron_bench; do
+  [[ -n $(find build/host -type f -name $program -perm -u+x -print -quit) ]] || { echo "skipped: build/host has no $program"; exit 77; }
+done
+cpack --config build/host/CPackConfig.cmake -B "$scratch/package" > "$scratch/cpack.log" 2>&1 || { cat "$scratch/cpack.log" >&2; exit 1; }
+package=$(find "$scratch/package" -maxdepth 1 -name '*.deb' -print -quit)
+dpkg-deb --field "$package" Package Version Installed-Size Depends
+[[ $# -eq 2 ]] && cp "$package" "$2/"
+
+# --include takes the package's dependencies from the mirror with it.
+mmdebstrap --quiet --variant=essential --mode=root --include="$package" --setup-hook="mkdir -p \"\$1\$(dirname $package)\"" \
+  --setup-hook="cp $package \"\$1$package\"" bookworm "$scratch/root" 2> "$scratch/root.log" ||
+  { if grep -qiE "could not resolve|connection|unable to fetch|failed to fetch" "$scratch/root.log"; then echo "skipped: no Debian mirror"; exit 77; fi
+    cat "$scratch/root.log" >&2; exit 1; }
+# The program finds its data by /proc/self/exe.
+cat > "$scratch/root/tmp/fly.sh" << 'END'
+cd /tmp
+vbar --version
+vbar run experiment3 --quiet --out /tmp/run
+grep -o '"commands_sha256": "[0-9a-f]*"' /tmp/run/summary.json
+END
+unshare --mount sh -ec 'mount -t proc proc "$1/proc"; exec chroot "$1" /bin/sh -e /tmp/fly.sh' - "$scratch/root" | tee "$scratch/flown"
+# The bits of the build that was packaged.
+build/host/vbar run experiment3 --quiet --out "$scratch/here"
+grep -qF "$(grep -o '"commands_sha256": "[0-9a-f]*"' "$scratch/here/summary.json")" "$scratch/flown"
+echo "installed and flown in a clean root"
