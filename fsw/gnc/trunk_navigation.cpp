@@ -116,12 +116,12 @@ void TrunkNavigation::update(GpsTime now, Inbox& inbox, std::span<const navigati
   Context context{now, inbox, platform_, gnss_};
   for_each(sources_, [](auto& source, std::uint8_t /*index*/) { source.aid().forget_inconsistency(); });
   take_attitudes(now, inbox);
+  gnss_.drop_before(trunk_.epoch());  // not at the end: the guard reads the epochs of the step
   gnss_.decode(inbox, trunk_.epoch());
   for_each(sources_, [&](auto& source, std::uint8_t index) {
     if (source.aid().is_on()) source.collect(context, {queue_, index});
   });
   fold_records(context, burns);
-  gnss_.drop_before(trunk_.epoch());
   // Without records the epoch follows at a distance, so that the work of a step stays bounded.
   if (now - trunk_.epoch() > kLongestDelay + kLongestDelay) trunk_.advance_to(now - kLongestDelay, burns);
   for_each(sources_, [&](auto& source, std::uint8_t /*index*/) {

@@ -24,6 +24,11 @@ class KeypointNetwork {
   /// weight that is not 0 and below 2^-40 or from 2^20 on in size, an invalid calibration). After a failure there
   /// is no network.
   Status load(std::span<const std::byte> weights);
+  /// The same weights at another address: a state restored in another process still has that of the process which saved
+  /// it, and must be given its own before run().
+  void relocate(std::span<const std::byte> same_weights) {
+    if (is_loaded()) weights_ = same_weights;
+  }
   [[nodiscard]] bool is_loaded() const { return !weights_.empty(); }
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
 

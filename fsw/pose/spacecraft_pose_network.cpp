@@ -71,6 +71,7 @@ SightingStatus SpacecraftPoseNetwork::look_at(const imaging::ImageView& image, c
   sighting_.keypoints = {};
   sighting_.pnp.reset();
   if (cut_crop(image, region, settings_.dark_level_dn, crop_) != Status::kOk) return SightingStatus::kNoTarget;
+  network_.relocate(network::weights_on_board());
   if (network_.run(crop_) != Status::kOk) return SightingStatus::kNoKeypoints;
   const auto sigma = static_cast<double>(network_.calibration().target_sigma_cells);
   bool is_any = false;
