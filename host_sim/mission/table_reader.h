@@ -35,7 +35,7 @@ inline constexpr std::string_view kTable = "a table";
 /// A key as a reader accepts it.
 struct AcceptedKey {
   std::string name;
-  std::string accepted;       ///< "a number from 0 to 1", kTable, also of several; empty if only its presence was asked for
+  std::string accepted;  ///< "a number from 0 to 1", kTable, also of several; empty if only its presence was asked for
   std::string default_value;  ///< as in TOML; empty without one
   friend bool operator==(const AcceptedKey&, const AcceptedKey&) = default;
 };

@@ -200,7 +200,8 @@ TEST(StepBarrier, SaysWhatCameInsteadOfAnAnswer) {
   EXPECT_THAT(said({}), HasSubstr("; nothing came"));
   EXPECT_THAT(said({.bytes_received = 512, .frames_rejected = 2}),
               HasSubstr("; 512 bytes came that are no frame of the link: another rate, or a console"));
-  EXPECT_THAT(said({.bytes_received = 40, .foreign_datagrams = 3}), HasSubstr("; 3 datagrams came from another address"));
+  EXPECT_THAT(said({.bytes_received = 40, .foreign_datagrams = 3}),
+              HasSubstr("; 3 datagrams came from another address"));
 }
 
 TEST(StepBarrier, IgnoresAnAnswerOfAnotherSessionAndCountsIt) {

@@ -79,13 +79,13 @@ class SizedBuffers {
   Buffer& of_size(int size, const Settings&... settings) {
     const auto known = buffers_.find(size);
     if (known != buffers_.end()) return known->second;
-    if (buffers_.size() == kMost) buffers_.clear();
+    if (buffers_.size() == kMaxSizes) buffers_.clear();
     return buffers_.try_emplace(size, size, settings...).first->second;
   }
   void clear() { buffers_.clear(); }
 
  private:
-  static constexpr std::size_t kMost = 3;
+  static constexpr std::size_t kMaxSizes = 3;
   std::map<int, Buffer> buffers_;
 };
 

@@ -46,8 +46,9 @@ TEST(TableReader, RemembersWhatItWasAskedFor) {
   static_cast<void>(reader.table("inner").flag("size", true));
   EXPECT_THAT(reader.asked(), ElementsAre("mass", "colour", "inner"));
   EXPECT_THAT(reader.asked_of_all().at("inner"), ElementsAre(AcceptedKey{"size", "true or false", "true"}));
-  EXPECT_THAT(reader.asked_of_all().at(""), ElementsAre(AcceptedKey{"mass", "a number above 0, up to 10", ""},
-                                                        AcceptedKey{"colour", "", ""}, AcceptedKey{"inner", "a table", ""}));
+  EXPECT_THAT(reader.asked_of_all().at(""),
+              ElementsAre(AcceptedKey{"mass", "a number above 0, up to 10", ""}, AcceptedKey{"colour", "", ""},
+                          AcceptedKey{"inner", "a table", ""}));
   EXPECT_THAT(reader.keys(), ElementsAre("inner", "mass"));
   EXPECT_NO_THROW(reader.finish());
 }

@@ -1,6 +1,5 @@
 #include "host_sim/twins/gnss/klobuchar.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +7,7 @@
 
 #include "fsw/gnss/constants.h"
 #include "tests/support/accuracy.h"
+#include "tests/support/figures.h"
 
 namespace vbar::twins::gnss {
 namespace {
@@ -54,11 +54,12 @@ TEST(Klobuchar, SlantInOrbit) {
 TEST(Klobuchar, VerticalDelayIsContinuous) {
   const double amplitude_m = fsw::gnss::kSpeedOfLight * kExample.alpha[0];
   double last_m = klobuchar_vertical_delay_m(kExample, 0.0, 0.0, 0.0);
-  double largest_m = 0.0, lowest_m = last_m;
+  accuracy::Largest largest_m;
+  accuracy::Smallest lowest_m;
   for (int tenths = 1; tenths < 864000; ++tenths) {
     const double delay_m = klobuchar_vertical_delay_m(kExample, 0.0, 0.0, 0.1 * tenths);
-    largest_m = std::max(largest_m, std::abs(delay_m - last_m));
-    lowest_m = std::min(lowest_m, delay_m);
+    largest_m.add(std::abs(delay_m - last_m));
+    lowest_m.add(delay_m);
     last_m = delay_m;
   }
   EXPECT_LT(largest_m, 2.0 * amplitude_m * 2.0 * std::numbers::pi * 0.1 / 72000.0);
