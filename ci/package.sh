@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # The Debian package of the programs, installed into a root with nothing but Debian's essential packages, where a mission is flown from
-# another folder. usage: ci/package.sh [--keep FOLDER]     builds build/host (and build/zynq, if it was configured) first
+# another folder. usage: ci/package.sh [--keep FOLDER]
+# Packages what build/host installs, and build/zynq if it is there; both must be built.
 # Exit status 77: there is no Debian mirror, or no mmdebstrap.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-[[ $# -eq 0 || ( $# -eq 2 && $1 == --keep ) ]] || { sed -n 2,4p "$0" >&2; exit 2; }
+[[ $# -eq 0 || ( $# -eq 2 && $1 == --keep ) ]] || { sed -n 2,5p "$0" >&2; exit 2; }
 [[ $(id -u) -eq 0 ]] || { echo "skipped: not root"; exit 77; }
 command -v mmdebstrap > /dev/null || { echo "skipped: mmdebstrap is not installed"; exit 77; }
 scratch=$(mktemp -d)
