@@ -88,16 +88,17 @@ def toml_of(value):
 def mission_of(case, point, is_cooperative, after_h=AFTER_H):
     at_h, start_h, waypoint, _, sigmas = POINTS[point]
     slow_h = 41.5  # from then on, images of every fifth minute
-    close = point in NEAR
-    period_s, close_period_s = ("20.0], [39.0, 60.0", "20.0], [39.0, 10.0") if close else ("60.0", "60.0")
+    slow = [slow_h, 300.0]
+    camera = [[0.0, 60.0], [36.0, 20.0], [39.0, 60.0], slow] if point in NEAR else [[0.0, 60.0], slow]
+    close_camera = [[38.25, 20.0], [39.0, 10.0], slow] if point in NEAR else [[38.25, 60.0], slow]
     name = "full_range_cooperative_retreat" if is_cooperative else "full_range_retreat"
     lines = [f'extends = "{pathlib.Path.cwd() / "missions" / name}.toml"', "[mission]", 'name = "fault_table"',
              f"start_h = {start_h}", f"duration_h = {at_h + after_h - start_h}",
              f"step_s = [[0.0, 60.0], [36.0, 20.0], [38.5, 5.0], [{slow_h}, 60.0]]",
              "[[spacecraft]]", 'name = "target"', f'relative = {{ to = "servicer", waypoint = {waypoint} }}',
              "[[spacecraft]]", 'name = "servicer"',
-             "[spacecraft.sensors.camera]", f"period_s = [[0.0, 60.0], [36.0, {period_s}], [{slow_h}, 300.0]]",
-             "[spacecraft.sensors.close_camera]", f"period_s = [[38.25, {close_period_s}], [{slow_h}, 300.0]]",
+             "[spacecraft.sensors.camera]", f"period_s = {camera}",
+             "[spacecraft.sensors.close_camera]", f"period_s = {close_camera}",
              "[navigation.apriori]", 'kind = "roe"']
     lines += [f"sigma_a_{key}_m = {sigma}" for key, sigma in zip(("da", "dlambda", "de", "di"), sigmas)]
     for table in case.faults:

@@ -11,9 +11,6 @@ command -v mmdebstrap > /dev/null || { echo "skipped: mmdebstrap is not installe
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-for program in vbar vbar_flight vbar_grand_bench vbar_os_bench vbar_os_calibrate vbar_tron vbar_tron_bench; do
-  [[ -n $(find build/host -type f -name $program -perm -u+x -print -quit) ]] || { echo "skipped: build/host has no $program"; exit 77; }
-done
 cpack --config build/host/CPackConfig.cmake -B "$scratch/package" > "$scratch/cpack.log" 2>&1 || { cat "$scratch/cpack.log" >&2; exit 1; }
 package=$(find "$scratch/package" -maxdepth 1 -name '*.deb' -print -quit)
 dpkg-deb --field "$package" Package Version Installed-Size Depends

@@ -53,15 +53,9 @@ def waypoint_rows(flown, navigation_limits):
     return found
 
 
-def median_row(what, values, limit, text):
-    """(what, median, worst, limit, met)."""
-    median = statistics.median(values)
-    return (what, text(median), text(max(values)), text(limit), median <= limit)
-
-
-def all_row(what, values, limit, text):
-    """As median_row, but every run must meet the limit."""
-    return (what, text(statistics.median(values)), text(max(values)), text(limit), max(values) <= limit)
+def row_of(what, values, limit, text, judged=statistics.median):
+    """(what, median, worst, limit, met). The limit holds for what `judged` makes of the values: max if every run must meet it."""
+    return (what, text(statistics.median(values)), text(max(values)), text(limit), judged(values) <= limit)
 
 
 def leg_rows(flown):
@@ -69,7 +63,7 @@ def leg_rows(flown):
     for name, ends, limit in LEGS:
         burnt = [sum(at_waypoint(s, index, "leg_dv_mps") for index in ends) for s in flown]
         text = (lambda v: f"{v:.3f} m/s") if limit > 1 else (lambda v: f"{1e3 * v:.2f} mm/s")
-        found.append(median_row(f"delta-v, {name}", burnt, limit, text))
+        found.append(row_of(f"delta-v, {name}", burnt, limit, text))
     return found
 
 
@@ -89,7 +83,7 @@ def attitudes(folder):
 def attitude_rows(flown, folders):
     found = [attitudes(folder) for folder in folders]
     known = sum(is_known for _, is_known in found)
-    return [median_row(f"attitude error from {ATTITUDE_FROM_M:g} m on, median", [error for error, _ in found], ATTITUDE_LIMIT_DEG,
+    return [row_of(f"attitude error from {ATTITUDE_FROM_M:g} m on, median", [error for error, _ in found], ATTITUDE_LIMIT_DEG,
                        lambda v: f"{v:.2f} deg"),
             ("seeds with an attitude before waypoint 8", str(known), "", str(len(flown)), known == len(flown))]
 
@@ -101,11 +95,11 @@ def safety_rows(folders):
     return [
         ("waypoints 7 to 8: longest time without a record, against the longest without a sunlit image", seconds(max(gap for gap, _ in gaps)),
          "", seconds(max(dark for _, dark in gaps)), all(gap <= dark for gap, dark in gaps)),
-        all_row("waypoints 7 to 8: sigma along track, share of the range", [safety.largest_sigma_share(f, FROM_7_S, TO_8_S) for f in folders],
-                SIGMA_LIMIT, lambda v: f"{100 * v:.1f} %"),
-        all_row("collision probability, greatest", [safety.largest_probability(f) for f in folders], PROBABILITY_LIMIT, lambda v: f"{v:.1g}"),
-        all_row("alarms of the guard", [sum(a[name] for name in safety.GUARD) for a in alarms], 0, str),
-        all_row("retreats, and drifts that call for one", [sum(a[name] for name in safety.RETREAT) for a in alarms], 0, str),
+        row_of("waypoints 7 to 8: sigma along track, share of the range", [safety.largest_sigma_share(f, FROM_7_S, TO_8_S) for f in folders],
+                SIGMA_LIMIT, lambda v: f"{100 * v:.1f} %", max),
+        row_of("collision probability, greatest", [safety.largest_probability(f) for f in folders], PROBABILITY_LIMIT, lambda v: f"{v:.1g}", max),
+        row_of("alarms of the guard", [sum(a[name] for name in safety.GUARD) for a in alarms], 0, str, max),
+        row_of("retreats, and drifts that call for one", [sum(a[name] for name in safety.RETREAT) for a in alarms], 0, str, max),
     ]
 
 

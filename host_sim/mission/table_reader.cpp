@@ -359,14 +359,13 @@ bool TableReader::is_array(std::string_view key) const {
 
 std::array<double, 3> TableReader::three_numbers(std::string_view key, Range range,
                                                  std::optional<std::array<double, 3>> default_value) const {
-  if (!has(key) && default_value) {
+  std::array<double, 3> three = default_value.value_or(std::array<double, 3>{});
+  if (has(key) || !default_value) std::ranges::copy(numbers(key, 3, 3, range), three.begin());
+  if (default_value) {
     const auto& [x, y, z] = *default_value;
     note(key, "an array of 3 numbers " + text_of(range),
          "[" + text_of(x) + ", " + text_of(y) + ", " + text_of(z) + "]");
-    return *default_value;
   }
-  std::array<double, 3> three{};
-  std::ranges::copy(numbers(key, 3, 3, range), three.begin());
   return three;
 }
 

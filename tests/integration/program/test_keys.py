@@ -8,8 +8,6 @@ from vbar_program import SOURCE, main, vbar
 READERS = ("host_sim/mission/read_*.cpp", "host_sim/sensors/*/read_*.cpp", "host_sim/sensors/*/*_kind.cpp")
 READ = re.compile(r'\b(?:section|table|fault|document|waypoint|sensor|inner)\w*\.(?:number|integer|flag|text|texts|name|numbers|pairs|three_numbers|'
                   r'six_numbers|span|choice|choices)\(\s*"(\w+)"')
-
-
 # Asked for only where a mission names an orbit file of the user's.
 WITH_AN_ORBIT_FILE = {"orbit_object"}
 

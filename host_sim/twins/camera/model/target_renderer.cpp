@@ -110,8 +110,6 @@ struct TargetRenderer::Drawing {
   }
   ~Drawing() {
     const GlContext::Current current(context);
-    picture = nullptr;
-    shadow_map = nullptr;
     pictures.clear();
     shadow_maps.clear();
     earth_light.reset();
