@@ -1,19 +1,23 @@
 #!/usr/bin/env bash
-# ci/fuzz.sh [SECONDS]: runs every libFuzzer program of the sanitizer tree, 20 s each by default. Failing inputs
-# are kept in build/asan/fuzz_findings/<target>; copy it to tests/fuzz/corpus/<target> with its correction.
+# ci/fuzz.sh [SECONDS [SEED [TARGET...]]]: runs libFuzzer programs of the sanitizer tree, by default all of them for 20 s each.
+# One seed (1 by default) begins with the same inputs everywhere; 0 stands for a seed that nobody has tried. Failing inputs
+# are kept in build/asan/fuzz_findings/<target>; copy them to tests/fuzz/corpus/<target> with their correction.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-seconds=${1:-20}
+seconds=${1:-20} seed=${2:-1}
+targets=("${@:3}")
 cmake --preset asan --log-level=WARNING
-cmake --build --preset asan --parallel --target vbar_fuzz
+if ((${#targets[@]} == 0)); then
+  mapfile -t targets < <(for file in tests/fuzz/fuzz_*.cpp; do target=${file##*/fuzz_}; echo "${target%.cpp}"; done)
+fi
+cmake --build --preset asan --parallel --target "${targets[@]/#/vbar_fuzz_}"
 failed=()
-for program in build/asan/tests/fuzz/vbar_fuzz_*; do
-  [[ -x $program && ! -d $program ]] || continue
-  target=${program##*/vbar_fuzz_}
+for target in "${targets[@]}"; do
+  program=build/asan/tests/fuzz/vbar_fuzz_$target
   found=build/asan/fuzz_findings/$target
   mkdir -p "$found"
-  printf '%-12s' "$target"
-  if "$program" -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=20 -print_final_stats=1 -verbosity=0 \
+  printf '%-18s' "$target"
+  if "$program" -max_total_time="$seconds" -seed="$seed" -rss_limit_mb=4096 -timeout=20 -print_final_stats=1 -verbosity=0 \
     -artifact_prefix="$found/" "$found" "tests/fuzz/corpus/$target" >"$found.log" 2>&1; then
     grep -h number_of_executed_units "$found.log" | sed 's/.*: */executed /'
   else

@@ -75,7 +75,8 @@ std::optional<fsw::GpsTime> instant_of(const Calendar& c, TimeSystem system) {
   if (system == TimeSystem::kUtc) {
     time = truth::midnight_utc(*mjd) + fsw::Duration{of_day_ns};
   } else {
-    time.ns = (*mjd - kMjdOfGpsEpoch) * 86400 * fsw::kNanosecondsPerSecond + of_day_ns + offset_ns(system);
+    constexpr std::int64_t kSecondsPerDay = 86400;
+    time.ns = (*mjd - kMjdOfGpsEpoch) * kSecondsPerDay * fsw::kNanosecondsPerSecond + of_day_ns + offset_ns(system);
   }
   if (time.ns < 0) return std::nullopt;
   return time;

@@ -165,5 +165,11 @@ TEST(PublishedTime, CalendarDaysAndDaysOfTheYear) {
   EXPECT_EQ(time("2023-02-20 12:00:00"), std::nullopt);
 }
 
+TEST(PublishedTime, LastDayThatIsRead) {
+  // 2200-12-31, MJD 124957, in GPS time; 1980-01-06 is MJD 44244.
+  EXPECT_EQ(ccsds_time("2200-12-31T00:00:00", TimeSystem::kGps)->ns, (124957 - 44244) * 86400LL * 1000000000LL);
+  EXPECT_EQ(ccsds_time("2201-01-01T00:00:00", TimeSystem::kGps), std::nullopt);
+}
+
 }  // namespace
 }  // namespace vbar::orbit_files
