@@ -7,7 +7,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "fsw/packets/packet.h"
 #include "host_sim/engine/wall_clock.h"
 #include "host_sim/mission/sensor_reader.h"
 #include "host_sim/report/extension.h"
@@ -55,6 +57,15 @@ struct CameraPlan {
       make_scene;
 };
 
+/// A source of packets as a whole: a sensor, or of a pair of receivers one.
+struct PacketPlan {
+  std::string name;                         ///< of the source, "servicer/gnss": in messages
+  std::vector<fsw::packets::Apid> allowed;  ///< the messages that it may send
+  std::uint8_t spacecraft = 0;              ///< in the headers of its packets
+  std::uint8_t unit = 0;                    ///< likewise
+  bool truth_is_compared = false;           ///< as PacketSource::truth_is_compared
+};
+
 /// What the flight software is configured with for a camera of the testbed.
 struct CalibratedCamera {
   twins::camera::CameraSettings settings;
@@ -86,6 +97,12 @@ class TestbedRun {
 
   /// Null: it has no camera. As above.
   [[nodiscard]] virtual std::unique_ptr<twins::camera::ImageTaker> make_camera(const CameraPlan& plan) {
+    static_cast<void>(plan);
+    return nullptr;
+  }
+
+  /// Null: it has no source of packets of its own. As above.
+  [[nodiscard]] virtual std::unique_ptr<twins::PacketSource> make_packets(const PacketPlan& plan) {
     static_cast<void>(plan);
     return nullptr;
   }

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "hil_drivers/external/external_kind.h"
 #include "hil_drivers/grand/grand_kind.h"
 #ifdef VBAR_OPTICAL_STIMULATOR
 #include "hil_drivers/optical_stimulator/stimulator_kind.h"
@@ -40,7 +41,7 @@ const TestbedKind kTron{{"tron",
                         nullptr};
 #endif
 
-constexpr const TestbedKind* kTestbedKinds[] = {&grand::kGrand, &kOpticalStimulator, &kTron};
+constexpr const TestbedKind* kTestbedKinds[] = {&grand::kGrand, &kOpticalStimulator, &kTron, &external::kExternal};
 
 }  // namespace
 

@@ -54,7 +54,7 @@ RemoteComputer::RemoteComputer(RemoteParts parts)
 
 StepResult RemoteComputer::step(std::uint32_t step, std::span<const Packet> packets) {
   if (!failure_.empty()) throw FlightComputerError(failure_);
-  if (closed_) throw FlightComputerError("flight computer " + parts_.name + " is closed");
+  if (closed_) throw FlightComputerError(parts_.role + " " + parts_.name + " is closed");
   StepResult result;
   try {
     if (wired_) wired_->wait([this](Clock::time_point deadline) { return barrier_.receiver_count(deadline); });
@@ -82,7 +82,7 @@ std::vector<std::uint8_t> RemoteComputer::snapshot() {
 void RemoteComputer::restore(std::span<const std::uint8_t> snapshot) {
   try {
     if (const std::int32_t status = barrier_.write_snapshot(snapshot); status != 0)
-      throw FlightComputerError("flight computer " + description() + " refused the snapshot: status " +
+      throw FlightComputerError(parts_.role + " " + description() + " refused the snapshot: status " +
                                 std::to_string(status));
   } catch (const LinkError& error) {
     fail("while it was given a snapshot", error.what());
@@ -129,7 +129,7 @@ void RemoteComputer::close() {
 }
 
 void RemoteComputer::fail(const std::string& when, const std::string& cause) {
-  failure_ = "flight computer " + parts_.name + " failed " + when + ": " + cause;
+  failure_ = parts_.role + " " + parts_.name + " failed " + when + ": " + cause;
   if (parts_.process) {
     io::ChildProcess& process = *parts_.process;
     if (process.wait_for_end(kExplainPatience)) {

@@ -16,6 +16,7 @@ namespace vbar::pil {
 
 struct RemoteParts {
   std::string name;                           ///< "zynq_qemu over serial", for messages
+  std::string role = "flight computer";       ///< before the name in messages
   std::unique_ptr<io::ChildProcess> process;  ///< the process of the flight computer, if this program started it
   std::unique_ptr<FrameTransport> transport;
   BarrierTiming timing;

@@ -5,8 +5,8 @@
 // codecs (message_traits.h, messages.h), the queues of the flight software's inbox and the sequence counters of its
 // outbox (fsw/gnc). A new message is a struct in vbar.lcm and a line here.
 //
-// APIDs below 0x400 go to the flight software, from 0x400 on they come from it; telemetry is 0x500 to 0x5FF, the report
-// of a board to its host 0x600 to 0x6FF.
+// APIDs below 0x400 go to the flight software, from 0x400 on they come from it; telemetry is 0x500 to 0x5FF, what a
+// board reports to its host, and what a sensor in another process exchanges with it, 0x600 to 0x6FF.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ enum class RouteKind : std::uint8_t {
   kQueue,       ///< to the flight software: waits for the step in a queue, in order of time tags
   kSpecial,     ///< to the flight software: the inbox itself has a place for it
   kFromFlight,  ///< from the flight software
-  kBoard,       ///< between host and board; never given to the flight software, and not sent by it
+  kBoard,       ///< between host and board or sensor; never given to the flight software, and not sent by it
 };
 
 /// Who sends a message to whom, and where it waits.
@@ -106,4 +106,9 @@ inline constexpr Route kManeuvers = queue(32);
   X(::vbar::telemetry_event, kTelemetryEvent, 0x50A, route::kFromFlight)                              \
   X(::vbar::telemetry_safety, kTelemetrySafety, 0x50B, route::kFromFlight)                            \
   X(::vbar::step_report, kStepReport, 0x601, route::kBoard)                                           \
-  X(::vbar::wired_bytes, kWiredBytes, 0x602, route::kBoard)
+  X(::vbar::wired_bytes, kWiredBytes, 0x602, route::kBoard)                                           \
+  X(::vbar::source_start, kSourceStart, 0x603, route::kBoard)                                         \
+  X(::vbar::true_earth, kTrueEarth, 0x604, route::kBoard)                                             \
+  X(::vbar::true_state, kTrueState, 0x605, route::kBoard)                                             \
+  X(::vbar::source_command, kSourceCommand, 0x606, route::kBoard)                                     \
+  X(::vbar::source_answer, kSourceAnswer, 0x607, route::kBoard)

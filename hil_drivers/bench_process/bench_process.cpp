@@ -1,15 +1,17 @@
 #include "hil_drivers/bench_process/bench_process.h"
 
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "hil_drivers/bench_process/command_line.h"
 
 namespace vbar::bench_process {
 namespace {
@@ -27,19 +29,6 @@ fs::path make_directory() {
   return name;
 }
 
-/// Beside this program, so that a build need not be installed.
-std::string program_path(const std::string& name) {
-  if (name.find('/') != std::string::npos) return name;
-  std::error_code ignored;
-  const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / name;
-  return fs::exists(beside, ignored) ? beside.string() : name;
-}
-
-void replace_all(std::string& text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-    text.replace(at, what.size(), by);
-}
-
 }  // namespace
 
 std::map<std::string, int> count_faults(const std::filesystem::path& file) {
@@ -55,16 +44,10 @@ std::map<std::string, int> count_faults(const std::filesystem::path& file) {
 
 std::vector<std::string> bench_arguments(const std::string& command_line, const fs::path& directory, std::uint64_t seed,
                                          const fs::path& data_directory) {
-  std::vector<std::string> arguments;
-  std::istringstream words(command_line);
-  for (std::string word; words >> word;) {
-    replace_all(word, "{directory}", directory.string());
-    replace_all(word, "{seed}", std::to_string(seed));
-    replace_all(word, "{data}", data_directory.string());
-    arguments.push_back(word);
-  }
+  const std::array<Replacement, 3> replacements{
+      {{"{directory}", directory.string()}, {"{seed}", std::to_string(seed)}, {"{data}", data_directory.string()}}};
+  std::vector<std::string> arguments = arguments_of(command_line, replacements);
   if (arguments.empty()) throw std::runtime_error("the command line of the bench names no program");
-  arguments.front() = program_path(arguments.front());
   return arguments;
 }
 

@@ -1,5 +1,7 @@
 #include "hil_drivers/tron/settings.h"
 
+#include "host_sim/files/replaced.h"
+
 namespace vbar::tron {
 
 using mission::above_to;
@@ -33,13 +35,8 @@ std::shared_ptr<const mission::TestbedSettings> read_tron(const TableReader& sec
 }
 
 std::filesystem::path replaced(std::string path, const std::filesystem::path& data_directory, std::uint64_t seed) {
-  const auto replace = [&path](std::string_view what, const std::string& by) {
-    for (std::size_t at = path.find(what); at != std::string::npos; at = path.find(what, at + by.size()))
-      path.replace(at, what.size(), by);
-  };
-  replace("{data}", data_directory.string());
-  replace("{seed}", std::to_string(seed));
-  return path;
+  path = files::replaced(std::move(path), "{data}", data_directory.string());
+  return files::replaced(std::move(path), "{seed}", std::to_string(seed));
 }
 
 }  // namespace vbar::tron

@@ -205,6 +205,14 @@ int main(int argc, char** argv) {
   article_app->add_option("--language", article.language, "c or c++ (default c)");
   article_app->callback([&] { exit_code = new_article_command(article); });
 
+  ServeOptions serve;
+  CLI::App* serve_app = program.add_subcommand(
+      "serve", "be the digital sensor of a run that has it as testbed.external (docs/external_sources.md)");
+  serve_app->add_option("mission", serve.mission, kMissionHelp)->required();
+  serve_app->add_option("--stream", serve.stream, "descriptor of the line, inherited")->check(CLI::NonNegativeNumber);
+  add_set(serve_app, serve.overrides);
+  serve_app->callback([&] { exit_code = serve_command(serve); });
+
   const int result = parse_and_run(program, argc, argv, exit_code);
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return result;

@@ -9,6 +9,7 @@
 
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
+#include "host_sim/files/replaced.h"
 #include "host_sim/mission/data_directory.h"
 
 namespace vbar::app {
@@ -44,12 +45,6 @@ void write(const fs::path& file, const std::string& text) {
   if (!stream) throw std::runtime_error(file.string() + ": cannot be written");
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-    text.replace(at, what.size(), by);
-  return text;
-}
-
 /// A name of a CMake target and of a library.
 std::string checked_name(const fs::path& folder) {
   const std::string name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
@@ -78,9 +73,9 @@ int new_article_command(const NewArticleOptions& options) {
   fs::create_directories(options.folder);
   for (const char* const file : {"CMakeLists.txt", "README.md"}) {
     std::string text = content_of(templates / (std::string(file) + ".in"));
-    text = replaced(text, "@NAME@", name);
-    text = replaced(text, "@SOURCE@", source);
-    text = replaced(text, "@PREFIX@", prefix);
+    text = files::replaced(text, "@NAME@", name);
+    text = files::replaced(text, "@SOURCE@", source);
+    text = files::replaced(text, "@PREFIX@", prefix);
     write(options.folder / file, text);
   }
   write(options.folder / source, content_of(example));

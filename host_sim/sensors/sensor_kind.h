@@ -103,6 +103,8 @@ struct SensorKind : mission::SensorReader {
                     report::RunFacts& facts) = nullptr;
   /// Compares the measurements of the sensor with the truth. Null, or a null result: nothing does.
   std::unique_ptr<Evaluation> (*evaluate)(const mission::Sensor& sensor, const EvaluationContext& context) = nullptr;
+  /// The evaluation receives the truth of each measurement.
+  bool compares_measurements = false;
   /// Tables, summary figures and report section, for all sensors of the kind together.
   report::Extension report{};
   /// Restores the packets of all sensors of the kind that a log holds in another form. Null: logs hold the packets.

@@ -21,6 +21,9 @@ if(VBAR_TARGET STREQUAL "host")
     cmake_path(GET example PARENT_PATH folder)
     install(FILES ${PROJECT_SOURCE_DIR}/boards/examples/${example} DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar/boards/examples/${folder})
   endforeach()
+  install(FILES ${PROJECT_SOURCE_DIR}/hil_drivers/external/examples/range_finder.py
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar/hil_drivers/external/examples)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/python DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar PATTERN __pycache__ EXCLUDE)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/toolchains/package/article DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar/toolchains/package)
   configure_package_config_file(${PROJECT_SOURCE_DIR}/toolchains/package/vbarConfig.cmake.in vbarConfig.cmake
     INSTALL_DESTINATION ${package})

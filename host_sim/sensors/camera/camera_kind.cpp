@@ -8,6 +8,7 @@
 #include "fsw/math/math.h"
 #include "host_sim/sensors/camera/camera_report.h"
 #include "host_sim/sensors/camera/make_camera.h"
+#include "host_sim/sensors/packets_of_testbed.h"
 #include "host_sim/twins/recorded_log.h"
 
 namespace vbar::sensors {
@@ -111,6 +112,11 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
     sources.push_back({name, camera.source, std::make_unique<twins::RecordedLog>(camera.log, selection, make_tiles)});
     return;
   }
+  if (auto packets = packets_of_testbed(sensor, context, context.servicer, {fsw::packets::Apid::kImageTile},
+                                        camera_unit(sensor, context.servicer))) {
+    sources.push_back({name, camera.source, std::move(packets)});
+    return;
+  }
   sources.push_back({name, camera.source,
                      make_camera(context.mission, context.servicer, sensor, context.data_directory,
                                  make_image_taker(sensor, context))});
@@ -164,6 +170,7 @@ const SensorKind kCamera{
     add_sources,
     add_facts,
     evaluate_camera,
+    true,
     {tables, summarise_images, sections, kMessagesInTables, camera_paper_columns, image_consistency},
     make_camera_tile_source};
 

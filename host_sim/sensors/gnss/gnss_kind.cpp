@@ -7,6 +7,7 @@
 #include "fsw/math/math.h"
 #include "host_sim/sensors/gnss/gnss_evaluation.h"
 #include "host_sim/sensors/gnss/gnss_row.h"
+#include "host_sim/sensors/packets_of_testbed.h"
 #include "host_sim/twins/gnss/body_frame.h"
 #include "host_sim/twins/gnss/gnss_receiver.h"
 #include "host_sim/twins/gnss_sensor.h"
@@ -98,6 +99,13 @@ std::unique_ptr<twins::PacketSource> make_receiver(const MakeContext& context, c
   return std::make_unique<twins::GnssSensor>(sensor, std::move(receiver), std::move(crosslink));
 }
 
+/// Those of the own receiver, or those that the crosslink delivers.
+std::vector<fsw::packets::Apid> messages_of(const Spacecraft& carrier, const Spacecraft& servicer) {
+  using fsw::packets::Apid;
+  if (&carrier == &servicer) return {Apid::kGnssBytes, Apid::kAttitude};
+  return {Apid::kCrosslinkGnssBytes, Apid::kCrosslinkAttitude};
+}
+
 void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<twins::NamedSource>& sources) {
   if (sensor.settings->source == "recorded") {
     using fsw::packets::Apid;
@@ -110,7 +118,9 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
   }
   const std::string& source = sensor.settings->source;
   const auto add = [&](const Spacecraft& carrier) {
-    sources.push_back({source_name(carrier, sensor), source, make_receiver(context, source, carrier)});
+    auto packets = packets_of_testbed(sensor, context, carrier, messages_of(carrier, context.servicer), 0);
+    if (!packets) packets = make_receiver(context, source, carrier);
+    sources.push_back({source_name(carrier, sensor), source, std::move(packets)});
   };
   add(context.servicer);
   if (const Spacecraft* const partner = context.mission.find_spacecraft(sensor.settings->observed)) add(*partner);
@@ -155,6 +165,7 @@ const SensorKind kGnss{{"gnss", "constellation", read_gnss, read_gnss_shared, ch
                        add_sources,
                        add_facts,
                        evaluate,
+                       false,
                        {tables, summarise_gnss, sections, kMessagesInTables, gnss_paper_columns, gnss_consistency}};
 
 vbar::receiver_configuration receiver_configuration_of(const Spacecraft& servicer) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "host_sim/sensors/packets_of_testbed.h"
 #include "host_sim/twins/ideal_navigation.h"
 #include "host_sim/twins/recorded_log.h"
 
@@ -37,6 +38,10 @@ void add_sources(const mission::Sensor& sensor, const MakeContext& context, std:
   if (own.source == "recorded") {
     const twins::RecordedLog::Selection selection{context.servicer.number, {fsw::packets::Apid::kIdealNavigation}};
     sources.push_back({name, own.source, std::make_unique<twins::RecordedLog>(own.log, selection)});
+    return;
+  }
+  if (auto packets = only_packets_of_testbed(sensor, context, fsw::packets::Apid::kIdealNavigation)) {
+    sources.push_back({name, own.source, std::move(packets)});
     return;
   }
   twins::IdealNavigation::Settings settings;

@@ -2,6 +2,7 @@
 
 #include "fsw/math/math.h"
 #include "host_sim/mission/read_attitude.h"
+#include "host_sim/sensors/packets_of_testbed.h"
 #include "host_sim/twins/recorded_log.h"
 
 namespace vbar::sensors {
@@ -63,6 +64,10 @@ void add_sources(const mission::Sensor& sensor, const MakeContext& context, std:
     sources.push_back({name, own.source, std::make_unique<twins::RecordedLog>(own.log, selection)});
     return;
   }
+  if (auto packets = only_packets_of_testbed(sensor, context, fsw::packets::Apid::kRangeMeasurement)) {
+    sources.push_back({name, own.source, std::move(packets)});
+    return;
+  }
   const RangeFinder::Place place{context.servicer.name, own.target, context.servicer.number,
                                  unit_of(sensor, context.servicer), context.mission.start_time()};
   sources.push_back(
@@ -81,7 +86,7 @@ std::vector<report::Section> sections(const report::RunRecord& record) {
 }  // namespace
 
 const SensorKind kRangeFinder{
-    {"range_finder", "", read, nullptr, check}, add_telecommands, add_sources, nullptr, evaluate_ranges,
+    {"range_finder", "", read, nullptr, check}, add_telecommands, add_sources, nullptr, evaluate_ranges, true,
     {tables, summarise_ranges, sections}};
 
 }  // namespace vbar::sensors

@@ -1,0 +1,52 @@
+#pragma once
+// The other end of a link (fsw/link/frame.h) for a program that answers batches of packets with batches of packets: a
+// sensor. Unlike boards/common it has a heap, so that an answer may have the tiles of an image.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fsw/link/batch.h"
+#include "pil_bridge/transport.h"
+
+namespace vbar::external {
+
+class BatchServer {
+ public:
+  using Packet = std::vector<std::uint8_t>;
+  /// The answer to a batch, of one packet at least.
+  using Serve = std::function<std::vector<Packet>(std::span<const Packet>)>;
+
+  /// `name`: in messages of the host, ASCII. `transport` outlives this.
+  BatchServer(pil::FrameTransport& transport, std::string name, Serve serve)
+      : transport_(transport), name_(std::move(name)), serve_(std::move(serve)) {}
+
+  /// Answers the first session until its goodbye. Throws pil::LinkError if the line is closed before it, or brings
+  /// nothing for `patience`, and what `serve` throws.
+  void run(std::chrono::milliseconds patience);
+
+ private:
+  /// False after the goodbye.
+  bool take(std::span<const std::uint8_t> frame);
+  void on_hello(const fsw::link::FrameView& frame);
+  void on_data(const fsw::link::FrameView& frame);
+  void on_poll(const fsw::link::FrameHeader& header);
+  void send_answer();
+  void send(const fsw::link::FrameHeader& header, std::span<const std::uint8_t> payload = {});
+
+  pil::FrameTransport& transport_;
+  std::string name_;
+  Serve serve_;
+  std::optional<std::uint32_t> session_;
+  fsw::link::BatchReceiver inputs_;
+  fsw::link::BatchSender outputs_;
+  std::vector<Packet> batch_, answer_;
+  bool has_answer_ = false;  ///< to the batch of inputs_
+  std::array<std::uint8_t, fsw::link::kMaxFrameBytes> frame_{};
+};
+
+}  // namespace vbar::external

@@ -1,0 +1,275 @@
+#include "hil_drivers/external/exchange.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "fsw/packets/messages.h"
+
+namespace vbar::external {
+namespace {
+
+using fsw::packets::Apid;
+using fsw::packets::PacketHeader;
+using fsw::packets::PacketView;
+using twins::Packet;
+
+template <class Message>
+Packet packet_of(const PacketHeader& header, const Message& message) {
+  Packet packet(fsw::packets::kMaxPacketBytes);
+  const auto size = fsw::packets::encode(header, message, packet);
+  if (!size.ok()) throw std::runtime_error("a number that is not finite");
+  packet.resize(size.value());
+  return packet;
+}
+
+template <class Values, class Numbers>
+void copy_to(const Values& values, Numbers& numbers) {
+  std::copy(values.begin(), values.end(), numbers);
+}
+
+fsw::Vector3 vector_of(const double (&numbers)[3]) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+vbar::true_earth earth_message(const fsw::Matrix3& R_itrf_gcrf) {
+  vbar::true_earth message{};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) message.R_itrf_gcrf[3 * row + column] = R_itrf_gcrf(row, column);
+  return message;
+}
+
+vbar::true_state state_message(const twins::SpacecraftTruth& truth) {
+  vbar::true_state message{};
+  copy_to(truth.orbit.position_eci, message.position_eci);
+  copy_to(truth.orbit.velocity_eci, message.velocity_eci);
+  if (truth.acceleration_eci) copy_to(*truth.acceleration_eci, message.acceleration_eci);
+  if (!truth.attitude) return message;
+  message.has_attitude = 1;
+  const auto& q = truth.attitude->q_body_eci;
+  copy_to(std::array{q.w(), q.x(), q.y(), q.z()}, message.q_body_eci);
+  copy_to(truth.attitude->rate_body, message.rate_body);
+  if (truth.angular_acceleration_body) copy_to(*truth.angular_acceleration_body, message.angular_acceleration_body);
+  return message;
+}
+
+twins::SpacecraftTruth truth_of(const vbar::true_state& message, std::string name) {
+  twins::SpacecraftTruth truth;
+  truth.name = std::move(name);
+  truth.orbit.position_eci = vector_of(message.position_eci);
+  truth.orbit.velocity_eci = vector_of(message.velocity_eci);
+  truth.acceleration_eci = vector_of(message.acceleration_eci);
+  if (message.has_attitude == 0) return truth;
+  const double* const q = message.q_body_eci;
+  truth.attitude.emplace();
+  truth.attitude->q_body_eci = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  truth.attitude->rate_body = vector_of(message.rate_body);
+  truth.angular_acceleration_body = vector_of(message.angular_acceleration_body);
+  return truth;
+}
+
+Packet opening_packet(PacketHeader header, const Opening& opening) {
+  vbar::source_start message{};
+  if (opening.name.size() >= sizeof message.name)
+    throw std::runtime_error(
+        fmt::format("its name has {} characters; a sensor in another process may have {}", opening.name.size(),
+                    sizeof message.name - 1));
+  message.seed = opening.seed;
+  std::copy(opening.name.begin(), opening.name.end(), message.name);
+  header.spacecraft = opening.spacecraft;
+  header.unit = opening.unit;
+  return packet_of(header, message);
+}
+
+Packet command_packet(const PacketHeader& header, const Command& command) {
+  vbar::source_command message{};
+  if (command.packet.size() > sizeof message.packet)
+    throw std::runtime_error(fmt::format("a command of {} bytes, more than {}", command.packet.size(),
+                                         sizeof message.packet));
+  message.effective_ns = command.effective.ns;
+  message.count = static_cast<std::int32_t>(command.packet.size());
+  std::copy(command.packet.begin(), command.packet.end(), message.packet);
+  return packet_of(header, message);
+}
+
+std::string text_of(const vbar::source_start& message) {
+  const auto end = std::find(std::begin(message.name), std::end(message.name), std::uint8_t{0});
+  return {std::begin(message.name), end};
+}
+
+/// Takes the parts of a batch out of its packets.
+class BatchReader {
+ public:
+  explicit BatchReader(const SpacecraftNumbers& numbers) : numbers_(numbers) {}
+
+  void take(const PacketView& packet) {
+    switch (packet.header.apid) {
+      case Apid::kSourceStart:
+        batch_.opening = opening(packet);
+        return;
+      case Apid::kSourceCommand:
+        batch_.commands.push_back(command(packet));
+        return;
+      case Apid::kTrueEarth: {
+        const auto message = decoded<vbar::true_earth>(packet);
+        for (int k = 0; k < 9; ++k) truth().R_itrf_gcrf(k / 3, k % 3) = message.R_itrf_gcrf[k];
+        return;
+      }
+      case Apid::kTrueState:
+        truth().spacecraft.push_back(
+            truth_of(decoded<vbar::true_state>(packet), numbers_.name_of(packet.header.spacecraft)));
+        return;
+      case Apid::kTick:
+        static_cast<void>(decoded<vbar::tick>(packet));
+        batch_.time = packet.header.time;
+        has_tick_ = true;
+        return;
+      default:
+        throw std::runtime_error(fmt::format("a packet of APID {:#05x} in a batch for a sensor",
+                                             static_cast<unsigned>(packet.header.apid)));
+    }
+  }
+
+  [[nodiscard]] Batch finish() {
+    if (!has_tick_) throw std::runtime_error("a batch for a sensor without a tick");
+    if (batch_.truth) batch_.truth->time = batch_.time;
+    return std::move(batch_);
+  }
+
+ private:
+  template <class Message>
+  static Message decoded(const PacketView& packet) {
+    const auto message = fsw::packets::decode<Message>(packet);
+    if (!message.ok())
+      throw std::runtime_error(fmt::format("the message of APID {:#05x} is that of another version of vbar.lcm",
+                                           static_cast<unsigned>(packet.header.apid)));
+    return message.value();
+  }
+
+  static Opening opening(const PacketView& packet) {
+    const auto message = decoded<vbar::source_start>(packet);
+    return {text_of(message), message.seed, packet.header.spacecraft, packet.header.unit};
+  }
+
+  static Command command(const PacketView& packet) {
+    const auto message = decoded<vbar::source_command>(packet);
+    const auto count = static_cast<std::size_t>(std::max(message.count, 0));
+    if (count > sizeof message.packet) throw std::runtime_error("a command longer than its packet");
+    return {Packet(message.packet, message.packet + count), fsw::GpsTime{message.effective_ns}};
+  }
+
+  twins::TruthSnapshot& truth() {
+    if (!batch_.truth) batch_.truth.emplace();
+    return *batch_.truth;
+  }
+
+  const SpacecraftNumbers& numbers_;
+  Batch batch_;
+  bool has_tick_ = false;
+};
+
+/// Whether the payload is a valid message of the packet's APID.
+bool holds_its_message(const PacketView& packet) {
+  bool is_valid = false;
+  fsw::packets::for_each_message([&]<class Message>() {
+    if (fsw::packets::MessageTraits<Message>::kApid == packet.header.apid)
+      is_valid = fsw::packets::decode<Message>(packet).ok();
+  });
+  return is_valid;
+}
+
+}  // namespace
+
+std::optional<std::uint8_t> SpacecraftNumbers::number_of(std::string_view name) const {
+  const auto found = std::ranges::find(known_, name, &Known::name);
+  return found == known_.end() ? std::nullopt : std::optional(found->number);
+}
+
+std::string SpacecraftNumbers::name_of(std::uint8_t number) const {
+  const auto found = std::ranges::find(known_, number, &Known::number);
+  return found == known_.end() ? fmt::format("spacecraft {}", number) : found->name;
+}
+
+std::vector<Packet> packets_of(const Batch& batch, std::int64_t step, const SpacecraftNumbers& numbers) {
+  PacketHeader header;
+  header.time = batch.time;
+  std::vector<Packet> packets;
+  if (batch.opening) packets.push_back(opening_packet(header, *batch.opening));
+  for (const Command& command : batch.commands) packets.push_back(command_packet(header, command));
+  if (batch.truth) {
+    packets.push_back(packet_of(header, earth_message(batch.truth->R_itrf_gcrf)));
+    for (const twins::SpacecraftTruth& truth : batch.truth->spacecraft) {
+      const auto number = numbers.number_of(truth.name);
+      if (!number) throw std::runtime_error(fmt::format("the spacecraft \"{}\" has no number", truth.name));
+      PacketHeader of_spacecraft = header;
+      of_spacecraft.spacecraft = *number;
+      packets.push_back(packet_of(of_spacecraft, state_message(truth)));
+    }
+  }
+  vbar::tick tick{};
+  tick.step = step;
+  packets.push_back(packet_of(header, tick));
+  return packets;
+}
+
+std::vector<Packet> packets_of(Answer answer, fsw::GpsTime time) {
+  vbar::source_answer message{};
+  message.status = answer.is_failed ? vbar::source_answer::kFailed : vbar::source_answer::kReady;
+  message.available_ns = answer.available.ns;
+  message.next_epoch_ns = answer.next_epoch ? answer.next_epoch->ns : 0;
+  PacketHeader header;
+  header.time = time;
+  answer.packets.push_back(packet_of(header, message));
+  return std::move(answer.packets);
+}
+
+Batch batch_of(std::span<const Packet> packets, const SpacecraftNumbers& numbers) {
+  BatchReader reader(numbers);
+  for (const Packet& bytes : packets) {
+    const auto packet = fsw::packets::parse_packet(bytes);
+    if (!packet.ok()) throw std::runtime_error(fmt::format("{} bytes that are no packet", bytes.size()));
+    reader.take(packet.value());
+  }
+  return reader.finish();
+}
+
+Answer answer_of(std::vector<Packet> packets) {
+  const auto is_answer = [](const Packet& bytes) {
+    const auto packet = fsw::packets::parse_packet(bytes);
+    return packet.ok() && packet.value().header.apid == Apid::kSourceAnswer;
+  };
+  if (packets.empty() || !is_answer(packets.back()))
+    throw std::runtime_error("its answer does not end with a source_answer");
+  const auto message =
+      fsw::packets::decode<vbar::source_answer>(fsw::packets::parse_packet(packets.back()).value());
+  packets.pop_back();
+  if (!message.ok()) throw std::runtime_error("its source_answer is that of another version of vbar.lcm");
+  if (std::ranges::any_of(packets, is_answer)) throw std::runtime_error("its answer holds a second source_answer");
+  Answer answer;
+  answer.packets = std::move(packets);
+  answer.is_failed = message.value().status != vbar::source_answer::kReady;
+  answer.available = fsw::GpsTime{message.value().available_ns};
+  if (message.value().next_epoch_ns != 0) answer.next_epoch = fsw::GpsTime{message.value().next_epoch_ns};
+  return answer;
+}
+
+std::string fault_of(std::span<const std::uint8_t> bytes, std::span<const Apid> allowed, std::uint8_t spacecraft,
+                     std::uint8_t unit) {
+  const auto parsed = fsw::packets::parse_packet(bytes);
+  if (!parsed.ok()) return fmt::format("{} bytes that are no packet, or have another checksum", bytes.size());
+  const PacketHeader& header = parsed.value().header;
+  const auto apid = static_cast<unsigned>(header.apid);
+  if (std::ranges::find(allowed, header.apid) == allowed.end())
+    return fmt::format("a packet of APID {:#05x}, which this sensor does not have", apid);
+  if (header.spacecraft != spacecraft || header.unit != unit)
+    return fmt::format("a packet of spacecraft {} and unit {} in place of {} and {}", header.spacecraft, header.unit,
+                       spacecraft, unit);
+  if (!holds_its_message(parsed.value()))
+    return fmt::format("a packet of APID {:#05x} whose message has another size or type, or a number that is not finite",
+                       apid);
+  return {};
+}
+
+}  // namespace vbar::external

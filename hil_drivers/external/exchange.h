@@ -1,0 +1,78 @@
+#pragma once
+// What a run and a sensor in another process exchange at each epoch: a batch of packets to the sensor that ends with a
+// tick, and its answer, which ends with a source_answer (fsw/packets/vbar.lcm). Both ends use these functions.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/packets/packet.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::external {
+
+/// The names of spacecraft in the truth and their numbers in packets.
+class SpacecraftNumbers {
+ public:
+  void add(std::string name, std::uint8_t number) { known_.push_back({std::move(name), number}); }
+  [[nodiscard]] std::optional<std::uint8_t> number_of(std::string_view name) const;
+  /// "spacecraft 7" for an unknown number.
+  [[nodiscard]] std::string name_of(std::uint8_t number) const;
+
+ private:
+  struct Known {
+    std::string name;
+    std::uint8_t number = 0;
+  };
+  std::vector<Known> known_;
+};
+
+/// The sensor that the first batch opens.
+struct Opening {
+  std::string name;
+  std::int64_t seed = 0;
+  std::uint8_t spacecraft = 0;  ///< of its packets' headers
+  std::uint8_t unit = 0;        ///< likewise
+};
+
+struct Command {
+  twins::Packet packet;
+  fsw::GpsTime effective;
+};
+
+/// A batch to the sensor.
+struct Batch {
+  fsw::GpsTime time;
+  std::optional<Opening> opening;  ///< the first batch only; it has no truth
+  std::vector<Command> commands;
+  std::optional<twins::TruthSnapshot> truth;
+};
+
+struct Answer {
+  std::vector<twins::Packet> packets;
+  bool is_failed = false;  ///< no measurement at this epoch
+  fsw::GpsTime available;
+  std::optional<fsw::GpsTime> next_epoch;
+};
+
+/// Throws std::runtime_error for a truth that is not finite or has a spacecraft without a number, and for a name or a
+/// command that is too long.
+[[nodiscard]] std::vector<twins::Packet> packets_of(const Batch& batch, std::int64_t step,
+                                                    const SpacecraftNumbers& numbers);
+[[nodiscard]] std::vector<twins::Packet> packets_of(Answer answer, fsw::GpsTime time);
+
+/// Both throw std::runtime_error, one sentence, for packets that are no batch or no answer.
+[[nodiscard]] Batch batch_of(std::span<const twins::Packet> packets, const SpacecraftNumbers& numbers);
+[[nodiscard]] Answer answer_of(std::vector<twins::Packet> packets);
+
+/// Why a packet of a sensor is not accepted; empty if it is. It must be whole, of an allowed message of finite content,
+/// and have this spacecraft and unit.
+[[nodiscard]] std::string fault_of(std::span<const std::uint8_t> packet, std::span<const fsw::packets::Apid> allowed,
+                                   std::uint8_t spacecraft, std::uint8_t unit);
+
+}  // namespace vbar::external

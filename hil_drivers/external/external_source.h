@@ -1,0 +1,51 @@
+#pragma once
+// A sensor of the user's own in another process, in lock-step: at each of its epochs it is sent the truth, and simulated
+// time waits for its packets.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "hil_drivers/external/exchange.h"
+#include "hil_drivers/testbed.h"
+#include "pil_bridge/flight_computer.h"
+
+namespace vbar::external {
+
+class ExternalSource final : public twins::PacketSource {
+ public:
+  /// The program at the other end of the link, which answers batches in the place of steps.
+  using Connect = std::function<std::unique_ptr<pil::FlightComputer>()>;
+
+  ExternalSource(testbeds::PacketPlan plan, std::int64_t seed, SpacecraftNumbers numbers, Connect connect)
+      : plan_(std::move(plan)), seed_(seed), numbers_(std::move(numbers)), connect_(std::move(connect)) {}
+
+  void start(fsw::GpsTime first_epoch) override;
+  void stop(twins::StopReason reason) override;
+
+  [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
+
+  /// Throws std::runtime_error, one sentence that names the source, if the program has ended, does not answer in time or
+  /// answers with anything but packets of its sensor: nothing can be expected of it any more.
+  twins::Measurement measure(const twins::TruthSnapshot& truth) override;
+  void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) override;
+  [[nodiscard]] twins::TruthDetail truth_detail() const override { return twins::TruthDetail::kAccelerations; }
+  [[nodiscard]] bool truth_is_compared() const override { return plan_.truth_is_compared; }
+
+ private:
+  Answer exchange(const Batch& batch);
+  void check(const Answer& answer, fsw::GpsTime now) const;
+
+  testbeds::PacketPlan plan_;
+  std::int64_t seed_;
+  SpacecraftNumbers numbers_;
+  Connect connect_;
+  std::unique_ptr<pil::FlightComputer> program_;
+  std::uint32_t step_ = 0;
+  std::optional<fsw::GpsTime> next_epoch_;
+  std::vector<Command> commands_;  ///< since the last exchange
+};
+
+}  // namespace vbar::external

@@ -1,0 +1,36 @@
+#include "host_sim/sensors/packets_of_testbed.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "hil_drivers/testbeds.h"
+#include "host_sim/sensors/sensor_kinds.h"
+
+namespace vbar::sensors {
+
+std::unique_ptr<twins::PacketSource> packets_of_testbed(const mission::Sensor& sensor, const MakeContext& context,
+                                                        const mission::Spacecraft& carrier,
+                                                        std::vector<fsw::packets::Apid> allowed, std::uint8_t unit) {
+  const testbeds::TestbedKind* const testbed = testbeds::find_testbed(sensor.settings->source);
+  if (testbed == nullptr || context.outlook == nullptr) return nullptr;
+  const auto run = context.testbeds.run_of(*testbed, {context.mission, context.data_directory, *context.outlook});
+  return run->make_packets({.name = source_name(carrier, sensor),
+                            .allowed = std::move(allowed),
+                            .spacecraft = context.servicer.number,
+                            .unit = unit,
+                            .truth_is_compared = kind_of(sensor).compares_measurements});
+}
+
+std::unique_ptr<twins::PacketSource> only_packets_of_testbed(const mission::Sensor& sensor, const MakeContext& context,
+                                                             fsw::packets::Apid allowed) {
+  auto packets =
+      packets_of_testbed(sensor, context, context.servicer, {allowed}, unit_of(sensor, context.servicer));
+  if (!packets && testbeds::find_testbed(sensor.settings->source) != nullptr)
+    throw std::runtime_error(
+        fmt::format("testbed \"{}\" has no sensor of kind {}", sensor.settings->source, sensor.kind));
+  return packets;
+}
+
+}  // namespace vbar::sensors
