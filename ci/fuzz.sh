@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # ci/fuzz.sh [SECONDS [SEED [TARGET...]]]: runs libFuzzer programs of the sanitizer tree, by default all of them for 20 s each.
-# One seed (1 by default) begins with the same inputs everywhere; 0 stands for a seed that nobody has tried. Failing inputs
+# One seed (1 by default) begins with the same inputs everywhere; 0 draws another seed each time. Failing inputs
 # are kept in build/asan/fuzz_findings/<target>; copy them to tests/fuzz/corpus/<target> with their correction.
 set -euo pipefail
 cd "$(dirname "$0")/.."
