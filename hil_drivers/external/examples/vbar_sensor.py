@@ -18,6 +18,7 @@ APIDS = {"tick": 0x001, "ideal_navigation": 0x010, "gnss_bytes": 0x011, "crossli
          "crosslink_attitude": 0x014, "image_tile": 0x015, "range_measurement": 0x016, "source_start": 0x603, "true_earth": 0x604,
          "true_state": 0x605, "source_command": 0x606, "source_answer": 0x607}
 HELLO, HELLO_ACK, DATA, ACK, POLL, GOODBYE = 1, 2, 3, 4, 5, 6
+WINDOW = 32  # packets without acknowledgement
 
 
 def cobs_encoded(data):
@@ -112,11 +113,19 @@ class Served:
         return packet_of(message, time_ns, *self.header, self.counts[name])
 
 
+def send_window(line, session, step, answer, first, acknowledged):
+    """Sends the packets of an answer from `first` on, as far as the window allows; where the next begins."""
+    end = min(len(answer), acknowledged + WINDOW)
+    for k in range(first, end):
+        line.send(DATA, session, step, k, int(k + 1 == len(answer)), answer[k])
+    return max(first, end)
+
+
 def serve(make, name="sensor in Python"):
-    """Until the run says goodbye. The line loses nothing, so that only the window of 32 frames is kept."""
-    line, served, batch, answer, answered = Line(), Served(make), [], [], None
+    """Until the goodbye of the run."""
+    line, served = Line(), Served(make)
+    batch, answer, answered, sent = [], [], None, 0
     for kind, session, step, index, flags, payload in line.frames():
-        first = None
         if kind == HELLO:
             line.send(HELLO_ACK, session, 0, 0, 0, name.encode())
         elif kind == GOODBYE:
@@ -124,14 +133,11 @@ def serve(make, name="sensor in Python"):
         elif kind == DATA and step != answered and index == len(batch):
             batch.append(payload)
             if flags & 1:
-                answer, batch, answered, first = served.answer(batch), [], step, 0
-            elif flags & 2 or len(batch) % 16 == 0:
+                answer, batch, answered = served.answer(batch), [], step
+                sent = send_window(line, session, step, answer, 0, 0)
+            elif flags & 2 or len(batch) % (WINDOW // 2) == 0:
                 line.send(ACK, session, step, len(batch), 0)
-        elif kind in (ACK, POLL) and step == answered:
-            first = index if kind == POLL else sent
-            acknowledged = index
-        if first is not None:
-            acknowledged = 0 if kind == DATA else acknowledged
-            sent = min(len(answer), acknowledged + 32)
-            for k in range(first, sent):
-                line.send(DATA, session, step, k, int(k + 1 == len(answer)), answer[k])
+        elif kind == ACK and step == answered:
+            sent = send_window(line, session, step, answer, sent, index)
+        elif kind == POLL and step == answered:
+            sent = send_window(line, session, step, answer, index, index)
