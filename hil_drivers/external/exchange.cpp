@@ -73,9 +73,8 @@ twins::SpacecraftTruth truth_of(const vbar::true_state& message, std::string nam
 Packet opening_packet(PacketHeader header, const Opening& opening) {
   vbar::source_start message{};
   if (opening.name.size() >= sizeof message.name)
-    throw std::runtime_error(
-        fmt::format("its name has {} characters; a sensor in another process may have {}", opening.name.size(),
-                    sizeof message.name - 1));
+    throw std::runtime_error(fmt::format("its name has {} characters; a sensor in another process may have {}",
+                                         opening.name.size(), sizeof message.name - 1));
   message.seed = opening.seed;
   std::copy(opening.name.begin(), opening.name.end(), message.name);
   header.spacecraft = opening.spacecraft;
@@ -86,8 +85,8 @@ Packet opening_packet(PacketHeader header, const Opening& opening) {
 Packet command_packet(const PacketHeader& header, const Command& command) {
   vbar::source_command message{};
   if (command.packet.size() > sizeof message.packet)
-    throw std::runtime_error(fmt::format("a command of {} bytes, more than {}", command.packet.size(),
-                                         sizeof message.packet));
+    throw std::runtime_error(
+        fmt::format("a command of {} bytes, more than {}", command.packet.size(), sizeof message.packet));
   message.effective_ns = command.effective.ns;
   message.count = static_cast<std::int32_t>(command.packet.size());
   std::copy(command.packet.begin(), command.packet.end(), message.packet);
@@ -127,8 +126,8 @@ class BatchReader {
         has_tick_ = true;
         return;
       default:
-        throw std::runtime_error(fmt::format("a packet of APID {:#05x} in a batch for a sensor",
-                                             static_cast<unsigned>(packet.header.apid)));
+        throw std::runtime_error(
+            fmt::format("a packet of APID {:#05x} in a batch for a sensor", static_cast<unsigned>(packet.header.apid)));
     }
   }
 
@@ -242,8 +241,7 @@ Answer answer_of(std::vector<Packet> packets) {
   };
   if (packets.empty() || !is_answer(packets.back()))
     throw std::runtime_error("its answer does not end with a source_answer");
-  const auto message =
-      fsw::packets::decode<vbar::source_answer>(fsw::packets::parse_packet(packets.back()).value());
+  const auto message = fsw::packets::decode<vbar::source_answer>(fsw::packets::parse_packet(packets.back()).value());
   packets.pop_back();
   if (!message.ok()) throw std::runtime_error("its source_answer is that of another version of vbar.lcm");
   if (std::ranges::any_of(packets, is_answer)) throw std::runtime_error("its answer holds a second source_answer");
@@ -267,8 +265,8 @@ std::string fault_of(std::span<const std::uint8_t> bytes, std::span<const Apid> 
     return fmt::format("a packet of spacecraft {} and unit {} in place of {} and {}", header.spacecraft, header.unit,
                        spacecraft, unit);
   if (!holds_its_message(parsed.value()))
-    return fmt::format("a packet of APID {:#05x} whose message has another size or type, or a number that is not finite",
-                       apid);
+    return fmt::format(
+        "a packet of APID {:#05x} whose message has another size or type, or a number that is not finite", apid);
   return {};
 }
 

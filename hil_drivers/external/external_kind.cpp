@@ -49,10 +49,8 @@ class ExternalRun final : public testbeds::TestbedRun {
     const Program* const program = settings_.program_of(plan.name);
     if (program == nullptr)
       throw std::runtime_error(fmt::format("testbed.external names no program for the source {}", plan.name));
-    const std::array<bench_process::Replacement, 4> replacements{{{"{source}", plan.name},
-                                                                  {"{seed}", std::to_string(seed_)},
-                                                                  {"{mission}", mission_},
-                                                                  {"{data}", data_}}};
+    const std::array<bench_process::Replacement, 4> replacements{
+        {{"{source}", plan.name}, {"{seed}", std::to_string(seed_)}, {"{mission}", mission_}, {"{data}", data_}}};
     auto arguments = bench_process::arguments_of(program->command, replacements);
     return std::make_unique<ExternalSource>(
         plan, seed_, numbers_,

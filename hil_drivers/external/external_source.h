@@ -1,6 +1,6 @@
 #pragma once
-// A sensor of the user's own in another process, in lock-step: at each of its epochs it is sent the truth, and simulated
-// time waits for its packets.
+// A sensor of the user's own in another process, in lock-step: at each of its epochs it is sent the truth, and
+// simulated time waits for its packets.
 
 #include <cstdint>
 #include <functional>
@@ -27,8 +27,8 @@ class ExternalSource final : public twins::PacketSource {
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// Throws std::runtime_error, one sentence that names the source, if the program has ended, does not answer in time or
-  /// answers with anything but packets of its sensor: nothing can be expected of it any more.
+  /// Throws std::runtime_error, one sentence that names the source, if the program has ended, does not answer in time
+  /// or answers with anything but packets of its sensor: nothing can be expected of it any more.
   twins::Measurement measure(const twins::TruthSnapshot& truth) override;
   void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) override;
   [[nodiscard]] twins::TruthDetail truth_detail() const override { return twins::TruthDetail::kAccelerations; }

@@ -26,9 +26,9 @@ struct ProgramOfSource {
 };
 
 struct ExternalSettings : mission::TestbedSettings {
-  Program program;                              ///< of every source without one of its own
+  Program program;  ///< of every source without one of its own
   std::vector<ProgramOfSource> sources;
-  std::chrono::milliseconds start_limit{30000};  ///< for the first answer
+  std::chrono::milliseconds start_limit{30000};   ///< for the first answer
   std::chrono::milliseconds answer_limit{10000};  ///< for each of the following
 
   /// Null: the mission names none for it.

@@ -34,7 +34,8 @@ std::unique_ptr<twins::PacketSource> make_source(const mission::Mission& mission
 }  // namespace
 
 int serve_command(const ServeOptions& options) {
-  const mission::Mission mission = sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
+  const mission::Mission mission =
+      sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
   external::SpacecraftNumbers numbers;
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) numbers.add(spacecraft.name, spacecraft.number);
   external::ServedSource source([&](const external::Opening& opening) { return make_source(mission, opening); },

@@ -25,8 +25,7 @@ std::unique_ptr<twins::PacketSource> packets_of_testbed(const mission::Sensor& s
 
 std::unique_ptr<twins::PacketSource> only_packets_of_testbed(const mission::Sensor& sensor, const MakeContext& context,
                                                              fsw::packets::Apid allowed) {
-  auto packets =
-      packets_of_testbed(sensor, context, context.servicer, {allowed}, unit_of(sensor, context.servicer));
+  auto packets = packets_of_testbed(sensor, context, context.servicer, {allowed}, unit_of(sensor, context.servicer));
   if (!packets && testbeds::find_testbed(sensor.settings->source) != nullptr)
     throw std::runtime_error(
         fmt::format("testbed \"{}\" has no sensor of kind {}", sensor.settings->source, sensor.kind));

@@ -142,7 +142,9 @@ TEST(ExternalExchange, WhatIsNoAnswerIsRefused) {
   EXPECT_THAT(error_of([&] { return answer_of({one[0], one[0]}); }), HasSubstr("a second source_answer"));
   EXPECT_THAT(error_of([&] { return batch_of(one, {}); }), HasSubstr("a packet of APID 0x607 in a batch"));
   EXPECT_THAT(error_of([] { return batch_of({}, {}); }), HasSubstr("without a tick"));
-  EXPECT_THAT(error_of([] { return batch_of(std::vector<twins::Packet>{{1, 2, 3}}, {}); }),
+  EXPECT_THAT(error_of([] {
+                return batch_of(std::vector<twins::Packet>{{1, 2, 3}}, {});
+              }),
               HasSubstr("3 bytes that are no packet"));
 }
 
