@@ -3,6 +3,7 @@
 
 FOLDER receives vbar_packets.h and vbar_packets.c: for every message a struct, its APID, type hash and size, its constants,
 a reader and a writer. The library needs neither heap nor LCM and is meant for flight software that is not this project's.
+It also receives vbar_apids.py, the APIDs for programs in Python, whose messages lcm-gen makes.
 """
 import re
 import sys
@@ -357,6 +358,8 @@ def main(definitions, message_list, folder):
     target.mkdir(parents=True, exist_ok=True)
     (target / "vbar_packets.h").write_text(header.rstrip("\n") + "\n" + HEADER_END)
     (target / "vbar_packets.c").write_text(source.rstrip("\n") + "\n")
+    rows = "".join(f'    "{name}": {apid},\n' for name, apid in apids.items())
+    (target / "vbar_apids.py").write_text(f'"""APID of each message of vbar.lcm."""\n\nAPIDS = {{\n{rows}}}\n')
 
 
 if __name__ == "__main__":

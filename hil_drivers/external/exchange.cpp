@@ -95,6 +95,7 @@ Packet command_packet(const PacketHeader& header, const Command& command) {
 
 std::string text_of(const vbar::source_start& message) {
   const auto end = std::find(std::begin(message.name), std::end(message.name), std::uint8_t{0});
+  if (end == std::end(message.name)) throw std::runtime_error("a source_start whose name has no end");
   return {std::begin(message.name), end};
 }
 

@@ -3,7 +3,6 @@
 // tick, and its answer, which ends with a source_answer (fsw/packets/vbar.lcm). Both ends use these functions.
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>

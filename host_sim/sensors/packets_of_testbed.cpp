@@ -14,7 +14,10 @@ std::unique_ptr<twins::PacketSource> packets_of_testbed(const mission::Sensor& s
                                                         const mission::Spacecraft& carrier,
                                                         std::vector<fsw::packets::Apid> allowed, std::uint8_t unit) {
   const testbeds::TestbedKind* const testbed = testbeds::find_testbed(sensor.settings->source);
-  if (testbed == nullptr || context.outlook == nullptr) return nullptr;
+  if (testbed == nullptr) return nullptr;
+  if (context.outlook == nullptr)
+    throw std::runtime_error(fmt::format("source {}: \"{}\" is a testbed, which is part of a run only",
+                                         source_name(carrier, sensor), sensor.settings->source));
   const auto run = context.testbeds.run_of(*testbed, {context.mission, context.data_directory, *context.outlook});
   return run->make_packets({.name = source_name(carrier, sensor),
                             .allowed = std::move(allowed),

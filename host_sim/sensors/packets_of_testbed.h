@@ -9,7 +9,8 @@
 namespace vbar::sensors {
 
 /// The source of a sensor's packets about `carrier`, if a testbed provides whole packets: a sensor in another process.
-/// Null for any other source. Throws std::runtime_error if the testbed cannot.
+/// Null for any other source. Throws std::runtime_error
+/// if the testbed cannot, and without a run.
 [[nodiscard]] std::unique_ptr<twins::PacketSource> packets_of_testbed(const mission::Sensor& sensor,
                                                                       const MakeContext& context,
                                                                       const mission::Spacecraft& carrier,

@@ -3,9 +3,10 @@
     import vbar_sensor
     vbar_sensor.serve(MySensor)
 
-MySensor(start, header) is made once, and has `first_epoch_ns` and measure(time_ns, states, earth, commands), which returns the messages
-and the GPS time (ns) of the next epoch, or None after the last. `states` maps spacecraft numbers to true_state, `commands` are pairs of
-the GPS time from which one holds and the packet. Messages are the classes that lcm-gen makes of vbar.lcm.
+MySensor(start, header) is made once, of the source_start and of the spacecraft and unit in the headers of its packets. It has two
+functions: first_epoch_ns(start_of_run_ns), and measure(time_ns, states, earth, commands), which returns the messages and the time of the next
+epoch, or None after the last. All times are GPS time in ns. `states` maps spacecraft numbers to true_state, `commands` are pairs
+of the time from which one holds and its packet. Messages are the classes that lcm-gen makes of vbar.lcm.
 """
 import binascii
 import socket
@@ -13,10 +14,9 @@ import struct
 import zlib
 
 import vbar
+from vbar_apids import APIDS
 
-APIDS = {"tick": 0x001, "ideal_navigation": 0x010, "gnss_bytes": 0x011, "crosslink_gnss_bytes": 0x012, "attitude": 0x013,
-         "crosslink_attitude": 0x014, "image_tile": 0x015, "range_measurement": 0x016, "source_start": 0x603, "true_earth": 0x604,
-         "true_state": 0x605, "source_command": 0x606, "source_answer": 0x607}
+NAMES = {apid: name for name, apid in APIDS.items()}
 HELLO, HELLO_ACK, DATA, ACK, POLL, GOODBYE = 1, 2, 3, 4, 5, 6
 WINDOW = 32  # packets without acknowledgement
 
@@ -86,7 +86,7 @@ class Served:
         for packet in batch:
             apid = struct.unpack(">H", packet[:2])[0] & 0x7FF
             time_ns, spacecraft, unit = struct.unpack(">qBB", packet[6:16])
-            name = next(name for name, number in APIDS.items() if number == apid)
+            name = NAMES[apid]
             message = getattr(vbar, name).decode(packet[16:-2])
             if name == "source_start":
                 start = message

@@ -14,8 +14,8 @@ import unittest
 
 from vbar_program import BINARY, SOURCE, children_of, fly, hashes, is_running, main, overrides, scratch, start, vbar
 
-EXAMPLES = SOURCE / "hil_drivers" / "external" / "examples"
 SENSOR_IN_C = BINARY / "vbar_example_sensor"
+EXTERNAL_RECEIVERS = [f"spacecraft.{name}.sensors.gnss.source=external" for name in ("servicer", "target")]
 SHORT = "mission.duration_h=0.1"
 EXTERNAL_LIDAR = """
 extends = "{missions}/range_finder.toml"
@@ -78,38 +78,52 @@ class External(unittest.TestCase):
             self.assertIn(part, result.stderr)
         self.assertNotIn("Traceback (most recent call last)", result.stderr.split("its last output")[0])
 
-    def test_receivers_in_other_processes_give_the_same_bits(self):
-        mission = self.folder / "receivers.toml"
-        mission.write_text(f"""
-extends = "{SOURCE}/missions/experiment3.toml"
+    def served(self, name, duration, more=""):
+        """A mission whose sensors vbar serves in other processes, where their source is external."""
+        file = self.folder / "served.toml"
+        original = SOURCE / "missions" / f"{name}.toml"
+        file.write_text(f"""
+extends = "{original}"
 [mission]
-name = "receivers"
+name = "served"
 [testbed.external]
-program = "vbar serve {SOURCE}/missions/experiment3.toml --set mission.seed={{seed}} --set {SHORT}"
+program = "vbar serve {original} --set mission.seed={{seed}} --set {duration}"
+{more}
 """)
-        external = [f"spacecraft.{name}.sensors.gnss.source=external" for name in ("servicer", "target")]
+        return file
+
+    def assert_same_bits(self, mission, external, *settings):
+        within = fly(self.folder / "within", *settings, mission=mission)
+        without = fly(self.folder / "without", *settings, *external, mission=mission)
+        self.assertEqual(hashes(within), hashes(without))
+        self.assertIn("external", {source["kind"] for source in without["sources"]})
+
+    def test_receivers_in_other_processes_give_the_same_bits(self):
         for seed in (1, 2):
-            settings = (SHORT, f"mission.seed={seed}")
-            within = fly(self.folder / "within", *settings, mission=SOURCE / "missions" / "experiment3.toml")
-            without = fly(self.folder / "without", *settings, *external, mission=mission)
-            self.assertEqual(hashes(within), hashes(without))
-            self.assertEqual({source["kind"] for source in without["sources"]}, {"external"})
+            self.assert_same_bits(self.served("experiment3", SHORT), EXTERNAL_RECEIVERS, SHORT, f"mission.seed={seed}")
         replayed = vbar("replay", self.folder / "without")
         self.assertEqual(replayed.returncode, 0, replayed.stderr)
 
     def test_images_of_another_process_give_the_same_bits(self):
-        mission = self.folder / "camera.toml"
-        served = SOURCE / "missions" / "experiment1.toml"
-        mission.write_text(f"""
-extends = "{served}"
-[mission]
-name = "camera"
-[testbed.external]
-program = "vbar serve {served} --set {SHORT}"
-""")
-        within = fly(self.folder / "digital", SHORT, mission=served)
-        without = fly(self.folder / "external", SHORT, "spacecraft.servicer.sensors.camera.source=external", mission=mission)
-        self.assertEqual(hashes(within), hashes(without))
+        self.assert_same_bits(self.served("experiment1", SHORT), ["spacecraft.servicer.sensors.camera.source=external"], SHORT)
+
+    def test_silence_is_injected_and_a_slip_is_refused(self):
+        fault = '[[fault]]\nkind = "{}"\nunit = "gnss"\nat_h = 39.02\n{}'
+        duration = "mission.duration_h=0.2"
+        mission = self.served("experiment3", duration, fault.format("silent", 'spacecraft = "target"\nfor_s = 120.0'))
+        self.assert_same_bits(mission, EXTERNAL_RECEIVERS, duration)
+        with open(self.folder / "without" / "faults.csv", newline="") as table:
+            self.assertEqual([float(row["end_s"]) - float(row["begin_s"]) for row in csv.DictReader(table)], [120.0])
+        refused = vbar("run", self.served("experiment3", duration, fault.format("cycle_slip", "value_cycles = 1")),
+                       *overrides(*EXTERNAL_RECEIVERS), "--check")
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertIn('a receiver with source = "digital": that of external does not fail on request', refused.stderr)
+
+    def test_a_run_is_not_resumed(self):
+        fly(self.folder / "whole", mission=self.mission(f'program = "{SENSOR_IN_C} --stream 3"'))
+        branch = vbar("resume", self.folder / "whole", "--at", 39.05, "--set", "guidance.dv_min_mmps=2.0", "--out", self.folder / "branch")
+        self.assertEqual(branch.returncode, 2, branch.stderr)
+        self.assertIn("a run with the testbed external cannot be flown again", branch.stderr)
 
     def test_range_finder_in_python(self):
         fly(self.folder / "python", "mission.duration_h=0.25", mission=SOURCE / "missions" / "external_range_finder.toml", **self.python)

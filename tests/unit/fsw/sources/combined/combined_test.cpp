@@ -12,6 +12,7 @@
 #include "fsw/sources/bearings/bearing_rows.h"
 #include "fsw/sources/keypoints/keypoint_aiding.h"
 #include "tests/support/accuracy.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/tango_view.h"
 #include "tests/unit/fsw/navigation/angles_only_scene.h"
 #include "tests/unit/fsw/sources/carrier_pair/trunk_pair.h"
@@ -140,8 +141,10 @@ TEST(CombinedSources, InformationAddsUp) {
   EXPECT_GT((information(false, true) - prior).trace(), 10.0 * prior.trace());
 }
 
+constexpr unsigned kSeeds = vbar::test::share_under_sanitizers(5);
+
 TEST(CombinedSources, OneInErrorIsSuspendedAndLeavesTheOrbitToTheOther) {
-  for (unsigned seed = 1; seed <= 5; ++seed) {
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     CombinedPair pair(seed), without(seed);
     pair.fly(40, true, true);
     without.fly(40, true, true);
@@ -167,7 +170,7 @@ TEST(CombinedSources, OneInErrorIsSuspendedAndLeavesTheOrbitToTheOther) {
 // bearings -> carrier phase -> bearings, each stopped where the next one starts: neither step changes the covariance of
 // the orbit, and the error never exceeds three sigmas.
 TEST(CombinedSources, AChangeOfSourcesLeavesTheOrbit) {
-  for (unsigned seed = 1; seed <= 5; ++seed) {
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     CombinedPair pair(seed);
     pair.fly(12, true, true);
     const auto change = [&](auto&& stop) {
@@ -198,7 +201,7 @@ TEST(CombinedSources, CentroidNoiseIsMeasuredAgainstCarrierPhase) {
   for (const bool with_receivers : {true, false}) {
     double sum = 0.0;
     int count = 0;
-    for (unsigned seed = 1; seed <= 5; ++seed) {
+    for (unsigned seed = 1; seed <= kSeeds; ++seed) {
       CombinedPair pair(seed, 200.0);
       pair.fly(20, true, false);
       pair.set_centroid_noise(0.12);
@@ -316,7 +319,7 @@ struct ClosePair : CombinedPair {
 // bearings -> keypoints -> carrier phase -> bearings, each stopped where the next one starts: no change touches the
 // orbit or its covariance, and the error never exceeds three sigmas.
 TEST(CombinedSources, FourSourcesInTurnLeaveOneOrbit) {
-  for (unsigned seed = 1; seed <= 5; ++seed) {
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     ClosePair pair(seed);
     pair.hand_over(0.2);
     const auto change = [&](auto&& stop) {
