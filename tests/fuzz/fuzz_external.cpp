@@ -1,8 +1,8 @@
-// The exchange with a sensor in another process, at both ends. Promises: one std::runtime_error, or an answer whose packets
-// are checked and a batch that encodes back to the same packets.
+// The exchange with a sensor in another process, at both ends. Promises: one std::runtime_error, or an answer whose
+// packets are checked and a batch that encodes back to the same packets.
 //
-// The input is a list of packets: kind, two bytes of length and fields. Those of a known kind are given header, type hash
-// and CRC, which a fuzzer does not guess.
+// The input is a list of packets: kind, two bytes of length and fields. Those of a known kind are given header, type
+// hash and CRC, which a fuzzer does not guess.
 
 #include <algorithm>
 #include <array>
@@ -31,7 +31,8 @@ Packet packet_with(std::span<const std::uint8_t> fields) {
   // The type hash of an empty message, then the fields of the input as far as they reach.
   const auto size = packets::encode(header, Message{}, packet);
   packet.resize(size.value());
-  std::vector<std::uint8_t> payload(packet.begin() + packets::kPacketHeaderBytes, packet.end() - packets::kPacketCrcBytes);
+  std::vector<std::uint8_t> payload(packet.begin() + packets::kPacketHeaderBytes,
+                                    packet.end() - packets::kPacketCrcBytes);
   std::copy_n(fields.begin(), std::min(fields.size(), payload.size() - 8), payload.begin() + 8);
   packet.resize(packets::kMaxPacketBytes);
   packet.resize(packets::write_packet(header, payload, packet).value());
