@@ -316,7 +316,7 @@ std::string_view name_of(LinkKind link) {
 std::string software_file(const FlightComputerOptions& options) {
   switch (options.target) {
     case Target::kInProcess:
-      return options.library;
+      return options.library.empty() ? std::string() : library_file(options.library);
     case Target::kBoard:
       return {};
     case Target::kHostProcess:

@@ -30,7 +30,18 @@ void resolve(const std::string& path, void* handle, const char* symbol, Function
 
 }  // namespace
 
-std::shared_ptr<const TestArticle> load_test_article(const std::string& path) {
+std::string library_file(const std::string& library) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (library.find('/') != std::string::npos || library.ends_with(".so") || fs::exists(library, error)) return library;
+  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const std::string name = "lib" + library + ".so";
+  const fs::path installed = here.parent_path() / "lib/vbar" / name;
+  return (fs::exists(installed, error) ? installed : here / name).string();
+}
+
+std::shared_ptr<const TestArticle> load_test_article(const std::string& library) {
+  const std::string path = library_file(library);
   // With a slash in it, so that the loader takes the file named and does not search its own directories.
   const std::string file = std::filesystem::absolute(path).string();
   void* const handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);

@@ -45,8 +45,13 @@ inline std::shared_ptr<const TestArticle> linked_test_article() {
                                                          .restore = &vbar_gnc_restore});
 }
 
-/// The test article in the shared library at `path`, which stays loaded during the lifetime of the result. Throws
-/// FlightComputerError if it cannot be loaded, lacks a function, or was built for another version of the interface.
-std::shared_ptr<const TestArticle> load_test_article(const std::string& path);
+/// The file of a library: itself, if it is a path; a name alone, as vbar_gnc_winged_box, is that of lib<name>.so beside
+/// the running program or, of an installation, in lib/vbar of its prefix.
+std::string library_file(const std::string& library);
+
+/// The test article in the shared library `library` (library_file), which stays loaded during the lifetime of the
+/// result. Throws FlightComputerError if it cannot be loaded, lacks a function, or was built for another version of the
+/// interface.
+std::shared_ptr<const TestArticle> load_test_article(const std::string& library);
 
 }  // namespace vbar::pil

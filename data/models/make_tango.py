@@ -293,10 +293,10 @@ def antennas(mesh):
         tube(mesh, mix(root, tip, 0.3), tip, 0.007, 0.005, "antenna", 12, "antenna")
 
 
-def write_materials(path):
+def write_materials(path, model="tango.obj", script="make_tango.py", materials=MATERIALS):
     with open(path, "w", encoding="ascii") as file:
-        file.write("# Materials of tango.obj, linear. Written by make_tango.py.\n")
-        for name, (kd, ks, ns) in MATERIALS.items():
+        file.write(f"# Materials of {model}, linear. Written by {script}.\n")
+        for name, (kd, ks, ns) in materials.items():
             file.write(f"\nnewmtl {name}\nKd {kd[0]} {kd[1]} {kd[2]}\nKs {ks[0]} {ks[1]} {ks[2]}\nNs {ns}\nillum 2\n")
 
 

@@ -15,6 +15,7 @@
 #include "hil_drivers/tron/tron_camera.h"
 #include "hil_drivers/tron/tron_report.h"
 #include "host_sim/engine/random_stream.h"
+#include "host_sim/mission/body_file.h"
 #include "host_sim/twins/camera/photometry.h"
 
 namespace vbar::tron {
@@ -30,10 +31,6 @@ constexpr double kForeignCalibration = 50.0;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::filesystem::path model_file(const std::filesystem::path& data, const BenchFile& bench, const char* ending) {
-  return data / "models" / (bench.target.model + ending);
 }
 
 twins::camera::Region single_pixels(const twins::camera::Region& region) {
@@ -160,7 +157,7 @@ void TronRun::open_devices() {
   exchange.fail_above_rad = settings_.fail_above_deg * kDegree;
   exchange.lamp_speed_rad_s = bench_.lamp.speed_rad_s;
   exchange_.emplace(exchange, calibration_, *planner_, *lights_, *laboratory_);
-  const auto model = twins::camera::load_cad_model(model_file(data, bench_, ".obj"));
+  const auto model = twins::camera::load_cad_model(mission::cad_source_of(data, bench_.target.model));
   finish_.emplace(camera_, model, exchange_->take_dark(exposure_s_).dn,
                   context_.mission.seed ^ engine::fnv1a_64(plan_->name + "/background"));
 }

@@ -16,7 +16,7 @@ struct SettingsOf {
 
   truth::AttitudeSettings operator()(const mission::Tumble& tumble) const {
     truth::TumbleSettings settings;
-    settings.body = mission::load_body(data_directory / "bodies" / (tumble.body + ".toml"));
+    settings.body = mission::load_body(mission::body_file_of(data_directory, tumble.body));
     if (tumble.inertia_kgm2) settings.body.inertia_kgm2 = *tumble.inertia_kgm2;
     settings.torques = tumble.torques;
     settings.drag_coefficient = spacecraft.surface.drag_coefficient;

@@ -1,21 +1,37 @@
 #pragma once
-// A body file (data/bodies, TOML): inertia, centre of mass and surface of a spacecraft.
+// A body file (data/bodies, TOML): mass properties and surface of a spacecraft; of a target that cameras see also its
+// CAD file and its keypoints.
 
 #include <filesystem>
+#include <map>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "host_sim/truth/attitude/body.h"
+#include "host_sim/twins/camera/model/cad_source.h"
 
 namespace vbar::mission {
 
 /// The body in the file: keys inertia_kgm2 and centre_of_mass_m (required), `corners` (an array of tables with at_m)
-/// and
-/// [[facet]] with `corners`, `specular` and `diffuse`. Lengths in m from the origin of the body frame; the result
-/// is relative to the centre of mass, as in Body. Throws MissionError.
+/// and [[facet]] with `corners`, `specular` and `diffuse`. Lengths in m from the origin of the body frame; the result
+/// is relative to the centre of mass, as in Body. The whole file is checked. Throws MissionError.
 [[nodiscard]] truth::Body load_body(const std::filesystem::path& file);
 
-/// The keypoints in a file of data/models: `keypoints`, an array of `count` tables with at_m. m, from the origin of the
-/// body frame. Throws MissionError.
+/// The `keypoints` in a body file, an array of `count` tables with at_m. m, from the origin of the body frame. Throws
+/// MissionError, also if two of them lie within a millimetre.
 [[nodiscard]] std::vector<fsw::Vector3> load_keypoints(const std::filesystem::path& file, std::size_t count);
+
+/// The CAD file of a model: that of [cad] in the body file of the same name (keys file, unit_m, axes, origin_m,
+/// surface), else models/NAME.obj, in metres and body axes. Throws MissionError.
+[[nodiscard]] twins::camera::CadSource cad_source_of(const std::filesystem::path& data_directory,
+                                                     const std::string& model);
+
+/// Of several models, by their names.
+[[nodiscard]] std::map<std::string, twins::camera::CadSource> cad_sources_of(
+    const std::filesystem::path& data_directory, std::span<const std::string> models);
+
+/// The body file of a name.
+[[nodiscard]] std::filesystem::path body_file_of(const std::filesystem::path& data_directory, const std::string& name);
 
 }  // namespace vbar::mission

@@ -2,7 +2,9 @@
 weights file, and the figures on held-out crops into a file beside it."""
 
 import argparse
+import math
 import pathlib
+import tomllib
 
 import numpy
 import torch
@@ -18,7 +20,7 @@ GROSS_CELLS = 3.0  # farther off than this a keypoint is wrong, not inexact
 MOST_GROSS = 0.01  # of the keypoints that are accepted
 CHI_SQUARE_MEDIAN = 1.3863  # of two degrees of freedom; their mean is 2
 CLASSES = 6  # of sharpness, all to have the right median
-FLIGHT_SIDE_M = 2.3 * 0.722  # what a crop's side spans at the target in flight (fsw/pose/region.cpp; Tango's radius)
+CROP_RADII = 2.3  # what a crop's side spans at the target in flight (fsw/pose/region.h)
 
 
 def peaks_of(layers, table):
@@ -34,14 +36,20 @@ def errors_of(peaks, table, stretch):
     return (decode.stretched(peaks.places, stretch) - table["cells"])[counts], peaks[counts]
 
 
-def fit_stretch(peaks, table, least):
+def radius_of(body):
+    """Of the sphere about the centre of mass that holds all keypoints of a body file, m."""
+    stated = tomllib.loads(body.read_text())
+    return max(math.dist(keypoint["at_m"], stated["centre_of_mass_m"]) for keypoint in stated["keypoints"])
+
+
+def fit_stretch(peaks, table, least, radius_m):
     """How much too near their middle the keypoints of a crop lie, for crops as they are cut in flight. A network that is
     not sure of the target's size leans towards the usual one: a straight line over the logarithm of the size, read at
     flight's."""
     errors = peaks.places - table["cells"]
     chosen = (table["counts"] > 0.5) & peaks.accepted(least) & (numpy.linalg.norm(errors, axis=2) <= GROSS_CELLS)
     distance = numpy.linalg.norm(table["centre_of_mass_camera"], axis=1)
-    size = numpy.log(table["region"][:, 2] * distance / table["camera"][:, 0] / FLIGHT_SIDE_M)
+    size = numpy.log(table["region"][:, 2] * distance / table["camera"][:, 0] / (CROP_RADII * radius_m))
     normal, right = numpy.zeros((2, 2)), numpy.zeros(2)
     for crop in numpy.flatnonzero(chosen.sum(1) >= 4):
         cells, error = table["cells"][crop, chosen[crop]], errors[crop, chosen[crop]]
@@ -109,7 +117,7 @@ def tables_of(folder, kind):
 
 
 def page(options, calibration, counts, held_out):
-    lines = ["# How data/networks/tango_keypoints.bin was made, and what it does. Written by host_sim/training/calibrate.py.",
+    lines = [f"# How data/networks/{options.body.stem}_keypoints.bin was made, and what it does. Written by host_sim/training/calibrate.py.",
              f'command = "{options.command}"', f"training_crops = {counts[0]}", f"calibration_crops = {counts[1]}",
              f"held_out_crops = {counts[2]}", f"seconds_of_training = {options.trained_s:.0f}",
              f"images_shown = {options.images}", "", "[calibration]",
@@ -124,6 +132,7 @@ def page(options, calibration, counts, held_out):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--crops", type=pathlib.Path, required=True)
+    parser.add_argument("--body", type=pathlib.Path, required=True, help="the target's body file")
     parser.add_argument("--weights", type=pathlib.Path, required=True, help="weights to read")
     parser.add_argument("--out", type=pathlib.Path, help="calibrated weights; its figures get the same name and .toml")
     parser.add_argument("--checkpoint", type=pathlib.Path, help="of the training, for its duration")
@@ -135,7 +144,7 @@ def main():
     calibration_table, held_out_table = tables_of(options.crops, "calibration"), tables_of(options.crops, "held_out")
     all_peaks = peaks_of(layers, calibration_table)
     least = least_peak(*errors_of(all_peaks, calibration_table, 0.0))
-    stretch = fit_stretch(all_peaks, calibration_table, least)
+    stretch = fit_stretch(all_peaks, calibration_table, least, radius_of(options.body))
     errors, peaks = errors_of(all_peaks, calibration_table, stretch)
     inexact = peaks.accepted(least) & (numpy.linalg.norm(errors, axis=1) <= GROSS_CELLS)
     calibration = (*fit_covariance(errors[inexact], peaks.excess[inexact]), TARGET_SIGMA_CELLS, least, stretch)

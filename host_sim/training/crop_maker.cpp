@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/mission/body_file.h"
 #include "host_sim/training/materials.h"
 #include "host_sim/training/soft_picture.h"
 #include "host_sim/twins/camera/earth_disc.h"
@@ -48,13 +49,14 @@ double sun_photons_of(const CameraSettings& camera) {
 
 }  // namespace
 
-CropMaker::CropMaker(const std::filesystem::path& data_directory, CropKind kind, std::uint64_t seed)
+CropMaker::CropMaker(const std::filesystem::path& data_directory, const std::string& target, CropKind kind,
+                     std::uint64_t seed)
     : kind_(kind),
       seed_(seed),
       camera_(close_range_camera(data_directory)),
       optics_(camera_),
-      shape_(TargetShape::load(data_directory)),
-      model_(twins::camera::load_cad_model(data_directory / "models" / "tango.obj")),
+      shape_(TargetShape::load(data_directory, target)),
+      model_(twins::camera::load_cad_model(mission::cad_source_of(data_directory, target))),
       renderer_(model_),
       silhouette_(model_),
       sky_(twins::camera::StarSky::load(data_directory, camera_.zero_magnitude_photons)) {}

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "host_sim/training/circumstances.h"
@@ -31,8 +32,8 @@ struct LabelledCrop {
 
 class CropMaker {
  public:
-  /// Throws std::runtime_error if a file of `data_directory` cannot be read.
-  CropMaker(const std::filesystem::path& data_directory, CropKind kind, std::uint64_t seed);
+  /// Of a target of data/bodies. Throws std::runtime_error if a file of `data_directory` cannot be read.
+  CropMaker(const std::filesystem::path& data_directory, const std::string& target, CropKind kind, std::uint64_t seed);
 
   /// Crop `index` of the seed: independent of the crops made before (on the same processor).
   void make(std::int64_t index, LabelledCrop& crop);

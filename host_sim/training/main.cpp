@@ -28,13 +28,14 @@ struct Order {
   std::int64_t shard_size = 1000;
   CropKind kind = CropKind::kTraining;
   int part = 0, parts = 1;
+  std::string target = "tango";
   std::filesystem::path out;
 };
 
 void make_shards(const Order& order) {
   using Clock = std::chrono::steady_clock;
   std::filesystem::create_directories(order.out);
-  vbar::training::CropMaker maker(vbar::mission::data_directory(), order.kind, order.seed);
+  vbar::training::CropMaker maker(vbar::mission::data_directory(), order.target, order.kind, order.seed);
   vbar::training::LabelledCrop crop;
   for (std::int64_t shard = order.part; shard * order.shard_size < order.count; shard += order.parts) {
     const std::int64_t first = shard * order.shard_size;
@@ -61,6 +62,7 @@ int main(int argc, char** argv) {
   CLI::App app("Labelled crops for the keypoint network");
   const std::map<std::string, CropKind> kinds{
       {"training", CropKind::kTraining}, {"calibration", CropKind::kCalibration}, {"held_out", CropKind::kHeldOut}};
+  app.add_option("--target", order.target, "the target: a body file of data/bodies")->capture_default_str();
   app.add_option("--seed", order.seed, "seed of the draws")->capture_default_str();
   app.add_option("--count", order.count, "crops in total")->check(CLI::Range(1, 10'000'000))->capture_default_str();
   app.add_option("--shard-size", order.shard_size, "crops a file")

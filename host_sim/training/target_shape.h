@@ -2,6 +2,7 @@
 // The keypoints of the target that training labels.
 
 #include <filesystem>
+#include <string>
 
 #include "fsw/pose/keypoint.h"
 
@@ -13,9 +14,8 @@ struct TargetShape {
   fsw::Vector3 model_origin = fsw::Vector3::Zero();  ///< of the CAD file
   double radius_m = 0.0;                             ///< of the farthest keypoint
 
-  /// Of Tango, from models/tango_keypoints.toml and bodies/tango.toml of `data_directory`; throws
-  /// mission::MissionError.
-  static TargetShape load(const std::filesystem::path& data_directory);
+  /// Of the target whose body file has this name; throws mission::MissionError.
+  static TargetShape load(const std::filesystem::path& data_directory, const std::string& target);
 };
 
 }  // namespace vbar::training

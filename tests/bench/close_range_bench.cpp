@@ -40,14 +40,14 @@ camera::Exposure exposure_of_tango(double range_m) {
   return exposure;
 }
 
+const camera::CadSources kTango{{"tango", {.file = vbar::test::camera_data() / "models/tango.obj"}}};
+
 void turn(camera::Exposure& exposure, int image) {
   exposure.objects[0].q_body_eci = Eigen::AngleAxisd(0.1 * image, Vector3(0.3, 0.8, 0.5).normalized());
 }
 
 void render(benchmark::State& state, double range_m) {
-  const std::vector<std::string> models{"tango"};
-  camera::SceneRenderer renderer(close_camera(), vbar::test::camera_data(),
-                                 camera::cad_objects(vbar::test::camera_data(), models));
+  camera::SceneRenderer renderer(close_camera(), vbar::test::camera_data(), camera::cad_objects(kTango));
   camera::Exposure exposure = exposure_of_tango(range_m);
   camera::PhotonImage image;
   int number = 0;
@@ -63,8 +63,7 @@ BENCHMARK_CAPTURE(render, at_13_m, 13.0)->Name("camera/render_close/13")->Unit(b
 
 /// The drawing alone.
 void draw(benchmark::State& state, double range_m) {
-  const std::vector<std::string> models{"tango"};
-  const camera::ObjectRenderer objects = camera::cad_objects(vbar::test::camera_data(), models);
+  const camera::ObjectRenderer objects = camera::cad_objects(kTango);
   camera::ObjectView view;
   view.model = "tango";
   view.position_camera = Vector3(0.01, 0.02, 1.0) * range_m;
@@ -98,8 +97,7 @@ BENCHMARK_CAPTURE(draw, at_13_m, 13.0)
 /// The spread alone, of as many samples as the drawing gives.
 void spread(benchmark::State& state, double range_m) {
   const camera::CameraSettings settings = close_camera();
-  const std::vector<std::string> models{"tango"};
-  const camera::ObjectRenderer objects = camera::cad_objects(vbar::test::camera_data(), models);
+  const camera::ObjectRenderer objects = camera::cad_objects(kTango);
   camera::ObjectView view;
   view.model = "tango";
   view.position_camera = Vector3(0.0, 0.0, range_m);
@@ -126,9 +124,7 @@ BENCHMARK_CAPTURE(spread, at_13_m, 13.0)->Name("camera/spread_close/13")->Unit(b
 /// Detector and packets after the light.
 void read_out(benchmark::State& state) {
   const camera::CameraSettings settings = close_camera();
-  const std::vector<std::string> models{"tango"};
-  camera::SceneRenderer renderer(settings, vbar::test::camera_data(),
-                                 camera::cad_objects(vbar::test::camera_data(), models));
+  camera::SceneRenderer renderer(settings, vbar::test::camera_data(), camera::cad_objects(kTango));
   camera::Exposure exposure = exposure_of_tango(7.0);
   turn(exposure, 3);
   camera::PhotonImage image;

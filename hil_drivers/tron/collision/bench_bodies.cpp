@@ -270,8 +270,8 @@ int BenchBodies::hidden(const Bodies& bodies, std::span<const Vector3> points_bo
 }
 
 std::vector<Vector3> BenchBodies::points_to_see(const std::filesystem::path& data_directory) const {
-  std::vector<Vector3> points = mission::load_keypoints(
-      data_directory / "models" / (bench_.target.model + "_keypoints.toml"), fsw::network::kKeypoints);
+  std::vector<Vector3> points =
+      mission::load_keypoints(mission::body_file_of(data_directory, bench_.target.model), fsw::network::kKeypoints);
   points.emplace_back(0.5 * (bench_.target.body_low_m + bench_.target.body_high_m));
   return points;
 }

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "fsw/math/math.h"
 #include "host_sim/sensors/camera/camera_report.h"
 #include "host_sim/sensors/camera/make_camera.h"
@@ -32,6 +34,21 @@ void check_target(const TableReader& section, const CameraSensor& camera, const 
                    "with navigation = \"pose\": a spacecraft that tumbles, by laws that are known on board");
 }
 
+/// The weights of a network are part of the flight software; vbar's own has those of the network that knows Tango.
+void check_network(const TableReader& section, const mission::FlightComputer& computer, const std::string& model) {
+  constexpr std::string_view kKnown = "tango";
+  const bool is_own =
+      computer.library.empty() && computer.image.empty() && computer.target != mission::FlightTarget::kBoard;
+  if (is_own && model != kKnown)
+    section.refuse(
+        "target",
+        fmt::format("a spacecraft with the model \"{}\", which the network of vbar's flight software does not know",
+                    model),
+        fmt::format("the model \"{}\", or flight_computer.library = \"vbar_gnc_{}\" or an image with the weights of "
+                    "data/networks/{}_keypoints.bin",
+                    kKnown, model, model));
+}
+
 /// A camera navigates with the flight software and the receiver beside it, to something that it can see.
 void check(const TableReader& section, const Sensor& sensor, const Spacecraft& servicer, const Mission& mission) {
   const auto& camera = settings_of<CameraSensor>(sensor);
@@ -44,6 +61,8 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
                    "one of \"angles_only\" and \"pose\"");
   if (!servicer.flight_computer)
     section.refuse("", "a camera without a flight computer", "a camera of a spacecraft that flies software");
+  if (camera.has_use(CameraSensor::kKeypoints))
+    check_network(section, *servicer.flight_computer, mission.find_spacecraft(camera.observed)->model);
   using Use = vbar::navigation_configuration;
   const Sensor* receiver = nullptr;
   std::size_t cameras = 0;

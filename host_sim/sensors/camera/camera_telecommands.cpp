@@ -58,10 +58,9 @@ vbar::target_model target_model_of(const Mission& mission, const CameraSensor& s
   configuration.angular_acceleration_psd = mission.navigation.angular_acceleration_psd;
   const Spacecraft& target = *mission.find_spacecraft(sensor.observed);
   const mission::Tumble& tumble = std::get<mission::Tumble>(*target.attitude);  // the loader sees to it
-  const truth::Body body = mission::load_body(data_directory / "bodies" / (tumble.body + ".toml"));
+  const truth::Body body = mission::load_body(mission::body_file_of(data_directory, tumble.body));
   constexpr std::size_t kKeypoints = sizeof configuration.keypoints_body_m / (3 * sizeof(double));
-  const auto keypoints_m =
-      mission::load_keypoints(data_directory / "models" / (target.model + "_keypoints.toml"), kKeypoints);
+  const auto keypoints_m = mission::load_keypoints(mission::body_file_of(data_directory, target.model), kKeypoints);
   for (std::size_t k = 0; k < kKeypoints; ++k) {
     const fsw::Vector3 from_centre_of_mass = keypoints_m[k] - body.centre_of_mass_m;
     std::ranges::copy(from_centre_of_mass, configuration.keypoints_body_m + 3 * k);

@@ -58,9 +58,9 @@ std::unique_ptr<twins::camera::SceneRenderer> make_scene(const Mission& mission,
   std::vector<std::string> models;
   for (const Spacecraft& other : mission.spacecraft)
     if (!other.model.empty() && &other != &spacecraft) models.push_back(other.model);
-  return std::make_unique<twins::camera::SceneRenderer>(
-      camera, data_directory, twins::camera::cad_objects(data_directory, models),
-      twins::camera::cad_covers(data_directory, models), std::move(projection));
+  const auto sources = mission::cad_sources_of(data_directory, models);
+  return std::make_unique<twins::camera::SceneRenderer>(camera, data_directory, twins::camera::cad_objects(sources),
+                                                        twins::camera::cad_covers(sources), std::move(projection));
 }
 
 std::unique_ptr<twins::camera::ImageMaker> make_digital_camera(const Mission& mission, const Spacecraft& servicer,
@@ -82,7 +82,7 @@ twins::camera::CameraMount mount_of(const Mission& mission, const Spacecraft& se
     if (other.model.empty() || &other == &servicer) continue;
     fsw::Vector3 centre_of_mass = fsw::Vector3::Zero();
     if (const auto* tumble = other.attitude ? std::get_if<mission::Tumble>(&*other.attitude) : nullptr)
-      centre_of_mass = mission::load_body(data_directory / "bodies" / (tumble->body + ".toml")).centre_of_mass_m;
+      centre_of_mass = mission::load_body(mission::body_file_of(data_directory, tumble->body)).centre_of_mass_m;
     mount.models.push_back({other.name, other.model, centre_of_mass});
   }
   return mount;

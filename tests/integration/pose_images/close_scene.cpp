@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "fsw/sources/keypoints/keypoint_settings.h"
+#include "host_sim/mission/body_file.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/sensor_kinds.h"
@@ -35,7 +36,7 @@ PoseMiss miss_of(const fsw::pose::PnpSolution& found, const fsw::pose::TargetPos
 }
 
 CloseScene::CloseScene()
-    : shape_(training::TargetShape::load(mission::data_directory())),
+    : shape_(training::TargetShape::load(mission::data_directory(), "tango")),
       network_(std::make_unique<fsw::pose::SpacecraftPoseNetwork>()) {
   const mission::Mission mission =
       sensors::load_mission(std::filesystem::path(vbar::tests::source_path("missions")) / "experiment2.toml");
@@ -49,8 +50,9 @@ CloseScene::CloseScene()
   network_->configure(settings_);
   const auto data = mission::data_directory();
   const std::array<std::string, 1> models{"tango"};
-  target_ = std::make_unique<twins::camera::SceneRenderer>(camera_, data, twins::camera::cad_objects(data, models),
-                                                           twins::camera::cad_covers(data, models));
+  const auto sources = mission::cad_sources_of(data, models);
+  target_ = std::make_unique<twins::camera::SceneRenderer>(camera_, data, twins::camera::cad_objects(sources),
+                                                           twins::camera::cad_covers(sources));
   other_ = std::make_unique<twins::camera::SceneRenderer>(camera_, data);
   detector_ = std::make_unique<twins::camera::Detector>(camera_, 5, "servicer/camera");
 }

@@ -73,12 +73,25 @@ std::array<double, 3> rgb(const aiColor3D& c) {
   return {c.r, c.g, c.b};
 }
 
-Material material_of(const std::filesystem::path& file, const aiMaterial& from) {
+Material plain_material(const PlainSurface& surface) {
+  Material material;
+  material.name = "surface";
+  material.diffuse.fill(surface.diffuse);
+  material.specular.fill(surface.specular);
+  material.exponent = surface.exponent;
+  return material;
+}
+
+Material material_of(const CadSource& source, const aiMaterial& from) {
   Material material;
   material.name = from.GetName().C_Str();
   aiColor3D diffuse, specular;
-  if (from.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse) != AI_SUCCESS || material.name == AI_DEFAULT_MATERIAL_NAME)
-    refuse(file, fmt::format("material \"{}\" has no diffuse colour", material.name));
+  if (from.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse) != AI_SUCCESS || material.name == AI_DEFAULT_MATERIAL_NAME) {
+    if (source.surface) return plain_material(*source.surface);
+    refuse(source.file,
+           fmt::format("material \"{}\" has no diffuse colour; [cad] of a body file can name a surface for it",
+                       material.name));
+  }
   material.diffuse = rgb(diffuse);
   if (from.Get(AI_MATKEY_COLOR_SPECULAR, specular) == AI_SUCCESS) material.specular = rgb(specular);
   ai_real exponent = 0.0F;
@@ -90,15 +103,19 @@ Vector3 vector_of(const aiVector3D& v) {
   return {v.x, v.y, v.z};
 }
 
-void add_triangles(const aiMesh& mesh, std::size_t material, std::vector<Triangle>& triangles) {
+void add_triangles(const CadSource& source, const aiMesh& mesh, std::size_t material,
+                   std::vector<Triangle>& triangles) {
+  const fsw::Matrix3& R = source.R_body_file;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices != 3) continue;
     Triangle triangle;
     triangle.material = material;
     for (std::size_t k = 0; k < 3; ++k) {
-      triangle.corners[k] = vector_of(mesh.mVertices[face.mIndices[k]]);
-      triangle.normals[k] = mesh.HasNormals() ? vector_of(mesh.mNormals[face.mIndices[k]]) : Vector3::Zero();
+      const Vector3 corner = source.unit_m * vector_of(mesh.mVertices[face.mIndices[k]]) - source.origin_m;
+      triangle.corners[k] = R * corner;
+      triangle.normals[k] =
+          mesh.HasNormals() ? Vector3(R * vector_of(mesh.mNormals[face.mIndices[k]])) : Vector3::Zero();
     }
     triangles.push_back(triangle);
   }
@@ -107,8 +124,13 @@ void add_triangles(const aiMesh& mesh, std::size_t material, std::vector<Triangl
 }  // namespace
 
 CadModel load_cad_model(const std::filesystem::path& file) {
+  return load_cad_model(CadSource{.file = file});
+}
+
+CadModel load_cad_model(const CadSource& source) {
+  const std::filesystem::path& file = source.file;
   if (!std::filesystem::is_regular_file(file)) refuse(file, "no such file");
-  if (file.extension() == ".obj") check_obj(file);
+  if (file.extension() == ".obj" && !source.surface) check_obj(file);
   Assimp::Importer importer;
   // Points and lines are not part of the surface and are removed. Transformations of a scene's parts are applied.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -121,8 +143,8 @@ CadModel load_cad_model(const std::filesystem::path& file) {
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const aiMesh& mesh = *scene->mMeshes[m];
     const auto [place, added] = index.try_emplace(mesh.mMaterialIndex, materials.size());
-    if (added) materials.push_back(material_of(file, *scene->mMaterials[mesh.mMaterialIndex]));
-    add_triangles(mesh, place->second, triangles);
+    if (added) materials.push_back(material_of(source, *scene->mMaterials[mesh.mMaterialIndex]));
+    add_triangles(source, mesh, place->second, triangles);
   }
   return make_cad_model(file.string(), std::move(triangles), std::move(materials));
 }

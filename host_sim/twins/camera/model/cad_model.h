@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fsw/core/types.h"
+#include "host_sim/twins/camera/model/cad_source.h"
 
 namespace vbar::twins::camera {
 
@@ -50,8 +51,12 @@ CadModel make_cad_model(std::string source, std::vector<Triangle> triangles, std
 /// together reflects no more than all light, and the exponent lies in 0 to 10,000.
 void check_materials(const std::string& source, const std::vector<Material>& materials);
 
-/// Reads a CAD file in metres. Throws std::runtime_error with one message that names the file and what is wrong: as
-/// make_cad_model, and: no such file, a file assimp does not understand, a face whose material no file defines.
+/// Reads a CAD file, in body axes. Throws std::runtime_error with one message that names the file and what is wrong: as
+/// make_cad_model, and: no such file, a file assimp does not understand, a face whose material no file defines unless
+/// the source names a surface for it.
+CadModel load_cad_model(const CadSource& source);
+
+/// Of a file in metres and body axes.
 CadModel load_cad_model(const std::filesystem::path& file);
 
 }  // namespace vbar::twins::camera

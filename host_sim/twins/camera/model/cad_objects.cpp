@@ -43,20 +43,16 @@ void render(Models& models, const ObjectView& view, std::vector<LightSample>& ou
 
 }  // namespace
 
-ObjectRenderer cad_objects(const std::filesystem::path& data_directory, std::span<const std::string> models) {
+ObjectRenderer cad_objects(const CadSources& models) {
   const auto loaded = std::make_shared<Models>();
-  for (const std::string& model : models)
-    if (!loaded->renderers.contains(model))
-      loaded->renderers.try_emplace(model, load_cad_model(data_directory / "models" / (model + ".obj")));
+  for (const auto& [name, source] : models) loaded->renderers.try_emplace(name, load_cad_model(source));
   return [loaded](const ObjectView& view, std::vector<LightSample>& out) { render(*loaded, view, out); };
 }
 
-ObjectCover cad_covers(const std::filesystem::path& data_directory, std::span<const std::string> models) {
+ObjectCover cad_covers(const CadSources& models) {
   using Silhouettes = std::map<std::string, Silhouette, std::less<>>;
   const auto loaded = std::make_shared<Silhouettes>();
-  for (const std::string& model : models)
-    if (!loaded->contains(model))
-      loaded->try_emplace(model, load_cad_model(data_directory / "models" / (model + ".obj")));
+  for (const auto& [name, source] : models) loaded->try_emplace(name, load_cad_model(source));
   return [loaded](const ObjectView& view, const Projection& optics, const Region& region, std::vector<float>& covered) {
     loaded_model(*loaded, view.model)->second.draw(optics, view.position_camera, view.R_camera_body, region, covered);
   };

@@ -1,20 +1,23 @@
 #pragma once
 // Spacecraft rendered from their CAD files, for the scene renderer.
 
-#include <filesystem>
-#include <span>
+#include <map>
 #include <string>
 
+#include "host_sim/twins/camera/model/cad_source.h"
 #include "host_sim/twins/camera/object_view.h"
 
 namespace vbar::twins::camera {
 
-/// Loads data_directory/models/<model>.obj of every model; throws std::runtime_error as load_cad_model and
+/// Models by the names that views refer to.
+using CadSources = std::map<std::string, CadSource>;
+
+/// Loads the CAD file of every model; throws std::runtime_error as load_cad_model and
 /// TargetRenderer do. The returned renderer throws std::invalid_argument for an unknown model, and
 /// for a camera inside the sphere around a body. Copies of it share the models; one call at a time among them all.
-ObjectRenderer cad_objects(const std::filesystem::path& data_directory, std::span<const std::string> models);
+ObjectRenderer cad_objects(const CadSources& models);
 
 /// Their outlines; likewise.
-ObjectCover cad_covers(const std::filesystem::path& data_directory, std::span<const std::string> models);
+ObjectCover cad_covers(const CadSources& models);
 
 }  // namespace vbar::twins::camera

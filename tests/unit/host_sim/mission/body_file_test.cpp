@@ -97,6 +97,43 @@ TEST_F(BodyFile, FacetsAreSeenFromTheCentreOfMass) {
   EXPECT_LT((plate.facets[0].centre_m - Vector3(4.0 / 3.0, 2.0 / 3.0, -1.0)).norm(), 1e-15);
 }
 
+TEST_F(BodyFile, KeypointsAreDistinct) {
+  const std::string two = "keypoints = [{at_m = [0, 0, 0]}, {at_m = [1, 0, 0]}]\n";
+  EXPECT_EQ(message_of(two + kPlate), "no error");
+  EXPECT_EQ(load_keypoints(file_, 2)[1], Vector3::UnitX());
+  EXPECT_THROW(static_cast<void>(load_keypoints(file_, 11)), MissionError);
+  EXPECT_THAT(
+      message_of("keypoints = [{at_m = [0, 0, 0]}, {at_m = [0.0005, 0, 0]}]\n" + kPlate),
+      HasSubstr("keypoints.1.at_m: found the place of keypoint 0; accepted: keypoints at least a millimetre apart"));
+}
+
+TEST_F(BodyFile, StatesUnitAxesAndOriginOfItsCadFile) {
+  EXPECT_EQ(message_of(
+                kPlate +
+                "[cad]\nfile = \"shape.stl\"\nunit_m = 0.001\naxes = [\"+x\", \"-z\", \"+y\"]\norigin_m = [0.1, 0, 0]\n"
+                "surface = { diffuse = 0.3, specular = 0.2, exponent = 50 }\n"),
+            "no error");
+  EXPECT_THAT(message_of(kPlate + "[cad]\nunit_m = 1\n"), HasSubstr("cad.file: found nothing"));
+  EXPECT_THAT(message_of(kPlate + "[cad]\nfile = \"a\"\nunit_m = 0\n"), HasSubstr("cad.unit_m: found"));
+  EXPECT_THAT(message_of(kPlate + "[cad]\nfile = \"a\"\naxes = [\"x\", \"y\", \"z\"]\n"),
+              HasSubstr("cad.axes: found \"x\""));
+  EXPECT_THAT(message_of(kPlate + "[cad]\nfile = \"a\"\naxes = [\"+x\", \"+y\"]\n"),
+              HasSubstr("cad.axes: found 2 of them"));
+  EXPECT_THAT(message_of(kPlate + "[cad]\nfile = \"a\"\naxes = [\"+x\", \"+z\", \"+y\"]\n"),
+              HasSubstr("not right-handed"));
+  EXPECT_THAT(message_of(kPlate + "[cad]\nfile = \"a\"\naxes = [\"+x\", \"+x\", \"+y\"]\n"),
+              HasSubstr("not right-handed"));
+}
+
+// Beside the body file; without [cad] in the folder of models.
+TEST(CadSources, OfTheBodyFileOrOfTheFolderOfModels) {
+  const std::filesystem::path data = vbar::tests::source_path("data");
+  EXPECT_EQ(cad_source_of(data, "tango").file, data / "models/tango.obj");
+  EXPECT_TRUE(std::filesystem::equivalent(cad_source_of(data, "winged_box").file, data / "models/winged_box.obj"));
+  EXPECT_EQ(cad_source_of(data, "tango_mockup").file, data / "models/tango_mockup.obj")
+      << "a model without a body file";
+}
+
 TEST_F(BodyFile, WhatIsNoneIsRefusedWithOneMessage) {
   EXPECT_THAT(message_of("centre_of_mass_m = [0, 0, 0]\n"), HasSubstr("inertia_kgm2: found nothing"));
   EXPECT_THAT(message_of("inertia_kgm2 = [1, 1, 1]\n"), HasSubstr("centre_of_mass_m: found nothing"));

@@ -151,7 +151,7 @@ TEST(TrueCamera, ASpacecraftsRadiusHoldsTangoWithItsAntennas) {
   const auto data = mission::data_directory();
   const Vector3 centre_of_mass = mission::load_body(data / "bodies/tango.toml").centre_of_mass_m;
   accuracy::Largest farthest;
-  for (const Vector3& keypoint : mission::load_keypoints(data / "models/tango_keypoints.toml", 11))
+  for (const Vector3& keypoint : mission::load_keypoints(data / "bodies/tango.toml", 11))
     farthest.add((keypoint - centre_of_mass).norm());
   EXPECT_LE(farthest, kSpacecraftRadius_m);
   EXPECT_GT(farthest, kSpacecraftRadius_m - 0.01);

@@ -18,7 +18,7 @@ constexpr double kDegree = M_PI / 180.0;
 std::vector<Circumstances> draw(int count) {
   const auto data = mission::data_directory();
   const auto camera = close_range_camera(data);
-  const TargetShape shape = TargetShape::load(data);
+  const TargetShape shape = TargetShape::load(data, "tango");
   engine::RandomStream stream(11, "circumstances");
   std::vector<Circumstances> all;
   for (int i = 0; i < count; ++i) all.push_back(draw_circumstances(camera, shape, stream));

@@ -20,7 +20,7 @@ namespace vbar::training {
 namespace {
 
 CropMaker& maker() {
-  static CropMaker one(mission::data_directory(), CropKind::kTraining, 1);
+  static CropMaker one(mission::data_directory(), "tango", CropKind::kTraining, 1);
   return one;
 }
 
@@ -31,10 +31,10 @@ TEST(CropMaker, CropDependsOnSeedAndNumberOnly) {
   maker().make(7, again);
   EXPECT_EQ(first.samples, again.samples);
   EXPECT_EQ(first.cells, again.cells);
-  CropMaker fresh(mission::data_directory(), CropKind::kTraining, 1);
+  CropMaker fresh(mission::data_directory(), "tango", CropKind::kTraining, 1);
   fresh.make(7, again);
   EXPECT_EQ(first.samples, again.samples);
-  CropMaker other(mission::data_directory(), CropKind::kTraining, 2);
+  CropMaker other(mission::data_directory(), "tango", CropKind::kTraining, 2);
   other.make(7, other_seed);
   EXPECT_NE(first.samples, other_seed.samples);
 }
@@ -42,7 +42,7 @@ TEST(CropMaker, CropDependsOnSeedAndNumberOnly) {
 TEST(CropMaker, KindsShareNothing) {
   LabelledCrop training, held_out;
   maker().make(0, training);
-  CropMaker other(mission::data_directory(), CropKind::kHeldOut, 1);
+  CropMaker other(mission::data_directory(), "tango", CropKind::kHeldOut, 1);
   other.make(0, held_out);
   EXPECT_NE(training.circumstances.centre_of_mass_camera, held_out.circumstances.centre_of_mass_camera);
 }

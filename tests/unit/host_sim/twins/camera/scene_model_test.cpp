@@ -28,9 +28,13 @@ namespace camera = vbar::twins::camera;
 const Vector2 kMiddle(959.5, 599.5);
 constexpr double kFocalPx = 35.0 / 5.86e-3;
 
+camera::CadSources source_of(const std::string& model) {
+  return {{model, {.file = vbar::test::camera_data() / "models" / (model + ".obj")}}};
+}
+
 camera::SceneRenderer& renderer() {
   static camera::SceneRenderer made(camera::CameraSettings{}, vbar::test::camera_data(),
-                                    camera::cad_objects(vbar::test::camera_data(), std::vector<std::string>{"tango"}));
+                                    camera::cad_objects(source_of("tango")));
   return made;
 }
 
@@ -78,13 +82,11 @@ TEST(SceneModel, tango_grows_from_a_point_to_a_disc_without_a_jump) {
 // missing as a plate of the hull's outline hides. Seen along z, the top panel's 0.74 m x 0.77 m is the outline but for
 // the antennas and what sticks out, less than a tenth of it.
 TEST(SceneModel, the_earth_does_not_shine_through_tango) {
-  const std::vector<std::string> models{"tango"};
   camera::CameraSettings settings;
   settings.optics.focal_length_mm = 8.5;  // 6 mm a pixel at 8 m and more
   settings.exposure_s = 1e-3;
-  camera::SceneRenderer seen(settings, vbar::test::camera_data(),
-                             camera::cad_objects(vbar::test::camera_data(), models),
-                             camera::cad_covers(vbar::test::camera_data(), models));
+  camera::SceneRenderer seen(settings, vbar::test::camera_data(), camera::cad_objects(source_of("tango")),
+                             camera::cad_covers(source_of("tango")));
   camera::Exposure exposure = vbar::test::quiet_exposure(Vector3(0.0, 1.0, 0.0));
   exposure.camera_position_eci = Vector3(7.0e6, 0.0, 0.0);
   exposure.q_camera_eci = vbar::test::camera_attitude(-Vector3::UnitX(), Vector3::UnitY());
@@ -108,8 +110,7 @@ TEST(SceneModel, a_model_that_was_not_loaded_is_refused) {
   exposure.objects[0].model = "mango";
   camera::PhotonImage image;
   EXPECT_THROW(renderer().render(exposure, image), std::invalid_argument);
-  EXPECT_THROW((void)camera::cad_objects(vbar::test::camera_data(), std::vector<std::string>{"no_such_model"}),
-               std::runtime_error);
+  EXPECT_THROW((void)camera::cad_objects(source_of("no_such_model")), std::runtime_error);
 }
 
 // A picture to look at where VBAR_KEEP_IMAGES is set: build/<preset>/camera_tango_<pid>.png.

@@ -2,12 +2,14 @@
 
 #include "host_sim/twins/camera/model/cad_model.h"
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -96,6 +98,50 @@ TEST_F(CadFiles, WhoseMaterialFileIsMissing) {
 TEST_F(CadFiles, WhoseMaterialIsNotDefined) {
   EXPECT_THAT(complaint("mtllib white.mtl\n" + kCorners + "usemtl whyte\n" + kFaces),
               AllOf(HasSubstr("body.obj"), HasSubstr("line 6"), HasSubstr("\"whyte\"")));
+}
+
+// The same tetrahedron as an OBJ file in metres and as an STL file in millimetres, displaced, with z for y: what CAD
+// programs write.
+TEST_F(CadFiles, OtherUnitsAxesAndOrigin) {
+  const CadModel metres =
+      load_cad_model(write("body.obj", "mtllib white.mtl\n" + kCorners + "usemtl white\n" + kFaces));
+  const std::array<Vector3, 4> corners{Vector3::Zero(), Vector3::UnitX(), Vector3::UnitY(), Vector3::UnitZ()};
+  const std::array<std::array<std::size_t, 3>, 4> faces{{{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}}};
+  std::string stl = "solid body\n";
+  for (const auto& face : faces) {
+    stl += "facet normal 0 0 0\nouter loop\n";
+    for (const std::size_t k : face) {
+      const Vector3& p = corners[k];  // body x, y, z along the file's x, -z, y; the body's origin at (100, 200, 300) mm
+      stl += fmt::format("vertex {} {} {}\n", 1e3 * p.x() + 100.0, 1e3 * p.z() + 200.0, -1e3 * p.y() + 300.0);
+    }
+    stl += "endloop\nendfacet\n";
+  }
+  CadSource source{.file = write("body.stl", stl + "endsolid body\n"), .unit_m = 1e-3, .origin_m = {0.1, 0.2, 0.3}};
+  source.R_body_file << 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0;
+  source.surface = PlainSurface{.diffuse = 0.3, .specular = 0.2, .exponent = 50.0};
+  const CadModel millimetres = load_cad_model(source);
+  ASSERT_EQ(millimetres.triangles.size(), metres.triangles.size());
+  for (std::size_t f = 0; f < metres.triangles.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_LT((millimetres.triangles[f].corners[k] - metres.triangles[f].corners[k]).norm(), 1e-6) << f << " " << k;
+      EXPECT_LT((millimetres.triangles[f].normals[k] - metres.triangles[f].normals[k]).norm(), 1e-5) << f << " " << k;
+    }
+  ASSERT_EQ(millimetres.materials.size(), 1U);
+  EXPECT_EQ(millimetres.materials[0].grey_diffuse(), 0.3);
+  EXPECT_EQ(millimetres.materials[0].exponent, 50.0);
+}
+
+TEST_F(CadFiles, AnStlFileNeedsASurface) {
+  const auto file =
+      write("body.stl",
+            "solid body\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+            "endfacet\nendsolid body\n");
+  try {
+    static_cast<void>(load_cad_model(file));
+    FAIL() << "accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("body.stl"), HasSubstr("no diffuse colour"), HasSubstr("[cad]")));
+  }
 }
 
 TEST_F(CadFiles, WithoutMaterials) {

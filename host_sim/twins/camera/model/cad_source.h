@@ -1,0 +1,26 @@
+#pragma once
+// Where the shape of a spacecraft comes from, and how the coordinates of its CAD file become those of the body frame.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+#include "fsw/core/types.h"
+
+namespace vbar::twins::camera {
+
+/// Reflectivities of faces that no material of the file describes, as in an STL file.
+struct PlainSurface {
+  double diffuse = 0.0, specular = 0.0, exponent = 0.0;
+};
+
+/// A point p of the file lies at R_body_file (unit_m p - origin_m) in the body frame.
+struct CadSource {
+  std::filesystem::path file;
+  double unit_m = 1.0;                           ///< the unit of the file's coordinates
+  fsw::Vector3 origin_m = fsw::Vector3::Zero();  ///< of the body frame, along the axes of the file
+  fsw::Matrix3 R_body_file = fsw::Matrix3::Identity();
+  std::optional<PlainSurface> surface{};
+};
+
+}  // namespace vbar::twins::camera
