@@ -15,9 +15,9 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CHAPTERS = {
     "First hour": ["README.md", "docs/results.md"],
-    "Your mission": ["docs/keys.md", "docs/data_formats.md", "docs/run_folder.md", "docs/evidence.md", "docs/check.md", "docs/faults.md"],
+    "Your mission": ["docs/keys.md", "docs/data_formats.md", "docs/run_folder.md", "docs/tables.md", "docs/evidence.md", "docs/check.md", "docs/faults.md"],
     "Campaigns": ["docs/campaigns.md", "docs/campaign_page.md"],
-    "Your flight code": ["docs/own_flight_code.md", "docs/external_sources.md", "docs/wire_formats.md", "docs/board_bringup.md"],
+    "Your flight code": ["docs/own_flight_code.md", "docs/external_sources.md", "docs/own_target.md", "docs/wire_formats.md", "docs/board_bringup.md"],
     "Testbeds": ["docs/grand.md", "docs/generator_protocols.md", "docs/optical_stimulator.md", "docs/tron.md"],
     "How far to trust it": ["docs/verification.md", "docs/accuracy.md"],
     "Source": ["docs/tour.md", "docs/recipes.md", "docs/keypoint_network.md", "CONTRIBUTING.md", "CHANGELOG.md"],

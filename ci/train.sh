@@ -33,6 +33,10 @@ render=(build/host/vbar_training_crops --target "$target" --out "$crops")
 wait $!
 "${render[@]}" --kind calibration --seed 2 --count 2000 --shard-size 500
 
+# Tensors of a step are taken from memory that the process keeps. Returned to the kernel after every step, their pages cost two thirds of the
+# time: 109 images a second in place of 330 on two cores.
+export OMP_WAIT_POLICY=PASSIVE
+export GLIBC_TUNABLES=glibc.malloc.mmap_threshold=2000000000:glibc.malloc.trim_threshold=4000000000:glibc.malloc.top_pad=200000000
 "$python" host_sim/training/train_keypoints.py --crops "$crops" --out "$work/keypoints.bin" --minutes "$minutes"
 "$python" host_sim/training/calibrate.py --crops "$crops" --body "data/bodies/$target.toml" --weights "$work/keypoints.bin" \
   --checkpoint "$work/keypoints.checkpoint" --command "ci/train.sh $target $minutes $count" --out "data/networks/${target}_keypoints.bin"

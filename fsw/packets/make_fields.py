@@ -5,6 +5,7 @@ The notation of comments that name units, elements of arrays and codes is explai
 already ends in its unit (`range_m`) keeps its place for the names of elements: `range_m[2]` with elements x and y has the
 columns range_x_m and range_y_m.
 """
+import json
 import re
 import sys
 from pathlib import Path
@@ -72,7 +73,8 @@ def field_of(struct, name, comment, structs, tables):
         tables[table] = f"inline constexpr const char* {table}[] = {{" + ", ".join(f'"{e}"' for e in elements) + "};\n"
         names = f"codes::{table}"
     codes = codes_of(struct, comment, structs, tables)
-    return f'Field{{"{name}", "{stem}", "{unit}", {names}, {codes}}}'
+    meaning = CODES.sub("", UNIT.sub("", CODES.sub("", comment).rstrip()).rstrip()).strip()
+    return f'Field{{"{name}", "{stem}", "{unit}", {names}, {codes}, {json.dumps(meaning)}}}'
 
 
 def header(structs):
@@ -112,6 +114,7 @@ struct Field {{
   const char* unit;             ///< as names end in it ("m", "mps"), or empty
   const char* const* elements;  ///< names of an array's elements, or null
   Codes codes;
+  const char* meaning;  ///< of the comment, without what it says of unit, elements and codes
 }};
 
 /// `Message`, as one that is read or one that is written.

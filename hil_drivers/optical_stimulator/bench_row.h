@@ -29,22 +29,22 @@ struct BenchRow {
 template <report::columns::RowOf<BenchRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
   using report::ColumnName;
-  visit(ColumnName{"time_s"}, row.time_s);
-  visit(ColumnName{"image"}, row.image);
-  visit(ColumnName{"frame"}, row.frame);
-  visit(ColumnName{"tries"}, row.tries);
-  visit(ColumnName{"stale"}, row.stale);
-  visit(ColumnName{"packets_resent"}, row.packets_resent);
-  visit(ColumnName{"reconnects"}, row.reconnects);
-  visit(ColumnName{"render_s"}, row.render_s);
-  visit(ColumnName{"show_s"}, row.show_s);
-  visit(ColumnName{"receive_s"}, row.receive_s);
-  visit(ColumnName{"strip_brightness"}, row.strip_brightness);
-  visit(ColumnName{"rail_lens_mm"}, row.rail_lens_mm);
-  visit(ColumnName{"rail_display_mm"}, row.rail_display_mm);
-  visit(ColumnName{"points"}, row.points);
-  visit(ColumnName{"wanted_electrons"}, row.wanted_electrons);
-  visit(ColumnName{"clipped_electrons"}, row.clipped_electrons);
+  visit(ColumnName{"time_s", "s, since the epoch of the mission: middle of the exposure"}, row.time_s);
+  visit(ColumnName{"image", "number of the exposure"}, row.image);
+  visit(ColumnName{"frame", "number of the picture in the frame strip"}, row.frame);
+  visit(ColumnName{"tries", "images taken for it"}, row.tries);
+  visit(ColumnName{"stale", "of these, those that showed another picture"}, row.stale);
+  visit(ColumnName{"packets_resent", "by the camera"}, row.packets_resent);
+  visit(ColumnName{"reconnects", "to the camera"}, row.reconnects);
+  visit(ColumnName{"render_s", "wall-clock time from the scene to the counts of the display"}, row.render_s);
+  visit(ColumnName{"show_s", "wall-clock time until the picture is on the screen, with its settling"}, row.show_s);
+  visit(ColumnName{"receive_s", "wall-clock time from the trigger until the image is complete"}, row.receive_s);
+  visit(ColumnName{"strip_brightness", "relative to the calibration"}, row.strip_brightness);
+  visit(ColumnName{"rail_lens_mm", "position, if the rails were asked"}, row.rail_lens_mm);
+  visit(ColumnName{"rail_display_mm", "position, if the rails were asked"}, row.rail_display_mm);
+  visit(ColumnName{"points", "drawn with matched counts"}, row.points);
+  visit(ColumnName{"wanted_electrons", "sum over the image"}, row.wanted_electrons);
+  visit(ColumnName{"clipped_electrons", "of these, beyond the brightness of the display"}, row.clipped_electrons);
 }
 
 }  // namespace vbar::optical_stimulator

@@ -28,7 +28,7 @@ constexpr const char* kExitCodes =
     "no\n"
     "more can be flown here, 2 refused (nothing was flown), 75 cases are left to fly: run the folder again.";
 
-void add_run(CLI::App& campaign, int& exit_code) {
+void add_run(CLI::App& campaign, int& exit_code, const campaign::CommandLine& command_line) {
   const auto request = std::make_shared<campaign::RunRequest>();
   const auto sbatch = std::make_shared<std::string>(), submit = std::make_shared<std::string>();
   CLI::App* run = campaign.add_subcommand("run", "begin a campaign, or fly what is left of one");
@@ -54,6 +54,7 @@ void add_run(CLI::App& campaign, int& exit_code) {
     request->engine_options = *sbatch + *submit;
     request->vbar_version = build_version();
     request->stop_requested = stop_requested;
+    request->command_line = command_line;
     catch_stop_signals();
     exit_code = campaign::run_campaign(*request);
   });
@@ -133,7 +134,7 @@ void add_rerun(CLI::App& campaign, int& exit_code) {
   });
 }
 
-void add_worker(CLI::App& campaign, int& exit_code) {
+void add_worker(CLI::App& campaign, int& exit_code, const campaign::CommandLine& command_line) {
   const auto request = std::make_shared<campaign::WorkerRequest>();
   CLI::App* command =
       campaign.add_subcommand("worker", "fly share K of N of the cases, K from 0 on: a task of an engine");
@@ -145,20 +146,21 @@ void add_worker(CLI::App& campaign, int& exit_code) {
   command->callback([=, &exit_code] {
     catch_stop_signals();
     request->stop_requested = stop_requested;
+    request->command_line = command_line;
     exit_code = campaign::run_worker(*request);
   });
 }
 
 }  // namespace
 
-void add_campaign_command(CLI::App& program, int& exit_code) {
+void add_campaign_command(CLI::App& program, int& exit_code, const campaign::CommandLine& command_line) {
   CLI::App* campaign = program.add_subcommand("campaign", "fly a mission many times: seeds, sweeps, dispersed keys");
   campaign->require_subcommand(1);
-  add_run(*campaign, exit_code);
+  add_run(*campaign, exit_code, command_line);
   add_status(*campaign, exit_code);
   add_report(*campaign, exit_code);
   add_rerun(*campaign, exit_code);
-  add_worker(*campaign, exit_code);
+  add_worker(*campaign, exit_code, command_line);
 }
 
 }  // namespace vbar::app

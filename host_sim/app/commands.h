@@ -90,6 +90,7 @@ int serve_command(const ServeOptions& options);
 
 /// Keys whose path or meaning contains `word` (empty: all), or all as a page in Markdown.
 int keys_command(const std::string& word, bool markdown);
+int columns_command(const std::string& word, bool markdown);
 
 /// `folder` empty: mission::missions_directory().
 int missions_command(const std::filesystem::path& folder);

@@ -108,9 +108,18 @@ int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code
   return exit_code;
 }
 
-}  // namespace
+int execute(int argc, char** argv);
 
-int main(int argc, char** argv) {
+/// A command line without the program's name, in this process.
+int execute_line(std::vector<std::string> arguments) {
+  std::string name = "vbar";
+  std::vector<char*> argv{name.data()};
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  return execute(static_cast<int>(argv.size()) - 1, argv.data());
+}
+
+int execute(int argc, char** argv) {
   CLI::App program{"Flight-software harness for spacecraft rendezvous and formation flying"};
   program.require_subcommand(1);
   program.footer(fmt::format("{}\n\n{}", kOtherProgramsHelp, kExitCodeHelp));
@@ -185,7 +194,7 @@ int main(int argc, char** argv) {
       ->excludes(junit);
   check_app->callback([&] { exit_code = check_command(check); });
 
-  add_campaign_command(program, exit_code);
+  add_campaign_command(program, exit_code, execute_line);
 
   std::filesystem::path missions;
   CLI::App* missions_app = program.add_subcommand("missions", "what can be run, one line each");
@@ -198,6 +207,13 @@ int main(int argc, char** argv) {
   CLI::Option* word_option = keys_app->add_option("word", key_word, "part of a key, of its table or of its meaning");
   keys_app->add_flag("--markdown", key_page, "all of them, as docs/keys.md")->excludes(word_option);
   keys_app->callback([&] { exit_code = keys_command(key_word, key_page); });
+
+  std::string column_word;
+  bool column_page = false;
+  CLI::App* columns_app = program.add_subcommand("columns", "columns of the tables of a run: names and meaning");
+  CLI::Option* column_option = columns_app->add_option("word", column_word, "part of a table, a column or its meaning");
+  columns_app->add_flag("--markdown", column_page, "all of them, as docs/tables.md")->excludes(column_option);
+  columns_app->callback([&] { exit_code = columns_command(column_word, column_page); });
 
   NewArticleOptions article;
   CLI::App* article_app = program.add_subcommand("new-article", "create a project of your own flight software");
@@ -218,4 +234,10 @@ int main(int argc, char** argv) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return result;
   const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
   return complain(("standard output cannot be written" + reason).c_str(), result == kDone ? kFailed : result);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return execute(argc, argv);
 }

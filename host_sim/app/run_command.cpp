@@ -7,6 +7,7 @@
 
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
+#include "host_sim/app/limit_verdict.h"
 #include "host_sim/app/recorded_flight.h"
 #include "host_sim/app/stop_request.h"
 #include "host_sim/mission/catalogue.h"
@@ -33,6 +34,7 @@ int run_command(const RunOptions& options) {
                    sensors::extensions());
   const std::optional<std::string> trouble = fly_into(folder, order, *assembled, record);
   report_flight(folder.path(), folder.path(), order, record, trouble);
+  if (!options.quiet) print_own_limits(folder.path());
   return exit_code_of(record, trouble, folder.path());
 }
 

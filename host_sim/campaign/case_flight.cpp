@@ -19,16 +19,21 @@ namespace {
 namespace fs = std::filesystem;
 using End = CaseFlight::End;
 
-std::vector<std::string> command_of(const CaseFlight::Request& request, const fs::path& run_folder) {
-  std::vector<std::string> command{fs::absolute(request.folder.program()).string(),
-                                   "run",
-                                   (request.folder.root() / request.plan.mission_file).string(),
-                                   "--quiet",
-                                   "--out",
-                                   run_folder.string()};
+std::vector<std::string> arguments_of(const CaseFlight::Request& request, const fs::path& run_folder) {
+  std::vector<std::string> command{"run", (request.folder.root() / request.plan.mission_file).string(), "--quiet",
+                                   "--out", run_folder.string()};
   for (const std::string& override : overrides_of(request.plan, request.one, request.full_record))
     command.insert(command.end(), {"--set", override});
   return command;
+}
+
+std::unique_ptr<io::ChildProcess> start(const CaseFlight::Request& request, const fs::path& run_folder) {
+  const std::string program = fs::absolute(request.folder.program()).string();
+  std::vector<std::string> arguments = arguments_of(request, run_folder);
+  if (request.command_line != nullptr)
+    return std::make_unique<io::ChildProcess>(program, [&] { return (*request.command_line)(arguments); });
+  arguments.insert(arguments.begin(), program);
+  return std::make_unique<io::ChildProcess>(arguments, std::vector<io::FileDescriptor>());
 }
 
 fs::path make_run_folder(const CaseFlight::Request& request) {
@@ -94,7 +99,7 @@ CaseFlight::CaseFlight(const Request& request)
       attempt_(request.attempt),
       time_limit_s_(request.plan.case_time_limit_s),
       run_folder_(make_run_folder(request)),
-      child_(std::make_unique<io::ChildProcess>(command_of(request, run_folder_), std::vector<io::FileDescriptor>())),
+      child_(start(request, run_folder_)),
       started_(std::chrono::steady_clock::now()) {}
 
 /// What was not taken away is of no use.

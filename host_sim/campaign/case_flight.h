@@ -3,9 +3,11 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host_sim/campaign/folder.h"
 #include "host_sim/campaign/plan.h"
@@ -20,6 +22,9 @@ struct Computer {
 };
 [[nodiscard]] Computer this_computer();
 
+/// What the program does with the arguments that follow its name; the result is its exit code.
+using CommandLine = std::function<int(const std::vector<std::string>& arguments)>;
+
 class CaseFlight {
  public:
   struct Request {
@@ -28,6 +33,8 @@ class CaseFlight {
     const Case& one;
     std::string attempt;  ///< its name: of the run folder while it flies
     bool full_record = false;
+    /// Runs a command line of vbar, without the program, in this process; null: the copied program is started.
+    const CommandLine* command_line = nullptr;
   };
 
   /// Starts the process, in a folder that no other attempt has. Throws std::runtime_error if it cannot be started.

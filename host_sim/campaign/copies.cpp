@@ -80,4 +80,16 @@ void check_copies(const Folder& folder) {
   }
 }
 
+bool flies_as_the_copy(const Folder& folder) {
+  const auto is_inside = [](const fs::path& file, const fs::path& parent) {
+    return *file.lexically_relative(parent).begin() != "..";
+  };
+  for (const auto& entry : fs::recursive_directory_iterator(folder.copies())) {
+    const fs::path& file = entry.path();
+    if (!entry.is_regular_file() || file == folder.checksums() || file == folder.program()) continue;
+    if (!is_inside(file, folder.data()) && !is_inside(file, folder.mission_files())) return false;
+  }
+  return files::sha256_of_file("/proc/self/exe") == files::sha256_of_file(folder.program());
+}
+
 }  // namespace vbar::campaign

@@ -28,4 +28,8 @@ void make_copies(const Folder& folder, const UsedFiles& files, const std::string
 /// Throws std::runtime_error that names the first file that is missing or differs.
 void check_copies(const Folder& folder);
 
+/// Whether this process can fly a case as well as a process of the copied program: it runs the same program, and there
+/// is no flight image or library, which a program finds beside itself.
+[[nodiscard]] bool flies_as_the_copy(const Folder& folder);
+
 }  // namespace vbar::campaign

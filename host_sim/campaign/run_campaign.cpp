@@ -103,7 +103,7 @@ void fly_here(const RunRequest& request, const Folder& folder, const Standing& s
               const std::vector<Case>& cases) {
   LocalProgress progress(standing, cases.size(), request.quiet);
   WorkerOptions options{new_worker_name("local"), request.jobs > 0 ? request.jobs : processors(),
-                        request.stop_requested, std::ref(progress)};
+                        request.stop_requested, request.command_line, std::ref(progress)};
   Worker worker(folder, standing.plan, std::move(options));
   if (worker.fly(cases) == Worker::End::kStoppedAfterFailures && !request.quiet)
     fmt::print("stopped after {} failures\n", standing.plan.stop_after_failures);
@@ -241,7 +241,7 @@ int run_worker(const WorkerRequest& request) {
   Worker worker(
       folder, standing.plan,
       {new_worker_name(job == nullptr ? fmt::format("worker{}", request.k) : fmt::format("slurm{}_{}", job, request.k)),
-       request.jobs, request.stop_requested});
+       request.jobs, request.stop_requested, request.command_line});
   return worker.fly(cases) == Worker::End::kDone ? app::kDone : app::kInterrupted;
 }
 

@@ -5,6 +5,8 @@
 #include <functional>
 #include <string>
 
+#include "host_sim/campaign/case_flight.h"
+
 namespace vbar::campaign {
 
 struct RunRequest {
@@ -20,6 +22,7 @@ struct RunRequest {
   bool wait = true;  ///< for the workers of an engine that is not local
   bool quiet = false;
   std::function<bool()> stop_requested;
+  CommandLine command_line = {};  ///< of WorkerOptions
 };
 
 /// The exit code: kDone if every case has its result and the requirement is met, kFailed if it is not met, cases were
@@ -34,6 +37,7 @@ struct WorkerRequest {
   std::filesystem::path todo;
   int jobs = 1;
   std::function<bool()> stop_requested;
+  CommandLine command_line = {};
 };
 [[nodiscard]] int run_worker(const WorkerRequest& request);
 

@@ -38,6 +38,7 @@ Worker::Worker(const Folder& folder, const Plan& plan, WorkerOptions options)
       attempts_(file_of(folder.attempt_files(), options_.name)),
       results_(file_of(folder.result_files(), options_.name)) {
   check_copies(folder);
+  flies_in_copies_ = options_.command_line && flies_as_the_copy(folder);
   ::setenv("VBAR_DATA", fs::absolute(folder.data()).c_str(), 1);  // of the flights
   for (const auto& [number, attempts] : read_attempts(folder.attempt_files()).of_case) kills_[number] = attempts.killed;
 }
@@ -80,7 +81,8 @@ Worker::End Worker::fly(const std::vector<Case>& cases) {
 void Worker::begin(const Case& one) {
   const std::string attempt = fmt::format("{}.{}.{}", name_of_case(one.number), options_.name, begun_++);
   const bool full_record = plan_.keep.kind != Keep::Kind::kSummary;
-  flights_.push_back(std::make_unique<CaseFlight>(CaseFlight::Request{folder_, plan_, one, attempt, full_record}));
+  flights_.push_back(std::make_unique<CaseFlight>(CaseFlight::Request{
+      folder_, plan_, one, attempt, full_record, flies_in_copies_ ? &options_.command_line : nullptr}));
   attempts_.append(begin_line(one.number, attempt, this_computer().host, flights_.back()->process()),
                    RecordFile::Sync::kNo);
 }

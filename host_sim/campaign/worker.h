@@ -18,6 +18,7 @@ struct WorkerOptions {
   std::string name;  ///< of its files, which no other worker ever has
   int jobs = 1;      ///< flights at once
   std::function<bool()> stop_requested;
+  CommandLine command_line = {};  ///< of this program, for flights in copies of this process where that is the same
   /// After each result and at least once a second: results of this worker so far, and flights under way.
   std::function<void(const std::vector<Result>& results, std::size_t flying)> progress = {};
 };
@@ -44,6 +45,7 @@ class Worker {
   const Folder& folder_;
   const Plan& plan_;
   WorkerOptions options_;
+  bool flies_in_copies_ = false;  ///< of this process
   RecordFile attempts_, results_;
   std::map<std::size_t, std::size_t> kills_;  ///< of each case, by earlier workers too
   std::deque<Case> waiting_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 #include <system_error>
@@ -28,7 +29,7 @@ constexpr std::chrono::milliseconds kExitPollPeriod{2};
 }
 
 /// Data of the child between fork and exec, prepared before the fork: only async-signal-safe calls are allowed
-/// there.
+/// there, unless this process has a single thread.
 struct ExecPlan {
   std::vector<char*> arguments;
   std::vector<int> descriptors;  ///< to become 0, 1, 2, 3, ...
@@ -57,13 +58,29 @@ bool arrange_descriptors(ExecPlan& plan) {
   return true;
 }
 
-[[noreturn]] void become(ExecPlan& plan) {
+/// What the copy of this process does that runs a function; standard output and error are its own by now.
+[[noreturn]] void run(const std::function<int()>& body) {
+  int status = 127;
+  try {
+    status = body();
+  } catch (const std::exception& error) {
+    (void)std::fprintf(stderr, "%s\n", error.what());
+  }
+  (void)std::fflush(nullptr);
+  ::_exit(status);
+}
+
+[[noreturn]] void become(ExecPlan& plan, const std::function<int()>& body) {
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   const bool ready = ::setpgid(0, 0) == 0 && ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && arrange_descriptors(plan);
   // The parent may have died before the death signal was asked for.
   if (::getppid() != plan.parent) ::_exit(127);
+  if (ready && body) {
+    (void)::close(plan.report_errno_to);
+    run(body);
+  }
   if (ready) ::execvp(plan.arguments[0], plan.arguments.data());
   const int error = errno;
   (void)!::write(plan.report_errno_to, &error, sizeof error);
@@ -75,6 +92,16 @@ bool arrange_descriptors(ExecPlan& plan) {
 ChildProcess::ChildProcess(const std::vector<std::string>& arguments, std::vector<FileDescriptor> inherited) {
   if (arguments.empty()) throw std::invalid_argument("a child process needs a program");
   program_ = arguments[0];
+  start(arguments, inherited, nullptr);
+}
+
+ChildProcess::ChildProcess(std::string name, const std::function<int()>& body) : program_(std::move(name)) {
+  (void)std::fflush(nullptr);  // what is in the buffers would be written by both processes
+  start({}, {}, body);
+}
+
+void ChildProcess::start(const std::vector<std::string>& arguments, const std::vector<FileDescriptor>& inherited,
+                         const std::function<int()>& body) {
   // A memory file rather than a pipe: the child can never block on it and no reader is required.
   output_ = FileDescriptor(::memfd_create("vbar child output", MFD_CLOEXEC));
   FileDescriptor null(::open("/dev/null", O_RDONLY | O_CLOEXEC));
@@ -96,11 +123,10 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments, std::vecto
 
   pid_ = ::fork();
   if (pid_ < 0) throw_errno("starting " + program_, errno);
-  if (pid_ == 0) become(plan);
+  if (pid_ == 0) become(plan, body);
 
   // Also here, so that the group exists in either order of execution.
   (void)::setpgid(pid_, pid_);
-  inherited.clear();
   error_writer.reset();
   int error = 0;
   ssize_t got = 0;

@@ -74,6 +74,12 @@ std::vector<TableKind> tables_with(Extensions extensions) {
   return tables;
 }
 
+Names names_of(const TableKind& table) {
+  Names names;
+  for (TableColumn& column : table.columns()) names.push_back(std::move(column.name));
+  return names;
+}
+
 /// The new name of an old column; nothing if the column is not the one that `old` means.
 std::optional<std::string> new_name(const OldColumn& old, std::string_view name) {
   const std::size_t star = old.old_name.find('*');
@@ -92,7 +98,7 @@ std::optional<std::string> new_name(const OldColumn& old, std::string_view name)
 }
 
 std::string head_line(const TableKind& table) {
-  return fmt::format("{}\n", fmt::join(table.columns(), ","));
+  return fmt::format("{}\n", fmt::join(names_of(table), ","));
 }
 
 void append_rows(std::string& text, const TableKind& table, const RunRecord& record, std::size_t from) {
@@ -109,7 +115,7 @@ std::string text_of(const TableKind& table, const RunRecord& record) {
 }
 
 std::vector<CellSource> sources_of(const fs::path& file, const TableKind& table, const Names& found, Names& notes) {
-  const Names wanted = table.columns();
+  const Names wanted = names_of(table);
   std::vector<CellSource> sources(wanted.size());
   Names unknown;
   for (std::size_t cell = 0; cell < found.size(); ++cell) {
@@ -154,6 +160,12 @@ void read_rows(const fs::path& file, const TableKind& table, bool cut_short, Run
 }
 
 }  // namespace
+
+std::vector<DescribedTable> described_tables(Extensions extensions) {
+  std::vector<DescribedTable> described;
+  for (const TableKind& table : tables_with(extensions)) described.push_back({table.file, table.columns()});
+  return described;
+}
 
 Names table_files(Extensions extensions) {
   Names names;

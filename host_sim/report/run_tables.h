@@ -15,8 +15,21 @@ namespace vbar::report {
 
 struct TableKind;
 
+/// A column of a table, and what it means.
+struct TableColumn {
+  std::string name, meaning;
+  std::string stem;  ///< the same of all elements of an array
+};
+
 /// The names of all files that tables are written to.
 [[nodiscard]] std::vector<std::string> table_files(Extensions extensions = {});
+
+/// A table and its columns, in the order of the file.
+struct DescribedTable {
+  std::string file;
+  std::vector<TableColumn> columns;
+};
+[[nodiscard]] std::vector<DescribedTable> described_tables(Extensions extensions = {});
 
 /// A table's text: head and rows of the file `name` of table_files().
 [[nodiscard]] std::string table_text(const RunRecord& record, const std::string& name);

@@ -14,6 +14,7 @@
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/run_columns.h"
 #include "host_sim/report/run_record.h"
+#include "host_sim/report/run_tables.h"
 
 namespace vbar::report {
 
@@ -71,7 +72,7 @@ struct TableKind {
   Rows rows;
   Presence presence;
   std::span<const OldColumn> old_columns;
-  std::vector<std::string> (*columns)();
+  std::vector<TableColumn> (*columns)();
   std::size_t (*count)(const RunRecord& record);
   void (*append)(const RunRecord& record, std::size_t row, std::string& line);
   void (*read)(RunRecord& record, CellReader& cells);  ///< appends one row
@@ -84,11 +85,13 @@ TableKind table_kind(std::string file, Rows rows = Rows::kGrow, Presence presenc
   using Row = typename std::remove_cvref_t<std::invoke_result_t<decltype(kRowsOf), RunRecord&>>::value_type;
   TableKind table{std::move(file), rows, presence, old_columns, nullptr, nullptr, nullptr, nullptr};
   table.columns = [] {
-    std::vector<std::string> names;
+    std::vector<TableColumn> columns;
     const Row row;
-    const auto collect = [&](const ColumnName& name, const auto&) { names.push_back(name.text()); };
+    const auto collect = [&](const ColumnName& name, const auto&) {
+      columns.push_back({name.text(), std::string(name.meaning), std::string(name.stem)});
+    };
     visit_columns(row, collect);
-    return names;
+    return columns;
   };
   table.count = [](const RunRecord& record) { return std::invoke(kRowsOf, record).size(); };
   table.append = [](const RunRecord& record, std::size_t row, std::string& line) {

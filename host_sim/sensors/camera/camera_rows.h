@@ -65,65 +65,73 @@ struct KeypointRow {
 
 template <report::columns::RowOf<ImageRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
-  visit(report::ColumnName{"time_s"}, row.time_s);
-  visit(report::ColumnName{"step_time_s"}, row.step_time_s);
+  visit(report::ColumnName{"time_s", "s, since the epoch of the mission: middle of the exposure"}, row.time_s);
+  visit(report::ColumnName{"step_time_s", "s, since the epoch of the mission: of the step whose telemetry reported it"},
+        row.step_time_s);
   report::columns::fields(visit, report::columns::message_of<telemetry_image>(row));
-  visit(report::ColumnName{"true_object"}, row.true_object);
-  visit(report::ColumnName{"chosen"}, row.chosen);
-  visit(report::ColumnName{"range_m"}, row.range_m);
-  visit(report::ColumnName{"sunlit"}, row.sunlit);
-  visit(report::ColumnName{"bearing_error_x_arcsec"}, row.bearing_error_x_arcsec);
-  visit(report::ColumnName{"bearing_error_y_arcsec"}, row.bearing_error_y_arcsec);
-  visit(report::ColumnName{"attitude_error_across_arcsec"}, row.attitude_error_across_arcsec);
-  visit(report::ColumnName{"attitude_error_roll_arcsec"}, row.attitude_error_roll_arcsec);
-  visit(report::ColumnName{"nees"}, row.nees);
+  visit(report::ColumnName{"true_object", "index of the object that is the target; -1: none is, or it cannot be told"},
+        row.true_object);
+  visit(report::ColumnName{"chosen",
+                           "the spacecraft that the chosen object really is; nothing: none; empty without a choice"},
+        row.chosen);
+  visit(report::ColumnName{"range_m", "true, between centres of mass"}, row.range_m);
+  visit(report::ColumnName{"sunlit", "true share of the Sun's disc that the target sees"}, row.sunlit);
+  visit(report::ColumnName{"bearing_error_x_arcsec", "against the true centre of mass"}, row.bearing_error_x_arcsec);
+  visit(report::ColumnName{"bearing_error_y_arcsec", "against the true centre of mass"}, row.bearing_error_y_arcsec);
+  visit(report::ColumnName{"attitude_error_across_arcsec", "of the boresight"}, row.attitude_error_across_arcsec);
+  visit(report::ColumnName{"attitude_error_roll_arcsec", "about the boresight"}, row.attitude_error_roll_arcsec);
+  visit(report::ColumnName{"nees", "of the osculating ROE, six degrees of freedom; of images that the filter used"},
+        row.nees);
 }
 
 template <report::columns::RowOf<ObjectRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
-  visit(report::ColumnName{"time_s"}, row.time_s);
-  visit(report::ColumnName{"image"}, row.image);
-  visit(report::ColumnName{"object"}, row.object);
-  report::columns::coded(visit, "kind", report::columns::words(codes::telemetry_objects_kKind), row.kind);
-  visit(report::ColumnName{"star"}, row.star);
-  visit(report::ColumnName{"x_px"}, row.x_px);
-  visit(report::ColumnName{"y_px"}, row.y_px);
+  visit(report::ColumnName{"time_s", "s, since the epoch of the mission: middle of the exposure"}, row.time_s);
+  visit(report::ColumnName{"image", "number of the exposure"}, row.image);
+  visit(report::ColumnName{"object", "brightest first"}, row.object);
+  report::columns::coded(visit, "kind", "what the flight software took it for",
+                         report::columns::words(codes::telemetry_objects_kKind), row.kind);
+  visit(report::ColumnName{"star", "Hipparcos number, 0 none"}, row.star);
+  visit(report::ColumnName{"x_px", "on the detector"}, row.x_px);
+  visit(report::ColumnName{"y_px", "on the detector"}, row.y_px);
 }
 
 template <report::columns::RowOf<PoseRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
-  visit(report::ColumnName{"time_s"}, row.time_s);
-  visit(report::ColumnName{"step_time_s"}, row.step_time_s);
+  visit(report::ColumnName{"time_s", "s, since the epoch of the mission: middle of the exposure"}, row.time_s);
+  visit(report::ColumnName{"step_time_s", "s, since the epoch of the mission: of the step whose telemetry reported it"},
+        row.step_time_s);
   report::columns::fields(visit, report::columns::message_of<telemetry_pose>(row), false);
-  visit(report::ColumnName{"range_m"}, row.range_m);
-  visit(report::ColumnName{"sunlit"}, row.sunlit);
-  visit(report::ColumnName{"pnp_error_x_m"}, row.pnp_error_x_m);
-  visit(report::ColumnName{"pnp_error_y_m"}, row.pnp_error_y_m);
-  visit(report::ColumnName{"pnp_error_z_m"}, row.pnp_error_z_m);
-  visit(report::ColumnName{"pnp_error_deg"}, row.pnp_error_deg);
-  visit(report::ColumnName{"attitude_error_deg"}, row.attitude_error_deg);
-  visit(report::ColumnName{"attitude_error_x_deg"}, row.attitude_error_x_deg);
-  visit(report::ColumnName{"attitude_error_y_deg"}, row.attitude_error_y_deg);
-  visit(report::ColumnName{"attitude_error_z_deg"}, row.attitude_error_z_deg);
-  visit(report::ColumnName{"rate_error_radps"}, row.rate_error_radps);
-  visit(report::ColumnName{"nees"}, row.nees);
-  visit(report::ColumnName{"attitude_nees"}, row.attitude_nees);
+  visit(report::ColumnName{"range_m", "true, between centres of mass"}, row.range_m);
+  visit(report::ColumnName{"sunlit", "true share of the Sun's disc that the target sees"}, row.sunlit);
+  visit(report::ColumnName{"pnp_error_x_m", "of the single-image pose, camera axes"}, row.pnp_error_x_m);
+  visit(report::ColumnName{"pnp_error_y_m", "of the single-image pose, camera axes"}, row.pnp_error_y_m);
+  visit(report::ColumnName{"pnp_error_z_m", "of the single-image pose, camera axes"}, row.pnp_error_z_m);
+  visit(report::ColumnName{"pnp_error_deg", "angle of its attitude error"}, row.pnp_error_deg);
+  visit(report::ColumnName{"attitude_error_deg", "angle of the attitude error of navigation"}, row.attitude_error_deg);
+  visit(report::ColumnName{"attitude_error_x_deg", "about the body axis"}, row.attitude_error_x_deg);
+  visit(report::ColumnName{"attitude_error_y_deg", "about the body axis"}, row.attitude_error_y_deg);
+  visit(report::ColumnName{"attitude_error_z_deg", "about the body axis"}, row.attitude_error_z_deg);
+  visit(report::ColumnName{"rate_error_radps", "magnitude"}, row.rate_error_radps);
+  visit(report::ColumnName{"nees", "of the osculating ROE, six degrees of freedom"}, row.nees);
+  visit(report::ColumnName{"attitude_nees", "of attitude and rate, six degrees of freedom"}, row.attitude_nees);
 }
 
 template <report::columns::RowOf<KeypointRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
-  visit(report::ColumnName{"time_s"}, row.time_s);
-  visit(report::ColumnName{"image"}, row.image);
-  visit(report::ColumnName{"keypoint"}, row.keypoint);
-  report::columns::coded(visit, "fate", report::columns::words(codes::telemetry_pose_kKeypoint), row.fate);
-  visit(report::ColumnName{"peak"}, row.peak);
-  visit(report::ColumnName{"x_px"}, row.x_px);
-  visit(report::ColumnName{"y_px"}, row.y_px);
-  visit(report::ColumnName{"covariance_xx_px2"}, row.covariance_xx_px2);
-  visit(report::ColumnName{"covariance_xy_px2"}, row.covariance_xy_px2);
-  visit(report::ColumnName{"covariance_yy_px2"}, row.covariance_yy_px2);
-  visit(report::ColumnName{"error_x_px"}, row.error_x_px);
-  visit(report::ColumnName{"error_y_px"}, row.error_y_px);
+  visit(report::ColumnName{"time_s", "s, since the epoch of the mission: middle of the exposure"}, row.time_s);
+  visit(report::ColumnName{"image", "number of the exposure"}, row.image);
+  visit(report::ColumnName{"keypoint", "index in the body file"}, row.keypoint);
+  report::columns::coded(visit, "fate", "edit status", report::columns::words(codes::telemetry_pose_kKeypoint),
+                         row.fate);
+  visit(report::ColumnName{"peak", "fraction of the heatmap in its highest cells"}, row.peak);
+  visit(report::ColumnName{"x_px", "on the detector"}, row.x_px);
+  visit(report::ColumnName{"y_px", "on the detector"}, row.y_px);
+  visit(report::ColumnName{"covariance_xx_px2", "of the place"}, row.covariance_xx_px2);
+  visit(report::ColumnName{"covariance_xy_px2", "of the place"}, row.covariance_xy_px2);
+  visit(report::ColumnName{"covariance_yy_px2", "of the place"}, row.covariance_yy_px2);
+  visit(report::ColumnName{"error_x_px", "measured minus true"}, row.error_x_px);
+  visit(report::ColumnName{"error_y_px", "measured minus true"}, row.error_y_px);
 }
 
 }  // namespace vbar::sensors

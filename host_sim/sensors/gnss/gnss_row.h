@@ -17,8 +17,8 @@ struct GnssRow : telemetry_gnss {
 
 template <report::columns::RowOf<GnssRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
-  visit(report::ColumnName{"time_s"}, row.time_s);
-  visit(report::ColumnName{"epoch_s"}, row.epoch_s);
+  visit(report::ColumnName{"time_s", "s, since the epoch of the mission"}, row.time_s);
+  visit(report::ColumnName{"epoch_s", "s, since the epoch of the mission: of the last measurements used"}, row.epoch_s);
   report::columns::fields(visit, report::columns::message_of<telemetry_gnss>(row));
 }
 

@@ -28,17 +28,19 @@ struct SignalNoiseRow {
 template <report::columns::RowOf<SignalNoiseRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
   using report::ColumnName;
-  visit(ColumnName{"signal"}, row.signal);
-  visit(ColumnName{"measurements"}, row.measurements);
-  visit(ColumnName{"excluded"}, row.excluded);
-  visit(ColumnName{"phase_sigma_mm"}, row.phase_sigma_mm);
-  visit(ColumnName{"phase_sigma_stated_mm"}, row.phase_sigma_stated_mm);
-  visit(ColumnName{"phase_correlation_10s"}, row.phase_correlation_10s);
-  visit(ColumnName{"code_sigma_m"}, row.code_sigma_m);
-  visit(ColumnName{"code_sigma_stated_m"}, row.code_sigma_stated_m);
-  visit(ColumnName{"code_correlation_10s"}, row.code_correlation_10s);
-  visit(ColumnName{"phase_wander_sigma_mm"}, row.phase_wander_sigma_mm);
-  visit(ColumnName{"phase_wander_time_s"}, row.phase_wander_time_s);
+  visit(ColumnName{"signal", "GNSS and carrier"}, row.signal);
+  visit(ColumnName{"measurements", "differences between the receivers"}, row.measurements);
+  visit(ColumnName{"excluded", "differences a quarter of a wavelength or more from an integer"}, row.excluded);
+  visit(ColumnName{"phase_sigma_mm", "of carrier double differences"}, row.phase_sigma_mm);
+  visit(ColumnName{"phase_sigma_stated_mm", "the same by the receivers' own estimates"}, row.phase_sigma_stated_mm);
+  visit(ColumnName{"phase_correlation_10s", "of double differences 10 s apart"}, row.phase_correlation_10s);
+  visit(ColumnName{"code_sigma_m", "of code double differences"}, row.code_sigma_m);
+  visit(ColumnName{"code_sigma_stated_m", "the same by the receivers' own estimates"}, row.code_sigma_stated_m);
+  visit(ColumnName{"code_correlation_10s", "of double differences 10 s apart"}, row.code_correlation_10s);
+  visit(ColumnName{"phase_wander_sigma_mm",
+                   "correlated part of the phase of one channel, first-order Gauss-Markov; empty: not significant"},
+        row.phase_wander_sigma_mm);
+  visit(ColumnName{"phase_wander_time_s", "time constant of that process"}, row.phase_wander_time_s);
 }
 
 }  // namespace vbar::sensors

@@ -22,14 +22,14 @@ struct RangeRow {
 template <report::columns::RowOf<RangeRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
   using report::ColumnName;
-  visit(ColumnName{"time_s"}, row.time_s);
-  visit(ColumnName{"sensor"}, row.sensor);
-  visit(ColumnName{"measured_m"}, row.measured_m);
-  visit(ColumnName{"true_m"}, row.true_m);
-  visit(ColumnName{"error_m"}, row.error_m);
-  visit(ColumnName{"off_boresight_deg"}, row.off_boresight_deg);
-  visit(ColumnName{"in_field_of_view"}, row.in_field_of_view);
-  visit(ColumnName{"sigma_m"}, row.sigma_m);
+  visit(ColumnName{"time_s", "s, since the epoch of the mission"}, row.time_s);
+  visit(ColumnName{"sensor", "its name"}, row.sensor);
+  visit(ColumnName{"measured_m", "as the flight software received it; empty: it received none"}, row.measured_m);
+  visit(ColumnName{"true_m", "between centres of mass; empty: a recorded measurement"}, row.true_m);
+  visit(ColumnName{"error_m", "measured minus true"}, row.error_m);
+  visit(ColumnName{"off_boresight_deg", "angle of the target from the boresight"}, row.off_boresight_deg);
+  visit(ColumnName{"in_field_of_view", "1: the target was in the field of view"}, row.in_field_of_view);
+  visit(ColumnName{"sigma_m", "1 sigma of an error, bias and noise together"}, row.sigma_m);
 }
 
 }  // namespace vbar::sensors

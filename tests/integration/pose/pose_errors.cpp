@@ -14,8 +14,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "host_sim/mission/data_directory.h"
+#include "host_sim/training/target_shape.h"
 #include "tests/integration/pose/front_end_errors.h"
-#include "tests/support/tango_view.h"
 
 namespace {
 
@@ -23,6 +24,7 @@ using namespace vbar;
 
 struct Order {
   std::vector<std::filesystem::path> shards;
+  std::string target = "tango";
   std::string weights;
   std::size_t most = 1'000'000;
   std::string list;
@@ -47,9 +49,11 @@ void write_list(const std::vector<test::PoseError>& poses, const std::string& fi
 }
 
 void judge(const Order& order) {
-  const std::vector<char> own = order.weights.empty() ? std::vector<char>() : file_bytes(order.weights);
-  const auto weights = own.empty() ? fsw::network::weights_on_board() : std::as_bytes(std::span(own));
-  test::FrontEndErrors errors(weights, test::tango_shape(), order.pnp);
+  const std::filesystem::path data = mission::data_directory();
+  const std::string file = (data / "networks" / (order.target + "_keypoints.bin")).string();
+  const std::vector<char> weights = file_bytes(order.weights.empty() ? file : order.weights);
+  const auto shape = training::TargetShape::load(data, order.target).keypoints;
+  test::FrontEndErrors errors(std::as_bytes(std::span(weights)), shape, order.pnp);
   for (const auto& shard : order.shards) {
     for (const test::LabelledView& view : test::read_shard(shard)) {
       if (errors.poses().size() < order.most) errors.add(view);
@@ -66,7 +70,8 @@ int main(int argc, char** argv) {
   Order order;
   CLI::App app("Errors of the pose network's front end on labelled crops");
   app.add_option("shards", order.shards, "files of vbar_training_crops")->required()->check(CLI::ExistingFile);
-  app.add_option("--weights", order.weights, "file of weights; else those on board");
+  app.add_option("--target", order.target, "a body file of data/bodies")->capture_default_str();
+  app.add_option("--weights", order.weights, "file of weights; else that of the target in data/networks");
   app.add_option("--most", order.most, "crops");
   app.add_option("--least-inliers", order.pnp.min_inliers, "of a pose")->capture_default_str();
   app.add_option("--most-mean-square", order.pnp.max_mean_square, "of a pose's whitened residuals")

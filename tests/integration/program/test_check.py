@@ -35,6 +35,17 @@ class Check(unittest.TestCase):
         self.assertIn("navigation_error_mean_m", result.stdout)
         self.assertNotIn("MISSED", result.stdout)
 
+    def test_a_run_prints_how_it_stands_to_its_limits(self):
+        def printed(*settings):
+            result = vbar("run", "ideal_navigation", "--force", "--out", self.folder / "printed",
+                          *(argument for setting in (SHORT, *settings) for argument in ("--set", setting)))
+            self.assertEqual(result.returncode, MET, result.stderr)
+            return result.stdout
+        found = printed(limits('{key="navigation_error_mean_m", most=1000.0}', '{key="dv_mps", least=1e6}'))
+        self.assertRegex(found, r"(?m)^  met +navigation_error_mean_m ")
+        self.assertRegex(found, r"(?m)^  MISSED dv_mps +.*not at least 1e\+06")
+        self.assertNotIn("limits", printed())
+
     def test_a_missed_limit_and_a_missing_number_fail(self):
         error = summary_of(self.run_folder)["navigation_error_m"]["mean"]
         file = self.limits_file(f'[[limit]]\nkey = "navigation_error_mean_m"\nmost = {0.5 * error:e}\n'

@@ -1,5 +1,6 @@
 #include "host_sim/io/child_process.h"
 
+#include <cstdio>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "host_sim/io/byte_channels.h"
 
@@ -20,6 +22,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr seconds kLong{10};  // far more than a process needs to start or end, even on a loaded machine
@@ -53,6 +56,50 @@ TEST(ChildProcess, TellsTheSignalThatKilledIt) {
   ChildProcess child({"sh", "-c", "kill -9 $$"}, {});
   ASSERT_TRUE(child.wait_for_end(kLong));
   EXPECT_EQ(child.status_text(), "killed by signal 9 (Killed)");
+}
+
+TEST(ChildProcess, RunsAFunctionInACopyOfThisProcess) {
+  int seen = 0;
+  ChildProcess child("a function", [&seen] {
+    seen = 1;
+    std::printf("to output\n");
+    std::fprintf(stderr, "to error\n");
+    return 3;
+  });
+  ASSERT_TRUE(child.wait_for_end(kLong));
+  EXPECT_EQ(child.status_text(), "exit status 3");
+  EXPECT_THAT(child.output_tail(), AllOf(HasSubstr("to output\n"), HasSubstr("to error\n")));
+  EXPECT_EQ(child.program(), "a function");
+  EXPECT_EQ(seen, 0) << "what the copy writes stays in the copy";
+}
+
+TEST(ChildProcess, OfAFunctionAnswersAnExceptionWithItsText) {
+  ChildProcess child("a function", []() -> int { throw std::runtime_error("no way"); });
+  ASSERT_TRUE(child.wait_for_end(kLong));
+  EXPECT_EQ(child.status_text(), "exit status 127");
+  EXPECT_EQ(child.output_tail(), "no way\n");
+}
+
+TEST(ChildProcess, OfAFunctionHasNoOtherDescriptorAndDoesNotRepeatWhatIsInBuffers) {
+  const FileDescriptor other(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  std::printf("in the buffer of the parent");
+  ChildProcess child("a function", [&other] { return ::fcntl(other.get(), F_GETFD) < 0 ? 0 : 1; });
+  ASSERT_TRUE(child.wait_for_end(kLong));
+  EXPECT_EQ(child.exit_status(), 0) << "the descriptor is open";
+  EXPECT_EQ(child.output_tail(), "");
+}
+
+TEST(ChildProcess, OfAFunctionThatDoesNotEndIsKilled) {
+  pid_t pid = -1;
+  {
+    ChildProcess child("a function", [] {
+      for (;;) ::pause();
+      return 0;
+    });
+    pid = child.pid();
+    EXPECT_FALSE(child.has_ended());
+  }
+  EXPECT_FALSE(is_alive(pid));
 }
 
 TEST(ChildProcess, ArgumentsReachTheProgramAsTheyAre) {
