@@ -31,7 +31,7 @@ std::unique_ptr<io::ChildProcess> start(const CaseFlight::Request& request, cons
   const std::string program = fs::absolute(request.folder.program()).string();
   std::vector<std::string> arguments = arguments_of(request, run_folder);
   if (request.command_line != nullptr)
-    return std::make_unique<io::ChildProcess>(program, [&] { return (*request.command_line)(arguments); });
+    return std::make_unique<io::ChildProcess>([&] { return (*request.command_line)(arguments); }, program);
   arguments.insert(arguments.begin(), program);
   return std::make_unique<io::ChildProcess>(arguments, std::vector<io::FileDescriptor>());
 }

@@ -95,7 +95,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments, std::vecto
   start(arguments, inherited, nullptr);
 }
 
-ChildProcess::ChildProcess(std::string name, const std::function<int()>& body) : program_(std::move(name)) {
+ChildProcess::ChildProcess(const std::function<int()>& body, std::string name) : program_(std::move(name)) {
   (void)std::fflush(nullptr);  // what is in the buffers would be written by both processes
   start({}, {}, body);
 }

@@ -27,7 +27,7 @@ class ChildProcess {
   /// The same with a copy of this process that runs `body`, whose result is its exit status, in place of a program: the
   /// start costs no loading of libraries. An exception that leaves `body` is printed, and the status is 127. To be
   /// called while this process has no other thread. `name` stands for the program in messages.
-  ChildProcess(std::string name, const std::function<int()>& body);
+  ChildProcess(const std::function<int()>& body, std::string name);
 
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;

@@ -60,12 +60,13 @@ TEST(ChildProcess, TellsTheSignalThatKilledIt) {
 
 TEST(ChildProcess, RunsAFunctionInACopyOfThisProcess) {
   int seen = 0;
-  ChildProcess child("a function", [&seen] {
+  const auto body = [&seen] {
     seen = 1;
     std::printf("to output\n");
     std::fprintf(stderr, "to error\n");
     return 3;
-  });
+  };
+  ChildProcess child(body, "a function");
   ASSERT_TRUE(child.wait_for_end(kLong));
   EXPECT_EQ(child.status_text(), "exit status 3");
   EXPECT_THAT(child.output_tail(), AllOf(HasSubstr("to output\n"), HasSubstr("to error\n")));
@@ -74,7 +75,7 @@ TEST(ChildProcess, RunsAFunctionInACopyOfThisProcess) {
 }
 
 TEST(ChildProcess, OfAFunctionAnswersAnExceptionWithItsText) {
-  ChildProcess child("a function", []() -> int { throw std::runtime_error("no way"); });
+  ChildProcess child([]() -> int { throw std::runtime_error("no way"); }, "a function");
   ASSERT_TRUE(child.wait_for_end(kLong));
   EXPECT_EQ(child.status_text(), "exit status 127");
   EXPECT_EQ(child.output_tail(), "no way\n");
@@ -83,7 +84,7 @@ TEST(ChildProcess, OfAFunctionAnswersAnExceptionWithItsText) {
 TEST(ChildProcess, OfAFunctionHasNoOtherDescriptorAndDoesNotRepeatWhatIsInBuffers) {
   const FileDescriptor other(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   std::printf("in the buffer of the parent");
-  ChildProcess child("a function", [&other] { return ::fcntl(other.get(), F_GETFD) < 0 ? 0 : 1; });
+  ChildProcess child([&other] { return ::fcntl(other.get(), F_GETFD) < 0 ? 0 : 1; }, "a function");
   ASSERT_TRUE(child.wait_for_end(kLong));
   EXPECT_EQ(child.exit_status(), 0) << "the descriptor is open";
   EXPECT_EQ(child.output_tail(), "");
@@ -92,10 +93,11 @@ TEST(ChildProcess, OfAFunctionHasNoOtherDescriptorAndDoesNotRepeatWhatIsInBuffer
 TEST(ChildProcess, OfAFunctionThatDoesNotEndIsKilled) {
   pid_t pid = -1;
   {
-    ChildProcess child("a function", [] {
+    const auto body = [] {
       for (;;) ::pause();
       return 0;
-    });
+    };
+    ChildProcess child(body, "a function");
     pid = child.pid();
     EXPECT_FALSE(child.has_ended());
   }

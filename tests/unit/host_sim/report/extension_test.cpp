@@ -19,8 +19,8 @@ struct TideRow {
 
 template <columns::RowOf<TideRow> Row, class Visitor>
 void visit_columns(Row& row, Visitor& visit) {
-  visit(ColumnName{"time_s"}, row.time_s);
-  visit(ColumnName{"height_m"}, row.height_m);
+  visit(ColumnName{"time_s", "since the epoch of the mission"}, row.time_s);
+  visit(ColumnName{"height_m", "of the tide"}, row.height_m);
 }
 
 namespace {
