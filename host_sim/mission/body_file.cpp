@@ -57,12 +57,12 @@ truth::Body read_body(const TableReader& document, std::string name) {
 }
 
 std::vector<Vector3> read_keypoints(const TableReader& document) {
-  constexpr double kLeastSeparationM = 1e-3;
+  constexpr double kMinSeparationM = 1e-3;
   std::vector<Vector3> keypoints_m;
   for (const TableReader& keypoint : document.tables("keypoints")) {
     const Vector3 at_m = read_point(keypoint, "at_m");
     for (std::size_t k = 0; k < keypoints_m.size(); ++k)
-      if ((at_m - keypoints_m[k]).norm() < kLeastSeparationM)
+      if ((at_m - keypoints_m[k]).norm() < kMinSeparationM)
         keypoint.refuse("at_m", "the place of keypoint " + std::to_string(k), "keypoints at least a millimetre apart");
     keypoints_m.push_back(at_m);
   }

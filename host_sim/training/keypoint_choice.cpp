@@ -58,14 +58,14 @@ class Candidates {
   }
 
   /// At most `count` vertices, each seen from at least this share of all directions.
-  std::vector<ChosenKeypoint> farthest(std::size_t count, double least_seen_share) {
+  std::vector<ChosenKeypoint> farthest(std::size_t count, double min_seen_share) {
     std::vector<double> distances;  // from those chosen, negative if passed over
     for (const Vector3& place : places_) distances.push_back((place - centre_of_mass_body_).norm());
     std::vector<ChosenKeypoint> chosen;
     while (chosen.size() < count) {
       const auto k = static_cast<std::size_t>(std::ranges::max_element(distances) - distances.begin());
-      if (distances[k] < (chosen.empty() ? 0.0 : kLeastSeparation * model_.radius_m)) break;
-      if (seen_share_of(k) < least_seen_share) {
+      if (distances[k] < (chosen.empty() ? 0.0 : kMinSeparation * model_.radius_m)) break;
+      if (seen_share_of(k) < min_seen_share) {
         distances[k] = -1.0;
         continue;
       }
@@ -114,14 +114,14 @@ std::vector<ChosenKeypoint> choose_keypoints(const CadModel& model, const Vector
   Candidates candidates(model, centre_of_mass_body);
   std::size_t found = 0;
   constexpr double kStep = 0.05;
-  for (double least = kGreatestSeenShare; least > kLeastSeenShare - 0.5 * kStep; least -= kStep) {
-    std::vector<ChosenKeypoint> chosen = candidates.farthest(count, least);
+  for (double min_share = kMaxSeenShare; min_share > kMinSeenShare - 0.5 * kStep; min_share -= kStep) {
+    std::vector<ChosenKeypoint> chosen = candidates.farthest(count, min_share);
     if (chosen.size() == count) return chosen;
     found = chosen.size();
   }
   throw std::runtime_error(
       fmt::format("{}: {} vertices that half of all directions see and that lie {:.3f} m apart; required are {}",
-                  model.source, found, kLeastSeparation * model.radius_m, count));
+                  model.source, found, kMinSeparation * model.radius_m, count));
 }
 
 }  // namespace vbar::training

@@ -17,15 +17,15 @@ struct ChosenKeypoint {
 /// Farthest-point sampling of the vertices (Eldar et al. 1997, "The farthest point strategy for progressive image
 /// sampling"): the first is the farthest from the centre of mass, each other the farthest from those chosen before.
 /// Vertices that are seen from less than a share of all directions are passed over. The share is the highest of 0.85,
-/// 0.80 ... kLeastSeenShare at which there are `count` vertices kLeastSeparation apart, so that corners and tips, which
+/// 0.80 ... kMinSeenShare at which there are `count` vertices kMinSeparation apart, so that corners and tips, which
 /// are seen from most directions and from which a network locates both coordinates, precede points on edges and faces.
 /// Throws std::runtime_error, naming the model, if there is none.
 [[nodiscard]] std::vector<ChosenKeypoint> choose_keypoints(const twins::camera::CadModel& model,
                                                            const fsw::Vector3& centre_of_mass_body, std::size_t count);
 
-inline constexpr double kGreatestSeenShare = 0.85, kLeastSeenShare = 0.5;
+inline constexpr double kMaxSeenShare = 0.85, kMinSeenShare = 0.5;
 /// In radii of the model: closer ones would merge in a heatmap.
-inline constexpr double kLeastSeparation = 0.2;
+inline constexpr double kMinSeparation = 0.2;
 
 /// The share of all directions from which the surface does not hide a point.
 [[nodiscard]] double seen_share(const twins::camera::CadModel& model, const fsw::Vector3& point_body);

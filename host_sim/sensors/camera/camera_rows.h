@@ -69,7 +69,7 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(report::ColumnName{"step_time_s", "s, since the epoch of the mission: of the step whose telemetry reported it"},
         row.step_time_s);
   report::columns::fields(visit, report::columns::message_of<telemetry_image>(row));
-  visit(report::ColumnName{"true_object", "index of the object that is the target; -1: none is, or it cannot be told"},
+  visit(report::ColumnName{"true_object", "index of the object that is the target; -1: none is, or it is not known"},
         row.true_object);
   visit(report::ColumnName{"chosen",
                            "the spacecraft that the chosen object really is; nothing: none; empty without a choice"},
