@@ -56,7 +56,7 @@ class OwnTargetOnTheZynq(unittest.TestCase):
             self.assertEqual(hashes(image), hashes(library))
             with (folder / "library" / "poses.csv").open(newline="") as file:
                 found = [row for row in csv.DictReader(file) if int(row["keypoints_used"]) > 0 or row["status"].startswith("keypoints")]
-            self.assertGreater(len(found), 5)
+            self.assertGreaterEqual(len(found), 4)
 
 
 if __name__ == "__main__":
