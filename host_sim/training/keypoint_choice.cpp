@@ -52,8 +52,8 @@ class Candidates {
       places_.insert(places_.end(), triangle.corners.begin(), triangle.corners.end());
     const auto key = [](const Vector3& p) { return std::array{p.x(), p.y(), p.z()}; };
     std::ranges::sort(places_, {}, key);
-    const auto [first, last] = std::ranges::unique(places_, {}, key);
-    places_.erase(first, last);
+    const auto are_same = [&](const Vector3& a, const Vector3& b) { return key(a) == key(b); };
+    places_.erase(std::unique(places_.begin(), places_.end(), are_same), places_.end());
     seen_shares_.resize(places_.size());
   }
 

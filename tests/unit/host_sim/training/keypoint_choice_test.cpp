@@ -10,6 +10,7 @@
 
 #include "host_sim/mission/body_file.h"
 #include "tests/support/paths.h"
+#include "tests/support/sanitizers.h"
 
 namespace vbar::training {
 namespace {
@@ -45,6 +46,7 @@ CadModel box(const Vector3& sides) {
 // Tango's eleven keypoints were chosen by those who published them (SPEED). All but one are found again; the corner
 // beside the tip of the longest antenna is not, as two of its neighbours are.
 TEST(KeypointChoice, FindsTenOfTheElevenThatWerePublishedForTango) {
+  if (test::kAddressSanitizer) GTEST_SKIP() << "minutes under a sanitizer; a box is examined below";
   const auto file = mission::body_file_of(data(), "tango");
   const auto model = twins::camera::load_cad_model(mission::cad_source_of(data(), "tango"));
   const auto chosen = choose_keypoints(model, mission::load_body(file).centre_of_mass_m, 11);
@@ -87,6 +89,7 @@ TEST(KeypointChoice, AFaceIsSeenFromItsSide) {
 
 // The file of the second target states what is chosen on its model.
 TEST(KeypointChoice, TheWingedBoxHasItsOwn) {
+  if (test::kAddressSanitizer) GTEST_SKIP() << "a minute under a sanitizer; a box is examined above";
   const auto file = mission::body_file_of(data(), "winged_box");
   const auto model = twins::camera::load_cad_model(mission::cad_source_of(data(), "winged_box"));
   const auto chosen = choose_keypoints(model, mission::load_body(file).centre_of_mass_m, 11);
