@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Campaigns at full size: the rows of docs/verification.md, "Campaigns".
+"""Campaigns at full size: flies them, compares what they leave, and prints a table of criteria and results.
 
 usage: ci/verify_campaign.py [--build build/host] [--cases 200] [--kills 20] [--real 1000] [--seed 1] [--only NAME,...]
 

@@ -10,6 +10,7 @@
 
 #include "host_sim/io/byte_channels.h"
 #include "host_sim/io/udp_socket.h"
+#include "pil_bridge/beside_program.h"
 #include "pil_bridge/guarded_process.h"
 #include "pil_bridge/in_process.h"
 #include "pil_bridge/remote_computer.h"
@@ -177,15 +178,13 @@ std::string find_image(const FlightComputerOptions& options) {
     throw FlightComputerError("flight_computer.image '" + options.image +
                               "': there is no such file (vbar's own is built by the CMake preset '" + preset + "')");
   }
-  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-  if (fs::is_regular_file(here / installed, error)) return (here / installed).lexically_normal().string();
-  const fs::path image = here / built;
+  std::string image = beside_program(installed, built);
   if (!fs::is_regular_file(image, error)) {
     throw FlightComputerError("flight computer " + std::string(name_of(options.target)) + ": there is no image '" +
-                              image.lexically_normal().string() + "' (built by the CMake preset '" + preset +
-                              "': cmake --build --preset " + preset + ")");
+                              image + "' (built by the CMake preset '" + preset + "': cmake --build --preset " +
+                              preset + ")");
   }
-  return image.lexically_normal().string();
+  return image;
 }
 
 std::unique_ptr<FlightComputer> make_host_process(const FlightComputerOptions& options) {

@@ -4,6 +4,7 @@
 
 #include <dlfcn.h>
 
+#include "pil_bridge/beside_program.h"
 #include "pil_bridge/flight_computer.h"
 
 namespace vbar::pil {
@@ -34,10 +35,8 @@ std::string library_file(const std::string& library) {
   namespace fs = std::filesystem;
   std::error_code error;
   if (library.find('/') != std::string::npos || library.ends_with(".so") || fs::exists(library, error)) return library;
-  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
   const std::string name = "lib" + library + ".so";
-  const fs::path installed = here.parent_path() / "lib/vbar" / name;
-  return (fs::exists(installed, error) ? installed : here / name).string();
+  return beside_program("../lib/vbar/" + name, name);
 }
 
 std::shared_ptr<const TestArticle> load_test_article(const std::string& library) {

@@ -1,6 +1,8 @@
 #include "host_sim/campaign/copies.h"
 
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -45,6 +47,17 @@ std::string checksums_of(const Folder& folder) {
   return text;
 }
 
+/// Of the list of checksums: a file and its SHA-256.
+std::vector<std::pair<fs::path, std::string>> listed_copies(const Folder& folder) {
+  std::vector<std::pair<fs::path, std::string>> listed;
+  for (const std::string& line : report::read_lines(folder.checksums())) {
+    if (line.empty()) continue;
+    const std::string name = line.size() > kDigestDigits + 2 ? line.substr(kDigestDigits + 2) : line;
+    listed.emplace_back(folder.copies() / name, line.substr(0, kDigestDigits));
+  }
+  return listed;
+}
+
 }  // namespace
 
 fs::path copy_of_mission(const fs::path& mission) {
@@ -68,12 +81,10 @@ void make_copies(const Folder& folder, const UsedFiles& used, const std::string&
 }
 
 void check_copies(const Folder& folder) {
-  for (const std::string& line : report::read_lines(folder.checksums())) {
-    if (line.empty()) continue;
-    const fs::path file = folder.copies() / (line.size() > kDigestDigits + 2 ? line.substr(kDigestDigits + 2) : line);
+  for (const auto& [file, listed] : listed_copies(folder)) {
     const auto sha256 = files::sha256_of_file(file);
     if (!sha256) throw std::runtime_error(file.string() + ": cannot be read; the campaign's copies are not whole");
-    if (*sha256 != line.substr(0, kDigestDigits))
+    if (*sha256 != listed)
       throw std::runtime_error(file.string() +
                                ": differs from the file that the campaign began with (SHA-256); "
                                "restore it, or begin a new campaign");
@@ -84,12 +95,14 @@ bool flies_as_the_copy(const Folder& folder) {
   const auto is_inside = [](const fs::path& file, const fs::path& parent) {
     return *file.lexically_relative(parent).begin() != "..";
   };
-  for (const auto& entry : fs::recursive_directory_iterator(folder.copies())) {
-    const fs::path& file = entry.path();
-    if (!entry.is_regular_file() || file == folder.checksums() || file == folder.program()) continue;
-    if (!is_inside(file, folder.data()) && !is_inside(file, folder.mission_files())) return false;
+  for (const auto& [file, listed] : listed_copies(folder)) {
+    if (file == folder.program()) {
+      if (files::sha256_of_file("/proc/self/exe") != listed) return false;
+    } else if (!is_inside(file, folder.data()) && !is_inside(file, folder.mission_files())) {
+      return false;
+    }
   }
-  return files::sha256_of_file("/proc/self/exe") == files::sha256_of_file(folder.program());
+  return true;
 }
 
 }  // namespace vbar::campaign

@@ -37,8 +37,8 @@ std::string name_of(const Plan& plan, const Case& one) {
   return name + ")";
 }
 
-/// Images of flight computers stand beside the program; a library may stand anywhere, and workers look for it from
-/// where they are.
+/// Images of flight computers, and libraries that a mission states by name, stand beside the program; a library that it
+/// states by its path may stand anywhere, and workers look for it from where they are.
 void add_flight_software(const mission::Mission& mission, UsedFiles& used) {
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (!spacecraft.flight_computer) continue;
@@ -47,7 +47,7 @@ void add_flight_software(const mission::Mission& mission, UsedFiles& used) {
     if (file.empty() && target != mission::FlightTarget::kInProcess && target != mission::FlightTarget::kBoard)
       throw app::Refused(fmt::format("flight_computer.target: the image of {} is not built", mission::name_of(target)));
     if (file.empty()) continue;
-    if (spacecraft.flight_computer->library.empty())
+    if (file != spacecraft.flight_computer->library)
       used.flight_images.insert(fs::absolute(file).lexically_normal());
     else if (!fs::path(file).is_absolute())
       throw app::Refused("flight_computer.library: found the relative path " + file + "; accepted: an absolute path");

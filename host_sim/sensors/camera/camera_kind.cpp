@@ -34,19 +34,22 @@ void check_target(const TableReader& section, const CameraSensor& camera, const 
                    "with navigation = \"pose\": a spacecraft that tumbles, by laws that are known on board");
 }
 
-/// The weights of a network are part of the flight software; vbar's own has those of the network that knows Tango.
+/// The weights of a network are part of the flight software: vbar's own knows Tango, a library vbar_gnc_<model> of
+/// boards/targets the model of its name. What another library or image knows is not known here.
 void check_network(const TableReader& section, const mission::FlightComputer& computer, const std::string& model) {
-  constexpr std::string_view kKnown = "tango";
+  constexpr std::string_view kOfOtherTargets = "vbar_gnc_";
   const bool is_own =
       computer.library.empty() && computer.image.empty() && computer.target != mission::FlightTarget::kBoard;
-  if (is_own && model != kKnown)
-    section.refuse(
-        "target",
-        fmt::format("a spacecraft with the model \"{}\", which the network of vbar's flight software does not know",
-                    model),
-        fmt::format("the model \"{}\", or flight_computer.library = \"vbar_gnc_{}\" or an image with the weights of "
-                    "data/networks/{}_keypoints.bin",
-                    kKnown, model, model));
+  std::string known;
+  if (is_own) known = "tango";
+  if (computer.library.starts_with(kOfOtherTargets)) known = computer.library.substr(kOfOtherTargets.size());
+  if (known.empty() || known == model) return;
+  section.refuse(
+      "target",
+      fmt::format("a spacecraft with the model \"{}\", which the network of this flight software does not know", model),
+      fmt::format("the model \"{}\", or flight_computer.library = \"vbar_gnc_{}\" or an image with the weights of "
+                  "data/networks/{}_keypoints.bin",
+                  known, model, model));
 }
 
 /// A camera navigates with the flight software and the receiver beside it, to something that it can see.

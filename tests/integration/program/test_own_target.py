@@ -30,8 +30,27 @@ class OwnTarget(unittest.TestCase):
     def test_flight_software_that_does_not_know_it_is_refused(self):
         result = vbar("run", MISSION, "--check", "--set", "flight_computer.library=")
         self.assertEqual(result.returncode, 2)
-        self.assertIn('found a spacecraft with the model "winged_box", which the network of vbar\'s flight software does not know', result.stderr)
+        self.assertIn('found a spacecraft with the model "winged_box", which the network of this flight software does not know', result.stderr)
         self.assertIn('flight_computer.library = "vbar_gnc_winged_box"', result.stderr)
+
+    def test_flight_software_of_another_target_is_refused(self):
+        result = vbar("run", SOURCE / "missions/experiment2.toml", "--check", "--set", "flight_computer.library=vbar_gnc_winged_box")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn('found a spacecraft with the model "tango"', result.stderr)
+        self.assertIn('accepted: the model "winged_box"', result.stderr)
+
+    def test_a_campaign_takes_its_library_along(self):
+        """Found beside the copied program; flown by that program, with the bits of a single run."""
+        with scratch() as folder:
+            file = folder / "campaign.toml"
+            file.write_text(f'[campaign]\nname = "box"\nmission = "{MISSION}"\nseeds = [1]\nset = ["mission.duration_h=0.02"]\n')
+            result = vbar("campaign", "run", file, "--out", folder / "campaign", "--quiet")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(len(list((folder / "campaign/bin").rglob("libvbar_gnc_winged_box.so"))), 1)
+            with (folder / "campaign/results.csv").open(newline="") as table:
+                row = next(csv.DictReader(table))
+            alone = fly(folder / "alone", "mission.duration_h=0.02", mission=MISSION)
+            self.assertEqual((row["commands_sha256"], row["telemetry_sha256"]), hashes(alone))
 
     def test_its_keypoints_are_chosen_and_drawn(self):
         with scratch() as folder:

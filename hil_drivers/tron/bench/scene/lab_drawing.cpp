@@ -14,6 +14,7 @@
 #include "hil_drivers/tron/bench/scene/mounts.h"
 #include "hil_drivers/tron/bench/scene/room.h"
 #include "hil_drivers/tron/bench/scene/shaders.h"
+#include "host_sim/mission/body_file.h"
 #include "host_sim/twins/camera/model/gl_context.h"
 #include "host_sim/twins/camera/model/gl_objects.h"
 #include "host_sim/twins/camera/model/shader_inputs.h"
@@ -230,8 +231,8 @@ struct LabDrawing::Gl {
 LabDrawing::Gl::Gl(const BenchFile& file, const GapSettings& switches, std::uint64_t number,
                    const std::filesystem::path& data)
     : bench(file), gap(switches), seed(number), room(file) {
-  const std::string name = file.target.model + (gap.surfaces ? "_mockup" : "") + ".obj";
-  const camera::CadModel model = camera::load_cad_model(data / "models" / name);
+  const std::string name = file.target.model + (gap.surfaces ? "_mockup" : "");
+  const camera::CadModel model = camera::load_cad_model(mission::cad_source_of(data, name));
   for (const camera::Material& material : model.materials) materials.push_back(camera::shader_material(material));
   first_extra = materials.size();
   for (const auto& material : extra_materials()) materials.push_back(material);

@@ -46,7 +46,7 @@ void read_material_names(const std::filesystem::path& file, std::set<std::string
 }
 
 // Errors that assimp does not report: it replaces a material that it cannot find by a grey one and continues.
-void check_obj(const std::filesystem::path& file) {
+void check_obj(const std::filesystem::path& file, bool needs_materials) {
   files::DataStream stream(file);
   std::set<std::string> defined;
   std::string text, word, material;
@@ -63,7 +63,7 @@ void check_obj(const std::filesystem::path& file) {
     }
     if (word != "f") continue;
     faces = true;
-    if (material.empty())
+    if (material.empty() && needs_materials)
       refuse(file, fmt::format("line {}: a face without material; a usemtl line must come before", number));
   }
   if (!faces) refuse(file, "no faces");
@@ -130,7 +130,7 @@ CadModel load_cad_model(const std::filesystem::path& file) {
 CadModel load_cad_model(const CadSource& source) {
   const std::filesystem::path& file = source.file;
   if (!std::filesystem::is_regular_file(file)) refuse(file, "no such file");
-  if (file.extension() == ".obj" && !source.surface) check_obj(file);
+  if (file.extension() == ".obj") check_obj(file, !source.surface);
   Assimp::Importer importer;
   // Points and lines are not part of the surface and are removed. Transformations of a scene's parts are applied.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

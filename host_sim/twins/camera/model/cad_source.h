@@ -1,7 +1,6 @@
 #pragma once
 // Where the shape of a spacecraft comes from, and how the coordinates of its CAD file become those of the body frame.
 
-#include <array>
 #include <filesystem>
 #include <optional>
 

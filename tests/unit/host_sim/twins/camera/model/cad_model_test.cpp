@@ -131,6 +131,19 @@ TEST_F(CadFiles, OtherUnitsAxesAndOrigin) {
   EXPECT_EQ(millimetres.materials[0].exponent, 50.0);
 }
 
+// A surface is for faces without a material, not for a material that is misspelt.
+TEST_F(CadFiles, OfObjectsASurfaceCompletesFacesWithoutMaterialOnly) {
+  CadSource source{.file = write("body.obj", kCorners + kFaces), .surface = PlainSurface{.diffuse = 0.3}};
+  EXPECT_EQ(load_cad_model(source).materials.at(0).grey_diffuse(), 0.3);
+  source.file = write("body.obj", "mtllib white.mtl\n" + kCorners + "usemtl whyte\n" + kFaces);
+  try {
+    static_cast<void>(load_cad_model(source));
+    FAIL() << "accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("line 6"), HasSubstr("\"whyte\"")));
+  }
+}
+
 TEST_F(CadFiles, AnStlFileNeedsASurface) {
   const auto file =
       write("body.stl",
