@@ -42,15 +42,11 @@ void add(Result&& result, AllResults& all) {
   if (!has_flown(before)) before = std::move(result);
 }
 
-}  // namespace
+using NameLines = std::map<std::size_t, std::vector<std::string>>;  // of one file, by their numbers
 
-std::string_view name_of(State state) {
-  return std::ranges::find(kStates, state, &std::pair<State, std::string_view>::first)->second;
-}
-
-Json json_of(const Result& result) {
-  Json numbers = Json::object();
-  for (const auto& [key, value] : result.numbers) numbers[key] = value;
+Json json_of(const Result& result, std::size_t name_line) {
+  Json numbers = Json::array();
+  for (const auto& [name, value] : result.numbers) numbers.push_back(value);
   return {{"case", result.number},
           {"attempt", result.attempt},
           {"state", name_of(result.state)},
@@ -63,10 +59,12 @@ Json json_of(const Result& result) {
           {"telemetry_sha256", result.telemetry_sha256},
           {"waypoints_sha256", result.waypoints_sha256},
           {"folder", result.folder},
+          {"name_line", name_line},
           {"numbers", std::move(numbers)}};
 }
 
-Result result_of(const Json& json) {
+/// Throws an exception for an object that is not a result, or whose line of names is missing.
+Result result_of(const Json& json, const NameLines& name_lines) {
   Result result;
   json.at("case").get_to(result.number);
   json.at("attempt").get_to(result.attempt);
@@ -80,8 +78,27 @@ Result result_of(const Json& json) {
   json.at("telemetry_sha256").get_to(result.telemetry_sha256);
   json.at("waypoints_sha256").get_to(result.waypoints_sha256);
   json.at("folder").get_to(result.folder);
-  for (const auto& [key, value] : json.at("numbers").items()) result.numbers.emplace_back(key, value.get<double>());
+  const std::vector<std::string>& names = name_lines.at(json.at("name_line").get<std::size_t>());
+  const auto numbers = json.at("numbers").get<std::vector<double>>();
+  if (numbers.size() != names.size()) throw std::runtime_error("numbers and names differ in number");
+  for (std::size_t k = 0; k < names.size(); ++k) result.numbers.emplace_back(names[k], numbers[k]);
   return result;
+}
+
+}  // namespace
+
+std::string_view name_of(State state) {
+  return std::ranges::find(kStates, state, &std::pair<State, std::string_view>::first)->second;
+}
+
+void ResultFile::append(const Result& result) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : result.numbers) names.push_back(name);
+  if (name_lines_ == 0 || names != names_) {
+    file_.append({{"name_line", ++name_lines_}, {"names", names}}, RecordFile::Sync::kNo);
+    names_ = std::move(names);
+  }
+  file_.append(json_of(result, name_lines_), RecordFile::Sync::kYes);
 }
 
 std::vector<std::string> failed_limits(const Plan& plan, const Result& result) {
@@ -102,9 +119,13 @@ AllResults read_results(const std::filesystem::path& result_files) {
   for (const std::filesystem::path& file : record_files(result_files)) {
     const ReadLines read = read_lines_of(file);
     all.damaged_lines += read.damaged;
+    NameLines name_lines;
     for (const Json& line : read.lines) {
       try {
-        add(result_of(line), all);
+        if (line.contains("names"))
+          line.at("names").get_to(name_lines[line.at("name_line").get<std::size_t>()]);
+        else
+          add(result_of(line, name_lines), all);
       } catch (const std::exception&) {
         ++all.damaged_lines;
       }

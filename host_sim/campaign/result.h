@@ -33,10 +33,20 @@ struct Result {
   }
 };
 
-[[nodiscard]] Json json_of(const Result& result);
+/// The results of one worker, a line each. The names of their numbers stand in a line of their own, once for all
+/// results that have the same ones: with them in each line, ten thousand results would be twice as large.
+class ResultFile {
+ public:
+  /// Throws as RecordFile, here and below.
+  explicit ResultFile(std::filesystem::path file) : file_(std::move(file)) {}
+  /// When it returns, the result survives a loss of power.
+  void append(const Result& result);
 
-/// Throws nlohmann::json::exception or std::runtime_error for an object that is not a result.
-[[nodiscard]] Result result_of(const Json& json);
+ private:
+  RecordFile file_;
+  std::vector<std::string> names_;  ///< of the last line of names
+  std::size_t name_lines_ = 0;
+};
 
 /// The keys of the criteria that the case does not meet; a number that is missing meets none. Of complete cases.
 [[nodiscard]] std::vector<std::string> failed_limits(const Plan& plan, const Result& result);

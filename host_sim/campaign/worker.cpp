@@ -111,7 +111,7 @@ void Worker::finish(CaseFlight& flight, CaseFlight::End end) {
 /// The folder moves before the line is written: a result names only what is there.
 void Worker::record(CaseFlight& flight, Result result) {
   result.folder = keep(flight, result);
-  results_.append(json_of(result), RecordFile::Sync::kYes);
+  results_.append(result);
   if (result.state == State::kFailed || result.state == State::kOverTime) ++failures_;
   flown_.push_back(std::move(result));
 }

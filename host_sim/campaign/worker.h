@@ -46,7 +46,8 @@ class Worker {
   const Plan& plan_;
   WorkerOptions options_;
   bool flies_in_copies_ = false;  ///< of this process
-  RecordFile attempts_, results_;
+  RecordFile attempts_;
+  ResultFile results_;
   std::map<std::size_t, std::size_t> kills_;  ///< of each case, by earlier workers too
   std::deque<Case> waiting_;
   std::vector<std::unique_ptr<CaseFlight>> flights_;

@@ -26,6 +26,8 @@ Registry& registry() {
   return one;
 }
 
+thread_local int unrecorded_depth = 0;
+
 /// What `manifest` lists for `name`: lines of sha256sum, "digest  ./name" or "digest  name".
 std::optional<std::string> listed_in(const fs::path& manifest, const std::string& name) {
   std::ifstream lines(manifest);
@@ -60,11 +62,20 @@ std::vector<FileRead> files_read() {
   return files;
 }
 
+UnrecordedReads::UnrecordedReads() {
+  ++unrecorded_depth;
+}
+
+UnrecordedReads::~UnrecordedReads() {
+  --unrecorded_depth;
+}
+
 void note_file_read(const fs::path& file, std::string_view contents) {
   std::error_code error;
   fs::path absolute = fs::absolute(file, error).lexically_normal();
   FileRead read{absolute, contents.size(), sha256_of(contents)};
   check_manifest(absolute, read.sha256);
+  if (unrecorded_depth > 0) return;
   Registry& all = registry();
   const std::lock_guard lock(all.mutex);
   all.files.insert_or_assign(std::move(absolute), std::move(read));

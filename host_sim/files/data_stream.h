@@ -19,6 +19,15 @@ struct FileRead {
 /// Of this process so far, each file once, in order of their paths.
 [[nodiscard]] std::vector<FileRead> files_read();
 
+/// What this thread reads during its life is not recorded: of missions that are looked at, and not flown.
+class UnrecordedReads {
+ public:
+  UnrecordedReads();
+  ~UnrecordedReads();
+  UnrecordedReads(const UnrecordedReads&) = delete;
+  UnrecordedReads& operator=(const UnrecordedReads&) = delete;
+};
+
 /// Records a file whose contents were read elsewhere. Throws std::runtime_error that names the file if a SHA256SUMS in
 /// a folder above it lists other contents.
 void note_file_read(const std::filesystem::path& file, std::string_view contents);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 
+#include "host_sim/files/data_stream.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/mission/load.h"
 #include "host_sim/mission/nearest_name.h"
@@ -12,6 +14,7 @@ namespace vbar::mission {
 namespace {
 
 CatalogueEntry entry_of(const std::filesystem::path& file, const Installation& installation) {
+  const files::UnrecordedReads looked_at;
   CatalogueEntry entry;
   entry.file = file;
   try {
@@ -47,9 +50,27 @@ std::filesystem::path missions_directory() {
   return data_directory().parent_path() / "missions";
 }
 
+namespace {
+
+/// The file NAME.toml, if the mission in it has that name: the others need not be loaded.
+std::optional<std::filesystem::path> file_of_that_name(const std::filesystem::path& name,
+                                                       const Installation& installation) {
+  if (name.has_parent_path()) return std::nullopt;
+  try {
+    const std::filesystem::path file = missions_directory() / (name.string() + ".toml");
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error) && entry_of(file, installation).name == name) return file;
+  } catch (const std::exception&) {  // no catalogue
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::filesystem::path find_mission(const std::filesystem::path& path_or_name, const Installation& installation) {
   std::error_code error;
   if (std::filesystem::is_regular_file(path_or_name, error)) return path_or_name;
+  if (const auto file = file_of_that_name(path_or_name, installation)) return *file;
   std::vector<CatalogueEntry> missions;
   try {
     missions = list_missions(missions_directory(), installation);

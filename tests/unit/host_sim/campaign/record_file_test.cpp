@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -84,9 +86,11 @@ Result result_of_case(std::size_t number, State state, const std::string& hash) 
 }
 
 TEST_F(RecordFiles, GiveEachCaseOneResult) {
-  const auto line = [](const Result& result) { return line_of(json_of(result)) + "\n"; };
-  write(line(result_of_case(1, State::kFailed, "")) + line(result_of_case(2, State::kComplete, "x")), "a.jsonl");
-  write(line(result_of_case(1, State::kComplete, "y")) + line(result_of_case(2, State::kFailed, "")), "b.jsonl");
+  ResultFile a(file("a.jsonl")), b(file("b.jsonl"));
+  a.append(result_of_case(1, State::kFailed, ""));
+  a.append(result_of_case(2, State::kComplete, "x"));
+  b.append(result_of_case(1, State::kComplete, "y"));
+  b.append(result_of_case(2, State::kFailed, ""));
   const AllResults all = read_results(folder_);
   ASSERT_EQ(all.of_case.size(), 2U);
   EXPECT_EQ(all.of_case.at(1).state, State::kComplete);
@@ -96,10 +100,36 @@ TEST_F(RecordFiles, GiveEachCaseOneResult) {
 }
 
 TEST_F(RecordFiles, ReportACaseWhoseFlightsDiffer) {
-  write(line_of(json_of(result_of_case(1, State::kComplete, "x"))) + "\n", "a.jsonl");
-  write(line_of(json_of(result_of_case(1, State::kComplete, "y"))) + "\n", "b.jsonl");
+  ResultFile a(file("a.jsonl")), b(file("b.jsonl"));
+  a.append(result_of_case(1, State::kComplete, "x"));
+  b.append(result_of_case(1, State::kComplete, "y"));
   ASSERT_EQ(read_results(folder_).conflicts.size(), 1U);
   EXPECT_NE(read_results(folder_).conflicts[0].find("case 1"), std::string::npos);
+}
+
+TEST_F(RecordFiles, NameNumbersOnceForAllResultsThatHaveThem) {
+  Result other = result_of_case(3, State::kComplete, "z");
+  other.numbers = {{"dv_mps", 0.25}, {"first_fix_s", 120.0}};
+  {
+    ResultFile results(file());
+    results.append(result_of_case(1, State::kComplete, "x"));
+    results.append(result_of_case(2, State::kComplete, "y"));
+    results.append(other);
+  }
+  std::ifstream text(file());
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 5U) << "two lines of names, three results";
+  const AllResults all = read_results(folder_);
+  EXPECT_EQ(all.of_case.at(2).numbers, (Numbers{{"dv_mps", 0.1}}));
+  EXPECT_EQ(all.of_case.at(3).numbers, other.numbers);
+
+  lines[0][5] = '?';  // the names of the first two results
+  write(lines[0] + "\n" + lines[1] + "\n" + lines[2] + "\n" + lines[3] + "\n" + lines[4] + "\n");
+  const AllResults damaged = read_results(folder_);
+  ASSERT_EQ(damaged.of_case.size(), 1U) << "a number is never given another name";
+  EXPECT_EQ(damaged.of_case.at(3).numbers, other.numbers);
+  EXPECT_EQ(damaged.damaged_lines, 3U);
 }
 
 TEST_F(RecordFiles, CountALineThatIsNotAResult) {

@@ -40,6 +40,22 @@ TEST_F(DataStreamTest, IsTheFileAndIsRecorded) {
   EXPECT_EQ(found->sha256, sha256_of("1 2\n3"));
 }
 
+TEST_F(DataStreamTest, WhatIsOnlyLookedAtIsNotRecorded) {
+  const fs::path other = data_ / "gravity" / "looked_at.txt";
+  std::ofstream(other) << "4";
+  const auto is_recorded = [&] {
+    const auto read = files_read();
+    return std::ranges::find(read, other, &FileRead::file) != read.end();
+  };
+  {
+    const UnrecordedReads looked_at;
+    EXPECT_TRUE(DataStream(other));
+  }
+  EXPECT_FALSE(is_recorded());
+  EXPECT_TRUE(DataStream(other));
+  EXPECT_TRUE(is_recorded());
+}
+
 TEST_F(DataStreamTest, IsBadWhereThereIsNoFile) {
   EXPECT_FALSE(DataStream(data_ / "gravity" / "none.txt"));
   EXPECT_FALSE(DataStream(data_));
