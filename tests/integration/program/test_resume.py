@@ -40,7 +40,7 @@ def timeless(summary):
 
 def timeless_page(folder):
     """The lines of a report that no wall clock enters, and the link only with a flight computer in this process."""
-    words = ["simulated in", "real time", "started, UTC", "wall clock"]
+    words = ["simulated in", "real time", "started, UTC", "wall clock", "in parallel"]
     if summary_of(folder)["flight_computer"] != "in_process":
         words += ["link", "frames"]
     return [line for line in (folder / "report.html").read_text().splitlines() if not any(word in line for word in words)]
