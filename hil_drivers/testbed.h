@@ -14,12 +14,14 @@
 #include "host_sim/mission/sensor_reader.h"
 #include "host_sim/report/extension.h"
 #include "host_sim/report/run_record.h"
+#include "host_sim/truth/earth/earth_orientation.h"
 #include "host_sim/twins/camera/camera_settings.h"
 #include "host_sim/twins/camera/image_taker.h"
 #include "host_sim/twins/camera/scene.h"
 #include "host_sim/twins/gnss/gnss_settings.h"
 #include "host_sim/twins/gnss/receiver_bytes.h"
 #include "host_sim/twins/packet_source.h"
+#include "host_sim/twins/true_world.h"
 
 namespace vbar::testbeds {
 
@@ -64,6 +66,27 @@ struct PacketPlan {
   std::uint8_t spacecraft = 0;              ///< in the headers of its packets
   std::uint8_t unit = 0;                    ///< likewise
   bool truth_is_compared = false;           ///< as PacketSource::truth_is_compared
+};
+
+/// The true motion of all spacecraft of a mission.
+struct TruthPlan {
+  const mission::Mission& mission;
+  const mission::Spacecraft& servicer;  ///< that flies; mission and servicer outlive the truth
+  std::filesystem::path data_directory;
+  twins::TruthSnapshot start;  ///< where the spacecraft are at the start of the run, by vbar's truth model
+  std::shared_ptr<const truth::EarthOrientationSeries> earth_orientation;  ///< of the mission
+};
+
+/// The world of a run whose motion is the testbed's. All functions but stop() throw std::runtime_error, one sentence
+/// that names the truth.
+class TestbedTruth : public twins::TrueWorld, public twins::TruthOutlook {
+ public:
+  /// Before the run folder exists, and before the sources of the run. A second call has no effect.
+  virtual void start() = 0;
+  /// However the run ended, also after a start() that threw; a second call has no effect. The destructor does the same.
+  virtual void stop() noexcept = 0;
+  /// Number of times that the testbed was asked for states.
+  [[nodiscard]] virtual std::int64_t exchanges() const = 0;
 };
 
 /// What the flight software is configured with for a camera of the testbed.
@@ -127,6 +150,9 @@ struct TestbedKind : mission::TestbedReader {
   CalibratedCamera (*calibrated_camera)(const mission::TestbedSettings& settings, const mission::Mission& mission,
                                         const std::filesystem::path& data_directory,
                                         const twins::camera::CameraSettings& of_mission) = nullptr;
+  /// The truth of a run, if the kind supplies it. Throws std::runtime_error if the plan cannot be met.
+  std::unique_ptr<TestbedTruth> (*make_truth)(const mission::TestbedSettings& settings,
+                                              const TruthPlan& plan) = nullptr;
 };
 
 }  // namespace vbar::testbeds

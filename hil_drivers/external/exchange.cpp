@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "fsw/packets/messages.h"
+#include "hil_drivers/external/encoded_packet.h"
 
 namespace vbar::external {
 namespace {
@@ -15,15 +16,6 @@ using fsw::packets::Apid;
 using fsw::packets::PacketHeader;
 using fsw::packets::PacketView;
 using twins::Packet;
-
-template <class Message>
-Packet packet_of(const PacketHeader& header, const Message& message) {
-  Packet packet(fsw::packets::kMaxPacketBytes);
-  const auto size = fsw::packets::encode(header, message, packet);
-  if (!size.ok()) throw std::runtime_error("a number that is not finite");
-  packet.resize(size.value());
-  return packet;
-}
 
 template <class Values, class Numbers>
 void copy_to(const Values& values, Numbers& numbers) {
@@ -41,6 +33,12 @@ vbar::true_earth earth_message(const fsw::Matrix3& R_itrf_gcrf) {
   return message;
 }
 
+fsw::Matrix3 rotation_of(const vbar::true_earth& message) {
+  fsw::Matrix3 R_itrf_gcrf;
+  for (int k = 0; k < 9; ++k) R_itrf_gcrf(k / 3, k % 3) = message.R_itrf_gcrf[k];
+  return R_itrf_gcrf;
+}
+
 vbar::true_state state_message(const twins::SpacecraftTruth& truth) {
   vbar::true_state message{};
   copy_to(truth.orbit.position_eci, message.position_eci);
@@ -55,7 +53,7 @@ vbar::true_state state_message(const twins::SpacecraftTruth& truth) {
   return message;
 }
 
-twins::SpacecraftTruth truth_of(const vbar::true_state& message, std::string name) {
+twins::SpacecraftTruth spacecraft_of(const vbar::true_state& message, std::string name) {
   twins::SpacecraftTruth truth;
   truth.name = std::move(name);
   truth.orbit.position_eci = vector_of(message.position_eci);
@@ -112,14 +110,12 @@ class BatchReader {
       case Apid::kSourceCommand:
         batch_.commands.push_back(command(packet));
         return;
-      case Apid::kTrueEarth: {
-        const auto message = decoded<vbar::true_earth>(packet);
-        for (int k = 0; k < 9; ++k) truth().R_itrf_gcrf(k / 3, k % 3) = message.R_itrf_gcrf[k];
+      case Apid::kTrueEarth:
+        truth().R_itrf_gcrf = rotation_of(decoded<vbar::true_earth>(packet));
         return;
-      }
       case Apid::kTrueState:
         truth().spacecraft.push_back(
-            truth_of(decoded<vbar::true_state>(packet), numbers_.name_of(packet.header.spacecraft)));
+            spacecraft_of(decoded<vbar::true_state>(packet), numbers_.name_of(packet.header.spacecraft)));
         return;
       case Apid::kTick:
         static_cast<void>(decoded<vbar::tick>(packet));
@@ -170,6 +166,52 @@ class BatchReader {
   bool has_tick_ = false;
 };
 
+/// Takes the parts of a truth out of the packets of an answer.
+class TruthReader {
+ public:
+  TruthReader(fsw::GpsTime time, const SpacecraftNumbers& numbers) : numbers_(numbers) { stated_.truth.time = time; }
+
+  void take(const PacketView& packet) {
+    const bool is_state = packet.header.apid == Apid::kTrueState;
+    if (!is_state && packet.header.apid != Apid::kTrueEarth)
+      throw std::runtime_error(fmt::format("a packet of APID {:#05x}, which is neither a true_state nor a true_earth",
+                                           static_cast<unsigned>(packet.header.apid)));
+    if (packet.header.time != stated_.truth.time)
+      throw std::runtime_error(fmt::format("a packet of GPS time {} ns, and {} ns was asked for", packet.header.time.ns,
+                                           stated_.truth.time.ns));
+    is_state ? take_state(packet) : take_earth(packet);
+  }
+
+  [[nodiscard]] StatedTruth finish() { return std::move(stated_); }
+
+ private:
+  template <class Message>
+  static Message decoded(const PacketView& packet, std::string_view name) {
+    const auto message = fsw::packets::decode<Message>(packet);
+    if (!message.ok())
+      throw std::runtime_error(fmt::format("a {} of another size or type, or with a number that is not finite", name));
+    return message.value();
+  }
+
+  void take_state(const PacketView& packet) {
+    const std::string name = numbers_.name_of(packet.header.spacecraft);
+    if (!numbers_.number_of(name))
+      throw std::runtime_error(fmt::format("a true_state of {}, which the mission does not have", name));
+    if (stated_.truth.find(name) != nullptr)
+      throw std::runtime_error(fmt::format("a second true_state of the spacecraft {}", name));
+    stated_.truth.spacecraft.push_back(spacecraft_of(decoded<vbar::true_state>(packet, "true_state"), name));
+  }
+
+  void take_earth(const PacketView& packet) {
+    if (stated_.has_earth) throw std::runtime_error("a second true_earth");
+    stated_.truth.R_itrf_gcrf = rotation_of(decoded<vbar::true_earth>(packet, "true_earth"));
+    stated_.has_earth = true;
+  }
+
+  const SpacecraftNumbers& numbers_;
+  StatedTruth stated_;
+};
+
 /// Whether the payload is a valid message of the packet's APID.
 bool holds_its_message(const PacketView& packet) {
   bool is_valid = false;
@@ -192,6 +234,12 @@ std::string SpacecraftNumbers::name_of(std::uint8_t number) const {
   return found == known_.end() ? fmt::format("spacecraft {}", number) : found->name;
 }
 
+SpacecraftNumbers numbers_of(const mission::Mission& mission) {
+  SpacecraftNumbers numbers;
+  for (const mission::Spacecraft& spacecraft : mission.spacecraft) numbers.add(spacecraft.name, spacecraft.number);
+  return numbers;
+}
+
 std::vector<Packet> packets_of(const Batch& batch, std::int64_t step, const SpacecraftNumbers& numbers) {
   PacketHeader header;
   header.time = batch.time;
@@ -199,18 +247,26 @@ std::vector<Packet> packets_of(const Batch& batch, std::int64_t step, const Spac
   if (batch.opening) packets.push_back(opening_packet(header, *batch.opening));
   for (const Command& command : batch.commands) packets.push_back(command_packet(header, command));
   if (batch.truth) {
-    packets.push_back(packet_of(header, earth_message(batch.truth->R_itrf_gcrf)));
-    for (const twins::SpacecraftTruth& truth : batch.truth->spacecraft) {
-      const auto number = numbers.number_of(truth.name);
-      if (!number) throw std::runtime_error(fmt::format("the spacecraft \"{}\" has no number", truth.name));
-      PacketHeader of_spacecraft = header;
-      of_spacecraft.spacecraft = *number;
-      packets.push_back(packet_of(of_spacecraft, state_message(truth)));
-    }
+    twins::TruthSnapshot truth = *batch.truth;
+    truth.time = batch.time;
+    for (Packet& packet : packets_of(truth, numbers)) packets.push_back(std::move(packet));
   }
   vbar::tick tick{};
   tick.step = step;
   packets.push_back(packet_of(header, tick));
+  return packets;
+}
+
+std::vector<Packet> packets_of(const twins::TruthSnapshot& truth, const SpacecraftNumbers& numbers) {
+  PacketHeader header;
+  header.time = truth.time;
+  std::vector<Packet> packets{packet_of(header, earth_message(truth.R_itrf_gcrf))};
+  for (const twins::SpacecraftTruth& one : truth.spacecraft) {
+    const auto number = numbers.number_of(one.name);
+    if (!number) throw std::runtime_error(fmt::format("the spacecraft \"{}\" has no number", one.name));
+    header.spacecraft = *number;
+    packets.push_back(packet_of(header, state_message(one)));
+  }
   return packets;
 }
 
@@ -252,6 +308,17 @@ Answer answer_of(std::vector<Packet> packets) {
   answer.available = fsw::GpsTime{message.value().available_ns};
   if (message.value().next_epoch_ns != 0) answer.next_epoch = fsw::GpsTime{message.value().next_epoch_ns};
   return answer;
+}
+
+StatedTruth truth_of(std::span<const Packet> packets, fsw::GpsTime time, const SpacecraftNumbers& numbers) {
+  TruthReader reader(time, numbers);
+  for (const Packet& bytes : packets) {
+    const auto packet = fsw::packets::parse_packet(bytes);
+    if (!packet.ok())
+      throw std::runtime_error(fmt::format("{} bytes that are no packet, or have another checksum", bytes.size()));
+    reader.take(packet.value());
+  }
+  return reader.finish();
 }
 
 std::string fault_of(std::span<const std::uint8_t> bytes, std::span<const Apid> allowed, std::uint8_t spacecraft,

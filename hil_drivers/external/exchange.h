@@ -1,6 +1,7 @@
 #pragma once
 // What a run and a sensor in another process exchange at each epoch: a batch of packets to the sensor that ends with a
-// tick, and its answer, which ends with a source_answer (fsw/packets/vbar.lcm). Both ends use these functions.
+// tick, and its answer, which ends with a source_answer (fsw/packets/vbar.lcm). A truth in another process is a source
+// too: the packets of its answers are the truth. Both ends use these functions.
 
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/packets/packet.h"
+#include "host_sim/mission/mission.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::external {
@@ -31,7 +33,12 @@ class SpacecraftNumbers {
   std::vector<Known> known_;
 };
 
-/// The sensor that the first batch opens.
+[[nodiscard]] SpacecraftNumbers numbers_of(const mission::Mission& mission);
+
+/// The name of the source that is the truth.
+inline constexpr std::string_view kTruth = "truth";
+
+/// The source that the first batch opens.
 struct Opening {
   std::string name;
   std::int64_t seed = 0;
@@ -44,12 +51,12 @@ struct Command {
   fsw::GpsTime effective;
 };
 
-/// A batch to the sensor.
+/// A batch to the source.
 struct Batch {
   fsw::GpsTime time;
-  std::optional<Opening> opening;  ///< the first batch only; it has no truth
+  std::optional<Opening> opening;  ///< the first batch only
   std::vector<Command> commands;
-  std::optional<twins::TruthSnapshot> truth;
+  std::optional<twins::TruthSnapshot> truth;  ///< to a sensor, after the first batch; to a truth, in the first
 };
 
 struct Answer {
@@ -65,9 +72,24 @@ struct Answer {
                                                     const SpacecraftNumbers& numbers);
 [[nodiscard]] std::vector<twins::Packet> packets_of(Answer answer, fsw::GpsTime time);
 
+/// The Earth's orientation and a state of each spacecraft. Throws as packets_of(Batch).
+[[nodiscard]] std::vector<twins::Packet> packets_of(const twins::TruthSnapshot& truth,
+                                                    const SpacecraftNumbers& numbers);
+
 /// Both throw std::runtime_error, one sentence, for packets that are no batch or no answer.
 [[nodiscard]] Batch batch_of(std::span<const twins::Packet> packets, const SpacecraftNumbers& numbers);
 [[nodiscard]] Answer answer_of(std::vector<twins::Packet> packets);
+
+/// What the answer of a truth states.
+struct StatedTruth {
+  twins::TruthSnapshot truth;  ///< spacecraft in the order of the packets
+  bool has_earth = false;
+};
+
+/// Throws std::runtime_error, what is wrong, for packets other than a true_state of some spacecraft, each once, and a
+/// true_earth or none, all of `time` and of finite content.
+[[nodiscard]] StatedTruth truth_of(std::span<const twins::Packet> packets, fsw::GpsTime time,
+                                   const SpacecraftNumbers& numbers);
 
 /// Why a packet of a sensor is not accepted; empty if it is. It must be whole, of an allowed message of finite content,
 /// and have this spacecraft and unit.

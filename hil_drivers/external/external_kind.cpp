@@ -1,6 +1,7 @@
 #include "hil_drivers/external/external_kind.h"
 
 #include <array>
+#include <filesystem>
 #include <stdexcept>
 #include <system_error>
 
@@ -8,6 +9,7 @@
 
 #include "hil_drivers/bench_process/command_line.h"
 #include "hil_drivers/external/external_source.h"
+#include "hil_drivers/external/external_truth.h"
 #include "hil_drivers/external/settings.h"
 #include "host_sim/io/byte_channels.h"
 #include "pil_bridge/remote_computer.h"
@@ -34,41 +36,44 @@ void connect_program(const Program& program, const std::vector<std::string>& arg
       std::make_unique<pil::StreamTransport>(io::adopt_socket(std::move(ours), fmt::format("descriptor {}", kLineFd)));
 }
 
+/// Connects to the program of one source. `spacecraft`: that of its packets. Throws std::runtime_error if the mission
+/// names no program for it.
+ExternalSource::Connect connection_to(const ExternalSettings& settings, const mission::Mission& mission,
+                                      const std::filesystem::path& data, const std::string& source,
+                                      std::uint8_t spacecraft) {
+  const Program* const program = settings.program_of(source);
+  if (program == nullptr)
+    throw std::runtime_error(fmt::format("testbed.external names no program for the source {}", source));
+  const std::array<bench_process::Replacement, 4> replacements{{{"{source}", source},
+                                                                {"{seed}", std::to_string(mission.seed)},
+                                                                {"{mission}", mission.file.string()},
+                                                                {"{data}", data.string()}}};
+  auto arguments = bench_process::arguments_of(program->command, replacements);
+  return [program = *program, arguments = std::move(arguments), spacecraft, start = settings.start_limit,
+          answer = settings.answer_limit]() -> std::unique_ptr<pil::FlightComputer> {
+    pil::RemoteParts parts;
+    parts.role = "program";
+    parts.name = arguments.empty() ? fmt::format("at {}:{}", program.host, program.port) : arguments.front();
+    parts.spacecraft = spacecraft;
+    parts.timing.boot_limit = start;
+    parts.timing.give_up_after = answer;
+    try {
+      connect_program(program, arguments, parts);
+    } catch (const std::system_error& error) {
+      throw std::runtime_error(error.what());
+    }
+    return std::make_unique<pil::RemoteComputer>(std::move(parts));
+  };
+}
+
 class ExternalRun final : public testbeds::TestbedRun {
  public:
   ExternalRun(const ExternalSettings& settings, const testbeds::RunContext& context)
-      : settings_(settings),
-        seed_(static_cast<std::int64_t>(context.mission.seed)),
-        mission_(context.mission.file.string()),
-        data_(context.data_directory.string()) {
-    for (const mission::Spacecraft& spacecraft : context.mission.spacecraft)
-      numbers_.add(spacecraft.name, spacecraft.number);
-  }
+      : settings_(settings), mission_(context.mission), data_(context.data_directory) {}
 
   std::unique_ptr<twins::PacketSource> make_packets(const testbeds::PacketPlan& plan) override {
-    const Program* const program = settings_.program_of(plan.name);
-    if (program == nullptr)
-      throw std::runtime_error(fmt::format("testbed.external names no program for the source {}", plan.name));
-    const std::array<bench_process::Replacement, 4> replacements{
-        {{"{source}", plan.name}, {"{seed}", std::to_string(seed_)}, {"{mission}", mission_}, {"{data}", data_}}};
-    auto arguments = bench_process::arguments_of(program->command, replacements);
-    return std::make_unique<ExternalSource>(
-        plan, seed_, numbers_,
-        [plan, program = *program, arguments = std::move(arguments), start = settings_.start_limit,
-         answer = settings_.answer_limit]() -> std::unique_ptr<pil::FlightComputer> {
-          pil::RemoteParts parts;
-          parts.role = "program";
-          parts.name = arguments.empty() ? fmt::format("at {}:{}", program.host, program.port) : arguments.front();
-          parts.spacecraft = plan.spacecraft;
-          parts.timing.boot_limit = start;
-          parts.timing.give_up_after = answer;
-          try {
-            connect_program(program, arguments, parts);
-          } catch (const std::system_error& error) {
-            throw std::runtime_error(error.what());
-          }
-          return std::make_unique<pil::RemoteComputer>(std::move(parts));
-        });
+    return std::make_unique<ExternalSource>(plan, static_cast<std::int64_t>(mission_.seed), numbers_of(mission_),
+                                            connection_to(settings_, mission_, data_, plan.name, plan.spacecraft));
   }
 
   void begin(report::RunRecord& /*record*/, const std::filesystem::path& /*folder*/) override {}
@@ -76,9 +81,8 @@ class ExternalRun final : public testbeds::TestbedRun {
 
  private:
   ExternalSettings settings_;
-  std::int64_t seed_;
-  std::string mission_, data_;
-  SpacecraftNumbers numbers_;
+  const mission::Mission& mission_;
+  std::filesystem::path data_;
 };
 
 std::shared_ptr<testbeds::TestbedRun> open(const mission::TestbedSettings& settings,
@@ -86,8 +90,16 @@ std::shared_ptr<testbeds::TestbedRun> open(const mission::TestbedSettings& setti
   return std::make_shared<ExternalRun>(dynamic_cast<const ExternalSettings&>(settings), context);
 }
 
+std::unique_ptr<testbeds::TestbedTruth> make_truth(const mission::TestbedSettings& settings,
+                                                   const testbeds::TruthPlan& plan) {
+  return std::make_unique<ExternalTruth>(
+      plan, connection_to(dynamic_cast<const ExternalSettings&>(settings), plan.mission, plan.data_directory,
+                          std::string(kTruth), plan.servicer.number));
+}
+
 }  // namespace
 
-const testbeds::TestbedKind kExternal{{"external", read_external}, open};
+const testbeds::TestbedKind kExternal{
+    {.name = "external", .read = read_external, .supplies_truth = true}, open, {}, nullptr, make_truth};
 
 }  // namespace vbar::external

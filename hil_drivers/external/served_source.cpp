@@ -27,8 +27,7 @@ ServedSource::~ServedSource() {
   }
 }
 
-std::vector<twins::Packet> ServedSource::answer(std::span<const twins::Packet> packets) {
-  const Batch batch = batch_of(packets, numbers_);
+std::vector<twins::Packet> ServedSource::answer(const Batch& batch) {
   Answer answer;
   answer.available = batch.time;
   if (batch.opening) {

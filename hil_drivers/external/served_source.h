@@ -4,7 +4,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "hil_drivers/external/exchange.h"
@@ -17,21 +16,20 @@ class ServedSource {
   /// The source of a name and a seed. Throws std::runtime_error if there is none.
   using Make = std::function<std::unique_ptr<twins::PacketSource>(const Opening&)>;
 
-  ServedSource(Make make, SpacecraftNumbers numbers) : make_(std::move(make)), numbers_(std::move(numbers)) {}
+  explicit ServedSource(Make make) : make_(std::move(make)) {}
   ~ServedSource();
   ServedSource(const ServedSource&) = delete;
   ServedSource& operator=(const ServedSource&) = delete;
 
-  /// The answer to a batch, pending packets included. Throws std::runtime_error for one that is no batch, or that has
-  /// no truth, and what the source throws.
-  std::vector<twins::Packet> answer(std::span<const twins::Packet> batch);
+  /// The answer to a batch, pending packets included. Throws std::runtime_error for one that has no truth, and what the
+  /// source throws.
+  std::vector<twins::Packet> answer(const Batch& batch);
 
  private:
   void start(const Batch& batch);
   [[nodiscard]] Answer measure(const Batch& batch);
 
   Make make_;
-  SpacecraftNumbers numbers_;
   std::unique_ptr<twins::PacketSource> source_;
 };
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "hil_drivers/testbeds.h"
 #include "host_sim/app/changed_telecommands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/flight_recorder.h"
@@ -69,6 +70,21 @@ Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraf
   }
   timetable.first_packets = telecommands_at_start(mission, servicer, data_directory, truth);
   return timetable;
+}
+
+/// The truth of a testbed, if the mission has it as its source; `model` stands at the start.
+std::unique_ptr<testbeds::TestbedTruth> truth_of_testbed(const mission::Mission& mission,
+                                                         const mission::Spacecraft& servicer,
+                                                         const std::filesystem::path& data_directory,
+                                                         FlownTruth& model) {
+  if (mission.truth_source == mission::kTruthModel) return nullptr;
+  const testbeds::TestbedKind* const kind = testbeds::find_testbed(mission.truth_source);
+  const auto testbed = std::ranges::find(mission.testbeds, mission.truth_source, &mission::Testbed::name);
+  if (kind == nullptr || kind->make_truth == nullptr || testbed == mission.testbeds.end())
+    throw std::logic_error("the mission has no testbed \"" + mission.truth_source + "\" that supplies the truth");
+  return kind->make_truth(*testbed->settings,
+                          {mission, servicer, data_directory, model.snapshot(twins::TruthDetail::kAccelerations),
+                           model.model().data().earth_orientation});
 }
 
 /// What a run shows, for the record.
@@ -238,17 +254,33 @@ AssembledMission::AssembledMission(const mission::Mission& mission, const std::f
       servicer_(complete_servicer(mission)),
       data_directory_(data_directory),
       faults_(std::make_shared<faults::FaultSchedule>(mission.faults, servicer_.name, servicer_.observes())),
-      truth_(mission, servicer_, data_directory),
-      made_(with_faults(make_sources(mission, servicer_, data_directory, &truth_), faults_)),
+      model_(mission, servicer_, data_directory),
+      of_testbed_(truth_of_testbed(mission, servicer_, data_directory, model_)),
+      made_(with_faults(make_sources(mission, servicer_, data_directory, &outlook()), faults_)),
       thruster_(with_faults(make_thruster(mission, servicer_), faults_)),
       board_link_(mission.board_link, engine::RandomStream(mission.seed, servicer_.name + "/board_link")),
-      timetable_(timetable_of(mission, servicer_, data_directory, truth_.model())),
+      timetable_(timetable_of(mission, servicer_, data_directory, model_.model())),
       telecommands_(timetable_.first_packets) {
-  check_guidance_domain(mission, servicer_, truth_.model().state(servicer_.name));
+  check_guidance_domain(mission, servicer_, model_.model().state(servicer_.name));
+}
+
+twins::TrueWorld& AssembledMission::truth() {
+  if (of_testbed_) return *of_testbed_;
+  return model_;
+}
+
+twins::TruthOutlook& AssembledMission::outlook() {
+  if (of_testbed_) return *of_testbed_;
+  return model_;
+}
+
+void AssembledMission::start() {
+  if (of_testbed_) of_testbed_->start();
+  started_.start(timetable_.start);
 }
 
 void AssembledMission::branch_from(const mission::Mission& before, fsw::GpsTime time) {
-  timetable_.first_packets = telecommands_at_start(before, flying_spacecraft(before), data_directory_, truth_.model());
+  timetable_.first_packets = telecommands_at_start(before, flying_spacecraft(before), data_directory_, model_.model());
   timetable_.uplink = {time, changed_telecommands(timetable_.first_packets, telecommands_, time)};
 }
 
@@ -274,7 +306,7 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
   pil::FlightComputer& flight_computer =
       faults::concern_computer(mission_.faults) ? faulty_computer : surroundings.flight_computer;
   SelectedClock wall(surroundings.wall);
-  const World world{truth_,
+  const World world{truth(),
                     made_.sources,
                     *thruster_,
                     flight_computer,
@@ -297,6 +329,10 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
     for (const auto& testbed : made_.testbeds) testbed->finish();
     recording.finish();
     summarise_mission(mission_, servicer_, record.summary);
+    if (of_testbed_) {
+      of_testbed_->stop();
+      record.summary.sources.push_back({"truth", mission_.truth_source, of_testbed_->exchanges(), 0, {}, 0, 0.0});
+    }
     summarise_run(facts_, made_.sources, record.summary);
     record.summary.flight_software = surroundings.flight_computer.description();
     record.summary.flight_step.unit = facts_.cost_unit;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "hil_drivers/testbed.h"
 #include "host_sim/app/flown_truth.h"
 #include "host_sim/app/simulation.h"
 #include "host_sim/app/started_sources.h"
@@ -42,8 +43,8 @@ class AssembledMission {
   /// differ are sent to the flight software then. Throws std::runtime_error for one that cannot be given in flight.
   void branch_from(const mission::Mission& before, fsw::GpsTime time);
 
-  /// Makes the sources ready, before there is a run folder. Throws as StartedSources::start.
-  void start() { started_.start(timetable_.start); }
+  /// Makes the truth and the sources ready, before there is a run folder. Throws as StartedSources::start.
+  void start();
 
   /// Flies and fills the record, then stops the sources, however the run ended. Throws as Simulation::run; the record
   /// then holds what was flown. Starts the sources if nobody did. To be called once.
@@ -54,15 +55,19 @@ class AssembledMission {
 
   [[nodiscard]] const RunFacts& facts() const { return facts_; }
   /// On data of the truth that are missing or predicted.
-  [[nodiscard]] const std::vector<std::string>& data_notes() const { return truth_.model().data().notes; }
+  [[nodiscard]] const std::vector<std::string>& data_notes() const { return model_.model().data().notes; }
   [[nodiscard]] std::span<const Source> sources() const { return made_.sources; }
 
  private:
+  [[nodiscard]] twins::TrueWorld& truth();
+  [[nodiscard]] twins::TruthOutlook& outlook();
+
   const mission::Mission& mission_;
   const mission::Spacecraft& servicer_;
   std::filesystem::path data_directory_;
   std::shared_ptr<faults::FaultSchedule> faults_;
-  FlownTruth truth_;
+  FlownTruth model_;                                    ///< stays at the start if the truth is a testbed's
+  std::unique_ptr<testbeds::TestbedTruth> of_testbed_;  ///< null: the truth is the model
   sensors::MadeSources made_;
   std::unique_ptr<twins::Actuator> thruster_;
   engine::LinkModel board_link_;

@@ -5,6 +5,7 @@
 
 #include "host_sim/app/initial_attitudes.h"
 #include "host_sim/app/initial_orbits.h"
+#include "host_sim/truth/extrapolation.h"
 
 namespace vbar::app {
 
@@ -66,12 +67,8 @@ twins::TruthSnapshot FlownTruth::at(fsw::GpsTime time) {
     one.orbit = truth_.state_ahead(indices_[k], time);
     one.acceleration_eci = truth_.acceleration_eci(indices_[k], one.orbit);
     if (!one.attitude) continue;
-    const fsw::Vector3 acceleration = one.angular_acceleration_body.value_or(fsw::Vector3::Zero());
-    const fsw::Vector3 turn = dt * one.attitude->rate_body + 0.5 * dt * dt * acceleration;
-    const double angle = turn.norm();
-    if (angle > 0.0)
-      one.attitude->q_body_eci = Eigen::Quaterniond(Eigen::AngleAxisd(-angle, turn / angle)) * one.attitude->q_body_eci;
-    one.attitude->rate_body += dt * acceleration;
+    one.attitude =
+        truth::attitude_ahead(*one.attitude, one.angular_acceleration_body.value_or(fsw::Vector3::Zero()), dt);
   }
   return truth;
 }

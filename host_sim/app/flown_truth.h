@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/app/true_world.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/truth_model.h"
+#include "host_sim/twins/true_world.h"
 
 namespace vbar::app {
 
-class FlownTruth final : public TrueWorld, public twins::TruthOutlook {
+class FlownTruth final : public twins::TrueWorld, public twins::TruthOutlook {
  public:
   /// At the mission's start; `servicer` is the spacecraft that flies. Throws what truth, orbits and attitudes throw.
   FlownTruth(const mission::Mission& mission, const mission::Spacecraft& servicer,

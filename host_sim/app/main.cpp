@@ -223,7 +223,8 @@ int execute(int argc, char** argv) {
 
   ServeOptions serve;
   CLI::App* serve_app = program.add_subcommand(
-      "serve", "be the digital sensor of a run that has it as testbed.external (docs/external_sources.md)");
+      "serve",
+      "be a digital sensor, or the truth, of a run that has it as testbed.external (docs/external_sources.md)");
   serve_app->add_option("mission", serve.mission, kMissionHelp)->required();
   serve_app->add_option("--stream", serve.stream, "descriptor of the line, inherited")->check(CLI::NonNegativeNumber);
   add_set(serve_app, serve.overrides);

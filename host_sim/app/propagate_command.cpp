@@ -33,6 +33,9 @@ fsw::GpsTime now() {
 int propagate_command(const PropagateOptions& options) {
   const mission::Mission mission =
       sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
+  if (mission.truth_source != mission::kTruthModel)
+    throw Refused(fmt::format("truth.source: found \"{}\"; accepted: model, which is what vbar propagate propagates",
+                              mission.truth_source));
   Propagation propagation = [&] {
     try {
       return Propagation(mission, mission::data_directory());

@@ -98,7 +98,10 @@ std::optional<BranchPoint> branch_point(const FlownRun& run) {
 }
 
 /// Only what is digital or recorded can be flown again.
-void refuse_testbeds(const AssembledMission& assembled) {
+void refuse_testbeds(const mission::Mission& mission, const AssembledMission& assembled) {
+  if (mission.truth_source != mission::kTruthModel)
+    throw Refused(
+        fmt::format("truth.source: a run with the truth of testbed {} cannot be flown again", mission.truth_source));
   for (const Source& source : assembled.sources()) {
     if (testbeds::find_testbed(source.kind) != nullptr)
       throw Refused(
@@ -109,7 +112,7 @@ void refuse_testbeds(const AssembledMission& assembled) {
 std::unique_ptr<AssembledMission> assemble_again(const mission::Mission& mission,
                                                  const std::optional<BranchPoint>& branch) {
   auto assembled = assemble(mission, false);
-  refuse_testbeds(*assembled);
+  refuse_testbeds(mission, *assembled);
   try {
     if (branch) assembled->branch_from(branch->before, branch->time());
     assembled->start();

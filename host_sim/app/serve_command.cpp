@@ -1,16 +1,20 @@
-// vbar serve: a digital sensor of a mission at the other end of an exchange with a run (hil_drivers/external).
+// vbar serve: a digital sensor of a mission, or its truth, at the other end of an exchange with a run
+// (hil_drivers/external).
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include <fmt/core.h>
 
 #include "hil_drivers/external/batch_server.h"
 #include "hil_drivers/external/served_source.h"
+#include "hil_drivers/external/served_truth.h"
 #include "host_sim/app/build_info.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/exit_codes.h"
+#include "host_sim/app/flown_truth.h"
 #include "host_sim/io/byte_channels.h"
 #include "host_sim/mission/catalogue.h"
 #include "host_sim/mission/data_directory.h"
@@ -31,19 +35,43 @@ std::unique_ptr<twins::PacketSource> make_source(const mission::Mission& mission
   return std::move(found->packets);
 }
 
+/// Answers as the source that the first batch names.
+class Served {
+ public:
+  explicit Served(const mission::Mission& mission)
+      : mission_(mission),
+        numbers_(external::numbers_of(mission)),
+        source_([&mission](const external::Opening& opening) { return make_source(mission, opening); }) {}
+
+  std::vector<twins::Packet> answer(std::span<const twins::Packet> packets) {
+    const external::Batch batch = external::batch_of(packets, numbers_);
+    if (!truth_ && batch.opening && batch.opening->name == external::kTruth) truth_.emplace(make_truth(), numbers_);
+    return truth_ ? truth_->answer(batch) : source_.answer(batch);
+  }
+
+ private:
+  [[nodiscard]] external::ServedTruth::Make make_truth() const {
+    return [&mission = mission_] {
+      return std::make_unique<FlownTruth>(mission, flying_spacecraft(mission), mission::data_directory());
+    };
+  }
+
+  const mission::Mission& mission_;
+  external::SpacecraftNumbers numbers_;
+  external::ServedSource source_;
+  std::optional<external::ServedTruth> truth_;
+};
+
 }  // namespace
 
 int serve_command(const ServeOptions& options) {
   const mission::Mission mission =
       sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
-  external::SpacecraftNumbers numbers;
-  for (const mission::Spacecraft& spacecraft : mission.spacecraft) numbers.add(spacecraft.name, spacecraft.number);
-  external::ServedSource source([&](const external::Opening& opening) { return make_source(mission, opening); },
-                                std::move(numbers));
+  Served served(mission);
   pil::StreamTransport line(
       io::adopt_socket(io::FileDescriptor(options.stream), fmt::format("descriptor {}", options.stream)));
   external::BatchServer server(line, fmt::format("vbar {}, {}", build_version(), mission.name),
-                               [&](std::span<const twins::Packet> batch) { return source.answer(batch); });
+                               [&](std::span<const twins::Packet> batch) { return served.answer(batch); });
   server.run(kPatience);
   return kDone;
 }

@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "host_sim/app/run_observer.h"
-#include "host_sim/app/true_world.h"
 #include "host_sim/engine/cadence.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/event_queue.h"
@@ -26,6 +25,7 @@
 #include "host_sim/twins/actuator.h"
 #include "host_sim/twins/packet_encoder.h"
 #include "host_sim/twins/packet_source.h"
+#include "host_sim/twins/true_world.h"
 #include "pil_bridge/flight_computer.h"
 
 namespace vbar::app {
@@ -58,7 +58,7 @@ struct Timetable {
 
 /// What takes part in a run. All references must outlive it.
 struct World {
-  TrueWorld& truth;
+  twins::TrueWorld& truth;
   std::span<const Source> sources;
   twins::Actuator& thruster;
   pil::FlightComputer& flight_computer;

@@ -21,7 +21,7 @@ void without_installation(const TableReader& document, Mission& mission, const I
 
 /// In the order of reading, because later ones depend on the results of earlier ones.
 constexpr Section kSections[] = {{"mission", without_installation<read_general>},
-                                 {"truth", without_installation<read_truth>},
+                                 {"truth", read_truth},
                                  {"testbed", read_testbeds},
                                  {"waypoint", without_installation<read_waypoints>},
                                  {"spacecraft", read_spacecraft},

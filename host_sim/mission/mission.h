@@ -26,6 +26,8 @@
 
 namespace vbar::mission {
 
+inline constexpr std::string_view kTruthModel = "model";  ///< source of the truth: vbar's truth model
+
 inline constexpr std::size_t kMaxWaypoints = 16;  ///< of one waypoint telecommand
 
 /// Orbit of a spacecraft at the epoch.
@@ -273,7 +275,8 @@ struct Mission {
   engine::Cadence step{fsw::GpsTime{},
                        fsw::duration_of_seconds(60)};  ///< of the flight software, the first at the start
   std::uint64_t seed = 1;
-  truth::TruthSettings truth;  ///< all but the data folder, which the program determines
+  truth::TruthSettings truth;             ///< all but the data folder, which the program determines
+  std::string truth_source{kTruthModel};  ///< or the name of a testbed; the model then gives the states at the start
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
   std::optional<vbar::safety_configuration> safety;  ///< without it neither retreat nor guard

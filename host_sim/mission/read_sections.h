@@ -12,7 +12,7 @@ inline constexpr double kHour_s = 3600.0;
 inline constexpr double kLongestMission_h = 2000.0;  ///< below 2^53 ns, so that hours convert to exact nanoseconds
 
 void read_general(const TableReader& document, Mission& mission);                                     // [mission]
-void read_truth(const TableReader& document, Mission& mission);                                       // [truth]
+void read_truth(const TableReader& document, Mission& mission, const Installation& installation);     // [truth]
 void read_testbeds(const TableReader& document, Mission& mission, const Installation& installation);  // [testbed.*]
 void read_waypoints(const TableReader& document, Mission& mission);                                   // [[waypoint]]
 void read_spacecraft(const TableReader& document, Mission& mission,

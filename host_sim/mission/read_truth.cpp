@@ -22,10 +22,23 @@ truth::ForceModel read_forces(const TableReader& section) {
   return forces;
 }
 
+/// The truth model, or a testbed of the mission that supplies the truth.
+std::string read_truth_source(const TableReader& section, const TableReader& document,
+                              const Installation& installation) {
+  std::vector<std::string_view> accepted{kTruthModel};
+  for (const TestbedReader* const testbed : installation.testbeds)
+    if (testbed->supplies_truth) accepted.push_back(testbed->name);
+  const std::string source = section.choice("source", accepted, kTruthModel);
+  if (source != kTruthModel && !document.table("testbed").has(source))
+    section.refuse_value("source", "model, as the mission has no [testbed." + source + "]");
+  return source;
+}
+
 }  // namespace
 
-void read_truth(const TableReader& document, Mission& mission) {
+void read_truth(const TableReader& document, Mission& mission, const Installation& installation) {
   const TableReader section = document.table("truth");
+  mission.truth_source = read_truth_source(section, document, installation);
   truth::TruthSettings& truth = mission.truth;
   truth.epoch = mission.epoch;
   truth.end = mission.end_time();

@@ -44,6 +44,7 @@ struct TestbedReader {
   std::shared_ptr<const TestbedSettings> (*read)(const TableReader& section);
   /// The mode that the clock of a run with these settings must have. Null, or no value: any.
   std::optional<engine::ClockMode> (*clock_mode)(const TestbedSettings& settings) = nullptr;
+  bool supplies_truth = false;  ///< whether it can be the source of a run's truth
 };
 
 /// The sensors, testbeds and clocks of a program.

@@ -73,6 +73,9 @@ std::string overview(const RunRecord& record) {
   for (const std::string& note : s.data_notes) facts.push_back({"data", note, true});
   append_provenance(s.provenance, facts);
   for (const SourceFigures& source : s.sources)
+    if (source.name == "truth")
+      facts.push_back({"truth", fmt::format("of testbed {}, {} answers", source.kind, source.epochs)});
+  for (const SourceFigures& source : s.sources)
     if (source.failures > 0)
       facts.push_back({"failures of " + source.name, fmt::format("{} of {} epochs; the last: {}", source.failures,
                                                                  source.epochs, source.last_failure)});

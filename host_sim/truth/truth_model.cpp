@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/truth/extrapolation.h"
+
 namespace vbar::truth {
 namespace {
 
@@ -39,11 +41,6 @@ void check(const TruthSettings& settings) {
   if (settings.threads < 1) {
     throw std::invalid_argument(fmt::format("truth threads {}; accepted is 1 or more", settings.threads));
   }
-}
-
-fsw::Vector3 central_acceleration(double gm, const fsw::Vector3& position_eci) {
-  const double r = position_eci.norm();
-  return -gm / (r * r * r) * position_eci;
 }
 
 TruthStatistics statistics_of(const SpacecraftPropagator& spacecraft) {
@@ -142,28 +139,13 @@ fsw::Vector3 TruthModel::acceleration_eci(std::size_t index, const fsw::orbit::C
   return central_acceleration(spacecraft_.at(index)->dynamics().gm(), state.position_eci) + perturbation_eci(index);
 }
 
-// Classical Runge-Kutta of fourth order; over a second its own error is far below a nanometre.
 fsw::orbit::CartesianState TruthModel::state_ahead(std::size_t index, fsw::GpsTime time) const {
   const SpacecraftPropagator& spacecraft = *spacecraft_.at(index);
   const double seconds = seconds_after_epoch(time);
   if (!spacecraft.needs_steps_to(seconds)) return spacecraft.state_at(seconds);
-
   const double gm = spacecraft_.at(index)->dynamics().gm();
-  const fsw::Vector3 perturbation = perturbation_eci(index);
-  const auto acceleration = [&](const fsw::Vector3& r) -> fsw::Vector3 {
-    return central_acceleration(gm, r) + perturbation;
-  };
-  const fsw::orbit::CartesianState last = spacecraft.state_at(spacecraft.known_until());
-  const double h = seconds - spacecraft.known_until();
-  const fsw::Vector3 &r = last.position_eci, &v = last.velocity_eci;
-  const fsw::Vector3 a1 = acceleration(r);
-  const fsw::Vector3 a2 = acceleration(r + h / 2.0 * v);
-  const fsw::Vector3 a3 = acceleration(r + h / 2.0 * v + h * h / 4.0 * a1);
-  const fsw::Vector3 a4 = acceleration(r + h * v + h * h / 2.0 * a2);
-  fsw::orbit::CartesianState ahead;
-  ahead.position_eci = r + h * v + h * h / 6.0 * (a1 + a2 + a3);
-  ahead.velocity_eci = v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
-  return ahead;
+  return orbit_ahead(spacecraft.state_at(spacecraft.known_until()), gm, perturbation_eci(index),
+                     seconds - spacecraft.known_until());
 }
 
 void TruthModel::apply_impulse_rtn(std::size_t index, const fsw::Vector3& dv_rtn) {

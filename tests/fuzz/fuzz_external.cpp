@@ -1,5 +1,5 @@
-// The exchange with a sensor in another process, at both ends. Promises: one std::runtime_error, or an answer whose
-// packets are checked and a batch that encodes back to the same packets.
+// The exchange with a sensor in another process, at both ends. Promises: one std::runtime_error, or an answer or a
+// truth whose packets are checked, and a batch that encodes back to the same packets.
 //
 // The input is a list of packets: kind, two bytes of length and fields. Those of a known kind are given header, type
 // hash and CRC, which a fuzzer does not guess.
@@ -88,11 +88,27 @@ void try_answer(std::vector<Packet> sent) {
       VBAR_FUZZ_EXPECT(packets::decode<vbar::range_measurement>(packets::parse_packet(packet).value()).ok());
 }
 
+void try_truth(std::span<const Packet> sent) {
+  external::SpacecraftNumbers numbers;
+  for (int number = 0; number < 3; ++number)
+    numbers.add("s" + std::to_string(number), static_cast<std::uint8_t>(number));
+  external::StatedTruth stated;
+  try {
+    stated = external::truth_of(sent, {}, numbers);
+  } catch (const std::runtime_error&) {
+    return;
+  }
+  VBAR_FUZZ_EXPECT(stated.truth.spacecraft.size() <= 3);
+  const auto again = external::truth_of(external::packets_of(stated.truth, numbers), {}, numbers);
+  VBAR_FUZZ_EXPECT(external::packets_of(again.truth, numbers) == external::packets_of(stated.truth, numbers));
+}
+
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::vector<Packet> sent = packets_in({data, size});
   try_batch(sent);
   try_answer(sent);
+  try_truth(sent);
   return 0;
 }

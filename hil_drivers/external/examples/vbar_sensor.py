@@ -1,4 +1,4 @@
-"""The exchange of a run of vbar with a sensor in Python, over the line that `testbed.external` hands to its program.
+"""The exchange of a run of vbar with a sensor or a truth in Python, over the line that `testbed.external` hands to its program.
 
     import vbar_sensor
     vbar_sensor.serve(MySensor)
@@ -7,6 +7,12 @@ MySensor(start, header) is made once, of the source_start and of the spacecraft 
 functions: first_epoch_ns(start_of_run_ns), and measure(time_ns, states, earth, commands), which returns the messages and the time of the next
 epoch, or None after the last. All times are GPS time in ns. `states` maps spacecraft numbers to true_state, `commands` are pairs
 of the time from which one holds and its packet. Messages are the classes that lcm-gen makes of vbar.lcm.
+
+    vbar_sensor.serve_truth(MyTruth)
+
+MyTruth(start, time_ns, states, earth) is made once, with the states from which the spacecraft start. Its function advance(time_ns, commands)
+returns pairs of a message and a spacecraft number: a true_state of each spacecraft at that time and, if it has one, a true_earth. `commands`
+are what has happened at the present states, in order: tuples of message, time and spacecraft number, of executed_maneuver and pointing_command.
 """
 import binascii
 import socket
@@ -75,42 +81,77 @@ def packet_of(message, time_ns, spacecraft, unit, count):
     return head + payload + struct.pack(">H", binascii.crc_hqx(head + payload, 0xFFFF))
 
 
+def read_packet(packet):
+    """Message, time in ns, spacecraft and unit."""
+    name = NAMES[struct.unpack(">H", packet[:2])[0] & 0x7FF]
+    return getattr(vbar, name).decode(packet[16:-2]), *struct.unpack(">qBB", packet[6:16])
+
+
+class Batch:
+    """What the packets of a batch hold."""
+
+    def __init__(self, packets):
+        self.start, self.header, self.states, self.earth, self.commands = None, None, {}, None, []
+        for packet in packets:
+            message, self.time_ns, spacecraft, unit = read_packet(packet)
+            if isinstance(message, vbar.source_start):
+                self.start, self.header = message, (spacecraft, unit)
+            elif isinstance(message, vbar.true_state):
+                self.states[spacecraft] = message
+            elif isinstance(message, vbar.true_earth):
+                self.earth = message
+            elif isinstance(message, vbar.source_command):
+                self.commands.append((message.effective_ns, bytes(message.packet[:message.count])))
+
+
+class Numbered:
+    """Makes packets with the sequence counts of their messages."""
+
+    def __init__(self):
+        self.counts = {}
+
+    def packet(self, message, time_ns, spacecraft, unit):
+        name = type(message).__name__
+        self.counts[name] = self.counts.get(name, -1) + 1
+        return packet_of(message, time_ns, spacecraft, unit, self.counts[name])
+
+
 class Served:
     """Answers batches with the messages of the sensor."""
 
     def __init__(self, make):
-        self.make, self.sensor, self.counts = make, None, {}
+        self.make, self.sensor, self.header, self.numbered = make, None, None, Numbered()
 
-    def answer(self, batch):
-        start, states, earth, commands = None, {}, None, []
-        for packet in batch:
-            apid = struct.unpack(">H", packet[:2])[0] & 0x7FF
-            time_ns, spacecraft, unit = struct.unpack(">qBB", packet[6:16])
-            name = NAMES[apid]
-            message = getattr(vbar, name).decode(packet[16:-2])
-            if name == "source_start":
-                start = message
-                self.header = (spacecraft, unit)
-            elif name == "true_state":
-                states[spacecraft] = message
-            elif name == "true_earth":
-                earth = message
-            elif name == "source_command":
-                commands.append((message.effective_ns, bytes(message.packet[:message.count])))
+    def answer(self, packets):
+        batch = Batch(packets)
         answer = vbar.source_answer()
-        answer.available_ns = time_ns
-        if start is not None:
-            self.sensor = self.make(start, self.header)
-            messages, answer.next_epoch_ns = [], self.sensor.first_epoch_ns(time_ns)
+        answer.available_ns = batch.time_ns
+        if batch.start is not None:
+            self.header = batch.header
+            self.sensor = self.make(batch.start, batch.header)
+            messages, answer.next_epoch_ns = [], self.sensor.first_epoch_ns(batch.time_ns)
         else:
-            messages, next_epoch_ns = self.sensor.measure(time_ns, states, earth, commands)
+            messages, next_epoch_ns = self.sensor.measure(batch.time_ns, batch.states, batch.earth, batch.commands)
             answer.next_epoch_ns = next_epoch_ns or 0
-        return [self.numbered(message, time_ns) for message in [*messages, answer]]
+        return [self.numbered.packet(message, batch.time_ns, *self.header) for message in [*messages, answer]]
 
-    def numbered(self, message, time_ns):
-        name = type(message).__name__
-        self.counts[name] = self.counts.get(name, -1) + 1
-        return packet_of(message, time_ns, *self.header, self.counts[name])
+
+class ServedTruth:
+    """Answers batches with the states of all spacecraft."""
+
+    def __init__(self, make):
+        self.make, self.truth, self.numbered = make, None, Numbered()
+
+    def answer(self, packets):
+        batch = Batch(packets)
+        answer = vbar.source_answer()
+        answer.available_ns = batch.time_ns
+        stated = []
+        if batch.start is not None:
+            self.truth = self.make(batch.start, batch.time_ns, batch.states, batch.earth)
+        else:
+            stated = self.truth.advance(batch.time_ns, [read_packet(packet)[:3] for _, packet in batch.commands])
+        return [self.numbered.packet(message, batch.time_ns, spacecraft, 0) for message, spacecraft in [*stated, (answer, 0)]]
 
 
 def send_window(line, session, step, answer, first, acknowledged):
@@ -123,7 +164,16 @@ def send_window(line, session, step, answer, first, acknowledged):
 
 def serve(make, name="sensor in Python"):
     """Until the goodbye of the run."""
-    line, served = Line(), Served(make)
+    answer_batches(Served(make), name)
+
+
+def serve_truth(make, name="truth in Python"):
+    """Until the goodbye of the run."""
+    answer_batches(ServedTruth(make), name)
+
+
+def answer_batches(served, name):
+    line = Line()
     batch, answer, answered, sent = [], [], None, 0
     for kind, session, step, index, flags, payload in line.frames():
         if kind == HELLO:

@@ -74,6 +74,7 @@ mission::Mission with_true_states(mission::Mission mission, const std::string& s
     spacecraft.flight_computer = mission::FlightComputer{};
   }
   mission.clock = {};
+  mission.truth_source = mission::kTruthModel;
   return mission;
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Sensors in other processes (testbed.external): vbar's own receivers served by a second process, a range finder in Python and one in C,
-and programs that end, hang or send what is not theirs."""
+"""Sensors and the truth in other processes (testbed.external): vbar's own receivers and truth served by a second process, a range finder
+in Python and one in C, a truth in Python, and programs that end, hang or send what is not theirs."""
 import contextlib
 import csv
 import os
@@ -48,38 +48,55 @@ vbar_sensor.serve(Sensor)
 """
 
 
-def rows_of(folder):
-    with open(folder / "range_finder.csv", newline="") as table:
+EXTERNAL_TRUTH = """
+extends = "{missions}/external_truth.toml"
+[mission]
+name = "truth"
+duration_h = 0.5
+[testbed.external]
+answer_limit_s = 2.0
+[[testbed.external.source]]
+name = "truth"
+program = "{python} {script}"
+"""
+TRUTH_IN_PYTHON = """
+import os, sys, time
+sys.path.insert(0, "{examples}")
+import two_body_truth, vbar, vbar_sensor
+class Truth(two_body_truth.TwoBodyTruth):
+    times = 0
+    def advance(self, time_ns, commands):
+        stated = super().advance(time_ns, commands)
+        self.times += 1
+        servicer = stated[0][0]
+        {change}
+        return stated
+vbar_sensor.serve_truth(Truth)
+"""
+
+
+def rows_of(folder, table="range_finder"):
+    with open(folder / f"{table}.csv", newline="") as table:
         return list(csv.DictReader(table))
 
 
-class External(unittest.TestCase):
+class Programs(unittest.TestCase):
+    """What both classes below have."""
+
     @classmethod
     def setUpClass(cls):
         cls.folder = cls.enterClassContext(scratch())
         cls.python = {"PYTHONPATH": BINARY / "python"}
 
-    def mission(self, program):
-        file = self.folder / "external.toml"
-        file.write_text(EXTERNAL_LIDAR.format(missions=SOURCE / "missions", program=program))
-        return file
-
-    def fly_sensor(self, measure):
-        """Flies with a sensor in Python that does something else at its epochs; what vbar says."""
-        script = self.folder / "sensor.py"
-        script.write_text(SENSOR_IN_PYTHON.format(measure=measure))
-        mission = self.mission(f'program = "{sys.executable} {script}"')
-        return vbar("run", mission, "--quiet", "--force", "--out", self.folder / "run", **self.python)
-
-    def assert_one_sentence(self, result, *parts):
-        self.assertEqual(result.returncode, 1, result.stderr)
+    def assert_one_sentence(self, result, *parts, code=1):
+        self.assertEqual(result.returncode, code, result.stderr)
         self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
         for part in parts:
             self.assertIn(part, result.stderr)
         self.assertNotIn("Traceback (most recent call last)", result.stderr.split("its last output")[0])
 
     def served(self, name, duration, more=""):
-        """A mission whose sensors vbar serves in other processes, where their source is external."""
+        """A mission whose external sources vbar serves in other processes."""
         file = self.folder / "served.toml"
         original = SOURCE / "missions" / f"{name}.toml"
         file.write_text(f"""
@@ -97,6 +114,36 @@ program = "vbar serve {original} --set mission.seed={{seed}} --set {duration}"
         without = fly(self.folder / "without", *settings, *external, mission=mission)
         self.assertEqual(hashes(within), hashes(without))
         self.assertIn("external", {source["kind"] for source in without["sources"]})
+        return within, without
+
+    def kill_the_program_of(self, mission):
+        """Kills the program once the run has begun; exit code and message of the run."""
+        run = start("run", mission, "--quiet", "--force", "--out", self.folder / "killed",
+                    env=os.environ | {"PYTHONPATH": str(BINARY / "python")})
+        with contextlib.ExitStack() as stack:
+            stack.callback(run.kill)
+            deadline = time.monotonic() + 20
+            while not (self.folder / "killed" / "packets.lcmlog").exists() and time.monotonic() < deadline:
+                time.sleep(0.02)
+            children = children_of(run.pid)
+            os.kill(children[0], signal.SIGKILL)
+            _, message = run.communicate(timeout=30)
+        self.assertFalse(is_running(children[0]))
+        return run.returncode, message
+
+
+class External(Programs):
+    def mission(self, program):
+        file = self.folder / "external.toml"
+        file.write_text(EXTERNAL_LIDAR.format(missions=SOURCE / "missions", program=program))
+        return file
+
+    def fly_sensor(self, measure):
+        """Flies with a sensor in Python that does something else at its epochs; what vbar says."""
+        script = self.folder / "sensor.py"
+        script.write_text(SENSOR_IN_PYTHON.format(measure=measure))
+        mission = self.mission(f'program = "{sys.executable} {script}"')
+        return vbar("run", mission, "--quiet", "--force", "--out", self.folder / "run", **self.python)
 
     def test_receivers_in_other_processes_give_the_same_bits(self):
         for seed in (1, 2):
@@ -167,20 +214,10 @@ program = "vbar serve {original} --set mission.seed={{seed}} --set {duration}"
     def test_program_that_is_killed(self):
         script = self.folder / "slow.py"
         script.write_text(SENSOR_IN_PYTHON.format(measure="time.sleep(0.05)"))
-        run = start("run", self.mission(f'program = "{sys.executable} {script}"'), "--quiet", "--out", self.folder / "killed",
-                    env=os.environ | {"PYTHONPATH": str(BINARY / "python")})
-        with contextlib.ExitStack() as stack:
-            stack.callback(run.kill)
-            deadline = time.monotonic() + 20
-            while not (self.folder / "killed" / "packets.lcmlog").exists() and time.monotonic() < deadline:
-                time.sleep(0.02)
-            children = children_of(run.pid)
-            os.kill(children[0], signal.SIGKILL)
-            _, message = run.communicate(timeout=30)
-        self.assertEqual(run.returncode, 1, message)
+        code, message = self.kill_the_program_of(self.mission(f'program = "{sys.executable} {script}"'))
+        self.assertEqual(code, 1, message)
         self.assertIn("killed by signal 9", message)
         self.assertEqual(message.count("\n"), 1, message)
-        self.assertFalse(is_running(children[0]))
 
     def test_invalid_measurements(self):
         for measure, fault in (
@@ -208,6 +245,109 @@ program = "vbar serve {original} --set mission.seed={{seed}} --set {duration}"
             result = vbar("run", mission, "--quiet", "--force", "--out", self.folder / "run")
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(fault, result.stderr)
+
+
+class ExternalTruth(Programs):
+    def mission(self, change):
+        """With a truth in Python that does something else."""
+        script = self.folder / "truth.py"
+        script.write_text(TRUTH_IN_PYTHON.format(examples=SOURCE / "hil_drivers" / "external" / "examples", change=change))
+        file = self.folder / "truth.toml"
+        file.write_text(EXTERNAL_TRUTH.format(missions=SOURCE / "missions", python=sys.executable, script=script))
+        return file
+
+    def fly_truth(self, change):
+        return vbar("run", self.mission(change), "--quiet", "--force", "--out", self.folder / "run", **self.python)
+
+    def assert_same_truth(self):
+        for table in ("truth", "attitude", "waypoints"):
+            of_both = [(self.folder / run / f"{table}.csv").read_bytes() for run in ("within", "without")]
+            self.assertEqual(*of_both, table)
+
+    def test_truth_of_another_process_gives_the_same_bits(self):
+        for seed in (1, 2):
+            mission = self.served("experiment3", SHORT)
+            _, without = self.assert_same_bits(mission, ["truth.source=external"], SHORT, f"mission.seed={seed}")
+            self.assert_same_truth()
+            truth = next(source for source in without["sources"] if source["name"] == "truth")
+            self.assertEqual(truth["kind"], "external")
+            # Steps and measurements are 10 s apart: one exchange serves both.
+            self.assertEqual(truth["epochs"], 37)
+        self.assertIn("of testbed external", (self.folder / "without" / "report.html").read_text())
+        replayed = vbar("replay", self.folder / "without")
+        self.assertEqual(replayed.returncode, 0, replayed.stderr)
+
+    def test_truth_and_receivers_of_other_processes_give_the_same_bits(self):
+        self.assert_same_bits(self.served("experiment3", SHORT), ["truth.source=external", *EXTERNAL_RECEIVERS], SHORT)
+
+    def test_pointing_and_images_of_another_truth_give_the_same_bits(self):
+        duration = "mission.duration_h=0.75"  # after half an hour the flight software points its camera by its own estimate
+        self.assert_same_bits(self.served("experiment1", duration), ["truth.source=external"], duration)
+        self.assert_same_truth()
+
+    def test_uncommanded_impulses_reach_the_truth(self):
+        fault = '[[fault]]\nkind = "thrust_uncommanded"\nat_h = 39.02\nfor_s = 30.5\nvalue_mps2 = 1e-5\ndirection_rtn = [0.0, 1.0, 0.0]'
+        self.assert_same_bits(self.served("experiment3", SHORT, fault), ["truth.source=external"], SHORT)
+        self.assert_same_truth()
+
+    def test_start_of_another_mission_is_refused(self):
+        mission = self.served("experiment3", SHORT)
+        result = vbar("run", mission, *overrides("truth.source=external", SHORT, "mission.start_h=39.1"), "--quiet",
+                      "--force", "--out", self.folder / "run")
+        self.assert_one_sentence(result, "source truth: ", "elsewhere than the mission that is served", code=2)
+
+    def test_truth_in_python(self):
+        summary = fly(self.folder / "python", mission=SOURCE / "missions" / "external_truth.toml", **self.python)
+        own = fly(self.folder / "own")
+        # A gravity of lower degree than vbar's, as the flight software assumes it: not farther from the waypoints.
+        for python, vbars in zip(rows_of(self.folder / "python", "waypoints"), rows_of(self.folder / "own", "waypoints")):
+            self.assertLess(float(python["control_error_m"]), 2.0 * float(vbars["control_error_m"]) + 0.01, python["index"])
+        self.assertAlmostEqual(summary["dv_mps"], own["dv_mps"], delta=0.05 * own["dv_mps"])
+
+    def test_program_that_ends_or_hangs(self):
+        self.assert_one_sentence(self.fly_truth("os._exit(3) if self.times == 5 else None"),
+                                 "run incomplete: source truth: program ", "failed at step 5", "exit status 3")
+        self.assert_one_sentence(self.fly_truth("time.sleep(60) if self.times == 5 else None"),
+                                 "source truth: program ", "failed at step 5", "was still running and has been ended")
+
+    def test_program_that_is_killed(self):
+        code, message = self.kill_the_program_of(self.mission("time.sleep(0.1)"))
+        self.assertEqual(code, 1, message)
+        self.assertIn("source truth: program ", message)
+        self.assertIn("killed by signal 9", message)
+        self.assertEqual(message.count("\n"), 1, message)
+
+    def test_invalid_states(self):
+        for change, fault in (
+            ("servicer.position_eci = [value / 1e3 for value in servicer.position_eci]",
+             "below the Earth's surface, 7"),
+            ("servicer.velocity_eci = [value / 1e3 for value in servicer.velocity_eci]",
+             "a velocity of the spacecraft servicer that is 7"),
+            ("servicer.acceleration_eci = [0.0, 0.0, 0.0]", "an acceleration of the spacecraft servicer that is 7.9"),
+            ("del stated[1]", "no true_state of the spacecraft target"),
+            ("stated.append(stated[0])", "a second true_state of the spacecraft servicer"),
+            ("stated.append((servicer, 7))", "a true_state of spacecraft 7, which the mission does not have"),
+            ("servicer.position_eci[0] = float('nan')", "with a number that is not finite"),
+            ("stated.append((vbar.ideal_navigation(), 1))", "neither a true_state nor a true_earth")):
+            self.assert_one_sentence(self.fly_truth(change), "source truth: at 0 s of the run its answer holds ", fault, code=2)
+
+    def test_position_that_jumps(self):
+        change = "servicer.position_eci[0] += 1000.0 if self.times == 5 else 0.0"
+        self.assert_one_sentence(self.fly_truth(change), "run incomplete: source truth: at 240 s of the run its answer holds ",
+                                 "a position of the spacecraft servicer that is 1000.")
+
+    def test_a_run_is_not_resumed_and_not_propagated(self):
+        fly(self.folder / "whole", mission=self.mission("pass"), **self.python)
+        branch = vbar("resume", self.folder / "whole", "--at", 0.2, "--set", "guidance.dv_min_mmps=2.0", "--out", self.folder / "branch",
+                      **self.python)
+        self.assert_one_sentence(branch, "a run with the truth of testbed external cannot be flown again", code=2)
+        self.assert_one_sentence(vbar("propagate", self.mission("pass")), 'truth.source: found "external"', code=2)
+
+    def test_missions_that_are_refused(self):
+        result = vbar("run", "ideal_navigation", "--set", "truth.source=external", "--check")
+        self.assert_one_sentence(result, "truth.source", "model, as the mission has no [testbed.external]", code=2)
+        result = vbar("run", self.served("ideal_navigation", SHORT), "--set", "truth.source=grand", "--check")
+        self.assert_one_sentence(result, "truth.source", "accepted: model or external", code=2)
 
 
 if __name__ == "__main__":

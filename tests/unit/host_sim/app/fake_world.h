@@ -20,7 +20,7 @@ inline fsw::GpsTime at(double s) {
   return kFakeStart + fsw::nearest_duration(s);
 }
 
-class FakeTruth final : public TrueWorld {
+class FakeTruth final : public twins::TrueWorld {
  public:
   void advance_to(fsw::GpsTime time) override { now_ = time; }
   twins::TruthSnapshot snapshot(twins::TruthDetail detail) override {

@@ -5,7 +5,7 @@
 #include "fsw/core/types.h"
 #include "host_sim/twins/packet_source.h"
 
-namespace vbar::app {
+namespace vbar::twins {
 
 class TrueWorld {
  public:
@@ -17,7 +17,7 @@ class TrueWorld {
   /// Not back in time.
   virtual void advance_to(fsw::GpsTime time) = 0;
   /// At the current time.
-  [[nodiscard]] virtual twins::TruthSnapshot snapshot(twins::TruthDetail detail) = 0;
+  [[nodiscard]] virtual TruthSnapshot snapshot(TruthDetail detail) = 0;
 
   // The spacecraft that flies.
   /// Adds a velocity, m/s in its own RTN, at the current time.
@@ -29,4 +29,4 @@ class TrueWorld {
   [[nodiscard]] virtual double wall_s() const = 0;
 };
 
-}  // namespace vbar::app
+}  // namespace vbar::twins

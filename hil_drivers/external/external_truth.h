@@ -1,0 +1,63 @@
+#pragma once
+// The true motion of a run in another process, in lock-step: for each time that the run needs it is sent what has
+// happened since the last one, and simulated time waits for its states.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "hil_drivers/external/exchange.h"
+#include "hil_drivers/testbed.h"
+#include "host_sim/truth/earth/earth_rotation.h"
+#include "pil_bridge/flight_computer.h"
+
+namespace vbar::external {
+
+class ExternalTruth final : public testbeds::TestbedTruth {
+ public:
+  /// The program at the other end of the link, which answers batches in the place of steps.
+  using Connect = std::function<std::unique_ptr<pil::FlightComputer>()>;
+
+  ExternalTruth(testbeds::TruthPlan plan, Connect connect);
+  ~ExternalTruth() override { end(); }
+
+  /// Asks for the states at the start too, which must be those of the plan.
+  void start() override;
+  void stop() noexcept override { end(); }
+  [[nodiscard]] std::int64_t exchanges() const override { return exchanges_; }
+
+  void advance_to(fsw::GpsTime time) override;
+  [[nodiscard]] twins::TruthSnapshot snapshot(twins::TruthDetail detail) override;
+  void apply_impulse_rtn(const fsw::Vector3& dv_rtn) override;
+  void point(fsw::GpsTime time, const fsw::Vector3& boresight_rtn, const fsw::Vector3& boresight_rate_rtn) override;
+  [[nodiscard]] double wall_s() const override { return wall_s_; }
+
+  /// Beyond the present the perturbations of the point mass and angular accelerations are constant.
+  [[nodiscard]] twins::TruthSnapshot at(fsw::GpsTime time) override;
+
+ private:
+  void end() noexcept;
+  [[nodiscard]] fsw::Matrix3 modelled_earth_at(fsw::GpsTime time);
+  void open();
+  void ask_for(fsw::GpsTime time);
+  [[nodiscard]] Answer exchange(const Batch& batch);
+  void take(StatedTruth stated);
+  void check(const twins::SpacecraftTruth& stated, const twins::SpacecraftTruth& expected,
+             fsw::Duration interval) const;
+
+  testbeds::TruthPlan plan_;
+  SpacecraftNumbers numbers_;
+  Connect connect_;
+  truth::EarthRotation earth_rotation_;
+  bool is_pointed_ = false;  ///< the attitude of the servicer is commanded
+  std::unique_ptr<pil::FlightComputer> program_;
+  std::uint32_t step_ = 0;
+  std::int64_t exchanges_ = 0;
+  double wall_s_ = 0.0;
+  twins::TruthSnapshot present_;                  ///< as last stated
+  std::vector<twins::SpacecraftTruth> expected_;  ///< the same with the impulses since then
+  std::vector<Command> commands_;                 ///< since then
+};
+
+}  // namespace vbar::external
