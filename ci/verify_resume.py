@@ -53,6 +53,14 @@ def tree_s(pid):
     return processor_s(pid) + sum(processor_s(child) for child in children_of(pid))
 
 
+def size_of(file):
+    """Zero if there is none: a resume moves its log when it has ended."""
+    try:
+        return file.stat().st_size
+    except FileNotFoundError:
+        return 0
+
+
 class Row:
     def __init__(self, binary, name, folder):
         self.binary, self.name, self.folder = binary, name, folder
@@ -87,7 +95,7 @@ class Row:
             run = self.start(*self.fly, "--out", folder)
         log = (resuming if is_resume else folder) / "packets.lcmlog"
         while run.poll() is None:
-            if log.exists() and log.stat().st_size >= share * self.log_bytes:
+            if size_of(log) >= share * self.log_bytes:
                 run.send_signal(signal.SIGSTOP)
                 spent = tree_s(run.pid)
                 run.send_signal(signal.SIGKILL)
