@@ -69,7 +69,7 @@ TEST(TruthKeys, BadValuesEndWithOneMessage) {
             where + "geomagnetic_index: found the text \"hourly\"; accepted: daily or three_hourly");
   EXPECT_EQ(message("solid_tide = true"),
             where +
-                "solid_tide: found an unknown key (did you mean solid_tides?); accepted: gravity_degree, "
+                "solid_tide: found an unknown key (did you mean solid_tides?); accepted: source, gravity_degree, "
                 "gravity_order, drag, geomagnetic_index, radiation_pressure, shadow, sun, moon, solid_tides, "
                 "relativity, relative_tolerance, threads, gravity_file, earth_orientation_file, "
                 "space_weather_file, constant_f107, constant_ap or accept_predictions");
