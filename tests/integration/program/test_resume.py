@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from vbar_program import MISSION, SOURCE, VBAR, fly, hashes, main, overrides, scratch, start, summary_of, vbar
+from vbar_program import MISSION, SOURCE, VBAR, ZYNQ_IMAGE, fly, hashes, main, missing, overrides, scratch, start, summary_of, vbar
 
 DONE, FAILED, REFUSED, DIFFERENT = 0, 1, 2, 3
 THINNED, DAMAGED, INTERRUPTED = 7, 9, 75
@@ -371,6 +371,18 @@ class ResumeElsewhere(Resuming):
                 whole = self.folder / link
                 fly(whole, *self.SETTINGS, setting)
                 self.kills_in_one_flight(seed, 2, setting, whole=whole)
+
+
+class ResumeOnTheZynq(ResumeElsewhere):
+    """The emulated Zynq is started again; what it answers to the recorded packets is compared with the log."""
+
+    SETTINGS = ("mission.duration_h=1", "flight_computer.target=zynq_qemu")
+
+    @classmethod
+    def setUpClass(cls):
+        if missing(ZYNQ_IMAGE):
+            raise unittest.SkipTest(missing(ZYNQ_IMAGE))
+        super().setUpClass()
 
 
 class Branch(Resuming):
