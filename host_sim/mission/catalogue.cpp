@@ -30,6 +30,19 @@ CatalogueEntry entry_of(const std::filesystem::path& file, const Installation& i
   return entry;
 }
 
+/// The file NAME.toml, if the mission in it has that name: the others need not be loaded.
+std::optional<std::filesystem::path> file_of_that_name(const std::filesystem::path& name,
+                                                       const Installation& installation) {
+  if (name.has_parent_path()) return std::nullopt;
+  try {
+    const std::filesystem::path file = missions_directory() / (name.string() + ".toml");
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error) && entry_of(file, installation).name == name) return file;
+  } catch (const std::exception&) {  // no catalogue
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder, const Installation& installation) {
@@ -49,23 +62,6 @@ std::filesystem::path missions_directory() {
   if (std::filesystem::is_directory(here)) return here;
   return data_directory().parent_path() / "missions";
 }
-
-namespace {
-
-/// The file NAME.toml, if the mission in it has that name: the others need not be loaded.
-std::optional<std::filesystem::path> file_of_that_name(const std::filesystem::path& name,
-                                                       const Installation& installation) {
-  if (name.has_parent_path()) return std::nullopt;
-  try {
-    const std::filesystem::path file = missions_directory() / (name.string() + ".toml");
-    std::error_code error;
-    if (std::filesystem::is_regular_file(file, error) && entry_of(file, installation).name == name) return file;
-  } catch (const std::exception&) {  // no catalogue
-  }
-  return std::nullopt;
-}
-
-}  // namespace
 
 std::filesystem::path find_mission(const std::filesystem::path& path_or_name, const Installation& installation) {
   std::error_code error;

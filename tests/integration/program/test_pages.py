@@ -64,12 +64,10 @@ def follow(text, folder):
                 yield command, status, expected, output
 
 
-class Page(unittest.TestCase):
-    page = None
+class Page:
+    """Of the test cases below, each of which names its page."""
 
     def test_commands_have_the_outputs_of_the_page(self):
-        if self.page is None:
-            self.skipTest("of the classes that name a page")
         with scratch() as folder:
             commands = 0
             for command, status, expected, output in follow((SOURCE / "docs" / self.page).read_text(), folder):
@@ -80,11 +78,11 @@ class Page(unittest.TestCase):
             self.assertGreater(commands, 5)
 
 
-class FirstHour(Page):
+class FirstHour(Page, unittest.TestCase):
     page = "first_hour.md"
 
 
-class Tutorial(Page):
+class Tutorial(Page, unittest.TestCase):
     page = "tutorial.md"
 
 
