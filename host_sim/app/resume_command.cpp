@@ -1,6 +1,7 @@
 // vbar resume: a run that was killed or interrupted is flown again from its start, compared with its log, and
 // continued.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -257,6 +258,14 @@ int fly_branch(const ResumeOptions& options, const FlownRun& run, twins::FlownLo
   return exit_code_of(record, trouble, folder.path());
 }
 
+[[noreturn]] void refuse_complete(const fs::path& folder) {
+  const auto is_there = [&](const std::string& table) { return fs::exists(folder / table); };
+  const bool has_tables = std::ranges::any_of(report::table_files(sensors::extensions()), is_there);
+  const bool is_page_missing = has_tables && !fs::exists(report::report_file(folder));
+  throw Refused(fmt::format("{}: the run is complete, nothing is left to fly{}", folder.string(),
+                            is_page_missing ? "; vbar report writes the page that is missing" : ""));
+}
+
 }  // namespace
 
 int resume_command(const ResumeOptions& options) {
@@ -269,8 +278,7 @@ int resume_command(const ResumeOptions& options) {
   lock.reset();
   lock.emplace(folder);  // that may be another folder now
   const report::Summary summary = summary_of_run(folder);
-  if (summary.complete && !options.branch_at_h)
-    throw Refused(folder.string() + ": the run is complete, nothing is left to fly");
+  if (summary.complete && !options.branch_at_h) refuse_complete(folder);
   const FlownRun run = read_run(folder, options.trust);
   catch_stop_signals();
   try {

@@ -13,10 +13,8 @@
 #include <unistd.h>
 
 #include "host_sim/app/commands.h"
-#include "host_sim/report/partial_file.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/run_lock.h"
-#include "host_sim/report/run_tables.h"
 #include "host_sim/report/summary_json.h"
 #include "host_sim/report/text_file.h"
 #include "host_sim/sensors/sensor_kinds.h"
@@ -50,13 +48,11 @@ void synchronise_all(const fs::path& folder) {
 }
 
 std::set<std::string> names_of_run_files() {
-  std::set<std::string> names{kMissionCopy, kOverridesCopy, kBranchCopy, report::RunLock::kFile, "gallery"};
-  for (const fs::path& file : {report::summary_file(""), report::packet_log_file(""), report::report_file("")})
-    names.insert(file.string());
-  for (const std::string& table : report::table_files(sensors::extensions())) {
-    names.insert(table);
-    names.insert(report::PartialFile::part_of(table).string());
-  }
+  std::set<std::string> names{report::RunLock::kFile};
+  for (const std::string& file : {report::summary_file("").string(), std::string(kMissionCopy),
+                                  std::string(kOverridesCopy), std::string(kBranchCopy)})
+    names.insert({file, report::neighbour_of(file).string()});
+  for (const std::string& file : report::flight_files(sensors::extensions())) names.insert(file);
   return names;
 }
 

@@ -94,6 +94,15 @@ fs::path report_file(const fs::path& run_folder) {
   return run_folder / kReport;
 }
 
+std::vector<std::string> flight_files(Extensions extensions) {
+  std::vector<std::string> names{std::string(kPacketLog), std::string(kPictures)};
+  std::vector<std::string> whole = table_files(extensions);
+  whole.emplace_back(kReport);
+  for (const std::string& name : whole)
+    names.insert(names.end(), {name, PartialFile::part_of(name).string(), neighbour_of(name).string()});
+  return names;
+}
+
 RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing, Extensions extensions)
     : folder_(std::move(folder)), tables_(folder_) {
   try {
@@ -105,12 +114,7 @@ RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing, E
     running.complete = false;
     running.incomplete_reason = fmt::format("running in process {}, or killed", ::getpid());
     replace_text_file(folder_ / kSummary, summary_json(running, {}));
-    for (const std::string& name : table_files(extensions)) {
-      fs::remove(folder_ / name);
-      fs::remove(PartialFile::part_of(folder_ / name));
-    }
-    for (const std::string_view name : {kPacketLog, kReport}) fs::remove(folder_ / name);
-    fs::remove_all(folder_ / kPictures);
+    for (const std::string& name : flight_files(extensions)) fs::remove_all(folder_ / name);
   } catch (const fs::filesystem_error& error) {
     fail(folder_, "cannot be made: " + error.code().message());
   }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host_sim/report/run_lock.h"
 #include "host_sim/report/run_record.h"
@@ -20,6 +21,10 @@ namespace vbar::report {
 [[nodiscard]] std::filesystem::path summary_file(const std::filesystem::path& run_folder);
 [[nodiscard]] std::filesystem::path packet_log_file(const std::filesystem::path& run_folder);
 [[nodiscard]] std::filesystem::path report_file(const std::filesystem::path& run_folder);
+
+/// Names of what a flight may leave in its folder beside its summary: log, tables, page, pictures, and what a kill
+/// leaves of them.
+[[nodiscard]] std::vector<std::string> flight_files(Extensions extensions = {});
 
 class RunFolder {
  public:

@@ -18,9 +18,12 @@ std::string read_text_file(const std::filesystem::path& file) {
   return text;
 }
 
+std::filesystem::path neighbour_of(const std::filesystem::path& file) {
+  return file.string() + ".new";
+}
+
 void replace_text_file(const std::filesystem::path& file, std::string_view text) {
-  std::filesystem::path neighbour = file;
-  neighbour += ".new";
+  const std::filesystem::path neighbour = neighbour_of(file);
   errno = 0;
   std::ofstream stream(neighbour, std::ios::binary | std::ios::trunc);
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));
