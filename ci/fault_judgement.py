@@ -29,6 +29,14 @@ class Case:
     error_from_s: float = 0.0    # an hour after the end
     error_m: object = None       # navigation error over the same time from the start on, at most
     fixed_within_s: object = None  # fixed integers again, after the end
+    arrival_ratio: object = None   # larger control error of the next two waypoints against the nominal run, at most
+
+
+@dataclasses.dataclass
+class Nominal:
+    """What the run without the fault shows."""
+    navigation_errors: list
+    control_errors: list
 
 
 @dataclasses.dataclass
@@ -98,6 +106,31 @@ def navigation_errors(run):
     return errors
 
 
+def control_errors(run):
+    """(time, control error) of each waypoint that was reached."""
+    return [(number_of(row["time_s"], "time_s"), number_of(row["control_error_m"], "control_error_m"))
+            for row in rows_of(run / "waypoints.csv", ["time_s", "control_error_m"]) if row["control_error_m"]]
+
+
+def begin_of(run):
+    """When the first fault of a run began: for faults that begin with an event."""
+    rows = rows_of(run / "faults.csv", ["begin_s"])
+    if not rows:
+        raise JudgementError(f"{run / 'faults.csv'}: no rows")
+    return number_of(rows[0]["begin_s"], "begin_s")
+
+
+def arrival_misses(case, window, errors, nominal):
+    """What the control errors of the two waypoints after the fault miss."""
+    flown, expected = ([pair for pair in series if pair[0] >= window.begin_s][:2] for series in (errors, nominal.control_errors if nominal else []))
+    if not expected:
+        raise JudgementError("the run without the fault reaches no waypoint after it")
+    if [time_s for time_s, _ in flown] != [time_s for time_s, _ in expected]:
+        return ["does not arrive"]
+    ratio = max(error_m for _, error_m in flown) / max(error_m for _, error_m in expected)
+    return [] if ratio <= case.arrival_ratio else [f"arrives with {ratio:.2f} times the nominal error"]
+
+
 def between(series, from_s, to_s):
     return [value for time_s, value in series if from_s <= time_s <= to_s]
 
@@ -113,7 +146,7 @@ def error_misses(case, window, errors, nominal):
             misses.append(f"error {max(during):.3f} m, not {case.error_m:g}")
     if case.error_ratio is not None:
         from_s = window.begin_s + case.error_from_s
-        flown, expected = between(errors, from_s, window.last_s), between(nominal or [], from_s, window.last_s)
+        flown, expected = between(errors, from_s, window.last_s), between(nominal, from_s, window.last_s)
         if not expected:
             raise JudgementError("the nominal run has no estimate in the time that is compared")
         if not len(flown) >= 0.5 * len(expected):
@@ -148,8 +181,8 @@ def names(event):
 
 
 def judge(run, case, begin_s, period_s, nominal):
-    """What the run shows, and the list of what it misses. `period_s`: of images at the point; `nominal`: navigation errors of the run
-    without the fault, needed by cases with an error_ratio."""
+    """What the run shows, and the list of what it misses. `period_s`: of images at the point; `nominal`: of the run without the fault,
+    needed by cases with a ratio."""
     window = window_of(case, begin_s)
     try:
         summary = json.loads((run / "summary.json").read_text())
@@ -196,7 +229,10 @@ def judge(run, case, begin_s, period_s, nominal):
     ratio = None
     if case.error_ratio is not None or case.error_m is not None:
         errors = navigation_errors(run)
-        misses += error_misses(case, window, errors, nominal)
-        ratio = largest_ratio(case, window, errors, nominal)
+        of_nominal = nominal.navigation_errors if nominal else []
+        misses += error_misses(case, window, errors, of_nominal)
+        ratio = largest_ratio(case, window, errors, of_nominal)
+    if case.arrival_ratio is not None:
+        misses += arrival_misses(case, window, control_errors(run), nominal)
     return {"distance_m": distance_m, "reported_s": reported_s, "retreat_s": retreat_s, "error_ratio": ratio, "misses": misses,
             "raised": sorted({fault for _, fault in raised}), "wall_s": summary.get("wall_s")}

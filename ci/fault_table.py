@@ -18,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 
-from fault_judgement import Case, JudgementError, judge, navigation_errors, window_of
+from fault_judgement import Case, JudgementError, Nominal, begin_of, control_errors, judge, navigation_errors, window_of
 
 # name: hour of the fault, start and its waypoint, image period there (s), a-priori sigmas (m) of a da, a dlambda, a de, a di
 POINTS = {
@@ -55,7 +55,9 @@ CASES = {
     "thruster off": Case([fault("thrust_scale", value=0.0)], "thruster", None, distance_m=1.0, within_burns=2),
     "thruster on 10 s": Case([fault("thrust_uncommanded", value_mps2=1e-3, direction_rtn=[0.0, 1.0, 0.0], for_s=10.0)], "burn_uncommanded", 61.0,
                              retreats=True),
-    "burns 10 % short": Case([fault("thrust_scale", value=0.9)], "burn_size", None, retreats=False, within_burns=3),
+    "burns 10 % short": Case([fault("thrust_scale", value=0.9)], "burn_size", None, retreats=False, within_burns=3, arrival_ratio=2.0),
+    "first burn of the leg missed": Case([fault("thrust_scale", value=0.0, event="burn:1", for_s=1.0)], "burn_missed", lambda p: 60.0, retreats=False,
+                                         arrival_ratio=2.0),
     "reboot warm 60 s": Case([fault("computer_reboot", for_s=60.0, keeps_state=True)], "restart", lambda p: 60.0 + 2 * p, retreats=False),
     "reboot cold 60 s": Case([fault("computer_reboot", for_s=60.0)], "", None),
     "silent for 3 steps": Case([fault("computer_silent", for_s=181.0)], "step_late", lambda p: 181.0 + 2 * p, retreats=False),
@@ -102,8 +104,13 @@ def mission_of(case, point, is_cooperative, after_h=AFTER_H):
              "[navigation.apriori]", 'kind = "roe"']
     lines += [f"sigma_a_{key}_m = {sigma}" for key, sigma in zip(("da", "dlambda", "de", "di"), sigmas)]
     for table in case.faults:
-        lines += ["[[fault]]", f"at_h = {at_h}"] + [f"{key} = {toml_of(value)}" for key, value in table.items()]
+        begin = {} if "event" in table else {"at_h": at_h}
+        lines += ["[[fault]]"] + [f"{key} = {toml_of(value)}" for key, value in (begin | table).items()]
     return "\n".join(lines) + "\n"
+
+
+def needs_nominal(case):
+    return case.error_ratio is not None or case.arrival_ratio is not None
 
 
 def points_of(case):
@@ -119,7 +126,7 @@ class Flights:
 
     def __init__(self, binary, root, pool):
         self.binary, self.root, self.pool = binary, root.resolve(), pool
-        self.nominal = {}  # (point, seed, cooperative): future of the navigation errors without a fault
+        self.nominal = {}  # (point, seed, cooperative): future of the errors without a fault
 
     def run(self, name, text, seed):
         folder = self.root / name
@@ -136,27 +143,31 @@ class Flights:
         """Flown once, before the cases that it is compared with."""
         def fly():
             name = folder_name("nominal_cooperative" if is_cooperative else "nominal", point, seed)
-            return navigation_errors(self.run(name, mission_of(Case([], "", None), point, is_cooperative, after_h), seed))
+            run = self.run(name, mission_of(Case([], "", None), point, is_cooperative, after_h), seed)
+            return Nominal(navigation_errors(run), control_errors(run))
         self.nominal[point, seed, is_cooperative] = self.pool.submit(fly)
 
     def add_case(self, name, point, seed):
         case, is_cooperative = CASES[name], name in COOPERATIVE
-        nominal = self.nominal.get((point, seed, is_cooperative)) if case.error_ratio is not None else None
+        nominal = self.nominal.get((point, seed, is_cooperative)) if needs_nominal(case) else None
 
         def fly():
             run = self.run(folder_name(name, point, seed), mission_of(case, point, is_cooperative), seed)
             at_h, _, _, period_s, _ = POINTS[point]
-            return judge(run, case, 3600.0 * at_h, period_s, nominal.result() if nominal else None)
+            begin_s = begin_of(run) if any("event" in table for table in case.faults) else 3600.0 * at_h
+            return judge(run, case, begin_s, period_s, nominal.result() if nominal else None)
         return self.pool.submit(fly)
 
 
 def add_nominals(flights, jobs):
     longest_h = {}
     for name, point, seed in jobs:
-        if CASES[name].error_ratio is None:
+        case = CASES[name]
+        if not needs_nominal(case):
             continue
         key = (point, seed, name in COOPERATIVE)
-        longest_h[key] = max(longest_h.get(key, 0.0), window_of(CASES[name], 0.0).last_s / 3600.0)
+        after_h = AFTER_H if case.arrival_ratio is not None else window_of(case, 0.0).last_s / 3600.0
+        longest_h[key] = max(longest_h.get(key, 0.0), after_h)
     for (point, seed, is_cooperative), after_h in longest_h.items():
         flights.add_nominal(point, seed, is_cooperative, after_h)
 

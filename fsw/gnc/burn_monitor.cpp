@@ -13,6 +13,7 @@ constexpr double kImpulseSigma = 2e-6;  // m/s
 constexpr double kUsualImpulse = 5.0 * kImpulseSigma;
 // So does a scale that is off by the same share and by this multiple of its sigma, where single burns are too small.
 constexpr double kScaleSigmas = 3.0;
+constexpr double kJumpSigmas = 5.0;    // of a ratio from the estimate, from which on the scale is another one
 constexpr double kNothing = 0.1;       // share of the size below which a burn counts as missed
 constexpr double kImplausible = 10.0;  // share of the size from which on a report says nothing of the thruster
 constexpr Duration kOnTime = duration_of_seconds(1);
@@ -26,11 +27,23 @@ double square(double x) {
   return x * x;
 }
 
+/// Of the ratio of a burn of `dv` m/s.
+double ratio_variance(double dv) {
+  return square(kRatioSigma) + square(kImpulseSigma / dv);
+}
+
+/// Whether a burn of this size shows a scale that is off by twice the usual share.
+bool shows_scale(double dv) {
+  return square(kScaleSigmas) * ratio_variance(dv) < square(2.0 * kUsualShare);
+}
+
 }  // namespace
 
 void BurnScale::update(double ratio, double dv) {
-  const double prior = square(sigma_) + square(kScaleDrift);
-  const double noise = square(kRatioSigma) + square(kImpulseSigma / dv);
+  const double noise = ratio_variance(dv);
+  const double drifted = square(sigma_) + square(kScaleDrift);
+  const bool has_jumped = square(ratio - scale_) > square(kJumpSigmas) * (drifted + noise);
+  const double prior = has_jumped ? square(kInitialSigma) : drifted;
   const double gain = prior / (prior + noise);
   scale_ += gain * (ratio - scale_);
   sigma_ = math::sqrt((1.0 - gain) * prior);
@@ -100,7 +113,9 @@ void BurnMonitor::judge(const Commanded& commanded, GpsTime time, const executed
   faults.check(now, {.fault = telemetry_health::kFaultBurnRefused, .is_detected = is_refused, .argument = id});
   faults.check(now, {.fault = telemetry_health::kFaultBurnMissed, .is_detected = is_missed, .argument = id});
   faults.check(now, {.fault = telemetry_health::kFaultBurnLate, .is_detected = is_late, .argument = delay_s});
-  faults.check(now, {.fault = telemetry_health::kFaultBurnSize, .is_detected = is_of_other_size, .argument = ratio});
+  if (is_of_other_size || shows_scale(size)) {
+    faults.check(now, {.fault = telemetry_health::kFaultBurnSize, .is_detected = is_of_other_size, .argument = ratio});
+  }
   // A refusal is the command's lateness, not the thruster's failure.
   if (!is_refused) {
     faults.check(now, {.fault = telemetry_health::kFaultThruster, .is_detected = is_missed, .argument = ratio});

@@ -13,7 +13,8 @@
 
 namespace vbar::fsw::gnc {
 
-/// Ratio of executed to commanded size, constant but for a slow drift: one state, updated by each report.
+/// Ratio of executed to commanded size: one state, updated by each report. It is constant but for a slow drift, and for
+/// jumps, after which it is learnt again.
 class BurnScale {
  public:
   /// `ratio` of a burn of `dv` m/s.
@@ -30,8 +31,10 @@ class BurnScale {
   static constexpr double kMaxScale = 2.0;
 
  private:
+  static constexpr double kInitialSigma = 0.1;
+
   double scale_ = 1.0;
-  double sigma_ = 0.1;
+  double sigma_ = kInitialSigma;
 };
 
 class BurnMonitor {

@@ -10,7 +10,7 @@ import unittest
 ROOT = pathlib.Path(sys.argv[1])
 sys.path.insert(0, str(ROOT / "ci"))
 import fault_table  # noqa: E402
-from fault_judgement import Case, JudgementError, judge, navigation_errors, window_of  # noqa: E402
+from fault_judgement import Case, JudgementError, Nominal, begin_of, judge, navigation_errors, window_of  # noqa: E402
 
 BEGIN_S = 1000.0
 SILENT = {"kind": "silent", "unit": "gnss", "for_s": 600.0}
@@ -32,7 +32,7 @@ class Run(unittest.TestCase):
         self.folder = pathlib.Path(directory.name)
         self.times = [60.0 * n for n in range(100)]
         self.write_positions(lambda time_s: 0.03 if time_s >= BEGIN_S else 0.01)
-        self.nominal = [(time_s, 0.01) for time_s in self.times]
+        self.nominal = Nominal([(time_s, 0.01) for time_s in self.times], [(900.0, 0.5), (3000.0, 0.02), (4000.0, 0.05), (5000.0, 0.01)])
         self.events = [self.event(1020.0, "fault_raised", fault="crosslink_silent"), self.event(1020.0, "aid", device="carrier_pair", after="suspended"),
                        self.event(1650.0, "aid", device="carrier_pair", after="aiding")]
         write(self.folder / "telemetry_event.csv", self.events)
@@ -92,6 +92,30 @@ class Run(unittest.TestCase):
         self.write_summary(complete=False)
         self.assertEqual(self.misses(), ["incomplete"])
 
+    def test_arrivals_are_those_at_the_next_two_waypoints(self):
+        def fly(*control_errors_m):
+            write(self.folder / "waypoints.csv", [{"time_s": t, "control_error_m": e} for t, e in zip((900.0, 3000.0, 4000.0, 5000.0), control_errors_m)])
+        fly(9.0, 0.02, 0.09, 9.0)
+        self.assertEqual(self.misses(arrival_ratio=2.0), [])
+        self.assertEqual(self.misses(arrival_ratio=1.5), ["arrives with 1.80 times the nominal error"])
+        for arrivals in ((9.0, 0.02), (9.0, 0.02, "", 9.0)):
+            fly(*arrivals)
+            self.assertEqual(self.misses(arrival_ratio=2.0), ["does not arrive"])
+        fly(9.0, 0.02, "nan", 9.0)
+        with self.assertRaisesRegex(JudgementError, "'nan'"):
+            self.misses(arrival_ratio=2.0)
+        fly(9.0, 0.02, 0.09)
+        self.nominal = None
+        with self.assertRaisesRegex(JudgementError, "without the fault"):
+            self.misses(arrival_ratio=2.0)
+
+    def test_a_fault_that_begins_with_an_event(self):
+        write(self.folder / "faults.csv", [{"begin_s": 1234.0}])
+        self.assertEqual(begin_of(self.folder), 1234.0)
+        write(self.folder / "faults.csv", [{"begin_s": ""}])
+        with self.assertRaisesRegex(JudgementError, "begin_s"):
+            begin_of(self.folder)
+
     def test_a_nan_does_not_pass(self):
         self.write_positions(lambda time_s: "nan" if time_s == 2400.0 else 0.01)
         with self.assertRaisesRegex(JudgementError, "is 'nan', not a number"):
@@ -108,7 +132,7 @@ class Run(unittest.TestCase):
         self.assertEqual(self.misses(error_ratio=2.0), ["3 estimates, nominally 70"])
         self.write_positions(lambda _: 0.01, is_valid=lambda time_s: time_s < BEGIN_S)
         self.assertEqual(self.misses(error_m=1.0), ["no estimate"])
-        self.nominal = []
+        self.nominal = None
         with self.assertRaisesRegex(JudgementError, "nominal run"):
             self.misses(error_ratio=2.0)
 
@@ -145,6 +169,9 @@ class Table(unittest.TestCase):
                 asked[point, seed, is_cooperative] = after_h
         fault_table.add_nominals(Flights(), [("cooperative: receiver reset", "9m", 1), ("cooperative: receiver silent 1 h", "9m", 1), ("none", "9m", 1)])
         self.assertEqual(asked, {("9m", 1, True): 2.0})
+        asked.clear()
+        fault_table.add_nominals(Flights(), [("burns 10 % short", "9m", 1)])
+        self.assertEqual(asked, {("9m", 1, False): fault_table.AFTER_H})
 
 
 if __name__ == "__main__":

@@ -110,6 +110,22 @@ TEST_F(BurnMonitorTest, BurnsTooShortAreReportedAtTheThirdAtTheLatest) {
   }
 }
 
+/// Small burns, which cannot show it, count neither for it nor against it.
+TEST_F(BurnMonitorTest, AThrusterThatLosesATenthIsReportedAtTheSecondBurnThatShowsIt) {
+  int id = 0;
+  const auto burn = [&](double size, double ratio) {
+    ++id;
+    monitor_.expect(id, at(100 * id), {0.0, size, 0.0});
+    report(id, at(100 * id), {0.0, ratio * size, 0.0});
+    return step(at(100 * id + 20));
+  };
+  for (const double size : {1.8e-3, 1.5e-3, 200e-6, 20e-6, 16e-6}) EXPECT_EQ(burn(size, 1.0), 0) << size;
+  EXPECT_EQ(burn(33e-6, 0.9), 0);
+  EXPECT_EQ(burn(2.3e-3, 0.9), 0);
+  EXPECT_EQ(burn(103e-6, 0.9), telemetry_health::kFaultBurnSize);
+  EXPECT_NEAR(monitor_.scale().scale(), 0.9, 0.01);
+}
+
 /// Errors of 2 um/s and of 1 %, one sigma, are the thruster's own.
 TEST_F(BurnMonitorTest, BurnsWithTheErrorsOfAThrusterRaiseNothing) {
   std::mt19937 random(5);
