@@ -116,12 +116,15 @@ class Instant {
     return truth_.state(target_).position_eci - truth_.state(flight.servicer).position_eci;
   }
 
-  /// The burn is chosen from what is estimated, without the errors.
+  /// The burn is chosen from what is estimated, without the errors; its margin is the uncertainty along track that
+  /// follows from that of the semi-major axis.
   void retreat_at(double at_s, std::array<Outcome, kDelays_s.size()>& outcomes) {
     if (std::ranges::find(kDelays_s, at_s) == kDelays_s.end()) return;
     const QnsElements servicer = mean_elements(truth_.state(estimated_));
     const fsw::Vector6 a_roe_m = servicer.a * fsw::orbit::roe_from_qns(servicer, mean_elements(truth_.state(target_)));
-    const auto burn = fsw::safety::find_retreat(servicer, a_roe_m, kSettings);
+    fsw::safety::RetreatSettings settings = kSettings;
+    settings.margin = 1.5 * mean_motion_ * at_s * kSettings.a_da_error_m;
+    const auto burn = fsw::safety::find_retreat(servicer, a_roe_m, settings);
     ASSERT_TRUE(burn.ok());
     for (std::size_t k = 0; k < flights_.size(); ++k) {
       if (flights_[k].delay_s != at_s) continue;
