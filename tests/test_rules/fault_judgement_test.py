@@ -59,7 +59,7 @@ class Run(unittest.TestCase):
 
     def misses(self, **keys):
         case = Case(**{"faults": [SILENT], "event": "crosslink_silent", "within": 30.0, **keys})
-        return judge(self.folder, case, BEGIN_S, 60.0, self.nominal)["misses"]
+        return judge(self.folder, case, BEGIN_S, 60.0, 5.0, self.nominal)["misses"]
 
     def test_a_run_that_meets_its_row_misses_nothing(self):
         self.assertEqual(self.misses(sources=("carrier_pair",), fixed_within_s=60.0, error_ratio=3.1, error_m=0.04, retreats=False), [])
@@ -72,7 +72,8 @@ class Run(unittest.TestCase):
         self.assertEqual(self.misses(error_ratio=1.2), ["maximum error 3.00 times nominal"])
 
     def test_time_limits(self):
-        self.assertEqual(self.misses(within=10.0), ["reported later than 10 s"])
+        self.assertEqual(self.misses(within=15.0), [])
+        self.assertEqual(self.misses(within=14.0), ["reported later than 19 s"])
         self.assertEqual(self.misses(within=lambda period_s: period_s / 10.0), ["reported later than 6 s"])
         self.assertEqual(self.misses(event="image_frozen"), ["not reported"])
         self.assertEqual(self.misses(event=("image_frozen", "crosslink_silent")), [])
@@ -108,6 +109,13 @@ class Run(unittest.TestCase):
         self.nominal = None
         with self.assertRaisesRegex(JudgementError, "without the fault"):
             self.misses(arrival_ratio=2.0)
+
+    def test_a_valid_estimate_again(self):
+        self.write_positions(lambda _: 0.01, is_valid=lambda time_s: not BEGIN_S < time_s < 2000.0)
+        self.assertEqual(self.misses(valid_within_s=440.0), [])
+        self.assertEqual(self.misses(valid_within_s=400.0), ["estimate again after 440 s"])
+        self.write_positions(lambda _: 0.01, is_valid=lambda time_s: time_s < 1500.0)
+        self.assertEqual(self.misses(valid_within_s=400.0), ["no estimate again"])
 
     def test_a_fault_that_begins_with_an_event(self):
         write(self.folder / "faults.csv", [{"begin_s": 1234.0}])
