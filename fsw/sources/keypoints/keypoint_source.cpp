@@ -84,6 +84,7 @@ void KeypointSource::collect(Context& context, RecordFiler records) {
     camera.report.reset();
     const imaging::ImageAssembly& image = context.inbox.image(unit);
     if (!camera.settings || !image.has_image()) continue;
+    if (camera.exposures && !camera.exposures->is_for_keypoints(image.exposure_s())) camera.turns.take_bearing();
     if (!shows_keypoints(camera, image.exposure_s())) continue;
     const GpsTime time = image.image_time();
     const bool is_timely =
@@ -109,10 +110,11 @@ void KeypointSource::watch(GpsTime now, trunk::Trunk& trunk) {
 
 /// A target that fills the image of this camera is resolved by another: stars are not expected beside it.
 std::optional<double> KeypointSource::wanted_exposure_s(std::size_t camera) const {
-  const auto& [settings, exposures, resolution, last_image, report] = cameras_[camera];
-  if (!exposures) return std::nullopt;
-  const bool is_resolved = resolution == Resolution::kResolved || resolution == Resolution::kTooLarge;
-  return aid().is_on() && is_resolved ? exposures->keypoints_s : exposures->bearings_s;
+  const Camera& chosen = cameras_[camera];
+  if (!chosen.exposures) return std::nullopt;
+  const bool is_resolved = chosen.resolution == Resolution::kResolved || chosen.resolution == Resolution::kTooLarge;
+  const bool is_for_keypoints = aid().is_on() && is_resolved && !chosen.turns.is_bearing_due();
+  return is_for_keypoints ? chosen.exposures->keypoints_s : chosen.exposures->bearings_s;
 }
 
 void KeypointSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
@@ -132,10 +134,9 @@ void KeypointSource::fold(const Record& record, Context& context, trunk::Trunk& 
   image.R_camera_eci = R_camera_eci_at(record.time, settings.R_camera_body, context.platform, trunk);
   const Result<Vector3> position =
       image.R_camera_eci ? target_position_camera(image.camera, *image.R_camera_eci, trunk) : Status::kNotReady;
-  if (position.ok()) {
-    const double range_m = math::sqrt(position.value().squaredNorm());
-    image.camera.model.lasting_stretch_scale = lasting_stretch_scale(image_scale(settings, range_m));
-  }
+  std::optional<double> scale;
+  if (position.ok()) scale = image_scale(settings, math::sqrt(position.value().squaredNorm()));
+  if (scale) image.camera.model.lasting_stretch_scale = lasting_stretch_scale(*scale);
   network_.configure(settings.network);
   const pose::PoseSighting& sighting =
       network_.process(record.time, frame.image_number(), frame.view(), predicted_position_camera(image, trunk));
@@ -146,6 +147,7 @@ void KeypointSource::fold(const Record& record, Context& context, trunk::Trunk& 
     image.pnp = sighting.pnp;
   }
   const KeypointEditStatus edit_status = aiding_.process(image, trunk);
+  camera.turns.take_keypoints(scale, aid().state() == AidState::kAiding);
   camera.report = report_of(image, edit_status, frame.tiles_missing(), trunk);
 }
 

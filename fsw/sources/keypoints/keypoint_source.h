@@ -46,6 +46,7 @@ class KeypointSource {
     std::optional<KeypointCameraSettings> settings;
     std::optional<TwoExposures> exposures;         ///< if it takes images for bearings too
     Resolution resolution = Resolution::kUnknown;  ///< of such a camera
+    ImageTurns turns;                              ///< of such a camera
     std::optional<GpsTime> last_image;
     std::optional<telemetry_pose> report;
   };

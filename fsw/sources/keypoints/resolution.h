@@ -2,6 +2,8 @@
 // Whether a camera that gives bearings as long as the target is a point resolves it: its keypoints are used from the
 // range on at which the network has enough pixels, to the range at which the target fills the image.
 
+#include <optional>
+
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
 #include "fsw/sources/keypoints/keypoint_settings.h"
@@ -34,5 +36,23 @@ struct ResolutionLimits {
 /// The resolution after `before`, with hysteresis.
 [[nodiscard]] Resolution resolution_of(const KeypointCameraSettings& camera, const trunk::Trunk& trunk,
                                        Resolution before, const ResolutionLimits& limits = {});
+
+/// What a camera with two exposures takes next of a target that it resolves: keypoints, as long as they aid. While they
+/// do not, because no attitude is known yet, every other image is for bearings, which a distant target still has.
+class ImageTurns {
+ public:
+  /// An image for keypoints of this scale (empty: unknown); `has_aided`: they aid.
+  void take_keypoints(std::optional<double> scale, bool has_aided) {
+    is_bearing_due_ = !has_aided && scale && *scale < kLargestBearingScale;
+  }
+  void take_bearing() { is_bearing_due_ = false; }
+  [[nodiscard]] bool is_bearing_due() const { return is_bearing_due_; }
+
+  /// Beyond, the light of the target covers the stars beside it.
+  static constexpr double kLargestBearingScale = 1.0;
+
+ private:
+  bool is_bearing_due_ = false;
+};
 
 }  // namespace vbar::fsw::sources

@@ -88,6 +88,23 @@ TEST_F(ResolutionTest, TheSizeOfASmallImageIsLessCertain) {
   EXPECT_NEAR(lasting_stretch_scale(1.1), 4.0, 1e-12);
 }
 
+TEST(ImageTurns, EveryOtherImageIsForBearingsWhileKeypointsDoNotAid) {
+  ImageTurns turns;
+  EXPECT_FALSE(turns.is_bearing_due());
+  for (int pair = 0; pair < 3; ++pair) {
+    turns.take_keypoints(0.7, false);
+    EXPECT_TRUE(turns.is_bearing_due());
+    turns.take_bearing();
+    EXPECT_FALSE(turns.is_bearing_due());
+  }
+  turns.take_keypoints(0.7, true);
+  EXPECT_FALSE(turns.is_bearing_due());
+  turns.take_keypoints(1.2, false);
+  EXPECT_FALSE(turns.is_bearing_due()) << "too close for stars";
+  turns.take_keypoints(std::nullopt, false);
+  EXPECT_FALSE(turns.is_bearing_due()) << "at an unknown range";
+}
+
 TEST(TwoExposures, TheExposureStatesTheUse) {
   angles_only_configuration bearings{};
   pose_configuration keypoints{};
