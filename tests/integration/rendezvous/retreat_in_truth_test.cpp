@@ -17,6 +17,7 @@
 #include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/truth/truth_model.h"
 #include "tests/integration/rendezvous/flown_mission.h"
+#include "tests/support/figures.h"
 #include "tests/support/paths.h"
 
 namespace vbar::test {
@@ -40,8 +41,8 @@ constexpr double kLargestRetreat = 5e-3;  // m/s
 const fsw::safety::RetreatSettings kSettings;
 
 struct Outcome {
-  double distance = 1e9;  ///< m, least of all instants, signs and times
-  double dv = 0.0;        ///< m/s, largest
+  accuracy::Smallest distance;  ///< m, of all instants, signs and times
+  accuracy::Largest dv;         ///< m/s
 };
 
 Vector3 vector(const report::Triple& triple) {
@@ -93,8 +94,7 @@ class Instant {
       truth_.advance_to(settings_.epoch + fsw::nearest_duration(at_s + kStep_s));
       for (std::size_t k = 0; k < flights_.size(); ++k) {
         if (at_s >= flights_[k].delay_s + kHorizon_s) continue;
-        double& least = outcomes[k / kSigns.size()].distance;
-        least = std::min(least, distance_between(before[k], relative(flights_[k])));
+        outcomes[k / kSigns.size()].distance.add(distance_between(before[k], relative(flights_[k])));
       }
     }
   }
@@ -129,8 +129,7 @@ class Instant {
     for (std::size_t k = 0; k < flights_.size(); ++k) {
       if (flights_[k].delay_s != at_s) continue;
       truth_.apply_impulse_rtn(flights_[k].servicer, burn.value().dv_rtn);
-      double& largest = outcomes[k / kSigns.size()].dv;
-      largest = std::max(largest, burn.value().dv_rtn.norm());
+      outcomes[k / kSigns.size()].dv.add(burn.value().dv_rtn.norm());
     }
   }
 
@@ -167,11 +166,12 @@ void retreat_from(std::size_t every) {
   }
   EXPECT_EQ(instants, (kInstants + every - 1) / every);
   for (std::size_t k = 0; k < outcomes.size(); ++k) {
-    std::printf("%zu instants, after %4.0f s: %.2f m, at most %.2f mm/s\n", instants, kDelays_s[k],
-                outcomes[k].distance, 1e3 * outcomes[k].dv);
-    EXPECT_GE(outcomes[k].distance, kContactDistance) << kDelays_s[k];
-    EXPECT_LE(outcomes[k].dv, kLargestRetreat) << kDelays_s[k];
-    EXPECT_GT(outcomes[k].dv, 0.0) << kDelays_s[k];
+    const double distance = outcomes[k].distance;
+    const double dv = outcomes[k].dv;
+    std::printf("%zu instants, after %4.0f s: %.2f m, at most %.2f mm/s\n", instants, kDelays_s[k], distance, 1e3 * dv);
+    EXPECT_GE(distance, kContactDistance) << kDelays_s[k];
+    EXPECT_LE(dv, kLargestRetreat) << kDelays_s[k];
+    EXPECT_GT(dv, 0.0) << kDelays_s[k];
   }
 }
 
