@@ -147,7 +147,8 @@ void KeypointSource::fold(const Record& record, Context& context, trunk::Trunk& 
     image.pnp = sighting.pnp;
   }
   const KeypointEditStatus edit_status = aiding_.process(image, trunk);
-  camera.turns.take_keypoints(scale, aid().state() == AidState::kAiding);
+  const bool serves = aid().state() == AidState::kAiding || aid().state() == AidState::kStarting;
+  camera.turns.take_keypoints(scale, serves);
   camera.report = report_of(image, edit_status, frame.tiles_missing(), trunk);
 }
 

@@ -37,13 +37,13 @@ struct ResolutionLimits {
 [[nodiscard]] Resolution resolution_of(const KeypointCameraSettings& camera, const trunk::Trunk& trunk,
                                        Resolution before, const ResolutionLimits& limits = {});
 
-/// What a camera with two exposures takes next of a target that it resolves: keypoints, as long as they aid. While they
-/// do not, because no attitude is known yet, every other image is for bearings, which a distant target still has.
+/// What a camera with two exposures takes next of a target that it resolves: keypoints, as long as they aid, or poses
+/// are being collected for an attitude. Otherwise every other image is for bearings, which a distant target still has.
 class ImageTurns {
  public:
-  /// An image for keypoints of this scale (empty: unknown); `has_aided`: they aid.
-  void take_keypoints(std::optional<double> scale, bool has_aided) {
-    is_bearing_due_ = !has_aided && scale && *scale < kLargestBearingScale;
+  /// An image for keypoints of this scale (empty: unknown); `serves`: they aid, or an attitude is about to begin.
+  void take_keypoints(std::optional<double> scale, bool serves) {
+    is_bearing_due_ = !serves && scale && *scale < kLargestBearingScale;
   }
   void take_bearing() { is_bearing_due_ = false; }
   [[nodiscard]] bool is_bearing_due() const { return is_bearing_due_; }
