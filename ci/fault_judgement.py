@@ -19,7 +19,7 @@ class JudgementError(Exception):
 class Case:
     faults: list             # tables of [[fault]], without at_h
     event: object            # the fault that the flight software must raise, or several of which any counts; "": none
-    within: object           # s, and a step more, or a function of the image period; None: with the burns, whenever they are
+    within: object           # s, or a function of the image period; None: with the burns, whenever they are
     points: tuple = ()       # at which it is flown; empty: all
     distance_m: float = 2.0
     retreats: object = None  # True: must, False: must not, None: may
@@ -29,7 +29,7 @@ class Case:
     error_from_s: float = 0.0    # an hour after the end
     error_m: object = None       # navigation error over the same time from the start on, at most
     fixed_within_s: object = None  # fixed integers again, after the end
-    valid_within_s: object = None  # a valid estimate again, and a step more, after the end
+    valid_within_s: object = None  # a valid estimate again, after the end
     arrival_ratio: object = None   # larger control error of the next two waypoints against the nominal run, at most
 
 
@@ -188,8 +188,8 @@ def names(event):
     return (event,) if isinstance(event, str) else tuple(event)
 
 
-def judge(run, case, begin_s, period_s, step_s, nominal):
-    """What the run shows, and the list of what it misses. `period_s` and `step_s`: of images and steps at the point; `nominal`: of the run without the fault,
+def judge(run, case, begin_s, period_s, nominal):
+    """What the run shows, and the list of what it misses. `period_s`: of images at the point; `nominal`: of the run without the fault,
     needed by cases with a ratio."""
     window = window_of(case, begin_s)
     try:
@@ -219,7 +219,7 @@ def judge(run, case, begin_s, period_s, step_s, nominal):
     if any(names(case.event)) and reported_s is None:
         misses.append("not reported")
     if case.within is not None and reported_s is not None:
-        limit_s = case.within(period_s) if callable(case.within) else case.within + step_s
+        limit_s = case.within(period_s) if callable(case.within) else case.within
         if not reported_s <= limit_s:
             misses.append(f"reported later than {limit_s:.0f} s")
     if case.within_burns is not None and reported_s is not None:
@@ -242,7 +242,7 @@ def judge(run, case, begin_s, period_s, step_s, nominal):
         ratio = largest_ratio(case, window, errors, of_nominal)
     if case.valid_within_s is not None:
         valid_s = valid_after_s(run, window.end_s)
-        if valid_s is None or not valid_s <= case.valid_within_s + step_s:
+        if valid_s is None or not valid_s <= case.valid_within_s:
             misses.append("no estimate again" if valid_s is None else f"estimate again after {valid_s:.0f} s")
     if case.arrival_ratio is not None:
         misses += arrival_misses(case, window, control_errors(run), nominal)
