@@ -96,9 +96,10 @@ def mission_of(case, point, is_cooperative, after_h=AFTER_H):
     camera = [[0.0, 60.0], [36.0, 20.0], [39.0, 60.0], slow]
     close_camera = [[38.25, 20.0], [39.0, 10.0 if point in NEAR else 60.0], slow]
     name = "full_range_cooperative_retreat" if is_cooperative else "full_range_retreat"
+    steps = [[0.0, 60.0], *([[24.0, 10.0]] if is_cooperative else [[36.0, 20.0]]), [38.5, 5.0], [slow_h, 60.0]]  # those of the mission
     lines = [f'extends = "{pathlib.Path.cwd() / "missions" / name}.toml"', "[mission]", 'name = "fault_table"',
              f"start_h = {start_h}", f"duration_h = {at_h + after_h - start_h}",
-             f"step_s = [[0.0, 60.0], [36.0, 20.0], [38.5, 5.0], [{slow_h}, 60.0]]",
+             f"step_s = {steps}",
              "[[spacecraft]]", 'name = "target"', f'relative = {{ to = "servicer", waypoint = {waypoint} }}',
              "[[spacecraft]]", 'name = "servicer"',
              "[spacecraft.sensors.camera]", f"period_s = {camera}",

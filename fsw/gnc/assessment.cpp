@@ -1,5 +1,7 @@
 #include "fsw/gnc/assessment.h"
 
+#include <algorithm>
+
 #include "fsw/math/math.h"
 #include "fsw/orbit/roe.h"
 
@@ -14,12 +16,13 @@ safety::RetreatSettings retreat_settings(const safety_configuration& configurati
           .differential_drag = configuration.differential_drag};
 }
 
-Assessment assess_drift_now(const DriftSituation& situation, const safety_configuration& configuration,
-                            RetreatSequence& retreat) {
+Assessment assess_drift_now(const DriftSituation& situation, double unmeasured_s,
+                            const safety_configuration& configuration, RetreatSequence& retreat) {
   Assessment assessment;
   const orbit::QnsElements& servicer = situation.orbits.servicer;
   const Vector6 roe = orbit::roe_from_qns(servicer, situation.orbits.target);
-  const safety::RetreatSettings settings = retreat_settings(configuration, situation.bound.radial_normal);
+  safety::RetreatSettings settings = retreat_settings(configuration, situation.bound.radial_normal);
+  settings.unmeasured = std::min(unmeasured_s, configuration.data_timeout_s);
   const auto passive = safety::assess_drift(servicer, roe, configuration.horizon_s, situation.bound);
   const auto at_once = safety::find_delayed_retreat(servicer, servicer.a * roe, 0.0, settings);
   const auto delayed =

@@ -21,8 +21,9 @@ struct Assessment {
   double collision_probability_in_plane = 0.0;
 };
 
-/// Assesses the drift after the burns already commanded, and prepares the retreat from it.
-Assessment assess_drift_now(const DriftSituation& situation, const safety_configuration& configuration,
-                            RetreatSequence& retreat);
+/// Assesses the drift after the burns already commanded, and prepares the retreat from it. `unmeasured_s`, since the
+/// last measurement of the target, counts up to the time after which the guard retreats by itself.
+Assessment assess_drift_now(const DriftSituation& situation, double unmeasured_s,
+                            const safety_configuration& configuration, RetreatSequence& retreat);
 
 }  // namespace vbar::fsw::gnc

@@ -87,7 +87,8 @@ void Gnc::assess() {
   assessment_.is_known = false;
   const std::optional<DriftSituation> situation = guidance_.drift_situation();
   if (situation && management_.safety() != nullptr) {
-    assessment_ = assess_drift_now(*situation, *management_.safety(), retreat_);
+    const double unmeasured_s = seconds(now_ - navigation_.state().last_measurement);
+    assessment_ = assess_drift_now(*situation, unmeasured_s, *management_.safety(), retreat_);
   }
 }
 

@@ -43,11 +43,15 @@ PositionMap LinearDrift::map_at(int sample) const {
 }
 
 double LinearDrift::min_distance(const Vector6& a_roe_m, const DriftError& error, double enough_m) const {
-  Vector6 roe = a_roe_m;
-  roe(0) += error.a_da_m;
-  const Vector6 change = step_s_ * (rate_ * roe);
   // A constant acceleration d raises the target's semi-major axis by 2 d t / n and delays it by 3/2 d t^2.
-  const double da_change = 2.0 * error.differential_drag / mean_motion_ * step_s_;
+  const double da_rate = 2.0 * error.differential_drag / mean_motion_;
+  const double before_s = error.acted_for;
+  Vector6 roe = a_roe_m;
+  roe += before_s * error.a_da_m * rate_.col(0);
+  roe(0) += error.a_da_m + da_rate * before_s;
+  roe(1) -= 1.5 * error.differential_drag * before_s * before_s;
+  const Vector6 change = step_s_ * (rate_ * roe);
+  const double da_change = da_rate * step_s_;
   const double dl_change = -1.5 * error.differential_drag * step_s_ * step_s_;
   const double enough_squared = enough_m * enough_m;
   double least = 0.0;

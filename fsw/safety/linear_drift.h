@@ -18,6 +18,7 @@ namespace vbar::fsw::safety {
 struct DriftError {
   double a_da_m = 0.0;             ///< of the relative semi-major axis, m
   double differential_drag = 0.0;  ///< m/s^2, acceleration of the target along its flight less the servicer's
+  double acted_for = 0.0;          ///< s, for which both have acted before the drift begins
 };
 
 /// Position of the target in the servicer's RTN is `map * a_roe`, a_roe in m.

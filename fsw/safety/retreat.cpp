@@ -67,7 +67,9 @@ class Judge {
     const Vector6 after = a_roe_m_ - a_control_ * dv_rtn;
     const double da = settings_.a_da_error_m;
     const double drag = settings_.differential_drag;
-    const std::array<DriftError, 5> errors{{{}, {da, drag}, {-da, -drag}, {da, -drag}, {-da, drag}}};
+    const double since = settings_.unmeasured;
+    const std::array<DriftError, 5> errors{
+        {{}, {da, drag, since}, {-da, -drag, since}, {da, -drag, since}, {-da, drag, since}}};
     double least = drift_.min_distance(after, errors[0], enough);
     for (std::size_t k = 1; k < errors.size() && least >= enough; ++k) {
       const double distance = drift_.min_distance(after, errors[k], enough);

@@ -22,6 +22,7 @@ struct RetreatSettings {
   double recession = 1.0;           ///< m
   double a_da_error_m = 0.05;       ///< error of a da, either sign, together with
   double differential_drag = 1e-9;  ///< m/s^2, either sign
+  double unmeasured = 0.0;          ///< s before the burn without a measurement of the target: the errors have acted
 };
 
 /// Numbers of telemetry_safety.choice.

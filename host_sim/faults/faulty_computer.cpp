@@ -39,18 +39,26 @@ pil::StepResult FaultyComputer::step(std::uint32_t step, std::span<const pil::Pa
       return {};
     }
   }
-  if (!must_restart_) return present().step(step, packets);
+  if (!must_restart_) return step_of(present(), step, packets);
   must_restart_ = false;
   present().close();
   restarted_ = start_();
   if (!snapshot_.empty()) {
     restarted_->restore(snapshot_);
     snapshot_.clear();
-    return restarted_->step(step, packets);
+    return step_of(*restarted_, step, packets);
   }
-  std::vector<pil::Packet> first = telecommands_;
+  std::vector<pil::Packet> first =
+      tick.ok() ? reported_.applied_to(telecommands_, tick.value().header.time) : telecommands_;
   first.insert(first.end(), packets.begin(), packets.end());
-  return restarted_->step(step, first);
+  return step_of(*restarted_, step, first);
+}
+
+pil::StepResult FaultyComputer::step_of(pil::FlightComputer& computer, std::uint32_t step,
+                                        std::span<const pil::Packet> packets) {
+  pil::StepResult result = computer.step(step, packets);
+  reported_.take(result.packets);
+  return result;
 }
 
 }  // namespace vbar::faults

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host_sim/faults/fault_schedule.h"
+#include "host_sim/faults/reported_orbit.h"
 #include "pil_bridge/flight_computer.h"
 
 namespace vbar::faults {
@@ -16,7 +17,8 @@ class FaultyComputer final : public pil::FlightComputer {
   using Start = std::function<std::unique_ptr<pil::FlightComputer>()>;
 
   /// `computer` must outlive it. `start` makes another one in its place; `telecommands` are sent to that one before
-  /// its first step, as the ground would when the computer asks for its configuration.
+  /// its first step, as the ground would when the computer asks for its configuration, with the relative orbit that
+  /// its telemetry reported last.
   FaultyComputer(pil::FlightComputer& computer, std::shared_ptr<const FaultSchedule> schedule, Start start,
                  std::vector<pil::Packet> telecommands);
 
@@ -26,12 +28,14 @@ class FaultyComputer final : public pil::FlightComputer {
   void close() override { present().close(); }
 
  private:
+  pil::StepResult step_of(pil::FlightComputer& computer, std::uint32_t step, std::span<const pil::Packet> packets);
   [[nodiscard]] pil::FlightComputer& present() const { return restarted_ ? *restarted_ : computer_; }
 
   pil::FlightComputer& computer_;
   std::shared_ptr<const FaultSchedule> schedule_;
   Start start_;
   std::vector<pil::Packet> telecommands_;
+  ReportedOrbit reported_;
   std::unique_ptr<pil::FlightComputer> restarted_;
   bool must_restart_ = false;
   std::vector<std::uint8_t> snapshot_;  ///< of the step before a reboot that keeps the state

@@ -59,7 +59,8 @@ CropMaker::CropMaker(const std::filesystem::path& data_directory, const std::str
       model_(twins::camera::load_cad_model(mission::cad_source_of(data_directory, target))),
       renderer_(model_),
       silhouette_(model_),
-      sky_(twins::camera::StarSky::load(data_directory, camera_.zero_magnitude_photons)) {}
+      sky_(twins::camera::StarSky::load(data_directory / camera_.star_catalogue_file, camera_.zero_magnitude_photons)) {
+}
 
 void CropMaker::make(std::int64_t index, LabelledCrop& crop) {
   engine::RandomStream stream(seed_, fmt::format("crops/{}/{}", name_of(kind_), index));

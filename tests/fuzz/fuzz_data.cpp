@@ -66,7 +66,7 @@ void load(unsigned loader, const fs::path& file) {
           twins::gnss::AntennaPattern::load(DataDirectory("gps/receiver_antenna_typical_patch.csv", file).path()));
       break;
     case 6:
-      static_cast<void>(twins::camera::StarSky::load(DataDirectory("stars/hipparcos_v8.csv", file).path(), 1e10));
+      static_cast<void>(twins::camera::StarSky::load(file, 1e10));
       break;
     case 7:
       static_cast<void>(sensors::load_camera(file));

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/names.h"
 #include "host_sim/mission/nearest_name.h"
 #include "host_sim/mission/read_attitude.h"
@@ -74,6 +75,8 @@ std::shared_ptr<const mission::SensorSettings> read_camera(const TableReader& se
   CameraFile file = load_camera(camera_file(section, camera.camera, context));
   read_camera_settings(section, file);
   camera.settings = file.settings();
+  camera.settings.star_catalogue_file =
+      mission::data_file(section, "star_catalogue_file", camera.settings.star_catalogue_file, context.mission);
   camera.observed = mission::read_other_spacecraft(section, context.spacecraft, context.spacecraft_names);
   camera.navigation = read_uses(section);
   camera.keypoint_exposure_s = read_keypoint_exposure(section, camera);

@@ -67,7 +67,7 @@ SceneRenderer::SceneRenderer(const CameraSettings& settings, const std::filesyst
     : settings_(settings),
       projection_(projection ? std::move(projection) : std::make_shared<const Optics>(settings)),
       spread_(settings.optics),
-      sky_(StarSky::load(data_directory, settings.zero_magnitude_photons)),
+      sky_(StarSky::load(data_directory / settings.star_catalogue_file, settings.zero_magnitude_photons)),
       objects_(objects ? std::move(objects) : lambert_sphere(0.35, 0.3)),
       covers_(std::move(covers)),
       region_directions_(projection_),

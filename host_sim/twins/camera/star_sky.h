@@ -1,5 +1,5 @@
 #pragma once
-// The stars of the camera images: ESA's Hipparcos catalogue (SP-1200) to V 8.
+// The stars of the camera images: ESA's Hipparcos catalogue (SP-1200), by default to V 8.
 
 #include <filesystem>
 #include <vector>
@@ -24,9 +24,8 @@ struct ApparentStar {
 
 class StarSky {
  public:
-  /// Reads data_directory/stars/hipparcos_v8.csv. Throws std::runtime_error naming file and line, also if the file ends
-  /// before its faintest stars.
-  static StarSky load(const std::filesystem::path& data_directory, double zero_magnitude_photons);
+  /// Of a file that read_star_catalogue accepts; errors as there.
+  static StarSky load(const std::filesystem::path& file, double zero_magnitude_photons);
 
   /// Appends the stars within `half_angle` (rad) of `axis_eci` (unit), and some a little outside, to `seen`.
   /// `velocity_bcrs` of the observer: m/s, barycentric. Proper motion is uniform and straight in the plane that touches

@@ -6,6 +6,7 @@ import unittest
 
 from vbar_program import MISSION, SOURCE, ZYNQ_IMAGE, fly, hashes, main, missing, scratch, vbar
 
+EXPERIMENT1 = SOURCE / "missions" / "experiment1.toml"
 EXPERIMENT2 = SOURCE / "missions" / "experiment2.toml"
 EXPERIMENT3 = SOURCE / "missions" / "experiment3.toml"
 SHORT = "mission.duration_h=0.2"
@@ -204,6 +205,14 @@ class Receivers(unittest.TestCase):
         self.assertEqual(hashes(fly(self.folder / "again", mission=self.mission)), hashes(self.summary))
 
 
+def navigation_errors(run):
+    """(time, error of the relative position) of each step with a valid estimate."""
+    position = [f"relative_position_rtn_{axis}_m" for axis in "rtn"]
+    truth = {row["time_s"]: row for row in rows_of(run, "truth.csv")}
+    return [(float(row["time_s"]), math.dist([float(row[name]) for name in position], [float(truth[row["time_s"]][name]) for name in position]))
+            for row in rows_of(run, "estimate.csv") if row["navigation_valid"] == "1"]
+
+
 class Reboot(unittest.TestCase):
     def test_the_flight_computer_begins_again(self):
         with scratch() as folder:
@@ -217,6 +226,21 @@ class Reboot(unittest.TestCase):
             steps = [int(health["step"]) for health in rows_of(folder / "run", "telemetry_health.csv")]
             self.assertEqual(steps.count(0), 2)
             self.assertTrue(summary["complete"])
+
+    def test_without_its_state_it_continues_from_the_orbit_that_it_reported(self):
+        """By bearings to a point of light, whose a-priori orbit is six hours old."""
+        with scratch() as folder:
+            mission = folder / "reboot.toml"
+            mission.write_text(f'extends = "{EXPERIMENT1}"\n[[fault]]\nkind = "computer_reboot"\nat_h = 6.0\nfor_s = 120.0\n')
+            fly(folder / "run", "mission.duration_h=6.5", mission=mission)
+            error_m = navigation_errors(folder / "run")
+            begin_s, end_s = 6.0 * 3600.0, 6.0 * 3600.0 + 120.0
+            before = [error for time_s, error in error_m if begin_s - 1800.0 <= time_s < begin_s]
+            after = [(time_s, error) for time_s, error in error_m if time_s >= end_s]
+            self.assertTrue(before)
+            self.assertLessEqual(after[0][0], end_s + 300.0, "an estimate again")
+            self.assertLess(max(error for _, error in after), 2.0 * max(before), "as accurate as before")
+            self.assertTrue(rows_of(folder / "run", "faults.csv")[0]["recovered_s"], "bearings aid again")
 
     def test_it_continues_from_its_snapshot(self):
         with scratch() as folder:

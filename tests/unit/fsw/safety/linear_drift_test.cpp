@@ -56,6 +56,22 @@ TEST(LinearDrift, DragDrivesTheTargetBack) {
   EXPECT_NEAR(drift.min_distance(a_roe, {.differential_drag = drag}), std::hypot(along, radial), 0.02);
 }
 
+// Errors that began to act earlier: a da in error delays by 3/2 n da t, and drag as above, over the whole time.
+TEST(LinearDrift, ErrorsThatHaveActedBefore) {
+  const LinearDrift drift = drift_from(10);
+  const double n = orbit::mean_motion(servicer_at(10).a);
+  Vector6 a_roe = Vector6::Zero();
+  a_roe(1) = 40.0;
+  const double before_s = 2100.0;
+  const double end_s = before_s + drift.time_s(drift.samples() - 1);
+  const double drag = 1e-9;
+  const double da = 0.05;
+  const double along = 40.0 - 1.5 * drag * end_s * end_s - 1.5 * n * da * end_s;
+  const double radial = da + 2.0 * drag / n * end_s;
+  EXPECT_NEAR(drift.min_distance(a_roe, {.a_da_m = da, .differential_drag = drag, .acted_for = before_s}),
+              std::hypot(along, radial), 0.03);
+}
+
 // Another model of the same drift: exact elements, curvilinear, a hundred samples a revolution.
 TEST(LinearDrift, AgreesWithTheCurvilinearDrift) {
   for (std::size_t waypoint = 4; waypoint <= 10; ++waypoint) {
