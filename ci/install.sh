@@ -27,7 +27,7 @@ test=(
   libceres-dev         # calibration of the Optical Stimulator and of TRON
   libopencv-contrib-dev  # calibration of TRON: its board in images
 )
-peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-torch rtklib librtklib-dev gnss-sdr
+peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-sgp4 python3-erfa python3-torch rtklib librtklib-dev gnss-sdr
   libopencv-dev liborocos-kdl-dev tshark ffmpeg ola
   doxygen mkdocs   # documentation site (ci/site.py)
   mmdebstrap       # a clean root for the Debian package (ci/package.sh)

@@ -19,14 +19,17 @@ void AidWatch::change(GpsTime time, std::int32_t aiding) {
 void AidWatch::take(GpsTime time, const fsw::packets::PacketView& packet) {
   const std::int32_t present = changes_.empty() ? 0 : changes_.back().aiding;
   if (const auto health = fsw::packets::decode<telemetry_health>(packet); health.ok()) {
-    // The events of the first step come after its health packet, or are of the same time.
-    if (health.value().step == 0 && has_stepped_) change(time, 0);
+    // Of a computer that began again: its events of this step, before the health packet or after it, still hold.
+    if (health.value().step == 0 && has_stepped_) change(time, time == reported_at_ ? present & reported_ : 0);
     has_stepped_ = true;
     return;
   }
   const auto event = fsw::packets::decode<telemetry_event>(packet);
   if (!event.ok() || event.value().event != telemetry_event::kEventAid) return;
   const std::int32_t source = event.value().device;
+  if (time != reported_at_) reported_ = 0;
+  reported_at_ = time;
+  reported_ |= source;
   const bool is_aiding = event.value().after == telemetry_event::kAidAiding;
   change(time, is_aiding ? present | source : present & ~source);
 }

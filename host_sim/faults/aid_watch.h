@@ -29,6 +29,8 @@ class AidWatch {
 
   std::vector<Change> changes_;
   bool has_stepped_ = false;
+  fsw::GpsTime reported_at_;   ///< step of the last event,
+  std::int32_t reported_ = 0;  ///< and sources with an event in that step
 };
 
 }  // namespace vbar::faults

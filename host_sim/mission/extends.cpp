@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "host_sim/mission/alternatives.h"
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/table_reader.h"
 #include "host_sim/mission/toml_file.h"
@@ -48,6 +49,7 @@ void put_elements_over(toml::array& base, toml::array& own, std::string_view key
 }
 
 void put_over(toml::table& base, toml::table& own) {
+  for (const auto& [key, value] : own) drop_alternatives(base, key.str());
   for (auto&& [key, value] : own) {
     toml::node* const old = base.get(key.str());
     const std::string_view label = label_key(key.str());

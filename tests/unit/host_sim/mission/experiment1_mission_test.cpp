@@ -230,6 +230,28 @@ TEST_F(Extends, SaysOnlyWhatDiffers) {
   EXPECT_EQ(mission.waypoints[1].time - mission.epoch, fsw::duration_of_seconds(7200));
 }
 
+// Two keys that exclude each other within one file stay an error.
+TEST_F(Extends, AnOrbitOfAnotherKindTakesThePlaceOfTheOldOne) {
+  write("own.toml",
+        "extends = \"base.toml\"\n[[spacecraft]]\nname = \"servicer\"\norbit_file = \"./x.oem\"\n"
+        "orbit_object = \"A\"\n"
+        "[[spacecraft]]\nname = \"target\"\nrelative = { to = \"servicer\", a_roe_m = [0, 9, 0, 0, 0, 0] }\n");
+  const Mission mission = load_mission(folder_ / "own.toml");
+  EXPECT_EQ(std::get<OrbitByFile>(mission.spacecraft[0].orbit).file.filename(), "x.oem");
+  EXPECT_EQ(std::get<OrbitByRoe>(mission.spacecraft[1].orbit).a_roe_m(1), 9.0);
+  write("further.toml",
+        "extends = \"own.toml\"\n[[spacecraft]]\nname = \"servicer\"\nelements = { kind = \"mean\", "
+        "semi_major_axis_km = 7100, ex = 0, ey = 0, inclination_deg = 98, raan_deg = 0, "
+        "mean_argument_of_latitude_deg = 0 }\n");
+  EXPECT_EQ(std::get<OrbitByElements>(load_mission(folder_ / "further.toml").spacecraft[0].orbit).elements.a, 7.1e6);
+  const Mission set =
+      load_mission(folder_ / "further.toml", std::vector<std::string>{"spacecraft.servicer.orbit_file=/y.oem"});
+  EXPECT_EQ(std::get<OrbitByFile>(set.spacecraft[0].orbit).file, "/y.oem");
+  write("both.toml",
+        "extends = \"base.toml\"\n[[spacecraft]]\nname = \"servicer\"\norbit_file = \"x.oem\"\nelements = {}\n");
+  EXPECT_THAT(message("both.toml"), testing::HasSubstr("found more than one of elements, relative and orbit_file"));
+}
+
 TEST_F(Extends, OfSeveralFilesTheLaterOnesWin) {
   write("part.toml", "[mission]\nseed = 5\nstep_s = 20\n[[waypoint]]\nindex = 1\nkeep_out_radius_m = 3.0\n");
   write("own.toml", "extends = [\"base.toml\", \"part.toml\"]\n[mission]\nseed = 7\n");
