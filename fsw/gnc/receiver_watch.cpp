@@ -32,7 +32,7 @@ void ReceiverWatch::update(GpsTime now, const sources::GnssFrontEnd& gnss, bool 
   if (crosslink && uses_crosslink) {
     const double silent = silent_s(crosslink->newest, now);
     faults.check(now, {.fault = telemetry_health::kFaultCrosslinkSilent,
-                       .is_detected = silent >= seconds(kLongestCrosslink),
+                       .is_detected = silent > seconds(kLongestCrosslink),
                        .device = navigation_configuration::kUseCarrierPair,
                        .argument = silent});
   }

@@ -76,7 +76,7 @@ TEST_F(ReceiverWatchTest, SilenceOfTheCrosslinkIsReportedAfterThirtySeconds) {
   for (int s = 110; s <= 140; s += 10) {
     hear(Receiver::kServicer, s);
     const std::int32_t raised = step(s);
-    EXPECT_EQ(raised, s < 130 ? 0 : telemetry_health::kFaultCrosslinkSilent) << s;
+    EXPECT_EQ(raised, s <= 130 ? 0 : telemetry_health::kFaultCrosslinkSilent) << s;
   }
 }
 
