@@ -2,7 +2,7 @@
 # The Debian package of the programs, installed into a root with nothing but Debian's essential packages, where a mission is flown from
 # another folder. usage: ci/package.sh [--keep FOLDER]
 # Packages what build/host installs, and build/zynq if it is there; both must be built.
-# Exit status 77: there is no Debian mirror, or no mmdebstrap.
+# Exit status 77: no mmdebstrap, or not even an empty root can be made here: no mirror, no right to mount.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [[ $# -eq 0 || ( $# -eq 2 && $1 == --keep ) ]] || { sed -n 2,5p "$0" >&2; exit 2; }
@@ -19,7 +19,8 @@ dpkg-deb --field "$package" Package Version Installed-Size Depends
 # --include takes the package's dependencies from the mirror with it.
 mmdebstrap --quiet --variant=essential --mode=root --include="$package" --setup-hook="mkdir -p \"\$1\$(dirname $package)\"" \
   --setup-hook="cp $package \"\$1$package\"" bookworm "$scratch/root" 2> "$scratch/root.log" ||
-  { if grep -qiE "could not resolve|connection|unable to fetch|failed to fetch" "$scratch/root.log"; then echo "skipped: no Debian mirror"; exit 77; fi
+  { if ! mmdebstrap --quiet --variant=essential --mode=root bookworm "$scratch/empty" 2> "$scratch/empty.log"; then
+      echo "skipped: no clean root can be made here: $(tail -n 1 "$scratch/empty.log")"; exit 77; fi
     cat "$scratch/root.log" >&2; exit 1; }
 # The program finds its data by /proc/self/exe.
 cat > "$scratch/root/tmp/fly.sh" << 'END'
