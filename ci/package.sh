@@ -2,12 +2,13 @@
 # The Debian package of the programs, installed into a root with nothing but Debian's essential packages, where a mission is flown from
 # another folder. usage: ci/package.sh [--keep FOLDER]
 # Packages what build/host installs, and build/zynq if it is there; both must be built.
-# Exit status 77: no mmdebstrap, or not even an empty root can be made here: no mirror, no right to mount.
+# Exit status 77: no mmdebstrap, no right to mount, or not even an empty root can be made here, as without a mirror.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [[ $# -eq 0 || ( $# -eq 2 && $1 == --keep ) ]] || { sed -n 2,5p "$0" >&2; exit 2; }
 [[ $(id -u) -eq 0 ]] || { echo "skipped: not root"; exit 77; }
 command -v mmdebstrap > /dev/null || { echo "skipped: mmdebstrap is not installed"; exit 77; }
+unshare --mount mount -t proc proc /proc 2> /dev/null || { echo "skipped: no right to mount"; exit 77; }
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
