@@ -18,8 +18,8 @@ class ReceiverWatch {
 
   /// Epochs of the own receiver, which reach the flight software over a cable.
   static constexpr double kMissingEpochs = 2.0;
-  /// Exceeded by three epochs of ten seconds in a row: a crosslink that loses one in a hundred loses two in a row once a
-  /// day.
+  /// Exceeded by three epochs of ten seconds in a row: a crosslink that loses one in a hundred loses two in a row once
+  /// a day.
   static constexpr Duration kLongestCrosslink = duration_of_seconds(30);
 
  private:
