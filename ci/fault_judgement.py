@@ -19,7 +19,7 @@ class JudgementError(Exception):
 class Case:
     faults: list             # tables of [[fault]], without at_h
     event: object            # the fault that the flight software must raise, or several of which any counts; "": none
-    within: object           # s, or a function of the image period; None: with the burns, whenever they are
+    within: object           # s, or a function of the periods of images and steps; None: with the burns, whenever they are
     points: tuple = ()       # at which it is flown; empty: all
     distance_m: float = 2.0
     retreats: object = None  # True: must, False: must not, None: may
@@ -188,8 +188,8 @@ def names(event):
     return (event,) if isinstance(event, str) else tuple(event)
 
 
-def judge(run, case, begin_s, period_s, nominal):
-    """What the run shows, and the list of what it misses. `period_s`: of images at the point; `nominal`: of the run without the fault,
+def judge(run, case, begin_s, period_s, step_s, nominal):
+    """What the run shows, and the list of what it misses. `period_s`, `step_s`: of images and steps at the point; `nominal`: of the run without the fault,
     needed by cases with a ratio."""
     window = window_of(case, begin_s)
     try:
@@ -219,7 +219,7 @@ def judge(run, case, begin_s, period_s, nominal):
     if any(names(case.event)) and reported_s is None:
         misses.append("not reported")
     if case.within is not None and reported_s is not None:
-        limit_s = case.within(period_s) if callable(case.within) else case.within
+        limit_s = case.within(period_s, step_s) if callable(case.within) else case.within
         if not reported_s <= limit_s:
             misses.append(f"reported later than {limit_s:.0f} s")
     if case.within_burns is not None and reported_s is not None:

@@ -31,6 +31,7 @@ POINTS = {
 NEAR = ("40m", "9m")
 FIXED = ("300m", "40m", "9m")
 AFTER_H = 24.0
+SLOW_H = 41.5  # from then on, steps of a minute and images of every fifth minute
 
 
 def fault(kind, **keys):
@@ -39,30 +40,30 @@ def fault(kind, **keys):
 
 CASES = {
     "none": Case([], "", None, retreats=False),
-    "camera silent 30 min": Case([fault("silent", unit="camera", for_s=1800.0)], "images_missing", lambda p: 4 * p + 60.0, sources=("bearings",),
+    "camera silent 30 min": Case([fault("silent", unit="camera", for_s=1800.0)], "images_missing", lambda p, s: 4 * p + 60.0, sources=("bearings",),
                                  points=("10km", "300m")),
     "cameras silent 30 min": Case([fault("silent", unit=u, for_s=1800.0) for u in ("camera", "close_camera")], "images_missing",
-                                  lambda p: 4 * p + 60.0, points=NEAR),
+                                  lambda p, s: 4 * p + 60.0, points=NEAR),
     "cameras silent for ever": Case([fault("silent", unit=u) for u in ("camera", "close_camera")], "guard_silence", 2200.0 + 1800.0, points=NEAR,
                                     retreats=True),
-    "image frozen 5 min": Case([fault("frozen", unit="camera", for_s=300.0)], "image_frozen", lambda p: 2 * p + 60.0, points=("10km", "300m", "40m")),
-    "close images frozen 5 min": Case([fault("frozen", unit="close_camera", for_s=300.0)], "image_frozen", lambda p: 2 * p + 10.0, points=("9m",)),
-    "star tracker 1 deg 10 min": Case([fault("attitude_error", unit="gnss", value_deg=1.0, for_s=600.0)], "attitude", lambda p: 3 * p,
+    "image frozen 5 min": Case([fault("frozen", unit="camera", for_s=300.0)], "image_frozen", lambda p, s: 2 * p + 60.0, points=("10km", "300m", "40m")),
+    "close images frozen 5 min": Case([fault("frozen", unit="close_camera", for_s=300.0)], "image_frozen", lambda p, s: 2 * p + 10.0, points=("9m",)),
+    "star tracker 1 deg 10 min": Case([fault("attitude_error", unit="gnss", value_deg=1.0, for_s=600.0)], "attitude", lambda p, s: 3 * p,
                                       retreats=False, error_ratio=2.0),
-    "receiver silent 1 h": Case([fault("receiver_silent", unit="gnss", for_s=3600.0)], "receiver_silent", lambda p: 20.0 + p, retreats=False,
+    "receiver silent 1 h": Case([fault("receiver_silent", unit="gnss", for_s=3600.0)], "receiver_silent", lambda p, s: 20.0 + s, retreats=False,
                                 error_ratio=1.2),
     "network wrong by 90 deg 60 s": Case([fault("target_turned", unit=u, value_deg=90.0, for_s=60.0) for u in ("camera", "close_camera")], "pose_network",
-                                         lambda p: 65.0 if p < 60.0 else 35.0,  # images every 20 and 10 s
+                                         lambda p, s: 65.0 if p < 60.0 else 35.0,  # images every 20 and 10 s
                                          points=NEAR, retreats=False, error_ratio=2.0),
     "thruster off": Case([fault("thrust_scale", value=0.0)], "thruster", None, distance_m=1.0, within_burns=2),
-    "thruster on 10 s": Case([fault("thrust_uncommanded", value_mps2=1e-3, direction_rtn=[0.0, 1.0, 0.0], for_s=10.0)], "burn_uncommanded", 61.0,
+    "thruster on 10 s": Case([fault("thrust_uncommanded", value_mps2=1e-3, direction_rtn=[0.0, 1.0, 0.0], for_s=10.0)], "burn_uncommanded", lambda p, s: s,
                              retreats=True),
     "burns 10 % short": Case([fault("thrust_scale", value=0.9)], "burn_size", None, retreats=False, within_burns=3, arrival_ratio=2.0),
-    "first burn of the leg missed": Case([fault("thrust_scale", value=0.0, event="burn:1", for_s=1.0)], "burn_missed", lambda p: 60.0, retreats=False,
+    "first burn of the leg missed": Case([fault("thrust_scale", value=0.0, event="burn:1", for_s=1.0)], "burn_missed", lambda p, s: s, retreats=False,
                                          arrival_ratio=2.0),
-    "reboot warm 60 s": Case([fault("computer_reboot", for_s=60.0, keeps_state=True)], "restart", lambda p: 60.0 + 2 * p, retreats=False, valid_within_s=60.0),
+    "reboot warm 60 s": Case([fault("computer_reboot", for_s=60.0, keeps_state=True)], "restart", lambda p, s: 60.0 + s, retreats=False, valid_within_s=60.0),
     "reboot cold 60 s": Case([fault("computer_reboot", for_s=60.0)], "", None, valid_within_s=2700.0),
-    "silent for 3 steps": Case([fault("computer_silent", for_s=181.0)], "step_late", lambda p: 181.0 + 2 * p, retreats=False),
+    "silent for 3 steps": Case([fault("computer_silent", for_s=181.0)], "step_late", lambda p, s: 181.0 + s, retreats=False),
 }
 
 # To a target that cooperates, from 1 km on.
@@ -74,7 +75,7 @@ COOPERATIVE = {
     "cooperative: integers wrong by one cycle": Case([fault("cycle_slip", unit="gnss", value_cycles=1)], "source_inconsistent", 300.0, FIXED,
                                                      retreats=False, error_m=0.10, error_ratio=2.0, error_from_s=600.0),
     "cooperative: receiver reset": Case([fault("receiver_reset", unit="gnss")], "", None, FIXED, retreats=False, error_ratio=1.2),
-    "cooperative: receiver silent 1 h": Case([fault("receiver_silent", unit="gnss", for_s=3600.0)], "receiver_silent", 20.0 + 10.0, FIXED,
+    "cooperative: receiver silent 1 h": Case([fault("receiver_silent", unit="gnss", for_s=3600.0)], "receiver_silent", 20.0, FIXED,
                                              retreats=False, error_ratio=1.2),
     "cooperative: cameras and crosslink silent for ever": Case(
         [fault("silent", unit=unit) for unit in CAMERAS] + [fault("silent", unit="gnss", spacecraft="target")], "retreat", 2100.0 + 60.0, NEAR,
@@ -89,17 +90,24 @@ def toml_of(value):
     return json.dumps(value)
 
 
+def steps_of(is_cooperative):
+    """[hour, seconds] of the mission."""
+    return [[0.0, 60.0], *([[24.0, 10.0]] if is_cooperative else [[36.0, 20.0]]), [38.5, 5.0], [SLOW_H, 60.0]]
+
+
+def step_at(hour, is_cooperative):
+    return [step_s for from_h, step_s in steps_of(is_cooperative) if from_h <= hour][-1]
+
+
 def mission_of(case, point, is_cooperative, after_h=AFTER_H):
     at_h, start_h, waypoint, _, sigmas = POINTS[point]
-    slow_h = 41.5  # from then on, images of every fifth minute
-    slow = [slow_h, 300.0]
+    slow = [SLOW_H, 300.0]
     camera = [[0.0, 60.0], [36.0, 20.0], [39.0, 60.0], slow]
     close_camera = [[38.25, 20.0], [39.0, 10.0 if point in NEAR else 60.0], slow]
     name = "full_range_cooperative_retreat" if is_cooperative else "full_range_retreat"
-    steps = [[0.0, 60.0], *([[24.0, 10.0]] if is_cooperative else [[36.0, 20.0]]), [38.5, 5.0], [slow_h, 60.0]]  # those of the mission
     lines = [f'extends = "{pathlib.Path.cwd() / "missions" / name}.toml"', "[mission]", 'name = "fault_table"',
              f"start_h = {start_h}", f"duration_h = {at_h + after_h - start_h}",
-             f"step_s = {steps}",
+             f"step_s = {steps_of(is_cooperative)}",
              "[[spacecraft]]", 'name = "target"', f'relative = {{ to = "servicer", waypoint = {waypoint} }}',
              "[[spacecraft]]", 'name = "servicer"',
              "[spacecraft.sensors.camera]", f"period_s = {camera}",
@@ -158,7 +166,7 @@ class Flights:
             run = self.run(folder_name(name, point, seed), mission_of(case, point, is_cooperative), seed)
             at_h, _, _, period_s, _ = POINTS[point]
             begin_s = begin_of(run) if any("event" in table for table in case.faults) else 3600.0 * at_h
-            return judge(run, case, begin_s, period_s, nominal.result() if nominal else None)
+            return judge(run, case, begin_s, period_s, step_at(at_h, is_cooperative), nominal.result() if nominal else None)
         return self.pool.submit(fly)
 
 

@@ -59,7 +59,7 @@ class Run(unittest.TestCase):
 
     def misses(self, **keys):
         case = Case(**{"faults": [SILENT], "event": "crosslink_silent", "within": 30.0, **keys})
-        return judge(self.folder, case, BEGIN_S, 60.0, self.nominal)["misses"]
+        return judge(self.folder, case, BEGIN_S, 60.0, 5.0, self.nominal)["misses"]
 
     def test_a_run_that_meets_its_row_misses_nothing(self):
         self.assertEqual(self.misses(sources=("carrier_pair",), fixed_within_s=60.0, error_ratio=3.1, error_m=0.04, retreats=False), [])
@@ -73,7 +73,8 @@ class Run(unittest.TestCase):
 
     def test_time_limits(self):
         self.assertEqual(self.misses(within=10.0), ["reported later than 10 s"])
-        self.assertEqual(self.misses(within=lambda period_s: period_s / 10.0), ["reported later than 6 s"])
+        self.assertEqual(self.misses(within=lambda period_s, step_s: period_s / 10.0), ["reported later than 6 s"])
+        self.assertEqual(self.misses(within=lambda period_s, step_s: step_s), ["reported later than 5 s"])
         self.assertEqual(self.misses(event="image_frozen"), ["not reported"])
         self.assertEqual(self.misses(event=("image_frozen", "crosslink_silent")), [])
         self.assertEqual(self.misses(retreats=True), ["does not retreat"])
