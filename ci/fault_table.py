@@ -103,7 +103,7 @@ def mission_of(case, point, is_cooperative, after_h=AFTER_H):
     at_h, start_h, waypoint, _, sigmas = POINTS[point]
     slow = [SLOW_H, 300.0]
     camera = [[0.0, 60.0], [36.0, 20.0], [39.0, 60.0], slow]
-    close_camera = [[38.25, 20.0], [39.0, 10.0 if point in NEAR else 60.0], slow]
+    close_camera = [[38.25, 20.0], [39.0, 10.0 if point == "9m" else 60.0], slow]
     name = "full_range_cooperative_retreat" if is_cooperative else "full_range_retreat"
     lines = [f'extends = "{pathlib.Path.cwd() / "missions" / name}.toml"', "[mission]", 'name = "fault_table"',
              f"start_h = {start_h}", f"duration_h = {at_h + after_h - start_h}",

@@ -2,10 +2,17 @@
 
 #include <algorithm>
 
+#include "fsw/guard/guard.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/roe.h"
 
 namespace vbar::fsw::gnc {
+namespace {
+
+/// Of the guard's timeout: an eclipse as long as that, and the time in sunlight that the guard accepts beside it.
+constexpr double kLongestOutage = 1.0 + guard::Guard::kLitShare;
+
+}  // namespace
 
 safety::RetreatSettings retreat_settings(const safety_configuration& configuration, double margin_m) {
   return {.contact_distance = configuration.contact_distance_m,
@@ -22,7 +29,7 @@ Assessment assess_drift_now(const DriftSituation& situation, double unmeasured_s
   const orbit::QnsElements& servicer = situation.orbits.servicer;
   const Vector6 roe = orbit::roe_from_qns(servicer, situation.orbits.target);
   safety::RetreatSettings settings = retreat_settings(configuration, situation.bound.radial_normal);
-  settings.unmeasured = std::min(unmeasured_s, configuration.data_timeout_s);
+  settings.unmeasured = std::min(unmeasured_s, kLongestOutage * configuration.data_timeout_s);
   const auto passive = safety::assess_drift(servicer, roe, configuration.horizon_s, situation.bound);
   const auto at_once = safety::find_delayed_retreat(servicer, servicer.a * roe, 0.0, settings);
   const auto delayed =

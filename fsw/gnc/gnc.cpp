@@ -106,6 +106,12 @@ void Gnc::supervise() {
   if (const auto codes = code_baseline(receivers.gnss(), receivers.trunk().settings().earth)) {
     guard_.take_code_baseline(codes->time, codes->range_m, range_m);
   }
+  const navigation::EpochBuffer& own = receivers.gnss().waiting(sources::Receiver::kServicer);
+  if (own.size() > 0) {
+    const gnss::ObservationEpoch& newest = own[own.size() - 1];
+    const auto sunlit = is_sunlit(newest, receivers.gnss().ephemerides(), receivers.trunk().settings().earth);
+    if (sunlit.ok()) guard_.take_sunlight(newest.receiver_time, sunlit.value());
+  }
   check_verdicts(guard_.judge(now_), now_, faults_);
 }
 

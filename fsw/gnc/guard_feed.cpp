@@ -2,6 +2,7 @@
 
 #include "fsw/gnc/message_fields.h"
 #include "fsw/math/math.h"
+#include "fsw/navigation/propagation.h"
 #include "fsw/navigation/single_point.h"
 #include "fsw/orbit/sun.h"
 
@@ -37,6 +38,14 @@ std::optional<CodeBaseline> code_baseline(const sources::GnssFrontEnd& gnss, con
     return CodeBaseline{.time = tag, .range_m = math::sqrt(apart.squaredNorm())};
   }
   return std::nullopt;
+}
+
+Result<bool> is_sunlit(const gnss::ObservationEpoch& epoch, const navigation::EphemerisStore& ephemerides,
+                       const orbit::EarthOrientation& earth) {
+  const GpsTime tag = epoch.receiver_time;
+  const auto point = navigation::single_point(epoch, ephemerides, navigation::EarthFrame::at(tag, earth));
+  if (!point.ok()) return point.status();
+  return navigation::is_sunlit(point.value().position_eci, orbit::sun_position_gcrf(tag).normalized());
 }
 
 void feed_guard(guard::Guard& guard, const Inbox& inbox, const Telecommands& telecommands,

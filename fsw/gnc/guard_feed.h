@@ -19,6 +19,10 @@ struct CodeBaseline {
 /// No value without such an epoch, or where either receiver has no single-point solution in it.
 std::optional<CodeBaseline> code_baseline(const sources::GnssFrontEnd& gnss, const orbit::EarthOrientation& earth);
 
+/// Whether the single-point solution of an epoch is outside the shadow of the Earth; status: that of single_point().
+Result<bool> is_sunlit(const gnss::ObservationEpoch& epoch, const navigation::EphemerisStore& ephemerides,
+                       const orbit::EarthOrientation& earth);
+
 /// Gives the packets of the step to the guard. `attitude`: the last one received, replaced by those of the step.
 void feed_guard(guard::Guard& guard, const Inbox& inbox, const Telecommands& telecommands,
                 std::optional<vbar::attitude>& attitude, double navigation_range_m);

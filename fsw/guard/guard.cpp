@@ -21,7 +21,7 @@ constexpr double kClosingWithin_m = 150.0;
 void Guard::take_image(GpsTime time, const imaging::ImageView& image, const GuardCamera& camera,
                        const Illumination& illumination, double navigation_range_m) {
   const LitArea area = lit_area(image, camera);
-  if (area.pixels >= kSeenPixels) seen_ = time;
+  if (area.pixels >= kSeenPixels) see(time);
   const std::optional<double> range_m = range_from_size(area, camera, illumination, settings_.target_size_m);
   if (!range_m) return;
   range_.add(time, *range_m);
@@ -33,7 +33,7 @@ void Guard::take_image(GpsTime time, const imaging::ImageView& image, const Guar
 }
 
 void Guard::take_code_baseline(GpsTime time, double range_m, double navigation_range_m) {
-  if (!seen_ || time > *seen_) seen_ = time;
+  if (!seen_ || time > *seen_) see(time);
   if (range_m > kCodeComparedFrom_m) static_cast<void>(compare(time, range_m, navigation_range_m));
 }
 
@@ -74,13 +74,32 @@ void Guard::take_report(std::int32_t maneuver_id, const Vector3& dv_rtn) {
   pending_.burns = {.is_checked = true, .is_alarm = is_alarm, .value = size > 0.0 ? difference / size : difference};
 }
 
+void Guard::take_sunlight(GpsTime time, bool is_sunlit) {
+  in_shadow_ = is_sunlit ? std::nullopt : std::optional(time);
+}
+
+void Guard::see(GpsTime time) {
+  seen_ = time;
+  lit_s_ = 0.0;
+  counted_until_ = time;
+}
+
+/// The time since the last count lies in sunlight or in shadow as a whole.
+void Guard::count_sunlight(GpsTime now) {
+  const bool is_dark = in_shadow_ && math::abs(seconds(now - *in_shadow_)) <= kShadowHolds_s;
+  if (!is_dark) lit_s_ += seconds(now - counted_until_);
+  counted_until_ = now;
+}
+
 GuardVerdicts Guard::judge(GpsTime now) {
   GuardVerdicts verdicts = pending_;
   pending_ = {};
+  count_sunlight(now);
   if (range_.is_known() && seen_) {
     const double age_s = seconds(now - *seen_);
     const bool is_near = range_.range_m(range_.last()) < settings_.data_timeout_range_m;
-    verdicts.silence = {.is_checked = true, .is_alarm = is_near && age_s > settings_.data_timeout_s, .value = age_s};
+    const bool is_late = age_s > settings_.data_timeout_s && lit_s_ > kLitShare * settings_.data_timeout_s;
+    verdicts.silence = {.is_checked = true, .is_alarm = is_near && is_late, .value = age_s};
   }
   return verdicts;
 }

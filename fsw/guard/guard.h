@@ -3,8 +3,7 @@
 //
 // Of the sensors it uses images, the attitude and the codes of both receivers, of guidance the burns commanded, of
 // actuators the burns reported. It has its own range and range rate (range_filter.h), its own record of burns and its
-// own timer of outages. What
-// navigation states is compared with them, and used for nothing else.
+// own timer of outages. What navigation states is compared with them, and used for nothing else.
 
 #include <array>
 #include <cstddef>
@@ -19,8 +18,10 @@
 namespace vbar::fsw::guard {
 
 struct GuardSettings {
-  double target_size_m = 0.0;         ///< square root of the mean silhouette area
-  double data_timeout_s = 0.0;        ///< longest time without the target in an image or a code baseline
+  double target_size_m = 0.0;  ///< square root of the mean silhouette area
+  /// Longest time without the target in an image or a code baseline, unless most of it was an eclipse
+  /// (Guard::kLitShare).
+  double data_timeout_s = 0.0;
   double data_timeout_range_m = 0.0;  ///< inside this range
 };
 
@@ -34,7 +35,7 @@ struct Verdict {
 /// All verdicts of a step.
 struct GuardVerdicts {
   Verdict range;  ///< logarithm of the guard's range of an image over that of navigation, nearer than kCompareWithin_m
-  Verdict silence;  ///< time since the target was last seen or its receiver heard, s
+  Verdict silence;  ///< time since the target was last seen or its receiver heard, s, eclipse included
   Verdict burns;    ///< difference of a burn from its command, share of the command
   Verdict closing;  ///< range rate, m/s
 };
@@ -53,6 +54,12 @@ class Guard {
   /// Nearer than this, the errors of two code solutions are a large share of their distance.
   static constexpr double kCodeComparedFrom_m = 20.0;
 
+  /// A silence is an alarm once this share of the timeout was in sunlight as well: an eclipse of 35 minutes and the
+  /// time for which the target then turns its dark side to the camera are longer than the timeout, without any fault.
+  static constexpr double kLitShare = 0.5;
+  /// A position in the shadow of the Earth holds this long, s.
+  static constexpr double kShadowHolds_s = 120.0;
+
   void configure(const GuardSettings& settings) { settings_ = settings; }
 
   /// An image in which a resolved target is exposed properly. `navigation_range_m`: what navigation states, 0 nothing.
@@ -62,6 +69,9 @@ class Guard {
   /// Distance of the single-point solutions of both receivers, m: decimetres to metres, hence compared beyond
   /// kCodeComparedFrom_m only. Range and rate are those of images alone.
   void take_code_baseline(GpsTime time, double range_m, double navigation_range_m);
+
+  /// Whether the own receiver's code solution is outside the shadow of the Earth. Without any, all time counts as lit.
+  void take_sunlight(GpsTime time, bool is_sunlit);
 
   void take_command(std::int32_t maneuver_id, const Vector3& dv_rtn);
   /// A burn that was executed, whatever was commanded.
@@ -85,6 +95,8 @@ class Guard {
     GpsTime last;
   };
   [[nodiscard]] bool disagrees(GpsTime time, double logarithm);
+  void see(GpsTime time);
+  void count_sunlight(GpsTime now);
   /// False if there is nothing to compare: far from the target, or no range of navigation.
   bool compare(GpsTime time, double range_m, double navigation_range_m);
 
@@ -94,6 +106,9 @@ class Guard {
   RangeFilter range_;
   /// The last image with a lit target, whether its size gives a range or not, or the last code baseline.
   std::optional<GpsTime> seen_;
+  std::optional<GpsTime> in_shadow_;  ///< the newest own position, if it is in the shadow
+  double lit_s_ = 0.0;                ///< in sunlight, from `seen_` to `counted_until_`
+  GpsTime counted_until_;
   std::optional<Disagreement> disagreement_;
   GuardVerdicts pending_;
   std::array<Command, kCommands> commands_{};

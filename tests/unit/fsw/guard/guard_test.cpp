@@ -83,6 +83,30 @@ TEST_F(GuardTest, SilenceNearTheTargetIsAnAlarm) {
   EXPECT_TRUE(guard_.judge(at(2101.0)).silence.is_alarm);
 }
 
+// 35 minutes of eclipse and ten minutes of the target's dark side follow one another in a nominal mission.
+TEST_F(GuardTest, AnEclipseDelaysTheAlarmUntilHalfTheTimeoutWasLit) {
+  look(0.0, 40.0, 40.0);
+  for (double t = 60.0; t <= 3600.0; t += 60.0) {
+    guard_.take_sunlight(at(t - 5.0), t < 300.0 || t > 2340.0);
+    EXPECT_EQ(guard_.judge(at(t)).silence.is_alarm, t > 2340.0 + 1050.0 - 240.0) << t;
+  }
+}
+
+// Eclipses of a quarter of an hour leave enough light in the timeout.
+TEST_F(GuardTest, AShortEclipseDelaysNothing) {
+  look(0.0, 40.0, 40.0);
+  for (double t = 60.0; t <= 3600.0; t += 60.0) {
+    guard_.take_sunlight(at(t), t < 600.0 || t > 1440.0);
+    EXPECT_EQ(guard_.judge(at(t)).silence.is_alarm, t > 2100.0) << t;
+  }
+}
+
+TEST_F(GuardTest, AReceiverThatFailsInEclipseDelaysNothing) {
+  look(0.0, 40.0, 40.0);
+  guard_.take_sunlight(at(10.0), false);
+  for (double t = 60.0; t <= 3600.0; t += 60.0) EXPECT_EQ(guard_.judge(at(t)).silence.is_alarm, t > 2100.0) << t;
+}
+
 // A target with its dark side towards the camera is not seen, but heard.
 TEST_F(GuardTest, ACodeBaselineEndsASilence) {
   look(0.0, 40.0, 40.0);
