@@ -53,7 +53,8 @@ bool Guard::disagrees(GpsTime time, double logarithm) {
   const bool continues = disagreement_ && seconds(time - disagreement_->last) <= RangeFilter::kLongestGap_s;
   if (!continues) disagreement_ = Disagreement{.first = time, .last = time};
   disagreement_->last = time;
-  return seconds(time - disagreement_->first) >= kLongestDisagreement_s;
+  if (disagreement_->count < kFewestDisagreeing) ++disagreement_->count;
+  return disagreement_->count >= kFewestDisagreeing && seconds(time - disagreement_->first) >= kLongestDisagreement_s;
 }
 
 void Guard::take_command(std::int32_t maneuver_id, const Vector3& dv_rtn) {

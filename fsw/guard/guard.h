@@ -50,6 +50,8 @@ class Guard {
   /// Every image must contradict navigation for this long, s: attitude and phase change the lit area for minutes alike,
   /// and in penumbra the target is too dim to be measured.
   static constexpr double kLongestDisagreement_s = 300.0;
+  /// And so many must do so: of images every five minutes, two in a row see similar attitudes.
+  static constexpr int kFewestDisagreeing = 5;
 
   /// Nearer than this, the errors of two code solutions are a large share of their distance.
   static constexpr double kCodeComparedFrom_m = 20.0;
@@ -93,6 +95,7 @@ class Guard {
   struct Disagreement {
     GpsTime first;
     GpsTime last;
+    int count = 0;
   };
   [[nodiscard]] bool disagrees(GpsTime time, double logarithm);
   void see(GpsTime time);

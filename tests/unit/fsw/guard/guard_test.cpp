@@ -62,6 +62,13 @@ TEST_F(GuardTest, AnImageThatAgreesEndsTheAlarm) {
   }
 }
 
+TEST_F(GuardTest, RareImagesAreAnAlarmFromTheFifthOn) {
+  for (int k = 0; k < 8; ++k) {
+    look(300.0 * k, 40.0, 95.0);
+    EXPECT_EQ(guard_.judge(at(300.0 * k)).range.is_alarm, k >= 4) << k;
+  }
+}
+
 // Two disagreements with an eclipse between them are two.
 TEST_F(GuardTest, ALongGapBeginsAnew) {
   look(0.0, 40.0, 95.0);
