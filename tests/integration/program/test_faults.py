@@ -2,14 +2,16 @@
 """Faults of a scenario: what they do, who witnesses it, what the flight software reports, and nothing before they begin."""
 import csv
 import math
+import subprocess
 import unittest
 
-from vbar_program import MISSION, SOURCE, ZYNQ_IMAGE, fly, hashes, main, missing, scratch, vbar
+from vbar_program import BINARY, MISSION, SOURCE, ZYNQ_IMAGE, fly, hashes, main, missing, scratch, vbar
 
 EXPERIMENT1 = SOURCE / "missions" / "experiment1.toml"
 EXPERIMENT2 = SOURCE / "missions" / "experiment2.toml"
 EXPERIMENT3 = SOURCE / "missions" / "experiment3.toml"
 SHORT = "mission.duration_h=0.2"
+STATE_FLIPS = BINARY / "tests/integration/state_flips/vbar_state_flips"
 FAULTS = """
 extends = "{base}"
 [[fault]]
@@ -293,6 +295,16 @@ class Snapshot(unittest.TestCase):
                     with open(folder / "run/poses.csv", newline="") as table:
                         seen = [row for row in csv.DictReader(table) if float(row["time_s"]) > 3600 * at_h and row["status"] != "dark"]
                     self.assertGreater(len(seen), 5)
+
+    def test_a_flipped_bit_is_reported_and_corrected_in_the_next_step(self):
+        with scratch() as folder:
+            for name, settings, at_h in (("experiment2", ["mission.duration_h=0.1"], 39.08), ("experiment3", [], 40.0)):
+                fly(folder / name, *settings, mission=SOURCE / "missions" / f"{name}.toml")
+                saved = vbar("replay", folder / name, "--save", folder / f"{name}.snapshot", "--at-h", at_h)
+                self.assertEqual(saved.returncode, 0, saved.stderr)
+            flips = subprocess.run([STATE_FLIPS, folder / "experiment2.snapshot", folder / "experiment3.snapshot"], capture_output=True, text=True)
+            self.assertEqual(flips.returncode, 0, flips.stdout + flips.stderr)
+            self.assertEqual(flips.stdout.count("100 flips"), 2)
 
     def test_so_it_does_on_another_flight_computer(self):
         with scratch() as folder:

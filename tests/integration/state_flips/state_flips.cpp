@@ -51,20 +51,21 @@ struct Continued {
 };
 
 /// A step after the snapshot, so that the report of the restart is over.
-Continued continue_from(const std::string& file) {
+void continue_from(const std::string& file, Continued& continued) {
   Article article;
-  EXPECT_EQ(article.restore_snapshot(snapshot_in(file)), 0) << file;
+  ASSERT_EQ(article.restore_snapshot(snapshot_in(file)), 0) << file << ": of other flight software, or damaged";
   const GpsTime now = state_of(article).now_ + kPeriod;
   const Answer answer = article.step(now, kPeriod);
-  EXPECT_EQ(answer.status, 0) << file;
-  EXPECT_EQ(answer.navigation.valid, 1) << file << ": nothing is estimated at this time";
-  return {now, article.save()};
+  ASSERT_EQ(answer.status, 0) << file;
+  ASSERT_EQ(answer.navigation.valid, 1) << file << ": nothing is estimated at this time";
+  continued = {now, article.save()};
 }
 
 TEST(StateFlips, AreReportedAndCorrectedInTheNextStep) {
   ASSERT_FALSE(snapshot_files.empty()) << "name a snapshot";
   for (const std::string& file : snapshot_files) {
-    const Continued before = continue_from(file);
+    Continued before;
+    ASSERT_NO_FATAL_FAILURE(continue_from(file, before));
     Article article;
     article.restore(before.memory);
     const Answer reference = article.step(before.now + kPeriod, kPeriod);

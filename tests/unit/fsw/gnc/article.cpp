@@ -1,5 +1,6 @@
 #include "tests/unit/fsw/gnc/article.h"
 
+#include <algorithm>
 #include <cstring>
 #include <new>
 
@@ -100,7 +101,9 @@ Answer Article::collect(vbar_status status) {
       answer.packets.push_back(bytes);
       continue;
     }
-    if (view.header.apid == Apid::kPointingCommand || view.header.apid == Apid::kTelemetryRange) {
+    constexpr std::array kKeptAsBytes{Apid::kPointingCommand, Apid::kExposureCommand, Apid::kTelemetryRange,
+                                      Apid::kTelemetryGnss,   Apid::kTelemetryImage,  Apid::kTelemetryObjects};
+    if (std::ranges::find(kKeptAsBytes, view.header.apid) != kKeptAsBytes.end()) {
       answer.packets.push_back(bytes);
       continue;
     }
