@@ -188,9 +188,9 @@ def names(event):
     return (event,) if isinstance(event, str) else tuple(event)
 
 
-def judge(run, case, begin_s, period_s, step_s, nominal):
+def judge(run, case, begin_s, period_s, step_s, nominal, sensed_until_s=math.inf):
     """What the run shows, and the list of what it misses. `period_s`, `step_s`: of images and steps at the point; `nominal`: of the run without the fault,
-    needed by cases with a ratio."""
+    needed by cases with a ratio. Until `sensed_until_s` images are as frequent as the mission has them: a retreat after it is not the fault's."""
     window = window_of(case, begin_s)
     try:
         summary = json.loads((run / "summary.json").read_text())
@@ -227,8 +227,10 @@ def judge(run, case, begin_s, period_s, step_s, nominal):
                     for row in rows_of(run / "maneuvers.csv", ["execution_time_s"]))
         if burns > case.within_burns:
             misses.append(f"reported at burn {burns}, not {case.within_burns}")
-    if case.retreats is not None and case.retreats != (retreat_s is not None):
-        misses.append("retreats" if retreat_s is not None else "does not retreat")
+    if case.retreats is True and retreat_s is None:
+        misses.append("does not retreat")
+    if case.retreats is False and retreat_s is not None and begin_s + retreat_s <= sensed_until_s:
+        misses.append("retreats")
     misses += [f"{source} {aid.get(source)}" for source in case.sources if aid.get(source) not in ("aiding", "suspended")]
     if case.fixed_within_s is not None:
         fixed_s = fixed_after_s(rows_of(run / "gnss.csv", ["time_s", "fixed"]), window.end_s)

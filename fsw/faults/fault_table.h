@@ -58,7 +58,7 @@ inline constexpr auto kFaultTable = std::to_array<Rule>({
     {telemetry_health::kFaultBurnRefused, telemetry_event::kSeverityWarning},                              // maneuver
     {telemetry_health::kFaultBurnMissed, telemetry_event::kSeverityWarning},                               // maneuver
     {telemetry_health::kFaultBurnLate, telemetry_event::kSeverityWarning},                                 // delay, s
-    {telemetry_health::kFaultBurnSize, telemetry_event::kSeverityWarning, 2, 3},                           // scale
+    {telemetry_health::kFaultBurnSize, telemetry_event::kSeverityWarning},                                 // scale
     {telemetry_health::kFaultBurnUncommanded, telemetry_event::kSeverityFault, 1, 1, Response::kRetreat},  // m/s
     {telemetry_health::kFaultThruster, telemetry_event::kSeverityFault, 2, 2, Response::kHold},            // scale
     // guard

@@ -6,13 +6,14 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// A burn differs from the command if it does so by more than this share of its size and five sigma of the impulse that
-// a thruster errs by, which dominates burns of micrometres per second: both errors are independent.
+// A burn differs from the command if it does so by more than this share of its size, five sigma of a thruster, and five
+// sigma of the impulse that it errs by, which dominates burns of micrometres per second: both errors are independent.
+// One burn is therefore enough.
 constexpr double kUsualShare = 0.05;
 constexpr double kImpulseSigma = 2e-6;  // m/s
 constexpr double kUsualImpulse = 5.0 * kImpulseSigma;
 // So does a scale that is off by the same share and by this multiple of its sigma, where single burns are too small.
-constexpr double kScaleSigmas = 3.0;
+constexpr double kScaleSigmas = 4.0;
 constexpr double kJumpSigmas = 5.0;    // of a ratio from the estimate, from which on the scale is another one
 constexpr double kNothing = 0.1;       // share of the size below which a burn counts as missed
 constexpr double kImplausible = 10.0;  // share of the size from which on a report says nothing of the thruster

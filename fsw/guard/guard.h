@@ -50,7 +50,7 @@ class Guard {
   /// Every image must contradict navigation for this long, s: attitude and phase change the lit area for minutes alike,
   /// and in penumbra the target is too dim to be measured.
   static constexpr double kLongestDisagreement_s = 300.0;
-  /// And so many must do so: of images every five minutes, two in a row see similar attitudes.
+  /// At least this number of images: of those taken every five minutes, two in a row see similar attitudes.
   static constexpr int kFewestDisagreeing = 5;
 
   /// Nearer than this, the errors of two code solutions are a large share of their distance.

@@ -82,6 +82,16 @@ class Run(unittest.TestCase):
         write(self.folder / "gnss.csv", [{"time_s": t, "fixed": 0} for t in self.times])
         self.assertEqual(self.misses(fixed_within_s=60.0), ["not fixed again"])
 
+    def test_a_retreat_counts_while_images_are_frequent(self):
+        write(self.folder / "telemetry_event.csv", self.events + [self.event(3000.0, "fault_raised", fault="retreat")])
+
+        def misses(retreats, sensed_until_s):
+            case = Case([SILENT], "crosslink_silent", 30.0, retreats=retreats)
+            return judge(self.folder, case, BEGIN_S, 60.0, 5.0, self.nominal, sensed_until_s)["misses"]
+        self.assertEqual(misses(False, 3000.0), ["retreats"])
+        self.assertEqual(misses(False, 2999.0), [])
+        self.assertEqual(misses(True, 2999.0), [])
+
     def test_distance_and_effect(self):
         self.write_positions(lambda _: 0.01, distance_m=lambda time_s: 1.9 if time_s == 3000.0 else 10.0)
         self.assertEqual(self.misses(), ["distance"])

@@ -73,18 +73,14 @@ TEST_F(BurnMonitorTest, ABurnOfAnotherSizeStatesTheRatio) {
   for (const double ratio : {0.8, 1.3}) {
     monitor_.expect(3, at(100), kBurn);
     report(3, at(100), ratio * kBurn);
-    monitor_.expect(4, at(101), kBurn);
-    report(4, at(101), ratio * kBurn);
     EXPECT_EQ(step(at(120)), telemetry_health::kFaultBurnSize) << ratio;
     EXPECT_NEAR(faults_.transitions().front().argument, ratio, 1e-12);
   }
 }
 
 TEST_F(BurnMonitorTest, ABurnInAnotherDirection) {
-  for (int id = 3; id < 5; ++id) {
-    monitor_.expect(id, at(100), {0.0, 2e-3, 0.0});
-    report(id, at(100), {0.4e-3, 2e-3, 0.0});
-  }
+  monitor_.expect(3, at(100), {0.0, 2e-3, 0.0});
+  report(3, at(100), {0.4e-3, 2e-3, 0.0});
   EXPECT_EQ(step(at(120)), telemetry_health::kFaultBurnSize);
 }
 
@@ -111,7 +107,7 @@ TEST_F(BurnMonitorTest, BurnsTooShortAreReportedAtTheThirdAtTheLatest) {
 }
 
 /// Small burns, which cannot show it, count neither for it nor against it.
-TEST_F(BurnMonitorTest, AThrusterThatLosesATenthIsReportedAtTheSecondBurnThatShowsIt) {
+TEST_F(BurnMonitorTest, AThrusterThatLosesATenthIsReportedAtTheFirstBurnThatShowsIt) {
   int id = 0;
   const auto burn = [&](double size, double ratio) {
     ++id;
@@ -120,9 +116,8 @@ TEST_F(BurnMonitorTest, AThrusterThatLosesATenthIsReportedAtTheSecondBurnThatSho
     return step(at(100 * id + 20));
   };
   for (const double size : {1.8e-3, 1.5e-3, 200e-6, 20e-6, 16e-6}) EXPECT_EQ(burn(size, 1.0), 0) << size;
-  EXPECT_EQ(burn(33e-6, 0.9), 0);
-  EXPECT_EQ(burn(2.3e-3, 0.9), 0);
-  EXPECT_EQ(burn(103e-6, 0.9), telemetry_health::kFaultBurnSize);
+  for (const double size : {41e-6, 77e-6}) EXPECT_EQ(burn(size, 0.9), 0) << size;
+  EXPECT_EQ(burn(191e-6, 0.9), telemetry_health::kFaultBurnSize);
   EXPECT_NEAR(monitor_.scale().scale(), 0.9, 0.01);
 }
 
