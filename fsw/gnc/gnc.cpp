@@ -103,15 +103,7 @@ void Gnc::supervise() {
   const double range_m = state.valid ? (state.target.position_eci - state.servicer.position_eci).norm() : 0.0;
   feed_guard(guard_, inbox_, telecommands_, attitude_, range_m);
   const TrunkNavigation& receivers = navigation_.trunk();
-  if (const auto codes = code_baseline(receivers.gnss(), receivers.trunk().settings().earth)) {
-    guard_.take_code_baseline(codes->time, codes->range_m, range_m);
-  }
-  const navigation::EpochBuffer& own = receivers.gnss().waiting(sources::Receiver::kServicer);
-  if (own.size() > 0) {
-    const gnss::ObservationEpoch& newest = own[own.size() - 1];
-    const auto sunlit = is_sunlit(newest, receivers.gnss().ephemerides(), receivers.trunk().settings().earth);
-    if (sunlit.ok()) guard_.take_sunlight(newest.receiver_time, sunlit.value());
-  }
+  feed_guard_codes(guard_, receivers.gnss(), receivers.trunk().settings().earth, range_m);
   check_verdicts(guard_.judge(now_), now_, faults_);
 }
 

@@ -72,6 +72,18 @@ void feed_guard(guard::Guard& guard, const Inbox& inbox, const Telecommands& tel
   }
 }
 
+void feed_guard_codes(guard::Guard& guard, const sources::GnssFrontEnd& gnss, const orbit::EarthOrientation& earth,
+                      double navigation_range_m) {
+  if (const auto codes = code_baseline(gnss, earth)) {
+    guard.take_code_baseline(codes->time, codes->range_m, navigation_range_m);
+  }
+  const navigation::EpochBuffer& own = gnss.waiting(sources::Receiver::kServicer);
+  if (own.size() == 0) return;
+  const gnss::ObservationEpoch& newest = own[own.size() - 1];
+  const auto sunlit = is_sunlit(newest, gnss.ephemerides(), earth);
+  if (sunlit.ok()) guard.take_sunlight(newest.receiver_time, sunlit.value());
+}
+
 void check_verdicts(const guard::GuardVerdicts& verdicts, GpsTime now, faults::FaultMonitor& faults) {
   const auto check = [&](std::int32_t fault, const guard::Verdict& verdict) {
     if (!verdict.is_checked) return;

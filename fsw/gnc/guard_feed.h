@@ -27,6 +27,10 @@ Result<bool> is_sunlit(const gnss::ObservationEpoch& epoch, const navigation::Ep
 void feed_guard(guard::Guard& guard, const Inbox& inbox, const Telecommands& telecommands,
                 std::optional<vbar::attitude>& attitude, double navigation_range_m);
 
+/// Gives the single-point solutions of the newest epochs to the guard: the code baseline, and the own sunlight.
+void feed_guard_codes(guard::Guard& guard, const sources::GnssFrontEnd& gnss, const orbit::EarthOrientation& earth,
+                      double navigation_range_m);
+
 /// Checks its verdicts as faults.
 void check_verdicts(const guard::GuardVerdicts& verdicts, GpsTime now, faults::FaultMonitor& faults);
 

@@ -8,16 +8,12 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <random>
 #include <span>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "fsw/gnc/gnc.h"
-#include "fsw/gnc/state_integrity.h"
-#include "tests/unit/fsw/gnc/article.h"
-#include "tests/unit/fsw/gnc/small_world.h"
+#include "tests/unit/fsw/gnc/bit_flips.h"
 
 namespace vbar::fsw::gnc::test {
 namespace {
@@ -25,16 +21,9 @@ namespace {
 std::vector<std::string> snapshot_files;
 
 constexpr Duration kPeriod = duration_of_seconds(5);
-constexpr int kFlips = 100;
-
-const GncState& state_of(Article& article) {
-  return *static_cast<const GncState*>(static_cast<const void*>(article.memory()));
-}
 
 std::span<unsigned char> trunk_in(Article& article) {
-  const trunk::Trunk& trunk = state_of(article).navigation_.trunk().trunk();
-  return {const_cast<unsigned char*>(static_cast<const unsigned char*>(static_cast<const void*>(&trunk))),
-          sizeof trunk};
+  return bytes_of(state_of(article).navigation_.trunk().trunk());
 }
 
 /// The bytes behind the line of text at the beginning.
@@ -66,25 +55,9 @@ TEST(StateFlips, AreReportedAndCorrectedInTheNextStep) {
   for (const std::string& file : snapshot_files) {
     Continued before;
     ASSERT_NO_FATAL_FAILURE(continue_from(file, before));
-    Article article;
-    article.restore(before.memory);
-    const Answer reference = article.step(before.now + kPeriod, kPeriod);
-    ASSERT_EQ(reference.health.faults_present & telemetry_health::kFaultState, 0);
-    std::mt19937 random(20260101);
-    std::uniform_int_distribution<std::size_t> place(0, trunk_in(article).size() - 1);
-    std::uniform_int_distribution<int> bit(0, 7);
-    for (int k = 0; k < kFlips; ++k) {
-      article.restore(before.memory);
-      const std::size_t at_byte = place(random);
-      unsigned char& byte = trunk_in(article)[at_byte];
-      byte = static_cast<unsigned char>(byte ^ (1U << static_cast<unsigned>(bit(random))));
-      const Answer answer = article.step(before.now + kPeriod, kPeriod);
-      ASSERT_NE(answer.health.faults_present & telemetry_health::kFaultState, 0) << file << ", byte " << at_byte;
-      ASSERT_EQ(answer.events.size(), reference.events.size() + 1) << file << ", byte " << at_byte;
-      ASSERT_EQ(without_health(answer.packets), without_health(reference.packets)) << file << ", byte " << at_byte;
-    }
+    ASSERT_NO_FATAL_FAILURE(expect_flips_corrected(before.memory, trunk_in, before.now + kPeriod, kPeriod, {})) << file;
     std::printf("%s: %d flips among %zu bytes, each reported and corrected in the next step\n", file.c_str(), kFlips,
-                trunk_in(article).size());
+                sizeof(trunk::Trunk));
   }
 }
 
