@@ -23,4 +23,4 @@ case ${1:-} in
 esac
 ((${#programs[@]} > 0)) || { echo "ci/sanitize.sh: no unit test in: $*" >&2; exit 2; }
 cmake --build --preset asan --target "${targets[@]}" "${programs[@]}"
-ctest --preset asan --parallel 2 --tests-regex "^($(IFS='|'; echo "${programs[*]}"))\$"
+ctest --preset asan --parallel 2 --tests-regex "^($(IFS='|'; echo "${programs[*]}"))\."

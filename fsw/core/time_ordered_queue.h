@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
@@ -14,10 +15,12 @@ namespace vbar::fsw {
 /// are ordered alike irrespective of their arrival.
 struct FilingTag {
   GpsTime time;
-  std::uint8_t unit = 0;
-  std::uint16_t sequence_count = 0;
+  std::uint32_t unit = 0;
+  std::uint32_t sequence_count = 0;
   constexpr auto operator<=>(const FilingTag&) const = default;
 };
+// Without padding, which a copy may take from the stack into a snapshot.
+static_assert(std::has_unique_object_representations_v<FilingTag>);
 
 /// Up to `kCapacity` entries in order of their tags. Rule when full: the newest arrival is refused, nothing is
 /// overwritten.

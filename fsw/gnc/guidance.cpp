@@ -97,7 +97,11 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   sigma_roe_ = sigma_a_roe_m / orbits_.servicer.a;
   position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m(0), orbits_.servicer);
   covariance_m2_ = navigation.a_roe_covariance_m2();
-  safety_ = management.safety() != nullptr ? std::optional(*management.safety()) : std::nullopt;
+  if (management.safety() != nullptr) {
+    safety_ = *management.safety();
+  } else {
+    safety_.reset();
+  }
   const trunk::TrunkSettings& settings = navigation.trunk().trunk().settings();
   burn_uncertainty_ =
       safety_ ? safety::BurnUncertainty{settings.burn_sigma, settings.burn_sigma_relative} : safety::BurnUncertainty{};

@@ -148,8 +148,8 @@ void Telecommands::report(Outbox& outbox, std::int64_t step, GpsTime now) const 
     message.step = step;
     message.time_tag_gps_ns = acknowledgment.tag.time.ns;
     message.apid = static_cast<std::int32_t>(acknowledgment.apid);
-    message.sequence_count = acknowledgment.tag.sequence_count;
-    message.unit = acknowledgment.tag.unit;
+    message.sequence_count = static_cast<std::int32_t>(acknowledgment.tag.sequence_count);
+    message.unit = static_cast<std::int16_t>(acknowledgment.tag.unit);
     message.status = static_cast<std::int8_t>(acknowledgment.status);
     outbox.send(now, message);
   }

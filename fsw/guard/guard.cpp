@@ -16,6 +16,13 @@ constexpr double kClosingTime_s = 1000.0;
 constexpr double kOrbitalRate = 0.01;  // m/s
 constexpr double kClosingWithin_m = 150.0;
 
+/// Member by member: a copied aggregate would bring the padding of the stack into the state.
+void set(Verdict& verdict, bool is_checked, bool is_alarm, double value) {
+  verdict.is_checked = is_checked;
+  verdict.is_alarm = is_alarm;
+  verdict.value = value;
+}
+
 }  // namespace
 
 void Guard::take_image(GpsTime time, const imaging::ImageView& image, const GuardCamera& camera,
@@ -29,7 +36,7 @@ void Guard::take_image(GpsTime time, const imaging::ImageView& image, const Guar
   const double rate = range_.range_rate(time);
   const double range_now_m = range_.range_m(time);
   const double largest_rate = range_now_m / kClosingTime_s + kOrbitalRate;
-  pending_.closing = {.is_checked = range_now_m < kClosingWithin_m, .is_alarm = rate < -largest_rate, .value = rate};
+  set(pending_.closing, range_now_m < kClosingWithin_m, rate < -largest_rate, rate);
 }
 
 void Guard::take_code_baseline(GpsTime time, double range_m, double navigation_range_m) {
@@ -41,7 +48,7 @@ bool Guard::compare(GpsTime time, double range_m, double navigation_range_m) {
   const bool is_near = range_m < kCompareWithin_m || navigation_range_m < kCompareWithin_m;
   if (!is_near || !(navigation_range_m > 0.0)) return false;
   const double logarithm = math::log(range_m / navigation_range_m);
-  pending_.range = {.is_checked = true, .is_alarm = disagrees(time, logarithm), .value = logarithm};
+  set(pending_.range, true, disagrees(time, logarithm), logarithm);
   return true;
 }
 
@@ -72,11 +79,15 @@ void Guard::take_report(std::int32_t maneuver_id, const Vector3& dv_rtn) {
   const bool is_alarm = difference > kLargestShare * size + kMinImpulse;
   // Of several reports in a step, one that contradicts decides.
   if (pending_.burns.is_alarm) return;
-  pending_.burns = {.is_checked = true, .is_alarm = is_alarm, .value = size > 0.0 ? difference / size : difference};
+  set(pending_.burns, true, is_alarm, size > 0.0 ? difference / size : difference);
 }
 
 void Guard::take_sunlight(GpsTime time, bool is_sunlit) {
-  in_shadow_ = is_sunlit ? std::nullopt : std::optional(time);
+  if (is_sunlit) {
+    in_shadow_.reset();
+  } else {
+    in_shadow_ = time;
+  }
 }
 
 void Guard::see(GpsTime time) {
@@ -94,7 +105,7 @@ void Guard::count_sunlight(GpsTime now) {
 
 GuardVerdicts Guard::judge(GpsTime now) {
   GuardVerdicts verdicts = pending_;
-  pending_ = {};
+  for (Verdict* verdict : {&pending_.range, &pending_.burns, &pending_.closing}) set(*verdict, false, false, 0.0);
   count_sunlight(now);
   if (range_.is_known() && seen_) {
     const double age_s = seconds(now - *seen_);

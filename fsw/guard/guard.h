@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
@@ -51,7 +52,7 @@ class Guard {
   /// and in penumbra the target is too dim to be measured.
   static constexpr double kLongestDisagreement_s = 300.0;
   /// At least this number of images: of those taken every five minutes, two in a row see similar attitudes.
-  static constexpr int kFewestDisagreeing = 5;
+  static constexpr std::int64_t kFewestDisagreeing = 5;
 
   /// Nearer than this, the errors of two code solutions are a large share of their distance.
   static constexpr double kCodeComparedFrom_m = 20.0;
@@ -95,8 +96,10 @@ class Guard {
   struct Disagreement {
     GpsTime first;
     GpsTime last;
-    int count = 0;
+    std::int64_t count = 0;
   };
+  // Without padding, which a copy may take from the stack into a snapshot.
+  static_assert(std::has_unique_object_representations_v<Disagreement>);
   [[nodiscard]] bool disagrees(GpsTime time, double logarithm);
   void see(GpsTime time);
   void count_sunlight(GpsTime now);

@@ -21,6 +21,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
@@ -38,10 +39,12 @@ namespace vbar::fsw::sources {
 /// A measurement that waits to be folded; its content is with its source, under `number`.
 struct Record {
   GpsTime time;
-  std::uint8_t source = 0;
+  std::uint32_t source = 0;
   std::uint32_t number = 0;
   constexpr auto operator<=>(const Record&) const = default;
 };
+// Without padding, which a copy may take from the stack into a snapshot.
+static_assert(std::has_unique_object_representations_v<Record>);
 
 /// Records in order of time, then of source and number: the order of arrival has no effect.
 class RecordQueue {

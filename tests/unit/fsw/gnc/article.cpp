@@ -63,6 +63,12 @@ vbar_status Article::restore_snapshot(const std::vector<std::uint8_t>& snapshot)
   return vbar_gnc_restore(state_.get(), snapshot.empty() ? &kNothing : snapshot.data(), snapshot.size());
 }
 
+[[gnu::noinline]] void Article::fill_stack() {
+  std::array<std::byte, 256 * 1024> stack;
+  std::memset(stack.data(), fill, stack.size());
+  asm volatile("" : : "r"(stack.data()) : "memory");  // the compiler must not remove what nothing reads
+}
+
 void Article::sink(void* context, const std::uint8_t* packet, std::size_t size) {
   Tray& tray = *static_cast<Tray*>(context);
   ASSERT_LT(tray.count, Tray::kPackets);

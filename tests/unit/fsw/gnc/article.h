@@ -65,7 +65,7 @@ class Article {
   /// The complete state, for upsets of its memory.
   [[nodiscard]] void* memory() { return state_.get(); }
 
-  /// What the memory of a new article contains.
+  /// What the memory of a new article, and the stack below each call, contains.
   static inline int fill = 0;
 
   /// Called with true just before, and with false just after, each delivery and step; may be null.
@@ -74,6 +74,7 @@ class Article {
  private:
   template <class Call>
   vbar_status watched(Call call) {
+    fill_stack();
     if (around_flight_code != nullptr) around_flight_code(true);
     const vbar_status status = call();
     if (around_flight_code != nullptr) around_flight_code(false);
@@ -89,6 +90,8 @@ class Article {
     std::array<std::size_t, kPackets> size;
     std::size_t count = 0;
   };
+  /// What flight code does not initialise is then the same in all calls, and another one with another `fill`.
+  static void fill_stack();
   static void sink(void* tray, const std::uint8_t* packet, std::size_t size);
   Answer collect(vbar_status status);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "tests/unit/fsw/gnc/small_world.h"
 
@@ -43,6 +44,16 @@ TEST(Restart, AWarmStateContinuesAsIfThereHadBeenNoRestart) {
   EXPECT_GT(commands, 0U) << "two hours without a burn: this compares little";
 }
 
+/// Where two snapshots of one size differ, apart from the checksum in their header: the places of the first few bytes.
+std::string differing_bytes(const Snapshot& a, const Snapshot& b) {
+  constexpr std::size_t kHeader = 40;
+  std::string places;
+  for (std::size_t k = kHeader; k < a.size() && places.size() < 200; ++k) {
+    if (a[k] != b[k]) places += std::to_string(k) + ' ';
+  }
+  return places.empty() && a != b ? "header" : places;
+}
+
 TEST(Restart, TheSnapshotIsTheSameAtAnyAddressAndInAnyMemory) {
   const Flight first = under_way();
   Article::fill = 0xA5;
@@ -52,8 +63,7 @@ TEST(Restart, TheSnapshotIsTheSameAtAnyAddressAndInAnyMemory) {
   const Snapshot a = first.article.snapshot();
   const Snapshot b = second.article.snapshot();
   ASSERT_EQ(a.size(), b.size());
-  const auto [in_a, in_b] = std::mismatch(a.begin(), a.end(), b.begin());
-  EXPECT_EQ(in_a, a.end()) << "they differ from byte " << in_a - a.begin() << " of " << a.size();
+  EXPECT_EQ(differing_bytes(a, b), "");
   // Restored and saved again, also in other memory, it is the same.
   Article restored;
   ASSERT_EQ(restored.restore_snapshot(a), 0);
