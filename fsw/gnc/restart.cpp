@@ -10,7 +10,7 @@ namespace vbar::fsw::gnc {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x52414256;  // "VBAR" in the order of a little-endian computer
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr Duration kOldestWarm = duration_of_seconds(600);
 
 /// Without padding; the representation is that of the computer.

@@ -1,6 +1,6 @@
 #pragma once
 // The state of the relative estimator, x = [roe(6), push(2), emp(3) | turn(3), rate(3), body(2) | com(3),
-// bearing_bias(2), mounts(4), sun_off(1), wander(2), kp_common(5), kp_err(22), range_bias(1), ant_s(3), ant_t(3),
+// bearing_bias(2), mounts(4), sun_off(1), wander(2), kp_common(8), kp_err(22), range_bias(1), ant_s(3), ant_t(3),
 // pcv(3), clk(1), cb(3), iono(3), amb(56), phase_wander(56)].
 //
 // One estimate for all sensors: each block is inactive (variance zero, no influence, no cost behind the last active
@@ -54,9 +54,11 @@ struct CentroidWander {
   static constexpr int kSize = 2;  ///< of the centroid of a resolved shape, in the rows of bearing_axes(), m
 };
 struct KeypointCommon {
-  /// Of all keypoints: shift (px, px), stretch, and the lasting stretch of each camera (shares).
+  /// Of all keypoints: shift (px, px), stretch, the lasting stretch of each camera (shares), and the lasting turn, body
+  /// axes, rad.
   static constexpr int kLastingStretch = 3;
-  static constexpr int kSize = kLastingStretch + static_cast<int>(packets::kCameras);
+  static constexpr int kLastingTurn = kLastingStretch + static_cast<int>(packets::kCameras);
+  static constexpr int kSize = kLastingTurn + 3;
 };
 struct KeypointErrors {
   static constexpr int kSize = 2 * network::kKeypoints;  ///< each over its standard deviation

@@ -14,6 +14,7 @@ using trunk::kAt;
 constexpr int kCount = network::kKeypoints;
 constexpr int kRows = 2 * kCount;
 constexpr int kSampled = trunk::Roe::kSize + trunk::Turn::kSize;
+constexpr int kLastingTurn = kAt<trunk::KeypointCommon> + trunk::KeypointCommon::kLastingTurn;
 
 // Points at 1.8 standard deviations; the central point's weight in a covariance stays above zero.
 constexpr estimation::UnscentedParameters kPoints = {.alpha = 0.6, .beta = 2.0, .kappa = 0.0};
@@ -102,6 +103,8 @@ bool add_linear_states(trunk::Trunk& trunk, const pose::Keypoints& keypoints, co
       sensitivity(kAt<trunk::KeypointCommon> + axis) = 1.0;
       sensitivity(kAt<trunk::KeypointCommon> + 2) = from_centre;
       sensitivity(stretch) = model.lasting_stretch_scale * from_centre;
+      // A turn t of the body moves its point p by t x p.
+      sensitivity.segment<3>(kLastingTurn) = model.shape[at(k)].cross(by_origin.row(axis).transpose());
       sensitivity.segment<2>(kAt<trunk::KeypointErrors> + row) = root.row(axis).transpose();
       const double linear =
           sensitivity.segment<2>(mount).dot(estimate.mean().segment<2>(mount)) +

@@ -80,7 +80,8 @@ TEST(KeypointFlight, IsConsistentInWhiteNoise) {
   blocks.keypoint_errors = {.correlated_share = 0.0,
                             .shift_sigma_px = 0.05,
                             .stretch_sigma = 1e-6,
-                            .lasting_stretch = {.sigma = 1e-6, .time_s = 3600.0}};
+                            .lasting_stretch = {.sigma = 1e-6, .time_s = 3600.0},
+                            .lasting_turn = {.sigma = 1e-6, .time_s = 3600.0}};
   blocks.keypoint_origin.sigma = 1e-6;
   blocks.camera_mount.sigma = 1.5e-5;
   KeypointAidingSettings settings = flight_settings();

@@ -91,6 +91,8 @@ TEST_F(KeypointRows, SensitivitiesAreThoseOfTheGeometry) {
   for (int i = 0; i < 3; ++i) {
     expect_column(kAt<trunk::Turn> + i, 1e-4,
                   [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), d * Vector3::Unit(i), none, flat); });
+    expect_column(kAt<trunk::KeypointCommon> + trunk::KeypointCommon::kLastingTurn + i, 1e-4,
+                  [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), d * Vector3::Unit(i), none, flat); });
     expect_column(kAt<trunk::KeypointOrigin> + i, 1e-4,
                   [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), none, d * Vector3::Unit(i), flat); });
   }
