@@ -21,14 +21,14 @@ std::uint64_t checksum(const trunk::Trunk& trunk) {
     sum = (sum ^ word) * kPrime;
   };
   std::uint64_t first = kBasis, second = kBasis + 1U, third = kBasis + 2U, fourth = kBasis + 3U;
-  std::size_t place = 0;
-  for (; place + 4U <= kWords; place += 4U) {
+  constexpr std::size_t kRest = kWords % 4U;
+  for (std::size_t place = 0; place < kWords - kRest; place += 4U) {
     add(first, place);
     add(second, place + 1U);
     add(third, place + 2U);
     add(fourth, place + 3U);
   }
-  for (; place < kWords; ++place) add(first, place);
+  for (std::size_t place = kWords - kRest; place < kWords; ++place) add(first, place);
   for (const std::uint64_t lane : {second, third, fourth}) first = (first ^ lane) * kPrime;
   return first;
 }
