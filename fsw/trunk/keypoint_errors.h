@@ -5,8 +5,8 @@
 // its covariance by a factor of ten. A share of each keypoint's own error, and a shift and stretch of all, are
 // therefore Gauss-Markov states that decay as the target rotates: by 1/e in 11 to 14 deg, measured over ten tumbles of
 // 0.3 to 1.5 deg/s. A part of the stretch is constant: it is equivalent to another range, and only known burns separate
-// the two. A part of a turn lasts as well, over many views: without it, attitude errors of half a degree persisted for
-// 10 to 30 minutes at a sigma of 0.3 deg.
+// the two. A part of the rotation error lasts as well, over many views: without it, attitude errors of half a degree
+// persisted for 10 to 30 minutes at a sigma of 0.3 deg.
 
 #include "fsw/trunk/gauss_markov.h"
 

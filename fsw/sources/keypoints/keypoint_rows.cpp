@@ -103,7 +103,7 @@ bool add_linear_states(trunk::Trunk& trunk, const pose::Keypoints& keypoints, co
       sensitivity(kAt<trunk::KeypointCommon> + axis) = 1.0;
       sensitivity(kAt<trunk::KeypointCommon> + 2) = from_centre;
       sensitivity(stretch) = model.lasting_stretch_scale * from_centre;
-      // A turn t of the body moves its point p by t x p.
+      // A rotation vector t of the body moves its point p by t x p.
       sensitivity.segment<3>(kLastingTurn) = model.shape[at(k)].cross(by_origin.row(axis).transpose());
       sensitivity.segment<2>(kAt<trunk::KeypointErrors> + row) = root.row(axis).transpose();
       const double linear =
