@@ -18,7 +18,7 @@ fly=(
 )
 test=(
   "${fly[@]}"
-  ccache git ca-certificates libgtest-dev libgmock-dev libbenchmark-dev python3 iproute2
+  ccache lld git ca-certificates libgtest-dev libgmock-dev libbenchmark-dev python3 iproute2
   libaravis-dev libusb-1.0-0-dev
   clang clang-format clang-tidy libclang-rt-14-dev
   g++-arm-linux-gnueabihf qemu-user
