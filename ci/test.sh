@@ -34,4 +34,4 @@ stage "the second compiler, all warnings errors, and a quarter of the unit tests
 ci/sanitize.sh
 stage "fuzzing: every decoder and loader for a few seconds"
 ci/fuzz.sh 3
-stage "all passed"
+printf '\n== all passed (%d s)\n' $((SECONDS - started))
