@@ -32,6 +32,6 @@ stage "mutants of kernels: the tests of their modules must fail"
 ci/mutate.sh
 stage "the second compiler, all warnings errors, and a quarter of the unit tests under its sanitizers"
 ci/sanitize.sh
-stage "fuzzing: every decoder and loader for a few seconds"
-ci/fuzz.sh 3
+stage "fuzzing: a quarter of the decoders and loaders for a few seconds"
+ci/fuzz.sh 3 1 quarter
 printf '\n== all passed (%d s)\n' $((SECONDS - started))
