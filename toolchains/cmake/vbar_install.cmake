@@ -8,8 +8,10 @@ set(package lib/cmake/vbar)
 set(board lib/vbar/zynq7000)
 
 if(VBAR_TARGET STREQUAL "host")
-  foreach(program vbar vbar_flight vbar_grand_bench vbar_os_bench vbar_os_calibrate vbar_tron vbar_tron_bench)
-    install(TARGETS ${program} RUNTIME)
+  foreach(program vbar vbar_hil vbar_flight vbar_grand_bench vbar_os_bench vbar_os_calibrate vbar_tron vbar_tron_bench)
+    if(TARGET ${program})  # or a library that it needs is not there
+      install(TARGETS ${program} RUNTIME)
+    endif()
   endforeach()
   install(TARGETS vbar_packets ARCHIVE DESTINATION lib/vbar)
   get_property(others GLOBAL PROPERTY VBAR_GNC_OF_OTHER_TARGETS)
