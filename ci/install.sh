@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that are missing; may be run repeatedly.
-#   ci/install.sh fly      packages to build and fly missions, in process and on the emulated Zynq
-#   ci/install.sh test     fly, and packages for the unit and integration tests, format and lint
+#   ci/install.sh fly      packages to build vbar and fly missions, in process and on the emulated Zynq
+#   ci/install.sh images   fly, and Mesa's off-screen OpenGL, which missions with a digital camera load (50 MB)
+#   ci/install.sh test     images, and packages for the unit and integration tests, format and lint
 #   ci/install.sh peers    the independent programs that tests compare with (half a gigabyte); without them their tests are skipped
 #   ci/install.sh train    packages to train the keypoint network
 # Several groups may be given; the default is fly.
@@ -10,14 +11,16 @@ set -euo pipefail
 fly=(
   g++ cmake ninja-build python3-minimal
   libeigen3-dev liblcm-dev liblcm-bin libboost-dev liberfa-dev libgeographiclib-dev librandom123-dev libtomlplusplus-dev
-  libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev libosmesa6-dev libassimp-dev libpng-dev libcharls-dev pps-tools
+  libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev libassimp-dev libpng-dev libcharls-dev pps-tools
   libpugixml-dev  # documents of KUKA's controllers
   # The emulated Zynq, whose images link no C++ run-time library (its headers are enough; the library is 313 MB), and the
   # sources of the mathematics library that flight code has on every target.
   gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-dev newlib-source qemu-system-arm
 )
+images=("${fly[@]}" libosmesa6)
 test=(
-  "${fly[@]}"
+  "${images[@]}"
+  libosmesa6-dev  # headers of OpenGL, with which its declarations here are compared
   ccache lld git ca-certificates libgtest-dev libgmock-dev libbenchmark-dev python3 iproute2
   libaravis-dev libusb-1.0-0-dev
   clang clang-format clang-tidy libclang-rt-14-dev
@@ -30,11 +33,12 @@ test=(
 peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-numpy python3-cvxopt python3-sgp4 python3-erfa python3-torch rtklib librtklib-dev gnss-sdr
   libopencv-dev liborocos-kdl-dev tshark ffmpeg ola
   doxygen mkdocs   # documentation site (ci/site.py)
-  mmdebstrap       # a clean root for the Debian package (ci/package.sh)
+  mmdebstrap       # clean roots (ci/package.sh, ci/clean_root.sh, ci/bundle.sh)
+  busybox-static   # a root with a shell only (ci/bundle.sh)
   gdb-multiarch    # loads the flight image through a debug server
   xilinx-bootgen   # BOOT.BIN of the flight image
   slurm-wlm munge)  # a cluster on loopback, for campaigns
-train=("${fly[@]}" python3 python3-numpy python3-torch)
+train=("${images[@]}" python3 python3-numpy python3-torch)
 
 # The wire formats' peer is an npm package. Only if no other npm is installed: a vendor's node conflicts with
 # Debian's.
@@ -43,8 +47,8 @@ command -v npm >/dev/null 2>&1 || peers+=(nodejs npm)
 packages=()
 for group in "${@:-fly}"; do
   case $group in
-    fly | test | peers | train) declare -n list=$group && packages+=("${list[@]}") ;;
-    *) echo "ci/install.sh: '$group' is not a group; accepted: fly, test, peers, train" >&2 && exit 2 ;;
+    fly | images | test | peers | train) declare -n list=$group && packages+=("${list[@]}") ;;
+    *) echo "ci/install.sh: '$group' is not a group; accepted: fly, images, test, peers, train" >&2 && exit 2 ;;
   esac
 done
 

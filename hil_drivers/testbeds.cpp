@@ -1,57 +1,57 @@
 #include "hil_drivers/testbeds.h"
 
 #include <algorithm>
-#include <iterator>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
+#include "hil_drivers/bench_kinds.h"
 #include "hil_drivers/external/external_kind.h"
 #include "hil_drivers/grand/grand_kind.h"
-#ifdef VBAR_OPTICAL_STIMULATOR
-#include "hil_drivers/optical_stimulator/stimulator_kind.h"
-#endif
-#ifdef VBAR_TRON
-#include "hil_drivers/tron/tron_kind.h"
-#endif
+#include "host_sim/files/own_program.h"
 
 namespace vbar::testbeds {
 namespace {
 
-#ifdef VBAR_OPTICAL_STIMULATOR
-using optical_stimulator::kOpticalStimulator;
-#else
-/// In the place of a driver whose libraries were not there when this program was built.
-const TestbedKind kOpticalStimulator{
-    {"optical_stimulator",
-     [](const mission::TableReader& section) -> std::shared_ptr<const mission::TestbedSettings> {
-       section.refuse("", "a testbed whose driver this program was built without",
-                      "a program built with libsdl2-dev, libaravis-dev and libusb-1.0-0-dev (ci/install.sh test)");
-     }},
-    nullptr};
-#endif
+/// Throws unless vbar_hil is missing, or is this program.
+void leave_to_vbar_hil() {
+  if (auto program = files::program_beside("hil"); !program.empty()) throw DriverElsewhere{std::move(program)};
+}
 
-#ifdef VBAR_TRON
-using tron::kTron;
-#else
-const TestbedKind kTron{{"tron",
-                         [](const mission::TableReader& section) -> std::shared_ptr<const mission::TestbedSettings> {
-                           section.refuse(
-                               "", "a testbed whose driver this program was built without",
-                               "a program built with libaravis-dev and libusb-1.0-0-dev (ci/install.sh test)");
-                         }},
-                        nullptr};
-#endif
-
-constexpr const TestbedKind* kTestbedKinds[] = {&grand::kGrand, &kOpticalStimulator, &kTron, &external::kExternal};
+bool has_driver(const TestbedKind* kind) {
+  return kind->open != nullptr;
+}
 
 }  // namespace
 
+std::shared_ptr<const mission::TestbedSettings> read_without_driver(const mission::TableReader& section) {
+  leave_to_vbar_hil();
+  section.refuse("", "a testbed whose driver is not beside this program",
+                 "vbar_hil beside it, which cmake --build --preset host makes with the packages of ci/install.sh test "
+                 "(libsdl2-dev, libxrandr-dev, libaravis-dev, libusb-1.0-0-dev)");
+}
+
 std::span<const TestbedKind* const> testbed_kinds() {
-  return kTestbedKinds;
+  static const std::vector<const TestbedKind*> kKinds = [] {
+    std::vector<const TestbedKind*> kinds{&grand::kGrand, &external::kExternal};
+    kinds.insert(kinds.begin() + 1, bench_kinds().begin(), bench_kinds().end());
+    return kinds;
+  }();
+  return kKinds;
 }
 
 const TestbedKind* find_testbed(std::string_view name) {
-  const auto found = std::ranges::find_if(kTestbedKinds, [&](const TestbedKind* kind) { return kind->name == name; });
-  return found == std::end(kTestbedKinds) ? nullptr : *found;
+  const auto kinds = testbed_kinds();
+  const auto found = std::ranges::find(kinds, name, &TestbedKind::name);
+  return found == kinds.end() ? nullptr : *found;
+}
+
+void require_driver(std::string_view name) {
+  if (const TestbedKind* const kind = find_testbed(name); kind != nullptr && !has_driver(kind)) leave_to_vbar_hil();
+}
+
+void require_all_drivers() {
+  if (!std::ranges::all_of(testbed_kinds(), has_driver)) leave_to_vbar_hil();
 }
 
 std::shared_ptr<TestbedRun> OpenTestbeds::run_of(const TestbedKind& kind, const RunContext& context) {

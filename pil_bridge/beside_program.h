@@ -5,6 +5,8 @@
 #include <string>
 #include <system_error>
 
+#include "host_sim/files/own_program.h"
+
 namespace vbar::pil {
 
 /// Paths relative to the program's folder: the file of an installation if there is one, else that of a build, whether
@@ -12,7 +14,7 @@ namespace vbar::pil {
 inline std::string beside_program(const std::filesystem::path& installed, const std::filesystem::path& built) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path here = files::own_program().parent_path();
   const bool is_installed = fs::is_regular_file(here / installed, error);
   return (here / (is_installed ? installed : built)).lexically_normal().string();
 }

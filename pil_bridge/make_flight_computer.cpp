@@ -190,7 +190,8 @@ std::string find_image(const FlightComputerOptions& options) {
 std::unique_ptr<FlightComputer> make_host_process(const FlightComputerOptions& options) {
   const std::string image = find_image(options);
   ChildLink link = make_child_link(options);
-  std::vector<std::string> arguments{image};
+  std::vector<std::string> arguments =
+      options.image.empty() ? files::words_that_start(image) : std::vector<std::string>{image};
   const auto of_flight = flight_arguments(link, options);
   arguments.insert(arguments.end(), of_flight.begin(), of_flight.end());
   RemoteParts parts = parts_for(options);

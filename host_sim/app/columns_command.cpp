@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "hil_drivers/testbeds.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/report/run_tables.h"
@@ -63,6 +64,7 @@ int print_lines(const std::vector<DescribedTable>& tables, const std::string& wo
 }  // namespace
 
 int columns_command(const std::string& word, bool markdown) {
+  testbeds::require_all_drivers();
   const std::vector<DescribedTable> tables = report::described_tables(sensors::extensions());
   if (!markdown) return print_lines(tables, word);
   print_markdown(tables);

@@ -11,6 +11,7 @@
 #include "host_sim/app/build_info.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/files/data_stream.h"
+#include "host_sim/files/own_program.h"
 #include "host_sim/files/sha256.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/truth/earth/time_scales.h"
@@ -20,11 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kThisProgram = "/proc/self/exe";
-
 /// Nothing if it cannot be read. A resume needs it twice, and it takes a tenth of a second.
 const std::optional<std::string>& program_sha256() {
-  static const std::optional<std::string> sha256 = files::sha256_of_file(kThisProgram);
+  static const std::optional<std::string> sha256 = files::sha256_of_file(files::own_program_bytes());
   return sha256;
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "hil_drivers/testbeds.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/mission/catalogue.h"
@@ -72,6 +73,7 @@ int print_lines(const std::vector<DescribedKey>& keys, const std::string& word) 
 }  // namespace
 
 int keys_command(const std::string& word, bool markdown) {
+  testbeds::require_all_drivers();
   const std::vector<DescribedKey> keys = mission::key_reference(mission::missions_directory(), sensors::installation());
   if (!markdown) return print_lines(keys, word);
   print_markdown(keys);

@@ -12,12 +12,13 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
-#include <unistd.h>
 
+#include "hil_drivers/testbeds.h"
 #include "host_sim/app/build_info.h"
 #include "host_sim/app/campaign_command.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
+#include "host_sim/files/own_program.h"
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/nearest_name.h"
 #include "host_sim/report/run_lock.h"
@@ -54,16 +55,6 @@ void add_resume(CLI::App& command, ResumeOptions& resume) {
 constexpr const char* kOtherProgramsHelp =
     "vbar NAME runs the program vbar_NAME beside it with the arguments after NAME, e.g. vbar tron plan.";
 
-/// The program vbar_NAME beside this one; empty if there is none.
-std::filesystem::path program_beside(std::string_view name) {
-  const bool is_name = std::ranges::all_of(name, [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
-  if (!is_name) return {};
-  std::error_code error;
-  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
-  std::filesystem::path other = own.parent_path() / fmt::format("vbar_{}", name);
-  return !error && access(other.c_str(), X_OK) == 0 ? other : std::filesystem::path();
-}
-
 /// For a first word that is not a command: runs the program of that name, which replaces this one. Otherwise a message;
 /// empty if the word is a command, or an option.
 std::string unknown_command(const CLI::App& program, int argc, char** argv) {
@@ -73,10 +64,8 @@ std::string unknown_command(const CLI::App& program, int argc, char** argv) {
     if (command->get_name() == argv[1]) return {};
     names.push_back(command->get_name());
   }
-  if (const std::filesystem::path other = program_beside(argv[1]); !other.empty()) {
-    execv(other.c_str(), argv + 1);
-    return fmt::format("{} cannot be run: {}", other.string(), std::generic_category().message(errno));
-  }
+  if (const std::filesystem::path other = vbar::files::program_beside(argv[1]); !other.empty())
+    return vbar::files::become(other, {argv + 2, argv + argc});
   const auto nearest = vbar::mission::nearest_name(argv[1], names);
   return fmt::format("there is no command \"{}\"{}; vbar --help lists them", argv[1],
                      nearest ? fmt::format(", did you mean {}?", *nearest) : "");
@@ -96,6 +85,8 @@ int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? kDone : kRefused;
+  } catch (const vbar::testbeds::DriverElsewhere& elsewhere) {
+    return complain(vbar::files::become(elsewhere.program, {argv + 1, argv + argc}).c_str(), kFailed);
   } catch (const vbar::mission::MissionError& error) {
     return complain(error.what(), kRefused);
   } catch (const vbar::report::FolderRefused& error) {

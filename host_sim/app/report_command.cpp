@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "hil_drivers/testbeds.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/report/compare_report.h"
@@ -20,6 +21,7 @@ namespace {
 /// A run as its tables have it, figures computed from them.
 report::RunRecord evaluated_run(const std::filesystem::path& folder) {
   report::RunRecord record = report::read_run(folder, sensors::extensions());
+  for (const report::SourceFigures& source : record.summary.sources) testbeds::require_driver(source.kind);
   for (const std::string& note : record.reading_notes) fmt::print(stderr, "vbar: {}\n", note);
   report::evaluate(record);
   const std::string health = record.summary.health ? report::health_line(*record.summary.health) : "";

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "host_sim/app/exit_codes.h"
+#include "host_sim/files/own_program.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/text_file.h"
 
@@ -32,8 +33,9 @@ std::unique_ptr<io::ChildProcess> start(const CaseFlight::Request& request, cons
   std::vector<std::string> arguments = arguments_of(request, run_folder);
   if (request.command_line != nullptr)
     return std::make_unique<io::ChildProcess>([&] { return (*request.command_line)(arguments); }, program);
-  arguments.insert(arguments.begin(), program);
-  return std::make_unique<io::ChildProcess>(arguments, std::vector<io::FileDescriptor>());
+  std::vector<std::string> words = files::words_that_start(program);
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return std::make_unique<io::ChildProcess>(words, std::vector<io::FileDescriptor>());
 }
 
 fs::path make_run_folder(const CaseFlight::Request& request) {

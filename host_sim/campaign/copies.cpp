@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/files/own_program.h"
 #include "host_sim/files/sha256.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/report/csv_table.h"
@@ -66,7 +67,7 @@ fs::path copy_of_mission(const fs::path& mission) {
 }
 
 void make_copies(const Folder& folder, const UsedFiles& used, const std::string& mission_text) {
-  const fs::path program = fs::read_symlink("/proc/self/exe");
+  const fs::path program = files::own_program();
   copy_one(program, folder.program());
   copy_data(folder);
   const fs::path mission = folder.root() / copy_of_mission(used.mission);
@@ -97,7 +98,7 @@ bool flies_as_the_copy(const Folder& folder) {
   };
   for (const auto& [file, listed] : listed_copies(folder)) {
     if (file == folder.program()) {
-      if (files::sha256_of_file("/proc/self/exe") != listed) return false;
+      if (files::sha256_of_file(files::own_program_bytes()) != listed) return false;
     } else if (!is_inside(file, folder.data()) && !is_inside(file, folder.mission_files())) {
       return false;
     }

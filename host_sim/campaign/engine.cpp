@@ -9,6 +9,7 @@
 #include "host_sim/campaign/command_engine.h"
 #include "host_sim/campaign/shell.h"
 #include "host_sim/campaign/slurm.h"
+#include "host_sim/files/own_program.h"
 
 namespace vbar::campaign {
 namespace {
@@ -23,8 +24,10 @@ constexpr std::array<Engine, 2> kEngines{{{"slurm", submit_to_slurm, max_slurm_a
 }  // namespace
 
 std::string Submission::worker_command(const std::string& k) const {
-  return fmt::format("{} campaign worker {} {} {} --todo {} --jobs {}",
-                     shell_word(std::filesystem::absolute(folder.program()).string()),
+  std::string program;
+  for (const std::string& word : files::words_that_start(std::filesystem::absolute(folder.program())))
+    program += (program.empty() ? "" : " ") + shell_word(word);
+  return fmt::format("{} campaign worker {} {} {} --todo {} --jobs {}", program,
                      shell_word(std::filesystem::absolute(folder.root()).string()), k, workers,
                      shell_word(std::filesystem::absolute(todo).string()), jobs);
 }

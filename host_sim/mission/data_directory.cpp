@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "host_sim/files/own_program.h"
+
 namespace vbar::mission {
 
 namespace {
@@ -10,9 +12,9 @@ namespace {
 /// Of an installation, beside the folder of the running program.
 std::filesystem::path installed_data() {
   std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path program = files::own_program();
   const std::filesystem::path folder = program.parent_path().parent_path() / "share/vbar/data";
-  return !error && std::filesystem::is_directory(folder, error) ? folder : std::filesystem::path();
+  return !program.empty() && std::filesystem::is_directory(folder, error) ? folder : std::filesystem::path();
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ namespace vbar::report {
 class LcmMirror {
  public:
   /// Opens the bus. `url` is LCM's, e.g. udpm://239.255.76.67:7667?ttl=0; it alone decides how far packets travel, the
-  /// environment (LCM_DEFAULT_URL) has no say. Throws std::runtime_error that names the URL.
+  /// environment (LCM_DEFAULT_URL) has no say. Throws std::runtime_error that names the URL, or
+  /// the library if it cannot be loaded.
   explicit LcmMirror(const std::string& url);
   ~LcmMirror();
   LcmMirror(const LcmMirror&) = delete;

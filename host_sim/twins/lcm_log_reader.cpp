@@ -5,14 +5,16 @@
 #include <span>
 
 #include "fsw/packets/big_endian.h"
+#include "host_sim/twins/lcm_log_format.h"
 
 namespace vbar::twins {
 namespace {
 
 using fsw::packets::read_big_endian;
 
-constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
-constexpr std::size_t kHeaderBytes = 28;
+using lcm_log::kHeaderBytes;
+using lcm_log::kSyncWord;
+
 constexpr std::uint32_t kChannelBytesMax = 63;                // LCM_MAX_CHANNEL_NAME_LENGTH
 constexpr std::uint32_t kDataBytesMax = 64U * 1024U * 1024U;  // a packet has 64 kB; other programs may log images
 
@@ -60,7 +62,7 @@ std::optional<LoggedEvent> LcmLogReader::next() {
     take_rest_as_cut(begin);
     return std::nullopt;
   }
-  if (available < sizeof kSyncWord || read_big_endian<std::uint32_t>(header, 0) != kSyncWord)
+  if (available < sizeof kSyncWord || read_big_endian<std::uint32_t>(header, lcm_log::kSyncAt) != kSyncWord)
     fail(begin, begin == 0 ? "not an LCM log" : "no event starts here, where one has to");
   if (available < kHeaderBytes) {
     take_rest_as_cut(begin);
@@ -68,10 +70,10 @@ std::optional<LoggedEvent> LcmLogReader::next() {
   }
   LoggedEvent event;
   event.offset = begin;
-  event.number = static_cast<std::int64_t>(read_big_endian<std::uint64_t>(header, 4));
-  event.timestamp = static_cast<std::int64_t>(read_big_endian<std::uint64_t>(header, 12));
-  const auto channel_bytes = read_big_endian<std::uint32_t>(header, 20);
-  const auto data_bytes = read_big_endian<std::uint32_t>(header, 24);
+  event.number = static_cast<std::int64_t>(read_big_endian<std::uint64_t>(header, lcm_log::kNumberAt));
+  event.timestamp = static_cast<std::int64_t>(read_big_endian<std::uint64_t>(header, lcm_log::kTimeAt));
+  const auto channel_bytes = read_big_endian<std::uint32_t>(header, lcm_log::kChannelBytesAt);
+  const auto data_bytes = read_big_endian<std::uint32_t>(header, lcm_log::kDataBytesAt);
   if (channel_bytes == 0 || channel_bytes > kChannelBytesMax)
     fail(begin, "an event whose channel name has " + std::to_string(channel_bytes) + " bytes; accepted: 1 to 63");
   if (data_bytes > kDataBytesMax)

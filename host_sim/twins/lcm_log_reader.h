@@ -1,7 +1,6 @@
 #pragma once
 // Events of a file in LCM's log format, read defensively: every size is checked against the file before memory is
-// allocated for it. An event is, in big-endian order, the sync word EDA1DA01, event number (8 bytes), time in
-// microseconds (8), lengths of channel and data (4 each), then channel and data.
+// allocated for it (lcm_log_format.h).
 
 #include <cstdint>
 #include <filesystem>

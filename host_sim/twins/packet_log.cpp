@@ -1,18 +1,15 @@
 #include "host_sim/twins/packet_log.h"
 
-#include <cerrno>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
-#include <lcm/eventlog.h>
 #include <vbar_host/packet_record.hpp>
 #include <vbar_host/tile_run.hpp>
 
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/message_traits.h"
-#include "host_sim/files/write_error.h"
 #include "host_sim/twins/lcm_log_reader.h"
+#include "host_sim/twins/lcm_log_writer.h"
 
 namespace vbar::twins {
 namespace {
@@ -50,11 +47,6 @@ std::vector<std::uint8_t> encode_tiles(const PacketRecord& record) {
   message.checksum = static_cast<std::int64_t>(record.tiles->checksum);
   return bytes_of(message);
 }
-
-struct LogCloser {
-  void operator()(lcm_eventlog_t* log) const { lcm_eventlog_destroy(log); }
-};
-using LogHandle = std::unique_ptr<lcm_eventlog_t, LogCloser>;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const LoggedEvent& event, const std::string& what) {
   throw DamagedLog(file.string() + ": byte " + std::to_string(event.offset) + ": " + what);
@@ -151,15 +143,8 @@ PacketRecord record_of(const LoggedEvent& event, const std::filesystem::path& fi
   return event.channel == kTilesChannel ? tiles_of(event, file) : packet_of(event, file);
 }
 
-struct PacketLogWriter::Log {
-  std::filesystem::path file;
-  LogHandle handle;
-};
-
 PacketLogWriter::PacketLogWriter(const std::filesystem::path& file, EventCheck check)
-    : log_(new Log{file, LogHandle((errno = 0, lcm_eventlog_create(file.c_str(), "w")))}), check_(std::move(check)) {
-  if (log_->handle == nullptr) throw files::write_error(file);
-}
+    : log_(std::make_unique<LcmLogWriter>(file)), check_(std::move(check)) {}
 
 PacketLogWriter::~PacketLogWriter() = default;
 
@@ -183,14 +168,7 @@ void PacketLogWriter::check_and_write(fsw::GpsTime time, LcmEvent event) {
 }
 
 void PacketLogWriter::write_event(fsw::GpsTime time, LcmEvent event) {
-  lcm_eventlog_event_t raw{};
-  raw.timestamp = lcm_timestamp(time);
-  raw.channellen = static_cast<std::int32_t>(event.channel.size());
-  raw.channel = event.channel.data();
-  raw.datalen = static_cast<std::int32_t>(event.data.size());
-  raw.data = event.data.data();
-  errno = 0;
-  if (lcm_eventlog_write_event(log_->handle.get(), &raw) != 0) throw files::write_error(log_->file);
+  log_->write(lcm_timestamp(time), event.channel, event.data);
   ++events_;
   last_ = time;
 }
@@ -203,8 +181,7 @@ void PacketLogWriter::finish() {
 }
 
 void PacketLogWriter::flush() {
-  errno = 0;
-  if (std::fflush(log_->handle->f) != 0) throw files::write_error(log_->file);
+  log_->flush();
 }
 
 PacketLog read_packet_log(const std::filesystem::path& file) {

@@ -59,6 +59,8 @@ using EventCheck = std::function<void(fsw::GpsTime time, const LcmEvent& event)>
 /// An event's time in the log, us: that of LCM.
 [[nodiscard]] std::int64_t lcm_timestamp(fsw::GpsTime time);
 
+class LcmLogWriter;
+
 class PacketLogWriter {
  public:
   /// Creates or truncates `file`. Throws std::runtime_error that names it. `check` may be empty.
@@ -81,11 +83,10 @@ class PacketLogWriter {
   void finish();
 
  private:
-  struct Log;
   void check_and_write(fsw::GpsTime time, LcmEvent event);
   void write_event(fsw::GpsTime time, LcmEvent event);
 
-  std::unique_ptr<Log> log_;
+  std::unique_ptr<LcmLogWriter> log_;
   EventCheck check_;
   std::uint64_t events_ = 0;
   fsw::GpsTime last_;

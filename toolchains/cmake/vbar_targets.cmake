@@ -62,6 +62,7 @@ if(VBAR_TARGET STREQUAL "host")
   find_package(fmt REQUIRED)
   add_library(vbar_host_options INTERFACE)
   target_link_libraries(vbar_host_options INTERFACE vbar_options fmt::fmt)
+  include(vbar_optional_libraries)
 endif()
 
 include(vbar_precompiled_headers)

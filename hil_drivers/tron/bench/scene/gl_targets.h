@@ -7,6 +7,8 @@
 
 namespace vbar::tron::bench {
 
+using namespace opengl;
+
 /// A square of one float a texel with four samples a texel, of which a corner is used.
 class Canvas {
  public:

@@ -143,30 +143,30 @@ PixelRect rect_of(const camera::CameraSettings& settings, const Vector3& centre_
 class Inputs {
  public:
   explicit Inputs(const GlProgram& program) : program_(program) { program.use(); }
-  void set(const char* name, double v) const { glUniform1f(program_.uniform(name), static_cast<float>(v)); }
-  void set(const char* name, int v) const { glUniform1i(program_.uniform(name), v); }
+  void set(const char* name, double v) const { gl().glUniform1f(program_.uniform(name), static_cast<float>(v)); }
+  void set(const char* name, int v) const { gl().glUniform1i(program_.uniform(name), v); }
   void set(const char* name, double x, double y) const {
-    glUniform2f(program_.uniform(name), static_cast<float>(x), static_cast<float>(y));
+    gl().glUniform2f(program_.uniform(name), static_cast<float>(x), static_cast<float>(y));
   }
   void set(const char* name, const Vector3& v) const {
-    glUniform3f(program_.uniform(name), static_cast<float>(v.x()), static_cast<float>(v.y()),
-                static_cast<float>(v.z()));
+    gl().glUniform3f(program_.uniform(name), static_cast<float>(v.x()), static_cast<float>(v.y()),
+                     static_cast<float>(v.z()));
   }
   void set(const char* name, double x, double y, double z, double w) const {
-    glUniform4f(program_.uniform(name), static_cast<float>(x), static_cast<float>(y), static_cast<float>(z),
-                static_cast<float>(w));
+    gl().glUniform4f(program_.uniform(name), static_cast<float>(x), static_cast<float>(y), static_cast<float>(z),
+                     static_cast<float>(w));
   }
   void set(const char* name, const Matrix3& m) const {
     const Eigen::Matrix<float, 3, 3> narrow = m.cast<float>();
-    glUniformMatrix3fv(program_.uniform(name), 1, GL_FALSE, narrow.data());
+    gl().glUniformMatrix3fv(program_.uniform(name), 1, GL_FALSE, narrow.data());
   }
   void set_vectors(const char* name, int width, const std::vector<float>& numbers) const {
     const auto count = static_cast<GLsizei>(numbers.size()) / width;
     if (count == 0) return;
-    if (width == 2) glUniform2fv(program_.uniform(name), count, numbers.data());
-    if (width == 3) glUniform3fv(program_.uniform(name), count, numbers.data());
-    if (width == 4) glUniform4fv(program_.uniform(name), count, numbers.data());
-    if (width == 9) glUniformMatrix3fv(program_.uniform(name), count, GL_FALSE, numbers.data());
+    if (width == 2) gl().glUniform2fv(program_.uniform(name), count, numbers.data());
+    if (width == 3) gl().glUniform3fv(program_.uniform(name), count, numbers.data());
+    if (width == 4) gl().glUniform4fv(program_.uniform(name), count, numbers.data());
+    if (width == 9) gl().glUniformMatrix3fv(program_.uniform(name), count, GL_FALSE, numbers.data());
   }
 
  private:
@@ -309,8 +309,8 @@ Stage LabDrawing::Gl::stage_of(const LabView& view) const {
 
 void LabDrawing::Gl::draw_shadows(const Stage& stage, const Body& body) const {
   shadows->bind_and_clear();
-  glEnable(GL_DEPTH_TEST);
-  glEnable(GL_DEPTH_CLAMP);
+  gl().glEnable(GL_DEPTH_TEST);
+  gl().glEnable(GL_DEPTH_CLAMP);
   const Inputs inputs(*shadow_program);
   inputs.set("shadow_view", 1.0 / stage.shadow_half_m, 1.0 / kShadowReachM, stage.inverse_lamp_distance, 0.0);
   for (int k = 0; k < ShadowMaps::kCount; ++k) {
@@ -324,7 +324,7 @@ void LabDrawing::Gl::draw_shadows(const Stage& stage, const Body& body) const {
     inputs.set("R_shadow_S", R_shadow_S);
     limbs->draw();
   }
-  glDisable(GL_DEPTH_CLAMP);
+  gl().glDisable(GL_DEPTH_CLAMP);
 }
 
 void LabDrawing::Gl::set_lens(const GlProgram& program, const Stage& stage, const camera::CameraSettings& settings,
@@ -411,7 +411,7 @@ void LabDrawing::Gl::draw_tile(const LabView& view, const Stage& stage, const Bo
                                int texels, int pixels) {
   const int width = tile.width * texels / pixels, height = tile.height * texels / pixels;
   canvas->bind_and_clear(width, height);
-  glEnable(GL_DEPTH_TEST);
+  gl().glEnable(GL_DEPTH_TEST);
   if (walls) {
     set_lens(*room_program, stage, view.camera, tile);
     walls->draw();

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <stdexcept>
 
-#include <GL/osmesa.h>
+#include "host_sim/twins/camera/model/gl_functions.h"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -24,6 +24,8 @@ extern "C" const char* __lsan_default_suppressions() {
 
 namespace vbar::twins::camera {
 
+using namespace opengl;
+
 GlContext::GlContext() {
   static std::once_flag once;
   std::call_once(once, [] { setenv("MESA_SHADER_CACHE_DISABLE", "true", 0); });
@@ -42,22 +44,22 @@ GlContext::GlContext() {
                                             OSMESA_CONTEXT_MINOR_VERSION,
                                             3,
                                             0};
-  handle_ = OSMesaCreateContextAttribs(kAttributes.data(), nullptr);
+  handle_ = gl().OSMesaCreateContextAttribs(kAttributes.data(), nullptr);
   if (handle_ == nullptr) throw std::runtime_error("OSMesa gives no OpenGL 3.3 core context");
 }
 
 GlContext::~GlContext() {
-  OSMesaDestroyContext(static_cast<OSMesaContext>(handle_));
+  gl().OSMesaDestroyContext(static_cast<OSMesaContext>(handle_));
 }
 
 GlContext::Current::Current(GlContext& context) {
-  if (OSMesaMakeCurrent(static_cast<OSMesaContext>(context.handle_), context.surface_.data(), GL_UNSIGNED_BYTE, 1, 1) !=
-      GL_TRUE)
+  if (gl().OSMesaMakeCurrent(static_cast<OSMesaContext>(context.handle_), context.surface_.data(), GL_UNSIGNED_BYTE, 1,
+                             1) != GL_TRUE)
     throw std::runtime_error("OSMesa cannot make its context current");
 }
 
 GlContext::Current::~Current() {
-  OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0);
+  gl().OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0);
 }
 
 }  // namespace vbar::twins::camera

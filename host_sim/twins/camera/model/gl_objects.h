@@ -6,11 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#define GL_GLEXT_PROTOTYPES
-#include <GL/gl.h>
-#include <GL/glext.h>
+#include "host_sim/twins/camera/model/gl_functions.h"
 
 namespace vbar::twins::camera {
+
+using namespace opengl;
 
 /// A linked vertex and fragment shader. Throws std::runtime_error with the message of the compiler.
 class GlProgram {

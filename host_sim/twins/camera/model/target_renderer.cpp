@@ -141,10 +141,10 @@ struct TargetRenderer::Drawing {
 
 void TargetRenderer::Drawing::draw_shadow(const Matrix3& R_sun_body) const {
   shadow_map->bind_and_clear();
-  glEnable(GL_DEPTH_TEST);
+  gl().glEnable(GL_DEPTH_TEST);
   shadow_program->use();
   const Matrix3f rotation = R_sun_body.cast<float>();
-  glUniformMatrix3fv(shadow_program->uniform("R_sun_body"), 1, GL_FALSE, rotation.data());
+  gl().glUniformMatrix3fv(shadow_program->uniform("R_sun_body"), 1, GL_FALSE, rotation.data());
   triangles->draw();
 }
 
@@ -164,19 +164,19 @@ void TargetRenderer::Drawing::draw_surface(const TargetView& view, const Vector3
   const Matrix4f clip = clip_from_body.cast<float>();
   const Matrix3f sun_rotation = R_sun_body.cast<float>();
   const auto set_vector = [this](const char* name, const Vector3& v) {
-    glUniform3f(surface_program->uniform(name), static_cast<float>(v.x()), static_cast<float>(v.y()),
-                static_cast<float>(v.z()));
+    gl().glUniform3f(surface_program->uniform(name), static_cast<float>(v.x()), static_cast<float>(v.y()),
+                     static_cast<float>(v.z()));
   };
   const auto set_number = [this](const char* name, double value) {
-    glUniform1f(surface_program->uniform(name), static_cast<float>(value));
+    gl().glUniform1f(surface_program->uniform(name), static_cast<float>(value));
   };
   picture->bind_and_clear();
-  glEnable(GL_DEPTH_TEST);
+  gl().glEnable(GL_DEPTH_TEST);
   surface_program->use();
-  glUniformMatrix4fv(surface_program->uniform("clip_from_body"), 1, GL_FALSE, clip.data());
-  glUniformMatrix3fv(surface_program->uniform("R_sun_body"), 1, GL_FALSE, sun_rotation.data());
-  glUniform4fv(surface_program->uniform("materials"), static_cast<GLsizei>(materials.size()), materials[0].data());
-  glUniform1i(surface_program->uniform("shadow_map"), 0);
+  gl().glUniformMatrix4fv(surface_program->uniform("clip_from_body"), 1, GL_FALSE, clip.data());
+  gl().glUniformMatrix3fv(surface_program->uniform("R_sun_body"), 1, GL_FALSE, sun_rotation.data());
+  gl().glUniform4fv(surface_program->uniform("materials"), static_cast<GLsizei>(materials.size()), materials[0].data());
+  gl().glUniform1i(surface_program->uniform("shadow_map"), 0);
   set_vector("camera", -view.R_camera_body.transpose() * centre_camera / radius_m);
   set_vector("sun", -R_sun_body.row(2).transpose());
   set_vector("nadir", view.R_camera_body.transpose() * view.nadir_camera.normalized());
@@ -189,8 +189,8 @@ void TargetRenderer::Drawing::draw_surface(const TargetView& view, const Vector3
     earth_light->set(earth_table(sine_earth));
     earth_table_sine = sine_earth;
   }
-  glUniform1i(surface_program->uniform("shadow_reach"), picture->size() < shadow_map->size() ? 0 : 1);
-  glUniform1i(surface_program->uniform("earth_light"), 1);
+  gl().glUniform1i(surface_program->uniform("shadow_reach"), picture->size() < shadow_map->size() ? 0 : 1);
+  gl().glUniform1i(surface_program->uniform("earth_light"), 1);
   shadow_map->bind_texture();
   earth_light->bind_texture();
   triangles->draw();
