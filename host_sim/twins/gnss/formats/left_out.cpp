@@ -11,7 +11,8 @@ LeftOut::Entry& LeftOut::entry(std::string_view kind) {
   const auto found = std::ranges::find(entries_, kind, &Entry::kind);
   if (found != entries_.end()) return *found;
   if (entries_.size() == kMaxKinds) return entries_.back();
-  return entries_.emplace_back(std::string(kind));
+  entries_.push_back({std::string(kind), {}, 0});
+  return entries_.back();
 }
 
 void LeftOut::add_defective(std::string_view kind, const std::string& first) {
