@@ -11,7 +11,7 @@ set -euo pipefail
 fly=(
   g++ cmake ninja-build python3-minimal
   libeigen3-dev liblcm-dev liblcm-bin libboost-dev liberfa-dev libgeographiclib-dev librandom123-dev libtomlplusplus-dev
-  libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev libassimp-dev libpng-dev libcharls-dev pps-tools
+  libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev libassimp-dev libpng-dev zlib1g-dev libcharls-dev pps-tools
   libpugixml-dev  # documents of KUKA's controllers
   # The emulated Zynq, whose images link no C++ run-time library (its headers are enough; the library is 313 MB), and the
   # sources of the mathematics library that flight code has on every target.

@@ -274,6 +274,12 @@ twins::TruthOutlook& AssembledMission::outlook() {
   return model_;
 }
 
+std::vector<std::string> AssembledMission::data_notes() const {
+  std::vector<std::string> notes = model_.model().data().notes;
+  notes.insert(notes.end(), made_.data_notes.begin(), made_.data_notes.end());
+  return notes;
+}
+
 void AssembledMission::start() {
   if (of_testbed_) of_testbed_->start();
   started_.start(timetable_.start);

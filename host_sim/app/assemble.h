@@ -54,8 +54,8 @@ class AssembledMission {
   [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const;
 
   [[nodiscard]] const RunFacts& facts() const { return facts_; }
-  /// On data of the truth that are missing or predicted.
-  [[nodiscard]] const std::vector<std::string>& data_notes() const { return model_.model().data().notes; }
+  /// On data that are missing, predicted or used in part.
+  [[nodiscard]] std::vector<std::string> data_notes() const;
   [[nodiscard]] std::span<const Source> sources() const { return made_.sources; }
 
  private:

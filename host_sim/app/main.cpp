@@ -19,6 +19,7 @@
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/files/own_program.h"
+#include "host_sim/files/text_lines.h"
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/nearest_name.h"
 #include "host_sim/report/run_lock.h"
@@ -73,7 +74,7 @@ std::string unknown_command(const CLI::App& program, int argc, char** argv) {
 
 int complain(const char* what, int exit_code) {
   std::fflush(stdout);
-  fmt::print(stderr, "vbar: {}\n", what);
+  fmt::print(stderr, "vbar: {}\n", vbar::files::printable(what));
   return exit_code;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "host_sim/files/plain_text.h"
 #include "host_sim/files/sha256.h"
 
 namespace vbar::files {
@@ -91,7 +92,7 @@ DataStream::DataStream(const fs::path& file) {
     return;
   }
   note_file_read(file, contents);
-  str(std::move(contents));
+  str(plain_text(std::move(contents), file.string()));
 }
 
 }  // namespace vbar::files

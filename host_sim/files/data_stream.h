@@ -32,8 +32,8 @@ class UnrecordedReads {
 /// a folder above it lists other contents.
 void note_file_read(const std::filesystem::path& file, std::string_view contents);
 
-/// Replaces std::ifstream: the contents of a file, recorded. Its state is bad if the file cannot be read; throws
-/// as note_file_read.
+/// Replaces std::ifstream: the text of a file, whose contents as they lie on the disk are recorded. Its state is bad if
+/// the file cannot be read; throws as note_file_read and plain_text.
 class DataStream : public std::istringstream {
  public:
   explicit DataStream(const std::filesystem::path& file);

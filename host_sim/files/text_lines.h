@@ -47,6 +47,21 @@ class TextLines {
   /// Columns `first` to `last` of the line, counted from 1 as format descriptions do; what the line lacks is left out.
   [[nodiscard]] std::string_view columns(std::size_t first, std::size_t last) const;
 
+  /// The number in these columns, blank for none: of Fortran's fixed fields, whose last digit stands in the last
+  /// column. Refuses what is not a number of `what`, and a line that ends within it, as one that is cut short does.
+  [[nodiscard]] std::optional<double> number_or_blank_in(std::size_t first, std::size_t last,
+                                                         std::string_view what) const;
+
+  /// The same for a number that must be there, and for an integer.
+  [[nodiscard]] double number_in(std::size_t first, std::size_t last, std::string_view what) const;
+  [[nodiscard]] int integer_in(std::size_t first, std::size_t last, std::string_view what) const;
+
+  /// Whether the line ends within a field in these columns.
+  [[nodiscard]] bool is_cut_in(std::size_t first, std::size_t last) const;
+
+  /// Whether a line feed ends the line; the last line of a file that was cut short has none.
+  [[nodiscard]] bool is_ended() const { return is_ended_; }
+
   /// The words of the line, between blanks and tabulators.
   [[nodiscard]] std::vector<std::string_view> words() const;
 
@@ -59,9 +74,14 @@ class TextLines {
   std::string_view line_;
   std::string file_;
   int number_ = 0;
+  bool is_ended_ = false;
 };
 
 /// Text of a file for a message: in quotation marks, at most 100 characters of it, without control characters.
 [[nodiscard]] std::string quoted(std::string_view text);
+
+/// A message that may hold the text of foreign files and their names: a question mark in place of each control
+/// character, so that no terminal acts upon it, and of each byte that is not UTF-8. Line feeds stay.
+[[nodiscard]] std::string printable(std::string_view message);
 
 }  // namespace vbar::files

@@ -47,6 +47,9 @@ void read_truth(const TableReader& document, Mission& mission, const Installatio
   const int order = std::min(truth.gravity_order, truth.gravity_degree);
   truth.gravity_order = static_cast<int>(section.integer("gravity_order", 0, truth.gravity_degree, order));
   truth.forces = read_forces(section);
+  truth.permanent_tide = section.flag("permanent_tide", truth.permanent_tide);
+  if (truth.forces.solid_tides && !truth.permanent_tide)
+    section.refuse_value("permanent_tide", "true, as truth.solid_tides contains the permanent tide");
   truth.tolerance = section.number(
       "relative_tolerance", from_to(truth::TruthSettings::kSmallestTolerance, truth::TruthSettings::kLargestTolerance),
       truth.tolerance);

@@ -36,7 +36,7 @@ struct PropagationRecord {
   double simulated_s = 0.0;
   double wall_s = 0.0;  ///< of the propagation, files included
   int threads = 1;
-  std::vector<std::string> data_notes;  ///< on data that are missing or predicted
+  std::vector<std::string> data_notes;  ///< on data that are missing, predicted or used in part
   std::vector<PropagatedSpacecraft> spacecraft;
   truth::TruthStatistics total;
   std::vector<truth::ForceTime> force_times;  ///< summed over spacecraft, so over threads too

@@ -80,7 +80,7 @@ struct RunFacts {
     // Of a digital camera, on a thread of its own: beside the others, not part of their sum.
     double render_s = 0.0, detector_s = 0.0, packing_s = 0.0;
   } wall_share;
-  std::vector<std::string> data_notes;  ///< on data that are missing or predicted (truth::ForceData::notes)
+  std::vector<std::string> data_notes;  ///< on data that are missing, predicted or used in part
   Provenance provenance;
 };
 

@@ -81,7 +81,8 @@ struct MakeContext {
   std::filesystem::path data_directory;
   SharedObjects& shared;
   testbeds::OpenTestbeds& testbeds;
-  twins::TruthOutlook* outlook;  ///< null: no testbed can be used
+  twins::TruthOutlook* outlook;          ///< null: no testbed can be used
+  std::vector<std::string>& data_notes;  ///< on files that are left out in part: report::Summary::data_notes
 };
 
 /// What the packets of a log are restored for.

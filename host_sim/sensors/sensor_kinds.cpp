@@ -55,7 +55,7 @@ MadeSources make_sources(const mission::Mission& mission, const mission::Spacecr
   MadeSources made;
   SharedObjects shared;
   testbeds::OpenTestbeds testbeds;
-  const MakeContext context{mission, servicer, data_directory, shared, testbeds, outlook};
+  const MakeContext context{mission, servicer, data_directory, shared, testbeds, outlook, made.data_notes};
   for (const mission::Sensor& sensor : servicer.sensors) kind_of(sensor).add_sources(sensor, context, made.sources);
   made.testbeds = testbeds.runs();
   return made;

@@ -30,6 +30,7 @@ mission::Mission parse_mission(std::string_view text, const std::filesystem::pat
 struct MadeSources {
   std::vector<twins::NamedSource> sources;
   std::vector<std::shared_ptr<testbeds::TestbedRun>> testbeds;  ///< that provide some of them
+  std::vector<std::string> data_notes{};                        ///< on the files that they read
 };
 
 /// The sources of all that the flight software of `servicer` receives from its sensors. `outlook`, which must outlive

@@ -21,12 +21,31 @@ namespace {
 
 constexpr const char* kAtmosphereFile = "atmosphere/nrlmsise00.csv";
 
+/// Of a tide-free model without the force of the tides.
+std::string note_on_permanent_tide(const std::string& model, bool is_added) {
+  constexpr std::string_view kSize =
+      "some 18 m along the track of a low orbit in a day: programs that use the file's C20 differ by that";
+  if (is_added)
+    return fmt::format(
+        "The gravity model {} is tide-free: the permanent deformation of the Earth, {:.2e} of C20 (IERS Conventions "
+        "2010, 6.2.2), is added, {}; truth.permanent_tide = false leaves it out.",
+        model, permanent_tide_c20(), kSize);
+  return fmt::format(
+      "The gravity model {} is tide-free and used as published: the permanent deformation of the Earth, {:.2e} of C20 "
+      "(IERS Conventions 2010, 6.2.2), acts on no spacecraft, an error of some 18 m along the track of a low orbit in "
+      "a "
+      "day.",
+      model, permanent_tide_c20());
+}
+
 void load_gravity(const TruthSettings& settings, ForceData& data) {
   const std::filesystem::path file = settings.data_directory / settings.gravity_file;
   GravityCoefficients coefficients = load_gravity_coefficients(file, settings.gravity_degree);
   // Without the force of the tides nothing else adds the permanent deformation.
-  if (!settings.forces.solid_tides && settings.gravity_degree >= 2 && coefficients.tide_system == "tide_free")
-    coefficients.c[GravityCoefficients::index(2, 0)] += permanent_tide_c20();
+  if (!settings.forces.solid_tides && settings.gravity_degree >= 2 && coefficients.tide_system == "tide_free") {
+    if (settings.permanent_tide) coefficients.c[GravityCoefficients::index(2, 0)] += permanent_tide_c20();
+    data.notes.push_back(note_on_permanent_tide(coefficients.model, settings.permanent_tide));
+  }
   data.gravity = std::make_shared<const GravityField>(coefficients, settings.gravity_degree, settings.gravity_order);
   if (!settings.forces.solid_tides) return;
   try {

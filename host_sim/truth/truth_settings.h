@@ -12,14 +12,15 @@
 namespace vbar::truth {
 
 struct TruthSettings {
-  fsw::GpsTime epoch;        ///< start of the run
-  fsw::GpsTime end;          ///< last instant that will be asked for: the data must reach it; before the epoch: unknown
-  int gravity_degree = 60;   ///< 0 (point mass) to that of the gravity file
-  int gravity_order = 60;    ///< 0 to the degree
-  ForceModel forces;         ///< beside gravity
-  double tolerance = 1e-12;  ///< local error a step, in units of the orbit's size: kSmallestTolerance to
-                             ///< kLargestTolerance
-  int threads = 1;           ///< maximum number of spacecraft propagated concurrently; same bits for any
+  fsw::GpsTime epoch;       ///< start of the run
+  fsw::GpsTime end;         ///< last instant that will be asked for: the data must reach it; before the epoch: unknown
+  int gravity_degree = 60;  ///< 0 (point mass) to that of the gravity file
+  int gravity_order = 60;   ///< 0 to the degree
+  bool permanent_tide = true;  ///< a tide-free gravity model gets the permanent deformation of the Earth
+  ForceModel forces;           ///< beside gravity
+  double tolerance = 1e-12;    ///< local error a step, in units of the orbit's size: kSmallestTolerance to
+                               ///< kLargestTolerance
+  int threads = 1;             ///< maximum number of spacecraft propagated concurrently; same bits for any
 
   // Data files: absolute, or from the data folder. Space weather is read only if a force needs it. A file that is named
   // must hold the data of the run; what the data folder holds ("bundled") is used where it does, else nothing.

@@ -16,7 +16,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     VBAR_FUZZ_EXPECT(!file.satellites.empty());
     for (const Ephemeris& set : file.satellites) {
       VBAR_FUZZ_EXPECT(set.satellite.prn >= 1 && set.satellite.prn <= 63);
-      VBAR_FUZZ_EXPECT(set.sqrt_a > 2000.0 && set.sqrt_a < 9000.0 && set.e >= 0.0 && set.e < 0.1);
+      VBAR_FUZZ_EXPECT(set.sqrt_a > 2000.0 && set.sqrt_a < 9000.0 && set.e >= 0.0 && set.e < kMaxEccentricity);
       VBAR_FUZZ_EXPECT(set.toe.ns >= 0);
     }
   } catch (const std::exception& error) {

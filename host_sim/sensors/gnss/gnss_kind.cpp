@@ -59,9 +59,11 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
 std::unique_ptr<twins::gnss::ReceiverBytes> make_twin(const MakeContext& context, const Spacecraft& carrier) {
   const Mission& mission = context.mission;
   const auto sky = context.shared.get<const twins::gnss::Constellation>("gnss/sky", [&] {
-    return std::make_shared<const twins::gnss::Constellation>(
+    auto made = std::make_shared<const twins::gnss::Constellation>(
         context.data_directory, mission::shared_settings<GnssShared>(mission).constellation, mission.start_time(),
         mission.seed);
+    context.data_notes.insert(context.data_notes.end(), made->notes().begin(), made->notes().end());
+    return made;
   });
   return std::make_unique<twins::gnss::GnssReceiver>(find_settings<GnssSensor>(carrier)->receiver, sky,
                                                      context.data_directory, mission.seed, carrier.name);

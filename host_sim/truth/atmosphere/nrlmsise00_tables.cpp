@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/files/data_stream.h"
+#include "host_sim/files/text_lines.h"
 
 namespace vbar::truth {
 namespace {
@@ -60,10 +61,7 @@ class TableReader {
     }
   }
 
-  std::string excerpt() const {
-    constexpr std::size_t kLongest = 40;
-    return fmt::format("found \"{}{}\"", line_.substr(0, kLongest), line_.size() > kLongest ? "..." : "");
-  }
+  std::string excerpt() const { return "found " + files::quoted(line_); }
 
   [[noreturn]] void fail(std::string_view found, std::string_view expected) const {
     throw std::runtime_error(fmt::format("{}:{}: {}, expected {}", file_.string(), number_, found, expected));

@@ -13,6 +13,7 @@
 
 #include "fsw/core/types.h"
 #include "host_sim/files/data_stream.h"
+#include "host_sim/files/text_lines.h"
 
 namespace vbar::twins::camera {
 namespace {
@@ -41,16 +42,14 @@ class Rows {
   }
   [[nodiscard]] const std::string& row() const { return row_; }
   [[noreturn]] void refuse(std::string_view accepted) const {
-    throw std::runtime_error(fmt::format("{}:{}: found \"{}\", accepted: {}", file_.string(), number_,
-                                         std::string_view(row_).substr(0, kShown), accepted));
+    throw std::runtime_error(
+        fmt::format("{}:{}: found {}, accepted: {}", file_.string(), number_, files::quoted(row_), accepted));
   }
   [[noreturn]] void refuse_end(std::string_view reason) const {
     throw std::runtime_error(fmt::format("{}:{}: {}", file_.string(), number_, reason));
   }
 
  private:
-  static constexpr std::size_t kShown = 120;  // of a row, characters
-
   std::filesystem::path file_;
   files::DataStream in_;
   std::string row_;

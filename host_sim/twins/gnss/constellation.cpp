@@ -82,7 +82,9 @@ std::vector<EphemerisFile> navigation_files_of(const std::filesystem::path& data
   std::vector<std::filesystem::path> paths = settings.navigation_files;
   if (paths.empty()) paths = {"gps/gps_2011_10_20.csv", "gps/galileo_beidou_2013_07_19.csv"};
   std::vector<EphemerisFile> files;
-  for (const std::filesystem::path& path : paths) files.push_back(read_ephemeris_file(data_directory / path));
+  const auto is_read = [](SatelliteSet which) { return which == SatelliteSet::kBroadcast; };
+  const SystemSet used{is_read(settings.gps), is_read(settings.galileo), is_read(settings.beidou)};
+  for (const std::filesystem::path& path : paths) files.push_back(read_ephemeris_file(data_directory / path, used));
   return files;
 }
 
@@ -101,9 +103,13 @@ std::vector<Ephemeris> satellites_of(System system, const std::vector<EphemerisF
     if (!satellites.empty()) return satellites;
   }
   constexpr std::array<const char*, kSystems> kKeys{"gps", "galileo", "beidou"};
-  throw std::runtime_error(fmt::format(
-      "constellation.navigation_files: no file has a satellite of {0}; constellation.{0} = \"broadcast\" needs one",
-      kKeys[static_cast<std::size_t>(system)]));
+  std::string notes;
+  for (const EphemerisFile& file : files)
+    if (!file.note.empty()) notes += " " + file.note;
+  throw std::runtime_error(
+      fmt::format("constellation.navigation_files: no file has a satellite of {0}; constellation.{0} = \"broadcast\" "
+                  "needs one{1}{2}",
+                  kKeys[static_cast<std::size_t>(system)], notes.empty() ? "" : ".", notes));
 }
 
 struct SetSchedule {
@@ -148,6 +154,8 @@ Constellation::Constellation(const std::filesystem::path& data_directory, const 
   check(settings);
   const std::vector<EphemerisFile> files = navigation_files_of(data_directory, settings);
   corrections_ = corrections_of(files);
+  for (const EphemerisFile& file : files)
+    if (!file.note.empty()) notes_.push_back(file.note);
 
   std::vector<Ephemeris> sets;
   const auto add = [&](System system, SatelliteSet which) {

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "host_sim/twins/gnss/broadcast_orbit.h"
@@ -80,6 +81,9 @@ class Constellation {
 
   [[nodiscard]] const BroadcastCorrections& corrections() const { return corrections_; }
 
+  /// On what the navigation files hold beside what flies.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+
  private:
   // Constant plus a sine of the orbit's period.
   struct SlowError {
@@ -95,6 +99,7 @@ class Constellation {
 
   std::vector<Satellite> satellites_;
   BroadcastCorrections corrections_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace vbar::twins::gnss

@@ -2,6 +2,7 @@
 // Reads broadcast ephemerides: those of data/gps, RINEX navigation files (formats/ephemeris_formats.h).
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "host_sim/twins/gnss/broadcast_orbit.h"
@@ -12,9 +13,11 @@ namespace vbar::twins::gnss {
 struct EphemerisFile {
   std::vector<Ephemeris> satellites;  ///< for the day of the file
   BroadcastCorrections corrections;   ///< zero if missing in the file
+  std::string note;                   ///< what it holds beside them, with its name; empty: nothing
 };
 
-/// Throws std::runtime_error naming file, line and what is accepted.
-EphemerisFile read_ephemeris_file(const std::filesystem::path& file);
+/// The satellites of the systems in `used`; records of others are not looked at. Throws std::runtime_error naming file,
+/// line and what is accepted.
+EphemerisFile read_ephemeris_file(const std::filesystem::path& file, const SystemSet& used = kAllSystems);
 
 }  // namespace vbar::twins::gnss

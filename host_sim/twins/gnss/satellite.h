@@ -14,6 +14,10 @@ namespace vbar::twins::gnss {
 enum class System : std::uint8_t { kGps = 0, kGalileo = 1, kBeidou = 2 };
 inline constexpr std::size_t kSystems = 3;
 
+/// Systems by their numbers, of those that a run uses.
+using SystemSet = std::array<bool, kSystems>;
+inline constexpr SystemSet kAllSystems{true, true, true};
+
 /// A satellite by the number its system gives it (PRN, SVID), from 1 on.
 struct SatelliteId {
   System system = System::kGps;
@@ -24,9 +28,10 @@ struct SatelliteId {
 /// "G05", "E11", "C03": RINEX names, which also name random streams.
 std::string name_of(SatelliteId satellite);
 
-/// The first five BeiDou satellites are geostationary: their own orbit frame and navigation message.
+/// BeiDou's satellites 1 to 5 and 59 to 63 are geostationary (BDS-SIS-ICD-B1I-3.0, 5.2.4.12): their own orbit frame and
+/// navigation message.
 constexpr bool is_geostationary(SatelliteId satellite) {
-  return satellite.system == System::kBeidou && satellite.prn <= 5;
+  return satellite.system == System::kBeidou && (satellite.prn <= 5 || satellite.prn >= 59);
 }
 
 /// The signals of the paper's receiver, Appendix A: GPS L1/L2, GAL E1, BDS B1I.

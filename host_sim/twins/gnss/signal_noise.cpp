@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/files/data_stream.h"
+#include "host_sim/files/text_lines.h"
 
 namespace vbar::twins::gnss {
 namespace {
@@ -48,8 +49,8 @@ AntennaPattern AntennaPattern::load(const std::filesystem::path& data_directory)
     const bool rising =
         pattern.nodes_.empty() ? node.angle_deg == 0.0 : node.angle_deg > pattern.nodes_.back().angle_deg;
     if (!read || !rising)
-      throw std::runtime_error(
-          fmt::format("{}:{}: \"{}\" is not an ascending angle and an attenuation", file.string(), number, line));
+      throw std::runtime_error(fmt::format("{}:{}: {} is not an ascending angle and an attenuation", file.string(),
+                                           number, files::quoted(line)));
     pattern.nodes_.push_back(node);
   }
   if (pattern.nodes_.size() < 2 || pattern.nodes_.back().angle_deg != 180.0)

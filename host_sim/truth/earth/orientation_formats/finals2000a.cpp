@@ -38,15 +38,9 @@ int date_of(const TextLines& lines) {
   return date;
 }
 
-double required(const TextLines& lines, std::size_t first, std::size_t last, std::string_view what) {
-  const auto value = files::number_of(lines.columns(first, last));
-  if (!value) lines.refuse(fmt::format("{} in columns {} to {}", what, first, last));
-  return *value;
-}
-
 /// 0 if there is none.
 double offset_arcsec(const TextLines& lines, std::size_t first, std::size_t last, std::string_view what) {
-  return trimmed(lines.columns(first, last)).empty() ? 0.0 : 1e-3 * required(lines, first, last, what);
+  return 1e-3 * lines.number_or_blank_in(first, last, what).value_or(0.0);
 }
 
 bool flag_is_prediction(const TextLines& lines, std::size_t column) {
@@ -58,9 +52,9 @@ bool flag_is_prediction(const TextLines& lines, std::size_t column) {
 
 EarthOrientationSeries::Day day_of(const TextLines& lines, int mjd) {
   PublishedOrientation row;
-  row.x_arcsec = required(lines, 19, 27, "the pole's x in arcsec");
-  row.y_arcsec = required(lines, 38, 46, "the pole's y in arcsec");
-  row.ut1_minus_utc_s = required(lines, 59, 68, "UT1-UTC in s");
+  row.x_arcsec = lines.number_in(19, 27, "the pole's x in arcsec");
+  row.y_arcsec = lines.number_in(38, 46, "the pole's y in arcsec");
+  row.ut1_minus_utc_s = lines.number_in(59, 68, "UT1-UTC in s");
   row.dx_arcsec = offset_arcsec(lines, 98, 106, "dX in mas");
   row.dy_arcsec = offset_arcsec(lines, 117, 125, "dY in mas");
   const bool pole_is_prediction = flag_is_prediction(lines, 17), ut1_is_prediction = flag_is_prediction(lines, 58);

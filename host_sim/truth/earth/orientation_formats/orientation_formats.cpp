@@ -16,7 +16,10 @@ namespace vbar::truth {
 std::span<const OrientationFormat> orientation_formats() {
   static constexpr std::array kFormats{
       OrientationFormat{"IERS finals2000A", is_finals2000a, read_finals2000a},
+      OrientationFormat{"CelesTrak EOP-All (text)", is_celestrak_eop_text, read_celestrak_eop_text},  // names C04 too
       OrientationFormat{"IERS EOP C04 (series 14 or 20)", is_eop_c04, read_eop_c04},
+      OrientationFormat{"IERS finals2000A or C04 as CSV", is_iers_csv, read_iers_csv},
+      OrientationFormat{"CelesTrak EOP-All (CSV)", is_celestrak_eop_csv, read_celestrak_eop_csv},
       OrientationFormat{"the table of data/earth", is_orientation_table, read_orientation_table},
   };
   return kFormats;

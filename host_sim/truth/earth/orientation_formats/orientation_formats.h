@@ -36,6 +36,17 @@ struct OrientationFormat {
 [[nodiscard]] bool is_eop_c04(std::string_view text);
 [[nodiscard]] OrientationDays read_eop_c04(std::string_view text, const std::string& file);
 
+// finals2000A and EOP C04 as the IERS data centre gives them as CSV: one set of column names, the types "final" and
+// "prediction" in finals2000A alone. Offsets of the nutation of IAU 1980 are refused.
+[[nodiscard]] bool is_iers_csv(std::string_view text);
+[[nodiscard]] OrientationDays read_iers_csv(std::string_view text, const std::string& file);
+
+// EOP-All, EOP-Last5Years of CelesTrak: C04 and predictions, as text in fixed columns and as CSV.
+[[nodiscard]] bool is_celestrak_eop_text(std::string_view text);
+[[nodiscard]] OrientationDays read_celestrak_eop_text(std::string_view text, const std::string& file);
+[[nodiscard]] bool is_celestrak_eop_csv(std::string_view text);
+[[nodiscard]] OrientationDays read_celestrak_eop_csv(std::string_view text, const std::string& file);
+
 [[nodiscard]] std::span<const OrientationFormat> orientation_formats();
 
 /// The days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.

@@ -27,9 +27,23 @@ double flux_of(const files::TextLines& lines, double value) {
   return checked(lines, value, kLowestFlux, kLargestFlux, "a flux F10.7 (1e-22 W/m^2/Hz)");
 }
 
+/// A flux of 0 stands for a day without a measurement in files of before 2020.
+bool is_measured(const std::optional<double>& flux) {
+  return flux && *flux != 0.0;
+}
+
 bool is_complete(const PublishedWeather& row) {
   const auto has_value = [](const std::optional<double>& value) { return value.has_value(); };
-  return std::ranges::all_of(row.ap, has_value) && row.ap_daily && row.f107_observed && row.f107_observed_81d;
+  return std::ranges::all_of(row.ap, has_value) && row.ap_daily && is_measured(row.f107_observed) &&
+         is_measured(row.f107_observed_81d);
+}
+
+Day without_data(int mjd, int line) {
+  Day day;
+  day.mjd_utc = mjd;
+  day.line = line;
+  day.kind = SpaceWeather::Kind::kMissing;
+  return day;
 }
 
 Day between(const Day& a, const Day& b, int mjd) {
@@ -74,15 +88,14 @@ void WeatherCollector::add_day(const files::TextLines& lines, const PublishedWea
     throw files::FormatError(fmt::format("{}:{}: day {} follows day {}; days must follow without gaps", lines.file(),
                                          lines.number(), row.mjd_utc, last_.mjd_utc));
   }
+  if (!is_complete(row)) {
+    append(without_data(row.mjd_utc, lines.number()));
+    return;
+  }
   Day day;
   day.mjd_utc = row.mjd_utc;
   day.line = lines.number();
   day.kind = kind;
-  if (!is_complete(row)) {
-    day.kind = SpaceWeather::Kind::kMissing;
-    append(day);
-    return;
-  }
   for (std::size_t k = 0; k < row.ap.size(); ++k) day.ap[k] = checked(lines, *row.ap[k], 0.0, kLargestAp, "an ap");
   day.ap_daily = checked(lines, *row.ap_daily, 0.0, kLargestAp, "an Ap");
   day.f107 = flux_of(lines, *row.f107_observed);
@@ -92,7 +105,7 @@ void WeatherCollector::add_day(const files::TextLines& lines, const PublishedWea
 
 void WeatherCollector::add_month(const files::TextLines& lines, const PublishedWeather& row) {
   constexpr int kLongestGap_days = 62;  // from the last daily prediction through a whole month
-  if (!row.f107_observed) lines.refuse("no flux F10.7", "the flux of the month");
+  if (!is_measured(row.f107_observed)) return;
   Day day;
   day.mjd_utc = row.mjd_utc;
   day.line = lines.number();
@@ -100,14 +113,16 @@ void WeatherCollector::add_month(const files::TextLines& lines, const PublishedW
   day.ap.fill(SpaceWeather::kAssumedAp);
   day.ap_daily = SpaceWeather::kAssumedAp;
   day.f107 = flux_of(lines, *row.f107_observed);
-  day.f107_average = flux_of(lines, row.f107_observed_81d.value_or(day.f107));
+  day.f107_average = is_measured(row.f107_observed_81d) ? flux_of(lines, *row.f107_observed_81d) : day.f107;
   if (has_any_) {
     const Day before = last_;
     if (day.mjd_utc <= before.mjd_utc) return;
-    if (day.mjd_utc > before.mjd_utc + kLongestGap_days || before.kind == SpaceWeather::Kind::kMissing)
+    if (day.mjd_utc > before.mjd_utc + kLongestGap_days)
       lines.refuse(fmt::format("a month {} days behind the row before", day.mjd_utc - before.mjd_utc),
-                   fmt::format("a row with data at most {} days before", kLongestGap_days));
-    for (int mjd = before.mjd_utc + 1; mjd < day.mjd_utc; ++mjd) append(between(before, day, mjd));
+                   fmt::format("a row at most {} days before", kLongestGap_days));
+    const bool has_data = before.kind != SpaceWeather::Kind::kMissing;
+    for (int mjd = before.mjd_utc + 1; mjd < day.mjd_utc; ++mjd)
+      append(has_data ? between(before, day, mjd) : without_data(mjd, lines.number()));
   }
   append(day);
 }

@@ -18,7 +18,7 @@ using WeatherDays = std::vector<SpaceWeather::Day>;
 struct WeatherFormat {
   std::string_view name;
   bool (*recognises)(std::string_view text);
-  /// Throws files::FormatError. Days before GPS time (1980-01-06) are checked and left out.
+  /// Throws files::FormatError. Of days before GPS time (1980-01-06) only the date is looked at; they are left out.
   WeatherDays (*read)(std::string_view text, const std::string& file);
 };
 
@@ -26,7 +26,8 @@ struct WeatherFormat {
 [[nodiscard]] bool is_weather_table(std::string_view text);
 [[nodiscard]] WeatherDays read_weather_table(std::string_view text, const std::string& file);
 
-// SW-All.txt, SW-Last5Years.txt of CelesTrak (CSSI): fixed columns; observed, daily and monthly predicted sections.
+// SW-All.txt, SW-Last5Years.txt of CelesTrak (CSSI), SpaceWeather-All of AGI: fixed columns; sections of observed,
+// daily and monthly predicted values, and of a monthly fit.
 [[nodiscard]] bool is_cssi_text(std::string_view text);
 [[nodiscard]] WeatherDays read_cssi_text(std::string_view text, const std::string& file);
 
@@ -49,11 +50,12 @@ struct PublishedWeather {
 /// Collects the rows of a CSSI file as days without gaps.
 class WeatherCollector {
  public:
-  /// A day that follows the one before. If a value is missing the day is kept as one without data.
+  /// A day that follows the one before. If a value is missing, or a flux 0, the day is kept as one without data.
   void add_day(const files::TextLines& lines, const PublishedWeather& row, SpaceWeather::Kind kind);
 
   /// The first of a month, which has no geomagnetic index: the days since the row before get fluxes by linear
-  /// interpolation and SpaceWeather::kAssumedAp. A month within the days that are there is left out.
+  /// interpolation and SpaceWeather::kAssumedAp. A month within the days that are there, or without a flux, is left
+  /// out.
   void add_month(const files::TextLines& lines, const PublishedWeather& row);
 
   [[nodiscard]] WeatherDays take() { return std::move(days_); }

@@ -52,7 +52,7 @@ void take_keyword(const TextLines& lines, const Words& words, Header& header) {
   if (key == "radius") header.radius = positive(lines, words, 1e9);
   if (key == "max_degree") header.max_degree = degree_of(lines, words);
   if (key == "norm") header.norm = norm_of(lines, words[1]);
-  if (key == "modelname") header.model = words[1];
+  if (key == "modelname") header.model = files::printable(words[1]);
   if (key == "tide_system") header.tide_system = words[1];
   if (key == "product_type" && words[1] != "gravity_field")
     lines.refuse(fmt::format("product_type {}", words[1]), "gravity_field");
@@ -115,6 +115,8 @@ class Coefficients {
       lines.refuse(fmt::format("gfc, degree up to {}, order up to the degree, C and S", *header_.max_degree));
     has_max_degree_ = has_max_degree_ || *n == *header_.max_degree;
     if (*n > degree_) return;
+    if (words.size() == kMinWords && !lines.is_ended())
+      lines.refuse("a last row without a line feed", "one: its last number may be cut short");
     const std::size_t at = GravityCoefficients::index(*n, *m);
     if (seen_[at]) lines.refuse(fmt::format("degree {}, order {} a second time", *n, *m), "each once");
     seen_[at] = true;

@@ -23,10 +23,10 @@ std::span<const EphemerisFormat> ephemeris_formats() {
   return kFormats;
 }
 
-EphemerisFile read_ephemerides(std::string_view text, const std::string& file) {
+EphemerisFile read_ephemerides(std::string_view text, const std::string& file, const SystemSet& used) {
   const auto formats = ephemeris_formats();
   const auto format = std::ranges::find_if(formats, [&](const auto& one) { return one.recognises(text); });
-  if (format != formats.end()) return format->read(text, file);
+  if (format != formats.end()) return format->read(text, file, used);
   files::TextLines lines(text, file);
   lines.next();
   std::vector<std::string_view> names;
@@ -34,10 +34,10 @@ EphemerisFile read_ephemerides(std::string_view text, const std::string& file) {
   lines.refuse(fmt::format("broadcast ephemerides in one of the formats {}", fmt::join(names, ", ")));
 }
 
-EphemerisFile read_ephemeris_file(const std::filesystem::path& file) {
+EphemerisFile read_ephemeris_file(const std::filesystem::path& file, const SystemSet& used) {
   const files::DataStream stream(file);
   if (!stream) throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
-  return read_ephemerides(stream.view(), file.string());
+  return read_ephemerides(stream.view(), file.string(), used);
 }
 
 std::string problem_of(const BroadcastRecord& record) {
@@ -50,8 +50,10 @@ std::string problem_of(const BroadcastRecord& record) {
   if (!(std::abs(record.toc_s - record.toe_s) <= kLongestClockAge_s))
     return fmt::format("week and toe are {:.0f} s from the reference time of the clock; they must lie within a day",
                        std::abs(record.toc_s - record.toe_s));
-  if (!(set.sqrt_a > 2000.0 && set.sqrt_a < 9000.0) || !(set.e >= 0.0 && set.e < 0.1))
-    return "sqrt_a must lie between 2000 and 9000 m^(1/2) and e between 0 and 0.1";
+  if (!(set.sqrt_a > 2000.0 && set.sqrt_a < 9000.0))
+    return fmt::format("sqrt_a of {} m^(1/2) does not lie between 2000 and 9000", set.sqrt_a);
+  if (!(set.e >= 0.0 && set.e < kMaxEccentricity))
+    return fmt::format("an eccentricity of {} does not lie between 0 and {}", set.e, kMaxEccentricity);
   return {};
 }
 

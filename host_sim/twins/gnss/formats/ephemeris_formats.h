@@ -13,24 +13,27 @@ namespace vbar::twins::gnss {
 struct EphemerisFormat {
   std::string_view name;
   bool (*recognises)(std::string_view text);
-  EphemerisFile (*read)(std::string_view text, const std::string& file);  ///< throws std::runtime_error
+  /// Throws std::runtime_error.
+  EphemerisFile (*read)(std::string_view text, const std::string& file, const SystemSet& used);
 };
 
 // Table of this project, data/gps.
 [[nodiscard]] bool is_ephemeris_table(std::string_view text);
-[[nodiscard]] EphemerisFile read_ephemeris_table(std::string_view text, const std::string& file);
+[[nodiscard]] EphemerisFile read_ephemeris_table(std::string_view text, const std::string& file, const SystemSet& used);
 
-// RINEX navigation files, versions 2.xx (GPS), 3.xx and 4.xx (GPS, Galileo, BeiDou; records of other systems and
-// messages are skipped, and so are sets whose week contradicts their date, as merged files hold some). Of each
-// satellite one set: that whose reference time is nearest to noon of the file's day, which is the day of the median
-// reference time. GPS LNAV, Galileo I/NAV, BeiDou D1 and D2.
+// RINEX navigation files, versions 2.xx (GPS), 3.xx and 4.xx (GPS LNAV, Galileo I/NAV, BeiDou D1 and D2). Left out, and
+// named in the note, are records of other systems and messages, and sets that cannot be read or cannot be right, as
+// merged files hold some. Of each satellite one set: that whose reference time is nearest to noon of the file's day,
+// which is the day of the median reference time. Refused are files whose records have no valid structure, and those
+// with no set of the systems in use and nothing of another system.
 [[nodiscard]] bool is_rinex(std::string_view text);
-[[nodiscard]] EphemerisFile read_rinex(std::string_view text, const std::string& file);
+[[nodiscard]] EphemerisFile read_rinex(std::string_view text, const std::string& file, const SystemSet& used);
 
 [[nodiscard]] std::span<const EphemerisFormat> ephemeris_formats();
 
 /// The satellites of a text in any of the formats. Throws std::runtime_error; for an unknown format it names all.
-[[nodiscard]] EphemerisFile read_ephemerides(std::string_view text, const std::string& file);
+[[nodiscard]] EphemerisFile read_ephemerides(std::string_view text, const std::string& file,
+                                             const SystemSet& used = kAllSystems);
 
 /// One set in the terms of the navigation message: week and seconds of week of its system.
 struct BroadcastRecord {
@@ -44,6 +47,9 @@ struct BroadcastRecord {
 
 /// Between the reference times of clock and orbit.
 inline constexpr double kLongestClockAge_s = 86400.0;
+
+/// Galileo has two satellites at 0.16 (E14, E18); the flight software refuses more.
+inline constexpr double kMaxEccentricity = 0.2;
 
 /// What is wrong with a record; empty if nothing is.
 [[nodiscard]] std::string problem_of(const BroadcastRecord& record);

@@ -41,7 +41,7 @@ Row split(std::string_view line) {
     double& number = row.numbers[row.count++];
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number))
-      throw LineError(fmt::format("\"{}\" is not a number", text));
+      throw LineError(fmt::format("{} is not a number", files::quoted(text)));
     rest.remove_prefix(text.size());
   }
   return row;
@@ -54,7 +54,8 @@ SatelliteId satellite_of(std::string_view name) {
   const char* const end = name.data() + name.size();
   if (system == std::string_view::npos || std::from_chars(name.data() + 1, end, satellite.prn).ptr != end ||
       satellite.prn < 1 || satellite.prn > 63)
-    throw LineError(fmt::format("\"{}\" is not a satellite; accepted are G, E or C and a number from 01 to 63", name));
+    throw LineError(
+        fmt::format("{} is not a satellite; accepted are G, E or C and a number from 01 to 63", files::quoted(name)));
   satellite.system = static_cast<System>(system);
   return satellite;
 }
@@ -118,7 +119,7 @@ bool is_ephemeris_table(std::string_view text) {
   return true;  // a file without any line holds no satellite, as its reader says
 }
 
-EphemerisFile read_ephemeris_table(std::string_view text, const std::string& file) {
+EphemerisFile read_ephemeris_table(std::string_view text, const std::string& file, const SystemSet& /*used*/) {
   EphemerisFile result;
   bool columns_seen = false;
   files::TextLines lines(text, file);

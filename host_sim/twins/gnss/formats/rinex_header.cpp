@@ -15,7 +15,7 @@ std::string_view label_of(const TextLines& lines) {
 
 int version_of(const TextLines& lines) {
   if (label_of(lines) != "RINEX VERSION / TYPE") lines.refuse("RINEX VERSION / TYPE in columns 61 to 80");
-  const double version = rinex_number(lines, 1, 9, "the version of RINEX");
+  const double version = lines.number_in(1, 9, "the version of RINEX");
   if (!(version >= 2.0 && version < 5.0)) lines.refuse(fmt::format("RINEX version {}", version), "2, 3 or 4");
   return static_cast<int>(version);
 }
@@ -25,8 +25,9 @@ void check_type(const TextLines& lines, int version) {
   constexpr std::string_view kAccepted = "navigation data (N) of GPS, Galileo, BeiDou or mixed systems";
   // Version 2 has a type for each system: N is GPS, G is GLONASS, H are geostationary ones.
   if (type != "N") lines.refuse(fmt::format("a file of type {}", files::quoted(lines.columns(21, 40))), kAccepted);
+  // A simulator of signals writes version 3.00 without a system; the records name theirs.
   constexpr std::string_view kSystems = "GECM";
-  if (version > 2 && (system.empty() || kSystems.find(system) == std::string_view::npos))
+  if (version > 2 && !files::trimmed(system).empty() && kSystems.find(system) == std::string_view::npos)
     lines.refuse(fmt::format("the satellite system {}", files::quoted(files::trimmed(lines.columns(41, 60)))),
                  kAccepted);
 }
@@ -35,7 +36,7 @@ void check_type(const TextLines& lines, int version) {
 void read_four(const TextLines& lines, std::size_t first, std::array<double, 4>& to) {
   constexpr std::size_t kWidth = 12;
   for (std::size_t k = 0; k < to.size(); ++k)
-    to[k] = rinex_number(lines, first + kWidth * k, first + kWidth * k + kWidth - 1, "a coefficient of the ionosphere");
+    to[k] = lines.number_in(first + kWidth * k, first + kWidth * k + kWidth - 1, "a coefficient of the ionosphere");
 }
 
 void take(const TextLines& lines, BroadcastCorrections& corrections) {
@@ -45,22 +46,16 @@ void take(const TextLines& lines, BroadcastCorrections& corrections) {
   if (label == "IONOSPHERIC CORR" && kind == "GPSA") read_four(lines, 6, corrections.klobuchar.alpha);
   if (label == "IONOSPHERIC CORR" && kind == "GPSB") read_four(lines, 6, corrections.klobuchar.beta);
   if (label == "DELTA-UTC: A0,A1,T,W") {
-    corrections.utc_a0_s = rinex_number(lines, 4, 22, "A0 of UTC");
-    corrections.utc_a1 = rinex_number(lines, 23, 41, "A1 of UTC");
+    corrections.utc_a0_s = lines.number_in(4, 22, "A0 of UTC");
+    corrections.utc_a1 = lines.number_in(23, 41, "A1 of UTC");
   }
   if (label == "TIME SYSTEM CORR" && kind == "GPUT") {
-    corrections.utc_a0_s = rinex_number(lines, 6, 22, "A0 of UTC");
-    corrections.utc_a1 = rinex_number(lines, 23, 38, "A1 of UTC");
+    corrections.utc_a0_s = lines.number_in(6, 22, "A0 of UTC");
+    corrections.utc_a1 = lines.number_in(23, 38, "A1 of UTC");
   }
 }
 
 }  // namespace
-
-double rinex_number(const TextLines& lines, std::size_t first, std::size_t last, std::string_view what) {
-  const auto value = files::number_of(lines.columns(first, last));
-  if (!value) lines.refuse(fmt::format("{} in columns {} to {}", what, first, last));
-  return *value;
-}
 
 RinexHeader read_rinex_header(TextLines& lines) {
   RinexHeader header;

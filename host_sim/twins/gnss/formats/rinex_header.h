@@ -15,8 +15,4 @@ struct RinexHeader {
 /// GPS, Galileo and BeiDou.
 [[nodiscard]] RinexHeader read_rinex_header(files::TextLines& lines);
 
-/// The number in columns `first` to `last`, which must be there.
-[[nodiscard]] double rinex_number(const files::TextLines& lines, std::size_t first, std::size_t last,
-                                  std::string_view what);
-
 }  // namespace vbar::twins::gnss

@@ -2,11 +2,12 @@
 
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include <erfa.h>
 #include <fmt/format.h>
 
-#include "host_sim/twins/gnss/formats/rinex_header.h"
 #include "host_sim/twins/gnss/system_time.h"
 
 namespace vbar::twins::gnss {
@@ -16,76 +17,89 @@ using files::TextLines;
 
 constexpr std::size_t kLinesOfOrbit = 7;  // of GPS, Galileo and BeiDou
 constexpr std::size_t kWidth = 19;
+constexpr std::string_view kSystemLetters = "GEC";  // in the order of System
 
-/// Values of the lines of the orbit, four a line; what is left blank is 0.
+/// Values of the lines of the orbit, four a line; what is left blank or not needed is 0.
 using Values = std::array<double, 4 * kLinesOfOrbit>;
 
 constexpr std::size_t at(std::size_t line, std::size_t place) {
   return 4 * (line - 1) + place - 1;
 }
 
-/// Where things stand in a version.
+/// Whether a value of the orbit is used: spare fields and those of accuracy, health and transmission hold anything.
+constexpr bool is_needed(System system, std::size_t line, std::size_t place) {
+  const bool is_galileo = system == System::kGalileo;
+  switch (line) {
+    case 1:
+      return place >= 2;
+    case 5:  // of Galileo also the sources of the data
+      return place == 1 || place == 3 || (place == 2 && is_galileo);
+    case 6:  // GPS TGD, BeiDou TGD1; Galileo BGD(E1,E5a) and BGD(E1,E5b)
+      return place == (is_galileo ? 4 : 3);
+    case 7:
+      return false;
+    default:
+      return true;
+  }
+}
+
+/// Columns of a version.
 struct Layout {
-  std::size_t clock;  ///< column of the first number of the first line
+  std::size_t clock;  ///< of the first number of the first line
   std::size_t orbit;  ///< and of the following ones
 };
 constexpr Layout layout_of(int version) {
   return version == 2 ? Layout{23, 4} : Layout{24, 5};
 }
 
-int whole(const TextLines& lines, std::size_t first, std::size_t last, std::string_view what) {
-  const auto value = files::integer_of(lines.columns(first, last));
-  if (!value) lines.refuse(fmt::format("{} in columns {} to {}", what, first, last));
-  return *value;
-}
+/// Reads the fields of one set; the first that cannot be read makes the set a defective one.
+class SetFields {
+ public:
+  explicit SetFields(const TextLines& lines) : lines_(lines) {}
+
+  /// 0 for a blank field.
+  double number(std::size_t first, std::size_t last) {
+    if (files::trimmed(lines_.columns(first, last)).empty()) return 0.0;
+    const auto value = files::number_of(lines_.columns(first, last));
+    if (!value || lines_.is_cut_in(first, last)) complain(first, last, "a number");
+    return value.value_or(0.0);
+  }
+
+  int whole(std::size_t first, std::size_t last) {
+    const auto value = files::integer_of(lines_.columns(first, last));
+    if (!value) complain(first, last, "an integer");
+    return value.value_or(0);
+  }
+
+  void complain(std::size_t first, std::size_t last, std::string_view expected) {
+    if (problem_.empty())
+      problem_ = fmt::format("line {}: found {} in columns {} to {}, expected {}", lines_.number(),
+                             files::quoted(lines_.columns(first, last)), first, last, expected);
+  }
+
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+
+ private:
+  const TextLines& lines_;
+  std::string problem_;
+};
 
 /// Seconds of the calendar time of the record in its own time scale since 1980-01-06.
-double epoch_s(const TextLines& lines, int version) {
-  int year = 0;
-  double second = 0.0;
+double epoch_s(SetFields& fields, int version) {
+  const bool is_old = version == 2;
+  int year = is_old ? fields.whole(4, 5) : fields.whole(5, 8);
+  if (is_old) year += year < 80 ? 2000 : 1900;
   std::array<int, 4> rest{};  // month, day, hour, minute
-  if (version == 2) {
-    year = whole(lines, 4, 5, "the year");
-    year += year < 80 ? 2000 : 1900;
-    for (std::size_t k = 0; k < rest.size(); ++k) rest[k] = whole(lines, 7 + 3 * k, 8 + 3 * k, "a part of the date");
-    second = rinex_number(lines, 18, 22, "the seconds");
-  } else {
-    year = whole(lines, 5, 8, "the year");
-    for (std::size_t k = 0; k < rest.size(); ++k) rest[k] = whole(lines, 10 + 3 * k, 11 + 3 * k, "a part of the date");
-    second = rinex_number(lines, 22, 23, "the seconds");
-  }
+  const std::size_t first = is_old ? 7 : 10;
+  for (std::size_t k = 0; k < rest.size(); ++k) rest[k] = fields.whole(first + 3 * k, first + 1 + 3 * k);
+  const double second = is_old ? fields.number(18, 22) : fields.number(22, 23);
   double zero = 0.0, mjd = 0.0;
   const auto [month, day, hour, minute] = rest;
   if (year < 1980 || year > 2171 || eraCal2jd(year, month, day, &zero, &mjd) != 0 || hour < 0 || hour > 23 ||
       minute < 0 || minute > 59 || !(second >= 0.0 && second < 60.0))
-    lines.refuse("a date and a time of day of the clock");
+    fields.complain(is_old ? 4 : 5, is_old ? 22 : 23, "a date and a time of day of the clock");
   constexpr double kMjdOfGpsEpoch = 44244.0;
   return 86400.0 * (mjd - kMjdOfGpsEpoch) + 3600.0 * hour + 60.0 * minute + second;
-}
-
-std::optional<SatelliteId> satellite_of(const TextLines& lines, int version) {
-  SatelliteId satellite;
-  if (version == 2) {
-    satellite.prn = whole(lines, 1, 2, "the number of a satellite");
-  } else {
-    constexpr std::string_view kFlying = "GEC", kOthers = "RSJI";
-    const std::string_view letter = lines.columns(1, 1);
-    const std::size_t system = kFlying.find(letter);
-    if (letter.empty() || (system == std::string_view::npos && kOthers.find(letter) == std::string_view::npos))
-      lines.refuse("a satellite of one of the systems G, R, E, C, J, I, S");
-    if (system == std::string_view::npos) return std::nullopt;
-    satellite.system = static_cast<System>(system);
-    satellite.prn = whole(lines, 2, 3, "the number of a satellite");
-  }
-  if (satellite.prn < 1 || satellite.prn > 63) lines.refuse("a satellite from 01 to 63");
-  return satellite;
-}
-
-void read_line(const TextLines& lines, std::size_t first, std::size_t count, double* to) {
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t begin = first + kWidth * k, end = begin + kWidth - 1;
-    to[k] = files::trimmed(lines.columns(begin, end)).empty() ? 0.0 : rinex_number(lines, begin, end, "a number");
-  }
 }
 
 void take_orbit(const Values& v, BroadcastRecord& record) {
@@ -107,16 +121,38 @@ void take_orbit(const Values& v, BroadcastRecord& record) {
   set.omega_dot = v[at(4, 4)];
   set.i_dot = v[at(5, 1)];
   record.week = v[at(5, 3)];
-  // GPS TGD, BeiDou TGD1; Galileo BGD(E1,E5a) and BGD(E1,E5b).
   set.group_delay_s = record.satellite.system == System::kGalileo ? v[at(6, 4)] : v[at(6, 3)];
 }
 
 /// Galileo's I/NAV of E1-B or E5b-I, whose clock goes with BGD(E1,E5b); F/NAV is the other message.
-bool is_wanted(const BroadcastRecord& record, const Values& v) {
+bool is_inav(const Values& v) {
   constexpr unsigned kInav = 0b101;
   const double sources = v[at(5, 2)];
-  if (record.satellite.system != System::kGalileo || !(sources >= 0.0 && sources < 1024.0)) return true;
-  return (static_cast<unsigned>(sources) & kInav) != 0;
+  return !(sources >= 0.0 && sources < 1024.0) || (static_cast<unsigned>(sources) & kInav) != 0;
+}
+
+/// Counts the week of a record as its date does. Navigation messages of GPS hold it modulo 1024, which some receivers
+/// write down, and Galileo's own count begins 1024 weeks after that of GPS. True if that changed it.
+bool resolve_week(BroadcastRecord& record, double toc_s) {
+  constexpr double kRollover = 1024.0;
+  if (record.satellite.system == System::kBeidou || !(record.week >= 0.0 && record.week < 1e4)) return false;
+  const double week_of_date = (toc_s - record.toe_s) / static_cast<double>(kSecondsPerWeek);
+  const double rollovers = std::round((week_of_date - record.week) / kRollover);
+  record.week += kRollover * rollovers;
+  return rollovers != 0.0;
+}
+
+std::string_view system_name(char letter) {
+  constexpr std::array<std::pair<char, std::string_view>, 7> kNames{{{'G', "GPS"},
+                                                                     {'R', "GLONASS"},
+                                                                     {'E', "Galileo"},
+                                                                     {'C', "BeiDou"},
+                                                                     {'J', "QZSS"},
+                                                                     {'I', "NavIC"},
+                                                                     {'S', "SBAS"}}};
+  for (const auto& [known, name] : kNames)
+    if (known == letter) return name;
+  return "unknown systems";
 }
 
 /// Message of a record of version 4 that has the layout of version 3.
@@ -128,6 +164,7 @@ bool has_known_message(std::string_view message) {
 
 bool RinexRecords::begins_record() const {
   if (version_ == 2) return !files::trimmed(lines_.columns(1, 2)).empty();
+  if (version_ == 4) return lines_.line().starts_with('>');
   return !lines_.line().empty() && lines_.line().front() != ' ';
 }
 
@@ -146,74 +183,130 @@ std::optional<BroadcastRecord> RinexRecords::next(BroadcastCorrections& correcti
   while (has_line_) {
     if (lines_.is_blank()) {
       advance();
-    } else if (version_ == 4) {
-      if (!lines_.line().starts_with('>')) lines_.refuse("a record that begins with >");
-      const auto words = lines_.words();
-      if (words.size() >= 4 && words[1] == "EPH" && has_known_message(words[3])) {
-        need_line("the record");
-        if (auto record = read_set()) return record;
-      } else {
-        read_frame(corrections);
-      }
-    } else if (auto record = read_set()) {
+    } else if (auto record = version_ == 4 ? read_frame(corrections) : read_record()) {
       return record;
     }
   }
   return std::nullopt;
 }
 
-std::optional<BroadcastRecord> RinexRecords::read_set() {
-  if (!begins_record()) lines_.refuse("the first line of a satellite's record");
-  const auto satellite = satellite_of(lines_, version_);
-  if (!satellite) {
+/// A record of version 4 behind the line that names type, satellite and message.
+std::optional<BroadcastRecord> RinexRecords::read_frame(BroadcastCorrections& corrections) {
+  if (!begins_record()) lines_.refuse("a record that begins with >");
+  const auto words = lines_.words();
+  const std::string_view type = words.size() > 1 ? words[1] : "", satellite = words.size() > 2 ? words[2] : "",
+                         message = words.size() > 3 ? words[3] : "";
+  const bool is_gps = satellite.starts_with('G') && message == "LNAV";
+  if (type == "EPH" && has_known_message(message)) {
+    need_line("the record");
+    return read_record();
+  }
+  if (is_gps && type == "ION") {
+    read_ionosphere(corrections);
+  } else if (is_gps && type == "STO") {
+    read_utc(corrections);
+  } else {
+    const char letter = satellite.empty() ? ' ' : satellite.front();
+    if (type == "EPH") left_out_.add(fmt::format("{} {}", system_name(letter), files::printable(message.substr(0, 8))));
+    skip_record();
+  }
+  return std::nullopt;
+}
+
+/// From the line that begins with a satellite.
+std::optional<BroadcastRecord> RinexRecords::read_record() {
+  if (version_ == 2) {
+    const int prn = lines_.integer_in(1, 2, "the number of a satellite");
+    if (prn < 1 || prn > 63) lines_.refuse("a satellite from 01 to 63");
+    return read_set({System::kGps, prn});
+  }
+  const char letter = lines_.is_blank() ? ' ' : lines_.line().front();
+  const auto prn = files::integer_of(lines_.columns(2, 3));
+  if (letter < 'A' || letter > 'Z' || !prn || *prn < 1)
+    lines_.refuse("a satellite: the letter of a system and a number in columns 2 to 3");
+  const std::size_t system = kSystemLetters.find(letter);
+  if (system == std::string_view::npos || !used_[system]) {
+    if (system == std::string_view::npos)
+      left_out_.add(system_name(letter));
+    else
+      has_unused_systems_ = true;
     skip_record();
     return std::nullopt;
   }
+  if (*prn > 63) lines_.refuse("a satellite from 01 to 63");
+  return read_set({static_cast<System>(system), *prn});
+}
+
+std::optional<BroadcastRecord> RinexRecords::read_set(SatelliteId satellite) {
   const Layout layout = layout_of(version_);
+  const std::string name = name_of(satellite);
+  const int first_line = lines_.number();
   BroadcastRecord record;
-  record.satellite = *satellite;
-  const double toc_s = epoch_s(lines_, version_);
-  std::array<double, 3> clock{};
-  read_line(lines_, layout.clock, clock.size(), clock.data());
-  record.af0 = clock[0];
-  record.af1 = clock[1];
-  record.af2 = clock[2];
+  record.satellite = satellite;
+  SetFields fields(lines_);
+  const double toc_s = epoch_s(fields, version_);
+  const auto clock = [&](std::size_t k) {
+    return fields.number(layout.clock + kWidth * k, layout.clock + kWidth * (k + 1) - 1);
+  };
+  record.af0 = clock(0);
+  record.af1 = clock(1);
+  record.af2 = clock(2);
   Values values{};
   for (std::size_t line = 1; line <= kLinesOfOrbit; ++line) {
-    need_line(fmt::format("the record of {}", name_of(*satellite)));
-    if (begins_record()) lines_.refuse(fmt::format("line {} of the record of {}", line + 1, name_of(*satellite)));
-    read_line(lines_, layout.orbit, 4, values.data() + at(line, 1));
+    need_line(fmt::format("the record of {}", name));
+    const bool is_indented =
+        version_ == 2 ? !begins_record() : lines_.columns(1, 4).find_first_not_of(' ') == std::string_view::npos;
+    if (!is_indented) lines_.refuse(fmt::format("line {} of the record of {}", line + 1, name));
+    for (std::size_t place = 1; place <= 4; ++place) {
+      const std::size_t first = layout.orbit + kWidth * (place - 1);
+      if (is_needed(satellite.system, line, place)) values[at(line, place)] = fields.number(first, first + kWidth - 1);
+    }
   }
+  if (version_ == 4)
+    skip_record();  // with what later versions may add to it
+  else
+    advance();
+
+  const auto leave_out = [&](std::string_view kind, const std::string& reason) {
+    left_out_.add_defective(kind, reason.empty() ? fmt::format("{} in line {}", name, first_line)
+                                                 : fmt::format("{} in line {}, {}", name, first_line, reason));
+    return std::nullopt;
+  };
+  if (!fields.problem().empty()) return leave_out("sets with a field that cannot be read", fields.problem());
   take_orbit(values, record);
+  if (satellite.system == System::kGalileo && !is_inav(values)) {
+    left_out_.add("Galileo F/NAV");
+    return std::nullopt;
+  }
+  // Files merged from many receivers hold some sets of zeros and some with the week of another one.
+  if (record.elements.sqrt_a == 0.0) return leave_out("sets of zeros", "");
+  const double published_week = record.week;
   // BeiDou's weeks begin in 2006; the date is in its own time.
-  const double week_zero_s = satellite->system == System::kBeidou ? 1356.0 * kSecondsPerWeek : 0.0;
+  const double week_zero_s = satellite.system == System::kBeidou ? 1356.0 * kSecondsPerWeek : 0.0;
+  const bool is_resolved = resolve_week(record, toc_s);
   record.toc_s = toc_s - week_zero_s - record.week * static_cast<double>(kSecondsPerWeek);
-  // Files merged from many receivers hold some sets of zeros and some with the week of another one; they are of no use.
-  const bool is_set = record.elements.sqrt_a != 0.0 && std::abs(record.toc_s - record.toe_s) <= kLongestClockAge_s;
-  const std::string problem = problem_of(record);
-  if (is_set && !problem.empty())
-    lines_.refuse(fmt::format("a record of {} that cannot be right", name_of(*satellite)), problem);
-  advance();
-  if (!is_set || !is_wanted(record, values)) return std::nullopt;
+  if (!(std::abs(record.toc_s - record.toe_s) <= kLongestClockAge_s))
+    return leave_out("sets whose week contradicts their date", fmt::format("week {}", published_week));
+  if (const std::string problem = problem_of(record); !problem.empty())
+    return leave_out("sets that cannot be right", problem);
+  if (is_resolved) ++sets_with_resolved_week_;
   return record;
 }
 
-void RinexRecords::read_frame(BroadcastCorrections& corrections) {
-  const auto words = lines_.words();
-  const bool is_gps = words.size() >= 4 && words[2].starts_with('G') && words[3] == "LNAV";
-  if (is_gps && words[1] == "ION") return read_ionosphere(corrections);
-  if (is_gps && words[1] == "STO") return read_utc(corrections);
-  skip_record();
-}
-
 void RinexRecords::read_ionosphere(BroadcastCorrections& corrections) {
+  const auto four = [this](std::size_t from, std::size_t count, std::array<double, 9>& to, std::size_t place) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t first = from + kWidth * k;
+      to[place + k] = lines_.number_or_blank_in(first, first + kWidth - 1, "a number").value_or(0.0);
+    }
+  };
   std::array<double, 9> values{};
   need_line("the ionosphere's record");
-  read_line(lines_, 24, 3, values.data());
+  four(24, 3, values, 0);
   need_line("the ionosphere's record");
-  read_line(lines_, 5, 4, values.data() + 3);
+  four(5, 4, values, 3);
   need_line("the ionosphere's record");
-  read_line(lines_, 5, 1, values.data() + 7);
+  four(5, 1, values, 7);
   std::copy_n(values.begin(), 4, corrections.klobuchar.alpha.begin());
   std::copy_n(values.begin() + 4, 4, corrections.klobuchar.beta.begin());
   skip_record();
@@ -223,11 +316,9 @@ void RinexRecords::read_utc(BroadcastCorrections& corrections) {
   need_line("the time offset's record");
   const bool is_utc = files::trimmed(lines_.columns(25, 42)).starts_with("GPUT");
   need_line("the time offset's record");
-  std::array<double, 4> values{};
-  read_line(lines_, 5, 4, values.data());
   if (is_utc) {
-    corrections.utc_a0_s = values[1];
-    corrections.utc_a1 = values[2];
+    corrections.utc_a0_s = lines_.number_in(24, 42, "A0 of UTC");
+    corrections.utc_a1 = lines_.number_in(43, 61, "A1 of UTC");
   }
   skip_record();
 }

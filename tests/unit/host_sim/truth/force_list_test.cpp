@@ -213,7 +213,29 @@ TEST(ForceList, ATideFreeModelGetsThePermanentTide) {
   zero_tide.c[GravityCoefficients::index(2, 0)] += -4.4228e-8 * 0.31460 * 0.30190;
   const fsw::Vector3 r(4e6, -3e6, 5e6);
   const fsw::Vector3 expected = GravityField(zero_tide, 8, 8).perturbation_itrf(r);
-  EXPECT_LT((load_force_data(settings).gravity->perturbation_itrf(r) - expected).norm(), 1e-15 * expected.norm());
+  const ForceData data = load_force_data(settings);
+  EXPECT_LT((data.gravity->perturbation_itrf(r) - expected).norm(), 1e-15 * expected.norm());
+  ASSERT_EQ(data.notes.size(), 1U);
+  EXPECT_THAT(data.notes[0], AllOf(HasSubstr("is tide-free"), HasSubstr("-4.20e-09 of C20"), HasSubstr("is added"),
+                                   HasSubstr("truth.permanent_tide = false")));
+}
+
+TEST(ForceList, ATideFreeModelIsUsedAsPublishedWithoutThePermanentTide) {
+  TruthSettings settings = all_forces_settings();
+  settings.forces = {};
+  settings.permanent_tide = false;
+  settings.gravity_file = vbar::tests::source_path("tests/data/formats/egm2008_8.gfc");
+  settings.gravity_degree = settings.gravity_order = 8;
+  const fsw::Vector3 r(4e6, -3e6, 5e6);
+  const fsw::Vector3 published =
+      GravityField(load_gravity_coefficients(settings.gravity_file, 8), 8, 8).perturbation_itrf(r);
+  const ForceData data = load_force_data(settings);
+  EXPECT_EQ(data.gravity->perturbation_itrf(r), published);
+  ASSERT_EQ(data.notes.size(), 1U);
+  EXPECT_THAT(data.notes[0], HasSubstr("used as published"));
+  // A zero-tide model holds the deformation; nothing is to be said of it.
+  settings.gravity_file = TruthSettings{}.gravity_file;
+  EXPECT_TRUE(load_force_data(settings).notes.empty());
 }
 
 TEST(ForceList, SpaceWeatherMustReachTheEnd) {

@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -257,6 +258,119 @@ TEST(OrientationFormats, InvalidFilesAreRefusedWithALine) {
   std::string series = published("eopc04_14_2011.txt");
   series.replace(series.find("55752"), 5, "55759");
   EXPECT_THAT(error_of(series), HasSubstr("found the MJD 55759, expected 55752, that of the row's date at 0h UTC"));
+}
+
+/// Columns of the IERS data centre, of which finals2000A has more behind them.
+constexpr std::string_view kIersHead =
+    "MJD;Year;Month;Day;Type;x_pole;sigma_x_pole;y_pole;sigma_y_pole;x_rate;sigma_x_rate;y_rate;sigma_y_rate;Type;"
+    "UT1-UTC;sigma_UT1-UTC;LOD;sigma_LOD;Type;dPsi;sigma_dPsi;dEpsilon;sigma_dEpsilon;dX;sigma_dX;dY;sigma_dY";
+
+/// `first_predicted` of finals2000A, whose dX and dY are in mas; nothing of C04, whose are in arcsec and which has no
+/// types.
+std::string as_iers_csv(const std::vector<Row>& rows, std::optional<int> first_predicted) {
+  const bool is_finals = first_predicted.has_value();
+  std::string text = fmt::format("{}{}\n", kIersHead, is_finals ? ";Type;bulB/x_pole;bulB/y_pole" : "");
+  for (const Row& row : rows) {
+    const Date date = date_of(row.mjd);
+    const std::string_view type = !is_finals ? "" : row.mjd >= *first_predicted ? "prediction" : "final";
+    const auto offset = [&](const std::string& arcsec) {
+      return is_finals ? fmt::format("{:.3f}", 1e3 * std::stod(arcsec)) : arcsec;
+    };
+    text +=
+        fmt::format("{};{};{:02};{:02};{};{};0.00003;{};0.00003;;;;;{};{};0.00001;1.1;0.01;{};;;;;{};0.1;{};0.1{}\n",
+                    row.mjd, date.year, date.month, date.day, type, row.x, row.y, type, row.ut1, type, offset(row.dx),
+                    offset(row.dy), is_finals ? ";final;.1;.2" : "");
+  }
+  if (is_finals) text += "56293;2013;01;01" + std::string(26, ';') + "\n";
+  return text;
+}
+
+/// CelesTrak: FORMAT(I4,I3,I3,I6,2F10.6,2F11.7,4F10.6,I4), and its CSV.
+std::string as_celestrak(const std::vector<Row>& rows, int first_predicted, bool as_csv) {
+  std::string text = as_csv ? "DATE,MJD,X,Y,UT1-UTC,LOD,DPSI,DEPS,DX,DY,DAT,DATA_TYPE\n"
+                            : "VERSION 1.1\n# EARTH ORIENTATION PARAMETERS (EOP) DATA\n# EOP (IERS) 20 C04 TIME "
+                              "SERIES\nNUM_OBSERVED_POINTS 3\nBEGIN OBSERVED\n";
+  for (const Row& row : rows) {
+    const Date date = date_of(row.mjd);
+    const bool is_predicted = row.mjd >= first_predicted;
+    if (as_csv) {
+      text += fmt::format("{}-{:02}-{:02},{},{},{},{},0.0008,-0.12,-0.01,{},{},34,{}\n", date.year, date.month,
+                          date.day, row.mjd, row.x, row.y, row.ut1, row.dx, row.dy, is_predicted ? 'P' : 'O');
+      continue;
+    }
+    if (row.mjd == first_predicted) text += "END OBSERVED\n\nNUM_PREDICTED_POINTS 2\nBEGIN PREDICTED\n";
+    text += fmt::format("{:4} {:02} {:02}{:6}{:>10}{:>10}{:>11}{:11.7f}{:10.6f}{:10.6f}{:>10}{:>10}{:4}\n", date.year,
+                        date.month, date.day, row.mjd, row.x, row.y, row.ut1, 0.0008, -0.12, -0.01, row.dx, row.dy, 34);
+  }
+  return as_csv ? text : text + "END PREDICTED\n";
+}
+
+void expect_bundled(const OrientationDays& days, const OrientationDays& table, int first_predicted) {
+  ASSERT_EQ(days.size(), table.size());
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    const EarthOrientation &a = table[k].orientation, &b = days[k].orientation;
+    EXPECT_TRUE(a.pole_x == b.pole_x && a.pole_y == b.pole_y && a.ut1_minus_tai_s == b.ut1_minus_tai_s) << k;
+    EXPECT_NEAR(a.cip_dx, b.cip_dx, 1e-16);  // rounding of mas
+    EXPECT_NEAR(a.cip_dy, b.cip_dy, 1e-16);
+    EXPECT_EQ(days[k].is_predicted, days[k].mjd_utc >= first_predicted);
+  }
+}
+
+TEST(OrientationFormats, TheBundledNumbersAsCsvAndInCelestraksColumns) {
+  constexpr int kNever = 99999, kFirstPredicted = 56000;
+  std::vector<Row> rows = bundled_rows();
+  OrientationDays table = bundled();
+  while (table.back().mjd_utc > 56292) table.pop_back();  // 2012-12-31
+  rows.resize(table.size());
+  expect_bundled(read_orientation(as_iers_csv(rows, std::nullopt), "eopc04.csv"), table, kNever);
+  expect_bundled(read_orientation(as_iers_csv(rows, kFirstPredicted), "finals2000A.all.csv"), table, kFirstPredicted);
+  expect_bundled(read_orientation(as_celestrak(rows, kFirstPredicted, true), "EOP-All.csv"), table, kFirstPredicted);
+  expect_bundled(read_orientation(as_celestrak(rows, kFirstPredicted, false), "EOP-All.txt"), table, kFirstPredicted);
+}
+
+// Row of 2026-09-14 as the IERS data centre distributes finals2000A.all.csv, of which the offsets are in mas.
+TEST(OrientationFormats, ARowOfTheIersDataCentre) {
+  const std::string tail = std::string(10, ';');
+  const std::string head =
+      std::string(kIersHead) +
+      ";Type;bulB/x_pole;bulB/y_pole;Type;bulB/UT-UTC;Type;bulB/dPsi;bulB/dEpsilon;bulB/dX;bulB/dY\n";
+  const std::string row =
+      "61297;2026;09;14;final;0.192933;0.000090;0.330554;0.000090;;;;;final;-0.0061769;0.0000273;1.0465;0.0178;"
+      "prediction;"
+      ";;;;0.052;0.128;0.218;0.160" +
+      tail + "\n";
+  const OrientationDays days = read_orientation(head + row, "finals2000A.all.csv");
+  ASSERT_EQ(days.size(), 1U);
+  EXPECT_DOUBLE_EQ(days[0].orientation.pole_x, 0.192933 * kArcsec);
+  EXPECT_DOUBLE_EQ(days[0].orientation.pole_y, 0.330554 * kArcsec);
+  EXPECT_DOUBLE_EQ(days[0].orientation.ut1_minus_tai_s, -0.0061769 - 37.0);
+  EXPECT_DOUBLE_EQ(days[0].orientation.cip_dx, 0.052e-3 * kArcsec);
+  EXPECT_FALSE(days[0].is_predicted);
+  const auto replaced = [&](std::string text, std::string_view what, std::string_view with) {
+    return error_of(head + text.replace(text.find(what), what.size(), with));
+  };
+  EXPECT_THAT(
+      replaced(row, ";;;;0.052;0.128;0.218;0.160", "-114.9;.5;-8.6;.3;;;;"),
+      AllOf(HasSubstr("eop.txt:2: found offsets dPsi and dEpsilon (IAU 1980)"), HasSubstr("finals2000A and C04")));
+  EXPECT_THAT(replaced(row, "61297", "61297.5"), HasSubstr("found the MJD 61297.5, expected 61297"));
+  EXPECT_THAT(replaced(row, ";final;0.19", ";finl;0.19"),
+              HasSubstr("found the type \"finl\", expected final, prediction"));
+  EXPECT_THAT(replaced(row, "0.192933", "0.19293x"), HasSubstr("found \"0.19293x\", expected a number as x_pole"));
+  EXPECT_THAT(replaced(row, tail, ""), HasSubstr("found 27 values, expected one for each of 37 columns"));
+  EXPECT_THAT(error_of("MJD;Year;Month;Day;x_pole\n"), HasSubstr("expected a column"));
+}
+
+// 9 mas of the pole or 90: the same digits without the last.
+TEST(OrientationFormats, ANumberThatIsCutShortIsRefused) {
+  const std::string finals = published("finals2000a_2011.txt");
+  const std::size_t second = finals.find('\n') + 1;
+  EXPECT_THAT(error_of(finals.substr(0, second + 124)),
+              HasSubstr("eop.txt:2: found"));  // within dY, columns 117 to 125
+  const std::string rows = as_celestrak(bundled_rows(), 99999, false);
+  const std::size_t row = rows.find("BEGIN OBSERVED\n") + 15;
+  EXPECT_THAT(error_of(rows.substr(0, row + 97)), HasSubstr("dY in arcsec in columns 89 to 98"));
+  EXPECT_THAT(error_of("mjd_utc,x_arcsec,y_arcsec,ut1_minus_utc_s,dx_arcsec,dy_arcsec\n55004,0,0,0,0,0.00"),
+              HasSubstr("found a last row without a line feed"));
 }
 
 }  // namespace

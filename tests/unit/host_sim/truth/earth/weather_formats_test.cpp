@@ -207,5 +207,59 @@ TEST(WeatherFormats, ARowWithoutAValueIsADayWithoutData) {
   EXPECT_EQ(days[1].line, 3);
 }
 
+// SpaceWeather-All-v1.2 of AGI has fluxes of 0 on 43 days, the first in 1957.
+TEST(WeatherFormats, AFluxOfZeroIsADayWithoutData) {
+  for (const bool as_csv : {false, true}) {
+    std::string text = with_predictions(as_csv);
+    const std::size_t flux =
+        text.find(as_csv ? ",100," : " 100.0 110.0", text.find(as_csv ? "2026-11-27" : "2026 11 27"));
+    text.replace(flux, as_csv ? 5 : 6, as_csv ? ",0.0," : "   0.0");
+    const WeatherDays days = read_weather(text, "SW");
+    ASSERT_EQ(days.size(), 37U) << as_csv;
+    EXPECT_EQ(days[0].kind, Kind::kObserved);
+    EXPECT_EQ(days[1].kind, Kind::kMissing);
+    EXPECT_EQ(days[2].kind, Kind::kObserved);
+  }
+}
+
+TEST(WeatherFormats, OfDaysBeforeGpsTimeOnlyTheDateIsLookedAt) {
+  const SpaceWeather::Day day{.mjd_utc = 44243, .ap_daily = 4, .f107 = 0.0, .f107_average = 999.9};  // 1980-01-05
+  SpaceWeather::Day next = day;
+  next.mjd_utc = 44244;
+  next.f107 = next.f107_average = 100.0;
+  std::string old = text_row(day);
+  old.replace(46, 4, " **X");  // ap1
+  const WeatherDays days = read_weather("BEGIN OBSERVED\n" + old + text_row(next) + "END OBSERVED\n", "SW");
+  ASSERT_EQ(days.size(), 1U);
+  EXPECT_EQ(days[0].mjd_utc, 44244);
+  old.replace(8, 2, "04");
+  EXPECT_THAT(error_of("BEGIN OBSERVED\n" + old + text_row(next) + "END OBSERVED\n"), HasSubstr("without gaps"));
+}
+
+// Section of AGI's files behind the daily predictions, with a line of its own before it.
+TEST(WeatherFormats, TheMonthlyFitIsAPrediction) {
+  std::string text = with_predictions(false);
+  const auto rename = [&](std::string_view what, std::string_view with) {
+    text.replace(text.find(what), what.size(), with);
+  };
+  rename("BEGIN MONTHLY_PREDICTED\n",
+         "BEGIN MONTHLY_PREDICTED\nEND MONTHLY_PREDICTED\n\nMONTHLY_FIT_TYPE  CSSI\nBEGIN MONTHLY_FIT\n");
+  text.replace(text.rfind("END MONTHLY_PREDICTED"), 21, "END MONTHLY_FIT");
+  const WeatherDays days = read_weather(text, "SW");
+  ASSERT_EQ(days.size(), 37U);
+  EXPECT_EQ(days[5].kind, Kind::kPredictedMonthly);
+  EXPECT_EQ(days[36].f107, 132.0);
+}
+
+TEST(WeatherFormats, AFluxThatIsCutShortIsRefused) {
+  std::string text = with_predictions(false);
+  const std::size_t second = text.find("2026 11 27");
+  text.resize(second + 122);  // the average 110.0 as 110
+  EXPECT_THAT(error_of(text), AllOf(HasSubstr("sw.txt:4: found"), HasSubstr("the observed F10.7 of 81 days")));
+  EXPECT_THAT(error_of("mjd_utc,ap1,ap2,ap3,ap4,ap5,ap6,ap7,ap8,ap_daily,f107_observed,f107_observed_81d\n"
+                       "55004,1,2,3,4,5,6,7,8,5,70,7"),
+              HasSubstr("sw.txt:2: found a last row without a line feed"));
+}
+
 }  // namespace
 }  // namespace vbar::truth

@@ -112,5 +112,13 @@ TEST(GravityFormats, InvalidFilesAreRefusedWithALine) {
   EXPECT_THAT(error_of("x"), HasSubstr("ICGEM gravity field (.gfc)"));
 }
 
+// 1.5e-1 of 1.5e-10 is a number too.
+TEST(GravityFormats, ACoefficientThatIsCutShortIsRefused) {
+  const std::string text = header(read_gravity(egm2008(), "m.gfc", 2), "fully_normalized", "tide_free") +
+                           "gfc 2 0 -4.8e-4 0\ngfc 2 1 -2e-10 1e-9\ngfc 2 2 2.4e-6 -1.4e-6\n";
+  EXPECT_EQ(read_gravity(text, "m.gfc", 2).s_nm(2, 2), -1.4e-6);
+  EXPECT_THAT(error_of(text.substr(0, text.size() - 1), "", "", 2), HasSubstr("found a last row without a line feed"));
+}
+
 }  // namespace
 }  // namespace vbar::truth

@@ -90,6 +90,11 @@ TEST_F(StarCatalogueTest, ADamagedTableIsRefusedWithFileAndLine) {
   EXPECT_THAT(complaint_about(head + "1e300,1.0,2.0,3,4,8.00,0.5\n"), HasSubstr(":4: "));
   EXPECT_THAT(complaint_about(head + "7,1.0,2.0,3,4,-1.6,0.5\n"), HasSubstr("brightest first"));
   EXPECT_THAT(complaint_about("hip,ra\n"), HasSubstr(":1: found \"hip,ra\", accepted: the columns hip,ra_deg"));
+  EXPECT_THAT(complaint_about("hip\x1b[2J,ra\n"), HasSubstr(":1: found \"hip?[2J,ra\""));
+  EXPECT_THAT(complaint_about(std::string("\x7f"
+                                          "ELF\0\1",
+                                          6)),
+              HasSubstr(".dat: found a byte 0 at position 5"));
   EXPECT_THAT(complaint_about(""), HasSubstr("cut short"));
 }
 

@@ -74,7 +74,7 @@ TEST(EphemerisFile, RefusesWithLineAndReason) {
   EXPECT_EQ(refusal("klobuchar_alpha,1,2\n" + head), ":1: klobuchar_alpha needs 4 numbers");
   std::string flat = kNumbers;
   flat.replace(flat.find("0.0004"), 6, "0.9");
-  EXPECT_EQ(refusal(head + "G05," + flat), ":2: sqrt_a must lie between 2000 and 9000 m^(1/2) and e between 0 and 0.1");
+  EXPECT_EQ(refusal(head + "G05," + flat), ":2: an eccentricity of 0.9 does not lie between 0 and 0.2");
   EXPECT_THROW(read_ephemeris_file("/nonexistent"), std::runtime_error);
 }
 

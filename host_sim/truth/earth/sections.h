@@ -1,0 +1,32 @@
+#pragma once
+// Sections of CelesTrak's text files of daily values: lines BEGIN and END with the name of one.
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "host_sim/files/text_lines.h"
+
+namespace vbar::truth {
+
+/// Goes along with the lines of a file; at most one section is open.
+class Sections {
+ public:
+  /// `names`: those that the file may have.
+  explicit Sections(std::span<const std::string_view> names) : names_(names) {}
+
+  /// Whether the line begins or ends a section. Throws files::FormatError for one within another and unknown names.
+  bool take(const files::TextLines& lines);
+
+  /// The place of the open section among the names.
+  [[nodiscard]] std::optional<std::size_t> open() const { return open_; }
+
+  /// At the end of the file. Throws files::FormatError if a section is open.
+  void check_end(const files::TextLines& lines) const;
+
+ private:
+  std::span<const std::string_view> names_;
+  std::optional<std::size_t> open_;
+};
+
+}  // namespace vbar::truth
