@@ -53,6 +53,9 @@ class AssembledMission {
   /// The receiver that is to be connected to the flight computer, of a source that was started.
   [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const;
 
+  /// Why the line to the flight computer is too slow for the first step; empty if it is not (line_usage.h).
+  [[nodiscard]] std::string slow_line() const;
+
   [[nodiscard]] const RunFacts& facts() const { return facts_; }
   /// On data of the truth that are missing or predicted.
   [[nodiscard]] const std::vector<std::string>& data_notes() const { return model_.model().data().notes; }

@@ -11,6 +11,7 @@
 
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/message_traits.h"
+#include "host_sim/files/remove_link.h"
 #include "host_sim/files/write_error.h"
 #include "host_sim/twins/lcm_log_reader.h"
 
@@ -157,7 +158,10 @@ struct PacketLogWriter::Log {
 };
 
 PacketLogWriter::PacketLogWriter(const std::filesystem::path& file, EventCheck check)
-    : log_(new Log{file, LogHandle((errno = 0, lcm_eventlog_create(file.c_str(), "w")))}), check_(std::move(check)) {
+    : log_(new Log{file, {}}), check_(std::move(check)) {
+  files::remove_link(file);
+  errno = 0;
+  log_->handle.reset(lcm_eventlog_create(file.c_str(), "w"));
   if (log_->handle == nullptr) throw files::write_error(file);
 }
 
