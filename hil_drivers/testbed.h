@@ -66,6 +66,10 @@ struct PacketPlan {
   std::uint8_t spacecraft = 0;              ///< in the headers of its packets
   std::uint8_t unit = 0;                    ///< likewise
   bool truth_is_compared = false;           ///< as PacketSource::truth_is_compared
+  std::size_t packets_max = 65535;          ///< in one epoch; those beyond are rejected
+  /// Why a packet of an allowed message cannot be a measurement of this sensor, whose packet is then rejected; empty if
+  /// it can. May be null.
+  std::function<std::string(const fsw::packets::PacketView&)> fault_of_value = {};
 };
 
 /// The true motion of all spacecraft of a mission.

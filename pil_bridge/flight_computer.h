@@ -47,12 +47,22 @@ struct LinkStatistics {
   WiredStatistics wired = {};
 };
 
+/// What the flight software's functions returned in a step, and what it sent that is not in the answer.
+struct StepTrouble {
+  std::int32_t status = 0;            ///< of the step (vbar_status); of a flight computer behind a link unknown, 0
+  std::uint32_t inputs_refused = 0;   ///< packets whose reception returned a status other than 0; likewise
+  std::uint32_t packets_dropped = 0;  ///< that it sent, not of a packet's size or more than an answer holds
+};
+
 struct StepResult {
   std::vector<Packet> packets;  ///< from the flight software, in its order; the step report is not among them
   /// Inputs that the flight computer received on a line of its own and gave to the flight software before the tick.
   std::vector<Packet> wired = {};
   StepReport report;
-  double compute_wall_s = 0.0;  ///< wall-clock time of the whole exchange, link included
+  /// Wall-clock time that the flight software took of the exchange: the rest is that of the link.
+  double compute_wall_s = 0.0;
+  StepTrouble trouble = {};
+  bool has_flown = true;  ///< false: the flight computer was off, and nothing was given to it
 };
 
 class FlightComputer {

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "host_sim/io/file_descriptor.h"
+#include "host_sim/io/process_limits.h"
 
 namespace vbar::pil {
 namespace {
@@ -142,6 +143,7 @@ void serve(int socket, const std::function<std::unique_ptr<FlightComputer>()>& m
       Bytes answer;
       put(answer, Answer::kDone);
       put(answer, result.compute_wall_s);
+      put(answer, result.trouble);
       put(answer, std::span<const Packet>(result.packets));
       static_cast<void>(send_message(socket, answer, never));
     }
@@ -153,8 +155,8 @@ void serve(int socket, const std::function<std::unique_ptr<FlightComputer>()>& m
 class Guarded final : public FlightComputer {
  public:
   Guarded(const std::function<std::unique_ptr<FlightComputer>()>& make, const std::string& name,
-          std::chrono::milliseconds step_limit)
-      : name_(name), step_limit_(step_limit) {
+          std::chrono::milliseconds step_limit, std::uint64_t memory_bytes)
+      : name_(name), step_limit_(step_limit), memory_bytes_(memory_bytes) {
     int ends[2] = {-1, -1};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail("cannot be started", errno);
     io::FileDescriptor ours(ends[0]), theirs(ends[1]);
@@ -164,12 +166,14 @@ class Guarded final : public FlightComputer {
     if (child_ < 0) fail("cannot be started", errno);
     if (child_ == 0) {
       ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-      if (::getppid() != parent) ::_exit(1);
+      if (::getppid() != parent || ::setpgid(0, 0) != 0) ::_exit(1);
+      if (memory_bytes > 0 && !io::limit_memory(memory_bytes)) ::_exit(1);
       ours.reset();
       serve(theirs.get(), make);
       std::fflush(stdout);
       ::_exit(0);
     }
+    static_cast<void>(::setpgid(child_, child_));  // also here, so that the group exists in either order
     socket_ = std::move(ours);
     theirs.reset();
     const Bytes hello = await("while it was loaded");
@@ -191,6 +195,7 @@ class Guarded final : public FlightComputer {
     static_cast<void>(reader.number<Answer>());
     StepResult result;
     result.compute_wall_s = reader.number<double>();
+    result.trouble = reader.number<StepTrouble>();
     result.packets = reader.packets();
     return result;
   }
@@ -226,20 +231,24 @@ class Guarded final : public FlightComputer {
       throw FlightComputerError(name_ + " did not return " + where + " in time, and was stopped");
     }
     const int status = stop(0);
+    const std::string memory =
+        memory_bytes_ > 0 && io::came_near(memory_bytes_, usage_)
+            ? "; it came near the limit of its memory, " + std::to_string(memory_bytes_ >> 20) + " MiB"
+            : "";
     if (WIFSIGNALED(status))
-      throw FlightComputerError(name_ + " crashed " + where + ": " + ::strsignal(WTERMSIG(status)));
+      throw FlightComputerError(name_ + " crashed " + where + ": " + ::strsignal(WTERMSIG(status)) + memory);
     throw FlightComputerError(name_ + " ended its process " + where + ", with exit code " +
-                              std::to_string(WEXITSTATUS(status)));
+                              std::to_string(WEXITSTATUS(status)) + memory);
   }
 
   /// Ends the child, by a signal unless that is 0, and by force if it takes longer than the limit of a step.
   int stop(int signal) {
     int status = 0;
     if (child_ <= 0) return status;
-    if (signal != 0) ::kill(child_, signal);
+    if (signal != 0) ::kill(-child_, signal);
     const Clock::time_point deadline = Clock::now() + std::min<std::chrono::milliseconds>(step_limit_, kAfterSignal);
-    while (::waitpid(child_, &status, WNOHANG) == 0) {
-      if (Clock::now() > deadline) ::kill(child_, SIGKILL);
+    while (!io::reap_with_group(child_, WNOHANG, status, usage_)) {
+      if (Clock::now() > deadline) ::kill(-child_, SIGKILL);
       ::usleep(1000);
     }
     child_ = -1;
@@ -248,6 +257,8 @@ class Guarded final : public FlightComputer {
 
   std::string name_;
   std::chrono::milliseconds step_limit_;
+  std::uint64_t memory_bytes_;
+  rusage usage_{};
   io::FileDescriptor socket_;
   pid_t child_ = -1;
   std::string description_;
@@ -256,8 +267,9 @@ class Guarded final : public FlightComputer {
 }  // namespace
 
 std::unique_ptr<FlightComputer> make_guarded(const std::function<std::unique_ptr<FlightComputer>()>& make,
-                                             const std::string& name, std::chrono::milliseconds step_limit) {
-  return std::make_unique<Guarded>(make, name, step_limit);
+                                             const std::string& name, std::chrono::milliseconds step_limit,
+                                             std::uint64_t memory_bytes) {
+  return std::make_unique<Guarded>(make, name, step_limit, memory_bytes);
 }
 
 }  // namespace vbar::pil

@@ -1,5 +1,6 @@
 #include "pil_bridge/in_process.h"
 
+#include <bit>
 #include <chrono>
 #include <cstring>
 #include <new>
@@ -10,6 +11,23 @@
 
 namespace vbar::pil {
 namespace {
+
+constexpr std::size_t kStateBytesMax = std::size_t{1} << 30;
+constexpr std::size_t kStateAlignmentMax = 4096;
+
+/// The article; throws FlightComputerError unless it asks for a state that there can be.
+std::shared_ptr<const TestArticle> checked(std::shared_ptr<const TestArticle> article) {
+  const std::size_t size = article->state_size(), alignment = article->state_alignment();
+  const std::string name = "the flight software '" + std::string(article->name()) + "' asks for a state ";
+  if (size > kStateBytesMax)
+    throw FlightComputerError(name + "of " + std::to_string(size) + " bytes (vbar_gnc_state_size); accepted: up to " +
+                              std::to_string(kStateBytesMax));
+  if (!std::has_single_bit(alignment) || alignment > kStateAlignmentMax)
+    throw FlightComputerError(name + "that is aligned to " + std::to_string(alignment) +
+                              " bytes (vbar_gnc_state_alignment); accepted: powers of two from 1 to " +
+                              std::to_string(kStateAlignmentMax));
+  return article;
+}
 
 /// Memory for the state of a test article, zeroed as a board zeroes it.
 class StateMemory {
@@ -31,7 +49,7 @@ class StateMemory {
 class InProcess final : public FlightComputer {
  public:
   InProcess(std::shared_ptr<const TestArticle> article, std::uint8_t spacecraft)
-      : article_(std::move(article)), state_(article_->state_size(), article_->state_alignment()) {
+      : article_(checked(std::move(article))), state_(article_->state_size(), article_->state_alignment()) {
     const vbar_status status = article_->init(state_.get(), spacecraft, &InProcess::sink, this);
     if (status != 0) {
       throw FlightComputerError("the flight software '" + std::string(article_->name()) +
@@ -42,21 +60,19 @@ class InProcess final : public FlightComputer {
   StepResult step(std::uint32_t /*step*/, std::span<const Packet> packets) override {
     if (packets.empty()) throw FlightComputerError("a step needs at least its tick");
     const auto start = std::chrono::steady_clock::now();
+    StepResult result;
     for (const Packet& packet : packets) {
-      // Packets refused by the flight software are in its own counters.
-      (void)article_->receive(state_.get(), packet.data(), packet.size());
+      if (article_->receive(state_.get(), packet.data(), packet.size()) != 0) ++result.trouble.inputs_refused;
     }
     const auto last = fsw::packets::parse_packet(packets.back());
-    if (last.ok() && fsw::packets::decode<vbar::tick>(last.value()).ok()) {
-      // A failed step is reported by the flight software's telemetry.
-      (void)article_->step(state_.get(), last.value().header.time.ns);
-    }
-    StepResult result;
+    if (last.ok() && fsw::packets::decode<vbar::tick>(last.value()).ok())
+      result.trouble.status = article_->step(state_.get(), last.value().header.time.ns);
     for (std::uint16_t i = 0; i < outbox_.count(); ++i) {
       const auto packet = outbox_.packet(i);
       result.packets.emplace_back(packet.begin(), packet.end());
     }
     outbox_.clear();
+    result.trouble.packets_dropped = std::exchange(dropped_, 0);
     result.compute_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
   }
@@ -84,12 +100,14 @@ class InProcess final : public FlightComputer {
  private:
   static void sink(void* context, const std::uint8_t* packet, std::size_t size) {
     // Packets that do not fit are dropped, as on a board.
-    (void)static_cast<InProcess*>(context)->outbox_.append({packet, size});
+    auto* const computer = static_cast<InProcess*>(context);
+    if (!computer->outbox_.append({packet, size})) ++computer->dropped_;
   }
 
   std::shared_ptr<const TestArticle> article_;
   StateMemory state_;
   boards::Outbox outbox_;
+  std::uint32_t dropped_ = 0;  ///< packets, since the last answer
 };
 
 }  // namespace

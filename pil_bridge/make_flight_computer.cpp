@@ -10,6 +10,7 @@
 
 #include "host_sim/io/byte_channels.h"
 #include "host_sim/io/udp_socket.h"
+#include "pil_bridge/arm_image.h"
 #include "pil_bridge/beside_program.h"
 #include "pil_bridge/guarded_process.h"
 #include "pil_bridge/in_process.h"
@@ -45,6 +46,10 @@ std::string_view name_in(const Table& table, Value value) {
   }
   return "unknown";
 }
+
+// An endpoint of a board that is not a device.
+constexpr std::string_view kUnix = "unix:";
+constexpr std::string_view kTcp = "tcp:";
 
 /// Number of the first inherited descriptor in a started program.
 constexpr int kChildLinkFd = 3;
@@ -96,12 +101,24 @@ std::string full_name(const FlightComputerOptions& options) {
   return std::string(name_of(options.target)) + " over " + std::string(name_of(options.link));
 }
 
+bool is_device(const std::string& endpoint) {
+  return !endpoint.starts_with(kUnix) && !endpoint.starts_with(kTcp);
+}
+
+/// Of the serial line, bits/s; 0: none, or as fast as it goes.
+double line_rate(const FlightComputerOptions& options) {
+  if (options.link == LinkKind::kUdp) return 0.0;
+  if (options.target == Target::kBoard) return is_device(options.endpoint) ? options.baud : 0.0;
+  return options.paced_bits_per_s;
+}
+
 RemoteParts parts_for(const FlightComputerOptions& options) {
   RemoteParts parts;
   parts.name = full_name(options);
   parts.timing = options.timing;
   parts.spacecraft = options.spacecraft;
   parts.receiver = options.receiver;
+  parts.line_bits_per_s = line_rate(options);
   if (options.target == Target::kZynqQemu || options.target == Target::kBoard) parts.step_budget = options.step_budget;
   return parts;
 }
@@ -137,10 +154,10 @@ void discard_received(const io::WiredReceiver& receiver) {
   }
 }
 
-std::unique_ptr<io::ChildProcess> start(const std::vector<std::string>& arguments,
+std::unique_ptr<io::ChildProcess> start(const std::vector<std::string>& arguments, std::uint64_t memory_bytes,
                                         std::vector<io::FileDescriptor> inherited = {}) {
   try {
-    return std::make_unique<io::ChildProcess>(arguments, std::move(inherited));
+    return std::make_unique<io::ChildProcess>(arguments, std::move(inherited), memory_bytes);
   } catch (const std::system_error& error) {
     throw FlightComputerError(error.what());
   }
@@ -168,13 +185,23 @@ BuiltImage built_image(Target target) {
   return {"vbar_flight", "vbar_flight", "host"};
 }
 
+/// Throws FlightComputerError for a file that the emulated processor cannot execute.
+void check_image(const std::string& image, Target target) {
+  if (target != Target::kZynqQemu && target != Target::kZynqLinuxQemu) return;
+  const std::string fault = fault_of_arm_image(image, target == Target::kZynqLinuxQemu);
+  if (!fault.empty()) throw FlightComputerError("flight_computer.image '" + image + "': " + fault);
+}
+
 /// `options.image`, or the image that the build put beside the running program.
 std::string find_image(const FlightComputerOptions& options) {
   namespace fs = std::filesystem;
   std::error_code error;
   const auto [built, installed, preset] = built_image(options.target);
   if (!options.image.empty()) {
-    if (fs::is_regular_file(options.image, error)) return options.image;
+    if (fs::is_regular_file(options.image, error)) {
+      check_image(options.image, options.target);
+      return options.image;
+    }
     throw FlightComputerError("flight_computer.image '" + options.image +
                               "': there is no such file (vbar's own is built by the CMake preset '" + preset + "')");
   }
@@ -195,7 +222,7 @@ std::unique_ptr<FlightComputer> make_host_process(const FlightComputerOptions& o
   const auto of_flight = flight_arguments(link, options);
   arguments.insert(arguments.end(), of_flight.begin(), of_flight.end());
   RemoteParts parts = parts_for(options);
-  parts.process = start(arguments, only(std::move(link.child_end)));
+  parts.process = start(arguments, options.memory_bytes, only(std::move(link.child_end)));
   parts.transport = std::move(link.transport);
   return std::make_unique<RemoteComputer>(std::move(parts));
 }
@@ -204,7 +231,8 @@ std::unique_ptr<FlightComputer> make_zynq_linux_qemu(const FlightComputerOptions
   const std::string image = find_image(options);
   ChildLink link = make_child_link(options);
   RemoteParts parts = parts_for(options);
-  parts.process = start(linux_arm_qemu(image, flight_arguments(link, options)), only(std::move(link.child_end)));
+  parts.process = start(linux_arm_qemu(image, flight_arguments(link, options)), options.memory_bytes,
+                        only(std::move(link.child_end)));
   parts.transport = std::move(link.transport);
   return std::make_unique<RemoteComputer>(std::move(parts));
 }
@@ -218,7 +246,7 @@ std::unique_ptr<FlightComputer> make_zynq_qemu_over_udp(const FlightComputerOpti
     const std::uint16_t port = io::bind_udp_loopback().port;
     RemoteParts parts = parts_for(options);
     parts.icount_shift = options.icount_shift;
-    parts.process = start(zynq_qemu_over_udp(image, options.icount_shift, port, receiver));
+    parts.process = start(zynq_qemu_over_udp(image, options.icount_shift, port, receiver), options.memory_bytes);
     parts.transport = finish(make_udp_transport("127.0.0.1", port), options);
     try {
       return std::make_unique<RemoteComputer>(std::move(parts));
@@ -241,7 +269,8 @@ std::unique_ptr<FlightComputer> make_zynq_qemu(const FlightComputerOptions& opti
   auto [ours, theirs] = io::make_socket_pair();
   RemoteParts parts = parts_for(options);
   parts.icount_shift = options.icount_shift;
-  parts.process = start(zynq_qemu_over_serial(image, options.icount_shift, kChildLinkFd), only(std::move(theirs)));
+  parts.process = start(zynq_qemu_over_serial(image, options.icount_shift, kChildLinkFd), options.memory_bytes,
+                        only(std::move(theirs)));
   parts.transport = finish(io::adopt_socket(std::move(ours), "the emulator's UART0"), options);
   return std::make_unique<RemoteComputer>(std::move(parts));
 }
@@ -259,8 +288,6 @@ HostAndPort split_endpoint(const std::string& endpoint, const std::string& text)
 }
 
 std::unique_ptr<FrameTransport> open_board_link(const FlightComputerOptions& options) {
-  constexpr std::string_view kUnix = "unix:";
-  constexpr std::string_view kTcp = "tcp:";
   const std::string& endpoint = options.endpoint;
   const auto deadline = Clock::now() + options.timing.boot_limit;
   if (options.link == LinkKind::kUdp) {
@@ -291,7 +318,8 @@ std::unique_ptr<FlightComputer> make_board(const FlightComputerOptions& options)
 std::unique_ptr<FlightComputer> make_linked_or_loaded(const FlightComputerOptions& options) {
   if (!options.library.empty()) {
     const auto make = [&] { return make_in_process(load_test_article(options.library), options.spacecraft); };
-    return make_guarded(make, "flight_computer.library '" + options.library + "'", options.library_step_limit);
+    return make_guarded(make, "flight_computer.library '" + options.library + "'", options.library_step_limit,
+                        options.memory_bytes);
   }
   if (!options.article)
     throw FlightComputerError("in_process: this program is linked with no flight software; name a library");

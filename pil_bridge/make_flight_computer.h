@@ -66,6 +66,9 @@ struct FlightComputerOptions {
   /// the image has by default.
   std::uint64_t step_budget = 0;
 
+  /// Most memory of a library, or of a program that is started; 0: no limit.
+  std::uint64_t memory_bytes = 0;
+
   double paced_bits_per_s = 0.0;  ///< serial and pty: limits the rate of the line to this; 0: unlimited
   BarrierTiming timing;
   LinkFaults faults;

@@ -13,6 +13,8 @@ namespace {
 
 using boards::CounterUnit;
 
+constexpr double kBitsPerByte = 10.0;  // 8N1
+
 /// A process whose line broke is about to end: time to obtain its exit status before it is terminated.
 constexpr std::chrono::milliseconds kExplainPatience{300};
 /// After a goodbye, to end by itself; then after a SIGTERM.
@@ -32,6 +34,14 @@ std::uint64_t counter(std::int64_t value) {
   return value > 0 ? static_cast<std::uint64_t>(value) : 0;
 }
 
+/// Patience for a line that needs longer than that for the frames between two acknowledgements.
+BarrierTiming with_line(BarrierTiming timing, double line_bits_per_s) {
+  if (line_bits_per_s <= 0.0) return timing;
+  constexpr double kWindowBits = fsw::link::kWindow * fsw::link::kMaxCobsFrameBytes * kBitsPerByte;
+  timing.give_up_after += std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * kWindowBits / line_bits_per_s));
+  return timing;
+}
+
 /// Several lines joined to one, for an error message.
 std::string on_one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -41,9 +51,16 @@ std::string on_one_line(std::string text) {
 
 }  // namespace
 
+double computing_time(double exchange_s, double waited_s, std::uint64_t bytes, double line_bits_per_s) {
+  const double wire_s = static_cast<double>(bytes) * kBitsPerByte / line_bits_per_s;
+  const double computing_s = line_bits_per_s > 0.0 ? exchange_s - wire_s : waited_s;
+  return std::clamp(computing_s, 0.0, exchange_s);
+}
+
 RemoteComputer::RemoteComputer(RemoteParts parts)
     : parts_(std::move(parts)),
-      barrier_(*parts_.transport, draw_session(), parts_.timing, [this] { check_process(); }) {
+      barrier_(*parts_.transport, draw_session(), with_line(parts_.timing, parts_.line_bits_per_s),
+               [this] { check_process(); }) {
   try {
     board_name_ = barrier_.connect(parts_.spacecraft, parts_.receiver ? parts_.receiver->baud : 0U, board_budget());
   } catch (const LinkError& error) {
@@ -56,17 +73,21 @@ StepResult RemoteComputer::step(std::uint32_t step, std::span<const Packet> pack
   if (!failure_.empty()) throw FlightComputerError(failure_);
   if (closed_) throw FlightComputerError(parts_.role + " " + parts_.name + " is closed");
   StepResult result;
+  std::uint64_t bytes_before = line_bytes();
   try {
     if (wired_) wired_->wait([this](Clock::time_point deadline) { return barrier_.receiver_count(deadline); });
+    bytes_before = line_bytes();
     const auto start = Clock::now();
     result.packets = barrier_.exchange(step, packets);
-    result.compute_wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+    const double exchange_s = std::chrono::duration<double>(Clock::now() - start).count();
+    result.compute_wall_s = computing_time(exchange_s, std::chrono::duration<double>(barrier_.waited()).count(),
+                                           line_bytes() - bytes_before, parts_.line_bits_per_s);
     sort_answer(result);
     check_budget(result.report);
   } catch (const SessionLost& lost) {
     fail("at step " + std::to_string(step), lost.what() + budget_text(parts_.step_budget, count_unit()));
   } catch (const LinkError& error) {
-    fail("at step " + std::to_string(step), error.what());
+    fail("at step " + std::to_string(step), error.what() + line_text(line_bytes() - bytes_before));
   }
   return result;
 }
@@ -95,13 +116,28 @@ void RemoteComputer::check_budget(const StepReport& report) const {
                   std::to_string(parts_.step_budget));
 }
 
+std::uint64_t RemoteComputer::line_bytes() const {
+  const TransportCounters line = parts_.transport->counters();
+  return line.bytes_sent + line.bytes_received;
+}
+
+std::string RemoteComputer::line_text(std::uint64_t bytes) const {
+  if (parts_.line_bits_per_s <= 0.0) return "";
+  const auto seconds = static_cast<std::int64_t>(static_cast<double>(bytes) * kBitsPerByte / parts_.line_bits_per_s);
+  return "; the line carries " + std::to_string(static_cast<std::int64_t>(parts_.line_bits_per_s)) +
+         " baud, at which the " + std::to_string(bytes) + " bytes of this exchange take " + std::to_string(seconds) +
+         " s";
+}
+
 void RemoteComputer::sort_answer(StepResult& result) {
+  const std::uint32_t dropped_before = packets_dropped_;
   std::erase_if(result.packets, [&](const Packet& packet) {
     if (take_step_report(packet, result.report)) return true;
     auto input = wired_ ? wired_->take(packet) : std::nullopt;
     if (input) result.wired.push_back(std::move(*input));
     return input.has_value();
   });
+  result.trouble.packets_dropped = packets_dropped_ - std::min(dropped_before, packets_dropped_);
 }
 
 LinkStatistics RemoteComputer::statistics() const {
@@ -168,6 +204,7 @@ bool RemoteComputer::take_step_report(const Packet& packet, StepReport& report) 
     report.unit = "instructions";
     report.count = instructions_of_ticks(counter(told.count), *parts_.icount_shift);
   }
+  packets_dropped_ = static_cast<std::uint32_t>(counter(told.packets_dropped));
   board_counters_.frames_resent = counter(told.frames_resent);
   board_counters_.frames_rejected = counter(told.frames_rejected);
   board_counters_.frames_duplicated = counter(told.frames_duplicated);

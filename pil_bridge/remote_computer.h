@@ -25,7 +25,13 @@ struct RemoteParts {
   std::optional<int> icount_shift;
   std::uint64_t step_budget = 0;  ///< in instructions with `icount_shift`, else in cycles; 0: that of the board
   std::optional<io::WiredReceiver> receiver = std::nullopt;  ///< that is wired to the flight computer
+  double line_bits_per_s = 0.0;  ///< of a serial line, 10 bits a byte; 0: as fast as it goes
 };
+
+/// How much of an exchange the flight computer spent computing, s. `waited_s`: from the last packet handed to the line
+/// to the first of the answer. A line of a known rate buffers what it is handed: there it is what the `bytes` of the
+/// exchange leave of it.
+[[nodiscard]] double computing_time(double exchange_s, double waited_s, std::uint64_t bytes, double line_bits_per_s);
 
 class RemoteComputer final : public FlightComputer {
  public:
@@ -50,6 +56,10 @@ class RemoteComputer final : public FlightComputer {
   /// The budget of a step in the unit in which the board counts.
   [[nodiscard]] std::uint64_t board_budget() const;
   [[nodiscard]] const char* count_unit() const { return parts_.icount_shift ? "instructions" : "cycles"; }
+  /// Bytes in both directions so far.
+  [[nodiscard]] std::uint64_t line_bytes() const;
+  /// "; the 12345 bytes of the exchange so far take 103 s at 1200 baud" of a line of a known rate.
+  [[nodiscard]] std::string line_text(std::uint64_t bytes) const;
   /// Takes everything out of the answer that is not from the flight software.
   void sort_answer(StepResult& result);
   /// Throws LinkError if the step took more than the budget, after which the board takes no further step.
@@ -63,7 +73,8 @@ class RemoteComputer final : public FlightComputer {
   std::string board_name_;
   std::string failure_;  ///< why this computer can no longer be used; empty while it can
   bool closed_ = false;
-  LinkStatistics board_counters_;  ///< the board's counters, from its last step report
+  LinkStatistics board_counters_;      ///< the board's counters, from its last step report
+  std::uint32_t packets_dropped_ = 0;  ///< likewise
 };
 
 }  // namespace vbar::pil

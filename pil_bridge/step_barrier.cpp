@@ -197,6 +197,7 @@ void StepBarrier::send_window(Exchange& exchange) {
     const FrameHeader header = inputs_.next_header();
     send(header, exchange.packets[header.index]);
     inputs_.sent();
+    last_sent_ = Clock::now();
     exchange.sent = static_cast<std::uint16_t>(header.index + 1U);
   }
 }
@@ -251,6 +252,7 @@ bool StepBarrier::take_answer(Exchange& exchange, const FrameView& frame) {
   const BatchReceiver::Decision decision = outputs_.offer(frame.header);
   switch (decision.verdict) {
     case BatchReceiver::Verdict::kTaken:
+      if (exchange.answer.empty()) first_answer_ = Clock::now();
       exchange.answer.emplace_back(frame.payload.begin(), frame.payload.end());
       exchange.gap_reported = false;
       break;

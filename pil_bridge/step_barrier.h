@@ -66,6 +66,10 @@ class StepBarrier {
   /// been reset since connect().
   std::vector<Packet> exchange(std::uint32_t step, std::span<const Packet> packets);
 
+  /// Of the last exchange: from the last packet handed to the line, or handed to it again, to the first packet of the
+  /// answer.
+  [[nodiscard]] Clock::duration waited() const { return first_answer_ - last_sent_; }
+
   /// The snapshot of the flight software between two steps; empty if it gives none. Throws LinkError.
   std::vector<std::uint8_t> read_snapshot();
 
@@ -111,6 +115,7 @@ class StepBarrier {
   fsw::link::BatchSender inputs_;
   fsw::link::BatchReceiver outputs_;
   BarrierCounters counters_;
+  Clock::time_point last_sent_, first_answer_;
   std::array<std::uint8_t, fsw::link::kMaxFrameBytes> frame_{};
 };
 

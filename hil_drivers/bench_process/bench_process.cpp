@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hil_drivers/bench_process/command_line.h"
+#include "host_sim/io/process_limits.h"
 
 namespace vbar::bench_process {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kStartLimit{30};
+constexpr std::uint64_t kMemory = 32 * io::kBytesPerGib;  // several times that of the largest emulated bench
 constexpr std::chrono::milliseconds kPoll{5};
 constexpr std::chrono::milliseconds kEndPatience{3000};
 
@@ -59,7 +61,7 @@ BenchProcess::BenchProcess(const std::string& command_line, std::uint64_t seed, 
       if (fs::is_regular_file(argument))
         if (auto digest = report::digest_of(argument)) files_.push_back(std::move(*digest));
     try {
-      process_.emplace(arguments_, std::vector<io::FileDescriptor>{});
+      process_.emplace(arguments_, std::vector<io::FileDescriptor>{}, kMemory);
     } catch (const std::system_error& error) {
       throw std::runtime_error(fmt::format("bench {}: {}", arguments_.front(), error.code().message()));
     }

@@ -12,6 +12,7 @@
 #include "hil_drivers/external/external_truth.h"
 #include "hil_drivers/external/settings.h"
 #include "host_sim/io/byte_channels.h"
+#include "host_sim/io/process_limits.h"
 #include "pil_bridge/remote_computer.h"
 #include "pil_bridge/stream_transport.h"
 #include "pil_bridge/udp_transport.h"
@@ -23,7 +24,8 @@ namespace {
 constexpr int kLineFd = 3;
 
 /// Starts the program, or names its address.
-void connect_program(const Program& program, const std::vector<std::string>& arguments, pil::RemoteParts& parts) {
+void connect_program(const Program& program, const std::vector<std::string>& arguments, std::uint64_t memory_bytes,
+                     pil::RemoteParts& parts) {
   if (arguments.empty()) {
     parts.transport = pil::make_udp_transport(program.host, program.port);
     return;
@@ -31,7 +33,7 @@ void connect_program(const Program& program, const std::vector<std::string>& arg
   auto [ours, theirs] = io::make_socket_pair();
   std::vector<io::FileDescriptor> inherited;
   inherited.push_back(std::move(theirs));
-  parts.process = std::make_unique<io::ChildProcess>(arguments, std::move(inherited));
+  parts.process = std::make_unique<io::ChildProcess>(arguments, std::move(inherited), memory_bytes);
   parts.transport =
       std::make_unique<pil::StreamTransport>(io::adopt_socket(std::move(ours), fmt::format("descriptor {}", kLineFd)));
 }
@@ -50,7 +52,9 @@ ExternalSource::Connect connection_to(const ExternalSettings& settings, const mi
                                                                 {"{data}", data.string()}}};
   auto arguments = bench_process::arguments_of(program->command, replacements);
   return [program = *program, arguments = std::move(arguments), spacecraft, start = settings.start_limit,
-          answer = settings.answer_limit]() -> std::unique_ptr<pil::FlightComputer> {
+          answer = settings.answer_limit,
+          memory_bytes = static_cast<std::uint64_t>(
+              settings.memory_gib * static_cast<double>(io::kBytesPerGib))]() -> std::unique_ptr<pil::FlightComputer> {
     pil::RemoteParts parts;
     parts.role = "program";
     parts.name = arguments.empty() ? fmt::format("at {}:{}", program.host, program.port) : arguments.front();
@@ -58,7 +62,7 @@ ExternalSource::Connect connection_to(const ExternalSettings& settings, const mi
     parts.timing.boot_limit = start;
     parts.timing.give_up_after = answer;
     try {
-      connect_program(program, arguments, parts);
+      connect_program(program, arguments, memory_bytes, parts);
     } catch (const std::system_error& error) {
       throw std::runtime_error(error.what());
     }

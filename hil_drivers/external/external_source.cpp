@@ -5,11 +5,16 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/twins/packets_rejected.h"
+
 namespace vbar::external {
 namespace {
 
 /// A sensor whose packets leave it later than this after their epoch states another unit of time.
 constexpr fsw::Duration kLongestDelay = fsw::duration_of_seconds(86400);
+
+/// Of the time of a measurement, for a clock that is not exact.
+constexpr fsw::Duration kClockMargin = fsw::duration_of_seconds(1);
 
 }  // namespace
 
@@ -24,6 +29,7 @@ void ExternalSource::start(fsw::GpsTime first_epoch) {
   if (!answer.next_epoch || *answer.next_epoch < first_epoch)
     throw std::runtime_error("the program states a first epoch before the start of the run, or none");
   next_epoch_ = answer.next_epoch;
+  last_epoch_ = first_epoch;
 }
 
 void ExternalSource::stop(twins::StopReason /*reason*/) {
@@ -48,6 +54,8 @@ twins::Measurement ExternalSource::measure(const twins::TruthSnapshot& truth) {
     measurement.available = answer.available;
     measurement.status = answer.is_failed ? twins::MeasurementStatus::kFailed : twins::MeasurementStatus::kReady;
     if (answer.is_failed) measurement.reason = "the program reports a failure";
+    measurement.notes = reject(answer.packets, answer.available);
+    last_epoch_ = truth.time;
     measurement.packets = std::move(answer.packets);
     return measurement;
   } catch (const std::exception& error) {
@@ -66,6 +74,44 @@ void ExternalSource::command(const fsw::packets::PacketView& packet, fsw::GpsTim
 Answer ExternalSource::exchange(const Batch& batch) {
   const std::uint32_t step = step_++;
   return answer_of(program_->step(step, packets_of(batch, step, numbers_)).packets);
+}
+
+std::string ExternalSource::fault_of_measurement(const fsw::packets::PacketView& packet, fsw::GpsTime available) const {
+  const fsw::GpsTime time = packet.header.time, earliest = last_epoch_ - kClockMargin,
+                     latest = available + kClockMargin;
+  if (time < earliest || time > latest)
+    return fmt::format(
+        "a packet of GPS time {} ns; accepted: {} to {} ns, the last epoch to the time when the packets leave the "
+        "sensor, "
+        "and a second",
+        time.ns, earliest.ns, latest.ns);
+  return plan_.fault_of_value ? plan_.fault_of_value(packet) : std::string();
+}
+
+std::vector<twins::Note> ExternalSource::reject(std::vector<twins::Packet>& packets, fsw::GpsTime available) {
+  std::string reason;
+  double rejected = 0.0;
+  std::size_t kept = 0;
+  std::erase_if(packets, [&](const twins::Packet& bytes) {
+    std::string fault = kept < plan_.packets_max
+                            ? fault_of_measurement(fsw::packets::parse_packet(bytes).value(), available)
+                            : fmt::format("more than {} packets of one epoch", plan_.packets_max);
+    if (fault.empty()) {
+      ++kept;
+      return false;
+    }
+    rejected += 1.0;
+    if (reason.empty()) reason = std::move(fault);
+    return true;
+  });
+  if (rejected == 0.0) return {};
+  packets_rejected_ += static_cast<std::uint64_t>(rejected);
+  return {{std::string(twins::kPacketsRejected), rejected, reason}};
+}
+
+std::vector<twins::Note> ExternalSource::statistics() const {
+  if (packets_rejected_ == 0) return {};
+  return {{std::string(twins::kPacketsRejected), static_cast<double>(packets_rejected_)}};
 }
 
 void ExternalSource::check(const Answer& answer, fsw::GpsTime now) const {

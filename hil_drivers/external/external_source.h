@@ -28,15 +28,20 @@ class ExternalSource final : public twins::PacketSource {
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
   /// Throws std::runtime_error, one sentence that names the source, if the program has ended, does not answer in time
-  /// or answers with anything but packets of its sensor: nothing can be expected of it any more.
+  /// or answers with anything but packets of its sensor: nothing can be expected of it any more. A packet of the sensor
+  /// whose time or value is impossible is rejected, noted and counted.
   twins::Measurement measure(const twins::TruthSnapshot& truth) override;
   void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) override;
   [[nodiscard]] twins::TruthDetail truth_detail() const override { return twins::TruthDetail::kAccelerations; }
+  [[nodiscard]] std::vector<twins::Note> statistics() const override;
   [[nodiscard]] bool truth_is_compared() const override { return plan_.truth_is_compared; }
 
  private:
   Answer exchange(const Batch& batch);
   void check(const Answer& answer, fsw::GpsTime now) const;
+  /// Removes packets whose time or content cannot be that of a measurement, and those beyond the limit of an epoch.
+  [[nodiscard]] std::vector<twins::Note> reject(std::vector<twins::Packet>& packets, fsw::GpsTime available);
+  [[nodiscard]] std::string fault_of_measurement(const fsw::packets::PacketView& packet, fsw::GpsTime available) const;
 
   testbeds::PacketPlan plan_;
   std::int64_t seed_;
@@ -45,7 +50,9 @@ class ExternalSource final : public twins::PacketSource {
   std::unique_ptr<pil::FlightComputer> program_;
   std::uint32_t step_ = 0;
   std::optional<fsw::GpsTime> next_epoch_;
-  std::vector<Command> commands_;  ///< since the last exchange
+  fsw::GpsTime last_epoch_;             ///< the one before; that of the start before the first
+  std::uint64_t packets_rejected_ = 0;  ///< so far
+  std::vector<Command> commands_;       ///< since the last exchange
 };
 
 }  // namespace vbar::external

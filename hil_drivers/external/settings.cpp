@@ -64,6 +64,7 @@ std::shared_ptr<const mission::TestbedSettings> read_external(const TableReader&
   };
   settings->start_limit = limit("start_limit_s", 30.0);
   settings->answer_limit = limit("answer_limit_s", 10.0);
+  settings->memory_gib = section.number("memory_gib", from_to(0.1, 1024.0), settings->memory_gib);
   section.finish();
   return settings;
 }

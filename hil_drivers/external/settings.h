@@ -30,6 +30,7 @@ struct ExternalSettings : mission::TestbedSettings {
   std::vector<ProgramOfSource> sources;
   std::chrono::milliseconds start_limit{30000};   ///< for the first answer
   std::chrono::milliseconds answer_limit{10000};  ///< for each of the following
+  double memory_gib = 8.0;                        ///< limit of each program that is started
 
   /// Null: the mission names none for it.
   [[nodiscard]] const Program* program_of(std::string_view source) const;

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "host_sim/files/remove_link.h"
+
 namespace vbar::grand {
 
 void RawRecord::add(std::span<const std::uint8_t> bytes) {
@@ -16,6 +18,7 @@ void RawRecord::add(std::span<const std::uint8_t> bytes) {
 void RawRecord::keep_in(const std::filesystem::path& file) {
   const std::lock_guard lock(mutex_);
   path_ = file;
+  files::remove_link(file);
   file_.open(file, std::ios::binary | std::ios::trunc);
   if (!file_) throw std::runtime_error(file.string() + ": cannot be written");
   write(early_);

@@ -20,6 +20,7 @@
 #include "host_sim/faults/faulty_thruster.h"
 #include "host_sim/report/summarise.h"
 #include "host_sim/sensors/sensor_kinds.h"
+#include "host_sim/twins/packets_rejected.h"
 
 namespace vbar::app {
 namespace {
@@ -216,13 +217,16 @@ void summarise_run(const RunFacts& facts, std::span<const Source> sources, repor
   share.flight_s = facts.flight_s;
   share.link_s = facts.link_s;
   share.other_s = std::max(0.0, facts.wall_s - facts.truth_s - facts.flight_s - facts.link_s);
+  const std::size_t first = summary.sources.size();
   for (std::size_t k = 0; k < sources.size(); ++k) {
     const RunFacts::OfSource& of = facts.sources[k];
     summary.sources.push_back({of.name, sources[k].kind, of.epochs, of.failures, of.last_failure, of.late.count,
-                               std::chrono::duration<double>(of.late.worst).count()});
+                               std::chrono::duration<double>(of.late.worst).count(), 0});
   }
-  for (const Source& source : sources) {
-    for (const twins::Note& spent : source.packets->statistics()) {
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    for (const twins::Note& spent : sources[k].packets->statistics()) {
+      if (spent.name == twins::kPacketsRejected)
+        summary.sources[first + k].packets_rejected = static_cast<std::uint64_t>(spent.value);
       if (spent.name == "render_s") share.render_s += spent.value;
       if (spent.name == "detector_s") share.detector_s += spent.value;
       if (spent.name == "packing_s") share.packing_s += spent.value;
@@ -296,6 +300,10 @@ std::optional<io::WiredReceiver> AssembledMission::wired_receiver() const {
   return std::nullopt;
 }
 
+std::string AssembledMission::slow_line() const {
+  return app::slow_line(*servicer_.flight_computer, mission_.step.shortest_period(), timetable_.first_packets);
+}
+
 bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& record) {
   start();
   Recording recording(mission_, servicer_, record);
@@ -337,7 +345,7 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
     summarise_mission(mission_, servicer_, record.summary);
     if (of_testbed_) {
       of_testbed_->stop();
-      record.summary.sources.push_back({"truth", mission_.truth_source, of_testbed_->exchanges(), 0, {}, 0, 0.0});
+      record.summary.sources.push_back({"truth", mission_.truth_source, of_testbed_->exchanges(), 0, {}, 0, 0.0, 0});
     }
     summarise_run(facts_, made_.sources, record.summary);
     record.summary.flight_software = surroundings.flight_computer.description();

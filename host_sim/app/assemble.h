@@ -53,6 +53,9 @@ class AssembledMission {
   /// The receiver that is to be connected to the flight computer, of a source that was started.
   [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const;
 
+  /// Why the line to the flight computer is too slow for the first step; empty if it is not (line_usage.h).
+  [[nodiscard]] std::string slow_line() const;
+
   [[nodiscard]] const RunFacts& facts() const { return facts_; }
   /// On data that are missing, predicted or used in part.
   [[nodiscard]] std::vector<std::string> data_notes() const;

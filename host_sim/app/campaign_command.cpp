@@ -22,6 +22,8 @@
 namespace vbar::app {
 namespace {
 
+constexpr const char* kTrustHelp =
+    "fly a folder whose program is not this one, or whose mission names a library, a device or a testbed";
 constexpr const char* kFolderHelp = "folder of the campaign";
 constexpr const char* kExitCodes =
     "Exit codes of run: 0 every case has its result and the requirement is met, 1 it is not met, cases were lost, or "
@@ -45,6 +47,7 @@ void add_run(CLI::App& campaign, int& exit_code, const campaign::CommandLine& co
   run->add_option("--cases", request->cases, "only these, e.g. 0-99,417");
   run->add_flag("--retry-failed", request->retry_failed, "fly cases again that failed, took too long or were lost");
   run->add_flag("!--no-wait", request->wait, "return when the workers are submitted");
+  run->add_flag("--trust", request->trust, kTrustHelp);
   run->add_flag("--quiet", request->quiet, "print nothing but errors");
   run->callback([=, &exit_code] {
     if (request->engine != "slurm" && !sbatch->empty()) throw Refused("--sbatch: needs --engine slurm");
@@ -125,9 +128,11 @@ void add_rerun(CLI::App& campaign, int& exit_code) {
   command->add_option("folder", *folder, kFolderHelp)->required();
   command->add_option("case", *number, "number of the case")->required();
   command->add_option("--out", *out, "run folder; runs/NUMBER of the campaign unless given");
+  const auto trust = std::make_shared<bool>(false);
+  command->add_flag("--trust", *trust, kTrustHelp);
   command->callback([=, &exit_code] {
     catch_stop_signals();
-    const campaign::Rerun done = campaign::rerun(campaign::Folder(*folder), *number, *out, stop_requested);
+    const campaign::Rerun done = campaign::rerun(campaign::Folder(*folder), *number, *out, *trust, stop_requested);
     fmt::print("{}\n", done.sentence);
     if (!done.folder.empty()) fmt::print("run  {}\n", done.folder.string());
     exit_code = exit_code_of(done.verdict);
@@ -143,6 +148,7 @@ void add_worker(CLI::App& campaign, int& exit_code, const campaign::CommandLine&
   command->add_option("n", request->n, "number of workers")->required();
   command->add_option("--todo", request->todo, "numbers of the cases, one a line; all without a result unless given");
   command->add_option("--jobs", request->jobs, "flights at once")->check(CLI::PositiveNumber);
+  command->add_flag("--trust", request->trust, kTrustHelp);
   command->callback([=, &exit_code] {
     catch_stop_signals();
     request->stop_requested = stop_requested;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "host_sim/io/process_limits.h"
 #include "pil_bridge/make_flight_computer.h"
 
 namespace vbar::app {
@@ -27,6 +28,7 @@ pil::FlightComputerOptions options_for(const mission::Spacecraft& spacecraft) {
   options.library = wanted.library;
   options.step_budget = static_cast<std::uint64_t>(wanted.step_budget);
   options.image = wanted.image;
+  options.memory_bytes = io::kDefaultMemoryBytes;
   if (wanted.library.empty()) options.article = pil::linked_test_article();
   if (wanted.target == mission::FlightTarget::kBoard) {
     const bool serial = wanted.link == mission::FlightLink::kSerial;

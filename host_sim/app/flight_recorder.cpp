@@ -45,6 +45,19 @@ double distance(const report::Triple& a, const report::Triple& b) {
   return report::magnitude({a[0] - b[0], a[1] - b[1], a[2] - b[2]});
 }
 
+/// Whether these are the bytes of a packet and, if it is one of vbar's messages, of that message.
+bool is_valid(const pil::Packet& bytes) {
+  const auto packet = fsw::packets::parse_packet(bytes);
+  if (!packet.ok()) return false;
+  bool is_known = false, is_valid = false;
+  fsw::packets::for_each_message([&]<class Message>() {
+    if (fsw::packets::MessageTraits<Message>::kApid != packet.value().header.apid) return;
+    is_known = true;
+    is_valid = fsw::packets::decode<Message>(packet.value()).ok();
+  });
+  return is_valid || !is_known;
+}
+
 QnsElements mean_elements(const CartesianState& state) {
   const auto osculating = fsw::orbit::qns_from_cartesian(state);
   if (!osculating.ok()) throw std::runtime_error("a true state is no orbit any more");
@@ -103,6 +116,7 @@ void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer)
   row.time_s = mission_seconds(time);
   row.step_cost = answer.report.count;
   row.stack_bytes = answer.report.stack_bytes;
+  count_output(answer);
   for (const pil::Packet& bytes : answer.packets) {
     const auto packet = fsw::packets::parse_packet(bytes);
     if (!packet.ok()) continue;  // hashed and logged as it came; it only has no row
@@ -114,6 +128,19 @@ void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer)
     }
   }
   record_.estimates.push_back(row);
+}
+
+void FlightRecorder::count_output(const pil::StepResult& answer) {
+  if (!answer.has_flown) return;
+  report::Summary::FlightOutput& output = record_.summary.flight_output;
+  if (answer.trouble.status != 0) {
+    ++output.steps_failed;
+    output.last_status = answer.trouble.status;
+  }
+  if (answer.packets.empty()) ++output.steps_silent;
+  for (const pil::Packet& packet : answer.packets) output.packets_invalid += is_valid(packet) ? 0 : 1;
+  output.packets_dropped += answer.trouble.packets_dropped;
+  output.inputs_refused += answer.trouble.inputs_refused;
 }
 
 /// Every message of telemetry that no module makes rows of.

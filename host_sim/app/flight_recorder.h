@@ -53,6 +53,7 @@ class FlightRecorder {
   [[nodiscard]] double mission_seconds(fsw::GpsTime time) const { return fsw::seconds(time - mission_.epoch); }
   void on_any_telemetry(double step_time_s, const fsw::packets::PacketView& packet);
   void on_telemetry(report::EstimateRow& row, const fsw::packets::PacketView& packet);
+  void count_output(const pil::StepResult& answer);
   void on_command(fsw::GpsTime step_time, const fsw::packets::PacketView& packet);
   void add_maneuver(fsw::GpsTime command_time, fsw::GpsTime burn_time, const maneuver_command& command);
 

@@ -1,6 +1,11 @@
 #include "host_sim/app/line_usage.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "fsw/link/frame.h"
 
 namespace vbar::app {
 namespace {
@@ -18,6 +23,23 @@ std::uint64_t bytes_of(const pil::LinkStatistics& link) {
 }
 
 }  // namespace
+
+std::string slow_line(const mission::FlightComputer& computer, fsw::Duration step_period,
+                      std::span<const pil::Packet> first_packets) {
+  const int baud = baud_of(computer);
+  if (baud == 0) return {};
+  // The least that COBS adds is two bytes a frame.
+  constexpr std::size_t kFrameBytes = fsw::link::kFrameHeaderBytes + fsw::link::kFrameCrcBytes + 2;
+  std::size_t bytes = 0;
+  for (const pil::Packet& packet : first_packets) bytes += packet.size() + kFrameBytes;
+  const double line_s = static_cast<double>(bytes) * kBitsPerByte / baud, period_s = fsw::seconds(step_period);
+  if (line_s <= period_s) return {};
+  return fmt::format(
+      "flight_computer.baud = {}: the {} bytes of the telecommands of the first step take {:.1f} s on the line, and a "
+      "step "
+      "lasts {:g} s; at least {:.0f} baud are needed",
+      baud, bytes, line_s, period_s, std::ceil(static_cast<double>(bytes) * kBitsPerByte / period_s));
+}
 
 LineUsage::LineUsage(const mission::FlightComputer& computer, fsw::Duration step_period,
                      const pil::LinkStatistics& before)

@@ -3,12 +3,19 @@
 // answer follows the last packet of the step.
 
 #include <cstdint>
+#include <span>
+#include <string>
 
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
 #include "pil_bridge/flight_computer.h"
 
 namespace vbar::app {
+
+/// Of a serial line that cannot carry the packets of the first step, which are known before the flight, within its
+/// period: one sentence that names the rate. Empty for any other line.
+[[nodiscard]] std::string slow_line(const mission::FlightComputer& computer, fsw::Duration step_period,
+                                    std::span<const pil::Packet> first_packets);
 
 class LineUsage {
  public:

@@ -1,6 +1,7 @@
 // vbar: flies missions, replays their packets, reports on runs.
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/core.h>
 
 #include "hil_drivers/testbeds.h"
@@ -74,8 +76,43 @@ std::string unknown_command(const CLI::App& program, int argc, char** argv) {
 
 int complain(const char* what, int exit_code) {
   std::fflush(stdout);
-  fmt::print(stderr, "vbar: {}\n", vbar::files::printable(what));
+  static_cast<void>(
+      std::fputs(fmt::format("vbar: {}\n", vbar::files::printable(what)).c_str(), stderr));  // may be closed, or full
   return exit_code;
+}
+
+/// A descriptor 0, 1 or 2 that this program was started without would be that of the next file that it opens.
+void open_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0) _exit(kFailed);  // it takes the lowest one
+}
+
+/// The lines of a run stay in the buffer until its end, when they are written to a file or a pipe: one that takes none
+/// of them ends no flight.
+void keep_output_until_end() {
+  static std::array<char, 1 << 20> buffer;
+  if (isatty(STDOUT_FILENO) != 1) static_cast<void>(std::setvbuf(stdout, buffer.data(), _IOFBF, buffer.size()));
+}
+
+/// The exit code of a command whose output was not written: its own if it leaves a folder, for which it was called.
+int after_output(const CLI::App& program, int result) {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return result;
+  const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
+  const std::vector<CLI::App*> commands = program.get_subcommands();
+  const auto leaves_folder = [](const CLI::App* command) {
+    const std::string name = command->get_name();
+    return name == "run" || name == "resume" || name == "propagate" ||
+           (name == "campaign" && command->got_subcommand("run"));
+  };
+  if (!std::ranges::any_of(commands, leaves_folder))
+    return complain(("standard output cannot be written" + reason).c_str(), result == kDone ? kFailed : result);
+  return complain(
+      fmt::format("standard output cannot be written{}; the exit code is that of the {}, whose folder is not "
+                  "concerned",
+                  reason, commands.front()->get_name())
+          .c_str(),
+      result);
 }
 
 /// Parses the command line; the command runs as its callback.
@@ -223,14 +260,13 @@ int execute(int argc, char** argv) {
   serve_app->callback([&] { exit_code = serve_command(serve); });
 
   const int result = parse_and_run(program, argc, argv, exit_code);
-  errno = 0;
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return result;
-  const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
-  return complain(("standard output cannot be written" + reason).c_str(), result == kDone ? kFailed : result);
+  return after_output(program, result);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_descriptors();
+  keep_output_until_end();
   return execute(argc, argv);
 }

@@ -77,10 +77,30 @@ std::optional<std::string> fly(const FlightOrder& order, AssembledMission& assem
   return trouble;
 }
 
-/// Dropped packets and refused plans are always reported.
+/// Dropped packets, refused plans and errors are always reported.
 void report_health(const report::Summary& summary) {
   const std::string line = summary.health ? report::health_line(*summary.health) : "";
   if (!line.empty()) fmt::print("flight software: {}\n", line);
+  const std::string output = report::output_line(summary);
+  if (!output.empty()) fmt::print("flight software: {}\n", output);
+}
+
+/// So are packets of a sensor that were not accepted.
+void report_rejections(const report::Summary& summary) {
+  for (const report::SourceFigures& source : summary.sources)
+    if (source.packets_rejected > 0)
+      fmt::print("source {}: {} packets of impossible times or values were rejected (notes.csv)\n", source.name,
+                 source.packets_rejected);
+}
+
+/// What the line to the flight computer cannot carry in time: what is known before the flight, and what it was.
+void report_line(const std::string& slow_line) {
+  if (!slow_line.empty()) fmt::print("link: {}\n", slow_line);
+}
+void report_line(const report::Summary::Link& link) {
+  if (link.step_share_max > 1.0)
+    fmt::print("link: the bytes of a step took up to {:.0f} % of its period at {} baud\n", 100.0 * link.step_share_max,
+               link.baud);
 }
 
 void report_data(const std::vector<std::string>& notes) {
@@ -111,7 +131,11 @@ report::RunRecord record_at_start(const FlightOrder& order) {
 std::optional<std::string> fly_into(RunFolder& folder, const FlightOrder& order, AssembledMission& assembled,
                                     report::RunRecord& record) {
   record.summary.data_notes = assembled.data_notes();
-  if (!order.quiet) report_data(record.summary.data_notes);
+  if (!order.quiet) {
+    report_data(record.summary.data_notes);
+    report_line(assembled.slow_line());
+    std::fflush(stdout);  // before the flight
+  }
   if (!order.mission.record.tables) folder.leave_out_tables();
   keep_mission(order, folder.path());
   std::optional<std::string> trouble;
@@ -142,6 +166,8 @@ void report_flight(const std::filesystem::path& folder, const std::filesystem::p
     const std::filesystem::path report = has_report ? report::write_html_report(folder, record) : folder;
     if (!order.quiet && !record.waypoints.empty()) fmt::print("{}", report::waypoint_table(record));
     report_health(record.summary);
+    report_rejections(record.summary);
+    report_line(record.summary.link);
     if (has_report && !order.quiet) fmt::print("report  {}\n", (name / report.filename()).string());
   } catch (const std::exception&) {
     if (!trouble) throw;  // the record is complete, its report is not

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "host_sim/app/commands.h"
+#include "host_sim/files/remove_link.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/run_lock.h"
 #include "host_sim/report/summary_json.h"
@@ -113,6 +114,8 @@ void replace_run(const fs::path& run_folder) {
 
 void settle_earlier_resume(const fs::path& run_folder) {
   const fs::path replaced = replaced_folder(run_folder);
+  files::remove_link(replaced);
+  files::remove_link(resuming_folder(run_folder));
   if (report::is_summary(report::summary_file(replaced))) {
     if (fs::exists(run_folder)) {
       remove_replaced(replaced, run_folder);

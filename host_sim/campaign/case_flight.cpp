@@ -99,6 +99,7 @@ Computer this_computer() {
 CaseFlight::CaseFlight(const Request& request)
     : one_(request.one),
       attempt_(request.attempt),
+      identity_(identity_of(request.plan, request.one)),
       time_limit_s_(request.plan.case_time_limit_s),
       run_folder_(make_run_folder(request)),
       child_(start(request, run_folder_)),
@@ -124,6 +125,7 @@ End CaseFlight::judge() {
   Result result;
   result.number = one_.number;
   result.attempt = attempt_;
+  result.case_sha256 = identity_;
   const Computer computer = this_computer();
   result.host = computer.host;
   result.processor = computer.processor;

@@ -65,7 +65,7 @@ class CaseFlight {
   [[nodiscard]] End judge_failure(Result result, const Json& summary) const;
 
   const Case one_;
-  const std::string attempt_;
+  const std::string attempt_, identity_;
   const double time_limit_s_;
   std::filesystem::path run_folder_;
   std::unique_ptr<io::ChildProcess> child_;

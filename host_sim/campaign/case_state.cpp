@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "host_sim/files/sha256.h"
 #include "host_sim/report/number_text.h"
+#include "host_sim/report/text_file.h"
 
 namespace vbar::campaign {
 
@@ -56,12 +58,20 @@ Standing read_standing(const Folder& folder) {
   folder.require_campaign();
   Standing standing;
   standing.plan = read_plan(folder.plan());
+  if (files::sha256_of(report::read_text_file(folder.cases())) != standing.plan.cases_sha256)
+    throw std::runtime_error(folder.cases().string() +
+                             ": differs from the table that the campaign began with (SHA-256); restore it, or begin a "
+                             "new campaign");
   standing.cases = read_cases(folder.cases(), standing.plan.keys);
   if (standing.cases.size() != standing.plan.cases)
     throw std::runtime_error(fmt::format("{}: {} cases, but campaign.json states {}", folder.cases().string(),
                                          standing.cases.size(), standing.plan.cases));
   standing.attempts = read_attempts(folder.attempt_files());
   standing.results = read_results(folder.result_files());
+  for (const auto& [number, result] : standing.results.of_case)
+    if (number >= standing.cases.size() || result.case_sha256 != identity_of(standing.plan, standing.cases[number]))
+      standing.results.conflicts.push_back(
+          fmt::format("case {}: its result is that of other keys than campaign.json and cases.csv state", number));
   return standing;
 }
 

@@ -36,6 +36,9 @@ class Folder {
   /// Throws app::Refused unless the folder holds a campaign.
   void require_campaign() const;
 
+  /// Throws app::Refused if a folder within is a symbolic link: what is written and removed in it would be elsewhere.
+  void refuse_links() const;
+
  private:
   std::filesystem::path root_;
 };

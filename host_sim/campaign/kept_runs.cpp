@@ -76,7 +76,7 @@ void remove_outdone_runs(const Plan& plan, const std::vector<Result>& results, c
   std::error_code ignored;
   for (const Result& result : results)
     if (!result.folder.empty() && !std::ranges::binary_search(worst, result.number))
-      fs::remove_all(folder.root() / result.folder, ignored);
+      fs::remove_all(folder.runs() / name_of_case(result.number), ignored);
 }
 
 }  // namespace vbar::campaign

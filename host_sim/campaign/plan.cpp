@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host_sim/campaign/value_text.h"
+#include "host_sim/files/sha256.h"
 #include "host_sim/report/text_file.h"
 
 namespace vbar::campaign {
@@ -57,6 +58,7 @@ Plan plan_of_json(const Json& json) {
   json.at("vbar_version").get_to(plan.vbar_version);
   json.at("program_sha256").get_to(plan.program_sha256);
   json.at("cases").get_to(plan.cases);
+  json.at("cases_sha256").get_to(plan.cases_sha256);
   json.at("keys").get_to(plan.keys);
   json.at("swept").get_to(plan.swept);
   for (const Json& pass : json.at("pass"))
@@ -106,6 +108,7 @@ std::string plan_json(const Plan& plan) {
                   {"vbar_version", plan.vbar_version},
                   {"program_sha256", plan.program_sha256},
                   {"cases", plan.cases},
+                  {"cases_sha256", plan.cases_sha256},
                   {"keys", plan.keys},
                   {"swept", plan.swept},
                   {"pass", passes},
@@ -129,6 +132,10 @@ Plan read_plan(const std::filesystem::path& file) {
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("{}: not the plan of a campaign: {}", file.string(), error.what()));
   }
+}
+
+std::string identity_of(const Plan& plan, const Case& one) {
+  return files::sha256_of(fmt::format("{}", fmt::join(overrides_of(plan, one, false), "\n")));
 }
 
 std::vector<std::string> overrides_of(const Plan& plan, const Case& one, bool full_record) {

@@ -14,6 +14,7 @@ namespace vbar::campaign {
 struct Plan {
   std::string name, description, mission, vbar_version, program_sha256;
   std::size_t cases = 0;
+  std::string cases_sha256;  ///< of cases.csv
   std::vector<std::string> keys, swept;
   std::vector<PassCriterion> passes;
   std::vector<double> samples_h;
@@ -33,6 +34,9 @@ struct Plan {
 
 /// Throws std::runtime_error that names the file.
 [[nodiscard]] Plan read_plan(const std::filesystem::path& file);
+
+/// SHA-256 of a case's overrides: what a result belongs to.
+[[nodiscard]] std::string identity_of(const Plan& plan, const Case& one);
 
 /// The overrides of a case, "path=value". `full_record`: with packet log and tables.
 [[nodiscard]] std::vector<std::string> overrides_of(const Plan& plan, const Case& one, bool full_record);

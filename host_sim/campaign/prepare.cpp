@@ -1,5 +1,8 @@
 #include "host_sim/campaign/prepare.h"
 
+#include <algorithm>
+#include <chrono>
+#include <set>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -7,6 +10,7 @@
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/campaign/copies.h"
+#include "host_sim/campaign/progress_line.h"
 #include "host_sim/files/data_stream.h"
 #include "host_sim/files/sha256.h"
 #include "host_sim/mission/catalogue.h"
@@ -69,11 +73,21 @@ void add_files_read(UsedFiles& used) {
   }
 }
 
-/// Loads every case. Throws app::Refused that names the first one that cannot be flown.
-UsedFiles load_all(const Plan& plan, const std::vector<Case>& cases, const fs::path& mission_file) {
+/// Loads every case; of those that differ in the seed alone, for which the mission is the same, the first and the one
+/// of the largest seed. Throws app::Refused that names the first one that cannot be flown.
+UsedFiles load_all(const Plan& plan, const std::vector<Case>& cases, const fs::path& mission_file, bool quiet) {
   UsedFiles used;
   used.mission = mission_file;
+  const auto largest = std::ranges::max_element(cases, {}, &Case::seed);
+  std::set<std::vector<std::string>> loaded;
+  ProgressLine line(quiet);
+  auto drawn = std::chrono::steady_clock::now();
   for (const Case& one : cases) {
+    if (!loaded.insert(one.values).second && &one != &*largest) continue;
+    if (const auto now = std::chrono::steady_clock::now(); now - drawn > std::chrono::milliseconds(200)) {
+      line.draw(fmt::format("checking case {} of {}", one.number, cases.size()));
+      drawn = now;
+    }
     try {
       const mission::Mission mission = sensors::load_mission(mission_file, overrides_of(plan, one, false));
       if (!mission.flies()) throw app::Refused(mission_file.string() + ": has no spacecraft with a flight computer");
@@ -108,12 +122,13 @@ void refuse_used_folder(const Folder& folder) {
 
 }  // namespace
 
-void prepare(const CampaignFile& campaign, const Folder& folder, const std::string& vbar_version) {
+void prepare(const CampaignFile& campaign, const Folder& folder, const std::string& vbar_version, bool quiet) {
+  folder.refuse_links();
   refuse_used_folder(folder);
   Plan plan = plan_of(campaign);
   const std::vector<Case> cases = expand(campaign);
   const fs::path mission = find_mission_of(campaign);
-  const UsedFiles used = load_all(plan, cases, mission);
+  const UsedFiles used = load_all(plan, cases, mission, quiet);
   plan.mission = mission.stem().string();
   plan.mission_file = copy_of_mission(mission).string();
   plan.vbar_version = vbar_version;
@@ -121,11 +136,14 @@ void prepare(const CampaignFile& campaign, const Folder& folder, const std::stri
 
   fs::create_directories(folder.root());
   const report::RunLock lock(folder.root());
+  fs::remove_all(folder.copies());  // of a preparation that was killed; a file of it may be a link
   make_copies(folder, used, mission::whole_mission_text(mission));
   plan.program_sha256 = files::sha256_of_file(folder.program()).value_or("");
   for (const fs::path& inner : {folder.result_files(), folder.attempt_files(), folder.flying()})
     fs::create_directories(inner);
-  report::replace_text_file(folder.cases(), cases_text(plan.keys, cases));
+  const std::string table = cases_text(plan.keys, cases);
+  plan.cases_sha256 = files::sha256_of(table);
+  report::replace_text_file(folder.cases(), table);
   report::replace_text_file(folder.campaign_copy(), report::read_text_file(campaign.file));
   report::replace_text_file(folder.plan(), plan_json(plan));  // last: from now on the folder holds a campaign
 }

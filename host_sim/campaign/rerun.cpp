@@ -11,6 +11,7 @@
 #include "host_sim/campaign/case_flight.h"
 #include "host_sim/campaign/copies.h"
 #include "host_sim/campaign/kept_runs.h"
+#include "host_sim/campaign/trust.h"
 #include "host_sim/campaign/worker.h"
 
 namespace vbar::campaign {
@@ -58,13 +59,14 @@ fs::path take_folder(const Folder& folder, const CaseFlight& flight, const fs::p
 
 }  // namespace
 
-Rerun rerun(const Folder& folder, std::size_t number, const fs::path& out,
+Rerun rerun(const Folder& folder, std::size_t number, const fs::path& out, bool is_trusted,
             const std::function<bool()>& stop_requested) {
   const Standing standing = read_standing(folder);
   if (number >= standing.cases.size())
     throw app::Refused(fmt::format("case {}: unknown; accepted: 0 to {}", number, standing.cases.size() - 1));
   std::error_code error;
   if (!out.empty() && fs::exists(out, error)) throw app::Refused(out.string() + ": exists; name another folder");
+  check_trust(folder, standing.plan, standing.cases, is_trusted);
   check_copies(folder);
   ::setenv("VBAR_DATA", fs::absolute(folder.data()).c_str(), 1);
   const std::string attempt = fmt::format("{}.{}.0", name_of_case(number), new_worker_name("rerun"));

@@ -58,6 +58,7 @@ Json json_of(const Result& result, std::size_t name_line) {
           {"commands_sha256", result.commands_sha256},
           {"telemetry_sha256", result.telemetry_sha256},
           {"waypoints_sha256", result.waypoints_sha256},
+          {"case_sha256", result.case_sha256},
           {"folder", result.folder},
           {"name_line", name_line},
           {"numbers", std::move(numbers)}};
@@ -77,7 +78,10 @@ Result result_of(const Json& json, const NameLines& name_lines) {
   json.at("commands_sha256").get_to(result.commands_sha256);
   json.at("telemetry_sha256").get_to(result.telemetry_sha256);
   json.at("waypoints_sha256").get_to(result.waypoints_sha256);
+  json.at("case_sha256").get_to(result.case_sha256);
   json.at("folder").get_to(result.folder);
+  if (!result.folder.empty() && result.folder != Folder("").runs() / name_of_case(result.number))
+    throw std::runtime_error("a folder other than that of the case");
   const std::vector<std::string>& names = name_lines.at(json.at("name_line").get<std::size_t>());
   const auto numbers = json.at("numbers").get<std::vector<double>>();
   if (numbers.size() != names.size()) throw std::runtime_error("numbers and names differ in number");

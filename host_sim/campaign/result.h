@@ -24,8 +24,9 @@ struct Result {
   std::string host, processor;
   double wall_s = 0.0, cpu_s = 0.0;
   std::string commands_sha256, telemetry_sha256, waypoints_sha256;
-  std::string folder;  ///< that was kept, relative to the campaign's; empty if none was
-  Numbers numbers;     ///< of the summary
+  std::string case_sha256;  ///< of the overrides that were flown (identity_of)
+  std::string folder;       ///< that was kept, relative to the campaign's; empty if none was
+  Numbers numbers;          ///< of the summary
 
   [[nodiscard]] bool has_same_outputs(const Result& other) const {
     return commands_sha256 == other.commands_sha256 && telemetry_sha256 == other.telemetry_sha256 &&

@@ -19,6 +19,7 @@
 #include "host_sim/campaign/progress_line.h"
 #include "host_sim/campaign/requirement.h"
 #include "host_sim/campaign/status.h"
+#include "host_sim/campaign/trust.h"
 #include "host_sim/campaign/worker.h"
 #include "host_sim/report/run_lock.h"
 #include "host_sim/report/text_file.h"
@@ -29,19 +30,25 @@ namespace {
 namespace fs = std::filesystem;
 using app::Refused;
 
+struct OpenedFolder {
+  Folder folder;
+  bool is_new = false;  ///< made by this process
+};
+
 /// The folder of the request; made if it is given a campaign file and there is none yet.
-Folder open_folder(const RunRequest& request) {
+OpenedFolder open_folder(const RunRequest& request) {
   std::error_code error;
   if (fs::is_directory(request.campaign, error)) {
     const Folder folder(request.campaign);
     folder.require_campaign();
     if (!request.out.empty()) throw Refused("--out: has no effect on a campaign that was begun");
-    return folder;
+    return {folder};
   }
   const CampaignFile campaign = read_campaign_file(request.campaign);
   const Folder folder(request.out.empty() ? fs::path("runs") / ("campaign-" + campaign.name) : request.out);
-  if (!holds_same_campaign(folder, request.campaign)) prepare(campaign, folder, request.vbar_version);
-  return folder;
+  if (holds_same_campaign(folder, request.campaign)) return {folder};
+  prepare(campaign, folder, request.vbar_version, request.quiet);
+  return {folder, true};
 }
 
 /// No case is flown twice at once.
@@ -73,24 +80,29 @@ std::vector<Case> cases_to_fly(const RunRequest& request, const Standing& standi
 class LocalProgress {
  public:
   LocalProgress(const Standing& standing, std::size_t to_fly, bool quiet)
-      : standing_(standing), to_fly_(to_fly), line_(quiet) {}
+      : standing_(standing), to_fly_(to_fly), line_(quiet) {
+    for (const auto& [number, result] : standing_.results.of_case) count(result, 1);
+  }
   void operator()(const std::vector<Result>& results, std::size_t flying) {
     for (; counted_ < results.size(); ++counted_) {
-      standing_.results.of_case[results[counted_].number] = results[counted_];
+      const Result& result = results[counted_];
+      if (const auto before = standing_.results.of_case.find(result.number); before != standing_.results.of_case.end())
+        count(before->second, -1);  // flown again
+      standing_.results.of_case[result.number] = result;
+      count(result, 1);
     }
-    const std::size_t done = standing_.results.of_case.size();
-    std::size_t passed = 0, failed = 0;
-    for (const auto& [number, result] : standing_.results.of_case) {
-      passed += has_passed(standing_.plan, result) ? 1 : 0;
-      failed += result.state != State::kComplete && result.state != State::kVoid ? 1 : 0;
-    }
-    line_.draw(
-        progress_text({done, standing_.cases.size(), passed, failed, flying}, left_.seconds(results.size(), to_fly_)));
+    line_.draw(progress_text({standing_.results.of_case.size(), standing_.cases.size(), passed_, failed_, flying},
+                             left_.seconds(results.size(), to_fly_)));
   }
 
  private:
+  void count(const Result& result, int times) {
+    if (has_passed(standing_.plan, result)) passed_ += static_cast<std::size_t>(times);
+    if (result.state != State::kComplete && result.state != State::kVoid) failed_ += static_cast<std::size_t>(times);
+  }
+
   Standing standing_;
-  std::size_t to_fly_, counted_ = 0;
+  std::size_t to_fly_, counted_ = 0, passed_ = 0, failed_ = 0;
   ProgressLine line_;
   TimeLeft left_;
 };
@@ -210,13 +222,14 @@ int run_campaign(const RunRequest& request) {
   const Engine* const engine = find_engine(request.engine);
   if (engine == nullptr && request.engine != "local")
     throw Refused("--engine: found \"" + request.engine + "\"; accepted: " + mission::listing_of(engine_names()));
-  const Folder folder = open_folder(request);
+  const auto [folder, is_new] = open_folder(request);
   {
     const report::RunLock lock(folder.root());
     const Standing standing = read_standing(folder);
     refuse_conflicts(standing);
     const std::vector<Case> cases = cases_to_fly(request, standing);
     if (!cases.empty()) {
+      check_trust(folder, standing.plan, standing.cases, request.trust || is_new);
       refuse_if_being_flown(folder, standing);
       remove_abandoned_flights(folder);
       if (engine == nullptr) {
@@ -237,6 +250,7 @@ int run_worker(const WorkerRequest& request) {
   const Standing standing = read_standing(folder);
   const std::vector<Case> cases = share_of(request, standing);
   if (cases.empty()) return app::kDone;
+  check_trust(folder, standing.plan, standing.cases, request.trust);
   const char* const job = std::getenv("SLURM_JOB_ID");
   Worker worker(
       folder, standing.plan,

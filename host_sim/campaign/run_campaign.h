@@ -19,7 +19,8 @@ struct RunRequest {
   std::size_t workers = 0;     ///< of an engine that is not local; 0: by the work
   std::string cases;           ///< a selection; empty: all
   bool retry_failed = false;
-  bool wait = true;  ///< for the workers of an engine that is not local
+  bool wait = true;    ///< for the workers of an engine that is not local
+  bool trust = false;  ///< the program of a folder that is not this one, and what its mission names, may be used
   bool quiet = false;
   std::function<bool()> stop_requested;
   CommandLine command_line = {};  ///< of WorkerOptions
@@ -36,6 +37,7 @@ struct WorkerRequest {
   std::size_t k = 0, n = 1;
   std::filesystem::path todo;
   int jobs = 1;
+  bool trust = false;  ///< as of RunRequest
   std::function<bool()> stop_requested;
   CommandLine command_line = {};
 };

@@ -9,6 +9,7 @@
 
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/campaign/shell.h"
+#include "host_sim/files/remove_link.h"
 #include "host_sim/files/sha256.h"
 
 namespace vbar::campaign {
@@ -54,6 +55,7 @@ std::string submit_to_slurm(const Submission& submission) {
   const CommandResult result = run_command({"/bin/sh", "-c", command});
   if (!result.succeeded) throw app::Refused("Slurm does not take the workers: " + result.trouble);
   const std::string job = result.output.substr(0, result.output.find_first_of(";\n"));
+  files::remove_link(jobs_file(submission.folder));
   std::ofstream(jobs_file(submission.folder), std::ios::app) << job << '\n';
   return fmt::format("Slurm job {}: {} workers for {} cases", job, submission.workers, submission.cases.size());
 }

@@ -36,7 +36,9 @@ pil::StepResult FaultyComputer::step(std::uint32_t step, std::span<const pil::Pa
       const bool begins = fault.kind == FaultKind::kComputerReboot && !must_restart_;
       if (begins && fault.keeps_state) snapshot_ = present().snapshot();
       must_restart_ = must_restart_ || fault.kind == FaultKind::kComputerReboot;
-      return {};
+      pil::StepResult off;
+      off.has_flown = false;
+      return off;
     }
   }
   if (!must_restart_) return step_of(present(), step, packets);

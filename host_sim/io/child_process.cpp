@@ -18,6 +18,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "host_sim/io/process_limits.h"
+
 namespace vbar::io {
 namespace {
 
@@ -35,6 +37,7 @@ struct ExecPlan {
   std::vector<int> descriptors;  ///< to become 0, 1, 2, 3, ...
   int report_errno_to = -1;
   pid_t parent = -1;
+  std::uint64_t memory_bytes = 0;
 };
 
 /// Moves the planned descriptors to 0, 1, 2, ... and closes the rest, except the one that reports errors
@@ -77,6 +80,7 @@ bool arrange_descriptors(ExecPlan& plan) {
   const bool ready = ::setpgid(0, 0) == 0 && ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && arrange_descriptors(plan);
   // The parent may have died before the death signal was asked for.
   if (::getppid() != plan.parent) ::_exit(127);
+  if (ready && plan.memory_bytes > 0) (void)limit_memory(plan.memory_bytes);  // a lower one may hold already
   if (ready && body) {
     (void)::close(plan.report_errno_to);
     run(body);
@@ -89,7 +93,9 @@ bool arrange_descriptors(ExecPlan& plan) {
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& arguments, std::vector<FileDescriptor> inherited) {
+ChildProcess::ChildProcess(const std::vector<std::string>& arguments, std::vector<FileDescriptor> inherited,
+                           std::uint64_t memory_bytes)
+    : memory_bytes_(memory_bytes) {
   if (arguments.empty()) throw std::invalid_argument("a child process needs a program");
   program_ = arguments[0];
   start(arguments, inherited, nullptr);
@@ -120,6 +126,7 @@ void ChildProcess::start(const std::vector<std::string>& arguments, const std::v
   for (const FileDescriptor& fd : inherited) plan.descriptors.push_back(fd.get());
   plan.report_errno_to = error_writer.get();
   plan.parent = ::getpid();
+  plan.memory_bytes = memory_bytes_;
 
   pid_ = ::fork();
   if (pid_ < 0) throw_errno("starting " + program_, errno);
@@ -150,12 +157,9 @@ bool ChildProcess::has_ended() {
 bool ChildProcess::reap(int options) {
   int status = 0;
   struct rusage usage {};
-  pid_t reaped = -1;
-  do {
-    reaped = ::wait4(pid_, &status, options, &usage);
-  } while (reaped < 0 && errno == EINTR);
-  if (reaped != pid_) return false;
+  if (!reap_with_group(pid_, options, status, usage)) return false;
   wait_status_ = status;
+  came_near_limit_ = memory_bytes_ > 0 && came_near(memory_bytes_, usage);
   for (const timeval& time : {usage.ru_utime, usage.ru_stime})
     processor_time_s_ += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   return true;
@@ -192,9 +196,14 @@ std::string ChildProcess::status_text() const {
   if (!wait_status_) return "running";
   if (WIFSIGNALED(*wait_status_)) {
     const int signal = WTERMSIG(*wait_status_);
-    return "killed by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
+    return "killed by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")" + memory_text();
   }
-  return "exit status " + std::to_string(WEXITSTATUS(*wait_status_));
+  return "exit status " + std::to_string(WEXITSTATUS(*wait_status_)) + memory_text();
+}
+
+std::string ChildProcess::memory_text() const {
+  if (!came_near_limit_) return "";
+  return "; it came near the limit of its memory, " + std::to_string(memory_bytes_ >> 20) + " MiB";
 }
 
 std::string ChildProcess::output_tail(std::size_t limit) const {

@@ -1,8 +1,10 @@
 #pragma once
 // A child process that does not outlive its owner: it is ended and reaped by its owner's destructor, also while an
-// exception unwinds, and by the kernel if this program dies first.
+// exception unwinds, and by the kernel if this program dies first. What it has started and left behind in its process
+// group is ended with it.
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -22,7 +24,10 @@ class ChildProcess {
   ///
   /// The kernel kills the child when the thread that called this ends: call it from a thread that outlives the child.
   /// Throws std::system_error if the program cannot be started.
-  ChildProcess(const std::vector<std::string>& arguments, std::vector<FileDescriptor> inherited);
+  ///
+  /// `memory_bytes`: most memory of the program and of each that it starts (limit_memory); 0: no limit.
+  ChildProcess(const std::vector<std::string>& arguments, std::vector<FileDescriptor> inherited,
+               std::uint64_t memory_bytes = 0);
 
   /// The same with a copy of this process that runs `body`, whose result is its exit status, in place of a program: the
   /// start costs no loading of libraries. An exception that leaves `body` is printed, and the status is 127. To be
@@ -52,7 +57,7 @@ class ChildProcess {
   /// Processor time of the child and of its reaped children, s; 0 while it runs.
   [[nodiscard]] double processor_time_s() const { return processor_time_s_; }
 
-  /// "exit status 3", "killed by signal 9 (Killed)"; "running".
+  /// "exit status 3", "killed by signal 9 (Killed)"; "running". Names the limit of its memory if it came near that.
   [[nodiscard]] std::string status_text() const;
 
   /// The last bytes of the child's standard output and error, at most `limit`.
@@ -67,10 +72,13 @@ class ChildProcess {
   pid_t pid_ = -1;
   std::optional<int> wait_status_;
   double processor_time_s_ = 0.0;
+  std::uint64_t memory_bytes_ = 0;  ///< limit; 0: none
+  bool came_near_limit_ = false;
 
   void start(const std::vector<std::string>& arguments, const std::vector<FileDescriptor>& inherited,
              const std::function<int()>& body);
   bool reap(int options);
+  [[nodiscard]] std::string memory_text() const;
 };
 
 }  // namespace vbar::io

@@ -8,6 +8,7 @@
 #include "host_sim/mission/alternatives.h"
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/table_reader.h"
+#include "host_sim/mission/toml_depth.h"
 
 namespace vbar::mission {
 namespace {
@@ -87,6 +88,8 @@ toml::table& element_by_label(toml::table& document, const Override& set, const 
 }
 
 toml::table parse_value(const Override& set) {
+  if (line_too_deep("value = " + set.value))
+    set.refuse("a value nested deeper than " + std::to_string(kTomlDepthMax) + " levels", "a value of fewer levels");
   try {
     toml::table parsed = toml::parse("value = " + set.value, set.where);
     if (parsed.size() == 1) return parsed;
@@ -109,6 +112,8 @@ Override parse_assignment(const std::string& assignment) {
   Override set{"--set " + assignment, assignment.substr(0, equals), ""};
   if (equals == std::string::npos) set.refuse("no '='", kAssignment);
   set.value = assignment.substr(equals + 1);
+  if (line_too_deep(set.path + " = 0"))
+    set.refuse("more than " + std::to_string(kTomlDepthMax) + " names in the path", kAssignment);
   for (const std::string& segment : split(set.path))
     if (segment.empty()) set.refuse("an empty name in the path", kAssignment);
   return set;

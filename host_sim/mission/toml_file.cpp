@@ -5,10 +5,15 @@
 
 #include "host_sim/files/data_stream.h"
 #include "host_sim/mission/mission_error.h"
+#include "host_sim/mission/toml_depth.h"
 
 namespace vbar::mission {
 
 toml::table parse_toml(std::string_view text, const std::string& file) {
+  if (const auto line = line_too_deep(text))
+    throw MissionError(file + ":" + std::to_string(*line), "",
+                       "tables nested deeper than " + std::to_string(kTomlDepthMax) + " levels",
+                       "at most that many dotted names, inline tables and arrays within each other");
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {

@@ -43,7 +43,8 @@ std::string grouped_nearest(double value) {
 }
 
 std::string duration_text(double seconds) {
-  if (!std::isfinite(seconds)) return kNone;
+  constexpr double kLongest_s = 1e15;  // its minutes fit 64 bits
+  if (!(std::abs(seconds) <= kLongest_s)) return kNone;
   if (seconds < 60.0) return fmt::format("{:.3g} s", seconds);
   const auto minutes = static_cast<std::int64_t>(std::llround(seconds / 60.0));
   if (minutes < 60) return fmt::format("{} min {} s", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);

@@ -4,12 +4,15 @@
 #include <system_error>
 #include <utility>
 
+#include "host_sim/files/remove_link.h"
 #include "host_sim/files/write_error.h"
 
 namespace vbar::report {
 
-PartialFile::PartialFile(std::filesystem::path file)
-    : file_(std::move(file)), stream_(part_of(file_), std::ios::binary | std::ios::trunc) {
+PartialFile::PartialFile(std::filesystem::path file) : file_(std::move(file)) {
+  files::remove_link(part_of(file_));
+  errno = 0;
+  stream_.open(part_of(file_), std::ios::binary | std::ios::trunc);
   if (!stream_) fail();
 }
 

@@ -6,9 +6,11 @@
 #include <system_error>
 #include <utility>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "host_sim/files/remove_link.h"
 #include "host_sim/report/run_tables.h"
 #include "host_sim/report/summary_json.h"
 #include "host_sim/report/text_file.h"
@@ -115,9 +117,23 @@ RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing, E
     running.incomplete_reason = fmt::format("running in process {}, or killed", ::getpid());
     replace_text_file(folder_ / kSummary, summary_json(running, {}));
     for (const std::string& name : flight_files(extensions)) fs::remove_all(folder_ / name);
+    keep_room_for_summary();
   } catch (const fs::filesystem_error& error) {
     fail(folder_, "cannot be made: " + error.code().message());
   }
+}
+
+/// In the neighbour from which the last summary takes its name: what fills the disk in flight leaves room to say so.
+void RunFolder::keep_room_for_summary() const {
+  constexpr off_t kRoom = 128 * 1024;  // several summaries of a long mission
+  const fs::path neighbour = neighbour_of(folder_ / kSummary);
+  files::remove_link(neighbour);
+  const int descriptor = ::open(neighbour.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0644);
+  if (descriptor < 0) return;
+  const bool has_room = ::posix_fallocate(descriptor, 0, kRoom) == 0;
+  ::close(descriptor);
+  std::error_code ignored;
+  if (!has_room) fs::remove(neighbour, ignored);
 }
 
 void RunFolder::update(const RunRecord& record) {
@@ -135,20 +151,10 @@ void RunFolder::finish(const RunRecord& record) {
 void RunFolder::give_up(Summary summary, const std::string& reason) const {
   summary.complete = false;
   summary.incomplete_reason = reason;
-  const std::string text = summary_json(summary, {});
   try {
-    replace_text_file(folder_ / kSummary, text);
+    replace_text_file(folder_ / kSummary, summary_json(summary, {}));
   } catch (const std::runtime_error&) {
-    // A full disk takes no second file, but its blocks of the first: overwritten in place, without the data that were
-    // read, it fits.
-    summary.provenance.data.clear();
-    std::fstream file(folder_ / kSummary, std::ios::in | std::ios::out | std::ios::binary);
-    const std::string short_text = summary_json(summary, {});
-    file.write(short_text.data(), static_cast<std::streamsize>(short_text.size()));
-    file.close();
-    if (!file) return;
-    std::error_code ignored;
-    fs::resize_file(folder_ / kSummary, short_text.size(), ignored);
+    // The summary of the start is whole.
   }
 }
 

@@ -52,10 +52,13 @@ class RunFolder {
   /// says incomplete.
   void finish(const RunRecord& record);
 
-  /// After finish() threw: a summary that says why the record is incomplete, even where the disk is full.
+  /// After finish() threw: a summary that says why the record is incomplete, in the room that was kept for it where the
+  /// disk is full; without room the one that says that the run was killed stays.
   void give_up(Summary summary, const std::string& reason) const;
 
  private:
+  void keep_room_for_summary() const;
+
   std::filesystem::path folder_;
   TableWriter tables_;
   bool with_tables_ = true;

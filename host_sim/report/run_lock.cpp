@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "host_sim/files/remove_link.h"
+
 namespace vbar::report {
 namespace {
 
@@ -30,8 +32,9 @@ bool is_current(int descriptor, const std::filesystem::path& file) {
 }  // namespace
 
 RunLock::RunLock(const std::filesystem::path& folder) : file_(folder / kFile) {
+  files::remove_link(file_);
   while (descriptor_ < 0) {
-    const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
     if (descriptor < 0)
       throw std::runtime_error(file_.string() + ": cannot be written: " + std::generic_category().message(errno));
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {

@@ -10,7 +10,10 @@ namespace vbar::report {
 
 Section health_section(const RunRecord& record) {
   const std::optional<telemetry_health>& health = record.summary.health;
-  if (!health) return {};
+  const std::string output = output_line(record.summary);
+  if (!health && output.empty()) return {};
+  std::string text = output.empty() ? "" : "<p>" + escaped("The flight software: " + output + ".") + "</p>\n";
+  if (!health) return {"Health of the flight software", text};
   std::vector<Fact> facts;
   visit_fields(*health, [&](const Field& field, const auto& value) {
     std::string name = field.name;
@@ -20,9 +23,11 @@ Section health_section(const RunRecord& record) {
     facts.push_back({name, field.codes.count > 0 ? word_of(field.codes, number) : std::to_string(number)});
   });
   const std::string line = health_line(*health);
-  const std::string text = line.empty() ? "The flight software rejected and dropped no packet and raised no fault."
-                                        : "Not nominal: " + line + ".";
-  return {"Health of the flight software", "<p>" + escaped(text) + "</p>\n" + fact_list(facts)};
+  text += "<p>" +
+          escaped(line.empty() ? "The flight software rejected and dropped no packet and raised no fault."
+                               : "Not nominal: " + line + ".") +
+          "</p>\n" + fact_list(facts);
+  return {"Health of the flight software", text};
 }
 
 }  // namespace vbar::report

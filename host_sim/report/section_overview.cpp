@@ -79,6 +79,10 @@ std::string overview(const RunRecord& record) {
     if (source.failures > 0)
       facts.push_back({"failures of " + source.name, fmt::format("{} of {} epochs; the last: {}", source.failures,
                                                                  source.epochs, source.last_failure)});
+  for (const SourceFigures& source : s.sources)
+    if (source.packets_rejected > 0)
+      facts.push_back({"packets of " + source.name,
+                       fmt::format("{} of impossible times or values were rejected", source.packets_rejected), true});
   return out + fact_list(facts) + "<p class=\"files\">Data: <a href=\"summary.json\">summary.json</a></p>\n";
 }
 

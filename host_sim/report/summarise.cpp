@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/extension.h"
 #include "host_sim/report/maneuver_series.h"
@@ -101,6 +103,24 @@ void evaluate(RunRecord& record) {
     waypoint.cumulative_dv_mps = cumulative;
   }
   record.summary = summarise(record);
+}
+
+std::string output_line(const Summary& summary) {
+  const Summary::FlightOutput& output = summary.flight_output;
+  std::string line;
+  const auto add = [&](std::uint64_t count, const std::string& text) {
+    if (count > 0) line += (line.empty() ? "" : ", ") + text;
+  };
+  const auto steps = [&](std::uint64_t count) {
+    return fmt::format("{} of {} steps", count, summary.flight_step.count);
+  };
+  add(output.steps_failed,
+      fmt::format("{} returned an error (the last one status {})", steps(output.steps_failed), output.last_status));
+  add(output.steps_silent, steps(output.steps_silent) + " sent nothing");
+  add(output.packets_invalid, fmt::format("{} packets that it sent are invalid", output.packets_invalid));
+  add(output.packets_dropped, fmt::format("{} packets that it sent were dropped", output.packets_dropped));
+  add(output.inputs_refused, fmt::format("{} inputs refused with an error", output.inputs_refused));
+  return line;
 }
 
 std::string health_line(const telemetry_health& health) {

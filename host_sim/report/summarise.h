@@ -19,4 +19,7 @@ void evaluate(RunRecord& record);
 /// empty if there was nothing.
 [[nodiscard]] std::string health_line(const telemetry_health& health);
 
+/// "18 of 18 steps returned an error (status 12345), ...", of what is not nominal; empty if all is.
+[[nodiscard]] std::string output_line(const Summary& summary);
+
 }  // namespace vbar::report

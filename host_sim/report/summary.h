@@ -43,7 +43,8 @@ struct SourceFigures {
   std::int64_t epochs = 0, failures = 0;
   std::string last_failure;  ///< why; all reasons are in notes.csv
   std::uint64_t late = 0;
-  double latest_s = 0.0;  ///< largest lateness
+  double latest_s = 0.0;               ///< largest lateness
+  std::uint64_t packets_rejected = 0;  ///< of impossible times or values; all reasons are in notes.csv
 };
 
 /// What a testbed says of the run, by name with the unit: "edges_missing", "bench".
@@ -63,6 +64,16 @@ struct RunFacts {
   /// the motion may do better.
   std::optional<double> static_floor_m;
   std::string commands_sha256, telemetry_sha256;
+  /// What the flight software failed to do, in numbers of steps and of packets. Steps in which a fault of the mission
+  /// had the flight computer off do not count.
+  struct FlightOutput {
+    std::uint64_t steps_failed = 0;     ///< whose function returned a status other than 0; in process only
+    std::int32_t last_status = 0;       ///< of these
+    std::uint64_t steps_silent = 0;     ///< without any packet
+    std::uint64_t packets_invalid = 0;  ///< that are not whole, or not of a valid content
+    std::uint64_t packets_dropped = 0;  ///< not of a packet's size, or more than an answer holds
+    std::uint64_t inputs_refused = 0;   ///< packets given to it whose reception returned a status other than 0
+  } flight_output;
   struct Link {
     std::uint64_t bytes = 0, frames_resent = 0, frames_rejected = 0, frames_duplicated = 0, strangers_ignored = 0;
     int baud = 0;                                        ///< of a serial line; 0: none, or as fast as it goes

@@ -60,6 +60,7 @@ void members(Is<SourceFigures> auto& s, auto& visit) {
   visit("last_failure", s.last_failure);
   visit("late", s.late);
   visit("latest_s", s.latest_s);
+  visit("packets_rejected", s.packets_rejected);
 }
 
 void members(Is<Summary::FlightStep> auto& s, auto& visit) {
@@ -68,6 +69,15 @@ void members(Is<Summary::FlightStep> auto& s, auto& visit) {
   visit("max", s.max);
   visit("mean", s.mean);
   visit("stack_bytes_max", s.stack_bytes_max);
+}
+
+void members(Is<RunFacts::FlightOutput> auto& s, auto& visit) {
+  visit("steps_failed", s.steps_failed);
+  visit("last_status", s.last_status);
+  visit("steps_silent", s.steps_silent);
+  visit("packets_invalid", s.packets_invalid);
+  visit("packets_dropped", s.packets_dropped);
+  visit("inputs_refused", s.inputs_refused);
 }
 
 void members(Is<RunFacts::Link> auto& s, auto& visit) {
@@ -173,6 +183,7 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit("commands_sha256", s.commands_sha256);
   visit("telemetry_sha256", s.telemetry_sha256);
   visit("health", s.health);
+  visit("flight_output", s.flight_output);
   visit("flight_step", s.flight_step);
   visit("link", s.link);
   visit("deadlines", s.deadlines);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "host_sim/files/remove_link.h"
 #include "host_sim/files/write_error.h"
 
 namespace vbar::report {
@@ -24,6 +25,7 @@ std::filesystem::path neighbour_of(const std::filesystem::path& file) {
 
 void replace_text_file(const std::filesystem::path& file, std::string_view text) {
   const std::filesystem::path neighbour = neighbour_of(file);
+  files::remove_link(neighbour);
   errno = 0;
   std::ofstream stream(neighbour, std::ios::binary | std::ios::trunc);
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));

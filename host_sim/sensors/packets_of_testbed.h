@@ -1,12 +1,24 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "fsw/packets/packet.h"
 #include "host_sim/sensors/sensor_kind.h"
 
 namespace vbar::sensors {
+
+/// Why a packet of an allowed message cannot be a measurement of the sensor; empty if it can.
+using FaultOfValue = std::function<std::string(const fsw::packets::PacketView&)>;
+
+/// What is accepted of one epoch: packets beyond are rejected.
+struct PacketLimits {
+  std::size_t packets_max = 65535;
+  FaultOfValue fault_of_value = {};
+};
 
 /// The source of a sensor's packets about `carrier`, if a testbed provides whole packets: a sensor in another process.
 /// Null for any other source. Throws std::runtime_error
@@ -15,11 +27,12 @@ namespace vbar::sensors {
                                                                       const MakeContext& context,
                                                                       const mission::Spacecraft& carrier,
                                                                       std::vector<fsw::packets::Apid> allowed,
-                                                                      std::uint8_t unit);
+                                                                      std::uint8_t unit, PacketLimits limits = {});
 
 /// The same for a kind of sensor that no testbed provides otherwise: throws std::runtime_error for such a source.
 [[nodiscard]] std::unique_ptr<twins::PacketSource> only_packets_of_testbed(const mission::Sensor& sensor,
                                                                            const MakeContext& context,
-                                                                           fsw::packets::Apid allowed);
+                                                                           fsw::packets::Apid allowed,
+                                                                           FaultOfValue fault_of_value = {});
 
 }  // namespace vbar::sensors

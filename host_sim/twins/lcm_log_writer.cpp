@@ -4,6 +4,7 @@
 #include <cerrno>
 
 #include "fsw/packets/big_endian.h"
+#include "host_sim/files/remove_link.h"
 #include "host_sim/files/write_error.h"
 #include "host_sim/twins/lcm_log_format.h"
 
@@ -12,6 +13,7 @@ namespace vbar::twins {
 using fsw::packets::write_big_endian;
 
 LcmLogWriter::LcmLogWriter(const std::filesystem::path& file) : file_(file) {
+  files::remove_link(file);
   errno = 0;
   stream_.reset(std::fopen(file.c_str(), "we"));
   if (stream_ == nullptr) throw files::write_error(file);

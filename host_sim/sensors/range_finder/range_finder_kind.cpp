@@ -1,6 +1,11 @@
 #include "host_sim/sensors/range_finder/range_finder_kind.h"
 
+#include <cmath>
+
+#include <fmt/format.h>
+
 #include "fsw/math/math.h"
+#include "fsw/packets/messages.h"
 #include "host_sim/mission/read_attitude.h"
 #include "host_sim/sensors/packets_of_testbed.h"
 #include "host_sim/twins/recorded_log.h"
@@ -56,6 +61,18 @@ void add_telecommands(const mission::Sensor& sensor, const TelecommandContext& /
   telecommands.add(configuration);
 }
 
+/// Of a measurement that a testbed provides: within the limits of the range, but for errors of six sigmas.
+std::string fault_of_range(const fsw::packets::PacketView& packet, const RangeFinderSettings& settings) {
+  const auto measurement = fsw::packets::decode<vbar::range_measurement>(packet);
+  if (!measurement.ok()) return {};  // found before
+  const double margin_m = 6.0 * std::hypot(settings.bias_sigma_m, settings.noise_sigma_m);
+  const double low_m = settings.range_min_m - margin_m, high_m = settings.range_max_m + margin_m;
+  const double range_m = measurement.value().range_m;
+  if (range_m >= low_m && range_m <= high_m) return {};
+  return fmt::format("a range of {:g} m; accepted: {:g} to {:g} m, the limits of the sensor and six sigmas", range_m,
+                     low_m, high_m);
+}
+
 void add_sources(const mission::Sensor& sensor, const MakeContext& context, std::vector<twins::NamedSource>& sources) {
   const auto& own = settings_of<RangeFinderSensor>(sensor);
   const std::string name = source_name(context.servicer, sensor);
@@ -64,7 +81,10 @@ void add_sources(const mission::Sensor& sensor, const MakeContext& context, std:
     sources.push_back({name, own.source, std::make_unique<twins::RecordedLog>(own.log, selection)});
     return;
   }
-  if (auto packets = only_packets_of_testbed(sensor, context, fsw::packets::Apid::kRangeMeasurement)) {
+  if (auto packets = only_packets_of_testbed(sensor, context, fsw::packets::Apid::kRangeMeasurement,
+                                             [settings = own.range_finder](const fsw::packets::PacketView& packet) {
+                                               return fault_of_range(packet, settings);
+                                             })) {
     sources.push_back({name, own.source, std::move(packets)});
     return;
   }

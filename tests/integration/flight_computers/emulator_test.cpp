@@ -1,9 +1,14 @@
 // The bare-metal image on the emulated Zynq-7000: the same bits as a call in this process, over its UART and its
 // Ethernet, a cost in instructions that no circumstance changes, and nothing left behind when it dies.
 
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include "pil_bridge/remote_computer.h"
 #include "tests/integration/flight_computers/echo_computer.h"
@@ -104,7 +109,19 @@ TEST_F(Emulator, KilledInMidRunIsOneClearError) {
 
 TEST_F(Emulator, AnImageThatNeverAnswersIsGivenUp) {
   auto options = echo_options(Target::kZynqQemu, LinkKind::kSerial);
-  options.image = vbar::tests::source_path("LICENSE");  // the emulator loads anything
+  // An ELF header and a program header of 4 bytes: an endless loop.
+  const std::string file = testing::TempDir() + "vbar_endless_loop_" + std::to_string(::getpid());
+  const auto word = [](std::uint32_t value) { return std::string(reinterpret_cast<const char*>(&value), 4); };
+  std::ofstream(file, std::ios::binary) << std::string(
+                                               "\x7f"
+                                               "ELF\1\1\1\0\0\0\0\0\0\0\0\0\2\0\x28\0",
+                                               20)
+                                        << word(1) << word(84) << word(52) << word(0) << word(0x5000000)
+                                        << word(52 | 32 << 16) << word(1 | 40 << 16) << word(0)  // of the file
+                                        << word(1) << word(84) << word(84) << word(84) << word(4) << word(4) << word(5)
+                                        << word(4)            // of the program
+                                        << word(0xeafffffe);  // b .
+  options.image = file;
   options.timing.boot_limit = std::chrono::milliseconds(500);
   try {
     (void)make_flight_computer(options);
@@ -112,6 +129,7 @@ TEST_F(Emulator, AnImageThatNeverAnswersIsGivenUp) {
   } catch (const FlightComputerError& error) {
     EXPECT_THAT(error.what(), HasSubstr("failed while starting: "));
   }
+  std::filesystem::remove(file);
 }
 
 }  // namespace

@@ -63,6 +63,38 @@ class NewArticle(unittest.TestCase):
                 print(missing(ZYNQ_IMAGE))
 
 
+class FaultyArticle(unittest.TestCase):
+    """Flight software that fails without a crash is counted, step by step and packet by packet."""
+
+    def test_errors_are_counted_and_named(self):
+        library = BINARY / "tests/unit/pil_bridge/libvbar_article_with_faults.so"
+        if missing(library):
+            self.skipTest(missing(library))
+        with scratch() as folder:
+            for fault, expected in ((6, {"steps_failed": "all", "last_status": 12345, "packets_invalid": "all", "packets_dropped": "all", "steps_silent": 0}),
+                                    (9, {"steps_failed": 0, "last_status": 0, "steps_silent": "all", "packets_invalid": 0})):
+                result = vbar("run", "ideal_navigation", "--force", "--out", folder / "run",
+                              *overrides("mission.duration_h=0.3", f"spacecraft.servicer.number={fault}", f"flight_computer.library={library}"))
+                output = summary_of(folder / "run")["flight_output"]
+                steps = summary_of(folder / "run")["flight_step"]["count"]
+                self.assertGreater(steps, 10)
+                for key, value in expected.items():
+                    self.assertEqual(output[key], steps if value == "all" else value, key)
+                self.assertIn(f"{steps} of {steps} steps {'returned an error' if fault == 6 else 'sent nothing'}", result.stdout)
+
+    def test_an_image_for_another_machine(self):
+        with scratch() as folder:
+            text = folder / "image"
+            text.write_text("a text")
+            for image in (text, "/bin/true"):
+                for target in ("zynq_qemu", "zynq_linux_qemu"):
+                    result = vbar("run", "ideal_navigation", "--force", "--out", folder / "run", *overrides(
+                        "mission.duration_h=0.3", f"flight_computer.target={target}", f"flight_computer.image={image}"))
+                    self.assertEqual(result.returncode, 1, result.stderr)
+                    self.assertIn(f"flight_computer.image '{image}': found ", result.stderr)
+                    self.assertIn("accepted: an ELF executable for 32-bit ARM", result.stderr)
+
+
 class NewArticleBadInput(unittest.TestCase):
     def refused(self, sentence, *arguments):
         result = vbar("new-article", *arguments)

@@ -3,6 +3,7 @@
 a wrong case."""
 import csv
 import errno
+import hashlib
 import json
 import os
 import random
@@ -187,6 +188,102 @@ class CampaignRefusals(unittest.TestCase):
             result = vbar("campaign", "run", folder / "out")
             self.assertEqual(result.returncode, 1)
             self.assertIn(data.name, result.stderr)
+
+    def test_links_are_refused(self):
+        with scratch() as folder:
+            file = campaign_file(folder, seeds="1..2", values="[0.0]")
+            run(file, "--out", folder / "out", "--cases", "0", expect=75)
+            victim = folder / "victim"
+            (victim / "sub").mkdir(parents=True)
+            (victim / "sub/file").write_text("content")
+            for inner in ("flying", "runs", "results", "bin"):
+                with self.subTest(inner):
+                    own = folder / "out" / inner
+                    if own.exists():
+                        own.rename(folder / "moved")
+                    own.symlink_to("../victim")
+                    for command in (("run", folder / "out"), ("rerun", folder / "out", 0), ("report", folder / "out")):
+                        result = vbar("campaign", *command)
+                        self.assertEqual(result.returncode, 2, result.stderr)
+                        self.assertIn(f"{own}: is a symbolic link", result.stderr)
+                    own.unlink()
+                    if (folder / "moved").exists():
+                        (folder / "moved").rename(own)
+            (folder / "out/run.lock").symlink_to("../victim/sub/file")
+            run(folder / "out")
+            self.assertEqual((victim / "sub/file").read_text(), "content")
+
+    def test_changed_cases_are_noticed(self):
+        with scratch() as folder:
+            file = campaign_file(folder, seeds="1..2", values="[0.0]")
+            run(file, "--out", folder / "out", "--cases", "0", expect=75)
+            table, plan = folder / "out/cases.csv", folder / "out/campaign.json"
+            original, fixed = table.read_text(), plan.read_text()
+            table.write_text(original.replace("\n1,2,", "\n1,77,"))
+            for command in ("run", "report", "status"):
+                result = vbar("campaign", command, folder / "out")
+                self.assertEqual(result.returncode, 1, result.stderr)
+                self.assertIn("cases.csv: differs from the table that the campaign began with", result.stderr)
+            table.write_text(original)
+            plan.write_text(fixed.replace("mission.duration_h=0.05", "mission.duration_h=0.06"))  # of cases that have flown
+            result = vbar("campaign", "run", folder / "out")
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertIn("case 0: its result is that of other keys", result.stderr)
+            plan.write_text(fixed)
+            run(folder / "out")
+
+    def test_the_program_of_a_foreign_folder_needs_trust(self):
+        """A folder from elsewhere, with a list of checksums that fits."""
+        with scratch() as folder:
+            file = campaign_file(folder, seeds="1..2", values="[0.0]")
+            out = folder / "out"
+            run(file, "--out", out, "--cases", "0", expect=75)
+            program, sums, plan = out / "bin/host/vbar", out / "bin/SHA256SUMS", out / "campaign.json"
+            before = hashlib.sha256(program.read_bytes()).hexdigest()
+            program.unlink()
+            program.write_text(f"#!/bin/sh\ntouch {folder}/executed\nexec {VBAR} \"$@\"\n")
+            program.chmod(0o755)
+            after = hashlib.sha256(program.read_bytes()).hexdigest()
+            for listing in (sums, plan):
+                listing.write_text(listing.read_text().replace(before, after))
+            for command in (("run", out), ("rerun", out, 0), ("worker", out, 0, 1)):
+                result = vbar("campaign", *command)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertIn("is not the program of this installation", result.stderr)
+                self.assertIn("--trust", result.stderr)
+                self.assertEqual(result.stderr.count("\n"), 1)
+            self.assertFalse((folder / "executed").exists())
+            run(out, "--trust")
+            self.assertTrue((folder / "executed").exists())
+
+    def test_what_a_foreign_folder_names_needs_trust(self):
+        with scratch() as folder:
+            file = campaign_file(folder, seeds="1..2", values="[0.0]")
+            out = folder / "out"
+            run(file, "--out", out, "--cases", "0", expect=75)
+            plan = out / "campaign.json"
+            fixed = plan.read_text()
+            plan.write_text(fixed.replace('"mission.duration_h=0.05"', '"mission.duration_h=0.05", "flight_computer.library=/x.so"'))
+            result = vbar("campaign", "worker", out, 0, 1)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("library", result.stderr)
+            self.assertIn("--trust", result.stderr)
+            extra = out / "bin/lib/libc.so.6"
+            extra.parent.mkdir()
+            extra.write_text("")
+            plan.write_text(fixed)
+            result = vbar("campaign", "run", out)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("libc.so.6", result.stderr)
+
+    def test_many_seeds_are_prepared_at_once(self):
+        """Cases that differ in the seed alone are loaded once: the cost of a campaign's start is its table."""
+        with scratch() as folder:
+            file = folder / "campaign.toml"
+            file.write_text(f'[campaign]\nname = "many"\nmission = "{SOURCE / "missions/experiment3.toml"}"\nseeds = "1..100000"\n'
+                            'set = ["mission.duration_h=0.05"]\n')
+            run(file, "--out", folder / "out", "--cases", "99999", expect=75)
+            self.assertEqual((folder / "out/cases.csv").read_text().count("\n"), 100001)
 
     def test_a_campaign_is_flown_by_one_at_a_time(self):
         with scratch() as folder:

@@ -196,6 +196,53 @@ class RunsAreKept(Evidence):
         finally:
             subprocess.run(["umount", disk], check=True)
 
+    def test_a_full_disk_loses_nothing(self):
+        """Disks that fill during the flight: the summary is whole, and once there is space a resume continues to the record of a
+        flight that was not disturbed."""
+        settings = overrides("mission.duration_h=0.3")
+        mission = SOURCE / "missions" / "experiment3.toml"
+        undisturbed = fly(self.folder / "undisturbed", "mission.duration_h=0.3", mission=mission)
+        disk = self.folder / "small"
+        disk.mkdir()
+        for size in (600, 1200):
+            if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}k", "tmpfs", disk], capture_output=True).returncode:
+                self.skipTest("mounting a small disk is not permitted")
+            try:
+                self.expect(vbar("run", mission, "--out", disk / "run", *settings), FAILED, "No space left on device")
+                summary = summary_of(disk / "run")
+                self.assertFalse(summary["complete"])
+                self.assertIn("No space left on device", summary["incomplete_reason"])
+                subprocess.run(["mount", "-o", "remount,size=64m", disk], check=True)
+                self.expect(vbar("resume", disk / "run"), DONE)
+                summary = summary_of(disk / "run")
+                self.assertTrue(summary["complete"])
+                self.assertEqual(summary["telemetry_sha256"], undisturbed["telemetry_sha256"])
+                self.assertEqual((disk / "run/estimate.csv").read_bytes(), (self.folder / "undisturbed/estimate.csv").read_bytes())
+                self.expect(vbar("replay", disk / "run"), DONE)
+            finally:
+                subprocess.run(["umount", disk], check=True)
+
+    def test_output_that_cannot_be_written_is_not_that_of_the_run(self):
+        for name, setting in (("closed", "<&- >&- 2>&-"), ("out", ">&-"), ("full", ">/dev/full 2>&1")):
+            run = self.folder / f"output_{name}"
+            command = f"exec {VBAR} run {MISSION} --set {SHORT} --out {run} {setting}"
+            self.assertEqual(subprocess.run(["sh", "-c", command]).returncode, DONE, name)
+            self.assertTrue(summary_of(run)["complete"], name)
+            self.assertEqual((run / "packets.lcmlog").read_bytes(), (self.flown / "packets.lcmlog").read_bytes(), name)
+
+    def test_what_is_a_link_in_a_run_folder_is_replaced(self):
+        victim = self.folder / "victim"
+        victim.write_text("content")
+        copy = self.folder / "linked"
+        shutil.copytree(self.flown, copy)
+        for name in ("run.lock", "summary.json.new", "packets.lcmlog", "truth.csv", "truth.csv.part", "report.html"):
+            (copy / name).unlink(missing_ok=True)
+            (copy / name).symlink_to("../victim")
+        self.expect(vbar("run", MISSION, "--force", "--out", copy, *overrides(SHORT)), DONE)
+        self.assertEqual(victim.read_text(), "content")
+        self.assertFalse((copy / "truth.csv").is_symlink())
+        self.expect(vbar("replay", copy), DONE)
+
     def test_a_full_standard_output(self):
         with open("/dev/full", "w") as full:
             result = subprocess.run([VBAR, "missions", SOURCE / "missions"], stdout=full, stderr=subprocess.PIPE, text=True)

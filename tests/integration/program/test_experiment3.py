@@ -44,6 +44,20 @@ class Experiment3(Arc):
     def test_the_arc_has_a_burn(self):
         self.assertGreaterEqual(self.reference["maneuvers"], 1)
 
+    def test_time_on_the_line_is_that_of_the_link(self):
+        """Each of the 11 steps has some bytes, which take 11 us each at this rate: later than a budget of 5 us. The flight software is not
+        made responsible for it."""
+        deadlines = fly(self.folder / "line", "mission.duration_h=0.03", "flight_computer.target=host_process", "flight_computer.baud=921600",
+                        "clock.mode=real_time", "clock.speed_factor=20", "clock.link_budget_s=0.0001", "clock.compute_budget_s=3600",
+                        mission=EXPERIMENT3)["deadlines"]
+        self.assertEqual((deadlines["link_late"], deadlines["compute_overruns"]), (11, 0))
+
+    def test_a_line_that_is_too_slow_is_named_before_the_flight(self):
+        result = vbar("run", EXPERIMENT3, "--force", "--out", self.folder / "slow", *overrides(
+            "mission.duration_h=0.003", "flight_computer.target=host_process", "flight_computer.baud=1200"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue(result.stdout.startswith("link: flight_computer.baud = 1200: the "), result.stdout)
+
     def test_host_process(self):
         self.fly_on("host_process", "udp")
 

@@ -12,7 +12,7 @@ import sys
 import time
 import unittest
 
-from vbar_program import BINARY, SOURCE, children_of, fly, hashes, is_running, main, overrides, scratch, start, vbar
+from vbar_program import BINARY, SOURCE, children_of, fly, hashes, is_running, main, overrides, scratch, start, summary_of, vbar
 
 SENSOR_IN_C = BINARY / "vbar_example_sensor"
 EXTERNAL_RECEIVERS = [f"spacecraft.{name}.sensors.gnss.source=external" for name in ("servicer", "target")]
@@ -226,6 +226,19 @@ class External(Programs):
             ("message = vbar.tick()", "its answer holds a packet of APID 0x001, which this sensor does not have"),
             ("time_ns -= 1_000_000_000", "its next epoch is not later than the present one")):
             self.assert_one_sentence(self.fly_sensor(measure), f"source servicer/lidar: {fault}")
+
+    def test_impossible_measurements_are_rejected_and_counted(self):
+        """Of each epoch: nothing outside the sensor's range of 0.5 to 1000 m, and 64 packets at most."""
+        for returned, rejected in (("-5.0", 1), ("1e300", 1), ("8.0", 0)):
+            result = self.fly_sensor(f"message.range_m = {returned} if self.epochs == 5 else 8.0")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assert_rejected(rejected)
+        self.assertEqual(self.fly_sensor("if self.epochs == 5: return [message] * 2000, time_ns + 1_000_000_000").returncode, 0)
+        self.assert_rejected(2000 - 64)
+
+    def assert_rejected(self, count):
+        (source,) = [one for one in summary_of(self.folder / "run")["sources"] if one["name"] == "servicer/lidar"]
+        self.assertEqual(source["packets_rejected"], count)
 
     def test_missions_that_are_refused(self):
         for program, fault in (("", "neither program nor udp"),

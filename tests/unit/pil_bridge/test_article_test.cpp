@@ -1,7 +1,12 @@
 #include "pil_bridge/test_article.h"
 
+#include <chrono>
+#include <fstream>
+#include <thread>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include "pil_bridge/in_process.h"
 #include "pil_bridge/make_flight_computer.h"
@@ -14,6 +19,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
+constexpr std::uint64_t kMemory = std::uint64_t{64} << 20;
 const std::string kLibraries = VBAR_TEST_LIBRARIES "/";
 
 std::string error_of_loading(const std::string& path) {
@@ -62,6 +68,7 @@ std::unique_ptr<FlightComputer> library_in_child(const std::string& library, std
   options.library = library;
   options.spacecraft = spacecraft;
   options.library_step_limit = std::chrono::milliseconds(500);
+  options.memory_bytes = kMemory;
   return make_flight_computer(options);
 }
 
@@ -90,6 +97,71 @@ TEST(LibraryInChild, AFaultIsOneSentenceAndTheProgramGoesOn) {
   EXPECT_THAT(flying(3), ThrowsMessage<FlightComputerError>(HasSubstr("at step 7, with exit code 7")));
   EXPECT_THAT(flying(4), ThrowsMessage<FlightComputerError>(HasSubstr("crashed while it was loaded")));
   EXPECT_THAT(flying(5), ThrowsMessage<FlightComputerError>(HasSubstr("did not return while it was loaded")));
+}
+
+TEST(LibraryInChild, ErrorsOfTheSoftwareAreCounted) {
+  const auto child = library_in_child(kLibraries + "libvbar_article_with_faults.so", 6);
+  const StepResult result = child->step(0, vbar::test::step_packets(0, 3));
+  EXPECT_EQ(result.trouble.status, 12345);
+  EXPECT_EQ(result.trouble.inputs_refused, vbar::test::step_packets(0, 3).size());
+  EXPECT_EQ(result.trouble.packets_dropped, 1U);
+  ASSERT_EQ(result.packets.size(), 1U);  // as it came: what it is worth is for the recorder to say
+}
+
+TEST(LibraryInChild, ItsMemoryIsLimited) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "memory is not limited in a program with address sanitizer";
+#endif
+  EXPECT_THAT(
+      [] {
+        (void)library_in_child(kLibraries + "libvbar_article_with_faults.so", 7)
+            ->step(7, vbar::test::step_packets(7, 3));
+      },
+      testing::ThrowsMessage<FlightComputerError>(
+          AllOf(HasSubstr("at step 7"), HasSubstr("limit of its memory, 64 MiB"))));
+}
+
+TEST(LibraryInChild, ProcessesThatItStartedEndWithIt) {
+  int pid = 0;
+  {
+    const auto child = library_in_child(kLibraries + "libvbar_article_with_faults.so", 8);
+    const StepResult result = child->step(0, vbar::test::step_packets(0, 3));
+    ASSERT_EQ(result.packets.size(), 1U);
+    pid = std::stoi(std::string(result.packets[0].begin(), result.packets[0].end()));
+    EXPECT_EQ(::kill(pid, 0), 0);
+    child->close();
+  }
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  const auto is_alive = [pid] {
+    std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+    std::string line;
+    return std::getline(file, line) && line.at(line.rfind(')') + 2) != 'Z';
+  };
+  while (is_alive() && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_FALSE(is_alive());
+}
+
+// What an article asks for is checked before it is allocated.
+TEST(InProcess, AStateThatThereCannotBeIsRefused) {
+  const auto error_of = [](std::size_t (*size)(), std::size_t (*alignment)()) {
+    auto article = std::make_shared<TestArticle>(*linked_test_article());
+    article->state_size = size;
+    article->state_alignment = alignment;
+    try {
+      (void)make_in_process(article, 1);
+    } catch (const FlightComputerError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  const auto small = [] { return std::size_t{64}; };
+  EXPECT_THAT(error_of([] { return std::size_t{1} << 60; }, small),
+              AllOf(HasSubstr("'vbar link exerciser'"), HasSubstr("1152921504606846976 bytes"),
+                    HasSubstr("accepted: up to 1073741824")));
+  for (std::size_t (*const alignment)() :
+       {+[] { return std::size_t{0}; }, +[] { return std::size_t{3}; }, +[] { return std::size_t{1} << 40; }})
+    EXPECT_THAT(error_of(small, alignment), HasSubstr("accepted: powers of two from 1 to 4096"));
 }
 
 }  // namespace

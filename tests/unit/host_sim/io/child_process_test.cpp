@@ -52,6 +52,27 @@ TEST(ChildProcess, TellsExitStatusAndOutput) {
   EXPECT_EQ(child.output_tail(9), "to error\n");
 }
 
+TEST(ChildProcess, LeavesNothingBehindThatItStarted) {
+  ChildProcess child({"sh", "-c", "sleep 1000 & echo $!"}, {});
+  ASSERT_TRUE(child.wait_for_end(kLong));
+  EXPECT_TRUE(ends_within(std::stoi(child.output_tail()), kLong));
+}
+
+TEST(ChildProcess, AnAllocationBeyondItsMemoryFails) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "memory is not limited in a program with address sanitizer";
+#endif
+  constexpr std::uint64_t kLimit = std::uint64_t{64} << 20;
+  const auto doubled = [](std::uint64_t memory_bytes) {  // a text of 256 MB
+    ChildProcess child({"sh", "-c", "x=x; i=0; while [ $i -lt 28 ]; do x=$x$x; i=$((i+1)); done; echo ${#x}"}, {},
+                       memory_bytes);
+    EXPECT_TRUE(child.wait_for_end(std::chrono::seconds(60)));
+    return child.exit_status() == 0 ? std::string("done") : child.status_text();
+  };
+  EXPECT_EQ(doubled(0), "done");
+  EXPECT_THAT(doubled(kLimit), HasSubstr("limit of its memory, 64 MiB"));
+}
+
 TEST(ChildProcess, TellsTheSignalThatKilledIt) {
   ChildProcess child({"sh", "-c", "kill -9 $$"}, {});
   ASSERT_TRUE(child.wait_for_end(kLong));

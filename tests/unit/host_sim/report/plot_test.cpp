@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <regex>
 #include <stdexcept>
 #include <string_view>
@@ -9,6 +10,7 @@
 #include "host_sim/report/consistency.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/svg_plot.h"
+#include "host_sim/report/timeline.h"
 #include "tests/support/figures.h"
 
 namespace vbar::report::test {
@@ -169,6 +171,38 @@ TEST(Ticks, AreRoundInsideAndEvenlySpaced) {
       EXPECT_LE(tick.value, range.high + 1e-6 * step);
       // What is written is what is meant, to well under the distance of two ticks.
       EXPECT_NEAR(std::stod(tick.text), tick.value, 1e-3 * step);
+    }
+  }
+}
+
+TEST(Ticks, AreFewOnAnyRange) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kMax = std::numeric_limits<double>::max(), kMin = std::numeric_limits<double>::denorm_min();
+  const double one = 7.962050537420753, next = std::nextafter(one, 8.0);
+  for (const Range& range :
+       {Range{one, next}, Range{one, one}, Range{0.0, 0.0}, Range{1e300, 1e300}, Range{-kMax, kMax}, Range{0.0, kMax},
+        Range{0.0, kMin}, Range{-kMin, kMin}, Range{kMin, 1.0}, Range{one, kInfinity}, Range{-kInfinity, kInfinity},
+        Range{kNan, 1.0}, Range{9007199254740991.0, 9007199254740993.0}, Range{1.0, 0.0}}) {
+    EXPECT_LE(linear_ticks(range, 6).size(), 14U) << range.low << " to " << range.high;
+    EXPECT_LE(decade_ticks(range, 6).size(), 14U) << range.low << " to " << range.high;
+    Plot plot;
+    plot.series = {{"range", 0, Mark::kLine, {{range.low, range.low}, {range.high, range.high}}}};
+    for (const bool logarithmic : {false, true}) {
+      plot.x.logarithmic = plot.y.logarithmic = logarithmic;
+      EXPECT_LT(svg(plot).size(), 20000U) << range.low << " to " << range.high;
+    }
+    EXPECT_LT(timeline({{"row", {}}}, range).size(), 20000U);
+  }
+}
+
+TEST(Ticks, OfAlmostEqualNumbersDiffer) {
+  for (const double value : {7.962050537420753, -3.1e-7, 1.0e-300, 4.2e17, 1.0e300}) {
+    const Range range = padded({value, std::nextafter(value, 1e308)}, 0.0);
+    const std::vector<Tick> ticks = linear_ticks(range, 6);
+    ASSERT_GE(ticks.size(), 3U) << value;
+    for (std::size_t k = 1; k < ticks.size(); ++k) {
+      EXPECT_GT(ticks[k].value, ticks[k - 1].value) << value;
+      EXPECT_LT(ticks[k].text.size(), 25U) << value;
     }
   }
 }

@@ -73,6 +73,31 @@ class RunFolderTest : public ScratchFolder {
   }
 };
 
+// A folder may come from elsewhere: what is written in it stays in it.
+TEST_F(RunFolderTest, NothingIsWrittenThroughALink) {
+  leave_a_run();
+  const fs::path victim = scratch_ / "victim";
+  write(victim, "content");
+  for (const std::string& name : {std::string("run.lock"), neighbour_of("summary.json").string(),
+                                  PartialFile::part_of("truth.csv").string(), std::string("truth.csv")}) {
+    fs::remove(run() / name);
+    fs::create_symlink("../victim", run() / name);
+  }
+  leave_a_run();
+  EXPECT_EQ(content(victim), "content");
+  EXPECT_FALSE(fs::is_symlink(run() / "truth.csv"));
+}
+
+TEST_F(RunFolderTest, ASummaryIsWholeAtAnyTime) {
+  RunFolder folder(run(), synthetic_run().summary);
+  EXPECT_TRUE(is_summary(run() / "summary.json"));
+  EXPECT_GE(fs::file_size(neighbour_of(run() / "summary.json")), 2 * fs::file_size(run() / "summary.json"))
+      << "room for the last one";
+  folder.give_up(synthetic_run().summary, "no space");
+  EXPECT_EQ(read_summary(run() / "summary.json").incomplete_reason, "no space");
+  EXPECT_FALSE(fs::exists(neighbour_of(run() / "summary.json")));
+}
+
 TEST_F(RunFolderTest, StandsWhereMissionAndSeedSay) {
   EXPECT_EQ(default_run_folder("experiment3", 7), fs::path("runs/experiment3-7"));
 }
