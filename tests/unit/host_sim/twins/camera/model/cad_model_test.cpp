@@ -169,7 +169,7 @@ TEST_F(CadFiles, MaterialsThatReflectMoreThanTheyReceive) {
   source.surface = PlainSurface{.diffuse = 0.3, .specular = 0.2, .exponent = 50.0};
   const CadModel plain = load_cad_model(source);
   ASSERT_EQ(plain.materials.size(), 1U);
-  EXPECT_EQ(plain.materials[0].grey_specular(), 0.2);
+  EXPECT_DOUBLE_EQ(plain.materials[0].grey_specular(), 0.2);
   // Nor does a material file that is missing matter then.
   source.file = write("body.obj", "mtllib none.mtl\n" + kCorners + "usemtl whyte\n" + kFaces);
   EXPECT_EQ(load_cad_model(source).materials.at(0).grey_diffuse(), 0.3);
