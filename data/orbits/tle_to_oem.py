@@ -3,10 +3,11 @@
 
     tle_to_oem.py FILE --from 2026-11-20T00:00:00 --to 2026-11-20T01:00:00 [--object NAME] [--step-s 60] > orbit.oem
 
-FILE holds one or more sets, each of two lines, or of three with its name before it. SGP4 is that of the package python3-sgp4, the rotation
+FILE holds one or more sets, each of two lines, or of three with its name before it, of one or more objects; of several sets of one object the
+one whose epoch is nearest to --from is used and named. SGP4 is that of the package python3-sgp4, the rotation
 from its frame of date (true equator, mean equinox) to EME2000 that of python3-erfa: IAU 1976 precession and 1980 nutation, without the
-observed offsets of the pole, a metre in low orbit. A set is a mean of some days of observation: kilometres from the true orbit, more with every day
-from its epoch.
+observed offsets of the pole, a metre in low orbit. A set is a mean of some days of observation: a kilometre from the true orbit at its epoch and one to
+three more with every day from it in low orbit (Vallado et al., AIAA 2006-6753). More than three days from the epoch are stated as a note.
 """
 import argparse
 import datetime
@@ -15,6 +16,9 @@ import sys
 UTC_FORMAT = "%Y-%m-%dT%H:%M:%S"
 J2000_EPOCH = datetime.datetime(2000, 1, 1, 12)
 J2000_JULIAN_DATE = 2451545.0
+NOTED_AGE_DAYS = 3.0
+ERROR_KM_PER_DAY = (1.0, 3.0)  # in low orbit
+MAX_LISTED = 20
 
 
 class TleError(Exception):
@@ -43,13 +47,54 @@ def sets_in(text, file):
     return found
 
 
-def chosen(sets, wanted, file):
-    """The set of that name or number; the only one if none is wanted."""
-    of_it = [one for one in sets if wanted in (None, one[0], one[1][2:7].strip())]
-    if len(of_it) != 1:
-        raise TleError(f"{file}: {len(of_it)} sets of {wanted or 'an object that is not named'}, accepted: --object with one of "
-                       + ", ".join(one[0] for one in sets))
-    return of_it[0]
+def number_of(one):
+    return one[1][2:7].strip()
+
+
+def epoch_of(one):
+    """UTC, of columns 19 to 32 of line 1: two digits of the year, day of the year."""
+    line, number = one[1], one[3]
+    try:
+        year = int(line[18:20])
+        return datetime.datetime(1900 + year if year >= 57 else 2000 + year, 1, 1) + datetime.timedelta(days=float(line[20:32]) - 1.0)
+    except ValueError as error:
+        raise TleError(f"line {number}: found the epoch {line[18:32]}, accepted: YYDDD.DDDDDDDD") from error
+
+
+def listing_of(sets):
+    """Each object once."""
+    objects = {number_of(one): one[0] for one in sets}
+    names = [name if name == number else f"{name} ({number})" for number, name in objects.items()]
+    return ", ".join(names[:MAX_LISTED]) + (f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else "")
+
+
+def chosen(sets, wanted, begin, file):
+    """Of the object of that name or number, or of the only one if none is wanted, the set nearest to a time, and how many it has."""
+    of_it = [one for one in sets if wanted in (None, one[0], number_of(one))]
+    objects = {number_of(one) for one in of_it}
+    if not objects:
+        raise TleError(f"{file}: no set of {wanted}, accepted: --object with one of {listing_of(sets)}")
+    if len(objects) > 1:
+        raise TleError(f"{file}: {len(objects)} objects{f' of the name {wanted}' if wanted else ''}, accepted: --object with the name or number of one of "
+                       + listing_of(of_it))
+    # Of two sets of one epoch the later one of the file replaces the earlier.
+    return min(reversed(of_it), key=lambda one: abs(epoch_of(one) - begin)), len(of_it)
+
+
+def days(span):
+    return span.total_seconds() / 86400.0
+
+
+def age_notes(one, count, begin, end):
+    """Sentences about the set that is used: if it is one of several, and if it is far from the times that it is used for."""
+    epoch = epoch_of(one)
+    age = max(abs(days(begin - epoch)), abs(days(end - epoch)))
+    name = f"set of {epoch.strftime(UTC_FORMAT)} (line {one[3]}), {abs(days(begin - epoch)):.2f} days {'before' if epoch <= begin else 'after'} --from"
+    if count > 1:
+        yield f"used: the {name}, nearest of {count}"
+    if age > NOTED_AGE_DAYS:
+        low, high = (age * rate for rate in ERROR_KM_PER_DAY)
+        yield f"note: the {name}, is used {age:.1f} days from its epoch: an error of {low:.0f} to {high:.0f} km must be expected in low orbit"
 
 
 def julian_date(utc):
@@ -80,13 +125,17 @@ def states_of(line_1, line_2, times, file):
         yield utc, eme2000_of_teme(utc, position), eme2000_of_teme(utc, velocity)
 
 
-def oem(name, line_1, times, states):
+def time_text(utc):
+    return utc.isoformat(timespec="milliseconds" if utc.microsecond else "seconds")
+
+
+def oem(name, line_1, times, states, comments):
     identifier = f"{'19' if int(line_1[9:11]) >= 57 else '20'}{line_1[9:11]}-{line_1[11:17].strip()}" if line_1[9:17].strip() else line_1[2:7].strip()
-    rows = [f"{utc.strftime(UTC_FORMAT)} " + " ".join(f"{value:.9f}" for value in (*position, *velocity)) for utc, position, velocity in states]
+    rows = [f"{time_text(utc)} " + " ".join(f"{value:.9f}" for value in (*position, *velocity)) for utc, position, velocity in states]
     return "\n".join([
         "CCSDS_OEM_VERS = 2.0", f"CREATION_DATE = {times[0].strftime(UTC_FORMAT)}", "ORIGINATOR = VBAR", "", "META_START", f"OBJECT_NAME = {name}",
-        f"OBJECT_ID = {identifier}", "CENTER_NAME = EARTH", "REF_FRAME = EME2000", "TIME_SYSTEM = UTC", f"START_TIME = {times[0].strftime(UTC_FORMAT)}",
-        f"STOP_TIME = {times[-1].strftime(UTC_FORMAT)}", "META_STOP", "COMMENT SGP4 of two-line elements", *rows, ""])
+        f"OBJECT_ID = {identifier}", "CENTER_NAME = EARTH", "REF_FRAME = EME2000", "TIME_SYSTEM = UTC", f"START_TIME = {time_text(times[0])}",
+        f"STOP_TIME = {time_text(times[-1])}", "META_STOP", "COMMENT SGP4 of two-line elements", *(f"COMMENT {text}" for text in comments), *rows, ""])
 
 
 def utc_of(text):
@@ -105,10 +154,14 @@ def main():
         parser.error("--to lies before --from, or --step-s outside 1 to 3600")
     try:
         with open(options.file, encoding="ascii", errors="replace") as file:
-            name, line_1, line_2, _ = chosen(sets_in(file.read(), options.file), options.object, options.file)
+            one, of_it = chosen(sets_in(file.read(), options.file), options.object, options.begin, options.file)
+        name, line_1, line_2, _ = one
+        notes = list(age_notes(one, of_it, options.begin, options.end))
+        for note in notes:
+            print(f"{options.file}: {note}", file=sys.stderr)
         count = int((options.end - options.begin).total_seconds() // options.step_s) + 1
         times = [options.begin + datetime.timedelta(seconds=k * options.step_s) for k in range(count)]
-        sys.stdout.write(oem(name, line_1, times, states_of(line_1, line_2, times, options.file)))
+        sys.stdout.write(oem(name, line_1, times, states_of(line_1, line_2, times, options.file), notes))
     except (TleError, OSError) as error:
         sys.exit(str(error))
     except ImportError as error:

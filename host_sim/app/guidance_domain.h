@@ -7,8 +7,8 @@
 namespace vbar::app {
 
 /// Throws std::runtime_error that names waypoint, planner and its domain if vbar's flight software would plan a leg of
-/// the mission on an orbit (state of the servicer at the start, GCRF) outside it. Does nothing for other flight
-/// software and for missions that do not approach.
+/// an approach on an orbit (state of the servicer at the start, GCRF) outside it, and for a mission that reaches
+/// beyond the times of its packets; for any flight software if the orbit has no mean elements, which the record needs.
 void check_guidance_domain(const mission::Mission& mission, const mission::Spacecraft& servicer,
                            const fsw::orbit::CartesianState& servicer_state);
 

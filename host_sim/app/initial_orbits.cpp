@@ -2,10 +2,15 @@
 
 #include <optional>
 #include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "host_sim/mission/attitude.h"
+#include "host_sim/mission/data_file.h"
+#include "host_sim/orbit_files/interpolation.h"
 #include "host_sim/orbit_files/orbit_file.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 
@@ -44,10 +49,21 @@ CartesianState gcrf_from_itrf(const CartesianState& itrf, const truth::TruthMode
   return state;
 }
 
-CartesianState state_at_epoch(const mission::OrbitByFile& orbit, const std::filesystem::path& data_directory,
-                              const truth::TruthModel& truth) {
+std::string note_of(const orbit_files::InterpolationCheck& check, const std::string& file,
+                    const std::string& spacecraft) {
+  const std::string velocity = check.bound_mps ? fmt::format(" and {:.1e} m/s", *check.bound_mps) : "";
+  return fmt::format(
+      "The orbit of {} is interpolated between states of {} {:g} s apart, by the {}{}: good to {:.1e} m{}, by states "
+      "left out and found again.",
+      spacecraft, file, check.step_s, name_of(check.rule), check.rule.is_published ? " that the file states" : "",
+      check.bound_m, velocity);
+}
+
+CartesianState state_at_epoch(const mission::OrbitByFile& orbit, const mission::Spacecraft& spacecraft,
+                              const std::filesystem::path& data_directory, truth::TruthModel& truth) {
   const auto file = orbit_files::tracks_of(orbit_files::load_orbits(data_directory / orbit.file), orbit.object);
   const orbit_files::FramedState at = orbit_files::state_at(file, truth.time());
+  if (at.interpolation) truth.add_data_note(note_of(*at.interpolation, orbit.file.filename(), spacecraft.name));
   return at.frame == orbit_files::Frame::kItrf ? gcrf_from_itrf(at.state, truth, truth.time()) : at.state;
 }
 
@@ -84,6 +100,7 @@ truth::SurfaceProperties true_surface(const mission::Mission& mission, const mis
 }  // namespace
 
 truth::TruthSettings truth_settings(const mission::Mission& mission, const std::filesystem::path& data_directory) {
+  mission::check_data_files(mission, data_directory);
   truth::TruthSettings settings = mission.truth;
   settings.data_directory = data_directory;
   return settings;
@@ -96,8 +113,8 @@ void place_spacecraft(const mission::Mission& mission, const std::filesystem::pa
       truth.add_spacecraft({spacecraft.name, state_at_epoch(*orbit, spacecraft), true_surface(mission, spacecraft)});
     }
     if (const auto* orbit = std::get_if<mission::OrbitByFile>(&spacecraft.orbit)) {
-      truth.add_spacecraft(
-          {spacecraft.name, state_at_epoch(*orbit, data_directory, truth), true_surface(mission, spacecraft)});
+      truth.add_spacecraft({spacecraft.name, state_at_epoch(*orbit, spacecraft, data_directory, truth),
+                            true_surface(mission, spacecraft)});
     }
   }
   truth.advance_to(mission.start_time());

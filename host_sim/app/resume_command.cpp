@@ -24,6 +24,7 @@
 #include "host_sim/app/replay_log.h"
 #include "host_sim/app/resumed_folder.h"
 #include "host_sim/app/stop_request.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/report/run_lock.h"
 #include "host_sim/report/text_file.h"
 #include "host_sim/sensors/sensor_kinds.h"
@@ -227,6 +228,7 @@ int fly_branch(const ResumeOptions& options, const FlownRun& run, twins::FlownLo
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
   const mission::Mission mission = sensors::load_mission(run.folder / kMissionCopy, overrides);
   check_trust(mission, run.folder, options.overrides, options.trust);
+  overrides = mission::with_absolute_files(std::move(overrides), mission);
   const BranchPoint point{*options.branch_at_h, options.overrides.size(), run.mission};
   if (log.steps() == 0 || point.time() <= run.mission.start_time() || point.time() > log.time()) {
     throw Refused(fmt::format("--at {}: the log of the run holds {:.4f} to {:.4f} h", *options.branch_at_h,

@@ -11,6 +11,7 @@
 #include "host_sim/app/recorded_flight.h"
 #include "host_sim/app/stop_request.h"
 #include "host_sim/mission/catalogue.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/extends.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
@@ -21,7 +22,8 @@ using report::RunFolder;
 int run_command(const RunOptions& options) {
   const mission::Mission mission =
       sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
-  const FlightOrder order{mission, mission::whole_mission_text(mission.file), options.overrides, options.quiet};
+  const FlightOrder order{mission, mission::whole_mission_text(mission.file),
+                          mission::with_absolute_files(options.overrides, mission), options.quiet};
   catch_stop_signals();
   const std::unique_ptr<AssembledMission> assembled = assemble(mission, !options.check);
   if (options.check) {

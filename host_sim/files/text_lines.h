@@ -17,6 +17,9 @@ class FormatError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Without the mark of UTF-8 that some programs write before a text.
+[[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
+
 /// Without blanks at either end.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 

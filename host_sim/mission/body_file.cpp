@@ -1,9 +1,12 @@
 #include "host_sim/mission/body_file.h"
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <Eigen/LU>
@@ -100,12 +103,20 @@ std::optional<twins::camera::CadSource> read_cad(const TableReader& document, co
   cad.R_body_file = read_axes(section);
   const auto origin = section.three_numbers("origin_m", kLength_m, std::array{0.0, 0.0, 0.0});
   cad.origin_m = {origin[0], origin[1], origin[2]};
+  constexpr std::array<std::pair<std::string_view, twins::camera::CadMaterials>, 3> kMaterials{
+      {{"file", twins::camera::CadMaterials::kFile},
+       {"scaled", twins::camera::CadMaterials::kScaled},
+       {"surface", twins::camera::CadMaterials::kSurface}}};
+  cad.materials =
+      section.choice<twins::camera::CadMaterials>("materials", kMaterials, twins::camera::CadMaterials::kFile);
   if (section.has("surface")) {
     const TableReader surface = section.table("surface");
     const Range share = from_to(0.0, 1.0);
     cad.surface = {surface.number("diffuse", share), surface.number("specular", share, 0.0),
                    surface.number("exponent", from_to(0.0, 1e4), 0.0)};
   }
+  if (cad.materials == twins::camera::CadMaterials::kSurface && !cad.surface)
+    section.refuse_value("materials", "file or scaled, as cad.surface is missing");
   return cad;
 }
 

@@ -22,6 +22,7 @@
 #include "host_sim/engine/link_model.h"
 #include "host_sim/mission/attitude.h"
 #include "host_sim/mission/limit.h"
+#include "host_sim/mission/named_file.h"
 #include "host_sim/truth/truth_settings.h"
 
 namespace vbar::mission {
@@ -292,7 +293,8 @@ struct Mission {
       board_link;  ///< the simulated link between a spacecraft's sensors or actuators and its flight computer
   LcmMirror lcm;
   Record record;
-  std::vector<Limit> limits;  ///< of vbar check, in the order of the file
+  std::vector<Limit> limits;          ///< of vbar check, in the order of the file
+  std::vector<NamedFile> data_files;  ///< that the mission names
 
   [[nodiscard]] fsw::GpsTime start_time() const { return epoch + start; }
   [[nodiscard]] fsw::GpsTime end_time() const { return epoch + start + duration; }

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/nearest_name.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/mission/sensor_reader.h"
@@ -63,11 +64,13 @@ void read_source(const TableReader& section, std::string_view twin, const Sensor
   std::vector<std::string_view> accepted{twin, kRecorded};
   for (const Testbed& testbed : context.mission.testbeds) accepted.push_back(testbed.name);
   settings.source = section.choice("source", accepted, twin);
-  const std::filesystem::path log = section.text("log", "");
+  const std::string log = section.text("log", "");
   const bool is_recorded = settings.source == kRecorded;
   if (is_recorded && log.empty()) section.refuse("log", "nothing", "the packets.lcmlog to play, as source is recorded");
   if (!is_recorded && !log.empty()) section.refuse_value("log", "nothing, unless source is recorded");
-  if (is_recorded) settings.log = context.mission.file.parent_path() / log;  // an absolute one stays as it is
+  if (!is_recorded) return;
+  settings.log = file_on_command_line(section, "log", log);
+  if (settings.log.empty()) settings.log = context.mission.file.parent_path() / log;  // an absolute one stays as it is
 }
 
 void read_shared(const TableReader& document, Mission& mission, const Installation& installation) {

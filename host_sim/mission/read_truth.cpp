@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "host_sim/mission/data_file.h"
 #include "host_sim/mission/names.h"
@@ -54,9 +56,13 @@ void read_truth(const TableReader& document, Mission& mission, const Installatio
       "relative_tolerance", from_to(truth::TruthSettings::kSmallestTolerance, truth::TruthSettings::kLargestTolerance),
       truth.tolerance);
   truth.threads = static_cast<int>(section.integer("threads", 1, 256, truth.threads));
+  using Settings = truth::TruthSettings;
+  constexpr std::array<std::string_view, 2> kOrientationWords{Settings::kBundled, Settings::kNone};
+  constexpr std::array<std::string_view, 2> kWeatherWords{Settings::kBundled, Settings::kConstant};
   truth.gravity_file = data_file(section, "gravity_file", truth.gravity_file, mission);
-  truth.earth_orientation_file = data_file(section, "earth_orientation_file", truth.earth_orientation_file, mission);
-  truth.space_weather_file = data_file(section, "space_weather_file", truth.space_weather_file, mission);
+  truth.earth_orientation_file =
+      data_file(section, "earth_orientation_file", truth.earth_orientation_file, mission, kOrientationWords);
+  truth.space_weather_file = data_file(section, "space_weather_file", truth.space_weather_file, mission, kWeatherWords);
   truth.constant_f107 = section.number("constant_f107", from_to(50.0, 400.0), truth.constant_f107);
   truth.constant_ap = section.number("constant_ap", from_to(0.0, 400.0), truth.constant_ap);
   truth.accept_predictions = section.flag("accept_predictions", truth.accept_predictions);

@@ -118,6 +118,7 @@ struct TableReader::Book {
     }
   };
   std::map<const toml::table*, Entry> entries;
+  std::vector<NamedFile> data_files;
   std::deque<toml::table> missing;  ///< stand-ins for tables that the file lacks
   const toml::table* refused_in = nullptr;
   std::exception_ptr refused;
@@ -227,10 +228,23 @@ std::string TableReader::path_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
 }
 
+std::string TableReader::where(std::string_view key) const {
+  const toml::node* node = key.empty() ? nullptr : table_->get(key);
+  return location_of(node != nullptr ? *node : *table_, file_);
+}
+
+void TableReader::note_data_file(std::string_view key, const std::string& text,
+                                 const std::filesystem::path& file) const {
+  book_->data_files.push_back({where(key), path_of(key), text, file});
+}
+
+std::vector<NamedFile> TableReader::data_files() const {
+  return book_->data_files;
+}
+
 void TableReader::refuse(std::string_view key, const std::string& found, const std::string& accepted) const {
   if (book_->refused) std::rethrow_exception(book_->refused);  // the earlier one, of which this may be a consequence
-  const toml::node* node = key.empty() ? nullptr : table_->get(key);
-  throw MissionError(location_of(node != nullptr ? *node : *table_, file_), path_of(key), found, accepted);
+  throw MissionError(where(key), path_of(key), found, accepted);
 }
 
 void TableReader::refuse_value(std::string_view key, const std::string& accepted) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <toml++/toml.h>
 
 #include "fsw/core/gps_time.h"
+#include "host_sim/mission/named_file.h"
 
 namespace vbar::mission {
 
@@ -132,6 +134,14 @@ class TableReader {
   [[nodiscard]] std::vector<TableReader> tables(std::string_view key) const;
   /// Sets the path of the table in messages.
   void rename(std::string path);
+
+  /// "file:line" of the key, or its override ("--set path=value").
+  [[nodiscard]] std::string where(std::string_view key) const;
+
+  /// Keeps a key that names a data file, for data_files().
+  void note_data_file(std::string_view key, const std::string& text, const std::filesystem::path& file) const;
+  /// Of the whole document, in the order of reading.
+  [[nodiscard]] std::vector<NamedFile> data_files() const;
 
   /// Rejects the value of `key` (the whole table if empty) for a reason given by the caller.
   [[noreturn]] void refuse(std::string_view key, const std::string& found, const std::string& accepted) const;

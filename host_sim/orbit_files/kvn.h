@@ -1,7 +1,9 @@
 #pragma once
 // CCSDS messages in keyword = value notation, and what OEM and OPM share.
 
+#include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -25,16 +27,34 @@ struct Keyword {
 /// First line of a message of this kind ("CCSDS_OEM_VERS"), comments aside.
 [[nodiscard]] bool begins_with(std::string_view text, std::string_view version_keyword);
 
+/// Names of the keywords of which a block holds one each.
+class UniqueKeywords {
+ public:
+  /// Throws files::FormatError at the current line for a second one of the name.
+  void note(const files::TextLines& lines, const Keyword& keyword);
+
+ private:
+  std::set<std::string, std::less<>> names_;
+};
+
+/// Throws files::FormatError for a CCSDS_..._VERS that is not 1.0, 2.0 or 3.0.
+void check_version(const files::TextLines& lines, const Keyword& keyword);
+
+/// Axes of a message.
+struct MessageFrame {
+  Frame frame = Frame::kGcrf;  ///< whose axes those of the message become by the rotation
+  Eigen::Matrix3d R_frame_message = Eigen::Matrix3d::Identity();
+};
+
 /// What the metadata of both say.
 struct Metadata {
   std::string object, object_id;
   std::optional<TimeSystem> time_system;
   bool has_centre = false;
-  /// To axes of GCRF from those of the message; empty without REF_FRAME.
-  std::optional<Eigen::Matrix3d> R_gcrf_frame;
+  std::optional<MessageFrame> frame;  ///< empty without REF_FRAME
 
   /// Takes one of OBJECT_NAME, OBJECT_ID, CENTER_NAME, REF_FRAME, TIME_SYSTEM; false for another keyword. Throws
-  /// files::FormatError for a value that is not accepted.
+  /// files::FormatError for a value that is not accepted, and for a second keyword of one name.
   bool take(const files::TextLines& lines, const Keyword& keyword);
 
   /// Throws files::FormatError at the current line if something is missing.
@@ -42,12 +62,16 @@ struct Metadata {
 
   [[nodiscard]] fsw::GpsTime time(const files::TextLines& lines, std::string_view text) const;
 
-  /// From km and km/s along the axes of the message. Refuses what is not an orbit about the Earth in these units.
+  /// From km and km/s along the axes of the message, along those of its frame. Refuses what is not an orbit about the
+  /// Earth in these units.
   [[nodiscard]] fsw::orbit::CartesianState state(const files::TextLines& lines, const fsw::Vector3& position_km,
                                                  const fsw::Vector3& velocity_kmps) const;
+
+ private:
+  UniqueKeywords unique_;
 };
 
 /// Throws files::FormatError for a state that cannot be one in orbit about the Earth; m, m/s.
-void check_state(const files::TextLines& lines, const fsw::orbit::CartesianState& state);
+void check_state(const files::TextLines& lines, const fsw::orbit::CartesianState& state, Frame frame);
 
 }  // namespace vbar::orbit_files

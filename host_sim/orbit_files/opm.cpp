@@ -21,7 +21,8 @@ struct StateVector {
   std::array<std::optional<double>, kComponents.size()> components;
 
   void take(const TextLines& lines, const Keyword& keyword) {
-    if (keyword.name == "EPOCH" && epoch.empty()) epoch = keyword.value;
+    if (keyword.name == "CCSDS_OPM_VERS") check_version(lines, keyword);
+    if (keyword.name == "EPOCH") epoch = keyword.value;
     for (std::size_t k = 0; k < kComponents.size(); ++k) {
       if (keyword.name != kComponents[k].name) continue;
       if (!keyword.unit.empty() && keyword.unit != kComponents[k].unit)
@@ -60,7 +61,7 @@ std::vector<Track> read_opm(std::string_view text, const std::string& file) {
   metadata.check(lines);
   vector.check(lines);
   const auto at = [&](std::size_t k) { return vector.components[k].value(); };
-  Track track{metadata.object, metadata.object_id};
+  Track track{metadata.object, metadata.object_id, metadata.frame.value().frame};
   track.states.push_back(
       {metadata.time(lines, vector.epoch), metadata.state(lines, {at(0), at(1), at(2)}, {at(3), at(4), at(5)})});
   return {track};

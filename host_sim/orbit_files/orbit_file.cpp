@@ -35,6 +35,7 @@ std::span<const OrbitFormat> orbit_formats() {
 }
 
 OrbitFile read_orbits(std::string_view text, const std::string& file) {
+  text = files::without_byte_order_mark(text);
   const auto formats = orbit_formats();
   const auto format = std::ranges::find_if(formats, [&](const auto& one) { return one.recognises(text); });
   if (format != formats.end()) return {file, std::string(format->name), format->read(text, file)};
@@ -68,12 +69,18 @@ OrbitFile tracks_of(const OrbitFile& file, std::string_view object) {
 }
 
 FramedState state_at(const OrbitFile& file, fsw::GpsTime time) {
-  for (const Track& track : file.tracks)
-    if (track.states.front().time <= time && time <= track.states.back().time) {
-      if (const auto state = interpolated(track, time)) return {track.frame, *state};
-      throw std::out_of_range(fmt::format("{}: the states of {} have a gap about {}, or too few of them are there",
-                                          file.file, track.object, text_of(time)));
-    }
+  const Track* not_useable = nullptr;
+  for (const Track& track : file.tracks) {
+    if (time < track.states.front().time || time > track.states.back().time) continue;
+    if (!track.useable || (track.useable->from <= time && time <= track.useable->to))
+      return interpolated(track, time, file.file);
+    not_useable = &track;
+  }
+  if (not_useable != nullptr)
+    throw std::out_of_range(fmt::format(
+        "{}: no state of {} at {}: its file permits their use from {} to {} (USEABLE_START_TIME, USEABLE_STOP_TIME)",
+        file.file, not_useable->object, text_of(time), text_of(not_useable->useable->from),
+        text_of(not_useable->useable->to)));
   const Track& first = file.tracks.front();
   const Track& last = file.tracks.back();
   throw std::out_of_range(fmt::format("{}: no state of {} at {}; its states reach from {} to {}", file.file,

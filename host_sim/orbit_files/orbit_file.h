@@ -3,6 +3,7 @@
 // each has its file here and its line in the list.
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,14 +21,34 @@ struct TimedState {
   fsw::orbit::CartesianState state;  ///< in the frame of the track; of an Earth-fixed one relative to that frame
 };
 
+enum class Polynomial {
+  kHermite,   ///< through positions with their velocities
+  kLagrange,  ///< through positions, and another one through velocities, where there are any
+};
+
+struct InterpolationRule {
+  Polynomial polynomial = Polynomial::kHermite;
+  int degree = 7;
+  bool is_published = false;  ///< by the file itself
+};
+
+inline constexpr int kMaxInterpolationDegree = 15;
+
+/// Instants between which a file permits the use of its states.
+struct UseableTime {
+  fsw::GpsTime from, to;
+};
+
 /// States of one object that follow each other, at least one.
 struct Track {
   std::string object{};   ///< name in the file
   std::string object_id;  ///< another name, may be empty
   Frame frame = Frame::kGcrf;
   bool has_velocities = true;
-  double largest_step_s = 0.0;  ///< more than it between two states is a gap; 0: there are none
+  double largest_step_s = 0.0;  ///< more than it between two states is a gap; 0: the steps beside it decide
   std::vector<TimedState> states{};
+  std::optional<InterpolationRule> published_rule{};
+  std::optional<UseableTime> useable{};
 };
 
 struct OrbitFile {
@@ -42,23 +63,25 @@ struct OrbitFormat {
   std::vector<Track> (*read)(std::string_view text, const std::string& file);  ///< throws files::FormatError
 };
 
-// CCSDS Orbit Ephemeris Message (502.0-B-3, section 5) in KVN: REF_FRAME GCRF, ICRF or EME2000, TIME_SYSTEM UTC, TAI,
-// TT or GPS. Covariances are skipped.
+// CCSDS Orbit Ephemeris Message (502.0-B-3, section 5) in KVN, versions 1.0 to 3.0: REF_FRAME GCRF, ICRF, EME2000 or
+// ITRF with or without a year, TIME_SYSTEM UTC, TAI, TT or GPS. Covariances are skipped unread.
 [[nodiscard]] bool is_oem(std::string_view text);
 [[nodiscard]] std::vector<Track> read_oem(std::string_view text, const std::string& file);
 
-// CCSDS Orbit Parameter Message (502.0-B-3, section 3) in KVN, the same frames and time systems: its state vector. A
-// message with maneuvers is refused; osculating elements, spacecraft parameters and covariance are skipped.
+// CCSDS Orbit Parameter Message (502.0-B-3, section 3) in KVN, the same versions, frames and time systems: its state
+// vector. A message with maneuvers is refused; osculating elements, spacecraft parameters and covariance are skipped.
 [[nodiscard]] bool is_opm(std::string_view text);
 [[nodiscard]] std::vector<Track> read_opm(std::string_view text, const std::string& file);
 
-// SP3-a to SP3-d (Hilla 2016), Earth-fixed, with or without velocities. Positions of 0 are missing ones.
+// SP3-a to SP3-d (Hilla 2016), Earth-fixed, with or without velocities. Positions and velocities of 0 are missing ones;
+// of a satellite that lacks a velocity the positions alone are used.
 [[nodiscard]] bool is_sp3(std::string_view text);
 [[nodiscard]] std::vector<Track> read_sp3(std::string_view text, const std::string& file);
 
 [[nodiscard]] std::span<const OrbitFormat> orbit_formats();
 
-/// The tracks of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
+/// The tracks of a text in any of the formats, which may begin with a byte order mark. Throws files::FormatError; for
+/// an unknown format it names all.
 [[nodiscard]] OrbitFile read_orbits(std::string_view text, const std::string& file);
 
 /// The same of a file, which becomes part of the run's provenance. Throws std::runtime_error.
@@ -68,15 +91,25 @@ struct OrbitFormat {
 /// std::runtime_error that names the objects of the file.
 [[nodiscard]] OrbitFile tracks_of(const OrbitFile& file, std::string_view object);
 
+/// How a state between those of a file was found, and how far it may be off.
+struct InterpolationCheck {
+  InterpolationRule rule;
+  double step_s = 0.0;              ///< between the states on either side
+  double bound_m = 0.0;             ///< of the position's error (interpolation.h)
+  std::optional<double> bound_mps;  ///< of the velocity's; none without velocities in the file
+};
+
 /// A state and the frame it is in.
 struct FramedState {
   Frame frame = Frame::kGcrf;
   fsw::orbit::CartesianState state;
+  std::optional<InterpolationCheck> interpolation;  ///< none for a state of the file itself
 };
 
-/// State at `time` of a file of one object, interpolated: with velocities by the Hermite polynomial through four
-/// states, else by that of degree 9 through ten positions. Throws std::out_of_range that names file, time and range,
-/// also in a gap.
+/// State at `time` of a file of one object, interpolated by the rule that the file publishes, else with velocities by
+/// the Hermite polynomial through four states, without them by that of degree 9 through ten positions. Throws
+/// std::out_of_range that names file, time and reason: outside the states or the useable time, in a gap, or an error
+/// that may exceed kMaxInterpolationErrorM.
 [[nodiscard]] FramedState state_at(const OrbitFile& file, fsw::GpsTime time);
 
 }  // namespace vbar::orbit_files

@@ -64,8 +64,10 @@ std::optional<TimeSystem> time_system_named(std::string_view name) {
   return std::nullopt;
 }
 
-std::optional<fsw::GpsTime> instant_of(const Calendar& c, TimeSystem system) {
-  const auto mjd = mjd_of(c);
+namespace {
+
+/// `mjd`: of its day, instead of the date.
+std::optional<fsw::GpsTime> instant_on(std::optional<int> mjd, const Calendar& c, TimeSystem system) {
   if (!mjd || c.hour < 0 || c.hour > 23 || c.minute < 0 || c.minute > 59) return std::nullopt;
   const bool may_leap = system == TimeSystem::kUtc && c.hour == 23 && c.minute == 59 && has_leap_second(*mjd);
   if (!(c.second >= 0.0 && c.second < (may_leap ? 61.0 : 60.0))) return std::nullopt;
@@ -80,6 +82,31 @@ std::optional<fsw::GpsTime> instant_of(const Calendar& c, TimeSystem system) {
   }
   if (time.ns < 0) return std::nullopt;
   return time;
+}
+
+}  // namespace
+
+std::optional<fsw::GpsTime> instant_of(const Calendar& calendar, TimeSystem system) {
+  return instant_on(mjd_of(calendar), calendar, system);
+}
+
+std::optional<fsw::GpsTime> instant_of_carried(Calendar c, TimeSystem system) {
+  auto mjd = mjd_of(c);
+  if (const auto as_written = instant_on(mjd, c, system)) return as_written;
+  if (c.hour == 24 && (c.minute != 0 || c.second != 0.0)) return std::nullopt;
+  if (c.second >= 60.0 && c.second < 61.0) {
+    c.second -= 60.0;
+    ++c.minute;
+  }
+  if (c.minute == 60) {
+    c.minute = 0;
+    ++c.hour;
+  }
+  if (c.hour == 24 && mjd) {
+    c.hour = 0;
+    ++*mjd;
+  }
+  return instant_on(mjd, c, system);
 }
 
 std::optional<fsw::GpsTime> ccsds_time(std::string_view text, TimeSystem system) {

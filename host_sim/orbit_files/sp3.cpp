@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -76,9 +77,9 @@ class Sp3Reader {
 
   void take_epoch() {
     const auto time =
-        instant_of({whole(4, 7, "the year"), whole(9, 10, "the month"), whole(12, 13, "the day"),
-                    whole(15, 16, "the hour"), whole(18, 19, "the minute"), number(21, 31, "the seconds")},
-                   system_);
+        instant_of_carried({whole(4, 7, "the year"), whole(9, 10, "the month"), whole(12, 13, "the day"),
+                            whole(15, 16, "the hour"), whole(18, 19, "the minute"), number(21, 31, "the seconds")},
+                           system_);
     if (!time || whole(9, 10, "the month") == 0) lines_.refuse("a date and a time of day");
     if (time_ && *time <= *time_) lines_.refuse("an epoch at or before the one before", "epochs in ascending order");
     time_ = time;
@@ -118,8 +119,14 @@ class Sp3Reader {
     Track& one = track();
     if (one.states.empty() || one.states.back().time != *time_)
       lines_.refuse("a velocity without a position", "a velocity behind the satellite's position");
-    one.states.back().state.velocity_eci = 0.1 * velocity_dmps;
     ++velocities_[one.object];
+    if (velocity_dmps.isZero(0.0)) {
+      without_velocity_.insert(one.object);
+      return;
+    }
+    fsw::orbit::CartesianState& state = one.states.back().state;
+    state.velocity_eci = 0.1 * velocity_dmps;
+    check_state(lines_, state, Frame::kItrf);
   }
 
   std::vector<Track> finished() {
@@ -127,7 +134,7 @@ class Sp3Reader {
     for (auto& [name, track] : tracks_) {
       if (track.states.empty()) continue;
       track.frame = Frame::kItrf;
-      track.has_velocities = has_velocities_;
+      track.has_velocities = has_velocities_ && !without_velocity_.contains(name);
       track.largest_step_s = 1.5 * std::max(interval_s_, median_step_s(track));
       if (has_velocities_ && velocities_[name] != track.states.size())
         lines_.refuse(fmt::format("{} positions and {} velocities of {}", track.states.size(), velocities_[name], name),
@@ -145,6 +152,7 @@ class Sp3Reader {
   std::optional<fsw::GpsTime> time_;
   std::map<std::string, Track> tracks_;
   std::map<std::string, std::size_t> velocities_;
+  std::set<std::string> without_velocity_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
@@ -47,6 +48,9 @@ class TruthModel {
 
   /// What the forces share.
   const ForceData& data() const { return data_; }
+
+  /// Adds a sentence to the notes of the data.
+  void add_data_note(std::string note) { data_.notes.push_back(std::move(note)); }
 
   std::size_t spacecraft_count() const { return spacecraft_.size(); }
 

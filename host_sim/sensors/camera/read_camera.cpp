@@ -46,11 +46,14 @@ std::vector<std::string> names_in(const std::filesystem::path& folder) {
 }
 
 /// A name: the file of that name in data/cameras. A path that begins with "./" or "../", or an absolute one: that file,
-/// seen from the mission file.
+/// seen from the mission file; on the command line one of the working directory first.
 std::filesystem::path camera_file(const TableReader& section, const std::string& camera,
                                   const mission::SensorContext& context) {
-  if (camera.starts_with("./") || camera.starts_with("../") || camera.starts_with("/"))
+  if (mission::is_seen_from_file(camera) || camera.starts_with("/")) {
+    std::filesystem::path on_command_line = mission::file_on_command_line(section, "camera", camera);
+    if (!on_command_line.empty()) return on_command_line;
     return std::filesystem::absolute(context.mission.file).parent_path() / camera;
+  }
   const std::filesystem::path folder = context.installation.data_directory / "cameras";
   const std::vector<std::string> names = names_in(folder);
   if (std::find(names.begin(), names.end(), camera) == names.end()) {

@@ -330,6 +330,28 @@ class Propagate(unittest.TestCase):
             self.assertEqual(result.returncode, 2)
             self.assertIn("no planner of this flight software", result.stderr)
 
+    # Control errors of legs 1 to 10 at 0.05, 0.2, 1 and 5 deg: 98, 21, 5.7 and 0.8 m (docs/data_formats.md).
+    def test_an_orbit_near_the_equator(self):
+        def check(*sets):
+            return vbar("run", SOURCE / "missions" / "user_orbit_400km.toml", "--check", *overrides(*sets))
+        inclination = "spacecraft.servicer.elements.inclination_deg="
+        for i in ("0.05", "1", "4.9", "175.2", "179.9"):
+            refused = check(inclination + i)
+            self.assertEqual(refused.returncode, 2, i)
+            self.assertRegex(refused.stderr, r'spacecraft "servicer": its mean inclination is [0-9.]+ deg; accepted: 5 to 175 deg')
+            self.assertEqual(len(refused.stderr.splitlines()), 1)
+        self.assertEqual(check(inclination + "5.1").returncode, 0)
+
+    def test_times_that_packets_do_not_carry(self):
+        def check(epoch):
+            return vbar("run", "ideal_navigation", "--check", *overrides(f"mission.epoch_utc={epoch}"))
+        refused = check("2126-03-01T00:00:00Z")
+        self.assertEqual(refused.returncode, 2)
+        # 2^62 ns after 1980-01-06.
+        self.assertIn("mission.epoch_utc: the run ends at 2126-03-02T", refused.stderr)
+        self.assertIn("accepted: up to 2126-02-24T23:53:20Z", refused.stderr)
+        self.assertEqual(check("2126-01-01T00:00:00Z").returncode, 0)
+
     def test_files_that_do_not_serve(self):
         self.refuse(["truth.gravity_degree=121"], "degree 121", "0 to 120")
         with scratch() as folder:

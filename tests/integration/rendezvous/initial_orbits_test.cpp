@@ -3,13 +3,19 @@
 #include "host_sim/app/initial_orbits.h"
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include <erfa.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "fsw/orbit/rtn.h"
+#include "host_sim/orbit_files/orbit_file.h"
 #include "host_sim/sensors/sensor_kinds.h"
 #include "tests/support/paths.h"
 
@@ -103,6 +109,40 @@ TEST(InitialOrbits, ALaterStartIsPlacedAboutTheServicerOfThatTime) {
                             "truth.gravity_degree=2", "truth.gravity_order=0"});
   const fsw::Vector3 expected(1.19963, -7.85458, 0.53876);
   EXPECT_LT((relative_position(pair) - expected).norm(), 0.005);
+}
+
+// The precise orbit of Swarm A as SP3, and the same Earth-fixed states as an OEM: one state in GCRF. Its position by
+// ERFA's own matrix of the IAU 2006/2000A conventions, without polar motion and with UT1 = UTC, as the run assumes for
+// 2022; the truth model interpolates the pole to 1e-12 rad.
+TEST(InitialOrbits, EarthFixedStatesOfAnOemAreThoseOfAnSp3File) {
+  const std::string sp3 = vbar::tests::source_path("tests/data/formats/swarm_a_2022_excerpt.sp3");
+  const auto oem = std::filesystem::path(testing::TempDir()) / fmt::format("vbar_itrf_{}.oem", ::getpid());
+  const orbit_files::OrbitFile file = orbit_files::load_orbits(sp3);
+  std::ofstream text(oem);
+  text << "CCSDS_OEM_VERS = 2.0\nMETA_START\nOBJECT_NAME = SWARM\nCENTER_NAME = EARTH\nREF_FRAME = ITRF2014\n"
+          "TIME_SYSTEM = GPS\nMETA_STOP\n";
+  for (std::size_t k = 0; k < 9; ++k) {
+    const auto& [position, velocity] = file.tracks.at(0).states.at(k).state;
+    text << fmt::format("2022-01-01T00:{:02}:00 {:.7f} {:.7f} {:.7f} {:.11f} {:.11f} {:.11f}\n", k, 1e-3 * position.x(),
+                        1e-3 * position.y(), 1e-3 * position.z(), 1e-3 * velocity.x(), 1e-3 * velocity.y(),
+                        1e-3 * velocity.z());
+  }
+  text.close();
+  const auto flown = [&](const std::string& orbit) {
+    // 00:04:00 of GPS time.
+    return placed({"mission.epoch_utc=2022-01-01T00:03:42Z", "spacecraft.servicer.orbit_file=" + orbit}).servicer;
+  };
+  const auto by_sp3 = flown(sp3), by_oem = flown(oem);
+  std::filesystem::remove(oem);
+  EXPECT_LT((by_oem.position_eci - by_sp3.position_eci).norm(), 1e-6);
+  EXPECT_LT((by_oem.velocity_eci - by_sp3.velocity_eci).norm(), 1e-9);
+  double R[3][3];  // to ITRF from GCRF
+  const double day = 2459580.5, utc = 222.0 / 86400.0, tt = utc + (37.0 + 32.184) / 86400.0;
+  eraC2t06a(day, tt, day, utc, 0.0, 0.0, R);
+  const fsw::Vector3& itrf = file.tracks.at(0).states.at(4).state.position_eci;
+  const fsw::Matrix3 R_itrf_gcrf = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&R[0][0]);
+  // 7e6 m at 1e-12 rad of the pole and 4e-11 rad of a Julian date in two doubles.
+  EXPECT_LT((R_itrf_gcrf.transpose() * itrf - by_oem.position_eci).norm(), 1e-3);
 }
 
 }  // namespace

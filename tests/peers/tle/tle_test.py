@@ -31,6 +31,18 @@ STATION = """ISS (ZARYA)
 """
 
 
+def series_line(line, epoch):
+    """A line of the set with another epoch and its checksum: digits, and 1 for each minus sign."""
+    if not line.startswith("1 "):
+        return line
+    line = line[:18] + epoch + line[32:68]
+    return line + str(sum(int(c) if c.isdigit() else int(c == "-") for c in line) % 10)
+
+
+SERIES = "".join(series_line(line, epoch) + "\n" for epoch in ("08263.40000000", "08264.51782528", "08266.90000000")
+                 for line in STATION.splitlines())
+
+
 class Published(unittest.TestCase):
     def test_rotation_from_teme(self):
         # Vallado, Fundamentals of Astrodynamics, example of 2004-04-06: TEME and J2000 in km, the latter without the observed offsets.
@@ -78,8 +90,9 @@ class Program(unittest.TestCase):
                 ("", (), "found no two-line elements"),
                 (STATION.replace("51.6416", "51.6417"), (), "elements.tle:2: "),
                 (STATION.splitlines()[1] + "\n", (), "elements.tle:1: found a first line without the second line"),
-                (STATION + "\n".join(VANGUARD), (), "2 sets of an object that is not named, accepted: --object with one of ISS (ZARYA), 00005"),
-                (STATION, ("--object", "MIR"), "0 sets of MIR")):
+                (STATION + "\n".join(VANGUARD), (), "2 objects, accepted: --object with the name or number of one of ISS (ZARYA) (25544), 00005"),
+                (SERIES + "\n".join(VANGUARD), (), "2 objects, accepted: --object with the name or number of one of ISS (ZARYA) (25544), 00005"),
+                (STATION, ("--object", "MIR"), "no set of MIR, accepted: --object with one of ISS (ZARYA) (25544)")):
             with self.subTest(reason):
                 refused = self.convert(text, *arguments)
                 self.assertEqual(refused.returncode, 1)
@@ -88,6 +101,24 @@ class Program(unittest.TestCase):
                 self.assertEqual(len(refused.stderr.splitlines()), 1)
         chosen = self.convert(STATION + "\n".join(VANGUARD), "--object", "25544")
         self.assertIn("OBJECT_NAME = ISS (ZARYA)", chosen.stdout)
+
+    def test_the_nearest_of_a_series_is_used(self):
+        alone, of_series = self.convert(STATION), self.convert(SERIES)
+        self.assertEqual(of_series.returncode, 0, of_series.stderr)
+        # Day 264.51782528 of 2008 is 2008-09-20T12:25:40, 5 min 40 s after --from; the others are a day and more from it.
+        used = "used: the set of 2008-09-20T12:25:40 (line 5), 0.00 days after --from, nearest of 3"
+        self.assertIn(used, of_series.stderr)
+        self.assertIn(f"COMMENT {used}\n", of_series.stdout)
+        rows = [[line for line in converted.stdout.splitlines() if line.startswith("2008-")] for converted in (alone, of_series)]
+        self.assertEqual(rows[0], rows[1])
+        self.assertEqual(alone.stderr, "")
+
+    def test_an_old_set_is_noted_with_its_error(self):
+        old = self.convert("\n".join(series_line(line, "08259.51782528") for line in STATION.splitlines()) + "\n")
+        self.assertEqual(old.returncode, 0, old.stderr)
+        # 5 days, at 1 to 3 km a day.
+        self.assertIn("note: the set of 2008-09-15T12:25:40 (line 2), 5.00 days before --from, is used 5.0 days from its epoch: "
+                      "an error of 5 to 15 km must be expected", old.stderr)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 // Reading of CAD files, with a check that assimp omits: materials of an OBJ file that no MTL file defines.
 
+#include <array>
 #include <map>
 #include <set>
 #include <sstream>
@@ -46,7 +47,9 @@ void read_material_names(const std::filesystem::path& file, std::set<std::string
 }
 
 // Errors that assimp does not report: it replaces a material that it cannot find by a grey one and continues.
-void check_obj(const std::filesystem::path& file, bool needs_materials) {
+void check_obj(const CadSource& source) {
+  const std::filesystem::path& file = source.file;
+  const bool uses_materials = source.materials != CadMaterials::kSurface;
   files::DataStream stream(file);
   std::set<std::string> defined;
   std::string text, word, material;
@@ -54,16 +57,16 @@ void check_obj(const std::filesystem::path& file, bool needs_materials) {
   for (std::size_t number = 1; std::getline(stream, text); ++number) {
     std::istringstream line(text);
     if (!(line >> word)) continue;
-    if (word == "mtllib") read_material_names(file.parent_path() / rest_of(line), defined);
+    if (word == "mtllib" && uses_materials) read_material_names(file.parent_path() / rest_of(line), defined);
     if (word == "usemtl") {
       material = rest_of(line);
-      if (!defined.contains(material))
+      if (uses_materials && !defined.contains(material))
         refuse(file,
                fmt::format("line {}: material \"{}\" has no Kd in a material file named before", number, material));
     }
     if (word != "f") continue;
     faces = true;
-    if (material.empty() && needs_materials)
+    if (material.empty() && !source.surface)
       refuse(file, fmt::format("line {}: a face without material; a usemtl line must come before", number));
   }
   if (!faces) refuse(file, "no faces");
@@ -82,7 +85,16 @@ Material plain_material(const PlainSurface& surface) {
   return material;
 }
 
+/// The diffuse and the specular part of a material that reflects more than it receives, each divided by the sum.
+void scale(Material& material) {
+  const double sum = material.grey_diffuse() + material.grey_specular();
+  if (sum <= 1.0) return;
+  for (std::array<double, 3>* part : {&material.diffuse, &material.specular})
+    for (double& channel : *part) channel /= sum;
+}
+
 Material material_of(const CadSource& source, const aiMaterial& from) {
+  if (source.materials == CadMaterials::kSurface) return plain_material(source.surface.value());
   Material material;
   material.name = from.GetName().C_Str();
   aiColor3D diffuse, specular;
@@ -96,6 +108,7 @@ Material material_of(const CadSource& source, const aiMaterial& from) {
   if (from.Get(AI_MATKEY_COLOR_SPECULAR, specular) == AI_SUCCESS) material.specular = rgb(specular);
   ai_real exponent = 0.0F;
   if (from.Get(AI_MATKEY_SHININESS, exponent) == AI_SUCCESS) material.exponent = exponent;
+  if (source.materials == CadMaterials::kScaled) scale(material);
   return material;
 }
 
@@ -130,7 +143,7 @@ CadModel load_cad_model(const std::filesystem::path& file) {
 CadModel load_cad_model(const CadSource& source) {
   const std::filesystem::path& file = source.file;
   if (!std::filesystem::is_regular_file(file)) refuse(file, "no such file");
-  if (file.extension() == ".obj") check_obj(file, !source.surface);
+  if (file.extension() == ".obj") check_obj(source);
   Assimp::Importer importer;
   // Points and lines are not part of the surface and are removed. Transformations of a scene's parts are applied.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -142,7 +155,8 @@ CadModel load_cad_model(const CadSource& source) {
   std::map<unsigned, std::size_t> index;  // of the materials that faces use; assimp adds a default to every file
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const aiMesh& mesh = *scene->mMeshes[m];
-    const auto [place, added] = index.try_emplace(mesh.mMaterialIndex, materials.size());
+    const unsigned used = source.materials == CadMaterials::kSurface ? 0 : mesh.mMaterialIndex;
+    const auto [place, added] = index.try_emplace(used, materials.size());
     if (added) materials.push_back(material_of(source, *scene->mMaterials[mesh.mMaterialIndex]));
     add_triangles(source, mesh, place->second, triangles);
   }

@@ -87,9 +87,12 @@ void check_materials(const std::string& source, const std::vector<Material>& mat
         refuse(source, fmt::format("material \"{}\": Kd {} and Ks {} must lie between 0 and 1", m.name, m.diffuse[k],
                                    m.specular[k]));
     if (m.grey_diffuse() + m.grey_specular() > 1.0 + 1e-6)
-      refuse(source, fmt::format("material \"{}\" reflects more than it receives: Kd {:.3f} and Ks {:.3f} (means of "
-                                 "red, green, blue) add up to more than 1",
-                                 m.name, m.grey_diffuse(), m.grey_specular()));
+      refuse(source,
+             fmt::format("material \"{}\" reflects more than it receives: Kd {:.3f} and Ks {:.3f} (means of "
+                         "red, green, blue) add up to more than 1; [cad] of a body file accepts it with "
+                         "materials = \"scaled\" (both divided by their sum) or \"surface\" (cad.surface for all "
+                         "faces)",
+                         m.name, m.grey_diffuse(), m.grey_specular()));
     if (!(m.exponent >= 0.0 && m.exponent <= 1e4))
       refuse(source, fmt::format("material \"{}\": Ns {} must lie between 0 and 10000", m.name, m.exponent));
   }

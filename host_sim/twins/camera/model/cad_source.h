@@ -8,9 +8,16 @@
 
 namespace vbar::twins::camera {
 
-/// Reflectivities of faces that no material of the file describes, as in an STL file.
+/// Reflectivities of faces that no material of the file describes, as in an STL file, or of all of them.
 struct PlainSurface {
   double diffuse = 0.0, specular = 0.0, exponent = 0.0;
+};
+
+/// Which reflectivities the faces have.
+enum class CadMaterials {
+  kFile,     ///< those of the file; refused where they reflect more than they receive
+  kScaled,   ///< those of the file, both parts divided by their sum where that is more than 1
+  kSurface,  ///< the surface, whatever materials the file has
 };
 
 /// A point p of the file lies at R_body_file (unit_m p - origin_m) in the body frame.
@@ -20,6 +27,7 @@ struct CadSource {
   fsw::Vector3 origin_m = fsw::Vector3::Zero();  ///< of the body frame, along the axes of the file
   fsw::Matrix3 R_body_file = fsw::Matrix3::Identity();
   std::optional<PlainSurface> surface{};
+  CadMaterials materials = CadMaterials::kFile;
 };
 
 }  // namespace vbar::twins::camera

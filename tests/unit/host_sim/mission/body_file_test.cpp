@@ -114,6 +114,10 @@ TEST_F(BodyFile, StatesUnitAxesAndOriginOfItsCadFile) {
                 "surface = { diffuse = 0.3, specular = 0.2, exponent = 50 }\n"),
             "no error");
   EXPECT_THAT(message_of(kPlate + "[cad]\nunit_m = 1\n"), HasSubstr("cad.file: found nothing"));
+  EXPECT_THAT(
+      message_of(kPlate + "[cad]\nfile = \"a\"\nmaterials = \"surface\"\n"),
+      HasSubstr("cad.materials: found the text \"surface\"; accepted: file or scaled, as cad.surface is missing"));
+  EXPECT_THAT(message_of(kPlate + "[cad]\nfile = \"a\"\nmaterials = \"grey\"\n"), HasSubstr("file, scaled or surface"));
   EXPECT_THAT(message_of(kPlate + "[cad]\nfile = \"a\"\nunit_m = 0\n"), HasSubstr("cad.unit_m: found"));
   EXPECT_THAT(message_of(kPlate + "[cad]\nfile = \"a\"\naxes = [\"x\", \"y\", \"z\"]\n"),
               HasSubstr("cad.axes: found \"x\""));

@@ -1,5 +1,5 @@
-// CCSDS OEM and OPM. The OPM is the example of the standard (502.0-B, annex, "OPM file example"), whose frame this
-// program refuses, and the same with another frame; the OEM has states of a Keplerian orbit.
+// CCSDS OEM and OPM. The OPM is the example of the standard (502.0-B, annex, "OPM file example") in its Earth-fixed
+// frame, and the same in another one; the OEM has states of a Keplerian orbit.
 
 #include <cmath>
 #include <string>
@@ -107,7 +107,9 @@ TEST(Oem, TimeSystemsAndFrames) {
 TEST(Oem, InvalidFilesAreRefusedWithALine) {
   const std::string text = oem();
   EXPECT_THAT(error_of(oem("TEME")),
-              HasSubstr("orbit.txt:10: found REF_FRAME \"TEME\", expected GCRF, ICRF or EME2000"));
+              HasSubstr("orbit.txt:10: found REF_FRAME \"TEME\", expected GCRF, ICRF, EME2000 or ITRF"));
+  for (const char* frame : {"TOD", "ITRF1", "ITRF-2001", "ITRF2014 ", "GTOD", "ITRF-"})
+    EXPECT_EQ(error_of(oem(frame)).empty(), std::string(frame) == "ITRF2014 ") << frame;
   EXPECT_THAT(error_of(oem("GCRF", "TDB")),
               HasSubstr("orbit.txt:11: found TIME_SYSTEM \"TDB\", expected UTC, TAI, TT or GPS"));
   EXPECT_THAT(error_of(text, "CENTER_NAME = EARTH", "CENTER_NAME = MARS BARYCENTER"), HasSubstr("expected EARTH"));
@@ -122,6 +124,64 @@ TEST(Oem, InvalidFilesAreRefusedWithALine) {
   EXPECT_THAT(error_of("<?xml version=\"1.0\"?>\n"), HasSubstr("CCSDS OEM (KVN)"));
 }
 
+TEST(Oem, UseableTimesAreHonoured) {
+  const std::string text = [] {
+    std::string with = oem();
+    return with.insert(with.find("INTERPOLATION ="),
+                       "USEABLE_START_TIME = 2026-11-20T00:10:00\nUSEABLE_STOP_TIME = 2026-11-20T00:50:00\n");
+  }();
+  const OrbitFile file = read_orbits(text, "orbit.oem");
+  const auto error_at = [&](int t) -> std::string {
+    try {
+      static_cast<void>(state_at(file, truth::gps_from_utc("2026-11-20T00:00:00Z") + fsw::duration_of_seconds(t)));
+    } catch (const std::out_of_range& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(error_at(600), "");
+  EXPECT_EQ(error_at(3000), "");
+  // Also at a state of the file itself: 502.0-B, table 5-3.
+  EXPECT_THAT(error_at(540), HasSubstr("permits their use from 2026-11-20T00:10:00.000Z to 2026-11-20T00:50:00.000Z"));
+  EXPECT_THAT(error_at(3001), HasSubstr("USEABLE_STOP_TIME"));
+  EXPECT_THAT(error_of(text, "00:10:00\nUSEABLE_STOP", "00:55:00\nUSEABLE_STOP"),
+              HasSubstr("found USEABLE_START_TIME after USEABLE_STOP_TIME"));
+  EXPECT_THAT(error_of(text, "00:50:00\nINTER", "01:10:00\nINTER"),
+              HasSubstr("found USEABLE_STOP_TIME after STOP_TIME"));
+  EXPECT_THAT(error_of(text, "START_TIME = 2026-11-20T00:00:00", "START_TIME = 2026-11-20T00:20:00"),
+              HasSubstr("found START_TIME after USEABLE_START_TIME"));
+  EXPECT_THAT(error_of(oem(), "STOP_TIME = 2026-11-20T01", "STOP_TIME = 2026-11-19T01"),
+              HasSubstr("found START_TIME after STOP_TIME"));
+  EXPECT_THAT(error_of(oem(), "STOP_TIME = 2026-11-20T01:00:00", "STOP_TIME = 2026-11-20T00:30:00"),
+              HasSubstr("a state outside START_TIME to STOP_TIME"));
+}
+
+TEST(Oem, AKeywordStandsOnceInABlock) {
+  const std::string text = oem();
+  EXPECT_THAT(error_of(text, "META_STOP", "OBJECT_NAME = CHASER\nMETA_STOP"),
+              HasSubstr("orbit.txt:16: found a second OBJECT_NAME, expected one"));
+  EXPECT_THAT(error_of(text, "META_STOP", "STOP_TIME = 2026-11-20T02:00:00\nMETA_STOP"),
+              HasSubstr("found a second STOP_TIME"));
+  EXPECT_THAT(error_of(text, "ORIGINATOR", "CREATION_DATE = 2026-11-20T00:00:00\nORIGINATOR"),
+              HasSubstr("orbit.txt:4: found a second CREATION_DATE"));
+  EXPECT_THAT(error_of(opm("GCRF"), "Y = ", "X = 1.0\nY = "), HasSubstr("orbit.txt:12: found a second X"));
+  EXPECT_THAT(error_of(opm("GCRF"), "Y = ", "EPOCH = 1998-12-18T14:28:15\nY = "), HasSubstr("found a second EPOCH"));
+}
+
+TEST(Oem, VersionsOneToThree) {
+  for (const char* version : {"1.0", "2.0", "3.0"})
+    EXPECT_EQ(error_of(oem(), "VERS = 2.0", std::string("VERS = ") + version), "");
+  EXPECT_THAT(error_of(oem(), "VERS = 2.0", "VERS = 4.0"),
+              HasSubstr("orbit.txt:1: found CCSDS_OEM_VERS \"4.0\", expected 1.0, 2.0 or 3.0"));
+  EXPECT_THAT(error_of(opm("GCRF"), "VERS = 2.0", "VERS ="), HasSubstr("expected 1.0, 2.0 or 3.0"));
+}
+
+TEST(Oem, AByteOrderMarkIsSkipped) {
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(read_orbits(mark + oem(), "a.oem").tracks.at(0).states.size(), 61U);
+  EXPECT_EQ(read_orbits(mark + opm("GCRF"), "a.opm").format, "CCSDS OPM (KVN)");
+}
+
 TEST(Oem, OneOfSeveralObjectsMustBeNamed) {
   std::string text = oem();
   std::string other = text.substr(text.find("META_START"));
@@ -134,8 +194,11 @@ TEST(Oem, OneOfSeveralObjectsMustBeNamed) {
 }
 
 TEST(Opm, TheExampleOfTheStandard) {
-  EXPECT_THAT(error_of(opm("ITRF-97")),
-              AllOf(HasSubstr("orbit.txt:8: found REF_FRAME \"ITRF-97\""), HasSubstr("EME2000")));
+  for (const char* name : {"ITRF-97", "ITRF97", "ITRF1997", "ITRF", "ITRF2000", "ITRF-2005", "ITRF2020"}) {
+    const Track fixed = read_orbits(opm(name), "state.opm").tracks.at(0);
+    EXPECT_EQ(fixed.frame, Frame::kItrf) << name;
+    EXPECT_EQ(fixed.states.at(0).state.position_eci, Vector3(6503514.0, 1239647.0, -717490.0));
+  }
   const OrbitFile file = read_orbits(opm("GCRF"), "state.opm");
   const TimedState& state = file.tracks.at(0).states.at(0);
   EXPECT_EQ(state.time, truth::gps_from_utc("1998-12-18T14:28:15.1172Z"));
@@ -163,6 +226,22 @@ TEST(PublishedTime, CalendarDaysAndDaysOfTheYear) {
   EXPECT_EQ(time("2012-06-29T23:59:60"), std::nullopt);
   EXPECT_EQ(time("1979-06-29T23:59:00"), std::nullopt);
   EXPECT_EQ(time("2023-02-20 12:00:00"), std::nullopt);
+}
+
+// Orekit and products of ESA and DGFI write such times.
+TEST(PublishedTime, SixtySecondsSixtyMinutesAndTwentyFourHoursAreTheNextOnes) {
+  const auto carried = [](const Calendar& c) { return instant_of_carried(c, TimeSystem::kUtc); };
+  EXPECT_EQ(carried({2012, 6, 29, 23, 59, 60.0}), truth::gps_from_utc("2012-06-30T00:00:00Z"));
+  EXPECT_EQ(carried({2011, 7, 18, 1, 4, 60.25}), truth::gps_from_utc("2011-07-18T01:05:00.25Z"));
+  EXPECT_EQ(carried({2011, 7, 18, 1, 60, 0.0}), truth::gps_from_utc("2011-07-18T02:00:00Z"));
+  EXPECT_EQ(carried({2011, 12, 31, 24, 0, 0.0}), truth::gps_from_utc("2012-01-01T00:00:00Z"));
+  // On the day of a leap second these are two instants.
+  EXPECT_EQ(carried({2012, 6, 30, 23, 59, 60.0}), truth::gps_from_utc("2012-06-30T23:59:60Z"));
+  EXPECT_EQ(carried({2012, 6, 30, 24, 0, 0.0}), truth::gps_from_utc("2012-07-01T00:00:00Z"));
+  for (const Calendar& c : {Calendar{2011, 7, 18, 1, 4, 61.0}, Calendar{2011, 7, 18, 1, 61, 0.0},
+                            Calendar{2011, 7, 18, 24, 1, 0.0}, Calendar{2011, 2, 29, 24, 0, 0.0}})
+    EXPECT_EQ(carried(c), std::nullopt) << c.hour << ":" << c.minute << ":" << c.second;
+  EXPECT_EQ(ccsds_time("2011-07-18T01:04:60", TimeSystem::kUtc), std::nullopt) << "CCSDS 301.0-B permits none";
 }
 
 TEST(PublishedTime, LastDayThatIsRead) {

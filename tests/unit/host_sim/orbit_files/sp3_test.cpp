@@ -85,6 +85,32 @@ TEST(Sp3, InterpolationFindsTheStatesLeftOut) {
   EXPECT_THROW(static_cast<void>(state_at(file, all.states[15].time)), std::out_of_range);
 }
 
+TEST(Sp3, TimesThatReachTheNextMinuteOrHour) {
+  const auto plain = read_orbits(published(), "swarm.sp3").tracks.at(0).states;
+  for (const char* time : {"00 00 60.00000000", "00 00 60.0000    "}) {
+    std::string text = published();
+    const std::string_view minute = "*  2022 01 01 00 01 00.00000000";
+    text.replace(text.find(minute), minute.size(), std::string("*  2022 01 01 ") + time);
+    const auto carried = read_orbits("\xEF\xBB\xBF" + text, "swarm.sp3").tracks.at(0).states;
+    ASSERT_EQ(carried.size(), plain.size());
+    EXPECT_EQ(carried[1].time, plain[1].time);
+  }
+}
+
+// A velocity of 0 is a missing one (Hilla 2016): the positions alone determine the orbit then, to centimetres.
+TEST(Sp3, AMissingVelocityLeavesThePositions) {
+  std::string text = published();
+  const std::size_t at = text.find("VL47", text.find("*  2022 01 01 00 15"));
+  text.replace(at + 4, 42, "      0.000000      0.000000      0.000000");
+  const OrbitFile file = read_orbits(text, "swarm.sp3"), complete = read_orbits(published(), "swarm.sp3");
+  EXPECT_FALSE(file.tracks.at(0).has_velocities);
+  const TimedState& expected = complete.tracks.at(0).states.at(15);
+  const FramedState found = state_at(file, expected.time);
+  EXPECT_LT((found.state.position_eci - expected.state.position_eci).norm(), 1e-6);
+  EXPECT_LT((found.state.velocity_eci - expected.state.velocity_eci).norm(), 1e-3);
+  EXPECT_THAT(error_of(published(), "-17433.3412225", "-97433.3412225"), HasSubstr("0.01 to 12 km/s"));
+}
+
 TEST(Sp3, InvalidFilesAreRefusedWithALine) {
   EXPECT_EQ(error_of(published()), "");
   EXPECT_THAT(error_of(published(), "EOF", ""), HasSubstr("expected EOF in its last line"));

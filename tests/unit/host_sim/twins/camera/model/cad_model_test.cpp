@@ -144,6 +144,37 @@ TEST_F(CadFiles, OfObjectsASurfaceCompletesFacesWithoutMaterialOnly) {
   }
 }
 
+// Kd 1 and Ks 1, as Wings 3D writes and the models of NASA's simulator 42 have it.
+TEST_F(CadFiles, MaterialsThatReflectMoreThanTheyReceive) {
+  write("wings.mtl",
+        "newmtl FLAT_WHITE\nNs 100\nKd 1 1 1\nKs 1 1 1\nnewmtl grey\nNs 10\nKd 0.2 0.3 0.4\nKs 0.1 0.1 0.1\n");
+  const std::string text = "mtllib wings.mtl\n" + kCorners + "usemtl grey\nf 1 2 3\nusemtl FLAT_WHITE\n" + kFaces;
+  CadSource source{.file = write("body.obj", text)};
+  try {
+    static_cast<void>(load_cad_model(source));
+    FAIL() << "accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("\"FLAT_WHITE\" reflects more than it receives"),
+                                    HasSubstr("materials = \"scaled\""), HasSubstr("\"surface\"")));
+  }
+  source.materials = CadMaterials::kScaled;
+  // Half of the light each way; what reflects less stays as it is.
+  for (const Material& material : load_cad_model(source).materials) {
+    const bool is_grey = material.name == "grey";
+    EXPECT_NEAR(material.grey_diffuse(), is_grey ? 0.3 : 0.5, 1e-6) << material.name;
+    EXPECT_NEAR(material.grey_specular(), is_grey ? 0.1 : 0.5, 1e-6) << material.name;
+    EXPECT_EQ(material.exponent, is_grey ? 10.0 : 100.0);
+  }
+  source.materials = CadMaterials::kSurface;
+  source.surface = PlainSurface{.diffuse = 0.3, .specular = 0.2, .exponent = 50.0};
+  const CadModel plain = load_cad_model(source);
+  ASSERT_EQ(plain.materials.size(), 1U);
+  EXPECT_DOUBLE_EQ(plain.materials[0].grey_specular(), 0.2);
+  // Nor does a material file that is missing matter then.
+  source.file = write("body.obj", "mtllib none.mtl\n" + kCorners + "usemtl whyte\n" + kFaces);
+  EXPECT_EQ(load_cad_model(source).materials.at(0).grey_diffuse(), 0.3);
+}
+
 TEST_F(CadFiles, AnStlFileNeedsASurface) {
   const auto file =
       write("body.stl",
