@@ -83,11 +83,11 @@ void report_health(const report::Summary& summary) {
   if (!line.empty()) fmt::print("flight software: {}\n", line);
 }
 
+}  // namespace
+
 void report_data(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print("data: {}\n", note);
 }
-
-}  // namespace
 
 std::unique_ptr<AssembledMission> assemble(const mission::Mission& mission, bool start) {
   try {
