@@ -125,9 +125,11 @@ int execute_line(std::vector<std::string> arguments) {
 
 int execute(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "help") {
-    std::vector<std::string> command(argv + 2, argv + argc);
-    command.emplace_back("--help");
-    return execute_line(std::move(command));
+    std::string help = "--help";
+    std::vector<char*> command(argv, argv + argc);
+    command.erase(command.begin() + 1);
+    command.insert(command.end(), {help.data(), nullptr});
+    return execute(argc, command.data());
   }
   CLI::App program{"Flight-software harness for spacecraft rendezvous and formation flying"};
   program.require_subcommand(1);
