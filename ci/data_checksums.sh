@@ -4,4 +4,4 @@
 set -euo pipefail
 cd "$(dirname "$0")/../data"
 export LC_ALL=C
-find . -mindepth 2 -type f -not -name README.md -not -name '*.py' | sort | sed 's|^\./||' | xargs sha256sum >SHA256SUMS
+find . -type f -not -name SHA256SUMS -not -name README.md -not -name '*.py' | sort | sed 's|^\./||' | xargs sha256sum >SHA256SUMS

@@ -51,10 +51,6 @@ def vbar(build, *arguments):
     return subprocess.run([str(build / "vbar"), *arguments], cwd=ROOT, capture_output=True, text=True, timeout=3600)
 
 
-def short(sha256):
-    return f"`{sha256[:16]}…`"
-
-
 def mission_rows(summary):
     legs = {w["index"]: w["leg_dv_mps"] for w in summary["waypoints"]}
     far = sum(v for k, v in legs.items() if k <= 7)
@@ -75,6 +71,15 @@ def table(head, rows):
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
     return "\n".join(lines)
+
+
+def yes(good):
+    return "yes" if good else "**no**"
+
+
+def mission_table(summary):
+    """The figures of ideal_navigation with their limits, as on the page."""
+    return table(["quantity", "result", "at most", "met"], [(a, b, c, yes(d)) for a, b, c, d in mission_rows(summary)])
 
 
 def replace_section(page, lines):
@@ -129,7 +134,6 @@ def main():
 
     rows = mission_rows(reference)
     ok = all(met for _, met in sections) and all(r[3] for r in rows) and all(same(s) for _, s in flown) and all(r[1] for r in replays)
-    yes = lambda good: "yes" if good else "**no**"
     text = [
         "# Verification",
         "",
@@ -138,12 +142,15 @@ def main():
         "",
         "## Mission results and their limits (in process)",
         "",
-        table(["quantity", "result", "at most", "met"], [(a, b, c, yes(d)) for a, b, c, d in rows]),
+        mission_table(reference),
         "",
         "## Bit-identical results on every flight computer",
         "",
-        table(["flight computer", "commands_sha256", "telemetry_sha256", "same", "wall s", "largest step", "stack bytes"],
-              [(name, short(s["commands_sha256"]), short(s["telemetry_sha256"]), yes(same(s)), f"{s['wall_s']:.1f}",
+        "Commands and telemetry against those of the run in process; [first_hour.md](first_hour.md#the-same-bits-elsewhere) prints the hashes of",
+        "the present software.",
+        "",
+        table(["flight computer", "same bits", "wall s", "largest step", "stack bytes"],
+              [(name, yes(same(s)), f"{s['wall_s']:.1f}",
                 "-" if s["flight_step"]["unit"] == "none" else f"{s['flight_step']['max']:,} {s['flight_step']['unit']}",
                 s["flight_step"]["stack_bytes_max"] or "-") for name, s in flown]),
         "",

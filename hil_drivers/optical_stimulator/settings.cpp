@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "hil_drivers/bench_process/bench_calibration_file.h"
+
 namespace vbar::optical_stimulator {
 namespace {
 
@@ -19,10 +21,10 @@ std::string address(const TableReader& section, std::string_view key, bool is_re
   return value;
 }
 
-void replace_all(std::string& text, std::string_view what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-    text.replace(at, what.size(), by);
-}
+constexpr const char* kEmulated =
+    "vbar os_calibrate --seed {N} --out {out} "
+    "--bench \"vbar_os_bench {data}/benches/optical_stimulator.toml --directory {directory} --seed {seed}\"";
+constexpr const char* kHardware = "vbar os_calibrate --camera IP --x-display :0 --rails LINE --out {out}";
 
 }  // namespace
 
@@ -50,10 +52,10 @@ std::shared_ptr<const mission::TestbedSettings> read_optical_stimulator(const Ta
 
 std::filesystem::path calibration_file(const OpticalStimulatorSettings& settings,
                                        const std::filesystem::path& data_directory, std::uint64_t seed) {
-  std::string path = settings.calibration;
-  replace_all(path, "{data}", data_directory.string());
-  replace_all(path, "{seed}", std::to_string(seed));
-  return path;
+  return bench_process::bench_calibration_file(
+      settings.calibration, data_directory, seed,
+      {"testbed.optical_stimulator", settings.bench.empty() ? kHardware : kEmulated,
+       "some minutes (less than one with --quick)"});
 }
 
 }  // namespace vbar::optical_stimulator

@@ -1,5 +1,6 @@
 #include "hil_drivers/tron/settings.h"
 
+#include "hil_drivers/bench_process/bench_calibration_file.h"
 #include "host_sim/files/replaced.h"
 
 namespace vbar::tron {
@@ -32,6 +33,18 @@ std::shared_ptr<const mission::TestbedSettings> read_tron(const TableReader& sec
       std::chrono::seconds(section.integer("operator_timeout_s", 1, 100'000, tron.operator_timeout.count()));
   section.finish();
   return settings;
+}
+
+std::filesystem::path calibration_file(const TronSettings& settings, const std::filesystem::path& data_directory,
+                                       std::uint64_t seed) {
+  const std::string laboratory = replaced(settings.laboratory, data_directory, seed).string();
+  const std::filesystem::path folder = replaced(settings.calibration, data_directory, seed).parent_path();
+  std::string command = "vbar tron calibrate " + laboratory + " --seed {N} --out " + (folder / "").string();
+  if (!settings.bench.empty())
+    command += " --bench \"vbar_tron_bench {data}/benches/tron_emulated.toml --directory {directory} --seed {seed}\"";
+  return bench_process::bench_calibration_file(
+      settings.calibration, data_directory, seed,
+      {"testbed.tron", command, "a quarter of an hour of one processor (half of it with --quick)"});
 }
 
 std::filesystem::path replaced(std::string path, const std::filesystem::path& data_directory, std::uint64_t seed) {

@@ -32,6 +32,10 @@ struct TronSettings : mission::TestbedSettings {
 /// Throws MissionError.
 std::shared_ptr<const mission::TestbedSettings> read_tron(const mission::TableReader& section);
 
+/// The file of the calibration. Throws MissionError if there is none.
+[[nodiscard]] std::filesystem::path calibration_file(const TronSettings& settings,
+                                                     const std::filesystem::path& data_directory, std::uint64_t seed);
+
 /// `path` with {data} and {seed} replaced.
 [[nodiscard]] std::filesystem::path replaced(std::string path, const std::filesystem::path& data_directory,
                                              std::uint64_t seed);

@@ -15,7 +15,7 @@ testbeds::CalibratedCamera calibrated(const mission::TestbedSettings& settings, 
                                       const std::filesystem::path& data_directory,
                                       const twins::camera::CameraSettings& of_mission) {
   const auto& own = dynamic_cast<const TronSettings&>(settings);
-  const Calibration calibration = load_calibration(replaced(own.calibration, data_directory, mission.seed));
+  const Calibration calibration = load_calibration(calibration_file(own, data_directory, mission.seed));
   return {calibrated_camera(calibration, of_mission), std::nullopt};
 }
 

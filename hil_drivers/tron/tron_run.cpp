@@ -66,7 +66,7 @@ TronRun::TronRun(const TronSettings& settings, const testbeds::RunContext& conte
     : settings_(settings),
       context_(context),
       laboratory_file_(replaced(settings.laboratory, context.data_directory, context.mission.seed)),
-      calibration_file_(replaced(settings.calibration, context.data_directory, context.mission.seed)) {}
+      calibration_file_(calibration_file(settings, context.data_directory, context.mission.seed)) {}
 
 TronRun::~TronRun() {
   close();

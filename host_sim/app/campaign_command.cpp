@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "host_sim/app/build_info.h"
+#include "host_sim/app/command_line.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/app/stop_request.h"
 #include "host_sim/campaign/collect.h"
@@ -38,10 +39,10 @@ void add_run(CLI::App& campaign, int& exit_code, const campaign::CommandLine& co
   run->add_option("campaign", request->campaign, "campaign file (TOML), or the folder of a campaign")->required();
   run->add_option("--out", request->out, "folder of a new campaign; runs/campaign-NAME unless given");
   run->add_option("--jobs", request->jobs, "flights at once; local: as many as processors, else 1 for each worker")
-      ->check(CLI::PositiveNumber);
+      ->check(integer_from(1));
   run->add_option("--engine", request->engine, "where the workers run: local, slurm or command");
   run->add_option("--workers", request->workers, "of slurm and command; by the work unless given")
-      ->check(CLI::PositiveNumber);
+      ->check(integer_from(1));
   run->add_option("--sbatch", *sbatch, "slurm: options of sbatch, e.g. \"--partition=x --time=2:00:00\"");
   run->add_option("--submit", *submit, "command: what starts a worker, e.g. \"qsub -b y {worker}\"");
   run->add_option("--cases", request->cases, "only these, e.g. 0-99,417");
@@ -92,9 +93,9 @@ int report(const std::filesystem::path& root) {
   const campaign::Folder folder(root);
   const campaign::Standing standing = campaign::read_standing(folder);
   campaign::write_results(folder, standing);
-  campaign::write_page(folder.root());
+  const std::filesystem::path page = campaign::write_page(folder.root());
   fmt::print("{}results  {}\npage     {}\n", campaign::status_text(standing, {}), folder.results().string(),
-             (folder.root() / "campaign.html").string());
+             page.string());
   return standing.results.conflicts.empty() ? kDone : kFailed;
 }
 
@@ -147,7 +148,7 @@ void add_worker(CLI::App& campaign, int& exit_code, const campaign::CommandLine&
   command->add_option("k", request->k, "number of this worker")->required();
   command->add_option("n", request->n, "number of workers")->required();
   command->add_option("--todo", request->todo, "numbers of the cases, one a line; all without a result unless given");
-  command->add_option("--jobs", request->jobs, "flights at once")->check(CLI::PositiveNumber);
+  command->add_option("--jobs", request->jobs, "flights at once")->check(integer_from(1));
   command->add_flag("--trust", request->trust, kTrustHelp);
   command->callback([=, &exit_code] {
     catch_stop_signals();

@@ -9,6 +9,7 @@
 #include "hil_drivers/testbeds.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
+#include "host_sim/mission/word_search.h"
 #include "host_sim/report/run_tables.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
@@ -32,7 +33,7 @@ void print_markdown(const std::vector<DescribedTable>& tables) {
   fmt::print(
       "# Columns of the tables of a run\n\nWritten by `vbar columns --markdown`. [run_folder.md](run_folder.md) states "
       "what a row of each table is. A name ends in its unit, unless the meaning states it: `mps` m/s, `radps` rad/s. "
-      "`vbar columns WORD` prints those that contain a word.\n");
+      "`vbar columns WORD` prints those with a word.\n");
   for (const DescribedTable& table : tables) {
     fmt::print("\n## {}\n\n| column | meaning |\n|---|---|\n", table.file);
     const std::vector<TableColumn>& columns = table.columns;
@@ -48,16 +49,21 @@ void print_markdown(const std::vector<DescribedTable>& tables) {
 }
 
 int print_lines(const std::vector<DescribedTable>& tables, const std::string& word) {
-  int printed = 0;
-  for (const DescribedTable& table : tables)
-    for (const TableColumn& column : table.columns) {
-      const std::string name = table.file + " " + column.name;
-      if (name.find(word) == std::string::npos && column.meaning.find(word) == std::string::npos) continue;
-      fmt::print("{}: {}\n", name, column.meaning);
-      ++printed;
-    }
-  if (printed > 0) return kDone;
-  fmt::print(stderr, "vbar: no column of a table contains '{}'\n", word);
+  bool has_printed = false;
+  std::vector<std::string> names;
+  // Whole words before beginnings of words.
+  for (const mission::Match match : {mission::Match::kWord, mission::Match::kWordStart})
+    for (const DescribedTable& table : tables)
+      for (const TableColumn& column : table.columns) {
+        const std::string name = table.file + " " + column.name;
+        if (std::max(mission::match_of(word, name), mission::match_of(word, column.meaning)) == match) {
+          fmt::print("{}: {}\n", name, column.meaning);
+          has_printed = true;
+        }
+        names.push_back(name);
+      }
+  if (has_printed) return kDone;
+  fmt::print(stderr, "vbar: no column of a table has the word '{}'{}\n", word, mission::word_meant(word, names));
   return kRefused;
 }
 

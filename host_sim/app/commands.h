@@ -92,7 +92,7 @@ int serve_command(const ServeOptions& options);
 int keys_command(const std::string& word, bool markdown);
 int columns_command(const std::string& word, bool markdown);
 
-/// `folder` empty: mission::missions_directory().
-int missions_command(const std::filesystem::path& folder);
+/// The missions of a folder, or one by its name or file. Empty: those of mission::missions_directory().
+int missions_command(const std::filesystem::path& folder_or_mission);
 
 }  // namespace vbar::app

@@ -1,8 +1,8 @@
 // vbar keys: the reference of mission files.
 
 #include <algorithm>
+#include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <fmt/core.h>
@@ -12,7 +12,7 @@
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/mission/catalogue.h"
 #include "host_sim/mission/key_reference.h"
-#include "host_sim/mission/nearest_name.h"
+#include "host_sim/mission/word_search.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
@@ -30,9 +30,9 @@ void print_markdown(const std::vector<DescribedKey>& keys) {
   fmt::print(
       "# Keys of mission files\n\nWritten by `vbar keys --markdown` from the readers of mission files, for the "
       "missions of this "
-      "repository; meanings are the comments of the first mission that shows a key. `vbar keys WORD` prints those that "
-      "contain "
-      "a word.\n");
+      "repository, and from data/mission_keys.toml, which has the meaning of each. `vbar keys WORD` prints those with "
+      "a "
+      "word.\n");
   const std::string* table = nullptr;
   for (const DescribedKey& entry : keys) {
     if (entry.key.accepted == mission::kTable) continue;  // it has its own heading
@@ -50,23 +50,31 @@ std::string name_of(const DescribedKey& entry) {
   return entry.table.empty() ? entry.key.name : entry.table + "." + entry.key.name;
 }
 
-int print_lines(const std::vector<DescribedKey>& keys, const std::string& word) {
-  int printed = 0;
-  std::vector<std::string_view> names;
-  for (const DescribedKey& entry : keys) {
-    if (entry.key.accepted == mission::kTable) continue;
-    names.push_back(entry.key.name);
-    const std::string name = name_of(entry);
-    if (name.find(word) == std::string::npos && entry.meaning.find(word) == std::string::npos) continue;
-    fmt::print("{}\n    {}{}{}\n", name, entry.key.accepted,
-               entry.key.default_value.empty() ? "" : "; default " + entry.key.default_value,
-               entry.meaning.empty() ? "" : "\n    " + entry.meaning);
-    ++printed;
-  }
-  if (printed > 0) return kDone;
-  const auto nearest = mission::nearest_name(word, names);
-  fmt::print(stderr, "vbar: no key of a mission contains '{}'{}\n", word,
-             nearest ? fmt::format(" (did you mean {}?)", *nearest) : "");
+void print_entry(const DescribedKey& entry) {
+  std::string accepted = entry.key.accepted;
+  if (!entry.key.default_value.empty()) accepted += "; default " + entry.key.default_value;
+  fmt::print("{}\n", name_of(entry));
+  if (!accepted.empty()) fmt::print("    {}\n", accepted);
+  fmt::print("    {}\n", entry.meaning);
+}
+
+/// Names before meanings, and whole words before beginnings of words.
+int rank_of(const DescribedKey& entry, const std::string& word) {
+  const auto by_name = static_cast<int>(mission::match_of(word, name_of(entry)));
+  const auto by_meaning = static_cast<int>(mission::match_of(word, entry.meaning));
+  return std::max(2 * by_name, by_meaning);
+}
+
+int print_lines(std::vector<DescribedKey> keys, const std::string& word) {
+  std::erase_if(keys, [](const DescribedKey& entry) { return entry.key.accepted == mission::kTable; });
+  std::vector<std::string> names;
+  for (const DescribedKey& entry : keys) names.push_back(name_of(entry));
+  std::erase_if(keys, [&](const DescribedKey& entry) { return rank_of(entry, word) == 0; });
+  std::ranges::stable_sort(keys, std::ranges::greater(),
+                           [&](const DescribedKey& entry) { return rank_of(entry, word); });
+  std::ranges::for_each(keys, print_entry);
+  if (!keys.empty()) return kDone;
+  fmt::print(stderr, "vbar: no key of a mission has the word '{}'{}\n", word, mission::word_meant(word, names));
   return kRefused;
 }
 

@@ -18,7 +18,9 @@
 #include "hil_drivers/testbeds.h"
 #include "host_sim/app/build_info.h"
 #include "host_sim/app/campaign_command.h"
+#include "host_sim/app/command_line.h"
 #include "host_sim/app/commands.h"
+#include "host_sim/app/completion_command.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/files/own_program.h"
 #include "host_sim/files/text_lines.h"
@@ -46,7 +48,7 @@ void add_resume(CLI::App& command, ResumeOptions& resume) {
       "--at", resume.branch_at_h, "leave the run as it is, and fly a branch of it from this hour of the mission on");
   add_set(&command, resume.overrides);
   CLI::Option* set = command.get_option("--set")->needs(at);
-  at->needs(set)->check(CLI::NonNegativeNumber);
+  at->needs(set)->check(number_from(0.0));
   command
       .add_option("--out", resume.out,
                   "folder of the branch; by default runs/<mission>-<seed>, the next run .2, .3, ...")
@@ -121,6 +123,8 @@ int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code
     return complain(message.c_str(), kRefused);
   try {
     program.parse(argc, argv);
+  } catch (const CLI::ExtrasError&) {
+    return complain(unexpected_argument(program).c_str(), kRefused);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? kDone : kRefused;
   } catch (const vbar::testbeds::DriverElsewhere& elsewhere) {
@@ -149,6 +153,13 @@ int execute_line(std::vector<std::string> arguments) {
 }
 
 int execute(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "help") {
+    std::string help = "--help";
+    std::vector<char*> command(argv, argv + argc);
+    command.erase(command.begin() + 1);
+    command.insert(command.end(), {help.data(), nullptr});
+    return execute(argc, command.data());
+  }
   CLI::App program{"Flight-software harness for spacecraft rendezvous and formation flying"};
   program.require_subcommand(1);
   program.footer(fmt::format("{}\n\n{}", kOtherProgramsHelp, kExitCodeHelp));
@@ -161,7 +172,7 @@ int execute(int argc, char** argv) {
   CLI::App* run_app = program.add_subcommand("run", "fly a mission and leave a run folder");
   run_app->add_option("mission", run.mission, kMissionHelp)->required();
   const CLI::Option* seed_option =
-      run_app->add_option("--seed", seed, "seed of every random stream (mission.seed)")->check(CLI::NonNegativeNumber);
+      run_app->add_option("--seed", seed, "seed of every random stream (mission.seed)")->check(integer_from(0));
   run_app->add_option("--out", run.out, "run folder; by default runs/<mission>-<seed>, the next run .2, .3, ...");
   run_app->add_flag("--force", run.force, "replace the run that the folder of --out holds");
   run_app->add_flag("--check", run.check, "check the mission file and fly nothing");
@@ -192,7 +203,7 @@ int execute(int argc, char** argv) {
       replay_app->add_option("--save", replay.save, "write a snapshot of the flight software to a file");
   replay_app->add_option("--at-h", replay.save_at_h, "with --save: after the last step until this hour of the mission")
       ->needs(save)
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from(0.0));
   replay_app->add_option("--from", replay.from, "continue from a snapshot, at the step after it");
   add_set(replay_app, replay.overrides);
   replay_app->callback([&] { exit_code = replay_command(replay); });
@@ -227,20 +238,20 @@ int execute(int argc, char** argv) {
 
   std::filesystem::path missions;
   CLI::App* missions_app = program.add_subcommand("missions", "what can be run, one line each");
-  missions_app->add_option("folder", missions, "folder of mission files");
+  missions_app->add_option("mission", missions, "folder of mission files, or one mission by its name or file");
   missions_app->callback([&] { exit_code = missions_command(missions); });
 
   std::string key_word;
   bool key_page = false;
   CLI::App* keys_app = program.add_subcommand("keys", "keys of mission files: what is accepted, defaults, meaning");
-  CLI::Option* word_option = keys_app->add_option("word", key_word, "part of a key, of its table or of its meaning");
+  CLI::Option* word_option = keys_app->add_option("word", key_word, "word of a key, of its table or of its meaning");
   keys_app->add_flag("--markdown", key_page, "all of them, as docs/keys.md")->excludes(word_option);
   keys_app->callback([&] { exit_code = keys_command(key_word, key_page); });
 
   std::string column_word;
   bool column_page = false;
   CLI::App* columns_app = program.add_subcommand("columns", "columns of the tables of a run: names and meaning");
-  CLI::Option* column_option = columns_app->add_option("word", column_word, "part of a table, a column or its meaning");
+  CLI::Option* column_option = columns_app->add_option("word", column_word, "word of a table, a column or its meaning");
   columns_app->add_flag("--markdown", column_page, "all of them, as docs/tables.md")->excludes(column_option);
   columns_app->callback([&] { exit_code = columns_command(column_word, column_page); });
 
@@ -255,9 +266,11 @@ int execute(int argc, char** argv) {
       "serve",
       "be a digital sensor, or the truth, of a run that has it as testbed.external (docs/external_sources.md)");
   serve_app->add_option("mission", serve.mission, kMissionHelp)->required();
-  serve_app->add_option("--stream", serve.stream, "descriptor of the line, inherited")->check(CLI::NonNegativeNumber);
+  serve_app->add_option("--stream", serve.stream, "descriptor of the line, inherited")->check(integer_from(0));
   add_set(serve_app, serve.overrides);
   serve_app->callback([&] { exit_code = serve_command(serve); });
+
+  add_completion_command(program, exit_code);
 
   const int result = parse_and_run(program, argc, argv, exit_code);
   return after_output(program, result);

@@ -9,9 +9,16 @@
 
 namespace vbar::app {
 
-int missions_command(const std::filesystem::path& folder) {
-  const std::vector<mission::CatalogueEntry> entries =
-      mission::list_missions(folder.empty() ? mission::missions_directory() : folder, sensors::installation());
+int missions_command(const std::filesystem::path& folder_or_mission) {
+  std::error_code error;
+  std::vector<mission::CatalogueEntry> entries;
+  if (folder_or_mission.empty() || std::filesystem::is_directory(folder_or_mission, error)) {
+    entries = mission::list_missions(folder_or_mission.empty() ? mission::missions_directory() : folder_or_mission,
+                                     sensors::installation());
+  } else {
+    const mission::Installation installation = sensors::installation();
+    entries = {mission::entry_of(mission::find_mission(folder_or_mission, installation), installation)};
+  }
   std::size_t width = 0;
   for (const mission::CatalogueEntry& entry : entries) width = std::max(width, entry.name.size());
   for (const mission::CatalogueEntry& entry : entries) fmt::print("{}\n", mission::line_of(entry, width));

@@ -103,11 +103,11 @@ void report_line(const report::Summary::Link& link) {
                link.baud);
 }
 
+}  // namespace
+
 void report_data(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print("data: {}\n", note);
 }
-
-}  // namespace
 
 std::unique_ptr<AssembledMission> assemble(const mission::Mission& mission, bool start) {
   try {

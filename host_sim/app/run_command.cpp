@@ -27,7 +27,10 @@ int run_command(const RunOptions& options) {
   catch_stop_signals();
   const std::unique_ptr<AssembledMission> assembled = assemble(mission, !options.check);
   if (options.check) {
-    if (!options.quiet) fmt::print("{}: can be flown\n", options.mission.string());
+    if (!options.quiet) {
+      report_data(assembled->data_notes());
+      fmt::print("{}: can be flown\n", options.mission.string());
+    }
     return kDone;
   }
   report::RunRecord record = record_at_start(order);

@@ -21,6 +21,7 @@
 #include "host_sim/campaign/status.h"
 #include "host_sim/campaign/trust.h"
 #include "host_sim/campaign/worker.h"
+#include "host_sim/campaign_report/write_page.h"
 #include "host_sim/report/run_lock.h"
 #include "host_sim/report/text_file.h"
 
@@ -180,9 +181,10 @@ int conclude(const RunRequest& request, const Folder& folder) {
   for (const auto& [number, result] : standing.results.of_case) results.push_back(result);
   remove_outdone_runs(standing.plan, results, folder);
   write_results(folder, standing);
+  const fs::path page = write_page(folder.root());
   if (!request.quiet) {
     fmt::print("{}", status_text(standing, {}));
-    fmt::print("results  {}\n", folder.results().string());
+    fmt::print("results  {}\npage     {}\n", folder.results().string(), page.string());
   }
   refuse_conflicts(standing);
   if (!standing.left_to_fly(false).empty()) return app::kInterrupted;

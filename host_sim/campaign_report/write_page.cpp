@@ -22,11 +22,13 @@ std::string page_of(const Campaign& campaign, const std::string& folder_name) {
 
 namespace vbar::campaign {
 
-void write_page(const std::filesystem::path& folder) {
+std::filesystem::path write_page(const std::filesystem::path& folder) {
   const campaign_report::Campaign campaign = campaign_report::read_campaign(folder);
   const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
   const std::filesystem::path name = whole.has_filename() ? whole.filename() : whole.parent_path().filename();
-  report::replace_text_file(folder / "campaign.html", campaign_report::page_of(campaign, name.string()));
+  std::filesystem::path page = folder / "campaign.html";
+  report::replace_text_file(page, campaign_report::page_of(campaign, name.string()));
+  return page;
 }
 
 }  // namespace vbar::campaign

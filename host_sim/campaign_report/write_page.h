@@ -17,7 +17,8 @@ namespace vbar::campaign {
 
 /// Reads campaign.json and results.csv of the folder, of a campaign that has ended or still runs, and writes
 /// campaign.html. The same two files give the same page. Throws std::runtime_error that names what is missing or wrong;
-/// a page that was there before then still is.
-void write_page(const std::filesystem::path& folder);
+/// a page that was there before then still is. The
+/// path of the page.
+std::filesystem::path write_page(const std::filesystem::path& folder);
 
 }  // namespace vbar::campaign

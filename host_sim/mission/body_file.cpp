@@ -1,5 +1,6 @@
 #include "host_sim/mission/body_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -18,6 +19,8 @@ namespace vbar::mission {
 namespace {
 
 using fsw::Vector3;
+
+constexpr const char* kBodies = "bodies";  // of the data folder
 
 constexpr Range kLength_m = from_to(-1000.0, 1000.0);
 
@@ -149,8 +152,19 @@ std::vector<Vector3> load_keypoints(const std::filesystem::path& file, std::size
   return load(file, count).keypoints_m;
 }
 
+std::vector<std::string> body_names(const std::filesystem::path& data_directory) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(data_directory / kBodies, error), end; !error && it != end;
+       it.increment(error))
+    if (it->path().extension() == ".toml") names.push_back(it->path().stem().string());
+  std::ranges::sort(names);
+  return names;
+}
+
 std::filesystem::path body_file_of(const std::filesystem::path& data_directory, const std::string& name) {
-  return data_directory / "bodies" / (name + ".toml");
+  if (std::filesystem::path named(name); named.is_absolute()) return named;
+  return data_directory / kBodies / (name + ".toml");
 }
 
 twins::camera::CadSource cad_source_of(const std::filesystem::path& data_directory, const std::string& model) {

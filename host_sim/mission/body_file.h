@@ -31,7 +31,10 @@ namespace vbar::mission {
 [[nodiscard]] std::map<std::string, twins::camera::CadSource> cad_sources_of(
     const std::filesystem::path& data_directory, std::span<const std::string> models);
 
-/// The body file of a name.
+/// The names of the body files in the data folder, in alphabetical order.
+[[nodiscard]] std::vector<std::string> body_names(const std::filesystem::path& data_directory);
+
+/// The body file of a name; of an absolute path, that file.
 [[nodiscard]] std::filesystem::path body_file_of(const std::filesystem::path& data_directory, const std::string& name);
 
 }  // namespace vbar::mission

@@ -11,7 +11,6 @@
 #include "host_sim/mission/nearest_name.h"
 
 namespace vbar::mission {
-namespace {
 
 CatalogueEntry entry_of(const std::filesystem::path& file, const Installation& installation) {
   const files::UnrecordedReads looked_at;
@@ -30,6 +29,8 @@ CatalogueEntry entry_of(const std::filesystem::path& file, const Installation& i
   return entry;
 }
 
+namespace {
+
 /// The file NAME.toml, if the mission in it has that name: the others need not be loaded.
 std::optional<std::filesystem::path> file_of_that_name(const std::filesystem::path& name,
                                                        const Installation& installation) {
@@ -45,15 +46,19 @@ std::optional<std::filesystem::path> file_of_that_name(const std::filesystem::pa
 
 }  // namespace
 
-std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder, const Installation& installation) {
+std::vector<std::filesystem::path> mission_files(const std::filesystem::path& folder) {
   std::error_code error;
   std::vector<std::filesystem::path> files;
   for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
     if (it->path().extension() == ".toml") files.push_back(it->path());
   if (error) throw MissionError(folder.string(), "", "no folder that can be read", "a folder of mission files");
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder, const Installation& installation) {
   std::vector<CatalogueEntry> entries;
-  for (const auto& file : files) entries.push_back(entry_of(file, installation));
+  for (const auto& file : mission_files(folder)) entries.push_back(entry_of(file, installation));
   return entries;
 }
 

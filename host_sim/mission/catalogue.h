@@ -18,6 +18,12 @@ struct CatalogueEntry {
 };
 
 /// Every *.toml file of `folder`, in order of file name. Throws MissionError if there is no such folder.
+[[nodiscard]] std::vector<std::filesystem::path> mission_files(const std::filesystem::path& folder);
+
+/// A mission file, loaded.
+[[nodiscard]] CatalogueEntry entry_of(const std::filesystem::path& file, const Installation& installation);
+
+/// The files of a folder, loaded.
 [[nodiscard]] std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder,
                                                         const Installation& installation);
 

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "host_sim/mission/alternatives.h"
+#include "host_sim/mission/catalogue.h"
 #include "host_sim/mission/mission_error.h"
+#include "host_sim/mission/nearest_name.h"
 #include "host_sim/mission/table_reader.h"
 #include "host_sim/mission/toml_file.h"
 
@@ -63,6 +65,33 @@ void put_over(toml::table& base, toml::table& own) {
   }
 }
 
+/// The file of a name in `extends`: seen from the file that extends, or a mission of the catalogue.
+std::filesystem::path extended_file(const TableReader& reader, const std::filesystem::path& file,
+                                    const std::string& name) {
+  std::error_code error;
+  std::filesystem::path beside = file.parent_path() / name;
+  if (std::filesystem::exists(beside, error)) return beside;
+  std::vector<std::filesystem::path> bundled;
+  try {
+    bundled = mission_files(missions_directory());
+  } catch (const std::exception&) {  // without a catalogue only a file is possible
+  }
+  std::vector<std::string> names;
+  for (std::filesystem::path& other : bundled) {
+    names.push_back(other.stem().string());
+    if (names.back() == name) return std::move(other);
+  }
+  reader.refuse("extends",
+                "\"" + name + "\", which is neither a file nor a mission" +
+                    did_you_mean(std::filesystem::path(name).stem().string(), {names.begin(), names.end()}),
+                "a mission file, seen from this one, or a name that vbar missions lists");
+}
+
+/// A mission that extends another has a name of its own.
+void drop_name(toml::table& document) {
+  if (toml::table* const general = document["mission"].as_table()) general->erase("name");
+}
+
 void resolve(toml::table& document, const std::filesystem::path& file, int depth) {
   const TableReader reader(document, file.string());
   if (!reader.has("extends")) return;
@@ -72,23 +101,26 @@ void resolve(toml::table& document, const std::filesystem::path& file, int depth
   if (names.empty()) reader.refuse("extends", "no file", "a mission file, or an array of them");
   toml::table base;
   for (const std::string& name : names) {
-    const std::filesystem::path other = file.parent_path() / name;
-    toml::table one = [&] {
-      try {
-        return parse_toml(read_text_file(other, "a mission file (TOML)"), other.string());
-      } catch (const MissionError& error) {
-        reader.refuse("extends", std::string("an invalid file: ") + error.what(), "a mission file");
-      }
-    }();
+    const std::filesystem::path other = extended_file(reader, file, name);
+    toml::table one = parse_toml(read_text_file(other, "a mission file (TOML)"), other.string());
     resolve(one, other, depth + 1);
     put_over(base, one);
   }
+  drop_name(base);
   document.erase("extends");
   put_over(base, document);
   document = std::move(base);
 }
 
 }  // namespace
+
+std::string name_of_file(const std::filesystem::path& file) {
+  constexpr std::size_t kLongest = 64;
+  std::string name = file.stem().string().substr(0, kLongest);
+  for (char& letter : name)
+    if (!is_name({&letter, 1})) letter = '_';
+  return name;
+}
 
 void put_over_extended(toml::table& document, const std::filesystem::path& file) {
   resolve(document, file, 0);
@@ -99,6 +131,9 @@ std::string whole_mission_text(const std::filesystem::path& file) {
   toml::table document = parse_toml(own, file.string());
   if (!document.contains("extends")) return own;
   put_over_extended(document, file);
+  // The text may be kept under another name.
+  if (toml::table* const general = document["mission"].as_table(); general != nullptr && !general->contains("name"))
+    general->insert("name", name_of_file(file));
   std::ostringstream text;
   text << document << '\n';
   return text.str();

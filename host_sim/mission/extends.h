@@ -8,11 +8,15 @@
 
 namespace vbar::mission {
 
-/// Replaces `document`, if it has the key `extends`, by the file it names (relative to `file`; it may extend another
-/// in turn), of several each put over those before it, with `document` put over it: tables key by key; a [[spacecraft]]
-/// of the same name and a [[waypoint]] of the same index likewise, others are appended; every other value, arrays
-/// included, replaces the old one, and the keys that it excludes (alternatives.h). Throws MissionError for a file that
-/// cannot be read, and for a chain of more than four.
+/// A mission that does not state its name has that of its file: letters that no name can have become '_'.
+[[nodiscard]] std::string name_of_file(const std::filesystem::path& file);
+
+/// Replaces `document`, if it has the key `extends`, by the file it names (relative to `file`, or
+/// a mission of the catalogue by its name; it may extend another in turn), of several each put over those before it,
+/// with `document` put over it: tables key by key; a [[spacecraft]] of the same name and a [[waypoint]] of the same
+/// index likewise, others are appended; every other value, arrays included, replaces the old one, and the keys that it
+/// excludes (alternatives.h). Throws MissionError for a file that cannot be read, and for a chain of more than four. A
+/// name of the mission is not taken over.
 void put_over_extended(toml::table& document, const std::filesystem::path& file);
 
 /// The file without dependence on others: its own text if it extends nothing, else its merged content, in TOML

@@ -5,7 +5,6 @@
 #include <map>
 #include <sstream>
 #include <string_view>
-#include <utility>
 
 #include "host_sim/mission/catalogue.h"
 #include "host_sim/mission/load.h"
@@ -20,49 +19,19 @@ bool is_number(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+constexpr const char* kMeanings = "mission_keys.toml";  // of the data folder
 
-/// Position of the comment's '#', outside texts.
-std::size_t comment_of(std::string_view line) {
-  char quote = '\0';
-  for (std::size_t k = 0; k < line.size(); ++k) {
-    if (quote == '\0' && (line[k] == '"' || line[k] == '\'')) {
-      quote = line[k];
-    } else if (line[k] == quote) {
-      quote = '\0';
-    } else if (quote == '\0' && line[k] == '#') {
-      return k;
-    }
-  }
-  return std::string_view::npos;
-}
-
-using Meanings = std::map<std::pair<std::string, std::string>, std::string>;  // by table and key
-
-/// Adds the comments behind the keys of a file that no file before it had.
-void add_meanings(const std::string& file_text, Meanings& meanings) {
-  std::istringstream lines(file_text);
-  std::string table;
-  for (std::string line; std::getline(lines, line);) {
-    const std::string_view text = trimmed(line);
-    if (text.starts_with('[')) {
-      table = std::string(text.substr(0, text.find(']')));
-      std::erase(table, '[');
-      continue;
-    }
-    const std::size_t comment = comment_of(text), equals = text.find('=');
-    if (comment == std::string_view::npos || equals == std::string_view::npos || equals > comment) continue;
-    meanings.try_emplace({table, std::string(trimmed(text.substr(0, equals)))}, trimmed(text.substr(comment + 1)));
-  }
+/// The meaning of a key in the file of meanings, whose tables are those of a mission.
+std::string meaning_of(const toml::table& meanings, const std::string& table, const std::string& key) {
+  const toml::node_view<const toml::node> root(meanings);
+  const auto section = table.empty() ? root : meanings.at_path(table);
+  return section[key].value_or(std::string());
 }
 
 using Tables = std::map<std::string, std::vector<AcceptedKey>>;
 
-/// Of two sensors of one kind the first one, by name, stands for both: another whose keys it has is taken out.
+/// Of two sensors of one kind, whose twin has one name, the first one by name stands for both: another whose keys it
+/// has is taken out.
 void list_each_kind_once(Tables& tables) {
   constexpr std::string_view kSensors = "spacecraft.sensors.";
   const auto inside = [&](const std::string& table) {
@@ -71,7 +40,8 @@ void list_each_kind_once(Tables& tables) {
   };
   const auto has_all = [](const std::vector<AcceptedKey>& keys, const std::vector<AcceptedKey>& others) {
     return std::ranges::all_of(others, [&](const AcceptedKey& key) {
-      return std::ranges::find(keys, key.name, &AcceptedKey::name) != keys.end();
+      const auto known = std::ranges::find(keys, key.name, &AcceptedKey::name);
+      return known != keys.end() && (key.name != "source" || known->default_value == key.default_value);
     });
   };
   for (auto first = tables.begin(); first != tables.end(); ++first) {
@@ -101,9 +71,9 @@ std::string table_of_path(const std::string& path) {
 
 std::vector<DescribedKey> key_reference(const std::filesystem::path& folder, const Installation& installation) {
   Tables tables;
-  Meanings meanings;
+  const std::filesystem::path file = installation.data_directory / kMeanings;
+  const toml::table meanings = parse_toml(read_text_file(file, "the meanings of keys (TOML)"), file.string());
   for (const CatalogueEntry& entry : list_missions(folder, installation)) {
-    add_meanings(read_text_file(entry.file, "a mission file (TOML)"), meanings);
     for (const auto& [path, keys] : accepted_keys(entry.file, {}, installation)) {
       std::vector<AcceptedKey>& known = tables[table_of_path(path)];
       for (const AcceptedKey& key : keys) {
@@ -119,10 +89,7 @@ std::vector<DescribedKey> key_reference(const std::filesystem::path& folder, con
   list_each_kind_once(tables);
   std::vector<DescribedKey> all;
   for (const auto& [table, keys] : tables)
-    for (const AcceptedKey& key : keys) {
-      const auto meaning = meanings.find({table, key.name});
-      all.push_back({table, key, meaning != meanings.end() ? meaning->second : std::string()});
-    }
+    for (const AcceptedKey& key : keys) all.push_back({table, key, meaning_of(meanings, table, key.name)});
   return all;
 }
 

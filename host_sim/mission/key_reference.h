@@ -1,6 +1,6 @@
 #pragma once
 // The reference of mission files: every key that readers accept, from the readers themselves; its meaning, from the
-// comments of the missions that show it.
+// file of meanings.
 
 #include <filesystem>
 #include <string>
@@ -14,11 +14,11 @@ namespace vbar::mission {
 struct DescribedKey {
   std::string table;  ///< as in a header of a file: "spacecraft.sensors.camera"; empty at the top
   AcceptedKey key;
-  std::string meaning;  ///< comment behind the key in the first file, by name, that has one; empty: none has
+  std::string meaning;  ///< in data/mission_keys.toml; empty: it has none there
 };
 
 /// Of all missions in `folder`, in order of tables, keys in the order of reading. A key is listed if a mission's reader
-/// asks for it. Throws MissionError if a mission is invalid.
+/// asks for it. Throws MissionError if a mission, or the file of meanings, is invalid.
 [[nodiscard]] std::vector<DescribedKey> key_reference(const std::filesystem::path& folder,
                                                       const Installation& installation);
 

@@ -47,6 +47,7 @@ void with_document(std::string_view text, const std::filesystem::path& file, std
   for (const Section& section : kSections) static_cast<void>(document.has(section.name));
   for (const SensorReader* const kind : installation.kinds)
     if (!kind->table.empty()) static_cast<void>(document.has(kind->table));
+  if (document.has("extends")) document.refuse_value("extends", "nothing here: it is resolved before any --set");
   document.refuse_unknown_keys();
   Mission mission;
   mission.file = file;

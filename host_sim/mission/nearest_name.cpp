@@ -36,4 +36,9 @@ std::optional<std::string_view> nearest_name(std::string_view word, const std::v
   return nearest;
 }
 
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& names) {
+  const auto nearest = nearest_name(word, names);
+  return nearest ? " (did you mean " + std::string(*nearest) + "?)" : std::string();
+}
+
 }  // namespace vbar::mission

@@ -1,6 +1,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "host_sim/mission/extends.h"
 #include "host_sim/mission/read_cadence.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/truth/earth/time_scales.h"
@@ -22,7 +23,7 @@ fsw::GpsTime read_epoch(const TableReader& section) {
 
 void read_general(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("mission");
-  mission.name = section.name("name", mission.file.stem().string());
+  mission.name = section.name("name", name_of_file(mission.file));
   mission.description = section.text("description", "");
   mission.epoch = read_epoch(section);
   mission.start = section.span("start_h", kHour_s, from_to(0.0, kLongestMission_h), 0.0);

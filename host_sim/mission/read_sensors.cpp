@@ -26,10 +26,9 @@ std::size_t kind_of(const TableReader& section, const std::string& name, const I
   const std::string kind = section.text("kind", name);
   const std::size_t place = place_of(kind);
   if (place < kinds.size()) return place;
-  const auto nearest = nearest_name(kind, kinds);
   section.refuse("kind",
                  (section.has("kind") ? "the text \"" : "nothing, and the sensor has the name \"") + kind + "\"" +
-                     (nearest ? " (did you mean " + std::string(*nearest) + "?)" : std::string()),
+                     did_you_mean(kind, kinds),
                  listing_of(kinds));
 }
 

@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
 #include "fsw/math/math.h"
+#include "host_sim/mission/body_file.h"
 #include "host_sim/mission/data_file.h"
 #include "host_sim/mission/names.h"
+#include "host_sim/mission/nearest_name.h"
 #include "host_sim/mission/read_attitude.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/mission/spacecraft_group.h"
@@ -32,6 +35,19 @@ struct Member {
     return kDegree * group.angle_deg(section, index, key);
   }
 };
+
+/// A body of data/bodies by its name, or the absolute path of a body file.
+std::string read_body(const TableReader& section, const Mission& mission, const Installation& installation) {
+  const std::string body = data_file(section, "body", kDefaultBody, mission).string();
+  const std::filesystem::path file = body_file_of(installation.data_directory, body);
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error)) return body;
+  const std::vector<std::string> known = body_names(installation.data_directory);
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  section.refuse("body", "no file " + file.string() + did_you_mean(body, names),
+                 (names.empty() ? "a name of data/bodies" : listing_of(names)) +
+                     ", or a body file seen from the mission file (./...)");
+}
 
 /// Keys that are missing have the values of the body; they are required for other bodies.
 SurfaceProperties read_surface(const TableReader& section, const Member& member, std::string_view body) {
@@ -163,7 +179,7 @@ Spacecraft read_one(TableReader& section, const Member& member, const std::vecto
   Spacecraft spacecraft;
   spacecraft.name = member.group.member_name(member.index);
   spacecraft.number = read_number(section, member, mission);
-  spacecraft.body = section.name("body", std::string(kDefaultBody));
+  spacecraft.body = read_body(section, mission, installation);
   spacecraft.surface = read_surface(section, member, spacecraft.body);
   spacecraft.mass_sigma_kg = section.number("mass_sigma_kg", from_to(0.0, 1e3), 0.0);
   if (section.has("model")) spacecraft.model = section.name("model");

@@ -185,10 +185,8 @@ void TableReader::refuse_unknown_keys(const toml::table& table) const {
   for (const auto& [key, node] : table) {
     if (std::ranges::find(names, key.str()) != names.end()) continue;
     const std::vector<std::string_view> accepted(names.begin(), names.end());
-    const auto nearest = nearest_name(key.str(), accepted);
     throw MissionError(location_of(node, file_), (entry.path.empty() ? "" : entry.path + ".") + std::string(key.str()),
-                       "an unknown key" + (nearest ? " (did you mean " + std::string(*nearest) + "?)" : std::string()),
-                       listing_of(accepted));
+                       "an unknown key" + did_you_mean(key.str(), accepted), listing_of(accepted));
   }
 }
 
@@ -302,6 +300,8 @@ std::string TableReader::text(std::string_view key, std::optional<std::string> d
   if (!has(key) && default_value) return *default_value;
   const toml::node& node = required(key, "a text");
   if (const auto* date_time = node.as_date_time()) return streamed(date_time->get());
+  if (const auto* date = node.as_date()) return streamed(date->get());
+  if (const auto* time = node.as_time()) return streamed(time->get());
   const auto* value = node.as_string();
   if (value == nullptr) refuse_value(key, "a text");
   if (std::any_of(value->get().begin(), value->get().end(), is_control_character))
@@ -398,11 +398,8 @@ std::size_t TableReader::chosen(std::string_view key, const std::vector<std::str
   const auto* value = required(key, listing_of(accepted)).as_string();
   if (value == nullptr) refuse_value(key, listing_of(accepted));
   const auto found = std::find(accepted.begin(), accepted.end(), value->get());
-  if (found == accepted.end()) {
-    const auto nearest = nearest_name(value->get(), accepted);
-    refuse(key, description_of(*value) + (nearest ? " (did you mean " + std::string(*nearest) + "?)" : std::string()),
-           listing_of(accepted));
-  }
+  if (found == accepted.end())
+    refuse(key, description_of(*value) + did_you_mean(value->get(), accepted), listing_of(accepted));
   return static_cast<std::size_t>(found - accepted.begin());
 }
 

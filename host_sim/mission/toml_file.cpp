@@ -1,7 +1,7 @@
 #include "host_sim/mission/toml_file.h"
 
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include "host_sim/files/data_stream.h"
 #include "host_sim/mission/mission_error.h"
@@ -35,10 +35,10 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   if (!std::filesystem::is_regular_file(status))
     throw MissionError(file.string(), "", "something that is not a file", kind);
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream || !text) throw MissionError(file.string(), "", "a file that cannot be read", kind);
-  return text.str();
+  // Not `<< stream.rdbuf()`, which fails for an empty file.
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad()) throw MissionError(file.string(), "", "a file that cannot be read", kind);
+  return text;
 }
 
 }  // namespace vbar::mission

@@ -47,6 +47,17 @@ bool never_navigated(const RunRecord& record, const Summary& summary) {
          std::ranges::none_of(record.estimates, [](const EstimateRow& row) { return row.navigation_valid != 0; });
 }
 
+/// The waypoint to whose leg a burn belongs; null after the last one. That is the waypoint it was commanded for: the
+/// last burn of a fuel-optimal leg stands at the waypoint's own time and stops the arrival. A burn for none of the
+/// table (of a retreat, or of flight software without waypoints) belongs to the leg in whose time it stands.
+const WaypointRow* leg_of(const ManeuverRow& maneuver, const std::vector<WaypointRow>& waypoints) {
+  auto found = std::ranges::find(waypoints, maneuver.waypoint_index, &WaypointRow::index);
+  if (found == waypoints.end())
+    found = std::ranges::find_if(waypoints,
+                                 [&](const WaypointRow& row) { return maneuver.execution_time_s <= row.time_s; });
+  return found != waypoints.end() ? &*found : nullptr;
+}
+
 /// What the flight computer's steps cost; in which unit is a fact.
 void summarise_flight_steps(const RunRecord& record, Summary& summary) {
   Summary::FlightStep total;
@@ -81,8 +92,6 @@ Summary summarise(const RunRecord& record) {
   return summary;
 }
 
-// A burn belongs to the leg of the waypoint it was commanded for: the last burn of a fuel-optimal leg stands at the
-// waypoint's own time and stops the arrival.
 void evaluate(RunRecord& record) {
   const std::vector<NavigationError> errors = navigation_errors(record);
   double cumulative = 0.0;
@@ -95,7 +104,7 @@ void evaluate(RunRecord& record) {
     waypoint.leg_dv_mps = 0.0;
     waypoint.leg_maneuvers = 0;
     for (const ManeuverRow& maneuver : record.maneuvers) {
-      if (!maneuver.accepted || maneuver.waypoint_index != waypoint.index) continue;
+      if (!maneuver.accepted || leg_of(maneuver, record.waypoints) != &waypoint) continue;
       waypoint.leg_dv_mps += magnitude(maneuver.executed_dv_rtn_mps);
       ++waypoint.leg_maneuvers;
     }

@@ -84,6 +84,10 @@ void measure(const Options& options, const BenchFile& file, const std::filesyste
   settings.seed = options.seed;
   if (options.is_quick) settings = quick(settings);
   if (options.has_no_lights) settings.light_levels = 0;
+  clock.print(
+      fmt::format("{}: {} postures of the board, then {} levels of each source of light; postures are chosen "
+                  "first, without a move",
+                  file.name, settings.fitted + settings.judged, settings.light_levels));
   WiredBench bench(wired_settings(options, file, clock));
   CalibrationData data = measure_bench(bench, file, designed_lens(file), settings, free_postures(file),
                                        [&](const std::string& line) { clock.print(line); });

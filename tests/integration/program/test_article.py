@@ -1,5 +1,6 @@
 """Flight software of a user: created, built and flown outside the repository with the installed package."""
 import os
+import shutil
 import subprocess
 import unittest
 
@@ -31,11 +32,23 @@ class NewArticle(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         return summary_of(folder)
 
+    def check_without_the_board(self, prefix, project):
+        """One sentence, at the build: the configuration is no error of ten lines."""
+        if shutil.which("arm-none-eabi-gcc") is None:
+            return
+        run("cmake", "-S", ".", "-B", "build-zynq", f"-DCMAKE_PREFIX_PATH={prefix}",
+            "--toolchain", prefix / "lib/cmake/vbar/arm-none-eabi-zynq7000.cmake", cwd=project)
+        built = subprocess.run(["cmake", "--build", "build-zynq"], cwd=project, capture_output=True, text=True, timeout=300)
+        self.assertNotEqual(built.returncode, 0)
+        self.assertIn(f"cmake --install build/zynq --prefix {prefix}", built.stdout)
+
     def check(self, language, prefix, has_board):
         project = prefix.parent / f"my-{language.replace('+', 'p')}"
         program = prefix / "bin/vbar"
         run(program, "new-article", project, "--language", language, cwd=prefix.parent)
-        self.assertIn(str(prefix), (project / "README.md").read_text(), "the commands name the prefix")
+        readme = (project / "README.md").read_text()
+        self.assertIn(str(prefix), readme, "the commands name the prefix")
+        self.assertIn("spacecraft.target.relative.waypoint=7", readme, "the first flight is one that the example can fly")
         run("cmake", "-S", ".", "-B", "build", f"-DCMAKE_PREFIX_PATH={prefix}", cwd=project)
         run("cmake", "--build", "build", cwd=project)
         library = project / "build" / f"lib{project.name}.so"
@@ -43,6 +56,7 @@ class NewArticle(unittest.TestCase):
         self.assertTrue(shared["complete"])
         self.assertGreater(shared["maneuvers"], 0)
         if not has_board:
+            self.check_without_the_board(prefix, project)
             return
         run("cmake", "-S", ".", "-B", "build-zynq", f"-DCMAKE_PREFIX_PATH={prefix}",
             "--toolchain", prefix / "lib/cmake/vbar/arm-none-eabi-zynq7000.cmake", cwd=project)

@@ -40,7 +40,8 @@ class Columns(unittest.TestCase):
         self.assertEqual(found.returncode, 0, found.stderr)
         self.assertIn("estimate.csv passive_safety_distance_m: minimum over the horizon", found.stdout)
         missing = vbar("columns", "no_such_column")
-        self.assertEqual((missing.returncode, missing.stderr), (2, "vbar: no column of a table contains 'no_such_column'\n"))
+        self.assertEqual((missing.returncode, missing.stderr), (2, "vbar: no column of a table has the word 'no_such_column'\n"))
+        self.assertIn("(did you mean navigation_error_m?)", vbar("columns", "navigaton_error").stderr)
 
 
 if __name__ == "__main__":

@@ -374,7 +374,22 @@ class CommandLine(Evidence):
         self.expect(vbar("runn"), REFUSED, "did you mean run?")
         self.expect(vbar(), REFUSED)
         self.expect(vbar("run"), REFUSED, "mission")
-        self.expect(vbar("run", MISSION, "--seed", "-1"), REFUSED, "--seed", "-1")
+        self.expect(vbar("run", MISSION, "--seed", "-1"), REFUSED, "--seed: found -1; accepted: an integer from 0 to 9223372036854775807")
+        self.expect(vbar("campaign", "run", MISSION, "--jobs", "0"), REFUSED, "--jobs: found 0; accepted: an integer from 1 to")
+        self.expect(vbar("resume", "x", "--set", "a=b", "--at", "-1"), REFUSED, "--at: found -1; accepted: a number from 0")
+        self.expect(vbar("run", MISSION, "--sed", "3"), REFUSED, "vbar run: there is no option --sed (did you mean --seed?)")
+        self.expect(vbar("campaign", "run", MISSION, "--job=3"), REFUSED, "vbar campaign run: there is no option --job (did you mean --jobs?)")
+        self.expect(vbar("keys", "a", "b"), REFUSED, 'vbar keys: unexpected argument "b"')
+
+    def test_help_is_a_command_too(self):
+        self.assertEqual(vbar("help").stdout, vbar("--help").stdout)
+        self.assertEqual(vbar("help", "campaign", "run").stdout, vbar("campaign", "run", "--help").stdout)
+
+    def test_a_mission_by_its_name(self):
+        line = vbar("missions", "experiment3").stdout
+        self.assertIn(line.split("  ")[-1], vbar("missions").stdout)
+        self.assertEqual(line.count("\n"), 1)
+        self.expect(vbar("missions", "experimnt3"), REFUSED, "did you mean experiment3?")
 
     def test_version_and_help(self):
         self.expect(vbar("--version"), DONE, "vbar 0.3.0", "commit")
@@ -394,6 +409,11 @@ class CommandLine(Evidence):
             self.expect(vbar("run", MISSION, "--check", "--out", here / "run"), DONE, "can be flown")
             self.expect(vbar("run", MISSION, "--check", "--set", "mission.duration_h=-1"), REFUSED, "duration_h")
             self.assertFalse((here / "run").exists())
+
+    def test_check_states_what_data_are_missing(self):
+        later = vbar("run", "full_force_navigation", "--check", "--set", "mission.epoch_utc=2026-12-01T00:00:00Z")
+        self.expect(later, DONE, "data: ", "can be flown")
+        self.assertNotIn("data: ", vbar("run", "full_force_navigation", "--check").stdout)
 
     def test_quiet_prints_nothing(self):
         result = vbar("run", MISSION, "--quiet", "--out", self.folder / "quiet", "--set", SHORT)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """vbar keys: the reference of mission files, complete and as printed in docs/keys.md."""
 import re
+import tomllib
 import unittest
 
 from vbar_program import SOURCE, main, vbar
@@ -30,7 +31,34 @@ class Keys(unittest.TestCase):
         self.assertIn("safety.recession_m\n    a number above 0, up to 100000; default 1\n", found.stdout)
         missing = vbar("keys", "recesion_m")
         self.assertEqual(missing.returncode, 2)
-        self.assertEqual(missing.stderr, "vbar: no key of a mission contains 'recesion_m' (did you mean recession_m?)\n")
+        self.assertEqual(missing.stderr, "vbar: no key of a mission has the word 'recesion_m' (did you mean recession_m?)\n")
+        self.assertIn("(did you mean crosslink?)", vbar("keys", "crosslnk").stderr)
+
+    def test_search_is_for_words_and_names_come_first(self):
+        self.assertNotIn("display", vbar("keys", "isp").stdout)
+        found = re.findall(r"^(\S+)$", vbar("keys", "hold").stdout, re.MULTILINE)
+        self.assertIn("safety.hold_distance_m", found[:2])
+        self.assertFalse([name for name in found if "threshold" in name and "hold" not in name.replace("threshold", "")])
+
+    def test_every_key_has_a_meaning_and_every_meaning_a_key(self):
+        page, table = set(), ""
+        for line in (SOURCE / "docs/keys.md").read_text().splitlines():
+            if line.startswith("## "):
+                table = line[3:].strip("[]").replace("top of the file", "")
+            elif row := re.match(r"\| `(\w+)` \|.*\| (.*) \|$", line):
+                page.add((table, row[1]))
+                self.assertGreater(len(row[2].split()), 1, f"{table}.{row[1]}: data/mission_keys.toml has no meaning of it")
+
+        def listed(node, path=""):
+            for key, value in node.items():
+                if isinstance(value, dict):
+                    yield from listed(value, f"{path}.{key}".strip("."))
+                else:
+                    yield path, key
+
+        meanings = set(listed(tomllib.loads((SOURCE / "data/mission_keys.toml").read_text())))
+        self.assertEqual(meanings - page, set(), "meanings without a key of any bundled mission")
+        self.assertGreater(len(page), 350)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,10 @@ import subprocess
 import sys
 import unittest
 
-from vbar_program import BINARY, SOURCE, main, scratch
+from vbar_program import BINARY, SOURCE, fly, main, scratch
+
+sys.path.append(str(SOURCE / "ci"))
+import verify
 
 BLOCK = re.compile(r"(?:File `([^`\n]+)`:\n\n)?^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 ANY = "…"
@@ -84,6 +87,21 @@ class FirstHour(Page, unittest.TestCase):
 
 class Tutorial(Page, unittest.TestCase):
     page = "tutorial.md"
+
+
+class Figures(unittest.TestCase):
+    """Figures of ideal_navigation that stand in other pages."""
+
+    def test_verification_has_the_figures_of_the_program(self):
+        with scratch() as folder:
+            table = verify.mission_table(fly(folder / "run"))
+        self.assertIn(table, (SOURCE / "docs/verification.md").read_text(),
+                      "renew the table of docs/verification.md (ci/verify.py, mission_table)")
+
+    def test_no_other_page_repeats_the_table(self):
+        """Its first leg, which no other mission has: 1.480728 m/s in 18 maneuvers."""
+        pages = [page.name for page in (SOURCE / "docs").glob("*.md") if "1.480728" in page.read_text()]
+        self.assertEqual(pages, ["first_hour.md"])
 
 
 class Pages(unittest.TestCase):

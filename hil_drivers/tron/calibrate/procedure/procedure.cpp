@@ -57,7 +57,7 @@ std::vector<Measurement> measure_all(CalibrationBench& bench, const BoardDesign&
     }
     measurements.push_back(measure_board(bench, board, exposure_s));
     seen += measurements.back().corners.empty() ? 0 : 1;
-    if (progress && measurements.size() % 20 == 0)
+    if (progress && (measurements.size() == 1 || measurements.size() % 20 == 0))
       progress(
           fmt::format("{}: {} of {} postures, board seen at {}", name, measurements.size(), postures.size(), seen));
   }

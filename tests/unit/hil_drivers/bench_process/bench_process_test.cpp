@@ -6,6 +6,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "hil_drivers/bench_process/bench_calibration_file.h"
 
 namespace vbar::bench_process {
 namespace {
@@ -24,6 +27,44 @@ TEST(BenchFaults, AreCountedByKind) {
       "{\"kind\":\"rf_outage\",\"time_s\":1.0}\n{\"kind\":\"rf_outage\"}\n{\"kind\":\"bench_exit\"}\nbroken\n"));
   EXPECT_EQ(counts, (std::map<std::string, int>{{"rf_outage", 2}, {"bench_exit", 1}, {"unknown", 1}}));
   EXPECT_TRUE(count_faults("/no/such/file").empty());
+}
+
+class BenchCalibrationFile : public ::testing::Test {
+ protected:
+  BenchCalibrationFile() {
+    std::filesystem::create_directories(data_ / "calibrations");
+    std::ofstream(data_ / "calibrations/bench_1.toml") << "x = 1\n";
+  }
+  ~BenchCalibrationFile() override { std::filesystem::remove_all(data_); }
+
+  [[nodiscard]] std::filesystem::path file(const std::string& path, std::uint64_t seed) const {
+    return bench_calibration_file(
+        path, data_, seed, {"testbed.bench", "calibrate --seed {N} --out {out} --bench \"b {seed}\"", "a minute"});
+  }
+
+  std::filesystem::path data_ =
+      std::filesystem::path(::testing::TempDir()) / ("bench_calibration_" + std::to_string(::getpid()));
+};
+
+TEST_F(BenchCalibrationFile, IsHereOrInTheDataFolder) {
+  EXPECT_EQ(file("calibrations/bench_{seed}.toml", 1), data_ / "calibrations/bench_1.toml");
+  EXPECT_EQ(file("{data}/calibrations/bench_{seed}.toml", 1), data_ / "calibrations/bench_1.toml");
+  const auto own = data_ / "own_7.toml";
+  std::ofstream(own) << "x = 2\n";
+  EXPECT_EQ(file((data_ / "own_{seed}.toml").string(), 7), own);
+}
+
+TEST_F(BenchCalibrationFile, IsRefusedWithTheCommandThatMakesIt) {
+  try {
+    static_cast<void>(file("calibrations/bench_{seed}.toml", 2));
+    ADD_FAILURE() << "a file that is not there was found";
+  } catch (const std::exception& error) {
+    EXPECT_EQ(error.what(),
+              "calibrations/bench_2.toml: testbed.bench.calibration: found no such file here, nor in " +
+                  data_.string() +
+                  "; accepted: a calibration of this bench, made in a minute by: calibrate --seed 2 --out "
+                  "calibrations/bench_2.toml --bench \"b {seed}\"");
+  }
 }
 
 TEST(BenchArguments, HaveTheirPlaceholdersReplaced) {

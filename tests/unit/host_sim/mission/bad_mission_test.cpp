@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/unit/host_sim/mission/mission_text.h"
 
@@ -42,10 +44,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadChange{"UnknownKeyNearNone", "duration_h = 2.0", "duration_h = 2.0\ncolour = 3", "colour",
                   "mission.colour: found an unknown key; accepted: name, description, epoch_utc, start_h, duration_h, "
                   "step_s or seed"},
-        BadChange{
-            "UnknownSection", "[mission]", "[trut]\n[mission]", "[trut]",
-            "trut: found an unknown key (did you mean truth?); accepted: mission, truth, testbed, waypoint, "
-            "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record, limit or constellation"},
+        BadChange{"UnknownSection", "[mission]", "[trut]\n[mission]", "[trut]",
+                  "trut: found an unknown key (did you mean truth?); accepted: mission, truth, testbed, waypoint, "
+                  "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record, limit, "
+                  "constellation or extends"},
         BadChange{"WrongTypeText", "duration_h = 2.0", "duration_h = \"two\"", "duration_h",
                   "mission.duration_h: found the text \"two\"; accepted: a number above 0, up to 2000"},
         BadChange{"WrongTypeInteger", "[mission]", "[mission]\nseed = 1.0", "seed",
@@ -57,7 +59,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadChange{
             "WrongTypeOfArrayOfTables", "[mission]", "waypoint2 = 1\n[mission]", "waypoint2",
             "waypoint2: found an unknown key (did you mean waypoint?); accepted: mission, truth, testbed, waypoint, "
-            "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record, limit or constellation"},
+            "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record, limit, constellation or "
+            "extends"},
         BadChange{"MissingRequiredKey", "duration_h = 2.0\n", "", "[mission]",
                   "mission.duration_h: found nothing; accepted: a number above 0, up to 2000"},
         BadChange{"NotANumber", "duration_h = 2.0", "duration_h = nan", "duration_h",
@@ -185,6 +188,42 @@ TEST(BadMissionFile, ApproachToNowhere) {
             "m.toml: guidance.mode: found approach without a waypoint; accepted: at least one [[waypoint]], or another "
             "mode");
   EXPECT_EQ(message_of(text, {"guidance.mode=idle"}), "");
+}
+
+TEST(BadMissionFile, AnEmptyFileLacksWhatIsRequired) {
+  const auto file = std::filesystem::path(testing::TempDir()) / ("vbar_empty_" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(file).close();
+  try {
+    static_cast<void>(load_mission(file));
+    ADD_FAILURE() << "an empty file was a mission";
+  } catch (const MissionError& error) {
+    EXPECT_EQ(error.what(),
+              file.string() + ": mission.duration_h: found nothing; accepted: a number above 0, up to 2000");
+  }
+  std::filesystem::remove(file);
+}
+
+TEST(BadMissionFile, ADateWithoutATimeOfDay) {
+  EXPECT_EQ(
+      message_of(std::string(kSmall), {"mission.epoch_utc=2011-07-18"}),
+      "--set mission.epoch_utc=2011-07-18: mission.epoch_utc: found the date 2011-07-18; accepted: a UTC time like "
+      "2011-07-18T01:00:00Z, from 1980-01-06 to the year 2200");
+  EXPECT_EQ(small_mission({"mission.description=12:30:00"}).description, "12:30:00") << "a time is a text too";
+}
+
+TEST(BadMissionFile, ABodyThatIsNotThereIsRefusedByItsName) {
+  const std::string typo = changed(std::string(kSmall), "body = \"tango\"", "body = \"tangoo\"");
+  EXPECT_THAT(message_of(typo), testing::StartsWith("m.toml:19: spacecraft.target.body: found no file "));
+  EXPECT_THAT(message_of(typo),
+              testing::EndsWith("/bodies/tangoo.toml (did you mean tango?); accepted: mango, tango or "
+                                "winged_box, or a body file seen from the mission file (./...)"));
+  EXPECT_THAT(message_of(changed(std::string(kSmall), "body = \"tango\"", "body = \"../b/own.toml\"\nmass_kg = 3")),
+              testing::HasSubstr("/b/own.toml; accepted: mango"));
+}
+
+TEST(BadMissionFile, ExtendsIsNotSetOnTheCommandLine) {
+  EXPECT_THAT(message_of(std::string(kSmall), {"extends=experiment3"}),
+              testing::HasSubstr("resolved before any --set"));
 }
 
 TEST(BadMissionFile, MissingFileAndFolder) {

@@ -15,6 +15,7 @@
 
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/rtn.h"
+#include "host_sim/mission/body_file.h"
 #include "host_sim/mission/extends.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/earth/sun_moon.h"
@@ -271,6 +272,41 @@ TEST_F(Extends, MessagesNameTheFileThatSaysIt) {
   write("bad.toml", changed(std::string(kSmallMission), "duration_h = 2.0", "duration_h = -2.0"));
   write("own.toml", "\nextends = \"bad.toml\"\n");
   EXPECT_THAT(message("own.toml"), testing::StartsWith((folder_ / "bad.toml").string() + ":3: mission.duration_h: "));
+}
+
+TEST_F(Extends, AMissionOfTheCatalogueByItsName) {
+  write("own.toml", "extends = \"experiment3\"\n[mission]\nseed = 7\n");
+  EXPECT_EQ(load_mission(folder_ / "own.toml").step.shortest_period(), fsw::duration_of_seconds(10));
+  write("experiment3", kSmallMission);
+  EXPECT_EQ(load_mission(folder_ / "own.toml").duration, fsw::duration_of_seconds(7200))
+      << "a file beside it is nearer";
+  write("own.toml", "\nextends = \"experimnt2\"\n");
+  EXPECT_EQ(message("own.toml"),
+            (folder_ / "own.toml").string() +
+                ":2: extends: found \"experimnt2\", which is neither a file nor a mission (did you mean experiment2?); "
+                "accepted: a mission file, seen from this one, or a name that vbar missions lists");
+}
+
+TEST_F(Extends, HasANameOfItsOwn) {
+  write("named.toml", changed(std::string(kSmallMission), "[mission]", "[mission]\nname = \"parent\""));
+  write("my own.toml", "extends = \"named.toml\"\n");
+  EXPECT_EQ(load_mission(folder_ / "my own.toml").name, "my_own");
+  write("kept.toml", whole_mission_text(folder_ / "my own.toml"));
+  EXPECT_EQ(load_mission(folder_ / "kept.toml").name, "my_own") << "as a run folder keeps it";
+  write("own.toml", "extends = \"named.toml\"\n[mission]\nname = \"child\"\n");
+  EXPECT_EQ(load_mission(folder_ / "own.toml").name, "child");
+}
+
+TEST_F(Extends, ABodyFileBesideTheMission) {
+  write("plate.toml", "inertia_kgm2 = [1.0, 2.0, 3.0]\ncentre_of_mass_m = [0.0, 0.0, 0.1]\n");
+  write("own.toml",
+        changed(std::string(kSmallMission), "body = \"tango\"",
+                "body = \"./plate.toml\"\nmass_kg = 9\ndrag_area_m2 = 1\ndrag_coefficient = 2\nradiation_area_m2 = 1\n"
+                "radiation_coefficient = 1\nattitude = { profile = \"tumble\" }"));
+  const Mission mission = load_mission(folder_ / "own.toml");
+  const std::filesystem::path file = body_file_of("data", std::get<Tumble>(*mission.spacecraft[1].attitude).body);
+  EXPECT_TRUE(std::filesystem::equivalent(file, folder_ / "plate.toml"));
+  EXPECT_EQ(load_body(file).inertia_kgm2(2, 2), 3.0);
 }
 
 // What a run folder keeps for the replay must not need the files beside the mission's.

@@ -40,6 +40,24 @@ TEST(Summarise, FiguresComeFromTheTables) {
   EXPECT_NEAR(record.waypoints.back().cumulative_dv_mps, dv, 1e-12);
 }
 
+// Flight software without waypoints commands its burns for waypoint -1: they belong to the legs they were flown in, and
+// the rows add up to the total.
+TEST(Summarise, BurnsForNoWaypointBelongToTheLegOfTheirTime) {
+  RunRecord record = synthetic_run();
+  for (ManeuverRow& maneuver : record.maneuvers) maneuver.waypoint_index = -1;
+  record.maneuvers.front().execution_time_s = record.waypoints[1].time_s;
+  record.maneuvers.back().execution_time_s = record.waypoints.back().time_s + 60.0;
+  for (std::size_t k = 1; k + 1 < record.maneuvers.size(); ++k)
+    record.maneuvers[k].execution_time_s = record.waypoints[2].time_s + 1.0;
+  evaluate(record);
+  EXPECT_EQ(record.waypoints[0].leg_maneuvers, 0);
+  EXPECT_EQ(record.waypoints[1].leg_maneuvers, 1) << "at the waypoint's own time";
+  EXPECT_EQ(record.waypoints[2].leg_maneuvers, 0);
+  EXPECT_EQ(record.waypoints[3].leg_maneuvers, 37) << "17 was not executed";
+  const double after = magnitude(record.maneuvers.back().executed_dv_rtn_mps);
+  EXPECT_NEAR(record.waypoints.back().cumulative_dv_mps + after, record.summary.dv_mps, 1e-12);
+}
+
 TEST(Summarise, IsAFunctionOfTheTables) {
   RunRecord record = synthetic_run();
   evaluate(record);
