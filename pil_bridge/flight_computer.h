@@ -52,6 +52,8 @@ struct StepResult {
   /// Inputs that the flight computer received on a line of its own and gave to the flight software before the tick.
   std::vector<Packet> wired = {};
   StepReport report;
+  /// That the flight software returned from its step, where the target hands it over; 0: done.
+  std::int32_t status = 0;
   double compute_wall_s = 0.0;  ///< wall-clock time of the whole exchange, link included
 };
 

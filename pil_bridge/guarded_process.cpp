@@ -142,6 +142,7 @@ void serve(int socket, const std::function<std::unique_ptr<FlightComputer>()>& m
       Bytes answer;
       put(answer, Answer::kDone);
       put(answer, result.compute_wall_s);
+      put(answer, result.status);
       put(answer, std::span<const Packet>(result.packets));
       static_cast<void>(send_message(socket, answer, never));
     }
@@ -191,6 +192,7 @@ class Guarded final : public FlightComputer {
     static_cast<void>(reader.number<Answer>());
     StepResult result;
     result.compute_wall_s = reader.number<double>();
+    result.status = reader.number<std::int32_t>();
     result.packets = reader.packets();
     return result;
   }

@@ -46,12 +46,11 @@ class InProcess final : public FlightComputer {
       // Packets refused by the flight software are in its own counters.
       (void)article_->receive(state_.get(), packet.data(), packet.size());
     }
+    StepResult result;
     const auto last = fsw::packets::parse_packet(packets.back());
     if (last.ok() && fsw::packets::decode<vbar::tick>(last.value()).ok()) {
-      // A failed step is reported by the flight software's telemetry.
-      (void)article_->step(state_.get(), last.value().header.time.ns);
+      result.status = article_->step(state_.get(), last.value().header.time.ns);
     }
-    StepResult result;
     for (std::uint16_t i = 0; i < outbox_.count(); ++i) {
       const auto packet = outbox_.packet(i);
       result.packets.emplace_back(packet.begin(), packet.end());

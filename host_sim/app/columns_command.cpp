@@ -9,6 +9,7 @@
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/report/run_tables.h"
+#include "host_sim/report/words.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
@@ -56,7 +57,10 @@ int print_lines(const std::vector<DescribedTable>& tables, const std::string& wo
       ++printed;
     }
   if (printed > 0) return kDone;
-  fmt::print(stderr, "vbar: no column of a table contains '{}'\n", word);
+  const std::vector<report::ExplainedWord> values = report::explained_words();
+  const bool is_value = std::ranges::find(values, word, &report::ExplainedWord::word) != values.end();
+  fmt::print(stderr, "vbar: no column of a table contains '{}'{}\n", word,
+             is_value ? fmt::format("; it is a value: vbar explain {}", word) : "");
   return kRefused;
 }
 

@@ -103,9 +103,20 @@ void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer)
   row.time_s = mission_seconds(time);
   row.step_cost = answer.report.count;
   row.stack_bytes = answer.report.stack_bytes;
+  report::Answers& answers = record_.summary.answers;
+  ++answers.steps;
+  if (answer.packets.empty()) ++answers.steps_silent;
+  if (answer.status != 0) {
+    ++answers.steps_failed;
+    answers.last_status = answer.status;
+  }
   for (const pil::Packet& bytes : answer.packets) {
     const auto packet = fsw::packets::parse_packet(bytes);
-    if (!packet.ok()) continue;  // hashed and logged as it came; it only has no row
+    ++answers.packets;
+    if (!packet.ok()) {
+      ++answers.packets_unreadable;
+      continue;  // hashed and logged as it came; it only has no row
+    }
     if (packet.value().header.apid == fsw::packets::Apid::kManeuverCommand) {
       on_command(time, packet.value());
     } else {

@@ -49,12 +49,34 @@ struct SourceFigures {
 /// What a testbed says of the run, by name with the unit: "edges_missing", "bench".
 using TestbedFigures = std::map<std::string, std::variant<double, std::string>>;
 
+/// Burns against the thrust that the mission states (thrust.h).
+struct Thrust {
+  double max_thrust_n = 0.0, mass_kg = 0.0;  ///< facts of the mission
+  int burns = 0;                             ///< of the flight software, executed
+  int burns_too_long = 0;                    ///< would last longer than the time to the next one
+  double longest_burn_s = 0.0, longest_burn_at_h = 0.0;
+};
+
+/// Answers of the flight software to its steps.
+struct Answers {
+  std::int64_t steps = 0;
+  std::int64_t steps_silent = 0;  ///< answered by no packet
+  std::int64_t steps_failed = 0;  ///< returned a status other than 0
+  std::int32_t last_status = 0;   ///< of those
+  std::int64_t packets = 0;
+  std::int64_t packets_unreadable = 0;  ///< neither a command nor telemetry
+};
+
 /// What a run is and what the tables do not hold.
 struct RunFacts {
   std::string mission;
   std::uint64_t seed = 0;
   bool complete = false;
   std::string incomplete_reason;
+  std::string verdict = "incomplete";  ///< report::word_of(Outcome), by the goals of the mission (verdict.h)
+  std::string verdict_reason;          ///< one sentence
+  std::vector<int> missed_waypoints;
+  Answers answers;
   std::string flight_computer, flight_software, camera, gnss, navigation;
   std::string target;  ///< the spacecraft that is approached
   double simulated_s = 0.0, wall_s = 0.0, speed_factor = 0.0;
@@ -104,8 +126,10 @@ struct Summary : RunFacts {
   std::map<std::string, std::map<std::string, double>> sensor_figures;
   /// The flight software reported that it never navigated, and no estimate was valid: a fault of the run.
   bool never_navigated = false;
+  std::optional<double> min_distance_m, min_distance_at_h;  ///< true, to the target
   double dv_mps = 0.0;
   int maneuvers = 0;
+  std::optional<Thrust> thrust;  ///< of a mission that states one
   struct FlightStep {
     std::uint64_t count = 0, max = 0;
     double mean = 0.0;
