@@ -18,10 +18,11 @@ import shutil
 import subprocess
 import tempfile
 
+import flights
+
 MISSION = "missions/experiment1.toml"
 APRIORI_SIGMAS_M = {"sigma_a_da_m": 30.0, "sigma_a_dlambda_m": 1000.0, "sigma_a_de_m": 200.0, "sigma_a_di_m": 200.0}
 NEES_LIMIT = 40.3
-NEVER_NAVIGATED = 10  # exit code of vbar run
 LIMITS_MIN = (38, 45, 60, 90)
 
 
@@ -32,7 +33,7 @@ def fly(binary, seed, hours, factor, folder):
     for key, sigma in APRIORI_SIGMAS_M.items():
         command += ["--set", f"navigation.apriori.{key}={factor * sigma}"]
     result = subprocess.run(command, capture_output=True, text=True)
-    if result.returncode not in (0, NEVER_NAVIGATED):
+    if result.returncode not in flights.COMPLETE:
         raise SystemExit(f"seed {seed}: {result.stderr.strip()}")
     with open(folder / "images.csv", newline="") as file:
         return list(csv.DictReader(file))

@@ -20,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 
+import flights
 from fault_judgement import Case, JudgementError, Nominal, begin_of, control_errors, judge, navigation_errors, window_of
 
 # name: hour of the fault, start and its waypoint, image period there (s), a-priori sigmas (m) of a da, a dlambda, a de, a di
@@ -147,7 +148,7 @@ class Flights:
         mission.write_text(text)
         result = subprocess.run(["nice", self.binary, "run", str(mission), "--seed", str(seed), "--quiet", "--force", "--out", str(folder / "run")],
                                 capture_output=True, text=True)
-        if result.returncode not in (0, 10):
+        if result.returncode not in flights.COMPLETE:
             raise SystemExit(f"{name}: {result.stderr.strip()}")
         return folder / "run"
 

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Generates visitors of all fields of all messages from their definitions: make_fields.py vbar.lcm fields.h
+"""Generates visitors of all fields of all messages from their definitions: make_fields.py vbar.lcm fields.h explained_codes.h
+
+explained_codes.h has the comments of all constants that are values of fields; one without a comment is an error.
 
 The notation of comments that name units, elements of arrays and codes is explained in vbar.lcm. A field whose name
 already ends in its unit (`range_m`) keeps its place for the names of elements: `range_m[2]` with elements x and y has the
@@ -11,7 +13,7 @@ import sys
 from pathlib import Path
 
 STRUCT = re.compile(r"struct (\w+) \{\n(.*?)\n\}", re.S)
-CONSTANT = re.compile(r"(k[A-Z]\w*)\s*=")
+CONSTANT = re.compile(r"  const \w+ (k[A-Z]\w*)\s*=\s*-?\w+;\s*(?://(.*))?$")
 FIELD = re.compile(r"  (\w+) (\w+)(\[\d+\])?;\s*(?://(.*))?$")
 UNIT = re.compile(r"\[([^];]*)(?:;([^]]*))?\]\s*$")
 CODES = re.compile(r"\{(\|?)(?:(\w+)\.)?(k\w+)\}\s*$")
@@ -24,35 +26,45 @@ def words_of(name, prefix):
 
 
 def structs_of(text):
-    """{struct: (constants, [(field, comment)])}"""
+    """{struct: ([(constant, comment)], [(field, comment)])}"""
     found = {}
     for struct, body in STRUCT.findall(text):
         constants, fields = [], []
+        last = None  # constant or field, whose comment a line of comment continues
         for line in body.split("\n"):
             if line.strip().startswith("//"):
-                if fields:
-                    fields[-1][1] += line.strip()[2:]
-            elif line.startswith("  const "):
-                constants += CONSTANT.findall(line.split("//")[0])
+                if last:
+                    last[1] += line.strip()[2:]
+            elif match := CONSTANT.match(line):
+                constants.append(last := [match[1], match[2] or ""])
             elif match := FIELD.match(line):
-                fields.append([match[2], match[4] or ""])
+                fields.append(last := [match[2], match[4] or ""])
             elif line.strip():
                 sys.exit(f"struct {struct}: not understood: {line}")
         found[struct] = constants, fields
     return found
 
 
-def codes_of(struct, comment, structs, tables):
-    """The initialiser of Field::codes."""
+def code_table_of(struct, comment, structs):
+    """(bits, struct that owns the constants, their prefix, [(constant, its comment)]) of a field; None without codes."""
     match = CODES.search(comment)
     if not match:
-        return "{}"
+        return None
     bits, owner, prefix = match[1], match[2] or struct, match[3]
-    constants = [name for name in structs[owner][0] if name.startswith(prefix)]
+    constants = [(name, text) for name, text in structs[owner][0] if name.startswith(prefix)]
     if not constants:
         sys.exit(f"struct {struct}: no constant {owner}.{prefix}...")
+    return bits, owner, prefix, constants
+
+
+def codes_of(struct, comment, structs, tables):
+    """The initialiser of Field::codes."""
+    found = code_table_of(struct, comment, structs)
+    if not found:
+        return "{}"
+    bits, owner, prefix, constants = found
     table = f"{owner}_{prefix}"
-    rows = ", ".join(f'{{{owner}::{name}, "{words_of(name, prefix)}"}}' for name in constants)
+    rows = ", ".join(f'{{{owner}::{name}, "{words_of(name, prefix)}"}}' for name, _ in constants)
     tables[table] = f"inline constexpr Code {table}[] = {{{rows}}};\n"
     return f"{{codes::{table}, {len(constants)}, {'true' if bits else 'false'}}}"
 
@@ -128,5 +140,46 @@ namespace codes {{
 """
 
 
+def explanations(structs):
+    """The words of all codes with the comments of their constants, once each, in the order of the file."""
+    rows, seen = "", set()
+    for struct, (_, fields) in structs.items():
+        for _, comment in fields:
+            found = code_table_of(struct, comment, structs)
+            if not found or found[1:3] in seen:
+                continue
+            _, owner, prefix, constants = found
+            seen.add((owner, prefix))
+            for name, text in constants:
+                meaning, _, turn = (part.strip().rstrip(".") for part in text.partition("Turn:"))
+                if not meaning:
+                    sys.exit(f"struct {owner}: {name}: its word is printed, but no comment explains it")
+                quantity = words_of(prefix, "k") or "answer"
+                rows += (f'    {{{owner}::{name}, "{words_of(name, prefix)}", "{quantity}", "{owner}", {json.dumps(meaning)}, '
+                         f'{json.dumps(turn)}}},\n')
+    return f"""#pragma once
+// Made from vbar.lcm by make_fields.py: what the words of codes mean.
+#include <vbar/fields.h>
+
+namespace vbar {{
+
+struct ExplainedCode {{
+  int value;
+  const char* word;
+  const char* quantity;  ///< whose value it is: "fault"
+  const char* owner;     ///< message that defines it
+  const char* meaning;   ///< and what raises it
+  const char* turn;      ///< what a user can change, or empty
+}};
+
+inline constexpr ExplainedCode kExplainedCodes[] = {{
+{rows}}};
+
+}}  // namespace vbar
+"""
+
+
 if __name__ == "__main__":
-    Path(sys.argv[2]).write_text(header(structs_of(Path(sys.argv[1]).read_text())))
+    STRUCTS = structs_of(Path(sys.argv[1]).read_text())
+    Path(sys.argv[2]).write_text(header(STRUCTS))
+    Path(sys.argv[3]).write_text(explanations(STRUCTS))

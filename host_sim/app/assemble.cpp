@@ -202,6 +202,9 @@ void summarise_mission(const mission::Mission& mission, const mission::Spacecraf
   summary.seed = mission.seed;
   summary.target = servicer.observes();
   summary.flight_computer = mission::name_of(servicer.flight_computer->target);
+  if (servicer.thruster && servicer.thruster->max_thrust_n > 0.0)
+    summary.thrust =
+        report::Thrust{.max_thrust_n = servicer.thruster->max_thrust_n, .mass_kg = servicer.surface.mass_kg};
   sensors::add_facts(mission, servicer, summary);
 }
 

@@ -11,6 +11,7 @@
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/mission/word_search.h"
 #include "host_sim/report/run_tables.h"
+#include "host_sim/report/words.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {
@@ -63,7 +64,10 @@ int print_lines(const std::vector<DescribedTable>& tables, const std::string& wo
         names.push_back(name);
       }
   if (has_printed) return kDone;
-  fmt::print(stderr, "vbar: no column of a table has the word '{}'{}\n", word, mission::word_meant(word, names));
+  const std::vector<report::ExplainedWord> values = report::explained_words();
+  const bool is_value = std::ranges::find(values, word, &report::ExplainedWord::word) != values.end();
+  fmt::print(stderr, "vbar: no column of a table has the word '{}'{}\n", word,
+             is_value ? fmt::format("; it is a value: vbar explain {}", word) : mission::word_meant(word, names));
   return kRefused;
 }
 

@@ -92,6 +92,9 @@ int serve_command(const ServeOptions& options);
 int keys_command(const std::string& word, bool markdown);
 int columns_command(const std::string& word, bool markdown);
 
+/// A word that runs print, given as one or several arguments; none: all of them by name; or all as a page in Markdown.
+int explain_command(const std::vector<std::string>& word, bool markdown);
+
 /// The missions of a folder, or one by its name or file. Empty: those of mission::missions_directory().
 int missions_command(const std::filesystem::path& folder_or_mission);
 

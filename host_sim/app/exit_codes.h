@@ -18,12 +18,15 @@ enum ExitCode : int {
   kDamagedLog = 9,       ///< replay, resume: the log is damaged or was altered after the run
   kNeverNavigated = 10,  ///< run: complete, but the flight software never had a valid state
   kLimitMissed = 11,     ///< check: a run is incomplete or misses a limit
+  kNotAchieved = 12,     ///< run: complete, but its mission was not achieved (host_sim/report/verdict.h)
   kInterrupted = 75  ///< Ctrl-C, SIGTERM or SIGHUP ended it; the record up to then is kept (EX_TEMPFAIL of sysexits.h)
 };
 
 inline constexpr const char* kExitCodeHelp =
-    "Exit codes: 0 complete or identical, 1 failed, 2 refused (bad usage or input), 3 outputs differ, 75 interrupted.\n"
-    "vbar run also: 10 complete, but the flight software never had a valid state.\n"
+    "Exit codes: 0 complete and achieved, or identical, 1 failed, 2 refused (bad usage or input), 3 outputs differ, 75 "
+    "interrupted.\n"
+    "vbar run also: 10 complete, but the flight software never had a valid state; 12 complete, but the mission was\n"
+    "not achieved: missed, navigation lost, retreated or unsafe.\n"
     "vbar replay also: 4 the run was killed, 5 log empty, 6 log cut at its end, 7 records missing from the middle,\n"
     "8 log of other outputs than the summary states, 9 log damaged or altered after the run; vbar resume also 7 and "
     "9.\n"

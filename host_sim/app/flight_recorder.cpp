@@ -132,7 +132,9 @@ void FlightRecorder::on_answer(fsw::GpsTime time, const pil::StepResult& answer)
 
 void FlightRecorder::count_output(const pil::StepResult& answer) {
   if (!answer.has_flown) return;
-  report::Summary::FlightOutput& output = record_.summary.flight_output;
+  report::FlightOutput& output = record_.summary.flight_output;
+  ++output.steps;
+  output.packets += answer.packets.size();
   if (answer.trouble.status != 0) {
     ++output.steps_failed;
     output.last_status = answer.trouble.status;

@@ -255,6 +255,14 @@ int execute(int argc, char** argv) {
   columns_app->add_flag("--markdown", column_page, "all of them, as docs/tables.md")->excludes(column_option);
   columns_app->callback([&] { exit_code = columns_command(column_word, column_page); });
 
+  std::vector<std::string> explained;
+  bool word_page = false;
+  CLI::App* explain_app =
+      program.add_subcommand("explain", "words that a run prints: faults, counts, verdicts, codes of tables");
+  CLI::Option* explained_option = explain_app->add_option("word", explained, "one of them; all are listed without it");
+  explain_app->add_flag("--markdown", word_page, "all of them, as docs/words.md")->excludes(explained_option);
+  explain_app->callback([&] { exit_code = explain_command(explained, word_page); });
+
   NewArticleOptions article;
   CLI::App* article_app = program.add_subcommand("new-article", "create a project of your own flight software");
   article_app->add_option("folder", article.folder, "created; its name is that of the flight software")->required();

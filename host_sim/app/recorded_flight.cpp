@@ -1,6 +1,7 @@
 #include "host_sim/app/recorded_flight.h"
 
 #include <chrono>
+#include <cstdio>
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/app/flown_from.h"
+#include "host_sim/app/mission_verdict.h"
 #include "host_sim/app/packet_keepers.h"
 #include "host_sim/app/progress.h"
 #include "host_sim/app/stop_request.h"
@@ -15,6 +17,8 @@
 #include "host_sim/report/html_report.h"
 #include "host_sim/report/summarise.h"
 #include "host_sim/report/text_file.h"
+#include "host_sim/report/thrust.h"
+#include "host_sim/report/verdict.h"
 #include "host_sim/report/waypoint_table.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
@@ -74,13 +78,15 @@ std::optional<std::string> fly(const FlightOrder& order, AssembledMission& assem
   record.summary.commands_sha256 = keepers.commands_sha256();
   record.summary.telemetry_sha256 = keepers.telemetry_sha256();
   if (!trouble) flight_computer->close();
-  return trouble;
+  return trouble ? trouble : missing_output(record.summary.flight_output);
 }
 
-/// Dropped packets, refused plans and errors are always reported.
-void report_health(const report::Summary& summary) {
+/// Dropped packets and refused plans are always reported.
+void report_health(const report::Summary& summary, bool quiet) {
   const std::string line = summary.health ? report::health_line(*summary.health) : "";
-  if (!line.empty()) fmt::print("flight software: {}\n", line);
+  if (!line.empty()) fmt::print("flight software: {}{}\n", line, quiet ? "" : " (vbar explain WORD)");
+  const std::string thrust = report::thrust_line(summary);
+  if (!thrust.empty() && (!quiet || summary.thrust->burns_too_long > 0)) fmt::print("{}\n", thrust);
   const std::string output = report::output_line(summary);
   if (!output.empty()) fmt::print("flight software: {}\n", output);
 }
@@ -146,6 +152,7 @@ std::optional<std::string> fly_into(RunFolder& folder, const FlightOrder& order,
   }
   record.summary.complete = !trouble;
   record.summary.incomplete_reason = trouble.value_or("");
+  put_verdict(order.mission, record);
   record.summary.provenance.data = data_read();
   record.summary.provenance.packet_log = report::digest_of(folder.packet_log());
   if (auto& log = record.summary.provenance.packet_log) log->file = folder.packet_log().filename().string();
@@ -165,7 +172,7 @@ void report_flight(const std::filesystem::path& folder, const std::filesystem::p
     const bool has_report = order.mission.record.tables;
     const std::filesystem::path report = has_report ? report::write_html_report(folder, record) : folder;
     if (!order.quiet && !record.waypoints.empty()) fmt::print("{}", report::waypoint_table(record));
-    report_health(record.summary);
+    report_health(record.summary, order.quiet);
     report_rejections(record.summary);
     report_line(record.summary.link);
     if (has_report && !order.quiet) fmt::print("report  {}\n", (name / report.filename()).string());
@@ -182,14 +189,20 @@ void report_flight(const std::filesystem::path& folder, const std::filesystem::p
 }
 
 int exit_code_of(const report::RunRecord& record, const std::optional<std::string>& trouble,
-                 const std::filesystem::path& name) {
-  if (!trouble && record.summary.never_navigated) {
-    fmt::print(stderr, "vbar: {}: never navigated: no estimate was valid\n", name.string());
-    return kNeverNavigated;
+                 const std::filesystem::path& name, bool quiet) {
+  if (trouble) {
+    fmt::print(stderr, "vbar: {}: run incomplete: {}\n", name.string(), *trouble);
+    return *trouble == kInterruption ? kInterrupted : kFailed;
   }
-  if (!trouble) return kDone;
-  fmt::print(stderr, "vbar: {}: run incomplete: {}\n", name.string(), *trouble);
-  return *trouble == kInterruption ? kInterrupted : kFailed;
+  const std::string line = report::verdict_line(record.summary);
+  const report::Outcome outcome = report::outcome_of(record.summary.verdict);
+  if (report::is_favourable(outcome)) {
+    if (!quiet) fmt::print("verdict {}\n", line);
+    return kDone;
+  }
+  std::fflush(stdout);  // the verdict is the last line
+  fmt::print(stderr, "vbar: {}: {}\n", name.string(), line);
+  return outcome == report::Outcome::kNeverNavigated ? kNeverNavigated : kNotAchieved;
 }
 
 }  // namespace vbar::app

@@ -49,8 +49,9 @@ void report_data(const std::vector<std::string>& notes);
 void report_flight(const std::filesystem::path& folder, const std::filesystem::path& name, const FlightOrder& order,
                    const report::RunRecord& record, const std::optional<std::string>& trouble);
 
-/// Exit code of the flight; prints why it is not kDone. `name`: of its folder for the message.
+/// Exit code of the flight. Prints the verdict as the last line: on standard output, unless `quiet`, if the code is
+/// kDone, otherwise as the reason why it is not. `name`: of its folder for the message.
 int exit_code_of(const report::RunRecord& record, const std::optional<std::string>& trouble,
-                 const std::filesystem::path& name);
+                 const std::filesystem::path& name, bool quiet);
 
 }  // namespace vbar::app

@@ -12,6 +12,7 @@
 #include "host_sim/report/html_report.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/summarise.h"
+#include "host_sim/report/verdict.h"
 #include "host_sim/report/waypoint_table.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
@@ -32,6 +33,8 @@ report::RunRecord evaluated_run(const std::filesystem::path& folder) {
 int report_one(const std::filesystem::path& folder) {
   const report::RunRecord record = evaluated_run(folder);
   fmt::print("{}report  {}\n", report::waypoint_table(record), report::write_html_report(folder, record).string());
+  if (record.summary.complete && !record.summary.verdict_reason.empty())
+    fmt::print("verdict {}\n", report::verdict_line(record.summary));
   return 0;
 }
 

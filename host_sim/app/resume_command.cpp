@@ -218,7 +218,7 @@ int continue_run(const ResumeOptions& options, const FlownRun& run, twins::Flown
     report_flight(folder.path(), options.run_folder, order, record, trouble);
   }
   replace_run(run.folder);
-  return exit_code_of(record, trouble, options.run_folder);
+  return exit_code_of(record, trouble, options.run_folder, options.quiet);
 }
 
 int fly_branch(const ResumeOptions& options, const FlownRun& run, twins::FlownLog& log) {
@@ -257,7 +257,7 @@ int fly_branch(const ResumeOptions& options, const FlownRun& run, twins::FlownLo
     return refuse(report::packet_log_file(run.folder), *verdict);
   }
   report_flight(folder.path(), folder.path(), order, record, trouble);
-  return exit_code_of(record, trouble, folder.path());
+  return exit_code_of(record, trouble, folder.path(), options.quiet);
 }
 
 [[noreturn]] void refuse_complete(const fs::path& folder) {

@@ -40,7 +40,7 @@ int run_command(const RunOptions& options) {
   const std::optional<std::string> trouble = fly_into(folder, order, *assembled, record);
   report_flight(folder.path(), folder.path(), order, record, trouble);
   if (!options.quiet) print_own_limits(folder.path());
-  return exit_code_of(record, trouble, folder.path());
+  return exit_code_of(record, trouble, folder.path(), options.quiet);
 }
 
 }  // namespace vbar::app

@@ -140,9 +140,10 @@ End CaseFlight::judge() {
     return {End::Kind::kKilled, std::move(result), child_->killed_by() ? child_->status_text() : "interrupted"};
   const Json summary = read_summary_of(run_folder_);
   const int status = child_->exit_status().value_or(app::kFailed);
-  if ((status != app::kDone && status != app::kNeverNavigated) || !is_true(summary, "complete"))
-    return judge_failure(std::move(result), summary);
+  const bool has_verdict = status == app::kDone || status == app::kNeverNavigated || status == app::kNotAchieved;
+  if (!has_verdict || !is_true(summary, "complete")) return judge_failure(std::move(result), summary);
   result.numbers = numbers_of(summary);
+  result.verdict = text_in(summary, "verdict");
   result.commands_sha256 = text_in(summary, "commands_sha256");
   result.telemetry_sha256 = text_in(summary, "telemetry_sha256");
   result.waypoints_sha256 = waypoints_sha256(summary);

@@ -36,7 +36,8 @@ std::string head_line(const Standing& standing, const std::vector<std::string>& 
   };
   for (const std::string& key : standing.plan.keys) add(key);
   line +=
-      ",state,passed,failed_limits,reason,attempts,host,processor,wall_s,cpu_s,commands_sha256,telemetry_sha256,"
+      ",state,verdict,passed,failed_limits,reason,attempts,host,processor,wall_s,cpu_s,commands_sha256,telemetry_"
+      "sha256,"
       "waypoints_sha256,folder";
   for (const std::string& key : numbers) add(key);
   return line + "\n";
@@ -62,6 +63,7 @@ void append_result(std::string& line, const Standing& standing, const CaseStatus
   };
   const bool has_flown = has && result.state == State::kComplete;
   text(std::string(name_of(status.state)));
+  text(result.verdict);
   text(has ? passed_text(standing.plan, result) : "");
   text(has_flown ? fmt::format("{}", fmt::join(failed_limits(standing.plan, result), "; ")) : "");
   text(has ? result.reason : status.last_end);

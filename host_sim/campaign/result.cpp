@@ -51,6 +51,7 @@ Json json_of(const Result& result, std::size_t name_line) {
           {"attempt", result.attempt},
           {"state", name_of(result.state)},
           {"reason", result.reason},
+          {"verdict", result.verdict},
           {"host", result.host},
           {"processor", result.processor},
           {"wall_s", result.wall_s},
@@ -71,6 +72,7 @@ Result result_of(const Json& json, const NameLines& name_lines) {
   json.at("attempt").get_to(result.attempt);
   result.state = state_of(json.at("state").get<std::string>());
   json.at("reason").get_to(result.reason);
+  result.verdict = json.value("verdict", "");  // an older version of this program wrote none
   json.at("host").get_to(result.host);
   json.at("processor").get_to(result.processor);
   json.at("wall_s").get_to(result.wall_s);

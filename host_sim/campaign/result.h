@@ -20,7 +20,8 @@ struct Result {
   std::size_t number = 0;  ///< of the case
   std::string attempt;     ///< its name, which no other attempt has
   State state = State::kComplete;
-  std::string reason;  ///< of a failure, in one sentence
+  std::string reason;   ///< of a failure, in one sentence
+  std::string verdict;  ///< on the mission of a complete case (host_sim/report/verdict.h)
   std::string host, processor;
   double wall_s = 0.0, cpu_s = 0.0;
   std::string commands_sha256, telemetry_sha256, waypoints_sha256;

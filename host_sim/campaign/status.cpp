@@ -31,11 +31,22 @@ std::string states_text(const Standing& standing) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// "verdicts: 18 achieved, 2 missed"; empty before the first.
+std::string verdicts_text(const Standing& standing) {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& [number, result] : standing.results.of_case)
+    if (!result.verdict.empty()) ++counts[result.verdict];
+  std::vector<std::string> parts;
+  for (const auto& [verdict, count] : counts) parts.push_back(fmt::format("{} {}", count, verdict));
+  return parts.empty() ? "" : fmt::format("verdicts: {}\n", fmt::join(parts, ", "));
+}
+
 }  // namespace
 
 std::string status_text(const Standing& standing, const std::vector<std::string>& jobs) {
   std::string text = fmt::format("{}: {} cases: {}; {} passed\n", standing.plan.name, standing.cases.size(),
                                  states_text(standing), standing.passed());
+  text += verdicts_text(standing);
   if (standing.plan.require && standing.left_to_fly(false).empty())
     text +=
         judge(*standing.plan.require, standing.passed(), standing.cases.size(), standing.plan.independent).sentence +

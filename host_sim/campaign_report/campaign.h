@@ -30,6 +30,7 @@ struct Case {
   State state = State::kNotBegun;
   std::optional<bool> passed;  ///< of complete cases always
   std::string failed_limits, reason, host, processor, folder;
+  std::string verdict;  ///< on the mission of a complete case; empty in results of an older version
   std::uint64_t attempts = 0;
   double wall_s = 0.0, cpu_s = 0.0;  ///< NaN if it was not flown
 

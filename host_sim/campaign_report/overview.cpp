@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include "host_sim/campaign_report/percentile.h"
 #include "host_sim/campaign_report/sections.h"
 #include "host_sim/report/number_text.h"
+#include "host_sim/report/verdict.h"
 
 namespace vbar::campaign_report {
 namespace {
@@ -37,6 +39,18 @@ std::string census(const Campaign& campaign) {
   if (killed + flying + not_begun > 0)
     text += fmt::format(" ({} killed, {} flying, {} not begun)", killed, flying, not_begun);
   return text + ".</p>\n";
+}
+
+/// How many complete cases have which verdict; empty for results of an older version.
+std::string verdicts(const Campaign& campaign) {
+  std::map<report::Outcome, std::size_t> counts;
+  for (const Case& one : campaign.cases)
+    if (one.is_complete() && !one.verdict.empty()) ++counts[report::outcome_of(one.verdict)];
+  std::string text;
+  for (const auto& [outcome, count] : counts)
+    text += fmt::format("{}<span class=\"{}\">{} {}</span>", text.empty() ? "" : ", ",
+                        report::is_favourable(outcome) ? "" : "bad", report::grouped(count), report::word_of(outcome));
+  return text.empty() ? "" : fmt::format("<p>Verdicts on the mission: {}.</p>\n", text);
 }
 
 struct Judgement {
@@ -109,8 +123,8 @@ std::string overview(const Content& content) {
     std::string& names = is_swept ? swept : dispersed;
     names.append(names.empty() ? "" : ", ").append(key);
   }
-  return fmt::format("<h1>{}</h1>\n{}<p class=\"lead\">{}</p>\n", report::escaped(campaign.name), census(campaign),
-                     report::escaped(campaign.description)) +
+  return fmt::format("<h1>{}</h1>\n{}{}<p class=\"lead\">{}</p>\n", report::escaped(campaign.name), census(campaign),
+                     verdicts(campaign), report::escaped(campaign.description)) +
          requirement_text(campaign) + tiles(content) +
          report::fact_list({{"mission", campaign.mission},
                             {"vbar", campaign.vbar_version},

@@ -182,6 +182,7 @@ struct Fault {
 struct Thruster {
   double magnitude_error = 0.0;     ///< relative
   double pointing_error_rad = 0.0;  ///< about each of two axes across the burn
+  double max_thrust_n = 0.0;        ///< for a check of burn durations only; 0: not stated
 };
 
 struct Spacecraft {

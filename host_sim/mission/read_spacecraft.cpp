@@ -157,6 +157,7 @@ Thruster read_thruster(const TableReader& section) {
   Thruster thruster;
   thruster.magnitude_error = 1e-2 * section.number("magnitude_error_percent", from_to(0.0, 20.0), 0.0);
   thruster.pointing_error_rad = kDegree * section.number("pointing_error_deg", from_to(0.0, 30.0), 0.0);
+  thruster.max_thrust_n = section.number("max_thrust_n", from_to(0.0, 1e6), 0.0);
   return thruster;
 }
 

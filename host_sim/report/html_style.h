@@ -6,20 +6,20 @@ namespace vbar::report {
 inline constexpr const char* kStyleSheet = R"css(
 :root {
   --page: #fcfcfb; --ink: #1a1a19; --muted: #63625d; --grid: #e6e5e0; --frame: #c3c2b7; --panel: #f4f3ef;
-  --good: #1a7a3c; --bad: #c0291f;
+  --good: #1a7a3c; --caution: #9a6700; --bad: #c0291f;
   --c0: #2a78d6; --c1: #e0560f; --c2: #10916a; --c3: #b98400; --c4: #6a4fc4; --c5: #7a7973;
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --page: #1a1a19; --ink: #f2f1ec; --muted: #b4b2a8; --grid: #33322f; --frame: #55534d; --panel: #242422;
-    --good: #5bc27e; --bad: #ff7a6e;
+    --good: #5bc27e; --caution: #d4a72c; --bad: #ff7a6e;
     --c0: #5a9df0; --c1: #f58a4b; --c2: #35bd92; --c3: #d9a520; --c4: #a794f5; --c5: #a09e95;
   }
 }
 @media print {
   :root {
     --page: #fff; --ink: #000; --muted: #444; --grid: #ddd; --frame: #999; --panel: #fff;
-    --good: #1a7a3c; --bad: #c0291f;
+    --good: #1a7a3c; --caution: #9a6700; --bad: #c0291f;
     --c0: #2a78d6; --c1: #e0560f; --c2: #10916a; --c3: #b98400; --c4: #6a4fc4; --c5: #7a7973;
   }
 }
@@ -33,7 +33,7 @@ h3 { font-size: 15px; margin: 20px 0 6px; }
 p { margin: 6px 0; max-width: 90ch; }
 .lead, .note { color: var(--muted); }
 .status { display: inline-block; padding: 1px 10px; border-radius: 10px; border: 1px solid; font-size: 13px; }
-.good { color: var(--good); } .bad { color: var(--bad); }
+.good { color: var(--good); } .caution { color: var(--caution); } .bad { color: var(--bad); }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 10px; margin: 18px 0; }
 .tile { background: var(--panel); border: 1px solid var(--grid); border-radius: 6px; padding: 10px 14px; }
 .tile b { display: block; font-size: 22px; line-height: 1.25; font-weight: 600; }

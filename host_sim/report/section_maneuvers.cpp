@@ -8,6 +8,7 @@
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/report_sections.h"
 #include "host_sim/report/section_parts.h"
+#include "host_sim/report/thrust.h"
 
 namespace vbar::report {
 namespace {
@@ -67,9 +68,11 @@ Section maneuver_section(const RunRecord& record) {
   if (views.size() > 1) cumulative.push_back(cumulative_plot(executed, views.back()));
   std::vector<std::vector<std::string>> rows;
   for (const ManeuverRow& row : record.maneuvers) rows.push_back(cells(row));
+  const std::string thrust = thrust_line(record.summary);
   return {"Maneuvers",
           fmt::format("<p>{} commanded, {} executed, {} not executed. Dashed vertical lines: waypoints.</p>\n",
                       rows.size(), executed.size(), rows.size() - executed.size()) +
+              (thrust.empty() ? "" : fmt::format("<p>{}</p>\n", escaped(thrust))) +
               plot_rows(2, std::move(cumulative)) + plot_rows(1, {size_plot(executed, whole)}, 1) +
               fmt::format("<details><summary>All {} maneuvers, in the servicer's RTN frame</summary>", rows.size()) +
               table(kColumns, rows) + "</details>\n",

@@ -6,15 +6,24 @@
 #include "host_sim/report/mission_views.h"
 #include "host_sim/report/number_text.h"
 #include "host_sim/report/report_sections.h"
+#include "host_sim/report/verdict.h"
 
 namespace vbar::report {
 namespace {
 
+std::string badge(const char* style, std::string_view word, const std::string& text, const char* text_style = "") {
+  return fmt::format("<p><span class=\"status {}\">{}</span> <span class=\"{}\">{}</span></p>\n", style, escaped(word),
+                     text_style, escaped(text));
+}
+
 std::string status(const Summary& s) {
-  if (s.complete && s.never_navigated) return R"(<p><span class="status bad">never navigated</span></p>)";
-  if (s.complete) return R"(<p><span class="status good">complete</span></p>)";
-  return fmt::format(R"(<p><span class="status bad">incomplete</span> <span class="bad">{}</span></p>)",
-                     escaped(s.incomplete_reason));
+  if (!s.complete) return badge("bad", "incomplete", s.incomplete_reason, "bad");
+  // An older version of this program left no verdict.
+  if (s.verdict_reason.empty())
+    return badge(s.never_navigated ? "bad" : "good", s.never_navigated ? "never navigated" : "complete", "");
+  const Outcome outcome = outcome_of(s.verdict);
+  if (!is_favourable(outcome)) return badge("bad", s.verdict, s.verdict_reason, "bad");
+  return badge(outcome == Outcome::kAchieved ? "good" : "caution", s.verdict, s.verdict_reason);
 }
 
 std::string tile(std::string_view value, std::string_view meaning) {

@@ -9,9 +9,12 @@
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/extension.h"
 #include "host_sim/report/maneuver_series.h"
+#include "host_sim/report/mission_views.h"
 #include "host_sim/report/navigation_errors.h"
 #include "host_sim/report/samples.h"
 #include "host_sim/report/statistics.h"
+#include "host_sim/report/thrust.h"
+#include "host_sim/report/true_distance.h"
 
 namespace vbar::report {
 namespace {
@@ -41,9 +44,12 @@ void summarise_maneuvers(const RunRecord& record, Summary& summary) {
   }
 }
 
-/// A run too short to tell, or one that navigated late, did not fail.
+/// A run too short to tell, or one that navigated late, did not fail. Flight software that has to navigate says so
+/// itself, unless it refused even the time of its steps.
 bool never_navigated(const RunRecord& record, const Summary& summary) {
-  return summary.health && (summary.health->faults & telemetry_health::kFaultNeverNavigated) != 0 &&
+  const bool is_reported = summary.health && (summary.health->faults & telemetry_health::kFaultNeverNavigated) != 0;
+  const bool is_passed = !record.of<telemetry_health>().empty() && !reached_waypoints(record).empty();
+  return (is_reported || is_passed) &&
          std::ranges::none_of(record.estimates, [](const EstimateRow& row) { return row.navigation_valid != 0; });
 }
 
@@ -56,6 +62,12 @@ const WaypointRow* leg_of(const ManeuverRow& maneuver, const std::vector<Waypoin
     found = std::ranges::find_if(waypoints,
                                  [&](const WaypointRow& row) { return maneuver.execution_time_s <= row.time_s; });
   return found != waypoints.end() ? &*found : nullptr;
+}
+
+void summarise_distance(const RunRecord& record, Summary& summary) {
+  const std::optional<TrueDistance> least = min_distance(record);
+  summary.min_distance_m = least ? std::optional(least->distance_m) : std::nullopt;
+  summary.min_distance_at_h = least ? std::optional(least->time_s / 3600.0) : std::nullopt;
 }
 
 /// What the flight computer's steps cost; in which unit is a fact.
@@ -82,6 +94,8 @@ Summary summarise(const RunRecord& record) {
     summary.simulated_s = record.truth.back().time_s - record.truth.front().time_s;
   summarise_navigation(record, summary);
   summarise_maneuvers(record, summary);
+  summarise_thrust(record, summary);
+  summarise_distance(record, summary);
   summarise_flight_steps(record, summary);
   summary.sensor_figures.clear();
   for (const Extension* extension : record.extensions)
@@ -115,14 +129,12 @@ void evaluate(RunRecord& record) {
 }
 
 std::string output_line(const Summary& summary) {
-  const Summary::FlightOutput& output = summary.flight_output;
+  const FlightOutput& output = summary.flight_output;
   std::string line;
   const auto add = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) line += (line.empty() ? "" : ", ") + text;
   };
-  const auto steps = [&](std::uint64_t count) {
-    return fmt::format("{} of {} steps", count, summary.flight_step.count);
-  };
+  const auto steps = [&](std::uint64_t count) { return fmt::format("{} of {} steps", count, output.steps); };
   add(output.steps_failed,
       fmt::format("{} returned an error (the last one status {})", steps(output.steps_failed), output.last_status));
   add(output.steps_silent, steps(output.steps_silent) + " sent nothing");

@@ -50,12 +50,36 @@ struct SourceFigures {
 /// What a testbed says of the run, by name with the unit: "edges_missing", "bench".
 using TestbedFigures = std::map<std::string, std::variant<double, std::string>>;
 
+/// Burns against the thrust that the mission states (thrust.h).
+struct Thrust {
+  double max_thrust_n = 0.0, mass_kg = 0.0;  ///< facts of the mission
+  int burns = 0;                             ///< of the flight software, executed
+  int burns_too_long = 0;                    ///< would last longer than the time to the next one
+  double longest_burn_s = 0.0, longest_burn_at_h = 0.0;
+};
+
+/// What the flight software sent and failed to do, in numbers of steps and of packets. Steps in which a fault of the
+/// mission had the flight computer off do not count.
+struct FlightOutput {
+  std::uint64_t steps = 0;
+  std::uint64_t steps_failed = 0;  ///< whose function returned a status other than 0; in process only
+  std::int32_t last_status = 0;    ///< of these
+  std::uint64_t steps_silent = 0;  ///< without any packet
+  std::uint64_t packets = 0;
+  std::uint64_t packets_invalid = 0;  ///< that are not whole, or not of a valid content
+  std::uint64_t packets_dropped = 0;  ///< not of a packet's size, or more than an answer holds
+  std::uint64_t inputs_refused = 0;   ///< packets given to it whose reception returned a status other than 0
+};
+
 /// What a run is and what the tables do not hold.
 struct RunFacts {
   std::string mission;
   std::uint64_t seed = 0;
   bool complete = false;
   std::string incomplete_reason;
+  std::string verdict = "incomplete";  ///< report::word_of(Outcome), by the goals of the mission (verdict.h)
+  std::string verdict_reason;          ///< one sentence
+  std::vector<int> missed_waypoints;
   std::string flight_computer, flight_software, camera, gnss, navigation;
   std::string target;  ///< the spacecraft that is approached
   double simulated_s = 0.0, wall_s = 0.0, speed_factor = 0.0;
@@ -64,16 +88,7 @@ struct RunFacts {
   /// the motion may do better.
   std::optional<double> static_floor_m;
   std::string commands_sha256, telemetry_sha256;
-  /// What the flight software failed to do, in numbers of steps and of packets. Steps in which a fault of the mission
-  /// had the flight computer off do not count.
-  struct FlightOutput {
-    std::uint64_t steps_failed = 0;     ///< whose function returned a status other than 0; in process only
-    std::int32_t last_status = 0;       ///< of these
-    std::uint64_t steps_silent = 0;     ///< without any packet
-    std::uint64_t packets_invalid = 0;  ///< that are not whole, or not of a valid content
-    std::uint64_t packets_dropped = 0;  ///< not of a packet's size, or more than an answer holds
-    std::uint64_t inputs_refused = 0;   ///< packets given to it whose reception returned a status other than 0
-  } flight_output;
+  FlightOutput flight_output;
   struct Link {
     std::uint64_t bytes = 0, frames_resent = 0, frames_rejected = 0, frames_duplicated = 0, strangers_ignored = 0;
     int baud = 0;                                        ///< of a serial line; 0: none, or as fast as it goes
@@ -115,8 +130,10 @@ struct Summary : RunFacts {
   std::map<std::string, std::map<std::string, double>> sensor_figures;
   /// The flight software reported that it never navigated, and no estimate was valid: a fault of the run.
   bool never_navigated = false;
+  std::optional<double> min_distance_m, min_distance_at_h;  ///< true, to the target
   double dv_mps = 0.0;
   int maneuvers = 0;
+  std::optional<Thrust> thrust;  ///< of a mission that states one
   struct FlightStep {
     std::uint64_t count = 0, max = 0;
     double mean = 0.0;

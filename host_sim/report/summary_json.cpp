@@ -71,10 +71,12 @@ void members(Is<Summary::FlightStep> auto& s, auto& visit) {
   visit("stack_bytes_max", s.stack_bytes_max);
 }
 
-void members(Is<RunFacts::FlightOutput> auto& s, auto& visit) {
+void members(Is<FlightOutput> auto& s, auto& visit) {
+  visit("steps", s.steps);
   visit("steps_failed", s.steps_failed);
   visit("last_status", s.last_status);
   visit("steps_silent", s.steps_silent);
+  visit("packets", s.packets);
   visit("packets_invalid", s.packets_invalid);
   visit("packets_dropped", s.packets_dropped);
   visit("inputs_refused", s.inputs_refused);
@@ -116,6 +118,15 @@ void members(Is<telemetry_health> auto& s, auto& visit) {
   visit_fields(s, [&](const Field& field, auto& value) { visit(field.name, value, field.codes); });
 }
 
+void members(Is<Thrust> auto& s, auto& visit) {
+  visit("max_thrust_n", s.max_thrust_n);
+  visit("mass_kg", s.mass_kg);
+  visit("burns", s.burns);
+  visit("burns_too_long", s.burns_too_long);
+  visit("longest_burn_s", s.longest_burn_s);
+  visit("longest_burn_at_h", s.longest_burn_at_h);
+}
+
 void members(Is<FileDigest> auto& s, auto& visit) {
   visit("file", s.file);
   visit("bytes", s.bytes);
@@ -155,6 +166,9 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit("seed", s.seed);
   visit("complete", s.complete);
   visit("incomplete_reason", s.incomplete_reason);
+  visit("verdict", s.verdict);
+  visit("verdict_reason", s.verdict_reason);
+  visit("missed_waypoints", s.missed_waypoints);
   visit("never_navigated", s.never_navigated);
   visit("flight_computer", s.flight_computer);
   visit("flight_software", s.flight_software);
@@ -178,8 +192,11 @@ void members(Is<Summary> auto& s, auto& visit) {
   visit("bearing_error_arcsec", s.bearing_error_arcsec);
   visit("star_attitude_error_arcsec", s.star_attitude_error_arcsec);
   visit("sensor_figures", s.sensor_figures);
+  visit("min_distance_m", s.min_distance_m);
+  visit("min_distance_at_h", s.min_distance_at_h);
   visit("dv_mps", s.dv_mps);
   visit("maneuvers", s.maneuvers);
+  visit("thrust", s.thrust);
   visit("commands_sha256", s.commands_sha256);
   visit("telemetry_sha256", s.telemetry_sha256);
   visit("health", s.health);

@@ -78,6 +78,8 @@ class Campaign(unittest.TestCase):
         self.assertEqual([int(row["case"]) for row in self.rows], list(range(20)))
         self.assertEqual({row["state"] for row in self.rows}, {"complete"})
         self.assertEqual({row["passed"] for row in self.rows}, {"1"})
+        self.assertEqual({row["verdict"] for row in self.rows}, {"not judged"})
+        self.assertIn("verdicts: 20 not judged", vbar("campaign", "status", self.reference).stdout)
         self.assertEqual(len({row["telemetry_sha256"] for row in self.rows}), 20)
         self.assertGreater(float(self.rows[0]["samples.39.05h.sigma_m"]), 0.0)
 
@@ -154,6 +156,17 @@ high = 0.0400001
         before = list((folder / "results").iterdir())
         run(folder, expect=1)
         self.assertEqual(list((folder / "results").iterdir()), before)
+
+    def test_a_mission_that_is_not_achieved_is_a_result(self):
+        """Its case is complete; the criteria of the campaign decide whether it passes."""
+        folder = self.folder / "unsafe"
+        general = '[[sweep]]\nkey = "guidance.keep_out_radius_m"\nvalues = [0.5, 20.0]\n'
+        run(campaign_file(self.folder, "unsafe.toml", seeds="1..1", values="[0.0]", rest=general), "--out", folder)
+        self.assertEqual([(row["state"], row["passed"], row["verdict"]) for row in rows_of(folder)],
+                         [("complete", "1", "not judged"), ("complete", "1", "unsafe")])
+        page = vbar("campaign", "report", folder)
+        self.assertEqual(page.returncode, 0, page.stderr)
+        self.assertIn('<span class="bad">1 unsafe</span>', (folder / "campaign.html").read_text())
 
     def test_over_time(self):
         file = campaign_file(self.folder, "slow.toml", seeds="1..1", values="[0.0]", hours=2.25, general="case_time_limit_s = 0.2")

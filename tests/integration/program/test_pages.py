@@ -85,6 +85,10 @@ class FirstHour(Page, unittest.TestCase):
     page = "first_hour.md"
 
 
+class Limits(Page, unittest.TestCase):
+    page = "limits.md"
+
+
 class Tutorial(Page, unittest.TestCase):
     page = "tutorial.md"
 

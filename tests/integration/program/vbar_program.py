@@ -8,6 +8,7 @@ import sys
 import tempfile
 import unittest
 
+COMPLETE = (0, 10, 12)  # exit codes of a run that reached its end
 SKIP = 77  # ctest's exit code for "cannot be tested here"
 
 SOURCE = pathlib.Path(os.environ["VBAR_SOURCE_DIR"])
@@ -47,9 +48,9 @@ def overrides(*settings):
 
 
 def fly(folder, *settings, mission=MISSION, timeout=300, **environment):
-    """Flies a mission that has to succeed; its summary."""
+    """Flies a mission to its end, whatever the verdict on it; its summary."""
     result = vbar("run", mission, "--force", "--out", folder, *overrides(*settings), timeout=timeout, **environment)
-    if result.returncode != 0:
+    if result.returncode not in COMPLETE:
         raise AssertionError(f"vbar run failed: {result.stderr}")
     return summary_of(folder)
 

@@ -14,7 +14,9 @@ enum {
   kHangsInInit = 5,
   kReturnsErrors = 6,
   kAllocates = 7,
-  kForks = 8
+  kForks = 8,
+  kSendsNothing = 9,
+  kSendsGarbage = 10
 };
 enum { kStatus = 12345 };
 
@@ -57,6 +59,8 @@ vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns) {
   if (fault == kCrashesInStep) (void)raise(SIGSEGV);
   if (fault == kExitsInStep) exit(7);
   while (fault == kHangsInStep) (void)sleep(1);
+  static const uint8_t kGarbage[40] = {0xDE, 0xAD, 0xBE, 0xEF};
+  for (int k = 0; fault == kSendsGarbage && k < 3; ++k) the_sink(the_context, kGarbage, sizeof kGarbage);
   if (fault == kReturnsErrors) {
     the_sink(the_context, (const uint8_t*)"garbage", 7);
     the_sink(the_context, (const uint8_t*)"", 0); /* not of a packet's size: dropped */

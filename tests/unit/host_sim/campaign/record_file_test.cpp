@@ -82,6 +82,7 @@ Result result_of_case(std::size_t number, State state, const std::string& hash) 
   result.state = state;
   result.commands_sha256 = result.telemetry_sha256 = result.waypoints_sha256 = hash;
   result.numbers = {{"dv_mps", 0.1}};
+  result.verdict = "missed";
   return result;
 }
 
@@ -96,6 +97,7 @@ TEST_F(RecordFiles, GiveEachCaseOneResult) {
   EXPECT_EQ(all.of_case.at(1).state, State::kComplete);
   EXPECT_EQ(all.of_case.at(2).state, State::kComplete);
   EXPECT_EQ(all.of_case.at(2).numbers, (Numbers{{"dv_mps", 0.1}}));
+  EXPECT_EQ(all.of_case.at(2).verdict, "missed");
   EXPECT_TRUE(all.conflicts.empty());
 }
 

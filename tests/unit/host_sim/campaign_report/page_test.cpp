@@ -83,14 +83,16 @@ TEST_F(CampaignPage, FailedCasesHaveNotPassedAndKilledOnesAreNotCounted) {
   write_synthetic_campaign(scratch_ / "night's work", {.cases = 4, .epochs = 0});
   std::string text = content(results());
   const auto change = [&](const std::string& number, const std::string& state) {
-    text = std::regex_replace(text, std::regex("\n(" + number + ",[^\n]*),complete,1,[^\n]*"),
-                              "\n$1," + state + ",,,,1,h,p,1,1,,,," + std::string(6, ','));
+    text = std::regex_replace(text, std::regex("\n(" + number + ",[^\n]*),complete,[a-z]+,1,[^\n]*"),
+                              "\n$1," + state + ",,,,,1,h,p,1,1,,,," + std::string(6, ','));
   };
   change("1", "failed");
   change("2", "killed");
   write(results(), text);
   const std::string html = page();
   EXPECT_THAT(html, HasSubstr("passed, 2 of 3 cases"));
+  EXPECT_THAT(html,
+              HasSubstr("Verdicts on the mission: <span class=\"\">1 achieved</span>, <span class=\"bad\">1 missed"));
   EXPECT_THAT(html, HasSubstr("4 cases: 2 complete (2 passed), <span class=\"bad\">1 failed</span>"));
 }
 

@@ -76,7 +76,8 @@ std::string json_of(const SyntheticCampaign& campaign) {
 std::string header(const SyntheticCampaign& campaign) {
   std::string line =
       "case,seed,links.crosslink.loss_probability,spacecraft.servicer.mass_kg,spacecraft.target.mass_kg,"
-      "spacecraft.servicer.sensors.gnss.link_budget.lna_noise_figure_db,state,passed,failed_limits,reason,attempts,"
+      "spacecraft.servicer.sensors.gnss.link_budget.lna_noise_figure_db,state,verdict,passed,failed_limits,reason,"
+      "attempts,"
       "host,"
       "processor,wall_s,cpu_s,commands_sha256,telemetry_sha256,waypoints_sha256,folder,waypoints.10.navigation_error_m,"
       "waypoints.10.control_error_m,waypoints.10.control_error_r_m,waypoints.10.control_error_t_m,"
@@ -111,8 +112,9 @@ std::string row(const SyntheticCampaign& campaign, std::size_t number, Source& s
   const bool has_passed = error_m <= kLimit_m;
   std::string line = fmt::format("{},{},{},{},{},{},{}", number, number % seeds + 1, loss, servicer_kg, target_kg,
                                  noise_figure_db, end.state);
-  line += is_complete ? fmt::format(",{},{}", has_passed ? 1 : 0, has_passed ? "" : "waypoints.10.navigation_error_m")
-                      : ",,";
+  line += is_complete ? fmt::format(",{},{},{}", number % 2 == 0 ? "achieved" : "missed", has_passed ? 1 : 0,
+                                    has_passed ? "" : "waypoints.10.navigation_error_m")
+                      : ",,,";
   std::string reason = end.reason;
   for (std::size_t k = 0; (k = reason.find('"', k)) != std::string::npos; k += 2) reason.insert(k, 1, '"');
   line += fmt::format(",\"{}\",{}", reason, was_flown ? 1 + (source.engine() % 50 == 0 ? 1 : 0) : 0);

@@ -284,14 +284,15 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
   leave_a_run();
   const Json json = Json::parse(content(run() / "summary.json"));
   EXPECT_THAT(keys(json),
-              ElementsAre("schema", "mission", "seed", "complete", "incomplete_reason", "never_navigated",
-                          "flight_computer", "flight_software", "camera", "gnss", "navigation", "target", "simulated_s",
-                          "wall_s", "speed_factor", "navigation_error_m", "navigation_velocity_error_mps",
-                          "attitude_error_deg", "first_fix_s", "static_floor_m", "navigation_nees",
-                          "navigation_nees_dimension", "navigation_nis", "navigation_nis_dimension", "samples",
-                          "bearing_error_arcsec", "star_attitude_error_arcsec", "sensor_figures", "dv_mps", "maneuvers",
-                          "commands_sha256", "telemetry_sha256", "health", "flight_step", "link", "deadlines",
-                          "sources", "wall_share", "data_notes", "provenance", "testbeds", "waypoints"));
+              ElementsAre("schema", "mission", "seed", "complete", "incomplete_reason", "verdict", "verdict_reason",
+                          "missed_waypoints", "never_navigated", "flight_computer", "flight_software", "camera", "gnss",
+                          "navigation", "target", "simulated_s", "wall_s", "speed_factor", "navigation_error_m",
+                          "navigation_velocity_error_mps", "attitude_error_deg", "first_fix_s", "static_floor_m",
+                          "navigation_nees", "navigation_nees_dimension", "navigation_nis", "navigation_nis_dimension",
+                          "samples", "bearing_error_arcsec", "star_attitude_error_arcsec", "sensor_figures",
+                          "min_distance_m", "min_distance_at_h", "dv_mps", "maneuvers", "thrust", "commands_sha256",
+                          "telemetry_sha256", "health", "answers", "flight_step", "link", "deadlines", "sources",
+                          "wall_share", "data_notes", "provenance", "testbeds", "waypoints"));
   EXPECT_THAT(keys(json.at("waypoints").at(3)),
               ElementsAre("index", "time_s", "navigation_error_m", "navigation_velocity_error_mps", "control_error_m",
                           "leg_dv_mps", "cumulative_dv_mps", "leg_maneuvers"));

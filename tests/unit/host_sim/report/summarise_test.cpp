@@ -66,12 +66,15 @@ TEST(Summarise, IsAFunctionOfTheTables) {
   EXPECT_EQ(summary_json(record.summary, record.waypoints), once);
 }
 
-// The fault of the flight software and no valid estimate: either alone is not the verdict.
+// The fault of the flight software, or a waypoint passed, and no valid estimate: either alone is not the verdict.
 TEST(Summarise, NeverNavigatedIsAVerdict) {
   RunRecord record = synthetic_run();
   evaluate(record);
   EXPECT_FALSE(record.summary.never_navigated);
   for (EstimateRow& row : record.estimates) row.navigation_valid = 0;
+  evaluate(record);
+  EXPECT_TRUE(record.summary.never_navigated) << "waypoints were passed";
+  record.waypoints.resize(1);
   evaluate(record);
   EXPECT_FALSE(record.summary.never_navigated) << "a run too short to tell";
   auto& health = std::get<std::vector<TelemetryRow<telemetry_health>>>(record.telemetry).back().message;
