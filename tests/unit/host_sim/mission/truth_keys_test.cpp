@@ -75,7 +75,7 @@ TEST(TruthKeys, BadValuesEndWithOneMessage) {
                 "space_weather_file, constant_f107, constant_ap or accept_predictions");
   EXPECT_EQ(message("solid_tides = true\npermanent_tide = false"),
             "m.toml:" + line_of_text(with_truth("solid_tides = true\nX"), "X") +
-                ": truth.permanent_tide: found the boolean false; accepted: true, as truth.solid_tides contains the "
+                ": truth.permanent_tide: found false; accepted: true, as truth.solid_tides contains the "
                 "permanent tide");
   EXPECT_EQ(message("relative_tolerance = 1e-15"),
             where + "relative_tolerance: found the number 1e-15; accepted: a number from 1e-14 to 1e-06");
