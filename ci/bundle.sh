@@ -40,8 +40,8 @@ osmesa=$(ldconfig -p | sed -n 's/.*libOSMesa\.so\.8 .*x86-64.* => //p' | head -n
 mkdir -p "$lib" "$bundle/share/doc"
 while read -r file; do
   cp -L "$file" "$lib/"
-  # Debian's list may name a file by the link /lib to /usr/lib.
-  package=$(dpkg-query --search "$file" "${file#/usr}" 2> /dev/null | head -n 1 | cut -d: -f1)
+  # Debian's list names some files by /lib, others by /usr/lib; the one that it does not know is an error of dpkg-query.
+  package=$({ dpkg-query --search "$file" "/usr$file" "${file#/usr}" 2> /dev/null || true; } | head -n 1 | cut -d: -f1)
   cp -Lf "/usr/share/doc/$package/copyright" "$bundle/share/doc/$package.copyright"
 done < "$scratch/libraries"
 [[ -x $lib/ld-linux-x86-64.so.2 ]]
