@@ -94,7 +94,7 @@ fly() {  # fly VBAR FOLDER: all flights, by number
 }
 { declare -f fly; echo 'vbar="/opt/a folder/'"$name"'/vbar"; "$vbar" --version; cd /tmp; fly "$vbar" /tmp/runs /tmp/flights; "$vbar" campaign run bundled.toml --jobs 1 --out /tmp/campaign'; } > "$root/tmp/fly.sh"
 cp "$scratch/flights" "$root/tmp/"
-unshare --mount sh -ec 'mount -t proc proc "$1/proc"; mount --rbind /dev "$1/dev"; exec chroot "$1" /bin/sh -e /tmp/fly.sh' - "$root"
+unshare --mount sh -ec 'mount -t proc proc "$1/proc"; mount --rbind /dev "$1/dev"; exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp chroot "$1" /bin/sh -e /tmp/fly.sh' - "$root"
 
 # The bits of the build that was bundled.
 fly build/host/vbar "$scratch/here" "$scratch/flights"
