@@ -40,8 +40,8 @@ osmesa=$(ldconfig -p | sed -n 's/.*libOSMesa\.so\.8 .*x86-64.* => //p' | head -n
 mkdir -p "$lib" "$bundle/share/doc"
 while read -r file; do
   cp -L "$file" "$lib/"
-  # Debian's list may name a file by the link /lib to /usr/lib.
-  package=$(dpkg-query --search "$file" "${file#/usr}" 2> /dev/null | head -n 1 | cut -d: -f1)
+  # Debian's list names some files by /lib, others by /usr/lib; the one that it does not know is an error of dpkg-query.
+  package=$({ dpkg-query --search "$file" "/usr$file" "${file#/usr}" 2> /dev/null || true; } | head -n 1 | cut -d: -f1)
   cp -Lf "/usr/share/doc/$package/copyright" "$bundle/share/doc/$package.copyright"
 done < "$scratch/libraries"
 [[ -x $lib/ld-linux-x86-64.so.2 ]]
@@ -94,7 +94,7 @@ fly() {  # fly VBAR FOLDER: all flights, by number
 }
 { declare -f fly; echo 'vbar="/opt/a folder/'"$name"'/vbar"; "$vbar" --version; cd /tmp; fly "$vbar" /tmp/runs /tmp/flights; "$vbar" campaign run bundled.toml --jobs 1 --out /tmp/campaign'; } > "$root/tmp/fly.sh"
 cp "$scratch/flights" "$root/tmp/"
-unshare --mount sh -ec 'mount -t proc proc "$1/proc"; mount --rbind /dev "$1/dev"; exec chroot "$1" /bin/sh -e /tmp/fly.sh' - "$root"
+unshare --mount sh -ec 'mount -t proc proc "$1/proc"; mount --rbind /dev "$1/dev"; exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp chroot "$1" /bin/sh -e /tmp/fly.sh' - "$root"
 
 # The bits of the build that was bundled.
 fly build/host/vbar "$scratch/here" "$scratch/flights"
