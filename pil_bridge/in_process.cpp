@@ -64,7 +64,6 @@ class InProcess final : public FlightComputer {
     for (const Packet& packet : packets) {
       if (article_->receive(state_.get(), packet.data(), packet.size()) != 0) ++result.trouble.inputs_refused;
     }
-    StepResult result;
     const auto last = fsw::packets::parse_packet(packets.back());
     if (last.ok() && fsw::packets::decode<vbar::tick>(last.value()).ok())
       result.trouble.status = article_->step(state_.get(), last.value().header.time.ns);
