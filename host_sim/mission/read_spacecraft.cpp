@@ -38,7 +38,9 @@ struct Member {
 
 /// A body of data/bodies by its name, or the absolute path of a body file.
 std::string read_body(const TableReader& section, const Mission& mission, const Installation& installation) {
-  const std::string body = data_file(section, "body", kDefaultBody, mission).string();
+  const std::string text = section.text("body", std::string(kDefaultBody));
+  const bool is_name = !text.empty() && text.find('/') == std::string::npos;
+  const std::string body = is_name ? text : data_file(section, "body", kDefaultBody, mission).string();
   const std::filesystem::path file = body_file_of(installation.data_directory, body);
   std::error_code error;
   if (std::filesystem::is_regular_file(file, error)) return body;
