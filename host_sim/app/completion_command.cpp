@@ -163,9 +163,14 @@ std::string settable_keys(const std::filesystem::path& mission) {
   std::string keys;
   try {
     const mission::Installation installation = sensors::installation();
-    for (const auto& [path, accepted] :
-         mission::accepted_keys(mission::find_mission(mission, installation), {}, installation)) {
-      if (!is_settable(path) || path.empty()) continue;
+    const auto all = mission::accepted_keys(mission::find_mission(mission, installation), {}, installation);
+    // A table of the name of a sensor, as [navigation], is hidden by it where the mission does not have the table.
+    const auto is_hidden = [&](const std::string& path) {
+      const std::string sensor = std::string(kSensors) + path.substr(0, path.find('.'));
+      return std::ranges::any_of(all, [&](const auto& table) { return table.first == sensor; });
+    };
+    for (const auto& [path, accepted] : all) {
+      if (!is_settable(path) || path.empty() || is_hidden(path)) continue;
       for (const mission::AcceptedKey& key : accepted) {
         if (key.accepted == mission::kTable) continue;
         keys += fmt::format("{}.{}=\n", path, key.name);
