@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # ci/fuzz.sh [SECONDS [SEED [TARGET...]]]: runs libFuzzer programs of the sanitizer tree, by default all of them for 20 s each; with
-# "quarter" in place of targets a quarter of them, the next one with each commit.
+# "share" in place of targets an eighth of them, the next one with each commit.
 # One seed (1 by default) begins with the same inputs everywhere; 0 draws another seed each time. Failing inputs
 # are kept in build/asan/fuzz_findings/<target>; copy them to tests/fuzz/corpus/<target> with their correction.
 set -euo pipefail
@@ -8,8 +8,8 @@ cd "$(dirname "$0")/.."
 seconds=${1:-20} seed=${2:-1}
 targets=("${@:3}")
 every=1 share=0
-if [[ ${targets[*]} == quarter ]]; then
-  targets=() every=4 share=$(ci/quarter.sh)
+if [[ ${targets[*]} == share ]]; then
+  targets=() every=8 share=$(ci/share.sh)
 fi
 cmake --preset asan --log-level=WARNING
 if ((${#targets[@]} == 0)); then

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The second compiler, all warnings errors, under its address and undefined-behaviour sanitizers: builds flight code, vbar
 # and unit tests, and runs the tests.
-#   ci/sanitize.sh                a quarter of the test programs, the next one with each commit; vbar with one quarter of four
+#   ci/sanitize.sh                an eighth of the test programs, the next one with each commit; vbar with one of the eighths
 #   ci/sanitize.sh all            all of them
 #   ci/sanitize.sh MODULE...      those of these modules, for example fsw/gnss host_sim/report
 set -euo pipefail
@@ -11,10 +11,10 @@ targets=(flight_code vbar)
 table=build/asan/unit_test_modules.txt  # lines "module program"
 case ${1:-} in
   "")
-    quarter=$(ci/quarter.sh)
-    mapfile -t programs < <(awk -v q="$quarter" 'NF && NR % 4 == q { print $2 }' "$table")
-    ((quarter == 0)) || targets=(flight_code)
-    echo "quarter $quarter of 0 to 3: ${#programs[@]} test programs"
+    share=$(ci/share.sh)
+    mapfile -t programs < <(awk -v share="$share" 'NF && NR % 8 == share { print $2 }' "$table")
+    ((share == 0)) || targets=(flight_code)
+    echo "eighth $share of 0 to 7: ${#programs[@]} test programs"
     ;;
   all) mapfile -t programs < <(awk 'NF { print $2 }' "$table") ;;
   *) mapfile -t programs < <(awk -v modules="$*" '

@@ -30,8 +30,8 @@ stage "tests"
 ctest --preset host --parallel 2
 stage "mutants of kernels: the tests of their modules must fail"
 ci/mutate.sh
-stage "the second compiler, all warnings errors, and a quarter of the unit tests under its sanitizers"
+stage "the second compiler, all warnings errors, and an eighth of the unit tests under its sanitizers"
 ci/sanitize.sh
-stage "fuzzing: a quarter of the decoders and loaders for a few seconds"
-ci/fuzz.sh 3 1 quarter
+stage "fuzzing: an eighth of the decoders and loaders for a few seconds"
+ci/fuzz.sh 3 1 share
 printf '\n== all passed (%d s)\n' $((SECONDS - started))
