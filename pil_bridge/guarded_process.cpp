@@ -247,7 +247,7 @@ class Guarded final : public FlightComputer {
     if (child_ <= 0) return status;
     if (signal != 0) ::kill(-child_, signal);
     const Clock::time_point deadline = Clock::now() + std::min<std::chrono::milliseconds>(step_limit_, kAfterSignal);
-    while (!io::reap_with_group(child_, WNOHANG, status, usage_)) {
+    while (!io::reap_leader(child_, WNOHANG, true, status, usage_)) {
       if (Clock::now() > deadline) ::kill(-child_, SIGKILL);
       ::usleep(1000);
     }

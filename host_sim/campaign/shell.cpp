@@ -12,6 +12,7 @@ CommandResult run_command(const std::vector<std::string>& arguments, std::chrono
   constexpr std::size_t kMaxOutput = 1 << 20;
   try {
     io::ChildProcess child(arguments, {});
+    child.keep_processes_left_behind();  // workers that a submission starts in the background
     const bool has_ended = child.wait_for_end(limit);
     if (!has_ended) child.terminate(std::chrono::milliseconds(0));
     CommandResult result{has_ended && child.exit_status() == 0, child.output_tail(kMaxOutput), {}};

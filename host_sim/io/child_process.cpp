@@ -157,7 +157,7 @@ bool ChildProcess::has_ended() {
 bool ChildProcess::reap(int options) {
   int status = 0;
   struct rusage usage {};
-  if (!reap_with_group(pid_, options, status, usage)) return false;
+  if (!reap_leader(pid_, options, !keeps_group_, status, usage)) return false;
   wait_status_ = status;
   came_near_limit_ = memory_bytes_ > 0 && came_near(memory_bytes_, usage);
   for (const timeval& time : {usage.ru_utime, usage.ru_stime})

@@ -1,7 +1,7 @@
 #pragma once
 // A child process that does not outlive its owner: it is ended and reaped by its owner's destructor, also while an
 // exception unwinds, and by the kernel if this program dies first. What it has started and left behind in its process
-// group is ended with it.
+// group is ended with it unless it is to be kept.
 
 #include <chrono>
 #include <cstdint>
@@ -38,6 +38,9 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
+  /// Lets the processes live on that the child leaves behind when it ends by itself, as those of a shell's "&".
+  void keep_processes_left_behind() { keeps_group_ = true; }
+
   /// True once the child has ended by itself or has been ended.
   bool has_ended();
 
@@ -73,6 +76,7 @@ class ChildProcess {
   std::optional<int> wait_status_;
   double processor_time_s_ = 0.0;
   std::uint64_t memory_bytes_ = 0;  ///< limit; 0: none
+  bool keeps_group_ = false;
   bool came_near_limit_ = false;
 
   void start(const std::vector<std::string>& arguments, const std::vector<FileDescriptor>& inherited,

@@ -45,14 +45,14 @@ bool limit_memory([[maybe_unused]] std::uint64_t bytes) {
 #endif
 }
 
-bool reap_with_group(pid_t leader, int options, int& status, rusage& usage) {
+bool reap_leader(pid_t leader, int options, bool ends_group, int& status, rusage& usage) {
   siginfo_t info{};
   int waited = -1;
   do {
     waited = ::waitid(P_PID, static_cast<id_t>(leader), &info, WEXITED | WNOWAIT | options);
   } while (waited < 0 && errno == EINTR);
   if (waited != 0 || info.si_pid != leader) return false;
-  (void)::kill(-leader, SIGKILL);
+  if (ends_group) (void)::kill(-leader, SIGKILL);
   pid_t reaped = -1;
   do {
     reaped = ::wait4(leader, &status, 0, &usage);

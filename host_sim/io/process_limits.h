@@ -19,8 +19,8 @@ inline constexpr std::uint64_t kDefaultMemoryBytes = 8 * kBytesPerGib;
 [[nodiscard]] bool limit_memory(std::uint64_t bytes);
 
 /// waitpid for a child that leads a process group: once it has ended, the processes that remain in its group are
-/// killed, before its number can be that of another. `options`: 0 or WNOHANG. True if it has ended.
-bool reap_with_group(pid_t leader, int options, int& status, rusage& usage);
+/// killed if `ends_group`, before its number can be that of another. `options`: 0 or WNOHANG. True if it has ended.
+bool reap_leader(pid_t leader, int options, bool ends_group, int& status, rusage& usage);
 
 /// Whether a process that used `usage` may have ended because of a limit of `bytes`.
 [[nodiscard]] bool came_near(std::uint64_t bytes, const rusage& usage);
