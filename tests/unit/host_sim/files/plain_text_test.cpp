@@ -62,7 +62,7 @@ TEST(PlainText, ADamagedStreamIsRefused) {
   std::string damaged(kGzip);
   damaged[18] ^= 1;  // of the checksum
   EXPECT_THAT(complaint_about(damaged), HasSubstr("found a damaged gzip stream (incorrect data check)"));
-  EXPECT_THAT(complaint_about(std::string(kGzip) + "x"), HasSubstr("gzip stream"));
+  EXPECT_THAT(complaint_about(std::string(kGzip).append("x")), HasSubstr("gzip stream"));
 }
 
 TEST(PlainText, TheDecompressedSizeIsLimited) {

@@ -330,7 +330,7 @@ TEST_F(Extends, BadFilesEndWithOneMessage) {
   write("own.toml", "extends = \"none.toml\"\n");
   EXPECT_THAT(message("own.toml"),
               testing::AllOf(testing::StartsWith((folder_ / "own.toml").string() + ":1: extends: "),
-                             testing::HasSubstr("none.toml: found no such file")));
+                             testing::HasSubstr("found \"none.toml\", which is neither a file nor a mission")));
   write("own.toml", "extends = 3\n");
   EXPECT_THAT(message("own.toml"), testing::HasSubstr("extends: found the integer 3; accepted: a text"));
   write("own.toml", "extends = \"own.toml\"\n");
