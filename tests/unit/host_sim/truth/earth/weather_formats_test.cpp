@@ -113,11 +113,10 @@ TEST(WeatherFormats, TheBundledNumbersInBothLayouts) {
 
 TEST(WeatherFormats, ARowAsCelesTrakWritesIt) {
   // CelesTrak's SW-All.csv, row of 2000-01-01.
-  const WeatherDays days =
-      read_weather(std::string(kCsvHead) +
-                       "2000-01-01,2272,7,53,47,40,33,43,30,43,37,327,56,39,27,18,32,15,32,22,30,1.3,6,71,129.9,"
-                       "125.6,OBS,166.2,179.0,161.1,175.0\n",
-                   "SW-All.csv");
+  const WeatherDays days = read_weather(
+      std::string(kCsvHead).append("2000-01-01,2272,7,53,47,40,33,43,30,43,37,327,56,39,27,18,32,15,32,22,30,1.3,6,71,"
+                                   "129.9,125.6,OBS,166.2,179.0,161.1,175.0\n"),
+      "SW-All.csv");
   ASSERT_EQ(days.size(), 1U);
   EXPECT_EQ(days[0].mjd_utc, 51544);
   EXPECT_EQ(days[0].ap, (std::array<double, 8>{56, 39, 27, 18, 32, 15, 32, 22}));
