@@ -56,7 +56,8 @@ exec "$here/lib/x86_64/ld-linux-x86-64.so.2" --library-path "$here/lib/x86_64" "
 EOF
 chmod +x "$bundle/vbar"
 
-tar --create --directory "$scratch" --sort=name --owner=0 --group=0 --numeric-owner "$name" | xz -6 --threads=1 > "$scratch/$name.tar.xz"
+tar --create --directory "$scratch" --sort=name --owner=0 --group=0 --numeric-owner "$name" |
+  xz --threads=1 --x86 --lzma2=preset=6,dict=64MiB > "$scratch/$name.tar.xz"
 size=$(stat -c %s "$scratch/$name.tar.xz")
 echo "$name.tar.xz: $((size / 1000000)) MB, $(wc -l < "$scratch/libraries") libraries"
 ((size <= size_max_mb * 1000000)) || { echo "ci/bundle.sh: larger than $size_max_mb MB" >&2; exit 1; }
