@@ -84,7 +84,7 @@ TEST_F(ExternalSourceTest, ATimeOutsideTheEpochIsRejected) {
   EXPECT_EQ(measurement.status, twins::MeasurementStatus::kReady);
   ASSERT_EQ(measurement.notes.size(), 1U);
   EXPECT_EQ(measurement.notes[0].value, 4.0);
-  EXPECT_THAT(measurement.notes[0].text, HasSubstr("a packet of GPS time 1000000001020000000 ns"));
+  EXPECT_THAT(measurement.notes[0].text, HasSubstr("a packet of GPS time 1000001020000000000 ns"));
   ASSERT_EQ(source_->statistics().size(), 1U);
   EXPECT_EQ(source_->statistics()[0].value, 4.0);
 }

@@ -291,7 +291,7 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
                           "navigation_nees", "navigation_nees_dimension", "navigation_nis", "navigation_nis_dimension",
                           "samples", "bearing_error_arcsec", "star_attitude_error_arcsec", "sensor_figures",
                           "min_distance_m", "min_distance_at_h", "dv_mps", "maneuvers", "thrust", "commands_sha256",
-                          "telemetry_sha256", "health", "answers", "flight_step", "link", "deadlines", "sources",
+                          "telemetry_sha256", "health", "flight_output", "flight_step", "link", "deadlines", "sources",
                           "wall_share", "data_notes", "provenance", "testbeds", "waypoints"));
   EXPECT_THAT(keys(json.at("waypoints").at(3)),
               ElementsAre("index", "time_s", "navigation_error_m", "navigation_velocity_error_mps", "control_error_m",
@@ -312,8 +312,8 @@ TEST_F(RunFolderTest, SummaryIsAsAgreed) {
   EXPECT_THAT(keys(json.at("star_attitude_error_arcsec")), ElementsAre("mean", "std"));
   EXPECT_EQ(json.at("sensor_figures").at("images").at("images"), 2476);
   EXPECT_EQ(json.at("sensor_figures").at("images").at("without_truth"), 17);
-  EXPECT_THAT(keys(json.at("sources").at(0)),
-              ElementsAre("name", "kind", "epochs", "failures", "last_failure", "late", "latest_s"));
+  EXPECT_THAT(keys(json.at("sources").at(0)), ElementsAre("name", "kind", "epochs", "failures", "last_failure", "late",
+                                                          "latest_s", "packets_rejected"));
   EXPECT_EQ(json.at("sources").at(0).at("last_failure"), "no lock");
   EXPECT_TRUE(json.at("camera").is_null());
   EXPECT_TRUE(json.at("incomplete_reason").is_null());
