@@ -198,7 +198,7 @@ class Experiment1BadInput(unittest.TestCase):
             for room in (SOURCE / "data").iterdir():
                 if room.name != "stars":
                     (data / room.name).symlink_to(room)
-            self.refuse(EXPERIMENT1, "hipparcos_v8.csv", "cannot open", data=data)
+            self.refuse(EXPERIMENT1, "hipparcos_v8.csv", "No such file or directory", data=data)
 
 
 if __name__ == "__main__":
