@@ -7,7 +7,6 @@ The notation of comments that name units, elements of arrays and codes is explai
 already ends in its unit (`range_m`) keeps its place for the names of elements: `range_m[2]` with elements x and y has the
 columns range_x_m and range_y_m.
 """
-import json
 import re
 import sys
 from pathlib import Path
@@ -18,6 +17,11 @@ FIELD = re.compile(r"  (\w+) (\w+)(\[\d+\])?;\s*(?://(.*))?$")
 UNIT = re.compile(r"\[([^];]*)(?:;([^]]*))?\]\s*$")
 CODES = re.compile(r"\{(\|?)(?:(\w+)\.)?(k\w+)\}\s*$")
 UNITS_IN_NAMES = ("m", "m2", "px", "px2", "dn", "s", "ns", "rad", "kgm2", "mps", "radps")
+
+
+def literal(text):
+    """A text as a literal of C++. Debian's minimal Python, all that a build needs, has no module json."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 def words_of(name, prefix):
@@ -86,7 +90,7 @@ def field_of(struct, name, comment, structs, tables):
         names = f"codes::{table}"
     codes = codes_of(struct, comment, structs, tables)
     meaning = CODES.sub("", UNIT.sub("", CODES.sub("", comment).rstrip()).rstrip()).strip()
-    return f'Field{{"{name}", "{stem}", "{unit}", {names}, {codes}, {json.dumps(meaning)}}}'
+    return f'Field{{"{name}", "{stem}", "{unit}", {names}, {codes}, {literal(meaning)}}}'
 
 
 def header(structs):
@@ -155,8 +159,8 @@ def explanations(structs):
                 if not meaning:
                     sys.exit(f"struct {owner}: {name}: its word is printed, but no comment explains it")
                 quantity = words_of(prefix, "k") or "answer"
-                rows += (f'    {{{owner}::{name}, "{words_of(name, prefix)}", "{quantity}", "{owner}", {json.dumps(meaning)}, '
-                         f'{json.dumps(turn)}}},\n')
+                rows += (f'    {{{owner}::{name}, "{words_of(name, prefix)}", "{quantity}", "{owner}", {literal(meaning)}, '
+                         f'{literal(turn)}}},\n')
     return f"""#pragma once
 // Made from vbar.lcm by make_fields.py: what the words of codes mean.
 #include <vbar/fields.h>
