@@ -9,7 +9,7 @@
 set -euo pipefail
 
 fly=(
-  g++ cmake ninja-build python3-minimal
+  g++ cmake ninja-build python3
   libeigen3-dev liblcm-dev liblcm-bin libboost-dev liberfa-dev libgeographiclib-dev librandom123-dev libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev libassimp-dev libpng-dev zlib1g-dev libcharls-dev pps-tools
   libpugixml-dev  # documents of KUKA's controllers

@@ -20,7 +20,7 @@ UNITS_IN_NAMES = ("m", "m2", "px", "px2", "dn", "s", "ns", "rad", "kgm2", "mps",
 
 
 def literal(text):
-    """A text as a literal of C++. Debian's minimal Python, all that a build needs, has no module json."""
+    """A text as a literal of C++."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
