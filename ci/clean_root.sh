@@ -47,7 +47,7 @@ unshare --mount --pid --fork --kill-child bash -ec '
   exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 CCACHE_DIR=/ccache chroot "$1" /bin/sh -e "/tmp/$3.sh"
 ' - "$root" "$cache" "$1"
 
-fetched_kb=$(($(find "$root/var/cache/apt/archives" -name '*.deb' -printf '%s+')0 / 1000))
+fetched_kb=$((($(find "$root/var/cache/apt/archives" -name '*.deb' -printf '%s+')0) / 1000))
 echo "ci/$1.sh in a clean root: $((SECONDS - started)) s, $((fetched_kb / 1000)) MB of packages fetched"
 if [[ $1 == run ]]; then
   ((fetched_kb <= fetched_max_mb * 1000)) || { echo "ci/run.sh fetches more than $fetched_max_mb MB of packages" >&2; exit 1; }
