@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # A new Debian 12 with nothing but git, into which this commit is cloned, and in which a command of the README is executed.
 #   ci/clean_root.sh run     ci/run.sh; more than 250 MB of packages fetched is an error
+#   ci/clean_root.sh cold    the same without a compiler cache: its time is the one that the README states
 #   ci/clean_root.sh test    ci/test.sh until its tests start
-# The compiler cache of this computer is mounted, with ccache installed, if there is one; nothing else is.
+# With `run` and `test` the compiler cache of this computer is mounted, and ccache installed, if there is one; nothing else is.
 # Exit status 77: no mmdebstrap, no right to mount, or not even an empty root can be made here, as without a mirror.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-[[ $# -eq 1 && ( $1 == run || $1 == test ) ]] || { sed -n 2,6p "$0" >&2; exit 2; }
+[[ $# -eq 1 && $1 =~ ^(run|cold|test)$ ]] || { sed -n 2,7p "$0" >&2; exit 2; }
 [[ $(id -u) -eq 0 ]] || { echo "skipped: not root"; exit 77; }
 command -v mmdebstrap > /dev/null || { echo "skipped: mmdebstrap is not installed"; exit 77; }
 unshare --mount --pid --fork mount -t proc proc /proc 2> /dev/null || { echo "skipped: no right to mount"; exit 77; }
@@ -16,7 +17,7 @@ trap 'rm -rf "$scratch"' EXIT
 root=$scratch/root
 
 cache=''
-if command -v ccache > /dev/null; then cache=$(ccache --get-config cache_dir); fi
+if [[ $1 != cold ]] && command -v ccache > /dev/null; then cache=$(ccache --get-config cache_dir); fi
 mmdebstrap --quiet --variant=apt --mode=root --include="git${cache:+,ccache}" bookworm "$root" 2> "$scratch/root.log" ||
   { echo "skipped: no clean root can be made here: $(tail -n 1 "$scratch/root.log")"; exit 77; }
 echo force-unsafe-io > "$root/etc/dpkg/dpkg.cfg.d/unsafe-io"  # nothing of this root has to survive a loss of power
@@ -27,6 +28,7 @@ cat > "$root/tmp/run.sh" << 'EOF'
 cd /vbar
 ci/run.sh
 EOF
+cp "$root/tmp/run.sh" "$root/tmp/cold.sh"
 cat > "$root/tmp/test.sh" << 'EOF'
 cd /vbar
 ci/test.sh > /tmp/log 2>&1 & test=$!
@@ -48,8 +50,8 @@ unshare --mount --pid --fork --kill-child bash -ec '
 ' - "$root" "$cache" "$1"
 
 fetched_kb=$((($(find "$root/var/cache/apt/archives" -name '*.deb' -printf '%s+')0) / 1000))
-echo "ci/$1.sh in a clean root: $((SECONDS - started)) s, $((fetched_kb / 1000)) MB of packages fetched"
-if [[ $1 == run ]]; then
+echo "ci/clean_root.sh $1: $((SECONDS - started)) s, $((fetched_kb / 1000)) MB of packages fetched"
+if [[ $1 != test ]]; then
   ((fetched_kb <= fetched_max_mb * 1000)) || { echo "ci/run.sh fetches more than $fetched_max_mb MB of packages" >&2; exit 1; }
   for run in sil pil; do [[ -s $root/vbar/runs/ideal_navigation-$run/report.html ]]; done
 fi

@@ -4,6 +4,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
 
 #include "host_sim/mission/mission_error.h"
 
@@ -32,7 +38,11 @@ TEST(OpticalStimulatorSettings, ABenchNamesItsAddresses) {
   EXPECT_EQ(settings.camera_address, "");
   EXPECT_EQ(settings.settle.count(), 0);
   EXPECT_EQ(settings.retries, 3);
-  EXPECT_EQ(calibration_file(settings, "/d", 7), "/d/c_7.toml");
+  const std::filesystem::path data = testing::TempDir();
+  const std::filesystem::path calibration = data / ("c_" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(calibration) << "x = 1\n";
+  EXPECT_EQ(calibration_file(settings, data, static_cast<std::uint64_t>(::getpid())), calibration);
+  std::filesystem::remove(calibration);
 }
 
 TEST(OpticalStimulatorSettings, DefaultsAreThoseThatTheMissionStates) {
