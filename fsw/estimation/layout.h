@@ -23,6 +23,22 @@ struct Layout {
     ((found = found || std::is_same_v<Block, Blocks>, sum += found ? 0 : Blocks::kSize), ...);
     return sum;
   }
+
+  /// Calls visit.operator()<Block>() for each block, in order.
+  template <class Visitor>
+  static constexpr void for_each(Visitor&& visit) {
+    (visit.template operator()<Blocks>(), ...);
+  }
 };
+
+template <class First, class Second>
+struct Joined;
+template <class... First, class... Second>
+struct Joined<Layout<First...>, Layout<Second...>> {
+  using Type = Layout<First..., Second...>;
+};
+/// The blocks of both layouts, those of the first before those of the second.
+template <class First, class Second>
+using JoinedLayout = typename Joined<First, Second>::Type;
 
 }  // namespace vbar::fsw::estimation

@@ -1,5 +1,6 @@
 #pragma once
-// Measurements as rows: sensitivity, residual and noise, and the one way in which they update an estimate.
+// A batch of measurements as rows - sensitivity H, residual z and noise R - and the one way in which it updates an
+// estimate: x <- x + P H' (H P H' + R)^-1 z.
 //
 // Rows are formed about the mean of the estimate (a regression by sigma points where the model is nonlinear, its
 // nonlinearity added to the noise). Groups of rows (the two of a keypoint, the one of a satellite) beyond their gate
@@ -19,7 +20,7 @@ inline constexpr double kNoGate = 1e300;
 
 /// Up to kMax scalar measurements of one instant, of a state of N components. Large: not for the stack.
 template <int N, int kMax>
-class Rows {
+class MeasurementBatch {
  public:
   using Row = Eigen::Matrix<double, N, 1>;
   using Vector = Eigen::Matrix<double, kMax, 1>;
@@ -54,35 +55,36 @@ class Rows {
   int count_ = 0;
 };
 
-/// Fills `rows.innovation`.
+/// Fills `batch.innovation`.
 template <int N, int kMax>
-void predict_innovations(const Estimate<N>& estimate, Rows<N, kMax>& rows) {
-  rows.innovation.topLeftCorner(rows.count(), rows.count()) = rows.noise.topLeftCorner(rows.count(), rows.count());
-  for (int c = 0; c < rows.count(); ++c) {
-    if (!rows.is_used[rows.at(c)]) continue;
-    const typename Rows<N, kMax>::Row ph = estimate.covariance_times(rows.sensitivity.col(c));
+void predict_innovations(const Estimate<N>& estimate, MeasurementBatch<N, kMax>& batch) {
+  batch.innovation.topLeftCorner(batch.count(), batch.count()) =
+      batch.noise.topLeftCorner(batch.count(), batch.count());
+  for (int c = 0; c < batch.count(); ++c) {
+    if (!batch.is_used[batch.at(c)]) continue;
+    const typename MeasurementBatch<N, kMax>::Row ph = estimate.covariance_times(batch.sensitivity.col(c));
     for (int r = 0; r <= c; ++r) {
-      const double covariance = rows.sensitivity.col(r).dot(ph);
-      rows.innovation(r, c) += covariance;
-      if (r != c) rows.innovation(c, r) += covariance;
+      const double covariance = batch.sensitivity.col(r).dot(ph);
+      batch.innovation(r, c) += covariance;
+      if (r != c) batch.innovation(c, r) += covariance;
     }
   }
 }
 
 /// Lower Cholesky factor of the rows and columns in use of `matrix`, compacted; false if not positive definite.
 template <int N, int kMax>
-bool factorise_used(const Rows<N, kMax>& rows, const typename Rows<N, kMax>::Square& matrix,
-                    typename Rows<N, kMax>::Square& lower) {
+bool factorise_used(const MeasurementBatch<N, kMax>& batch, const typename MeasurementBatch<N, kMax>::Square& matrix,
+                    typename MeasurementBatch<N, kMax>::Square& lower) {
   int c = 0;
-  for (int column = 0; column < rows.count(); ++column) {
-    if (!rows.is_used[rows.at(column)]) continue;
+  for (int column = 0; column < batch.count(); ++column) {
+    if (!batch.is_used[batch.at(column)]) continue;
     double pivot = matrix(column, column);
     for (int k = 0; k < c; ++k) pivot -= lower(c, k) * lower(c, k);
     if (!(pivot > 0.0) || !math::is_finite(pivot)) return false;
     lower(c, c) = math::sqrt(pivot);
     int r = c + 1;
-    for (int row = column + 1; row < rows.count(); ++row) {
-      if (!rows.is_used[rows.at(row)]) continue;
+    for (int row = column + 1; row < batch.count(); ++row) {
+      if (!batch.is_used[batch.at(row)]) continue;
       double sum = matrix(row, column);
       for (int k = 0; k < c; ++k) sum -= lower(r, k) * lower(c, k);
       lower(r, c) = sum / lower(c, c);
@@ -95,15 +97,15 @@ bool factorise_used(const Rows<N, kMax>& rows, const typename Rows<N, kMax>::Squ
 
 /// Normalised innovation squared of the rows in use together; kNoGate if their covariance is not positive definite.
 template <int N, int kMax>
-[[nodiscard]] double joint_nis(const Rows<N, kMax>& rows) {
-  typename Rows<N, kMax>::Square lower;
-  if (!factorise_used(rows, rows.innovation, lower)) return kNoGate;
-  typename Rows<N, kMax>::Vector whitened;
+[[nodiscard]] double joint_nis(const MeasurementBatch<N, kMax>& batch) {
+  typename MeasurementBatch<N, kMax>::Square lower;
+  if (!factorise_used(batch, batch.innovation, lower)) return kNoGate;
+  typename MeasurementBatch<N, kMax>::Vector whitened;
   double sum = 0.0;
   int r = 0;
-  for (int row = 0; row < rows.count(); ++row) {
-    if (!rows.is_used[rows.at(row)]) continue;
-    double value = rows.residual(row);
+  for (int row = 0; row < batch.count(); ++row) {
+    if (!batch.is_used[batch.at(row)]) continue;
+    double value = batch.residual(row);
     for (int k = 0; k < r; ++k) value -= lower(r, k) * whitened(k);
     whitened(r) = value / lower(r, r);
     sum += whitened(r) * whitened(r);
@@ -114,13 +116,13 @@ template <int N, int kMax>
 
 /// The same of one group: rows `first` to `first + size`, size 1 or 2.
 template <int N, int kMax>
-[[nodiscard]] double group_nis(const Rows<N, kMax>& rows, int first, int size) {
-  const double a = rows.innovation(first, first);
-  const double ra = rows.residual(first);
+[[nodiscard]] double group_nis(const MeasurementBatch<N, kMax>& batch, int first, int size) {
+  const double a = batch.innovation(first, first);
+  const double ra = batch.residual(first);
   if (size == 1) return a > 0.0 ? ra * ra / a : kNoGate;
-  const double b = rows.innovation(first, first + 1);
-  const double c = rows.innovation(first + 1, first + 1);
-  const double rb = rows.residual(first + 1);
+  const double b = batch.innovation(first, first + 1);
+  const double c = batch.innovation(first + 1, first + 1);
+  const double rb = batch.residual(first + 1);
   const double determinant = a * c - b * b;
   if (!(determinant > 0.0)) return kNoGate;
   return (c * ra * ra - 2.0 * b * ra * rb + a * rb * rb) / determinant;
@@ -129,39 +131,39 @@ template <int N, int kMax>
 /// Updates the estimate by the rows in use; `residual` then holds the residuals after the update, of all rows. The
 /// sensitivities are overwritten. False, with nothing changed, if the noise is not positive definite.
 template <int N, int kMax>
-bool fold_in(Estimate<N>& estimate, Rows<N, kMax>& rows) {
-  typename Rows<N, kMax>::Square lower;
-  if (!factorise_used(rows, rows.noise, lower)) return false;
+bool update(Estimate<N>& estimate, MeasurementBatch<N, kMax>& batch) {
+  typename MeasurementBatch<N, kMax>::Square lower;
+  if (!factorise_used(batch, batch.noise, lower)) return false;
   const typename Estimate<N>::Vector old = estimate.mean();
-  typename Rows<N, kMax>::Vector value;
+  typename MeasurementBatch<N, kMax>::Vector value;
   int r = 0;
-  for (int row = 0; row < rows.count(); ++row) {
-    if (!rows.is_used[rows.at(row)]) continue;
+  for (int row = 0; row < batch.count(); ++row) {
+    if (!batch.is_used[batch.at(row)]) continue;
     // Row r of L^-1 H and of L^-1 times the residual; the columns of rows before are whitened already, in place.
-    double whitened = rows.residual(row);
+    double whitened = batch.residual(row);
     int k = 0;
     for (int before = 0; before < row; ++before) {
-      if (!rows.is_used[rows.at(before)]) continue;
-      rows.sensitivity.col(row) -= lower(r, k) * rows.sensitivity.col(before);
+      if (!batch.is_used[batch.at(before)]) continue;
+      batch.sensitivity.col(row) -= lower(r, k) * batch.sensitivity.col(before);
       whitened -= lower(r, k) * value(k);
       ++k;
     }
-    rows.sensitivity.col(row) /= lower(r, r);
+    batch.sensitivity.col(row) /= lower(r, r);
     value(r) = whitened / lower(r, r);
-    const auto h = rows.sensitivity.col(row);
+    const auto h = batch.sensitivity.col(row);
     estimate.update(h, value(r) - h.dot(estimate.mean() - old), 1.0, kNoGate);
     ++r;
   }
   const typename Estimate<N>::Vector change = estimate.mean() - old;
   r = 0;
-  for (int row = 0; row < rows.count(); ++row) {
-    const double by_change = rows.sensitivity.col(row).dot(change);
-    if (!rows.is_used[rows.at(row)]) {
-      rows.residual(row) -= by_change;
+  for (int row = 0; row < batch.count(); ++row) {
+    const double by_change = batch.sensitivity.col(row).dot(change);
+    if (!batch.is_used[batch.at(row)]) {
+      batch.residual(row) -= by_change;
       continue;
     }
     value(r) -= by_change;
-    rows.residual(row) = lower.row(r).head(r + 1).dot(value.head(r + 1));
+    batch.residual(row) = lower.row(r).head(r + 1).dot(value.head(r + 1));
     ++r;
   }
   return true;

@@ -121,7 +121,7 @@ void TrunkNavigation::update(GpsTime now, Inbox& inbox, std::span<const navigati
   for_each(sources_, [&](auto& source, std::uint8_t index) {
     if (source.aid().is_on()) source.collect(context, {queue_, index});
   });
-  fold_records(context, burns);
+  process_records(context, burns);
   // Without records the epoch follows at a distance, so that the work of a step stays bounded.
   if (now - trunk_.epoch() > kLongestDelay + kLongestDelay) trunk_.advance_to(now - kLongestDelay, burns);
   for_each(sources_, [&](auto& source, std::uint8_t /*index*/) {
@@ -142,7 +142,7 @@ GpsTime TrunkNavigation::owed_until(GpsTime now) const {
   return until;
 }
 
-void TrunkNavigation::fold_records(Context& context, std::span<const navigation::Burn> burns) {
+void TrunkNavigation::process_records(Context& context, std::span<const navigation::Burn> burns) {
   const GpsTime until = owed_until(context.now);
   for (std::size_t k = 0; k < sources::RecordQueue::kCapacity; ++k) {
     const sources::Record* next = queue_.front();
@@ -154,10 +154,9 @@ void TrunkNavigation::fold_records(Context& context, std::span<const navigation:
       continue;
     }
     trunk_.advance_to(record.time, burns);
-    trunk_.set_source(record.source);
     for_each(sources_, [&](auto& source, std::uint8_t index) {
       const bool is_used = index == record.source && source.aid().is_on() && !is_isolated(index);
-      if (is_used) source.fold(record, context, trunk_);
+      if (is_used) source.process_record(record, context, trunk_);
     });
   }
 }
@@ -218,10 +217,9 @@ void TrunkNavigation::isolate(GpsTime now, std::size_t index, Source& source) {
   const double mean = source.aid().consistency().mean();
   source.aid().consistency().reset();
   const bool is_too_large = mean > sources::Consistency::kMax;
-  trunk_.set_source(index);
   if constexpr (std::is_same_v<Source, sources::OwnGnssSource>) {
     if (is_too_large) trunk_.inflate_own_orbit(kOwnOrbitInflation);
-  } else if (!trunk_.is_confirmed_by_others()) {
+  } else if (!trunk_.is_confirmed_by_others({.bit = Source::kUse})) {
     if (is_too_large) trunk_.scale_relative_covariance(mean);
   } else {
     isolated_until_[index] = now + kIsolation;

@@ -84,7 +84,7 @@ class TrunkNavigation {
   void isolate(GpsTime now, std::size_t index, Source& source);
   [[nodiscard]] bool is_isolated(std::size_t index) const { return isolated_until_[index] > trunk_.epoch(); }
   [[nodiscard]] GpsTime owed_until(GpsTime now) const;
-  void fold_records(sources::Context& context, std::span<const navigation::Burn> burns);
+  void process_records(sources::Context& context, std::span<const navigation::Burn> burns);
 
   /// Of the servicer, in the step.
   struct Attitudes {

@@ -7,12 +7,11 @@
 //   static constexpr std::int32_t kUse                    its bit of navigation_configuration.sources
 //   bool configure(Configuration)                         settings from the telecommands in force; false: not complete
 //   void collect(Context&, RecordFiler)                   packets of the step -> records
-//   void fold(const Record&, Context&, trunk::Trunk&)     rows of a record; the trunk stands at its time
-//   void watch(GpsTime now, trunk::Trunk&)                after the records of the step: silence
-//   void stop(GpsTime now, trunk::Trunk&)                 not selected any more: its own blocks rest
-//   std::optional<GpsTime> owes(GpsTime now) const        the oldest time of which a record may still come
-//   Aid& aid()                                            its state
-//   void report(const Telemetry&) const                   its telemetry
+//   void process_record(const Record&, Context&, trunk::Trunk&)   measurements of a record; the trunk stands at its
+//   time void watch(GpsTime now, trunk::Trunk&)                after the records of the step: silence void stop(GpsTime
+//   now, trunk::Trunk&)                 not selected any more: its own blocks rest std::optional<GpsTime> owes(GpsTime
+//   now) const        the oldest time of which a record may still come Aid& aid() its state void report(const
+//   Telemetry&) const                   its telemetry
 //
 // with is_valid(telecommand) for each of its telecommands, and a place in fsw/sources/source_list.h.
 
@@ -88,7 +87,7 @@ class RecordFiler {
 /// The telecommands in force, and the settings of the trunk, of which a source sets those of its own blocks.
 struct Configuration {
   const gnc::Telecommands& telecommands;
-  trunk::TrunkSettings& blocks;
+  trunk::TrunkSettings& settings;
 };
 
 /// Pointing and attitudes, as all sources need them.

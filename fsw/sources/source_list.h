@@ -16,6 +16,11 @@ namespace vbar::fsw::sources {
 /// Records of one time are processed in this order: the servicer's own position first.
 using SourceList = std::tuple<IdealSource, OwnGnssSource, CarrierSource, BearingSource, KeypointSource, RangeSource>;
 
-static_assert(std::tuple_size_v<SourceList> <= trunk::Trunk::kMaxSources);
+/// Whether the filter can distinguish all sources of the list.
+template <class... Source>
+constexpr bool have_places(const std::tuple<Source...>* /*list*/) {
+  return ((trunk::MeasurementSource{.bit = Source::kUse}.place() < trunk::Trunk::kMaxSources) && ...);
+}
+static_assert(have_places(static_cast<const SourceList*>(nullptr)));
 
 }  // namespace vbar::fsw::sources

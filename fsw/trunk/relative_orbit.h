@@ -10,7 +10,7 @@
 #include "fsw/navigation/propagation.h"
 #include "fsw/orbit/elements.h"
 #include "fsw/orbit/roe.h"
-#include "fsw/trunk/gauss_markov.h"
+#include "fsw/trunk/state.h"
 
 namespace vbar::fsw::trunk {
 

@@ -77,24 +77,10 @@ void Trunk::advance_relative(const OrbitStep& step) {
   if (!attitude_.advance(estimate_, step, motion_)) rest_attitude();
   estimate_.transform_head<kHeadSize>(motion_.mean, motion_.jacobian, motion_.noise);
   const double rate = math::sqrt(estimate_.mean().segment<3>(kAt<Rate>).squaredNorm());
-  advance_block<KeypointOrigin>(estimate_, settings_.keypoint_origin, step.dt);
-  advance_block<BearingBias>(estimate_, settings_.bearing_bias, step.dt);
-  const double mount_decay = settings_.camera_mount.decay(step.dt);
-  for (int k = 0; k < CameraMounts::kSize; ++k) {
-    advance_process(estimate_, kAt<CameraMounts> + k, settings_.camera_mount, mount_decay);
-  }
-  advance_block<BrightnessOffset>(estimate_, settings_.brightness_offset, step.dt);
-  GaussMarkov centroid_wander = settings_.centroid_wander;
-  centroid_wander.sigma *= math::sqrt(centroid_wander_scale_);
-  advance_block<CentroidWander>(estimate_, centroid_wander, step.dt);
-  advance_keypoint_errors(estimate_, settings_.keypoint_errors, rate, step.dt);
-  advance_block<Ionosphere>(estimate_, settings_.ionosphere, step.dt);
-  for (int k = 0; k < PhaseWander::kSize; ++k) {
-    const int i = kAt<PhaseWander> + k;
-    if (!estimate_.is_idle(i)) {
-      advance_process(estimate_, i, settings_.phase_wander, settings_.phase_wander.decay(step.dt));
-    }
-  }
+  const estimation::BlockStep block_step{.dt_s = step.dt, .target_rate = rate};
+  MeasurementBlocks::for_each([&]<class Block>() {
+    estimation::propagate_block<State, Block>(estimate_, settings_.processes, adaptations_, block_step);
+  });
   finish_update();
 }
 
@@ -194,20 +180,26 @@ Matrix3 Trunk::position_covariance_eci() const {
 
 void Trunk::begin_attitude(const navigation::AttitudeState& attitude, const Matrix6& covariance) {
   attitude_.begin(estimate_, attitude, covariance);
-  begin_keypoint_errors(estimate_, settings_.keypoint_errors);
+  MeasurementBlocks::for_each([&]<class Block>() {
+    if constexpr (estimation::IsInitializedWithAttitude<Block, State>) {
+      Block::template initialize_with_attitude<State>(estimate_, settings_.processes.template of<Block>());
+    }
+  });
   finish_update();
 }
 
 void Trunk::rest_attitude() {
-  rest_keypoint_errors(estimate_);
-  rest_block<KeypointOrigin>(estimate_);
+  MeasurementBlocks::for_each([&]<class Block>() {
+    if constexpr (estimation::FollowsAttitude<Block>) rest_block<Block>(estimate_);
+  });
   attitude_.rest(estimate_);
 }
 
-bool Trunk::fold() {
-  const bool is_folded = estimation::fold_in(estimate_, rows_);
-  if (is_folded) finish_update();
-  return is_folded;
+bool Trunk::update(const MeasurementSource& source, MeasurementBatch& batch) {
+  if (!estimation::update(estimate_, batch)) return false;
+  finish_update();
+  if (source.confirms_orbit) confirm_relative(source);
+  return true;
 }
 
 void Trunk::finish_update() {
@@ -215,12 +207,20 @@ void Trunk::finish_update() {
   if (!estimate_.is_sound()) fail_relative();
 }
 
-bool Trunk::is_confirmed_by_others() const {
-  for (std::size_t source = 0; source < kMaxSources; ++source) {
-    const auto& confirmed = confirmed_[source];
-    if (source != source_ && confirmed && epoch_ - *confirmed <= kConfirmation) return true;
+bool Trunk::is_confirmed_by_others(const MeasurementSource& source) const {
+  for (std::size_t place = 0; place < kMaxSources; ++place) {
+    const auto& confirmed = confirmed_[place];
+    if (place != source.place() && confirmed && epoch_ - *confirmed <= kConfirmation) return true;
   }
   return false;
+}
+
+bool Trunk::is_precisely_determined() const {
+  bool is_determined = false;
+  MeasurementBlocks::for_each([&]<class Block>() {
+    if constexpr (estimation::DeterminesOrbit<Block>) is_determined = is_determined || is_active<Block>(estimate_);
+  });
+  return is_determined;
 }
 
 void Trunk::inflate_relative(double velocity_sigma, double along_track_sigma_m) {

@@ -1,11 +1,13 @@
 #pragma once
 // The navigation trunk: the servicer's own orbit and one relative estimate for all sensors, at one epoch.
 //
-// Sources (fsw/sources) turn records of their sensors into rows; the trunk propagates, is updated by rows, and does not
-// depend on which sensor they came from. Activating or idling a block changes no other block; no source re-initialises
+// Sources (fsw/sources) turn records of their sensors into batches of measurements; the trunk propagates, is updated by
+// batches, and does not depend on which sensor they came from: the blocks of the sources are a list, whose members
+// carry their own process models. Activating or deactivating a block changes no other block; no source re-initialises
 // the own orbit.
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -14,9 +16,9 @@
 #include "fsw/navigation/burn.h"
 #include "fsw/orbit/earth_rotation.h"
 #include "fsw/trunk/apriori.h"
-#include "fsw/trunk/keypoint_errors.h"
 #include "fsw/trunk/own_orbit.h"
 #include "fsw/trunk/relative_orbit.h"
+#include "fsw/trunk/state.h"
 #include "fsw/trunk/target_attitude.h"
 
 namespace vbar::fsw::trunk {
@@ -29,14 +31,7 @@ struct TrunkSettings {
   OwnOrbitSettings own_orbit;
   RelativeOrbitSettings relative_orbit;
   TargetAttitudeSettings attitude;
-  KeypointErrorSettings keypoint_errors;
-  GaussMarkov keypoint_origin{.sigma = 0.01};                       ///< m
-  GaussMarkov bearing_bias{.sigma = 1.5e-5, .time_s = 43200.0};     ///< rad; of a camera with stars: 3 arcsec
-  GaussMarkov camera_mount{.sigma = 2.9e-4, .time_s = 43200.0};     ///< rad; against the star tracker: 60 arcsec
-  GaussMarkov brightness_offset{.sigma = 0.15, .time_s = 20000.0};  ///< m
-  GaussMarkov centroid_wander{.sigma = 0.05, .time_s = 2000.0};     ///< m
-  GaussMarkov ionosphere{.sigma = 0.5, .time_s = 1800.0};           ///< m; gradients: m per 1000 km
-  GaussMarkov phase_wander{.sigma = 0.0, .time_s = 1.0};            ///< m, of a single difference
+  estimation::BlockSettings<MeasurementBlocks> processes;  ///< of the blocks of measurement sources
 };
 
 /// How the relative orbit is known.
@@ -45,6 +40,16 @@ enum class RelativeKnowledge : std::uint8_t {
   kApriori,       ///< from the a-priori orbit alone: sufficient to point a camera, not to plan
   kContradicted,  ///< estimated, but contradicted by measurements: a source has to initialise it again
   kEstimated,     ///< from measurements, or a-priori ROE of preceding navigation
+};
+
+/// A measurement source as the filter distinguishes it.
+struct MeasurementSource {
+  std::int32_t bit = 0;         ///< navigation_configuration::kUse...
+  bool confirms_orbit = false;  ///< its updates determine the relative orbit, which other sources then leave unchanged
+
+  [[nodiscard]] constexpr std::size_t place() const {
+    return static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(bit)));
+  }
 };
 
 /// A burn of the servicer as applied.
@@ -114,26 +119,30 @@ class Trunk {
   [[nodiscard]] Estimate& estimate() { return estimate_; }
   [[nodiscard]] const Estimate& estimate() const { return estimate_; }
 
-  /// The rows of the measurement being processed: one workspace for all sources.
-  [[nodiscard]] Rows& rows() { return rows_; }
-  /// Updates the relative estimate by the rows in use (estimation::fold_in). Every other update of estimate() must be
-  /// followed by finish_update(), which moves the attitude error into its reference and checks the estimate.
-  bool fold();
+  /// Lends the workspace of the filter for one batch, large and therefore not on the stack: to be filled and handed to
+  /// update().
+  [[nodiscard]] MeasurementBatch& workspace() { return workspace_; }
+  /// Updates the relative estimate by the measurements in use (estimation::update), and confirms the orbit if the
+  /// source does. False, with nothing changed, if the noise is not positive definite; otherwise `batch` then holds the
+  /// residuals after the update.
+  bool update(const MeasurementSource& source, MeasurementBatch& batch);
+  /// Moves the attitude error into its reference and checks the estimate: due after every change of estimate() by other
+  /// means than update().
   void finish_update();
 
-  /// Number of the source whose record is being processed, below kMaxSources.
-  void set_source(std::size_t source) { source_ = source; }
-  /// The present source has updated the relative orbit at the epoch.
-  void confirm_relative() { confirmed_[source_] = epoch_; }
-  /// Whether a source other than the present one has updated the relative orbit within kConfirmation of the epoch.
-  /// Then the orbit is not changed because measurements of the present one contradict it.
-  [[nodiscard]] bool is_confirmed_by_others() const;
-  /// Whether differences of two receivers update the relative orbit at present. They determine it far better than any
-  /// image: the innovations of a camera are then the errors of that camera.
-  [[nodiscard]] bool is_determined_by_receivers() const { return is_active<ClockDifference>(estimate_); }
-  /// Factor on the variance of the wander of the centroid from now on: other than that of the settings where a source
-  /// has measured it.
-  void scale_centroid_wander(double variance_factor) { centroid_wander_scale_ = variance_factor; }
+  /// Records that the source has updated the relative orbit at the epoch, by other means than update().
+  void confirm_relative(const MeasurementSource& source) { confirmed_[source.place()] = epoch_; }
+  /// Whether a source other than this one has updated the relative orbit within kConfirmation of the epoch. Then the
+  /// orbit is not changed because measurements of this one contradict it.
+  [[nodiscard]] bool is_confirmed_by_others(const MeasurementSource& source) const;
+  /// Whether a source that determines the relative orbit far better than any image updates it at present: the
+  /// innovations of a camera are then the errors of that camera.
+  [[nodiscard]] bool is_precisely_determined() const;
+  /// What the source of a block adapts of its process, from now on and whatever the settings.
+  template <class Block>
+  [[nodiscard]] typename Block::Adaptation& adaptation() {
+    return adaptations_.of<Block>();
+  }
   static constexpr std::size_t kMaxSources = 8;
   static constexpr Duration kConfirmation = duration_of_seconds(900);
 
@@ -165,14 +174,13 @@ class Trunk {
   RelativeOrbit relative_orbit_;
   TargetAttitude attitude_;
   Estimate estimate_;
-  double centroid_wander_scale_ = 1.0;
+  estimation::BlockAdaptations<MeasurementBlocks> adaptations_;
   int failures_ = 0;
   std::array<Impulse, kMaxImpulses> impulses_{};
   std::size_t impulse_count_ = 0;
-  std::size_t source_ = 0;
   std::array<std::optional<GpsTime>, kMaxSources> confirmed_{};
   HeadMotion motion_;
-  Rows rows_;
+  MeasurementBatch workspace_;
 };
 
 }  // namespace vbar::fsw::trunk

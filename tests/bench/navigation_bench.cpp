@@ -19,7 +19,8 @@ constexpr Duration kPeriod = duration_of_seconds(10);
 
 void epoch(benchmark::State& state, double wander_sigma_m) {
   TrunkPair pair(1);
-  if (wander_sigma_m > 0.0) pair.trunk_settings.phase_wander = {.sigma = wander_sigma_m, .time_s = 60.0};
+  if (wander_sigma_m > 0.0)
+    pair.trunk_settings.processes.of<fsw::sources::PhaseWander>() = {.sigma = wander_sigma_m, .time_s = 60.0};
   pair.begin_trunk();
   pair.fly_trunk(kSettling);
   if (!pair.carrier->is_fixed()) std::abort();

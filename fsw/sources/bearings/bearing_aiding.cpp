@@ -42,7 +42,7 @@ BearingEditStatus BearingAiding::process(GpsTime time, const std::optional<navig
   if (trunk.knowledge() != RelativeKnowledge::kEstimated) return collect(*bearing, sun_eci, trunk);
   batch_.clear();
   activate_blocks(trunk);
-  return fold(*bearing, sun_eci, trunk);
+  return process_measurement(*bearing, sun_eci, trunk);
 }
 
 void BearingAiding::check_age(GpsTime now) {
@@ -58,23 +58,23 @@ void BearingAiding::follow_burns(const trunk::Trunk& trunk) {
 
 void BearingAiding::activate_blocks(trunk::Trunk& trunk) const {
   trunk::Estimate& estimate = trunk.estimate();
-  const trunk::TrunkSettings& blocks = trunk.settings();
-  if (!trunk::is_active<trunk::BrightnessOffset>(estimate)) {
-    trunk::begin_block<trunk::BrightnessOffset>(estimate, blocks.brightness_offset);
+  const auto& processes = trunk.settings().processes;
+  if (!trunk::is_active<BrightnessOffset>(estimate)) {
+    trunk::begin_block<BrightnessOffset>(estimate, processes.of<BrightnessOffset>());
   }
-  if (!trunk::is_active<trunk::CentroidWander>(estimate)) {
-    trunk::begin_block<trunk::CentroidWander>(estimate, blocks.centroid_wander);
+  if (!trunk::is_active<CentroidWander>(estimate)) {
+    trunk::begin_block<CentroidWander>(estimate, processes.of<CentroidWander>());
   }
-  if (!trunk::is_active<trunk::BearingBias>(estimate)) {
-    trunk::begin_block<trunk::BearingBias>(estimate, blocks.bearing_bias);
+  if (!trunk::is_active<BearingBias>(estimate)) {
+    trunk::begin_block<BearingBias>(estimate, processes.of<BearingBias>());
   }
 }
 
 void BearingAiding::rest_blocks(trunk::Trunk& trunk) const {
   trunk::Estimate& estimate = trunk.estimate();
-  trunk::rest_block<trunk::BrightnessOffset>(estimate);
-  trunk::rest_block<trunk::CentroidWander>(estimate);
-  trunk::rest_block<trunk::BearingBias>(estimate);
+  trunk::rest_block<BrightnessOffset>(estimate);
+  trunk::rest_block<CentroidWander>(estimate);
+  trunk::rest_block<BearingBias>(estimate);
 }
 
 void BearingAiding::stop(GpsTime now, trunk::Trunk& trunk) {
@@ -100,14 +100,14 @@ BearingEditStatus BearingAiding::collect(const navigation::BearingMeasurement& b
   rest_blocks(trunk);
   trunk.begin_relative(solution.roe, solution.covariance.topLeftCorner<6, 6>(), RelativeKnowledge::kEstimated);
   activate_blocks(trunk);
-  constexpr int kBias = trunk::kAt<trunk::BearingBias>;
+  constexpr int kBias = trunk::kAt<BearingBias>;
   for (int axis = 0; axis < 2; ++axis) {
     estimate.reset(kBias + axis, solution.bias(axis), solution.covariance(6 + axis, 6 + axis));
     for (int k = 0; k < 6; ++k) estimate.correlate(k, kBias + axis, solution.covariance(k, 6 + axis));
   }
   estimate.correlate(kBias, kBias + 1, solution.covariance(6, 7));
   trunk.finish_update();
-  trunk.confirm_relative();
+  trunk.confirm_relative(kSource);
   counters_.used += solution.used;
   last_accepted_ = batch_.last_time();
   batch_.clear();
@@ -115,18 +115,18 @@ BearingEditStatus BearingAiding::collect(const navigation::BearingMeasurement& b
   return BearingEditStatus::kBatch;
 }
 
-BearingEditStatus BearingAiding::fold(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
-                                      trunk::Trunk& trunk) {
-  if (!trunk.is_determined_by_receivers()) centroid_scale_ = 1.0;
+BearingEditStatus BearingAiding::process_measurement(const navigation::BearingMeasurement& bearing,
+                                                     const Vector3& sun_eci, trunk::Trunk& trunk) {
+  if (!trunk.is_precisely_determined()) centroid_scale_ = 1.0;
   BearingModel model = settings_.model;
   model.centroid_noise_m *= math::sqrt(centroid_scale_);
-  trunk.scale_centroid_wander(centroid_scale_);
-  if (bearing_rows(trunk, bearing, sun_eci, model) != Status::kOk) return BearingEditStatus::kRefused;
-  trunk::Rows& rows = trunk.rows();
-  estimation::predict_innovations(trunk.estimate(), rows);
-  last_update_.prefit = rows.residual.head<2>();
+  trunk.adaptation<CentroidWander>().variance_factor = centroid_scale_;
+  trunk::MeasurementBatch& batch = trunk.workspace();
+  if (bearing_rows(trunk, bearing, sun_eci, model, batch) != Status::kOk) return BearingEditStatus::kRefused;
+  estimation::predict_innovations(trunk.estimate(), batch);
+  last_update_.prefit = batch.residual.head<2>();
   last_update_.postfit = last_update_.prefit;
-  last_update_.nis = estimation::group_nis(rows, 0, 2);
+  last_update_.nis = estimation::group_nis(batch, 0, 2);
   aid_.consistency().add(last_update_.nis, 2);
   adapt_centroid_noise(trunk);
   if (!(last_update_.nis <= settings_.gate)) {
@@ -134,10 +134,9 @@ BearingEditStatus BearingAiding::fold(const navigation::BearingMeasurement& bear
     return BearingEditStatus::kRefused;
   }
   if (aid_.is_contradicting() && ++agreeing_in_a_row_ < kAgreeingBeforeAiding) return BearingEditStatus::kRefused;
-  adapt_noise(bearing, trunk);
-  if (!trunk.fold()) return BearingEditStatus::kRefused;
-  last_update_.postfit = rows.residual.head<2>();
-  trunk.confirm_relative();
+  adapt_noise(bearing, batch, trunk);
+  if (!trunk.update(kSource, batch)) return BearingEditStatus::kRefused;
+  last_update_.postfit = batch.residual.head<2>();
   ++counters_.used;
   aid_.set_contradicting(false);
   refused_in_excess_ = refused_in_excess_ > 0 ? refused_in_excess_ - 1 : 0;
@@ -148,18 +147,18 @@ BearingEditStatus BearingAiding::fold(const navigation::BearingMeasurement& bear
   return BearingEditStatus::kFilter;
 }
 
-void BearingAiding::adapt_noise(const navigation::BearingMeasurement& bearing, trunk::Trunk& trunk) {
+void BearingAiding::adapt_noise(const navigation::BearingMeasurement& bearing, const trunk::MeasurementBatch& batch,
+                                trunk::Trunk& trunk) {
   navigation::AdaptiveNoise& noise = trunk.relative_orbit().noise();
   if (bearing.time - last_folded_ > kNeighbours) noise.interrupt();
   last_folded_ = bearing.time;
   // An empirical acceleration stands for the process noise.
-  if (trunk.is_determined_by_receivers()) return noise.interrupt();
-  const trunk::Rows& rows = trunk.rows();
+  if (trunk.is_precisely_determined()) return noise.interrupt();
   // Near the target the centroid dominates, whose errors follow its tumbling: the same sign from image to image.
-  const bool is_of_centroid = rows.noise(0, 0) > 2.0 * bearing.sigma * bearing.sigma;
+  const bool is_of_centroid = batch.noise(0, 0) > 2.0 * bearing.sigma * bearing.sigma;
   using Correlation = navigation::AdaptiveNoise::Correlation;
   noise.take(
-      {rows.residual(0) / math::sqrt(rows.innovation(0, 0)), rows.residual(1) / math::sqrt(rows.innovation(1, 1))},
+      {batch.residual(0) / math::sqrt(batch.innovation(0, 0)), batch.residual(1) / math::sqrt(batch.innovation(1, 1))},
       is_of_centroid ? Correlation::kOfEither : Correlation::kOfLag);
 }
 
@@ -171,7 +170,7 @@ void BearingAiding::adapt_centroid_noise(const trunk::Trunk& trunk) {
   constexpr double kShare = 0.1;
   constexpr double kMaxMisfit = 15.0;
   constexpr double kMinScale = 0.03, kMaxScale = 9.0;
-  if (!trunk.is_determined_by_receivers()) return;
+  if (!trunk.is_precisely_determined()) return;
   const double misfit = std::min(0.5 * last_update_.nis, kMaxMisfit);
   centroid_scale_ = std::clamp(centroid_scale_ * (1.0 + kShare * (misfit - 1.0)), kMinScale, kMaxScale);
 }
@@ -179,7 +178,7 @@ void BearingAiding::adapt_centroid_noise(const trunk::Trunk& trunk) {
 void BearingAiding::count_refusal(GpsTime time, trunk::Trunk& trunk) {
   ++counters_.refused;
   agreeing_in_a_row_ = 0;
-  if (trunk.is_confirmed_by_others()) {
+  if (trunk.is_confirmed_by_others(kSource)) {
     refused_in_a_row_ = 0;
     if (++refused_in_excess_ < kRefusedBeforeSuspension) return;
     aid_.set_contradicting(true);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "fsw/navigation/bearing_batch.h"
+#include "fsw/packets/messages.h"
 #include "fsw/sources/aid.h"
 #include "fsw/sources/bearings/bearing_rows.h"
 
@@ -39,6 +40,9 @@ struct BearingCounters {
 
 class BearingAiding {
  public:
+  static constexpr trunk::MeasurementSource kSource{.bit = navigation_configuration::kUseBearings,
+                                                    .confirms_orbit = true};
+
   /// Replaces the settings; a batch being collected stays unless its settings change.
   void configure(const BearingSettings& settings);
 
@@ -64,8 +68,10 @@ class BearingAiding {
   void activate_blocks(trunk::Trunk& trunk) const;
   void rest_blocks(trunk::Trunk& trunk) const;
   BearingEditStatus collect(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci, trunk::Trunk& trunk);
-  BearingEditStatus fold(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci, trunk::Trunk& trunk);
-  void adapt_noise(const navigation::BearingMeasurement& bearing, trunk::Trunk& trunk);
+  BearingEditStatus process_measurement(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
+                                        trunk::Trunk& trunk);
+  void adapt_noise(const navigation::BearingMeasurement& bearing, const trunk::MeasurementBatch& batch,
+                   trunk::Trunk& trunk);
   void adapt_centroid_noise(const trunk::Trunk& trunk);
   void count_refusal(GpsTime time, trunk::Trunk& trunk);
 

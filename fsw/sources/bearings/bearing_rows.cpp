@@ -16,8 +16,8 @@ constexpr double square(double x) {
 
 }  // namespace
 
-Status bearing_rows(trunk::Trunk& trunk, const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
-                    const BearingModel& model) {
+Status bearing_rows(const trunk::Trunk& trunk, const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
+                    const BearingModel& model, trunk::MeasurementBatch& batch) {
   using Transform = estimation::UnscentedTransform<trunk::Roe::kSize>;
   const orbit::CartesianState servicer = trunk.servicer();
   const auto chief = orbit::qns_from_cartesian(servicer);
@@ -27,15 +27,14 @@ Status bearing_rows(trunk::Trunk& trunk, const navigation::BearingMeasurement& b
   const trunk::Estimate& estimate = trunk.estimate();
   const Matrix3 axes = navigation::bearing_axes(bearing.direction_eci, servicer);
   const Vector3 camera = servicer.position_eci + bearing.origin_eci;
-  trunk::Rows& rows = trunk.rows();
-  rows.clear(2);
+  batch.clear(2);
   std::array<Vector2, Transform::kPoints> values;
   double centroid_noise = 0.0;
   for (std::size_t k = 0; k < Transform::kPoints; ++k) {
     const auto target = orbit::target_from_roe(chief.value(), transform.point(k));
     if (!target.ok()) return target.status();
     const Vector3 sight = navigation::centre_of_brightness(target.value().position_eci, camera, sun_eci,
-                                                           estimate.mean(kAt<trunk::BrightnessOffset>)) -
+                                                           estimate.mean(kAt<BrightnessOffset>)) -
                           camera;
     const double range = math::sqrt(sight.squaredNorm());
     values[k] = axes.topRows<2>() * sight / range;
@@ -43,21 +42,20 @@ Status bearing_rows(trunk::Trunk& trunk, const navigation::BearingMeasurement& b
     centroid_noise = model.centroid_noise_m / range;
     const Vector2 along_sun = axes.topRows<2>() * (sun_eci - sight.dot(sun_eci) / square(range) * sight) / range;
     for (int axis = 0; axis < 2; ++axis) {
-      rows.sensitivity(kAt<trunk::BrightnessOffset>, axis) = along_sun(axis);
-      rows.sensitivity(kAt<trunk::CentroidWander> + axis, axis) = 1.0 / range;
-      rows.sensitivity(kAt<trunk::BearingBias> + axis, axis) = 1.0;
+      batch.sensitivity(kAt<BrightnessOffset>, axis) = along_sun(axis);
+      batch.sensitivity(kAt<CentroidWander> + axis, axis) = 1.0 / range;
+      batch.sensitivity(kAt<BearingBias> + axis, axis) = 1.0;
     }
   }
   const auto regression = transform.regress<2>(values);
   const double variance = square(bearing.sigma) + square(centroid_noise);
   for (int axis = 0; axis < 2; ++axis) {
-    rows.sensitivity.col(axis).head<6>() = regression.jacobian.row(axis).transpose();
-    const double linear =
-        estimate.mean(kAt<trunk::BearingBias> + axis) +
-        rows.sensitivity(kAt<trunk::CentroidWander> + axis, axis) * estimate.mean(kAt<trunk::CentroidWander> + axis);
-    rows.residual(axis) = -(regression.mean(axis) + linear);  // the measured direction has no component across itself
-    rows.noise.col(axis).head<2>() = regression.nonlinearity.col(axis);
-    rows.noise(axis, axis) += variance;
+    batch.sensitivity.col(axis).head<6>() = regression.jacobian.row(axis).transpose();
+    const double linear = estimate.mean(kAt<BearingBias> + axis) + batch.sensitivity(kAt<CentroidWander> + axis, axis) *
+                                                                       estimate.mean(kAt<CentroidWander> + axis);
+    batch.residual(axis) = -(regression.mean(axis) + linear);  // the measured direction has no component across itself
+    batch.noise.col(axis).head<2>() = regression.nonlinearity.col(axis);
+    batch.noise(axis, axis) += variance;
   }
   return Status::kOk;
 }

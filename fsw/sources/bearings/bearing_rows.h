@@ -15,12 +15,12 @@ struct BearingModel {
   bool operator==(const BearingModel&) const = default;
 };
 
-/// Writes the two components of the measured direction across the predicted one (bearing_axes(), rad) to trunk.rows().
+/// Fills the batch with the two components of the measured direction across the predicted one (bearing_axes(), rad).
 /// The trunk stands at the time of the bearing. Any status of the orbit conversions if there is no target to predict.
 ///
 /// Model: axes (rho + sun_offset s + wander - o) / |...| + bearing bias; rho is sampled over the ROE, all others
 /// enter linearly.
-Status bearing_rows(trunk::Trunk& trunk, const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
-                    const BearingModel& model);
+Status bearing_rows(const trunk::Trunk& trunk, const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
+                    const BearingModel& model, trunk::MeasurementBatch& batch);
 
 }  // namespace vbar::fsw::sources

@@ -46,8 +46,8 @@ bool BearingSource::configure(const Configuration& configuration) {
     const auto optics = camera_settings(*camera, *angles_only);
     const auto bearings = bearing_settings(*angles_only);
     if (!optics.ok() || !bearings.ok()) return false;
-    configuration.blocks.brightness_offset.sigma = angles_only->brightness_offset_m;
-    configuration.blocks.bearing_bias.sigma = angles_only->bearing_bias;
+    configuration.settings.processes.of<BrightnessOffset>().sigma = angles_only->brightness_offset_m;
+    configuration.settings.processes.of<BearingBias>().sigma = angles_only->bearing_bias;
     aiding_.configure(bearings.value());
     const bool is_new = unit != camera_ || telecommands.is_new<camera_configuration>(unit) ||
                         telecommands.is_new<angles_only_configuration>(unit);
@@ -76,7 +76,7 @@ std::optional<GpsTime> BearingSource::owes(GpsTime /*now*/) const {
   return std::nullopt;
 }
 
-void BearingSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
+void BearingSource::process_record(const Record& record, Context& context, trunk::Trunk& trunk) {
   const imaging::ImageAssembly& image = context.inbox.image(camera_);
   if (!image.has_image() || image.image_time() != record.time) return context.inbox.count_unusable_time();
   has_image_ = true;

@@ -18,12 +18,12 @@ class BearingSource {
     GpsTime time;
     Matrix3 R_eci_body = Matrix3::Identity();
   };
-  static constexpr std::int32_t kUse = navigation_configuration::kUseBearings;
+  static constexpr std::int32_t kUse = BearingAiding::kSource.bit;
   /// Of the first camera that is configured for bearings. A change re-initialises the front end, not the trunk.
   bool configure(const Configuration& configuration);
   [[nodiscard]] Aid& aid() { return aiding_.aid(); }
   void collect(Context& context, RecordFiler records);
-  void fold(const Record& record, Context& context, trunk::Trunk& trunk);
+  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime now) const;
   [[nodiscard]] const Aid& aid() const { return aiding_.aid(); }
   [[nodiscard]] GpsTime last_measurement() const { return aiding_.last_accepted(); }

@@ -42,7 +42,7 @@ bool CarrierAiding::process(const PairEpoch& pair, trunk::Trunk& trunk) {
     return false;
   }
   if (!aid_.is_on()) aid_.go_to(AidState::kWaiting, tag);
-  if (trunk.is_confirmed_by_others()) share_orbit();
+  if (trunk.is_confirmed_by_others(kSource)) share_orbit();
   watch(tag, trunk);
   const auto their_point = navigation::single_point(pair.theirs, pair.ephemerides, pair.frame);
   if (!their_point.ok() || !pair.R_eci_servicer || !pair.R_eci_target) {
@@ -81,7 +81,7 @@ void CarrierAiding::judge(GpsTime time, trunk::Trunk& trunk) {
     give_up(time, trunk);
     return;
   }
-  if (last_update_.codes_used > 0) trunk.confirm_relative();
+  if (last_update_.codes_used > 0) trunk.confirm_relative(kSource);
   aid_.go_to(AidState::kAiding, time);
   judge_integers(trunk);
   judge_antennas(trunk);
@@ -137,7 +137,7 @@ void CarrierAiding::watch(GpsTime now, trunk::Trunk& trunk) {
 /// Whether the pair may update the relative orbit; begins the orbit if there is none.
 bool CarrierAiding::admit(const PairEpoch& pair, const navigation::SinglePoint& their_point, trunk::Trunk& trunk) {
   const GpsTime tag = pair.ours.receiver_time;
-  const bool has_blocks = trunk::is_active<trunk::ServicerAntenna>(trunk.estimate());
+  const bool has_blocks = trunk::is_active<ServicerAntenna>(trunk.estimate());
   if ((aid_.state() == AidState::kAiding || aid_.state() == AidState::kSuspended) && !has_blocks) {
     // The trunk has discarded its estimate.
     discard(trunk);

@@ -13,6 +13,7 @@
 #include "fsw/gnss/observation.h"
 #include "fsw/navigation/ephemeris_store.h"
 #include "fsw/navigation/single_point.h"
+#include "fsw/packets/messages.h"
 #include "fsw/sources/aid.h"
 #include "fsw/sources/carrier_pair/ambiguity_resolution.h"
 #include "fsw/sources/carrier_pair/carrier_filter.h"
@@ -53,6 +54,9 @@ struct CarrierCounters {
 
 class CarrierAiding {
  public:
+  static constexpr trunk::MeasurementSource kSource{.bit = navigation_configuration::kUseCarrierPair,
+                                                    .confirms_orbit = true};
+
   /// Replaces the settings. If those of the blocks have changed, the blocks are discarded at the next epoch.
   void configure(const CarrierSettings& settings);
 

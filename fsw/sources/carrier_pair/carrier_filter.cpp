@@ -67,11 +67,11 @@ void CarrierFilter::configure(const CarrierFilterSettings& settings) {
 
 void CarrierFilter::begin_blocks(trunk::Trunk& trunk) const {
   trunk::Estimate& estimate = trunk.estimate();
-  const trunk::GaussMarkov offset{.sigma = antenna_sigma_m_};
-  if (!trunk::is_active<trunk::ServicerAntenna>(estimate)) trunk::begin_block<trunk::ServicerAntenna>(estimate, offset);
-  if (!trunk::is_active<trunk::TargetAntenna>(estimate)) trunk::begin_block<trunk::TargetAntenna>(estimate, offset);
-  if (!trunk::is_active<trunk::CodeBiases>(estimate)) {
-    trunk::begin_block<trunk::CodeBiases>(estimate, {.sigma = settings_.code_bias_sigma_m});
+  const estimation::GaussMarkov offset{.sigma = antenna_sigma_m_};
+  if (!trunk::is_active<ServicerAntenna>(estimate)) trunk::begin_block<ServicerAntenna>(estimate, offset);
+  if (!trunk::is_active<TargetAntenna>(estimate)) trunk::begin_block<TargetAntenna>(estimate, offset);
+  if (!trunk::is_active<CodeBiases>(estimate)) {
+    trunk::begin_block<CodeBiases>(estimate, {.sigma = settings_.code_bias_sigma_m});
   }
   trunk.relative_orbit().begin_empirical(estimate);
 }
@@ -80,22 +80,22 @@ void CarrierFilter::rest_blocks(trunk::Trunk& trunk) {
   rest_channels(trunk);
   rest_epoch_states(trunk);
   trunk::Estimate& estimate = trunk.estimate();
-  trunk::rest_block<trunk::Ionosphere>(estimate);
-  trunk::rest_block<trunk::CodeBiases>(estimate);
-  trunk::rest_block<trunk::TargetAntenna>(estimate);
-  trunk::rest_block<trunk::ServicerAntenna>(estimate);
+  trunk::rest_block<Ionosphere>(estimate);
+  trunk::rest_block<CodeBiases>(estimate);
+  trunk::rest_block<TargetAntenna>(estimate);
+  trunk::rest_block<ServicerAntenna>(estimate);
   trunk::rest_block<trunk::EmpiricalAcceleration>(estimate);
 }
 
 void CarrierFilter::rest_epoch_states(trunk::Trunk& trunk) {
-  trunk::rest_block<trunk::ClockDifference>(trunk.estimate());
-  trunk::rest_block<trunk::PhaseCentreJitter>(trunk.estimate());
+  trunk::rest_block<ClockDifference>(trunk.estimate());
+  trunk::rest_block<PhaseCentreJitter>(trunk.estimate());
 }
 
 void CarrierFilter::rest_channels(trunk::Trunk& trunk) {
   channels_.clear();
-  trunk::rest_block<trunk::PhaseWander>(trunk.estimate());
-  trunk::rest_block<trunk::Ambiguities>(trunk.estimate());
+  trunk::rest_block<PhaseWander>(trunk.estimate());
+  trunk::rest_block<Ambiguities>(trunk.estimate());
 }
 
 CarrierUpdate CarrierFilter::take(const DifferentialEpoch& epoch, const AntennaPlatform& servicer,
@@ -122,20 +122,20 @@ CarrierUpdate CarrierFilter::take(const DifferentialEpoch& epoch, const AntennaP
 /// The delays of two receivers differ by the curvature of the ionosphere over their baseline: by millimetres at low
 /// elevations a kilometre apart, as if the baseline were shorter.
 void CarrierFilter::follow_ionosphere(trunk::Trunk& trunk) const {
-  const bool is_active = trunk::is_active<trunk::Ionosphere>(trunk.estimate());
+  const bool is_active = trunk::is_active<Ionosphere>(trunk.estimate());
   if (!is_active && rows_.baseline_m() > kIonosphereFrom_m) {
-    trunk::begin_block<trunk::Ionosphere>(trunk.estimate(), trunk.settings().ionosphere);
+    trunk::begin_block<Ionosphere>(trunk.estimate(), trunk.settings().processes.of<Ionosphere>());
   } else if (is_active && rows_.baseline_m() < kIonosphereUntil_m) {
-    trunk::rest_block<trunk::Ionosphere>(trunk.estimate());
+    trunk::rest_block<Ionosphere>(trunk.estimate());
   }
 }
 
 /// Clocks and jitter are independent of the previous epoch.
 void CarrierFilter::renew_epoch_states(const AntennaPlatform& servicer, const AntennaPlatform& target,
                                        trunk::Estimate& estimate) {
-  estimate.reset(kAt<trunk::ClockDifference>, target.clock_m - servicer.clock_m, square(kClockSigma_m));
+  estimate.reset(kAt<ClockDifference>, target.clock_m - servicer.clock_m, square(kClockSigma_m));
   const double jitter_variance = 2.0 * square(settings_.phase_centre_jitter_m);
-  for (int axis = 0; axis < 3; ++axis) estimate.reset(kAt<trunk::PhaseCentreJitter> + axis, 0.0, jitter_variance);
+  for (int axis = 0; axis < 3; ++axis) estimate.reset(kAt<PhaseCentreJitter> + axis, 0.0, jitter_variance);
 }
 
 /// The clock is unknown until the first code, which determines it whatever the error of that code (multipath of a
@@ -239,7 +239,7 @@ void CarrierFilter::use_phases(const DifferentialEpoch& epoch, trunk::Trunk& tru
         // The wander starts with its stationary variance: a restarted channel may have assigned a slip to it.
         estimate.reset(ambiguity_index(*place), rows_.residual(n, observation.phase_m, estimate),
                        square(kAmbiguitySigma_m));
-        trunk::begin_process(estimate, wander_index(*place), trunk.settings().phase_wander);
+        estimation::begin_process(estimate, wander_index(*place), trunk.settings().processes.of<PhaseWander>());
       }
       const double variance = square(observation.phase_sigma_m) + rows_.extra_variance(n);
       const estimation::Innovation innovation =
@@ -310,7 +310,7 @@ void CarrierFilter::release(trunk::Trunk& trunk, double position_sigma_m) {
 
 double CarrierFilter::largest_antenna_offset(const trunk::Estimate& estimate) const {
   double largest_m = 0.0;
-  for (const int block : {kAt<trunk::ServicerAntenna>, kAt<trunk::TargetAntenna>}) {
+  for (const int block : {kAt<ServicerAntenna>, kAt<TargetAntenna>}) {
     for (int axis = 0; axis < 3; ++axis) {
       const double offset_m = math::abs(estimate.mean(block + axis));
       if (offset_m > largest_m) largest_m = offset_m;
@@ -322,7 +322,7 @@ double CarrierFilter::largest_antenna_offset(const trunk::Estimate& estimate) co
 void CarrierFilter::widen_antennas(trunk::Trunk& trunk, double factor) {
   const double added = (square(factor) - 1.0) * square(antenna_sigma_m_);
   antenna_sigma_m_ *= factor;
-  for (const int block : {kAt<trunk::ServicerAntenna>, kAt<trunk::TargetAntenna>}) {
+  for (const int block : {kAt<ServicerAntenna>, kAt<TargetAntenna>}) {
     for (int axis = 0; axis < 3; ++axis) trunk.estimate().add_noise(block + axis, added);
   }
   trunk.finish_update();

@@ -5,7 +5,7 @@
 // The clock difference is free at every epoch. The jitter of the phase centres is a state of its own, new at every
 // epoch, because it moves the ranges of all satellites together. Antenna offsets are constant in each body: for
 // constant attitudes they are equivalent to a displacement, and only the dynamics separate the two. Phases may carry a
-// time-correlated error beside their white noise, one Gauss-Markov state a channel (trunk::PhaseWander). Integers are
+// time-correlated error beside their white noise, one Gauss-Markov state a channel (PhaseWander). Integers are
 // held on the ambiguities alone; their covariance is marginal, so that their validation includes the wander.
 
 #include <array>
@@ -75,10 +75,10 @@ class CarrierFilter {
   [[nodiscard]] const PhaseChannels& channels() const { return channels_; }
   /// Index in the estimate of a channel's ambiguity, and of its wander.
   [[nodiscard]] static constexpr int ambiguity_index(std::size_t place) {
-    return trunk::kAt<trunk::Ambiguities> + static_cast<int>(place);
+    return trunk::kAt<Ambiguities> + static_cast<int>(place);
   }
   [[nodiscard]] static constexpr int wander_index(std::size_t place) {
-    return trunk::kAt<trunk::PhaseWander> + static_cast<int>(place);
+    return trunk::kAt<PhaseWander> + static_cast<int>(place);
   }
 
  private:

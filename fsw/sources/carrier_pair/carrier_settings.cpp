@@ -33,7 +33,7 @@ Result<CarrierSettings> carrier_settings(const carrier_configuration& c, const r
   return settings;
 }
 
-trunk::GaussMarkov phase_wander_of(const carrier_configuration& c) {
+estimation::GaussMarkov phase_wander_of(const carrier_configuration& c) {
   if (!(c.phase_wander_sigma_m > 0.0)) return {.sigma = 0.0, .time_s = 1.0};
   return {.sigma = math::sqrt(2.0) * c.phase_wander_sigma_m, .time_s = c.phase_wander_time_s};
 }

@@ -2,9 +2,9 @@
 // The telecommand of carrier phase, validated and converted to settings.
 
 #include "fsw/core/result.h"
+#include "fsw/estimation/gauss_markov.h"
 #include "fsw/packets/messages.h"
 #include "fsw/sources/carrier_pair/carrier_aiding.h"
-#include "fsw/trunk/gauss_markov.h"
 
 namespace vbar::fsw::sources {
 
@@ -14,6 +14,6 @@ namespace vbar::fsw::sources {
 Result<CarrierSettings> carrier_settings(const carrier_configuration& configuration,
                                          const receiver_configuration& receiver);
 /// Of a single difference: of two independent channels.
-[[nodiscard]] trunk::GaussMarkov phase_wander_of(const carrier_configuration& configuration);
+[[nodiscard]] estimation::GaussMarkov phase_wander_of(const carrier_configuration& configuration);
 
 }  // namespace vbar::fsw::sources

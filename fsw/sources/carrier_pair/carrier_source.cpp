@@ -13,7 +13,7 @@ bool CarrierSource::configure(const Configuration& configuration) {
   if (carrier == nullptr || receiver == nullptr) return false;
   const auto settings = carrier_settings(*carrier, *receiver);
   if (!settings.ok()) return false;
-  configuration.blocks.phase_wander = phase_wander_of(*carrier);
+  configuration.settings.processes.of<PhaseWander>() = phase_wander_of(*carrier);
   aiding_.configure(settings.value());
   pair_wait_ = Duration{carrier->pair_wait_ns};
   return true;
@@ -44,7 +44,7 @@ void CarrierSource::collect(Context& context, RecordFiler records) {
   }
 }
 
-void CarrierSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
+void CarrierSource::process_record(const Record& record, Context& context, trunk::Trunk& trunk) {
   const gnss::ObservationEpoch* ours = context.gnss.waiting(Receiver::kServicer).find(record.time);
   const gnss::ObservationEpoch* theirs = context.gnss.waiting(Receiver::kTarget).find(record.time);
   if (ours == nullptr || theirs == nullptr) return;

@@ -11,11 +11,11 @@ namespace vbar::fsw::sources {
 
 class CarrierSource {
  public:
-  static constexpr std::int32_t kUse = navigation_configuration::kUseCarrierPair;
+  static constexpr std::int32_t kUse = CarrierAiding::kSource.bit;
   bool configure(const Configuration& configuration);
   /// Files the epochs of both receivers with one tag, in order.
   void collect(Context& context, RecordFiler records);
-  void fold(const Record& record, Context& context, trunk::Trunk& trunk);
+  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
   /// The oldest epoch of the servicer whose counterpart may still arrive.
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return owed_; }
   void watch(GpsTime now, trunk::Trunk& trunk) { aiding_.watch(now, trunk); }

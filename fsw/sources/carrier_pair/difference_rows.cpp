@@ -73,7 +73,7 @@ Vector3 group_delay_l1(const Matrix3& R_rtn_eci, const Vector3& servicer_antenna
 
 /// Index of the code bias, or -1 for GPS L1, which defines the clock.
 int code_bias_index(gnss::Signal signal) {
-  return signal == gnss::Signal::kGpsL1 ? -1 : kAt<trunk::CodeBiases> + static_cast<int>(signal) - 1;
+  return signal == gnss::Signal::kGpsL1 ? -1 : kAt<CodeBiases> + static_cast<int>(signal) - 1;
 }
 
 }  // namespace
@@ -105,10 +105,10 @@ Status DifferenceRows::form(const navigation::DifferentialEpoch& epoch, const An
   if (!map.ok()) return map.status();
   nonlinearity_m_ = math::sqrt(map.value().nonlinearity.trace());
   reference_.roe = trunk.roe();
-  reference_.servicer_antenna = estimate.mean().segment<3>(kAt<trunk::ServicerAntenna>);
-  reference_.target_antenna = estimate.mean().segment<3>(kAt<trunk::TargetAntenna>);
-  reference_.jitter = estimate.mean().segment<3>(kAt<trunk::PhaseCentreJitter>);
-  reference_.clock = estimate.mean(kAt<trunk::ClockDifference>);
+  reference_.servicer_antenna = estimate.mean().segment<3>(kAt<ServicerAntenna>);
+  reference_.target_antenna = estimate.mean().segment<3>(kAt<TargetAntenna>);
+  reference_.jitter = estimate.mean().segment<3>(kAt<PhaseCentreJitter>);
+  reference_.clock = estimate.mean(kAt<ClockDifference>);
   const Vector3 servicer_antenna = position_at_reception(trunk.servicer(), servicer.clock_m) +
                                    servicer.R_eci_body * (servicer.antenna_body_m + reference_.servicer_antenna);
   const Vector3 target_antenna = map.value().position_eci + reference_.jitter +
@@ -143,52 +143,52 @@ double DifferenceRows::residual(std::size_t n, double measured_m, const trunk::E
   const Row& row = rows_[n];
   const trunk::Estimate::Vector& x = estimate.mean();
   return measured_m - row.predicted - row.roe.dot(x.head<6>() - reference_.roe) -
-         row.servicer_antenna.dot(x.segment<3>(kAt<trunk::ServicerAntenna>) - reference_.servicer_antenna) -
-         row.target_antenna.dot(x.segment<3>(kAt<trunk::TargetAntenna>) - reference_.target_antenna) -
-         row.jitter.dot(x.segment<3>(kAt<trunk::PhaseCentreJitter>) - reference_.jitter) -
-         (x(kAt<trunk::ClockDifference>) - reference_.clock);
+         row.servicer_antenna.dot(x.segment<3>(kAt<ServicerAntenna>) - reference_.servicer_antenna) -
+         row.target_antenna.dot(x.segment<3>(kAt<TargetAntenna>) - reference_.target_antenna) -
+         row.jitter.dot(x.segment<3>(kAt<PhaseCentreJitter>) - reference_.jitter) -
+         (x(kAt<ClockDifference>) - reference_.clock);
 }
 
 double DifferenceRows::code_residual(std::size_t n, const navigation::DifferentialObservation& observation,
                                      const trunk::Estimate& estimate) const {
   const int bias = code_bias_index(observation.signal);
   return residual(n, observation.code_m, estimate) - (bias >= 0 ? estimate.mean(bias) : 0.0) -
-         group_delay(n, observation.signal).dot(estimate.mean().segment<3>(kAt<trunk::Ionosphere>));
+         group_delay(n, observation.signal).dot(estimate.mean().segment<3>(kAt<Ionosphere>));
 }
 
 double DifferenceRows::phase_residual(std::size_t n, std::size_t channel,
                                       const navigation::DifferentialObservation& observation,
                                       const trunk::Estimate& estimate) const {
   const int place = static_cast<int>(channel);
-  return residual(n, observation.phase_m, estimate) - estimate.mean(kAt<trunk::Ambiguities> + place) -
-         estimate.mean(kAt<trunk::PhaseWander> + place) +
-         group_delay(n, observation.signal).dot(estimate.mean().segment<3>(kAt<trunk::Ionosphere>));
+  return residual(n, observation.phase_m, estimate) - estimate.mean(kAt<Ambiguities> + place) -
+         estimate.mean(kAt<PhaseWander> + place) +
+         group_delay(n, observation.signal).dot(estimate.mean().segment<3>(kAt<Ionosphere>));
 }
 
 DifferenceRows::Sensitivity DifferenceRows::range_sensitivity(std::size_t n) const {
   const Row& row = rows_[n];
   Sensitivity h = Sensitivity::Zero();
   h.head<6>() = row.roe;
-  h.segment<3>(kAt<trunk::ServicerAntenna>) = row.servicer_antenna;
-  h.segment<3>(kAt<trunk::TargetAntenna>) = row.target_antenna;
-  h.segment<3>(kAt<trunk::PhaseCentreJitter>) = row.jitter;
-  h(kAt<trunk::ClockDifference>) = 1.0;
+  h.segment<3>(kAt<ServicerAntenna>) = row.servicer_antenna;
+  h.segment<3>(kAt<TargetAntenna>) = row.target_antenna;
+  h.segment<3>(kAt<PhaseCentreJitter>) = row.jitter;
+  h(kAt<ClockDifference>) = 1.0;
   return h;
 }
 
 DifferenceRows::Sensitivity DifferenceRows::code_sensitivity(std::size_t n, gnss::Signal signal) const {
   Sensitivity h = range_sensitivity(n);
   if (const int bias = code_bias_index(signal); bias >= 0) h(bias) = 1.0;
-  h.segment<3>(kAt<trunk::Ionosphere>) = group_delay(n, signal);
+  h.segment<3>(kAt<Ionosphere>) = group_delay(n, signal);
   return h;
 }
 
 DifferenceRows::Sensitivity DifferenceRows::phase_sensitivity(std::size_t n, std::size_t channel,
                                                               gnss::Signal signal) const {
   Sensitivity h = range_sensitivity(n);
-  h(kAt<trunk::Ambiguities> + static_cast<int>(channel)) = 1.0;
-  h(kAt<trunk::PhaseWander> + static_cast<int>(channel)) = 1.0;
-  h.segment<3>(kAt<trunk::Ionosphere>) = -group_delay(n, signal);
+  h(kAt<Ambiguities> + static_cast<int>(channel)) = 1.0;
+  h(kAt<PhaseWander> + static_cast<int>(channel)) = 1.0;
+  h.segment<3>(kAt<Ionosphere>) = -group_delay(n, signal);
   return h;
 }
 

@@ -9,11 +9,11 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/gnss/observation.h"
 #include "fsw/navigation/differential.h"
-#include "fsw/trunk/state.h"
+#include "fsw/sources/carrier_pair/carrier_blocks.h"
 
 namespace vbar::fsw::sources {
 
-inline constexpr std::size_t kPhaseChannels = trunk::kPhaseChannelCount;
+inline constexpr std::size_t kPhaseChannels = kPhaseChannelCount;
 
 struct PhaseChannel {
   bool in_use = false;

@@ -30,7 +30,7 @@ void IdealSource::collect(Context& context, RecordFiler records) {
   }
 }
 
-void IdealSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
+void IdealSource::process_record(const Record& record, Context& context, trunk::Trunk& trunk) {
   if (filed_ - record.number > waiting_.size()) return context.inbox.count_unusable_time();
   const States& states = waiting_[record.number % waiting_.size()];
   trunk.set_states(states.servicer, states.target);

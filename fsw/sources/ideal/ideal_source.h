@@ -14,7 +14,7 @@ class IdealSource {
   static constexpr std::int32_t kUse = navigation_configuration::kUseIdeal;
   [[nodiscard]] bool configure(const Configuration& /*configuration*/) { return true; }
   void collect(Context& context, RecordFiler records);
-  void fold(const Record& record, Context& context, trunk::Trunk& trunk);
+  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
   void watch(GpsTime /*now*/, trunk::Trunk& /*trunk*/) {}
   void stop(GpsTime now, trunk::Trunk& /*trunk*/) { aid_.go_to(AidState::kOff, now); }

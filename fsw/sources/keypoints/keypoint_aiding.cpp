@@ -234,7 +234,9 @@ KeypointEditStatus KeypointAiding::take_position(const KeypointImage& image, con
   const auto agreed = start_.attitude();
   const bool is_agreed = has_sample_ && agreed.ok() && agrees_with_image(agreed.value().attitude);
   const Matrix3 covariance = kAlike * sample.covariance_eci + position_covariance(sample, is_agreed);
-  if (position_rows(trunk, sample.relative_eci, covariance) != Status::kOk || !trunk.fold()) {
+  trunk::MeasurementBatch& batch = trunk.workspace();
+  if (position_rows(trunk, sample.relative_eci, covariance, batch) != Status::kOk ||
+      !trunk.update(KeypointEditing::kSource, batch)) {
     return KeypointEditStatus::kRefused;
   }
   ++counters_.positions_used;
@@ -244,14 +246,14 @@ KeypointEditStatus KeypointAiding::take_position(const KeypointImage& image, con
 
 void KeypointAiding::activate_blocks(std::size_t camera, trunk::Trunk& trunk) const {
   trunk::Estimate& estimate = trunk.estimate();
-  const trunk::TrunkSettings& blocks = trunk.settings();
-  const int mount = trunk::mount_at(camera);
-  if (trunk::is_active<trunk::KeypointOrigin>(estimate) && !estimate.is_idle(mount)) return;
-  if (!trunk::is_active<trunk::KeypointOrigin>(estimate)) {
-    trunk::begin_block<trunk::KeypointOrigin>(estimate, blocks.keypoint_origin);
+  const auto& processes = trunk.settings().processes;
+  const int mount = mount_at(camera);
+  if (trunk::is_active<KeypointOrigin>(estimate) && !estimate.is_idle(mount)) return;
+  if (!trunk::is_active<KeypointOrigin>(estimate)) {
+    trunk::begin_block<KeypointOrigin>(estimate, processes.of<KeypointOrigin>());
   }
-  for (int axis = 0; axis < trunk::CameraMounts::kPerCamera && estimate.is_idle(mount + 1); ++axis) {
-    trunk::begin_process(estimate, mount + axis, blocks.camera_mount);
+  for (int axis = 0; axis < kMountAxes && estimate.is_idle(mount + 1); ++axis) {
+    estimation::begin_process(estimate, mount + axis, processes.of<CameraMounts>());
   }
   trunk.finish_update();
 }
@@ -327,7 +329,7 @@ void KeypointAiding::count_refusal(GpsTime time, bool is_position_far, trunk::Tr
 
 /// `distance`: relative. An orbit that receivers determine is not changed because images contradict it.
 void KeypointAiding::inflate(double velocity_sigma, double distance, trunk::Trunk& trunk) {
-  if (trunk.is_determined_by_receivers()) return;
+  if (trunk.is_precisely_determined()) return;
   trunk.inflate_relative(velocity_sigma, distance * range_m(trunk));
   ++counters_.inflations;
 }
@@ -343,7 +345,7 @@ void KeypointAiding::count_missing(trunk::Trunk& trunk) {
 void KeypointAiding::contradict_orbit(GpsTime time, trunk::Trunk& trunk) {
   reset_refusals();
   aid_.go_to(AidState::kSuspended, time);
-  if (trunk.is_determined_by_receivers()) {
+  if (trunk.is_precisely_determined()) {
     trunk.rest_attitude();  // with which the poses were wrong
     return;
   }

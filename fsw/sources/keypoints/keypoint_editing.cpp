@@ -35,13 +35,13 @@ const KeypointsUpdate& KeypointEditing::take(trunk::Trunk& trunk, GpsTime time, 
   scaled_ = keypoints;
   // Against an orbit that receivers determine, the innovations are errors of the network, which are tested with its own
   // covariances; a view that was seen before then only loses weight.
-  const double tested_scale = trunk.is_determined_by_receivers() ? 1.0 : novelty_scale;
+  const double tested_scale = trunk.is_precisely_determined() ? 1.0 : novelty_scale;
   for (pose::Keypoint& keypoint : scaled_) keypoint.covariance_px2 *= adapted_scale() * tested_scale;
-  if (keypoint_rows(trunk, scaled_, camera, model) != Status::kOk) return update_;
-  trunk::Rows& rows = trunk.rows();
-  estimation::predict_innovations(trunk.estimate(), rows);
-  gate_keypoints(rows);
-  const double nis = estimation::joint_nis(rows);
+  trunk::MeasurementBatch& batch = trunk.workspace();
+  if (keypoint_rows(trunk, scaled_, camera, model, batch) != Status::kOk) return update_;
+  estimation::predict_innovations(trunk.estimate(), batch);
+  gate_keypoints(batch);
+  const double nis = estimation::joint_nis(batch);
   const bool is_refused = update_.used < settings_.min_keypoints ||
                           update_.is_mostly_rejected(settings_.max_refused_share) || !(nis < estimation::kNoGate);
   if (is_refused) {
@@ -53,40 +53,40 @@ const KeypointsUpdate& KeypointEditing::take(trunk::Trunk& trunk, GpsTime time, 
   const int degrees = 2 * update_.used;
   const double misfit = nis > max_expected(degrees) ? std::min(nis / degrees, settings_.max_noise_scale) : 1.0;
   update_.noise_scale = misfit * adapted_scale() * novelty_scale;
-  adapt_noise(trunk, time, camera);
-  weight_keypoints(rows, misfit * (novelty_scale / tested_scale));
-  if (!trunk.fold()) return update_;
-  for (int k = 0; k < kCount; ++k) update_.keypoints[at(k)].postfit = rows.residual.segment<2>(2 * k);
+  adapt_noise(batch, time, camera, trunk);
+  weight_keypoints(batch, misfit * (novelty_scale / tested_scale));
+  if (!trunk.update(kSource, batch)) return update_;
+  for (int k = 0; k < kCount; ++k) update_.keypoints[at(k)].postfit = batch.residual.segment<2>(2 * k);
   adapt_scale();
   update_.accepted = true;
   return update_;
 }
 
-void KeypointEditing::gate_keypoints(trunk::Rows& rows) {
+void KeypointEditing::gate_keypoints(trunk::MeasurementBatch& batch) {
   for (int k = 0; k < kCount; ++k) {
     const int row = 2 * k;
     KeypointUpdate& keypoint = update_.keypoints[at(k)];
-    keypoint.is_usable = rows.is_used[at(row)];
+    keypoint.is_usable = batch.is_used[at(row)];
     if (!keypoint.is_usable) continue;
     ++update_.usable;
-    keypoint.prefit = rows.residual.segment<2>(row);
+    keypoint.prefit = batch.residual.segment<2>(row);
     keypoint.postfit = keypoint.prefit;
-    keypoint.nis = estimation::group_nis(rows, row, 2);
+    keypoint.nis = estimation::group_nis(batch, row, 2);
     keypoint.accepted = keypoint.nis <= settings_.gate;
     if (keypoint.accepted) ++update_.used;
-    rows.is_used[at(row)] = rows.is_used[at(row + 1)] = keypoint.accepted;
+    batch.is_used[at(row)] = batch.is_used[at(row + 1)] = keypoint.accepted;
   }
 }
 
 /// The covariance of each keypoint is multiplied by `common`, the misfit of the image or more, and by the inverse
 /// weight of its own innovation under the Student distribution, (nu + d^2) / (nu + 2), not below one.
-void KeypointEditing::weight_keypoints(trunk::Rows& rows, double common) const {
+void KeypointEditing::weight_keypoints(trunk::MeasurementBatch& batch, double common) const {
   for (int k = 0; k < kCount; ++k) {
     const KeypointUpdate& keypoint = update_.keypoints[at(k)];
     if (!keypoint.accepted) continue;
     const double tail = (settings_.tail_degrees + keypoint.nis) / (settings_.tail_degrees + 2.0);
     const double scale = common * (tail > 1.0 ? tail : 1.0);
-    rows.noise.block<2, 2>(2 * k, 2 * k) += (scale - 1.0) * scaled_[at(k)].covariance_px2;
+    batch.noise.block<2, 2>(2 * k, 2 * k) += (scale - 1.0) * scaled_[at(k)].covariance_px2;
   }
 }
 
@@ -102,7 +102,8 @@ void KeypointEditing::adapt_scale() {
 
 /// By least squares the innovations are a common shift (a lag of the orbit) and a rotation (a lag of the attitude),
 /// each normalised by its standard deviation. Two axes of the camera are used for the rotation: across and along it.
-void KeypointEditing::adapt_noise(trunk::Trunk& trunk, GpsTime time, const CameraPose& camera) {
+void KeypointEditing::adapt_noise(const trunk::MeasurementBatch& batch, GpsTime time, const CameraPose& camera,
+                                  trunk::Trunk& trunk) {
   constexpr int kFitted = 5;
   constexpr int kMinKeypoints = 5;
   navigation::AdaptiveNoise& acceleration = trunk.relative_orbit().noise();
@@ -113,23 +114,22 @@ void KeypointEditing::adapt_noise(trunk::Trunk& trunk, GpsTime time, const Camer
   }
   last_folded_ = time;
   if (update_.used < kMinKeypoints) return;
-  const trunk::Rows& rows = trunk.rows();
   const Matrix3 R_body_camera =
       (camera.R_camera_eci * trunk.attitude().state().q_eci_body.toRotationMatrix()).transpose();
-  Eigen::Matrix<double, trunk::kMaxRows, kFitted> jacobian = Eigen::Matrix<double, trunk::kMaxRows, kFitted>::Zero();
-  for (int row = 0; row < rows.count(); ++row) {
-    if (!rows.is_used[at(row)]) continue;
+  Eigen::Matrix<double, kMaxMeasurements, kFitted> jacobian = Eigen::Matrix<double, kMaxMeasurements, kFitted>::Zero();
+  for (int row = 0; row < batch.count(); ++row) {
+    if (!batch.is_used[at(row)]) continue;
     jacobian(row, row % 2) = 1.0;
     // A rotation of 0.01 rad is of the order of a pixel.
     for (int axis = 0; axis < 3; ++axis) {
       jacobian(row, 2 + axis) =
-          0.01 * rows.sensitivity.col(row).segment<3>(kAt<trunk::Turn>).dot(R_body_camera.col(axis));
+          0.01 * batch.sensitivity.col(row).segment<3>(kAt<trunk::Turn>).dot(R_body_camera.col(axis));
     }
   }
   Eigen::Matrix<double, kFitted, kFitted> normal;
   Eigen::Matrix<double, kFitted, 1> right;
   for (int i = 0; i < kFitted; ++i) {
-    right(i) = jacobian.col(i).dot(rows.residual);
+    right(i) = jacobian.col(i).dot(batch.residual);
     for (int j = 0; j < kFitted; ++j) normal(i, j) = jacobian.col(i).dot(jacobian.col(j));
   }
   const math::Cholesky<kFitted> factor(normal);
@@ -138,14 +138,14 @@ void KeypointEditing::adapt_noise(trunk::Trunk& trunk, GpsTime time, const Camer
   Eigen::Matrix<double, kFitted, 1> normalised;
   for (int i = 0; i < kFitted; ++i) {
     const Eigen::Matrix<double, kFitted, 1> weights = factor.solve(Eigen::Matrix<double, kFitted, 1>::Unit(i));
-    trunk::Rows::Vector combination = trunk::Rows::Vector::Zero();
+    trunk::MeasurementBatch::Vector combination = trunk::MeasurementBatch::Vector::Zero();
     for (int j = 0; j < kFitted; ++j) combination += weights(j) * jacobian.col(j);
     double variance = 0.0;
-    for (int c = 0; c < rows.count(); ++c) variance += combination(c) * combination.dot(rows.innovation.col(c));
+    for (int c = 0; c < batch.count(); ++c) variance += combination(c) * combination.dot(batch.innovation.col(c));
     if (!(variance > 0.0)) return;
     normalised(i) = fitted(i) / math::sqrt(variance);
   }
-  if (trunk.is_determined_by_receivers()) {
+  if (trunk.is_precisely_determined()) {
     acceleration.interrupt();
   } else {
     acceleration.take(normalised.head<2>());

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "fsw/core/gps_time.h"
+#include "fsw/packets/messages.h"
 #include "fsw/sources/keypoints/keypoint_rows.h"
 
 namespace vbar::fsw::sources {
@@ -43,6 +44,8 @@ struct KeypointsUpdate {
 
 class KeypointEditing {
  public:
+  static constexpr trunk::MeasurementSource kSource{.bit = navigation_configuration::kUseKeypoints};
+
   void configure(const KeypointEditingSettings& settings) { settings_ = settings; }
   [[nodiscard]] const KeypointEditingSettings& settings() const { return settings_; }
 
@@ -57,9 +60,9 @@ class KeypointEditing {
   [[nodiscard]] double adapted_scale() const { return adapted_scale_ > 1.0 ? adapted_scale_ : 1.0; }
 
  private:
-  void gate_keypoints(trunk::Rows& rows);
-  void weight_keypoints(trunk::Rows& rows, double common) const;
-  void adapt_noise(trunk::Trunk& trunk, GpsTime time, const CameraPose& camera);
+  void gate_keypoints(trunk::MeasurementBatch& batch);
+  void weight_keypoints(trunk::MeasurementBatch& batch, double common) const;
+  void adapt_noise(const trunk::MeasurementBatch& batch, GpsTime time, const CameraPose& camera, trunk::Trunk& trunk);
   void adapt_scale();
 
   KeypointEditingSettings settings_;

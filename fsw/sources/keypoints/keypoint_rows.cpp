@@ -14,7 +14,7 @@ using trunk::kAt;
 constexpr int kCount = network::kKeypoints;
 constexpr int kRows = 2 * kCount;
 constexpr int kSampled = trunk::Roe::kSize + trunk::Turn::kSize;
-constexpr int kLastingTurn = kAt<trunk::KeypointCommon> + trunk::KeypointCommon::kLastingTurn;
+constexpr int kLastingTurn = kAt<KeypointCommon> + KeypointCommon::kLastingTurn;
 
 // Points at 1.8 standard deviations; the central point's weight in a covariance stays above zero.
 constexpr estimation::UnscentedParameters kPoints = {.alpha = 0.6, .beta = 2.0, .kappa = 0.0};
@@ -67,26 +67,25 @@ Result<Seen> pose_of(const Transform::Vector& x, const trunk::Trunk& trunk, cons
 }
 
 /// Sensitivities of the states that enter linearly, at the mean pose; false if the target is behind the camera.
-bool add_linear_states(trunk::Trunk& trunk, const pose::Keypoints& keypoints, const CameraPose& camera,
-                       const KeypointModel& model, const Seen& mean, const Pixels& predicted) {
-  trunk::Rows& rows = trunk.rows();
+bool add_linear_states(const trunk::Trunk& trunk, const pose::Keypoints& keypoints, const CameraPose& camera,
+                       const KeypointModel& model, const Seen& mean, const Pixels& predicted,
+                       trunk::MeasurementBatch& batch) {
   const trunk::Estimate& estimate = trunk.estimate();
   const auto centre_px = imaging::pixel_of(model.optics, mean.centre_camera);
   if (!centre_px.ok()) return false;
-  const double share = trunk.settings().keypoint_errors.correlated_share;
+  const double share = trunk.settings().processes.of<KeypointCommon>().correlated_share;
   const Vector3 sight_eci = camera.R_camera_eci.transpose() * mean.centre_camera;
   const Matrix3 axes = navigation::bearing_axes(sight_eci.normalized(), trunk.servicer());
-  const int mount = trunk::mount_at(model.camera);
-  const int stretch =
-      kAt<trunk::KeypointCommon> + trunk::KeypointCommon::kLastingStretch + static_cast<int>(model.camera);
-  const Vector3 origin = estimate.mean().segment<3>(kAt<trunk::KeypointOrigin>);
+  const int mount = mount_at(model.camera);
+  const int stretch = kAt<KeypointCommon> + KeypointCommon::kLastingStretch + static_cast<int>(model.camera);
+  const Vector3 origin = estimate.mean().segment<3>(kAt<KeypointOrigin>);
   for (int k = 0; k < kCount; ++k) {
     const int row = 2 * k;
-    if (!rows.is_used[at(row)]) continue;
+    if (!batch.is_used[at(row)]) continue;
     const Vector3 point = mean.centre_camera + mean.R_camera_body * (model.shape[at(k)] + origin);
     const auto projection = imaging::project(model.optics, point);
     if (!projection.ok()) {
-      rows.is_used[at(row)] = rows.is_used[at(row + 1)] = false;
+      batch.is_used[at(row)] = batch.is_used[at(row + 1)] = false;
       continue;
     }
     const Eigen::Matrix<double, 2, 3> by_point = projection.value().derivative;
@@ -96,25 +95,24 @@ bool add_linear_states(trunk::Trunk& trunk, const pose::Keypoints& keypoints, co
     const Matrix2 covariance = keypoints[at(k)].covariance_px2;
     const Matrix2 root = math::sqrt(share) * root_of(covariance);
     for (int axis = 0; axis < 2; ++axis) {
-      auto sensitivity = rows.sensitivity.col(row + axis);
-      sensitivity.segment<3>(kAt<trunk::KeypointOrigin>) = by_origin.row(axis).transpose();
+      auto sensitivity = batch.sensitivity.col(row + axis);
+      sensitivity.segment<3>(kAt<KeypointOrigin>) = by_origin.row(axis).transpose();
       sensitivity.segment<2>(mount) = by_mount.row(axis).transpose();
       const double from_centre = predicted(row + axis) - centre_px.value()(axis);
-      sensitivity(kAt<trunk::KeypointCommon> + axis) = 1.0;
-      sensitivity(kAt<trunk::KeypointCommon> + 2) = from_centre;
+      sensitivity(kAt<KeypointCommon> + axis) = 1.0;
+      sensitivity(kAt<KeypointCommon> + 2) = from_centre;
       sensitivity(stretch) = model.lasting_stretch_scale * from_centre;
       // A rotation vector t of the body moves its point p by t x p.
       sensitivity.segment<3>(kLastingTurn) = model.shape[at(k)].cross(by_origin.row(axis).transpose());
-      sensitivity.segment<2>(kAt<trunk::KeypointErrors> + row) = root.row(axis).transpose();
+      sensitivity.segment<2>(kAt<KeypointErrors> + row) = root.row(axis).transpose();
       const double linear =
           sensitivity.segment<2>(mount).dot(estimate.mean().segment<2>(mount)) +
-          sensitivity.segment<trunk::KeypointCommon::kSize>(kAt<trunk::KeypointCommon>)
-              .dot(estimate.mean().segment<trunk::KeypointCommon::kSize>(kAt<trunk::KeypointCommon>)) +
-          sensitivity.segment<2>(kAt<trunk::KeypointErrors> + row)
-              .dot(estimate.mean().segment<2>(kAt<trunk::KeypointErrors> + row));
-      rows.residual(row + axis) = keypoints[at(k)].pixel(axis) - predicted(row + axis) - linear;
+          sensitivity.segment<KeypointCommon::kSize>(kAt<KeypointCommon>)
+              .dot(estimate.mean().segment<KeypointCommon::kSize>(kAt<KeypointCommon>)) +
+          sensitivity.segment<2>(kAt<KeypointErrors> + row).dot(estimate.mean().segment<2>(kAt<KeypointErrors> + row));
+      batch.residual(row + axis) = keypoints[at(k)].pixel(axis) - predicted(row + axis) - linear;
     }
-    rows.noise.block<2, 2>(row, row) += (1.0 - share) * covariance;
+    batch.noise.block<2, 2>(row, row) += (1.0 - share) * covariance;
   }
   return true;
 }
@@ -127,19 +125,18 @@ bool is_usable(const pose::Keypoint& keypoint) {
          c(0, 0) * c(1, 1) - c(1, 0) * c(1, 0) > 0.0;
 }
 
-Status keypoint_rows(trunk::Trunk& trunk, const pose::Keypoints& keypoints, const CameraPose& camera,
-                     const KeypointModel& model) {
+Status keypoint_rows(const trunk::Trunk& trunk, const pose::Keypoints& keypoints, const CameraPose& camera,
+                     const KeypointModel& model, trunk::MeasurementBatch& batch) {
   const auto chief = orbit::qns_from_cartesian(trunk.servicer());
   if (!chief.ok()) return chief.status();
   if (!trunk.has_attitude()) return Status::kNotReady;
   Transform transform;
   if (const Status status = start(transform, trunk.estimate()); status != Status::kOk) return status;
-  trunk::Rows& rows = trunk.rows();
-  rows.clear(kRows);
+  batch.clear(kRows);
   for (int k = 0; k < kCount; ++k) {
-    rows.is_used[at(2 * k)] = rows.is_used[at(2 * k + 1)] = is_usable(keypoints[at(k)]);
+    batch.is_used[at(2 * k)] = batch.is_used[at(2 * k + 1)] = is_usable(keypoints[at(k)]);
   }
-  const Vector3 origin = trunk.estimate().mean().segment<3>(kAt<trunk::KeypointOrigin>);
+  const Vector3 origin = trunk.estimate().mean().segment<3>(kAt<KeypointOrigin>);
   std::array<Pixels, Transform::kPoints> values;
   Seen mean;
   for (std::size_t point = 0; point < Transform::kPoints; ++point) {
@@ -148,26 +145,28 @@ Status keypoint_rows(trunk::Trunk& trunk, const pose::Keypoints& keypoints, cons
     if (point == 0) mean = seen.value();
     values[point].setZero();
     for (int k = 0; k < kCount; ++k) {
-      if (!rows.is_used[at(2 * k)]) continue;
+      if (!batch.is_used[at(2 * k)]) continue;
       const auto pixel = imaging::pixel_of(
           model.optics, seen.value().centre_camera + seen.value().R_camera_body * (model.shape[at(k)] + origin));
       if (pixel.ok()) {
         values[point].segment<2>(2 * k) = pixel.value();
       } else {
-        rows.is_used[at(2 * k)] = rows.is_used[at(2 * k + 1)] = false;
+        batch.is_used[at(2 * k)] = batch.is_used[at(2 * k + 1)] = false;
       }
     }
   }
   const auto regression = transform.regress<kRows>(values);
   for (int r = 0; r < kRows; ++r) {
-    if (!rows.is_used[at(r)]) continue;
-    for (int j = 0; j < kSampled; ++j) rows.sensitivity(sampled_index(j), r) = regression.jacobian(r, j);
+    if (!batch.is_used[at(r)]) continue;
+    for (int j = 0; j < kSampled; ++j) batch.sensitivity(sampled_index(j), r) = regression.jacobian(r, j);
   }
-  rows.noise.topLeftCorner<kRows, kRows>() = regression.nonlinearity;
-  return add_linear_states(trunk, keypoints, camera, model, mean, regression.mean) ? Status::kOk : Status::kOutOfRange;
+  batch.noise.topLeftCorner<kRows, kRows>() = regression.nonlinearity;
+  return add_linear_states(trunk, keypoints, camera, model, mean, regression.mean, batch) ? Status::kOk
+                                                                                          : Status::kOutOfRange;
 }
 
-Status position_rows(trunk::Trunk& trunk, const Vector3& relative_eci, const Matrix3& covariance_m2) {
+Status position_rows(const trunk::Trunk& trunk, const Vector3& relative_eci, const Matrix3& covariance_m2,
+                     trunk::MeasurementBatch& batch) {
   using Places = estimation::UnscentedTransform<trunk::Roe::kSize>;
   const orbit::CartesianState servicer = trunk.servicer();
   const auto chief = orbit::qns_from_cartesian(servicer);
@@ -181,13 +180,12 @@ Status position_rows(trunk::Trunk& trunk, const Vector3& relative_eci, const Mat
     values[k] = target.value().position_eci - servicer.position_eci;
   }
   const auto regression = transform.regress<3>(values);
-  trunk::Rows& rows = trunk.rows();
-  rows.clear(3);
+  batch.clear(3);
   for (int axis = 0; axis < 3; ++axis) {
-    rows.sensitivity.col(axis).head<6>() = regression.jacobian.row(axis).transpose();
+    batch.sensitivity.col(axis).head<6>() = regression.jacobian.row(axis).transpose();
   }
-  rows.residual.head<3>() = relative_eci - regression.mean;
-  rows.noise.topLeftCorner<3, 3>() = covariance_m2 + regression.nonlinearity;
+  batch.residual.head<3>() = relative_eci - regression.mean;
+  batch.noise.topLeftCorner<3, 3>() = covariance_m2 + regression.nonlinearity;
   return Status::kOk;
 }
 

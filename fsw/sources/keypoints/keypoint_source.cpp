@@ -72,7 +72,7 @@ bool KeypointSource::configure(const Configuration& configuration) {
   const auto aiding = keypoint_aiding_settings(*target, *first);
   const auto attitude = attitude_settings(*target);
   if (!aiding.ok() || !attitude.ok()) return false;
-  configuration.blocks.attitude = attitude.value();
+  configuration.settings.attitude = attitude.value();
   if (is_new) aiding_.configure(aiding.value());
   return true;
 }
@@ -117,7 +117,7 @@ std::optional<double> KeypointSource::wanted_exposure_s(std::size_t camera) cons
   return is_for_keypoints ? chosen.exposures->keypoints_s : chosen.exposures->bearings_s;
 }
 
-void KeypointSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
+void KeypointSource::process_record(const Record& record, Context& context, trunk::Trunk& trunk) {
   const std::size_t unit = unit_of(record);
   Camera& camera = cameras_[unit];
   const imaging::ImageAssembly& frame = context.inbox.image(unit);
@@ -155,7 +155,7 @@ void KeypointSource::fold(const Record& record, Context& context, trunk::Trunk& 
 /// The attitude and the errors of keypoints and mounts end with their only source; the orbit stays.
 void KeypointSource::stop(GpsTime now, trunk::Trunk& trunk) {
   trunk.rest_attitude();
-  trunk::rest_block<trunk::CameraMounts>(trunk.estimate());
+  trunk::rest_block<CameraMounts>(trunk.estimate());
   for (Camera& camera : cameras_) camera.report.reset();
   aid().go_to(AidState::kOff, now);
 }

@@ -15,14 +15,14 @@ namespace vbar::fsw::sources {
 
 class KeypointSource {
  public:
-  static constexpr std::int32_t kUse = navigation_configuration::kUseKeypoints;
+  static constexpr std::int32_t kUse = KeypointEditing::kSource.bit;
   /// Of all cameras that are configured for keypoints, with the model of the target. A change discards the poses
   /// collected for initialisation; the trunk stays.
   bool configure(const Configuration& configuration);
   /// At most one image of each camera in a step.
   void collect(Context& context, RecordFiler records);
   /// Predicts the crop, runs the network and updates the trunk by its keypoints.
-  void fold(const Record& record, Context& context, trunk::Trunk& trunk);
+  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
   void watch(GpsTime now, trunk::Trunk& trunk);
   void stop(GpsTime now, trunk::Trunk& trunk);

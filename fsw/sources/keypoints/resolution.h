@@ -28,7 +28,7 @@ struct ResolutionLimits {
 /// Pixels of the camera per sample of the network, of a target at `range_m`.
 [[nodiscard]] double image_scale(const KeypointCameraSettings& camera, double range_m);
 
-/// Factor on the lasting error of the target's apparent size (trunk::KeypointErrorSettings), at least 1. Measured over
+/// Factor on the lasting error of the target's apparent size (KeypointErrorSettings), at least 1. Measured over
 /// a flight from 110 m to 6 m: the median error of the range of single poses is 2 % at a scale of 0.8, 0.6 % at 1
 /// to 1.5, and 0.2 % from 2 on.
 [[nodiscard]] double lasting_stretch_scale(double image_scale);

@@ -25,7 +25,7 @@ void OwnGnssSource::collect(Context& context, RecordFiler records) {
   }
 }
 
-void OwnGnssSource::fold(const Record& record, Context& context, trunk::Trunk& trunk) {
+void OwnGnssSource::process_record(const Record& record, Context& context, trunk::Trunk& trunk) {
   const gnss::ObservationEpoch* epoch = context.gnss.waiting(Receiver::kServicer).find(record.time);
   if (epoch == nullptr) return;
   const auto frame = navigation::EarthFrame::at(record.time, trunk.settings().earth);

@@ -16,7 +16,7 @@ class OwnGnssSource {
   static constexpr std::int32_t kUse = navigation_configuration::kUseOwnGnss;
   bool configure(const Configuration& configuration);
   void collect(Context& context, RecordFiler records);
-  void fold(const Record& record, Context& context, trunk::Trunk& trunk);
+  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
   void watch(GpsTime now, trunk::Trunk& /*trunk*/) { aiding_.watch(now); }
   void stop(GpsTime now, trunk::Trunk& /*trunk*/) { aid().go_to(AidState::kOff, now); }

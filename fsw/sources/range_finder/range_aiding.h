@@ -8,6 +8,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
+#include "fsw/packets/messages.h"
 #include "fsw/sources/aid.h"
 #include "fsw/trunk/trunk.h"
 
@@ -30,11 +31,13 @@ struct RangeCounters {
   std::int32_t refused = 0;
 };
 
-/// Writes the distance of the centres of mass, plus the bias, to trunk.rows(). Any status of the orbit conversions.
-Status range_rows(trunk::Trunk& trunk, double range_m, double noise_sigma_m);
+/// Fills the batch with the distance of the centres of mass, plus the bias. Any status of the orbit conversions.
+Status range_rows(const trunk::Trunk& trunk, double range_m, double noise_sigma_m, trunk::MeasurementBatch& batch);
 
 class RangeAiding {
  public:
+  static constexpr trunk::MeasurementSource kSource{.bit = navigation_configuration::kUseRangeFinder};
+
   void configure(const RangeSettings& settings) { settings_ = settings; }
 
   /// A range in m; the trunk stands at its time.

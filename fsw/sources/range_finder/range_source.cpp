@@ -35,7 +35,7 @@ void RangeSource::collect(Context& context, RecordFiler records) {
   }
 }
 
-void RangeSource::fold(const Record& record, Context& /*context*/, trunk::Trunk& trunk) {
+void RangeSource::process_record(const Record& record, Context& /*context*/, trunk::Trunk& trunk) {
   folded_ = record.time;
   range_m_ = ranges_m_[record.number % kMaxWaiting];
   edit_status_ = aiding_.process(range_m_, trunk);
@@ -43,7 +43,7 @@ void RangeSource::fold(const Record& record, Context& /*context*/, trunk::Trunk&
 
 void RangeSource::report(const Telemetry& telemetry) const {
   if (!folded_) return;
-  constexpr int kBias = trunk::kAt<trunk::RangeBias>;
+  constexpr int kBias = trunk::kAt<RangeBias>;
   telemetry_range message{};
   message.step = telemetry.step;
   message.range_m = range_m_;

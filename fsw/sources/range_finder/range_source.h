@@ -14,10 +14,10 @@ namespace vbar::fsw::sources {
 
 class RangeSource {
  public:
-  static constexpr std::int32_t kUse = navigation_configuration::kUseRangeFinder;
+  static constexpr std::int32_t kUse = RangeAiding::kSource.bit;
   bool configure(const Configuration& configuration);
   void collect(Context& context, RecordFiler records);
-  void fold(const Record& record, Context& context, trunk::Trunk& trunk);
+  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
   [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
   void watch(GpsTime now, trunk::Trunk& /*trunk*/) { aiding_.check_age(now); }
   void stop(GpsTime now, trunk::Trunk& trunk) { aiding_.stop(now, trunk); }

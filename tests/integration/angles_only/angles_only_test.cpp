@@ -20,7 +20,8 @@ constexpr double kWaypointHours[] = {6.0, 12.0, 18.0, 24.0, 28.0, 32.0, 36.0};
 fsw::trunk::TrunkSettings blocks_for(const TrueFlight& flight, const SensorErrors& errors) {
   fsw::trunk::TrunkSettings settings;
   settings.earth = flight.earth;
-  settings.centroid_wander = {.sigma = errors.shape_share * kTargetRadius_m, .time_s = errors.shape_time_s};
+  settings.processes.of<fsw::sources::CentroidWander>() = {.sigma = errors.shape_share * kTargetRadius_m,
+                                                           .time_s = errors.shape_time_s};
   return settings;
 }
 

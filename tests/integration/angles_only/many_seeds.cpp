@@ -37,9 +37,10 @@ int main(int argc, char** argv) {
     fsw::trunk::TrunkSettings blocks;
     blocks.earth = flight.earth;
     blocks.relative_orbit.acceleration.psd = option("PSD", blocks.relative_orbit.acceleration.psd);
-    blocks.bearing_bias.sigma = option("BIAS_SIGMA", 3.0) / 206264.8;
+    blocks.processes.of<fsw::sources::BearingBias>().sigma = option("BIAS_SIGMA", 3.0) / 206264.8;
     blocks.burn_sigma_relative = option("MAN", blocks.burn_sigma_relative);
-    blocks.centroid_wander = {.sigma = option("WANDER", 0.035), .time_s = option("WANDER_TIME", 300.0)};
+    blocks.processes.of<fsw::sources::CentroidWander>() = {.sigma = option("WANDER", 0.035),
+                                                           .time_s = option("WANDER_TIME", 300.0)};
     blocks.own_orbit.slow_error_sigma_m = option("OWN_SIGMA", blocks.own_orbit.slow_error_sigma_m);
     blocks.own_orbit.acceleration_psd = option("OWN_PSD", blocks.own_orbit.acceleration_psd);
     fsw::sources::BearingSettings bearings;

@@ -1,11 +1,10 @@
-#include "fsw/estimation/rows.h"
-
 #include <random>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "fsw/estimation/batch.h"
 #include "fsw/estimation/unscented.h"
 
 namespace vbar::fsw::estimation {
@@ -13,27 +12,27 @@ namespace {
 
 constexpr int kStates = 5;
 constexpr int kMost = 6;
-using SomeRows = Rows<kStates, kMost>;
+using SomeBatch = MeasurementBatch<kStates, kMost>;
 using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// Correlated states, four rows of correlated noise of which the third is not in use.
-class RowsCase : public testing::Test {
+class BatchCase : public testing::Test {
  protected:
-  RowsCase() {
+  BatchCase() {
     Eigen::Matrix<double, kStates, kStates> root;
     for (int k = 0; k < root.size(); ++k) root(k) = normal();
     covariance = root * root.transpose();
     estimate.transform_head<kStates>(Estimate<kStates>::Vector::LinSpaced(1.0, 5.0),
                                      Estimate<kStates>::Matrix::Identity(), covariance);
-    rows.clear(4);
+    batch.clear(4);
     Eigen::Matrix4d noise_root;
     for (int k = 0; k < 16; ++k) noise_root(k) = normal();
-    rows.noise.topLeftCorner<4, 4>() = noise_root * noise_root.transpose();
+    batch.noise.topLeftCorner<4, 4>() = noise_root * noise_root.transpose();
     for (int k = 0; k < 4; ++k) {
-      rows.residual(k) = normal();
-      for (int i = 0; i < kStates; ++i) rows.sensitivity(i, k) = normal();
+      batch.residual(k) = normal();
+      for (int i = 0; i < kStates; ++i) batch.sensitivity(i, k) = normal();
     }
-    rows.is_used[2] = false;
+    batch.is_used[2] = false;
   }
   double normal() { return normal_(random_); }
 
@@ -41,7 +40,7 @@ class RowsCase : public testing::Test {
   Wide h() const {
     Wide result(3, kStates);
     int r = 0;
-    for (const int k : {0, 1, 3}) result.row(r++) = rows.sensitivity.col(k).transpose().cast<long double>();
+    for (const int k : {0, 1, 3}) result.row(r++) = batch.sensitivity.col(k).transpose().cast<long double>();
     return result;
   }
   template <class Matrix>
@@ -57,8 +56,8 @@ class RowsCase : public testing::Test {
   }
   Wide residual() const {
     Wide result(3, 1);
-    result << static_cast<long double>(rows.residual(0)), static_cast<long double>(rows.residual(1)),
-        static_cast<long double>(rows.residual(3));
+    result << static_cast<long double>(batch.residual(0)), static_cast<long double>(batch.residual(1)),
+        static_cast<long double>(batch.residual(3));
     return result;
   }
 
@@ -66,50 +65,50 @@ class RowsCase : public testing::Test {
   std::normal_distribution<double> normal_;
   Eigen::Matrix<double, kStates, kStates> covariance;
   Estimate<kStates> estimate;
-  SomeRows rows;
+  SomeBatch batch;
 };
 
-TEST_F(RowsCase, FoldIsKalmansUpdate) {
+TEST_F(BatchCase, UpdateIsKalmans) {
   const Wide p = covariance.cast<long double>();
-  const Wide s = h() * p * h().transpose() + of_used(rows.noise);
+  const Wide s = h() * p * h().transpose() + of_used(batch.noise);
   const Wide gain = p * h().transpose() * s.inverse();
   const Wide mean = estimate.mean().cast<long double>() + gain * residual();
   const Wide rest = p - gain * h() * p;
   const Wide postfit = residual() - h() * gain * residual();
-  const double unused = rows.residual(2) - rows.sensitivity.col(2).dot((gain * residual()).cast<double>().col(0));
-  ASSERT_TRUE(fold_in(estimate, rows));
+  const double unused = batch.residual(2) - batch.sensitivity.col(2).dot((gain * residual()).cast<double>().col(0));
+  ASSERT_TRUE(update(estimate, batch));
   for (int i = 0; i < kStates; ++i) {
     EXPECT_NEAR(estimate.mean(i), static_cast<double>(mean(i)), 1e-12);
     for (int j = 0; j < kStates; ++j) EXPECT_NEAR(estimate.covariance(i, j), static_cast<double>(rest(i, j)), 1e-12);
   }
   int r = 0;
-  for (const int k : {0, 1, 3}) EXPECT_NEAR(rows.residual(k), static_cast<double>(postfit(r++)), 1e-12) << k;
-  EXPECT_NEAR(rows.residual(2), unused, 1e-12);
+  for (const int k : {0, 1, 3}) EXPECT_NEAR(batch.residual(k), static_cast<double>(postfit(r++)), 1e-12) << k;
+  EXPECT_NEAR(batch.residual(2), unused, 1e-12);
 }
 
-TEST_F(RowsCase, NisAreThoseOfTheInverse) {
-  predict_innovations(estimate, rows);
-  const Wide s = h() * covariance.cast<long double>() * h().transpose() + of_used(rows.noise);
+TEST_F(BatchCase, NisAreThoseOfTheInverse) {
+  predict_innovations(estimate, batch);
+  const Wide s = h() * covariance.cast<long double>() * h().transpose() + of_used(batch.noise);
   const Wide expected = residual().transpose() * s.inverse() * residual();
-  EXPECT_NEAR(joint_nis(rows), static_cast<double>(expected(0)), 1e-12 * static_cast<double>(expected(0)));
-  const Eigen::Matrix2d pair = rows.innovation.topLeftCorner<2, 2>();
-  const Eigen::Vector2d of_pair = rows.residual.head<2>();
-  EXPECT_NEAR(group_nis(rows, 0, 2), of_pair.dot(pair.inverse() * of_pair), 1e-10);
-  EXPECT_NEAR(group_nis(rows, 3, 1), rows.residual(3) * rows.residual(3) / rows.innovation(3, 3), 1e-14);
+  EXPECT_NEAR(joint_nis(batch), static_cast<double>(expected(0)), 1e-12 * static_cast<double>(expected(0)));
+  const Eigen::Matrix2d pair = batch.innovation.topLeftCorner<2, 2>();
+  const Eigen::Vector2d of_pair = batch.residual.head<2>();
+  EXPECT_NEAR(group_nis(batch, 0, 2), of_pair.dot(pair.inverse() * of_pair), 1e-10);
+  EXPECT_NEAR(group_nis(batch, 3, 1), batch.residual(3) * batch.residual(3) / batch.innovation(3, 3), 1e-14);
 }
 
-TEST_F(RowsCase, ANoiseThatIsNoneChangesNothing) {
-  rows.noise(1, 1) = -1.0;
+TEST_F(BatchCase, ANoiseThatIsNoneChangesNothing) {
+  batch.noise(1, 1) = -1.0;
   const auto mean = estimate.mean();
-  EXPECT_FALSE(fold_in(estimate, rows));
+  EXPECT_FALSE(update(estimate, batch));
   EXPECT_EQ(estimate.mean(), mean);
-  rows.noise(1, 1) = NAN;
-  EXPECT_FALSE(fold_in(estimate, rows));
+  batch.noise(1, 1) = NAN;
+  EXPECT_FALSE(update(estimate, batch));
   EXPECT_EQ(estimate.mean(), mean);
-  rows.innovation(0, 0) = NAN;
-  EXPECT_EQ(group_nis(rows, 0, 2), kNoGate);
-  rows.innovation.setZero();
-  EXPECT_EQ(joint_nis(rows), kNoGate);
+  batch.innovation(0, 0) = NAN;
+  EXPECT_EQ(group_nis(batch, 0, 2), kNoGate);
+  batch.innovation.setZero();
+  EXPECT_EQ(joint_nis(batch), kNoGate);
 }
 
 /// A component of variance zero is not sampled, and the others as if it did not exist.

@@ -24,7 +24,7 @@ TEST(CarrierSettings, AreThoseOfTheMessages) {
   EXPECT_EQ(settings.value().ambiguities.min_ratio, 3.0);
   EXPECT_EQ(settings.value().servicer_antenna_body_m.y(), -0.3);
   EXPECT_EQ(settings.value().target_antenna_body_m.z(), 0.1);
-  const trunk::GaussMarkov wander = phase_wander_of(carrier());
+  const estimation::GaussMarkov wander = phase_wander_of(carrier());
   EXPECT_DOUBLE_EQ(wander.sigma, std::sqrt(2.0) * 0.5e-3);  // of a difference of two channels
   EXPECT_EQ(wander.time_s, 60.0);
 }

@@ -155,13 +155,13 @@ TEST(Trunk, OtherBlocksLeaveTheBitsOfTheOrbit) {
   const auto alone = trunk_with(without_noise(), kRoe, diagonal_covariance(1.0, 50.0, 5.0));
   const auto beside = trunk_with(without_noise(), kRoe, diagonal_covariance(1.0, 50.0, 5.0));
   beside->begin_attitude({}, 0.01 * Matrix6::Identity());
-  begin_block<CameraMounts>(beside->estimate(), {.sigma = 1e-4});
+  begin_block<sources::CameraMounts>(beside->estimate(), {.sigma = 1e-4});
   beside->advance_to(scene_start() + duration_of_seconds(20), {});
   alone->advance_to(scene_start() + duration_of_seconds(20), {});
   EXPECT_EQ(alone->roe(), beside->roe());
   EXPECT_EQ(alone->roe_covariance(), beside->roe_covariance());
   beside->rest_attitude();
-  rest_block<CameraMounts>(beside->estimate());
+  rest_block<sources::CameraMounts>(beside->estimate());
   for (int k = kOrbitSize; k < State::kSize; ++k) EXPECT_TRUE(beside->estimate().is_idle(k)) << k;
   EXPECT_EQ(alone->roe_covariance(), beside->roe_covariance());
 }

@@ -19,6 +19,9 @@ namespace vbar::fsw::trunk {
 namespace {
 
 using namespace navigation::test;
+using sources::BearingBias;
+using sources::BrightnessOffset;
+using sources::CentroidWander;
 
 constexpr int kActive = 13;  // ROE, drag, radiation pressure, bearing bias, brightness offset, wander
 constexpr std::array<int, kActive> kIndex = {0,
@@ -129,8 +132,8 @@ Square covariance_of(const Estimate& estimate) {
 
 /// The process of a component behind the head.
 const GaussMarkov& process_of(int k, const TrunkSettings& settings) {
-  if (k < 10) return settings.bearing_bias;
-  return k == 10 ? settings.brightness_offset : settings.centroid_wander;
+  if (k < 10) return settings.processes.of<BearingBias>();
+  return k == 10 ? settings.processes.of<BrightnessOffset>() : settings.processes.of<CentroidWander>();
 }
 
 TEST(UdReplay, ADayOfBearingsHasTheSameMeansAndSigmas) {
@@ -148,9 +151,9 @@ TEST(UdReplay, ADayOfBearingsHasTheSameMeansAndSigmas) {
   sigma /= kA;
   trunk->begin_relative(wrong, sigma.cwiseAbs2().asDiagonal(), RelativeKnowledge::kEstimated);
   Estimate& estimate = trunk->estimate();
-  begin_block<BearingBias>(estimate, settings.bearing_bias);
-  begin_block<BrightnessOffset>(estimate, settings.brightness_offset);
-  begin_block<CentroidWander>(estimate, settings.centroid_wander);
+  begin_block<BearingBias>(estimate, settings.processes.of<BearingBias>());
+  begin_block<BrightnessOffset>(estimate, settings.processes.of<BrightnessOffset>());
+  begin_block<CentroidWander>(estimate, settings.processes.of<CentroidWander>());
   UdFilter ud(mean_of(estimate), covariance_of(estimate));
 
   Noise noise(5);
@@ -177,21 +180,21 @@ TEST(UdReplay, ADayOfBearingsHasTheSameMeansAndSigmas) {
     ud.propagate(after + phi * (ud.x - before), phi, q);
 
     const auto bearing = bearing_of(now, servicer, target, 12.0 * kArcsec, 12.0 * kArcsec * noise.normal2());
-    ASSERT_EQ(sources::bearing_rows(*trunk, bearing, scene_sun(), {}), Status::kOk);
-    const Rows& rows = trunk->rows();
+    MeasurementBatch& batch = trunk->workspace();
+    ASSERT_EQ(sources::bearing_rows(*trunk, bearing, scene_sun(), {}, batch), Status::kOk);
     const Eigen::Matrix<Real, 2, 2> lower =
-        rows.noise.topLeftCorner<2, 2>().cast<Real>().llt().matrixL().toDenseMatrix();
+        batch.noise.topLeftCorner<2, 2>().cast<Real>().llt().matrixL().toDenseMatrix();
     Eigen::Matrix<Real, 2, kActive> h;
     for (int r = 0; r < 2; ++r) {
       for (int k = 0; k < kActive; ++k) {
-        h(r, k) = static_cast<Real>(rows.sensitivity(kIndex[static_cast<std::size_t>(k)], r));
+        h(r, k) = static_cast<Real>(batch.sensitivity(kIndex[static_cast<std::size_t>(k)], r));
       }
     }
     const State apart = ud.x - after;
-    Eigen::Matrix<Real, 2, 1> residual = rows.residual.head<2>().cast<Real>() - h * apart;
+    Eigen::Matrix<Real, 2, 1> residual = batch.residual.head<2>().cast<Real>() - h * apart;
     lower.triangularView<Eigen::Lower>().solveInPlace(h);
     lower.triangularView<Eigen::Lower>().solveInPlace(residual);
-    ASSERT_TRUE(trunk->fold());
+    ASSERT_TRUE(trunk->update({}, batch));
     ud.update(h.row(0).transpose(), residual(0), Real{1});
     // The second residual is that after the first update.
     const State moved = ud.x - (after + apart);

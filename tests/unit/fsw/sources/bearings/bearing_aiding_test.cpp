@@ -22,7 +22,7 @@ constexpr double kSigma = 12.0 * kArcsec;
 trunk::TrunkSettings blocks() {
   trunk::TrunkSettings settings;
   settings.earth = scene_earth();
-  settings.centroid_wander.sigma = 1e-3;
+  settings.processes.of<CentroidWander>().sigma = 1e-3;
   return settings;
 }
 
@@ -206,10 +206,10 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
   trunk->set_states(servicer, scene_target(servicer, roe));
   trunk->begin_relative(roe, sigma_roe.cwiseAbs2().asDiagonal(), RelativeKnowledge::kEstimated);
   trunk::Estimate& estimate = trunk->estimate();
-  estimate.reset(kAt<trunk::BrightnessOffset>, 0.1, 0.15 * 0.15);
+  estimate.reset(kAt<BrightnessOffset>, 0.1, 0.15 * 0.15);
   for (int axis = 0; axis < 2; ++axis) {
-    estimate.reset(kAt<trunk::CentroidWander> + axis, 0.02 - 0.05 * axis, 0.3 * 0.3);
-    estimate.reset(kAt<trunk::BearingBias> + axis, 1e-6, 1.5e-5 * 1.5e-5);
+    estimate.reset(kAt<CentroidWander> + axis, 0.02 - 0.05 * axis, 0.3 * 0.3);
+    estimate.reset(kAt<BearingBias> + axis, 1e-6, 1.5e-5 * 1.5e-5);
   }
 
   using Small = Eigen::Matrix<double, 11, 1>;  // ROE, brightness offset, wander, boresight
@@ -219,11 +219,11 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
                                           3,
                                           4,
                                           5,
-                                          kAt<trunk::BrightnessOffset>,
-                                          kAt<trunk::CentroidWander>,
-                                          kAt<trunk::CentroidWander> + 1,
-                                          kAt<trunk::BearingBias>,
-                                          kAt<trunk::BearingBias> + 1};
+                                          kAt<BrightnessOffset>,
+                                          kAt<CentroidWander>,
+                                          kAt<CentroidWander> + 1,
+                                          kAt<BearingBias>,
+                                          kAt<BearingBias> + 1};
   const auto bearing = bearing_of(scene_start(), servicer, scene_target(servicer, roe), 12.0 * kArcsec, {2e-5, -3e-5});
   const Matrix3 axes = navigation::bearing_axes(bearing.direction_eci, servicer);
   const auto shown = [&](const Small& x) {
@@ -252,19 +252,20 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
   const Small expected = mean - gain * shown(mean);
   const Eigen::Matrix<double, 11, 11> rest = p - gain * h * p;
 
-  ASSERT_EQ(bearing_rows(*trunk, bearing, scene_sun(), model), Status::kOk);
-  estimation::predict_innovations(estimate, trunk->rows());
-  const double nis = estimation::group_nis(trunk->rows(), 0, 2);
+  trunk::MeasurementBatch& batch = trunk->workspace();
+  ASSERT_EQ(bearing_rows(*trunk, bearing, scene_sun(), model, batch), Status::kOk);
+  estimation::predict_innovations(estimate, batch);
+  const double nis = estimation::group_nis(batch, 0, 2);
   EXPECT_NEAR(nis, shown(mean).dot(s.inverse() * shown(mean)), 1e-3 * nis);
-  EXPECT_NEAR(nis, estimation::joint_nis(trunk->rows()), 1e-9 * nis);
-  ASSERT_TRUE(trunk->fold());
+  EXPECT_NEAR(nis, estimation::joint_nis(batch), 1e-9 * nis);
+  ASSERT_TRUE(trunk->update(BearingAiding::kSource, batch));
   for (int k = 0; k < 11; ++k) {
     const int i = kIndex[static_cast<std::size_t>(k)];
     // The bearing's curvature over a sigma is 1e-4 of its slope.
     EXPECT_NEAR(estimate.mean(i), expected(k), 1e-3 * sigma(k)) << k;
     EXPECT_NEAR(estimate.variance(i), rest(k, k), 1e-3 * p(k, k)) << k;
   }
-  EXPECT_LT((trunk->rows().residual.head<2>() + shown(expected)).norm(), 1e-3 * shown(mean).norm());
+  EXPECT_LT((batch.residual.head<2>() + shown(expected)).norm(), 1e-3 * shown(mean).norm());
 }
 
 }  // namespace

@@ -207,10 +207,10 @@ TEST(CarrierAiding, AnOrbitOfAnotherSourceIsNeverInitialisedAgain) {
   EXPECT_EQ(pair.estimator->knowledge(), trunk::RelativeKnowledge::kEstimated);
   EXPECT_NEAR(pair.trunk_position_error(), displaced, 30.0) << error.transpose();
   // Its own blocks are inactive, and no others.
-  EXPECT_FALSE(trunk::is_active<trunk::ServicerAntenna>(pair.estimator->estimate()));
-  EXPECT_FALSE(trunk::is_active<trunk::CodeBiases>(pair.estimator->estimate()));
+  EXPECT_FALSE(trunk::is_active<ServicerAntenna>(pair.estimator->estimate()));
+  EXPECT_FALSE(trunk::is_active<CodeBiases>(pair.estimator->estimate()));
   EXPECT_FALSE(trunk::is_active<trunk::EmpiricalAcceleration>(pair.estimator->estimate()));
-  EXPECT_FALSE(trunk::is_active<trunk::ClockDifference>(pair.estimator->estimate()));
+  EXPECT_FALSE(trunk::is_active<ClockDifference>(pair.estimator->estimate()));
   for (std::size_t k = 0; k < kPhaseChannels; ++k) {
     EXPECT_TRUE(pair.estimator->estimate().is_idle(CarrierFilter::ambiguity_index(k)));
   }
@@ -256,7 +256,7 @@ TEST(CarrierAiding, DoesNotJoinAnOrbitThatDisagrees) {
   pair.fly_trunk(10);
   EXPECT_EQ(pair.carrier->aid().state(), AidState::kStarting);
   EXPECT_EQ(pair.carrier->counters().pairs, 0);
-  EXPECT_FALSE(trunk::is_active<trunk::ServicerAntenna>(pair.estimator->estimate()));
+  EXPECT_FALSE(trunk::is_active<ServicerAntenna>(pair.estimator->estimate()));
 }
 
 TEST(CarrierAiding, BurnsAreFollowed) {

@@ -34,7 +34,7 @@ trunk::TrunkSettings known_orbit(double wander_sigma_m) {
   settings.relative_orbit.from_sun.sigma = 1e-13;
   settings.relative_orbit.empirical.sigma = 1e-13;
   // Of a single difference: two receivers.
-  settings.phase_wander = {.sigma = std::sqrt(2.0) * wander_sigma_m, .time_s = kWanderTime_s};
+  settings.processes.of<PhaseWander>() = {.sigma = std::sqrt(2.0) * wander_sigma_m, .time_s = kWanderTime_s};
   return settings;
 }
 

@@ -97,14 +97,14 @@ TEST(DifferenceRows, ResidualsAndSensitivitiesAreDerivatives) {
   const std::array<int, 11> components = {0,
                                           1,
                                           4,
-                                          kAt<trunk::ServicerAntenna> + 1,
-                                          kAt<trunk::TargetAntenna> + 2,
-                                          kAt<trunk::PhaseCentreJitter>,
-                                          kAt<trunk::ClockDifference>,
-                                          kAt<trunk::Ambiguities> + 3,
-                                          kAt<trunk::CodeBiases>,
-                                          kAt<trunk::Ionosphere>,
-                                          kAt<trunk::Ionosphere> + 1};
+                                          kAt<ServicerAntenna> + 1,
+                                          kAt<TargetAntenna> + 2,
+                                          kAt<PhaseCentreJitter>,
+                                          kAt<ClockDifference>,
+                                          kAt<Ambiguities> + 3,
+                                          kAt<CodeBiases>,
+                                          kAt<Ionosphere>,
+                                          kAt<Ionosphere> + 1};
   for (const int i : components) {
     const double step = i < 6 ? 1.0 / 7e6 : 1.0;
     for (const std::size_t n : {std::size_t{0}, std::size_t{1}, epoch.count - 1}) {
@@ -139,7 +139,7 @@ TEST(DifferenceRows, IonosphereDelaysCodesAndAdvancesPhases) {
   navigation::DifferentialEpoch epoch;
   navigation::form_differences(ours, theirs, pair.store, frame, epoch);
   const AntennaPlatform platform{pair.servicer.R_eci_body_at(epoch.time), pair.nominal_antenna_m, 0.0};
-  constexpr int kVertical = trunk::kAt<trunk::Ionosphere>;
+  constexpr int kVertical = trunk::kAt<Ionosphere>;
   const auto chief = orbit::qns_from_cartesian(pair.estimator->servicer()).value();
   trunk::Trunk& trunk = *pair.estimator;
   DifferenceRows rows;

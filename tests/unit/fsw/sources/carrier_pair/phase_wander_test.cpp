@@ -19,7 +19,7 @@ TrunkPair wandering_pair(unsigned seed, double true_mm, double configured_mm) {
   for (navigation::test::SyntheticReceiver* receiver : {&pair.servicer, &pair.target})
     receiver->wander_sigma_m = 1e-3 * true_mm;
   // Of a single difference: two receivers.
-  pair.trunk_settings.phase_wander = {.sigma = std::sqrt(2.0) * 1e-3 * configured_mm, .time_s = 60.0};
+  pair.trunk_settings.processes.of<PhaseWander>() = {.sigma = std::sqrt(2.0) * 1e-3 * configured_mm, .time_s = 60.0};
   pair.expect_no_acceleration();
   return pair;
 }

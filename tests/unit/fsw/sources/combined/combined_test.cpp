@@ -25,7 +25,6 @@ using navigation::test::Noise;
 using test::kEarth;
 
 constexpr double kBearingSigma = 12.0 * navigation::test::kArcsec;
-constexpr std::size_t kCarrier = 0, kBearings = 1;  // numbers of the sources
 
 Vector3 sun() {
   return navigation::test::scene_sun();
@@ -41,9 +40,9 @@ struct CombinedPair : test::TrunkPair {
     trunk_settings.relative_orbit.from_sun.sigma = 1e-10;
     trunk_settings.relative_orbit.along_track.sigma = 1e-10;
     trunk_settings.relative_orbit.empirical.sigma = 1e-10;
-    trunk_settings.centroid_wander.sigma = 1e-4;
-    trunk_settings.brightness_offset.sigma = 1e-4;
-    trunk_settings.bearing_bias.sigma = 1e-7;
+    trunk_settings.processes.of<CentroidWander>().sigma = 1e-4;
+    trunk_settings.processes.of<BrightnessOffset>().sigma = 1e-4;
+    trunk_settings.processes.of<BearingBias>().sigma = 1e-7;
     begin_trunk();
     set_centroid_noise(0.0);
   }
@@ -66,12 +65,10 @@ struct CombinedPair : test::TrunkPair {
   /// Epochs of both receivers, and a bearing after each.
   void fly(int epochs, bool with_receivers, bool with_bearings, double bias = 0.0) {
     for (int k = 0; k < epochs; ++k, tag = tag + duration_of_seconds(10)) {
-      estimator->set_source(kCarrier);
       const auto ours = servicer.observe(tag, satellites, kEarth);
       const auto theirs = target.observe(tag, satellites, kEarth);
       step(ours, with_receivers ? &theirs : nullptr);
       const auto seen = bearing(bias);
-      estimator->set_source(kBearings);
       if (with_bearings) status = camera.process(tag, seen, sun(), *estimator);
       largest_error.add(error_in_sigmas());
     }
@@ -105,8 +102,9 @@ TEST(CombinedSources, InformationAddsUp) {
     auto seen = bearing_of(tag, pair.servicer.state_at(tag), pair.target.state_at(tag), kBearingSigma, Vector2::Zero());
     BearingModel model;
     model.centroid_noise_m = 0.0;
-    ASSERT_EQ(bearing_rows(trunk, seen, sun(), model), Status::kOk);
-    ASSERT_TRUE(trunk.fold());
+    trunk::MeasurementBatch& batch = trunk.workspace();
+    ASSERT_EQ(bearing_rows(trunk, seen, sun(), model, batch), Status::kOk);
+    ASSERT_TRUE(trunk.update(BearingAiding::kSource, batch));
   };
   const auto ours = pair.servicer.observe(tag, pair.satellites, kEarth);
   const auto theirs = pair.target.observe(tag, pair.satellites, kEarth);
@@ -226,8 +224,8 @@ TEST(CombinedSources, CentroidNoiseIsMeasuredAgainstCarrierPhase) {
 /// The pair 12 m apart, with a camera whose images show keypoints besides: lit from abeam of the orbit.
 struct ClosePair : CombinedPair {
   explicit ClosePair(unsigned seed) : CombinedPair(seed, 12.0) {
-    trunk_settings.centroid_wander.sigma = 0.02;
-    trunk_settings.brightness_offset.sigma = 1e-3;
+    trunk_settings.processes.of<CentroidWander>().sigma = 0.02;
+    trunk_settings.processes.of<BrightnessOffset>().sigma = 1e-3;
     trunk_settings.attitude.inertia = navigation::inertia_of(3.0 * Matrix3::Identity()).value();
     begin_trunk();
     set_centroid_noise(0.05);  // of a resolved target

@@ -77,13 +77,13 @@ constexpr double kMaxNees = 88.0 / kSeeds;
 
 TEST(KeypointFlight, IsConsistentInWhiteNoise) {
   trunk::TrunkSettings blocks = flight_blocks(whole_flight());
-  blocks.keypoint_errors = {.correlated_share = 0.0,
-                            .shift_sigma_px = 0.05,
-                            .stretch_sigma = 1e-6,
-                            .lasting_stretch = {.sigma = 1e-6, .time_s = 3600.0},
-                            .lasting_turn = {.sigma = 1e-6, .time_s = 3600.0}};
-  blocks.keypoint_origin.sigma = 1e-6;
-  blocks.camera_mount.sigma = 1.5e-5;
+  blocks.processes.of<KeypointCommon>() = {.correlated_share = 0.0,
+                                           .shift_sigma_px = 0.05,
+                                           .stretch_sigma = 1e-6,
+                                           .lasting_stretch = {.sigma = 1e-6, .time_s = 3600.0},
+                                           .lasting_turn = {.sigma = 1e-6, .time_s = 3600.0}};
+  blocks.processes.of<KeypointOrigin>().sigma = 1e-6;
+  blocks.processes.of<CameraMounts>().sigma = 1.5e-5;
   KeypointAidingSettings settings = flight_settings();
   settings.novelty.gain = 0.0;
   settings.editing.tail_degrees = 1e9;  // Gaussian

@@ -26,8 +26,8 @@ class KeypointRows : public testing::Test {
     navigation::AttitudeState attitude;
     attitude.q_eci_body = Eigen::Quaterniond(0.5, -0.1, 0.7, 0.4).normalized();
     trunk->begin_attitude(attitude, 1e-10 * Matrix6::Identity());
-    trunk::begin_block<trunk::KeypointOrigin>(trunk->estimate(), {.sigma = 0.01});
-    trunk::begin_block<trunk::CameraMounts>(trunk->estimate(), {.sigma = 1e-4});
+    trunk::begin_block<KeypointOrigin>(trunk->estimate(), {.sigma = 0.01});
+    trunk::begin_block<CameraMounts>(trunk->estimate(), {.sigma = 1e-4});
     q_eci_body = attitude.q_eci_body;
 
     const Vector3 z = (scene_target(scene_servicer(), roe).position_eci - scene_servicer().position_eci).normalized();
@@ -62,6 +62,7 @@ class KeypointRows : public testing::Test {
 
   const Vector6 roe = roe_of_metres(0.0, -8.5, 1.0, 0.0, 1.0, 0.5);
   std::unique_ptr<trunk::Trunk> trunk = std::make_unique<trunk::Trunk>();
+  trunk::MeasurementBatch& batch = trunk->workspace();
   Eigen::Quaterniond q_eci_body;
   CameraPose camera;
   KeypointModel model;
@@ -69,16 +70,15 @@ class KeypointRows : public testing::Test {
 };
 
 TEST_F(KeypointRows, SensitivitiesAreThoseOfTheGeometry) {
-  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kOk);
-  const trunk::Rows& rows = trunk->rows();
-  ASSERT_EQ(rows.used(), 22);
+  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model, batch), Status::kOk);
+  ASSERT_EQ(batch.used(), 22);
   // The mean of the sigma points differs from the central one by the curvature over 1e-5 rad: far below 1e-4 px.
-  EXPECT_LT(rows.residual.norm(), 1e-4);
+  EXPECT_LT(batch.residual.norm(), 1e-4);
   const auto expect_column = [&](int index, double step, const auto& pixel_at) {
     for (std::size_t k = 0; k < keypoints.size(); ++k) {
       const Vector2 slope = (pixel_at(k, step) - pixel_at(k, -step)) / (2.0 * step);
       for (int axis = 0; axis < 2; ++axis) {
-        const double sensitivity = rows.sensitivity(index, 2 * static_cast<int>(k) + axis);
+        const double sensitivity = batch.sensitivity(index, 2 * static_cast<int>(k) + axis);
         EXPECT_NEAR(sensitivity, slope(axis), 1e-3 * slope.norm() + 1e-6) << index << ' ' << k;
       }
     }
@@ -91,13 +91,13 @@ TEST_F(KeypointRows, SensitivitiesAreThoseOfTheGeometry) {
   for (int i = 0; i < 3; ++i) {
     expect_column(kAt<trunk::Turn> + i, 1e-4,
                   [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), d * Vector3::Unit(i), none, flat); });
-    expect_column(kAt<trunk::KeypointCommon> + trunk::KeypointCommon::kLastingTurn + i, 1e-4,
+    expect_column(kAt<KeypointCommon> + KeypointCommon::kLastingTurn + i, 1e-4,
                   [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), d * Vector3::Unit(i), none, flat); });
-    expect_column(kAt<trunk::KeypointOrigin> + i, 1e-4,
+    expect_column(kAt<KeypointOrigin> + i, 1e-4,
                   [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), none, d * Vector3::Unit(i), flat); });
   }
   for (int i = 0; i < 2; ++i) {
-    expect_column(trunk::mount_at(1) + i, 1e-5,
+    expect_column(mount_at(1) + i, 1e-5,
                   [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), none, none, d * Vector2::Unit(i)); });
   }
 }
@@ -105,28 +105,26 @@ TEST_F(KeypointRows, SensitivitiesAreThoseOfTheGeometry) {
 /// A lasting error of the apparent size is that of one camera, larger for a small image.
 TEST_F(KeypointRows, EachCameraHasItsOwnLastingStretch) {
   model.lasting_stretch_scale = 3.0;
-  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kOk);
-  constexpr int kLasting = kAt<trunk::KeypointCommon> + trunk::KeypointCommon::kLastingStretch;
-  const trunk::Rows& rows = trunk->rows();
-  for (int row = 0; row < rows.count(); ++row) {
-    EXPECT_EQ(rows.sensitivity(kLasting, row), 0.0) << "of the other camera";
+  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model, batch), Status::kOk);
+  constexpr int kLasting = kAt<KeypointCommon> + KeypointCommon::kLastingStretch;
+  for (int row = 0; row < batch.count(); ++row) {
+    EXPECT_EQ(batch.sensitivity(kLasting, row), 0.0) << "of the other camera";
     // That of the stretch of one view is the distance from the centre.
-    const double from_centre = rows.sensitivity(kAt<trunk::KeypointCommon> + 2, row);
+    const double from_centre = batch.sensitivity(kAt<KeypointCommon> + 2, row);
     EXPECT_NE(from_centre, 0.0);
-    EXPECT_DOUBLE_EQ(rows.sensitivity(kLasting + 1, row), 3.0 * from_centre);
+    EXPECT_DOUBLE_EQ(batch.sensitivity(kLasting + 1, row), 3.0 * from_centre);
   }
 }
 
 /// The noise and the variance of the error states add up to the covariance of the network.
 TEST_F(KeypointRows, CorrelatedAndWhiteErrorsAddUpToTheCovariance) {
-  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kOk);
-  const trunk::Rows& rows = trunk->rows();
+  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model, batch), Status::kOk);
   for (int k = 0; k < network::kKeypoints; ++k) {
     Matrix2 root;
     for (int axis = 0; axis < 2; ++axis) {
-      root.row(axis) = rows.sensitivity.col(2 * k + axis).segment<2>(kAt<trunk::KeypointErrors> + 2 * k).transpose();
+      root.row(axis) = batch.sensitivity.col(2 * k + axis).segment<2>(kAt<KeypointErrors> + 2 * k).transpose();
     }
-    const Matrix2 sum = root * root.transpose() + rows.noise.block<2, 2>(2 * k, 2 * k);
+    const Matrix2 sum = root * root.transpose() + batch.noise.block<2, 2>(2 * k, 2 * k);
     EXPECT_LT((sum - keypoints[static_cast<std::size_t>(k)].covariance_px2).norm(), 1e-6) << k;
   }
 }
@@ -137,13 +135,13 @@ TEST_F(KeypointRows, InvalidKeypointsAreNotInUse) {
   keypoints[2].covariance_px2 << 1.0, 2.0, 2.0, 1.0;
   keypoints[3].is_usable = false;
   keypoints[4].covariance_px2.setConstant(std::numeric_limits<double>::infinity());
-  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kOk);
-  EXPECT_EQ(trunk->rows().used(), 12);
+  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model, batch), Status::kOk);
+  EXPECT_EQ(batch.used(), 12);
   camera.R_camera_eci = -camera.R_camera_eci;  // all behind the camera
-  const Status status = keypoint_rows(*trunk, keypoints, camera, model);
-  EXPECT_TRUE(status != Status::kOk || trunk->rows().used() == 0);
+  const Status status = keypoint_rows(*trunk, keypoints, camera, model, batch);
+  EXPECT_TRUE(status != Status::kOk || batch.used() == 0);
   trunk->rest_attitude();
-  EXPECT_EQ(keypoint_rows(*trunk, keypoints, camera, model), Status::kNotReady);
+  EXPECT_EQ(keypoint_rows(*trunk, keypoints, camera, model, batch), Status::kNotReady);
 }
 
 View view_of(double angle, double range_m = 10.0) {

@@ -12,7 +12,7 @@ namespace {
 using namespace navigation::test;
 using trunk::RelativeKnowledge;
 
-constexpr int kBias = trunk::kAt<trunk::RangeBias>;
+constexpr int kBias = trunk::kAt<RangeBias>;
 const Vector6 kRoe = roe_of_metres(0.0, -100.0, 5.0, 8.0, -3.0, 6.0);
 
 double range_of(const trunk::Trunk& trunk, const Vector6& roe) {
@@ -38,16 +38,17 @@ std::unique_ptr<trunk::Trunk> trunk_with(double sigma_m) {
 /// Sensitivities against differences of the exact map.
 TEST(RangeRows, SensitivityIsThatOfTheGeometry) {
   const auto trunk = trunk_with(0.01);
-  ASSERT_EQ(range_rows(*trunk, 100.0, 0.01), Status::kOk);
+  trunk::MeasurementBatch& batch = trunk->workspace();
+  ASSERT_EQ(range_rows(*trunk, 100.0, 0.01, batch), Status::kOk);
   const Vector6 roe = trunk->roe();
   constexpr double kStep = 1e-8;
   for (int k = 0; k < 6; ++k) {
     const Vector6 step = kStep * Vector6::Unit(k);
     const double slope = (range_of(*trunk, roe + step) - range_of(*trunk, roe - step)) / (2.0 * kStep);
-    EXPECT_NEAR(trunk->rows().sensitivity(k, 0) / kA, slope / kA, 1e-5) << k;
+    EXPECT_NEAR(batch.sensitivity(k, 0) / kA, slope / kA, 1e-5) << k;
   }
-  EXPECT_EQ(trunk->rows().sensitivity(kBias, 0), 1.0);
-  EXPECT_NEAR(trunk->rows().residual(0), 100.0 - range_of(*trunk, roe), 1e-5);
+  EXPECT_EQ(batch.sensitivity(kBias, 0), 1.0);
+  EXPECT_NEAR(batch.residual(0), 100.0 - range_of(*trunk, roe), 1e-5);
 }
 
 /// A constant bias cannot be told from the range by ranges alone: their sum becomes known, each is known as before.
@@ -104,7 +105,7 @@ TEST(RangeAiding, SilenceSuspendsAndAStopRestsTheBias) {
   EXPECT_EQ(aiding.aid().state(), AidState::kSuspended);
   const Matrix6 covariance = trunk->roe_covariance();
   aiding.stop(scene_start(), *trunk);
-  EXPECT_FALSE(trunk::is_active<trunk::RangeBias>(trunk->estimate()));
+  EXPECT_FALSE(trunk::is_active<RangeBias>(trunk->estimate()));
   EXPECT_EQ(trunk->roe_covariance(), covariance);
 }
 
