@@ -1,48 +1,23 @@
 #include "host_sim/faults/fault_subject.h"
 
-#include <string>
+#include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::faults {
 
 using fsw::packets::Apid;
 using mission::FaultKind;
 
-namespace {
-
-/// The messages of a camera, a receiver, a star tracker and a range finder, by the words of their sensor's kind.
-std::optional<Apid> message_of(const mission::Mission& mission, const mission::Fault& fault) {
+std::optional<StreamKey> stream_of(const mission::Mission& mission, const mission::Fault& fault) {
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (spacecraft.name != fault.spacecraft) continue;
     for (const mission::Sensor& sensor : spacecraft.sensors) {
       if (sensor.name != fault.unit) continue;
-      if (sensor.kind == "camera") return Apid::kImageTile;
-      if (sensor.kind == "gnss") return spacecraft.flight_computer ? Apid::kGnssBytes : Apid::kCrosslinkGnssBytes;
-      if (sensor.kind == "range_finder") return Apid::kRangeMeasurement;
-      return Apid::kIdealNavigation;
+      const sensors::MeasurementPackets& packets = sensors::kind_of(sensor).packets;
+      const Apid apid = spacecraft.flight_computer ? packets.apid : packets.by_crosslink.value_or(packets.apid);
+      return StreamKey{apid, packets.unit != nullptr ? packets.unit(sensor, spacecraft) : std::uint8_t{0}};
     }
   }
   return std::nullopt;
-}
-
-/// Header unit of a camera: cameras for navigation are numbered in the order of the sensors.
-std::uint8_t unit_of(const mission::Mission& mission, const std::string& name) {
-  std::uint8_t unit = 0;
-  for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
-    if (!spacecraft.flight_computer) continue;
-    for (const mission::Sensor& sensor : spacecraft.sensors) {
-      if (sensor.name == name) return unit;
-      if (sensor.kind == "camera" && sensor.settings->navigation != 0) ++unit;
-    }
-  }
-  return 0;
-}
-
-}  // namespace
-
-std::optional<StreamKey> stream_of(const mission::Mission& mission, const mission::Fault& fault) {
-  const auto apid = message_of(mission, fault);
-  if (!apid) return std::nullopt;
-  return StreamKey{*apid, *apid == Apid::kImageTile ? unit_of(mission, fault.unit) : std::uint8_t{0}};
 }
 
 std::int32_t aids_concerned(const mission::Mission& mission, const mission::Fault& fault) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -92,7 +93,16 @@ struct RestoreContext {
   std::filesystem::path data_directory;
 };
 
+/// The packets that carry the measurements of a sensor.
+struct MeasurementPackets {
+  fsw::packets::Apid apid = fsw::packets::Apid::kIdealNavigation;
+  std::optional<fsw::packets::Apid> by_crosslink{};  ///< from a spacecraft without flight software; empty: the same
+  /// Unit in their headers. Null: 0.
+  std::uint8_t (*unit)(const mission::Sensor& sensor, const mission::Spacecraft& carrier) = nullptr;
+};
+
 struct SensorKind : mission::SensorReader {
+  MeasurementPackets packets{};
   /// Adds what the flight software is told about the sensor before its first step. Null: nothing.
   void (*add_telecommands)(const mission::Sensor& sensor, const TelecommandContext& context,
                            Telecommands& telecommands) = nullptr;

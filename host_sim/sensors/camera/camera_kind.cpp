@@ -188,6 +188,7 @@ std::vector<report::Section> sections(const report::RunRecord& record) {
 
 const SensorKind kCamera{
     {"camera", "", read_camera, read_camera_shared, check},
+    {fsw::packets::Apid::kImageTile, std::nullopt, camera_unit},
     add_camera_telecommands,
     add_sources,
     add_facts,

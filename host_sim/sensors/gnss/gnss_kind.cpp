@@ -163,6 +163,7 @@ std::vector<report::Section> sections(const report::RunRecord& record) {
 }  // namespace
 
 const SensorKind kGnss{{"gnss", "constellation", read_gnss, read_gnss_shared, check},
+                       {fsw::packets::Apid::kGnssBytes, fsw::packets::Apid::kCrosslinkGnssBytes},
                        add_telecommands,
                        add_sources,
                        add_facts,

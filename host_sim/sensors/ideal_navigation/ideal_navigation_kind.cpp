@@ -60,6 +60,7 @@ void add_facts(const mission::Sensor& sensor, const mission::Mission& /*mission*
 
 }  // namespace
 
-const SensorKind kIdealNavigation{{"navigation", "", read, nullptr, check}, nullptr, add_sources, add_facts};
+const SensorKind kIdealNavigation{
+    {"navigation", "", read, nullptr, check}, {fsw::packets::Apid::kIdealNavigation}, nullptr, add_sources, add_facts};
 
 }  // namespace vbar::sensors

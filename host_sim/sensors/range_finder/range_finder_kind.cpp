@@ -105,8 +105,13 @@ std::vector<report::Section> sections(const report::RunRecord& record) {
 
 }  // namespace
 
-const SensorKind kRangeFinder{
-    {"range_finder", "", read, nullptr, check}, add_telecommands, add_sources, nullptr, evaluate_ranges, true,
-    {tables, summarise_ranges, sections}};
+const SensorKind kRangeFinder{{"range_finder", "", read, nullptr, check},
+                              {fsw::packets::Apid::kRangeMeasurement},
+                              add_telecommands,
+                              add_sources,
+                              nullptr,
+                              evaluate_ranges,
+                              true,
+                              {tables, summarise_ranges, sections}};
 
 }  // namespace vbar::sensors
